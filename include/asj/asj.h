@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* libasj: anisotropic-scale junctions of indoor images. This header includes the whole core interface.
+ *
+ *     asj_context *context;
+ *     asj_detection *found;
+ *     asj_image image = {pixels, ASJ_FORMAT_GRAY8, width, height, 0, 0};
+ *     if (asj_context_create(NULL, &context) != ASJ_OK) return 1;
+ *     if (asj_detect(context, &image, NULL, &found) == ASJ_OK) {
+ *         for (uint32_t i = 0; i < found->junction_count; i++)
+ *             printf("%g %g\n", found->junctions[i].x, found->junctions[i].y);
+ *         asj_detection_free(&found);
+ *     }
+ *     asj_context_free(&context);
+ */
+#ifndef ASJ_H
+#define ASJ_H
+
+#include <asj/context.h>
+#include <asj/detect.h>
+#include <asj/field.h>
+#include <asj/image.h>
+#include <asj/junction.h>
+#include <asj/options.h>
+#include <asj/status.h>
+#include <asj/version.h>
+
+#endif

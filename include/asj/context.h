@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_CONTEXT_H
+#define ASJ_CONTEXT_H
+
+#include <asj/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Where the data-parallel steps run. */
+enum {
+    ASJ_BACKEND_AUTO = 0,  /* an OpenCL GPU when there is one, else the CPU */
+    ASJ_BACKEND_CPU = 1,   /* always there */
+    ASJ_BACKEND_OPENCL = 2 /* ASJ_ERROR_DEVICE, with the reason, when it cannot be had */
+};
+
+enum { ASJ_LOG_ERROR = 0, ASJ_LOG_WARNING = 1, ASJ_LOG_INFO = 2, ASJ_LOG_DEBUG = 3 };
+
+/* Steps of the pipeline, in order: names for progress reports, stage times and dumps. */
+enum {
+    ASJ_STAGE_GRADIENT = 0,   /* image -> normalised gradient */
+    ASJ_STAGE_CANDIDATES = 1, /* local junction field -> pixels worth a junction test */
+    ASJ_STAGE_ISOTROPIC = 2,  /* a-contrario test of isotropic junctions at the candidates */
+    ASJ_STAGE_LOCATE = 3,     /* line fits: sub-pixel location, edge artefacts rejected, duplicates suppressed */
+    ASJ_STAGE_SCAN = 4,       /* branch lengths by the ray test */
+    ASJ_STAGE_REFINE = 5,     /* orientations, branch validation, final suppression */
+    ASJ_STAGE_DECOMPOSE = 6,  /* L-junctions */
+    ASJ_STAGE_PATCHES = 7,    /* matching: canonical or induced patches */
+    ASJ_STAGE_DISTANCES = 8,  /* matching: all pairs */
+    ASJ_STAGE_ALIGN = 9,      /* matching: affine maps refined on the images */
+    ASJ_STAGE_ASSIGN = 10,    /* matching: ratio test, mutual check */
+    ASJ_STAGE_COUNT = 11
+};
+
+/* "gradient", "candidates", ...; "unknown" outside the range. A static string. */
+ASJ_API const char *asj_stage_name(int32_t stage);
+
+/* Memory. Both functions or neither. `allocate` returns at least `size` bytes aligned for any C type, or NULL; `release`
+ * takes what `allocate` gave (never NULL). They are called from the thread that calls the library only. */
+typedef struct asj_allocator {
+    void *(*allocate)(void *user, size_t size);
+    void (*release)(void *user, void *memory);
+    void *user;
+} asj_allocator;
+
+/* One line of text without a newline, valid during the call. Called from the thread that calls the library. */
+typedef void (*asj_log_callback)(void *user, int32_t level, const char *message);
+
+/* Progress of the current call: stage (ASJ_STAGE_...) and how much of the whole call is done, in [0, 1], never falling.
+ * Called from the thread that calls the library, a few dozen times a call. Return 0 to go on, anything else to stop: the call
+ * then returns ASJ_ERROR_CANCELLED. */
+typedef int32_t (*asj_progress_callback)(void *user, int32_t stage, double done);
+
+/* What a dump hands out: a plane of the pipeline, or a list of points. Valid during the call only. */
+enum {
+    ASJ_DUMP_PLANE_U16 = 1, /* width x height uint16_t, row by row, `stride` elements apart */
+    ASJ_DUMP_PLANE_I16 = 2, /* the same, int16_t */
+    ASJ_DUMP_POINTS = 3     /* `count` times two int32_t: x, y */
+};
+typedef struct asj_dump {
+    int32_t stage;    /* ASJ_STAGE_... */
+    int32_t kind;     /* ASJ_DUMP_... */
+    const char *name; /* "gray", "gradient_x", "gradient_y", "candidates", "isotropic", "located", "scanned" */
+    const void *data;
+    int32_t width;    /* planes */
+    int32_t height;
+    ptrdiff_t stride; /* planes: elements from row to row */
+    size_t count;     /* points */
+    double unit;      /* planes: multiply a sample by it to get grey levels ("gray") or normalised units */
+} asj_dump;
+typedef void (*asj_dump_callback)(void *user, const asj_dump *dump);
+
+/* How a context is made. Fill it with asj_context_options_init() and change what you need: fields added later take their
+ * defaults from there. */
+typedef struct asj_context_options {
+    int32_t backend;                /* ASJ_BACKEND_..., default auto */
+    int32_t threads;                /* threads of the CPU path, 0 .. 256; default 0 = as many as processors. The results do
+                                     * not depend on it. 1 when the library was built without OpenMP. */
+    const char *device;             /* OpenCL device: index, part of its name, or "gpu", "cpu", "accelerator"; default NULL = any */
+    asj_allocator allocator;        /* default: malloc and free */
+    asj_log_callback log;           /* default NULL = silence */
+    void *log_user;
+    int32_t log_level;              /* most detailed level wanted, default ASJ_LOG_WARNING */
+    int32_t reserved_1;
+    asj_progress_callback progress; /* default NULL */
+    void *progress_user;
+    asj_dump_callback dump;         /* default NULL; costs nothing when NULL */
+    void *dump_user;
+    uint64_t reserved[16];          /* zero */
+} asj_context_options;
+
+/* Fills in the defaults. `options` may not be NULL (it is then left alone). */
+ASJ_API void asj_context_options_init(asj_context_options *options);
+
+/* Everything that lives from call to call: tables, scratch memory, threads, device. A context serves one thread at a time;
+ * several contexts may run at once, and there is no state outside them. About 1 MB, plus scratch that grows to the largest
+ * image seen and is kept for the next one. */
+typedef struct asj_context asj_context;
+
+/* Makes a context. `options` NULL = the defaults. On success the caller owns *context until asj_context_free().
+ * ASJ_ERROR_ARGUMENT  context is NULL, or only one of the allocator's functions is given
+ * ASJ_ERROR_OPTION    backend or threads out of range
+ * ASJ_ERROR_MEMORY
+ * ASJ_ERROR_DEVICE    the back end that was asked for cannot be had */
+ASJ_API asj_status asj_context_create(const asj_context_options *options, asj_context **context);
+
+/* Frees a context and sets the pointer to NULL. NULL and a pointer to NULL are fine. Results made with the context stay valid
+ * as long as its allocator does. */
+ASJ_API void asj_context_free(asj_context **context);
+
+/* What went wrong in the context's last failed call, with names and numbers; "" before the first failure. Valid until the next
+ * call with this context. For a NULL context a fixed text. */
+ASJ_API const char *asj_context_message(const asj_context *context);
+
+/* Number of threads that the CPU path uses. 0 for a NULL context. */
+ASJ_API int32_t asj_context_threads(const asj_context *context);
+
+/* Bytes that the context holds at the moment, and the most it has held since it was made, results included.
+ * Either pointer may be NULL. */
+ASJ_API void asj_context_memory(const asj_context *context, uint64_t *now, uint64_t *peak);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_DETECT_H
+#define ASJ_DETECT_H
+
+#include <asj/context.h>
+#include <asj/image.h>
+#include <asj/junction.h>
+#include <asj/options.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Junctions of one image. The arrays belong to the result and are NULL when empty. */
+typedef struct asj_detection {
+    const asj_junction *junctions;     /* most meaningful first; ties by y, then x */
+    const asj_l_junction *l_junctions; /* in order of their junction */
+    uint32_t junction_count;
+    uint32_t l_junction_count;
+    int32_t width, height;             /* of the image */
+    int32_t backend;                   /* ASJ_BACKEND_CPU or ASJ_BACKEND_OPENCL: what did the work */
+    int32_t reserved_1;
+    double total_ms;                   /* wall time of the call */
+    double stage_ms[16];               /* by ASJ_STAGE_... */
+    uint64_t candidates;               /* pixels that reached the isotropic test */
+    uint64_t isotropic;                /* junctions that passed it */
+    uint64_t reserved[6];
+} asj_detection;
+
+/* Finds the anisotropic-scale junctions of an image: the pipeline of the paper, steps 1 to 6.
+ *
+ * image    a view; only read, and only during the call
+ * options  NULL = preset `default`
+ * result   on success *result belongs to the caller until asj_detection_free()
+ *
+ * Constant images, images of noise and images smaller than any sector are valid and give no junctions. The same image and options
+ * give the same result with any number of threads and on every back end. Memory: see README.md, "Memory".
+ *
+ * ASJ_ERROR_ARGUMENT   context, image or result is NULL
+ * ASJ_ERROR_IMAGE      data NULL, unknown format, side < 1, stride shorter than a row, NaN or infinity
+ * ASJ_ERROR_LIMIT      more than ASJ_MAX_SIDE or ASJ_MAX_PIXELS
+ * ASJ_ERROR_OPTION     an option out of range
+ * ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED, ASJ_ERROR_DEVICE
+ * asj_context_message() then says which and why. Thread safety: one call at a time per context. */
+ASJ_API asj_status asj_detect(asj_context *context, const asj_image *image, const asj_detect_options *options,
+                              asj_detection **result);
+
+/* Frees a result and sets the pointer to NULL. NULL and a pointer to NULL are fine. */
+ASJ_API void asj_detection_free(asj_detection **result);
+
+/* Step 6 alone, for junctions from elsewhere (a file, another detector): every pair of branches of a junction that opens by at
+ * least `minimum_opening` degrees and at most 180 minus that, in order.
+ * Writes at most `capacity` L-junctions and returns how many there are in all (10 for each junction at most), so a first call with
+ * capacity 0 tells the size. Junctions with a branch_count outside 0 .. ASJ_MAX_BRANCHES are passed over. */
+ASJ_API size_t asj_decompose(const asj_junction *junctions, size_t junction_count, double minimum_opening,
+                             asj_l_junction *l_junctions, size_t capacity);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

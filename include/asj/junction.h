@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_JUNCTION_H
+#define ASJ_JUNCTION_H
+
+#include <asj/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ASJ_MAX_BRANCHES 5
+
+/* One straight branch of a junction, pointing away from it. */
+typedef struct asj_branch {
+    float angle;      /* rad in [0, 2 pi), from +x (right) towards +y (down) */
+    float length;     /* px from the junction to the branch's own end: the anisotropic scale */
+    float strength;   /* junction-ness of the branch at the isotropic scale, in standard deviations of the null model */
+    float log10_nfa;  /* log10 of the expected number of strips as good as this one in an image of noise; the smaller the surer */
+    float angle_sd;   /* rad: standard uncertainty of `angle`; 0 = not known */
+    float reserved;   /* zero */
+} asj_branch;
+
+/* A junction: a point with two to five branches, in order of angle. */
+typedef struct asj_junction {
+    float x, y;             /* px, sub-pixel; pixel centres at integers */
+    float scale;            /* px: radius at which the isotropic test found it most meaningful */
+    float log10_nfa;        /* log10 NFA of the isotropic junction */
+    float location_sd;      /* px: standard uncertainty of x and of y (root mean square of the two); 0 = not known */
+    int32_t branch_count;   /* 2 .. ASJ_MAX_BRANCHES */
+    asj_branch branches[ASJ_MAX_BRANCHES]; /* those beyond branch_count are zero */
+} asj_junction;
+
+/* An L-junction: two branches of a junction, ordered so that turning from a to b in the sense of growing angles (clockwise on
+ * the screen) takes less than pi. The order is unique and survives every affine map that does not mirror. */
+typedef struct asj_l_junction {
+    uint32_t junction;          /* index of the junction it comes from */
+    uint16_t branch_a, branch_b;/* indices of its branches there */
+    float x, y;                 /* px: the junction's location */
+    float ax, ay;               /* px: end of branch a */
+    float bx, by;               /* px: end of branch b */
+} asj_l_junction;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

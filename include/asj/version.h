@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_VERSION_H
+#define ASJ_VERSION_H
+
+#include <asj/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Version of the programming interface. The build reads these three lines; they are the only place where it stands.
+ * MAJOR changes when a program must be rebuilt or edited, MINOR when something is added, PATCH for corrections. */
+#define ASJ_VERSION_MAJOR 0
+#define ASJ_VERSION_MINOR 1
+#define ASJ_VERSION_PATCH 0
+
+/* Version of the library that runs, as (major << 16) | (minor << 8) | patch. Compare it with ASJ_VERSION at start-up.
+ * Thread safety: any thread, any time. */
+ASJ_API uint32_t asj_version(void);
+
+/* The same as text, "0.1.0". A static string. */
+ASJ_API const char *asj_version_string(void);
+
+#define ASJ_VERSION ((ASJ_VERSION_MAJOR << 16) | (ASJ_VERSION_MINOR << 8) | ASJ_VERSION_PATCH)
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Every allocation of the core goes through here: the context's allocator, overflow checks, and a count of bytes held. */
+#ifndef ASJ_SRC_MEMORY_H
+#define ASJ_SRC_MEMORY_H
+
+#include <asj/context.h>
+
+typedef struct asj_memory {
+    asj_allocator allocator;
+    uint64_t now, peak; /* bytes held, and the most ever held */
+} asj_memory;
+
+/* `count` elements of `size` bytes, aligned to ASJ_ALIGNMENT, contents undefined; NULL when out of memory or when the product
+ * overflows. A count of 0 gives a valid pointer. Not thread safe: call from the calling thread only. */
+#define ASJ_ALIGNMENT 64
+void *asj_allocate(asj_memory *memory, size_t count, size_t size);
+
+/* The same, all bytes zero. */
+void *asj_allocate_zero(asj_memory *memory, size_t count, size_t size);
+
+/* NULL is fine. */
+void asj_release(asj_memory *memory, void *block);
+
+/* A block that grows: makes *block at least `count` elements of `size` bytes large, keeping the first `keep` elements.
+ * *capacity (elements) is updated; growth is geometric. On failure nothing changes. */
+asj_status asj_grow(asj_memory *memory, void **block, size_t *capacity, size_t count, size_t size, size_t keep);
+
+#endif
