@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Null distributions of the a-contrario tests, tails of their n-fold sums in the log domain, numbers of tests.
  *
- * Equation names are those of Xue et al., "Anisotropic-Scale Junction Detection and Matching for Indoor Images"; ACJ is Xia, Delon,
- * Gousseau, "Accurate junction detection and characterization in natural images", IJCV 2014. All logarithms are natural.
+ * Equation names are those of Xue et al., "Anisotropic-Scale Junction Detection and Matching for Indoor Images"; ACJ is Xia,
+ * Delon, Gousseau, "Accurate junction detection and characterization in natural images", IJCV 2014. Logarithms are natural.
  *
- * gamma  (acj-distribution)      = R max(|cos D| - |sin D|, 0), R Rayleigh(1), D uniform. That is sqrt(2) min(|A|, |B|) for independent
- *        standard normal A, B with probability 1/2, else 0. Atom 1/2 at 0, for z > 0 density (1/sqrt(pi)) exp(-z^2/4) erfc(z/2) and
- *        tail erfc(z/2)^2 / 2; mean 2 (sqrt(2) - 1) / sqrt(2 pi), variance 1 - 2/pi - mean^2.
- * gamma~ (distribution-updated)  = W max(|cos D| - |sin D|, 0), W standard normal. Symmetric, atom 1/2 at 0, and a density that is
- *        logarithmically infinite at 0: only its tail is used here.
+ * gamma  (acj-distribution) = R max(|cos D| - |sin D|, 0), R Rayleigh(1), D uniform. That is sqrt(2) min(|A|, |B|) with
+ *        probability 1/2, A and B independent standard normal, else 0. Atom 1/2 at 0; for z > 0 density
+ *        (1/sqrt(pi)) exp(-z^2/4) erfc(z/2) and tail erfc(z/2)^2 / 2; mean 2 (sqrt(2) - 1) / sqrt(2 pi), variance
+ *        1 - 2/pi - mean^2.
+ * gamma~ (distribution-updated) = W max(|cos D| - |sin D|, 0), W standard normal. Symmetric, atom 1/2 at 0, and a density
+ *        that is logarithmically infinite at 0: only its tail is used here.
  *
- * What is departed from: the paper (acj-distribution-conv) calls F a distribution function and evaluates it by convolution. F is the
- * upper tail, and 1 - (distribution function) cancels to 0 where it matters (the paper's "F = 0 for t > J/2" is that). Tails are summed
- * from positive terms, or taken from the saddlepoint approximation. The central limit theorem is nowhere used: it is wrong by 4 to 18
- * powers of ten at the tails that decide. */
+ * What is departed from: the paper (acj-distribution-conv) calls F a distribution function and convolves it numerically. F is
+ * the upper tail, and one minus a distribution function cancels to 0 where it matters (the paper's "F = 0 for t > J/2" is
+ * that). Here tails are sums of positive terms, or the saddlepoint approximation. The central limit theorem is nowhere used:
+ * it is wrong by 4 to 18 powers of ten at the tails that decide. */
 #include "nfa.h"
 
 #include <float.h>
@@ -24,15 +25,15 @@ static const double root_half = 0.70710678118654752440;
 static const double root_pi = 1.77245385090551602730;
 
 enum {
-    DIRECT = 6,         /* sums of up to this many gamma have a table; longer ones use the saddlepoint */
-    SECTOR_CELLS = 400, /* cells of such a table */
-    RATE_PER_UNIT = 32, /* saddlepoint: nodes per unit of u = sqrt(t / n) */
-    RATE_CELLS = 128,
-    RATE_FROZEN = 2,    /* cells below which the correction is held, see rate_at() */
-    ARC_CELLS = 300,    /* cells of a table for sums of gamma~ */
-    ARC_HALF = 400      /* half-width of the lattice it is summed on: 4 units more, so that what is cut off does not count */
+    PER_UNIT = 32,             /* nodes per unit of every table: a power of two, so that finding a cell is exact */
+    DIRECT = 6,                /* sums of up to this many gamma have a table; longer ones use the saddlepoint */
+    SECTOR_CELLS = 16 * PER_UNIT,
+    RATE_CELLS = 4 * PER_UNIT, /* saddlepoint: in u = sqrt(t / n) */
+    RATE_FROZEN = 2,           /* cells below which the correction is held, see rate_at() */
+    ARC_CELLS = 12 * PER_UNIT, /* sums of gamma~ */
+    ARC_HALF = 16 * PER_UNIT   /* half-width of the lattice they are made on: wider, so that what is cut off does not count */
 };
-static const double step = 0.04; /* of both kinds of tables */
+static const double step = 1.0 / PER_UNIT;
 
 /* A node of the saddlepoint table and its derivatives with respect to u; see rate_at(). */
 typedef struct rate_node {
@@ -52,8 +53,8 @@ static const double gauss_node[GAUSS] = {0.095012509837637441, 0.281603550779258
 static const double gauss_weight[GAUSS] = {0.18945061045506864, 0.18260341504492364, 0.16915651939500265, 0.14959598881657671,
                                            0.12462897125553407, 0.095158511682492605, 0.062253523938647456, 0.027152459411754176};
 
-/* ln Phi(-r), Phi the standard normal distribution function. Beyond 30, where erfc comes near its underflow, the asymptotic series
- * Phi(-r) = phi(r)/r (1 - 1/r^2 + 3/r^4 - ..), here good to 2e-14 relative. Never below -DBL_MAX. */
+/* ln Phi(-r), Phi the standard normal distribution function. Beyond 30, where erfc comes near its underflow, the asymptotic
+ * series Phi(-r) = phi(r)/r (1 - 1/r^2 + 3/r^4 - ..), here good to 2e-14 relative. Never below -DBL_MAX. */
 static double log_normal_tail(double r)
 {
     if (r < 30)
@@ -63,16 +64,17 @@ static double log_normal_tail(double r)
     return fmax(-0.5 * r * r - log(r) + log(series / sqrt(2 * pi)), -DBL_MAX);
 }
 
-/* Linear in a table of ln P against i * step. The tails are log-concave, so that this lies below them, by at most
- * step^2/8 |(ln P)''| (below 3e-4, i.e. 1e-4 decades, except in the first cell of G), and it falls where the table falls. */
+/* Linear in a table of ln P against i * step, so that it falls wherever the table falls. The error, step^2/8 |(ln P)''| at
+ * most, is below 6e-5 decades, save next to the infinite density of gamma~
+ * at 0: there 3e-3 decades in the first cell of G, 6e-4 in the second, 6e-5 from s = 0.25 on. */
 static double interpolate(const double *table, double x)
 {
-    double cell = floor(x / step);
-    const double *at = table + (int)cell;
-    return at[0] + (at[1] - at[0]) * (x / step - cell);
+    double place = x * PER_UNIT;
+    int cell = (int)place;
+    return table[cell] + (table[cell + 1] - table[cell]) * (place - cell);
 }
 
-/* ---- sums of gamma: saddlepoint ---------------------------------------------------------------------------------------------- */
+/* ---- sums of gamma: saddlepoint --------------------------------------------------------------------------------- */
 
 /* The density of gamma, without its atom, as a quadrature rule. */
 enum { PANELS = 17, QUADRATURE = PANELS * 2 * GAUSS };
@@ -118,14 +120,14 @@ static void cumulants(const quadrature *rule, double s, double kappa[4])
     kappa[3] = m3 - 3 * m1 * m2 + 2 * m1 * m1 * m1;
 }
 
-/* The table behind rate_at(): for each u solve kappa'(s) = u^2 by Newton's method, starting from the neighbour to the left. No node
- * falls on the mean (u = 0.5749), where w = 0 and the quotients below would be 0/0. */
+/* The table behind rate_at(): for each u solve kappa'(s) = u^2 by Newton's method, starting from the neighbour to the left.
+ * No node falls on the mean (u = 0.5749), where w = 0 and the quotients below would be 0/0. */
 static void fill_rate(const quadrature *rule, rate_node *rate)
 {
-    double s = -sqrt(2 / root_pi) * RATE_PER_UNIT, kappa[4];
+    double s = -sqrt(2 / root_pi) * PER_UNIT, kappa[4];
     rate[0] = (rate_node){-sqrt(2 * log(2)), 2 * sqrt(2 / root_pi) / sqrt(2 * log(2)), 0, 0};
     for (int i = 1; i <= RATE_CELLS; i++) {
-        double u = (double)i / RATE_PER_UNIT, next = (double)(i + 1) / RATE_PER_UNIT, x = u * u, move;
+        double u = (double)i / PER_UNIT, next = (double)(i + 1) / PER_UNIT, x = u * u, move;
         int left = 50;
         do {
             cumulants(rule, s, kappa);
@@ -149,31 +151,34 @@ static double hermite(double f0, double d0, double f1, double d1, double h, doub
     return f0 * q * q * (1 + 2 * p) + f1 * p * p * (1 + 2 * q) + h * p * q * (d0 * q - d1 * p);
 }
 
-/* ln F(t; n) by the formula of Lugannani and Rice in Barndorff-Nielsen's form (Butler, "Saddlepoint approximations", 2007, ch. 1-2):
+/* ln F(t; n) by the formula of Lugannani and Rice in Barndorff-Nielsen's form (Adv. Appl. Prob. 12, 1980; J. R. Statist. Soc.
+ * B 52, 1990): with x = t/n and kappa'(s) = x,
  *
- *     ln F = ln Phi(-r),  r = W + ln(V / W) / W,  W = sign(s) sqrt(2 n (s x - kappa(s))),  V = s sqrt(n kappa''(s)),  kappa'(s) = x = t/n.
+ *     ln F = ln Phi(-r),  r = W + ln(V / W) / W,  W = sign(s) sqrt(2 n (s x - kappa(s))),  V = s sqrt(n kappa''(s)).
  *
- * With W = sqrt(n) w and V = sqrt(n) v, which depend on x only, r = sqrt(n) w + c / sqrt(n), c = ln(v / w) / w. Both w and c are
- * smooth, through the mean too; they are tabulated against u = sqrt(x) (near x = 0, w = -sqrt(2 ln 2) + 1.80 u + ..) and interpolated by
- * cubic Hermite polynomials. Below u = RATE_FROZEN / RATE_PER_UNIT c would grow like -ln u: the approximation knows nothing of the atom
- * at 0. There c is held, and the caller bounds the result by P(S > 0). Beyond the table w goes on along its tangent in x and c is held:
- * ln F then still behaves as -t^2/(2n). */
+ * W = sqrt(n) w and V = sqrt(n) v, where w and v depend on x only; hence r = sqrt(n) w + c / sqrt(n), c = ln(v / w) / w. Both w
+ * and c are smooth, through the mean too, and are interpolated in u = sqrt(x) by cubic Hermite polynomials: near x = 0,
+ * w = -sqrt(2 ln 2) + 1.80 u + .. is smooth in u but not in x. There, below RATE_FROZEN cells, c would grow like -ln u (the
+ * approximation knows nothing of the atom at 0) and r would no more rise with u; c is held, and the caller bounds the result
+ * by P(S > 0). Beyond the table w goes on along its tangent in x and c is held: ln F still behaves as -t^2/(2n). */
 static void rate_at(const rate_node *rate, double x, double *root, double *correction)
 {
-    double u = sqrt(x) * RATE_PER_UNIT;
+    double u = sqrt(x) * PER_UNIT;
     if (!(u < RATE_CELLS)) {
         const rate_node *end = rate + RATE_CELLS;
-        double last = (double)RATE_CELLS / RATE_PER_UNIT;
+        double last = (double)RATE_CELLS / PER_UNIT;
         *root = end->root + (x - last * last) * end->root_slope / (2 * last);
         *correction = end->correction;
         return;
     }
     int i = (int)u;
-    double p = u - i, h = 1.0 / RATE_PER_UNIT;
+    double p = u - i, h = 1.0 / PER_UNIT;
     const rate_node *at = rate + i;
     *root = hermite(at[0].root, at[0].root_slope, at[1].root, at[1].root_slope, h, p);
-    *correction = i < RATE_FROZEN ? rate[RATE_FROZEN].correction
-                                  : hermite(at[0].correction, at[0].correction_slope, at[1].correction, at[1].correction_slope, h, p);
+    if (i < RATE_FROZEN)
+        *correction = rate[RATE_FROZEN].correction;
+    else
+        *correction = hermite(at[0].correction, at[0].correction_slope, at[1].correction, at[1].correction_slope, h, p);
 }
 
 static double saddlepoint(const asj_nfa *nfa, double t, int32_t n)
@@ -184,10 +189,10 @@ static double saddlepoint(const asj_nfa *nfa, double t, int32_t n)
     return r < 0 ? fmin(tail, log1p(-ldexp(1, -n))) : tail;
 }
 
-/* ---- sums of gamma: tables for few terms ------------------------------------------------------------------------------------- */
+/* ---- sums of gamma: tables for few terms ------------------------------------------------------------------------ */
 
-/* The integral of f(i) = a[i] b[cells - i] over `cells` cells of width 1, all weights positive: Gregory's rule of fourth order, closed
- * Newton-Cotes rules where that has no room. */
+/* The integral of f(i) = a[i] b[cells - i] over `cells` cells of width 1, all weights positive: Gregory's rule of fourth
+ * order, closed Newton-Cotes rules where that has no room. */
 static double integrate_product(const double *a, const double *b, int cells)
 {
     static const double gregory[3] = {3.0 / 8, 7.0 / 6, 23.0 / 24};
@@ -212,8 +217,9 @@ static double integrate_product(const double *a, const double *b, int cells)
     return sum;
 }
 
-/* F(t; n) = P(gamma >= t) + F(t; n-1) / 2 + integral over 0 < z < t of F(t - z; n-1) p(z) dz: acj-distribution-conv with the last term
- * split off, atom and density apart. Only positive terms are added, so that the relative error stays small however small F is. */
+/* F(t; n) = P(gamma >= t) + F(t; n-1) / 2 + integral over 0 < z < t of F(t - z; n-1) p(z) dz: acj-distribution-conv with
+ * the last term split off, atom and density apart. Only positive terms are added, so that the relative error stays small
+ * however small F is. */
 static void fill_sector(double table[DIRECT + 1][SECTOR_CELLS + 1])
 {
     double density[SECTOR_CELLS + 1];
@@ -230,9 +236,10 @@ static void fill_sector(double table[DIRECT + 1][SECTOR_CELLS + 1])
             table[n][i] = log(table[n][i]);
 }
 
-/* Where each value comes from: one term, closed form; up to DIRECT terms, the table, and beyond its end the saddlepoint shifted to
- * meet it; else the saddlepoint, within 0.002 decades of the exact value for n > DIRECT (0.0028 at n = 5, 0.011 at n = 2). For t = infinity, as for any t
- * whose logarithm overflows, -DBL_MAX. A t that is not a number, or n < 1, is no event: 0, the least significant value. */
+/* Where each value comes from: one term, closed form; up to DIRECT terms, the table, and beyond its end the saddlepoint
+ * shifted to meet it; else the saddlepoint, which is within 0.002 decades of the exact value for n = 7, 0.001 from n = 14,
+ * less for more (for fewer: 0.0026 at n = 5, 0.025 at n = 2, hence the tables). Where the logarithm overflows, -DBL_MAX. A
+ * t that is not a number, or n < 1, is no event: 0, the least significant value. */
 double asj_nfa_log_sector_tail(const asj_nfa *nfa, double t, int32_t n)
 {
     const double end = step * SECTOR_CELLS;
@@ -247,11 +254,11 @@ double asj_nfa_log_sector_tail(const asj_nfa *nfa, double t, int32_t n)
     return fmax(nfa->sector[n][SECTOR_CELLS] + (saddlepoint(nfa, t, n) - saddlepoint(nfa, end, n)), -DBL_MAX);
 }
 
-/* ---- sums of gamma~ ---------------------------------------------------------------------------------------------------------- */
+/* ---- sums of gamma~ --------------------------------------------------------------------------------------------- */
 
-/* P(gamma~ >= z) = (2/pi) integral over 0 < x < pi/4 of Q(z / (cos x - sin x)) dx for z > 0, Q = normal upper tail, the integral of
- * distribution-updated over its tail; with cos x - sin x = sqrt(2) sin(pi/4 - x), and a = pi/4 - x. The panels crowd towards a = 0,
- * where the integrand falls to 0 within a distance of about z. */
+/* P(gamma~ >= z) = (2/pi) integral over 0 < x < pi/4 of Q(z / (cos x - sin x)) dx for z > 0, Q = normal upper tail, the
+ * integral of distribution-updated over its tail; with cos x - sin x = sqrt(2) sin(pi/4 - x), and a = pi/4 - x. The panels
+ * crowd towards a = 0, where the integrand falls to 0 within a distance of about z. */
 enum { ARC_PANELS = 5, ARC_NODES = ARC_PANELS * 2 * GAUSS };
 typedef struct arc_rule {
     double inverse[ARC_NODES], weight[ARC_NODES]; /* 1 / (2 sin a), and the weight with all factors */
@@ -278,9 +285,9 @@ static double arc_tail(const arc_rule *rule, double z)
     return sum;
 }
 
-/* Masses of gamma~ on the lattice i * step, i >= 0 (it is symmetric). Moving every value to the nearest lattice point raises the
- * variance by step^2 / 12; the second difference takes that back, so that the error is of fourth order away from 0. The atom is not
- * moved and needs no correction. Masses stay positive. Also writes ln G(i step; 1), exact. */
+/* Masses of gamma~ on the lattice i * step, i >= 0 (it is symmetric). Moving every value to the nearest lattice point
+ * raises the variance by step^2 / 12; the second difference takes that back, so that the error is of fourth order away from
+ * 0. The atom is not moved and needs no correction. Masses stay positive. Also writes ln G(i step; 1), exact. */
 static void fill_arc_masses(const arc_rule *rule, double *mass, double *table)
 {
     double cell[ARC_HALF + 2], inner = 0.25;
@@ -320,8 +327,9 @@ static void convolve_arc(arc_scratch *scratch)
     }
 }
 
-/* ln G(i step; n) = ln P(gamma~_1 + .. + gamma~_n >= i step) for all n. A tail is the trapezoid sum of the lattice density, with its
- * Euler-Maclaurin term - step^2/12 f' written as a second difference of the tail. At 0 the limit from above, (1 - 2^-n) / 2. */
+/* ln G(i step; n) = ln P(gamma~_1 + .. + gamma~_n >= i step) for all n. A tail is the trapezoid sum of the lattice density
+ * without its Euler-Maclaurin term -step^2/12 f', which is a second difference of the tails over 12. At 0 stands the limit
+ * from above, (1 - 2^-n) / 2. */
 static void fill_arc(arc_scratch *scratch, double table[ASJ_NFA_MAX_ARC + 1][ARC_CELLS + 1])
 {
     double *tail = scratch->tail;
@@ -346,8 +354,8 @@ static void fill_arc(arc_scratch *scratch, double table[ASJ_NFA_MAX_ARC + 1][ARC
     }
 }
 
-/* Beyond the table a parabola goes on from it: the tail of the sum behaves as exp(-s^2/(2n)). Not below -DBL_MAX. For s <= 0, no event,
- * and for n out of range: 0. */
+/* Beyond the table a parabola goes on from it: the tail of the sum behaves as exp(-s^2/(2n)). Not below -DBL_MAX. 0
+ * for s <= 0, which is no event, for an s that is not a number, and for n out of range. */
 double asj_nfa_log_arc_tail(const asj_nfa *nfa, double s, int32_t n)
 {
     const double end = step * ARC_CELLS;
@@ -360,7 +368,7 @@ double asj_nfa_log_arc_tail(const asj_nfa *nfa, double s, int32_t n)
     return fmax(table[ARC_CELLS] + beyond * (slope - beyond / (2 * n)), -DBL_MAX);
 }
 
-/* ---- thresholds, numbers of tests -------------------------------------------------------------------------------------------- */
+/* ---- thresholds, numbers of tests ------------------------------------------------------------------------------- */
 
 /* The least x > 0, to a relative 1e-14 and not below 1e-9, with tail(x) <= log_p: bisection, keeping tail(high) <= log_p.
  * HUGE_VAL when there is none: log_p below -DBL_MAX, or not a number. */
@@ -398,9 +406,9 @@ double asj_nfa_arc_threshold(const asj_nfa *nfa, double log_p, int32_t n)
     return invert(asj_nfa_log_arc_tail, nfa, log_p, n);
 }
 
-/* #J(M) = pixels * sum over r of (1/M!) prod_{m=0}^{M-1} K max(0, 1 - 2 m Delta / pi), K = floor(2 pi r), Delta = tau / r: ACJ, section
- * 4. K orientations for each branch, the order of the branches does not count, and the m-th branch keeps clear, by one sector to
- * either side (2 Delta of pi), of the m branches already there. */
+/* #J(M) = pixels * sum over r of (1/M!) prod_{m=0}^{M-1} K max(0, 1 - 2 m Delta / pi), K = floor(2 pi r), Delta = tau / r:
+ * the number of tests of ACJ. K orientations for each branch, the order of the branches does not count, and the m-th branch
+ * keeps clear, by one sector to either side (2 Delta of pi), of the m branches already there. Bit 0 of `radii` means nothing. */
 double asj_nfa_log_junction_tests(int32_t width, int32_t height, uint32_t radii, double tau, int32_t branches)
 {
     double sum = 0;
@@ -415,7 +423,7 @@ double asj_nfa_log_junction_tests(int32_t width, int32_t height, uint32_t radii,
     return width < 1 || height < 1 || !(sum > 0) ? -HUGE_VAL : log((double)width) + log((double)height) + log(sum);
 }
 
-/* ---- life -------------------------------------------------------------------------------------------------------------------- */
+/* ---- life ------------------------------------------------------------------------------------------------------- */
 
 asj_status asj_nfa_create(asj_memory *memory, asj_nfa **nfa)
 {

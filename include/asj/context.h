@@ -116,7 +116,7 @@ ASJ_API const char *asj_context_message(const asj_context *context);
 /* Number of threads that the CPU path uses. 0 for a NULL context. */
 ASJ_API int32_t asj_context_threads(const asj_context *context);
 
-/* Bytes that the context holds at the moment, and the most it has held since it was made, results included.
+/* Bytes that the context holds at the moment, and the most it has held since it was made; results, which are the caller's, apart.
  * Either pointer may be NULL. */
 ASJ_API void asj_context_memory(const asj_context *context, uint64_t *now, uint64_t *peak);
 

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 2: the very local junction at each pixel (paper, "Scale Ambiguity for Branches").
+ *
+ * Strengths z_k of all sectors of one small radius (sector.c); circular non-maximum suppression over the sectors within Delta = tau / r;
+ * a maximum is kept when  K F(omega_k; J_k) <= field_epsilon  (eq. NFA-xia). At most four branches, strongest first. The angle is
+ * that of the parabola through the maximum and its two neighbours.
+ *
+ * Departure: the number of tests is K, the orientations of this one pixel. With all pixels of the image (the paper's #J(1)) no branch
+ * survives at radius 3 and hardly one at 5, and rays end long before their edge does.
+ *
+ * Candidates: pixels with two branches of z >= candidate_strength whose directions are more than 0.35 rad away from being equal or
+ * opposite. They replace the line segment detector that feeds ACJ. */
+#include "field.h"
+
+#include <math.h>
+#include <string.h>
+
+#define TWO_PI 6.283185307179586
+
+static uint16_t strength_of_tail(const asj_context *context, const asj_sectors *s, int32_t k, double log_p)
+{
+    double sum = asj_nfa_sector_threshold(context->nfa, log_p, s->size[k]) * (1 << s->gamma_bits);
+    sum = ceil(sum);
+    uint16_t strength = asj_sector_strength(s, k, (uint16_t)(sum < 65535 ? sum : 65535));
+    return strength > 0 ? strength : 1;
+}
+
+asj_status asj_field_create(asj_context *context, const asj_detect_options *options, asj_field *field)
+{
+    asj_sectors *s = &field->sectors;
+    asj_status status = asj_sectors_create(&context->memory, options->field_radius, options->sector_width, s);
+    if (status != ASJ_OK)
+        return asj_fail(context, status, "no memory for the sectors of radius %d", (int)options->field_radius);
+    const double log_p = log(options->field_epsilon / s->count);
+    const uint16_t wanted = (uint16_t)lrint(options->candidate_strength * ASJ_STRENGTH_ONE);
+    for (int32_t k = 0; k < s->count; k++) {
+        field->keep[k] = strength_of_tail(context, s, k, log_p < 0 ? log_p : 0);
+        field->candidate[k] = field->keep[k] > wanted ? field->keep[k] : wanted;
+    }
+    const double per_radian = s->count / TWO_PI;
+    field->suppress = (int32_t)lrint(options->sector_width / options->field_radius * per_radian);
+    field->apart = (int32_t)ceil(0.35 * per_radian);
+    return ASJ_OK;
+}
+
+void asj_field_free(asj_memory *memory, asj_field *field)
+{
+    asj_sectors_free(memory, &field->sectors);
+}
+
+size_t asj_field_scratch(const asj_field *field)
+{
+    return asj_sector_scratch(&field->sectors) + 3 * (size_t)field->sectors.count * ASJ_LANES;
+}
+
+/* Turns sums into strengths, in place. */
+static void strengths(const asj_sectors *s, uint16_t *sums)
+{
+    for (int32_t k = 0; k < s->count; k++) {
+        uint16_t *z = sums + (size_t)k * ASJ_LANES;
+        const uint16_t mean = s->mean[k], scale = s->scale[k];
+        for (int i = 0; i < ASJ_LANES; i++) {
+            uint16_t excess = (uint16_t)(z[i] > mean ? z[i] - mean : 0);
+            z[i] = (uint16_t)((uint32_t)excess * scale >> 16);
+        }
+    }
+}
+
+/* peaks[k][i] = 0xffff where sector k of pixel i reaches least[k] and is the largest of its neighbourhood, else 0. Of equal
+ * neighbours the first one counts. */
+static void find_peaks(const asj_field *field, const uint16_t *z, const uint16_t *least, uint16_t *peaks)
+{
+    const int32_t count = field->sectors.count;
+    for (int32_t k = 0; k < count; k++) {
+        const uint16_t *here = z + (size_t)k * ASJ_LANES;
+        uint16_t *peak = peaks + (size_t)k * ASJ_LANES;
+        for (int i = 0; i < ASJ_LANES; i++)
+            peak[i] = here[i] >= least[k] ? 0xffff : 0;
+        for (int32_t d = 1; d <= field->suppress; d++) {
+            const uint16_t *left = z + (size_t)((k + count - d) % count) * ASJ_LANES;
+            const uint16_t *right = z + (size_t)((k + d) % count) * ASJ_LANES;
+            for (int i = 0; i < ASJ_LANES; i++)
+                peak[i] &= (uint16_t)((here[i] > left[i] ? 0xffff : 0) & (here[i] >= right[i] ? 0xffff : 0));
+        }
+    }
+}
+
+/* The vertex of the parabola through three neighbouring strengths, in 1/65536 of a turn. The maximum is larger than the one before,
+ * so the denominator is positive. */
+static uint16_t interpolate(const asj_sectors *s, int32_t k, int32_t before, int32_t peak, int32_t after)
+{
+    const int32_t width = 65536 / s->count;
+    int32_t shift = (after - before) * width / (2 * (2 * peak - before - after));
+    return (uint16_t)(65536 * k / s->count + shift);
+}
+
+static void insert(asj_field_branch *list, asj_field_branch branch)
+{
+    for (int i = 0; i < ASJ_FIELD_BRANCHES; i++)
+        if (branch.strength > list[i].strength) {
+            asj_field_branch moved = list[i];
+            list[i] = branch;
+            branch = moved;
+        }
+}
+
+void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
+                     asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES])
+{
+    const asj_sectors *s = &field->sectors;
+    const ptrdiff_t at = y * frame->stride + x;
+    uint16_t *z = scratch + asj_sector_scratch(s), *peaks = z + (size_t)s->count * ASJ_LANES;
+    asj_sector_sums(s, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, z);
+    strengths(s, z);
+    find_peaks(field, z, field->keep, peaks);
+    memset(branches, 0, ASJ_LANES * sizeof *branches);
+    for (int32_t k = 0; k < s->count; k++) {
+        const uint16_t *before = z + (size_t)(k > 0 ? k - 1 : s->count - 1) * ASJ_LANES;
+        const uint16_t *after = z + (size_t)(k + 1 < s->count ? k + 1 : 0) * ASJ_LANES;
+        const uint16_t *here = z + (size_t)k * ASJ_LANES, *peak = peaks + (size_t)k * ASJ_LANES;
+        for (int i = 0; i < ASJ_LANES; i++)
+            if (peak[i])
+                insert(branches[i], (asj_field_branch){interpolate(s, k, before[i], here[i], after[i]), here[i]});
+    }
+}
+
+/* out[k] = in[k] | in[k + shift], circularly. */
+static void or_shifted(const uint16_t *in, uint16_t *out, int32_t count, int32_t shift)
+{
+    for (int32_t k = 0; k < count; k++) {
+        const uint16_t *a = in + (size_t)k * ASJ_LANES, *b = in + (size_t)((k + shift) % count) * ASJ_LANES;
+        for (int i = 0; i < ASJ_LANES; i++)
+            out[(size_t)k * ASJ_LANES + (size_t)i] = a[i] | b[i];
+    }
+}
+
+uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch)
+{
+    const asj_sectors *s = &field->sectors;
+    const ptrdiff_t at = y * frame->stride + x;
+    const int32_t count = s->count;
+    uint16_t *z = scratch + asj_sector_scratch(s), *peaks = z + (size_t)count * ASJ_LANES;
+    uint16_t *window = peaks + (size_t)count * ASJ_LANES;
+    asj_sector_sums(s, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, z);
+    strengths(s, z);
+    find_peaks(field, z, field->candidate, peaks);
+
+    /* A pair (k, k + d) counts for apart <= d <= count / 2 - apart. The union of all peaks k + d in that range is built by doubling:
+     * `window`[k] holds the union over [k, k + width). */
+    const int32_t target = count / 2 - 2 * field->apart + 1;
+    int32_t width = 1;
+    uint16_t *from = peaks, *spare = z, *to = window;
+    while (width < target) {
+        int32_t shift = 2 * width <= target ? width : target - width;
+        or_shifted(from, to, count, shift);
+        width += shift;
+        from = to;
+        to = spare;
+        spare = from;
+    }
+    uint16_t found[ASJ_LANES] = {0};
+    for (int32_t k = 0; k < count; k++) {
+        const uint16_t *peak = peaks + (size_t)k * ASJ_LANES;
+        const uint16_t *partners = from + (size_t)((k + field->apart) % count) * ASJ_LANES;
+        for (int i = 0; i < ASJ_LANES; i++)
+            found[i] |= peak[i] & partners[i];
+    }
+    uint32_t mask = 0;
+    for (int i = 0; i < ASJ_LANES; i++)
+        mask |= (found[i] ? 1u : 0u) << i;
+    return mask;
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 2: the local junction field. */
+#ifndef ASJ_SRC_FIELD_H
+#define ASJ_SRC_FIELD_H
+
+#include "sector.h"
+
+#include <asj/field.h>
+
+#define ASJ_FIELD_MAX_SECTORS 56 /* radius 9 */
+
+/* A branch of a very local junction; strength 0 = none. */
+typedef struct asj_field_branch {
+    uint16_t angle;    /* in 1/65536 of a turn */
+    uint16_t strength; /* in 1/256 of a standard deviation */
+} asj_field_branch;
+
+typedef struct asj_field {
+    asj_sectors sectors;
+    uint16_t keep[ASJ_FIELD_MAX_SECTORS];      /* least strength of a branch */
+    uint16_t candidate[ASJ_FIELD_MAX_SECTORS]; /* least strength of a branch that makes a candidate */
+    int32_t suppress;                          /* sectors to either side over which a branch must be the largest */
+    int32_t apart;                             /* sectors that the two branches of a candidate are from 0 and from pi, at least */
+} asj_field;
+
+asj_status asj_field_create(asj_context *context, const asj_detect_options *options, asj_field *field);
+void asj_field_free(asj_memory *memory, asj_field *field);
+
+/* Elements of uint16_t that the functions below need as scratch. */
+size_t asj_field_scratch(const asj_field *field);
+
+/* The branches at ASJ_LANES pixels from (x, y) on, strongest first. */
+void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
+                     asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES]);
+
+/* Candidates for junctions among these pixels: bit i is set when pixel x + i has two strong branches that are neither parallel nor
+ * opposite. */
+uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch);
+
+#endif

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 3: isotropic junctions, by the a-contrario test of ACJ. */
+#ifndef ASJ_SRC_ISOTROPIC_H
+#define ASJ_SRC_ISOTROPIC_H
+
+#include "field.h"
+
+#define ASJ_MAX_RADIUS 30
+
+/* A junction with one radius for all branches. */
+typedef struct asj_isotropic_junction {
+    uint16_t x, y;
+    uint16_t radius;
+    uint16_t branch_count;
+    uint16_t angle[ASJ_MAX_BRANCHES];    /* in 1/65536 of a turn */
+    uint16_t strength[ASJ_MAX_BRANCHES]; /* in 1/256 of a standard deviation */
+    double log_nfa;                      /* natural logarithm */
+} asj_isotropic_junction;
+
+/* Constants of one radius. */
+typedef struct asj_isotropic_radius {
+    asj_sectors sectors;
+    int32_t suppress;     /* sectors to either side over which a branch must be the largest */
+    double straight;      /* two branches that open wider are an edge */
+    const double **tails; /* for each sector: ln F(i / ASJ_TAIL_STEPS; J_k), i = 0, 1, .. */
+} asj_isotropic_radius;
+
+/* The whole test: made once for a set of options and an image size. */
+typedef struct asj_isotropic {
+    int32_t radius_count;
+    asj_isotropic_radius radii[ASJ_MAX_RADIUS + 1];
+    double log_tests[ASJ_MAX_BRANCHES + 1]; /* ln #J(M) */
+    double log_epsilon;
+    int32_t max_branches;
+    double *tail_tables[128]; /* by number of pixels; shared by the radii */
+    size_t scratch;           /* elements of uint16_t for asj_isotropic_block() */
+} asj_isotropic;
+
+asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *options, asj_isotropic *test);
+void asj_isotropic_free(asj_memory *memory, asj_isotropic *test);
+
+/* Sets the numbers of tests for an image of this size. */
+void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, int32_t height, asj_isotropic *test);
+
+/* Tests the pixels x + i, bit i of `candidates` set; writes one record for each such bit, in order. A candidate that no radius makes
+ * meaningful has branch_count 0. */
+void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int32_t x, int32_t y, uint32_t candidates,
+                         uint16_t *scratch, asj_isotropic_junction *junctions);
+
+/* Sorts by meaningfulness and drops what lies close to something better (see isotropic.c). `taken` is one bit for each pixel, rows of
+ * whole bytes, zero. Returns how many stay, at the front. */
+size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const asj_detect_options *options,
+                          int32_t width, int32_t height, uint8_t *taken);
+
+#endif

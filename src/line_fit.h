@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Fits a straight line to the edge under a branch. */
+#ifndef ASJ_SRC_LINE_FIT_H
+#define ASJ_SRC_LINE_FIT_H
+
+#include "draft.h"
+
+typedef struct asj_line_range {
+    double first, last;   /* px along the branch */
+    double half_width[3]; /* px across, one for each iteration */
+    int32_t iterations;   /* 1 .. 3 */
+} asj_line_range;
+
+/* Moves branch->angle and branch->offset to the line under the branch of a junction at (x, y); sets their variances. branch->offset is
+ * where the search starts. Returns 0, and leaves the branch alone, when there is too little edge. */
+int asj_line_fit(const asj_frame *frame, double x, double y, const asj_line_range *range, asj_draft_branch *branch);
+
+#endif

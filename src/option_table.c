@@ -1,0 +1,253 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "option_table.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static void say(char *message, size_t size, const char *format, ...)
+{
+    if (!message || size == 0)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, size, format, arguments);
+    va_end(arguments);
+}
+
+/* Every value of a table row fits a double exactly: integers of 32 bits, bit sets of 31 bits. */
+static double load(const asj_option_info *row, const void *options)
+{
+    const char *field = (const char *)options + row->offset;
+    double number;
+    int32_t integer;
+    uint32_t bits;
+    switch (row->type) {
+    case ASJ_OPTION_NUMBER: memcpy(&number, field, sizeof number); return number;
+    case ASJ_OPTION_RADII: memcpy(&bits, field, sizeof bits); return bits;
+    default: memcpy(&integer, field, sizeof integer); return integer;
+    }
+}
+
+static void store(const asj_option_info *row, void *options, double value)
+{
+    char *field = (char *)options + row->offset;
+    int32_t integer;
+    uint32_t bits;
+    switch (row->type) {
+    case ASJ_OPTION_NUMBER: memcpy(field, &value, sizeof value); break;
+    case ASJ_OPTION_RADII: bits = (uint32_t)value; memcpy(field, &bits, sizeof bits); break;
+    default: integer = (int32_t)value; memcpy(field, &integer, sizeof integer); break;
+    }
+}
+
+static int in_range(const asj_option_info *row, double value)
+{
+    if (row->type != ASJ_OPTION_RADII)
+        return value >= row->minimum && value <= row->maximum; /* false for NaN */
+    uint32_t allowed = (uint32_t)(((uint64_t)2 << (int)row->maximum) - ((uint64_t)1 << (int)row->minimum));
+    uint32_t bits = (uint32_t)value;
+    return bits != 0 && (bits & ~allowed) == 0;
+}
+
+void asj_option_table_fill(const asj_option_table *table, void *options, int32_t preset)
+{
+    for (size_t i = 0; i < table->count; i++)
+        store(&table->rows[i], options, preset == ASJ_PRESET_PAPER ? table->rows[i].paper_value : table->rows[i].default_value);
+}
+
+asj_status asj_option_table_check(const asj_option_table *table, const void *options, char *message, size_t message_size)
+{
+    for (size_t i = 0; i < table->count; i++) {
+        const asj_option_info *row = &table->rows[i];
+        double value = load(row, options);
+        if (!in_range(row, value)) {
+            say(message, message_size, "%s: %.9g is outside %.9g .. %.9g", row->key, value, row->minimum, row->maximum);
+            return ASJ_ERROR_OPTION;
+        }
+    }
+    return ASJ_OK;
+}
+
+static const asj_option_info *find(const asj_option_table *table, const char *key)
+{
+    for (size_t i = 0; i < table->count; i++) {
+        const char *a = table->rows[i].key, *b = key;
+        while (*a && (*a == *b || (*a == '_' && *b == '-')))
+            a++, b++;
+        if (*a == *b)
+            return &table->rows[i];
+    }
+    return NULL;
+}
+
+/* A decimal number that is the whole of `text`, independent of the locale; 0 when it is not one. strtod() would take the decimal
+ * comma of some locales, and hexadecimal numbers, and "inf". */
+static int parse_number(const char *text, double *value)
+{
+    double mantissa = 0, sign = 1;
+    int digits = 0, exponent = 0;
+    if (*text == '-' || *text == '+')
+        sign = *text++ == '-' ? -1 : 1;
+    for (; *text >= '0' && *text <= '9'; text++, digits++)
+        mantissa = mantissa * 10 + (*text - '0');
+    if (*text == '.')
+        for (text++; *text >= '0' && *text <= '9'; text++, digits++, exponent--)
+            mantissa = mantissa * 10 + (*text - '0');
+    if (digits == 0)
+        return 0;
+    if (*text == 'e' || *text == 'E') {
+        int negative = 0, power = 0, power_digits = 0;
+        text++;
+        if (*text == '-' || *text == '+')
+            negative = *text++ == '-';
+        for (; *text >= '0' && *text <= '9'; text++, power_digits++)
+            power = power < 10000 ? power * 10 + (*text - '0') : power;
+        if (power_digits == 0)
+            return 0;
+        exponent += negative ? -power : power;
+    }
+    /* one correctly rounded operation for the usual short numbers, so that "0.1" is the double nearest to 0.1 */
+    if (exponent < 0)
+        *value = sign * (exponent >= -22 ? mantissa / pow(10, -exponent) : mantissa * pow(10, exponent));
+    else
+        *value = sign * mantissa * pow(10, exponent);
+    return *text == '\0';
+}
+
+/* "5,7,10,14", "3-12", or a mixture. */
+static int parse_radii(const char *text, double *value)
+{
+    uint32_t bits = 0;
+    while (1) {
+        int bound[2], n = 0;
+        do {
+            int number = 0, digits = 0;
+            for (; *text >= '0' && *text <= '9' && digits < 3; text++, digits++)
+                number = number * 10 + (*text - '0');
+            if (digits == 0 || number > 30)
+                return 0;
+            bound[n++] = number;
+        } while (n < 2 && *text == '-' && text++);
+        for (int r = bound[0]; r <= bound[n - 1]; r++)
+            bits |= (uint32_t)1 << r;
+        if (*text == '\0')
+            break;
+        if (*text++ != ',')
+            return 0;
+    }
+    *value = bits;
+    return bits != 0;
+}
+
+static int parse_word(const char *const *words, const char *text, double *value)
+{
+    for (int i = 0; words[i]; i++)
+        if (strcmp(words[i], text) == 0) {
+            *value = i;
+            return 1;
+        }
+    return 0;
+}
+
+static int parse(const asj_option_info *row, const char *text, double *value)
+{
+    static const char *const switches[] = {"no", "yes", "off", "on", "false", "true", "0", "1", NULL};
+    switch (row->type) {
+    case ASJ_OPTION_NUMBER: return parse_number(text, value);
+    case ASJ_OPTION_INTEGER: return parse_number(text, value) && *value == floor(*value) && fabs(*value) < 2147483648.0;
+    case ASJ_OPTION_RADII: return parse_radii(text, value);
+    case ASJ_OPTION_CHOICE: return parse_word(row->choices, text, value);
+    default:
+        if (!parse_word(switches, text, value))
+            return 0;
+        *value = (int)*value & 1;
+        return 1;
+    }
+}
+
+asj_status asj_option_table_set(const asj_option_table *table, void *options, const char *key, const char *text,
+                                char *message, size_t message_size)
+{
+    static const char *const kinds[] = {"", "a number", "a whole number", "yes or no", "one of its words", "a set of radii such as 5,7,10 or 3-12"};
+    if (!options || !key || !text)
+        return ASJ_ERROR_ARGUMENT;
+    const asj_option_info *row = find(table, key);
+    if (!row) {
+        say(message, message_size, "there is no option '%s'", key);
+        return ASJ_ERROR_OPTION;
+    }
+    double value = 0;
+    if (!parse(row, text, &value)) {
+        say(message, message_size, "%s: '%s' is not %s", row->key, text, kinds[row->type]);
+        return ASJ_ERROR_OPTION;
+    }
+    if (!in_range(row, value)) {
+        say(message, message_size, "%s: %s is outside %.9g .. %.9g", row->key, text, row->minimum, row->maximum);
+        return ASJ_ERROR_OPTION;
+    }
+    store(row, options, value);
+    return ASJ_OK;
+}
+
+/* Shortest form that reads back to the same double, with a point whatever the locale. */
+static int print_number(char *text, size_t size, double value)
+{
+    int length = 0;
+    for (int precision = 6; precision <= 17; precision++) {
+        double back;
+        length = snprintf(text, size, "%.*g", precision, value);
+        if (length < 0 || (size_t)length >= size)
+            return -1;
+        for (char *c = text; *c; c++)
+            if (*c == ',')
+                *c = '.';
+        if (parse_number(text, &back) && back == value)
+            break;
+    }
+    return length;
+}
+
+static int print_radii(char *text, size_t size, uint32_t bits)
+{
+    char buffer[128];
+    int used = 0;
+    for (int r = 0; r < 31; r++) {
+        if (!(bits >> r & 1))
+            continue;
+        int last = r;
+        while (last < 30 && (bits >> (last + 1) & 1))
+            last++;
+        const char *comma = used ? "," : "";
+        if (last - r >= 2)
+            used += snprintf(buffer + used, sizeof buffer - (size_t)used, "%s%d-%d", comma, r, last);
+        else
+            used += snprintf(buffer + used, sizeof buffer - (size_t)used, last > r ? "%s%d,%d" : "%s%d", comma, r, last);
+        r = last;
+    }
+    return snprintf(text, size, "%s", buffer);
+}
+
+asj_status asj_option_table_get(const asj_option_table *table, const void *options, const char *key,
+                                char *text, size_t text_size)
+{
+    if (!options || !key || !text)
+        return ASJ_ERROR_ARGUMENT;
+    const asj_option_info *row = find(table, key);
+    if (!row)
+        return ASJ_ERROR_OPTION;
+    double value = load(row, options);
+    int length;
+    if (row->type == ASJ_OPTION_NUMBER)
+        length = print_number(text, text_size, value);
+    else if (row->type == ASJ_OPTION_RADII)
+        length = print_radii(text, text_size, (uint32_t)value);
+    else if (row->type == ASJ_OPTION_CHOICE && in_range(row, value))
+        length = snprintf(text, text_size, "%s", row->choices[(int)value]);
+    else if (row->type == ASJ_OPTION_SWITCH)
+        length = snprintf(text, text_size, "%s", value != 0 ? "yes" : "no");
+    else
+        length = snprintf(text, text_size, "%d", (int)value);
+    return length >= 0 && (size_t)length < text_size ? ASJ_OK : ASJ_ERROR_ARGUMENT;
+}

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 5: orientation (paper, end of section "Junction Detection").
+ *
+ * line_fit (default): the line fit of line_fit.c over t = 3 .. L - 3, then the meeting point of all lines. About three times as accurate
+ * as the search and a hundred times cheaper.
+ *
+ * search: the paper's  argmax_theta sum of gamma over S_p(r_theta, theta),  over theta +- 0.1 rad. The sector of scale r has constant
+ * width 2 tau, so its number of pixels J differs from angle to angle; what is maximised is the normalised
+ * (omega - J mu) / (sigma sqrt(J)), as the sum itself would prefer angles with more pixels. */
+#include "refine.h"
+#include "line_fit.h"
+#include "locate.h"
+#include "strip.h"
+
+#include <math.h>
+
+#define PI 3.141592653589793
+
+/* Normalised junction-ness of the sector of radius `length` around `angle`, at a whole pixel. */
+static double sector_strength(const asj_frame *frame, double x, double y, double angle, double length, double tau)
+{
+    const double ux = cos(angle), uy = sin(angle), limit = cos(tau / length);
+    const int32_t px = (int32_t)lrint(x), py = (int32_t)lrint(y);
+    const int32_t reach_x = (int32_t)ceil(fabs(ux) * length + tau), reach_y = (int32_t)ceil(fabs(uy) * length + tau);
+    double sum = 0, pixels = 0;
+    for (int32_t dy = -reach_y; dy <= reach_y; dy++) {
+        int32_t y1 = py + dy;
+        if (y1 < 0 || y1 >= frame->height)
+            continue;
+        for (int32_t dx = -reach_x; dx <= reach_x; dx++) {
+            int32_t x1 = px + dx;
+            double distance = sqrt(dx * dx + dy * dy), along = dx * ux + dy * uy;
+            if (x1 < 0 || x1 >= frame->width || along <= 0 || distance > length || along < limit * distance)
+                continue;
+            double gx = frame->gradient_x[y1 * frame->stride + x1], gy = frame->gradient_y[y1 * frame->stride + x1];
+            double gamma = (fabs(gy * dx - gx * dy) - fabs(gx * dx + gy * dy)) / distance;
+            sum += gamma > 0 ? gamma / ASJ_GRADIENT_ONE : 0;
+            pixels++;
+        }
+    }
+    return pixels > 0 ? (sum - pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(pixels)) : 0;
+}
+
+static void search(const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
+{
+    for (int32_t i = 0; i < draft->branch_count; i++) {
+        asj_draft_branch *branch = &draft->branches[i];
+        const double start = branch->angle, length = fmax(branch->length, 3);
+        double best = -HUGE_VAL;
+        for (int step = -20; step <= 20; step++) {
+            double angle = start + 0.005 * step;
+            double strength = sector_strength(frame, draft->x, draft->y, angle, length, options->sector_width);
+            if (strength > best) {
+                best = strength;
+                branch->angle = asj_angle_wrap(angle);
+            }
+        }
+    }
+}
+
+void asj_refine(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
+{
+    (void)context;
+    if (options->refinement == ASJ_REFINE_SEARCH) {
+        search(frame, options, draft);
+        return;
+    }
+    for (int32_t i = 0; i < draft->branch_count; i++) {
+        asj_draft_branch *branch = &draft->branches[i];
+        asj_line_range range = {3, fmin(fmax(branch->length - 3, 8), 80), {1.6, 1.6, 0}, 2};
+        asj_line_fit(frame, draft->x, draft->y, &range, branch);
+    }
+    asj_locate_meet(draft);
+}
+
+/* Of two branches closer than merge_angle the more meaningful one stays. */
+static void merge(const asj_detect_options *options, const asj_draft *draft, int *keep)
+{
+    const double least = options->merge_angle * (PI / 180);
+    for (int32_t i = 0; i < draft->branch_count; i++)
+        for (int32_t j = i + 1; j < draft->branch_count; j++) {
+            const asj_draft_branch *a = &draft->branches[i], *b = &draft->branches[j];
+            if (keep[i] && keep[j] && asj_angle_distance(a->angle, b->angle) < least)
+                keep[b->log_nfa < a->log_nfa ? i : j] = 0;
+        }
+}
+
+void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
+{
+    const double largest_offset = 2; /* px: a line that misses the junction by more belongs to something else */
+    const double log_epsilon = log(options->epsilon);
+    int keep[ASJ_MAX_BRANCHES];
+    for (int32_t i = 0; i < draft->branch_count; i++) {
+        asj_draft_branch *branch = &draft->branches[i];
+        branch->log_nfa = asj_strip_log_nfa(context, frame, options, draft->x, draft->y, branch->angle, branch->length);
+        keep[i] = branch->length >= options->minimum_length && branch->length > 0 && fabs(branch->offset) <= largest_offset &&
+                  (!options->strip_test || branch->log_nfa <= log_epsilon);
+    }
+    merge(options, draft, keep);
+    asj_draft_select(draft, keep);
+    if (!asj_draft_has_opening(draft, options->minimum_opening * (PI / 180))) {
+        draft->branch_count = 0;
+        return;
+    }
+    for (int32_t i = 1; i < draft->branch_count; i++) {
+        asj_draft_branch moved = draft->branches[i];
+        int32_t j = i;
+        for (; j > 0 && draft->branches[j - 1].angle > moved.angle; j--)
+            draft->branches[j] = draft->branches[j - 1];
+        draft->branches[j] = moved;
+    }
+}

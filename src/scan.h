@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 4: the length of a branch by the a-contrario test along a ray. */
+#ifndef ASJ_SRC_SCAN_H
+#define ASJ_SRC_SCAN_H
+
+#include "field.h"
+
+/* A ray to follow, and how far it went. */
+typedef struct asj_ray {
+    double x, y;    /* px */
+    double angle;   /* rad in [0, 2 pi) */
+    int32_t start;  /* px: first radius looked at */
+    int32_t forward, axial; /* out: last radius that passed, 0 = none; axial 0 when not asked for */
+} asj_ray;
+
+/* What is the same for all rays of an image; made once for a set of options and an image size. */
+typedef struct asj_scan {
+    const asj_field *field;
+    int32_t half_width;  /* 2 w + 1 samples in an arc */
+    int32_t tolerance;   /* failing steps in a row that a ray survives */
+    int32_t axial;       /* scan by axis as well */
+    int32_t threshold;   /* least sum of an arc, in 1/256 standard deviations */
+    int16_t unit[1024][2]; /* cos and sin of 1024 angles, 1 = 16384 */
+} asj_scan;
+
+void asj_scan_prepare(const asj_context *context, const asj_detect_options *options, const asj_field *field,
+                      int32_t width, int32_t height, asj_scan *scan);
+
+/* Follows `count` rays. */
+asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);
+
+#endif

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Sectors around a pixel, and the junction-ness of each: what steps 2 and 3 are built on. */
+#ifndef ASJ_SRC_SECTOR_H
+#define ASJ_SRC_SECTOR_H
+
+#include "gradient.h"
+
+/* Strengths are whole numbers in 1/256 of a standard deviation. */
+#define ASJ_STRENGTH_ONE 256
+
+/* Geometry and constants of the sectors of one radius; made once, then only read. */
+typedef struct asj_sectors {
+    int32_t radius;
+    int32_t count;        /* K = floor(2 pi r) sectors, sector k points to 2 pi k / K */
+    int32_t offset_count; /* pixels within the radius, in order of angle */
+    int32_t largest;      /* pixels of the largest sector */
+    int32_t gamma_bits;   /* junction-ness is held in 1 / 2^gamma_bits */
+    int16_t *dx, *dy;     /* the offsets */
+    int16_t *ux, *uy;     /* their unit vectors, 1 = 2^(gamma_bits + 6) */
+    int32_t *first;       /* sector k: the `size[k]` offsets from `first[k]` on, circularly */
+    int32_t *size;
+    uint16_t *mean;       /* expected sum under the null model, 1 / 2^gamma_bits */
+    uint16_t *scale;      /* strength = (max(sum - mean, 0) scale) >> 16 */
+    void *memory;
+} asj_sectors;
+
+/* tau: half-width of a sector at its outer end, in pixels. */
+asj_status asj_sectors_create(asj_memory *memory, int32_t radius, double tau, asj_sectors *sectors);
+void asj_sectors_free(asj_memory *memory, asj_sectors *sectors);
+
+/* Elements of uint16_t that asj_sector_sums() needs as scratch. */
+size_t asj_sector_scratch(const asj_sectors *sectors);
+
+/* sums[k * ASJ_LANES + i] = junction-ness of sector k at the i-th of ASJ_LANES pixels in a row, the first at (gx, gy). */
+void asj_sector_sums(const asj_sectors *sectors, const int16_t *gx, const int16_t *gy, ptrdiff_t stride,
+                     uint16_t *scratch, uint16_t *sums);
+
+/* Strength of a sum: standard deviations above the mean of the null model, 0 below the mean. */
+static inline uint16_t asj_sector_strength(const asj_sectors *sectors, int32_t k, uint16_t sum)
+{
+    uint32_t excess = sum > sectors->mean[k] ? (uint32_t)sum - sectors->mean[k] : 0;
+    return (uint16_t)(excess * sectors->scale[k] >> 16);
+}
+
+#endif
