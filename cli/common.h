@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* What every command that computes has: back end, threads, limits, times, and the library's context made from them. */
+#ifndef ASJ_CLI_COMMON_H
+#define ASJ_CLI_COMMON_H
+
+#include "parse.h"
+#include "progress.h"
+
+#include <asj/context.h>
+
+typedef struct cli_common {
+    int32_t backend;
+    int32_t threads;
+    const char *device;
+    uint64_t max_pixels;
+    int time;
+    int quiet;
+} cli_common;
+
+void cli_common_init(cli_common *common);
+
+/* The rows and the `take` of their group. */
+extern const cli_option cli_common_options[];
+extern const size_t cli_common_option_count;
+int cli_common_take(void *common, int id, const char *text);
+
+/* The library's context and the progress line that belongs to it. */
+typedef struct cli_session {
+    asj_context *context;
+    cli_progress progress;
+    int errors; /* said by the library's log while it made the context */
+} cli_session;
+
+/* Makes the context for a run over `image_count` images; the library's warnings go to standard error. CLI_SUCCESS, or CLI_FAILED
+ * after saying why. cli_session_close() in either case. The session may not move in between. */
+int cli_session_open(cli_session *session, const cli_common *common, size_t image_count);
+void cli_session_close(cli_session *session);
+
+#endif

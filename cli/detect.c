@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "detect.h"
+#include "detect_arguments.h"
+#include "interrupt.h"
+#include "message.h"
+#include "outputs.h"
+#include "timing.h"
+
+#include <asj/detect.h>
+#include <asj/io.h>
+
+#include <string.h>
+
+enum { MESSAGE_SIZE = 1024 };
+
+/* One image after the other with one context. */
+typedef struct run {
+    const cli_detect_arguments *arguments;
+    cli_session session;
+    double read_ms;
+} run;
+
+static int fail(run *r, const char *path, const char *message, asj_status status)
+{
+    cli_progress_clear(&r->session.progress);
+    if (strcmp(path, "-") == 0) {
+        path = "standard output";
+        message += strncmp(message, "-: ", 3) == 0 ? 3 : 0;
+    }
+    cli_file_error(path, *message ? message : asj_status_string(status));
+    return CLI_FAILED;
+}
+
+static int write_results(run *r, const char *image, const cli_output *output, const asj_image *pixels,
+                         const asj_detection *detection)
+{
+    const cli_detect_arguments *arguments = r->arguments;
+    char message[MESSAGE_SIZE] = "";
+    int result = CLI_SUCCESS;
+    if (output->junctions) {
+        asj_detection_report report = {detection, &arguments->options, image, {0}};
+        asj_status status = asj_junctions_write(output->junctions, cli_detect_file_format(arguments), &report, message, sizeof message);
+        if (status != ASJ_OK)
+            result = fail(r, output->junctions, message, status);
+    }
+    if (output->plot && !cli_interrupted()) {
+        asj_status status = cli_plot_write(output->plot, arguments->plot_format, pixels, detection, &arguments->style, message,
+                                           sizeof message);
+        if (status != ASJ_OK)
+            result = fail(r, output->plot, message, status);
+    }
+    return result;
+}
+
+static void print_summary(const char *image, const cli_output *output, const asj_detection *detection)
+{
+    const char *junctions = output->junctions && strcmp(output->junctions, "-") != 0 ? output->junctions : NULL;
+    cli_note("%s: %lu junction%s%s%s%s%s", image, (unsigned long)detection->junction_count, detection->junction_count == 1 ? "" : "s",
+             junctions || output->plot ? " -> " : "", junctions ? junctions : "", junctions && output->plot ? ", " : "",
+             output->plot ? output->plot : "");
+}
+
+static int detect_pixels(run *r, const char *image, const cli_output *output, const asj_image *pixels)
+{
+    asj_detection *detection = NULL;
+    asj_status status = asj_detect(r->session.context, pixels, &r->arguments->options, &detection);
+    if (status == ASJ_ERROR_OPTION)
+        return cli_usage_error("detect", "%s", asj_context_message(r->session.context));
+    if (status == ASJ_ERROR_CANCELLED)
+        return CLI_FAILED; /* the loop sees the signal */
+    if (status != ASJ_OK)
+        return fail(r, image, asj_context_message(r->session.context), status);
+    double start = cli_now_ms();
+    int result = write_results(r, image, output, pixels, detection);
+    double write_ms = cli_now_ms() - start;
+    cli_progress_clear(&r->session.progress);
+    if (result == CLI_SUCCESS && !r->arguments->common.quiet)
+        print_summary(image, output, detection);
+    if (result == CLI_SUCCESS && r->arguments->common.time)
+        cli_timing_print(image, detection, r->read_ms, write_ms);
+    asj_detection_free(&detection);
+    return result;
+}
+
+static int detect_file(run *r, const char *image, const cli_output *output)
+{
+    asj_image_file *file = NULL;
+    char message[MESSAGE_SIZE] = "";
+    double start = cli_now_ms();
+    asj_status status = asj_image_file_read(image, r->arguments->common.max_pixels, &file, message, sizeof message);
+    r->read_ms = cli_now_ms() - start;
+    if (status != ASJ_OK)
+        return fail(r, image, message, status);
+    int result = cli_interrupted() ? CLI_FAILED : detect_pixels(r, image, output, &file->image);
+    asj_image_file_free(&file);
+    return result;
+}
+
+static int detect_all(run *r, const cli_outputs *outputs)
+{
+    const cli_detect_arguments *arguments = r->arguments;
+    int result = cli_session_open(&r->session, &arguments->common, arguments->image_count);
+    for (size_t i = 0; result != CLI_USAGE && i < arguments->image_count && r->session.context; i++) {
+        cli_progress_next(&r->session.progress, i, arguments->images[i]);
+        int one = detect_file(r, arguments->images[i], &outputs->of[i]);
+        if (cli_interrupted()) {
+            cli_progress_clear(&r->session.progress);
+            cli_error("interrupted at %s", arguments->images[i]);
+            result = 128 + cli_interrupted();
+            break;
+        }
+        result = one > result ? one : result;
+    }
+    cli_session_close(&r->session);
+    return result;
+}
+
+int cli_detect(int argc, char **argv)
+{
+    cli_detect_arguments arguments;
+    cli_outputs outputs = {0};
+    run r = {0};
+    int result = cli_detect_arguments_read(argc, argv, &arguments);
+    if (result == CLI_SUCCESS) {
+        r.arguments = &arguments;
+        result = cli_outputs_plan(&arguments, &outputs);
+        if (result == CLI_SUCCESS)
+            result = detect_all(&r, &outputs);
+        cli_outputs_free(&outputs);
+    }
+    cli_detect_arguments_free(&arguments);
+    return result == CLI_HELP ? CLI_SUCCESS : result;
+}

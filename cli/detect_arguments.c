@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "detect_arguments.h"
+#include "help.h"
+#include "message.h"
+
+#include <asj/io.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char introduction[] =
+    "Usage: asj-cli detect [options] IMAGE...\n"
+    "\n"
+    "Finds the junctions of straight edges in photographs: corners where two to five edges meet, each\n"
+    "edge with its direction and its own length. Made for indoor scenes.\n"
+    "\n"
+    "  asj-cli detect photo.jpg                            junctions to standard output, as text\n"
+    "  asj-cli detect -o photo.json --plot photo.svg photo.jpg\n"
+    "                                                      everything as JSON, and a picture to look at\n"
+    "  asj-cli detect --out-dir out --plot png *.jpg       a result and a plot for every photograph\n"
+    "  asj-cli detect --epsilon 0.01 photo.jpg             only the surest junctions\n"
+    "\n"
+    "Images: PNG, and where built with OpenCV every format that it reads. A file that cannot be read is\n"
+    "reported and the others are done.\n";
+
+static const char conclusion[] =
+    "\n"
+    "Exit status: 0 all images done, 1 some failed, 2 wrong usage, 130 interrupted.\n"
+    "More, with the file formats: man asj-cli\n";
+
+enum { OUTPUT, OUT_DIR, FORMAT, WHOLE, PLOT, PLOT_COLOR, PLOT_BACKGROUND, PLOT_SCALE, PRESET };
+
+static const cli_option output_options[] = {
+    {OUTPUT, 'o', "output", "FILE", "where the junctions of one image go; - is standard output (the default for one image without a plot)"},
+    {OUT_DIR, 'd', "out-dir", "DIR", "existing folder for the results of one or several images: photo.jpg gives DIR/photo.asj"},
+    {FORMAT, 'f', "format", "asj|json|csv", "asj: text, one record for each pair of branches; json: everything; csv: one line a branch. Default: by the end of FILE, else asj"},
+    {WHOLE, 0, "whole", NULL, "asj: whole junctions of two to five branches (json and csv always have them)"},
+};
+
+static const cli_option plot_options[] = {
+    {PLOT, 'p', "plot", "FILE", "draw the junctions: FILE.png, FILE.svg or FILE.pdf; with --out-dir only png, svg or pdf: photo.jpg gives DIR/photo.plot.png"},
+    {PLOT_COLOR, 0, "plot-color", "nfa|branch", "branches coloured by how sure they are (the default) or by their number"},
+    {PLOT_BACKGROUND, 0, "plot-background", "photo|white", "over the pale photograph (the default) or on white"},
+    {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of the image, 0.01 .. 16; default: small images are enlarged"},
+};
+
+static const cli_option preset_options[] = {
+    {PRESET, 0, "preset", "default|paper", "start from these values of the options below, wherever this stands: our recommendation, or the paper to the letter"},
+};
+
+void cli_detect_arguments_free(cli_detect_arguments *arguments)
+{
+    free(arguments->settings);
+    arguments->settings = NULL;
+}
+
+static int take_output(void *target, int id, const char *text)
+{
+    static const char *const formats[] = {"asj", "json", "csv", NULL};
+    cli_detect_arguments *arguments = target;
+    switch (id) {
+    case OUTPUT: arguments->output = text; break;
+    case OUT_DIR: arguments->out_dir = text; break;
+    case WHOLE: arguments->whole = 1; break;
+    default:
+        if (cli_find_word(formats, text) < 0)
+            return cli_usage_error("detect", "--format: '%s' is not asj, json or csv", text);
+        arguments->format = text;
+    }
+    return CLI_SUCCESS;
+}
+
+static int take_plot(void *target, int id, const char *text)
+{
+    static const char *const colors[] = {"nfa", "branch", NULL};
+    static const char *const backgrounds[] = {"photo", "white", NULL};
+    cli_detect_arguments *arguments = target;
+    switch (id) {
+    case PLOT:
+        arguments->plot = text;
+        break;
+    case PLOT_COLOR:
+        if ((arguments->style.color = cli_find_word(colors, text)) < 0)
+            return cli_usage_error("detect", "--plot-color: '%s' is not nfa or branch", text);
+        break;
+    case PLOT_BACKGROUND:
+        if ((arguments->style.background = cli_find_word(backgrounds, text)) < 0)
+            return cli_usage_error("detect", "--plot-background: '%s' is not photo or white", text);
+        break;
+    default:
+        if (!cli_parse_number(text, CLI_PLOT_MIN_SCALE, CLI_PLOT_MAX_SCALE, &arguments->style.scale))
+            return cli_usage_error("detect", "--plot-scale: '%s' is not a number in %g .. %d", text, CLI_PLOT_MIN_SCALE, CLI_PLOT_MAX_SCALE);
+    }
+    return CLI_SUCCESS;
+}
+
+static int take_preset(void *target, int id, const char *text)
+{
+    static const char *const presets[] = {"default", "paper", NULL}; /* in the order of ASJ_PRESET_... */
+    cli_detect_arguments *arguments = target;
+    (void)id;
+    int word = cli_find_word(presets, text);
+    if (word < 0)
+        return cli_usage_error("detect", "--preset: '%s' is not default or paper", text);
+    arguments->preset = word;
+    return CLI_SUCCESS;
+}
+
+/* Kept until the preset is known. */
+static int take_row(void *target, const asj_option_info *row, const char *text)
+{
+    cli_detect_arguments *arguments = target;
+    cli_setting *setting = &arguments->settings[arguments->setting_count++];
+    setting->key = row->key;
+    setting->text = text;
+    return CLI_SUCCESS;
+}
+
+static asj_status preset_value(int32_t preset, const char *key, char *text, size_t text_size)
+{
+    asj_detect_options options;
+    asj_status status = asj_detect_options_preset(&options, preset);
+    return status == ASJ_OK ? asj_detect_options_get(&options, key, text, text_size) : status;
+}
+
+static int apply_settings(cli_detect_arguments *arguments)
+{
+    char message[256];
+    asj_detect_options_preset(&arguments->options, arguments->preset);
+    for (size_t i = 0; i < arguments->setting_count; i++) {
+        const cli_setting *setting = &arguments->settings[i];
+        if (asj_detect_options_set(&arguments->options, setting->key, setting->text, message, sizeof message) != ASJ_OK)
+            return cli_usage_error("detect", "%s", message);
+    }
+    return CLI_SUCCESS;
+}
+
+/* CLI_PLOT_... of "png", "svg" or "pdf" in either case, or -1. */
+static int32_t find_plot_format(const char *word)
+{
+    static const char *const formats[] = {"png", "svg", "pdf", NULL}; /* in the order of CLI_PLOT_... */
+    char lower[8] = "";
+    for (size_t i = 0; i + 1 < sizeof lower && word[i]; i++)
+        lower[i] = (char)(word[i] >= 'A' && word[i] <= 'Z' ? word[i] - 'A' + 'a' : word[i]);
+    return cli_find_word(formats, lower);
+}
+
+static int check_plot(cli_detect_arguments *arguments)
+{
+    if (!arguments->plot)
+        return CLI_SUCCESS;
+    if (!cli_plot_available())
+        return cli_usage_error("detect", "--plot: this build cannot plot (it was made without cairo)");
+    const char *word = arguments->plot;
+    if (arguments->out_dir) {
+        arguments->plot_format = find_plot_format(word);
+        if (arguments->plot_format < 0)
+            return cli_usage_error("detect", "--plot: with --out-dir it takes png, svg or pdf, not '%s'", word);
+        return CLI_SUCCESS;
+    }
+    const char *dot = strrchr(word, '.');
+    arguments->plot_format = dot && dot != word && dot[-1] != '/' ? find_plot_format(dot + 1) : -1;
+    if (arguments->plot_format < 0)
+        return cli_usage_error("detect", "--plot: the name '%s' does not end in .png, .svg or .pdf", word);
+    return CLI_SUCCESS;
+}
+
+static int check(cli_detect_arguments *arguments)
+{
+    if (arguments->image_count == 0)
+        return cli_usage_error("detect", "which image?");
+    if (arguments->output && arguments->out_dir)
+        return cli_usage_error("detect", "--output and --out-dir exclude each other");
+    if (arguments->image_count > 1 && !arguments->out_dir)
+        return cli_usage_error("detect", "%zu images need --out-dir DIR for their results", arguments->image_count);
+    for (size_t i = 0; i < arguments->image_count; i++)
+        if (strcmp(arguments->images[i], "-") == 0)
+            return cli_usage_error("detect", "images are not read from standard input (a file named - is ./-)");
+    return check_plot(arguments);
+}
+
+int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *arguments)
+{
+    int first = argc;
+    memset(arguments, 0, sizeof *arguments);
+    cli_common_init(&arguments->common);
+    arguments->settings = calloc((size_t)argc, sizeof *arguments->settings);
+    if (!arguments->settings) {
+        cli_error("out of memory");
+        return CLI_FAILED;
+    }
+    const cli_group groups[] = {
+        {"Results", output_options, sizeof output_options / sizeof output_options[0], take_output, arguments},
+        {"Plot", plot_options, sizeof plot_options / sizeof plot_options[0], take_plot, arguments},
+        {"Detector", preset_options, 1, take_preset, arguments},
+        {"Running", cli_common_options, cli_common_option_count, cli_common_take, &arguments->common},
+    };
+    const cli_table table = {"Detector, in detail (NFA: expected number of false alarms in an image of noise)",
+                             asj_detect_option_count, asj_detect_option, preset_value, take_row, arguments};
+    const cli_syntax syntax = {"detect", introduction, conclusion, groups, sizeof groups / sizeof groups[0], &table};
+    int result = cli_parse(&syntax, argc, argv, &first);
+    if (result == CLI_HELP)
+        cli_help(&syntax);
+    if (result != CLI_SUCCESS)
+        return result;
+    arguments->images = argv + first;
+    arguments->image_count = (size_t)(argc - first);
+    result = apply_settings(arguments);
+    return result == CLI_SUCCESS ? check(arguments) : result;
+}
+
+const char *cli_detect_extension(const cli_detect_arguments *arguments)
+{
+    if (arguments->format)
+        return arguments->format;
+    const char *dot = arguments->output ? strrchr(arguments->output, '.') : NULL;
+    if (dot && strcmp(dot, ".json") == 0)
+        return "json";
+    return dot && strcmp(dot, ".csv") == 0 ? "csv" : "asj";
+}
+
+int32_t cli_detect_file_format(const cli_detect_arguments *arguments)
+{
+    const char *extension = cli_detect_extension(arguments);
+    if (strcmp(extension, "json") == 0)
+        return ASJ_FILE_JSON;
+    if (strcmp(extension, "csv") == 0)
+        return ASJ_FILE_CSV;
+    return arguments->whole ? ASJ_FILE_ASJ_WHOLE : ASJ_FILE_ASJ;
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The command line of `asj-cli detect`. */
+#ifndef ASJ_CLI_DETECT_ARGUMENTS_H
+#define ASJ_CLI_DETECT_ARGUMENTS_H
+
+#include "common.h"
+#include "plot.h"
+
+#include <asj/options.h>
+
+typedef struct cli_setting {
+    const char *key;
+    const char *text;
+} cli_setting;
+
+typedef struct cli_detect_arguments {
+    cli_common common;
+    asj_detect_options options;
+    int32_t preset;
+    cli_setting *settings; /* the options of the library's table, as they stand on the line */
+    size_t setting_count;
+    const char *output;    /* -o; NULL = none */
+    const char *out_dir;   /* NULL = none */
+    const char *format;    /* "asj", "json", "csv"; NULL = by the name of `output` */
+    int whole;
+    const char *plot;      /* a file, or with out_dir a format; NULL = none */
+    int32_t plot_format;   /* CLI_PLOT_... */
+    cli_plot_style style;
+    char **images;         /* inside argv */
+    size_t image_count;
+} cli_detect_arguments;
+
+/* Reads argv[1 ..] (argv[0] is "detect"). CLI_SUCCESS, CLI_HELP after printing the help, CLI_USAGE or CLI_FAILED after saying why.
+ * cli_detect_arguments_free() in every case. */
+int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *arguments);
+void cli_detect_arguments_free(cli_detect_arguments *arguments);
+
+/* The format of the result files: ASJ_FILE_..., and the end of their names. */
+int32_t cli_detect_file_format(const cli_detect_arguments *arguments);
+const char *cli_detect_extension(const cli_detect_arguments *arguments);
+
+#endif

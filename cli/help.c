@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "help.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { HELP_COLUMN = 30, LINE_WIDTH = 100 };
+
+/* Prints `text` from HELP_COLUMN on, broken at spaces and at its own newlines; `used` columns of the first line are taken. */
+static void print_column(int used, const char *text)
+{
+    if (used + 2 > HELP_COLUMN) {
+        putchar('\n');
+        used = 0;
+    }
+    while (*text) {
+        size_t room = LINE_WIDTH - HELP_COLUMN, length = strcspn(text, "\n");
+        if (length > room) {
+            length = room;
+            while (length > 0 && text[length] != ' ')
+                length--;
+            if (length == 0)
+                length = room;
+        }
+        printf("%*s%.*s\n", HELP_COLUMN - used, "", (int)length, text);
+        used = 0;
+        text += length;
+        if (*text == ' ' || *text == '\n')
+            text++;
+    }
+}
+
+static void print_option(const cli_option *option)
+{
+    int used = option->letter ? printf("  -%c, --%s", option->letter, option->name) : printf("      --%s", option->name);
+    if (option->argument)
+        used += printf(" %s", option->argument);
+    print_column(used, option->help);
+}
+
+void cli_row_argument(const asj_option_info *row, char *text, size_t text_size)
+{
+    const char *argument = "N";
+    if (row->type == ASJ_OPTION_CHOICE) {
+        size_t used = 0;
+        for (int i = 0; row->choices[i] && used < text_size; i++)
+            used += (size_t)snprintf(text + used, text_size - used, i ? "|%s" : "%s", row->choices[i]);
+        return;
+    }
+    if (row->type == ASJ_OPTION_SWITCH)
+        argument = "yes|no";
+    if (row->type == ASJ_OPTION_RADII)
+        argument = "LIST";
+    snprintf(text, text_size, "%s", argument);
+}
+
+static void print_row(const cli_table *table, const asj_option_info *row)
+{
+    char name[CLI_NAME_SIZE], argument[128], standard[64] = "", paper[64] = "", range[96] = "", text[1024];
+    cli_option_name(row, name);
+    cli_row_argument(row, argument, sizeof argument);
+    table->value(ASJ_PRESET_DEFAULT, row->key, standard, sizeof standard);
+    table->value(ASJ_PRESET_PAPER, row->key, paper, sizeof paper);
+    if (row->type != ASJ_OPTION_SWITCH && row->type != ASJ_OPTION_CHOICE)
+        snprintf(range, sizeof range, "%g .. %g%s%s, ", row->minimum, row->maximum, *row->unit ? " " : "", row->unit);
+    if (strcmp(standard, paper) == 0)
+        snprintf(text, sizeof text, "%s\n(%sdefault %s)", row->help, range, standard);
+    else
+        snprintf(text, sizeof text, "%s\n(%sdefault %s, paper %s)", row->help, range, standard, paper);
+    print_column(printf("      --%s %s", name, argument), text);
+}
+
+void cli_help(const cli_syntax *syntax)
+{
+    fputs(syntax->introduction, stdout);
+    for (size_t g = 0; g < syntax->group_count; g++) {
+        printf("\n%s\n", syntax->groups[g].title);
+        for (size_t i = 0; i < syntax->groups[g].count; i++)
+            print_option(&syntax->groups[g].options[i]);
+        if (g + 1 == syntax->group_count)
+            print_column(printf("  -h, --help"), "show this text");
+    }
+    if (syntax->table) {
+        printf("\n%s\n", syntax->table->title);
+        for (size_t i = 0; i < syntax->table->count(); i++)
+            print_row(syntax->table, syntax->table->row(i));
+    }
+    fputs(syntax->conclusion, stdout);
+}

@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* asj-cli: the library's functions as a program. */
+#include "detect.h"
+#include "interrupt.h"
+#include "message.h"
+#include "plot.h"
+
+#include <asj/io.h>
+#include <asj/version.h>
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct command {
+    const char *name;
+    const char *summary;
+    int (*run)(int argc, char **argv);
+} command;
+
+static const command commands[] = {
+    {"detect", "find the junctions in photographs", cli_detect},
+};
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static void print_help(void)
+{
+    fputs("Usage: asj-cli COMMAND [options] ...\n"
+          "\n"
+          "Anisotropic-scale junctions of indoor photographs: corners of straight edges, each edge with its\n"
+          "direction and its own length.\n"
+          "\n", stdout);
+    for (size_t i = 0; i < COMMAND_COUNT; i++)
+        printf("  asj-cli %-10s %s\n", commands[i].name, commands[i].summary);
+    fputs("\n"
+          "  asj-cli COMMAND --help   how to use a command\n"
+          "  asj-cli --version        version, and what this build can do\n"
+          "\n"
+          "The first try:  asj-cli detect --plot corners.png photo.png\n", stdout);
+}
+
+static void print_version(void)
+{
+    printf("asj-cli %d.%d.%d\n", ASJ_VERSION_MAJOR, ASJ_VERSION_MINOR, ASJ_VERSION_PATCH);
+    printf("libasj %s\n", asj_version_string());
+    printf("images: PNG%s\n", asj_io_has_opencv() ? " and what OpenCV reads" : " only (built without OpenCV)");
+    printf("plots: %s\n", cli_plot_available() ? "PNG, SVG, PDF" : "none (built without cairo)");
+}
+
+/* The program takes every library of its own major version that is not older than itself. */
+static int check_version(void)
+{
+    uint32_t library = asj_version();
+    if (library >> 16 == ASJ_VERSION_MAJOR && library >= (uint32_t)ASJ_VERSION)
+        return 1;
+    cli_error("this program was built for libasj %d.%d.%d, but found %s", ASJ_VERSION_MAJOR, ASJ_VERSION_MINOR, ASJ_VERSION_PATCH,
+              asj_version_string());
+    return 0;
+}
+
+static int run_command(int argc, char **argv)
+{
+    if (argc < 2)
+        return cli_usage_error(NULL, "which command?");
+    const char *name = argv[1];
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
+        print_help();
+        return CLI_SUCCESS;
+    }
+    if (strcmp(name, "--version") == 0) {
+        print_version();
+        return CLI_SUCCESS;
+    }
+    for (size_t i = 0; i < COMMAND_COUNT; i++)
+        if (strcmp(commands[i].name, name) == 0)
+            return commands[i].run(argc - 1, argv + 1);
+    if (*name == '-')
+        return cli_usage_error(NULL, "there is no option '%s' before the command", name);
+    return cli_usage_error(NULL, "there is no command '%s'", name);
+}
+
+int main(int argc, char **argv)
+{
+    if (!check_version())
+        return CLI_FAILED;
+    cli_interrupt_install();
+    int result = run_command(argc, argv);
+    int closed = cli_close_output();
+    return result == CLI_SUCCESS ? closed : result;
+}

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Everything that asj-cli says on standard error: one line each. */
+#ifndef ASJ_CLI_MESSAGE_H
+#define ASJ_CLI_MESSAGE_H
+
+#if defined(__GNUC__)
+#define CLI_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#else
+#define CLI_PRINTF(text, first)
+#endif
+
+/* Exit codes, and what the functions of the command line return. */
+enum { CLI_SUCCESS = 0, CLI_FAILED = 1, CLI_USAGE = 2, CLI_HELP = 3 /* --help was met; never an exit code */ };
+
+/* "asj-cli: TEXT" */
+void cli_error(const char *format, ...) CLI_PRINTF(1, 2);
+
+/* "asj-cli: PATH: MESSAGE"; the path is not repeated where the message already starts with it. */
+void cli_file_error(const char *path, const char *message);
+
+/* TEXT alone. */
+void cli_note(const char *format, ...) CLI_PRINTF(1, 2);
+
+/* "asj-cli COMMAND: TEXT" and where to find help; command NULL = none. Returns CLI_USAGE. */
+int cli_usage_error(const char *command, const char *format, ...) CLI_PRINTF(2, 3);
+
+/* Flushes standard output. CLI_FAILED, with a message, when what was printed could not be written. */
+int cli_close_output(void);
+
+#endif

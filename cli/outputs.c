@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#define _POSIX_C_SOURCE 200809L
+#include "outputs.h"
+#include "message.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* A file that will be written, for sorting. */
+typedef struct planned {
+    const char *path;
+    const char *image;
+} planned;
+
+/* A file that exists: equal for every name of the same file. */
+typedef struct identity {
+    dev_t device;
+    ino_t inode;
+} identity;
+
+void cli_outputs_free(cli_outputs *outputs)
+{
+    for (size_t i = 0; i < outputs->count; i++) {
+        free(outputs->of[i].junctions);
+        free(outputs->of[i].plot);
+    }
+    free(outputs->of);
+    outputs->of = NULL;
+    outputs->count = 0;
+}
+
+static char *copy(const char *text)
+{
+    size_t size = strlen(text) + 1;
+    char *result = malloc(size);
+    return result ? memcpy(result, text, size) : NULL;
+}
+
+/* DIR + name of the image without folder and last extension + "." + extension */
+static char *name_in(const char *folder, const char *image, const char *extension)
+{
+    size_t end = strlen(image);
+    while (end > 0 && image[end - 1] == '/')
+        end--;
+    size_t start = end;
+    while (start > 0 && image[start - 1] != '/')
+        start--;
+    size_t dot = end;
+    while (dot > start && image[dot - 1] != '.')
+        dot--;
+    size_t length = dot > start + 1 ? dot - 1 - start : end - start;
+    size_t size = strlen(folder) + 1 + length + 1 + strlen(extension) + 1;
+    char *path = malloc(size);
+    if (path)
+        snprintf(path, size, "%s/%.*s.%s", folder, (int)length, image + start, extension);
+    return path;
+}
+
+/* 0 = no memory */
+static int name_outputs(const cli_detect_arguments *arguments, cli_outputs *outputs)
+{
+    static const char *const plot_extensions[] = {"plot.png", "plot.svg", "plot.pdf"};
+    for (size_t i = 0; i < outputs->count; i++) {
+        cli_output *output = &outputs->of[i];
+        if (arguments->out_dir) {
+            const char *image = arguments->images[i];
+            output->junctions = name_in(arguments->out_dir, image, cli_detect_extension(arguments));
+            if (arguments->plot)
+                output->plot = name_in(arguments->out_dir, image, plot_extensions[arguments->plot_format]);
+        } else {
+            if (arguments->output || !arguments->plot)
+                output->junctions = copy(arguments->output ? arguments->output : "-");
+            if (arguments->plot)
+                output->plot = copy(arguments->plot);
+        }
+        if ((!output->junctions && (arguments->out_dir || arguments->output)) || (!output->plot && arguments->plot))
+            return 0;
+    }
+    return 1;
+}
+
+static int compare_planned(const void *a, const void *b)
+{
+    return strcmp(((const planned *)a)->path, ((const planned *)b)->path);
+}
+
+static int compare_identity(const void *a, const void *b)
+{
+    const identity *p = a, *q = b;
+    if (p->device != q->device)
+        return p->device < q->device ? -1 : 1;
+    return p->inode == q->inode ? 0 : p->inode < q->inode ? -1 : 1;
+}
+
+static size_t list_planned(const cli_detect_arguments *arguments, const cli_outputs *outputs, planned *list)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < outputs->count; i++) {
+        if (outputs->of[i].junctions && strcmp(outputs->of[i].junctions, "-") != 0)
+            list[n++] = (planned){outputs->of[i].junctions, arguments->images[i]};
+        if (outputs->of[i].plot)
+            list[n++] = (planned){outputs->of[i].plot, arguments->images[i]};
+    }
+    return n;
+}
+
+static size_t list_inputs(const cli_detect_arguments *arguments, identity *list)
+{
+    struct stat facts;
+    size_t n = 0;
+    for (size_t i = 0; i < arguments->image_count; i++)
+        if (stat(arguments->images[i], &facts) == 0 && S_ISREG(facts.st_mode))
+            list[n++] = (identity){facts.st_dev, facts.st_ino};
+    return n;
+}
+
+static int check_collisions(planned *outputs, size_t output_count, identity *inputs, size_t input_count)
+{
+    struct stat facts;
+    qsort(outputs, output_count, sizeof *outputs, compare_planned);
+    qsort(inputs, input_count, sizeof *inputs, compare_identity);
+    for (size_t i = 1; i < output_count; i++)
+        if (strcmp(outputs[i - 1].path, outputs[i].path) == 0)
+            return cli_usage_error("detect", "%s: would be written twice, for %s and for %s", outputs[i].path, outputs[i - 1].image,
+                                   outputs[i].image);
+    for (size_t i = 0; i < output_count; i++) {
+        if (stat(outputs[i].path, &facts) != 0)
+            continue;
+        identity existing = {facts.st_dev, facts.st_ino};
+        if (input_count > 0 && bsearch(&existing, inputs, input_count, sizeof *inputs, compare_identity))
+            return cli_usage_error("detect", "%s: is an input image, and would be overwritten", outputs[i].path);
+    }
+    return CLI_SUCCESS;
+}
+
+static int check_folder(const char *path)
+{
+    struct stat facts;
+    int missing = stat(path, &facts) != 0;
+    if (!missing && S_ISDIR(facts.st_mode))
+        return CLI_SUCCESS;
+    cli_file_error(path, missing ? strerror(errno) : "not a folder");
+    return CLI_FAILED;
+}
+
+int cli_outputs_plan(const cli_detect_arguments *arguments, cli_outputs *outputs)
+{
+    int result = CLI_FAILED;
+    outputs->count = 0;
+    outputs->of = calloc(arguments->image_count, sizeof *outputs->of);
+    planned *list = calloc(2 * arguments->image_count, sizeof *list);
+    identity *inputs = calloc(arguments->image_count, sizeof *inputs);
+    if (outputs->of)
+        outputs->count = arguments->image_count;
+    if (!outputs->of || !list || !inputs || !name_outputs(arguments, outputs))
+        cli_error("out of memory");
+    else if (!arguments->out_dir || (result = check_folder(arguments->out_dir)) == CLI_SUCCESS)
+        result = check_collisions(list, list_planned(arguments, outputs, list), inputs, list_inputs(arguments, inputs));
+    free(list);
+    free(inputs);
+    return result;
+}

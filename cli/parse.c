@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "parse.h"
+#include "message.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Values that getopt_long() hands back: above every character, in the order of its table. */
+enum { VALUE_HELP = 1000, VALUE_OPTION = 1001 /* + number of the option, in order of the groups, then of the table */ };
+
+typedef struct getopt_tables {
+    struct option *long_options; /* help, the groups' options, the table's rows, an end mark */
+    char *short_options;
+    char (*names)[CLI_NAME_SIZE]; /* of the table's rows */
+    size_t option_count;          /* options of all groups */
+    size_t row_count;
+} getopt_tables;
+
+void cli_option_name(const asj_option_info *row, char name[CLI_NAME_SIZE])
+{
+    snprintf(name, CLI_NAME_SIZE, "%s", row->key);
+    for (char *c = name; *c; c++)
+        if (*c == '_')
+            *c = '-';
+}
+
+int cli_find_word(const char *const *words, const char *text)
+{
+    for (int i = 0; words[i]; i++)
+        if (strcmp(words[i], text) == 0)
+            return i;
+    return -1;
+}
+
+int cli_parse_number(const char *text, double minimum, double maximum, double *value)
+{
+    char *end;
+    /* strtod() also takes hexadecimal numbers, "inf" and "nan" */
+    if (*text == '\0' || strspn(text, "+-.0123456789eE") != strlen(text))
+        return 0;
+    *value = strtod(text, &end);
+    return *end == '\0' && *value >= minimum && *value <= maximum;
+}
+
+static const cli_option *find_option(const cli_syntax *syntax, size_t number, const cli_group **group)
+{
+    for (size_t g = 0; g < syntax->group_count; g++) {
+        *group = &syntax->groups[g];
+        if (number < (*group)->count)
+            return &(*group)->options[number];
+        number -= (*group)->count;
+    }
+    return NULL;
+}
+
+static struct option long_option(const char *name, int has_argument, size_t value)
+{
+    struct option option;
+    memset(&option, 0, sizeof option);
+    option.name = name;
+    option.has_arg = has_argument ? required_argument : no_argument;
+    option.val = (int)value;
+    return option;
+}
+
+static void fill_tables(const cli_syntax *syntax, getopt_tables *tables)
+{
+    const cli_group *group;
+    char *letters = tables->short_options;
+    *letters++ = ':'; /* a missing argument is told apart from an unknown option */
+    *letters++ = 'h';
+    tables->long_options[0] = long_option("help", 0, VALUE_HELP);
+    for (size_t i = 0; i < tables->option_count; i++) {
+        const cli_option *option = find_option(syntax, i, &group);
+        tables->long_options[1 + i] = long_option(option->name, option->argument != NULL, VALUE_OPTION + i);
+        if (option->letter) {
+            *letters++ = option->letter;
+            if (option->argument)
+                *letters++ = ':';
+        }
+    }
+    *letters = '\0';
+    for (size_t i = 0; i < tables->row_count; i++) {
+        size_t number = tables->option_count + i;
+        cli_option_name(syntax->table->row(i), tables->names[i]);
+        tables->long_options[1 + number] = long_option(tables->names[i], 1, VALUE_OPTION + number);
+    }
+}
+
+static void free_tables(getopt_tables *tables)
+{
+    free(tables->long_options);
+    free(tables->short_options);
+    free(tables->names);
+}
+
+static int make_tables(const cli_syntax *syntax, getopt_tables *tables)
+{
+    memset(tables, 0, sizeof *tables);
+    for (size_t g = 0; g < syntax->group_count; g++)
+        tables->option_count += syntax->groups[g].count;
+    tables->row_count = syntax->table ? syntax->table->count() : 0;
+    tables->long_options = calloc(tables->option_count + tables->row_count + 2, sizeof *tables->long_options);
+    tables->short_options = calloc(2 * tables->option_count + 3, 1);
+    tables->names = calloc(tables->row_count + 1, sizeof *tables->names);
+    if (!tables->long_options || !tables->short_options || !tables->names) {
+        free_tables(tables);
+        return 0;
+    }
+    fill_tables(syntax, tables);
+    return 1;
+}
+
+/* What was wrong with the option that getopt_long() stopped at: `text` is "--name" or "--name=value", or holds "-x". */
+static int say_unknown(const cli_syntax *syntax, const getopt_tables *tables, const char *text)
+{
+    if (optopt > 0 && optopt < VALUE_HELP)
+        return cli_usage_error(syntax->command, "there is no option '-%c'", optopt);
+    if (optopt >= VALUE_HELP)
+        return cli_usage_error(syntax->command, "--%s takes no value", tables->long_options[optopt - VALUE_HELP].name);
+    size_t length = strcspn(text, "="), beginnings = 0;
+    for (const struct option *option = tables->long_options; option->name && length > 2; option++)
+        beginnings += strncmp(option->name, text + 2, length - 2) == 0;
+    if (beginnings > 1)
+        return cli_usage_error(syntax->command, "'%s' could be one of several options", text);
+    return cli_usage_error(syntax->command, "there is no option '%s'", text);
+}
+
+static int take_option(const cli_syntax *syntax, const getopt_tables *tables, size_t number, const char *text)
+{
+    const cli_group *group;
+    if (number >= tables->option_count)
+        return syntax->table->take(syntax->table->target, syntax->table->row(number - tables->option_count), text);
+    const cli_option *option = find_option(syntax, number, &group);
+    return group->take(group->target, option->id, text);
+}
+
+static size_t number_of_letter(const cli_syntax *syntax, const getopt_tables *tables, int letter)
+{
+    const cli_group *group;
+    size_t i = 0;
+    while (i < tables->option_count && find_option(syntax, i, &group)->letter != letter)
+        i++;
+    return i;
+}
+
+static int parse_with(const cli_syntax *syntax, const getopt_tables *tables, int argc, char **argv)
+{
+    int value, result = CLI_SUCCESS;
+    opterr = 0;
+    while (result == CLI_SUCCESS && (value = getopt_long(argc, argv, tables->short_options, tables->long_options, NULL)) != -1) {
+        if (value == ':')
+            result = cli_usage_error(syntax->command, "%s needs a value", argv[optind - 1]);
+        else if (value == '?')
+            result = say_unknown(syntax, tables, argv[optind - 1]);
+        else if (value == 'h' || value == VALUE_HELP)
+            result = CLI_HELP;
+        else if (value >= VALUE_OPTION)
+            result = take_option(syntax, tables, (size_t)(value - VALUE_OPTION), optarg);
+        else
+            result = take_option(syntax, tables, number_of_letter(syntax, tables, value), optarg);
+    }
+    return result;
+}
+
+int cli_parse(const cli_syntax *syntax, int argc, char **argv, int *first_operand)
+{
+    getopt_tables tables;
+    if (!make_tables(syntax, &tables)) {
+        cli_error("out of memory");
+        return CLI_FAILED;
+    }
+    int result = parse_with(syntax, &tables, argc, argv);
+    *first_operand = optind;
+    free_tables(&tables);
+    return result;
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Plots of junctions: dots, with their branches drawn to their true ends, over the photograph or on white. */
+#ifndef ASJ_CLI_PLOT_H
+#define ASJ_CLI_PLOT_H
+
+#include <asj/detect.h>
+
+enum { CLI_PLOT_PNG = 0, CLI_PLOT_SVG = 1, CLI_PLOT_PDF = 2 };
+enum { CLI_PLOT_COLOR_NFA = 0, CLI_PLOT_COLOR_BRANCH = 1 };
+enum { CLI_PLOT_PHOTO = 0, CLI_PLOT_WHITE = 1 };
+
+typedef struct cli_plot_style {
+    int32_t color;
+    int32_t background;
+    double scale; /* plot pixels for one image pixel; 0 = automatic */
+} cli_plot_style;
+
+#define CLI_PLOT_MIN_SCALE 0.01
+#define CLI_PLOT_MAX_SCALE 16
+
+/* 1 when this build can plot. */
+int cli_plot_available(void);
+
+/* Writes a plot; the file appears whole or not at all. On failure `message` receives a line that names the cause. */
+asj_status cli_plot_write(const char *path, int32_t format, const asj_image *image, const asj_detection *detection,
+                          const cli_plot_style *style, char *message, size_t message_size);
+
+#endif

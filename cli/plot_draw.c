@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "plot_draw.h"
+#include "plot_color.h"
+#include "plot_photo.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { ENLARGED_SIDE = 1000, LARGEST_ENLARGEMENT = 8, LARGEST_SIDE = 32000 /* cairo draws up to 32767 */ };
+
+#define FULL_TURN 6.283185307179586
+#define LEGEND_HEIGHT 2.4 /* in font sizes, like all lengths of the legend */
+#define LEGEND_WIDTH 32
+
+void cli_plot_lay_out(const asj_image *image, double scale, cli_plot_layout *layout)
+{
+    int32_t side = image->width > image->height ? image->width : image->height;
+    if (scale <= 0) {
+        scale = 1;
+        if (side < ENLARGED_SIDE) /* by a whole number, so that pixels stay square */
+            scale = fmin((ENLARGED_SIDE + side / 2) / side, LARGEST_ENLARGEMENT);
+        if (side > LARGEST_SIDE)
+            scale = (double)LARGEST_SIDE / side;
+    }
+    layout->scale = scale;
+    layout->width = (int32_t)fmax(1, floor(image->width * scale + 0.5));
+    layout->image_height = (int32_t)fmax(1, floor(image->height * scale + 0.5));
+    layout->line = fmax(1, sqrt((double)layout->width * layout->image_height) / 500);
+    layout->font = fmax(10, 8 * layout->line);
+    layout->legend_height = layout->width >= LEGEND_WIDTH * layout->font ? (int32_t)ceil(LEGEND_HEIGHT * layout->font) : 0;
+}
+
+static void set_color(cairo_t *cairo, cli_color color)
+{
+    cairo_set_source_rgb(cairo, color.red, color.green, color.blue);
+}
+
+/* A reduced copy is enough, and several times smaller, where the plot is smaller than the image. */
+static void draw_photo(cairo_t *cairo, const cli_plot_layout *layout, const asj_image *image)
+{
+    int32_t reduction = layout->scale < 1 ? (int32_t)(1 / layout->scale) : 1;
+    while (image->width / reduction > LARGEST_SIDE || image->height / reduction > LARGEST_SIDE)
+        reduction++;
+    cairo_surface_t *photo = cli_plot_photo(image, reduction);
+    cairo_save(cairo);
+    cairo_rectangle(cairo, 0, 0, layout->width, layout->image_height);
+    cairo_clip(cairo);
+    cairo_scale(cairo, layout->scale * reduction, layout->scale * reduction);
+    cairo_set_source_surface(cairo, photo, 0, 0);
+    cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
+    cairo_paint(cairo);
+    cairo_restore(cairo);
+    cairo_surface_destroy(photo);
+}
+
+/* Pixel centres lie at integers, so the image starts at -0.5. */
+static double place(const cli_plot_layout *layout, double coordinate)
+{
+    return (coordinate + 0.5) * layout->scale;
+}
+
+static void draw_branches(cairo_t *cairo, const cli_plot_layout *layout, const asj_junction *junction, int32_t color)
+{
+    for (int32_t i = 0; i < junction->branch_count; i++) {
+        const asj_branch *branch = &junction->branches[i];
+        double x = (double)junction->x + (double)branch->length * cos((double)branch->angle);
+        double y = (double)junction->y + (double)branch->length * sin((double)branch->angle);
+        set_color(cairo, color == CLI_PLOT_COLOR_BRANCH ? cli_branch_color(i) : cli_ramp_color((double)branch->log10_nfa));
+        cairo_move_to(cairo, place(layout, (double)junction->x), place(layout, (double)junction->y));
+        cairo_line_to(cairo, place(layout, x), place(layout, y));
+        cairo_stroke(cairo);
+    }
+}
+
+static void draw_dot(cairo_t *cairo, const cli_plot_layout *layout, const asj_junction *junction)
+{
+    double x = place(layout, (double)junction->x), y = place(layout, (double)junction->y);
+    cairo_arc(cairo, x, y, 1.9 * layout->line, 0, FULL_TURN);
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_fill(cairo);
+    cairo_arc(cairo, x, y, 1.4 * layout->line, 0, FULL_TURN);
+    cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+    cairo_fill(cairo);
+}
+
+/* The surest come first in a detection, and last, on top, in a plot. */
+static void draw_junctions(cairo_t *cairo, const cli_plot_layout *layout, const asj_detection *detection, int32_t color)
+{
+    cairo_save(cairo);
+    cairo_rectangle(cairo, 0, 0, layout->width, layout->image_height);
+    cairo_clip(cairo);
+    cairo_set_line_width(cairo, layout->line);
+    cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT); /* ends where the branch ends */
+    for (uint32_t i = detection->junction_count; i-- > 0;)
+        draw_branches(cairo, layout, &detection->junctions[i], color);
+    for (uint32_t i = detection->junction_count; i-- > 0;)
+        draw_dot(cairo, layout, &detection->junctions[i]);
+    cairo_restore(cairo);
+}
+
+static void draw_text(cairo_t *cairo, double x, double y, const char *text)
+{
+    cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
+    cairo_move_to(cairo, x, y);
+    cairo_show_text(cairo, text);
+}
+
+static void draw_ramp(cairo_t *cairo, double x, double y, double width, double height)
+{
+    enum { STEPS = 64 };
+    cairo_pattern_t *ramp = cairo_pattern_create_linear(x, 0, x + width, 0);
+    for (int i = 0; i <= STEPS; i++) {
+        double t = (double)i / STEPS;
+        cli_color color = cli_ramp_color(CLI_RAMP_UNSURE + t * (CLI_RAMP_SURE - CLI_RAMP_UNSURE));
+        cairo_pattern_add_color_stop_rgb(ramp, t, color.red, color.green, color.blue);
+    }
+    cairo_rectangle(cairo, x, y, width, height);
+    cairo_set_source(cairo, ramp);
+    cairo_fill(cairo);
+    cairo_pattern_destroy(ramp);
+}
+
+static void draw_legend(cairo_t *cairo, const cli_plot_layout *layout, const asj_detection *detection, int32_t color)
+{
+    char text[64];
+    double em = layout->font, base = layout->image_height + 1.55 * em, middle = base - 0.35 * em;
+    cairo_select_font_face(cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cairo, em);
+    snprintf(text, sizeof text, "%lu junction%s", (unsigned long)detection->junction_count, detection->junction_count == 1 ? "" : "s");
+    draw_text(cairo, 0.8 * em, base, text);
+    if (color == CLI_PLOT_COLOR_NFA) {
+        snprintf(text, sizeof text, "log10 NFA   %g", CLI_RAMP_UNSURE);
+        draw_text(cairo, 10.5 * em, base, text);
+        draw_ramp(cairo, 18 * em, middle - 0.35 * em, 8 * em, 0.7 * em);
+        snprintf(text, sizeof text, "%g and surer", CLI_RAMP_SURE);
+        draw_text(cairo, 26.4 * em, base, text);
+        return;
+    }
+    draw_text(cairo, 10.5 * em, base, "branch");
+    cairo_set_line_width(cairo, 2 * layout->line);
+    for (int32_t i = 0; i < ASJ_MAX_BRANCHES; i++) {
+        double x = (15 + 3 * i) * em;
+        snprintf(text, sizeof text, "%d", (int)i + 1);
+        draw_text(cairo, x, base, text);
+        set_color(cairo, cli_branch_color(i));
+        cairo_move_to(cairo, x + 0.9 * em, middle);
+        cairo_line_to(cairo, x + 2.2 * em, middle);
+        cairo_stroke(cairo);
+    }
+}
+
+void cli_plot_draw(cairo_t *cairo, const cli_plot_layout *layout, const asj_image *image, const asj_detection *detection,
+                   const cli_plot_style *style)
+{
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_paint(cairo);
+    if (style->background == CLI_PLOT_PHOTO)
+        draw_photo(cairo, layout, image);
+    draw_junctions(cairo, layout, detection, style->color);
+    if (layout->legend_height > 0)
+        draw_legend(cairo, layout, detection, style->color);
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "plot_photo.h"
+
+#include <string.h>
+
+/* Share of the photograph's contrast that is kept, towards white: dark enough to see the room, light enough for the colours. */
+#define CONTRAST 0.45
+
+static double white_of(const asj_image *image)
+{
+    if (image->white > 0)
+        return image->white;
+    return image->format == ASJ_FORMAT_GRAY16 ? 65535 : image->format == ASJ_FORMAT_GRAY_FLOAT ? 1 : 255;
+}
+
+static size_t bytes_of(int32_t format)
+{
+    switch (format) {
+    case ASJ_FORMAT_GRAY8: return 1;
+    case ASJ_FORMAT_GRAY16: return 2;
+    case ASJ_FORMAT_RGB8:
+    case ASJ_FORMAT_BGR8: return 3;
+    default: return 4;
+    }
+}
+
+/* BT.601 luma, as the detector takes it, in the unit of the samples. */
+static double luma(const unsigned char *pixel, int32_t format)
+{
+    uint16_t wide;
+    float real;
+    switch (format) {
+    case ASJ_FORMAT_GRAY8: return pixel[0];
+    case ASJ_FORMAT_GRAY16: memcpy(&wide, pixel, sizeof wide); return wide;
+    case ASJ_FORMAT_GRAY_FLOAT: memcpy(&real, pixel, sizeof real); return (double)real;
+    case ASJ_FORMAT_BGR8:
+    case ASJ_FORMAT_BGRA8: return 0.299 * pixel[2] + 0.587 * pixel[1] + 0.114 * pixel[0];
+    default: return 0.299 * pixel[0] + 0.587 * pixel[1] + 0.114 * pixel[2];
+    }
+}
+
+static double block_mean(const asj_image *image, int32_t left, int32_t top, int32_t reduction)
+{
+    size_t bytes = bytes_of(image->format);
+    ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)((size_t)image->width * bytes);
+    int32_t right = image->width - left < reduction ? image->width : left + reduction;
+    int32_t bottom = image->height - top < reduction ? image->height : top + reduction;
+    double sum = 0;
+    for (int32_t y = top; y < bottom; y++)
+        for (int32_t x = left; x < right; x++)
+            sum += luma((const unsigned char *)image->data + y * stride + (ptrdiff_t)((size_t)x * bytes), image->format);
+    return sum / ((double)(right - left) * (bottom - top));
+}
+
+cairo_surface_t *cli_plot_photo(const asj_image *image, int32_t reduction)
+{
+    int32_t width = (image->width + reduction - 1) / reduction, height = (image->height + reduction - 1) / reduction;
+    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS)
+        return surface;
+    unsigned char *pixels = cairo_image_surface_get_data(surface);
+    ptrdiff_t stride = cairo_image_surface_get_stride(surface);
+    double white = white_of(image);
+    for (int32_t y = 0; y < height; y++)
+        for (int32_t x = 0; x < width; x++) {
+            double value = block_mean(image, x * reduction, y * reduction, reduction) / white;
+            value = value > 0 ? (value < 1 ? value : 1) : 0;
+            uint32_t gray = (uint32_t)(255 * (1 - CONTRAST * (1 - value)) + 0.5);
+            uint32_t pixel = gray << 16 | gray << 8 | gray;
+            memcpy(pixels + y * stride + 4 * (ptrdiff_t)x, &pixel, sizeof pixel);
+        }
+    cairo_surface_mark_dirty(surface);
+    return surface;
+}

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#define _POSIX_C_SOURCE 200809L
+#include "progress.h"
+#include "interrupt.h"
+
+#include <asj/context.h>
+
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { REDRAW_MS = 100, NAME_WIDTH = 40 };
+
+double cli_now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+void cli_progress_init(cli_progress *progress, int quiet, size_t image_count)
+{
+    memset(progress, 0, sizeof *progress);
+    progress->enabled = !quiet && isatty(STDERR_FILENO);
+    progress->image_count = image_count;
+    progress->name = "";
+    progress->last_drawn = cli_now_ms();
+}
+
+void cli_progress_next(cli_progress *progress, size_t image, const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    progress->image = image;
+    progress->name = slash && slash[1] ? slash + 1 : name;
+}
+
+static void draw(cli_progress *progress, int32_t stage, double done)
+{
+    char name[NAME_WIDTH + 1];
+    snprintf(name, sizeof name, "%s", progress->name);
+    for (char *c = name; *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            *c = '?';
+    fputs("\r\033[K", stderr);
+    if (progress->image_count > 1)
+        fprintf(stderr, "[%zu/%zu] ", progress->image + 1, progress->image_count);
+    fprintf(stderr, "%s: %s %.0f %%", name, asj_stage_name(stage), 100 * done);
+    fflush(stderr);
+    progress->visible = 1;
+}
+
+int32_t cli_progress_report(cli_progress *progress, int32_t stage, double done)
+{
+    if (progress->enabled) {
+        double now = cli_now_ms();
+        if (now - progress->last_drawn >= REDRAW_MS) {
+            draw(progress, stage, done);
+            progress->last_drawn = now;
+        }
+    }
+    return cli_interrupted() != 0;
+}
+
+void cli_progress_clear(cli_progress *progress)
+{
+    if (progress->visible)
+        fputs("\r\033[K", stderr);
+    progress->visible = 0;
+}
