@@ -27,8 +27,10 @@ typedef struct row {
     double recall, precision, location, angle, within, reached;
 } row;
 
-/* The targets of the first row are the project's acceptance figures for the default preset; those of the crossing rows ask that
- * long branches pass other junctions where the a-contrario test has enough contrast to do so. */
+/* The targets of b1.0-n2-c60, b1.0-n10-c60 and b1.0-n2-c15 are the project's acceptance figures for the default preset; easier
+ * scenes must not do worse. b1.5-n2-c15 must beat the experiment that the design rests on. The crossing rows ask that long
+ * branches pass other junctions wherever every piece of the line has contrast: random tiles may be as grey as their neighbours,
+ * so they have no target. */
 static const row rows[] = {
     {"b1.0-n0-c60", PARALLELOGRAMS, 1.0, 0, 60, .99, .99, .15, .2, .97, 0},
     {"b0.8-n2-c60", PARALLELOGRAMS, 0.8, 2, 60, .99, .99, .15, .2, .97, 0},
@@ -261,7 +263,7 @@ static int run_row(asj_context *context, const settings *set, const row *r)
     if (result == 0) {
         figures(&s, values);
         print_row(set->format, r->name, values);
-        result = count_misses(r, &s, values);
+        result = set->check ? count_misses(r, &s, values) : 0;
     }
     score_free(&s);
     return result;
@@ -342,7 +344,7 @@ static int run_all(asj_context *context, const settings *set)
             return 2;
         misses += result;
     }
-    return set->check && misses > 0;
+    return misses > 0;
 }
 
 int main(int argc, char **argv)

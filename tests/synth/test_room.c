@@ -64,7 +64,7 @@ static void projection_and_rays_agree(void **state)
             if (!synth_camera_project(&f->views[v].camera, p, &image))
                 continue;
             synth_point again;
-            assert_true(synth_room_trace(&f->room, &f->views[v].camera, image.x, image.y, &met) >= 0); /* the room is closed ahead */
+            assert_true(synth_room_trace(&f->room, &f->views[v].camera, image.x, image.y, &met) >= 0);
             assert_int_equal(synth_camera_project(&f->views[v].camera, met, &again), 1);
             assert_near(again.x, image.x, 1e-6);
             assert_near(again.y, image.y, 1e-6);
