@@ -21,38 +21,80 @@ extern "C" {
 
 /* An image read from a file; it owns its pixels. */
 typedef struct asj_image_file {
-    asj_image image;     /* view of the pixels: GRAY8, GRAY16, RGB8 or RGBA8; BGR8 or GRAY_FLOAT from OpenCV */
+    asj_image image;     /* view of the pixels: GRAY8, GRAY16 or RGB8; BGR8 or GRAY_FLOAT from OpenCV */
     int32_t orientation; /* the EXIF orientation (1 .. 8) that was applied: the view is upright. 1 = none */
     int32_t reserved[3];
 } asj_image_file;
 
-/* Reads an image. PNG through libpng (1 to 16 bits, palette, alpha, interlaced; eXIf orientation respected); every other format
- * through OpenCV's imgcodecs when the library was built with it (asj_io_has_opencv()). The content decides, not the name.
- * Transparency is ignored: the stored colours count. max_pixels 0 = ASJ_IO_DEFAULT_MAX_PIXELS.
+/* Reads an image. PNG through libpng (1 to 16 bits, palette, alpha, interlaced); JPEG, TIFF, BMP, WebP, PNM, JPEG 2000, Sun
+ * raster, Radiance HDR, and where OpenCV reads them GIF, HEIF, AVIF and OpenEXR, through OpenCV's imgcodecs when the library was
+ * built with it (asj_io_has_opencv()). The content decides, not the name. max_pixels 0 = ASJ_IO_DEFAULT_MAX_PIXELS.
+ *
+ * Upright: the EXIF orientation of PNG, JPEG, TIFF and WebP is applied, so that coordinates are those of the picture as viewers
+ * show it. Transparency is ignored: the stored colours count. 16-bit colour becomes GRAY16 and colour in floats GRAY_FLOAT, by
+ * the luma weights of image.h; floats are as stored, with 1.0 as white.
+ *
+ * Damage: PNG is checked to the last checksum. A JPEG without its end marker is refused, and so is one whose decoder complains
+ * about its compressed data. For other formats what OpenCV accepts is taken.
+ * Size: a PNG, JPEG, TIFF, BMP, WebP, PNM, JPEG 2000 or Sun raster file that declares more than max_pixels, or a side longer
+ * than ASJ_MAX_SIDE, is refused before memory for its pixels is taken. Other formats are only held by OpenCV's own limit (2^30
+ * pixels) while they are decoded, and refused then.
+ * Standard error: OpenCV and its decoders write complaints there and offer no other way to hear them. While OpenCV decodes,
+ * standard error of the process is therefore diverted, and what is written to it meanwhile is lost. PNG does without.
+ *
  * On success the caller owns *file until asj_image_file_free().
  * ASJ_ERROR_ARGUMENT     path or file is NULL
  * ASJ_ERROR_FILE         missing, a directory, unreadable
- * ASJ_ERROR_FORMAT       empty, not an image, truncated, damaged (a wrong PNG checksum included)
- * ASJ_ERROR_LIMIT        more than max_pixels
- * ASJ_ERROR_UNSUPPORTED  a format that this build cannot read
+ * ASJ_ERROR_FORMAT       empty, not an image, no pixels, truncated, damaged (a wrong PNG checksum included)
+ * ASJ_ERROR_LIMIT        more than max_pixels, a side longer than ASJ_MAX_SIDE, a file longer than 2^31 - 1 bytes
+ * ASJ_ERROR_UNSUPPORTED  an image format that this build cannot read
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_image_file_read(const char *path, uint64_t max_pixels, asj_image_file **file,
                                        char *message, size_t message_size);
 ASJ_API void asj_image_file_free(asj_image_file **file);
 
-/* Writes a GRAY8, GRAY16, RGB8 or RGBA8 view as PNG. The file appears whole or not at all.
- * ASJ_ERROR_ARGUMENT, ASJ_ERROR_IMAGE (other formats, bad view), ASJ_ERROR_FILE, ASJ_ERROR_MEMORY */
+/* Writes a view as PNG, 8 or 16 bits as it is. The file appears whole or not at all.
+ * ASJ_ERROR_ARGUMENT, ASJ_ERROR_IMAGE (floats, bad view), ASJ_ERROR_FILE, ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_png_write(const char *path, const asj_image *image, char *message, size_t message_size);
 
 /* 1 when formats other than PNG can be read. */
 ASJ_API int32_t asj_io_has_opencv(void);
 
-/* Formats of junction files. */
+/* An output file that appears whole or not at all: it is written beside its place under another name and renamed by
+ * asj_output_commit(). So a file that was there before stays until then, and stays for good when anything fails. "-" and
+ * /dev/stdout are standard output; that, pipes and devices are written directly. A protected file is not replaced, a symbolic
+ * link is followed, and the permissions of a file that was there before are kept. A process that is killed in between leaves a
+ * file named .asj-NUMBER-NUMBER.tmp.
+ * Thread safety: one thread at a time per output. */
+typedef struct asj_output asj_output;
+
+/* On success the caller owns *output until commit or abort.
+ * ASJ_ERROR_ARGUMENT  path or output is NULL
+ * ASJ_ERROR_FILE      the folder is missing or protected, path is a directory, ...
+ * ASJ_ERROR_MEMORY */
+ASJ_API asj_status asj_output_begin(const char *path, asj_output **output, char *message, size_t message_size);
+
+/* Adds bytes, or a text without its final zero. ASJ_ERROR_ARGUMENT: a NULL pointer; ASJ_ERROR_FILE: this or an earlier write
+ * failed (asj_output_commit() will fail too, and say why: the result here may be ignored). */
+ASJ_API asj_status asj_output_write(asj_output *output, const void *data, size_t size);
+ASJ_API asj_status asj_output_text(asj_output *output, const char *text);
+
+/* Ends the output, and gives the file its name if every byte was written. *output is NULL afterwards, whatever happened.
+ * ASJ_ERROR_ARGUMENT  no output
+ * ASJ_ERROR_FILE      a write failed (disk full, ...), or the file cannot be renamed: nothing is left behind */
+ASJ_API asj_status asj_output_commit(asj_output **output, char *message, size_t message_size);
+
+/* Ends the output and leaves no file. NULL and a pointer to NULL are fine. */
+ASJ_API void asj_output_abort(asj_output **output);
+
+/* Formats of junction files: README.md, "File formats". Numbers have a decimal point whatever the locale. In JSON and CSV they
+ * read back to the same float; .asj has six decimals, as the paper's authors' program writes them. */
 enum {
     ASJ_FILE_ASJ = 0,       /* .asj text, decomposed: one record of two branches for each L-junction (README.md, "File formats") */
     ASJ_FILE_ASJ_WHOLE = 1, /* .asj text with whole junctions of two to five branches */
     ASJ_FILE_JSON = 2,      /* schema "asj-junctions-1": everything, with options, version, back end and times */
-    ASJ_FILE_CSV = 3        /* a header, then one line a branch: junction,x,y,scale,log10_nfa,branch,angle,length,... */
+    ASJ_FILE_CSV = 3        /* a header, then one line a branch: junction,x,y,scale,log10_nfa,location_sd,branch,angle,length,
+                             * strength,branch_log10_nfa,angle_sd */
 };
 
 /* What is written. Only `detection` is needed. */
@@ -63,25 +105,33 @@ typedef struct asj_detection_report {
     uint64_t reserved[4];              /* zero */
 } asj_detection_report;
 
-/* Writes junctions; path "-" is standard output. The file appears whole or not at all: it is written beside its place under
- * another name and renamed at the end.
- * ASJ_ERROR_ARGUMENT, ASJ_ERROR_FILE (cannot create, disk full, cannot rename), ASJ_ERROR_MEMORY */
+/* Writes junctions as asj_output_begin() and asj_output_commit() do.
+ * ASJ_ERROR_ARGUMENT  a NULL pointer, no such file format, or a detection that no reader would take: NaN or infinity, a
+ *                     branch_count beyond ASJ_MAX_BRANCHES, an L-junction of a junction or branch that is not there
+ * ASJ_ERROR_FILE      cannot create, disk full, cannot rename
+ * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_detection_report *report,
                                        char *message, size_t message_size);
 
-/* Junctions read from a file. The arrays belong to it. */
+/* Junctions read from a file. The arrays belong to it and are NULL when empty. */
 typedef struct asj_junction_file {
     const asj_junction *junctions;
+    const uint32_t *lines;         /* for each junction the line of the file where it begins, from 1: for messages */
     uint32_t junction_count;
-    int32_t width, height; /* of the image; 0 when the file does not say (.asj) */
+    int32_t width, height;         /* of the image; 0 when the file does not say (.asj) */
     int32_t reserved[5];
 } asj_junction_file;
 
-/* Reads .asj text or this library's JSON; the content decides which. Angles are brought into [0, 2 pi) and branches into order of
- * angle. The message names the line.
- * ASJ_ERROR_ARGUMENT, ASJ_ERROR_FILE, ASJ_ERROR_MEMORY
- * ASJ_ERROR_FORMAT  wrong counts, NaN, infinity, negative lengths, more than ASJ_MAX_BRANCHES branches, text after the end
- * ASJ_ERROR_LIMIT   more than 2^24 junctions */
+/* Reads .asj text, as this library or the paper's authors' program writes it, or this library's JSON; the content decides which.
+ * Angles are brought into [0, 2 pi) and branches into order of angle. What .asj does not say (log10 NFA of a branch, uncertainties)
+ * is 0. Repeated junctions stay as they are. On success the caller owns *file until asj_junction_file_free().
+ * On failure the message names file, line and cause.
+ * ASJ_ERROR_ARGUMENT  path or file is NULL
+ * ASJ_ERROR_FILE      missing, a directory, unreadable
+ * ASJ_ERROR_FORMAT    empty, not such a file, wrong counts, NaN, infinity, a negative length or scale, fewer than 2 or more than
+ *                     ASJ_MAX_BRANCHES branches, text after the end; JSON: a location more than a pixel outside the image
+ * ASJ_ERROR_LIMIT     more than 2^24 junctions, a file longer than 2^31 - 1 bytes
+ * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_junctions_read(const char *path, asj_junction_file **file, char *message, size_t message_size);
 ASJ_API void asj_junction_file_free(asj_junction_file **file);
 

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "json_options.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static json_t *radii_value(uint32_t bits)
+{
+    json_t *list = json_array();
+    int radius;
+    for (radius = 0; radius < 32; radius++)
+        if (bits >> radius & 1)
+            json_array_append_new(list, json_integer(radius));
+    return list;
+}
+
+static json_t *choice_value(const asj_option_info *row, int32_t choice)
+{
+    int32_t i;
+    for (i = 0; i <= choice && row->choices[i]; i++)
+        if (i == choice)
+            return json_string(row->choices[i]);
+    return json_integer(choice);
+}
+
+static json_t *option_value(const asj_option_info *row, const asj_detect_options *options)
+{
+    const char *field = (const char *)options + row->offset;
+    double number;
+    int32_t integer;
+    uint32_t bits;
+
+    if (row->type == ASJ_OPTION_NUMBER) {
+        memcpy(&number, field, sizeof number);
+        return json_real(number);
+    }
+    if (row->type == ASJ_OPTION_RADII) {
+        memcpy(&bits, field, sizeof bits);
+        return radii_value(bits);
+    }
+    memcpy(&integer, field, sizeof integer);
+    if (row->type == ASJ_OPTION_SWITCH)
+        return json_boolean(integer);
+    return row->type == ASJ_OPTION_CHOICE ? choice_value(row, integer) : json_integer(integer);
+}
+
+json_t *asj_json_options(const asj_detect_options *options)
+{
+    json_t *object = json_object();
+    size_t i;
+    for (i = 0; i < asj_detect_option_count() && object; i++) {
+        const asj_option_info *row = asj_detect_option(i);
+        if (json_object_set_new(object, row->key, option_value(row, options))) {
+            json_decref(object);
+            object = NULL;
+        }
+    }
+    return object;
+}
+
+size_t asj_json_precision(json_t *options)
+{
+    int precision = 6;
+    const char *key;
+    json_t *value;
+
+    json_object_foreach (options, key, value) {
+        char text[64];
+        while (json_is_real(value) && precision < 17) {
+            snprintf(text, sizeof text, "%.*g", precision, json_real_value(value));
+            if (strtod(text, NULL) == json_real_value(value))
+                break;
+            precision++;
+        }
+    }
+    return JSON_REAL_PRECISION((size_t)precision);
+}

@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* JSON of schema "asj-junctions-1": json_write.c. The outer object and the list of junctions are walked here and every value in
+ * them is parsed by jansson, so that memory does not grow with the file and each junction's line is known. */
+#include "junction_list.h"
+
+#include <jansson.h>
+#include <string.h>
+
+#define SCHEMA "asj-junctions-1"
+
+typedef struct json_reader {
+    const char *next, *end;
+    size_t line; /* of `next`, from 1 */
+    const asj_message *message;
+    asj_junction_list *list;
+    int has_schema, has_junctions;
+} json_reader;
+
+static char skip_space(json_reader *reader)
+{
+    for (; reader->next < reader->end; reader->next++) {
+        if (*reader->next == '\n')
+            reader->line++;
+        else if (*reader->next != ' ' && *reader->next != '\t' && *reader->next != '\r')
+            return *reader->next;
+    }
+    return '\0';
+}
+
+/* Passes over `wanted`, or fails. */
+static asj_status expect(json_reader *reader, char wanted)
+{
+    char found = skip_space(reader);
+    if (reader->next == reader->end)
+        return asj_line_fail(reader->message, reader->line, "damaged JSON: the file ends where '%c' should follow", wanted);
+    if (found != wanted)
+        return asj_line_fail(reader->message, reader->line, "damaged JSON: expected '%c'", wanted);
+    reader->next++;
+    return ASJ_OK;
+}
+
+/* Passes over a ',' and sets *more, or over `close` and clears it. */
+static asj_status expect_more(json_reader *reader, char close, int *more)
+{
+    if (skip_space(reader) == ',') {
+        reader->next++;
+        *more = 1;
+        return ASJ_OK;
+    }
+    *more = 0;
+    return expect(reader, close);
+}
+
+/* Parses one value; the caller lets go of it. */
+static asj_status read_value(json_reader *reader, json_t **value)
+{
+    const char *stop;
+    json_error_t error;
+
+    skip_space(reader);
+    if (reader->next == reader->end)
+        return asj_line_fail(reader->message, reader->line, "damaged JSON: the file ends where a value should follow");
+    *value = json_loadb(reader->next, (size_t)(reader->end - reader->next),
+                        JSON_DECODE_ANY | JSON_DISABLE_EOF_CHECK | JSON_REJECT_DUPLICATES, &error);
+    if (!*value) {
+        if (json_error_code(&error) == json_error_out_of_memory)
+            return asj_message_fail(reader->message, ASJ_ERROR_MEMORY, "out of memory for JSON");
+        return asj_line_fail(reader->message, reader->line + (size_t)(error.line > 0 ? error.line - 1 : 0), "damaged JSON: %s",
+                             error.text);
+    }
+    for (stop = reader->next + error.position; reader->next < stop; reader->next++)
+        reader->line += *reader->next == '\n';
+    return ASJ_OK;
+}
+
+/* A number of an object. `required` = 0: 0 when it is not there. */
+static asj_status read_member(const json_reader *reader, size_t line, const json_t *object, const char *key, int required,
+                              float *number)
+{
+    const json_t *value = json_object_get(object, key);
+    *number = 0;
+    if (!value && !required)
+        return ASJ_OK;
+    if (!json_is_number(value) || !asj_fits_float(json_number_value(value)))
+        return asj_line_fail(reader->message, line, "\"%s\" is missing or no number of reasonable size", key);
+    *number = (float)json_number_value(value);
+    return ASJ_OK;
+}
+
+typedef struct member {
+    const char *key;
+    int required;
+    float *number;
+} member;
+
+static asj_status read_members(const json_reader *reader, size_t line, const json_t *object, const member *members, size_t count)
+{
+    asj_status status = ASJ_OK;
+    size_t i;
+    if (!json_is_object(object))
+        return asj_line_fail(reader->message, line, "a junction or branch is no object");
+    for (i = 0; i < count && status == ASJ_OK; i++)
+        status = read_member(reader, line, object, members[i].key, members[i].required, members[i].number);
+    return status;
+}
+
+static asj_status read_branch(const json_reader *reader, size_t line, const json_t *object, asj_branch *branch)
+{
+    const member members[] = {{"angle", 1, &branch->angle},         {"length", 1, &branch->length},
+                              {"strength", 0, &branch->strength},   {"log10_nfa", 0, &branch->log10_nfa},
+                              {"angle_sd", 0, &branch->angle_sd}};
+    asj_status status = read_members(reader, line, object, members, sizeof members / sizeof members[0]);
+    if (status == ASJ_OK)
+        asj_set_angle(branch, (double)branch->angle);
+    return status;
+}
+
+static asj_status read_junction(const json_reader *reader, size_t line, const json_t *object)
+{
+    static const asj_junction none = {0};
+    asj_junction junction = none;
+    const member members[] = {{"x", 1, &junction.x},         {"y", 1, &junction.y},
+                              {"scale", 0, &junction.scale}, {"log10_nfa", 0, &junction.log10_nfa},
+                              {"location_sd", 0, &junction.location_sd}};
+    asj_status status = read_members(reader, line, object, members, sizeof members / sizeof members[0]);
+    const json_t *branches = json_object_get(object, "branches");
+    size_t count = json_array_size(branches), b;
+
+    if (status != ASJ_OK)
+        return status;
+    if (count < 2 || count > ASJ_MAX_BRANCHES)
+        return asj_line_fail(reader->message, line, "a junction must have \"branches\", 2 to %d of them", ASJ_MAX_BRANCHES);
+    junction.branch_count = (int32_t)count;
+    for (b = 0; b < count && status == ASJ_OK; b++)
+        status = read_branch(reader, line, json_array_get(branches, b), &junction.branches[b]);
+    return status == ASJ_OK ? asj_junction_list_add(reader->list, &junction, line, reader->message) : status;
+}
+
+static asj_status read_junctions(json_reader *reader)
+{
+    asj_status status = expect(reader, '[');
+    int more = 1;
+
+    if (status == ASJ_OK && reader->has_junctions)
+        return asj_line_fail(reader->message, reader->line, "\"junctions\" stands here a second time");
+    reader->has_junctions = 1;
+    if (status == ASJ_OK && skip_space(reader) == ']')
+        return expect(reader, ']');
+    while (status == ASJ_OK && more) {
+        json_t *value = NULL;
+        size_t line;
+        skip_space(reader);
+        line = reader->line;
+        status = read_value(reader, &value);
+        if (status == ASJ_OK)
+            status = read_junction(reader, line, value);
+        json_decref(value);
+        if (status == ASJ_OK)
+            status = expect_more(reader, ']', &more);
+    }
+    return status;
+}
+
+static asj_status read_image(json_reader *reader, const json_t *value)
+{
+    json_int_t width = json_integer_value(json_object_get(value, "width"));
+    json_int_t height = json_integer_value(json_object_get(value, "height"));
+    if (width < 1 || height < 1 || width > ASJ_MAX_SIDE || height > ASJ_MAX_SIDE)
+        return asj_line_fail(reader->message, reader->line, "\"image\" needs a \"width\" and \"height\" from 1 to %d", ASJ_MAX_SIDE);
+    reader->list->width = (int32_t)width;
+    reader->list->height = (int32_t)height;
+    return ASJ_OK;
+}
+
+/* The value of a key of the outer object; what is not needed is parsed and passed over. */
+static asj_status read_entry(json_reader *reader, const char *key)
+{
+    json_t *value = NULL;
+    asj_status status;
+
+    if (!strcmp(key, "junctions"))
+        return read_junctions(reader);
+    status = read_value(reader, &value);
+    if (status == ASJ_OK && !strcmp(key, "schema")) {
+        if (!json_is_string(value) || strcmp(json_string_value(value), SCHEMA))
+            status = asj_line_fail(reader->message, reader->line, "\"schema\" is not \"" SCHEMA "\"");
+        reader->has_schema = 1;
+    }
+    if (status == ASJ_OK && !strcmp(key, "image"))
+        status = read_image(reader, value);
+    json_decref(value);
+    return status;
+}
+
+static asj_status read_object(json_reader *reader)
+{
+    asj_status status = expect(reader, '{');
+    int more = 1;
+
+    while (status == ASJ_OK && more) {
+        json_t *key = NULL;
+        status = read_value(reader, &key);
+        if (status == ASJ_OK && !json_is_string(key))
+            status = asj_line_fail(reader->message, reader->line, "damaged JSON: expected a key");
+        if (status == ASJ_OK)
+            status = expect(reader, ':');
+        if (status == ASJ_OK)
+            status = read_entry(reader, json_string_value(key));
+        json_decref(key);
+        if (status == ASJ_OK)
+            status = expect_more(reader, '}', &more);
+    }
+    if (status == ASJ_OK && (skip_space(reader) || reader->next < reader->end))
+        status = asj_line_fail(reader->message, reader->line, "text after the end");
+    return status;
+}
+
+static asj_status check_locations(const json_reader *reader)
+{
+    const asj_junction_list *list = reader->list;
+    size_t i;
+    for (i = 0; list->width && i < list->count; i++) {
+        const asj_junction *j = &list->junctions[i];
+        if (!(j->x >= -1 && j->y >= -1 && j->x <= (float)list->width && j->y <= (float)list->height))
+            return asj_line_fail(reader->message, list->lines[i], "a junction outside the image of %d x %d pixels",
+                                 (int)list->width, (int)list->height);
+    }
+    return ASJ_OK;
+}
+
+asj_status asj_read_json(const asj_input *input, asj_junction_list *list, const asj_message *message)
+{
+    json_reader reader = {(const char *)input->bytes, (const char *)input->bytes + input->size, 1, message, list, 0, 0};
+    asj_status status = read_object(&reader);
+
+    if (status == ASJ_OK && (!reader.has_schema || !reader.has_junctions))
+        status = asj_line_fail(message, reader.line, "not a junction file: no \"schema\" or no \"junctions\"");
+    return status == ASJ_OK ? check_locations(&reader) : status;
+}

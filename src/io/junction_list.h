@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Junctions on their way from a file to the caller, and the rules that both readers share. */
+#ifndef ASJ_IO_JUNCTION_LIST_H
+#define ASJ_IO_JUNCTION_LIST_H
+
+#include <asj/io.h>
+
+#include "input.h"
+
+/* Most junctions of a file. */
+#define ASJ_JUNCTIONS_MAX (1u << 24)
+
+typedef struct asj_junction_list {
+    asj_junction *junctions;
+    uint32_t *lines;
+    size_t count, capacity;
+    int32_t width, height;
+} asj_junction_list;
+
+/* Writes "path: line N: cause" and returns ASJ_ERROR_FORMAT. */
+asj_status asj_line_fail(const asj_message *message, size_t line, const char *format, ...) ASJ_IO_PRINTF(3, 4);
+
+/* A double that becomes a float of the results: 0 when it is too large for one. */
+int asj_fits_float(double value);
+
+/* Sets the angle of a branch, brought into [0, 2 pi). */
+void asj_set_angle(asj_branch *branch, double angle);
+
+/* Checks what no junction may have (a negative length or scale), sorts the branches by angle and adds it.
+ * ASJ_ERROR_FORMAT, ASJ_ERROR_LIMIT, ASJ_ERROR_MEMORY */
+asj_status asj_junction_list_add(asj_junction_list *list, const asj_junction *junction, size_t line, const asj_message *message);
+
+/* The readers. */
+asj_status asj_read_text(const asj_input *input, asj_junction_list *list, const asj_message *message);
+asj_status asj_read_json(const asj_input *input, asj_junction_list *list, const asj_message *message);
+
+#endif

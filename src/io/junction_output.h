@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The writers of junction files. They ignore failed writes: asj_output_commit() tells. */
+#ifndef ASJ_IO_JUNCTION_OUTPUT_H
+#define ASJ_IO_JUNCTION_OUTPUT_H
+
+#include <asj/io.h>
+
+#include "message.h"
+
+void asj_write_text(asj_output *output, const asj_detection *detection, int whole);
+void asj_write_csv(asj_output *output, const asj_detection *detection);
+
+/* ASJ_ERROR_MEMORY */
+asj_status asj_write_json(asj_output *output, const asj_detection_report *report, const asj_message *message);
+
+#endif

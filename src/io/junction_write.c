@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Junction files: checks what is to be written, opens the output, calls the writer of the format. */
+#include "junction_output.h"
+
+#include <math.h>
+
+static int is_sound(const asj_junction *junction)
+{
+    int32_t b;
+    if (junction->branch_count < 0 || junction->branch_count > ASJ_MAX_BRANCHES)
+        return 0;
+    if (!isfinite(junction->x) || !isfinite(junction->y) || !isfinite(junction->scale) || !isfinite(junction->log10_nfa) ||
+        !isfinite(junction->location_sd))
+        return 0;
+    for (b = 0; b < junction->branch_count; b++) {
+        const asj_branch *branch = &junction->branches[b];
+        if (!isfinite(branch->angle) || !isfinite(branch->length) || !isfinite(branch->strength) || !isfinite(branch->log10_nfa) ||
+            !isfinite(branch->angle_sd))
+            return 0;
+    }
+    return 1;
+}
+
+static int is_sound_pair(const asj_detection *detection, const asj_l_junction *pair)
+{
+    int32_t branches = pair->junction < detection->junction_count ? detection->junctions[pair->junction].branch_count : 0;
+    return pair->branch_a < branches && pair->branch_b < branches && isfinite(pair->x) && isfinite(pair->y) && isfinite(pair->ax) &&
+           isfinite(pair->ay) && isfinite(pair->bx) && isfinite(pair->by);
+}
+
+static asj_status check(const asj_detection *detection, const asj_message *message)
+{
+    uint32_t i;
+    if ((detection->junction_count && !detection->junctions) || (detection->l_junction_count && !detection->l_junctions))
+        return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the detection has a count but no array");
+    for (i = 0; i < detection->junction_count; i++)
+        if (!is_sound(&detection->junctions[i]))
+            return asj_message_fail(message, ASJ_ERROR_ARGUMENT,
+                                    "not written: junction %lu has NaN, infinity or a wrong number of branches", (unsigned long)i);
+    for (i = 0; i < detection->l_junction_count; i++)
+        if (!is_sound_pair(detection, &detection->l_junctions[i]))
+            return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: L-junction %lu has NaN, infinity or a wrong index",
+                                    (unsigned long)i);
+    return ASJ_OK;
+}
+
+asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_detection_report *report,
+                               char *text, size_t text_size)
+{
+    asj_message message = asj_message_start(text, text_size, path);
+    asj_output *output;
+    asj_status status;
+
+    if (!path || !report || !report->detection)
+        return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no path or no detection");
+    if (file_format < ASJ_FILE_ASJ || file_format > ASJ_FILE_CSV)
+        return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "%d is no file format", (int)file_format);
+    status = check(report->detection, &message);
+    if (status == ASJ_OK)
+        status = asj_output_begin(path, &output, text, text_size);
+    if (status != ASJ_OK)
+        return status;
+    if (file_format == ASJ_FILE_JSON)
+        status = asj_write_json(output, report, &message);
+    else if (file_format == ASJ_FILE_CSV)
+        asj_write_csv(output, report->detection);
+    else
+        asj_write_text(output, report->detection, file_format == ASJ_FILE_ASJ_WHOLE);
+    if (status != ASJ_OK) {
+        asj_output_abort(&output);
+        return status;
+    }
+    return asj_output_commit(&output, text, text_size);
+}
