@@ -271,6 +271,17 @@ static asj_status scan(detection *d)
     return status;
 }
 
+static asj_status orient(detection *d)
+{
+    const int64_t count = (int64_t)d->draft_count;
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 8)
+#endif
+    for (int64_t i = 0; i < count; i++)
+        asj_refine(d->context, &d->detector->frame, d->options, &d->drafts[i]);
+    return ASJ_OK;
+}
+
 /* Step 5: orientation, location, validation. */
 static asj_status refine(detection *d)
 {
@@ -333,6 +344,7 @@ static asj_status run_steps(detection *d, const asj_image *image, double *stage_
     } steps[] = {
         {ASJ_STAGE_CANDIDATES, find_candidates, 0.50}, {ASJ_STAGE_ISOTROPIC, test_candidates, 0.70},
         {ASJ_STAGE_ISOTROPIC, thin, 0.70},             {ASJ_STAGE_LOCATE, locate, 0.80},
+        {ASJ_STAGE_SCAN, scan, 0.90},                  {ASJ_STAGE_REFINE, orient, 0.92},
         {ASJ_STAGE_SCAN, scan, 0.95},                  {ASJ_STAGE_REFINE, refine, 0.99},
     };
     asj_status status = load_and_normalise(d, image);

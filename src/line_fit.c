@@ -7,55 +7,72 @@
  * junction-ness. Per t: centroid c(t) = sum w s / sum w and weight W(t) = sum w. Weighted least squares c = a + b t gives the line; it
  * is repeated around the line found, in a narrower band.
  *
- * Covariance: with residuals e(t) and W scaled to mean 1, variance s^2 = sum W e^2 / (n - 2) per sample; then cov(a, b) =
- * s^2 (X' W X)^-1. Neighbouring samples share pixels, so s^2 is multiplied by CORRELATION, measured on synthetic scenes. */
+ * The two signs of g.n (dark to bright, bright to dark) are fitted apart. Indoor scenes are full of narrow bands, the two edges of a
+ * door jamb or a skirting board, and a fit that mixes them follows neither. The stronger sign gives the line; when both are strong and
+ * no more than THIN px apart all along, the branch is a thin line, and the middle of both is taken.
+ *
+ * Covariance: with residuals e(t), variance s^2 = sum W e^2 / (n - 2) per unit of weight; then cov(a, b) = s^2 (X' W X)^-1. Neighbouring
+ * samples share pixels, so s^2 is multiplied by CORRELATION, measured on synthetic scenes. */
 #include "line_fit.h"
 
 #include <math.h>
 
 #define MAX_SAMPLES 96
 #define CORRELATION 2.0
+#define THIN 4.5
 
 typedef struct samples {
     int32_t count;
+    double mass;
     double t[MAX_SAMPLES], centroid[MAX_SAMPLES], weight[MAX_SAMPLES];
 } samples;
 
 typedef struct line {
     double a, b; /* s = a + b t */
+    double a_variance, b_variance;
 } line;
 
-static void collect(const asj_frame *frame, double x, double y, double ux, double uy, const asj_line_range *range,
-                    double half_width, line around, samples *out)
+static void add_sample(samples *out, double t, double sum, double moment)
 {
+    if (sum <= 0)
+        return;
+    out->t[out->count] = t;
+    out->centroid[out->count] = moment / sum;
+    out->weight[out->count++] = sum;
+    out->mass += sum;
+}
+
+/* Samples the band around a line: those whose gradient points along +n into out[1], along -n into out[0]. */
+static void collect(const asj_frame *frame, double x, double y, double ux, double uy, const asj_line_range *range,
+                    double half_width, const line *around, samples out[2])
+{
+    const int32_t reach = (int32_t)ceil(half_width);
     double step = (range->last - range->first) / (MAX_SAMPLES - 1);
     if (step < 1)
         step = 1;
-    out->count = 0;
-    for (double t = range->first; t <= range->last + 1e-9 && out->count < MAX_SAMPLES; t += step) {
-        double middle = around.a + around.b * t, sum = 0, moment = 0;
-        const int32_t reach = (int32_t)ceil(half_width);
+    out[0].count = out[1].count = 0;
+    out[0].mass = out[1].mass = 0;
+    for (int32_t k = 0; k < MAX_SAMPLES && range->first + k * step <= range->last + 1e-9; k++) {
+        const double t = range->first + k * step, middle = around->a + around->b * t;
+        double sum[2] = {0, 0}, moment[2] = {0, 0};
         for (int32_t i = -reach; i <= reach; i++) {
             double s = middle + half_width * i / reach, gx, gy;
             asj_gradient_sample(frame, x + t * ux - s * uy, y + t * uy + s * ux, &gx, &gy);
-            double weight = fabs(gy * ux - gx * uy) - fabs(gx * ux + gy * uy);
+            double across = gy * ux - gx * uy, weight = fabs(across) - fabs(gx * ux + gy * uy);
             if (weight > 0) {
-                sum += weight;
-                moment += weight * s;
+                sum[across > 0] += weight;
+                moment[across > 0] += weight * s;
             }
         }
-        if (sum <= 0)
-            continue;
-        out->t[out->count] = t;
-        out->centroid[out->count] = moment / sum;
-        out->weight[out->count++] = sum;
+        add_sample(&out[0], t, sum[0], moment[0]);
+        add_sample(&out[1], t, sum[1], moment[1]);
     }
 }
 
 /* Weighted least squares; returns 0 when the samples do not determine a line. */
-static int solve(const samples *in, line *out, double covariance[3])
+static int solve(const samples *in, line *out)
 {
-    double w = 0, wt = 0, wtt = 0, wc = 0, wtc = 0;
+    double w = 0, wt = 0, wtt = 0, wc = 0, wtc = 0, error = 0;
     for (int32_t i = 0; i < in->count; i++) {
         double weight = in->weight[i], t = in->t[i], c = in->centroid[i];
         w += weight;
@@ -69,34 +86,56 @@ static int solve(const samples *in, line *out, double covariance[3])
         return 0;
     out->a = (wtt * wc - wt * wtc) / determinant;
     out->b = (w * wtc - wt * wc) / determinant;
-    double error = 0;
     for (int32_t i = 0; i < in->count; i++) {
         double e = in->centroid[i] - out->a - out->b * in->t[i];
         error += in->weight[i] * e * e;
     }
     double variance = CORRELATION * error / (in->count - 2) + 1e-6 * w / in->count;
-    covariance[0] = variance * wtt / determinant;
-    covariance[1] = -variance * wt / determinant;
-    covariance[2] = variance * w / determinant;
+    out->a_variance = variance * wtt / determinant;
+    out->b_variance = variance * w / determinant;
+    return 1;
+}
+
+/* The line of the stronger sign, or the middle of a thin line's two edges. *apart is the distance between those, else 0. */
+static int choose(const samples list[2], const asj_line_range *range, line *found, double *apart)
+{
+    const int strong = list[1].mass > list[0].mass;
+    line lines[2];
+    *apart = 0;
+    if (!solve(&list[strong], &lines[strong]))
+        return 0;
+    *found = lines[strong];
+    if (list[!strong].mass < 0.4 * list[strong].mass || !solve(&list[!strong], &lines[!strong]))
+        return 1;
+    double near = fabs(lines[1].a - lines[0].a + (lines[1].b - lines[0].b) * range->first);
+    double far = fabs(lines[1].a - lines[0].a + (lines[1].b - lines[0].b) * range->last);
+    if (near > THIN || far > THIN)
+        return 1;
+    *apart = 0.5 * (near + far);
+    found->a = 0.5 * (lines[0].a + lines[1].a);
+    found->b = 0.5 * (lines[0].b + lines[1].b);
+    found->a_variance = 0.25 * (lines[0].a_variance + lines[1].a_variance);
+    found->b_variance = 0.25 * (lines[0].b_variance + lines[1].b_variance);
     return 1;
 }
 
 int asj_line_fit(const asj_frame *frame, double x, double y, const asj_line_range *range, asj_draft_branch *branch)
 {
-    double ux = cos(branch->angle), uy = sin(branch->angle);
-    line found = {branch->offset, 0};
-    double covariance[3] = {0, 0, 0};
-    samples list;
+    const double ux = cos(branch->angle), uy = sin(branch->angle);
+    line found = {branch->offset, 0, 0, 0};
+    double apart = 0;
+    samples list[2];
     for (int32_t i = 0; i < range->iterations; i++) {
-        collect(frame, x, y, ux, uy, range, range->half_width[i], found, &list);
-        if (!solve(&list, &found, covariance))
+        double half_width = range->half_width[i] + 0.5 * apart;
+        collect(frame, x, y, ux, uy, range, half_width < 4.5 ? half_width : 4.5, &found, list);
+        if (!choose(list, range, &found, &apart))
             return 0;
     }
     if (!(fabs(found.b) < 1))
         return 0;
     branch->angle = asj_angle_wrap(branch->angle + atan(found.b));
     branch->offset = found.a / sqrt(1 + found.b * found.b);
-    branch->offset_variance = covariance[0];
-    branch->angle_variance = covariance[2];
+    branch->offset_variance = found.a_variance;
+    branch->angle_variance = found.b_variance;
     return 1;
 }

@@ -64,7 +64,7 @@ void asj_locate(const asj_frame *frame, const asj_detect_options *options, asj_d
     const double least = options->minimum_opening * (PI / 180);
     int keep[ASJ_MAX_BRANCHES];
     if (options->refinement == ASJ_REFINE_LINE_FIT) {
-        asj_line_range range = {2, draft->radius > 10 ? draft->radius : 10, {3, 2.5, 2}, 3};
+        asj_line_range range = {2, draft->radius > 10 ? draft->radius : 10, {4, 2.5, 2}, 3};
         for (int32_t i = 0; i < draft->branch_count; i++)
             keep[i] = asj_line_fit(frame, draft->x, draft->y, &range, &draft->branches[i]);
         asj_draft_select(draft, keep);

@@ -17,7 +17,8 @@
  *   - it starts at radius 3, not at the isotropic scale (scan_start = 0), so that the length depends on nothing else;
  *   - "closest" is taken twice, modulo 2 pi (forward) and modulo pi (axial), and the length is the mean of both (scan_axial = no).
  *     The forward branch of a pixel dies about 2.6 px before the edge's end, when its sector leaves the edge; the axial one, which may
- *     look back, lives about 4 px longer. Their mean is within a pixel of the truth.
+ *     look back, lives about 4 px longer. Their mean is within a pixel of the truth. While the axial test passes, the forward one may
+ *     fail for up to the field's radius and come back: at the crossing of two thin lines no branch looks forward for a few pixels.
  *
  * Whole numbers throughout, so that every back end takes the same decisions: positions in 1/65536 px, unit vectors in 2^-30 for
  * positions and 2^-14 for angles, angles in 1/65536 of a turn. */
@@ -146,39 +147,43 @@ static asj_field_branch closest(const asj_field_branch *list, uint16_t angle, in
     return best;
 }
 
+/* Sums over the arc at radius r: forward, and axial when asked for. */
+static void arc_sums(const walker *w, const arc_table *table, const direction *way, int32_t r, int32_t sum[2])
+{
+    const asj_scan *scan = w->scan;
+    sum[0] = sum[1] = 0;
+    for (int32_t d = -scan->half_width; d <= scan->half_width; d++) {
+        const sample at = place(way, table, r, d);
+        const asj_field_branch *list = branches_at(w, at.x, at.y);
+        if (!list || !list[0].strength)
+            continue;
+        sum[0] += junctionness(scan, closest(list, way->angle, 65536), &at);
+        if (scan->axial)
+            sum[1] += junctionness(scan, closest(list, way->angle, 32768), &at);
+    }
+}
+
 static void walk(const walker *w, const arc_table *table, asj_ray *ray)
 {
     const asj_scan *scan = w->scan;
-    const int64_t one = (int64_t)1 << 30;
-    const direction way = {llrint(ray->x * 65536), llrint(ray->y * 65536), llrint(cos(ray->angle) * (double)one),
-                           llrint(sin(ray->angle) * (double)one), (uint16_t)llrint(ray->angle * (65536 / TWO_PI))};
-    int32_t failures[2] = {0, scan->axial ? 0 : scan->tolerance + 1};
-    int32_t length[2] = {0, 0};
-    for (int32_t r = ray->start > 0 ? ray->start : 1; failures[0] <= scan->tolerance || failures[1] <= scan->tolerance; r++) {
-        int32_t sum[2] = {0, 0};
-        for (int32_t d = -scan->half_width; d <= scan->half_width; d++) {
-            const sample at = place(&way, table, r, d);
-            const asj_field_branch *list = branches_at(w, at.x, at.y);
-            if (!list || !list[0].strength)
-                continue;
-            if (failures[0] <= scan->tolerance)
-                sum[0] += junctionness(scan, closest(list, way.angle, 65536), &at);
-            if (failures[1] <= scan->tolerance)
-                sum[1] += junctionness(scan, closest(list, way.angle, 32768), &at);
-        }
+    const double one = (double)((int64_t)1 << 30);
+    const direction way = {llrint(ray->x * 65536), llrint(ray->y * 65536), llrint(cos(ray->angle) * one),
+                           llrint(sin(ray->angle) * one), (uint16_t)llrint(ray->angle * (65536 / TWO_PI))};
+    const int32_t bridge = scan->field->sectors.radius;
+    int32_t failures[2] = {0, 0}, length[2] = {0, 0};
+    int alive = 1;
+    for (int32_t r = ray->start > 0 ? ray->start : 1; alive; r++) {
+        int32_t sum[2];
+        arc_sums(w, table, &way, r, sum);
         for (int i = 0; i < 2; i++) {
-            if (failures[i] > scan->tolerance)
-                continue;
-            if (sum[i] >= scan->threshold) {
-                length[i] = r;
-                failures[i] = 0;
-            } else {
-                failures[i]++;
-            }
+            failures[i] = sum[i] >= scan->threshold ? 0 : failures[i] + 1;
+            length[i] = failures[i] ? length[i] : r;
         }
+        alive = failures[0] <= scan->tolerance ||
+                (scan->axial && failures[0] <= bridge && failures[1] <= scan->tolerance);
     }
     ray->forward = length[0];
-    ray->axial = length[1];
+    ray->axial = length[1] < length[0] + bridge ? length[1] : length[0] + bridge;
 }
 
 static void fill_table(arc_table *table)
