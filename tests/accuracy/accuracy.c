@@ -5,6 +5,7 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "render.h"
+#include "room.h"
 #include "scenes.h"
 #include "score.h"
 
@@ -16,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PARALLELOGRAMS, CHECKERBOARD, RANDOM_TILES, BORDER, LINE_GRID, NOISE };
+enum { PARALLELOGRAMS, CHECKERBOARD, RANDOM_TILES, BORDER, LINE_GRID, STARS, ROOM, NOISE };
 enum { FORMAT_TABLE, FORMAT_CSV, FORMAT_JSON };
 
 /* Targets: 0 = none. */
@@ -50,6 +51,9 @@ static const row rows[] = {
     {"t-border-n4", BORDER, 1.0, 4, 0, 0, 0, 0, 0, 0, .95},
     {"line-grid-n1", LINE_GRID, 1.0, 1, 110, 0, 0, 0, 0, 0, .95},
     {"line-grid-n4", LINE_GRID, 1.0, 4, 110, 0, 0, 0, 0, 0, .95},
+    {"stars-n2", STARS, 1.0, 2, 40, .95, .95, 0, 0, 0, 0},
+    {"stars-n5", STARS, 1.0, 5, 40, 0, 0, 0, 0, 0, 0},
+    {"room-n2", ROOM, 0.9, 2, 0, 0, 0, 0, 0, 0, 0},
     {"noise-sd20", NOISE, 0.0, 20, 0, 0, 0, 0, 0, 0, 0},
 };
 
@@ -89,6 +93,25 @@ static int fail(const char *what)
     return -1;
 }
 
+/* A view of the room; which one depends on the seed. Its truth takes over from the view's. */
+static int make_view(uint64_t seed, synth_scene *scene, synth_truth *truth)
+{
+    synth_room room;
+    synth_view view;
+    const synth_camera camera = synth_room_camera((int32_t)(seed % 1000), 1052, 780);
+    synth_scene_init(scene, 1, 1, 0.0);
+    if (synth_room_make(&room) != 0)
+        return -1;
+    const int result = synth_view_make(&room, &camera, 1.0, &view);
+    if (result == 0) {
+        *scene = view.scene;
+        *truth = view.truth;
+        free(view.corners);
+    }
+    synth_room_free(&room);
+    return result;
+}
+
 static int make_scene(const row *r, uint64_t seed, synth_scene *scene, synth_truth *truth)
 {
     synth_point ends[2 * SYNTH_GRID_LINES];
@@ -109,6 +132,11 @@ static int make_scene(const row *r, uint64_t seed, synth_scene *scene, synth_tru
     case LINE_GRID:
         synth_line_grid(scene, ends, seed);
         return synth_truth_of_lines(ends, SYNTH_GRID_LINES, scene->width, scene->height, truth);
+    case STARS:
+        synth_random_star(scene, r->contrast, seed);
+        break;
+    case ROOM:
+        return make_view(seed, scene, truth);
     default:
         synth_scene_init(scene, 256, 256, 128.0);
         return 0;
@@ -153,7 +181,7 @@ static int run_scene(asj_context *context, job *j, score *s)
         if (asj_detect(context, &image, &j->set->options, &detection) != ASJ_OK)
             result = fail(asj_context_message(context));
         else
-            result = score_add(s, &truth, scene.width, scene.height, detection->junctions, detection->junction_count,
+            result = score_add(s, &truth, detection->junctions, detection->junction_count,
                                j->set->misses ? print_miss : NULL, j);
     }
     asj_detection_free(&detection);
@@ -256,6 +284,8 @@ static int run_row(asj_context *context, const settings *set, const row *r)
     int result = 0;
     double values[COLUMNS];
     score_init(&s, fmax(25.0, set->options.minimum_opening));
+    s.minimum_step = r->kind == ROOM ? 10.0 : r->kind == RANDOM_TILES ? 5.0 : 0.0;
+    s.clearance = r->kind == ROOM ? 8.0 : 0.0; /* rims and legs a few pixels wide cannot be told apart */
     for (int32_t i = 0; i < set->scenes && result == 0; i++) {
         job j = {set, r, i};
         result = run_scene(context, &j, &s);

@@ -9,6 +9,7 @@
 #define LOCATION_LIMIT 3.0
 #define ANGLE_LIMIT (10.0 * PI / 180.0)
 #define FAR_LIMIT 8.0
+#define MINIMUM_LENGTH 10.0
 
 typedef struct pair {
     double distance;
@@ -51,10 +52,15 @@ static void assign(pair *pairs, size_t count, int32_t *partner, int32_t truths, 
         }
 }
 
-static int is_expected(const score *s, const synth_true_junction *junction, int32_t width, int32_t height)
+static int is_expected(const score *s, const synth_truth *truth, int32_t index)
 {
-    return synth_truth_opening(junction, s->minimum_opening) > 0.0 && junction->x >= s->margin && junction->y >= s->margin &&
-           junction->x <= width - 1 - s->margin && junction->y <= height - 1 - s->margin;
+    const synth_true_junction *junction = &truth->junctions[index];
+    if (synth_truth_opening(junction, s->minimum_opening, MINIMUM_LENGTH, s->minimum_step) <= 0.0)
+        return 0;
+    for (int32_t i = 0; i < truth->count; i++)
+        if (i != index && hypot(truth->junctions[i].x - junction->x, truth->junctions[i].y - junction->y) < s->clearance)
+            return 0;
+    return 1;
 }
 
 static int starts_its_line(const synth_true_junction *junction, double angle)
@@ -135,8 +141,7 @@ static size_t close_pairs(const synth_truth *truth, const asj_junction *found, u
     return n;
 }
 
-int score_add(score *s, const synth_truth *truth, int32_t width, int32_t height, const asj_junction *found, uint32_t count,
-              score_report report, void *user)
+int score_add(score *s, const synth_truth *truth, const asj_junction *found, uint32_t count, score_report report, void *user)
 {
     pair *pairs = malloc(((size_t)truth->count * count + 1) * sizeof *pairs);
     int32_t *partner = malloc(((size_t)truth->count + 1) * sizeof *partner);
@@ -148,7 +153,7 @@ int score_add(score *s, const synth_truth *truth, int32_t width, int32_t height,
         s->found += count;
         for (int32_t i = 0; i < truth->count; i++) {
             const synth_true_junction *junction = &truth->junctions[i];
-            const int expected = is_expected(s, junction, width, height);
+            const int expected = is_expected(s, truth, i);
             s->expected += expected;
             s->paired_optional += !expected && partner[i] >= 0;
             if (expected && partner[i] >= 0)

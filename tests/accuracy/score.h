@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Found junctions against true ones.
  *
- * A true junction is expected when two of its branches open by at least `minimum_opening` and at most pi minus that, and it
- * lies at least `margin` px inside the image; others are optional: finding them is neither right nor wrong. Junctions are
- * paired one to one, closest pairs first, up to LOCATION_LIMIT = 3 px; found ones that pair with nothing are false, and so is
- * the second of two at one corner. recall = paired expected / expected; precision = 1 - false / (found - paired optional).
+ * A true junction is expected when two of its branches open by at least `minimum_opening` and at most pi minus that, are at
+ * least MINIMUM_LENGTH = 10 px long, and have a step of at least `minimum_step` grey levels at the junction, and when no other
+ * true junction lies within `clearance` px; others are optional: finding them is neither right nor wrong. Junctions are paired
+ * one to one, closest pairs first, up to LOCATION_LIMIT = 3 px; found ones that pair with nothing are false, and so is the
+ * second of two at one corner. recall = paired expected / expected; precision = paired expected / (paired expected + false).
  * Branches of a pair of junctions are paired likewise by angle, up to ANGLE_LIMIT = 10 deg. Angle and length errors are taken
  * over paired branches of expected junctions, the length against the branch's true end; branches cut by the image border count
  * for the angle only. A long branch is a true one that passes at least one other junction before its end. It is reached when
@@ -19,7 +20,8 @@
 
 typedef struct score {
     double minimum_opening; /* rad */
-    double margin;          /* px */
+    double minimum_step;    /* grey levels */
+    double clearance;       /* px */
     int64_t scenes, expected, found, paired, paired_optional, false_found;
     int64_t branches, branches_paired, branches_extra; /* of paired expected junctions */
     int64_t long_branches, long_reached; /* of paired junctions */
@@ -38,8 +40,7 @@ void score_free(score *s);
 typedef void (*score_report)(void *user, const char *what, double x, double y);
 
 /* Adds one scene. 0, or -1 (memory). */
-int score_add(score *s, const synth_truth *truth, int32_t width, int32_t height, const asj_junction *found, uint32_t count,
-              score_report report, void *user);
+int score_add(score *s, const synth_truth *truth, const asj_junction *found, uint32_t count, score_report report, void *user);
 
 double score_recall(const score *s);
 double score_precision(const score *s);

@@ -64,7 +64,7 @@ static void tear_down(fixture *f)
 
 static void add(fixture *f, uint32_t count)
 {
-    assert_int_equal(score_add(&f->s, &f->truth, f->scene.width, f->scene.height, f->found, count, NULL, NULL), 0);
+    assert_int_equal(score_add(&f->s, &f->truth, f->found, count, NULL, NULL), 0);
 }
 
 static void errors_are_measured(void **state)

@@ -109,6 +109,35 @@ void synth_add_star(synth_scene *scene, synth_point centre, const double *angles
     }
 }
 
+void synth_random_star(synth_scene *scene, double step, uint64_t seed)
+{
+    synth_random random;
+    synth_random_seed(&random, seed);
+    const int32_t count = 2 + (int32_t)(seed % 4);
+    double angles[5], grays[5], smallest;
+    do { /* openings of at least 40 deg, and an L not straight */
+        smallest = HUGE_VAL;
+        angles[0] = synth_random_between(&random, 0.0, 2.0 * PI);
+        for (int32_t i = 1; i < count; i++)
+            angles[i] = angles[i - 1] + synth_random_between(&random, degrees(40.0), degrees(180.0));
+        for (int32_t i = 0; i < count; i++)
+            smallest = fmin(smallest, i + 1 < count ? angles[i + 1] - angles[i] : angles[0] + 2.0 * PI - angles[i]);
+    } while (smallest < degrees(40.0) || (count == 2 && fabs(angles[1] - angles[0] - PI) < degrees(20.0)));
+    for (int32_t i = 0; i < count; i++) {
+        int clear;
+        do {
+            grays[i] = synth_random_between(&random, 40.0, 215.0);
+            clear = fabs(grays[i] - 20.0) >= step && (i == 0 || fabs(grays[i] - grays[i - 1]) >= step);
+            clear = clear && (i < count - 1 || fabs(grays[i] - grays[0]) >= step);
+        } while (!clear);
+    }
+    synth_scene_init(scene, 200, 200, 20.0);
+    synth_point centre;
+    centre.x = synth_random_between(&random, 95.0, 105.0);
+    centre.y = synth_random_between(&random, 95.0, 105.0);
+    synth_add_star(scene, centre, angles, grays, count, 70.0);
+}
+
 /* ---- boards ---- */
 
 /* TILES + 1 positions, 32 .. 42 apart, around 0. */
@@ -180,7 +209,8 @@ void synth_border(synth_scene *scene, uint64_t seed)
         while (fabs(gray - last) < 20.0 || fabs(gray - 128.0) < 20.0)
             gray = synth_random_between(&random, 90.0, 220.0);
         last = gray;
-        add_tile(scene, centre, angle, u[i], -synth_random_between(&random, 32.0, 42.0), u[i + 1], 0.0, gray);
+        const double height = synth_random_between(&random, 0.0, 4.0) + (i % 2 ? 30.0 : 46.0);
+        add_tile(scene, centre, angle, u[i], -height, u[i + 1], 0.0, gray);
     }
 }
 

@@ -14,6 +14,10 @@ extern "C" {
  * border, `contrast` grey levels above or below the background (90 .. 165), at random. */
 void synth_parallelograms(synth_scene *scene, double contrast, uint64_t seed);
 
+/* One junction of two to five branches in 200 x 200, with openings of at least 40 deg and more than 20 deg from straight where
+ * two branches only, neighbouring greys at least `step` apart, branches 70 px long. */
+void synth_random_star(synth_scene *scene, double step, uint64_t seed);
+
 /* One rectangle with the given corner, sides and rotation (rad). */
 void synth_add_rectangle(synth_scene *scene, synth_point corner, double width, double height, double angle, double gray);
 

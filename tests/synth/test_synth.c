@@ -264,8 +264,10 @@ static void truth_of_a_rectangle(void **state)
     assert_int_equal(j->branch_count, 2);
     assert_branch(&j->branches[0], 0.5 * PI, 30.0, 40.0);
     assert_branch(&j->branches[1], PI, 40.0, 40.0);
-    assert_near(synth_truth_opening(j, 0.4), 0.5 * PI, 1e-9);
-    assert_near(synth_truth_opening(j, 1.6), 0.0, 0.0);
+    assert_near(synth_truth_opening(j, 0.4, 30.0 - 1e-6, 40.0), 0.5 * PI, 1e-9);
+    assert_near(synth_truth_opening(j, 1.6, 0.0, 0.0), 0.0, 0.0);
+    assert_near(synth_truth_opening(j, 0.4, 30.1, 0.0), 0.0, 0.0);
+    assert_near(synth_truth_opening(j, 0.4, 0.0, 40.1), 0.0, 0.0);
     synth_truth_free(&truth);
     /* The same step with a floor above it: nothing to be seen. */
     assert_int_equal(synth_truth_of_scene(&scene, 41.0, &truth), 0);

@@ -250,7 +250,7 @@ static int is_junction(const graph *g, int32_t at)
 
 static synth_true_branch walk(const graph *g, int32_t start, int32_t first)
 {
-    synth_true_branch branch = {0.0, 0.0, 0.0, HUGE_VAL, -1, 0};
+    synth_true_branch branch = {0.0, 0.0, 0.0, HUGE_VAL, g->list->items[first].contrast, -1, 0};
     const synth_point origin = g->nodes[start].at;
     int32_t at = other_end(&g->list->items[first], start), by = first;
     /* The direction of the longest stretch so far: the first piece alone may be short. */
@@ -354,13 +354,15 @@ void synth_truth_free(synth_truth *truth)
     memset(truth, 0, sizeof *truth);
 }
 
-double synth_truth_opening(const synth_true_junction *junction, double margin)
+double synth_truth_opening(const synth_true_junction *junction, double margin, double min_length, double min_contrast)
 {
     double best = 0.0;
     for (int32_t i = 0; i < junction->branch_count; i++)
         for (int32_t k = i + 1; k < junction->branch_count; k++) {
-            const double opening = synth_angle_distance(junction->branches[i].angle, junction->branches[k].angle);
-            if (opening >= margin && opening <= PI - margin)
+            const synth_true_branch *a = &junction->branches[i], *b = &junction->branches[k];
+            const double opening = synth_angle_distance(a->angle, b->angle);
+            if (opening >= margin && opening <= PI - margin && fmin(a->length, b->length) >= min_length &&
+                fmin(a->near_step, b->near_step) >= min_contrast)
                 best = fmax(best, opening);
         }
     return best;

@@ -18,6 +18,7 @@ typedef struct synth_true_branch {
     double length;    /* px to the branch's true end, or to the image border */
     double contrast;  /* grey levels: mean over the branch of the step across it */
     double weakest;   /* grey levels: smallest step of any of its pieces */
+    double near_step; /* grey levels: step of the first piece, at the junction */
     int32_t passes;   /* junctions passed before the end */
     int32_t at_border;/* 1 = cut by the image border */
 } synth_true_branch;
@@ -45,9 +46,10 @@ int synth_truth_of_lines(const synth_point *ends, int32_t count, int32_t width, 
 
 void synth_truth_free(synth_truth *truth);
 
-/* Largest opening in radians of any two branches that is at most pi - margin; 0 when there is none at least `margin` wide. So >
- * 0 means a detector with this minimum opening should report the junction. */
-double synth_truth_opening(const synth_true_junction *junction, double margin);
+/* Largest opening in radians of any two branches that open by at least `margin` and at most pi - margin; 0 when there is none.
+ * Branches shorter than `min_length` px or with a piece of less than `min_contrast` grey levels at the junction do not count.
+ * So > 0 means that a detector with this minimum opening should report the junction. */
+double synth_truth_opening(const synth_true_junction *junction, double margin, double min_length, double min_contrast);
 
 /* |a - b| on the circle, in [0, pi]. */
 double synth_angle_distance(double a, double b);

@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The paper's Table 1 ("Stability and Control of the Number of False Detection") with this library's own branch test: images of
+ * 256 x 256 independent Gaussian pixels, from every pixel one ray in a random direction, counted per image as false detection
+ * when its NFA is at most epsilon. Two ways to choose the length of the ray:   any      the best of 16 lengths, 4 to 64 px (cut
+ * by the option strip_length): an upper bound for whatever might choose   scanned  the length that the scan gives (mean of
+ * forward and axial), when it is at least minimum_length: what the detector does The numbers are bounded by epsilon when the
+ * test keeps its promise; --check asserts it.
+ *
+ * Pixels are 128 + 20 times a normal number, rounded to 8 bits: the normalised gradient does not depend on mean and contrast. */
+#define _POSIX_C_SOURCE 200809L
+
+#include "random.h"
+#include "render.h"
+
+#include "detect.h"
+#include "gradient.h"
+#include "options.h"
+#include "scan.h"
+#include "strip.h"
+
+#include <asj/asj.h>
+
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SIDE 256
+#define RAYS (SIDE * SIDE)
+#define LENGTHS 16
+#define TWO_PI 6.283185307179586476925
+
+static const double epsilons[] = {0.01, 0.1, 1, 10, 100, 200};
+enum { EPSILONS = sizeof epsilons / sizeof epsilons[0], ANY = 0, SCANNED = 1, WAYS = 2 };
+
+typedef struct experiment {
+    asj_context *context;
+    asj_detect_options options;
+    asj_frame frame;
+    asj_field field;
+    asj_scan scan;
+    asj_ray *rays;
+    double *log_nfa[WAYS]; /* one a ray */
+    double count[WAYS][EPSILONS];
+    double worst[WAYS];    /* smallest log10 NFA of all */
+    int32_t images, first, check;
+} experiment;
+
+static int fail(const char *what)
+{
+    fprintf(stderr, "noise: %s\n", what);
+    return -1;
+}
+
+static int prepare(experiment *e)
+{
+    e->rays = malloc(RAYS * sizeof *e->rays);
+    e->log_nfa[ANY] = malloc(RAYS * sizeof **e->log_nfa);
+    e->log_nfa[SCANNED] = malloc(RAYS * sizeof **e->log_nfa);
+    if (!e->rays || !e->log_nfa[ANY] || !e->log_nfa[SCANNED])
+        return fail("out of memory");
+    if (asj_frame_prepare(e->context, &e->frame, SIDE, SIDE) != ASJ_OK ||
+        asj_field_create(e->context, &e->options, &e->field) != ASJ_OK)
+        return fail(asj_context_message(e->context));
+    asj_scan_prepare(e->context, &e->options, &e->field, SIDE, SIDE, &e->scan);
+    return 0;
+}
+
+static int load(experiment *e, uint64_t seed)
+{
+    uint8_t *pixels = synth_noise_image(SIDE, SIDE, 128.0, 20.0, seed);
+    if (!pixels)
+        return fail("out of memory");
+    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, SIDE, SIDE, 0, 0};
+    asj_status status = asj_frame_load(e->context, &e->frame, &image);
+    if (status == ASJ_OK)
+        status = asj_gradient(e->context, &e->frame, &e->options);
+    free(pixels);
+    if (status != ASJ_OK)
+        return fail(asj_context_message(e->context));
+    synth_random random;
+    synth_random_seed(&random, seed ^ UINT64_C(0xa11ce));
+    for (int32_t i = 0; i < RAYS; i++) {
+        const asj_ray ray = {i % SIDE, i / SIDE, TWO_PI * synth_random_unit(&random), e->options.scan_start, 0, 0};
+        e->rays[i] = ray;
+    }
+    return 0;
+}
+
+static void test_any_length(experiment *e)
+{
+    for (int32_t i = 0; i < RAYS; i++) {
+        const asj_ray *ray = &e->rays[i];
+        double best = HUGE_VAL;
+        for (int k = 1; k <= LENGTHS; k++)
+            best = fmin(best, asj_strip_log_nfa(e->context, &e->frame, &e->options, ray->x, ray->y, ray->angle, 4.0 * k));
+        e->log_nfa[ANY][i] = best;
+    }
+}
+
+static int test_scanned_length(experiment *e)
+{
+    if (asj_scan_rays(e->context, &e->scan, &e->frame, e->rays, RAYS) != ASJ_OK)
+        return fail(asj_context_message(e->context));
+    for (int32_t i = 0; i < RAYS; i++) {
+        const asj_ray *ray = &e->rays[i];
+        const double length = e->options.scan_axial ? 0.5 * (ray->forward + ray->axial) : ray->forward;
+        e->log_nfa[SCANNED][i] = HUGE_VAL;
+        if (length > 0.0 && length >= e->options.minimum_length)
+            e->log_nfa[SCANNED][i] =
+                asj_strip_log_nfa(e->context, &e->frame, &e->options, ray->x, ray->y, ray->angle, length);
+    }
+    return 0;
+}
+
+static void count(experiment *e)
+{
+    for (int way = 0; way < WAYS; way++)
+        for (int32_t i = 0; i < RAYS; i++) {
+            e->worst[way] = fmin(e->worst[way], e->log_nfa[way][i] / log(10.0));
+            for (int k = 0; k < EPSILONS; k++)
+                e->count[way][k] += e->log_nfa[way][i] <= log(epsilons[k]);
+        }
+}
+
+static int run(experiment *e)
+{
+    int result = prepare(e);
+    for (int32_t i = 0; i < e->images && result == 0; i++) {
+        result = load(e, (uint64_t)(e->first + i));
+        if (result == 0) {
+            test_any_length(e);
+            result = test_scanned_length(e);
+        }
+        if (result == 0)
+            count(e);
+    }
+    return result;
+}
+
+/* The mean over the images may exceed its expectation by chance: epsilon x images events are expected at most, so three Poisson
+ * standard deviations are allowed on top. */
+static int report(const experiment *e)
+{
+    static const char *const names[WAYS] = {"any length", "scanned"};
+    static const double paper[EPSILONS] = {.002, .006, .198, 5.923, 66.472, 132.676};
+    int broken = 0;
+    printf("%-12s", "epsilon");
+    for (int k = 0; k < EPSILONS; k++)
+        printf("%10g", epsilons[k]);
+    printf("   smallest log10 NFA (%d images)\n%-12s", (int)e->images, "paper");
+    for (int k = 0; k < EPSILONS; k++)
+        printf("%10.3f", paper[k]);
+    printf("\n");
+    for (int way = 0; way < WAYS; way++) {
+        printf("%-12s", names[way]);
+        for (int k = 0; k < EPSILONS; k++) {
+            const double expected = epsilons[k] * e->images;
+            printf("%10.3f", e->count[way][k] / e->images);
+            broken += e->count[way][k] > expected + 3.0 * sqrt(expected) + 1.0;
+        }
+        printf("%10.2f\n", e->worst[way]);
+    }
+    if (broken)
+        fprintf(stderr, "noise: %d figures are above epsilon\n", broken);
+    return e->check && broken ? 1 : 0;
+}
+
+static int parse(int argc, char **argv, experiment *e)
+{
+    static const struct option longs[] = {{"images", 1, NULL, 'n'}, {"first", 1, NULL, 'f'}, {"check", 0, NULL, 'c'},
+                                          {"help", 0, NULL, 'h'}, {NULL, 0, NULL, 0}};
+    int c;
+    while ((c = getopt_long(argc, argv, "", longs, NULL)) != -1)
+        switch (c) {
+        case 'n': e->images = (int32_t)strtol(optarg, NULL, 10); break;
+        case 'f': e->first = (int32_t)strtol(optarg, NULL, 10); break;
+        case 'c': e->check = 1; break;
+        case 'h':
+            printf("usage: noise [--images N] [--first SEED] [--check] [key=value ...]\n"
+                   "False branches per image of 256 x 256 Gaussian noise, one ray in a random direction from every pixel.\n");
+            return 1;
+        default: return -1;
+        }
+    for (; optind < argc; optind++) {
+        char message[256];
+        char *equals = strchr(argv[optind], '=');
+        if (!equals)
+            return fail("options are given as key=value");
+        *equals = '\0';
+        if (asj_detect_options_set(&e->options, argv[optind], equals + 1, message, sizeof message) != ASJ_OK)
+            return fail(message);
+    }
+    return e->images > 0 ? 0 : fail("--images must be at least 1");
+}
+
+int main(int argc, char **argv)
+{
+    static experiment e;
+    asj_context_options how;
+    e.images = 20;
+    e.first = 1;
+    e.worst[ANY] = e.worst[SCANNED] = HUGE_VAL;
+    asj_detect_options_init(&e.options);
+    const int parsed = parse(argc, argv, &e);
+    if (parsed != 0)
+        return parsed < 0 ? 2 : 0;
+    asj_context_options_init(&how);
+    how.backend = ASJ_BACKEND_CPU;
+    how.threads = 1;
+    if (asj_context_create(&how, &e.context) != ASJ_OK)
+        return 2;
+    int result = run(&e) == 0 ? report(&e) : 2;
+    asj_frame_free(&e.context->memory, &e.frame);
+    asj_field_free(&e.context->memory, &e.field);
+    asj_context_free(&e.context);
+    free(e.rays);
+    free(e.log_nfa[ANY]);
+    free(e.log_nfa[SCANNED]);
+    return result;
+}
