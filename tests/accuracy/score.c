@@ -155,7 +155,6 @@ int score_add(score *s, const synth_truth *truth, const asj_junction *found, uin
             const synth_true_junction *junction = &truth->junctions[i];
             const int expected = is_expected(s, truth, i);
             s->expected += expected;
-            s->paired_optional += !expected && partner[i] >= 0;
             if (expected && partner[i] >= 0)
                 score_junction(s, junction, &found[partner[i]]);
             else if (expected && report)
@@ -180,6 +179,5 @@ double score_recall(const score *s)
 
 double score_precision(const score *s)
 {
-    const int64_t counted = s->paired + s->false_found;
-    return counted ? (double)s->paired / (double)counted : NAN;
+    return s->found ? 1.0 - (double)s->false_found / (double)s->found : NAN;
 }

@@ -3,13 +3,17 @@
  *
  * A true junction is expected when two of its branches open by at least `minimum_opening` and at most pi minus that, are at
  * least MINIMUM_LENGTH = 10 px long, and have a step of at least `minimum_step` grey levels at the junction, and when no other
- * true junction lies within `clearance` px; others are optional: finding them is neither right nor wrong. Junctions are paired
- * one to one, closest pairs first, up to LOCATION_LIMIT = 3 px; found ones that pair with nothing are false, and so is the
- * second of two at one corner. recall = paired expected / expected; precision = paired expected / (paired expected + false).
+ * true junction lies within `clearance` px; others are optional: finding them is neither asked for nor wrong.
+ *
+ * Junctions are paired one to one, closest pairs first, up to LOCATION_LIMIT = 3 px; found ones that pair with nothing are false,
+ * and so is the second of two at one corner. recall = paired expected / expected; precision = 1 - false / found.
+ *
  * Branches of a pair of junctions are paired likewise by angle, up to ANGLE_LIMIT = 10 deg. Angle and length errors are taken
  * over paired branches of expected junctions, the length against the branch's true end; branches cut by the image border count
- * for the angle only. A long branch is a true one that passes at least one other junction before its end. It is reached when
- * its junction is found and one of its branches, paired with it, ends within FAR_LIMIT = 8 px of the true length. */
+ * for the angle only.
+ *
+ * A long branch is a true one that passes at least one other junction before its end. It is reached when its junction is found
+ * and one of its branches, paired with it, ends within FAR_LIMIT = 8 px of the true length. */
 #ifndef ASJ_TESTS_ACCURACY_SCORE_H
 #define ASJ_TESTS_ACCURACY_SCORE_H
 
@@ -22,7 +26,7 @@ typedef struct score {
     double minimum_opening; /* rad */
     double minimum_step;    /* grey levels */
     double clearance;       /* px */
-    int64_t scenes, expected, found, paired, paired_optional, false_found;
+    int64_t scenes, expected, found, paired, false_found;
     int64_t branches, branches_paired, branches_extra; /* of paired expected junctions */
     int64_t long_branches, long_reached; /* of paired junctions */
     int64_t full_branches, full_reached; /* the long ones that start at the end of their line */
