@@ -18,7 +18,8 @@
  *   - "closest" is taken twice, modulo 2 pi (forward) and modulo pi (axial), and the length is the mean of both (scan_axial = no).
  *     The forward branch of a pixel dies about 2.6 px before the edge's end, when its sector leaves the edge; the axial one, which may
  *     look back, lives about 4 px longer. Their mean is within a pixel of the truth. While the axial test passes, the forward one may
- *     fail for up to the field's radius and come back: at the crossing of two thin lines no branch looks forward for a few pixels.
+ *     fail for up to the field's radius and come back: at the crossing of two thin lines no branch looks forward for a few pixels. A
+ *     branch that looks back along the ray does not count as forward then, though |cos| would let it.
  *
  * Whole numbers throughout, so that every back end takes the same decisions: positions in 1/65536 px, unit vectors in 2^-30 for
  * positions and 2^-14 for angles, angles in 1/65536 of a turn. */
@@ -94,6 +95,7 @@ typedef struct direction {
 
 /* d / r turned into a rotation: cos and sin in 2^-30. One table of them for all rays, since r is a whole number; beyond the table the
  * arc is straight to within 0.01 px. */
+#define REOPEN 3 /* steps in a row that must look ahead again after a crossing; one or two happen by chance in noise */
 #define TABLE_RADIUS 256
 typedef struct arc_table {
     int32_t cosine[TABLE_RADIUS][4], sine[TABLE_RADIUS][4];
@@ -119,12 +121,13 @@ static sample place(const direction *ray, const arc_table *table, int32_t r, int
     return out;
 }
 
-/* gamma~ of one local branch seen from the ray, in 1/256 standard deviations. */
-static int32_t junctionness(const asj_scan *scan, asj_field_branch branch, const sample *at)
+/* gamma~ of one local branch seen from the ray, in 1/256 standard deviations; *ahead tells whether it points along the ray. */
+static int32_t junctionness(const asj_scan *scan, asj_field_branch branch, const sample *at, int *ahead)
 {
     const int16_t *unit = scan->unit[(branch.angle + 32) >> 6 & 1023];
     int32_t along = unit[0] * at->cosine + unit[1] * at->sine;
     int32_t across = unit[0] * at->sine - unit[1] * at->cosine;
+    *ahead = along > 0;
     along = along < 0 ? -along : along;
     across = across < 0 ? -across : across;
     return along > across ? (int32_t)((int64_t)((along - across) >> 14) * branch.strength >> 14) : 0;
@@ -147,20 +150,28 @@ static asj_field_branch closest(const asj_field_branch *list, uint16_t angle, in
     return best;
 }
 
-/* Sums over the arc at radius r: forward, and axial when asked for. */
-static void arc_sums(const walker *w, const arc_table *table, const direction *way, int32_t r, int32_t sum[2])
+/* Sums over the arc at one radius. */
+typedef struct arc {
+    int32_t forward, ahead, axial; /* of the forward branches; of those among them that point ahead; of the axial branches */
+} arc;
+
+static arc arc_sums(const walker *w, const arc_table *table, const direction *way, int32_t r)
 {
     const asj_scan *scan = w->scan;
-    sum[0] = sum[1] = 0;
+    arc sums = {0, 0, 0};
     for (int32_t d = -scan->half_width; d <= scan->half_width; d++) {
         const sample at = place(way, table, r, d);
         const asj_field_branch *list = branches_at(w, at.x, at.y);
+        int ahead;
         if (!list || !list[0].strength)
             continue;
-        sum[0] += junctionness(scan, closest(list, way->angle, 65536), &at);
+        const int32_t gamma = junctionness(scan, closest(list, way->angle, 65536), &at, &ahead);
+        sums.forward += gamma;
+        sums.ahead += ahead ? gamma : 0;
         if (scan->axial)
-            sum[1] += junctionness(scan, closest(list, way->angle, 32768), &at);
+            sums.axial += junctionness(scan, closest(list, way->angle, 32768), &at, &ahead);
     }
+    return sums;
 }
 
 static void walk(const walker *w, const arc_table *table, asj_ray *ray)
@@ -169,21 +180,29 @@ static void walk(const walker *w, const arc_table *table, asj_ray *ray)
     const double one = (double)((int64_t)1 << 30);
     const direction way = {llrint(ray->x * 65536), llrint(ray->y * 65536), llrint(cos(ray->angle) * one),
                            llrint(sin(ray->angle) * one), (uint16_t)llrint(ray->angle * (65536 / TWO_PI))};
-    const int32_t bridge = scan->field->sectors.radius;
-    int32_t failures[2] = {0, 0}, length[2] = {0, 0};
-    int alive = 1;
-    for (int32_t r = ray->start > 0 ? ray->start : 1; alive; r++) {
-        int32_t sum[2];
-        arc_sums(w, table, &way, r, sum);
-        for (int i = 0; i < 2; i++) {
-            failures[i] = sum[i] >= scan->threshold ? 0 : failures[i] + 1;
-            length[i] = failures[i] ? length[i] : r;
-        }
-        alive = failures[0] <= scan->tolerance ||
-                (scan->axial && failures[0] <= bridge && failures[1] <= scan->tolerance);
+    const int32_t bridge = scan->axial ? scan->field->sectors.radius : -1;
+    int32_t forward_failures = 0, ahead_passes = 0, ahead_failures = 0, axial_failures = 0;
+    ray->forward = ray->axial = 0;
+    for (int32_t r = ray->start > 0 ? ray->start : 1;; r++) {
+        const arc sums = arc_sums(w, table, &way, r);
+        ahead_passes = sums.ahead >= scan->threshold ? ahead_passes + 1 : 0;
+        ahead_failures = ahead_passes ? 0 : ahead_failures + 1;
+        axial_failures = sums.axial >= scan->threshold ? 0 : axial_failures + 1;
+        if (ahead_passes >= REOPEN)
+            forward_failures = 0; /* back after a crossing */
+        else if (sums.forward < scan->threshold || forward_failures > scan->tolerance)
+            forward_failures++;
+        else
+            forward_failures = 0;
+        if (forward_failures == 0)
+            ray->forward = r;
+        if (axial_failures == 0)
+            ray->axial = r;
+        if (forward_failures > scan->tolerance && (ahead_failures > bridge || axial_failures > scan->tolerance))
+            break;
     }
-    ray->forward = length[0];
-    ray->axial = length[1] < length[0] + bridge ? length[1] : length[0] + bridge;
+    if (ray->axial > ray->forward + bridge)
+        ray->axial = ray->forward + bridge;
 }
 
 static void fill_table(arc_table *table)

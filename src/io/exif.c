@@ -26,30 +26,60 @@ static uint32_t get32(const tiff_bytes *tiff, size_t at)
     return tiff->big_endian ? get16(tiff, at) << 16 | get16(tiff, at + 2) : get16(tiff, at + 2) << 16 | get16(tiff, at);
 }
 
-int32_t asj_tiff_value(const unsigned char *block, size_t size, unsigned tag, uint32_t *value)
+/* Where the value of a tag stands in the first directory, if it is one number that fits there; 0 when it is not there. */
+static size_t find_value(const tiff_bytes *tiff, unsigned tag, uint32_t *type)
 {
-    tiff_bytes tiff = {block, size, 0};
     size_t directory, count, i;
 
-    if (size < 8 || (memcmp(block, "II", 2) && memcmp(block, "MM", 2)))
+    if (tiff->size < 8 || get16(tiff, 2) != 42)
         return 0;
-    tiff.big_endian = block[0] == 'M';
-    directory = get32(&tiff, 4);
-    if (get16(&tiff, 2) != 42 || directory > size - 2)
+    directory = get32(tiff, 4);
+    if (directory > tiff->size - 2)
         return 0;
-    count = get16(&tiff, directory);
+    count = get16(tiff, directory);
     for (i = 0; i < count; i++) {
         size_t entry = directory + 2 + i * ENTRY_SIZE;
-        uint32_t type;
-        if (entry > size - ENTRY_SIZE || size < ENTRY_SIZE)
+        if (entry + ENTRY_SIZE > tiff->size)
             return 0;
-        type = get16(&tiff, entry + 2);
-        if (get16(&tiff, entry) != tag || get32(&tiff, entry + 4) != 1 || (type != TYPE_SHORT && type != TYPE_LONG))
-            continue;
-        *value = type == TYPE_SHORT ? get16(&tiff, entry + 8) : get32(&tiff, entry + 8);
-        return 1;
+        *type = get16(tiff, entry + 2);
+        if (get16(tiff, entry) == tag && get32(tiff, entry + 4) == 1 && (*type == TYPE_SHORT || *type == TYPE_LONG))
+            return entry + 8;
     }
     return 0;
+}
+
+static tiff_bytes open_tiff(const unsigned char *block, size_t size)
+{
+    tiff_bytes tiff = {block, size, 0};
+    if (size >= 2 && !memcmp(block, "MM", 2))
+        tiff.big_endian = 1;
+    else if (size < 2 || memcmp(block, "II", 2))
+        tiff.size = 0;
+    return tiff;
+}
+
+int32_t asj_tiff_value(const unsigned char *block, size_t size, unsigned tag, uint32_t *value)
+{
+    tiff_bytes tiff = open_tiff(block, size);
+    uint32_t type;
+    size_t at = find_value(&tiff, tag, &type);
+
+    if (at)
+        *value = type == TYPE_SHORT ? get16(&tiff, at) : get32(&tiff, at);
+    return at > 0;
+}
+
+void asj_tiff_set_upright(unsigned char *block, size_t size)
+{
+    tiff_bytes tiff = open_tiff(block, size);
+    uint32_t type;
+    size_t at = find_value(&tiff, TAG_ORIENTATION, &type), width;
+
+    if (!at)
+        return;
+    width = type == TYPE_SHORT ? 2 : 4;
+    memset(block + at, 0, width);
+    block[tiff.big_endian ? at + width - 1 : at] = 1;
 }
 
 int32_t asj_exif_orientation(const unsigned char *block, size_t size)

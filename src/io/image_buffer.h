@@ -26,7 +26,7 @@ uint16_t asj_luma16(uint32_t red, uint32_t green, uint32_t blue);
 /* 1 when the bytes begin like a PNG file. */
 int asj_png_recognise(const asj_input *input);
 
-/* Decode a file's bytes. On success the caller frees buffer->pixels.
+/* Decode a file's bytes. On success the caller frees buffer->pixels. asj_other_decode() may change the bytes.
  * ASJ_ERROR_FORMAT, ASJ_ERROR_LIMIT, ASJ_ERROR_UNSUPPORTED, ASJ_ERROR_MEMORY */
 asj_status asj_png_decode(const asj_input *input, uint64_t max_pixels, asj_image_buffer *buffer, const asj_message *message);
 asj_status asj_other_decode(const asj_input *input, uint64_t max_pixels, asj_image_buffer *buffer, const asj_message *message);

@@ -48,6 +48,7 @@ static void probe_tiff(const asj_input *input, asj_image_probe *probe)
     if (asj_tiff_value(input->bytes, input->size, 256, &width) && asj_tiff_value(input->bytes, input->size, 257, &height))
         set_size(probe, width, height);
     probe->orientation = asj_exif_orientation(input->bytes, input->size);
+    probe->is_tiff = 1;
 }
 
 /* RIFF chunks: name, length, content, padded to even length. The orientation stands in a chunk of the extended format. */

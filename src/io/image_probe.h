@@ -10,6 +10,7 @@ typedef struct asj_image_probe {
     uint64_t width, height; /* as declared; has_size = 0: not known before decoding */
     int32_t has_size;
     int32_t orientation;    /* EXIF; 1 when there is none */
+    int32_t is_tiff;        /* TIFF: the orientation stands in the file's own directory */
     int32_t is_truncated;   /* the file ends before the image does */
     int32_t is_uncommon;    /* the usual OpenCV has no decoder for it */
     int32_t needs_path;     /* OpenCV decodes it from a named file only, not from memory */

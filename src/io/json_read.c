@@ -166,7 +166,8 @@ static asj_status read_image(json_reader *reader, const json_t *value)
     json_int_t width = json_integer_value(json_object_get(value, "width"));
     json_int_t height = json_integer_value(json_object_get(value, "height"));
     if (width < 1 || height < 1 || width > ASJ_MAX_SIDE || height > ASJ_MAX_SIDE)
-        return asj_line_fail(reader->message, reader->line, "\"image\" needs a \"width\" and \"height\" from 1 to %d", ASJ_MAX_SIDE);
+        return asj_line_fail(reader->message, reader->line, "\"image\" needs a \"width\" and a \"height\" from 1 to %d",
+                             ASJ_MAX_SIDE);
     reader->list->width = (int32_t)width;
     reader->list->height = (int32_t)height;
     return ASJ_OK;

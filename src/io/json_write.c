@@ -75,10 +75,12 @@ static json_t *timing_value(const asj_detection *detection)
 static void put_head(json_output *json, const asj_detection_report *report)
 {
     const asj_detection *found = report->detection;
-    json_t *image = json_pack("{s:i, s:i}", "width", (int)found->width, "height", (int)found->height);
+    json_t *image = json_object();
 
-    if (image && report->image_name)
+    if (report->image_name)
         json_object_set_new(image, "name", name_value(report->image_name));
+    json_object_set_new(image, "width", json_integer(found->width));
+    json_object_set_new(image, "height", json_integer(found->height));
     put(json, "{\n\"schema\": ", json_string("asj-junctions-1"), 0);
     put(json, ",\n\"library\": ", json_pack("{s:s, s:s}", "name", "libasj", "version", asj_version_string()), 0);
     put(json, ",\n\"image\": ", image, 0);

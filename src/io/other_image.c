@@ -5,6 +5,7 @@
  *   floats    GRAY_FLOAT; colour as luma; 1.0 is white */
 #include <asj/io.h>
 
+#include "exif.h"
 #include "image_buffer.h"
 #include "image_probe.h"
 
@@ -81,6 +82,8 @@ static asj_status decode(const asj_input *input, const asj_image_probe *probe, u
     char cause[256];
     asj_status status;
 
+    if (probe->is_tiff)
+        asj_tiff_set_upright(input->bytes, input->size);
     if (probe->needs_path && !input->is_regular)
         return asj_message_fail(message, ASJ_ERROR_UNSUPPORTED, "%s is read from regular files only", probe->name);
     status = asj_opencv_decode(input->bytes, input->size, probe->needs_path ? message->path : NULL, &image, cause, sizeof cause);
