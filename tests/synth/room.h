@@ -96,6 +96,9 @@ int synth_room_visible(const synth_room *room, const synth_camera *camera, synth
 int synth_room_transfer(const synth_room *room, const synth_camera *from, double x, double y, const synth_camera *to,
                         synth_point *image);
 
+/* F with x2' F x1 = 0 for the images x1, x2 of one point in two cameras; row by row, largest entry 1 or -1. */
+void synth_fundamental(const synth_camera *first, const synth_camera *second, double f[9]);
+
 /* Junctions of two views that are the same point of the room. Writes at most `capacity` and returns how many there are. */
 int32_t synth_correspondences(const synth_view *first, const synth_view *second, synth_correspondence *out, int32_t capacity);
 

@@ -132,6 +132,14 @@ static void correspondences_are_points_of_the_room(void **state)
                 assert_true(pairs[k].first != pairs[i].first && pairs[k].second != pairs[i].second);
         }
         assert_true(high - low > 20.0);
+        double f9[9];
+        synth_fundamental(&a->camera, &b->camera, f9);
+        for (int32_t i = 0; i < count; i++) {
+            const synth_true_junction *p = &a->truth.junctions[pairs[i].first], *q = &b->truth.junctions[pairs[i].second];
+            const double l[3] = {f9[0] * p->x + f9[1] * p->y + f9[2], f9[3] * p->x + f9[4] * p->y + f9[5],
+                                 f9[6] * p->x + f9[7] * p->y + f9[8]};
+            assert_near((l[0] * q->x + l[1] * q->y + l[2]) / hypot(l[0], l[1]), 0.0, 2e-2);
+        }
     }
     assert_int_equal(synth_correspondences(&f->views[0], &f->views[1], pairs, 0),
                      synth_correspondences(&f->views[0], &f->views[1], pairs, 1000));

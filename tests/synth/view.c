@@ -129,6 +129,30 @@ int synth_room_transfer(const synth_room *room, const synth_camera *from, double
     return dot(room->surfaces[surface].normal, minus(to->position, point)) > 0.0 && synth_room_visible(room, to, point);
 }
 
+/* F = K2^-T [e]x R2 R1' K1^-1 with e = R2 (C1 - C2): column k of it is F applied to the k-th unit vector of the first image. */
+void synth_fundamental(const synth_camera *first, const synth_camera *second, double f[9])
+{
+    const synth_vector e = to_camera(second, first->position);
+    const double cx1 = 0.5 * (first->width - 1), cy1 = 0.5 * (first->height - 1);
+    const double cx2 = 0.5 * (second->width - 1), cy2 = 0.5 * (second->height - 1);
+    const synth_vector units[3] = {{1.0 / first->focal, 0, 0}, {0, 1.0 / first->focal, 0},
+                                   {-cx1 / first->focal, -cy1 / first->focal, 1}};
+    double largest = 0.0;
+    for (int k = 0; k < 3; k++) {
+        const synth_vector d = to_world_direction(first, units[k]);
+        synth_vector point = {second->position.x + d.x, second->position.y + d.y, second->position.z + d.z};
+        point = to_camera(second, point); /* the rotation alone, since it starts at the camera */
+        const synth_vector n = {e.y * point.z - e.z * point.y, e.z * point.x - e.x * point.z, e.x * point.y - e.y * point.x};
+        f[k] = n.x / second->focal;
+        f[3 + k] = n.y / second->focal;
+        f[6 + k] = n.z - cx2 * f[k] - cy2 * f[3 + k];
+    }
+    for (int k = 0; k < 9; k++)
+        largest = fmax(largest, fabs(f[k]));
+    for (int k = 0; k < 9 && largest > 0.0; k++)
+        f[k] /= largest;
+}
+
 /* ---- the picture ---- */
 
 /* Light falls from the window's side and fades towards the back and the floor, a few grey levels a metre. */
