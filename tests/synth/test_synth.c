@@ -8,6 +8,7 @@
 
 #include "random.h"
 #include "render.h"
+#include "resample.h"
 #include "scenes.h"
 #include "truth.h"
 
@@ -235,6 +236,26 @@ static void pictures_are_the_same_everywhere(void **state)
     synth_scene_free(&scene);
 }
 
+static void resampling_averages_areas(void **state)
+{
+    (void)state;
+    uint8_t pixels[12 * 6];
+    for (int i = 0; i < 72; i++)
+        pixels[i] = (uint8_t)(10 * (i % 12) + 20 * (i / 12));
+    uint8_t *half = synth_resample(pixels, 12, 6, 6, 3), *uneven = synth_resample(pixels, 12, 6, 8, 6);
+    assert_non_null(half);
+    assert_non_null(uneven);
+    for (int i = 0; i < 18; i++)
+        assert_int_equal(half[i], 10 * (2 * (i % 6)) + 5 + 20 * (2 * (i / 6)) + 10);
+    /* 3 to 2: the first new pixel takes a whole old one and half of the next: (0 + 5) / 1.5 = 3.3, the second (5 + 20) / 1.5. */
+    assert_int_equal(uneven[0], 3);
+    assert_int_equal(uneven[1], 17);
+    assert_int_equal(uneven[2], 33);
+    assert_null(synth_resample(pixels, 12, 6, 13, 6));
+    free(half);
+    free(uneven);
+}
+
 static const synth_true_junction *junction_at(const synth_truth *truth, double x, double y)
 {
     for (int32_t i = 0; i < truth->count; i++)
@@ -412,6 +433,7 @@ int main(void)
         cmocka_unit_test(noise_has_its_standard_deviation),
         cmocka_unit_test(random_numbers_are_known),
         cmocka_unit_test(pictures_are_the_same_everywhere),
+        cmocka_unit_test(resampling_averages_areas),
         cmocka_unit_test(truth_of_a_rectangle),
         cmocka_unit_test(truth_of_an_occlusion),
         cmocka_unit_test(truth_of_a_star),
