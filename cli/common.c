@@ -14,9 +14,11 @@ enum { BACKEND, DEVICE, THREADS, MAX_MEGAPIXELS, TIME, QUIET };
 #define MAX_THREADS 256
 
 const cli_option cli_common_options[] = {
-    {BACKEND, 0, "backend", "auto|cpu|opencl", "where to compute; auto (the default) takes an OpenCL GPU when there is one, else the CPU"},
+    {BACKEND, 0, "backend", "auto|cpu|opencl",
+     "where to compute; auto (the default) takes an OpenCL GPU when there is one, else the CPU"},
     {DEVICE, 0, "device", "SPEC", "OpenCL device: its number, part of its name, or gpu, cpu, accelerator"},
-    {THREADS, 0, "threads", "N", "threads on the CPU, 0 .. 256; 0 (the default) is one for each processor; the results do not depend on it"},
+    {THREADS, 0, "threads", "N",
+     "threads on the CPU, 0 .. 256; 0 (the default) is one for each processor; the results do not depend on it"},
     {MAX_MEGAPIXELS, 0, "max-megapixels", "N", "refuse larger images before they are decoded (default 268, at most 536)"},
     {TIME, 0, "time", NULL, "print how long each stage took"},
     {QUIET, 'q', "quiet", NULL, "print nothing but errors (and what was asked for)"},
@@ -53,7 +55,8 @@ static int take_max_megapixels(cli_common *common, const char *text)
 {
     double number;
     if (!cli_parse_number(text, 1e-6, MAX_MEGAPIXELS_LIMIT, &number))
-        return cli_usage_error(NULL, "--max-megapixels: '%s' is not a number in 0.000001 .. %.0f", text, MAX_MEGAPIXELS_LIMIT - 0.5);
+        return cli_usage_error(NULL, "--max-megapixels: '%s' is not a number in 0.000001 .. %.0f", text,
+                               MAX_MEGAPIXELS_LIMIT - 0.5);
     common->max_pixels = (uint64_t)(number * 1e6 + 0.5);
     return CLI_SUCCESS;
 }

@@ -39,7 +39,8 @@ static int write_results(run *r, const char *image, const cli_output *output, co
     int result = CLI_SUCCESS;
     if (output->junctions) {
         asj_detection_report report = {detection, &arguments->options, image, {0}};
-        asj_status status = asj_junctions_write(output->junctions, cli_detect_file_format(arguments), &report, message, sizeof message);
+        asj_status status = asj_junctions_write(output->junctions, cli_detect_file_format(arguments), &report, message,
+                                                sizeof message);
         if (status != ASJ_OK)
             result = fail(r, output->junctions, message, status);
     }
@@ -55,9 +56,9 @@ static int write_results(run *r, const char *image, const cli_output *output, co
 static void print_summary(const char *image, const cli_output *output, const asj_detection *detection)
 {
     const char *junctions = output->junctions && strcmp(output->junctions, "-") != 0 ? output->junctions : NULL;
-    cli_note("%s: %lu junction%s%s%s%s%s", image, (unsigned long)detection->junction_count, detection->junction_count == 1 ? "" : "s",
-             junctions || output->plot ? " -> " : "", junctions ? junctions : "", junctions && output->plot ? ", " : "",
-             output->plot ? output->plot : "");
+    cli_note("%s: %lu junction%s%s%s%s%s", image, (unsigned long)detection->junction_count,
+             detection->junction_count == 1 ? "" : "s", junctions || output->plot ? " -> " : "", junctions ? junctions : "",
+             junctions && output->plot ? ", " : "", output->plot ? output->plot : "");
 }
 
 static int detect_pixels(run *r, const char *image, const cli_output *output, const asj_image *pixels)

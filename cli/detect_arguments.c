@@ -31,21 +31,27 @@ static const char conclusion[] =
 enum { OUTPUT, OUT_DIR, FORMAT, WHOLE, PLOT, PLOT_COLOR, PLOT_BACKGROUND, PLOT_SCALE, PRESET };
 
 static const cli_option output_options[] = {
-    {OUTPUT, 'o', "output", "FILE", "where the junctions of one image go; - is standard output (the default for one image without a plot)"},
-    {OUT_DIR, 'd', "out-dir", "DIR", "existing folder for the results of one or several images: photo.jpg gives DIR/photo.asj"},
-    {FORMAT, 'f', "format", "asj|json|csv", "asj: text, one record for each pair of branches; json: everything; csv: one line a branch. Default: by the end of FILE, else asj"},
+    {OUTPUT, 'o', "output", "FILE",
+     "where the junctions of one image go; - is standard output (the default for one image without a plot)"},
+    {OUT_DIR, 'd', "out-dir", "DIR",
+     "existing folder for the results of one or several images: photo.jpg gives DIR/photo.asj"},
+    {FORMAT, 'f', "format", "asj|json|csv",
+     "asj: text, one record for each pair of branches; json: everything; csv: one line a branch. "
+     "Default: by the end of FILE, else asj"},
     {WHOLE, 0, "whole", NULL, "asj: whole junctions of two to five branches (json and csv always have them)"},
 };
 
 static const cli_option plot_options[] = {
-    {PLOT, 'p', "plot", "FILE", "draw the junctions: FILE.png, FILE.svg or FILE.pdf; with --out-dir only png, svg or pdf: photo.jpg gives DIR/photo.plot.png"},
+    {PLOT, 'p', "plot", "FILE",
+     "draw the junctions: FILE.png, FILE.svg or FILE.pdf; with --out-dir only png, svg or pdf: photo.jpg gives DIR/photo.plot.png"},
     {PLOT_COLOR, 0, "plot-color", "nfa|branch", "branches coloured by how sure they are (the default) or by their number"},
     {PLOT_BACKGROUND, 0, "plot-background", "photo|white", "over the pale photograph (the default) or on white"},
     {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of the image, 0.01 .. 16; default: small images are enlarged"},
 };
 
 static const cli_option preset_options[] = {
-    {PRESET, 0, "preset", "default|paper", "start from these values of the options below, wherever this stands: our recommendation, or the paper to the letter"},
+    {PRESET, 0, "preset", "default|paper",
+     "start from these values of the options below, wherever this stands: our recommendation, or the paper to the letter"},
 };
 
 void cli_detect_arguments_free(cli_detect_arguments *arguments)
@@ -89,7 +95,8 @@ static int take_plot(void *target, int id, const char *text)
         break;
     default:
         if (!cli_parse_number(text, CLI_PLOT_MIN_SCALE, CLI_PLOT_MAX_SCALE, &arguments->style.scale))
-            return cli_usage_error("detect", "--plot-scale: '%s' is not a number in %g .. %d", text, CLI_PLOT_MIN_SCALE, CLI_PLOT_MAX_SCALE);
+            return cli_usage_error("detect", "--plot-scale: '%s' is not a number in %g .. %d", text,
+                                   CLI_PLOT_MIN_SCALE, CLI_PLOT_MAX_SCALE);
     }
     return CLI_SUCCESS;
 }

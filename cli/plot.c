@@ -59,7 +59,8 @@ static cairo_status_t draw(asj_output *output, int32_t format, const cli_plot_la
 
 static int too_large(int32_t format, const cli_plot_layout *layout)
 {
-    return format == CLI_PLOT_PNG && (layout->width > LARGEST_SURFACE || layout->image_height > LARGEST_SURFACE - layout->legend_height);
+    return format == CLI_PLOT_PNG &&
+           (layout->width > LARGEST_SURFACE || layout->image_height > LARGEST_SURFACE - layout->legend_height);
 }
 
 asj_status cli_plot_write(const char *path, int32_t format, const asj_image *image, const asj_detection *detection,

@@ -75,10 +75,10 @@ static void draw_branches(cairo_t *cairo, const cli_plot_layout *layout, const a
 static void draw_dot(cairo_t *cairo, const cli_plot_layout *layout, const asj_junction *junction)
 {
     double x = place(layout, (double)junction->x), y = place(layout, (double)junction->y);
-    cairo_arc(cairo, x, y, 1.9 * layout->line, 0, FULL_TURN);
+    cairo_arc(cairo, x, y, 1.8 * layout->line, 0, FULL_TURN);
     cairo_set_source_rgb(cairo, 1, 1, 1);
     cairo_fill(cairo);
-    cairo_arc(cairo, x, y, 1.4 * layout->line, 0, FULL_TURN);
+    cairo_arc(cairo, x, y, 1.3 * layout->line, 0, FULL_TURN);
     cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
     cairo_fill(cairo);
 }
@@ -126,7 +126,8 @@ static void draw_legend(cairo_t *cairo, const cli_plot_layout *layout, const asj
     double em = layout->font, base = layout->image_height + 1.55 * em, middle = base - 0.35 * em;
     cairo_select_font_face(cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cairo, em);
-    snprintf(text, sizeof text, "%lu junction%s", (unsigned long)detection->junction_count, detection->junction_count == 1 ? "" : "s");
+    snprintf(text, sizeof text, "%lu junction%s", (unsigned long)detection->junction_count,
+             detection->junction_count == 1 ? "" : "s");
     draw_text(cairo, 0.8 * em, base, text);
     if (color == CLI_PLOT_COLOR_NFA) {
         snprintf(text, sizeof text, "log10 NFA   %g", CLI_RAMP_UNSURE);

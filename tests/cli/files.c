@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#define _POSIX_C_SOURCE 200809L
+#include "files.h"
+
+#include <asj/io.h>
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <dirent.h>
+#include <math.h>
+#include <sys/stat.h>
+
+static void write_gray(const char *path, const unsigned char *pixels, int width, int height)
+{
+    char message[512] = "";
+    asj_image image = {pixels, ASJ_FORMAT_GRAY8, width, height, 0, 0};
+    if (asj_png_write(path, &image, message, sizeof message) != ASJ_OK)
+        fail_msg("%s", message);
+}
+
+/* An edge at `place` seen through a blur of about a pixel. */
+static double edge(double coordinate, double place)
+{
+    return 0.5 + 0.5 * tanh(coordinate - place);
+}
+
+/* How much of the light falls on a place, in [0, 1]. */
+static double rectangle(int x, int y)
+{
+    return edge(x, SCENE_LEFT) * edge(-x, -SCENE_RIGHT) * edge(y, SCENE_TOP) * edge(-y, -SCENE_BOTTOM);
+}
+
+static double crossing(int x, int y)
+{
+    double right = edge(x, SCENE_WIDTH / 2), below = edge(y, SCENE_HEIGHT / 2);
+    return right * below + (1 - right) * (1 - below);
+}
+
+static void write_light(const char *path, double (*light)(int x, int y))
+{
+    unsigned char *pixels = malloc(SCENE_WIDTH * SCENE_HEIGHT);
+    assert_non_null(pixels);
+    for (int y = 0; y < SCENE_HEIGHT; y++)
+        for (int x = 0; x < SCENE_WIDTH; x++)
+            pixels[y * SCENE_WIDTH + x] = (unsigned char)(80 + 100 * light(x, y) + 0.5);
+    write_gray(path, pixels, SCENE_WIDTH, SCENE_HEIGHT);
+    free(pixels);
+}
+
+void write_scene(const char *path)
+{
+    write_light(path, rectangle);
+}
+
+void write_crossing(const char *path)
+{
+    write_light(path, crossing);
+}
+
+void write_constant(const char *path, int width, int height)
+{
+    unsigned char *pixels = malloc((size_t)width * (size_t)height);
+    assert_non_null(pixels);
+    memset(pixels, 128, (size_t)width * (size_t)height);
+    write_gray(path, pixels, width, height);
+    free(pixels);
+}
+
+void write_bytes(const char *path, const void *bytes, size_t size)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
+char *read_bytes(const char *path, size_t *size)
+{
+    struct stat facts;
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return NULL;
+    assert_int_equal(fstat(fileno(file), &facts), 0);
+    char *bytes = calloc((size_t)facts.st_size + 1, 1);
+    assert_non_null(bytes);
+    *size = fread(bytes, 1, (size_t)facts.st_size, file);
+    fclose(file);
+    return bytes;
+}
+
+/* The checksum of PNG chunks (ISO 3309), bit by bit. */
+static uint32_t checksum(const unsigned char *bytes, size_t size)
+{
+    uint32_t crc = 0xffffffff;
+    for (size_t i = 0; i < size; i++) {
+        crc ^= bytes[i];
+        for (int bit = 0; bit < 8; bit++)
+            crc = crc & 1 ? crc >> 1 ^ 0xedb88320 : crc >> 1;
+    }
+    return ~crc;
+}
+
+static void put_big_endian(unsigned char *place, uint32_t value)
+{
+    for (int i = 0; i < 4; i++)
+        place[i] = (unsigned char)(value >> (24 - 8 * i));
+}
+
+void write_png_header(const char *path, unsigned width, unsigned height)
+{
+    static const unsigned char beginning[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R'};
+    unsigned char bytes[64] = {0};
+    memcpy(bytes, beginning, sizeof beginning);
+    put_big_endian(bytes + 16, width);
+    put_big_endian(bytes + 20, height);
+    bytes[24] = 8; /* bits; grey, no interlacing */
+    put_big_endian(bytes + 29, checksum(bytes + 12, 17));
+    memcpy(bytes + 37, "IDAT", 4); /* an empty chunk of pixels */
+    put_big_endian(bytes + 41, checksum(bytes + 37, 4));
+    write_bytes(path, bytes, 45);
+}
+
+void write_part(const char *path, const char *source, size_t size)
+{
+    size_t all = 0;
+    char *bytes = read_bytes(source, &all);
+    assert_non_null(bytes);
+    assert_true(size < all);
+    write_bytes(path, bytes, size);
+    free(bytes);
+}
+
+void write_damaged(const char *path, const char *source, size_t position)
+{
+    size_t all = 0;
+    char *bytes = read_bytes(source, &all);
+    assert_non_null(bytes);
+    assert_true(position < all);
+    bytes[position] ^= 0x10;
+    write_bytes(path, bytes, all);
+    free(bytes);
+}
+
+int count_files(const char *folder)
+{
+    int count = 0;
+    struct dirent *entry;
+    DIR *list = opendir(folder);
+    assert_non_null(list);
+    while ((entry = readdir(list)) != NULL)
+        count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
+    closedir(list);
+    return count;
+}
+
+int exists(const char *path)
+{
+    struct stat facts;
+    return lstat(path, &facts) == 0;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Files for the tests of asj-cli: a small scene, and files that are broken in many ways. */
+#ifndef ASJ_TEST_FILES_H
+#define ASJ_TEST_FILES_H
+
+#include <stddef.h>
+
+/* The scene: a bright rectangle on a dark ground, with smooth edges. */
+enum { SCENE_WIDTH = 320, SCENE_HEIGHT = 240, SCENE_LEFT = 80, SCENE_RIGHT = 240, SCENE_TOP = 60, SCENE_BOTTOM = 180 };
+void write_scene(const char *path);
+
+/* Two bright and two dark quarters that meet in the middle: one junction of four branches. */
+void write_crossing(const char *path);
+
+/* A PNG of one grey level. */
+void write_constant(const char *path, int width, int height);
+
+void write_bytes(const char *path, const void *bytes, size_t size);
+char *read_bytes(const char *path, size_t *size); /* with a zero behind; NULL = no such file; to be freed */
+
+/* The beginning of a PNG that declares this size; its checksums are right. */
+void write_png_header(const char *path, unsigned width, unsigned height);
+
+/* Copies of a file: its first `size` bytes, or with byte `position` changed. */
+void write_part(const char *path, const char *source, size_t size);
+void write_damaged(const char *path, const char *source, size_t position);
+
+/* Number of files in a folder, hidden ones included. */
+int count_files(const char *folder);
+
+int exists(const char *path);
+
+#endif

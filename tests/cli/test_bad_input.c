@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* asj-cli detect with files that cannot be read and results that cannot be written: one line each, and the rest is done. */
+#define _POSIX_C_SOURCE 200809L
+#include "files.h"
+#include "program.h"
+
+#include <asj/io.h>
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static size_t good_size; /* of good.png */
+
+static int count_lines(const char *text)
+{
+    int lines = 0;
+    for (; *text; text++)
+        lines += *text == '\n';
+    return lines;
+}
+
+static int make_files(void **state)
+{
+    (void)state;
+    static const unsigned char jpeg[] = {0xff, 0xd8, 0xff, 0xe0, 0, 16, 'J', 'F', 'I', 'F', 0, 1, 1, 0, 0, 1, 0, 1, 0, 0,
+                                         0xff, 0xc0, 0, 11, 8, 0, 64, 0, 64, 1, 1, 0x11, 0};
+    write_scene("good.png");
+    free(read_bytes("good.png", &good_size));
+    assert_int_equal(mkdir("folder.png", 0777), 0);
+    write_bytes("empty.png", "", 0);
+    write_bytes("text.png", "This is not an image.\n", 22);
+    write_part("truncated.png", "good.png", good_size / 2);
+    write_part("header.png", "good.png", 20);
+    write_part("unended.png", "good.png", good_size - 12);
+    write_damaged("checksum.png", "good.png", good_size - 16); /* of the last chunk of pixels */
+    write_damaged("pixels.png", "good.png", good_size / 2);
+    write_png_header("bomb.png", 65000, 65000);
+    write_png_header("zero.png", 0, 10);
+    write_bytes("truncated.jpg", jpeg, sizeof jpeg);
+    return 0;
+}
+
+static const char *const bad[] = {"missing.png", "folder.png", "empty.png", "text.png", "truncated.png", "header.png",
+                                  "unended.png", "checksum.png", "pixels.png", "bomb.png", "zero.png", "truncated.jpg"};
+enum { BAD = sizeof bad / sizeof bad[0] };
+
+static void each_bad_file_has_one_line(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < BAD; i++) {
+        char beginning[64];
+        snprintf(beginning, sizeof beginning, "asj-cli: %s: ", bad[i]);
+        const outcome *result = run_cli("detect", "-o", "never.asj", bad[i], NULL);
+        expect_code(result, 1);
+        expect_in(result, result->err, beginning);
+        expect_empty(result, "standard output", result->out);
+        if (count_lines(result->err) != 1 || strncmp(result->err, beginning, strlen(beginning)) != 0 ||
+            strlen(result->err) < strlen(beginning) + 5)
+            fail_msg("not one clear line:\n%s", result->err);
+        if (exists("never.asj"))
+            fail_msg("%s: a result was written", bad[i]);
+    }
+}
+
+static void bad_files_do_not_stop_the_others(void **state)
+{
+    (void)state;
+    const char *arguments[BAD + 8] = {"detect", "-q", "--out-dir", "results", "good.png"};
+    for (size_t i = 0; i < BAD; i++)
+        arguments[5 + i] = bad[i];
+    arguments[5 + BAD] = "other.png";
+    write_scene("other.png");
+    assert_int_equal(mkdir("results", 0777), 0);
+    /* truncated.png and truncated.jpg would share a name, so that one is left out */
+    arguments[4 + BAD] = "third.png";
+    write_scene("third.png");
+    const outcome *result = run_cli_list(arguments);
+    expect_code(result, 1);
+    assert_int_equal(count_lines(result->err), BAD - 1);
+    assert_true(exists("results/good.asj"));
+    assert_true(exists("results/other.asj"));
+    assert_true(exists("results/third.asj"));
+    assert_int_equal(count_files("results"), 3);
+}
+
+static void a_failure_keeps_the_old_result(void **state)
+{
+    (void)state;
+    size_t size = 0;
+    write_bytes("kept.asj", "old", 3);
+    expect_code(run_cli("detect", "-o", "kept.asj", "truncated.png", NULL), 1);
+    char *bytes = read_bytes("kept.asj", &size);
+    assert_non_null(bytes);
+    assert_string_equal(bytes, "old");
+    free(bytes);
+}
+
+static void an_unreadable_file_is_named(void **state)
+{
+    (void)state;
+    write_scene("secret.png");
+    assert_int_equal(chmod("secret.png", 0), 0);
+    if (access("secret.png", R_OK) == 0) {
+        print_message("[  NOTE    ] this user may read every file: not tested\n");
+        skip();
+    }
+    const outcome *result = run_cli("detect", "secret.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: secret.png: ");
+    expect_in(result, result->err, "ermission denied");
+}
+
+static void the_limit_on_pixels_can_be_moved(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "--max-megapixels", "0.05", "good.png", NULL); /* it has 0.0768 */
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: good.png: ");
+    expect_code(run_cli("detect", "--max-megapixels", "0.0768", "good.png", NULL), 0);
+}
+
+static void control_characters_stay_out_of_messages(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "two\nlines\033[31m.png", NULL);
+    expect_code(result, 1);
+    assert_int_equal(count_lines(result->err), 1);
+    assert_null(strchr(result->err, '\033'));
+}
+
+static void a_missing_output_folder_is_noticed_before_any_work(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "--out-dir", "nowhere", "good.png", "missing.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: nowhere: No such file or directory");
+    assert_int_equal(count_lines(result->err), 1);
+    result = run_cli("detect", "--out-dir", "good.png", "good.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: good.png: not a folder");
+    result = run_cli("detect", "-o", "nowhere/good.asj", "good.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: nowhere/good.asj: ");
+    expect_in(result, result->err, "No such file or directory");
+    result = run_cli("detect", "-o", "folder.png", "good.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: folder.png: ");
+}
+
+static void a_full_device_is_reported(void **state)
+{
+    (void)state;
+    int full = open("/dev/full", O_WRONLY);
+    if (full < 0) {
+        print_message("[  NOTE    ] there is no /dev/full: not tested\n");
+        skip();
+    }
+    const outcome *result = run_cli_to(full, "detect", "-q", "good.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: standard output: ");
+    assert_int_equal(count_lines(result->err), 1);
+    result = run_cli_to(full, "--help", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: standard output: ");
+    close(full);
+    result = run_cli("detect", "-q", "-o", "/dev/full", "good.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: /dev/full: ");
+    assert_true(exists("/dev/full"));
+}
+
+static void a_closed_pipe_is_an_error_like_others(void **state)
+{
+    (void)state;
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    close(ends[0]);
+    const outcome *result = run_cli_to(ends[1], "detect", "-q", "good.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: standard output: ");
+    assert_int_equal(count_lines(result->err), 1);
+    close(ends[1]);
+}
+
+/* A limit on the size of files stands in for a full disk: in the middle of a result writing fails. */
+static void a_result_that_does_not_fit_leaves_nothing(void **state)
+{
+    (void)state;
+    struct rlimit old, tight;
+    assert_int_equal(mkdir("full", 0777), 0);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
+    tight = old;
+    tight.rlim_cur = 200; /* a message, but no result */
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &tight), 0);
+    const outcome *result = run_cli("detect", "-q", "-f", "json", "--out-dir", "full", "good.png", NULL);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
+    signal(SIGXFSZ, SIG_DFL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: full/good.json: ");
+    assert_int_equal(count_files("full"), 0);
+}
+
+static void an_opencl_device_that_is_not_there_is_an_error(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "--backend", "opencl", "--device", "no such device", "good.png", NULL);
+    expect_code(result, 1);
+    assert_int_equal(strncmp(result->err, "asj-cli: ", 9), 0);
+    expect_empty(result, "standard output", result->out);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_bad_file_has_one_line),
+        cmocka_unit_test(bad_files_do_not_stop_the_others),
+        cmocka_unit_test(a_failure_keeps_the_old_result),
+        cmocka_unit_test(an_unreadable_file_is_named),
+        cmocka_unit_test(the_limit_on_pixels_can_be_moved),
+        cmocka_unit_test(control_characters_stay_out_of_messages),
+        cmocka_unit_test(a_missing_output_folder_is_noticed_before_any_work),
+        cmocka_unit_test(a_full_device_is_reported),
+        cmocka_unit_test(a_closed_pipe_is_an_error_like_others),
+        cmocka_unit_test(a_result_that_does_not_fit_leaves_nothing),
+        cmocka_unit_test(an_opencl_device_that_is_not_there_is_an_error),
+    };
+    program_start(argc, argv);
+    return program_end(cmocka_run_group_tests(tests, make_files, NULL));
+}

@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* asj-cli detect: what it writes, where, and what it says. */
+#define _POSIX_C_SOURCE 200809L
+#include "files.h"
+#include "program.h"
+
+#include <asj/context.h>
+#include <asj/io.h>
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+static asj_junction_file *read_junctions(const char *path)
+{
+    char message[512] = "";
+    asj_junction_file *file = NULL;
+    if (asj_junctions_read(path, &file, message, sizeof message) != ASJ_OK)
+        fail_msg("%s", message);
+    return file;
+}
+
+/* The four corners of the scene, each once, within half a pixel, and nothing else. */
+static void expect_scene(const char *path)
+{
+    static const int corners[4][2] = {
+        {SCENE_LEFT, SCENE_TOP}, {SCENE_RIGHT, SCENE_TOP}, {SCENE_LEFT, SCENE_BOTTOM}, {SCENE_RIGHT, SCENE_BOTTOM}};
+    asj_junction_file *file = read_junctions(path);
+    assert_int_equal(file->junction_count, 4);
+    for (size_t c = 0; c < 4; c++) {
+        int found = 0;
+        for (uint32_t i = 0; i < file->junction_count; i++)
+            found += fabs((double)file->junctions[i].x - corners[c][0]) < 0.5 &&
+                     fabs((double)file->junctions[i].y - corners[c][1]) < 0.5;
+        assert_int_equal(found, 1);
+    }
+    asj_junction_file_free(&file);
+}
+
+static void expect_file(const char *path, const char *text)
+{
+    size_t size = 0;
+    char *bytes = read_bytes(path, &size);
+    assert_non_null(bytes);
+    assert_string_equal(bytes, text);
+    free(bytes);
+}
+
+static void results_go_to_standard_output_and_words_to_standard_error(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "scene.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "scene.png: 4 junctions");
+    write_bytes("printed.asj", result->out, result->out_size);
+    expect_scene("printed.asj");
+    result = run_cli("detect", "-o", "-", "--quiet", "scene.png", NULL);
+    expect_code(result, 0);
+    expect_empty(result, "standard error", result->err);
+    expect_file("printed.asj", result->out);
+    result = run_cli("detect", "-q", "-o", "written.asj", "scene.png", NULL);
+    expect_code(result, 0);
+    expect_empty(result, "standard error", result->err);
+    expect_empty(result, "standard output", result->out);
+    expect_scene("written.asj");
+}
+
+static void the_name_or_the_option_chooses_the_format(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *format, *beginning;
+    } cases[] = {
+        {"a.asj", NULL, "4\n"}, {"a.json", NULL, "{"}, {"a.csv", NULL, "junction,x,y"}, {"a.txt", NULL, "4\n"},
+        {"b.asj", "json", "{"}, {"b.json", "csv", "junction,x,y"}, {"b.csv", "asj", "4\n"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        size_t size = 0;
+        if (cases[i].format)
+            expect_code(run_cli("detect", "-o", cases[i].path, "scene.png", "--format", cases[i].format, NULL), 0);
+        else
+            expect_code(run_cli("detect", "-o", cases[i].path, "scene.png", NULL), 0);
+        char *bytes = read_bytes(cases[i].path, &size);
+        assert_non_null(bytes);
+        bytes[strlen(cases[i].beginning)] = '\0';
+        assert_string_equal(bytes, cases[i].beginning);
+        free(bytes);
+    }
+    expect_scene("a.json");
+}
+
+/* Four branches at right angles: four pairs that are no straight lines. */
+static void whole_junctions_are_written_on_request(void **state)
+{
+    (void)state;
+    write_crossing("crossing.png");
+    expect_code(run_cli("detect", "-q", "-o", "pairs.asj", "crossing.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "--whole", "-o", "whole.asj", "crossing.png", NULL), 0);
+    asj_junction_file *pairs = read_junctions("pairs.asj"), *whole = read_junctions("whole.asj");
+    assert_int_equal(whole->junction_count, 1);
+    assert_int_equal(whole->junctions[0].branch_count, 4);
+    assert_int_equal(pairs->junction_count, 4);
+    for (uint32_t i = 0; i < pairs->junction_count; i++)
+        assert_int_equal(pairs->junctions[i].branch_count, 2);
+    asj_junction_file_free(&pairs);
+    asj_junction_file_free(&whole);
+}
+
+/* The number behind "name" in JSON. */
+static double json_number(const char *text, const char *name)
+{
+    char quoted[64];
+    snprintf(quoted, sizeof quoted, "\"%s\"", name);
+    const char *found = strstr(text, quoted);
+    if (!found)
+        fail_msg("no %s in %s", quoted, text);
+    found += strlen(quoted);
+    return strtod(found + strspn(found, " :\n"), NULL);
+}
+
+static void the_preset_comes_first_wherever_it_stands(void **state)
+{
+    (void)state;
+    static const char *const lines[2][10] = {
+        {"detect", "-f", "json", "--preset", "paper", "--epsilon", "0.5", "scene.png", NULL},
+        {"detect", "--epsilon", "0.5", "scene.png", "--preset", "paper", "-f", "json", NULL},
+    };
+    for (size_t i = 0; i < 2; i++) {
+        const outcome *result = run_cli_list(lines[i]);
+        expect_code(result, 0);
+        assert_true(json_number(result->out, "epsilon") == 0.5);
+        assert_true(json_number(result->out, "minimum_length") == 0);
+    }
+    const outcome *result = run_cli("detect", "-f", "json", "--minimum-length", "3", "--minimum_length", "9", "scene.png", NULL);
+    expect_code(result, 2); /* keys have dashes on the command line */
+    result = run_cli("detect", "-f", "json", "--minimum-length=3", "--minimum-length", "9", "scene.png", NULL);
+    expect_code(result, 0);
+    assert_true(json_number(result->out, "minimum_length") == 9);
+}
+
+static void an_option_reaches_the_detector(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "--minimum-length", "500", "scene.png", NULL);
+    expect_code(result, 0);
+    assert_string_equal(result->out, "0\n");
+    expect_in(result, result->err, "0 junctions");
+}
+
+static void times_are_printed_on_request(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "--time", "-q", "scene.png", NULL);
+    expect_code(result, 0);
+    for (int32_t stage = ASJ_STAGE_GRADIENT; stage <= ASJ_STAGE_DECOMPOSE; stage++)
+        expect_in(result, result->err, asj_stage_name(stage));
+    expect_in(result, result->err, "scene.png: 320 x 240");
+    expect_in(result, result->err, "reading");
+    assert_null(strstr(result->out, "reading"));
+}
+
+static void no_progress_without_a_terminal(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "scene.png", NULL);
+    assert_null(strchr(result->err, '\r'));
+    assert_null(strchr(result->err, '\033'));
+}
+
+static void threads_do_not_change_the_result(void **state)
+{
+    (void)state;
+    expect_code(run_cli("detect", "-q", "--threads", "1", "-o", "one.asj", "scene.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "--threads", "3", "-o", "three.asj", "scene.png", NULL), 0);
+    size_t size = 0;
+    char *one = read_bytes("one.asj", &size);
+    assert_non_null(one);
+    expect_file("three.asj", one);
+    free(one);
+}
+
+static void empty_images_give_no_junctions(void **state)
+{
+    (void)state;
+    static const int sizes[][2] = {{1, 1}, {1, 50}, {50, 1}, {2, 2}, {100, 80}};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        write_constant("flat.png", sizes[i][0], sizes[i][1]);
+        const outcome *result = run_cli("detect", "flat.png", NULL);
+        expect_code(result, 0);
+        assert_string_equal(result->out, "0\n");
+    }
+}
+
+static void many_images_go_to_a_folder(void **state)
+{
+    (void)state;
+    assert_int_equal(mkdir("many", 0777), 0);
+    assert_int_equal(mkdir("in", 0777), 0);
+    write_scene("in/first.png");
+    write_scene("in/second.of.all.png");
+    write_scene("in/.hidden");
+    write_scene("-dash");
+    const outcome *result = run_cli("detect", "-f", "json", "--out-dir", "many/", "in/first.png", "in/second.of.all.png",
+                                    "in/.hidden", "--", "-dash", NULL);
+    expect_code(result, 0);
+    expect_empty(result, "standard output", result->out);
+    expect_scene("many/first.json");
+    expect_scene("many/second.of.all.json");
+    expect_scene("many/.hidden.json");
+    expect_scene("many/-dash.json");
+    assert_int_equal(count_files("many"), 4);
+}
+
+static void existing_results_are_replaced(void **state)
+{
+    (void)state;
+    write_bytes("old.asj", "old", 3);
+    expect_code(run_cli("detect", "-q", "-o", "old.asj", "scene.png", NULL), 0);
+    expect_scene("old.asj");
+}
+
+/* The same image under many names; stopped after the first result. */
+static void an_interrupt_leaves_only_whole_results(void **state)
+{
+    (void)state;
+    enum { IMAGES = 500 };
+    static char names[IMAGES][16];
+    const char *arguments[IMAGES + 5] = {"detect", "--out-dir", "stopped"};
+    const struct timespec pause = {0, 1000000};
+    assert_int_equal(mkdir("stopped", 0777), 0);
+    for (size_t i = 0; i < IMAGES; i++) {
+        snprintf(names[i], sizeof names[i], "link%zu.png", i);
+        assert_int_equal(symlink("scene.png", names[i]), 0);
+        arguments[3 + i] = names[i];
+    }
+    pid_t process = start_cli(arguments);
+    while (!exists("stopped/link0.asj") && kill(process, 0) == 0)
+        nanosleep(&pause, NULL);
+    assert_int_equal(kill(process, SIGINT), 0);
+    const outcome *result = finish_cli(process);
+    expect_code(result, 130);
+    expect_in(result, result->err, "asj-cli: interrupted at link");
+    int done = 0;
+    for (size_t i = 0; i < IMAGES; i++) {
+        char path[40];
+        snprintf(path, sizeof path, "stopped/link%zu.asj", i);
+        if (exists(path)) {
+            expect_scene(path);
+            done++;
+        }
+    }
+    assert_in_range(done, 1, IMAGES - 1);
+    assert_int_equal(count_files("stopped"), done); /* no file with another name */
+}
+
+static int make_files(void **state)
+{
+    (void)state;
+    write_scene("scene.png");
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(results_go_to_standard_output_and_words_to_standard_error),
+        cmocka_unit_test(the_name_or_the_option_chooses_the_format),
+        cmocka_unit_test(whole_junctions_are_written_on_request),
+        cmocka_unit_test(the_preset_comes_first_wherever_it_stands),
+        cmocka_unit_test(an_option_reaches_the_detector),
+        cmocka_unit_test(times_are_printed_on_request),
+        cmocka_unit_test(no_progress_without_a_terminal),
+        cmocka_unit_test(threads_do_not_change_the_result),
+        cmocka_unit_test(empty_images_give_no_junctions),
+        cmocka_unit_test(many_images_go_to_a_folder),
+        cmocka_unit_test(existing_results_are_replaced),
+        cmocka_unit_test(an_interrupt_leaves_only_whole_results),
+    };
+    program_start(argc, argv);
+    return program_end(cmocka_run_group_tests(tests, make_files, NULL));
+}

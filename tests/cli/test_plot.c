@@ -1,0 +1,256 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* asj-cli detect --plot: formats, sizes, and what is drawn where. */
+#include "files.h"
+#include "program.h"
+
+#include <asj/io.h>
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <sys/stat.h>
+
+static asj_image_file *read_plot(const char *path)
+{
+    char message[512] = "";
+    asj_image_file *file = NULL;
+    if (asj_image_file_read(path, 0, &file, message, sizeof message) != ASJ_OK)
+        fail_msg("%s", message);
+    assert_int_equal(file->image.format, ASJ_FORMAT_RGB8);
+    return file;
+}
+
+static const unsigned char *pixel(const asj_image_file *plot, int x, int y)
+{
+    assert_in_range(x, 0, plot->image.width - 1);
+    assert_in_range(y, 0, plot->image.height - 1);
+    return (const unsigned char *)plot->image.data + 3 * ((ptrdiff_t)y * plot->image.width + x);
+}
+
+static int is_gray(const unsigned char *color, int value)
+{
+    return abs(color[0] - value) <= 1 && abs(color[1] - value) <= 1 && abs(color[2] - value) <= 1;
+}
+
+static int is_colored(const unsigned char *color)
+{
+    int low = color[0] < color[1] ? color[0] : color[1], high = color[0] > color[1] ? color[0] : color[1];
+    low = color[2] < low ? color[2] : low;
+    high = color[2] > high ? color[2] : high;
+    return high - low > 60;
+}
+
+enum { SCALE = 6 };
+
+/* A side of the rectangle: coloured to its end, white beside and beyond. Lengths in pixels of the image. */
+static void expect_branch(const asj_image_file *plot, const asj_junction *junction, const asj_branch *branch)
+{
+    const double length = (double)branch->length, cosine = cos((double)branch->angle), sine = sin((double)branch->angle);
+    const struct {
+        double along, beside;
+        int colored;
+    } places[] = {{length / 2, 0, 1}, {length - 3, 0, 1}, {length / 2, 2, 0}, {length / 2, -2, 0}, {length + 3, 0, 0}};
+    assert_true(length > 100);
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        double x = (double)junction->x + places[i].along * cosine - places[i].beside * sine;
+        double y = (double)junction->y + places[i].along * sine + places[i].beside * cosine;
+        const unsigned char *color = pixel(plot, (int)(SCALE * (x + 0.5)), (int)(SCALE * (y + 0.5)));
+        assert_true(places[i].colored ? is_colored(color) : is_gray(color, 255));
+    }
+}
+
+static void junctions_are_drawn_where_they_are(void **state)
+{
+    (void)state;
+    expect_code(run_cli("detect", "-q", "-o", "scene.json", "--plot", "white.png", "--plot-background", "white", "--plot-scale", "6",
+                        "scene.png", NULL), 0);
+    asj_junction_file *found = NULL;
+    assert_int_equal(asj_junctions_read("scene.json", &found, NULL, 0), ASJ_OK);
+    asj_image_file *plot = read_plot("white.png");
+    assert_int_equal(plot->image.width, SCALE * SCENE_WIDTH);
+    assert_in_range(plot->image.height, SCALE * SCENE_HEIGHT, SCALE * SCENE_HEIGHT + 100);
+    assert_int_equal(found->junction_count, 4);
+    for (uint32_t i = 0; i < found->junction_count; i++) {
+        const asj_junction *junction = &found->junctions[i];
+        double x = (double)junction->x + 0.5, y = (double)junction->y + 0.5;
+        assert_true(is_gray(pixel(plot, (int)(SCALE * x), (int)(SCALE * y)), 26)); /* the dot */
+        assert_int_equal(junction->branch_count, 2);
+        for (int32_t b = 0; b < junction->branch_count; b++)
+            expect_branch(plot, junction, &junction->branches[b]);
+    }
+    asj_image_file_free(&plot);
+    asj_junction_file_free(&found);
+}
+
+static void the_photograph_is_pale_and_gray(void **state)
+{
+    (void)state;
+    expect_code(run_cli("detect", "-q", "--plot", "photo.png", "--plot-scale", "1", "scene.png", NULL), 0);
+    asj_image_file *plot = read_plot("photo.png");
+    assert_int_equal(plot->image.width, SCENE_WIDTH);
+    const unsigned char *outside = pixel(plot, 10, 10), *inside = pixel(plot, SCENE_WIDTH / 2, SCENE_HEIGHT / 2);
+    assert_true(is_gray(outside, outside[0]));
+    assert_true(is_gray(inside, inside[0]));
+    assert_true(outside[0] > 80 + 50 && inside[0] > outside[0] + 30);
+    asj_image_file_free(&plot);
+}
+
+static void small_images_are_enlarged(void **state)
+{
+    (void)state;
+    static const int sizes[][3] = {{320, 240, 960}, {600, 20, 1200}, {20, 667, 20}, {1, 1, 8}, {1100, 4, 1100}};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        write_constant("flat.png", sizes[i][0], sizes[i][1]);
+        expect_code(run_cli("detect", "-q", "--plot", "flat.plot.png", "flat.png", NULL), 0);
+        asj_image_file *plot = read_plot("flat.plot.png");
+        assert_int_equal(plot->image.width, sizes[i][2]);
+        asj_image_file_free(&plot);
+    }
+}
+
+static void the_colors_follow_the_option(void **state)
+{
+    (void)state;
+    size_t sizes[2] = {0};
+    expect_code(run_cli("detect", "-q", "--plot", "nfa.png", "scene.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "--plot", "branch.png", "--plot-color", "branch", "scene.png", NULL), 0);
+    char *nfa = read_bytes("nfa.png", &sizes[0]), *branch = read_bytes("branch.png", &sizes[1]);
+    assert_non_null(nfa);
+    assert_non_null(branch);
+    assert_false(sizes[0] == sizes[1] && memcmp(nfa, branch, sizes[0]) == 0);
+    free(nfa);
+    free(branch);
+}
+
+static void expect_text(const char *path, const char *beginning, const char *within, const char *without)
+{
+    size_t size = 0;
+    char *bytes = read_bytes(path, &size);
+    assert_non_null(bytes);
+    if (strncmp(bytes, beginning, strlen(beginning)) != 0)
+        fail_msg("%s does not begin with '%s'", path, beginning);
+    for (size_t i = 0; i < size; i++)
+        if (!bytes[i])
+            bytes[i] = ' ';
+    if (within && !strstr(bytes, within))
+        fail_msg("%s: no '%s'", path, within);
+    if (without && strstr(bytes, without))
+        fail_msg("%s: '%s'", path, without);
+    free(bytes);
+}
+
+static void svg_and_pdf_hold_the_photograph(void **state)
+{
+    (void)state;
+    expect_code(run_cli("detect", "-q", "--plot", "photo.svg", "--plot-scale", "2", "scene.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "--plot", "white.SVG", "--plot-background", "white", "scene.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "--plot", "photo.pdf", "--plot-scale", "2", "scene.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "--plot", "white.pdf", "--plot-background", "white", "scene.png", NULL), 0);
+    expect_text("photo.svg", "<?xml", "width=\"640", NULL);
+    expect_text("photo.svg", "<?xml", "data:image/png;base64,", NULL);
+    expect_text("photo.svg", "<?xml", "</svg>", NULL);
+    expect_text("white.SVG", "<?xml", "</svg>", "data:image/png");
+    expect_text("photo.pdf", "%PDF-", "/Subtype /Image", NULL);
+    expect_text("photo.pdf", "%PDF-", "%%EOF", NULL);
+    expect_text("white.pdf", "%PDF-", "%%EOF", "/Subtype /Image");
+}
+
+static void the_same_image_gives_the_same_plot(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"twice.png", "twice.svg", "twice.pdf"};
+    for (size_t i = 0; i < 3; i++) {
+        size_t sizes[2] = {0};
+        expect_code(run_cli("detect", "-q", "--plot", names[i], "scene.png", NULL), 0);
+        char *first = read_bytes(names[i], &sizes[0]);
+        expect_code(run_cli("detect", "-q", "--plot", names[i], "scene.png", NULL), 0);
+        char *second = read_bytes(names[i], &sizes[1]);
+        assert_non_null(first);
+        assert_non_null(second);
+        assert_int_equal(sizes[0], sizes[1]);
+        assert_memory_equal(first, second, sizes[0]);
+        free(first);
+        free(second);
+    }
+}
+
+static void a_plot_alone_prints_no_junctions(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "--plot", "alone.png", "scene.png", NULL);
+    expect_code(result, 0);
+    expect_empty(result, "standard output", result->out);
+    expect_in(result, result->err, "scene.png: 4 junctions -> alone.png");
+    result = run_cli("detect", "-q", "-o", "-", "--plot", "alone.png", "scene.png", NULL);
+    expect_code(result, 0);
+    assert_int_equal(strncmp(result->out, "4\n", 2), 0);
+}
+
+static void plots_go_to_the_folder_too(void **state)
+{
+    (void)state;
+    assert_int_equal(mkdir("plots", 0777), 0);
+    expect_code(run_cli("detect", "-q", "--out-dir", "plots", "--plot", "svg", "scene.png", "flat.png", NULL), 0);
+    assert_int_equal(count_files("plots"), 4);
+    expect_text("plots/scene.plot.svg", "<?xml", "</svg>", NULL);
+    expect_text("plots/flat.plot.svg", "<?xml", "</svg>", NULL);
+}
+
+static void plots_that_cannot_be_are_errors(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "--plot", "nowhere/plot.png", "scene.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: nowhere/plot.png: ");
+    write_constant("long.png", 30000, 1);
+    result = run_cli("detect", "--plot", "long.plot.png", "--plot-scale", "2", "long.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: long.plot.png: ");
+    expect_in(result, result->err, "--plot-scale");
+    assert_false(exists("long.plot.png"));
+    write_constant("long.png", 65535, 1);
+    expect_code(run_cli("detect", "--plot", "long.plot.png", "long.png", NULL), 0);
+    expect_code(run_cli("detect", "--plot", "long.plot.svg", "--plot-scale", "1", "long.png", NULL), 0);
+}
+
+static int make_files(void **state)
+{
+    (void)state;
+    write_scene("scene.png");
+    return 0;
+}
+
+static void a_build_without_cairo_says_so(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "--plot", "plot.png", "scene.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "cairo");
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(junctions_are_drawn_where_they_are),
+        cmocka_unit_test(the_photograph_is_pale_and_gray),
+        cmocka_unit_test(small_images_are_enlarged),
+        cmocka_unit_test(the_colors_follow_the_option),
+        cmocka_unit_test(svg_and_pdf_hold_the_photograph),
+        cmocka_unit_test(the_same_image_gives_the_same_plot),
+        cmocka_unit_test(a_plot_alone_prints_no_junctions),
+        cmocka_unit_test(plots_go_to_the_folder_too),
+        cmocka_unit_test(plots_that_cannot_be_are_errors),
+    };
+    const struct CMUnitTest without[] = {cmocka_unit_test(a_build_without_cairo_says_so)};
+    program_start(argc, argv);
+    if (argc > 2 && strcmp(argv[2], "without-cairo") == 0)
+        return program_end(cmocka_run_group_tests(without, make_files, NULL));
+    return program_end(cmocka_run_group_tests(tests, make_files, NULL));
+}

@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The command line of asj-cli: help, version, wrong usage. */
+#include "files.h"
+#include "program.h"
+
+#include <asj/options.h>
+#include <asj/version.h>
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void general_help_and_version(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("--help", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->out, "asj-cli detect");
+    expect_empty(result, "standard error", result->err);
+    result = run_cli("--version", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->out, asj_version_string());
+}
+
+static void help_names_every_option_of_the_library(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "--help", NULL);
+    expect_code(result, 0);
+    expect_empty(result, "standard error", result->err);
+    assert_true(asj_detect_option_count() > 0);
+    for (size_t i = 0; i < asj_detect_option_count(); i++) {
+        char name[80];
+        snprintf(name, sizeof name, "--%s ", asj_detect_option(i)->key);
+        for (char *c = name; *c; c++)
+            if (*c == '_')
+                *c = '-';
+        expect_in(result, result->out, name);
+    }
+}
+
+static void help_of_detect_wins_over_what_follows(void **state)
+{
+    (void)state;
+    expect_code(run_cli("detect", "-h", "--no-such-option", NULL), 0);
+}
+
+/* Each line of arguments, and what standard error must contain. */
+static const struct {
+    const char *arguments[8];
+    const char *message;
+} wrong[] = {
+    {{NULL}, "which command?"},
+    {{"find", "scene.png"}, "no command 'find'"},
+    {{"--quiet"}, "no option '--quiet'"},
+    {{"detect"}, "which image?"},
+    {{"detect", "--"}, "which image?"},
+    {{"detect", "--no-such", "scene.png"}, "no option '--no-such'"},
+    {{"detect", "--no-such=3", "scene.png"}, "no option '--no-such=3'"},
+    {{"detect", "-x", "scene.png"}, "no option '-x'"},
+    {{"detect", "-qx", "scene.png"}, "no option '-x'"},
+    {{"detect", "--strip", "3", "scene.png"}, "several options"},
+    {{"detect", "--quiet=yes", "scene.png"}, "--quiet takes no value"},
+    {{"detect", "scene.png", "-o"}, "-o needs a value"},
+    {{"detect", "scene.png", "--epsilon"}, "--epsilon needs a value"},
+    {{"detect", "--epsilon", "one", "scene.png"}, "epsilon: 'one' is not a number"},
+    {{"detect", "--epsilon", "nan", "scene.png"}, "epsilon: 'nan' is not a number"},
+    {{"detect", "--epsilon", "0x1", "scene.png"}, "epsilon: '0x1' is not a number"},
+    {{"detect", "--epsilon", "1,5", "scene.png"}, "epsilon: '1,5' is not a number"},
+    {{"detect", "--epsilon", "", "scene.png"}, "epsilon: '' is not a number"},
+    {{"detect", "--epsilon", "-1", "scene.png"}, "epsilon: -1 is outside"},
+    {{"detect", "--max-branches", "6", "scene.png"}, "max_branches: 6 is outside"},
+    {{"detect", "--max-branches", "2.5", "scene.png"}, "max_branches: '2.5' is not a whole number"},
+    {{"detect", "--field-radius", "4", "scene.png"}, "field_radius"},
+    {{"detect", "--preset", "best", "scene.png"}, "--preset: 'best'"},
+    {{"detect", "--format", "xml", "scene.png"}, "--format: 'xml'"},
+    {{"detect", "--backend", "cuda", "scene.png"}, "--backend: 'cuda'"},
+    {{"detect", "--threads", "-1", "scene.png"}, "--threads: '-1'"},
+    {{"detect", "--threads", "257", "scene.png"}, "--threads: '257'"},
+    {{"detect", "--threads", "1e1", "scene.png"}, "--threads: '1e1'"},
+    {{"detect", "--max-megapixels", "0", "scene.png"}, "--max-megapixels: '0'"},
+    {{"detect", "--max-megapixels", "nan", "scene.png"}, "--max-megapixels: 'nan'"},
+    {{"detect", "--plot-color", "red", "scene.png"}, "--plot-color: 'red'"},
+    {{"detect", "--plot-background", "red", "scene.png"}, "--plot-background: 'red'"},
+    {{"detect", "--plot-scale", "0", "scene.png"}, "--plot-scale: '0'"},
+    {{"detect", "--plot", "picture", "scene.png"}, "--plot"},
+    {{"detect", "--plot", ".png", "scene.png"}, "--plot"},
+    {{"detect", "--plot", "picture.jpg", "scene.png"}, "--plot"},
+    {{"detect", "--out-dir", ".", "--plot", "picture.png", "scene.png"}, "--plot"},
+    {{"detect", "-o", "a", "--out-dir", ".", "scene.png"}, "exclude each other"},
+    {{"detect", "scene.png", "scene.png"}, "--out-dir"},
+    {{"detect", "-o", "both.asj", "scene.png", "scene.png"}, "--out-dir"},
+    {{"detect", "--out-dir", ".", "scene.png", "folder/scene.png"}, "written twice, for scene.png and for folder/scene.png"},
+    {{"detect", "--out-dir", ".", "scene.png", "scene.jpg"}, "./scene.asj: would be written twice"},
+    {{"detect", "-o", "scene.png", "scene.png"}, "scene.png: is an input image"},
+    {{"detect", "-o", "./scene.png", "scene.png"}, "scene.png: is an input image"},
+    {{"detect", "-"}, "standard input"},
+};
+
+static void wrong_usage_ends_with_2_and_says_why(void **state)
+{
+    (void)state;
+    write_scene("scene.png");
+    int files = count_files(".");
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        const outcome *result = run_cli_list(wrong[i].arguments);
+        if (result->code != 2)
+            print_error("in case %zu, %s\n", i, wrong[i].message);
+        expect_code(result, 2);
+        expect_in(result, result->err, wrong[i].message);
+        expect_in(result, result->err, "--help");
+        expect_empty(result, "standard output", result->out);
+        assert_int_equal(strncmp(result->err, "asj-cli", 7), 0);
+    }
+    assert_int_equal(count_files("."), files);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(general_help_and_version),
+        cmocka_unit_test(help_names_every_option_of_the_library),
+        cmocka_unit_test(help_of_detect_wins_over_what_follows),
+        cmocka_unit_test(wrong_usage_ends_with_2_and_says_why),
+    };
+    program_start(argc, argv);
+    return program_end(cmocka_run_group_tests(tests, NULL, NULL));
+}
