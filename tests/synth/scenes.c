@@ -98,9 +98,10 @@ void synth_add_star(synth_scene *scene, synth_point centre, const double *angles
         double to = angles[(i + 1) % count];
         while (to <= from)
             to += 2.0 * PI;
-        /* The rim is drawn in steps of at most 45 deg, so that a sector of more than 180 deg is a polygon too. */
+        /* The rim is drawn in chords of at most 100 deg: a sector of more than 180 deg is a polygon too, and no rim corner is
+         * shallow. */
         synth_point corners[12];
-        const int32_t steps = (int32_t)ceil((to - from) / (0.25 * PI) - 1e-9);
+        const int32_t steps = (int32_t)ceil((to - from) / degrees(100.0) - 1e-9);
         int32_t n = 0;
         corners[n++] = centre;
         for (int32_t k = 0; k <= steps && n < 12; k++)
