@@ -53,35 +53,46 @@ size_t asj_field_scratch(const asj_field *field)
     return asj_sector_scratch(&field->sectors) + 3 * (size_t)field->sectors.count * ASJ_LANES;
 }
 
+/* Loops over ASJ_LANES are written so that compilers turn them into a few vector instructions: 16-bit values, strengths below 2^15 so
+ * that they can be compared as signed numbers, no branches. */
+
 /* Turns sums into strengths, in place. */
-static void strengths(const asj_sectors *s, uint16_t *sums)
+static void strengths(const asj_sectors *s, int16_t *restrict sums)
 {
     for (int32_t k = 0; k < s->count; k++) {
-        uint16_t *z = sums + (size_t)k * ASJ_LANES;
+        int16_t *z = sums + (size_t)k * ASJ_LANES;
         const uint16_t mean = s->mean[k], scale = s->scale[k];
         for (int i = 0; i < ASJ_LANES; i++) {
-            uint16_t excess = (uint16_t)(z[i] > mean ? z[i] - mean : 0);
-            z[i] = (uint16_t)((uint32_t)excess * scale >> 16);
+            uint16_t sum = (uint16_t)z[i];
+            uint16_t excess = (uint16_t)((sum > mean ? sum : mean) - mean);
+            z[i] = (int16_t)(uint16_t)((uint32_t)excess * scale >> 16);
         }
     }
 }
 
-/* peaks[k][i] = 0xffff where sector k of pixel i reaches least[k] and is the largest of its neighbourhood, else 0. Of equal
- * neighbours the first one counts. */
-static void find_peaks(const asj_field *field, const uint16_t *z, const uint16_t *least, uint16_t *peaks)
+/* peaks[k][i] = -1 where sector k of pixel i reaches least[k] and is the largest of its neighbourhood, else 0. Of equal neighbours the
+ * first one counts. */
+static void find_peaks(const asj_field *field, const int16_t *z, const uint16_t *least, int16_t *peaks)
 {
     const int32_t count = field->sectors.count;
     for (int32_t k = 0; k < count; k++) {
-        const uint16_t *here = z + (size_t)k * ASJ_LANES;
-        uint16_t *peak = peaks + (size_t)k * ASJ_LANES;
+        const int16_t *restrict here = z + (size_t)k * ASJ_LANES;
+        int16_t *restrict peak = peaks + (size_t)k * ASJ_LANES;
+        const int16_t threshold = (int16_t)(least[k] - 1);
+        int16_t before[ASJ_LANES], after[ASJ_LANES];
         for (int i = 0; i < ASJ_LANES; i++)
-            peak[i] = here[i] >= least[k] ? 0xffff : 0;
+            before[i] = threshold;
+        memset(after, 0, sizeof after);
         for (int32_t d = 1; d <= field->suppress; d++) {
-            const uint16_t *left = z + (size_t)((k + count - d) % count) * ASJ_LANES;
-            const uint16_t *right = z + (size_t)((k + d) % count) * ASJ_LANES;
-            for (int i = 0; i < ASJ_LANES; i++)
-                peak[i] &= (uint16_t)((here[i] > left[i] ? 0xffff : 0) & (here[i] >= right[i] ? 0xffff : 0));
+            const int16_t *left = z + (size_t)(k >= d ? k - d : k + count - d) * ASJ_LANES;
+            const int16_t *right = z + (size_t)(k + d < count ? k + d : k + d - count) * ASJ_LANES;
+            for (int i = 0; i < ASJ_LANES; i++) {
+                before[i] = before[i] > left[i] ? before[i] : left[i];
+                after[i] = after[i] > right[i] ? after[i] : right[i];
+            }
         }
+        for (int i = 0; i < ASJ_LANES; i++)
+            peak[i] = (int16_t)-((here[i] > before[i]) & (here[i] >= after[i]));
     }
 }
 
@@ -104,52 +115,73 @@ static void insert(asj_field_branch *list, asj_field_branch branch)
         }
 }
 
+/* Strengths and peaks at ASJ_LANES pixels; where they stand in the scratch. */
+static void evaluate(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, const uint16_t *least,
+                     uint16_t *scratch, int16_t **z, int16_t **peaks)
+{
+    const asj_sectors *s = &field->sectors;
+    const ptrdiff_t at = y * frame->stride + x;
+    *z = (int16_t *)(scratch + asj_sector_scratch(s));
+    *peaks = *z + (size_t)s->count * ASJ_LANES;
+    asj_sector_sums(s, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, (uint16_t *)*z);
+    strengths(s, *z);
+    find_peaks(field, *z, least, *peaks);
+}
+
+static int any_lane(const int16_t *lanes)
+{
+    int16_t any = 0;
+    for (int i = 0; i < ASJ_LANES; i++)
+        any |= lanes[i];
+    return any != 0;
+}
+
 void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
                      asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES])
 {
     const asj_sectors *s = &field->sectors;
-    const ptrdiff_t at = y * frame->stride + x;
-    uint16_t *z = scratch + asj_sector_scratch(s), *peaks = z + (size_t)s->count * ASJ_LANES;
-    asj_sector_sums(s, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, z);
-    strengths(s, z);
-    find_peaks(field, z, field->keep, peaks);
+    int16_t *z, *peaks;
+    evaluate(field, frame, x, y, field->keep, scratch, &z, &peaks);
     memset(branches, 0, ASJ_LANES * sizeof *branches);
     for (int32_t k = 0; k < s->count; k++) {
-        const uint16_t *before = z + (size_t)(k > 0 ? k - 1 : s->count - 1) * ASJ_LANES;
-        const uint16_t *after = z + (size_t)(k + 1 < s->count ? k + 1 : 0) * ASJ_LANES;
-        const uint16_t *here = z + (size_t)k * ASJ_LANES, *peak = peaks + (size_t)k * ASJ_LANES;
+        const int16_t *before = z + (size_t)(k > 0 ? k - 1 : s->count - 1) * ASJ_LANES;
+        const int16_t *after = z + (size_t)(k + 1 < s->count ? k + 1 : 0) * ASJ_LANES;
+        const int16_t *here = z + (size_t)k * ASJ_LANES, *peak = peaks + (size_t)k * ASJ_LANES;
+        if (!any_lane(peak))
+            continue;
         for (int i = 0; i < ASJ_LANES; i++)
             if (peak[i])
-                insert(branches[i], (asj_field_branch){interpolate(s, k, before[i], here[i], after[i]), here[i]});
+                insert(branches[i], (asj_field_branch){interpolate(s, k, before[i], here[i], after[i]), (uint16_t)here[i]});
     }
 }
 
 /* out[k] = in[k] | in[k + shift], circularly. */
-static void or_shifted(const uint16_t *in, uint16_t *out, int32_t count, int32_t shift)
+static void or_shifted(const int16_t *restrict in, int16_t *restrict out, int32_t count, int32_t shift)
 {
-    for (int32_t k = 0; k < count; k++) {
-        const uint16_t *a = in + (size_t)k * ASJ_LANES, *b = in + (size_t)((k + shift) % count) * ASJ_LANES;
-        for (int i = 0; i < ASJ_LANES; i++)
-            out[(size_t)k * ASJ_LANES + (size_t)i] = a[i] | b[i];
-    }
+    const size_t direct = (size_t)(count - shift) * ASJ_LANES, moved = (size_t)shift * ASJ_LANES;
+    for (size_t i = 0; i < direct; i++)
+        out[i] = in[i] | in[i + moved];
+    for (size_t i = 0; i < moved; i++)
+        out[direct + i] = in[direct + i] | in[i];
 }
 
 uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch)
 {
-    const asj_sectors *s = &field->sectors;
-    const ptrdiff_t at = y * frame->stride + x;
-    const int32_t count = s->count;
-    uint16_t *z = scratch + asj_sector_scratch(s), *peaks = z + (size_t)count * ASJ_LANES;
-    uint16_t *window = peaks + (size_t)count * ASJ_LANES;
-    asj_sector_sums(s, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, z);
-    strengths(s, z);
-    find_peaks(field, z, field->candidate, peaks);
+    const int32_t count = field->sectors.count;
+    int16_t *z, *peaks;
+    evaluate(field, frame, x, y, field->candidate, scratch, &z, &peaks);
+    int16_t some[ASJ_LANES] = {0};
+    for (int32_t k = 0; k < count; k++)
+        for (int i = 0; i < ASJ_LANES; i++)
+            some[i] |= peaks[(size_t)k * ASJ_LANES + (size_t)i];
+    if (!any_lane(some))
+        return 0;
 
     /* A pair (k, k + d) counts for apart <= d <= count / 2 - apart. The union of all peaks k + d in that range is built by doubling:
-     * `window`[k] holds the union over [k, k + width). */
+     * `from`[k] holds the union over [k, k + width). The strengths are not needed any more: their place serves too. */
     const int32_t target = count / 2 - 2 * field->apart + 1;
     int32_t width = 1;
-    uint16_t *from = peaks, *spare = z, *to = window;
+    int16_t *from = peaks, *spare = z, *to = peaks + (size_t)count * ASJ_LANES;
     while (width < target) {
         int32_t shift = 2 * width <= target ? width : target - width;
         or_shifted(from, to, count, shift);
@@ -158,10 +190,10 @@ uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, in
         to = spare;
         spare = from;
     }
-    uint16_t found[ASJ_LANES] = {0};
+    int16_t found[ASJ_LANES] = {0};
     for (int32_t k = 0; k < count; k++) {
-        const uint16_t *peak = peaks + (size_t)k * ASJ_LANES;
-        const uint16_t *partners = from + (size_t)((k + field->apart) % count) * ASJ_LANES;
+        const int16_t *peak = peaks + (size_t)k * ASJ_LANES;
+        const int16_t *partners = from + (size_t)((k + field->apart) % count) * ASJ_LANES;
         for (int i = 0; i < ASJ_LANES; i++)
             found[i] |= peak[i] & partners[i];
     }
