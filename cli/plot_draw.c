@@ -124,7 +124,8 @@ static void draw_legend(cairo_t *cairo, const cli_plot_layout *layout, const asj
 {
     char text[64];
     double em = layout->font, base = layout->image_height + 1.55 * em, middle = base - 0.35 * em;
-    cairo_select_font_face(cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    /* the font inside cairo: the same on every machine, and there is always one */
+    cairo_select_font_face(cairo, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cairo, em);
     snprintf(text, sizeof text, "%lu junction%s", (unsigned long)detection->junction_count,
              detection->junction_count == 1 ? "" : "s");

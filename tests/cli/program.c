@@ -88,7 +88,7 @@ static char *read_capture(const char *name, size_t *size)
     return text;
 }
 
-static pid_t spawn(int standard_output, const char *const *arguments)
+pid_t start_cli(int standard_output, int standard_error, const char *const *arguments)
 {
     char *argv[MOST_ARGUMENTS + 2];
     size_t count = 0;
@@ -106,14 +106,11 @@ static pid_t spawn(int standard_output, const char *const *arguments)
     if (standard_output >= 0)
         posix_spawn_file_actions_adddup2(&actions, standard_output, 1);
     posix_spawn_file_actions_addopen(&actions, 2, capture_path("err"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    if (standard_error >= 0)
+        posix_spawn_file_actions_adddup2(&actions, standard_error, 2);
     assert_int_equal(posix_spawn(&process, program, &actions, NULL, argv, environ), 0);
     posix_spawn_file_actions_destroy(&actions);
     return process;
-}
-
-pid_t start_cli(const char *const *arguments)
-{
-    return spawn(-1, arguments);
 }
 
 const outcome *finish_cli(pid_t process)
@@ -131,7 +128,7 @@ const outcome *finish_cli(pid_t process)
 
 const outcome *run_cli_list(const char *const *arguments)
 {
-    return finish_cli(start_cli(arguments));
+    return finish_cli(start_cli(-1, -1, arguments));
 }
 
 static void collect(const char *first, va_list rest, const char *arguments[MOST_ARGUMENTS + 1])
@@ -159,7 +156,7 @@ const outcome *run_cli_to(int standard_output, const char *argument, ...)
     va_start(rest, argument);
     collect(argument, rest, arguments);
     va_end(rest);
-    return finish_cli(spawn(standard_output, arguments));
+    return finish_cli(start_cli(standard_output, -1, arguments));
 }
 
 void expect_code(const outcome *result, int code)

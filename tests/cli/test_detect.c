@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj-cli detect: what it writes, where, and what it says. */
-#define _POSIX_C_SOURCE 200809L
+#define _XOPEN_SOURCE 700
 #include "files.h"
 #include "program.h"
 
@@ -16,6 +16,7 @@
 
 #include <cmocka.h>
 
+#include <fcntl.h>
 #include <math.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -230,21 +231,32 @@ static void existing_results_are_replaced(void **state)
     expect_scene("old.asj");
 }
 
-/* The same image under many names; stopped after the first result. */
+enum { IMAGES = 500 };
+
+/* The same image under many names, with a new folder for the results. */
+static void list_many_images(const char *folder, const char *arguments[IMAGES + 4])
+{
+    static char names[IMAGES][16];
+    arguments[0] = "detect";
+    arguments[1] = "--out-dir";
+    arguments[2] = folder;
+    arguments[3 + IMAGES] = NULL;
+    assert_int_equal(mkdir(folder, 0777), 0);
+    for (size_t i = 0; i < IMAGES; i++) {
+        snprintf(names[i], sizeof names[i], "link%zu.png", i);
+        if (!exists(names[i]))
+            assert_int_equal(symlink("scene.png", names[i]), 0);
+        arguments[3 + i] = names[i];
+    }
+}
+
 static void an_interrupt_leaves_only_whole_results(void **state)
 {
     (void)state;
-    enum { IMAGES = 500 };
-    static char names[IMAGES][16];
-    const char *arguments[IMAGES + 5] = {"detect", "--out-dir", "stopped"};
+    const char *arguments[IMAGES + 4];
     const struct timespec pause = {0, 1000000};
-    assert_int_equal(mkdir("stopped", 0777), 0);
-    for (size_t i = 0; i < IMAGES; i++) {
-        snprintf(names[i], sizeof names[i], "link%zu.png", i);
-        assert_int_equal(symlink("scene.png", names[i]), 0);
-        arguments[3 + i] = names[i];
-    }
-    pid_t process = start_cli(arguments);
+    list_many_images("stopped", arguments);
+    pid_t process = start_cli(-1, -1, arguments);
     while (!exists("stopped/link0.asj") && kill(process, 0) == 0)
         nanosleep(&pause, NULL);
     assert_int_equal(kill(process, SIGINT), 0);
@@ -262,6 +274,48 @@ static void an_interrupt_leaves_only_whole_results(void **state)
     }
     assert_in_range(done, 1, IMAGES - 1);
     assert_int_equal(count_files("stopped"), done); /* no file with another name */
+}
+
+/* Until a line of progress has come, or the end. */
+static int sees_progress(int terminal)
+{
+    char text[4096];
+    size_t used = 0;
+    ssize_t count;
+    while (used < sizeof text - 1 && (count = read(terminal, text + used, sizeof text - 1 - used)) > 0) {
+        used += (size_t)count;
+        text[used] = '\0';
+        const char *line = strstr(text, "\r\033[K[");
+        if (line && strstr(line, "/500] link") && strstr(line, " %"))
+            return 1;
+        if (used > sizeof text / 2) {
+            memmove(text, text + used - 200, 200);
+            used = 200;
+        }
+    }
+    return 0;
+}
+
+static void progress_is_shown_on_a_terminal(void **state)
+{
+    (void)state;
+    const char *arguments[IMAGES + 4];
+    int terminal = posix_openpt(O_RDWR | O_NOCTTY);
+    if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) {
+        print_message("[  NOTE    ] no terminal to be had: not tested\n");
+        skip();
+    }
+    int end = open(ptsname(terminal), O_RDWR | O_NOCTTY);
+    assert_true(end >= 0);
+    list_many_images("watched", arguments);
+    pid_t process = start_cli(-1, end, arguments);
+    close(end);
+    int seen = sees_progress(terminal);
+    kill(process, SIGTERM);
+    close(terminal);
+    const outcome *result = finish_cli(process);
+    assert_int_equal(seen, 1);
+    expect_code(result, 128 + SIGTERM);
 }
 
 static int make_files(void **state)
@@ -286,6 +340,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(many_images_go_to_a_folder),
         cmocka_unit_test(existing_results_are_replaced),
         cmocka_unit_test(an_interrupt_leaves_only_whole_results),
+        cmocka_unit_test(progress_is_shown_on_a_terminal),
     };
     program_start(argc, argv);
     return program_end(cmocka_run_group_tests(tests, make_files, NULL));
