@@ -20,7 +20,7 @@ typedef struct asj_junction_list {
 /* Writes "path: line N: cause" and returns ASJ_ERROR_FORMAT. */
 asj_status asj_line_fail(const asj_message *message, size_t line, const char *format, ...) ASJ_IO_PRINTF(3, 4);
 
-/* A double that becomes a float of the results: 0 when it is too large for one. */
+/* 1 when the float nearest to a finite number is finite. */
 int asj_fits_float(double value);
 
 /* Sets the angle of a branch, brought into [0, 2 pi). */

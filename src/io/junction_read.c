@@ -2,7 +2,6 @@
 /* Junction files: reads the bytes, chooses the reader by content. */
 #include "junction_list.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -28,7 +27,7 @@ asj_status asj_line_fail(const asj_message *message, size_t line, const char *fo
 
 int asj_fits_float(double value)
 {
-    return value >= -(double)FLT_MAX && value <= (double)FLT_MAX;
+    return fabs(value) < 3.4028235677973366e38; /* from there on the nearest float is infinity */
 }
 
 void asj_set_angle(asj_branch *branch, double angle)
