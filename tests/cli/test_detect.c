@@ -276,8 +276,18 @@ static void an_interrupt_leaves_only_whole_results(void **state)
     assert_int_equal(count_files("stopped"), done); /* no file with another name */
 }
 
-/* Until a line of progress has come, or the end. */
-static int sees_progress(int terminal)
+/* A terminal: the end for the program, and the end to read from. 0 = there is none. */
+static int open_terminal(int *inner, int *terminal)
+{
+    *terminal = posix_openpt(O_RDWR | O_NOCTTY);
+    if (*terminal < 0 || grantpt(*terminal) != 0 || unlockpt(*terminal) != 0)
+        return 0;
+    *inner = open(ptsname(*terminal), O_RDWR | O_NOCTTY);
+    return *inner >= 0;
+}
+
+/* Reads until a line of progress with `name` in it has come (1), or the end (0). */
+static int sees_progress(int terminal, const char *name)
 {
     char text[4096];
     size_t used = 0;
@@ -285,8 +295,9 @@ static int sees_progress(int terminal)
     while (used < sizeof text - 1 && (count = read(terminal, text + used, sizeof text - 1 - used)) > 0) {
         used += (size_t)count;
         text[used] = '\0';
-        const char *line = strstr(text, "\r\033[K[");
-        if (line && strstr(line, "/500] link") && strstr(line, " %"))
+        const char *line = strstr(text, "\r\033[K");
+        line = line ? strstr(line, name) : NULL;
+        if (line && strstr(line, " %"))
             return 1;
         if (used > sizeof text / 2) {
             memmove(text, text + used - 200, 200);
@@ -300,22 +311,46 @@ static void progress_is_shown_on_a_terminal(void **state)
 {
     (void)state;
     const char *arguments[IMAGES + 4];
-    int terminal = posix_openpt(O_RDWR | O_NOCTTY);
-    if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) {
+    int terminal, end = -1;
+    if (!open_terminal(&end, &terminal)) {
         print_message("[  NOTE    ] no terminal to be had: not tested\n");
         skip();
     }
-    int end = open(ptsname(terminal), O_RDWR | O_NOCTTY);
-    assert_true(end >= 0);
     list_many_images("watched", arguments);
     pid_t process = start_cli(-1, end, arguments);
     close(end);
-    int seen = sees_progress(terminal);
+    int seen = sees_progress(terminal, "/500] link");
     kill(process, SIGTERM);
     close(terminal);
     const outcome *result = finish_cli(process);
     assert_int_equal(seen, 1);
     expect_code(result, 128 + SIGTERM);
+}
+
+/* The first line of progress comes from the middle of a detection. */
+static void an_interrupt_stops_a_detection_in_the_middle(void **state)
+{
+    (void)state;
+    static const char *const arguments[] = {"detect", "--threads", "1", "-o", "middle/large.asj", "large.png", NULL};
+    int terminal, end = -1;
+    if (!open_terminal(&end, &terminal)) {
+        print_message("[  NOTE    ] no terminal to be had: not tested\n");
+        skip();
+    }
+    assert_int_equal(mkdir("middle", 0777), 0);
+    write_constant("large.png", 4000, 3000);
+    pid_t process = start_cli(-1, end, arguments);
+    close(end);
+    if (!sees_progress(terminal, "large.png: ")) {
+        expect_code(finish_cli(process), 0);
+        print_message("[  NOTE    ] this machine was too fast: not tested\n");
+        skip();
+    }
+    kill(process, SIGINT);
+    const outcome *result = finish_cli(process);
+    close(terminal);
+    expect_code(result, 130);
+    assert_int_equal(count_files("middle"), 0);
 }
 
 static int make_files(void **state)
@@ -341,6 +376,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(existing_results_are_replaced),
         cmocka_unit_test(an_interrupt_leaves_only_whole_results),
         cmocka_unit_test(progress_is_shown_on_a_terminal),
+        cmocka_unit_test(an_interrupt_stops_a_detection_in_the_middle),
     };
     program_start(argc, argv);
     return program_end(cmocka_run_group_tests(tests, make_files, NULL));

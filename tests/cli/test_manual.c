@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The manual page holds a paragraph for every row of the library's option table, with range and defaults, and no other.
- * `test_manual asj-cli.1 --update` writes these paragraphs anew. */
+ * `ninja update-manual` (test_manual asj-cli.1 --update) writes these paragraphs anew. */
 #include <asj/options.h>
 
 #include <setjmp.h>
@@ -119,7 +119,7 @@ static void the_option_table_is_in_the_manual(void **state)
         expected.used = 0;
         add_row(&expected, asj_detect_option(i));
         if (!strstr(begin, expected.text))
-            print_error("%s should have:\n%s(test_manual %s --update writes it)\n", path, expected.text, path);
+            print_error("%s should have:\n%s(ninja update-manual writes it)\n", path, expected.text);
         assert_non_null(strstr(begin, expected.text));
     }
     *end = '\0';
