@@ -69,8 +69,8 @@ static void expect_branch(const asj_image_file *plot, const asj_junction *juncti
 static void junctions_are_drawn_where_they_are(void **state)
 {
     (void)state;
-    expect_code(run_cli("detect", "-q", "-o", "scene.json", "--plot", "white.png", "--plot-background", "white", "--plot-scale", "6",
-                        "scene.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "-o", "scene.json", "--plot", "white.png", "--plot-background", "white",
+                        "--plot-scale", "6", "scene.png", NULL), 0);
     asj_junction_file *found = NULL;
     assert_int_equal(asj_junctions_read("scene.json", &found, NULL, 0), ASJ_OK);
     asj_image_file *plot = read_plot("white.png");
