@@ -244,29 +244,49 @@ static asj_status locate(detection *d)
     return suppress(d);
 }
 
-/* Step 4: branch lengths. */
+/* Whether a branch has no length yet, or has turned or moved away by more than half a pixel somewhere along the ray that gave it. */
+static int needs_scan(const asj_draft *draft, const asj_draft_branch *branch)
+{
+    const double turned = asj_angle_distance(branch->angle, branch->scanned[2]) * branch->length;
+    return branch->length <= 0 || turned + hypot(draft->x - branch->scanned[0], draft->y - branch->scanned[1]) > 0.5;
+}
+
+static void set_length(const detection *d, const asj_ray *ray, asj_draft_branch *branch)
+{
+    const double length = d->options->scan_axial ? 0.5 * (ray->forward + ray->axial) : ray->forward;
+    /* a ray that starts at the isotropic scale is as long as that already */
+    branch->length = d->options->scan_start == 0 && length < ray->start ? ray->start : length;
+    branch->scanned[0] = ray->x;
+    branch->scanned[1] = ray->y;
+    branch->scanned[2] = ray->angle;
+}
+
+/* Step 4: branch lengths, where they are not known or no longer hold. */
 static asj_status scan(detection *d)
 {
-    size_t count = 0;
+    size_t count = 0, total = 0;
     for (size_t i = 0; i < d->draft_count; i++)
-        count += (size_t)d->drafts[i].branch_count;
-    asj_ray *rays = asj_allocate(&d->context->memory, count, sizeof *rays), *next = rays;
-    if (!rays)
-        return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu rays", count);
-    for (size_t i = 0; i < d->draft_count; i++) {
-        const asj_draft *draft = &d->drafts[i];
-        const int32_t start = d->options->scan_start > 0 ? d->options->scan_start : (int32_t)draft->radius;
-        for (int32_t b = 0; b < draft->branch_count; b++)
-            *next++ = (asj_ray){draft->x, draft->y, draft->branches[b].angle, start, 0, 0};
-    }
-    asj_status status = asj_scan_rays(d->context, &d->detector->scan, &d->detector->frame, rays, count);
-    next = rays;
-    for (size_t i = 0; i < d->draft_count && status == ASJ_OK; i++)
-        for (int32_t b = 0; b < d->drafts[i].branch_count; b++, next++) {
-            double length = d->options->scan_axial ? 0.5 * (next->forward + next->axial) : next->forward;
-            /* a ray that starts at the isotropic scale is as long as that already */
-            d->drafts[i].branches[b].length = d->options->scan_start == 0 && length < next->start ? next->start : length;
+        total += (size_t)d->drafts[i].branch_count;
+    asj_ray *rays = asj_allocate(&d->context->memory, total, sizeof *rays);
+    asj_draft_branch **branches = asj_allocate(&d->context->memory, total, sizeof *branches);
+    asj_status status = ASJ_OK;
+    if (rays && branches) {
+        for (size_t i = 0; i < d->draft_count; i++) {
+            asj_draft *draft = &d->drafts[i];
+            const int32_t start = d->options->scan_start > 0 ? d->options->scan_start : (int32_t)draft->radius;
+            for (int32_t b = 0; b < draft->branch_count; b++)
+                if (needs_scan(draft, &draft->branches[b])) {
+                    branches[count] = &draft->branches[b];
+                    rays[count++] = (asj_ray){draft->x, draft->y, draft->branches[b].angle, start, 0, 0};
+                }
         }
+        status = asj_scan_rays(d->context, &d->detector->scan, &d->detector->frame, rays, count);
+        for (size_t i = 0; i < count && status == ASJ_OK; i++)
+            set_length(d, &rays[i], branches[i]);
+    } else {
+        status = asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu rays", total);
+    }
+    asj_release(&d->context->memory, branches);
     asj_release(&d->context->memory, rays);
     return status;
 }

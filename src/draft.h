@@ -8,6 +8,7 @@
 typedef struct asj_draft_branch {
     double angle;           /* rad, outwards */
     double length;          /* px; 0 before the scan */
+    double scanned[3];      /* x, y, angle of the ray that gave the length */
     double strength;        /* standard deviations */
     double log_nfa;         /* natural logarithm */
     double offset;          /* px: the fitted line passes this far from the junction, along (-sin, cos) of the angle */

@@ -12,13 +12,16 @@
  * no more than THIN px apart all along, the branch is a thin line, and the middle of both is taken.
  *
  * Covariance: with residuals e(t), variance s^2 = sum W e^2 / (n - 2) per unit of weight; then cov(a, b) = s^2 (X' W X)^-1. Neighbouring
- * samples share pixels, so s^2 is multiplied by CORRELATION, measured on synthetic scenes. */
+ * samples share pixels, so s^2 is multiplied by factors that make errors and stated uncertainties agree on synthetic scenes
+ * (tests/accuracy). */
 #include "line_fit.h"
 
 #include <math.h>
 
 #define MAX_SAMPLES 96
-#define CORRELATION 2.0
+#define OFFSET_CORRELATION 3.0
+#define ANGLE_CORRELATION 10.0
+#define LEAST_ERROR 0.03 /* px: systematic error of a centroid (sampling, interpolation), at either end of a line */
 #define THIN 4.5
 
 typedef struct samples {
@@ -90,9 +93,9 @@ static int solve(const samples *in, line *out)
         double e = in->centroid[i] - out->a - out->b * in->t[i];
         error += in->weight[i] * e * e;
     }
-    double variance = CORRELATION * error / (in->count - 2) + 1e-6 * w / in->count;
-    out->a_variance = variance * wtt / determinant;
-    out->b_variance = variance * w / determinant;
+    const double variance = error / (in->count - 2), span = in->t[in->count - 1] - in->t[0];
+    out->a_variance = OFFSET_CORRELATION * variance * wtt / determinant + LEAST_ERROR * LEAST_ERROR;
+    out->b_variance = ANGLE_CORRELATION * variance * w / determinant + 2 * LEAST_ERROR * LEAST_ERROR / (span * span);
     return 1;
 }
 

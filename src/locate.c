@@ -29,15 +29,15 @@ void asj_locate_start(const asj_isotropic_junction *junction, asj_draft *draft)
     }
 }
 
-/* Each line says n.(p - p0) = offset with variance v at the junction; weights 1 / (v + floor) sum to 1. */
+/* Each line says n.(p - p0) = offset with variance v at the junction: weights 1 / v, covariance of the location the inverse of the normal
+ * matrix. */
 int asj_locate_meet(asj_draft *draft)
 {
-    const double floor_variance = 0.01; /* px^2: no line of a real image is known better than 0.1 px where it ends */
     double xx = 0, xy = 0, yy = 0, bx = 0, by = 0, total = 0;
     for (int32_t i = 0; i < draft->branch_count; i++) {
         const asj_draft_branch *branch = &draft->branches[i];
         double nx = -sin(branch->angle), ny = cos(branch->angle);
-        double weight = 1 / (branch->offset_variance + floor_variance);
+        double weight = 1 / branch->offset_variance;
         xx += weight * nx * nx;
         xy += weight * nx * ny;
         yy += weight * ny * ny;

@@ -20,7 +20,7 @@ static const char *const refinements[] = {"line_fit", "search", NULL};
 static const asj_option_info rows[] = {
     NUMBER(epsilon, "NFA", 1e-30, 1e6, 1, 1, "false alarms allowed in an image of noise, for junctions and for branches"),
     NUMBER(minimum_length, "px", 0, 1000, 7, 0, "branches shorter than this are dropped"),
-    NUMBER(candidate_strength, "sd", 0, 12, 3.5, 0, "strength that two local branches need at a candidate pixel; lower finds weaker corners"),
+    NUMBER(candidate_strength, "sd", 0, 12, 3, 0, "strength that two local branches need at a candidate pixel; lower finds weaker corners"),
     NUMBER(gradient_epsilon, "grey/px", 0.05, 16, 0.4, 0.05, "gradient below which a surface counts as flat; raise it against compression noise"),
     SWITCH(standardise, 0, 1, "give each gradient axis zero mean and unit variance over the image"),
     INTEGER(field_radius, "px", 3, 9, 7, 7, "radius of the local junctions: 3, 5, 7 or 9"),
@@ -39,6 +39,8 @@ static const asj_option_info rows[] = {
     NUMBER(max_move, "px", 0.5, 10, 2.5, 2.5, "farthest that a junction may move while it is located"),
     NUMBER(merge_angle, "deg", 0, 60, 15, 0, "of two branches closer than this one stays"),
     SWITCH(strip_test, 1, 0, "report a branch only if the strip along it is meaningful"),
+    NUMBER(max_deviation, "deg", 1, 90, 12, 90, "largest angle between a branch and the edges under it"),
+    SWITCH(ignore_frame, 1, 0, "drop branches that run along the border of the image"),
     NUMBER(strip_half_width, "px", 0.5, 4, 1.5, 1.5, "half-width of that strip"),
     NUMBER(strip_length, "px", 10, 1000, 60, 60, "length of that strip at most"),
 };

@@ -8,31 +8,37 @@
  *
  * Departure: the paper accepts a branch by the NFA of the scan itself. That one is a good stopping rule and no guarantee: local
  * branches are maxima over orientations and neighbouring arcs share pixels, so in noise a step passes with probability 0.19 instead
- * of 1/256. The strip's NFA bounds the false detections at every epsilon (tests/accuracy/noise.c). */
+ * of 1/256. The strip's NFA bounds the false detections at every epsilon (tests/accuracy/noise.c).
+ *
+ * The strip also knows which way its gradients point: with g_u and g_n the components along and across the branch, the dominant
+ * direction is off the normal by  1/2 atan2(2 sum g_u g_n, sum g_n^2 - sum g_u^2)  (structure tensor). A line of samples that runs
+ * askew over a bundle of nearly parallel edges collects junction-ness from all of them, but their gradients give it away. */
 #include "strip.h"
 #include "gradient.h"
 
 #include <math.h>
 
-typedef struct strip {
-    double sum;
+typedef struct sums {
+    double gamma, uu, un, nn;
     int32_t pixels;
-} strip;
+} sums;
 
-static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double ux, double uy, strip *s)
+static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double ux, double uy, sums *s)
 {
     if (x < 0 || y < 0 || x >= frame->width || y >= frame->height)
         return;
-    ptrdiff_t at = y * frame->stride + x;
-    double gx = frame->gradient_x[at], gy = frame->gradient_y[at];
-    double gamma = fabs(gy * ux - gx * uy) - fabs(gx * ux + gy * uy);
-    if (gamma > 0)
-        s->sum += gamma / ASJ_GRADIENT_ONE;
+    const ptrdiff_t at = y * frame->stride + x;
+    const double gx = (double)frame->gradient_x[at] / ASJ_GRADIENT_ONE, gy = (double)frame->gradient_y[at] / ASJ_GRADIENT_ONE;
+    const double along = gx * ux + gy * uy, across = gy * ux - gx * uy, gamma = fabs(across) - fabs(along);
+    s->gamma += gamma > 0 ? gamma : 0;
+    s->uu += along * along;
+    s->un += along * across;
+    s->nn += across * across;
     s->pixels++;
 }
 
 /* Walks along the axis (x or y) that the strip is longer on, and across it over the few pixels that can be inside. */
-double asj_strip_log_nfa(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          double x, double y, double angle, double length)
 {
     const double ux = cos(angle), uy = sin(angle), half_width = options->strip_half_width;
@@ -43,7 +49,7 @@ double asj_strip_log_nfa(const asj_context *context, const asj_frame *frame, con
     const double end = major + reach * major_step;
     const double spread = half_width / fabs(major_step) + 1;
     const int32_t first = (int32_t)floor(fmin(major, end) - half_width), last = (int32_t)ceil(fmax(major, end) + half_width);
-    strip s = {0, 0};
+    sums s = {0, 0, 0, 0, 0};
     for (int32_t i = first; i <= last; i++) {
         double middle = minor + (i - major) * slope;
         for (int32_t j = (int32_t)floor(middle - spread); j <= (int32_t)ceil(middle + spread); j++) {
@@ -54,7 +60,7 @@ double asj_strip_log_nfa(const asj_context *context, const asj_frame *frame, con
         }
     }
     if (s.pixels == 0)
-        return HUGE_VAL;
+        return (asj_strip){HUGE_VAL, 0};
     const double log_tests = 1.5 * log((double)frame->width * frame->height);
-    return log_tests + asj_nfa_log_sector_tail(context->nfa, s.sum, s.pixels);
+    return (asj_strip){log_tests + asj_nfa_log_sector_tail(context->nfa, s.gamma, s.pixels), fabs(0.5 * atan2(2 * s.un, s.nn - s.uu))};
 }

@@ -5,8 +5,13 @@
 
 #include "image.h"
 
-/* Natural logarithm of the number of false alarms of the strip from (x, y) in direction `angle` (rad), `length` px long. */
-double asj_strip_log_nfa(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+typedef struct asj_strip {
+    double log_nfa;   /* natural logarithm of the number of false alarms */
+    double deviation; /* rad in [0, pi/2]: between the strip's dominant gradient direction and the normal of the branch */
+} asj_strip;
+
+/* The strip from (x, y) in direction `angle` (rad), `length` px long. */
+asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          double x, double y, double angle, double length);
 
 #endif

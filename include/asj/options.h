@@ -47,7 +47,7 @@ typedef struct asj_detect_options {
     int32_t standardise;          /* 1 = give each gradient axis zero mean and unit variance over the image, as the paper does;
                                    * 0 = one fixed scale. default 0; paper 1 */
     /* step 3: isotropic junctions */
-    double candidate_strength;    /* standard deviations that two local branches of a candidate pixel need. 0 .. 12; 3.5; paper 0 */
+    double candidate_strength;    /* standard deviations that two local branches of a candidate pixel need. 0 .. 12; 3; paper 0 */
     double epsilon;               /* NFA allowed for a junction, and for a branch. 1e-30 .. 1e6; 1 */
     uint32_t isotropic_radii;     /* bit r set = radius r is tested, 3 .. 30; 5,7,10,14; paper 3-12 */
     int32_t max_branches;         /* branches tested together. 2 .. 5; 5 */
@@ -69,7 +69,10 @@ typedef struct asj_detect_options {
     int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`. 1; paper 0 */
     double strip_half_width;      /* px. 0.5 .. 4; 1.5 */
     double strip_length;          /* px from the junction that the strip test looks at. 10 .. 1000; 60 */
-    double reserved[24];          /* zero */
+    double max_deviation;         /* deg between a branch and the dominant direction of the edges under it. 1 .. 90; 12; paper 90 */
+    int32_t ignore_frame;         /* 1 = drop branches that run along the border of the image, within 2.5 px. 1; paper 0 */
+    int32_t reserved_1;           /* zero */
+    double reserved[22];          /* zero */
 } asj_detect_options;
 
 enum { ASJ_REFINE_LINE_FIT = 0, ASJ_REFINE_SEARCH = 1 };

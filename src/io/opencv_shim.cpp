@@ -97,10 +97,14 @@ cv::Mat decode(const unsigned char *bytes, size_t size, const char *path)
     return cv::imdecode(view, flags);
 }
 
-/* The lines by which libjpeg tells that it made up pixels; other lines (an unknown tag of a TIFF file) are harmless. */
+/* The line by which libjpeg tells that it made up pixels, or null. It tells the first fault only. Surplus bytes before the end
+ * marker (0xd9) are no fault: telephones leave them there, and every pixel has been read before. Lines of other decoders (an
+ * unknown tag of a TIFF file) are harmless. */
 const char *damage_in(const char *complaint)
 {
     const char *damage = std::strstr(complaint, "Corrupt JPEG data");
+    if (damage && std::strstr(damage, "extraneous bytes before marker 0xd9"))
+        return nullptr;
     return damage ? damage : std::strstr(complaint, "Premature end of JPEG");
 }
 

@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 7, preparation: from junctions to L-junctions with frames, length hypotheses, places and neighbours.
+ *
+ * Length hypotheses. A branch that passes other junctions may end at one of them in the other image: occlusion, weak contrast and
+ * crossing lines all cut or prolong the scan. So besides its own length a branch is given, longest first, the distances of other
+ * junctions that lie within 3 px of it, at least 10 px from its start and 8 px before its end, and 4 px apart. Every combination of both
+ * branches' lengths is one frame.
+ *
+ * A place is a location. Matches are unique by place, and "another place" in the ratio test means farther than `separation`.
+ * Neighbours of a place are the nearest others farther than `separation`, so that a cluster of duplicates is no neighbour of itself. */
+#include "corners.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LEAST_LENGTH 3.0     /* px: a shorter branch has no direction worth a frame */
+#define RAY_DISTANCE 3.0     /* px */
+#define LEAST_START 10.0     /* px */
+#define LEAST_BEFORE_END 8.0 /* px */
+#define LEAST_APART 4.0      /* px */
+
+static asj_status check(asj_context *context, const asj_junction *junctions, size_t count, int32_t width, int32_t height,
+                        int32_t which)
+{
+    for (size_t n = 0; n < count; n++) {
+        const asj_junction *j = &junctions[n];
+        if (!(j->x >= 0 && j->y >= 0 && j->x <= (float)(width - 1) && j->y <= (float)(height - 1)))
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d at (%g, %g) lies outside its %d x %d pixels",
+                            n, (int)which, (double)j->x, (double)j->y, (int)width, (int)height);
+        if (j->branch_count < 0 || j->branch_count > ASJ_MAX_BRANCHES)
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d has %d branches", n, (int)which,
+                            (int)j->branch_count);
+        for (int32_t b = 0; b < j->branch_count; b++) {
+            const asj_branch *branch = &j->branches[b];
+            if (!(branch->length >= 0 && branch->length <= 4 * (float)ASJ_MAX_SIDE && fabsf(branch->angle) <= 1e6f))
+                return asj_fail(context, ASJ_ERROR_ARGUMENT, "branch %d of junction %zu of image %d has angle %g, length %g",
+                                (int)b, n, (int)which, (double)branch->angle, (double)branch->length);
+        }
+    }
+    return ASJ_OK;
+}
+
+static asj_status no_memory(asj_context *context)
+{
+    return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the corners of an image");
+}
+
+/* --- places ----------------------------------------------------------------------------------------------------------------- */
+
+typedef struct spot {
+    float x, y;
+    uint32_t l;
+} spot;
+
+static int by_position(const void *left, const void *right)
+{
+    const spot *p = left, *q = right;
+    if (p->x != q->x)
+        return p->x < q->x ? -1 : 1;
+    if (p->y != q->y)
+        return p->y < q->y ? -1 : 1;
+    return p->l < q->l ? -1 : p->l > q->l;
+}
+
+static asj_status find_places(asj_context *context, asj_corners *corners)
+{
+    asj_memory *memory = &context->memory;
+    spot *spots = asj_allocate(memory, corners->count, sizeof *spots);
+    corners->place = asj_allocate(memory, corners->count, sizeof *corners->place);
+    corners->place_x = asj_allocate(memory, corners->count, sizeof *corners->place_x);
+    corners->place_y = asj_allocate(memory, corners->count, sizeof *corners->place_y);
+    if (!spots || !corners->place || !corners->place_x || !corners->place_y) {
+        asj_release(memory, spots);
+        return no_memory(context);
+    }
+    for (uint32_t i = 0; i < corners->count; i++)
+        spots[i] = (spot){corners->l[i].x, corners->l[i].y, i};
+    qsort(spots, corners->count, sizeof *spots, by_position);
+    uint32_t places = 0;
+    for (uint32_t i = 0; i < corners->count; i++) {
+        if (i == 0 || spots[i].x != spots[i - 1].x || spots[i].y != spots[i - 1].y) {
+            corners->place_x[places] = (double)spots[i].x;
+            corners->place_y[places] = (double)spots[i].y;
+            places++;
+        }
+        corners->place[spots[i].l] = places - 1;
+    }
+    corners->place_count = places;
+    asj_release(memory, spots);
+    return ASJ_OK;
+}
+
+/* The `limit` nearest places farther than `separation`, nearest first, ties by number. */
+static uint32_t nearest(const asj_corners *corners, uint32_t place, double separation, uint32_t limit, uint32_t *out)
+{
+    double far[64];
+    uint32_t count = 0;
+    const double least = separation * separation;
+    for (uint32_t q = 0; q < corners->place_count; q++) {
+        double dx = corners->place_x[q] - corners->place_x[place], dy = corners->place_y[q] - corners->place_y[place];
+        double d = dx * dx + dy * dy;
+        if (q == place || d <= least || (count == limit && d >= far[count - 1]))
+            continue;
+        uint32_t k = count < limit ? count++ : limit - 1;
+        for (; k > 0 && far[k - 1] > d; k--) {
+            far[k] = far[k - 1];
+            out[k] = out[k - 1];
+        }
+        far[k] = d;
+        out[k] = q;
+    }
+    return count;
+}
+
+static asj_status find_neighbours(asj_context *context, const asj_match_options *options, asj_corners *corners)
+{
+    corners->neighbour_limit = (uint32_t)options->neighbours;
+    if (options->neighbours == 0)
+        return ASJ_OK;
+    corners->neighbour = asj_allocate(&context->memory, (size_t)corners->place_count * corners->neighbour_limit, sizeof(uint32_t));
+    corners->neighbour_count = asj_allocate(&context->memory, corners->place_count, sizeof(uint32_t));
+    if (!corners->neighbour || !corners->neighbour_count)
+        return no_memory(context);
+    const int64_t count = corners->place_count;
+#pragma omp parallel for num_threads(context->threads) schedule(static)
+    for (int64_t p = 0; p < count; p++)
+        corners->neighbour_count[p] = nearest(corners, (uint32_t)p, options->separation, corners->neighbour_limit,
+                                              corners->neighbour + (size_t)p * corners->neighbour_limit);
+    return ASJ_OK;
+}
+
+/* --- lengths and frames ----------------------------------------------------------------------------------------------------- */
+
+/* Inserts a length into the falling list of extra lengths [1 ..], keeping those LEAST_APART from longer ones. */
+static void find_lengths(const asj_corners *corners, double x, double y, const double u[2], double own, int32_t limit,
+                         asj_lengths *lengths)
+{
+    lengths->count = 1;
+    lengths->length[0] = (float)own;
+    double before = own - LEAST_BEFORE_END;
+    while (lengths->count < limit) { /* the longest one not longer than `before` */
+        double best = 0;
+        for (uint32_t q = 0; q < corners->place_count; q++) {
+            double dx = corners->place_x[q] - x, dy = corners->place_y[q] - y;
+            double along = dx * u[0] + dy * u[1];
+            if (along >= LEAST_START && along <= before && along > best && fabs(dx * u[1] - dy * u[0]) < RAY_DISTANCE)
+                best = along;
+        }
+        if (best <= 0)
+            return;
+        lengths->length[lengths->count++] = (float)best;
+        before = best - LEAST_APART;
+    }
+}
+
+/* Unit vector and length of the branch that ends at (ex, ey). */
+static double direct(const asj_l_junction *l, float ex, float ey, double u[2])
+{
+    double dx = (double)ex - (double)l->x, dy = (double)ey - (double)l->y, length = sqrt(dx * dx + dy * dy);
+    u[0] = length > 0 ? dx / length : 1;
+    u[1] = length > 0 ? dy / length : 0;
+    return length;
+}
+
+static void prepare(asj_corners *corners, uint32_t i, int32_t limit)
+{
+    const asj_l_junction *l = &corners->l[i];
+    double *u = corners->direction + 4 * (size_t)i;
+    double a = direct(l, l->ax, l->ay, u), b = direct(l, l->bx, l->by, u + 2);
+    if (a < LEAST_LENGTH || b < LEAST_LENGTH) {
+        corners->lengths[2 * i] = (asj_lengths){0, {(float)a}};
+        corners->lengths[2 * i + 1] = (asj_lengths){0, {(float)b}};
+        return;
+    }
+    find_lengths(corners, (double)l->x, (double)l->y, u, a, limit, &corners->lengths[2 * i]);
+    find_lengths(corners, (double)l->x, (double)l->y, u + 2, b, limit, &corners->lengths[2 * i + 1]);
+}
+
+static void fill_frames(asj_corners *corners)
+{
+    for (uint32_t i = 0; i < corners->count; i++) {
+        const double *u = corners->direction + 4 * (size_t)i;
+        const asj_lengths *a = &corners->lengths[2 * i], *b = &corners->lengths[2 * i + 1];
+        asj_affine_frame *frame = corners->frames + corners->first_frame[i];
+        for (int32_t m = 0; m < a->count; m++)
+            for (int32_t n = 0; n < b->count; n++) {
+                double p = (double)a->length[m], q = (double)b->length[n];
+                *frame++ = (asj_affine_frame){(double)corners->l[i].x, (double)corners->l[i].y,
+                                              p * u[0], p * u[1], q * u[2], q * u[3]};
+            }
+    }
+}
+
+static asj_status make_frames(asj_context *context, const asj_match_options *options, asj_corners *corners)
+{
+    asj_memory *memory = &context->memory;
+    corners->lengths = asj_allocate(memory, 2 * (size_t)corners->count, sizeof *corners->lengths);
+    corners->direction = asj_allocate(memory, 4 * (size_t)corners->count, sizeof *corners->direction);
+    corners->first_frame = asj_allocate(memory, (size_t)corners->count + 1, sizeof *corners->first_frame);
+    if (!corners->lengths || !corners->direction || !corners->first_frame)
+        return no_memory(context);
+    const int64_t count = corners->count;
+#pragma omp parallel for num_threads(context->threads) schedule(static)
+    for (int64_t i = 0; i < count; i++)
+        prepare(corners, (uint32_t)i, options->length_hypotheses);
+    uint32_t total = 0;
+    for (uint32_t i = 0; i < corners->count; i++) {
+        corners->first_frame[i] = total;
+        total += (uint32_t)(corners->lengths[2 * i].count * corners->lengths[2 * i + 1].count);
+    }
+    corners->first_frame[corners->count] = corners->frame_count = total;
+    corners->frames = asj_allocate(memory, total, sizeof *corners->frames);
+    if (!corners->frames)
+        return no_memory(context);
+    fill_frames(corners);
+    return ASJ_OK;
+}
+
+asj_status asj_corners_create(asj_context *context, const asj_junction *junctions, size_t count, int32_t width, int32_t height,
+                              const asj_match_options *options, int32_t which, asj_corners *corners)
+{
+    memset(corners, 0, sizeof *corners);
+    asj_status status = check(context, junctions, count, width, height, which);
+    if (status != ASJ_OK)
+        return status;
+    size_t total = asj_decompose(junctions, count, options->minimum_opening, NULL, 0);
+    if (total > 0x1000000)
+        return asj_fail(context, ASJ_ERROR_LIMIT, "%zu L-junctions in image %d are more than the matcher takes", total, (int)which);
+    corners->l = asj_allocate(&context->memory, total, sizeof *corners->l);
+    if (!corners->l)
+        return no_memory(context);
+    corners->count = (uint32_t)asj_decompose(junctions, count, options->minimum_opening, corners->l, total);
+    status = find_places(context, corners);
+    if (status == ASJ_OK)
+        status = find_neighbours(context, options, corners);
+    if (status == ASJ_OK)
+        status = make_frames(context, options, corners);
+    return status;
+}
+
+void asj_corners_free(asj_memory *memory, asj_corners *corners)
+{
+    void *blocks[] = {corners->l, corners->lengths, corners->direction, corners->first_frame, corners->frames, corners->place,
+                      corners->place_x, corners->place_y, corners->neighbour, corners->neighbour_count};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+        asj_release(memory, blocks[i]);
+    memset(corners, 0, sizeof *corners);
+}

@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_SRC_MATCH_OPTIONS_H
+#define ASJ_SRC_MATCH_OPTIONS_H
+
+#include <asj/match.h>
+
+/* The one place where the matcher's options are checked: ASJ_OK, or ASJ_ERROR_OPTION and a sentence. */
+asj_status asj_match_options_check(const asj_match_options *options, char *message, size_t message_size);
+
+#endif
