@@ -35,7 +35,7 @@ typedef struct asj_image_file {
  * the luma weights of image.h; floats are as stored, with 1.0 as white.
  *
  * Damage: PNG is checked to the last checksum. A JPEG without its end marker is refused, and so is one whose decoder complains
- * about its compressed data. For other formats what OpenCV accepts is taken.
+ * about its compressed data, unless all that it found are surplus bytes at the end. For other formats what OpenCV accepts is taken.
  * Size: a PNG, JPEG, TIFF, BMP, WebP, PNM, JPEG 2000 or Sun raster file that declares more than max_pixels, or a side longer
  * than ASJ_MAX_SIDE, is refused before memory for its pixels is taken. Other formats are only held by OpenCV's own limit (2^30
  * pixels) while they are decoded, and refused then.

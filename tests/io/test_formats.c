@@ -118,17 +118,24 @@ static void jpeg_cut_at_every_length(void **state)
     assert_image_refused(write_bytes("cut.jpg", jpeg.bytes, jpeg.size - 4), 0, ASJ_ERROR_FORMAT, "truncated JPEG");
 }
 
-/* The compressed data end early or late, but all markers are there: only the decoder can know. */
-static void jpeg_with_damaged_data(void **state)
+/* All markers are there, but the compressed data end early: only the decoder can know. Surplus bytes behind them do no harm. */
+static void jpeg_with_too_few_or_too_many_data(void **state)
 {
-    static test_bytes jpeg, damaged;
+    static test_bytes jpeg, changed;
+    asj_image_file *file;
     (void)state;
     make_jpeg(&jpeg, NULL);
-    damaged.size = 0;
-    append(&damaged, jpeg.bytes, jpeg.size - 2);
-    append(&damaged, "\x12\x34\x56\x78\x12\x34\x56\x78\x12\x34\x56\x78\x12\x34\xff\xd9", 16);
+    changed.size = 0;
+    append(&changed, jpeg.bytes, jpeg.size - 6);
+    append(&changed, "\xff\xd9", 2);
     divert_stderr();
-    assert_image_refused(write_bytes("late.jpg", damaged.bytes, damaged.size), 0, ASJ_ERROR_FORMAT, "Corrupt JPEG data");
+    assert_image_refused(write_bytes("early.jpg", changed.bytes, changed.size), 0, ASJ_ERROR_FORMAT, "premature end");
+    changed.size = 0;
+    append(&changed, jpeg.bytes, jpeg.size - 2);
+    append(&changed, "\x12\x34\x56\x78\x12\x34\x56\x78\xff\xd9", 10);
+    file = read_image("late.jpg", &changed);
+    check_jpeg(file);
+    asj_image_file_free(&file);
     assert_int_equal(restore_stderr(), 0);
 }
 
@@ -309,7 +316,7 @@ int main(void)
 {
     const struct CMUnitTest with[] = {
         cmocka_unit_test(jpeg_pixels_and_orientation),      cmocka_unit_test(jpeg_cut_at_every_length),
-        cmocka_unit_test(jpeg_with_damaged_data),           cmocka_unit_test(any_byte_changed),
+        cmocka_unit_test(jpeg_with_too_few_or_too_many_data), cmocka_unit_test(any_byte_changed),
         cmocka_unit_test(pnm_gray_colour_and_depth),        cmocka_unit_test(pfm_floats),
         cmocka_unit_test(tiff_orientation_is_applied_once), cmocka_unit_test(formats_that_are_known_but_not_read),
     };

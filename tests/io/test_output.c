@@ -203,11 +203,13 @@ static void paths_that_cannot_be_written(void **state)
     locked = in_folder("locked");
     assert_int_equal(mkdir(locked, 0555), 0);
     assert_int_equal(chmod(write_bytes("protected", "x", 1), 0444), 0);
+    assert_int_equal(chmod(in_folder("."), 0777), 0); /* files could be replaced by others here */
     if (!become_ordinary()) {
         print_message("SKIPPED: cannot become an ordinary user\n");
         skip();
     }
     assert_cannot_begin(in_folder("locked/x"), ASJ_ERROR_FILE, "Permission denied");
+    assert_cannot_begin(in_folder("protected"), ASJ_ERROR_FILE, "Permission denied");
     become_root();
 }
 
