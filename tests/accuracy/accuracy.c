@@ -57,10 +57,13 @@ static const row rows[] = {
     {"noise-sd20", NOISE, 0.0, 20, 0, 0, 0, 0, 0, 0, 0},
 };
 
+#define MAX_FILTERS 8
+
 typedef struct settings {
     int32_t scenes, threads, format, check, misses;
     uint64_t seed;
-    const char *filter, *save;
+    const char *filters[MAX_FILTERS], *save;
+    int32_t filter_count;
     asj_detect_options options;
 } settings;
 
@@ -75,8 +78,9 @@ static const char help[] =
     "                [--check] [--misses] [--save DIR] [key=value ...]\n"
     "\n"
     "Measures the detector on synthetic scenes and prints a line per row. Rows are named blur-noise-contrast; --row takes those\n"
-    "whose name contains TEXT. key=value sets any detector option. --misses lists every missed and every false junction;\n"
-    "--save writes the scenes as PGM files. --check compares with the targets and exits with 1 when one is missed.\n"
+    "whose name contains TEXT, and may be repeated. key=value sets any detector option. --misses lists every missed and every\n"
+    "false junction; --save writes the scenes as PGM files. --check compares with the targets and exits with 1 when one is\n"
+    "missed.\n"
     "\n"
     "recall, precision   of corners, within 3 px\n"
     "loc, p90            location error in px, median and 90th percentile; /sd its median in stated uncertainties (1 = honest)\n"
@@ -336,7 +340,11 @@ static int parse(int argc, char **argv, settings *set)
         int word = 0;
         switch (c) {
         case 'n': set->scenes = (int32_t)strtol(optarg, NULL, 10); break;
-        case 'r': set->filter = optarg; break;
+        case 'r':
+            if (set->filter_count == MAX_FILTERS)
+                return fail("too many --row");
+            set->filters[set->filter_count++] = optarg;
+            break;
         case 't': set->threads = (int32_t)strtol(optarg, NULL, 10); break;
         case 's': set->seed = strtoull(optarg, NULL, 10); break;
         case 'c': set->check = 1; break;
@@ -362,12 +370,20 @@ static int parse(int argc, char **argv, settings *set)
     return 0;
 }
 
+static int is_wanted(const settings *set, const row *r)
+{
+    int wanted = set->filter_count == 0;
+    for (int32_t i = 0; i < set->filter_count; i++)
+        wanted |= strstr(r->name, set->filters[i]) != NULL;
+    return wanted;
+}
+
 static int run_all(asj_context *context, const settings *set)
 {
     int misses = 0;
     print_header(set->format);
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        if (set->filter && !strstr(rows[i].name, set->filter))
+        if (!is_wanted(set, &rows[i]))
             continue;
         const int result = run_row(context, set, &rows[i]);
         if (result < 0)

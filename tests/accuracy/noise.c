@@ -88,13 +88,18 @@ static int load(experiment *e, uint64_t seed)
     return 0;
 }
 
+static double log_nfa(const experiment *e, const asj_ray *ray, double length)
+{
+    return asj_strip_test(e->context, &e->frame, &e->options, ray->x, ray->y, ray->angle, length).log_nfa;
+}
+
 static void test_any_length(experiment *e)
 {
     for (int32_t i = 0; i < RAYS; i++) {
         const asj_ray *ray = &e->rays[i];
         double best = HUGE_VAL;
         for (int k = 1; k <= LENGTHS; k++)
-            best = fmin(best, asj_strip_log_nfa(e->context, &e->frame, &e->options, ray->x, ray->y, ray->angle, 4.0 * k));
+            best = fmin(best, log_nfa(e, ray, 4.0 * k));
         e->log_nfa[ANY][i] = best;
     }
 }
@@ -108,8 +113,7 @@ static int test_scanned_length(experiment *e)
         const double length = e->options.scan_axial ? 0.5 * (ray->forward + ray->axial) : ray->forward;
         e->log_nfa[SCANNED][i] = HUGE_VAL;
         if (length > 0.0 && length >= e->options.minimum_length)
-            e->log_nfa[SCANNED][i] =
-                asj_strip_log_nfa(e->context, &e->frame, &e->options, ray->x, ray->y, ray->angle, length);
+            e->log_nfa[SCANNED][i] = log_nfa(e, ray, length);
     }
     return 0;
 }
