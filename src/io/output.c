@@ -112,7 +112,7 @@ static int open_target(asj_output *output)
     }
     if (!S_ISREG(info.st_mode))
         return open(output->path, O_WRONLY | O_CLOEXEC);
-    if (faccessat(AT_FDCWD, output->path, W_OK, AT_EACCESS)) /* a rename would replace even a file that is protected against writing */
+    if (faccessat(AT_FDCWD, output->path, W_OK, AT_EACCESS)) /* a rename would replace even a protected file */
         return -1;
     output->target = realpath(output->path, NULL);
     file = output->target ? create_temporary(output) : -1;
