@@ -222,6 +222,8 @@ size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const
 {
     const size_t row_bytes = ((size_t)width + 7) / 8;
     size_t kept = 0;
+    if (count == 0)
+        return 0;
     qsort(junctions, count, sizeof *junctions, options->more_branches_win ? by_branches : by_meaning);
     for (size_t i = 0; i < count; i++) {
         const asj_isotropic_junction junction = junctions[i];

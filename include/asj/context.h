@@ -61,7 +61,7 @@ enum {
 typedef struct asj_dump {
     int32_t stage;    /* ASJ_STAGE_... */
     int32_t kind;     /* ASJ_DUMP_... */
-    const char *name; /* "gray", "gradient_x", "gradient_y", "candidates", "isotropic", "located", "scanned" */
+    const char *name; /* "gray", "gradient_x", "gradient_y", "candidates", "isotropic", "located", "junctions" */
     const void *data;
     int32_t width;    /* planes */
     int32_t height;

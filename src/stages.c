@@ -1,0 +1,368 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "stages.h"
+#include "gradient.h"
+#include "refine.h"
+
+#include <math.h>
+#include <string.h>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+static asj_status prepare_tables(asj_context *context, const asj_detect_options *options)
+{
+    struct asj_detector *detector = context->detector;
+    if (!detector) {
+        detector = asj_allocate_zero(&context->memory, 1, sizeof *detector);
+        if (!detector)
+            return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the detector");
+        context->detector = detector;
+    }
+    if (detector->ready && memcmp(&detector->options, options, sizeof *options) == 0)
+        return ASJ_OK;
+    detector->ready = 0;
+    asj_field_free(&context->memory, &detector->field);
+    asj_isotropic_free(&context->memory, &detector->isotropic);
+    asj_status status = asj_field_create(context, options, &detector->field);
+    if (status == ASJ_OK)
+        status = asj_isotropic_create(context, options, &detector->isotropic);
+    if (status != ASJ_OK)
+        return status;
+    detector->options = *options;
+    detector->ready = 1;
+    return ASJ_OK;
+}
+
+asj_status asj_stage_prepare(asj_detection_run *d, int32_t width, int32_t height)
+{
+    asj_context *context = d->context;
+    asj_status status = prepare_tables(context, d->options);
+    if (status == ASJ_OK)
+        status = asj_frame_prepare(context, &context->detector->frame, width, height);
+    if (status != ASJ_OK)
+        return status;
+    struct asj_detector *detector = d->detector = context->detector;
+    asj_isotropic_set_size(d->options, width, height, &detector->isotropic);
+    asj_scan_prepare(context, d->options, &detector->field, width, height, &detector->scan);
+    d->scratch_size = asj_field_scratch(&detector->field);
+    if (detector->isotropic.scratch > d->scratch_size)
+        d->scratch_size = detector->isotropic.scratch;
+    d->scratch = asj_allocate(&context->memory, (size_t)d->threads * d->scratch_size, sizeof *d->scratch);
+    if (!d->scratch)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %d threads", (int)d->threads);
+    return ASJ_OK;
+}
+
+void asj_stage_release(asj_detection_run *d)
+{
+    asj_memory *memory = &d->context->memory;
+    asj_release(memory, d->scratch);
+    asj_release(memory, d->candidates);
+    asj_release(memory, d->isotropic);
+    asj_release(memory, d->drafts);
+}
+
+uint16_t *asj_stage_scratch(const asj_detection_run *d)
+{
+#ifdef _OPENMP
+    return d->scratch + (size_t)omp_get_thread_num() * d->scratch_size;
+#else
+    return d->scratch;
+#endif
+}
+
+static void dump_plane(const asj_detection_run *d, int32_t kind, const char *name, const void *data, double unit)
+{
+    const asj_frame *frame = &d->detector->frame;
+    const asj_dump dump = {ASJ_STAGE_GRADIENT, kind, name, data, frame->width, frame->height, frame->stride, 0, unit};
+    if (d->context->options.dump)
+        d->context->options.dump(d->context->options.dump_user, &dump);
+}
+
+static void hand_out(const asj_detection_run *d, int32_t stage, const char *name, size_t count, const int32_t *points)
+{
+    const asj_frame *frame = &d->detector->frame;
+    const asj_dump dump = {stage, ASJ_DUMP_POINTS, name, points, frame->width, frame->height, 0, count, 1};
+    d->context->options.dump(d->context->options.dump_user, &dump);
+}
+
+/* Hands out `count` points, given one by one by `point`. Memory that cannot be had is an error like any other. */
+static asj_status dump_points(const asj_detection_run *d, int32_t stage, const char *name, size_t count,
+                              void (*point)(const asj_detection_run *d, size_t i, int32_t *xy))
+{
+    if (!d->context->options.dump)
+        return ASJ_OK;
+    int32_t *points = asj_allocate(&d->context->memory, count, 2 * sizeof *points);
+    if (!points)
+        return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory to dump %zu points", count);
+    for (size_t i = 0; i < count; i++)
+        point(d, i, points + 2 * i);
+    hand_out(d, stage, name, count, points);
+    asj_release(&d->context->memory, points);
+    return ASJ_OK;
+}
+
+static void isotropic_point(const asj_detection_run *d, size_t i, int32_t *xy)
+{
+    xy[0] = d->isotropic[i].x;
+    xy[1] = d->isotropic[i].y;
+}
+
+static void draft_point(const asj_detection_run *d, size_t i, int32_t *xy)
+{
+    xy[0] = (int32_t)lrint(d->drafts[i].x);
+    xy[1] = (int32_t)lrint(d->drafts[i].y);
+}
+
+/* Step 1. */
+asj_status asj_stage_gradient(asj_detection_run *d, const asj_image *image)
+{
+    asj_frame *frame = &d->detector->frame;
+    asj_status status = asj_frame_load(d->context, frame, image);
+    if (status == ASJ_OK)
+        status = asj_gradient(d->context, frame, d->options);
+    if (status != ASJ_OK)
+        return status;
+    dump_plane(d, ASJ_DUMP_PLANE_U16, "gray", frame->gray, 1.0 / ASJ_GRAY_ONE);
+    dump_plane(d, ASJ_DUMP_PLANE_I16, "gradient_x", frame->gradient_x, 1.0 / ASJ_GRADIENT_ONE);
+    dump_plane(d, ASJ_DUMP_PLANE_I16, "gradient_y", frame->gradient_y, 1.0 / ASJ_GRADIENT_ONE);
+    return asj_progress(d->context, ASJ_STAGE_GRADIENT, 0.05);
+}
+
+static size_t count_bits(const uint16_t *masks, size_t count)
+{
+    size_t bits = 0;
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t mask = masks[i]; mask; mask &= mask - 1)
+            bits++;
+    return bits;
+}
+
+static asj_status dump_candidates(const asj_detection_run *d)
+{
+    const asj_frame *frame = &d->detector->frame;
+    const size_t runs = (size_t)frame->blocks * (size_t)frame->height;
+    if (!d->context->options.dump)
+        return ASJ_OK;
+    const size_t total = count_bits(d->candidates, runs);
+    int32_t *points = asj_allocate(&d->context->memory, total, 2 * sizeof *points), *next = points;
+    if (!points)
+        return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory to dump %zu points", total);
+    for (size_t i = 0; i < runs; i++)
+        for (int32_t bit = 0; bit < ASJ_LANES; bit++)
+            if (d->candidates[i] >> bit & 1) {
+                *next++ = (int32_t)(i % (size_t)frame->blocks) * ASJ_LANES + bit;
+                *next++ = (int32_t)(i / (size_t)frame->blocks);
+            }
+    hand_out(d, ASJ_STAGE_CANDIDATES, "candidates", total, points);
+    asj_release(&d->context->memory, points);
+    return ASJ_OK;
+}
+
+/* Step 2: candidates, one bit for each pixel. */
+asj_status asj_stage_candidates(asj_detection_run *d)
+{
+    const asj_frame *frame = &d->detector->frame;
+    const int32_t blocks = frame->blocks, height = frame->height;
+    d->candidates = asj_allocate(&d->context->memory, (size_t)blocks * (size_t)height, sizeof *d->candidates);
+    if (!d->candidates)
+        return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for the candidates");
+    for (int32_t top = 0; top < height; top += ASJ_ROW_GROUP) {
+        const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 4)
+#endif
+        for (int32_t y = top; y < bottom; y++) {
+            uint16_t *row = d->candidates + (ptrdiff_t)y * blocks;
+            for (int32_t b = 0; b < blocks; b++) {
+                uint32_t mask = asj_field_candidates(&d->detector->field, frame, b * ASJ_LANES, y, asj_stage_scratch(d));
+                int32_t valid = frame->width - b * ASJ_LANES;
+                row[b] = (uint16_t)(valid < ASJ_LANES ? mask & ((1u << valid) - 1) : mask);
+            }
+        }
+        asj_status status = asj_progress(d->context, ASJ_STAGE_CANDIDATES, 0.05 + 0.45 * bottom / height);
+        if (status != ASJ_OK)
+            return status;
+    }
+    return dump_candidates(d);
+}
+
+/* Step 3 for rows top .. bottom - 1, whose candidates have room in `records`: row y from record starts[y - top] on. */
+static void test_rows(const asj_detection_run *d, int32_t top, int32_t bottom, const size_t *starts, asj_isotropic_junction *records)
+{
+    const asj_frame *frame = &d->detector->frame;
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 4)
+#endif
+    for (int32_t y = top; y < bottom; y++) {
+        const uint16_t *row = d->candidates + (ptrdiff_t)y * frame->blocks;
+        asj_isotropic_junction *next = records + starts[y - top];
+        for (int32_t b = 0; b < frame->blocks; b++) {
+            if (!row[b])
+                continue;
+            asj_isotropic_block(&d->detector->isotropic, frame, b * ASJ_LANES, y, row[b], asj_stage_scratch(d), next);
+            next += count_bits(&row[b], 1);
+        }
+    }
+}
+
+/* Tests all candidates, group by group; what passes is collected in d->isotropic. */
+static asj_status test_candidates(asj_detection_run *d)
+{
+    asj_memory *memory = &d->context->memory;
+    const asj_frame *frame = &d->detector->frame;
+    void *records = NULL, *found = NULL;
+    size_t record_capacity = 0, found_capacity = 0, starts[ASJ_ROW_GROUP + 1];
+    asj_status status = ASJ_OK;
+    for (int32_t top = 0; top < frame->height && status == ASJ_OK; top += ASJ_ROW_GROUP) {
+        const int32_t bottom = frame->height - top < ASJ_ROW_GROUP ? frame->height : top + ASJ_ROW_GROUP;
+        starts[0] = 0;
+        for (int32_t y = top; y < bottom; y++)
+            starts[y - top + 1] = starts[y - top] + count_bits(d->candidates + (ptrdiff_t)y * frame->blocks, (size_t)frame->blocks);
+        const size_t total = starts[bottom - top];
+        d->candidate_total += total;
+        status = asj_grow(memory, &records, &record_capacity, total, sizeof(asj_isotropic_junction), 0);
+        if (status == ASJ_OK)
+            status = asj_grow(memory, &found, &found_capacity, d->isotropic_count + total, sizeof(asj_isotropic_junction),
+                              d->isotropic_count);
+        if (status != ASJ_OK) {
+            asj_fail(d->context, status, "no memory for %zu candidates", d->isotropic_count + total);
+            break;
+        }
+        if (total > 0)
+            test_rows(d, top, bottom, starts, records);
+        const asj_isotropic_junction *tested = records;
+        for (size_t i = 0; i < total; i++)
+            if (tested[i].branch_count)
+                ((asj_isotropic_junction *)found)[d->isotropic_count++] = tested[i];
+        status = asj_progress(d->context, ASJ_STAGE_ISOTROPIC, 0.5 + 0.2 * bottom / frame->height);
+    }
+    asj_release(memory, records);
+    d->isotropic = found;
+    return status;
+}
+
+static asj_status thin(asj_detection_run *d)
+{
+    const asj_frame *frame = &d->detector->frame;
+    const size_t bytes = ((size_t)frame->width + 7) / 8 * (size_t)frame->height;
+    uint8_t *taken = asj_allocate_zero(&d->context->memory, bytes, 1);
+    if (!taken)
+        return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for a map of %zu bytes", bytes);
+    d->isotropic_count = asj_isotropic_thin(d->isotropic, d->isotropic_count, d->options, frame->width, frame->height, taken);
+    asj_release(&d->context->memory, taken);
+    return dump_points(d, ASJ_STAGE_ISOTROPIC, "isotropic", d->isotropic_count, isotropic_point);
+}
+
+/* Step 3: isotropic junctions. */
+asj_status asj_stage_isotropic(asj_detection_run *d)
+{
+    asj_status status = test_candidates(d);
+    return status == ASJ_OK ? thin(d) : status;
+}
+
+static asj_status suppress(asj_detection_run *d)
+{
+    const asj_frame *frame = &d->detector->frame;
+    const size_t count = asj_locate_cells(d->draft_count, frame->width, frame->height);
+    int32_t *cells = asj_allocate(&d->context->memory, count, sizeof *cells);
+    if (!cells)
+        return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu cells", count);
+    d->draft_count = asj_locate_suppress(d->drafts, d->draft_count, frame->width, frame->height, cells);
+    asj_release(&d->context->memory, cells);
+    return ASJ_OK;
+}
+
+/* Between 3 and 4: locations. */
+asj_status asj_stage_locate(asj_detection_run *d)
+{
+    const int64_t count = (int64_t)d->isotropic_count;
+    d->drafts = asj_allocate(&d->context->memory, d->isotropic_count, sizeof *d->drafts);
+    if (!d->drafts)
+        return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", d->isotropic_count);
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 16)
+#endif
+    for (int64_t i = 0; i < count; i++) {
+        asj_locate_start(&d->isotropic[i], &d->drafts[i]);
+        asj_locate(&d->detector->frame, d->options, &d->drafts[i]);
+    }
+    d->draft_count = d->isotropic_count;
+    asj_status status = suppress(d);
+    return status == ASJ_OK ? dump_points(d, ASJ_STAGE_LOCATE, "located", d->draft_count, draft_point) : status;
+}
+
+/* Whether a branch has no length yet, or has turned or moved away by more than half a pixel somewhere along the ray that gave it. */
+static int needs_scan(const asj_draft *draft, const asj_draft_branch *branch)
+{
+    const double turned = asj_angle_distance(branch->angle, branch->scanned[2]) * branch->length;
+    return branch->length <= 0 || turned + hypot(draft->x - branch->scanned[0], draft->y - branch->scanned[1]) > 0.5;
+}
+
+static void set_length(const asj_detection_run *d, const asj_ray *ray, asj_draft_branch *branch)
+{
+    const double length = d->options->scan_axial ? 0.5 * (ray->forward + ray->axial) : ray->forward;
+    /* a ray that starts at the isotropic scale is as long as that already */
+    branch->length = d->options->scan_start == 0 && length < ray->start ? ray->start : length;
+    branch->scanned[0] = ray->x;
+    branch->scanned[1] = ray->y;
+    branch->scanned[2] = ray->angle;
+}
+
+/* Step 4: branch lengths, where they are not known or no longer hold. */
+asj_status asj_stage_scan(asj_detection_run *d)
+{
+    size_t count = 0, total = 0;
+    for (size_t i = 0; i < d->draft_count; i++)
+        total += (size_t)d->drafts[i].branch_count;
+    asj_ray *rays = asj_allocate(&d->context->memory, total, sizeof *rays);
+    asj_draft_branch **branches = asj_allocate(&d->context->memory, total, sizeof *branches);
+    asj_status status = ASJ_OK;
+    if (rays && branches) {
+        for (size_t i = 0; i < d->draft_count; i++) {
+            asj_draft *draft = &d->drafts[i];
+            const int32_t start = d->options->scan_start > 0 ? d->options->scan_start : (int32_t)draft->radius;
+            for (int32_t b = 0; b < draft->branch_count; b++)
+                if (needs_scan(draft, &draft->branches[b])) {
+                    branches[count] = &draft->branches[b];
+                    rays[count++] = (asj_ray){draft->x, draft->y, draft->branches[b].angle, start, 0, 0};
+                }
+        }
+        status = asj_scan_rays(d->context, &d->detector->scan, &d->detector->frame, rays, count);
+        for (size_t i = 0; i < count && status == ASJ_OK; i++)
+            set_length(d, &rays[i], branches[i]);
+    } else {
+        status = asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu rays", total);
+    }
+    asj_release(&d->context->memory, branches);
+    asj_release(&d->context->memory, rays);
+    return status;
+}
+
+/* Step 5: orientation. */
+asj_status asj_stage_orient(asj_detection_run *d)
+{
+    const int64_t count = (int64_t)d->draft_count;
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 8)
+#endif
+    for (int64_t i = 0; i < count; i++)
+        asj_refine(d->context, &d->detector->frame, d->options, &d->drafts[i]);
+    return ASJ_OK;
+}
+
+/* Step 5, last time, and validation. */
+asj_status asj_stage_validate(asj_detection_run *d)
+{
+    const int64_t count = (int64_t)d->draft_count;
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 8)
+#endif
+    for (int64_t i = 0; i < count; i++) {
+        asj_refine(d->context, &d->detector->frame, d->options, &d->drafts[i]);
+        asj_validate(d->context, &d->detector->frame, d->options, &d->drafts[i]);
+    }
+    asj_status status = suppress(d);
+    return status == ASJ_OK ? dump_points(d, ASJ_STAGE_REFINE, "junctions", d->draft_count, draft_point) : status;
+}
