@@ -20,6 +20,7 @@
 #include <asj/field.h>
 #include <asj/image.h>
 #include <asj/junction.h>
+#include <asj/match.h>
 #include <asj/options.h>
 #include <asj/status.h>
 #include <asj/version.h>

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_MATCH_H
+#define ASJ_MATCH_H
+
+#include <asj/context.h>
+#include <asj/image.h>
+#include <asj/junction.h>
+#include <asj/options.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How patches are compared (asj_match_options.patches). */
+enum {
+    ASJ_PATCHES_CANONICAL = 0, /* each L-junction is sampled once in its own affine frame; all pairs compare by a product */
+    ASJ_PATCHES_INDUCED = 1    /* the paper: a fixed pixel neighbourhood, warped by the pair's own map, both directions summed */
+};
+
+/* What describes a patch (asj_match_options.descriptor). */
+enum {
+    ASJ_DESCRIPTOR_RAW = 0, /* its grey levels */
+    ASJ_DESCRIPTOR_SIFT = 1 /* 4 x 4 histograms of 8 gradient orientations, square-rooted (RootSIFT) */
+};
+
+/* Options of asj_match(). Fill with asj_match_options_init(), then change fields or call asj_match_options_set().
+ * src/match_options.c holds the same table with ranges; the chapters on top of the files named here explain the steps. */
+typedef struct asj_match_options {
+    /* L-junctions: affine.c */
+    double minimum_opening;      /* deg: branches that open by less, or by more than 180 minus this, give no frame. 0 .. 80; 20 */
+    int32_t length_hypotheses;   /* lengths tried for a branch: its own, and junctions that lie on it. 1 .. 4; 3; paper 1 */
+    /* patches: patch.c, descriptor.c, distance.c */
+    int32_t patches;             /* ASJ_PATCHES_...; canonical; paper induced */
+    int32_t descriptor;          /* ASJ_DESCRIPTOR_...; raw */
+    int32_t normalise;           /* 1 = raw patches are brought to zero mean and unit norm. 1; paper 0 */
+    int32_t patch_size;          /* samples along a side of a patch: 8, 12, 16, 20 or 24. 16 */
+    double window_start;         /* a canonical patch reaches from here .. -1 .. 0; -0.25 */
+    double window_end;           /* .. to here, in branch lengths. 0.25 .. 2; 1 */
+    double patch_radius;         /* px: half a side of an induced patch. 4 .. 64; 16 */
+    double smoothing;            /* px: standard deviation of the blur before anything is sampled. 0 .. 2; 0.8; paper 0 */
+    /* alignment of short-listed pairs: align.c */
+    int32_t shortlist;           /* best candidates kept for each L-junction of either image. 1 .. 32; 4 */
+    int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map; 0 = none. 0 .. 30; 6; paper 0 */
+    double align_radius;         /* px: radius of the disc around the junction that is aligned. 8 .. 64; 20 */
+    double max_move;             /* px an alignment may move the junction. 0.5 .. 20; 5 */
+    double minimum_similarity;   /* correlation that the aligned discs of a match need. -1 .. 1; 0.6; paper -1 */
+    /* agreement between neighbouring matches: consensus.c, guided.c */
+    int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 16; paper 0 */
+    double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1.5; paper 0 */
+    double neighbour_tolerance;  /* where a match predicts its neighbour: error allowed, as a part of the distance. 0.01 .. 1; 0.15 */
+    double map_tolerance;        /* relative difference allowed between the affine maps of neighbours. 0.05 .. 5; 0.5 */
+    int32_t guided_rounds;       /* times that accepted matches propose matches near them. 0 .. 4; 1; paper 0 */
+    /* choice: assign.c */
+    double ratio;                /* the second best at another place must be worse by this factor. 1 .. 10; 1.5 */
+    double separation;           /* px: what is nearer is the same place; "another place" lies farther. 0 .. 100; 6; paper 0 */
+    int32_t mutual;              /* 1 = each must be the other's best. 1; paper 0 */
+    /* line segments: segments.c */
+    double end_tolerance;        /* branch ends correspond when the map brings their lengths together within this part. 0.01 .. 1; 0.12 */
+    double reserved[24];         /* zero */
+} asj_match_options;
+
+/* As for the detector: see options.h. */
+ASJ_API void asj_match_options_init(asj_match_options *options);
+ASJ_API asj_status asj_match_options_preset(asj_match_options *options, int32_t preset);
+ASJ_API size_t asj_match_option_count(void);
+ASJ_API const asj_option_info *asj_match_option(size_t index);
+ASJ_API asj_status asj_match_options_set(asj_match_options *options, const char *key, const char *text,
+                                         char *message, size_t message_size);
+ASJ_API asj_status asj_match_options_get(const asj_match_options *options, const char *key, char *text, size_t text_size);
+
+/* What is known about the end of a matched branch. */
+enum {
+    ASJ_END_CUT = 0,   /* the lengths differ: the longer branch was cut where the map puts the end of the shorter one */
+    ASJ_END_INNER = 1, /* a junction on the longer branch corresponds to the other's end */
+    ASJ_END_BOTH = 2   /* both branches' own ends correspond */
+};
+
+/* Two L-junctions that show the same corner. */
+typedef struct asj_junction_match {
+    uint32_t l1, l2;        /* L-junctions, as asj_decompose() numbers them with options.minimum_opening */
+    uint32_t junction1, junction2;
+    double affine[6];       /* h11 h12 h13 h21 h22 h23: x2 = h11 x1 + h12 y1 + h13, y2 = h21 x1 + h22 y1 + h23 */
+    float x1, y1;           /* px: junction in image 1, as detected */
+    float x2, y2;           /* px: where the aligned map puts it in image 2; as detected when it was not aligned */
+    float ax1, ay1, bx1, by1; /* ends of the parts of both branches that correspond, image 1 */
+    float ax2, ay2, bx2, by2; /* image 2, moved along with x2, y2 */
+    int32_t end_a, end_b;   /* ASJ_END_... */
+    float distance;         /* of the patches; see distance.c. The smaller the better */
+    float ratio;            /* how much worse the second best at another place is; HUGE_VAL when there is none */
+    float similarity;       /* correlation of the aligned discs, -1 .. 1; 0 when not aligned */
+    float support;          /* neighbouring matches that agree, each counted 0 to 1 */
+} asj_junction_match;
+
+/* Matches of two images. The arrays belong to the result and are NULL when empty. */
+typedef struct asj_match_result {
+    const asj_junction_match *matches; /* smallest distance first */
+    const asj_l_junction *l_junctions1;/* what l1 and l2 count */
+    const asj_l_junction *l_junctions2;
+    uint32_t match_count;
+    uint32_t l_junction_count1, l_junction_count2;
+    int32_t backend;                   /* ASJ_BACKEND_...: what did the work */
+    double total_ms;                   /* wall time of the call */
+    double stage_ms[16];               /* by ASJ_STAGE_... */
+    uint64_t candidates;               /* pairs that were aligned or compared by the pair's own map */
+    uint64_t reserved[7];
+} asj_match_result;
+
+/* Matches the junctions of two images: the pipeline of the paper, step 7. No epipolar geometry is estimated.
+ *
+ * image1, image2   views; only read, and only during the call
+ * junctions1, 2    from asj_detect() or a file; may be NULL when the count is 0. Junctions with branches that differ in sharpness or
+ *                  certainty are all welcome: a false junction finds no partner, a missing one cannot be matched. So detect with
+ *                  asj_match_detect_options()
+ * options          NULL = preset `default`
+ * result           on success *result belongs to the caller until asj_match_result_free()
+ *
+ * Each location takes part in one match at most. The result does not depend on the number of threads, and swapping the images
+ * swaps the matches. Memory: the patches (patch_size^2 x 2 bytes for each frame) and short lists.
+ *
+ * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that is not finite, lies outside its image, has a wrong branch count or a
+ *                      negative length
+ * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED   as asj_detect() */
+ASJ_API asj_status asj_match(asj_context *context,
+                             const asj_image *image1, const asj_junction *junctions1, size_t count1,
+                             const asj_image *image2, const asj_junction *junctions2, size_t count2,
+                             const asj_match_options *options, asj_match_result **result);
+
+/* Frees a result and sets the pointer to NULL. NULL and a pointer to NULL are fine. */
+ASJ_API void asj_match_result_free(asj_match_result **result);
+
+/* Changes detector options to what matching wants: weaker junctions too, since the matcher tells the false ones.
+ * candidate_strength 3, epsilon 100, no strip test. NULL is ignored. */
+ASJ_API void asj_match_detect_options(asj_detect_options *options);
+
+/* A pair of line segments from image 1 and image 2: a matched branch. */
+typedef struct asj_segment_match {
+    uint32_t match;           /* index of the match it comes from */
+    int32_t end;              /* ASJ_END_... of the far end */
+    float x1, y1, ex1, ey1;   /* image 1: the junction's end, the far end */
+    float x2, y2, ex2, ey2;   /* image 2 */
+} asj_segment_match;
+
+/* The matches as line-segment matches: two for each match, whose ends correspond at least as `minimum_end` says (ASJ_END_...);
+ * a pair that lies on a longer one in both images is dropped. Writes at most `capacity` of them and returns how
+ * many there are in all (2 x match_count at most). */
+ASJ_API size_t asj_match_segments(const asj_match_result *result, int32_t minimum_end,
+                                  asj_segment_match *segments, size_t capacity);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

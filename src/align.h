@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Refinement of a pair's affine map on the images. */
+#ifndef ASJ_SRC_ALIGN_H
+#define ASJ_SRC_ALIGN_H
+
+#include "distance.h"
+
+/* Samples of a disc: a grid of ASJ_DISC_RADIUS steps each way, in lanes. */
+#define ASJ_DISC_RADIUS 10
+#define ASJ_LANE 8
+#define ASJ_DISC_SAMPLES 320 /* 317 in the disc, filled up to whole lanes */
+
+typedef struct asj_disc {
+    int32_t count;                   /* 317 */
+    float x[ASJ_DISC_SAMPLES];       /* px from the centre */
+    float y[ASJ_DISC_SAMPLES];
+    float mask[ASJ_DISC_SAMPLES];    /* 1, and 0 in the filling */
+    int16_t column[ASJ_DISC_SAMPLES];/* place in the grid */
+    int16_t row[ASJ_DISC_SAMPLES];
+    float step, radius;              /* px */
+} asj_disc;
+
+/* What is known about the disc around one place, once for all its candidates. */
+typedef struct asj_template {
+    double x, y;
+    float value[ASJ_DISC_SAMPLES];      /* zero mean, unit norm */
+    float descent[6][ASJ_DISC_SAMPLES]; /* change of the normalised sample with t_x, t_y, and the linear part times radius */
+    double factor[36];                  /* Cholesky factor of their damped normal equations */
+    int32_t usable;                     /* three quarters lie in the image */
+    int32_t solvable;
+} asj_template;
+
+void asj_disc_create(double radius, asj_disc *disc);
+void asj_template_create(const asj_disc *disc, const asj_pyramid *pyramid, double x, double y, asj_template *t);
+
+/* Result of an alignment: source = (x, y) + linear (template - its centre). */
+typedef struct asj_alignment {
+    double x, y;
+    double linear[4];
+    float first, similarity; /* correlation before and after */
+    int32_t moved;           /* the start was improved upon, within the limits */
+} asj_alignment;
+
+/* Aligns `pyramid` with the template, starting from the linear map and the location given. */
+void asj_align(const asj_disc *disc, const asj_template *t, const asj_pyramid *pyramid, const double linear[4], double x, double y,
+               int32_t iterations, double max_move, asj_alignment *result);
+
+/* Aligns every candidate of the list from `first` on (sorted or not): map, move1, move2, similarity and distance2 are updated. */
+asj_status asj_align_candidates(asj_context *context, const asj_match_options *options, const asj_view *view1,
+                                const asj_view *view2, asj_candidates *candidates, size_t first);
+
+#endif

@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 7, agreement between neighbouring matches.
+ *
+ * In rooms one corner looks like another, so appearance alone leaves several partners to choose from. But each candidate carries an
+ * affine map, which says where its neighbours must be and how they must be distorted. True candidates agree with their true neighbours;
+ * false ones agree with nothing, or with fewer. No epipolar geometry is estimated: agreement is asked for between near neighbours only,
+ * where a surface is nearly flat and perspective nearly affine, and it has to be rough only (`neighbour_tolerance` of the distance).
+ *
+ * Agreement of candidates c and d: with e_c, e_d the errors with which their maps predict each other's location, in image 2 and with the
+ * inverse maps in image 1, and E the Frobenius norm,
+ *
+ *     r^2 = max over both images of [ (e_c + e_d) / 2 / (3 px + neighbour_tolerance * distance) ]^2
+ *         + max over both directions of  |A_c - A_d|_E^2 / (map_tolerance^2 |A_c|_E |A_d|_E),
+ *     w = (1 - r^2 / 5)^2 for r^2 < 5, else 0  (Tukey's biweight, about exp(-r^2 / 2), but it ends and needs no exponential).
+ *
+ * Relaxation labelling (Rosenfeld, Hummel and Zucker 1976), a few Jacobi steps. With a = (least distance among the competitors /
+ * own distance)^2 x similarity, competitors being the candidates of the same place in either image:
+ *
+ *     support = half the sum, over the nearest places in image 1 and in image 2, of the largest w x confidence among their candidates,
+ *     score = a (0.2 + support),     confidence = score / max(score of the best competitor, minimum_support),
+ *
+ * so that a place speaks with one voice, and places where nothing is sure hardly speak. 0.2 lets the first step be led by
+ * appearance; between 0.1 and 0.4 it changes nothing. */
+#include "consensus.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PIXELS 3.0 /* error allowed to any prediction: location errors of two junctions and their map */
+#define REACH 5.0  /* r^2 at which agreement ends */
+#define BASE 0.2f
+#define STEPS 5
+#define WEIGHT_ONE 65535.0f
+
+asj_status asj_place_index_create(asj_context *context, const asj_corners *corners, const asj_candidates *candidates, int32_t side,
+                                  asj_place_index *index)
+{
+    index->start = asj_allocate_zero(&context->memory, (size_t)corners->place_count + 2, sizeof *index->start);
+    index->order = asj_allocate(&context->memory, candidates->count, sizeof *index->order);
+    if (!index->start || !index->order)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for an index of %zu candidates", candidates->count);
+    for (size_t k = 0; k < candidates->count; k++)
+        index->start[corners->place[side == 1 ? candidates->list[k].i : candidates->list[k].j] + 2]++;
+    for (uint32_t p = 2; p < corners->place_count + 2; p++)
+        index->start[p] += index->start[p - 1];
+    for (size_t k = 0; k < candidates->count; k++)
+        index->order[index->start[corners->place[side == 1 ? candidates->list[k].i : candidates->list[k].j] + 1]++] = (uint32_t)k;
+    return ASJ_OK;
+}
+
+void asj_place_index_free(asj_memory *memory, asj_place_index *index)
+{
+    asj_release(memory, index->start);
+    asj_release(memory, index->order);
+    index->start = index->order = NULL;
+}
+
+/* --- agreement -------------------------------------------------------------------------------------------------------------- */
+
+/* Mean error of both predictions over what is allowed, squared. (dx, dy) leads from c to d in the image that the maps start from. */
+static double misprediction(const double *map_c, const double *map_d, double dx, double dy, double ex, double ey, double tolerance)
+{
+    double distance = sqrt(ex * ex + ey * ey), allowed = PIXELS + tolerance * distance;
+    double cx = map_c[0] * dx + map_c[1] * dy - ex, cy = map_c[2] * dx + map_c[3] * dy - ey;
+    double square = cx * cx + cy * cy, most = 4 * REACH * allowed * allowed;
+    if (square > most)
+        return 2 * REACH; /* no square root for the many that are far off */
+    double tx = map_d[0] * dx + map_d[1] * dy - ex, ty = map_d[2] * dx + map_d[3] * dy - ey;
+    double mean = (sqrt(square) + sqrt(tx * tx + ty * ty)) * 0.5 / allowed;
+    return mean * mean;
+}
+
+static double unlikeness(const double *a, const double *b)
+{
+    double difference = 0, size_a = 0, size_b = 0;
+    for (int i = 0; i < 4; i++) {
+        difference += (a[i] - b[i]) * (a[i] - b[i]);
+        size_a += a[i] * a[i];
+        size_b += b[i] * b[i];
+    }
+    return difference / sqrt(size_a * size_b);
+}
+
+float asj_agreement(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c,
+                    const asj_candidate *d)
+{
+    const asj_l_junction *c1 = &view1->corners.l[c->i], *d1 = &view1->corners.l[d->i];
+    const asj_l_junction *c2 = &view2->corners.l[c->j], *d2 = &view2->corners.l[d->j];
+    double x1 = (double)d1->x - (double)c1->x, y1 = (double)d1->y - (double)c1->y;
+    double x2 = (double)d2->x - (double)c2->x, y2 = (double)d2->y - (double)c2->y;
+    if (x1 * x1 + y1 * y1 < 1 || x2 * x2 + y2 * y2 < 1) /* two corners of one image on one place of the other */
+        return 0;
+    double there = misprediction(c->map.to, d->map.to, x1, y1, x2, y2, options->neighbour_tolerance);
+    if (there >= REACH)
+        return 0;
+    double back = misprediction(c->map.from, d->map.from, x2, y2, x1, y1, options->neighbour_tolerance);
+    double to = unlikeness(c->map.to, d->map.to), from = unlikeness(c->map.from, d->map.from);
+    double r2 = (there > back ? there : back) + (to > from ? to : from) / (options->map_tolerance * options->map_tolerance);
+    if (!(r2 < REACH))
+        return 0;
+    double w = 1 - r2 / REACH;
+    return (float)(w * w);
+}
+
+/* --- relaxation ------------------------------------------------------------------------------------------------------------- */
+
+/* One image's half of the graph. Weights are stored for every pair that is looked at, candidate by candidate, neighbour place by
+ * neighbour place, in the order of the place index. */
+typedef struct half {
+    const asj_corners *corners;
+    asj_place_index index;
+    size_t *offset;      /* of each candidate's weights */
+    uint16_t *weight;    /* agreement in 1/65535 */
+    float *confidence;   /* in the order of the place index */
+    uint32_t *position;  /* of each candidate there */
+    float *best;         /* of each place */
+} half;
+
+static uint32_t place_of(const half *h, const asj_candidate *c, int32_t side)
+{
+    return h->corners->place[side == 1 ? c->i : c->j];
+}
+
+static asj_status half_create(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
+                              const asj_candidates *candidates, int32_t side, half *h)
+{
+    asj_memory *memory = &context->memory;
+    const size_t count = candidates->count;
+    h->corners = side == 1 ? &view1->corners : &view2->corners;
+    asj_status status = asj_place_index_create(context, h->corners, candidates, side, &h->index);
+    if (status != ASJ_OK)
+        return status;
+    h->offset = asj_allocate(memory, count + 1, sizeof *h->offset);
+    h->confidence = asj_allocate(memory, count, sizeof *h->confidence);
+    h->position = asj_allocate(memory, count, sizeof *h->position);
+    h->best = asj_allocate(memory, h->corners->place_count, sizeof *h->best);
+    if (!h->offset || !h->confidence || !h->position || !h->best)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
+    size_t total = 0;
+    for (size_t k = 0; k < count; k++) {
+        const uint32_t place = place_of(h, &candidates->list[k], side);
+        const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
+        h->offset[k] = total;
+        for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++)
+            total += h->index.start[neighbour[n] + 1] - h->index.start[neighbour[n]];
+        h->position[h->index.order[k]] = (uint32_t)k;
+    }
+    h->offset[count] = total;
+    h->weight = asj_allocate(memory, total, sizeof *h->weight);
+    if (!h->weight)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu pairs of candidates", total);
+#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 64)
+    for (int64_t k = 0; k < (int64_t)count; k++) {
+        const asj_candidate *c = &candidates->list[k];
+        const uint32_t place = place_of(h, c, side);
+        const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
+        uint16_t *weight = h->weight + h->offset[k];
+        for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++)
+            for (uint32_t m = h->index.start[neighbour[n]]; m < h->index.start[neighbour[n] + 1]; m++)
+                *weight++ = (uint16_t)(asj_agreement(options, view1, view2, c, &candidates->list[h->index.order[m]]) * WEIGHT_ONE);
+    }
+    return ASJ_OK;
+}
+
+static void half_free(asj_memory *memory, half *h)
+{
+    asj_place_index_free(memory, &h->index);
+    asj_release(memory, h->offset);
+    asj_release(memory, h->weight);
+    asj_release(memory, h->confidence);
+    asj_release(memory, h->position);
+    asj_release(memory, h->best);
+}
+
+/* Sum over the neighbour places of the largest weight x confidence. */
+static float ask(const half *h, const asj_candidate *c, size_t k, int32_t side)
+{
+    const uint32_t place = place_of(h, c, side);
+    const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
+    const uint16_t *weight = h->weight + h->offset[k];
+    float support = 0;
+    for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++) {
+        const float *confidence = h->confidence + h->index.start[neighbour[n]];
+        const uint32_t size = h->index.start[neighbour[n] + 1] - h->index.start[neighbour[n]];
+        float largest = 0;
+        for (uint32_t m = 0; m < size; m++) {
+            float voice = (float)weight[m] * confidence[m];
+            largest = voice > largest ? voice : largest;
+        }
+        support += largest;
+        weight += size;
+    }
+    return support * (1 / WEIGHT_ONE);
+}
+
+/* best[place] = the largest (sign 1) or smallest (sign -1) value of the place's candidates. */
+static void best_of_places(half *h, const float *value, float sign)
+{
+    for (uint32_t p = 0; p < h->corners->place_count; p++) {
+        float best = -HUGE_VALF;
+        for (uint32_t m = h->index.start[p]; m < h->index.start[p + 1]; m++) {
+            float v = sign * value[h->index.order[m]];
+            best = v > best ? v : best;
+        }
+        h->best[p] = sign * best;
+    }
+}
+
+/* a: how well the candidate looks, against its competitors. `scratch` holds one number for each candidate. */
+static void rate(const asj_candidates *candidates, int32_t aligned, half halves[2], float *scratch, float *appearance)
+{
+    for (size_t k = 0; k < candidates->count; k++)
+        scratch[k] = candidates->list[k].distance2;
+    for (int s = 0; s < 2; s++)
+        best_of_places(&halves[s], scratch, -1);
+    for (size_t k = 0; k < candidates->count; k++) {
+        const asj_candidate *c = &candidates->list[k];
+        float b1 = halves[0].best[place_of(&halves[0], c, 1)], b2 = halves[1].best[place_of(&halves[1], c, 2)];
+        float least = b1 < b2 ? b1 : b2;
+        float similarity = !aligned ? 1 : c->similarity > 1e-3f ? c->similarity : 1e-3f;
+        appearance[k] = least > 0 ? least / c->distance2 * similarity : c->distance2 > 0 ? 0 : similarity;
+    }
+}
+
+static void set_confidence(const asj_candidates *candidates, half halves[2], const float *confidence)
+{
+    for (size_t k = 0; k < candidates->count; k++)
+        for (int s = 0; s < 2; s++)
+            halves[s].confidence[halves[s].position[k]] = confidence[k];
+}
+
+static void relax(asj_context *context, const asj_match_options *options, asj_candidates *candidates, half halves[2],
+                  const float *appearance, float *score)
+{
+    const int64_t count = (int64_t)candidates->count;
+    const float least = options->minimum_support > 1e-6 ? (float)options->minimum_support : 1e-6f;
+    (void)context; /* without OpenMP */
+    set_confidence(candidates, halves, appearance);
+    for (int step = 0; step < STEPS; step++) {
+#pragma omp parallel for num_threads(context->threads) schedule(static)
+        for (int64_t k = 0; k < count; k++) {
+            asj_candidate *c = &candidates->list[k];
+            c->support = (ask(&halves[0], c, (size_t)k, 1) + ask(&halves[1], c, (size_t)k, 2)) * 0.5f;
+            c->score = appearance[k] * (BASE + c->support);
+        }
+        for (int64_t k = 0; k < count; k++)
+            score[k] = candidates->list[k].score;
+        best_of_places(&halves[0], score, 1);
+        best_of_places(&halves[1], score, 1);
+        for (int64_t k = 0; k < count; k++) {
+            const asj_candidate *c = &candidates->list[k];
+            float b1 = halves[0].best[place_of(&halves[0], c, 1)], b2 = halves[1].best[place_of(&halves[1], c, 2)];
+            float best = b1 > b2 ? b1 : b2;
+            score[k] /= best > least ? best : least;
+        }
+        set_confidence(candidates, halves, score);
+    }
+}
+
+asj_status asj_consensus(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
+                         asj_candidates *candidates)
+{
+    asj_memory *memory = &context->memory;
+    if (options->neighbours == 0) {
+        for (size_t k = 0; k < candidates->count; k++) {
+            asj_candidate *c = &candidates->list[k];
+            c->support = 0;
+            c->score = 1 / sqrtf(c->distance2 > 1e-12f ? c->distance2 : 1e-12f);
+        }
+        return ASJ_OK;
+    }
+    half halves[2];
+    memset(halves, 0, sizeof halves);
+    float *appearance = asj_allocate(memory, candidates->count, sizeof *appearance);
+    float *scratch = asj_allocate(memory, candidates->count, sizeof *scratch);
+    asj_status status = appearance && scratch ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates",
+                                                                  candidates->count);
+    for (int32_t s = 0; s < 2 && status == ASJ_OK; s++)
+        status = half_create(context, options, view1, view2, candidates, s + 1, &halves[s]);
+    if (status == ASJ_OK) {
+        rate(candidates, options->align_iterations > 0, halves, scratch, appearance);
+        relax(context, options, candidates, halves, appearance, scratch);
+    }
+    for (int s = 0; s < 2; s++)
+        half_free(memory, &halves[s]);
+    asj_release(memory, appearance);
+    asj_release(memory, scratch);
+    return status;
+}

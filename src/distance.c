@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 7, distances of all pairs.
+ *
+ * Canonical patches: f and g are unit vectors, so |f - g|^2 = 2 - 2 <f, g>: all pairs are one product of two matrices, worked through in
+ * blocks of rows. Of an L-junction with several length hypotheses the best pair of frames counts.
+ * From each block the best partners of its rows and, row after row, of all columns are kept: memory for the full matrix is never needed.
+ * Ties go to the smaller index, so the list depends on nothing but the input. */
+#include "distance.h"
+#include "descriptor.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BLOCK_ROWS 64
+#define MAX_SHORTLIST 32
+#define UNUSABLE -1e30f
+
+int32_t asj_patch_length(const asj_match_options *options)
+{
+    return options->descriptor == ASJ_DESCRIPTOR_SIFT ? ASJ_SIFT_LENGTH : options->patch_size * options->patch_size;
+}
+
+/* Raw canonical patches are always normalised when they are to be multiplied; `normalise` off keeps the mean in. */
+static void describe(const asj_match_options *options, const uint16_t *grey, int16_t *unit)
+{
+    const int32_t samples = options->patch_size * options->patch_size;
+    if (options->descriptor == ASJ_DESCRIPTOR_SIFT) {
+        asj_descriptor_sift(grey, options->patch_size, unit);
+    } else if (options->normalise) {
+        asj_patch_normalise(grey, samples, unit);
+    } else { /* as a share of the patch's own norm bound: white everywhere = 1 */
+        const float scale = (float)(ASJ_UNIT_ONE / (ASJ_GRAY_MAX * sqrt((double)samples)));
+        for (int32_t i = 0; i < samples; i++)
+            unit[i] = (int16_t)((float)grey[i] * scale + 0.5f);
+    }
+}
+
+asj_status asj_describe(asj_context *context, const asj_match_options *options, asj_view *view)
+{
+    const size_t length = (size_t)asj_patch_length(options);
+    const int64_t count = view->corners.frame_count;
+    view->patches = asj_allocate(&context->memory, (size_t)count * length, sizeof *view->patches);
+    view->usable = asj_allocate(&context->memory, (size_t)count, sizeof *view->usable);
+    if (!view->patches || !view->usable)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lld patches", (long long)count);
+#pragma omp parallel for num_threads(context->threads) schedule(static)
+    for (int64_t f = 0; f < count; f++) {
+        uint16_t grey[ASJ_PATCH_SAMPLES];
+        view->usable[f] = (uint8_t)asj_patch_sample(&view->pyramid, &view->corners.frames[f], options->patch_size,
+                                                    options->window_start, options->window_end, grey);
+        describe(options, grey, view->patches + (size_t)f * length);
+    }
+    return ASJ_OK;
+}
+
+static int32_t norm2(const int16_t *patch, int32_t length)
+{
+    return asj_patch_product(patch, patch, length);
+}
+
+/* Minus the squared distance: of unit vectors from their product, of others from their norms too. */
+static float affinity(const asj_match_options *options, const int16_t *f, const int16_t *g, int32_t length)
+{
+    static const float one = 1.0f / ((float)ASJ_UNIT_ONE * (float)ASJ_UNIT_ONE);
+    float product = (float)asj_patch_product(f, g, length);
+    if (options->descriptor == ASJ_DESCRIPTOR_SIFT || options->normalise)
+        return 2 * product * one - 2;
+    return (2 * product - (float)norm2(f, length) - (float)norm2(g, length)) * one;
+}
+
+/* The best pair of frames of a pair of L-junctions. */
+static float best_frames(const asj_match_options *options, const asj_view *view1, const asj_view *view2, uint32_t i, uint32_t j,
+                         uint32_t *frame1, uint32_t *frame2)
+{
+    const int32_t length = asj_patch_length(options);
+    const asj_corners *c1 = &view1->corners, *c2 = &view2->corners;
+    float best = UNUSABLE;
+    for (uint32_t f = c1->first_frame[i]; f < c1->first_frame[i + 1]; f++) {
+        if (!view1->usable[f])
+            continue;
+        const int16_t *patch = view1->patches + (size_t)f * (size_t)length;
+        for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++) {
+            if (!view2->usable[g])
+                continue;
+            float score = affinity(options, patch, view2->patches + (size_t)g * (size_t)length, length);
+            if (score > best) {
+                best = score;
+                *frame1 = f;
+                *frame2 = g;
+            }
+        }
+    }
+    return best;
+}
+
+/* --- short lists ------------------------------------------------------------------------------------------------------------ */
+
+typedef struct entry {
+    float score;
+    uint32_t index;
+} entry;
+
+/* Inserts into a list that falls; the earlier of equals stays first. */
+static void offer(entry *list, int32_t limit, float score, uint32_t index)
+{
+    if (score <= list[limit - 1].score)
+        return;
+    int32_t k = limit - 1;
+    for (; k > 0 && list[k - 1].score < score; k--)
+        list[k] = list[k - 1];
+    list[k] = (entry){score, index};
+}
+
+static void clear(entry *list, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        list[i] = (entry){UNUSABLE, 0};
+}
+
+/* All that the two passes over a block share. */
+typedef struct table {
+    const asj_match_options *options;
+    const asj_view *view1, *view2;
+    int32_t limit;
+    entry *rows, *columns; /* `limit` entries for each L-junction of image 1 and of image 2 */
+    float *scores;         /* BLOCK_ROWS x count2 */
+} table;
+
+static void score_row(const table *t, uint32_t i, float *scores)
+{
+    const uint32_t count = t->view2->corners.count;
+    uint32_t f, g;
+    for (uint32_t j = 0; j < count; j++)
+        scores[j] = t->options->patches == ASJ_PATCHES_CANONICAL
+            ? best_frames(t->options, t->view1, t->view2, i, j, &f, &g)
+            : -asj_induced_distance(t->options, t->view1, t->view2, i, j);
+    for (uint32_t j = 0; j < count; j++)
+        offer(t->rows + (size_t)i * (size_t)t->limit, t->limit, scores[j], j);
+}
+
+static asj_status work(asj_context *context, const table *t)
+{
+    const int64_t count1 = t->view1->corners.count, count2 = t->view2->corners.count;
+    for (int64_t first = 0; first < count1; first += BLOCK_ROWS) {
+        const int64_t end = first + BLOCK_ROWS < count1 ? first + BLOCK_ROWS : count1;
+#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 4)
+        for (int64_t i = first; i < end; i++)
+            score_row(t, (uint32_t)i, t->scores + (i - first) * count2);
+#pragma omp parallel for num_threads(context->threads) schedule(static)
+        for (int64_t j = 0; j < count2; j++)
+            for (int64_t i = first; i < end; i++)
+                offer(t->columns + j * t->limit, t->limit, t->scores[(i - first) * count2 + j], (uint32_t)i);
+        asj_status status = asj_progress(context, ASJ_STAGE_DISTANCES, 0.2 + 0.4 * (double)end / (double)count1);
+        if (status != ASJ_OK)
+            return status;
+    }
+    return ASJ_OK;
+}
+
+static int by_pair(const void *left, const void *right)
+{
+    const asj_candidate *p = left, *q = right;
+    if (p->i != q->i)
+        return p->i < q->i ? -1 : 1;
+    return p->j < q->j ? -1 : p->j > q->j;
+}
+
+asj_status asj_candidates_sort(asj_candidates *candidates)
+{
+    if (candidates->count > 1)
+        qsort(candidates->list, candidates->count, sizeof *candidates->list, by_pair);
+    size_t kept = 0;
+    for (size_t k = 0; k < candidates->count; k++)
+        if (kept == 0 || by_pair(&candidates->list[k], &candidates->list[kept - 1]) != 0)
+            candidates->list[kept++] = candidates->list[k];
+    candidates->count = kept;
+    return ASJ_OK;
+}
+
+/* The union of both lists as candidates. */
+static asj_status collect(asj_context *context, const table *t, asj_candidates *candidates)
+{
+    const uint32_t count1 = t->view1->corners.count, count2 = t->view2->corners.count;
+    const size_t most = ((size_t)count1 + count2) * (size_t)t->limit;
+    candidates->list = asj_allocate(&context->memory, most, sizeof *candidates->list);
+    if (!candidates->list)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", most);
+    candidates->capacity = most;
+    candidates->count = 0;
+    for (uint32_t n = 0; n < count1 + count2; n++)
+        for (int32_t k = 0; k < t->limit; k++) {
+            const entry *e = n < count1 ? &t->rows[(size_t)n * (size_t)t->limit + (size_t)k]
+                                        : &t->columns[(size_t)(n - count1) * (size_t)t->limit + (size_t)k];
+            if (e->score <= UNUSABLE)
+                break;
+            asj_candidate *c = &candidates->list[candidates->count++];
+            memset(c, 0, sizeof *c);
+            c->i = n < count1 ? n : e->index;
+            c->j = n < count1 ? e->index : n - count1;
+        }
+    return asj_candidates_sort(candidates);
+}
+
+int32_t asj_compare(const asj_match_options *options, const asj_view *view1, const asj_view *view2, asj_candidate *candidate)
+{
+    const asj_corners *c1 = &view1->corners, *c2 = &view2->corners;
+    uint32_t f = c1->first_frame[candidate->i], g = c2->first_frame[candidate->j];
+    if (options->patches == ASJ_PATCHES_CANONICAL) {
+        float score = best_frames(options, view1, view2, candidate->i, candidate->j, &f, &g);
+        if (score <= UNUSABLE)
+            return 0;
+        candidate->distance2 = -score > 0 ? -score : 0;
+    } else {
+        float distance = asj_induced_distance(options, view1, view2, candidate->i, candidate->j);
+        if (!(distance < HUGE_VALF))
+            return 0;
+        candidate->distance2 = distance * distance;
+    }
+    return asj_affine_between(&c1->frames[f], &c2->frames[g], &candidate->map);
+}
+
+asj_status asj_shortlist(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
+                         asj_candidates *candidates)
+{
+    asj_memory *memory = &context->memory;
+    const size_t count1 = view1->corners.count, count2 = view2->corners.count, limit = (size_t)options->shortlist;
+    table t = {options, view1, view2, options->shortlist, NULL, NULL, NULL};
+    t.rows = asj_allocate(memory, count1 * limit, sizeof *t.rows);
+    t.columns = asj_allocate(memory, count2 * limit, sizeof *t.columns);
+    t.scores = asj_allocate(memory, BLOCK_ROWS * count2, sizeof *t.scores);
+    asj_status status;
+    if (!t.rows || !t.columns || !t.scores) {
+        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the distances of %zu x %zu L-junctions", count1, count2);
+    } else {
+        clear(t.rows, count1 * limit);
+        clear(t.columns, count2 * limit);
+        status = work(context, &t);
+        if (status == ASJ_OK)
+            status = collect(context, &t, candidates);
+    }
+    asj_release(memory, t.rows);
+    asj_release(memory, t.columns);
+    asj_release(memory, t.scores);
+    return status;
+}

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Chosen candidates as the caller sees them. */
+#include "match_result.h"
+#include "segments.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct result {
+    asj_match_result shown; /* first, so that the caller's pointer is ours */
+    asj_memory memory;
+    asj_junction_match *matches;
+    asj_l_junction *l1, *l2;
+} result;
+
+/* Where the aligned map puts the junction of image 1. When image 1 was the one that moved, the map takes its moved
+ * location to the other's: q = p2 - A (p1 + move - p1). */
+static void refined_location(const asj_candidate *c, const asj_l_junction *l2, double *x, double *y)
+{
+    *x = (double)l2->x + c->move2[0] - (c->map.to[0] * c->move1[0] + c->map.to[1] * c->move1[1]);
+    *y = (double)l2->y + c->move2[1] - (c->map.to[2] * c->move1[0] + c->map.to[3] * c->move1[1]);
+}
+
+static void fill(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c, float ratio,
+                 asj_junction_match *m)
+{
+    const asj_l_junction *l1 = &view1->corners.l[c->i], *l2 = &view2->corners.l[c->j];
+    const double *u1 = view1->corners.direction + 4 * (size_t)c->i, *u2 = view2->corners.direction + 4 * (size_t)c->j;
+    const double *t = c->map.to;
+    asj_common_end a, b;
+    double x, y;
+    asj_find_common_end(options, view1, view2, c, 0, &a);
+    asj_find_common_end(options, view1, view2, c, 1, &b);
+    refined_location(c, l2, &x, &y);
+    memset(m, 0, sizeof *m);
+    m->l1 = c->i;
+    m->l2 = c->j;
+    m->junction1 = l1->junction;
+    m->junction2 = l2->junction;
+    const double affine[6] = {t[0], t[1], x - t[0] * (double)l1->x - t[1] * (double)l1->y,
+                              t[2], t[3], y - t[2] * (double)l1->x - t[3] * (double)l1->y};
+    memcpy(m->affine, affine, sizeof affine);
+    m->x1 = l1->x;
+    m->y1 = l1->y;
+    m->x2 = (float)x;
+    m->y2 = (float)y;
+    m->ax1 = (float)((double)l1->x + a.length1 * u1[0]);
+    m->ay1 = (float)((double)l1->y + a.length1 * u1[1]);
+    m->bx1 = (float)((double)l1->x + b.length1 * u1[2]);
+    m->by1 = (float)((double)l1->y + b.length1 * u1[3]);
+    m->ax2 = (float)(x + a.length2 * u2[0]);
+    m->ay2 = (float)(y + a.length2 * u2[1]);
+    m->bx2 = (float)(x + b.length2 * u2[2]);
+    m->by2 = (float)(y + b.length2 * u2[3]);
+    m->end_a = a.kind;
+    m->end_b = b.kind;
+    m->distance = sqrtf(c->distance2);
+    m->ratio = ratio;
+    m->similarity = c->similarity;
+    m->support = c->support;
+}
+
+static int by_distance(const void *left, const void *right)
+{
+    const asj_junction_match *p = left, *q = right;
+    if (p->distance != q->distance)
+        return p->distance < q->distance ? -1 : 1;
+    if (p->l1 != q->l1)
+        return p->l1 < q->l1 ? -1 : 1;
+    return p->l2 < q->l2 ? -1 : p->l2 > q->l2;
+}
+
+static asj_l_junction *copy(asj_memory *memory, const asj_corners *corners)
+{
+    asj_l_junction *l = asj_allocate(memory, corners->count, sizeof *l);
+    if (l && corners->count)
+        memcpy(l, corners->l, corners->count * sizeof *l);
+    return l;
+}
+
+asj_match_result *asj_match_result_create(const asj_context *context, const asj_match_options *options, const asj_view *view1,
+                                          const asj_view *view2, const asj_candidates *candidates, const asj_choice *choices,
+                                          size_t count)
+{
+    asj_memory memory = {context->memory.allocator, 0, 0};
+    result *r = asj_allocate_zero(&memory, 1, sizeof *r);
+    if (!r)
+        return NULL;
+    r->memory = memory;
+    r->matches = asj_allocate(&memory, count, sizeof *r->matches);
+    r->l1 = copy(&memory, &view1->corners);
+    r->l2 = copy(&memory, &view2->corners);
+    asj_match_result *shown = &r->shown;
+    if (!r->matches || !r->l1 || !r->l2) {
+        asj_match_result_free(&shown);
+        return NULL;
+    }
+    for (size_t n = 0; n < count; n++)
+        fill(options, view1, view2, &candidates->list[choices[n].candidate], choices[n].ratio, &r->matches[n]);
+    if (count > 1)
+        qsort(r->matches, count, sizeof *r->matches, by_distance);
+    shown->matches = count ? r->matches : NULL;
+    shown->match_count = (uint32_t)count;
+    shown->l_junctions1 = view1->corners.count ? r->l1 : NULL;
+    shown->l_junctions2 = view2->corners.count ? r->l2 : NULL;
+    shown->l_junction_count1 = view1->corners.count;
+    shown->l_junction_count2 = view2->corners.count;
+    return shown;
+}
+
+void asj_match_result_free(asj_match_result **pointer)
+{
+    if (!pointer || !*pointer)
+        return;
+    result *r = (result *)*pointer;
+    asj_memory memory = r->memory;
+    asj_release(&memory, r->matches);
+    asj_release(&memory, r->l1);
+    asj_release(&memory, r->l2);
+    asj_release(&memory, r);
+    *pointer = NULL;
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_SRC_SEGMENTS_H
+#define ASJ_SRC_SEGMENTS_H
+
+#include "distance.h"
+
+/* Lengths of a matched branch in both images that show the same part of it. */
+typedef struct asj_common_end {
+    double length1, length2; /* px */
+    int32_t kind;            /* ASJ_END_... */
+} asj_common_end;
+
+/* branch: 0 = a, 1 = b. */
+void asj_find_common_end(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c,
+                         int32_t branch, asj_common_end *end);
+
+#endif
