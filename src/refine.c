@@ -60,6 +60,29 @@ static void search(const asj_frame *frame, const asj_detect_options *options, as
     }
 }
 
+/* Fits the line over growing parts of the branch, so that the narrow band around the last line always holds the edge. Where it passes the
+ * junction is the business of its near part: when a long line says something significantly different there, the edge is bent (lenses
+ * do that), and the near part is believed. */
+static void follow_line(const asj_frame *frame, const asj_draft *draft, asj_draft_branch *branch)
+{
+    const double end = fmax(branch->length - 3, 8);
+    double near_offset = branch->offset, near_variance = HUGE_VAL;
+    for (double reach = 80;; reach *= 3) {
+        const asj_line_range range = {fmin(5, 0.25 * branch->length + 0.5), fmin(end, reach), {1.6, 1.6, 0}, 2};
+        const int found = asj_line_fit(frame, draft->x, draft->y, &range, branch);
+        if (found && near_variance == HUGE_VAL) {
+            near_offset = branch->offset;
+            near_variance = branch->offset_variance;
+        }
+        if (!found || reach >= end)
+            break;
+    }
+    if (fabs(branch->offset - near_offset) > 3 * sqrt(near_variance)) {
+        branch->offset = near_offset;
+        branch->offset_variance = near_variance;
+    }
+}
+
 void asj_refine(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
 {
     (void)context;
@@ -67,11 +90,8 @@ void asj_refine(const asj_context *context, const asj_frame *frame, const asj_de
         search(frame, options, draft);
         return;
     }
-    for (int32_t i = 0; i < draft->branch_count; i++) {
-        asj_draft_branch *branch = &draft->branches[i];
-        asj_line_range range = {fmin(5, 0.25 * branch->length + 0.5), fmin(fmax(branch->length - 3, 8), 80), {1.6, 1.6, 0}, 2};
-        asj_line_fit(frame, draft->x, draft->y, &range, branch);
-    }
+    for (int32_t i = 0; i < draft->branch_count; i++)
+        follow_line(frame, draft, &draft->branches[i]);
     asj_locate_meet(draft);
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "stages.h"
+#include "ends.h"
 #include "gradient.h"
 #include "refine.h"
 
@@ -352,6 +353,16 @@ asj_status asj_stage_orient(asj_detection_run *d)
     return ASJ_OK;
 }
 
+static asj_status snap_ends(asj_detection_run *d)
+{
+    const asj_draft **order = asj_allocate(&d->context->memory, d->draft_count, sizeof *order);
+    if (!order)
+        return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", d->draft_count);
+    asj_ends_snap(d->drafts, d->draft_count, d->options->snap_distance, order);
+    asj_release(&d->context->memory, order);
+    return ASJ_OK;
+}
+
 /* Step 5, last time, and validation. */
 asj_status asj_stage_validate(asj_detection_run *d)
 {
@@ -364,5 +375,7 @@ asj_status asj_stage_validate(asj_detection_run *d)
         asj_validate(d->context, &d->detector->frame, d->options, &d->drafts[i]);
     }
     asj_status status = suppress(d);
+    if (status == ASJ_OK)
+        status = snap_ends(d);
     return status == ASJ_OK ? dump_points(d, ASJ_STAGE_REFINE, "junctions", d->draft_count, draft_point) : status;
 }

@@ -72,7 +72,8 @@ typedef struct asj_detect_options {
     double max_deviation;         /* deg between a branch and the dominant direction of the edges under it. 1 .. 90; 12; paper 90 */
     int32_t ignore_frame;         /* 1 = drop branches that run along the border of the image, within 2.5 px. 1; paper 0 */
     int32_t reserved_1;           /* zero */
-    double reserved[22];          /* zero */
+    double snap_distance;         /* px: a branch that ends this close to a junction on its line ends there. 0 .. 30; 8; paper 0 */
+    double reserved[21];          /* zero */
 } asj_detect_options;
 
 enum { ASJ_REFINE_LINE_FIT = 0, ASJ_REFINE_SEARCH = 1 };

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* After step 5: branches that end near a junction end at it. */
+#ifndef ASJ_SRC_ENDS_H
+#define ASJ_SRC_ENDS_H
+
+#include "draft.h"
+
+/* Moves the ends of branches onto junctions that lie on their line within `reach` px of the end. `order` is scratch for `count`
+ * elements. */
+void asj_ends_snap(asj_draft *drafts, size_t count, double reach, const asj_draft **order);
+
+#endif
