@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* From views to gray planes: formats, white levels, strides, what is refused. */
+#include "unit_test.h"
+
+typedef struct fixture {
+    unit_counter counter;
+    asj_context *context;
+    asj_frame frame;
+} fixture;
+
+static int set_up(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    *state = f;
+    if (!f)
+        return -1;
+    f->context = unit_context(&f->counter, 1);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+    asj_frame_free(&f->context->memory, &f->frame);
+    asj_context_free(&f->context);
+    const int leaked = f->counter.live != 0;
+    free(f);
+    return leaked;
+}
+
+static asj_status load(fixture *f, const asj_image *image)
+{
+    asj_status status = asj_image_check(f->context, image);
+    if (status == ASJ_OK)
+        status = asj_frame_prepare(f->context, &f->frame, image->width, image->height);
+    return status == ASJ_OK ? asj_frame_load(f->context, &f->frame, image) : status;
+}
+
+static int32_t gray(const fixture *f, int32_t x, int32_t y)
+{
+    return f->frame.gray[y * f->frame.stride + x];
+}
+
+/* The nearest of the 32641 levels; ties may go either way with the rounding of float. */
+static void check_level(const fixture *f, int32_t x, int32_t y, double share)
+{
+    unit_near("level", x, y, gray(f, x, y), fmin(fmax(share, 0), 1) * ASJ_GRAY_MAX, 0.505);
+}
+
+static int32_t bytes_of(int32_t format)
+{
+    static const int32_t bytes[] = {0, 1, 2, 3, 3, 4, 4, 4};
+    return bytes[format];
+}
+
+static void test_gray8(void **state)
+{
+    uint8_t pixels[256];
+    for (int i = 0; i < 256; i++)
+        pixels[i] = (uint8_t)i;
+    asj_image image = unit_gray8(pixels, 32, 8);
+    assert_int_equal(load(*state, &image), ASJ_OK);
+    for (int i = 0; i < 256; i++)
+        assert_int_equal(gray(*state, i % 32, i / 32), i * ASJ_GRAY_ONE); /* exact at the default white */
+    image.white = 100;
+    assert_int_equal(load(*state, &image), ASJ_OK);
+    for (int i = 0; i < 256; i++)
+        check_level(*state, i % 32, i / 32, i / 100.0);
+}
+
+static void test_gray16(void **state)
+{
+    static uint16_t pixels[65536];
+    static const float whites[] = {0, 65535, 1023, 1, 70000};
+    for (int i = 0; i < 65536; i++)
+        pixels[i] = (uint16_t)i;
+    for (size_t k = 0; k < UNIT_COUNT(whites); k++) {
+        const asj_image image = {pixels, ASJ_FORMAT_GRAY16, 256, 256, whites[k], 0};
+        assert_int_equal(load(*state, &image), ASJ_OK);
+        for (int i = 0; i < 65536; i++)
+            check_level(*state, i % 256, i / 256, i / (whites[k] > 0 ? (double)whites[k] : 65535));
+    }
+    for (int i = 0; i < 256; i++)
+        pixels[i] = (uint16_t)(i * 257); /* 8-bit levels in 16 bits: the same planes */
+    const asj_image image = {pixels, ASJ_FORMAT_GRAY16, 256, 1, 0, 0};
+    assert_int_equal(load(*state, &image), ASJ_OK);
+    for (int i = 0; i < 256; i++)
+        assert_int_equal(gray(*state, i, 0), i * ASJ_GRAY_ONE);
+}
+
+static void test_float(void **state)
+{
+    static const float values[] = {0, 1, 0.5f, -0.0f, -3, 7, 1e30f, -1e30f, 1e-30f, 0.25f, 1 / 3.0f, 254 / 255.0f};
+    const int32_t count = (int32_t)UNIT_COUNT(values);
+    static const float whites[] = {0, 1, 2, 255, 1e-3f};
+    for (size_t k = 0; k < UNIT_COUNT(whites); k++) {
+        const asj_image image = {values, ASJ_FORMAT_GRAY_FLOAT, count, 1, whites[k], 0};
+        assert_int_equal(load(*state, &image), ASJ_OK);
+        for (int32_t i = 0; i < count; i++)
+            check_level(*state, i, 0, (double)values[i] / (whites[k] > 0 ? (double)whites[k] : 1));
+    }
+}
+
+/* Absurd white levels are levels all the same: black stays black, the rest becomes white or black. */
+static void test_extreme_white(void **state)
+{
+    static const float floats[3] = {0, 1, 0.5f};
+    static const uint16_t words[3] = {0, 65535, 1};
+    static const uint8_t bytes[3] = {0, 255, 1};
+    const void *const data[3] = {floats, words, bytes};
+    static const int32_t formats[3] = {ASJ_FORMAT_GRAY_FLOAT, ASJ_FORMAT_GRAY16, ASJ_FORMAT_GRAY8};
+    for (int i = 0; i < 3; i++) {
+        asj_image image = {data[i], formats[i], 3, 1, 1e-38f, 0};
+        assert_int_equal(load(*state, &image), ASJ_OK);
+        assert_int_equal(gray(*state, 0, 0), 0);
+        assert_int_equal(gray(*state, 1, 0), ASJ_GRAY_MAX);
+        assert_int_equal(gray(*state, 2, 0), ASJ_GRAY_MAX);
+        image.white = 3e38f;
+        assert_int_equal(load(*state, &image), ASJ_OK);
+        for (int x = 0; x < 3; x++)
+            assert_int_equal(gray(*state, x, 0), 0);
+    }
+}
+
+/* Luma as image.h states it, from each order of channels; alpha is ignored. */
+static void test_colour(void **state)
+{
+    static const struct {
+        int32_t format, red, green, blue;
+    } orders[] = {{ASJ_FORMAT_RGB8, 0, 1, 2}, {ASJ_FORMAT_BGR8, 2, 1, 0}, {ASJ_FORMAT_RGBA8, 0, 1, 2}, {ASJ_FORMAT_BGRA8, 2, 1, 0}};
+    enum { WIDTH = 61, HEIGHT = 13 };
+    uint8_t pixels[WIDTH * HEIGHT * 4];
+    synth_random random;
+    synth_random_seed(&random, 5);
+    for (size_t k = 0; k < UNIT_COUNT(orders); k++) {
+        const int32_t step = bytes_of(orders[k].format);
+        for (size_t i = 0; i < sizeof pixels; i++)
+            pixels[i] = (uint8_t)(synth_random_bits(&random) >> 40);
+        memset(pixels, 255, (size_t)step);          /* white */
+        memset(pixels + step, 0, (size_t)step);     /* black */
+        const asj_image image = {pixels, orders[k].format, WIDTH, HEIGHT, 0, 0};
+        assert_int_equal(load(*state, &image), ASJ_OK);
+        for (int32_t i = 0; i < WIDTH * HEIGHT; i++) {
+            const uint8_t *p = pixels + i * step;
+            const int32_t luma = (77 * p[orders[k].red] + 150 * p[orders[k].green] + 29 * p[orders[k].blue] + 128) / 256;
+            assert_int_equal(gray(*state, i % WIDTH, i / WIDTH), luma * ASJ_GRAY_ONE);
+        }
+        assert_int_equal(gray(*state, 0, 0), ASJ_GRAY_MAX);
+        assert_int_equal(gray(*state, 1, 0), 0);
+    }
+}
+
+/* Rows with gaps, of any number of bytes: strides need not suit the samples' alignment. */
+static void test_strides(void **state)
+{
+    enum { WIDTH = 7, HEIGHT = 5 };
+    for (int32_t format = ASJ_FORMAT_GRAY8; format <= ASJ_FORMAT_GRAY_FLOAT; format++)
+        for (int32_t gap = 0; gap < 9; gap++) {
+            const size_t row = (size_t)(WIDTH * bytes_of(format)), stride = row + (size_t)gap, size = stride * (HEIGHT - 1) + row;
+            unsigned char *packed = malloc(row * HEIGHT), *spaced = malloc(size); /* no byte behind the last pixel */
+            assert_non_null(packed);
+            assert_non_null(spaced);
+            memset(spaced, 0xff, size);
+            for (size_t i = 0; i < row * HEIGHT; i++)
+                packed[i] = (unsigned char)(i * 37);
+            if (format == ASJ_FORMAT_GRAY_FLOAT)
+                for (size_t i = 0; i < WIDTH * HEIGHT; i++)
+                    ((float *)(void *)packed)[i] = (float)i / 50;
+            for (size_t y = 0; y < HEIGHT; y++)
+                memcpy(spaced + y * stride, packed + y * row, row);
+            asj_image image = {packed, format, WIDTH, HEIGHT, 0, 0};
+            int32_t levels[WIDTH * HEIGHT];
+            assert_int_equal(load(*state, &image), ASJ_OK);
+            for (int32_t i = 0; i < WIDTH * HEIGHT; i++)
+                levels[i] = gray(*state, i % WIDTH, i / WIDTH);
+            image.data = spaced;
+            image.stride = (ptrdiff_t)stride;
+            assert_int_equal(load(*state, &image), ASJ_OK);
+            for (int32_t i = 0; i < WIDTH * HEIGHT; i++)
+                assert_int_equal(gray(*state, i % WIDTH, i / WIDTH), levels[i]);
+            free(spaced);
+            free(packed);
+        }
+}
+
+static void expect(fixture *f, const asj_image *image, asj_status status, const char *word)
+{
+    assert_int_equal(asj_image_check(f->context, image), status);
+    if (status != ASJ_OK && !strstr(asj_context_message(f->context), word))
+        fail_msg("'%s' does not say '%s'", asj_context_message(f->context), word);
+}
+
+static void test_refused(void **state)
+{
+    static const uint8_t pixels[64] = {0};
+    const asj_image good = unit_gray8(pixels, 8, 8);
+    asj_image image = good;
+    expect(*state, &image, ASJ_OK, "");
+    image.data = NULL;
+    expect(*state, &image, ASJ_ERROR_IMAGE, "no data");
+    static const int32_t formats[] = {0, -1, 8, INT32_MAX, INT32_MIN};
+    for (size_t i = 0; i < UNIT_COUNT(formats); i++) {
+        image = good;
+        image.format = formats[i];
+        expect(*state, &image, ASJ_ERROR_IMAGE, "format");
+    }
+    static const int32_t sides[] = {0, -1, INT32_MIN};
+    for (size_t i = 0; i < UNIT_COUNT(sides); i++) {
+        image = good;
+        image.width = sides[i];
+        expect(*state, &image, ASJ_ERROR_IMAGE, "empty");
+        image = good;
+        image.height = sides[i];
+        expect(*state, &image, ASJ_ERROR_IMAGE, "empty");
+    }
+    static const int32_t limits[][2] = {{ASJ_MAX_SIDE + 1, 1}, {1, ASJ_MAX_SIDE + 1}, {INT32_MAX, INT32_MAX}, {ASJ_MAX_SIDE, ASJ_MAX_SIDE},
+                                        {32768, 16385}};
+    for (size_t i = 0; i < UNIT_COUNT(limits); i++) {
+        image = good;
+        image.width = limits[i][0];
+        image.height = limits[i][1];
+        expect(*state, &image, ASJ_ERROR_LIMIT, "65535");
+    }
+    image.width = 32768; /* the limits themselves are inside */
+    image.height = 16384;
+    expect(*state, &image, ASJ_OK, "");
+    image.width = 1;
+    image.height = ASJ_MAX_SIDE;
+    expect(*state, &image, ASJ_OK, "");
+    static const float whites[] = {-1, -1e-30f, NAN, INFINITY, -INFINITY};
+    for (size_t i = 0; i < UNIT_COUNT(whites); i++) {
+        image = good;
+        image.white = whites[i];
+        expect(*state, &image, ASJ_ERROR_IMAGE, "white");
+    }
+}
+
+/* A stride is at least a row long, whatever the format; negative ones are not offered. */
+static void test_short_strides(void **state)
+{
+    static const uint8_t pixels[64] = {0};
+    for (int32_t format = ASJ_FORMAT_GRAY8; format <= ASJ_FORMAT_GRAY_FLOAT; format++) {
+        asj_image image = {pixels, format, 5, 3, 0, 0};
+        image.stride = (ptrdiff_t)5 * bytes_of(format) - 1;
+        expect(*state, &image, ASJ_ERROR_IMAGE, "stride");
+        image.stride++;
+        expect(*state, &image, ASJ_OK, "");
+        image.stride = -image.stride;
+        expect(*state, &image, ASJ_ERROR_IMAGE, "stride");
+        image.stride = 1;
+        expect(*state, &image, ASJ_ERROR_IMAGE, "stride");
+    }
+}
+
+static void test_not_finite(void **state)
+{
+    static const float bad[] = {NAN, INFINITY, -INFINITY};
+    float values[5 * 4] = {0};
+    const asj_image image = {values, ASJ_FORMAT_GRAY_FLOAT, 5, 4, 0, 0};
+    for (size_t b = 0; b < UNIT_COUNT(bad); b++)
+        for (size_t i = 0; i < 20; i++) {
+            char row[32];
+            values[i] = bad[b];
+            assert_int_equal(load(*state, &image), ASJ_ERROR_IMAGE);
+            snprintf(row, sizeof row, "row %zu ", i / 5);
+            assert_non_null(strstr(asj_context_message(((fixture *)*state)->context), row));
+            values[i] = 0;
+        }
+    assert_int_equal(load(*state, &image), ASJ_OK);
+}
+
+/* Memory is kept for smaller images and grows for larger ones; after a failure the frame can still be used. */
+static void test_prepare(void **state)
+{
+    fixture *f = *state;
+    assert_int_equal(asj_frame_prepare(f->context, &f->frame, 300, 200), ASJ_OK);
+    const long calls = f->counter.calls;
+    assert_int_equal(asj_frame_prepare(f->context, &f->frame, 200, 250), ASJ_OK);
+    assert_int_equal(f->counter.calls, calls);
+    assert_int_equal(f->frame.blocks, 13);
+    assert_true(f->frame.stride >= 13 * ASJ_LANES + 2 * ASJ_MARGIN);
+    for (long n = 1; n <= 3; n++) {
+        f->counter.fail_at = f->counter.calls + n;
+        assert_int_equal(asj_frame_prepare(f->context, &f->frame, 400 + (int32_t)n * 100, 400), ASJ_ERROR_MEMORY);
+        f->counter.fail_at = 0;
+        assert_int_equal(asj_frame_prepare(f->context, &f->frame, 20, 20), ASJ_OK);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_gray8),         cmocka_unit_test(test_gray16),     cmocka_unit_test(test_float),
+        cmocka_unit_test(test_extreme_white), cmocka_unit_test(test_colour),     cmocka_unit_test(test_strides),
+        cmocka_unit_test(test_refused),       cmocka_unit_test(test_short_strides), cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_prepare),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The counting, aligned allocations that everything else stands on. */
+#include "unit_test.h"
+
+static void test_alignment_and_counts(void **state)
+{
+    unit_counter counter = {0, 0, 0, 0};
+    asj_memory memory = unit_memory(&counter);
+    unsigned char *blocks[40];
+    uint64_t last = 0;
+    (void)state;
+    for (size_t i = 0; i < UNIT_COUNT(blocks); i++) {
+        blocks[i] = asj_allocate(&memory, i * 7, 3);
+        assert_non_null(blocks[i]);
+        assert_int_equal((uintptr_t)blocks[i] % ASJ_ALIGNMENT, 0);
+        memset(blocks[i], (int)i, i * 21); /* the sanitizers watch the ends */
+        assert_true(memory.now >= last + i * 21);
+        last = memory.now;
+    }
+    assert_int_equal(counter.live, UNIT_COUNT(blocks));
+    assert_true(memory.peak == memory.now);
+    for (size_t i = 0; i < UNIT_COUNT(blocks); i++) {
+        for (size_t k = 0; k < i * 21; k++)
+            assert_int_equal(blocks[i][k], (unsigned char)i);
+        asj_release(&memory, blocks[i]);
+    }
+    assert_int_equal(counter.live, 0);
+    assert_true(memory.now == 0);
+    assert_true(memory.peak == last);
+}
+
+static void test_zero(void **state)
+{
+    unit_counter counter = {0, 0, 0, 0};
+    asj_memory memory = unit_memory(&counter);
+    (void)state;
+    unsigned char *dirty = asj_allocate(&memory, 1, 1000);
+    assert_non_null(dirty);
+    memset(dirty, 0xa5, 1000);
+    asj_release(&memory, dirty);
+    unsigned char *block = asj_allocate_zero(&memory, 10, 100);
+    assert_non_null(block);
+    for (size_t i = 0; i < 1000; i++)
+        assert_int_equal(block[i], 0);
+    asj_release(&memory, block);
+    asj_release(&memory, NULL);
+    assert_true(memory.now == 0);
+}
+
+/* Products that overflow never reach the allocator. */
+static void test_overflow(void **state)
+{
+    static const size_t pairs[][2] = {{SIZE_MAX, 1}, {1, SIZE_MAX}, {SIZE_MAX / 2 + 1, 2}, {2, SIZE_MAX / 2 + 1},
+                                      {SIZE_MAX, SIZE_MAX}, {SIZE_MAX - 8, 1}, {(size_t)1 << (sizeof(size_t) * 4), (size_t)1 << (sizeof(size_t) * 4)}};
+    unit_counter counter = {0, 0, 0, 0};
+    asj_memory memory = unit_memory(&counter);
+    (void)state;
+    for (size_t i = 0; i < UNIT_COUNT(pairs); i++) {
+        assert_null(asj_allocate(&memory, pairs[i][0], pairs[i][1]));
+        assert_null(asj_allocate_zero(&memory, pairs[i][0], pairs[i][1]));
+    }
+    assert_int_equal(counter.calls, 0);
+    assert_true(memory.now == 0 && memory.peak == 0);
+}
+
+static void test_failure(void **state)
+{
+    unit_counter counter = {0, 0, 1, 0};
+    asj_memory memory = unit_memory(&counter);
+    (void)state;
+    assert_null(asj_allocate(&memory, 4, 4));
+    assert_true(memory.now == 0 && memory.peak == 0);
+    counter.fail_at = counter.calls + 1;
+    assert_null(asj_allocate_zero(&memory, 4, 4));
+    assert_int_equal(counter.live, 0);
+}
+
+static void test_grow(void **state)
+{
+    unit_counter counter = {0, 0, 0, 0};
+    asj_memory memory = unit_memory(&counter);
+    void *block = NULL;
+    size_t capacity = 0;
+    (void)state;
+    for (size_t count = 1; count < 3000; count++) {
+        assert_int_equal(asj_grow(&memory, &block, &capacity, count, sizeof(uint32_t), count - 1), ASJ_OK);
+        assert_true(capacity >= count);
+        ((uint32_t *)block)[count - 1] = (uint32_t)(count * 2654435761u);
+    }
+    for (size_t count = 1; count < 3000; count++)
+        assert_int_equal(((uint32_t *)block)[count - 1], (uint32_t)(count * 2654435761u));
+    assert_in_range(counter.calls, 5, 40); /* geometric */
+    assert_int_equal(counter.live, 1);
+
+    void *before = block;
+    const size_t old = capacity;
+    assert_int_equal(asj_grow(&memory, &block, &capacity, old, sizeof(uint32_t), old), ASJ_OK); /* enough already */
+    assert_ptr_equal(block, before);
+    counter.fail_at = counter.calls + 1;
+    assert_int_equal(asj_grow(&memory, &block, &capacity, old + 1, sizeof(uint32_t), old), ASJ_ERROR_MEMORY);
+    assert_ptr_equal(block, before);
+    assert_int_equal(capacity, old);
+    assert_int_equal(asj_grow(&memory, &block, &capacity, SIZE_MAX, sizeof(uint32_t), old), ASJ_ERROR_MEMORY);
+    assert_int_equal(((uint32_t *)block)[17], (uint32_t)(18 * 2654435761u));
+    asj_release(&memory, block);
+    assert_true(memory.now == 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_alignment_and_counts), cmocka_unit_test(test_zero), cmocka_unit_test(test_overflow),
+        cmocka_unit_test(test_failure),              cmocka_unit_test(test_grow),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
