@@ -104,14 +104,31 @@ static void load_colour(uint16_t *gray, const uint8_t *pixel, int32_t width, int
         gray[x] = levels[(77 * pixel[red] + 150 * pixel[1] + 29 * pixel[blue] + 128) >> 8];
 }
 
-/* Returns 0 when a sample is NaN or infinite. */
-static int load_float(uint16_t *gray, const float *sample, int32_t width, float scale)
+/* A level rounded and cut. With a white level next to zero the scale is infinite, and black times that is NaN: black. */
+static inline uint16_t cut(float level)
+{
+    return !(level > 0) ? 0 : level >= ASJ_GRAY_MAX ? ASJ_GRAY_MAX : (uint16_t)(level + 0.5f);
+}
+
+/* Rows may stand at any byte (stride), so samples are copied, not read in place. */
+static void load_words(uint16_t *gray, const uint8_t *bytes, int32_t width, float scale)
 {
     for (int32_t x = 0; x < width; x++) {
-        float level = sample[x] * scale;
-        if (!isfinite(sample[x]))
+        uint16_t sample;
+        memcpy(&sample, bytes + (size_t)x * sizeof sample, sizeof sample);
+        gray[x] = cut((float)sample * scale);
+    }
+}
+
+/* Returns 0 when a sample is NaN or infinite. */
+static int load_float(uint16_t *gray, const uint8_t *bytes, int32_t width, float scale)
+{
+    for (int32_t x = 0; x < width; x++) {
+        float sample;
+        memcpy(&sample, bytes + (size_t)x * sizeof sample, sizeof sample);
+        if (!isfinite(sample))
             return 0;
-        gray[x] = level <= 0 ? 0 : level >= ASJ_GRAY_MAX ? ASJ_GRAY_MAX : (uint16_t)(level + 0.5f);
+        gray[x] = cut(sample * scale);
     }
     return 1;
 }
@@ -119,7 +136,6 @@ static int load_float(uint16_t *gray, const float *sample, int32_t width, float 
 static int load_row(uint16_t *gray, const void *row, const asj_image *image, float scale, const uint16_t *levels)
 {
     const uint8_t *bytes = row;
-    const uint16_t *words = row;
     int32_t width = image->width;
     switch (image->format) {
     case ASJ_FORMAT_GRAY8:
@@ -127,16 +143,13 @@ static int load_row(uint16_t *gray, const void *row, const asj_image *image, flo
             gray[x] = levels[bytes[x]];
         return 1;
     case ASJ_FORMAT_GRAY16:
-        for (int32_t x = 0; x < width; x++) {
-            float level = (float)words[x] * scale;
-            gray[x] = level >= ASJ_GRAY_MAX ? ASJ_GRAY_MAX : (uint16_t)(level + 0.5f);
-        }
+        load_words(gray, bytes, width, scale);
         return 1;
     case ASJ_FORMAT_RGB8: load_colour(gray, bytes, width, 3, 0, 2, levels); return 1;
     case ASJ_FORMAT_BGR8: load_colour(gray, bytes, width, 3, 2, 0, levels); return 1;
     case ASJ_FORMAT_RGBA8: load_colour(gray, bytes, width, 4, 0, 2, levels); return 1;
     case ASJ_FORMAT_BGRA8: load_colour(gray, bytes, width, 4, 2, 0, levels); return 1;
-    default: return load_float(gray, row, width, scale);
+    default: return load_float(gray, bytes, width, scale);
     }
 }
 
@@ -147,10 +160,8 @@ asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_imag
     float scale = (float)ASJ_GRAY_MAX / white;
     ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)image->width * format->bytes_per_pixel;
     uint16_t levels[256]; /* 8-bit samples */
-    for (int i = 0; i < 256; i++) {
-        float level = (float)i * scale;
-        levels[i] = level >= ASJ_GRAY_MAX ? ASJ_GRAY_MAX : (uint16_t)(level + 0.5f);
-    }
+    for (int i = 0; i < 256; i++)
+        levels[i] = cut((float)i * scale);
     for (int32_t y = 0; y < image->height; y++) {
         const char *row = (const char *)image->data + (ptrdiff_t)y * stride;
         if (!load_row(frame->gray + (ptrdiff_t)y * frame->stride, row, image, scale, levels))
