@@ -20,7 +20,7 @@ static const char *const refinements[] = {"line_fit", "search", NULL};
 static const asj_option_info rows[] = {
     NUMBER(epsilon, "NFA", 1e-30, 1e6, 1, 1, "false alarms allowed in an image of noise, for junctions and for branches"),
     NUMBER(minimum_length, "px", 0, 1000, 7, 0, "branches shorter than this are dropped"),
-    NUMBER(candidate_strength, "sd", 0, 12, 3, 0, "strength that two local branches need at a candidate pixel; lower finds weaker corners"),
+    NUMBER(candidate_strength, "sd", 0, 12, 3, 5.15, "strength that two local branches need at a candidate pixel; lower finds weaker corners"),
     NUMBER(gradient_epsilon, "grey/px", 0.05, 16, 0.4, 0.05, "gradient below which a surface counts as flat; raise it against compression noise"),
     SWITCH(standardise, 0, 1, "give each gradient axis zero mean and unit variance over the image"),
     INTEGER(field_radius, "px", 3, 9, 7, 7, "radius of the local junctions: 3, 5, 7 or 9"),
