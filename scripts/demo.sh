@@ -1,0 +1,93 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# Builds asj-cli and shows what it does: sh scripts/demo.sh [IMAGE...]
+set -u
+root=$(cd "$(dirname "$0")/.." && pwd) || exit 1
+. "$root/scripts/common.sh"
+
+usage() {
+    cat << 'END'
+usage: sh scripts/demo.sh [IMAGE...]
+
+Installs what is missing (apt-get), builds asj-cli in build/, and finds the junctions of the photographs given, or of a room that
+it renders itself. Writes to out/: NAME.csv with the junctions and NAME.plot.png with the junctions drawn over the picture.
+Exit code: 0 done, 1 something failed, 2 wrong usage, 3 packages are missing and cannot be installed here.
+END
+}
+
+photographs=$#
+for image in "$@"; do
+    shift
+    case $image in
+    -h | --help)
+        usage
+        exit 0
+        ;;
+    -*)
+        usage >&2
+        exit 2
+        ;;
+    /*) ;;
+    *) image=$PWD/$image ;;
+    esac
+    set -- "$@" "$image"
+done
+
+# Where asj-cli puts the results of an image, without the ending.
+result_of() {
+    result=${1##*/}
+    result=out/${result%.*}
+}
+
+report() {
+    result_of "$1"
+    if [ ! -s "$result.csv" ] || [ ! -s "$result.plot.png" ]; then
+        say "$1: no result"
+        return 1
+    fi
+    count=$(awk -F, 'FNR > 1 && !($1 in seen) { seen[$1]; n++ } END { print n + 0 }' "$result.csv")
+    say "$1: $count junctions"
+    say "    look at  $result.plot.png"
+    say "    numbers  $result.csv"
+}
+
+# The sample room's out/room-N.png against its truth, out/room/N.csv.
+report_corners() {
+    result_of "$1"
+    set -- $(LC_ALL=C awk -F, -f scripts/corners.awk "out/room/${result#out/room-}.csv" "$result.csv")
+    [ $# = 5 ] || fail 'cannot compare with the true corners'
+    say "    found $2 of the room's $1 corners in view (median error $5 px); $4 junctions are at no true one"
+    [ "$2" -gt 0 ]
+}
+
+need
+say 'Building asj-cli in build/'
+configure build -Dio=enabled -Dcli=enabled -Dcairo=enabled -Dopencv=enabled -Dtests=auto || exit 1
+cd "$root" || exit 1
+if [ "$photographs" = 0 ]; then
+    logged build meson compile -C build asj-cli sample-room || exit 1
+    build/tests/synth/sample-room out/room || fail 'cannot render the sample room'
+    for view in 1 2; do
+        cp "out/room/$view.png" "out/room-$view.png" || exit 1
+    done
+    set -- out/room-1.png out/room-2.png
+else
+    logged build meson compile -C build asj-cli || exit 1
+fi
+
+for image in "$@"; do
+    result_of "$image"
+    rm -f "$result.csv" "$result.plot.png"
+done
+say 'Running   build/cli/asj-cli detect --out-dir out --format csv --plot png IMAGE...'
+build/cli/asj-cli detect --quiet --out-dir out --format csv --plot png -- "$@"
+status=$?
+say
+for image in "$@"; do
+    if ! report "$image"; then
+        status=1
+    elif [ "$photographs" = 0 ]; then
+        report_corners "$image" || status=1
+    fi
+done
+[ "$status" = 0 ] || fail 'something failed: see the messages above'

@@ -1,0 +1,96 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# Installs the library into a folder of its own and uses it from there as other programs would: through pkg-config, from C99 and
+# C++, shared and static. The C programs of README.md are among them.
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+trap 'exit 1' HUP INT TERM
+strict='-Wall -Wextra -Wpedantic -Wconversion -Wundef -Werror'
+
+install_into() { # NAME OPTION...
+    prefix=$work/$1
+    shift
+    meson setup "$work/build" "$root" --prefix="$prefix" --libdir=lib -Dio=enabled -Dcli=enabled -Dtests=disabled "$@"
+    meson install -C "$work/build"
+    rm -rf "$work/build"
+}
+
+use_from() { # NAME: programs against what is installed there
+    prefix=$work/$1
+    PKG_CONFIG_PATH=$prefix/lib/pkgconfig
+    LD_LIBRARY_PATH=$prefix/lib
+    export PKG_CONFIG_PATH LD_LIBRARY_PATH
+    static=
+    [ "$1" = shared ] || static=--static
+    core="$(pkg-config --cflags asj) $work/core.c -o $work/core $(pkg-config $static --libs asj)"
+    both="$(pkg-config --cflags asj-io) $work/both.c -o $work/both $(pkg-config $static --libs asj-io)"
+    ${CC:-cc} -std=c99 $strict $core
+    ${CC:-cc} -std=c99 $strict $both
+    "$work/core" > "$work/core.txt"
+    "$work/both" > "$work/both.txt"
+    [ "$(cat "$work/core.txt")" = "$version" ] || { echo "core: $(cat "$work/core.txt") instead of $version"; exit 1; }
+    [ "$(cat "$work/both.txt")" = "$version" ] || { echo "both: $(cat "$work/both.txt") instead of $version"; exit 1; }
+    ${CXX:-c++} $strict -x c++ $both
+    for program in "$work"/readme-*.c; do
+        [ ! -e "$program" ] || ${CC:-cc} -std=c99 $(pkg-config --cflags asj-io) "$program" -o "$work/readme" \
+            $(pkg-config $static --libs asj-io)
+    done
+    [ "$("$prefix/bin/asj-cli" --version | grep -cF "$version")" -ge 1 ]
+}
+
+version=$(sh "$root/scripts/version.sh")
+cat > "$work/core.c" << 'END'
+#include <asj/asj.h>
+#include <stdio.h>
+
+int main(void)
+{
+    static unsigned char pixels[64 * 64];
+    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, 64, 64, 0, 0};
+    asj_context *context = NULL;
+    asj_detection *found = NULL;
+    if (asj_context_create(NULL, &context) != ASJ_OK || asj_detect(context, &image, NULL, &found) != ASJ_OK)
+        return 1;
+    asj_detection_free(&found);
+    asj_context_free(&context);
+    puts(asj_version_string());
+    return 0;
+}
+END
+cat > "$work/both.c" << 'END'
+#include <asj/asj.h>
+#include <asj/io.h>
+#include <stdio.h>
+
+int main(void)
+{
+    char message[512];
+    asj_image_file *file = NULL;
+    if (asj_image_file_read("/nowhere/photo.png", 0, &file, message, sizeof message) != ASJ_ERROR_FILE)
+        return 1;
+    puts(asj_version_string());
+    return 0;
+}
+END
+if [ -e "$root/README.md" ]; then # every C block with a main function
+    awk -v to="$work/readme-" '/^```c$/ { n++; on = 1; text = ""; next }
+        /^```$/ && on { on = 0; if (text ~ /int main/) printf "%s", text > (to n ".c") }
+        on { text = text $0 "\n" }' "$root/README.md"
+fi
+
+{
+    install_into shared
+    install_into static -Ddefault_library=static
+} > "$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
+for file in bin/asj-cli lib/libasj.so lib/libasj-io.so lib/pkgconfig/asj.pc lib/pkgconfig/asj-io.pc \
+    share/man/man1/asj-cli.1 $(cd "$root/include" && printf 'include/%s ' asj/*.h); do
+    [ -s "$work/shared/$file" ] || { echo "not installed: $file"; exit 1; }
+done
+for file in lib/libasj.a lib/libasj-io.a; do
+    [ -s "$work/static/$file" ] || { echo "not installed: $file"; exit 1; }
+done
+use_from shared
+use_from static
+(cd "$work/shared" && find . -type f -o -type l | sort)

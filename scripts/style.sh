@@ -1,0 +1,21 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# What .editorconfig asks for, checked: tabs, blanks at the end of a line, characters beyond ASCII, lines over 132 columns, files
+# that do not end with a newline, files over 800 lines. Prints every offence; exit code 1 when there is one.
+set -u
+cd "$(dirname "$0")/.." || exit 1
+export LC_ALL=C
+files=$(find include src kernels cli tests scripts meson.build meson_options.txt -type f \( -name '*.[ch]' -o -name '*.cpp' \
+    -o -name '*.cl' -o -name '*.clh' -o -name '*.py' -o -name '*.sh' -o -name '*.awk' -o -name 'meson*' \) 2> /dev/null)
+[ -n "$files" ] || exit 1
+{
+    tab=$(printf '\t')
+    grep -n "$tab" $files | sed 's/$/  <- tab/'
+    grep -nE '[[:space:]]$' $files | sed 's/$/  <- blank at the end/'
+    grep -n '[^ -~]' $files | grep -v "$tab" | sed 's/$/  <- not ASCII/'
+    grep -nE '^.{133,}' $files | sed 's/$/  <- over 132 columns/'
+    for file in $files; do
+        [ -z "$(tail -c 1 "$file")" ] || echo "$file: no newline at the end"
+        [ "$(wc -l < "$file")" -le 800 ] || echo "$file: over 800 lines"
+    done
+} | awk '{ print } END { exit NR > 0 }'

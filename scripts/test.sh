@@ -1,0 +1,132 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# Builds the library and passes its tests: sh scripts/test.sh [--all]
+set -u
+root=$(cd "$(dirname "$0")/.." && pwd) || exit 1
+. "$root/scripts/common.sh"
+
+usage() {
+    cat << 'END'
+usage: sh scripts/test.sh [--all]
+
+Installs what is missing (apt-get), builds everything in build-test/ and runs all tests.
+--all, or CI=true in the environment, takes warnings as errors, and also checks the style of the sources, builds with clang, runs
+the tests under the address and undefined-behaviour sanitizers and in builds with fewer parts, and uses an installed library from
+other programs.
+Exit code: 0 everything passed, 1 something failed, 2 wrong usage, 3 packages are missing and cannot be installed here.
+END
+}
+
+passed=0
+failed=0
+skipped=0
+broken= # names of the steps that failed
+
+# step NAME COMMAND...: goes on when the command fails, and remembers.
+step() {
+    this_step=$1
+    shift
+    step_start=$(date +%s)
+    if "$@"; then
+        say "$this_step: done in $(($(date +%s) - step_start)) s"
+    else
+        say "$this_step: FAILED after $(($(date +%s) - step_start)) s"
+        broken="$broken $this_step"
+    fi
+}
+
+results() {
+    grep -cE "\"result\": \"($2)\"" "$1"
+}
+
+# run_tests FOLDER [ARGUMENT...]: meson's tests; adds what meson has recorded of them, a line of JSON each, to the sums.
+run_tests() {
+    folder=$root/$1
+    record=$folder/meson-logs/testlog.json
+    shift
+    rm -f "$record"
+    meson test -C "$folder" --no-rebuild --print-errorlogs "$@" < /dev/null
+    state=$?
+    [ -e "$record" ] || return 1
+    all=$(grep -c '' "$record")
+    good=$(results "$record" 'OK|EXPECTEDFAIL')
+    left_out=$(results "$record" 'SKIP')
+    passed=$((passed + good))
+    skipped=$((skipped + left_out))
+    failed=$((failed + all - good - left_out))
+    sed -n 's/^{"name": "\([^"]*\)".*"result": "SKIP".*/skipped: \1/p' "$record"
+    [ "$state" = 0 ] && [ "$good" -gt 0 ] && [ "$all" = "$((good + left_out))" ]
+}
+
+# build FOLDER OPTION...
+build() {
+    say
+    say "Building in $1/"
+    configure "$@" && logged "build-$name" meson compile -C "$folder"
+}
+
+# build_and_test FOLDER "ARGUMENT..." OPTION...: the arguments are those of meson test.
+build_and_test() {
+    tests_wanted=$2
+    folder_wanted=$1
+    shift 2
+    build "$folder_wanted" "$@" && run_tests "$folder_wanted" $tests_wanted
+}
+
+# The core alone: no library but libc and libm (the compiler's own run-time library may show up too).
+core_alone() {
+    build_and_test build-core '' -Dauto_features=disabled -Dtests=enabled --werror || return 1
+    others=$(readelf -d "$folder/src/libasj.so" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | grep -vE '^lib(c|m|gcc_s)\.so|^ld-')
+    [ -z "$others" ] || say "libasj.so needs $others"
+    [ -z "$others" ]
+}
+
+# Last: the compilers stay chosen.
+with_clang() {
+    CC=clang CXX=clang++
+    export CC CXX
+    build_and_test build-clang '--no-suite accuracy' -Dauto_features=enabled --werror
+}
+
+more_checks() {
+    step style sh "$root/scripts/style.sh"
+    step sanitizers build_and_test build-sanitize '' -Dauto_features=enabled --buildtype=debugoptimized \
+        -Db_sanitize=address,undefined -Dc_args=-fno-sanitize-recover=undefined -Dcpp_args=-fno-sanitize-recover=undefined
+    step fewer-parts build_and_test build-fewer '--no-suite accuracy' \
+        -Dopencv=disabled -Dcairo=disabled -Dopenmp=disabled -Dio=enabled -Dcli=enabled -Dtests=enabled --werror
+    step no-cli build build-no-cli -Dcli=disabled -Dtests=disabled --werror
+    step core core_alone
+    step install sh "$root/scripts/install_check.sh"
+    step clang with_clang
+}
+
+everything=${CI-}
+for argument in "$@"; do
+    case $argument in
+    --all) everything=true ;;
+    -h | --help)
+        usage
+        exit 0
+        ;;
+    *)
+        usage >&2
+        exit 2
+        ;;
+    esac
+done
+
+start_of_all=$(date +%s)
+if [ "$everything" = true ]; then
+    need cmocka clang libomp mandoc
+    step tests build_and_test build-test '' -Dauto_features=enabled --werror
+    more_checks
+else
+    need cmocka
+    step tests build_and_test build-test '' -Dauto_features=enabled
+fi
+
+say
+say "$(($(date +%s) - start_of_all)) s in all; logs are in out/log/ and build-test/meson-logs/"
+say "$passed passed, $failed failed, $skipped skipped"
+[ -z "$broken" ] || fail "FAILED:$broken"
+say 'Everything passed.'
