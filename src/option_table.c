@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void say(char *message, size_t size, const char *format, ...)
@@ -82,38 +83,63 @@ static const asj_option_info *find(const asj_option_table *table, const char *ke
     return NULL;
 }
 
-/* A decimal number that is the whole of `text`, independent of the locale; 0 when it is not one. strtod() would take the decimal
- * comma of some locales, and hexadecimal numbers, and "inf". */
-static int parse_number(const char *text, double *value)
+/* Longest number that is read: more than any number needs, exact binary fractions included. */
+#define LONGEST_NUMBER 400
+
+/* What stands for the decimal point in the locale of the process, a few bytes. localeconv() would tell too, but is not thread safe. */
+static void decimal_point(char point[16])
 {
-    double mantissa = 0, sign = 1;
-    int digits = 0, exponent = 0;
+    snprintf(point, 16, "%.1f", 0.5);
+    size_t length = strlen(point);
+    memmove(point, point + 1, length - 2);
+    point[length - 2] = '\0';
+}
+
+static const char *skip_digits(const char *text, int *digits)
+{
+    for (; *text >= '0' && *text <= '9'; text++)
+        ++*digits;
+    return text;
+}
+
+/* Whether `text` is a decimal number and nothing else; where its point is, or NULL. strtod() alone would take hexadecimal numbers,
+ * "inf" and leading blanks too. */
+static int is_number(const char *text, const char **point)
+{
+    int digits = 0, power_digits = 0;
+    *point = NULL;
     if (*text == '-' || *text == '+')
-        sign = *text++ == '-' ? -1 : 1;
-    for (; *text >= '0' && *text <= '9'; text++, digits++)
-        mantissa = mantissa * 10 + (*text - '0');
-    if (*text == '.')
-        for (text++; *text >= '0' && *text <= '9'; text++, digits++, exponent--)
-            mantissa = mantissa * 10 + (*text - '0');
+        text++;
+    text = skip_digits(text, &digits);
+    if (*text == '.') {
+        *point = text;
+        text = skip_digits(text + 1, &digits);
+    }
     if (digits == 0)
         return 0;
     if (*text == 'e' || *text == 'E') {
-        int negative = 0, power = 0, power_digits = 0;
         text++;
         if (*text == '-' || *text == '+')
-            negative = *text++ == '-';
-        for (; *text >= '0' && *text <= '9'; text++, power_digits++)
-            power = power < 10000 ? power * 10 + (*text - '0') : power;
+            text++;
+        text = skip_digits(text, &power_digits);
         if (power_digits == 0)
             return 0;
-        exponent += negative ? -power : power;
     }
-    /* one correctly rounded operation for the usual short numbers, so that "0.1" is the double nearest to 0.1 */
-    if (exponent < 0)
-        *value = sign * (exponent >= -22 ? mantissa / pow(10, -exponent) : mantissa * pow(10, exponent));
-    else
-        *value = sign * mantissa * pow(10, exponent);
     return *text == '\0';
+}
+
+/* A decimal number that is the whole of `text`, independent of the locale, to the nearest double; 0 when it is not one. */
+static int parse_number(const char *text, double *value)
+{
+    char copy[LONGEST_NUMBER + 17], point[16];
+    const char *at;
+    if (strlen(text) > LONGEST_NUMBER || !is_number(text, &at))
+        return 0;
+    decimal_point(point);
+    if (at)
+        snprintf(copy, sizeof copy, "%.*s%s%s", (int)(at - text), text, point, at + 1);
+    *value = strtod(at ? copy : text, NULL);
+    return 1;
 }
 
 /* "5,7,10,14", "3-12", or a mixture. */
@@ -130,6 +156,8 @@ static int parse_radii(const char *text, double *value)
                 return 0;
             bound[n++] = number;
         } while (n < 2 && *text == '-' && text++);
+        if (bound[0] > bound[n - 1])
+            return 0;
         for (int r = bound[0]; r <= bound[n - 1]; r++)
             bits |= (uint32_t)1 << r;
         if (*text == '\0')
@@ -194,19 +222,17 @@ asj_status asj_option_table_set(const asj_option_table *table, void *options, co
 /* Shortest form that reads back to the same double, with a point whatever the locale. */
 static int print_number(char *text, size_t size, double value)
 {
-    int length = 0;
+    char buffer[64], point[16];
     for (int precision = 6; precision <= 17; precision++) {
-        double back;
-        length = snprintf(text, size, "%.*g", precision, value);
-        if (length < 0 || (size_t)length >= size)
-            return -1;
-        for (char *c = text; *c; c++)
-            if (*c == ',')
-                *c = '.';
-        if (parse_number(text, &back) && back == value)
+        snprintf(buffer, sizeof buffer, "%.*g", precision, value);
+        if (strtod(buffer, NULL) == value) /* both in the locale of the process */
             break;
     }
-    return length;
+    decimal_point(point);
+    const char *at = strstr(buffer, point);
+    if (!at)
+        return snprintf(text, size, "%s", buffer);
+    return snprintf(text, size, "%.*s.%s", (int)(at - buffer), buffer, at + strlen(point));
 }
 
 static int print_radii(char *text, size_t size, uint32_t bits)
