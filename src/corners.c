@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MOST_OUTSIDE 10.0f   /* px: where branches meet may lie a little outside the image (the detector's largest max_move) */
 #define LEAST_LENGTH 3.0     /* px: a shorter branch has no direction worth a frame */
 #define RAY_DISTANCE 3.0     /* px */
 #define LEAST_START 10.0     /* px */
@@ -25,7 +26,8 @@ static asj_status check(asj_context *context, const asj_junction *junctions, siz
 {
     for (size_t n = 0; n < count; n++) {
         const asj_junction *j = &junctions[n];
-        if (!(j->x >= 0 && j->y >= 0 && j->x <= (float)(width - 1) && j->y <= (float)(height - 1)))
+        if (!(j->x >= -MOST_OUTSIDE && j->y >= -MOST_OUTSIDE && j->x <= (float)(width - 1) + MOST_OUTSIDE &&
+              j->y <= (float)(height - 1) + MOST_OUTSIDE))
             return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d at (%g, %g) lies outside its %d x %d pixels",
                             n, (int)which, (double)j->x, (double)j->y, (int)width, (int)height);
         if (j->branch_count < 0 || j->branch_count > ASJ_MAX_BRANCHES)

@@ -99,13 +99,16 @@ asj_status asj_match_options_get(const asj_match_options *options, const char *k
     return asj_option_table_get(&table, options, key, text, text_size);
 }
 
-/* Measured on photographs: candidates of strength 3 instead of 3.5, NFA 100 instead of 1 and no strip test double the number of true
- * matches at the same precision, because chance junctions have no partner that agrees with its neighbours. */
+/* Measured on photographs (tests/accuracy/match_pairs.c): what the detector does for precision costs the matcher half of its matches and
+ * gains it nothing, because a chance junction has no partner that agrees with its neighbours. So: weaker candidates, no strip or deviation
+ * test, and corners that the line fit moves far (a blurred corner, a short branch) stay. */
 void asj_match_detect_options(asj_detect_options *options)
 {
     if (!options)
         return;
-    options->candidate_strength = 3;
+    options->candidate_strength = 2.5;
     options->epsilon = 100;
+    options->max_move = 5;
     options->strip_test = 0;
+    options->max_deviation = 90;
 }

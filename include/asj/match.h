@@ -117,8 +117,8 @@ typedef struct asj_match_result {
  * Each location takes part in one match at most. The result does not depend on the number of threads, and swapping the images
  * swaps the matches. Memory: the patches (patch_size^2 x 2 bytes for each frame) and short lists.
  *
- * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that is not finite, lies outside its image, has a wrong branch count or a
- *                      negative length
+ * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that is not finite, lies more than 10 px outside its image, has a wrong branch
+ *                      count or a negative length
  * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED   as asj_detect() */
 ASJ_API asj_status asj_match(asj_context *context,
                              const asj_image *image1, const asj_junction *junctions1, size_t count1,
@@ -129,7 +129,7 @@ ASJ_API asj_status asj_match(asj_context *context,
 ASJ_API void asj_match_result_free(asj_match_result **result);
 
 /* Changes detector options to what matching wants: weaker junctions too, since the matcher tells the false ones.
- * candidate_strength 3, epsilon 100, no strip test. NULL is ignored. */
+ * candidate_strength 2.5, epsilon 100, max_move 5, no strip test, max_deviation 90. NULL is ignored. */
 ASJ_API void asj_match_detect_options(asj_detect_options *options);
 
 /* A pair of line segments from image 1 and image 2: a matched branch. */
