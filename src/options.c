@@ -40,6 +40,7 @@ static const asj_option_info rows[] = {
     NUMBER(merge_angle, "deg", 0, 60, 15, 0, "of two branches closer than this one stays"),
     SWITCH(strip_test, 1, 0, "report a branch only if the strip along it is meaningful"),
     NUMBER(max_deviation, "deg", 1, 90, 12, 90, "largest angle between a branch and the edges under it"),
+    NUMBER(near_strength, "sd", -10, 10, 0, -10, "strength that a branch needs in its first 6 px: it must reach the junction"),
     NUMBER(snap_distance, "px", 0, 30, 8, 0, "a branch that ends this close to a junction on its line ends at it"),
     SWITCH(ignore_frame, 1, 0, "drop branches that run along the border of the image"),
     NUMBER(strip_half_width, "px", 0.5, 4, 1.5, 1.5, "half-width of that strip"),

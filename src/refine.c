@@ -138,7 +138,7 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
         const asj_strip strip = asj_strip_test(context, frame, options, draft->x, draft->y, branch->angle, branch->length);
         branch->log_nfa = strip.log_nfa;
         keep[i] = branch->length >= options->minimum_length && branch->length > 0 && fabs(branch->offset) <= LARGEST_OFFSET &&
-                  (!options->strip_test || strip.log_nfa <= log_epsilon) && strip.deviation <= askew &&
+                  (!options->strip_test || strip.log_nfa <= log_epsilon) && strip.deviation <= askew && strip.near_strength >= options->near_strength &&
                   !(options->ignore_frame && on_frame(frame, draft, branch));
     }
     merge(options, draft, keep);

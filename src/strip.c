@@ -12,18 +12,23 @@
  *
  * The strip also knows which way its gradients point: with g_u and g_n the components along and across the branch, the dominant
  * direction is off the normal by  1/2 atan2(2 sum g_u g_n, sum g_n^2 - sum g_u^2)  (structure tensor). A line of samples that runs
- * askew over a bundle of nearly parallel edges collects junction-ness from all of them, but their gradients give it away. */
+ * askew over a bundle of nearly parallel edges collects junction-ness from all of them, but their gradients give it away.
+ *
+ * And it knows whether the branch reaches the junction: the strength of its first NEAR pixels. A branch whose edge only starts some
+ * pixels away, across a rim or a gap, has less there than noise would have. */
 #include "strip.h"
 #include "gradient.h"
 
 #include <math.h>
 
+#define NEAR 6 /* px: the part of the strip next to the junction */
+
 typedef struct sums {
-    double gamma, uu, un, nn;
-    int32_t pixels;
+    double gamma, uu, un, nn, near_gamma;
+    int32_t pixels, near_pixels;
 } sums;
 
-static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double ux, double uy, sums *s)
+static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double ux, double uy, int near, sums *s)
 {
     if (x < 0 || y < 0 || x >= frame->width || y >= frame->height)
         return;
@@ -35,6 +40,10 @@ static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double ux, d
     s->un += along * across;
     s->nn += across * across;
     s->pixels++;
+    if (near) {
+        s->near_gamma += gamma > 0 ? gamma : 0;
+        s->near_pixels++;
+    }
 }
 
 /* Walks along the axis (x or y) that the strip is longer on, and across it over the few pixels that can be inside. */
@@ -49,18 +58,24 @@ asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, con
     const double end = major + reach * major_step;
     const double spread = half_width / fabs(major_step) + 1;
     const int32_t first = (int32_t)floor(fmin(major, end) - half_width), last = (int32_t)ceil(fmax(major, end) + half_width);
-    sums s = {0, 0, 0, 0, 0};
+    sums s = {0, 0, 0, 0, 0, 0, 0};
     for (int32_t i = first; i <= last; i++) {
         double middle = minor + (i - major) * slope;
         for (int32_t j = (int32_t)floor(middle - spread); j <= (int32_t)ceil(middle + spread); j++) {
             int32_t px = along_x ? i : j, py = along_x ? j : i;
             double t = (px - x) * ux + (py - y) * uy, across = (py - y) * ux - (px - x) * uy;
             if (t > 0.5 && t <= reach && fabs(across) <= half_width)
-                add_pixel(frame, px, py, ux, uy, &s);
+                add_pixel(frame, px, py, ux, uy, t <= NEAR, &s);
         }
     }
     if (s.pixels == 0)
-        return (asj_strip){HUGE_VAL, 0};
+        return (asj_strip){HUGE_VAL, 0, 0};
     const double log_tests = 1.5 * log((double)frame->width * frame->height);
-    return (asj_strip){log_tests + asj_nfa_log_sector_tail(context->nfa, s.gamma, s.pixels), fabs(0.5 * atan2(2 * s.un, s.nn - s.uu))};
+    asj_strip strip;
+    strip.log_nfa = log_tests + asj_nfa_log_sector_tail(context->nfa, s.gamma, s.pixels);
+    strip.deviation = fabs(0.5 * atan2(2 * s.un, s.nn - s.uu));
+    strip.near_strength = 0;
+    if (s.near_pixels > 0)
+        strip.near_strength = (s.near_gamma - s.near_pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(s.near_pixels));
+    return strip;
 }

@@ -8,6 +8,7 @@
 typedef struct asj_strip {
     double log_nfa;   /* natural logarithm of the number of false alarms */
     double deviation; /* rad in [0, pi/2]: between the strip's dominant gradient direction and the normal of the branch */
+    double near_strength; /* standard deviations above the null model in the part next to the junction */
 } asj_strip;
 
 /* The strip from (x, y) in direction `angle` (rad), `length` px long. */

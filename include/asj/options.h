@@ -73,7 +73,8 @@ typedef struct asj_detect_options {
     int32_t ignore_frame;         /* 1 = drop branches that run along the border of the image, within 2.5 px. 1; paper 0 */
     int32_t reserved_1;           /* zero */
     double snap_distance;         /* px: a branch that ends this close to a junction on its line ends there. 0 .. 30; 8; paper 0 */
-    double reserved[21];          /* zero */
+    double near_strength;         /* standard deviations that a branch needs in its first 6 px. -10 .. 10; 0; paper -10 */
+    double reserved[20];          /* zero */
 } asj_detect_options;
 
 enum { ASJ_REFINE_LINE_FIT = 0, ASJ_REFINE_SEARCH = 1 };
