@@ -59,15 +59,23 @@ int asj_locate_meet(asj_draft *draft)
     return 1;
 }
 
+static void fit_branches(const asj_frame *frame, const asj_line_range *range, asj_draft *draft)
+{
+    int keep[ASJ_MAX_BRANCHES];
+    for (int32_t i = 0; i < draft->branch_count; i++)
+        keep[i] = asj_line_fit(frame, draft->x, draft->y, range, &draft->branches[i]);
+    asj_draft_select(draft, keep);
+}
+
 void asj_locate(const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
 {
-    const double least = options->minimum_opening * (PI / 180);
-    int keep[ASJ_MAX_BRANCHES];
+    const double least = options->minimum_opening * (PI / 180), slack = 8 * (PI / 180);
+    const double end = draft->radius > 10 ? draft->radius : 10;
+    const asj_line_range coarse = {2, end, {4, 0, 0}, 1}, fine = {2, end, {2.5, 2, 0}, 2};
     if (options->refinement == ASJ_REFINE_LINE_FIT) {
-        asj_line_range range = {2, draft->radius > 10 ? draft->radius : 10, {4, 2.5, 2}, 3};
-        for (int32_t i = 0; i < draft->branch_count; i++)
-            keep[i] = asj_line_fit(frame, draft->x, draft->y, &range, &draft->branches[i]);
-        asj_draft_select(draft, keep);
+        fit_branches(frame, &coarse, draft);
+        if (asj_draft_has_opening(draft, fmax(least - slack, 0))) /* most are edges, and seen to be by now */
+            fit_branches(frame, &fine, draft);
     }
     if (!asj_draft_has_opening(draft, least)) {
         draft->branch_count = 0;
