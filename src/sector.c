@@ -7,7 +7,9 @@
  *     omega_k = sum of gamma(q) over the sector,   gamma(q) = |g~| max(|cos(phi - alpha)| - |sin(phi - alpha)|, 0)
  * phi, the direction of the edge, is at right angles to the gradient, so that with the unit vector u from p to q
  *     gamma = max(|g~x uy - g~y ux| - |g~x ux + g~y uy|, 0)
- * without any trigonometry, and the same for u and -u.
+ * without any trigonometry, and the same for u and -u. Products are taken with |ux| and |uy|, so that this holds to the bit, and so
+ * that the four axes that are mirror images of each other at the coordinate axes and the diagonals share theirs: back ends compute
+ * gamma once for each axis and pixel.
  * Strength (eq. junction-ness-branch-fix-scale): z_k = (omega_k - J_k mu) / (sigma sqrt(J_k)), J_k pixels in the sector.
  *
  * The number of pixels differs from sector to sector; J_k is that of sector k. Offsets are sorted by angle once; a sector is then a
@@ -84,6 +86,21 @@ static int in_sector(double alpha, double theta, double half_width)
     return distance <= half_width + 1e-5; /* ties are in, whatever the rounding */
 }
 
+static int32_t common_divisor(int32_t a, int32_t b)
+{
+    return b == 0 ? a : common_divisor(b, a % b);
+}
+
+/* The unit vector of an offset is made from its smallest parallel and is the same, but for signs and order, in all eight octants. */
+static void set_direction(asj_sectors *s, int32_t i, double unit)
+{
+    const int32_t size_x = abs(s->dx[i]), size_y = abs(s->dy[i]), divisor = common_divisor(size_x, size_y);
+    const double x = size_x / divisor, y = size_y / divisor, length = sqrt(x * x + y * y);
+    const int32_t ux = (int32_t)lrint(fmin(unit * x / length, 32767)), uy = (int32_t)lrint(fmin(unit * y / length, 32767));
+    s->ux[i] = (int16_t)(s->dx[i] < 0 ? -ux : ux);
+    s->uy[i] = (int16_t)(s->dy[i] < 0 ? -uy : uy);
+}
+
 /* The members of sector k are a circular run; finds where it starts. */
 static void find_run(asj_sectors *s, const offset *list, double half_width, int32_t k)
 {
@@ -113,11 +130,9 @@ static void fill(asj_sectors *s, const offset *list, double tau)
         s->gamma_bits--;
     const double one = (double)(1 << s->gamma_bits), unit = one * 64;
     for (int32_t i = 0; i < s->offset_count; i++) {
-        double length = sqrt(list[i].squared);
         s->dx[i] = (int16_t)list[i].dx;
         s->dy[i] = (int16_t)list[i].dy;
-        s->ux[i] = (int16_t)lrint(fmin(unit * list[i].dx / length, 32767));
-        s->uy[i] = (int16_t)lrint(fmin(unit * list[i].dy / length, 32767));
+        set_direction(s, i, unit);
     }
     for (int32_t k = 0; k < s->count; k++) {
         s->mean[k] = (uint16_t)lrint(one * ASJ_GAMMA_MEAN * s->size[k]);
@@ -159,12 +174,12 @@ static inline int16_t high_product(int16_t a, int16_t b)
 }
 
 /* prefix[i + 1] = prefix[i] + gamma at offset i, at ASJ_LANES pixels. */
-static inline void add_offset(const int16_t *restrict gx, const int16_t *restrict gy, int16_t ux, int16_t uy,
+static inline void add_offset(const int16_t *restrict gx, const int16_t *restrict gy, int16_t ux, int16_t uy, int16_t sign,
                               const uint16_t *restrict before, uint16_t *restrict after)
 {
     for (int i = 0; i < ASJ_LANES; i++) {
-        int16_t cross = (int16_t)(high_product(gx[i], uy) - high_product(gy[i], ux));
-        int16_t dot = (int16_t)(high_product(gx[i], ux) + high_product(gy[i], uy));
+        int16_t cross = (int16_t)(high_product(gx[i], uy) - sign * high_product(gy[i], ux));
+        int16_t dot = (int16_t)(high_product(gx[i], ux) + sign * high_product(gy[i], uy));
         cross = (int16_t)(cross < 0 ? -cross : cross);
         dot = (int16_t)(dot < 0 ? -dot : dot);
         int16_t gamma = (int16_t)(cross - dot);
@@ -179,7 +194,8 @@ void asj_sector_sums(const asj_sectors *s, const int16_t *gx, const int16_t *gy,
     for (int32_t i = 0; i < s->offset_count; i++) {
         ptrdiff_t at = s->dy[i] * stride + s->dx[i];
         uint16_t *here = prefix + (size_t)i * ASJ_LANES;
-        add_offset(gx + at, gy + at, s->ux[i], s->uy[i], here, here + ASJ_LANES);
+        const int16_t ux = s->ux[i], uy = s->uy[i], sign = (ux < 0) != (uy < 0) && ux && uy ? -1 : 1;
+        add_offset(gx + at, gy + at, (int16_t)abs(ux), (int16_t)abs(uy), sign, here, here + ASJ_LANES);
     }
     const uint16_t *total = prefix + (size_t)s->offset_count * ASJ_LANES;
     for (int32_t k = 0; k < s->count; k++) {
