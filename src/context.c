@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "context.h"
 #include "detect.h"
+#include "ops.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -74,11 +75,13 @@ asj_status asj_context_create(const asj_context_options *options, asj_context **
     context->options = *options;
     context->options.device = NULL; /* the caller's string need not live on */
     context->threads = thread_count(options->threads);
-    asj_status status = asj_nfa_create(&context->memory, &context->nfa);
+    context->ops = asj_allocate(&context->memory, 1, sizeof *context->ops);
+    asj_status status = context->ops ? asj_nfa_create(&context->memory, &context->nfa) : ASJ_ERROR_MEMORY;
     if (status != ASJ_OK) {
         asj_context_free(&context);
         return status;
     }
+    asj_ops_best(context->ops);
     *result = context;
     return ASJ_OK;
 }
@@ -90,6 +93,7 @@ void asj_context_free(asj_context **pointer)
     asj_context *context = *pointer;
     asj_detector_free(&context->memory, &context->detector);
     asj_nfa_free(&context->memory, &context->nfa);
+    asj_release(&context->memory, context->ops);
     asj_memory memory = context->memory;
     asj_release(&memory, context);
     *pointer = NULL;

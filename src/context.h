@@ -7,12 +7,14 @@
 
 #include <asj/detect.h>
 
+struct asj_ops;      /* ops.h */
 struct asj_detector; /* detect.c: scratch of the detector, kept from image to image */
 
 struct asj_context {
     asj_memory memory;
     asj_context_options options;
     int32_t threads;              /* >= 1 */
+    struct asj_ops *ops;          /* the operations in the best form that this machine has */
     asj_nfa *nfa;
     struct asj_detector *detector;
     double progress;              /* last value reported */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj_detect(): the paper's steps in order. */
 #include "detect.h"
+#include "ops.h"
 #include "options.h"
 #include "result.h"
 #include "stages.h"
@@ -127,7 +128,7 @@ static void field_row(const asj_detection_run *d, int32_t y, asj_local_branch *o
     asj_field_branch found[ASJ_LANES][ASJ_FIELD_BRANCHES];
     for (int32_t x = 0; x < frame->width; x++) {
         if (x % ASJ_LANES == 0)
-            asj_field_block(&d->detector->field, frame, x, y, asj_stage_scratch(d), found);
+            d->context->ops->field_block(&d->detector->field, frame, x, y, asj_stage_scratch(d), found);
         for (int i = 0; i < ASJ_FIELD_BRANCHES; i++) {
             const asj_field_branch branch = found[x % ASJ_LANES][i];
             asj_local_branch *to = &out[(size_t)x * ASJ_FIELD_BRANCHES + (size_t)i];

@@ -30,6 +30,8 @@ asj_status asj_field_create(asj_context *context, const asj_detect_options *opti
 {
     asj_sectors *s = &field->sectors;
     asj_status status = asj_sectors_create(&context->memory, options->field_radius, options->sector_width, s);
+    if (status == ASJ_OK)
+        status = asj_sector_plan_create(&context->memory, s, &field->plan);
     if (status != ASJ_OK)
         return asj_fail(context, status, "no memory for the sectors of radius %d", (int)options->field_radius);
     const double log_p = log(options->field_epsilon / s->count);
@@ -46,12 +48,23 @@ asj_status asj_field_create(asj_context *context, const asj_detect_options *opti
 
 void asj_field_free(asj_memory *memory, asj_field *field)
 {
+    asj_sector_plan_free(memory, &field->plan);
     asj_sectors_free(memory, &field->sectors);
 }
 
+size_t asj_field_plane_stride(const asj_field *field)
+{
+    return (size_t)(ASJ_FIELD_TILE + 2 * field->sectors.radius + 31) / 32 * 32;
+}
+
+/* For a block: prefix sums, strengths, peaks, pairs. For a tile: a ring of gamma planes, slots, strengths. */
 size_t asj_field_scratch(const asj_field *field)
 {
-    return asj_sector_scratch(&field->sectors) + 3 * (size_t)field->sectors.count * ASJ_LANES;
+    const size_t count = (size_t)field->sectors.count, depth = 2 * (size_t)field->sectors.radius + 1;
+    const size_t block = asj_sector_scratch(&field->sectors) + 3 * count * ASJ_LANES;
+    const size_t ring = depth * 4 * (size_t)field->plan.family_count * asj_field_plane_stride(field);
+    const size_t tile = ring + ((size_t)field->plan.slot_count + count + 2 * (size_t)field->suppress) * ASJ_FIELD_TILE;
+    return ((block > tile ? block : tile) + 31) / 32 * 32;
 }
 
 /* Loops over ASJ_LANES are written so that compilers turn them into a few vector instructions: 16-bit values, strengths below 2^15 so
@@ -116,6 +129,12 @@ static void insert(asj_field_branch *list, asj_field_branch branch)
         }
 }
 
+void asj_field_add(const asj_field *field, int32_t k, int32_t before, int32_t peak, int32_t after,
+                   asj_field_branch list[ASJ_FIELD_BRANCHES])
+{
+    insert(list, (asj_field_branch){interpolate(&field->sectors, k, before, peak, after), (uint16_t)peak});
+}
+
 /* Strengths and peaks at ASJ_LANES pixels; where they stand in the scratch. */
 static void evaluate(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, const uint16_t *least,
                      uint16_t *scratch, int16_t **z, int16_t **peaks)
@@ -152,7 +171,7 @@ void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, 
             continue;
         for (int i = 0; i < ASJ_LANES; i++)
             if (peak[i])
-                insert(branches[i], (asj_field_branch){interpolate(s, k, before[i], here[i], after[i]), (uint16_t)here[i]});
+                asj_field_add(field, k, before[i], here[i], after[i], branches[i]);
     }
 }
 
@@ -202,4 +221,24 @@ uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, in
     for (int i = 0; i < ASJ_LANES; i++)
         mask |= (found[i] ? 1u : 0u) << i;
     return mask;
+}
+
+void asj_field_cut(const asj_frame *frame, int32_t run, int32_t runs, uint16_t *masks)
+{
+    for (int32_t b = 0; b < runs; b++) {
+        const int32_t inside = frame->width - (run + b) * ASJ_LANES;
+        if (inside < ASJ_LANES)
+            masks[b] = (uint16_t)(inside > 0 ? masks[b] & ((1u << inside) - 1) : 0);
+    }
+}
+
+void asj_field_tile(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
+                    uint16_t *scratch, uint16_t *masks)
+{
+    for (int32_t y = top; y < bottom; y++) {
+        uint16_t *row = masks + (ptrdiff_t)y * frame->blocks + run;
+        for (int32_t b = 0; b < runs; b++)
+            row[b] = (uint16_t)asj_field_candidates(field, frame, (run + b) * ASJ_LANES, y, scratch);
+        asj_field_cut(frame, run, runs, row);
+    }
 }

@@ -3,11 +3,16 @@
 #ifndef ASJ_SRC_FIELD_H
 #define ASJ_SRC_FIELD_H
 
-#include "sector.h"
+#include "sector_plan.h"
 
 #include <asj/field.h>
 
-#define ASJ_FIELD_MAX_SECTORS 56 /* radius 9 */
+#define ASJ_FIELD_MAX_RADIUS 9
+#define ASJ_FIELD_MAX_SECTORS 56  /* of that radius */
+#define ASJ_FIELD_MAX_OFFSETS 252
+
+/* Largest width in pixels of what asj_field_tile() takes at once. */
+#define ASJ_FIELD_TILE 128
 
 /* A branch of a very local junction; strength 0 = none. */
 typedef struct asj_field_branch {
@@ -17,6 +22,7 @@ typedef struct asj_field_branch {
 
 typedef struct asj_field {
     asj_sectors sectors;
+    asj_sector_plan plan;
     uint16_t keep[ASJ_FIELD_MAX_SECTORS];      /* least strength of a branch */
     uint16_t candidate[ASJ_FIELD_MAX_SECTORS]; /* least strength of a branch that makes a candidate */
     int32_t suppress;                          /* sectors to either side over which a branch must be the largest */
@@ -36,5 +42,22 @@ void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, 
 /* Candidates for junctions among these pixels: bit i is set when pixel x + i has two strong branches that are neither parallel nor
  * opposite. */
 uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch);
+
+/* The same for a tile: `runs` runs (at most ASJ_FIELD_TILE pixels) from run `run` on, rows top .. bottom - 1; those of run b of row y
+ * go to masks[y * frame->blocks + b]. Pixels outside the image are none. */
+void asj_field_tile(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
+                    uint16_t *scratch, uint16_t *masks);
+
+/* ---- for the vector forms of the above ---- */
+
+/* Puts the peak at sector k, with the strengths of the sectors before and after, into a pixel's list. */
+void asj_field_add(const asj_field *field, int32_t k, int32_t before, int32_t peak, int32_t after,
+                   asj_field_branch list[ASJ_FIELD_BRANCHES]);
+
+/* Clears the bits of pixels outside the image; masks[0] is that of run `run`. */
+void asj_field_cut(const asj_frame *frame, int32_t run, int32_t runs, uint16_t *masks);
+
+/* Elements from plane to plane of a tile's row (sector_plan.h). */
+size_t asj_field_plane_stride(const asj_field *field);
 
 #endif

@@ -11,6 +11,7 @@
  * junctions at a third of the cost. Among overlapping junctions the more meaningful one stays; `more_branches_win` restores the rule
  * of ACJ that M + 1 branches within half a radius replace M. */
 #include "isotropic.h"
+#include "ops.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -60,6 +61,7 @@ asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *
 {
     asj_status status = ASJ_OK;
     memset(test, 0, sizeof *test);
+    test->ops = context->ops;
     for (int32_t r = 3; r <= ASJ_MAX_RADIUS && status == ASJ_OK; r++)
         if (options->isotropic_radii >> r & 1)
             status = make_radius(context, test, r, options->sector_width);
@@ -177,7 +179,7 @@ void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int3
     for (int32_t r = 0; r < test->radius_count; r++) {
         const asj_isotropic_radius *entry = &test->radii[r];
         uint16_t *sums = scratch + asj_sector_scratch(&entry->sectors);
-        asj_sector_sums(&entry->sectors, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, sums);
+        test->ops->sector_sums(&entry->sectors, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, sums);
         for (int32_t i = 0, slot = 0; i < ASJ_LANES; i++)
             if (candidates >> i & 1)
                 test_radius(test, entry, sums + i, &junctions[slot++]);

@@ -27,6 +27,7 @@ typedef struct asj_isotropic_radius {
 
 /* The whole test: made once for a set of options and an image size. */
 typedef struct asj_isotropic {
+    const struct asj_ops *ops;
     int32_t radius_count;
     asj_isotropic_radius radii[ASJ_MAX_RADIUS + 1];
     double log_tests[ASJ_MAX_BRANCHES + 1]; /* ln #J(M) */

@@ -25,6 +25,8 @@
  * positions and 2^-14 for angles, angles in 1/65536 of a turn. */
 #include "scan.h"
 
+#include "ops.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,6 +64,7 @@ typedef struct run {
 } run;
 
 typedef struct walker {
+    const asj_ops *ops;
     const asj_scan *scan;
     const asj_frame *frame;
     run *cache;
@@ -75,7 +78,7 @@ static const asj_field_branch *branches_at(const walker *w, int64_t x, int64_t y
     int64_t key = y * w->frame->blocks + x / ASJ_LANES + 1;
     run *entry = &w->cache[(y * 31 + x / ASJ_LANES) % CACHE_RUNS];
     if (entry->key != key) {
-        asj_field_block(w->scan->field, w->frame, (int32_t)(x / ASJ_LANES * ASJ_LANES), (int32_t)y, w->scratch, entry->branches);
+        w->ops->field_block(w->scan->field, w->frame, (int32_t)(x / ASJ_LANES * ASJ_LANES), (int32_t)y, w->scratch, entry->branches);
         entry->key = key;
     }
     return entry->branches[x % ASJ_LANES];
@@ -234,7 +237,7 @@ asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_f
 #ifdef _OPENMP
             thread = (size_t)omp_get_thread_num();
 #endif
-            const walker w = {scan, frame, cache + thread * CACHE_RUNS, scratch + thread * scratch_size};
+            const walker w = {context->ops, scan, frame, cache + thread * CACHE_RUNS, scratch + thread * scratch_size};
             walk(&w, table, &rays[i]);
         }
     } else {

@@ -2,6 +2,7 @@
 #include "stages.h"
 #include "ends.h"
 #include "gradient.h"
+#include "ops.h"
 #include "refine.h"
 
 #include <math.h>
@@ -161,6 +162,8 @@ static asj_status dump_candidates(const asj_detection_run *d)
     return ASJ_OK;
 }
 
+#define TILE_RUNS (ASJ_FIELD_TILE / ASJ_LANES)
+
 /* Step 2: candidates, one bit for each pixel. */
 asj_status asj_stage_candidates(asj_detection_run *d)
 {
@@ -172,16 +175,11 @@ asj_status asj_stage_candidates(asj_detection_run *d)
     for (int32_t top = 0; top < height; top += ASJ_ROW_GROUP) {
         const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
 #ifdef _OPENMP
-#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 4)
+#pragma omp parallel for num_threads(d->threads) schedule(dynamic)
 #endif
-        for (int32_t y = top; y < bottom; y++) {
-            uint16_t *row = d->candidates + (ptrdiff_t)y * blocks;
-            for (int32_t b = 0; b < blocks; b++) {
-                uint32_t mask = asj_field_candidates(&d->detector->field, frame, b * ASJ_LANES, y, asj_stage_scratch(d));
-                int32_t valid = frame->width - b * ASJ_LANES;
-                row[b] = (uint16_t)(valid < ASJ_LANES ? mask & ((1u << valid) - 1) : mask);
-            }
-        }
+        for (int32_t run = 0; run < blocks; run += TILE_RUNS)
+            d->context->ops->field_tile(&d->detector->field, frame, run, blocks - run < TILE_RUNS ? blocks - run : TILE_RUNS,
+                                        top, bottom, asj_stage_scratch(d), d->candidates);
         asj_status status = asj_progress(d->context, ASJ_STAGE_CANDIDATES, 0.05 + 0.45 * bottom / height);
         if (status != ASJ_OK)
             return status;

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "ops.h"
+#include "field.h"
+#include "simd/variants.h"
+
+/* The build says which variants it holds: ASJ_HAVE_SSE2, ASJ_HAVE_AVX2, ASJ_HAVE_AVX512, ASJ_HAVE_NEON. */
+
+static void fill_reference(asj_ops *ops)
+{
+    ops->sector_sums = asj_sector_sums;
+    ops->field_tile = asj_field_tile;
+    ops->field_block = asj_field_block;
+}
+
+const char *asj_ops_name(int32_t variant)
+{
+    static const char *const names[] = {"reference", "sse2", "avx2", "avx512", "neon"};
+    return variant >= 0 && variant < ASJ_VARIANT_COUNT ? names[variant] : "unknown";
+}
+
+/* Overwrites what the variant has; 0 when it cannot run here. */
+static int override(int32_t variant, asj_ops *ops)
+{
+    (void)ops;
+    switch (variant) {
+    case ASJ_VARIANT_REFERENCE:
+        return 1;
+#ifdef ASJ_HAVE_SSE2
+    case ASJ_VARIANT_SSE2:
+        asj_ops_sse2(ops);
+        return 1;
+#endif
+#ifdef ASJ_HAVE_AVX2
+    case ASJ_VARIANT_AVX2:
+        if (!__builtin_cpu_supports("avx2"))
+            return 0;
+        asj_ops_avx2(ops);
+        return 1;
+#endif
+#ifdef ASJ_HAVE_AVX512
+    case ASJ_VARIANT_AVX512:
+        if (!__builtin_cpu_supports("avx512f") || !__builtin_cpu_supports("avx512bw"))
+            return 0;
+        asj_ops_avx512(ops);
+        return 1;
+#endif
+#ifdef ASJ_HAVE_NEON
+    case ASJ_VARIANT_NEON:
+        asj_ops_neon(ops);
+        return 1;
+#endif
+    default:
+        return 0;
+    }
+}
+
+int asj_ops_fill(int32_t variant, asj_ops *ops)
+{
+    asj_ops filled = {0};
+    fill_reference(&filled);
+    if (!override(variant, &filled))
+        return 0;
+    filled.name = asj_ops_name(variant);
+    *ops = filled;
+    return 1;
+}
+
+void asj_ops_best(asj_ops *ops)
+{
+    for (int32_t variant = 0; variant < ASJ_VARIANT_COUNT; variant++)
+        asj_ops_fill(variant, ops);
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The one table of operations that back ends replace. Each step's own file holds the reference in portable C, which is the definition:
+ * every replacement gives the same bits (tests/parity). Decisions on small data are not in the table: they exist once. */
+#ifndef ASJ_SRC_OPS_H
+#define ASJ_SRC_OPS_H
+
+#include "isotropic.h"
+#include "scan.h"
+
+typedef struct asj_ops {
+    const char *name;
+
+    /* ---- parts of an image: what an instruction set of the CPU replaces ---- */
+
+    /* asj_sector_sums() (sector.h) */
+    void (*sector_sums)(const asj_sectors *sectors, const int16_t *gx, const int16_t *gy, ptrdiff_t stride,
+                        uint16_t *scratch, uint16_t *sums);
+    /* asj_field_tile() and asj_field_block() (field.h) */
+    void (*field_tile)(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs,
+                       int32_t top, int32_t bottom, uint16_t *scratch, uint16_t *masks);
+    void (*field_block)(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y,
+                        uint16_t *scratch, asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES]);
+} asj_ops;
+
+/* Sets of replacements, from weaker to stronger. */
+enum {
+    ASJ_VARIANT_REFERENCE = 0,
+    ASJ_VARIANT_SSE2 = 1,
+    ASJ_VARIANT_AVX2 = 2,
+    ASJ_VARIANT_AVX512 = 3,
+    ASJ_VARIANT_NEON = 4,
+    ASJ_VARIANT_COUNT = 5
+};
+
+/* "reference", "sse2", ... */
+const char *asj_ops_name(int32_t variant);
+
+/* Fills the table; 0 when the variant was not built or this processor lacks it, and the table is then left alone. */
+int asj_ops_fill(int32_t variant, asj_ops *ops);
+
+/* The strongest variant that this processor has. */
+void asj_ops_best(asj_ops *ops);
+
+#endif

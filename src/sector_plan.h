@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* How the sums of all sectors of one radius are had with the least work when they are wanted at every pixel of a region. */
+#ifndef ASJ_SRC_SECTOR_PLAN_H
+#define ASJ_SRC_SECTOR_PLAN_H
+
+#include "sector.h"
+
+/* gamma depends on the axis of an offset only, so it is computed once for each axis and pixel, as planes, and shared by all offsets on
+ * that axis. The four mirror images of an axis share their products:
+ *     a >= b >= 0,  p1 = gx b,  p2 = gy a,  p3 = gx a,  p4 = gy b  (high halves)
+ *     plane 0: axis ( a, b)   |p1 - p2| - |p3 + p4|        plane 1: axis (-b, a)   the negative of plane 0
+ *     plane 2: axis ( b, a)   |p3 - p4| - |p1 + p2|        plane 3: axis ( a,-b)   the negative of plane 2
+ * each cut at zero.
+ *
+ * Of the running sum over the offsets only the values where a sector begins or ends are needed: the slots. A sector that runs past the
+ * last offset ends in an extra slot, which is the total plus another slot. */
+typedef struct asj_sector_plan {
+    int32_t family_count;
+    int16_t *a, *b;        /* for each family of four planes */
+    int16_t *plane;        /* for each offset */
+    int32_t slot_count;    /* with the extra ones */
+    int32_t plain_count;   /* the slots before the extra ones */
+    int16_t *boundary;     /* plain slot j: the sum over the offsets before boundary[j], rising; the last is the total */
+    int16_t *extra;        /* extra slot plain_count + e: the last plain slot plus slot extra[e] */
+    int16_t *low, *high;   /* sector k: slot high[k] minus slot low[k] */
+    void *memory;
+} asj_sector_plan;
+
+asj_status asj_sector_plan_create(asj_memory *memory, const asj_sectors *sectors, asj_sector_plan *plan);
+void asj_sector_plan_free(asj_memory *memory, asj_sector_plan *plan);
+
+#endif
