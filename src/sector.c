@@ -7,9 +7,9 @@
  *     omega_k = sum of gamma(q) over the sector,   gamma(q) = |g~| max(|cos(phi - alpha)| - |sin(phi - alpha)|, 0)
  * phi, the direction of the edge, is at right angles to the gradient, so that with the unit vector u from p to q
  *     gamma = max(|g~x uy - g~y ux| - |g~x ux + g~y uy|, 0)
- * without any trigonometry, and the same for u and -u. Products are taken with |ux| and |uy|, so that this holds to the bit, and so
- * that the four axes that are mirror images of each other at the coordinate axes and the diagonals share theirs: back ends compute
- * gamma once for each axis and pixel.
+ * without any trigonometry, and the same for u and -u. Which products are taken (asj_sector_direction()) makes this hold to the bit,
+ * and makes the four axes that mirror each other at the coordinate axes and the diagonals share theirs: back ends compute gamma once for
+ * each axis and pixel.
  * Strength (eq. junction-ness-branch-fix-scale): z_k = (omega_k - J_k mu) / (sigma sqrt(J_k)), J_k pixels in the sector.
  *
  * The number of pixels differs from sector to sector; J_k is that of sector k. Offsets are sorted by angle once; a sector is then a
@@ -174,12 +174,12 @@ static inline int16_t high_product(int16_t a, int16_t b)
 }
 
 /* prefix[i + 1] = prefix[i] + gamma at offset i, at ASJ_LANES pixels. */
-static inline void add_offset(const int16_t *restrict gx, const int16_t *restrict gy, int16_t ux, int16_t uy, int16_t sign,
-                              const uint16_t *restrict before, uint16_t *restrict after)
+static inline void add_offset(const int16_t *restrict gx, const int16_t *restrict gy, asj_direction u, const uint16_t *restrict before,
+                              uint16_t *restrict after)
 {
     for (int i = 0; i < ASJ_LANES; i++) {
-        int16_t cross = (int16_t)(high_product(gx[i], uy) - sign * high_product(gy[i], ux));
-        int16_t dot = (int16_t)(high_product(gx[i], ux) + sign * high_product(gy[i], uy));
+        int16_t cross = (int16_t)(high_product(gx[i], u.y) - high_product(gy[i], u.cross_x));
+        int16_t dot = (int16_t)(high_product(gx[i], u.x) - high_product(gy[i], u.dot_y));
         cross = (int16_t)(cross < 0 ? -cross : cross);
         dot = (int16_t)(dot < 0 ? -dot : dot);
         int16_t gamma = (int16_t)(cross - dot);
@@ -194,8 +194,7 @@ void asj_sector_sums(const asj_sectors *s, const int16_t *gx, const int16_t *gy,
     for (int32_t i = 0; i < s->offset_count; i++) {
         ptrdiff_t at = s->dy[i] * stride + s->dx[i];
         uint16_t *here = prefix + (size_t)i * ASJ_LANES;
-        const int16_t ux = s->ux[i], uy = s->uy[i], sign = (ux < 0) != (uy < 0) && ux && uy ? -1 : 1;
-        add_offset(gx + at, gy + at, (int16_t)abs(ux), (int16_t)abs(uy), sign, here, here + ASJ_LANES);
+        add_offset(gx + at, gy + at, asj_sector_direction(s, i), here, here + ASJ_LANES);
     }
     const uint16_t *total = prefix + (size_t)s->offset_count * ASJ_LANES;
     for (int32_t k = 0; k < s->count; k++) {

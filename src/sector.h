@@ -35,6 +35,22 @@ size_t asj_sector_scratch(const asj_sectors *sectors);
 void asj_sector_sums(const asj_sectors *sectors, const int16_t *gx, const int16_t *gy, ptrdiff_t stride,
                      uint16_t *scratch, uint16_t *sums);
 
+/* The factors of gamma for an offset, with high halves of products:
+ *     gamma = max(|gx y - gy cross_x| - |gx x - gy dot_y|, 0)
+ * x = |ux|, y = |uy|, cross_x = x and dot_y = -y where ux and uy have the same sign; -x and y where not, the axis being turned so that
+ * x >= 0. A difference of two products that are both rounded down is off by less than one unit, a sum would be by two. */
+typedef struct asj_direction {
+    int16_t x, y, cross_x, dot_y;
+} asj_direction;
+
+static inline asj_direction asj_sector_direction(const asj_sectors *sectors, int32_t offset)
+{
+    const int16_t ux = sectors->ux[offset], uy = sectors->uy[offset];
+    const int16_t x = (int16_t)(ux < 0 ? -ux : ux), y = (int16_t)(uy < 0 ? -uy : uy);
+    const int16_t sign = ux != 0 && uy != 0 && (ux < 0) != (uy < 0) ? -1 : 1;
+    return (asj_direction){x, y, (int16_t)(sign * x), (int16_t)(-sign * y)};
+}
+
 /* Strength of a sum: standard deviations above the mean of the null model, 0 below the mean. */
 static inline uint16_t asj_sector_strength(const asj_sectors *sectors, int32_t k, uint16_t sum)
 {

@@ -12,12 +12,6 @@
 
 typedef char tiles_are_whole_groups[ASJ_FIELD_TILE % GROUP_PIXELS == 0 ? 1 : -1];
 
-/* max(|cross| - |dot|, 0); neither is -2^15 */
-static inline vec v_gamma(vec cross, vec dot)
-{
-    return v_sub_saturated(v_abs(cross), v_abs(dot));
-}
-
 static inline vec v_strength(vec sum, uint16_t mean, uint16_t scale)
 {
     return v_high_unsigned(v_sub_saturated(sum, v_set1((int16_t)mean)), v_set1((int16_t)scale));
@@ -54,14 +48,14 @@ static void prefix_sums(const asj_sectors *s, const int16_t *gx, const int16_t *
     }
     for (int32_t i = 0; i < s->offset_count; i++) {
         const ptrdiff_t at = s->dy[i] * stride + s->dx[i];
-        const int16_t sx = s->ux[i], sy = s->uy[i];
-        const vec ux = v_set1((int16_t)(sx < 0 ? -sx : sx)), uy = v_set1((int16_t)(sy < 0 ? -sy : sy));
-        const int mirrored = (sx < 0) != (sy < 0);
+        const asj_direction u = asj_sector_direction(s, i);
+        const vec ux = v_set1(u.x), uy = v_set1(u.y), cross_x = v_set1(u.cross_x), dot_y = v_set1(u.dot_y);
         prefix += ASJ_LANES;
         for (int v = 0; v < V_RUN; v++) {
             const vec x = v_load(gx + at + v * V_LANES), y = v_load(gy + at + v * V_LANES);
-            const vec p1 = v_high(x, uy), p2 = v_high(y, ux), p3 = v_high(x, ux), p4 = v_high(y, uy);
-            sum[v] = v_add(sum[v], mirrored ? v_gamma(v_add(p1, p2), v_sub(p3, p4)) : v_gamma(v_sub(p1, p2), v_add(p3, p4)));
+            const vec cross = v_abs(v_sub(v_high(x, uy), v_high(y, cross_x)));
+            const vec dot = v_abs(v_sub(v_high(x, ux), v_high(y, dot_y)));
+            sum[v] = v_add(sum[v], v_sub_saturated(cross, dot)); /* gamma */
             v_store(prefix + v * V_LANES, sum[v]);
         }
     }
@@ -116,11 +110,12 @@ static void gamma_planes(const asj_sector_plan *plan, const int16_t *gx, const i
 {
     for (int32_t f = 0; f < plan->family_count; f++, planes += 4 * stride) {
         const vec a = v_set1(plan->a[f]), b = v_set1(plan->b[f]);
+        const vec minus_a = v_set1((int16_t)-plan->a[f]), minus_b = v_set1((int16_t)-plan->b[f]);
         for (int32_t i = 0; i < width; i += V_LANES) {
             const vec x = v_load(gx + i), y = v_load(gy + i);
-            const vec p1 = v_high(x, b), p2 = v_high(y, a), p3 = v_high(x, a), p4 = v_high(y, b);
-            const vec cross = v_abs(v_sub(p1, p2)), dot = v_abs(v_add(p3, p4));
-            const vec steep_cross = v_abs(v_sub(p3, p4)), steep_dot = v_abs(v_add(p1, p2));
+            const vec xa = v_high(x, a), xb = v_high(x, b);
+            const vec cross = v_abs(v_sub(xb, v_high(y, a))), dot = v_abs(v_sub(xa, v_high(y, minus_b)));
+            const vec steep_cross = v_abs(v_sub(xa, v_high(y, b))), steep_dot = v_abs(v_sub(xb, v_high(y, minus_a)));
             v_store(planes + i, v_sub_saturated(cross, dot));
             v_store(planes + stride + i, v_sub_saturated(dot, cross));
             v_store(planes + 2 * stride + i, v_sub_saturated(steep_cross, steep_dot));
