@@ -204,7 +204,7 @@ static void walk(const walker *w, const arc_table *table, asj_ray *ray)
         if (forward_failures > scan->tolerance && (ahead_failures > bridge || axial_failures > scan->tolerance))
             break;
     }
-    if (ray->axial > ray->forward + bridge)
+    if (scan->axial && ray->axial > ray->forward + bridge)
         ray->axial = ray->forward + bridge;
 }
 
