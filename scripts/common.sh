@@ -97,7 +97,7 @@ apt() {
 
 # need [cmocka] [clang] [libomp] [mandoc]: installs what is missing for the build, and for these.
 need() {
-    mkdir -p "$logs" || fail "cannot write into $root"
+    mkdir -p "$logs" && [ -w "$logs" ] || fail "cannot write into $logs"
     look_for "$@"
     [ -n "$missing" ] || return 0
     become_root

@@ -36,7 +36,7 @@ done
 # Where asj-cli puts the results of an image, without the ending.
 result_of() {
     result=${1##*/}
-    result=out/${result%.*}
+    result=$out/${result%.*}
 }
 
 report() {
@@ -54,7 +54,7 @@ report() {
 # The sample room's out/room-N.png against its truth, out/room/N.csv.
 report_corners() {
     result_of "$1"
-    set -- $(LC_ALL=C awk -F, -f scripts/corners.awk "out/room/${result#out/room-}.csv" "$result.csv")
+    set -- $(LC_ALL=C awk -F, -f scripts/corners.awk "out/room/${result##*-}.csv" "$result.csv")
     [ $# = 5 ] || fail 'cannot compare with the true corners'
     say "    found $2 of the room's $1 corners in view (median error $5 px); $4 junctions are at no true one"
     [ "$2" -gt 0 ]
@@ -63,6 +63,8 @@ report_corners() {
 need
 say 'Building asj-cli in build/'
 configure build -Dio=enabled -Dcli=enabled -Dcairo=enabled -Dopencv=enabled -Dtests=auto || exit 1
+out=out
+[ "$PWD" = "$root" ] || out=$root/out
 cd "$root" || exit 1
 if [ "$photographs" = 0 ]; then
     logged build meson compile -C build asj-cli sample-room || exit 1
@@ -79,9 +81,10 @@ for image in "$@"; do
     result_of "$image"
     rm -f "$result.csv" "$result.plot.png"
 done
-say 'Running   build/cli/asj-cli detect --out-dir out --format csv --plot png IMAGE...'
+say 'Running build/cli/asj-cli detect --out-dir out --format csv --plot png IMAGE...'
 build/cli/asj-cli detect --quiet --out-dir out --format csv --plot png -- "$@"
 status=$?
+[ "$status" -le 1 ] || fail "asj-cli ended with exit code $status"
 say
 for image in "$@"; do
     if ! report "$image"; then
