@@ -27,7 +27,7 @@ static const asj_option_info rows[] = {
     SWITCH(mutual, 1, 0, "two junctions match only if each is the other's best"),
     NUMBER(minimum_support, "", 0, 64, 1.5, 0, "neighbouring matches that must agree with a match, each counted 0 to 1"),
     NUMBER(minimum_similarity, "", -1, 1, 0.6, -1, "correlation that the aligned discs of a match need"),
-    INTEGER(neighbours, "", 0, 64, 16, 0, "nearest junctions asked for support; 0 = none are asked"),
+    INTEGER(neighbours, "", 0, 64, 24, 0, "nearest junctions asked for support; 0 = none are asked"),
     NUMBER(neighbour_tolerance, "", 0.01, 1, 0.15, 0.15, "error with which a match predicts its neighbour, as a part of the distance"),
     NUMBER(map_tolerance, "", 0.05, 5, 0.5, 0.5, "relative difference between the affine maps of neighbours"),
     INTEGER(guided_rounds, "", 0, 4, 1, 0, "times that accepted matches propose matches near them"),
@@ -111,4 +111,5 @@ void asj_match_detect_options(asj_detect_options *options)
     options->max_move = 5;
     options->strip_test = 0;
     options->max_deviation = 90;
+    options->near_strength = -10;
 }

@@ -45,7 +45,7 @@ typedef struct asj_match_options {
     double max_move;             /* px an alignment may move the junction. 0.5 .. 20; 5 */
     double minimum_similarity;   /* correlation that the aligned discs of a match need. -1 .. 1; 0.6; paper -1 */
     /* agreement between neighbouring matches: consensus.c, guided.c */
-    int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 16; paper 0 */
+    int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 24; paper 0 */
     double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1.5; paper 0 */
     double neighbour_tolerance;  /* where a match predicts its neighbour: error allowed, as a part of the distance. 0.01 .. 1; 0.15 */
     double map_tolerance;        /* relative difference allowed between the affine maps of neighbours. 0.05 .. 5; 0.5 */
@@ -129,7 +129,8 @@ ASJ_API asj_status asj_match(asj_context *context,
 ASJ_API void asj_match_result_free(asj_match_result **result);
 
 /* Changes detector options to what matching wants: weaker junctions too, since the matcher tells the false ones.
- * candidate_strength 2.5, epsilon 100, max_move 5, no strip test, max_deviation 90. NULL is ignored. */
+ * candidate_strength 2.5, epsilon 100, max_move 5, no strip test, max_deviation 90,
+ * near_strength -10. NULL is ignored. */
 ASJ_API void asj_match_detect_options(asj_detect_options *options);
 
 /* A pair of line segments from image 1 and image 2: a matched branch. */
