@@ -31,4 +31,4 @@ static inline uint32_t v_bits(vec v)
 static inline int v_any(vec v) { return !_mm256_testz_si256(v, v); }
 
 #define V_NAME(name) name##_avx2
-#include "simd/kernels.h"
+#include "../simd/kernels.h"
