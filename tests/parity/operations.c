@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "operations.h"
+
+#include <string.h>
+
+/* A place for operations on one run; the same for every variant. */
+static void choose(const subject *s, int32_t *x, int32_t *y)
+{
+    synth_random random = s->random;
+    *x = (int32_t)(synth_random_unit(&random) * s->frame.blocks) * ASJ_LANES;
+    *y = (int32_t)(synth_random_unit(&random) * s->frame.height);
+}
+
+static double one_run(const subject *s)
+{
+    (void)s;
+    return ASJ_LANES;
+}
+
+static size_t sums_size(const subject *s)
+{
+    size_t count = 0;
+    for (int32_t i = 0; i < s->isotropic.radius_count; i++)
+        count += (size_t)s->isotropic.radii[i].sectors.count;
+    return count * ASJ_LANES * sizeof(uint16_t);
+}
+
+static void run_sums(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
+{
+    int32_t x, y;
+    uint16_t *sums = output;
+    choose(s, &x, &y);
+    const ptrdiff_t at = y * s->frame.stride + x;
+    for (int32_t i = 0; i < s->isotropic.radius_count; i++) {
+        const asj_sectors *sectors = &s->isotropic.radii[i].sectors;
+        ops->sector_sums(sectors, s->frame.gradient_x + at, s->frame.gradient_y + at, s->frame.stride, scratch, sums);
+        sums += (size_t)sectors->count * ASJ_LANES;
+    }
+}
+
+static size_t block_size(const subject *s)
+{
+    (void)s;
+    return ASJ_LANES * ASJ_FIELD_BRANCHES * sizeof(asj_field_branch);
+}
+
+static void run_block(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
+{
+    int32_t x, y;
+    asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES];
+    choose(s, &x, &y);
+    ops->field_block(&s->field, &s->frame, x, y, scratch, branches);
+    memcpy(output, branches, sizeof branches);
+}
+
+static double tile_pixels(const subject *s)
+{
+    int32_t x, top;
+    choose(s, &x, &top);
+    return (double)s->frame.width * (s->frame.height - top / 2);
+}
+
+static size_t tile_size(const subject *s)
+{
+    return (size_t)s->frame.blocks * (size_t)s->frame.height * sizeof(uint16_t);
+}
+
+/* The whole image in tiles, but for the rows above `top`, which must stay as they are. */
+static void run_tiles(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
+{
+    const int32_t per_tile = ASJ_FIELD_TILE / ASJ_LANES, blocks = s->frame.blocks;
+    int32_t x, top;
+    choose(s, &x, &top);
+    top /= 2;
+    for (int32_t run = 0; run < blocks; run += per_tile)
+        ops->field_tile(&s->field, &s->frame, run, blocks - run < per_tile ? blocks - run : per_tile, top, s->frame.height,
+                        scratch, output);
+}
+
+const operation operations[] = {
+    {"sector sums", sums_size, one_run, run_sums},
+    {"field block", block_size, one_run, run_block},
+    {"field tile", tile_size, tile_pixels, run_tiles},
+};
+const size_t operation_count = sizeof operations / sizeof operations[0];

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The operations of the table, each brought into one form: from a subject to bytes. */
+#ifndef ASJ_TESTS_PARITY_OPERATIONS_H
+#define ASJ_TESTS_PARITY_OPERATIONS_H
+
+#include "subject.h"
+
+typedef struct operation {
+    const char *name;
+    size_t (*size)(const subject *s); /* bytes that run() may write */
+    double (*pixels)(const subject *s); /* of the image that one run() serves */
+    void (*run)(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output);
+} operation;
+
+extern const operation operations[];
+extern const size_t operation_count;
+
+#endif

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "subject.h"
+#include "gradient.h"
+#include "render.h"
+#include "scenes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LARGEST (ASJ_GRADIENT_LIMIT * ASJ_GRADIENT_ONE)
+
+const char *content_name(int32_t content)
+{
+    static const char *const names[CONTENT_COUNT] = {"random", "zero", "constant", "saturated", "sparse", "scene"};
+    return names[content];
+}
+
+static void set(const asj_frame *frame, int32_t x, int32_t y, double norm, double angle)
+{
+    const ptrdiff_t at = y * frame->stride + x;
+    frame->gradient_x[at] = (int16_t)lrint(norm * cos(angle));
+    frame->gradient_y[at] = (int16_t)lrint(norm * sin(angle));
+}
+
+static void fill_planes(subject *s)
+{
+    const double turn = 2 * acos(-1.0), constant = synth_random_between(&s->random, 0, turn);
+    for (int32_t y = 0; y < s->frame.height; y++)
+        for (int32_t x = 0; x < s->frame.width; x++) {
+            const double norm = synth_random_between(&s->random, 0, LARGEST), angle = synth_random_between(&s->random, 0, turn);
+            const int32_t patch = (x / 9 + 3 * (y / 7)) % 8;
+            switch (s->content) {
+            case CONTENT_RANDOM: set(&s->frame, x, y, norm, angle); break;
+            case CONTENT_CONSTANT: set(&s->frame, x, y, 0.5 * LARGEST, constant); break;
+            case CONTENT_SATURATED: set(&s->frame, x, y, LARGEST, patch * turn / 8); break;
+            case CONTENT_SPARSE: set(&s->frame, x, y, synth_random_unit(&s->random) < 0.01 ? norm : 0, angle); break;
+            default: set(&s->frame, x, y, 0, 0); break;
+            }
+        }
+}
+
+/* The gray plane from a scene (or noise), then the gradient by the reference. */
+static int fill_scene(subject *s)
+{
+    const size_t count = (size_t)s->frame.width * (size_t)s->frame.height;
+    synth_scene scene;
+    synth_scene_init(&scene, s->frame.width, s->frame.height, 110);
+    for (int i = 0; i < 4; i++) {
+        const synth_point corner = {synth_random_between(&s->random, 0, s->frame.width),
+                                    synth_random_between(&s->random, 0, s->frame.height)};
+        synth_add_rectangle(&scene, corner, 40, 25, synth_random_between(&s->random, 0, 6), synth_random_between(&s->random, 30, 220));
+    }
+    uint8_t *pixels = synth_photograph(&scene, 0.8, 2, s->seed);
+    synth_scene_free(&scene);
+    if (!pixels)
+        return 0;
+    for (size_t i = 0; i < count; i++)
+        s->frame.gray[i / (size_t)s->frame.width * (size_t)s->frame.stride + i % (size_t)s->frame.width] =
+            (uint16_t)(pixels[i] * ASJ_GRAY_ONE);
+    free(pixels);
+    return asj_gradient(s->context, &s->frame, &s->options) == ASJ_OK;
+}
+
+int subject_create(asj_context *context, int32_t width, int32_t height, int32_t content, int32_t radius, double tau, uint64_t seed,
+                   subject *s)
+{
+    memset(s, 0, sizeof *s);
+    s->context = context;
+    s->content = content;
+    s->seed = seed;
+    synth_random_seed(&s->random, seed);
+    asj_detect_options_init(&s->options);
+    s->options.field_radius = radius;
+    s->options.sector_width = tau;
+    int ok = asj_frame_prepare(context, &s->frame, width, height) == ASJ_OK &&
+             asj_field_create(context, &s->options, &s->field) == ASJ_OK &&
+             asj_isotropic_create(context, &s->options, &s->isotropic) == ASJ_OK;
+    if (ok && content == CONTENT_SCENE)
+        ok = fill_scene(s);
+    else if (ok)
+        fill_planes(s);
+    if (ok) {
+        asj_isotropic_set_size(&s->options, width, height, &s->isotropic);
+        s->scratch_size = asj_field_scratch(&s->field);
+        if (s->isotropic.scratch > s->scratch_size)
+            s->scratch_size = s->isotropic.scratch;
+    }
+    if (!ok)
+        fprintf(stderr, "parity: no subject of %d x %d pixels: %s\n", (int)width, (int)height, asj_context_message(context));
+    return ok;
+}
+
+void subject_free(subject *s)
+{
+    asj_isotropic_free(&s->context->memory, &s->isotropic);
+    asj_field_free(&s->context->memory, &s->field);
+    asj_frame_free(&s->context->memory, &s->frame);
+}
