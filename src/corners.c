@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_OUTSIDE 10.0f   /* px: where branches meet may lie a little outside the image (the detector's largest max_move) */
+#define MOST_OUTSIDE 20.0f   /* px: where branches meet may lie a little outside the image (the detector moves 10 px at most, twice) */
 #define LEAST_LENGTH 3.0     /* px: a shorter branch has no direction worth a frame */
 #define RAY_DISTANCE 3.0     /* px */
 #define LEAST_START 10.0     /* px */

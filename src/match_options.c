@@ -25,10 +25,10 @@ static const asj_option_info rows[] = {
     CHOICE(descriptor, 1, ASJ_DESCRIPTOR_RAW, ASJ_DESCRIPTOR_RAW, descriptor_words, "what describes a patch: raw or sift"),
     NUMBER(ratio, "", 1, 10, 1.5, 1.5, "the second best match at another place must be worse by this factor"),
     SWITCH(mutual, 1, 0, "two junctions match only if each is the other's best"),
-    NUMBER(minimum_support, "", 0, 64, 1.5, 0, "neighbouring matches that must agree with a match, each counted 0 to 1"),
+    NUMBER(minimum_support, "", 0, 64, 1.25, 0, "neighbouring matches that must agree with a match, each counted 0 to 1"),
     NUMBER(minimum_similarity, "", -1, 1, 0.6, -1, "correlation that the aligned discs of a match need"),
-    INTEGER(neighbours, "", 0, 64, 24, 0, "nearest junctions asked for support; 0 = none are asked"),
-    NUMBER(neighbour_tolerance, "", 0.01, 1, 0.15, 0.15, "error with which a match predicts its neighbour, as a part of the distance"),
+    INTEGER(neighbours, "", 0, 64, 32, 0, "nearest junctions asked for support; 0 = none are asked"),
+    NUMBER(neighbour_tolerance, "", 0.01, 1, 0.1, 0.1, "error with which a match predicts its neighbour, as a part of the distance"),
     NUMBER(map_tolerance, "", 0.05, 5, 0.5, 0.5, "relative difference between the affine maps of neighbours"),
     INTEGER(guided_rounds, "", 0, 4, 1, 0, "times that accepted matches propose matches near them"),
     CHOICE(patches, 1, ASJ_PATCHES_CANONICAL, ASJ_PATCHES_INDUCED, patch_words,
@@ -106,8 +106,10 @@ void asj_match_detect_options(asj_detect_options *options)
 {
     if (!options)
         return;
-    options->candidate_strength = 2.5;
-    options->epsilon = 100;
+    options->candidate_strength = 2;
+    options->epsilon = 1e4;
+    options->scan_epsilon = 10;
+    options->minimum_opening = 20;
     options->max_move = 5;
     options->strip_test = 0;
     options->max_deviation = 90;

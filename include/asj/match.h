@@ -45,9 +45,9 @@ typedef struct asj_match_options {
     double max_move;             /* px an alignment may move the junction. 0.5 .. 20; 5 */
     double minimum_similarity;   /* correlation that the aligned discs of a match need. -1 .. 1; 0.6; paper -1 */
     /* agreement between neighbouring matches: consensus.c, guided.c */
-    int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 24; paper 0 */
-    double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1.5; paper 0 */
-    double neighbour_tolerance;  /* where a match predicts its neighbour: error allowed, as a part of the distance. 0.01 .. 1; 0.15 */
+    int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 32; paper 0 */
+    double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1.25; paper 0 */
+    double neighbour_tolerance;  /* where a match predicts its neighbour: error allowed, as a part of the distance. 0.01 .. 1; 0.1 */
     double map_tolerance;        /* relative difference allowed between the affine maps of neighbours. 0.05 .. 5; 0.5 */
     int32_t guided_rounds;       /* times that accepted matches propose matches near them. 0 .. 4; 1; paper 0 */
     /* choice: assign.c */
@@ -117,7 +117,7 @@ typedef struct asj_match_result {
  * Each location takes part in one match at most. The result does not depend on the number of threads, and swapping the images
  * swaps the matches. Memory: the patches (patch_size^2 x 2 bytes for each frame) and short lists.
  *
- * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that is not finite, lies more than 10 px outside its image, has a wrong branch
+ * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that is not finite, lies more than 20 px outside its image, has a wrong branch
  *                      count or a negative length
  * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED   as asj_detect() */
 ASJ_API asj_status asj_match(asj_context *context,
@@ -129,7 +129,7 @@ ASJ_API asj_status asj_match(asj_context *context,
 ASJ_API void asj_match_result_free(asj_match_result **result);
 
 /* Changes detector options to what matching wants: weaker junctions too, since the matcher tells the false ones.
- * candidate_strength 2.5, epsilon 100, max_move 5, no strip test, max_deviation 90,
+ * candidate_strength 2, epsilon 1e4, scan_epsilon 10, minimum_opening 20, max_move 5, no strip test, max_deviation 90,
  * near_strength -10. NULL is ignored. */
 ASJ_API void asj_match_detect_options(asj_detect_options *options);
 
