@@ -58,8 +58,9 @@ int bench_run(asj_context *context, const asj_ops *tables, const int *available)
         size_t most = 0;
         for (size_t i = 0; i < operation_count; i++)
             most = operations[i].size(&s) > most ? operations[i].size(&s) : most;
-        uint16_t *scratch = malloc(s.scratch_size * sizeof *scratch);
-        void *output = malloc(most);
+        void *scratch = NULL, *output = malloc(most);
+        if (posix_memalign(&scratch, ASJ_ALIGNMENT, s.scratch_size * sizeof(uint16_t)) != 0)
+            scratch = NULL;
         for (size_t i = 0; scratch && output && i < operation_count; i++)
             bench_operation(&operations[i], &s, tables, available, scratch, output);
         failed = !scratch || !output;
