@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* What a call does besides its result: progress, cancellation, dumps, times. */
+#include "unit_test.h"
+
+#include <asj/asj.h>
+
+typedef struct watcher {
+    int calls, stop_at;
+    double last;
+    int stage_last;
+    int wrong;
+    unsigned stages; /* bits */
+} watcher;
+
+static int32_t watch(void *user, int32_t stage, double done)
+{
+    watcher *w = user;
+    w->wrong += done < w->last || done < 0 || done > 1 || stage < w->stage_last - 1 || stage < 0 || stage >= ASJ_STAGE_COUNT;
+    w->last = done;
+    w->stage_last = stage;
+    w->stages |= 1u << stage;
+    w->calls++;
+    return w->calls == w->stop_at;
+}
+
+typedef struct dumps {
+    int count;
+    char names[16][24];
+    size_t points[16];
+    int wrong;
+    int32_t width, height;
+} dumps;
+
+/* Reads the whole plane, so that the sanitizers see it; points lie in the image, or next to it after a line fit. */
+static void look(void *user, const asj_dump *dump)
+{
+    dumps *d = user;
+    long sum = 0;
+    d->wrong += dump->width != d->width || dump->height != d->height || !dump->data || d->count >= 16;
+    if (d->count >= 16)
+        return;
+    snprintf(d->names[d->count], sizeof d->names[0], "%s", dump->name);
+    d->points[d->count++] = dump->kind == ASJ_DUMP_POINTS ? dump->count : 0;
+    if (dump->kind == ASJ_DUMP_POINTS) {
+        const int32_t *xy = dump->data;
+        for (size_t i = 0; i < dump->count; i++)
+            d->wrong += xy[2 * i] < -10 || xy[2 * i] > d->width + 10 || xy[2 * i + 1] < -10 || xy[2 * i + 1] > d->height + 10;
+        return;
+    }
+    d->wrong += dump->stride < dump->width || !(dump->unit > 0);
+    for (int32_t y = 0; y < dump->height; y++)
+        for (int32_t x = 0; x < dump->width; x++) {
+            const ptrdiff_t at = y * dump->stride + x;
+            sum += dump->kind == ASJ_DUMP_PLANE_U16 ? ((const uint16_t *)dump->data)[at] : ((const int16_t *)dump->data)[at];
+        }
+    d->wrong += sum == 12345678; /* the sum is used */
+}
+
+typedef struct fixture {
+    unit_counter counter;
+    uint8_t *pixels;
+    asj_image image;
+    watcher watcher;
+    dumps dumps;
+    asj_context *context;
+} fixture;
+
+static int set_up(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    asj_context_options options;
+    synth_scene scene;
+    *state = f;
+    if (!f)
+        return -1;
+    synth_parallelograms(&scene, 60, 11);
+    f->image = unit_gray8(NULL, scene.width, scene.height);
+    f->image.data = f->pixels = unit_picture(&scene, 1, 3, 8);
+    asj_context_options_init(&options);
+    options.allocator = (asj_allocator){unit_allocate, unit_release, &f->counter};
+    options.threads = 2;
+    options.progress = watch;
+    options.progress_user = &f->watcher;
+    options.dump = look;
+    options.dump_user = &f->dumps;
+    f->dumps.width = f->image.width;
+    f->dumps.height = f->image.height;
+    return asj_context_create(&options, &f->context) == ASJ_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+    asj_context_free(&f->context);
+    const int leaked = f->counter.live != 0;
+    free(f->pixels);
+    free(f);
+    return leaked;
+}
+
+static void test_progress(void **state)
+{
+    fixture *f = *state;
+    asj_detection *found = NULL;
+    for (int i = 0; i < 2; i++) { /* the second call starts from the beginning */
+        memset(&f->watcher, 0, sizeof f->watcher);
+        assert_int_equal(asj_detect(f->context, &f->image, NULL, &found), ASJ_OK);
+        asj_detection_free(&found);
+        assert_int_equal(f->watcher.wrong, 0);
+        assert_in_range(f->watcher.calls, 8, 100);
+        assert_true(f->watcher.last > 0.9);
+        assert_int_equal(f->watcher.stages & 0x3f, 0x3f); /* gradient .. refine */
+    }
+}
+
+/* Stopped at every report: the status, nothing held but the context, no result; and the next call is not disturbed. */
+static void test_cancel(void **state)
+{
+    fixture *f = *state;
+    asj_detection *found = NULL;
+    int n = 1;
+    for (;; n++) {
+        memset(&f->watcher, 0, sizeof f->watcher);
+        f->watcher.stop_at = n;
+        found = (asj_detection *)(uintptr_t)f;
+        const long live = f->counter.live;
+        const asj_status status = asj_detect(f->context, &f->image, NULL, &found);
+        if (status == ASJ_OK)
+            break;
+        assert_int_equal(status, ASJ_ERROR_CANCELLED);
+        assert_int_equal(f->watcher.calls, n); /* not asked again */
+        assert_null(found);
+        assert_non_null(strstr(asj_context_message(f->context), "cancel"));
+        if (n > 1)
+            assert_int_equal(f->counter.live, live);
+    }
+    assert_in_range(n, 9, 100);
+    asj_detection_free(&found);
+    memset(&f->watcher, 0, sizeof f->watcher);
+}
+
+static void test_cancel_field(void **state)
+{
+    fixture *f = *state;
+    const size_t count = (size_t)f->image.width * (size_t)f->image.height * ASJ_FIELD_BRANCHES;
+    asj_local_branch *branches = malloc(count * sizeof *branches);
+    assert_non_null(branches);
+    int n = 1;
+    for (;; n++) {
+        memset(&f->watcher, 0, sizeof f->watcher);
+        f->watcher.stop_at = n;
+        const long live = f->counter.live;
+        const asj_status status = asj_local_field(f->context, &f->image, NULL, branches);
+        assert_int_equal(f->counter.live, live);
+        assert_int_equal(f->watcher.wrong, 0);
+        if (status == ASJ_OK)
+            break;
+        assert_int_equal(status, ASJ_ERROR_CANCELLED);
+    }
+    assert_in_range(n, 2, 50);
+    free(branches);
+    memset(&f->watcher, 0, sizeof f->watcher);
+}
+
+/* All that context.h names, in the order of the steps, with as many points as the result says. */
+static void test_dumps(void **state)
+{
+    static const char *const names[] = {"gray", "gradient_x", "gradient_y", "candidates", "isotropic", "located", "junctions"};
+    fixture *f = *state;
+    asj_detection *found = NULL;
+    f->dumps.count = f->dumps.wrong = 0;
+    assert_int_equal(asj_detect(f->context, &f->image, NULL, &found), ASJ_OK);
+    assert_int_equal(f->dumps.count, UNIT_COUNT(names));
+    assert_int_equal(f->dumps.wrong, 0);
+    for (size_t i = 0; i < UNIT_COUNT(names); i++)
+        assert_string_equal(f->dumps.names[i], names[i]);
+    assert_int_equal(f->dumps.points[3], found->candidates);
+    assert_true(f->dumps.points[4] <= f->dumps.points[3]);
+    assert_true(f->dumps.points[5] <= f->dumps.points[4]);
+    assert_int_equal(f->dumps.points[6], found->junction_count);
+    asj_detection_free(&found);
+    /* an image without candidates: lists of no points */
+    static const uint8_t flat[100] = {0};
+    const asj_image image = unit_gray8(flat, 10, 10);
+    f->dumps = (dumps){.width = 10, .height = 10};
+    assert_int_equal(asj_detect(f->context, &image, NULL, &found), ASJ_OK);
+    assert_int_equal(f->dumps.count, UNIT_COUNT(names));
+    assert_int_equal(f->dumps.wrong, 0);
+    asj_detection_free(&found);
+    f->dumps = (dumps){.width = f->image.width, .height = f->image.height};
+}
+
+/* The stages' times are parts of the total, and what is not in them is little; no assertion says how long anything takes. */
+static void test_times(void **state)
+{
+    fixture *f = *state;
+    asj_detection *found = NULL;
+    double sum = 0;
+    assert_int_equal(asj_detect(f->context, &f->image, NULL, &found), ASJ_OK);
+    for (int i = 0; i < 16; i++) {
+        assert_true(found->stage_ms[i] >= 0);
+        if (i > ASJ_STAGE_DECOMPOSE)
+            assert_true(found->stage_ms[i] == 0);
+        sum += found->stage_ms[i];
+    }
+    unit_near("sum of the stages / total", 0, 0, sum / found->total_ms, 1, 1e-6);
+    asj_detection_free(&found);
+}
+
+/* What each step says it did, at the resolution of an image whose rows are more than one group. */
+static void test_counts(void **state)
+{
+    fixture *f = *state;
+    asj_detection *found = NULL;
+    assert_true(f->image.height > 128);
+    assert_int_equal(asj_detect(f->context, &f->image, NULL, &found), ASJ_OK);
+    assert_true(found->candidates > found->isotropic);
+    assert_true(found->isotropic >= found->junction_count);
+    assert_true(found->junction_count >= 8);
+    assert_int_equal(found->width, f->image.width);
+    assert_int_equal(found->height, f->image.height);
+    assert_true(found->l_junction_count >= found->junction_count);
+    asj_detection_free(&found);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_progress), cmocka_unit_test(test_cancel), cmocka_unit_test(test_cancel_field),
+        cmocka_unit_test(test_dumps),    cmocka_unit_test(test_times),  cmocka_unit_test(test_counts),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
