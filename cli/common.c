@@ -120,3 +120,14 @@ void cli_session_close(cli_session *session)
     cli_progress_clear(&session->progress);
     asj_context_free(&session->context);
 }
+
+int cli_session_fail(cli_session *session, const char *path, const char *message, asj_status status)
+{
+    cli_progress_clear(&session->progress);
+    if (strcmp(path, "-") == 0) {
+        path = "standard output";
+        message += strncmp(message, "-: ", 3) == 0 ? 3 : 0;
+    }
+    cli_file_error(path, *message ? message : asj_status_string(status));
+    return CLI_FAILED;
+}

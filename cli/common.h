@@ -36,4 +36,7 @@ typedef struct cli_session {
 int cli_session_open(cli_session *session, const cli_common *common, size_t image_count);
 void cli_session_close(cli_session *session);
 
+/* Says what went wrong with a file, or with standard output for "-"; an empty message is replaced by the status. CLI_FAILED. */
+int cli_session_fail(cli_session *session, const char *path, const char *message, asj_status status);
+
 #endif

@@ -20,17 +20,6 @@ typedef struct run {
     double read_ms;
 } run;
 
-static int fail(run *r, const char *path, const char *message, asj_status status)
-{
-    cli_progress_clear(&r->session.progress);
-    if (strcmp(path, "-") == 0) {
-        path = "standard output";
-        message += strncmp(message, "-: ", 3) == 0 ? 3 : 0;
-    }
-    cli_file_error(path, *message ? message : asj_status_string(status));
-    return CLI_FAILED;
-}
-
 static int write_results(run *r, const char *image, const cli_output *output, const asj_image *pixels,
                          const asj_detection *detection)
 {
@@ -42,13 +31,13 @@ static int write_results(run *r, const char *image, const cli_output *output, co
         asj_status status = asj_junctions_write(output->junctions, cli_detect_file_format(arguments), &report, message,
                                                 sizeof message);
         if (status != ASJ_OK)
-            result = fail(r, output->junctions, message, status);
+            result = cli_session_fail(&r->session, output->junctions, message, status);
     }
     if (output->plot && !cli_interrupted()) {
         asj_status status = cli_plot_write(output->plot, arguments->plot_format, pixels, detection, &arguments->style, message,
                                            sizeof message);
         if (status != ASJ_OK)
-            result = fail(r, output->plot, message, status);
+            result = cli_session_fail(&r->session, output->plot, message, status);
     }
     return result;
 }
@@ -70,7 +59,7 @@ static int detect_pixels(run *r, const char *image, const cli_output *output, co
     if (status == ASJ_ERROR_CANCELLED)
         return CLI_FAILED; /* the loop sees the signal */
     if (status != ASJ_OK)
-        return fail(r, image, asj_context_message(r->session.context), status);
+        return cli_session_fail(&r->session, image, asj_context_message(r->session.context), status);
     double start = cli_now_ms();
     int result = write_results(r, image, output, pixels, detection);
     double write_ms = cli_now_ms() - start;
@@ -78,7 +67,10 @@ static int detect_pixels(run *r, const char *image, const cli_output *output, co
     if (result == CLI_SUCCESS && !r->arguments->common.quiet)
         print_summary(image, output, detection);
     if (result == CLI_SUCCESS && r->arguments->common.time)
-        cli_timing_print(image, detection, r->read_ms, write_ms);
+        {
+        cli_timing_detection(image, detection);
+        cli_timing_files(r->read_ms, write_ms);
+    }
     asj_detection_free(&detection);
     return result;
 }
@@ -91,7 +83,7 @@ static int detect_file(run *r, const char *image, const cli_output *output)
     asj_status status = asj_image_file_read(image, r->arguments->common.max_pixels, &file, message, sizeof message);
     r->read_ms = cli_now_ms() - start;
     if (status != ASJ_OK)
-        return fail(r, image, message, status);
+        return cli_session_fail(&r->session, image, message, status);
     int result = cli_interrupted() ? CLI_FAILED : detect_pixels(r, image, output, &file->image);
     asj_image_file_free(&file);
     return result;

@@ -5,7 +5,6 @@
 
 #include <asj/io.h>
 
-#include <stdlib.h>
 #include <string.h>
 
 static const char introduction[] =
@@ -56,8 +55,7 @@ static const cli_option preset_options[] = {
 
 void cli_detect_arguments_free(cli_detect_arguments *arguments)
 {
-    free(arguments->settings);
-    arguments->settings = NULL;
+    cli_settings_free(&arguments->settings);
 }
 
 static int take_output(void *target, int id, const char *text)
@@ -79,7 +77,6 @@ static int take_output(void *target, int id, const char *text)
 static int take_plot(void *target, int id, const char *text)
 {
     static const char *const colors[] = {"nfa", "branch", NULL};
-    static const char *const backgrounds[] = {"photo", "white", NULL};
     cli_detect_arguments *arguments = target;
     switch (id) {
     case PLOT:
@@ -90,37 +87,18 @@ static int take_plot(void *target, int id, const char *text)
             return cli_usage_error("detect", "--plot-color: '%s' is not nfa or branch", text);
         break;
     case PLOT_BACKGROUND:
-        if ((arguments->style.background = cli_find_word(backgrounds, text)) < 0)
-            return cli_usage_error("detect", "--plot-background: '%s' is not photo or white", text);
-        break;
+        return cli_plot_take_background("detect", text, &arguments->style.background);
     default:
-        if (!cli_parse_number(text, CLI_PLOT_MIN_SCALE, CLI_PLOT_MAX_SCALE, &arguments->style.scale))
-            return cli_usage_error("detect", "--plot-scale: '%s' is not a number in %g .. %d", text,
-                                   CLI_PLOT_MIN_SCALE, CLI_PLOT_MAX_SCALE);
+        return cli_plot_take_scale("detect", text, &arguments->style.scale);
     }
     return CLI_SUCCESS;
 }
 
 static int take_preset(void *target, int id, const char *text)
 {
-    static const char *const presets[] = {"default", "paper", NULL}; /* in the order of ASJ_PRESET_... */
     cli_detect_arguments *arguments = target;
     (void)id;
-    int word = cli_find_word(presets, text);
-    if (word < 0)
-        return cli_usage_error("detect", "--preset: '%s' is not default or paper", text);
-    arguments->preset = word;
-    return CLI_SUCCESS;
-}
-
-/* Kept until the preset is known. */
-static int take_row(void *target, const asj_option_info *row, const char *text)
-{
-    cli_detect_arguments *arguments = target;
-    cli_setting *setting = &arguments->settings[arguments->setting_count++];
-    setting->key = row->key;
-    setting->text = text;
-    return CLI_SUCCESS;
+    return cli_take_preset("detect", "preset", text, &arguments->preset);
 }
 
 static asj_status preset_value(int32_t preset, const char *key, char *text, size_t text_size)
@@ -130,45 +108,21 @@ static asj_status preset_value(int32_t preset, const char *key, char *text, size
     return status == ASJ_OK ? asj_detect_options_get(&options, key, text, text_size) : status;
 }
 
-static int apply_settings(cli_detect_arguments *arguments)
+static asj_status set_option(void *options, const char *key, const char *text, char *message, size_t message_size)
 {
-    char message[256];
-    asj_detect_options_preset(&arguments->options, arguments->preset);
-    for (size_t i = 0; i < arguments->setting_count; i++) {
-        const cli_setting *setting = &arguments->settings[i];
-        if (asj_detect_options_set(&arguments->options, setting->key, setting->text, message, sizeof message) != ASJ_OK)
-            return cli_usage_error("detect", "%s", message);
-    }
-    return CLI_SUCCESS;
-}
-
-/* CLI_PLOT_... of "png", "svg" or "pdf" in either case, or -1. */
-static int32_t find_plot_format(const char *word)
-{
-    static const char *const formats[] = {"png", "svg", "pdf", NULL}; /* in the order of CLI_PLOT_... */
-    char lower[8] = "";
-    for (size_t i = 0; i + 1 < sizeof lower && word[i]; i++)
-        lower[i] = (char)(word[i] >= 'A' && word[i] <= 'Z' ? word[i] - 'A' + 'a' : word[i]);
-    return cli_find_word(formats, lower);
+    return asj_detect_options_set(options, key, text, message, message_size);
 }
 
 static int check_plot(cli_detect_arguments *arguments)
 {
     if (!arguments->plot)
         return CLI_SUCCESS;
-    if (!cli_plot_available())
-        return cli_usage_error("detect", "--plot: this build cannot plot (it was made without cairo)");
     const char *word = arguments->plot;
-    if (arguments->out_dir) {
-        arguments->plot_format = find_plot_format(word);
-        if (arguments->plot_format < 0)
-            return cli_usage_error("detect", "--plot: with --out-dir it takes png, svg or pdf, not '%s'", word);
-        return CLI_SUCCESS;
-    }
-    const char *dot = strrchr(word, '.');
-    arguments->plot_format = dot && dot != word && dot[-1] != '/' ? find_plot_format(dot + 1) : -1;
+    if (!arguments->out_dir || !cli_plot_available())
+        return cli_plot_format_of_name("detect", word, &arguments->plot_format);
+    arguments->plot_format = cli_plot_format_of_word(word);
     if (arguments->plot_format < 0)
-        return cli_usage_error("detect", "--plot: the name '%s' does not end in .png, .svg or .pdf", word);
+        return cli_usage_error("detect", "--plot: with --out-dir it takes png, svg or pdf, not '%s'", word);
     return CLI_SUCCESS;
 }
 
@@ -191,20 +145,17 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
     int first = argc;
     memset(arguments, 0, sizeof *arguments);
     cli_common_init(&arguments->common);
-    arguments->settings = calloc((size_t)argc, sizeof *arguments->settings);
-    if (!arguments->settings) {
-        cli_error("out of memory");
+    if (!cli_settings_create(&arguments->settings, argc))
         return CLI_FAILED;
-    }
     const cli_group groups[] = {
         {"Results", output_options, sizeof output_options / sizeof output_options[0], take_output, arguments},
         {"Plot", plot_options, sizeof plot_options / sizeof plot_options[0], take_plot, arguments},
         {"Detector", preset_options, 1, take_preset, arguments},
         {"Running", cli_common_options, cli_common_option_count, cli_common_take, &arguments->common},
     };
-    const cli_table table = {"Detector, in detail (NFA: expected number of false alarms in an image of noise)",
-                             asj_detect_option_count, asj_detect_option, preset_value, take_row, arguments};
-    const cli_syntax syntax = {"detect", introduction, conclusion, groups, sizeof groups / sizeof groups[0], &table};
+    const cli_table table = {"Detector, in detail (NFA: expected number of false alarms in an image of noise)", "",
+                             asj_detect_option_count, asj_detect_option, preset_value, cli_settings_take, &arguments->settings};
+    const cli_syntax syntax = {"detect", introduction, conclusion, groups, sizeof groups / sizeof groups[0], &table, 1};
     int result = cli_parse(&syntax, argc, argv, &first);
     if (result == CLI_HELP)
         cli_help(&syntax);
@@ -212,7 +163,8 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
         return result;
     arguments->images = argv + first;
     arguments->image_count = (size_t)(argc - first);
-    result = apply_settings(arguments);
+    asj_detect_options_preset(&arguments->options, arguments->preset);
+    result = cli_settings_apply(&arguments->settings, "detect", &arguments->options, set_option);
     return result == CLI_SUCCESS ? check(arguments) : result;
 }
 

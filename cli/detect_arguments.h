@@ -5,20 +5,15 @@
 
 #include "common.h"
 #include "plot.h"
+#include "settings.h"
 
 #include <asj/options.h>
-
-typedef struct cli_setting {
-    const char *key;
-    const char *text;
-} cli_setting;
 
 typedef struct cli_detect_arguments {
     cli_common common;
     asj_detect_options options;
     int32_t preset;
-    cli_setting *settings; /* the options of the library's table, as they stand on the line */
-    size_t setting_count;
+    cli_settings settings;
     const char *output;    /* -o; NULL = none */
     const char *out_dir;   /* NULL = none */
     const char *format;    /* "asj", "json", "csv"; NULL = by the name of `output` */

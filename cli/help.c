@@ -54,10 +54,11 @@ void cli_row_argument(const asj_option_info *row, char *text, size_t text_size)
     snprintf(text, text_size, "%s", argument);
 }
 
-static void print_row(const cli_table *table, const asj_option_info *row)
+static void print_row(const cli_syntax *syntax, size_t t, const asj_option_info *row)
 {
+    const cli_table *table = &syntax->tables[t];
     char name[CLI_NAME_SIZE], argument[128], standard[64] = "", paper[64] = "", range[96] = "", text[1024];
-    cli_option_name(row, name);
+    cli_option_name(syntax, t, row, name);
     cli_row_argument(row, argument, sizeof argument);
     table->value(ASJ_PRESET_DEFAULT, row->key, standard, sizeof standard);
     table->value(ASJ_PRESET_PAPER, row->key, paper, sizeof paper);
@@ -80,10 +81,10 @@ void cli_help(const cli_syntax *syntax)
         if (g + 1 == syntax->group_count)
             print_column(printf("  -h, --help"), "show this text");
     }
-    if (syntax->table) {
-        printf("\n%s\n", syntax->table->title);
-        for (size_t i = 0; i < syntax->table->count(); i++)
-            print_row(syntax->table, syntax->table->row(i));
+    for (size_t t = 0; t < syntax->table_count; t++) {
+        printf("\n%s\n", syntax->tables[t].title);
+        for (size_t i = 0; i < syntax->tables[t].count(); i++)
+            print_row(syntax, t, syntax->tables[t].row(i));
     }
     fputs(syntax->conclusion, stdout);
 }

@@ -4,7 +4,7 @@
 
 #include "parse.h"
 
-/* Prints the help of a command on standard output: introduction, groups, the library's option table, conclusion. */
+/* Prints the help of a command on standard output: introduction, groups, the library's option tables, conclusion. */
 void cli_help(const cli_syntax *syntax);
 
 /* What stands for the value of a table row: "N", "yes|no", "line_fit|search", "LIST". */

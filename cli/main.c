@@ -2,6 +2,7 @@
 /* asj-cli: the library's functions as a program. */
 #include "detect.h"
 #include "interrupt.h"
+#include "match.h"
 #include "message.h"
 #include "plot.h"
 
@@ -19,6 +20,7 @@ typedef struct command {
 
 static const command commands[] = {
     {"detect", "find the junctions in photographs", cli_detect},
+    {"match", "find the same corners in two photographs", cli_match},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 

@@ -9,12 +9,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* A file that will be written, for sorting. */
-typedef struct planned {
-    const char *path;
-    const char *image;
-} planned;
-
 /* A file that exists: equal for every name of the same file. */
 typedef struct identity {
     dev_t device;
@@ -84,7 +78,7 @@ static int name_outputs(const cli_detect_arguments *arguments, cli_outputs *outp
 
 static int compare_planned(const void *a, const void *b)
 {
-    return strcmp(((const planned *)a)->path, ((const planned *)b)->path);
+    return strcmp(((const cli_planned *)a)->path, ((const cli_planned *)b)->path);
 }
 
 static int compare_identity(const void *a, const void *b)
@@ -95,45 +89,60 @@ static int compare_identity(const void *a, const void *b)
     return p->inode == q->inode ? 0 : p->inode < q->inode ? -1 : 1;
 }
 
-static size_t list_planned(const cli_detect_arguments *arguments, const cli_outputs *outputs, planned *list)
+static size_t list_planned(const cli_detect_arguments *arguments, const cli_outputs *outputs, cli_planned *list)
 {
     size_t n = 0;
     for (size_t i = 0; i < outputs->count; i++) {
         if (outputs->of[i].junctions && strcmp(outputs->of[i].junctions, "-") != 0)
-            list[n++] = (planned){outputs->of[i].junctions, arguments->images[i]};
+            list[n++] = (cli_planned){outputs->of[i].junctions, arguments->images[i]};
         if (outputs->of[i].plot)
-            list[n++] = (planned){outputs->of[i].plot, arguments->images[i]};
+            list[n++] = (cli_planned){outputs->of[i].plot, arguments->images[i]};
     }
     return n;
 }
 
-static size_t list_inputs(const cli_detect_arguments *arguments, identity *list)
+static size_t identify(const char *const *paths, size_t count, identity *list)
 {
     struct stat facts;
     size_t n = 0;
-    for (size_t i = 0; i < arguments->image_count; i++)
-        if (stat(arguments->images[i], &facts) == 0 && S_ISREG(facts.st_mode))
+    for (size_t i = 0; i < count; i++)
+        if (stat(paths[i], &facts) == 0 && S_ISREG(facts.st_mode))
             list[n++] = (identity){facts.st_dev, facts.st_ino};
+    qsort(list, n, sizeof *list, compare_identity);
     return n;
 }
 
-static int check_collisions(planned *outputs, size_t output_count, identity *inputs, size_t input_count)
+static int check_against(const char *command, const cli_planned *outputs, size_t output_count, const identity *inputs,
+                         size_t input_count)
 {
     struct stat facts;
-    qsort(outputs, output_count, sizeof *outputs, compare_planned);
-    qsort(inputs, input_count, sizeof *inputs, compare_identity);
     for (size_t i = 1; i < output_count; i++)
         if (strcmp(outputs[i - 1].path, outputs[i].path) == 0)
-            return cli_usage_error("detect", "%s: would be written twice, for %s and for %s", outputs[i].path, outputs[i - 1].image,
-                                   outputs[i].image);
+            return cli_usage_error(command, "%s: would be written twice, for %s and for %s", outputs[i].path,
+                                   outputs[i - 1].purpose, outputs[i].purpose);
     for (size_t i = 0; i < output_count; i++) {
         if (stat(outputs[i].path, &facts) != 0)
             continue;
         identity existing = {facts.st_dev, facts.st_ino};
         if (input_count > 0 && bsearch(&existing, inputs, input_count, sizeof *inputs, compare_identity))
-            return cli_usage_error("detect", "%s: is an input image, and would be overwritten", outputs[i].path);
+            return cli_usage_error(command, "%s: is an input file, and would be overwritten", outputs[i].path);
     }
     return CLI_SUCCESS;
+}
+
+int cli_check_collisions(const char *command, cli_planned *outputs, size_t output_count, const char *const *inputs,
+                         size_t input_count)
+{
+    identity *list = calloc(input_count + 1, sizeof *list);
+    if (!list) {
+        cli_error("out of memory");
+        return CLI_FAILED;
+    }
+    if (output_count > 1)
+        qsort(outputs, output_count, sizeof *outputs, compare_planned);
+    int result = check_against(command, outputs, output_count, list, identify(inputs, input_count, list));
+    free(list);
+    return result;
 }
 
 static int check_folder(const char *path)
@@ -151,15 +160,14 @@ int cli_outputs_plan(const cli_detect_arguments *arguments, cli_outputs *outputs
     int result = CLI_FAILED;
     outputs->count = 0;
     outputs->of = calloc(arguments->image_count, sizeof *outputs->of);
-    planned *list = calloc(2 * arguments->image_count, sizeof *list);
-    identity *inputs = calloc(arguments->image_count, sizeof *inputs);
+    cli_planned *list = calloc(2 * arguments->image_count, sizeof *list);
     if (outputs->of)
         outputs->count = arguments->image_count;
-    if (!outputs->of || !list || !inputs || !name_outputs(arguments, outputs))
+    if (!outputs->of || !list || !name_outputs(arguments, outputs))
         cli_error("out of memory");
     else if (!arguments->out_dir || (result = check_folder(arguments->out_dir)) == CLI_SUCCESS)
-        result = check_collisions(list, list_planned(arguments, outputs, list), inputs, list_inputs(arguments, inputs));
+        result = cli_check_collisions("detect", list, list_planned(arguments, outputs, list),
+                                      (const char *const *)arguments->images, arguments->image_count);
     free(list);
-    free(inputs);
     return result;
 }

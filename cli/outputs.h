@@ -4,6 +4,17 @@
 
 #include "detect_arguments.h"
 
+/* A file that will be written, and what it is for: an image, or "the plot". */
+typedef struct cli_planned {
+    const char *path;
+    const char *purpose;
+} cli_planned;
+
+/* Two results may not share a name, and none may take the place of an input. Sorts `outputs`. CLI_SUCCESS, or CLI_USAGE or
+ * CLI_FAILED (no memory) after saying why. */
+int cli_check_collisions(const char *command, cli_planned *outputs, size_t output_count, const char *const *inputs,
+                         size_t input_count);
+
 /* Where the results of one image go; NULL = nowhere. */
 typedef struct cli_output {
     char *junctions; /* "-" = standard output */
@@ -15,8 +26,8 @@ typedef struct cli_outputs {
     size_t count;
 } cli_outputs;
 
-/* Plans all files before any work: two results may not share a name, and none may take the place of an input. CLI_SUCCESS, or
- * CLI_USAGE or CLI_FAILED (no such folder, no memory) after saying why. cli_outputs_free() in every case. */
+/* Plans all files of `detect` before any work. CLI_SUCCESS, or CLI_USAGE or CLI_FAILED (no such folder, no memory) after saying
+ * why. cli_outputs_free() in every case. */
 int cli_outputs_plan(const cli_detect_arguments *arguments, cli_outputs *outputs);
 void cli_outputs_free(cli_outputs *outputs);
 

@@ -8,19 +8,30 @@
 #include <string.h>
 
 /* Values that getopt_long() hands back: above every character, in the order of its table. */
-enum { VALUE_HELP = 1000, VALUE_OPTION = 1001 /* + number of the option, in order of the groups, then of the table */ };
+enum { VALUE_HELP = 1000, VALUE_OPTION = 1001 /* + number of the option, in order of the groups, then of the tables */ };
 
 typedef struct getopt_tables {
-    struct option *long_options; /* help, the groups' options, the table's rows, an end mark */
+    struct option *long_options; /* help, the groups' options, the tables' rows, an end mark */
     char *short_options;
-    char (*names)[CLI_NAME_SIZE]; /* of the table's rows */
+    char (*names)[CLI_NAME_SIZE]; /* of the tables' rows */
     size_t option_count;          /* options of all groups */
-    size_t row_count;
+    size_t row_count;             /* of all tables */
 } getopt_tables;
 
-void cli_option_name(const asj_option_info *row, char name[CLI_NAME_SIZE])
+static int has_key(const cli_table *table, const char *key)
 {
-    snprintf(name, CLI_NAME_SIZE, "%s", row->key);
+    for (size_t i = 0; i < table->count(); i++)
+        if (strcmp(table->row(i)->key, key) == 0)
+            return 1;
+    return 0;
+}
+
+void cli_option_name(const cli_syntax *syntax, size_t table, const asj_option_info *row, char name[CLI_NAME_SIZE])
+{
+    int taken = 0;
+    for (size_t t = 0; t < table; t++)
+        taken |= has_key(&syntax->tables[t], row->key);
+    snprintf(name, CLI_NAME_SIZE, "%s%s%s", taken ? syntax->tables[table].prefix : "", taken ? "-" : "", row->key);
     for (char *c = name; *c; c++)
         if (*c == '_')
             *c = '-';
@@ -55,6 +66,18 @@ static const cli_option *find_option(const cli_syntax *syntax, size_t number, co
     return NULL;
 }
 
+/* The table and the row of a number that counts the rows of all tables. */
+static const asj_option_info *find_row(const cli_syntax *syntax, size_t number, size_t *table)
+{
+    for (*table = 0; *table < syntax->table_count; ++*table) {
+        size_t count = syntax->tables[*table].count();
+        if (number < count)
+            return syntax->tables[*table].row(number);
+        number -= count;
+    }
+    return NULL;
+}
+
 static struct option long_option(const char *name, int has_argument, size_t value)
 {
     struct option option;
@@ -83,8 +106,9 @@ static void fill_tables(const cli_syntax *syntax, getopt_tables *tables)
     }
     *letters = '\0';
     for (size_t i = 0; i < tables->row_count; i++) {
-        size_t number = tables->option_count + i;
-        cli_option_name(syntax->table->row(i), tables->names[i]);
+        size_t number = tables->option_count + i, table;
+        const asj_option_info *row = find_row(syntax, i, &table);
+        cli_option_name(syntax, table, row, tables->names[i]);
         tables->long_options[1 + number] = long_option(tables->names[i], 1, VALUE_OPTION + number);
     }
 }
@@ -101,7 +125,8 @@ static int make_tables(const cli_syntax *syntax, getopt_tables *tables)
     memset(tables, 0, sizeof *tables);
     for (size_t g = 0; g < syntax->group_count; g++)
         tables->option_count += syntax->groups[g].count;
-    tables->row_count = syntax->table ? syntax->table->count() : 0;
+    for (size_t t = 0; t < syntax->table_count; t++)
+        tables->row_count += syntax->tables[t].count();
     tables->long_options = calloc(tables->option_count + tables->row_count + 2, sizeof *tables->long_options);
     tables->short_options = calloc(2 * tables->option_count + 3, 1);
     tables->names = calloc(tables->row_count + 1, sizeof *tables->names);
@@ -131,8 +156,11 @@ static int say_unknown(const cli_syntax *syntax, const getopt_tables *tables, co
 static int take_option(const cli_syntax *syntax, const getopt_tables *tables, size_t number, const char *text)
 {
     const cli_group *group;
-    if (number >= tables->option_count)
-        return syntax->table->take(syntax->table->target, syntax->table->row(number - tables->option_count), text);
+    if (number >= tables->option_count) {
+        size_t t;
+        const asj_option_info *row = find_row(syntax, number - tables->option_count, &t);
+        return syntax->tables[t].take(syntax->tables[t].target, row, text);
+    }
     const cli_option *option = find_option(syntax, number, &group);
     return group->take(group->target, option->id, text);
 }

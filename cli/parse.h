@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Options of a command: rows written by hand in groups, and rows of one of the library's option tables. From the same rows come
+/* Options of a command: rows written by hand in groups, and rows of the library's option tables. From the same rows come
  * the table for getopt_long() and the text of --help. */
 #ifndef ASJ_CLI_PARSE_H
 #define ASJ_CLI_PARSE_H
@@ -25,6 +25,7 @@ typedef struct cli_group {
 /* One of the library's option tables. */
 typedef struct cli_table {
     const char *title;
+    const char *prefix; /* goes before names that a table before this one has too: "match" makes --match-max-move */
     size_t (*count)(void);
     const asj_option_info *(*row)(size_t index);
     asj_status (*value)(int32_t preset, const char *key, char *text, size_t text_size); /* value of an option in a preset */
@@ -38,14 +39,16 @@ typedef struct cli_syntax {
     const char *conclusion;   /* of the help */
     const cli_group *groups;
     size_t group_count;
-    const cli_table *table;   /* NULL = none */
+    const cli_table *tables;
+    size_t table_count;
 } cli_syntax;
 
 /* Longest name of a table row on the command line, with its end. */
 #define CLI_NAME_SIZE 64
 
-/* "minimum_length" -> "minimum-length" */
-void cli_option_name(const asj_option_info *row, char name[CLI_NAME_SIZE]);
+/* What a row of tables[table] is called on the command line: "minimum_length" -> "minimum-length", after the prefix where a table
+ * before has the same key. */
+void cli_option_name(const cli_syntax *syntax, size_t table, const asj_option_info *row, char name[CLI_NAME_SIZE]);
 
 /* Calls `take` for every option of argv[1 .. argc-1], in order, and moves the operands to the end: *first_operand is the index of
  * the first. Returns CLI_SUCCESS, CLI_HELP (the rest is not looked at), CLI_USAGE or CLI_FAILED (no memory). May be called once. */

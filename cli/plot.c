@@ -1,87 +1,166 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Plot files: the drawing on a surface of each format, streamed into an output of libasj-io. */
 #include "plot.h"
-#include "plot_draw.h"
+#include "plot_color.h"
+#include "plot_photo.h"
+#include "plot_surface.h"
 
-#include <asj/io.h>
-
-#include <cairo-pdf.h>
-#include <cairo-svg.h>
-
+#include <math.h>
 #include <stdio.h>
 
-enum { LARGEST_SURFACE = 32767 };
+#define FULL_TURN 6.283185307179586
+#define LEGEND_HEIGHT 2.4 /* in font sizes, like all lengths of the legend */
+#define LEGEND_WIDTH 32
 
-int cli_plot_available(void)
+/* Sizes in units of the plot: pixels of a PNG, points of a PDF. The image is above, a strip with the legend below. */
+typedef struct cli_plot_layout {
+    double scale;         /* units for one pixel of the image */
+    int32_t width;
+    int32_t image_height;
+    int32_t legend_height; /* 0 = too narrow for a legend */
+    double line;          /* width of a branch */
+    double font;          /* size of the text */
+} cli_plot_layout;
+
+static void lay_out(const asj_image *image, double scale, cli_plot_layout *layout)
 {
-    return 1;
+    if (scale <= 0)
+        scale = cli_plot_natural_scale(image->width, image->height);
+    layout->scale = scale;
+    layout->width = (int32_t)fmax(1, floor(image->width * scale + 0.5));
+    layout->image_height = (int32_t)fmax(1, floor(image->height * scale + 0.5));
+    layout->line = fmax(1, sqrt((double)layout->width * layout->image_height) / 500);
+    layout->font = fmax(10, 8 * layout->line);
+    layout->legend_height = layout->width >= LEGEND_WIDTH * layout->font ? (int32_t)ceil(LEGEND_HEIGHT * layout->font) : 0;
 }
 
-static cairo_status_t write_stream(void *output, const unsigned char *data, unsigned size)
+static void set_color(cairo_t *cairo, cli_color color)
 {
-    return asj_output_write(output, data, size) == ASJ_OK ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+    cairo_set_source_rgb(cairo, color.red, color.green, color.blue);
 }
 
-static cairo_surface_t *create_surface(asj_output *output, int32_t format, int32_t width, int32_t height)
+/* Pixel centres lie at integers, so the image starts at -0.5. */
+static double place(const cli_plot_layout *layout, double coordinate)
 {
-    cairo_surface_t *surface;
-    switch (format) {
-    case CLI_PLOT_SVG:
-        surface = cairo_svg_surface_create_for_stream(write_stream, output, width, height);
-        cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_PX);
-        return surface;
-    case CLI_PLOT_PDF:
-        surface = cairo_pdf_surface_create_for_stream(write_stream, output, width, height);
-        /* the same input gives the same file */
-        cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
-        return surface;
-    default:
-        return cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    return (coordinate + 0.5) * layout->scale;
+}
+
+static void draw_branches(cairo_t *cairo, const cli_plot_layout *layout, const asj_junction *junction, int32_t color)
+{
+    for (int32_t i = 0; i < junction->branch_count; i++) {
+        const asj_branch *branch = &junction->branches[i];
+        double x = (double)junction->x + (double)branch->length * cos((double)branch->angle);
+        double y = (double)junction->y + (double)branch->length * sin((double)branch->angle);
+        set_color(cairo, color == CLI_PLOT_COLOR_BRANCH ? cli_branch_color(i) : cli_ramp_color((double)branch->log10_nfa));
+        cairo_move_to(cairo, place(layout, (double)junction->x), place(layout, (double)junction->y));
+        cairo_line_to(cairo, place(layout, x), place(layout, y));
+        cairo_stroke(cairo);
     }
 }
 
-static cairo_status_t draw(asj_output *output, int32_t format, const cli_plot_layout *layout, const asj_image *image,
-                           const asj_detection *detection, const cli_plot_style *style)
+static void draw_dot(cairo_t *cairo, const cli_plot_layout *layout, const asj_junction *junction)
 {
-    cairo_surface_t *surface = create_surface(output, format, layout->width, layout->image_height + layout->legend_height);
-    cairo_t *cairo = cairo_create(surface);
-    cli_plot_draw(cairo, layout, image, detection, style);
-    cairo_status_t status = cairo_status(cairo);
-    cairo_destroy(cairo);
-    if (status == CAIRO_STATUS_SUCCESS && format == CLI_PLOT_PNG)
-        status = cairo_surface_write_to_png_stream(surface, write_stream, output);
-    cairo_surface_finish(surface);
-    if (status == CAIRO_STATUS_SUCCESS)
-        status = cairo_surface_status(surface);
-    cairo_surface_destroy(surface);
-    return status;
+    double x = place(layout, (double)junction->x), y = place(layout, (double)junction->y);
+    cairo_arc(cairo, x, y, 1.8 * layout->line, 0, FULL_TURN);
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_fill(cairo);
+    cairo_arc(cairo, x, y, 1.3 * layout->line, 0, FULL_TURN);
+    cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+    cairo_fill(cairo);
 }
 
-static int too_large(int32_t format, const cli_plot_layout *layout)
+/* The surest come first in a detection, and last, on top, in a plot. */
+static void draw_junctions(cairo_t *cairo, const cli_plot_layout *layout, const asj_detection *detection, int32_t color)
 {
-    return format == CLI_PLOT_PNG &&
-           (layout->width > LARGEST_SURFACE || layout->image_height > LARGEST_SURFACE - layout->legend_height);
+    cairo_save(cairo);
+    cairo_rectangle(cairo, 0, 0, layout->width, layout->image_height);
+    cairo_clip(cairo);
+    cairo_set_line_width(cairo, layout->line);
+    cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT); /* ends where the branch ends */
+    for (uint32_t i = detection->junction_count; i-- > 0;)
+        draw_branches(cairo, layout, &detection->junctions[i], color);
+    for (uint32_t i = detection->junction_count; i-- > 0;)
+        draw_dot(cairo, layout, &detection->junctions[i]);
+    cairo_restore(cairo);
+}
+
+static void draw_text(cairo_t *cairo, double x, double y, const char *text)
+{
+    cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
+    cairo_move_to(cairo, x, y);
+    cairo_show_text(cairo, text);
+}
+
+static void draw_ramp(cairo_t *cairo, double x, double y, double width, double height)
+{
+    enum { STEPS = 64 };
+    cairo_pattern_t *ramp = cairo_pattern_create_linear(x, 0, x + width, 0);
+    for (int i = 0; i <= STEPS; i++) {
+        double t = (double)i / STEPS;
+        cli_color color = cli_ramp_color(CLI_RAMP_UNSURE + t * (CLI_RAMP_SURE - CLI_RAMP_UNSURE));
+        cairo_pattern_add_color_stop_rgb(ramp, t, color.red, color.green, color.blue);
+    }
+    cairo_rectangle(cairo, x, y, width, height);
+    cairo_set_source(cairo, ramp);
+    cairo_fill(cairo);
+    cairo_pattern_destroy(ramp);
+}
+
+static void draw_legend(cairo_t *cairo, const cli_plot_layout *layout, const asj_detection *detection, int32_t color)
+{
+    char text[64];
+    double em = layout->font, base = layout->image_height + 1.55 * em, middle = base - 0.35 * em;
+    /* the font inside cairo: the same on every machine, and there is always one */
+    cairo_select_font_face(cairo, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cairo, em);
+    snprintf(text, sizeof text, "%lu junction%s", (unsigned long)detection->junction_count,
+             detection->junction_count == 1 ? "" : "s");
+    draw_text(cairo, 0.8 * em, base, text);
+    if (color == CLI_PLOT_COLOR_NFA) {
+        snprintf(text, sizeof text, "log10 NFA   %g", CLI_RAMP_UNSURE);
+        draw_text(cairo, 10.5 * em, base, text);
+        draw_ramp(cairo, 18 * em, middle - 0.35 * em, 8 * em, 0.7 * em);
+        snprintf(text, sizeof text, "%g and surer", CLI_RAMP_SURE);
+        draw_text(cairo, 26.4 * em, base, text);
+        return;
+    }
+    draw_text(cairo, 10.5 * em, base, "branch");
+    cairo_set_line_width(cairo, 2 * layout->line);
+    for (int32_t i = 0; i < ASJ_MAX_BRANCHES; i++) {
+        double x = (15 + 3 * i) * em;
+        snprintf(text, sizeof text, "%d", (int)i + 1);
+        draw_text(cairo, x, base, text);
+        set_color(cairo, cli_branch_color(i));
+        cairo_move_to(cairo, x + 0.9 * em, middle);
+        cairo_line_to(cairo, x + 2.2 * em, middle);
+        cairo_stroke(cairo);
+    }
+}
+
+/* What the drawing on the surface needs. */
+typedef struct drawing {
+    cli_plot_layout layout;
+    const asj_image *image;
+    const asj_detection *detection;
+    const cli_plot_style *style;
+} drawing;
+
+static void draw(cairo_t *cairo, void *user)
+{
+    const drawing *d = user;
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_paint(cairo);
+    if (d->style->background == CLI_PLOT_PHOTO)
+        cli_plot_photo(cairo, d->image, d->layout.scale, d->layout.width, d->layout.image_height);
+    draw_junctions(cairo, &d->layout, d->detection, d->style->color);
+    if (d->layout.legend_height > 0)
+        draw_legend(cairo, &d->layout, d->detection, d->style->color);
 }
 
 asj_status cli_plot_write(const char *path, int32_t format, const asj_image *image, const asj_detection *detection,
                           const cli_plot_style *style, char *message, size_t message_size)
 {
-    cli_plot_layout layout;
-    asj_output *output = NULL;
-    cli_plot_lay_out(image, style->scale, &layout);
-    if (too_large(format, &layout)) {
-        snprintf(message, message_size, "a plot of %d x %d pixels is too large: take a smaller --plot-scale", (int)layout.width,
-                 (int)layout.image_height);
-        return ASJ_ERROR_LIMIT;
-    }
-    asj_status status = asj_output_begin(path, &output, message, message_size);
-    if (status != ASJ_OK)
-        return status;
-    cairo_status_t drawn = draw(output, format, &layout, image, detection, style);
-    /* after a write error committing fails too, and says why */
-    if (drawn == CAIRO_STATUS_SUCCESS || drawn == CAIRO_STATUS_WRITE_ERROR)
-        return asj_output_commit(&output, message, message_size);
-    asj_output_abort(&output);
-    snprintf(message, message_size, "cannot draw: %s", cairo_status_to_string(drawn));
-    return drawn == CAIRO_STATUS_NO_MEMORY ? ASJ_ERROR_MEMORY : ASJ_ERROR_FILE;
+    drawing d = {.image = image, .detection = detection, .style = style};
+    lay_out(image, style->scale, &d.layout);
+    return cli_plot_file(path, format, d.layout.width, d.layout.image_height + d.layout.legend_height, draw, &d, message,
+                         message_size);
 }

@@ -3,20 +3,17 @@
 #ifndef ASJ_CLI_PLOT_H
 #define ASJ_CLI_PLOT_H
 
+#include "plot_format.h"
+
 #include <asj/detect.h>
 
-enum { CLI_PLOT_PNG = 0, CLI_PLOT_SVG = 1, CLI_PLOT_PDF = 2 };
 enum { CLI_PLOT_COLOR_NFA = 0, CLI_PLOT_COLOR_BRANCH = 1 };
-enum { CLI_PLOT_PHOTO = 0, CLI_PLOT_WHITE = 1 };
 
 typedef struct cli_plot_style {
     int32_t color;
     int32_t background;
     double scale; /* plot pixels for one image pixel; 0 = automatic */
 } cli_plot_style;
-
-#define CLI_PLOT_MIN_SCALE 0.01
-#define CLI_PLOT_MAX_SCALE 16
 
 /* 1 when this build can plot. */
 int cli_plot_available(void);

@@ -19,4 +19,7 @@ cli_color cli_ramp_color(double log10_nfa);
 /* One of five colours that differ for the colour-blind too. */
 cli_color cli_branch_color(int32_t branch);
 
+/* Colours for things in an order, 0 <= place <= 1: red, green, blue, magenta. Equally light, and dark enough for a pale ground. */
+cli_color cli_order_color(double place);
+
 #endif

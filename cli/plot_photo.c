@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "plot_photo.h"
 
+#include <math.h>
 #include <string.h>
+
+enum { ENLARGED_SIDE = 1000, LARGEST_ENLARGEMENT = 8 };
 
 /* Share of the photograph's contrast that is kept, towards white: dark enough to see the room, light enough for the colours. */
 #define CONTRAST 0.45
@@ -52,7 +55,9 @@ static double block_mean(const asj_image *image, int32_t left, int32_t top, int3
     return sum / ((double)(right - left) * (bottom - top));
 }
 
-cairo_surface_t *cli_plot_photo(const asj_image *image, int32_t reduction)
+/* The photograph as a surface of its own; every pixel is the mean of `reduction` x `reduction` pixels of the image (fewer at the
+ * right and lower border). Its cairo status says whether it could be made. */
+static cairo_surface_t *make_photo(const asj_image *image, int32_t reduction)
 {
     int32_t width = (image->width + reduction - 1) / reduction, height = (image->height + reduction - 1) / reduction;
     cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
@@ -71,4 +76,30 @@ cairo_surface_t *cli_plot_photo(const asj_image *image, int32_t reduction)
         }
     cairo_surface_mark_dirty(surface);
     return surface;
+}
+
+double cli_plot_natural_scale(int32_t width, int32_t height)
+{
+    int32_t side = width > height ? width : height;
+    if (side > CLI_PLOT_LARGEST_SIDE)
+        return (double)CLI_PLOT_LARGEST_SIDE / side;
+    return side < ENLARGED_SIDE ? fmin((ENLARGED_SIDE + side / 2) / side, LARGEST_ENLARGEMENT) : 1;
+}
+
+/* A reduced copy is enough, and several times smaller, where the plot is smaller than the image. */
+void cli_plot_photo(cairo_t *cairo, const asj_image *image, double scale, int32_t width, int32_t height)
+{
+    int32_t reduction = scale < 1 ? (int32_t)(1 / scale) : 1;
+    while (image->width / reduction > CLI_PLOT_LARGEST_SIDE || image->height / reduction > CLI_PLOT_LARGEST_SIDE)
+        reduction++;
+    cairo_surface_t *photo = make_photo(image, reduction);
+    cairo_save(cairo);
+    cairo_rectangle(cairo, 0, 0, width, height);
+    cairo_clip(cairo);
+    cairo_scale(cairo, scale * reduction, scale * reduction);
+    cairo_set_source_surface(cairo, photo, 0, 0);
+    cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD);
+    cairo_paint(cairo);
+    cairo_restore(cairo);
+    cairo_surface_destroy(photo);
 }

@@ -6,8 +6,14 @@
 
 #include <cairo.h>
 
-/* The photograph in pale grey, as a surface of its own; every pixel is the mean of `reduction` x `reduction` pixels of the image
- * (fewer at the right and lower border). The caller destroys it; its cairo status says whether it could be made. */
-cairo_surface_t *cli_plot_photo(const asj_image *image, int32_t reduction);
+/* The largest side of a picture in units of the plot, and in pixels of a photograph in it: cairo draws up to 32767. */
+#define CLI_PLOT_LARGEST_SIDE 32000
+
+/* How many units of the plot one pixel of an image gets when nothing else is asked for: small images are enlarged, by a whole
+ * number so that pixels stay square, and images too large for a plot reduced. */
+double cli_plot_natural_scale(int32_t width, int32_t height);
+
+/* Draws the photograph in pale grey into the rectangle from (0, 0) to (width, height), `scale` units for a pixel. */
+void cli_plot_photo(cairo_t *cairo, const asj_image *image, double scale, int32_t width, int32_t height);
 
 #endif

@@ -3,8 +3,11 @@
 #define ASJ_CLI_TIMING_H
 
 #include <asj/detect.h>
+#include <asj/match.h>
 
-/* Prints the wall times of the stages of a detection, of reading and of writing, in milliseconds, on standard error. */
-void cli_timing_print(const char *name, const asj_detection *detection, double read_ms, double write_ms);
+/* Print wall times in milliseconds on standard error: the stages of a detection or of a match, and reading and writing. */
+void cli_timing_detection(const char *name, const asj_detection *detection);
+void cli_timing_match(const char *name, const asj_match_result *result);
+void cli_timing_files(double read_ms, double write_ms);
 
 #endif

@@ -7,6 +7,7 @@
 #include <asj/detect.h>
 #include <asj/image.h>
 #include <asj/junction.h>
+#include <asj/match.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -112,6 +113,34 @@ typedef struct asj_detection_report {
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_detection_report *report,
                                        char *message, size_t message_size);
+
+/* What is written of a match. Only `result` is needed. */
+typedef struct asj_match_report {
+    const asj_match_result *result;
+    int32_t lines;                       /* 1 = line segments (asj_match_segments()): CSV has them in place of the matches, JSON
+                                          * beside them */
+    int32_t minimum_end;                 /* ASJ_END_...: line segments whose ends are less sure are left out */
+    const asj_match_options *options;    /* JSON: the options used; NULL = left out */
+    const asj_detect_options *detect_options; /* JSON: those of the detector; NULL = left out */
+    const char *image_names[2];          /* JSON: NULL = left out */
+    const char *junction_names[2];       /* JSON: files that the junctions were read from; NULL = left out */
+    int32_t widths[2], heights[2];       /* JSON: of the images; 0 = left out */
+    uint64_t reserved[4];                /* zero */
+} asj_match_report;
+
+/* Writes matches as asj_output_begin() and asj_output_commit() do. file_format:
+ * ASJ_FILE_CSV   the header i,j,x1,y1,ax1,ay1,bx1,by1,x2,y2,ax2,ay2,bx2,by2,distance,ratio,h11,h12,h13,h21,h22,h23, then one
+ *                line a match: L-junctions, location and both branch ends in image 1 and in image 2, distance, ratio ("inf" when
+ *                there is no second best), affine map with nine digits. A line segment has no location (x1, y1, x2, y2 are
+ *                empty), and its ends are a and b; the other columns are those of the match that it comes from.
+ * ASJ_FILE_JSON  schema "asj-matches-1": everything, with options, version, back end and times. A ratio without a second best
+ *                is null.
+ * ASJ_ERROR_ARGUMENT  a NULL pointer, another file format, or a result that no reader would take: NaN or infinity, an
+ *                     L-junction that is not there
+ * ASJ_ERROR_FILE      cannot create, disk full, cannot rename
+ * ASJ_ERROR_MEMORY */
+ASJ_API asj_status asj_matches_write(const char *path, int32_t file_format, const asj_match_report *report,
+                                     char *message, size_t message_size);
 
 /* Junctions read from a file. The arrays belong to it and are NULL when empty. */
 typedef struct asj_junction_file {

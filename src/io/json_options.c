@@ -24,7 +24,7 @@ static json_t *choice_value(const asj_option_info *row, int32_t choice)
     return json_integer(choice);
 }
 
-static json_t *option_value(const asj_option_info *row, const asj_detect_options *options)
+static json_t *option_value(const asj_option_info *row, const void *options)
 {
     const char *field = (const char *)options + row->offset;
     double number;
@@ -45,12 +45,12 @@ static json_t *option_value(const asj_option_info *row, const asj_detect_options
     return row->type == ASJ_OPTION_CHOICE ? choice_value(row, integer) : json_integer(integer);
 }
 
-json_t *asj_json_options(const asj_detect_options *options)
+json_t *asj_json_options(const void *options, size_t count, const asj_option_info *(*row_at)(size_t index))
 {
     json_t *object = json_object();
     size_t i;
-    for (i = 0; i < asj_detect_option_count() && object; i++) {
-        const asj_option_info *row = asj_detect_option(i);
+    for (i = 0; i < count && object; i++) {
+        const asj_option_info *row = row_at(i);
         if (json_object_set_new(object, row->key, option_value(row, options))) {
             json_decref(object);
             object = NULL;

@@ -42,6 +42,13 @@ const char *asj_number_float(char text[ASJ_NUMBER_SIZE], float value)
     return text;
 }
 
+const char *asj_number_nine(char text[ASJ_NUMBER_SIZE], double value)
+{
+    snprintf(text, ASJ_NUMBER_SIZE, "%.9g", value);
+    use_point(text);
+    return text;
+}
+
 const char *asj_number_fixed(char text[ASJ_NUMBER_SIZE], float value)
 {
     snprintf(text, ASJ_NUMBER_SIZE, "%.6f", (double)value);

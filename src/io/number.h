@@ -11,6 +11,9 @@
 /* The shortest of %.6g to %.9g that reads back to the same float. Returns text. */
 const char *asj_number_float(char text[ASJ_NUMBER_SIZE], float value);
 
+/* Nine significant digits at most: for doubles whose error is far larger than that. Returns text. */
+const char *asj_number_nine(char text[ASJ_NUMBER_SIZE], double value);
+
 /* Six decimals, as .asj files have them. Returns text. */
 const char *asj_number_fixed(char text[ASJ_NUMBER_SIZE], float value);
 

@@ -32,36 +32,61 @@ static double edge(double coordinate, double place)
 }
 
 /* How much of the light falls on a place, in [0, 1]. */
-static double rectangle(int x, int y)
+static double rectangle(double x, double y)
 {
     return edge(x, SCENE_LEFT) * edge(-x, -SCENE_RIGHT) * edge(y, SCENE_TOP) * edge(-y, -SCENE_BOTTOM);
 }
 
-static double crossing(int x, int y)
+static double crossing(double x, double y)
 {
     double right = edge(x, SCENE_WIDTH / 2), below = edge(y, SCENE_HEIGHT / 2);
     return right * below + (1 - right) * (1 - below);
 }
 
-static void write_light(const char *path, double (*light)(int x, int y))
+/* The light at x, y of the picture comes from scale x + left, scale y + top of the scene. */
+static void write_light(const char *path, double (*light)(double x, double y), double scale, double left, double top)
 {
     unsigned char *pixels = malloc(SCENE_WIDTH * SCENE_HEIGHT);
     assert_non_null(pixels);
     for (int y = 0; y < SCENE_HEIGHT; y++)
         for (int x = 0; x < SCENE_WIDTH; x++)
-            pixels[y * SCENE_WIDTH + x] = (unsigned char)(80 + 100 * light(x, y) + 0.5);
+            pixels[y * SCENE_WIDTH + x] = (unsigned char)(80 + 100 * light(scale * x + left, scale * y + top) + 0.5);
     write_gray(path, pixels, SCENE_WIDTH, SCENE_HEIGHT);
     free(pixels);
 }
 
+/* Later rectangles cover earlier ones. */
+static double wall(double x, double y)
+{
+    static const double rectangles[][5] = { /* left, right, top, bottom, light */
+        {30, 120, 25, 80, 0.9},   {45, 75, 35, 65, 0.1},    {140, 200, 30, 120, 0.8}, {152, 185, 45, 75, 0.3},
+        {215, 290, 22, 70, 0.1},  {230, 262, 36, 58, 1},    {35, 95, 100, 205, 0.2},  {50, 78, 120, 165, 0.85},
+        {120, 190, 140, 210, 0.6}, {135, 160, 160, 190, 0}, {210, 285, 95, 200, 0.95}, {228, 250, 110, 150, 0.4},
+        {255, 275, 160, 185, 0.1},
+    };
+    double light = 0.5;
+    for (size_t i = 0; i < sizeof rectangles / sizeof rectangles[0]; i++) {
+        const double *r = rectangles[i];
+        double inside = edge(x, r[0]) * edge(-x, -r[1]) * edge(y, r[2]) * edge(-y, -r[3]);
+        light += inside * (r[4] - light);
+    }
+    return light;
+}
+
+void write_views(const char *first, const char *second)
+{
+    write_light(first, wall, 1, 0, 0);
+    write_light(second, wall, 1 / VIEW_SCALE, -VIEW_X / VIEW_SCALE, -VIEW_Y / VIEW_SCALE);
+}
+
 void write_scene(const char *path)
 {
-    write_light(path, rectangle);
+    write_light(path, rectangle, 1, 0, 0);
 }
 
 void write_crossing(const char *path)
 {
-    write_light(path, crossing);
+    write_light(path, crossing, 1, 0, 0);
 }
 
 void write_constant(const char *path, int width, int height)
@@ -69,6 +94,20 @@ void write_constant(const char *path, int width, int height)
     unsigned char *pixels = malloc((size_t)width * (size_t)height);
     assert_non_null(pixels);
     memset(pixels, 128, (size_t)width * (size_t)height);
+    write_gray(path, pixels, width, height);
+    free(pixels);
+}
+
+void write_noise(const char *path, int width, int height)
+{
+    size_t count = (size_t)width * (size_t)height;
+    unsigned char *pixels = malloc(count);
+    uint32_t number = 1;
+    assert_non_null(pixels);
+    for (size_t i = 0; i < count; i++) {
+        number = number * 1664525u + 1013904223u;
+        pixels[i] = (unsigned char)(number >> 24);
+    }
     write_gray(path, pixels, width, height);
     free(pixels);
 }

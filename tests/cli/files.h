@@ -12,8 +12,18 @@ void write_scene(const char *path);
 /* Two bright and two dark quarters that meet in the middle: one junction of four branches. */
 void write_crossing(const char *path);
 
+/* Two views of a wall with a dozen rectangles, SCENE_WIDTH x SCENE_HEIGHT: what lies at x, y in the first lies at
+ * VIEW_SCALE x + VIEW_X, VIEW_SCALE y + VIEW_Y in the second. */
+#define VIEW_SCALE 1.12
+#define VIEW_X (-21.0)
+#define VIEW_Y (-12.0)
+void write_views(const char *first, const char *second);
+
 /* A PNG of one grey level. */
 void write_constant(const char *path, int width, int height);
+
+/* A PNG of random grey levels, which takes long to look at. */
+void write_noise(const char *path, int width, int height);
 
 void write_bytes(const char *path, const void *bytes, size_t size);
 char *read_bytes(const char *path, size_t *size); /* with a zero behind; NULL = no such file; to be freed */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The manual page holds a paragraph for every row of the library's option table, with range and defaults, and no other.
+/* The manual page holds a paragraph for every row of the library's option tables, with range and defaults, and no other.
  * `ninja update-manual` (test_manual asj-cli.1 --update) writes these paragraphs anew. */
+#include <asj/match.h>
 #include <asj/options.h>
 
 #include <setjmp.h>
@@ -12,8 +13,6 @@
 
 #include <cmocka.h>
 
-#define BEGIN ".\\\" Begin of the option table"
-#define END ".\\\" End of the option table"
 enum { MANUAL_SIZE = 1 << 17, WIDTH = 78 };
 
 static const char *path;
@@ -52,9 +51,18 @@ static void add_sentence(page *p, const char *text)
     }
 }
 
-static void add_head(page *p, const asj_option_info *row)
+/* The matcher's options that have a namesake in the detector begin with "match-". */
+static int is_detector_key(const char *key)
 {
-    add(p, ".It Fl -");
+    for (size_t i = 0; i < asj_detect_option_count(); i++)
+        if (strcmp(asj_detect_option(i)->key, key) == 0)
+            return 1;
+    return 0;
+}
+
+static void add_head(page *p, const char *prefix, const asj_option_info *row)
+{
+    add(p, ".It Fl -%s", prefix);
     for (const char *c = row->key; *c; c++)
         add(p, "%c", *c == '_' ? '-' : *c);
     if (row->type == ASJ_OPTION_SWITCH)
@@ -66,43 +74,84 @@ static void add_head(page *p, const asj_option_info *row)
         add(p, " Ar %s\n", row->type == ASJ_OPTION_RADII ? "list" : "n");
 }
 
-static void add_row(page *p, const asj_option_info *row)
+/* match: what the command match starts from where that differs, else "". */
+static void add_values(page *p, const asj_option_info *row, const char *standard, const char *paper, const char *match)
 {
-    asj_detect_options options;
-    char standard[64] = "", paper[64] = "", values[256] = "";
-    asj_detect_options_preset(&options, ASJ_PRESET_DEFAULT);
-    asj_detect_options_get(&options, row->key, standard, sizeof standard);
-    asj_detect_options_preset(&options, ASJ_PRESET_PAPER);
-    asj_detect_options_get(&options, row->key, paper, sizeof paper);
-    add_head(p, row);
-    add_sentence(p, row->help);
+    char values[256] = "";
     if (row->type != ASJ_OPTION_SWITCH && row->type != ASJ_OPTION_CHOICE) {
         snprintf(values, sizeof values, "from %g to %g%s%s", row->minimum, row->maximum, *row->unit ? " " : "", row->unit);
         add_sentence(p, values);
     }
-    snprintf(values, sizeof values, strcmp(standard, paper) == 0 ? "default: %s" : "default: %s; paper: %s", standard, paper);
+    snprintf(values, sizeof values, "default: %s%s%s%s%s", standard, *match ? ", for match " : "", match,
+             strcmp(standard, paper) == 0 && !*match ? "" : "; paper: ", strcmp(standard, paper) == 0 && !*match ? "" : paper);
     add_sentence(p, values);
 }
 
-static void add_table(page *p)
+static void add_detect_row(page *p, const asj_option_info *row)
 {
-    for (size_t i = 0; i < asj_detect_option_count(); i++)
-        add_row(p, asj_detect_option(i));
+    asj_detect_options options;
+    char standard[64] = "", paper[64] = "", match[64] = "";
+    asj_detect_options_preset(&options, ASJ_PRESET_PAPER);
+    asj_detect_options_get(&options, row->key, paper, sizeof paper);
+    asj_detect_options_preset(&options, ASJ_PRESET_DEFAULT);
+    asj_detect_options_get(&options, row->key, standard, sizeof standard);
+    asj_match_detect_options(&options);
+    asj_detect_options_get(&options, row->key, match, sizeof match);
+    add_head(p, "", row);
+    add_sentence(p, row->help);
+    add_values(p, row, standard, paper, strcmp(match, standard) == 0 ? "" : match);
 }
 
-/* The page up to the table, the table, and the rest. */
-static void read_manual(page *p, char **begin, char **end)
+static void add_match_row(page *p, const asj_option_info *row)
+{
+    asj_match_options options;
+    char standard[64] = "", paper[64] = "";
+    asj_match_options_preset(&options, ASJ_PRESET_DEFAULT);
+    asj_match_options_get(&options, row->key, standard, sizeof standard);
+    asj_match_options_preset(&options, ASJ_PRESET_PAPER);
+    asj_match_options_get(&options, row->key, paper, sizeof paper);
+    add_head(p, is_detector_key(row->key) ? "match-" : "", row);
+    add_sentence(p, row->help);
+    add_values(p, row, standard, paper, "");
+}
+
+/* The tables, each between two comments of the page. */
+static const struct table {
+    const char *begin, *end;
+    size_t (*count)(void);
+    const asj_option_info *(*row)(size_t index);
+    void (*add)(page *p, const asj_option_info *row);
+} tables[] = {
+    {".\\\" Begin of the detector's options", ".\\\" End of the detector's options", asj_detect_option_count, asj_detect_option,
+     add_detect_row},
+    {".\\\" Begin of the matcher's options", ".\\\" End of the matcher's options", asj_match_option_count, asj_match_option,
+     add_match_row},
+};
+enum { TABLES = sizeof tables / sizeof tables[0] };
+
+static void add_table(page *p, const struct table *table)
+{
+    for (size_t i = 0; i < table->count(); i++)
+        table->add(p, table->row(i));
+}
+
+static void read_manual(page *p)
 {
     FILE *file = fopen(path, "rb");
     p->used = file ? fread(p->text, 1, sizeof p->text - 1, file) : 0;
     p->text[p->used] = '\0';
     if (file)
         fclose(file);
-    *begin = strstr(p->text, BEGIN);
+}
+
+/* Where a table begins and ends in the page. */
+static void find_table(page *p, const struct table *table, char **begin, char **end)
+{
+    *begin = strstr(p->text, table->begin);
     *begin = *begin ? strchr(*begin, '\n') : NULL;
-    *end = strstr(p->text, END);
-    if (!*begin || !*end || *end < *begin) {
-        fprintf(stderr, "%s: no such page, or without the two comments around the option table\n", path);
+    *end = *begin ? strstr(*begin, table->end) : NULL;
+    if (!*end) {
+        fprintf(stderr, "%s: no such page, or without the comment '%s'\n", path, *begin ? table->end : table->begin);
         exit(99);
     }
     ++*begin;
@@ -110,41 +159,55 @@ static void read_manual(page *p, char **begin, char **end)
 
 static page manual, expected;
 
-static void the_option_table_is_in_the_manual(void **state)
+static void expect_table(const struct table *table)
 {
-    (void)state;
     char *begin, *end;
-    read_manual(&manual, &begin, &end);
-    for (size_t i = 0; i < asj_detect_option_count(); i++) {
+    read_manual(&manual);
+    find_table(&manual, table, &begin, &end);
+    *end = '\0';
+    assert_true(table->count() > 0);
+    for (size_t i = 0; i < table->count(); i++) {
         expected.used = 0;
-        add_row(&expected, asj_detect_option(i));
+        table->add(&expected, table->row(i));
         if (!strstr(begin, expected.text))
             print_error("%s should have:\n%s(ninja update-manual writes it)\n", path, expected.text);
         assert_non_null(strstr(begin, expected.text));
     }
-    *end = '\0';
     expected.used = 0;
-    add_table(&expected);
+    add_table(&expected, table);
     assert_string_equal(begin, expected.text);
+}
+
+static void the_option_tables_are_in_the_manual(void **state)
+{
+    (void)state;
+    for (size_t t = 0; t < TABLES; t++)
+        expect_table(&tables[t]);
 }
 
 static int update(void)
 {
-    char *begin, *end;
-    read_manual(&manual, &begin, &end);
-    add_table(&expected);
+    char *begin, *end, *rest;
+    read_manual(&manual);
+    rest = manual.text;
+    expected.used = 0;
+    for (size_t t = 0; t < TABLES; t++) {
+        find_table(&manual, &tables[t], &begin, &end);
+        add(&expected, "%.*s", (int)(begin - rest), rest);
+        add_table(&expected, &tables[t]);
+        rest = end;
+    }
     FILE *file = fopen(path, "wb");
     if (!file)
         return 1;
-    fwrite(manual.text, 1, (size_t)(begin - manual.text), file);
     fputs(expected.text, file);
-    fputs(end, file);
+    fputs(rest, file);
     return fclose(file) != 0;
 }
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_option_table_is_in_the_manual)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_option_tables_are_in_the_manual)};
     if (argc < 2)
         return 99;
     path = argv[1];

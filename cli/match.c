@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "match.h"
+#include "interrupt.h"
+#include "match_arguments.h"
+#include "match_input.h"
+#include "message.h"
+#include "timing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MESSAGE_SIZE = 1024, STEPS = 3 /* on the progress line: two detections and the matching */ };
+
+typedef struct run {
+    const cli_match_arguments *arguments;
+    cli_session session;
+    cli_match_input inputs[2];
+    asj_match_result *result;
+    asj_segment_match *segments; /* with --lines */
+    size_t segment_count;
+    const char *at;              /* the file in hand, for the message after an interrupt */
+} run;
+
+static int read_inputs(run *r)
+{
+    int result = CLI_SUCCESS;
+    for (int v = 0; v < 2 && !cli_interrupted(); v++) { /* the second one is looked at even when the first is bad */
+        r->at = r->arguments->images[v];
+        if (cli_match_input_read(&r->session, r->arguments, v, &r->inputs[v]) != CLI_SUCCESS)
+            result = CLI_FAILED;
+    }
+    return cli_interrupted() ? CLI_FAILED : result;
+}
+
+static int detect(run *r)
+{
+    int result = CLI_SUCCESS;
+    for (int v = 0; v < 2 && result == CLI_SUCCESS; v++) {
+        r->at = r->inputs[v].name;
+        cli_progress_next(&r->session.progress, (size_t)v, r->at);
+        result = cli_match_input_detect(&r->session, r->arguments, &r->inputs[v]);
+    }
+    return result;
+}
+
+static int match(run *r)
+{
+    char both[2 * MESSAGE_SIZE];
+    size_t counts[2];
+    const asj_junction *first = cli_match_input_junctions(&r->inputs[0], &counts[0]);
+    const asj_junction *second = cli_match_input_junctions(&r->inputs[1], &counts[1]);
+    r->at = "the matching";
+    cli_progress_next(&r->session.progress, STEPS - 1, "matching");
+    asj_status status = asj_match(r->session.context, &r->inputs[0].image->image, first, counts[0], &r->inputs[1].image->image,
+                                  second, counts[1], &r->arguments->options, &r->result);
+    if (status == ASJ_OK)
+        return CLI_SUCCESS;
+    if (status == ASJ_ERROR_OPTION)
+        return cli_usage_error("match", "%s", asj_context_message(r->session.context));
+    if (status == ASJ_ERROR_CANCELLED)
+        return CLI_FAILED;
+    snprintf(both, sizeof both, "%s, %s", r->inputs[0].name, r->inputs[1].name);
+    return cli_session_fail(&r->session, both, asj_context_message(r->session.context), status);
+}
+
+static int find_segments(run *r)
+{
+    const int32_t minimum_end = r->arguments->minimum_end;
+    r->segment_count = asj_match_segments(r->result, minimum_end, NULL, 0);
+    r->segments = calloc(r->segment_count + 1, sizeof *r->segments);
+    if (!r->segments) {
+        cli_error("out of memory");
+        return CLI_FAILED;
+    }
+    asj_match_segments(r->result, minimum_end, r->segments, r->segment_count);
+    return CLI_SUCCESS;
+}
+
+static int write_matches(run *r, const char *path)
+{
+    const cli_match_arguments *arguments = r->arguments;
+    char message[MESSAGE_SIZE] = "";
+    asj_match_report report;
+    memset(&report, 0, sizeof report);
+    report.result = r->result;
+    report.lines = arguments->lines;
+    report.minimum_end = arguments->minimum_end;
+    report.options = &arguments->options;
+    if (!arguments->junctions[0] || !arguments->junctions[1])
+        report.detect_options = &arguments->detect_options;
+    for (int v = 0; v < 2; v++) {
+        report.image_names[v] = arguments->images[v];
+        report.junction_names[v] = arguments->junctions[v];
+        report.widths[v] = r->inputs[v].image->image.width;
+        report.heights[v] = r->inputs[v].image->image.height;
+    }
+    asj_status status = asj_matches_write(path, cli_match_file_format(arguments), &report, message, sizeof message);
+    return status == ASJ_OK ? CLI_SUCCESS : cli_session_fail(&r->session, path, message, status);
+}
+
+static int write_plot(run *r)
+{
+    const cli_match_arguments *arguments = r->arguments;
+    char message[MESSAGE_SIZE] = "";
+    const cli_plot_match_content content = {
+        {&r->inputs[0].image->image, &r->inputs[1].image->image}, r->result, r->segments, r->segment_count};
+    asj_status status = cli_plot_match(arguments->plot, arguments->plot_format, &content, &arguments->style, message,
+                                       sizeof message);
+    return status == ASJ_OK ? CLI_SUCCESS : cli_session_fail(&r->session, arguments->plot, message, status);
+}
+
+static int write_results(run *r)
+{
+    const cli_match_arguments *arguments = r->arguments;
+    int result = CLI_SUCCESS;
+    if (arguments->output || !arguments->plot)
+        result = write_matches(r, arguments->output ? arguments->output : "-");
+    if (arguments->plot && !cli_interrupted() && write_plot(r) != CLI_SUCCESS)
+        result = CLI_FAILED;
+    return result;
+}
+
+static void print_summary(const run *r)
+{
+    const cli_match_arguments *arguments = r->arguments;
+    const char *file = arguments->output && strcmp(arguments->output, "-") != 0 ? arguments->output : NULL;
+    char lines[64] = "";
+    if (arguments->lines)
+        snprintf(lines, sizeof lines, ", %zu line%s", r->segment_count, r->segment_count == 1 ? "" : "s");
+    cli_note("%s, %s: %lu match%s%s%s%s%s%s", r->inputs[0].name, r->inputs[1].name, (unsigned long)r->result->match_count,
+             r->result->match_count == 1 ? "" : "es", lines, file || arguments->plot ? " -> " : "", file ? file : "",
+             file && arguments->plot ? ", " : "", arguments->plot ? arguments->plot : "");
+}
+
+static void print_times(const run *r, double write_ms)
+{
+    for (int v = 0; v < 2; v++)
+        if (r->inputs[v].detection)
+            cli_timing_detection(r->inputs[v].name, r->inputs[v].detection);
+    cli_timing_match("matching", r->result);
+    cli_timing_files(r->inputs[0].read_ms + r->inputs[1].read_ms, write_ms);
+}
+
+static int run_all(run *r)
+{
+    int result = cli_session_open(&r->session, &r->arguments->common, STEPS);
+    if (result == CLI_SUCCESS)
+        result = read_inputs(r);
+    if (result == CLI_SUCCESS)
+        result = detect(r);
+    if (result == CLI_SUCCESS)
+        result = match(r);
+    if (result == CLI_SUCCESS && r->arguments->lines)
+        result = find_segments(r);
+    if (result != CLI_SUCCESS || cli_interrupted())
+        return result;
+    double start = cli_now_ms();
+    result = write_results(r);
+    double write_ms = cli_now_ms() - start;
+    cli_progress_clear(&r->session.progress);
+    if (result == CLI_SUCCESS && !r->arguments->common.quiet)
+        print_summary(r);
+    if (result == CLI_SUCCESS && r->arguments->common.time)
+        print_times(r, write_ms);
+    return result;
+}
+
+int cli_match(int argc, char **argv)
+{
+    cli_match_arguments arguments;
+    run r = {0};
+    int result = cli_match_arguments_read(argc, argv, &arguments);
+    if (result == CLI_SUCCESS) {
+        r.arguments = &arguments;
+        result = run_all(&r);
+        if (cli_interrupted() && r.at) {
+            cli_progress_clear(&r.session.progress);
+            cli_error("interrupted at %s", r.at);
+            result = 128 + cli_interrupted();
+        }
+        cli_match_input_free(&r.inputs[0]);
+        cli_match_input_free(&r.inputs[1]);
+        asj_match_result_free(&r.result);
+        free(r.segments);
+        cli_session_close(&r.session);
+    }
+    cli_match_arguments_free(&arguments);
+    return result == CLI_HELP ? CLI_SUCCESS : result;
+}

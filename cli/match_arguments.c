@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "match_arguments.h"
+#include "help.h"
+#include "message.h"
+#include "outputs.h"
+
+#include <asj/io.h>
+
+#include <string.h>
+
+static const char introduction[] =
+    "Usage: asj-cli match [options] IMAGE1 IMAGE2\n"
+    "\n"
+    "Finds the corners that two photographs of a room have in common: their junctions, taken apart into\n"
+    "pairs of branches, with the affine map from one photograph to the other and the ends of the branches.\n"
+    "\n"
+    "  asj-cli match left.jpg right.jpg                    matches to standard output, as CSV\n"
+    "  asj-cli match -o m.json --plot m.png left.jpg right.jpg\n"
+    "                                                      everything as JSON, and a picture to look at\n"
+    "  asj-cli match --lines -o lines.csv left.jpg right.jpg\n"
+    "                                                      line segments that correspond\n"
+    "  asj-cli match --junctions1 a.asj --junctions2 b.asj a.png b.png\n"
+    "                                                      junctions from files instead of the detector\n";
+
+static const char conclusion[] =
+    "\n"
+    "Options of the detector have the names that they have in 'asj-cli detect'. An option of the matcher whose\n"
+    "name the detector has too begins with --match-.\n"
+    "\n"
+    "Exit status: 0 done (no match is a result too), 1 failed and nothing written, 2 wrong usage, 130 interrupted.\n"
+    "More, with the file formats: man asj-cli\n";
+
+enum {
+    OUTPUT, FORMAT, LINES, LINE_ENDS, JUNCTIONS_1, JUNCTIONS_2, PLOT, PLOT_BACKGROUND, PLOT_LAYOUT, PLOT_SCALE, PRESET,
+    DETECT_PRESET, MATCH_PRESET
+};
+
+static const cli_option output_options[] = {
+    {OUTPUT, 'o', "output", "FILE", "where the matches go; - is standard output (the default without a plot)"},
+    {FORMAT, 'f', "format", "csv|json", "csv: one line a match; json: everything. Default: by the end of FILE, else csv"},
+    {LINES, 0, "lines", NULL, "line segments: csv has them in place of the matches, json beside them; a plot shows them"},
+    {LINE_ENDS, 0, "line-ends", "cut|inner|both",
+     "line segments whose far ends are known at least so well: both branches end there; on one of them the end is a corner further "
+     "inside (inner, the default); all, the longer one cut to fit"},
+};
+
+static const cli_option input_options[] = {
+    {JUNCTIONS_1, 0, "junctions1", "FILE", "junctions of IMAGE1, .asj or JSON, instead of detecting them"},
+    {JUNCTIONS_2, 0, "junctions2", "FILE", "the same for IMAGE2"},
+};
+
+static const cli_option plot_options[] = {
+    {PLOT, 'p', "plot", "FILE", "draw both photographs with the matches: FILE.png, FILE.svg or FILE.pdf"},
+    {PLOT_BACKGROUND, 0, "plot-background", "photo|white", "over the pale photographs (the default) or on white"},
+    {PLOT_LAYOUT, 0, "plot-layout", "auto|beside|below",
+     "where the second photograph stands; auto (the default): what fits a screen"},
+    {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of an image, 0.01 .. 16; default: small images are enlarged"},
+};
+
+static const cli_option preset_options[] = {
+    {PRESET, 0, "preset", "default|paper",
+     "start from these values of the options below, wherever this stands: our recommendation, or the paper to the letter"},
+    {DETECT_PRESET, 0, "detect-preset", "default|paper", "the same for the detector alone"},
+    {MATCH_PRESET, 0, "match-preset", "default|paper", "the same for the matcher alone"},
+};
+
+void cli_match_arguments_free(cli_match_arguments *arguments)
+{
+    cli_settings_free(&arguments->detect_settings);
+    cli_settings_free(&arguments->match_settings);
+}
+
+static int take_output(void *target, int id, const char *text)
+{
+    static const char *const formats[] = {"csv", "json", NULL};
+    static const char *const ends[] = {"cut", "inner", "both", NULL}; /* in the order of ASJ_END_... */
+    cli_match_arguments *arguments = target;
+    switch (id) {
+    case OUTPUT: arguments->output = text; break;
+    case LINES: arguments->lines = 1; break;
+    case LINE_ENDS:
+        if ((arguments->minimum_end = cli_find_word(ends, text)) < 0)
+            return cli_usage_error("match", "--line-ends: '%s' is not cut, inner or both", text);
+        break;
+    default:
+        if (cli_find_word(formats, text) < 0)
+            return cli_usage_error("match", "--format: '%s' is not csv or json", text);
+        arguments->format = text;
+    }
+    return CLI_SUCCESS;
+}
+
+static int take_input(void *target, int id, const char *text)
+{
+    cli_match_arguments *arguments = target;
+    arguments->junctions[id == JUNCTIONS_2] = text;
+    return CLI_SUCCESS;
+}
+
+static int take_plot(void *target, int id, const char *text)
+{
+    static const char *const layouts[] = {"auto", "beside", "below", NULL}; /* in the order of CLI_LAYOUT_... */
+    cli_match_arguments *arguments = target;
+    switch (id) {
+    case PLOT: arguments->plot = text; break;
+    case PLOT_BACKGROUND: return cli_plot_take_background("match", text, &arguments->style.background);
+    case PLOT_SCALE: return cli_plot_take_scale("match", text, &arguments->style.scale);
+    default:
+        if ((arguments->style.layout = cli_find_word(layouts, text)) < 0)
+            return cli_usage_error("match", "--plot-layout: '%s' is not auto, beside or below", text);
+    }
+    return CLI_SUCCESS;
+}
+
+static int take_preset(void *target, int id, const char *text)
+{
+    cli_match_arguments *arguments = target;
+    switch (id) {
+    case PRESET: return cli_take_preset("match", "preset", text, &arguments->preset);
+    case DETECT_PRESET: return cli_take_preset("match", "detect-preset", text, &arguments->detect_preset);
+    default: return cli_take_preset("match", "match-preset", text, &arguments->match_preset);
+    }
+}
+
+/* The detector as the matcher wants it; the paper matches what the paper detects. */
+static asj_status fill_detect_options(asj_detect_options *options, int32_t preset)
+{
+    asj_status status = asj_detect_options_preset(options, preset);
+    if (status == ASJ_OK && preset == ASJ_PRESET_DEFAULT)
+        asj_match_detect_options(options);
+    return status;
+}
+
+static asj_status detect_value(int32_t preset, const char *key, char *text, size_t text_size)
+{
+    asj_detect_options options;
+    asj_status status = fill_detect_options(&options, preset);
+    return status == ASJ_OK ? asj_detect_options_get(&options, key, text, text_size) : status;
+}
+
+static asj_status match_value(int32_t preset, const char *key, char *text, size_t text_size)
+{
+    asj_match_options options;
+    asj_status status = asj_match_options_preset(&options, preset);
+    return status == ASJ_OK ? asj_match_options_get(&options, key, text, text_size) : status;
+}
+
+static asj_status set_detect_option(void *options, const char *key, const char *text, char *message, size_t message_size)
+{
+    return asj_detect_options_set(options, key, text, message, message_size);
+}
+
+static asj_status set_match_option(void *options, const char *key, const char *text, char *message, size_t message_size)
+{
+    return asj_match_options_set(options, key, text, message, message_size);
+}
+
+static int apply_settings(cli_match_arguments *arguments)
+{
+    fill_detect_options(&arguments->detect_options, arguments->detect_preset < 0 ? arguments->preset : arguments->detect_preset);
+    asj_match_options_preset(&arguments->options, arguments->match_preset < 0 ? arguments->preset : arguments->match_preset);
+    int result = cli_settings_apply(&arguments->detect_settings, "match", &arguments->detect_options, set_detect_option);
+    if (result == CLI_SUCCESS)
+        result = cli_settings_apply(&arguments->match_settings, "match", &arguments->options, set_match_option);
+    return result;
+}
+
+static int check_files(const cli_match_arguments *arguments)
+{
+    const char *inputs[4];
+    cli_planned outputs[2];
+    size_t input_count = 0, output_count = 0;
+    for (int v = 0; v < 2; v++) {
+        inputs[input_count++] = arguments->images[v];
+        if (arguments->junctions[v])
+            inputs[input_count++] = arguments->junctions[v];
+    }
+    if (arguments->output && strcmp(arguments->output, "-") != 0)
+        outputs[output_count++] = (cli_planned){arguments->output, "the matches"};
+    if (arguments->plot)
+        outputs[output_count++] = (cli_planned){arguments->plot, "the plot"};
+    return cli_check_collisions("match", outputs, output_count, inputs, input_count);
+}
+
+static int check(cli_match_arguments *arguments, char **operands, int operand_count)
+{
+    if (operand_count != 2)
+        return cli_usage_error("match", operand_count == 0 ? "which images?" : "it takes two images, not %d", operand_count);
+    for (int v = 0; v < 2; v++) {
+        arguments->images[v] = operands[v];
+        if (strcmp(operands[v], "-") == 0 || (arguments->junctions[v] && strcmp(arguments->junctions[v], "-") == 0))
+            return cli_usage_error("match", "nothing is read from standard input (a file named - is ./-)");
+    }
+    int result = CLI_SUCCESS;
+    if (arguments->plot)
+        result = cli_plot_format_of_name("match", arguments->plot, &arguments->plot_format);
+    return result == CLI_SUCCESS ? check_files(arguments) : result;
+}
+
+static void start(cli_match_arguments *arguments)
+{
+    memset(arguments, 0, sizeof *arguments);
+    cli_common_init(&arguments->common);
+    arguments->detect_preset = arguments->match_preset = -1;
+    arguments->minimum_end = ASJ_END_INNER;
+}
+
+int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *arguments)
+{
+    int first = argc;
+    start(arguments);
+    if (!cli_settings_create(&arguments->detect_settings, argc) || !cli_settings_create(&arguments->match_settings, argc))
+        return CLI_FAILED;
+    const cli_group groups[] = {
+        {"Results", output_options, sizeof output_options / sizeof output_options[0], take_output, arguments},
+        {"Junctions", input_options, sizeof input_options / sizeof input_options[0], take_input, arguments},
+        {"Plot", plot_options, sizeof plot_options / sizeof plot_options[0], take_plot, arguments},
+        {"Presets", preset_options, sizeof preset_options / sizeof preset_options[0], take_preset, arguments},
+        {"Running", cli_common_options, cli_common_option_count, cli_common_take, &arguments->common},
+    };
+    const cli_table tables[] = {
+        {"Detector, in detail (NFA: expected number of false alarms in an image of noise)", "detect", asj_detect_option_count,
+         asj_detect_option, detect_value, cli_settings_take, &arguments->detect_settings},
+        {"Matcher, in detail", "match", asj_match_option_count, asj_match_option, match_value, cli_settings_take,
+         &arguments->match_settings},
+    };
+    const cli_syntax syntax = {"match", introduction, conclusion, groups, sizeof groups / sizeof groups[0], tables, 2};
+    int result = cli_parse(&syntax, argc, argv, &first);
+    if (result == CLI_HELP)
+        cli_help(&syntax);
+    if (result == CLI_SUCCESS)
+        result = apply_settings(arguments);
+    return result == CLI_SUCCESS ? check(arguments, argv + first, argc - first) : result;
+}
+
+int32_t cli_match_file_format(const cli_match_arguments *arguments)
+{
+    const char *dot = arguments->output ? strrchr(arguments->output, '.') : NULL;
+    const char *word = arguments->format ? arguments->format : dot ? dot + 1 : "csv";
+    return strcmp(word, "json") == 0 ? ASJ_FILE_JSON : ASJ_FILE_CSV;
+}

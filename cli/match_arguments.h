@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The command line of `asj-cli match`. */
+#ifndef ASJ_CLI_MATCH_ARGUMENTS_H
+#define ASJ_CLI_MATCH_ARGUMENTS_H
+
+#include "common.h"
+#include "plot_match.h"
+#include "settings.h"
+
+#include <asj/match.h>
+
+typedef struct cli_match_arguments {
+    cli_common common;
+    asj_detect_options detect_options;
+    asj_match_options options;
+    int32_t detect_preset, match_preset; /* ASJ_PRESET_...; -1 until all options are read = `preset` */
+    int32_t preset;
+    cli_settings detect_settings, match_settings;
+    const char *output;       /* -o; NULL = none */
+    const char *format;       /* "csv", "json"; NULL = by the name of `output` */
+    const char *junctions[2]; /* files; NULL = detect */
+    int lines;
+    int32_t minimum_end;      /* ASJ_END_... */
+    const char *plot;         /* a file; NULL = none */
+    int32_t plot_format;      /* CLI_PLOT_... */
+    cli_plot_match_style style;
+    const char *images[2];
+} cli_match_arguments;
+
+/* Reads argv[1 ..] (argv[0] is "match"). CLI_SUCCESS, CLI_HELP after printing the help, CLI_USAGE or CLI_FAILED after saying why.
+ * cli_match_arguments_free() in every case. */
+int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *arguments);
+void cli_match_arguments_free(cli_match_arguments *arguments);
+
+/* ASJ_FILE_CSV or ASJ_FILE_JSON */
+int32_t cli_match_file_format(const cli_match_arguments *arguments);
+
+#endif

@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Every match has one colour for its junctions, branches and line, given in order of place in the first photograph: from left to
+ * right when the second one stands beside it, else from top to bottom. So lines that run close together differ in colour, and a
+ * match in the wrong place stands out among neighbours of other colours. Branch b is darker than branch a. */
+#include "plot_match.h"
+#include "plot_color.h"
+#include "plot_photo.h"
+#include "plot_surface.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define FULL_TURN 6.283185307179586
+#define LEGEND_HEIGHT 2.4 /* in font sizes */
+#define DARKER 0.55       /* share of the colour that branch b keeps */
+#define SCREEN 1.5        /* width to height that `auto` aims at */
+
+/* A match as it is drawn: in each image a place, where the line ends, and one or two strokes. */
+typedef struct pair {
+    double place[2][2];
+    double stroke[2][2][4]; /* image, branch: x y x y */
+    int strokes;
+    int32_t dots;
+    size_t rank;            /* in order of place */
+} pair;
+
+typedef struct drawing {
+    const cli_plot_match_content *content;
+    const cli_plot_match_style *style;
+    pair *pairs;
+    size_t count;
+    int32_t beside;
+    double scale, line, font;
+    int32_t widths[2], heights[2]; /* of the photographs in the plot */
+    int32_t left[2], top[2];
+    int32_t width, height, legend_height;
+} drawing;
+
+static void set_stroke(double stroke[4], float x, float y, float ex, float ey)
+{
+    stroke[0] = (double)x;
+    stroke[1] = (double)y;
+    stroke[2] = (double)ex;
+    stroke[3] = (double)ey;
+}
+
+static void pair_of_match(const asj_junction_match *m, pair *p)
+{
+    set_stroke(p->stroke[0][0], m->x1, m->y1, m->ax1, m->ay1);
+    set_stroke(p->stroke[0][1], m->x1, m->y1, m->bx1, m->by1);
+    set_stroke(p->stroke[1][0], m->x2, m->y2, m->ax2, m->ay2);
+    set_stroke(p->stroke[1][1], m->x2, m->y2, m->bx2, m->by2);
+    for (int v = 0; v < 2; v++)
+        for (int i = 0; i < 2; i++)
+            p->place[v][i] = p->stroke[v][0][i];
+    p->strokes = 2;
+    p->dots = 1;
+}
+
+/* The line goes from middle to middle. */
+static void pair_of_segment(const asj_segment_match *s, pair *p)
+{
+    set_stroke(p->stroke[0][0], s->x1, s->y1, s->ex1, s->ey1);
+    set_stroke(p->stroke[1][0], s->x2, s->y2, s->ex2, s->ey2);
+    for (int v = 0; v < 2; v++)
+        for (int i = 0; i < 2; i++)
+            p->place[v][i] = 0.5 * (p->stroke[v][0][i] + p->stroke[v][0][i + 2]);
+    p->strokes = 1;
+    p->dots = 0;
+}
+
+static int compare_numbers(double a, double b)
+{
+    return a < b ? -1 : a > b;
+}
+
+static int by_x(const void *a, const void *b)
+{
+    const pair *p = *(pair *const *)a, *q = *(pair *const *)b;
+    int order = compare_numbers(p->place[0][0], q->place[0][0]);
+    return order ? order : compare_numbers(p->place[0][1], q->place[0][1]);
+}
+
+static int by_y(const void *a, const void *b)
+{
+    const pair *p = *(pair *const *)a, *q = *(pair *const *)b;
+    int order = compare_numbers(p->place[0][1], q->place[0][1]);
+    return order ? order : compare_numbers(p->place[0][0], q->place[0][0]);
+}
+
+/* 0 = no memory */
+static int make_pairs(drawing *d)
+{
+    const cli_plot_match_content *content = d->content;
+    d->count = content->segments ? content->segment_count : content->result->match_count;
+    d->pairs = calloc(d->count + 1, sizeof *d->pairs);
+    pair **order = calloc(d->count + 1, sizeof(pair *));
+    for (size_t k = 0; d->pairs && order && k < d->count; k++) {
+        order[k] = &d->pairs[k];
+        if (content->segments)
+            pair_of_segment(&content->segments[k], order[k]);
+        else
+            pair_of_match(&content->result->matches[k], order[k]);
+    }
+    int made = d->pairs && order;
+    if (made)
+        qsort(order, d->count, sizeof(pair *), d->beside ? by_x : by_y);
+    for (size_t k = 0; made && k < d->count; k++)
+        order[k]->rank = k;
+    free(order);
+    return made;
+}
+
+static int32_t scaled(int32_t side, double scale)
+{
+    return (int32_t)fmax(1, floor(side * scale + 0.5));
+}
+
+static double largest(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static int choose_beside(const drawing *d)
+{
+    const asj_image *p = d->content->images[0], *q = d->content->images[1];
+    if (d->style->layout != CLI_LAYOUT_AUTO)
+        return d->style->layout == CLI_LAYOUT_BESIDE;
+    double beside = largest((double)p->width + q->width, SCREEN * largest(p->height, q->height));
+    double below = largest(largest(p->width, q->width), SCREEN * ((double)p->height + q->height));
+    return beside <= below;
+}
+
+static double choose_scale(const drawing *d)
+{
+    const asj_image *p = d->content->images[0], *q = d->content->images[1];
+    if (d->style->scale > 0)
+        return d->style->scale;
+    double natural = cli_plot_natural_scale((int32_t)largest(p->width, q->width), (int32_t)largest(p->height, q->height));
+    double side = d->beside ? (double)p->width + q->width : (double)p->height + q->height;
+    return fmin(natural, 0.95 * CLI_PLOT_LARGEST_SIDE / side); /* the rest is for the gap and the legend */
+}
+
+static void lay_out(drawing *d)
+{
+    d->beside = choose_beside(d);
+    d->scale = choose_scale(d);
+    for (int v = 0; v < 2; v++) {
+        d->widths[v] = scaled(d->content->images[v]->width, d->scale);
+        d->heights[v] = scaled(d->content->images[v]->height, d->scale);
+    }
+    d->line = fmax(1, sqrt(fmax((double)d->widths[0] * d->heights[0], (double)d->widths[1] * d->heights[1])) / 450);
+    d->font = fmax(10, 8 * d->line);
+    int32_t gap = (int32_t)ceil(6 * d->line);
+    d->left[1] = d->beside ? d->widths[0] + gap : 0;
+    d->top[1] = d->beside ? 0 : d->heights[0] + gap;
+    d->width = (int32_t)largest(d->widths[0], d->left[1] + d->widths[1]);
+    d->height = (int32_t)largest(d->heights[0], d->top[1] + d->heights[1]);
+    d->legend_height = d->width >= 20 * d->font ? (int32_t)ceil(LEGEND_HEIGHT * d->font) : 0;
+}
+
+/* Pixel centres lie at integers, so the images start at -0.5. */
+static double to_x(const drawing *d, int v, double x)
+{
+    return d->left[v] + (x + 0.5) * d->scale;
+}
+
+static double to_y(const drawing *d, int v, double y)
+{
+    return d->top[v] + (y + 0.5) * d->scale;
+}
+
+static void set_color(cairo_t *cairo, const drawing *d, const pair *p, double strength, double alpha)
+{
+    cli_color color = cli_order_color(d->count > 1 ? (double)p->rank / (double)(d->count - 1) : 0);
+    cairo_set_source_rgba(cairo, strength * color.red, strength * color.green, strength * color.blue, alpha);
+}
+
+static void draw_photos(cairo_t *cairo, const drawing *d)
+{
+    for (int v = 0; v < 2; v++) {
+        cairo_save(cairo);
+        cairo_translate(cairo, d->left[v], d->top[v]);
+        if (d->style->background == CLI_PLOT_PHOTO)
+            cli_plot_photo(cairo, d->content->images[v], d->scale, d->widths[v], d->heights[v]);
+        else { /* where the photographs would be */
+            cairo_set_source_rgb(cairo, 0.8, 0.8, 0.8);
+            cairo_set_line_width(cairo, 1);
+            cairo_rectangle(cairo, 0.5, 0.5, d->widths[v] - 1, d->heights[v] - 1);
+            cairo_stroke(cairo);
+        }
+        cairo_restore(cairo);
+    }
+}
+
+/* The more lines, the thinner and paler: 5 are read one by one, of 500 the flow. */
+static void draw_lines(cairo_t *cairo, const drawing *d)
+{
+    double alpha = fmin(0.9, fmax(0.22, 5 / sqrt((double)d->count + 1)));
+    cairo_set_line_width(cairo, fmax(0.6, (d->count > 60 ? 0.6 : 0.9) * d->line));
+    for (size_t k = d->count; k-- > 0;) {
+        const pair *p = &d->pairs[k];
+        set_color(cairo, d, p, 1, alpha);
+        cairo_move_to(cairo, to_x(d, 0, p->place[0][0]), to_y(d, 0, p->place[0][1]));
+        cairo_line_to(cairo, to_x(d, 1, p->place[1][0]), to_y(d, 1, p->place[1][1]));
+        cairo_stroke(cairo);
+    }
+}
+
+static void draw_stroke(cairo_t *cairo, const drawing *d, int v, const double stroke[4])
+{
+    cairo_move_to(cairo, to_x(d, v, stroke[0]), to_y(d, v, stroke[1]));
+    cairo_line_to(cairo, to_x(d, v, stroke[2]), to_y(d, v, stroke[3]));
+    cairo_stroke(cairo);
+}
+
+static void draw_dot(cairo_t *cairo, const drawing *d, int v, const pair *p)
+{
+    double x = to_x(d, v, p->place[v][0]), y = to_y(d, v, p->place[v][1]);
+    cairo_arc(cairo, x, y, 2.4 * d->line, 0, FULL_TURN);
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_fill(cairo);
+    cairo_arc(cairo, x, y, 1.7 * d->line, 0, FULL_TURN);
+    set_color(cairo, d, p, DARKER, 1);
+    cairo_fill(cairo);
+}
+
+/* The best match comes first in a result, and last, on top, in a plot. */
+static void draw_pairs(cairo_t *cairo, const drawing *d, int v)
+{
+    cairo_save(cairo);
+    cairo_rectangle(cairo, d->left[v], d->top[v], d->widths[v], d->heights[v]);
+    cairo_clip(cairo);
+    cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT); /* ends where the branch ends */
+    for (size_t k = d->count; k-- > 0;)
+        for (int b = 0; b < d->pairs[k].strokes; b++) {
+            cairo_set_line_width(cairo, 1.5 * d->line);
+            set_color(cairo, d, &d->pairs[k], b ? DARKER : 1, 1);
+            draw_stroke(cairo, d, v, d->pairs[k].stroke[v][b]);
+        }
+    for (size_t k = d->count; k-- > 0;)
+        if (d->pairs[k].dots)
+            draw_dot(cairo, d, v, &d->pairs[k]);
+    cairo_restore(cairo);
+}
+
+static void draw_legend(cairo_t *cairo, const drawing *d)
+{
+    char text[160];
+    const char *what[] = {"matches", "match", "line segments", "line segment"};
+    const char *name = what[(d->content->segments ? 2 : 0) + (d->count == 1 ? 1 : 0)];
+    const char *order = d->beside ? "left to right" : "top to bottom";
+    unsigned long count = (unsigned long)d->count;
+    /* the font inside cairo: the same on every machine, and there is always one */
+    cairo_select_font_face(cairo, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cairo, d->font);
+    cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
+    if (d->width >= 56 * d->font && d->count > 1)
+        snprintf(text, sizeof text, "%lu %s   one colour each, by place in the first photograph, %s%s", count, name, order,
+                 d->content->segments ? "" : "; branch b is darker");
+    else
+        snprintf(text, sizeof text, "%lu %s", count, name);
+    cairo_move_to(cairo, 0.8 * d->font, d->height + 1.55 * d->font);
+    cairo_show_text(cairo, text);
+}
+
+static void draw(cairo_t *cairo, void *user)
+{
+    const drawing *d = user;
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_paint(cairo);
+    draw_photos(cairo, d);
+    draw_lines(cairo, d);
+    draw_pairs(cairo, d, 0);
+    draw_pairs(cairo, d, 1);
+    if (d->legend_height > 0)
+        draw_legend(cairo, d);
+}
+
+asj_status cli_plot_match(const char *path, int32_t format, const cli_plot_match_content *content,
+                          const cli_plot_match_style *style, char *message, size_t message_size)
+{
+    drawing d = {.content = content, .style = style};
+    lay_out(&d);
+    asj_status status = ASJ_ERROR_MEMORY;
+    if (make_pairs(&d))
+        status = cli_plot_file(path, format, d.width, d.height + d.legend_height, draw, &d, message, message_size);
+    free(d.pairs);
+    return status;
+}

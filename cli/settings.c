@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "settings.h"
+#include "message.h"
+#include "parse.h"
+
+#include <stdlib.h>
+
+int cli_settings_create(cli_settings *settings, int argc)
+{
+    settings->count = 0;
+    settings->list = calloc((size_t)argc + 1, sizeof *settings->list);
+    if (!settings->list)
+        cli_error("out of memory");
+    return settings->list != NULL;
+}
+
+void cli_settings_free(cli_settings *settings)
+{
+    free(settings->list);
+    settings->list = NULL;
+    settings->count = 0;
+}
+
+int cli_settings_take(void *target, const asj_option_info *row, const char *text)
+{
+    cli_settings *settings = target;
+    cli_setting *setting = &settings->list[settings->count++];
+    setting->key = row->key;
+    setting->text = text;
+    return CLI_SUCCESS;
+}
+
+int cli_take_preset(const char *command, const char *option, const char *text, int32_t *preset)
+{
+    static const char *const presets[] = {"default", "paper", NULL}; /* in the order of ASJ_PRESET_... */
+    int word = cli_find_word(presets, text);
+    if (word < 0)
+        return cli_usage_error(command, "--%s: '%s' is not default or paper", option, text);
+    *preset = word;
+    return CLI_SUCCESS;
+}
+
+int cli_settings_apply(const cli_settings *settings, const char *command, void *options,
+                       asj_status (*set)(void *options, const char *key, const char *text, char *message, size_t message_size))
+{
+    char message[256];
+    for (size_t i = 0; i < settings->count; i++)
+        if (set(options, settings->list[i].key, settings->list[i].text, message, sizeof message) != ASJ_OK)
+            return cli_usage_error(command, "%s", message);
+    return CLI_SUCCESS;
+}

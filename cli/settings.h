@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Options of one of the library's tables as they stand on the command line, kept until the preset is known that they change. */
+#ifndef ASJ_CLI_SETTINGS_H
+#define ASJ_CLI_SETTINGS_H
+
+#include <asj/options.h>
+
+typedef struct cli_setting {
+    const char *key;
+    const char *text;
+} cli_setting;
+
+typedef struct cli_settings {
+    cli_setting *list;
+    size_t count;
+} cli_settings;
+
+/* Room for every option of a line of `argc` words. 0 = no memory, which is said. */
+int cli_settings_create(cli_settings *settings, int argc);
+void cli_settings_free(cli_settings *settings);
+
+/* The `take` of a cli_table. */
+int cli_settings_take(void *settings, const asj_option_info *row, const char *text);
+
+/* "default" or "paper" as ASJ_PRESET_...; CLI_SUCCESS, or CLI_USAGE after saying why, with the name of the option. */
+int cli_take_preset(const char *command, const char *option, const char *text, int32_t *preset);
+
+/* Sets them all, in order. CLI_SUCCESS, or CLI_USAGE after saying why. */
+int cli_settings_apply(const cli_settings *settings, const char *command, void *options,
+                       asj_status (*set)(void *options, const char *key, const char *text, char *message, size_t message_size));
+
+#endif

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* JSON, schema "asj-matches-1": README.md, "File formats". */
+#include "match_output.h"
+
+#include "json_options.h"
+#include "json_output.h"
+
+#include <asj/version.h>
+
+#include <math.h>
+
+static json_t *image_value(const asj_match_report *report, int v)
+{
+    json_t *image = json_object();
+    if (report->image_names[v])
+        json_object_set_new(image, "name", asj_json_name(report->image_names[v]));
+    if (report->widths[v] > 0 && report->heights[v] > 0) {
+        json_object_set_new(image, "width", json_integer(report->widths[v]));
+        json_object_set_new(image, "height", json_integer(report->heights[v]));
+    }
+    if (report->junction_names[v])
+        json_object_set_new(image, "junctions", asj_json_name(report->junction_names[v]));
+    return image;
+}
+
+static void put_options(asj_json_output *json, const asj_match_report *report)
+{
+    json_t *options;
+    if (report->options) {
+        options = asj_json_options(report->options, asj_match_option_count(), asj_match_option);
+        asj_json_put(json, ",\n\"options\": ", options, asj_json_precision(options));
+    }
+    if (report->detect_options) {
+        options = asj_json_options(report->detect_options, asj_detect_option_count(), asj_detect_option);
+        asj_json_put(json, ",\n\"detect_options\": ", options, asj_json_precision(options));
+    }
+}
+
+static void put_head(asj_json_output *json, const asj_match_report *report, const asj_segment_list *segments)
+{
+    const asj_match_result *result = report->result;
+    json_t *counts = json_pack("{s:I, s:I, s:I, s:I}", "l_junctions1", (json_int_t)result->l_junction_count1, "l_junctions2",
+                               (json_int_t)result->l_junction_count2, "candidates", (json_int_t)result->candidates, "matches",
+                               (json_int_t)result->match_count);
+    if (report->lines)
+        json_object_set_new(counts, "lines", json_integer((json_int_t)segments->count));
+    asj_json_put(json, "{\n\"schema\": ", json_string("asj-matches-1"), 0);
+    asj_json_put(json, ",\n\"library\": ", json_pack("{s:s, s:s}", "name", "libasj", "version", asj_version_string()), 0);
+    asj_json_put(json, ",\n\"images\": ", json_pack("[o, o]", image_value(report, 0), image_value(report, 1)), 0);
+    asj_json_put(json, ",\n\"units\": ", json_pack("{s:s, s:s, s:s}", "locations and lengths", "px", "affine",
+                 "x2 = h11 x1 + h12 y1 + h13, y2 = h21 x1 + h22 y1 + h23", "times", "ms"), 0);
+    asj_json_put(json, ",\n\"backend\": ", json_string(asj_json_backend(result->backend)), 0);
+    put_options(json, report);
+    asj_json_put(json, ",\n\"timing\": ",
+                 asj_json_timing(result->total_ms, result->stage_ms, ASJ_STAGE_PATCHES, ASJ_STAGE_ASSIGN), JSON_REAL_PRECISION(15));
+    asj_json_put(json, ",\n\"counts\": ", counts, 0);
+}
+
+static const char *end_name(int32_t end)
+{
+    return end == ASJ_END_BOTH ? "both" : end == ASJ_END_INNER ? "inner" : "cut";
+}
+
+/* Two halves, joined: a json_pack() with everything could not be read. */
+static json_t *match_value(const asj_junction_match *m)
+{
+    const double *h = m->affine;
+    json_t *value = json_pack("{s:I, s:I, s:I, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}",
+                              "i", (json_int_t)m->l1, "j", (json_int_t)m->l2, "junction1", (json_int_t)m->junction1, "junction2",
+                              (json_int_t)m->junction2, "x1", (double)m->x1, "y1", (double)m->y1, "ax1", (double)m->ax1,
+                              "ay1", (double)m->ay1, "bx1", (double)m->bx1, "by1", (double)m->by1, "x2", (double)m->x2,
+                              "y2", (double)m->y2, "ax2", (double)m->ax2, "ay2", (double)m->ay2, "bx2", (double)m->bx2,
+                              "by2", (double)m->by2);
+    json_t *rest = json_pack("{s:s, s:s, s:f, s:o, s:f, s:f, s:[f, f, f, f, f, f]}", "end_a", end_name(m->end_a), "end_b",
+                             end_name(m->end_b), "distance", (double)m->distance, "ratio",
+                             isfinite(m->ratio) ? json_real((double)m->ratio) : json_null(), "similarity", (double)m->similarity,
+                             "support", (double)m->support, "affine", h[0], h[1], h[2], h[3], h[4], h[5]);
+    if (!rest || json_object_update(value, rest)) {
+        json_decref(value);
+        value = NULL;
+    }
+    json_decref(rest);
+    return value;
+}
+
+static json_t *segment_value(const asj_segment_match *s)
+{
+    return json_pack("{s:I, s:s, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "match", (json_int_t)s->match, "end", end_name(s->end),
+                     "x1", (double)s->x1, "y1", (double)s->y1, "ex1", (double)s->ex1, "ey1", (double)s->ey1, "x2", (double)s->x2,
+                     "y2", (double)s->y2, "ex2", (double)s->ex2, "ey2", (double)s->ey2);
+}
+
+static void put_corners(asj_json_output *json, const char *name, const asj_l_junction *list, uint32_t count)
+{
+    uint32_t i;
+    asj_output_text(json->output, name);
+    for (i = 0; i < count && !json->out_of_memory; i++)
+        asj_json_put(json, i ? ",\n" : "\n", asj_json_l_junction(&list[i]), ASJ_JSON_FLOATS);
+}
+
+asj_status asj_write_match_json(asj_output *output, const asj_match_report *report, const asj_segment_list *segments,
+                                const asj_message *message)
+{
+    const asj_match_result *result = report->result;
+    asj_json_output json = {output, 0};
+    size_t i;
+
+    put_head(&json, report, segments);
+    asj_output_text(output, ",\n\"matches\": [");
+    for (i = 0; i < result->match_count && !json.out_of_memory; i++)
+        asj_json_put(&json, i ? ",\n" : "\n", match_value(&result->matches[i]), ASJ_JSON_FLOATS);
+    if (report->lines)
+        asj_output_text(output, "],\n\"lines\": [");
+    for (i = 0; i < segments->count && !json.out_of_memory; i++)
+        asj_json_put(&json, i ? ",\n" : "\n", segment_value(&segments->list[i]), ASJ_JSON_FLOATS);
+    put_corners(&json, "],\n\"l_junctions1\": [", result->l_junctions1, result->l_junction_count1);
+    put_corners(&json, "],\n\"l_junctions2\": [", result->l_junctions2, result->l_junction_count2);
+    asj_output_text(output, "]\n}\n");
+    return json.out_of_memory ? asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for JSON") : ASJ_OK;
+}

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Match files: checks what is to be written, opens the output, calls the writer of the format. */
+#include "match_output.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static int all_finite(const double *numbers, size_t count)
+{
+    size_t i;
+    for (i = 0; i < count; i++)
+        if (!isfinite(numbers[i]))
+            return 0;
+    return 1;
+}
+
+static int is_sound(const asj_match_result *result, const asj_junction_match *m)
+{
+    const double numbers[] = {(double)m->x1, (double)m->y1, (double)m->ax1, (double)m->ay1, (double)m->bx1, (double)m->by1,
+                              (double)m->x2, (double)m->y2, (double)m->ax2, (double)m->ay2, (double)m->bx2, (double)m->by2,
+                              (double)m->distance, (double)m->similarity, (double)m->support};
+    return all_finite(numbers, sizeof numbers / sizeof numbers[0]) && all_finite(m->affine, 6) && !isnan(m->ratio) &&
+           m->l1 < result->l_junction_count1 && m->l2 < result->l_junction_count2;
+}
+
+static int is_sound_corner(const asj_l_junction *l)
+{
+    const double numbers[] = {(double)l->x, (double)l->y, (double)l->ax, (double)l->ay, (double)l->bx, (double)l->by};
+    return all_finite(numbers, 6);
+}
+
+static asj_status check(const asj_match_result *result, const asj_message *message)
+{
+    const asj_l_junction *const lists[2] = {result->l_junctions1, result->l_junctions2};
+    const uint32_t counts[2] = {result->l_junction_count1, result->l_junction_count2};
+    uint32_t i;
+    int v;
+    if ((result->match_count && !result->matches) || (counts[0] && !lists[0]) || (counts[1] && !lists[1]))
+        return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the result has a count but no array");
+    for (i = 0; i < result->match_count; i++)
+        if (!is_sound(result, &result->matches[i]))
+            return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: match %lu has NaN, infinity or a wrong index",
+                                    (unsigned long)i);
+    for (v = 0; v < 2; v++)
+        for (i = 0; i < counts[v]; i++)
+            if (!is_sound_corner(&lists[v][i]))
+                return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: L-junction %lu of image %d has NaN or infinity",
+                                        (unsigned long)i, v + 1);
+    return ASJ_OK;
+}
+
+static asj_status find_segments(const asj_match_report *report, asj_segment_list *segments, const asj_message *message)
+{
+    segments->list = NULL;
+    segments->count = report->lines ? asj_match_segments(report->result, report->minimum_end, NULL, 0) : 0;
+    if (segments->count == 0)
+        return ASJ_OK;
+    segments->list = malloc(segments->count * sizeof *segments->list);
+    if (!segments->list)
+        return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for %zu line segments", segments->count);
+    asj_match_segments(report->result, report->minimum_end, segments->list, segments->count);
+    return ASJ_OK;
+}
+
+static asj_status write_file(const char *path, int32_t file_format, const asj_match_report *report,
+                             const asj_segment_list *segments, const asj_message *message)
+{
+    asj_output *output;
+    asj_status status = asj_output_begin(path, &output, message->text, message->size);
+    if (status != ASJ_OK)
+        return status;
+    if (file_format == ASJ_FILE_JSON)
+        status = asj_write_match_json(output, report, segments, message);
+    else
+        asj_write_match_csv(output, report, segments);
+    if (status == ASJ_OK)
+        return asj_output_commit(&output, message->text, message->size);
+    asj_output_abort(&output);
+    return status;
+}
+
+asj_status asj_matches_write(const char *path, int32_t file_format, const asj_match_report *report, char *text, size_t text_size)
+{
+    asj_message message = asj_message_start(text, text_size, path);
+    asj_segment_list segments;
+    asj_status status;
+
+    if (!path || !report || !report->result)
+        return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no path or no matches");
+    if (file_format != ASJ_FILE_JSON && file_format != ASJ_FILE_CSV)
+        return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "%d is no file format for matches", (int)file_format);
+    status = check(report->result, &message);
+    if (status == ASJ_OK)
+        status = find_segments(report, &segments, &message);
+    if (status != ASJ_OK)
+        return status;
+    status = write_file(path, file_format, report, &segments, &message);
+    free(segments.list);
+    return status;
+}

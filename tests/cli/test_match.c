@@ -1,0 +1,398 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* asj-cli match: what it writes, where, and what it says. */
+#define _POSIX_C_SOURCE 200809L
+#include "files.h"
+#include "program.h"
+
+#include <asj/context.h>
+#include <asj/match.h>
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <signal.h>
+#include <time.h>
+
+#define HEADER "i,j,x1,y1,ax1,ay1,bx1,by1,x2,y2,ax2,ay2,bx2,by2,distance,ratio,h11,h12,h13,h21,h22,h23\n"
+enum { COLUMNS = 22, MOST_ROWS = 400 };
+enum { I, J, X1, Y1, AX1, AY1, BX1, BY1, X2, Y2, AX2, AY2, BX2, BY2, DISTANCE, RATIO, H11, H12, H13, H21, H22, H23 };
+
+typedef struct table {
+    double rows[MOST_ROWS][COLUMNS]; /* NaN = empty */
+    size_t count;
+} table;
+
+/* Columns by their place; every line must have them all. */
+static void parse_csv(const char *text, table *t)
+{
+    t->count = 0;
+    if (strncmp(text, HEADER, strlen(HEADER)) != 0)
+        fail_msg("not the header:\n%s", text);
+    for (text += strlen(HEADER); *text; t->count++) {
+        assert_true(t->count < MOST_ROWS);
+        for (int c = 0; c < COLUMNS; c++) {
+            size_t length = strcspn(text, ",\n");
+            t->rows[t->count][c] = length ? strtod(text, NULL) : NAN;
+            text += length;
+            assert_int_equal(*text, c + 1 < COLUMNS ? ',' : '\n');
+            text++;
+        }
+    }
+}
+
+static void read_csv(const char *path, table *t)
+{
+    size_t size = 0;
+    char *text = read_bytes(path, &size);
+    assert_non_null(text);
+    parse_csv(text, t);
+    free(text);
+}
+
+static double transfer_error(double x1, double y1, double x2, double y2)
+{
+    return hypot(VIEW_SCALE * x1 + VIEW_X - x2, VIEW_SCALE * y1 + VIEW_Y - y2);
+}
+
+/* Location, both ends and the map agree with the views. */
+static int is_true(const double *row)
+{
+    const double *h = row + H11;
+    return transfer_error(row[X1], row[Y1], row[X2], row[Y2]) < 1 && transfer_error(row[AX1], row[AY1], row[AX2], row[AY2]) < 3 &&
+           transfer_error(row[BX1], row[BY1], row[BX2], row[BY2]) < 3 &&
+           fabs(h[0] * row[X1] + h[1] * row[Y1] + h[2] - row[X2]) < 0.01 &&
+           fabs(h[3] * row[X1] + h[4] * row[Y1] + h[5] - row[Y2]) < 0.01 && fabs(h[0] - VIEW_SCALE) < 0.1 && fabs(h[1]) < 0.1 &&
+           fabs(h[3]) < 0.1 && fabs(h[4] - VIEW_SCALE) < 0.1;
+}
+
+/* At least twenty of the wall's fifty-two corners, and nearly all of them right. */
+static void expect_true(const table *t)
+{
+    size_t good = 0;
+    for (size_t k = 0; k < t->count; k++)
+        good += (size_t)is_true(t->rows[k]);
+    if (t->count < 20 || good < t->count - t->count / 10)
+        fail_msg("%zu of %zu matches are true", good, t->count);
+    for (size_t k = 1; k < t->count; k++)
+        assert_true(t->rows[k - 1][DISTANCE] <= t->rows[k][DISTANCE]);
+}
+
+static table found, other;
+
+static void matches_go_to_standard_output_and_words_to_standard_error(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("match", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    parse_csv(result->out, &found);
+    expect_true(&found);
+    char words[80];
+    snprintf(words, sizeof words, "first.png, second.png: %zu matches\n", found.count);
+    assert_string_equal(result->err, words);
+    result = run_cli("match", "-q", "-o", "m.csv", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    expect_empty(result, "standard output", result->out);
+    expect_empty(result, "standard error", result->err);
+    read_csv("m.csv", &other);
+    assert_int_equal(other.count, found.count);
+    assert_memory_equal(other.rows, found.rows, found.count * sizeof found.rows[0]);
+}
+
+static void the_name_or_the_option_chooses_the_format(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *format, *beginning;
+    } cases[] = {
+        {"a.csv", NULL, HEADER}, {"a.json", NULL, "{\n\"schema\": \"asj-matches-1\""}, {"a.txt", NULL, HEADER},
+        {"b.csv", "json", "{"}, {"b.json", "csv", HEADER},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        size_t size = 0;
+        if (cases[i].format)
+            expect_code(run_cli("match", "-o", cases[i].path, "first.png", "second.png", "--format", cases[i].format, NULL), 0);
+        else
+            expect_code(run_cli("match", "-o", cases[i].path, "first.png", "second.png", NULL), 0);
+        char *bytes = read_bytes(cases[i].path, &size);
+        assert_non_null(bytes);
+        bytes[strlen(cases[i].beginning)] = '\0';
+        assert_string_equal(bytes, cases[i].beginning);
+        free(bytes);
+    }
+}
+
+static const double *row_with(const table *t, double i, double j)
+{
+    for (size_t k = 0; k < t->count; k++)
+        if (t->rows[k][I] == i && t->rows[k][J] == j)
+            return t->rows[k];
+    return NULL;
+}
+
+/* Locations that an alignment moved differ by what the two directions of the alignment differ. */
+static void swapped_images_give_swapped_matches(void **state)
+{
+    (void)state;
+    expect_code(run_cli("match", "-q", "-o", "there.csv", "first.png", "second.png", NULL), 0);
+    expect_code(run_cli("match", "-q", "-o", "back.csv", "second.png", "first.png", NULL), 0);
+    read_csv("there.csv", &found);
+    read_csv("back.csv", &other);
+    assert_true(found.count > 0);
+    assert_int_equal(found.count, other.count);
+    for (size_t k = 0; k < found.count; k++) {
+        const double *row = found.rows[k], *back = row_with(&other, row[J], row[I]);
+        assert_non_null(back);
+        assert_true(hypot(row[X1] - back[X2], row[Y1] - back[Y2]) < 5);
+        assert_true(hypot(row[X2] - back[X1], row[Y2] - back[Y1]) < 5);
+    }
+}
+
+static void no_match_is_a_result(void **state)
+{
+    (void)state;
+    write_constant("flat.png", 60, 40);
+    write_constant("dot.png", 1, 1);
+    const outcome *result = run_cli("match", "first.png", "flat.png", NULL);
+    expect_code(result, 0);
+    assert_string_equal(result->out, HEADER);
+    expect_in(result, result->err, "first.png, flat.png: 0 matches");
+    result = run_cli("match", "-q", "dot.png", "flat.png", NULL);
+    expect_code(result, 0);
+    assert_string_equal(result->out, HEADER);
+    result = run_cli("match", "-q", "--lines", "-f", "json", "dot.png", "flat.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->out, "\"matches\": [],\n\"lines\": [],\n\"l_junctions1\": []");
+}
+
+static void line_segments_take_the_place_of_matches(void **state)
+{
+    (void)state;
+    size_t kept[3];
+    static const char *const ends[] = {"cut", "inner", "both"};
+    for (size_t e = 0; e < 3; e++) {
+        const outcome *result = run_cli("match", "--lines", "--line-ends", ends[e], "first.png", "second.png", NULL);
+        expect_code(result, 0);
+        expect_in(result, result->err, " lines");
+        parse_csv(result->out, &found);
+        kept[e] = found.count;
+        assert_true(found.count >= 10);
+        for (size_t k = 0; k < found.count; k++) {
+            const double *row = found.rows[k];
+            assert_true(isnan(row[X1]) && isnan(row[Y1]) && isnan(row[X2]) && isnan(row[Y2]));
+            for (int c = 0; c < COLUMNS; c++)
+                assert_true(c == X1 || c == Y1 || c == X2 || c == Y2 || !isnan(row[c]));
+            assert_true(hypot(row[AX1] - row[BX1], row[AY1] - row[BY1]) > 3);
+        }
+    }
+    assert_true(kept[0] >= kept[1] && kept[1] >= kept[2]);
+    const outcome *result = run_cli("match", "--lines", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    parse_csv(result->out, &found);
+    assert_int_equal(found.count, kept[1]);
+    size_t good = 0;
+    for (size_t k = 0; k < found.count; k++) {
+        const double *row = found.rows[k];
+        good += transfer_error(row[AX1], row[AY1], row[AX2], row[AY2]) < 5 &&
+                transfer_error(row[BX1], row[BY1], row[BX2], row[BY2]) < 5;
+    }
+    assert_true(good >= found.count - found.count / 10);
+}
+
+/* Runs detect with the options that match has. */
+static void detect_for_match(const char *image, const char *file)
+{
+    static char names[64][80], values[64][64];
+    const char *arguments[MOST_ARGUMENTS + 1] = {"detect", "-q", "-o", file, image};
+    asj_detect_options options;
+    asj_detect_options_init(&options);
+    asj_match_detect_options(&options);
+    assert_true(asj_detect_option_count() <= 64);
+    for (size_t i = 0; i < asj_detect_option_count(); i++) {
+        const char *key = asj_detect_option(i)->key;
+        assert_int_equal(asj_detect_options_get(&options, key, values[i], sizeof values[i]), ASJ_OK);
+        snprintf(names[i], sizeof names[i], "--%s", key);
+        for (char *c = names[i]; *c; c++)
+            if (*c == '_')
+                *c = '-';
+        arguments[5 + 2 * i] = names[i];
+        arguments[6 + 2 * i] = values[i];
+    }
+    expect_code(run_cli_list(arguments), 0);
+}
+
+/* Detecting first and matching then is the same as both at once. */
+static void junctions_come_from_files(void **state)
+{
+    (void)state;
+    detect_for_match("first.png", "1.json");
+    detect_for_match("second.png", "2.json");
+    const outcome *result = run_cli("match", "-q", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    parse_csv(result->out, &found);
+    result = run_cli("match", "-q", "first.png", "second.png", "--junctions1", "1.json", "--junctions2", "2.json", NULL);
+    expect_code(result, 0);
+    parse_csv(result->out, &other);
+    assert_int_equal(found.count, other.count);
+    assert_memory_equal(found.rows, other.rows, found.count * sizeof found.rows[0]);
+    expect_code(run_cli("detect", "-q", "-o", "2.asj", "second.png", NULL), 0);
+    result = run_cli("match", "-q", "first.png", "second.png", "--junctions2", "2.asj", NULL);
+    expect_code(result, 0);
+    parse_csv(result->out, &other);
+    expect_true(&other);
+}
+
+/* The number behind "name" in JSON, from where `within` begins. */
+static double json_number(const char *text, const char *within, const char *name)
+{
+    char quoted[64];
+    snprintf(quoted, sizeof quoted, "\"%s\"", name);
+    const char *from = strstr(text, within), *place = from ? strstr(from, quoted) : NULL;
+    if (!place)
+        fail_msg("no %s after %s in %.2000s", quoted, within, text);
+    place += strlen(quoted);
+    return strtod(place + strspn(place, " :\n"), NULL);
+}
+
+#define MATCHER "\n\"options\""
+#define DETECTOR "\n\"detect_options\""
+
+/* Both tables have max_move: the plain name is the detector's. */
+static void options_reach_detector_and_matcher(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("match", "-q", "-f", "json", "--max-move", "3.25", "--match-max-move", "4.5", "--ratio", "2",
+                                    "--epsilon", "7", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    assert_true(json_number(result->out, DETECTOR, "max_move") == 3.25);
+    assert_true(json_number(result->out, MATCHER, "max_move") == 4.5);
+    assert_true(json_number(result->out, MATCHER, "ratio") == 2);
+    assert_true(json_number(result->out, DETECTOR, "epsilon") == 7);
+    result = run_cli("match", "--minimum-similarity", "1", "--minimum-support", "64", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    assert_string_equal(result->out, HEADER);
+}
+
+static double preset_value(int32_t preset, const char *key, int detector)
+{
+    char text[64] = "";
+    asj_match_options match;
+    asj_detect_options detect;
+    asj_match_options_preset(&match, preset);
+    asj_detect_options_preset(&detect, preset);
+    if (preset == ASJ_PRESET_DEFAULT)
+        asj_match_detect_options(&detect);
+    assert_int_equal(detector ? asj_detect_options_get(&detect, key, text, sizeof text)
+                              : asj_match_options_get(&match, key, text, sizeof text), ASJ_OK);
+    return strtod(text, NULL);
+}
+
+static void presets_are_for_both_or_for_one(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *options[4];
+        int32_t detector, matcher;
+    } cases[] = {
+        {{"--quiet"}, ASJ_PRESET_DEFAULT, ASJ_PRESET_DEFAULT},
+        {{"--preset", "paper"}, ASJ_PRESET_PAPER, ASJ_PRESET_PAPER},
+        {{"--detect-preset", "paper"}, ASJ_PRESET_PAPER, ASJ_PRESET_DEFAULT},
+        {{"--match-preset=default", "--preset", "paper"}, ASJ_PRESET_PAPER, ASJ_PRESET_DEFAULT},
+        {{"--match-preset=paper", "--ratio=1.5"}, ASJ_PRESET_DEFAULT, ASJ_PRESET_PAPER},
+    };
+    write_constant("flat.png", 60, 40);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const char *arguments[12] = {"match", "-q", "-f", "json", "flat.png", "flat.png"};
+        for (size_t k = 0; k < 4; k++)
+            arguments[6 + k] = cases[i].options[k];
+        const outcome *result = run_cli_list(arguments);
+        expect_code(result, 0);
+        assert_true(json_number(result->out, DETECTOR, "epsilon") == preset_value(cases[i].detector, "epsilon", 1));
+        assert_true(json_number(result->out, MATCHER, "neighbours") == preset_value(cases[i].matcher, "neighbours", 0));
+    }
+    assert_true(preset_value(ASJ_PRESET_PAPER, "epsilon", 1) != preset_value(ASJ_PRESET_DEFAULT, "epsilon", 1));
+    assert_true(preset_value(ASJ_PRESET_PAPER, "neighbours", 0) != preset_value(ASJ_PRESET_DEFAULT, "neighbours", 0));
+}
+
+static void threads_do_not_change_the_result(void **state)
+{
+    (void)state;
+    expect_code(run_cli("match", "-q", "--threads", "1", "-o", "one.csv", "first.png", "second.png", NULL), 0);
+    expect_code(run_cli("match", "-q", "--threads", "3", "-o", "three.csv", "first.png", "second.png", NULL), 0);
+    size_t sizes[2] = {0};
+    char *one = read_bytes("one.csv", &sizes[0]), *three = read_bytes("three.csv", &sizes[1]);
+    assert_non_null(one);
+    assert_non_null(three);
+    assert_string_equal(one, three);
+    free(one);
+    free(three);
+}
+
+static void times_are_printed_on_request(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("match", "--time", "-q", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    for (int32_t stage = ASJ_STAGE_GRADIENT; stage <= ASJ_STAGE_ASSIGN; stage++)
+        expect_in(result, result->err, asj_stage_name(stage));
+    expect_in(result, result->err, "second.png: 320 x 240");
+    expect_in(result, result->err, "reading");
+    assert_null(strchr(result->err, '\r'));
+}
+
+/* Stopped wherever it is, nothing half done stays. The pauses grow until one ends in the middle of the work. */
+static void an_interrupt_leaves_nothing(void **state)
+{
+    (void)state;
+    static const char *const arguments[] = {"match", "--threads", "1", "-o", "stopped.csv", "--plot", "stopped.png", "large.png",
+                                            "large.png", NULL};
+    write_noise("large.png", 2000, 1500);
+    for (long ms = 10; ms < 1000; ms *= 2) {
+        const struct timespec pause = {0, ms * 1000000};
+        pid_t process = start_cli(-1, -1, arguments);
+        nanosleep(&pause, NULL);
+        kill(process, SIGINT);
+        const outcome *result = finish_cli(process);
+        if (result->signal == SIGINT) /* it came before the program was ready for it */
+            continue;
+        expect_code(result, 130);
+        expect_in(result, result->err, "asj-cli: interrupted at ");
+        expect_empty(result, "standard output", result->out);
+        assert_false(exists("stopped.csv") && exists("stopped.png"));
+        return;
+    }
+    print_message("[  NOTE    ] the program never was ready in time: not tested\n");
+    skip();
+}
+
+static int make_files(void **state)
+{
+    (void)state;
+    write_views("first.png", "second.png");
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(matches_go_to_standard_output_and_words_to_standard_error),
+        cmocka_unit_test(the_name_or_the_option_chooses_the_format),
+        cmocka_unit_test(swapped_images_give_swapped_matches),
+        cmocka_unit_test(no_match_is_a_result),
+        cmocka_unit_test(line_segments_take_the_place_of_matches),
+        cmocka_unit_test(junctions_come_from_files),
+        cmocka_unit_test(options_reach_detector_and_matcher),
+        cmocka_unit_test(presets_are_for_both_or_for_one),
+        cmocka_unit_test(threads_do_not_change_the_result),
+        cmocka_unit_test(times_are_printed_on_request),
+        cmocka_unit_test(an_interrupt_leaves_nothing),
+    };
+    program_start(argc, argv);
+    return program_end(cmocka_run_group_tests(tests, make_files, NULL));
+}

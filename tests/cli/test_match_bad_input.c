@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* asj-cli match with wrong usage and with files that are no good: one line that names file, line and cause, and nothing written. */
+#include "files.h"
+#include "program.h"
+
+#include <asj/match.h>
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static int count_lines(const char *text)
+{
+    int lines = 0;
+    for (; *text; text++)
+        lines += *text == '\n';
+    return lines;
+}
+
+static void help_names_every_option_of_the_library(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("match", "--help", NULL);
+    expect_code(result, 0);
+    expect_empty(result, "standard error", result->err);
+    assert_true(asj_match_option_count() > 0);
+    for (size_t i = 0; i < asj_detect_option_count() + asj_match_option_count(); i++) {
+        size_t m = i - asj_detect_option_count();
+        char name[80];
+        snprintf(name, sizeof name, "--%s ", i < asj_detect_option_count() ? asj_detect_option(i)->key : asj_match_option(m)->key);
+        for (char *c = name; *c; c++)
+            if (*c == '_')
+                *c = '-';
+        expect_in(result, result->out, name);
+    }
+    expect_in(result, result->out, " --match-max-move ");
+    expect_in(result, result->out, " --match-minimum-opening ");
+    assert_null(strstr(result->out, "--match-ratio"));
+}
+
+/* Each line of arguments, and what standard error must contain. */
+static const struct {
+    const char *arguments[10];
+    const char *message;
+} wrong[] = {
+    {{"match"}, "which images?"},
+    {{"match", "first.png"}, "two images, not 1"},
+    {{"match", "first.png", "first.png", "first.png"}, "two images, not 3"},
+    {{"match", "first.png", "-"}, "standard input"},
+    {{"match", "--junctions1", "-", "first.png", "first.png"}, "standard input"},
+    {{"match", "--no-such", "first.png", "first.png"}, "no option '--no-such'"},
+    {{"match", "--out-dir", ".", "first.png", "first.png"}, "no option '--out-dir'"},
+    {{"match", "--ratio", "one", "first.png", "first.png"}, "ratio: 'one' is not a number"},
+    {{"match", "--ratio", "0.5", "first.png", "first.png"}, "ratio: 0.5 is outside"},
+    {{"match", "--epsilon", "-1", "first.png", "first.png"}, "epsilon: -1 is outside"},
+    {{"match", "--match-max-move", "21", "first.png", "first.png"}, "max_move: 21 is outside"},
+    {{"match", "--match-ratio", "2", "first.png", "first.png"}, "no option '--match-ratio'"},
+    {{"match", "--patch-size", "18", "first.png", "first.png"}, "patch_size"},
+    {{"match", "--descriptor", "orb", "first.png", "first.png"}, "descriptor"},
+    {{"match", "--preset", "best", "first.png", "first.png"}, "--preset: 'best'"},
+    {{"match", "--match-preset", "best", "first.png", "first.png"}, "--match-preset: 'best'"},
+    {{"match", "--detect-preset", "best", "first.png", "first.png"}, "--detect-preset: 'best'"},
+    {{"match", "--format", "asj", "first.png", "first.png"}, "--format: 'asj'"},
+    {{"match", "--line-ends", "all", "first.png", "first.png"}, "--line-ends: 'all'"},
+    {{"match", "--plot", "picture.jpg", "first.png", "first.png"}, "--plot"},
+    {{"match", "--plot-layout", "left", "first.png", "first.png"}, "--plot-layout: 'left'"},
+    {{"match", "--plot-background", "red", "first.png", "first.png"}, "--plot-background: 'red'"},
+    {{"match", "--plot-scale", "0", "first.png", "first.png"}, "--plot-scale: '0'"},
+    {{"match", "-o", "a.png", "--plot", "a.png", "first.png", "first.png"}, "a.png: would be written twice"},
+    {{"match", "-o", "./first.png", "first.png", "second.png"}, "first.png: is an input file"},
+    {{"match", "--plot", "second.png", "first.png", "second.png"}, "second.png: is an input file"},
+    {{"match", "--junctions1", "good.asj", "-o", "good.asj", "first.png", "second.png"}, "good.asj: is an input file"},
+};
+
+static void wrong_usage_ends_with_2_and_says_why(void **state)
+{
+    (void)state;
+    int files = count_files(".");
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        const outcome *result = run_cli_list(wrong[i].arguments);
+        if (result->code != 2)
+            print_error("in case %zu, %s\n", i, wrong[i].message);
+        expect_code(result, 2);
+        expect_in(result, result->err, wrong[i].message);
+        expect_in(result, result->err, "--help");
+        expect_empty(result, "standard output", result->out);
+    }
+    assert_int_equal(count_files("."), files);
+}
+
+/* One line on standard error that begins like this, no output, no file. */
+static void expect_refusal(const outcome *result, const char *beginning, const char *cause)
+{
+    expect_code(result, 1);
+    expect_empty(result, "standard output", result->out);
+    expect_in(result, result->err, cause);
+    if (count_lines(result->err) != 1 || strncmp(result->err, beginning, strlen(beginning)) != 0)
+        fail_msg("not one line that begins with '%s':\n%s", beginning, result->err);
+    assert_false(exists("never.csv"));
+    assert_false(exists("never.png"));
+}
+
+/* Text of a junction file, and the line and cause that must be named. The images have 320 x 240 pixels. */
+static const struct {
+    const char *text, *line, *cause;
+} bad[] = {
+    {"", "", "empty"},
+    {"junctions\n", "line 1: ", ""},
+    {"1\n", "line 1: ", "x y"},
+    {"2\n50 50\n2 7 7 -3\n0 5 30\n1.5 5 30\n", "line 5: ", "ends"},
+    {"0\n50 50\n", "line 2: ", "after the last"},
+    {"1\n50 50\n1 7 7 -3\n0 5 30\n", "line 3: ", "number of branches"},
+    {"1\n50 50\n6 7 7 -3\n0 5 30\n", "line 3: ", "number of branches"},
+    {"1\n50 50\n3 7 7 -3\n0 5 30\n1.5 5 30\n", "line 5: ", "ends"},
+    {"1\n50 nan\n2 7 7 -3\n0 5 30\n1.5 5 30\n", "line 2: ", "nan"},
+    {"1\n50 inf\n2 7 7 -3\n0 5 30\n1.5 5 30\n", "line 2: ", "inf"},
+    {"1\n50 50\n2 7 7 -3\nnan 5 30\n1.5 5 30\n", "line 4: ", "nan"},
+    {"1\n50 50\n2 7 7 -3\n0 5 30\n1.5 5 -30\n", "line 5: ", "negative length"},
+    {"1\n50 50\n2 -7 7 -3\n0 5 30\n1.5 5 30\n", "line 3: ", "negative scale"},
+    {"2\n50 50\n2 7 7 -3\n0 5 30\n1.5 5 30\n331 50\n2 7 7 -3\n0 5 30\n1.5 5 30\n", "line 6: ", "outside first.png"},
+    {"1\n50 -11\n2 7 7 -3\n0 5 30\n1.5 5 30\n", "line 2: ", "outside first.png"},
+};
+
+static void bad_junction_files_are_refused(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        char beginning[64];
+        write_bytes("bad.asj", bad[i].text, strlen(bad[i].text));
+        snprintf(beginning, sizeof beginning, "asj-cli: bad.asj: %s", bad[i].line);
+        expect_refusal(run_cli("match", "-o", "never.csv", "--plot", "never.png", "--junctions1", "bad.asj", "first.png",
+                               "second.png", NULL), beginning, bad[i].cause);
+        if (!strstr(bad[i].cause, "outside"))
+            expect_refusal(run_cli("match", "-o", "never.csv", "--junctions2", "bad.asj", "first.png", "second.png", NULL),
+                           beginning, bad[i].cause);
+    }
+}
+
+/* Where branches meet may lie a little outside. */
+static void junctions_beside_the_image_are_taken(void **state)
+{
+    (void)state;
+    static const char text[] = "1\n328 -9\n2 7 7 -3\n1.6 5 30\n3 5 30\n";
+    write_bytes("beside.asj", text, strlen(text));
+    expect_code(run_cli("match", "-q", "--junctions1", "beside.asj", "first.png", "second.png", NULL), 0);
+}
+
+static void junctions_of_another_image_are_refused(void **state)
+{
+    (void)state;
+    write_constant("small.png", 60, 40);
+    expect_code(run_cli("detect", "-q", "-o", "small.json", "small.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "-o", "large.json", "first.png", NULL), 0);
+    expect_refusal(run_cli("match", "-o", "never.csv", "--junctions1", "small.json", "first.png", "second.png", NULL),
+                   "asj-cli: small.json: ", "60 x 40");
+    expect_refusal(run_cli("match", "-o", "never.csv", "--junctions1", "large.json", "small.png", "second.png", NULL),
+                   "asj-cli: large.json: line ", "outside small.png");
+}
+
+static void bad_images_are_refused(void **state)
+{
+    (void)state;
+    size_t size = 0;
+    free(read_bytes("first.png", &size));
+    write_bytes("text.png", "This is not an image.\n", 22);
+    write_part("cut.png", "first.png", size / 2);
+    write_png_header("bomb.png", 65000, 65000);
+    static const char *const images[] = {"missing.png", "text.png", "cut.png", "bomb.png", "."};
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
+        char beginning[64];
+        snprintf(beginning, sizeof beginning, "asj-cli: %s: ", images[i]);
+        expect_refusal(run_cli("match", "-o", "never.csv", images[i], "second.png", NULL), beginning, "");
+        expect_refusal(run_cli("match", "-o", "never.csv", "first.png", images[i], NULL), beginning, "");
+    }
+    const outcome *result = run_cli("match", "-o", "never.csv", "missing.png", "text.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: missing.png: ");
+    expect_in(result, result->err, "asj-cli: text.png: ");
+    expect_refusal(run_cli("match", "--junctions2", "missing.asj", "first.png", "second.png", NULL), "asj-cli: missing.asj: ", "");
+}
+
+static void results_that_cannot_be_written_are_errors(void **state)
+{
+    (void)state;
+    expect_refusal(run_cli("match", "-o", "nowhere/m.csv", "first.png", "second.png", NULL), "asj-cli: nowhere/m.csv: ", "");
+    size_t size = 0;
+    write_bytes("kept.csv", "old", 3);
+    expect_code(run_cli("match", "-o", "kept.csv", "missing.png", "second.png", NULL), 1);
+    char *bytes = read_bytes("kept.csv", &size);
+    assert_non_null(bytes);
+    assert_string_equal(bytes, "old");
+    free(bytes);
+}
+
+static int make_files(void **state)
+{
+    (void)state;
+    write_views("first.png", "second.png");
+    write_bytes("good.asj", "0\n", 2);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(help_names_every_option_of_the_library),
+        cmocka_unit_test(wrong_usage_ends_with_2_and_says_why),
+        cmocka_unit_test(bad_junction_files_are_refused),
+        cmocka_unit_test(junctions_beside_the_image_are_taken),
+        cmocka_unit_test(junctions_of_another_image_are_refused),
+        cmocka_unit_test(bad_images_are_refused),
+        cmocka_unit_test(results_that_cannot_be_written_are_errors),
+    };
+    program_start(argc, argv);
+    return program_end(cmocka_run_group_tests(tests, make_files, NULL));
+}
