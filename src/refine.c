@@ -16,6 +16,8 @@
 #include <math.h>
 
 #define PI 3.141592653589793
+#define BENT 3       /* standard uncertainties */
+#define NEAR_PART 80 /* px */
 #define LARGEST_OFFSET 2 /* px: a line that misses the junction by more belongs to something else */
 
 typedef struct sums {
@@ -72,26 +74,21 @@ static void search(const asj_frame *frame, const asj_detect_options *options, as
     }
 }
 
-/* Fits the line over growing parts of the branch, so that the narrow band around the last line always holds the edge. Where it passes the
- * junction is the business of its near part: when a long line says something significantly different there, the edge is bent (lenses
- * do that), and the near part is believed. */
+/* Fits the line over growing parts of the branch, each twice as long as the one before, so that the narrow band around the last line
+ * always holds the edge. When a part longer than NEAR_PART moves the line significantly where it passes the junction, the edge is bent
+ * (lenses do that): then the shorter part is believed. */
 static void follow_line(const asj_frame *frame, const asj_draft *draft, asj_draft_branch *branch)
 {
     const double end = fmax(branch->length - 3, 8);
-    double near_offset = branch->offset, near_variance = HUGE_VAL;
-    for (double reach = 80;; reach *= 3) {
+    asj_draft_branch longer = *branch;
+    for (double reach = NEAR_PART / 4;; reach *= 2) {
         const asj_line_range range = {fmin(5, 0.25 * branch->length + 0.5), fmin(end, reach), {1.6, 1.6, 0}, 2};
-        const int found = asj_line_fit(frame, draft->x, draft->y, &range, branch);
-        if (found && near_variance == HUGE_VAL) {
-            near_offset = branch->offset;
-            near_variance = branch->offset_variance;
-        }
-        if (!found || reach >= end)
-            break;
-    }
-    if (fabs(branch->offset - near_offset) > 3 * sqrt(near_variance)) {
-        branch->offset = near_offset;
-        branch->offset_variance = near_variance;
+        if (!asj_line_fit(frame, draft->x, draft->y, &range, &longer) ||
+            (reach > NEAR_PART && fabs(longer.offset - branch->offset) > BENT * sqrt(branch->offset_variance)))
+            return;
+        *branch = longer;
+        if (reach >= end)
+            return;
     }
 }
 
