@@ -301,6 +301,17 @@ static void align_one(const asj_disc *disc, const asj_match_options *options, co
     c->distance2 = combine(c->distance2, c->similarity);
 }
 
+/* Pairs whose discs are not even half as alike as a match has to be would only slow the consensus down. */
+static void drop_unlike(const asj_match_options *options, asj_candidates *candidates, size_t first)
+{
+    const float least = 0.5f * (float)options->minimum_similarity;
+    size_t kept = first;
+    for (size_t k = first; k < candidates->count; k++)
+        if (candidates->list[k].similarity >= least)
+            candidates->list[kept++] = candidates->list[k];
+    candidates->count = kept;
+}
+
 /* Candidates whose template stands at the same place are worked on together: `order` lists them place by place. */
 asj_status asj_align_candidates(asj_context *context, const asj_match_options *options, const asj_view *view1,
                                 const asj_view *view2, asj_candidates *candidates, size_t first)
@@ -344,5 +355,6 @@ asj_status asj_align_candidates(asj_context *context, const asj_match_options *o
     asj_release(memory, order);
     asj_release(memory, group);
     asj_release(memory, disc);
+    drop_unlike(options, candidates, first);
     return ASJ_OK;
 }
