@@ -11,7 +11,6 @@
  * junctions at a third of the cost. Among overlapping junctions the more meaningful one stays; `more_branches_win` restores the rule
  * of ACJ that M + 1 branches within half a radius replace M. */
 #include "isotropic.h"
-#include "ops.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,6 +41,9 @@ static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t
     if (status != ASJ_OK)
         return status;
     test->radius_count++;
+    status = asj_sector_plan_create(&context->memory, &entry->sectors, &entry->plan);
+    if (status != ASJ_OK)
+        return status;
     entry->suppress = (int32_t)lrint(tau / radius * entry->sectors.count / TWO_PI);
     entry->straight = TWO_PI / 2 - 2 * tau / radius;
     entry->tails = asj_allocate(&context->memory, (size_t)entry->sectors.count, sizeof *entry->tails);
@@ -51,20 +53,46 @@ static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t
         status = make_tails(context, test, entry->sectors.size[k]);
         entry->tails[k] = test->tail_tables[entry->sectors.size[k]];
     }
-    size_t scratch = asj_sector_scratch(&entry->sectors) + (size_t)entry->sectors.count * ASJ_LANES;
-    if (scratch > test->scratch)
-        test->scratch = scratch;
+    /* in blocks: prefix sums, sums; in rows: gamma, slots, strengths */
+    const size_t count = (size_t)entry->sectors.count, offsets = (size_t)entry->sectors.offset_count;
+    const size_t block = asj_sector_scratch(&entry->sectors) + count * ASJ_LANES;
+    const size_t row = (offsets + (size_t)entry->plan.slot_count + count + 2 * (size_t)entry->suppress) * ASJ_ISOTROPIC_LANES;
+    if (test->scratch < (block > row ? block : row)) /* radii come in rising order, so that the last one needs the most of everything */
+        test->scratch = block > row ? block : row;
     return status;
+}
+
+/* Finds for each radius whose gammas it can share, and where they are there. */
+static asj_status share_offsets(asj_memory *memory, asj_isotropic *test)
+{
+    for (int32_t r = test->radius_count - 1; r >= 0; r--) {
+        asj_isotropic_radius *entry = &test->radii[r];
+        entry->source = r;
+        if (r + 1 < test->radius_count && test->radii[r + 1].sectors.gamma_bits == entry->sectors.gamma_bits)
+            entry->source = test->radii[r + 1].source;
+        entry->from = asj_allocate(memory, (size_t)entry->sectors.offset_count, sizeof *entry->from);
+        if (!entry->from)
+            return ASJ_ERROR_MEMORY;
+        /* both lists are in order of angle, then distance */
+        const asj_sectors *all = &test->radii[entry->source].sectors, *some = &entry->sectors;
+        for (int32_t i = 0, j = 0; i < some->offset_count; i++, j++) {
+            while (all->dx[j] != some->dx[i] || all->dy[j] != some->dy[i])
+                j++;
+            entry->from[i] = (int16_t)j;
+        }
+    }
+    return ASJ_OK;
 }
 
 asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *options, asj_isotropic *test)
 {
     asj_status status = ASJ_OK;
     memset(test, 0, sizeof *test);
-    test->ops = context->ops;
     for (int32_t r = 3; r <= ASJ_MAX_RADIUS && status == ASJ_OK; r++)
         if (options->isotropic_radii >> r & 1)
             status = make_radius(context, test, r, options->sector_width);
+    if (status == ASJ_OK)
+        status = share_offsets(&context->memory, test);
     test->max_branches = options->max_branches;
     test->log_epsilon = log(options->epsilon);
     if (status != ASJ_OK)
@@ -76,6 +104,8 @@ void asj_isotropic_free(asj_memory *memory, asj_isotropic *test)
 {
     for (int32_t i = 0; i <= ASJ_MAX_RADIUS; i++) {
         asj_release(memory, test->radii[i].tails);
+        asj_release(memory, test->radii[i].from);
+        asj_sector_plan_free(memory, &test->radii[i].plan);
         asj_sectors_free(memory, &test->radii[i].sectors);
     }
     for (size_t i = 0; i < sizeof test->tail_tables / sizeof test->tail_tables[0]; i++)
@@ -97,13 +127,22 @@ static double log_tail(const double *table, double t)
     return table[i] * (1 - rest) + table[i + 1] * rest;
 }
 
-typedef struct peak {
-    int32_t sector;
-    uint16_t sum, strength;
-} peak;
+int32_t asj_isotropic_insert(asj_isotropic_peak *peaks, int32_t count, int32_t most, asj_isotropic_peak peak)
+{
+    for (int32_t i = 0; i < count; i++)
+        if (peak.sum > peaks[i].sum) {
+            asj_isotropic_peak swap = peaks[i];
+            peaks[i] = peak;
+            peak = swap;
+        }
+    if (count < most)
+        peaks[count++] = peak;
+    return count;
+}
 
 /* The strongest branches by sum, at most `most`, of one pixel. Only strengths above 1 count. */
-static int32_t find_peaks(const asj_isotropic_radius *entry, const uint16_t *sums, int32_t most, peak *peaks)
+static int32_t find_peaks(const asj_isotropic_radius *entry, const uint16_t *sums, int32_t most,
+                          asj_isotropic_peak *peaks)
 {
     const asj_sectors *s = &entry->sectors;
     uint16_t z[MAX_SECTORS];
@@ -117,17 +156,8 @@ static int32_t find_peaks(const asj_isotropic_radius *entry, const uint16_t *sum
             int32_t right = k + d < s->count ? k + d : k + d - s->count;
             largest = z[k] > z[left] && z[k] >= z[right];
         }
-        if (!largest)
-            continue;
-        peak moved = {k, sums[(size_t)k * ASJ_LANES], z[k]};
-        for (int32_t i = 0; i < found; i++)
-            if (moved.sum > peaks[i].sum) {
-                peak swap = peaks[i];
-                peaks[i] = moved;
-                moved = swap;
-            }
-        if (found < most)
-            peaks[found++] = moved;
+        if (largest)
+            found = asj_isotropic_insert(peaks, found, most, (asj_isotropic_peak){k, sums[(size_t)k * ASJ_LANES], z[k]});
     }
     return found;
 }
@@ -141,13 +171,11 @@ static double opening(const asj_sectors *s, int32_t a, int32_t b)
     return TWO_PI * d / s->count;
 }
 
-static void test_radius(const asj_isotropic *test, const asj_isotropic_radius *entry, const uint16_t *sums,
-                        asj_isotropic_junction *best)
+void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *entry, const asj_isotropic_peak *peaks, int32_t count,
+                         asj_isotropic_junction *best)
 {
     const asj_sectors *s = &entry->sectors;
-    peak peaks[ASJ_MAX_BRANCHES];
-    int32_t found = find_peaks(entry, sums, test->max_branches, peaks);
-    for (int32_t m = 2; m <= found; m++) {
+    for (int32_t m = 2; m <= count; m++) {
         if (m == 2 && opening(s, peaks[0].sector, peaks[1].sector) > entry->straight)
             continue;
         double t = (double)peaks[m - 1].sum / (1 << s->gamma_bits), log_nfa = test->log_tests[m];
@@ -179,10 +207,24 @@ void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int3
     for (int32_t r = 0; r < test->radius_count; r++) {
         const asj_isotropic_radius *entry = &test->radii[r];
         uint16_t *sums = scratch + asj_sector_scratch(&entry->sectors);
-        test->ops->sector_sums(&entry->sectors, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, sums);
+        asj_sector_sums(&entry->sectors, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, sums);
         for (int32_t i = 0, slot = 0; i < ASJ_LANES; i++)
-            if (candidates >> i & 1)
-                test_radius(test, entry, sums + i, &junctions[slot++]);
+            if (candidates >> i & 1) {
+                asj_isotropic_peak peaks[ASJ_MAX_BRANCHES];
+                const int32_t found = find_peaks(entry, sums + i, test->max_branches, peaks);
+                asj_isotropic_judge(test, entry, peaks, found, &junctions[slot++]);
+            }
+    }
+}
+
+void asj_isotropic_row(const asj_isotropic *test, const asj_frame *frame, int32_t y, const uint16_t *masks, uint16_t *scratch,
+                       asj_isotropic_junction *junctions)
+{
+    for (int32_t b = 0; b < frame->blocks; b++) {
+        if (masks[b])
+            asj_isotropic_block(test, frame, b * ASJ_LANES, y, masks[b], scratch, junctions);
+        for (uint32_t mask = masks[b]; mask; mask &= mask - 1)
+            junctions++;
     }
 }
 

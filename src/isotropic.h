@@ -20,6 +20,9 @@ typedef struct asj_isotropic_junction {
 /* Constants of one radius. */
 typedef struct asj_isotropic_radius {
     asj_sectors sectors;
+    asj_sector_plan plan;
+    int32_t source;       /* index of the largest radius with the same unit vectors: its offsets hold those of this one, */
+    int16_t *from;        /* offset i of this one at from[i] */
     int32_t suppress;     /* sectors to either side over which a branch must be the largest */
     double straight;      /* two branches that open wider are an edge */
     const double **tails; /* for each sector: ln F(i / ASJ_TAIL_STEPS; J_k), i = 0, 1, .. */
@@ -27,14 +30,13 @@ typedef struct asj_isotropic_radius {
 
 /* The whole test: made once for a set of options and an image size. */
 typedef struct asj_isotropic {
-    const struct asj_ops *ops;
     int32_t radius_count;
     asj_isotropic_radius radii[ASJ_MAX_RADIUS + 1];
     double log_tests[ASJ_MAX_BRANCHES + 1]; /* ln #J(M) */
     double log_epsilon;
     int32_t max_branches;
     double *tail_tables[128]; /* by number of pixels; shared by the radii */
-    size_t scratch;           /* elements of uint16_t for asj_isotropic_block() */
+    size_t scratch;           /* elements of uint16_t for asj_isotropic_block() and asj_isotropic_row() */
 } asj_isotropic;
 
 asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *options, asj_isotropic *test);
@@ -47,6 +49,28 @@ void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, in
  * meaningful has branch_count 0. */
 void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int32_t x, int32_t y, uint32_t candidates,
                          uint16_t *scratch, asj_isotropic_junction *junctions);
+
+/* The same for a row: masks[b] are the candidates of run b. Records in order of x. */
+void asj_isotropic_row(const asj_isotropic *test, const asj_frame *frame, int32_t y, const uint16_t *masks, uint16_t *scratch,
+                       asj_isotropic_junction *junctions);
+
+/* ---- for the vector forms of the above ---- */
+
+/* Lanes that a vector form may use at most; asj_isotropic.scratch has room for them. */
+#define ASJ_ISOTROPIC_LANES 32
+
+/* A branch at one radius. */
+typedef struct asj_isotropic_peak {
+    int32_t sector;
+    uint16_t sum, strength;
+} asj_isotropic_peak;
+
+/* Puts a peak into a list of at most `most`, ordered by sum; of equals the one put in first comes first. Returns the new count. */
+int32_t asj_isotropic_insert(asj_isotropic_peak *peaks, int32_t count, int32_t most, asj_isotropic_peak peak);
+
+/* Makes *best the junction of these branches, if that one is meaningful, and more so than *best. */
+void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *entry, const asj_isotropic_peak *peaks, int32_t count,
+                         asj_isotropic_junction *best);
 
 /* Sorts by meaningfulness and drops what lies close to something better (see isotropic.c). `taken` is one bit for each pixel, rows of
  * whole bytes, zero. Returns how many stay, at the front. */

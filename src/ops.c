@@ -7,9 +7,9 @@
 
 static void fill_reference(asj_ops *ops)
 {
-    ops->sector_sums = asj_sector_sums;
     ops->field_tile = asj_field_tile;
     ops->field_block = asj_field_block;
+    ops->isotropic_row = asj_isotropic_row;
 }
 
 const char *asj_ops_name(int32_t variant)

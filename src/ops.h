@@ -12,14 +12,14 @@ typedef struct asj_ops {
 
     /* ---- parts of an image: what an instruction set of the CPU replaces ---- */
 
-    /* asj_sector_sums() (sector.h) */
-    void (*sector_sums)(const asj_sectors *sectors, const int16_t *gx, const int16_t *gy, ptrdiff_t stride,
-                        uint16_t *scratch, uint16_t *sums);
     /* asj_field_tile() and asj_field_block() (field.h) */
     void (*field_tile)(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs,
                        int32_t top, int32_t bottom, uint16_t *scratch, uint16_t *masks);
     void (*field_block)(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y,
                         uint16_t *scratch, asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES]);
+    /* asj_isotropic_row() (isotropic.h) */
+    void (*isotropic_row)(const asj_isotropic *test, const asj_frame *frame, int32_t y, const uint16_t *masks, uint16_t *scratch,
+                          asj_isotropic_junction *junctions);
 } asj_ops;
 
 /* Sets of replacements, from weaker to stronger. */

@@ -196,13 +196,8 @@ static void test_rows(const asj_detection_run *d, int32_t top, int32_t bottom, c
 #endif
     for (int32_t y = top; y < bottom; y++) {
         const uint16_t *row = d->candidates + (ptrdiff_t)y * frame->blocks;
-        asj_isotropic_junction *next = records + starts[y - top];
-        for (int32_t b = 0; b < frame->blocks; b++) {
-            if (!row[b])
-                continue;
-            asj_isotropic_block(&d->detector->isotropic, frame, b * ASJ_LANES, y, row[b], asj_stage_scratch(d), next);
-            next += count_bits(&row[b], 1);
-        }
+        if (starts[y - top + 1] > starts[y - top])
+            d->context->ops->isotropic_row(&d->detector->isotropic, frame, y, row, asj_stage_scratch(d), records + starts[y - top]);
     }
 }
 

@@ -1,12 +1,18 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Compiled with -mavx2; called only where the processor has it. */
 #include <immintrin.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define V_LANES 16
 typedef __m256i vec;
 
 static inline vec v_load(const void *p) { return _mm256_loadu_si256((const __m256i *)p); }
+/* 8 lanes each from several places */
+static inline vec v_load_windows(const int16_t *const *p, ptrdiff_t at)
+{
+    return _mm256_loadu2_m128i((const __m128i *)(p[1] + at), (const __m128i *)(p[0] + at));
+}
 static inline void v_store(void *p, vec v) { _mm256_storeu_si256((__m256i *)p, v); }
 static inline vec v_set1(int16_t x) { return _mm256_set1_epi16(x); }
 static inline vec v_zero(void) { return _mm256_setzero_si256(); }

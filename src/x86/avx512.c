@@ -1,12 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Compiled with -mavx512f -mavx512bw; called only where the processor has it. */
 #include <immintrin.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define V_LANES 32
 typedef __m512i vec;
 
 static inline vec v_load(const void *p) { return _mm512_loadu_si512(p); }
+/* 8 lanes each from several places */
+static inline vec v_load_windows(const int16_t *const *p, ptrdiff_t at)
+{
+    const __m256i low = _mm256_loadu2_m128i((const __m128i *)(p[1] + at), (const __m128i *)(p[0] + at));
+    const __m256i high = _mm256_loadu2_m128i((const __m128i *)(p[3] + at), (const __m128i *)(p[2] + at));
+    return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
+}
 static inline void v_store(void *p, vec v) { _mm512_storeu_si512(p, v); }
 static inline vec v_set1(int16_t x) { return _mm512_set1_epi16(x); }
 static inline vec v_zero(void) { return _mm512_setzero_si512(); }

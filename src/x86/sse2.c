@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Part of every x86-64 processor; on others compiled with -msse2 and called only where the processor has it. */
 #include <emmintrin.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define V_LANES 8
 typedef __m128i vec;
 
 static inline vec v_load(const void *p) { return _mm_loadu_si128((const __m128i *)p); }
+/* 8 lanes each from several places */
+static inline vec v_load_windows(const int16_t *const *p, ptrdiff_t at) { return v_load(p[0] + at); }
 static inline void v_store(void *p, vec v) { _mm_storeu_si128((__m128i *)p, v); }
 static inline vec v_set1(int16_t x) { return _mm_set1_epi16(x); }
 static inline vec v_zero(void) { return _mm_setzero_si128(); }

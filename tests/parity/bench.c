@@ -45,7 +45,7 @@ static void bench_operation(const operation *op, const subject *s, const asj_ops
         if (!available[v])
             continue;
         qsort(times[v], RUNS, sizeof times[v][0], by_value);
-        printf("%-12s %-10s %10.3f ns/px %8.2f x\n", op->name, asj_ops_name(v), 1e6 * times[v][RUNS / 2] / op->pixels(s),
+        printf("%-14s %-10s %10.3f ns/px %8.2f x\n", op->name, asj_ops_name(v), 1e6 * times[v][RUNS / 2] / op->pixels(s),
                times[0][RUNS / 2] / times[v][RUNS / 2]);
     }
 }

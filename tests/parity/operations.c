@@ -17,25 +17,32 @@ static double one_run(const subject *s)
     return ASJ_LANES;
 }
 
-static size_t sums_size(const subject *s)
+/* Every third run of the row has candidates, and not the same ones. */
+static void choose_candidates(const subject *s, uint16_t *masks)
 {
-    size_t count = 0;
-    for (int32_t i = 0; i < s->isotropic.radius_count; i++)
-        count += (size_t)s->isotropic.radii[i].sectors.count;
-    return count * ASJ_LANES * sizeof(uint16_t);
+    synth_random random = s->random;
+    for (int32_t b = 0; b < s->frame.blocks; b++)
+        masks[b] = synth_random_unit(&random) < 0.4 ? (uint16_t)(synth_random_bits(&random) & synth_random_bits(&random)) : 0;
+    asj_field_cut(&s->frame, 0, s->frame.blocks, masks);
 }
 
-static void run_sums(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
+static double one_row(const subject *s)
 {
+    return s->frame.width;
+}
+
+static size_t row_size(const subject *s)
+{
+    return (size_t)s->frame.width * sizeof(asj_isotropic_junction);
+}
+
+static void run_row(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
+{
+    uint16_t masks[512];
     int32_t x, y;
-    uint16_t *sums = output;
     choose(s, &x, &y);
-    const ptrdiff_t at = y * s->frame.stride + x;
-    for (int32_t i = 0; i < s->isotropic.radius_count; i++) {
-        const asj_sectors *sectors = &s->isotropic.radii[i].sectors;
-        ops->sector_sums(sectors, s->frame.gradient_x + at, s->frame.gradient_y + at, s->frame.stride, scratch, sums);
-        sums += (size_t)sectors->count * ASJ_LANES;
-    }
+    choose_candidates(s, masks);
+    ops->isotropic_row(&s->isotropic, &s->frame, y, masks, scratch, output);
 }
 
 static size_t block_size(const subject *s)
@@ -78,8 +85,8 @@ static void run_tiles(const asj_ops *ops, const subject *s, uint16_t *scratch, v
 }
 
 const operation operations[] = {
-    {"sector sums", sums_size, one_run, run_sums},
     {"field block", block_size, one_run, run_block},
+    {"isotropic row", row_size, one_row, run_row},
     {"field tile", tile_size, tile_pixels, run_tiles},
 };
 const size_t operation_count = sizeof operations / sizeof operations[0];
