@@ -21,8 +21,8 @@ typedef struct asj_linear {
 /* Twice the signed area of the frame's triangle, px^2. */
 double asj_affine_area(const asj_affine_frame *frame);
 
-/* The linear part of the map that takes frame 1 to frame 2, and its inverse: a1 -> a2, b1 -> b2. Returns 0, and writes nothing, when one
- * of the frames is degenerate (area below 1 px^2 or not finite) or the pair mirrors. */
+/* The linear part of the map that takes frame 1 to frame 2, and its inverse: a1 -> a2, b1 -> b2. Returns 0, and writes nothing,
+ * when one of the frames is degenerate (area below 1 px^2 or not finite) or the pair mirrors. */
 int32_t asj_affine_between(const asj_affine_frame *frame1, const asj_affine_frame *frame2, asj_linear *map);
 
 /* The inverse of a 2x2 matrix; returns 0 when it is singular (|determinant| < 1e-12). */

@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 7, alignment: the affine map of a candidate pair, refined on the images.
  *
- * The map from branch ends is as wrong as the ends are: 5 % in a length, a degree in a direction. For a true pair a few Gauss-Newton
- * steps on a disc around the junction find the map under which both images agree; for a false one nothing is found. Afterwards the
- * correlation tells them apart far better than before, the map predicts where neighbours must be (consensus.c), and the location in the
- * other image is good to a fraction of a pixel.
+ * The map from branch ends is as wrong as the ends are: 5 % in a length, a degree in a direction. For a true pair a few
+ * Gauss-Newton steps on a disc around the junction find the map under which both images agree; for a false one nothing is
+ * found. Afterwards the correlation tells them apart far better than before, the map predicts where neighbours must be
+ * (consensus.c), and the location in the other image is good to a fraction of a pixel.
  *
  * Inverse compositional form (Baker and Matthews 2004): derivatives belong to the template and are computed once for each place,
  * and a step costs one sampling and eight products. Gain and offset: template and source are both brought to zero mean and unit
  * norm, and the derivatives are made orthogonal to the template and the constant, which is the Gauss-Newton step of correlation.
- * Levenberg damping: 1 % of the mean curvature in t_x and t_y; the linear part is scaled by the radius, so that the same number fits it.
+ * Levenberg damping: 1 % of the mean curvature in t_x and t_y; the linear part is scaled by the radius, so that the same number
+ * fits it.
  *
- * Which image is the template: the one in which the corner is smaller (asj_align_candidates), so that the other is sampled down, never
- * up, and swapping the images changes nothing.
+ * Which image is the template: the one in which the corner is smaller (asj_align_candidates), so that the other is sampled
+ * down, never up, and swapping the images changes nothing.
  *
  * Sums run in ASJ_LANE lanes in a fixed order: the same bits on any machine, and compilers can use vectors. */
 #include "align.h"
@@ -265,7 +266,8 @@ void asj_align(const asj_disc *disc, const asj_template *t, const asj_pyramid *p
 
 static int32_t template_is_first(const asj_candidate *c)
 {
-    return c->map.to[0] * c->map.to[3] - c->map.to[1] * c->map.to[2] >= c->map.from[0] * c->map.from[3] - c->map.from[1] * c->map.from[2];
+    const double *to = c->map.to, *from = c->map.from;
+    return to[0] * to[3] - to[1] * to[2] >= from[0] * from[3] - from[1] * from[2];
 }
 
 /* sqrt(d_c d_r): the geometric mean of the canonical distance and of the aligned one, floored; squared. */

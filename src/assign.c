@@ -2,9 +2,10 @@
 /* Step 7, choice: the ratio test (Lowe 2004; paper, end of section "ASJ Matching").
  *
  * Of all candidates at a place the best one stands for it: a junction has several L-junctions, and they must not compete with each
- * other. For the same reason the second best of the ratio test must have its partner at another place, farther than `separation` from
- * the partner of the best. With `mutual` the candidate must be the best of both its places, and the ratio is taken on both sides.
- * Without it several places of image 1 may choose one of image 2; then the one with the best score keeps it.
+ * other. For the same reason the second best of the ratio test must have its partner at another place, farther than
+ * `separation` from the partner of the best. With `mutual` the candidate must be the best of both its places, and the ratio is
+ * taken on both sides. Without it several places of image 1 may choose one of image 2; then the one with the best score keeps
+ * it.
  *
  * The ratio is that of scores, best over second: of distances, second over best, when no neighbours are asked. */
 #include "assign.h"
@@ -95,7 +96,8 @@ asj_status asj_assign(asj_context *context, const asj_match_options *options, co
     winner *winners1 = asj_allocate(memory, c1->place_count, sizeof *winners1);
     winner *winners2 = asj_allocate(memory, c2->place_count, sizeof *winners2);
     uint32_t *keeper = asj_allocate_zero(memory, c2->place_count, sizeof *keeper);
-    asj_status status = winners1 && winners2 && keeper ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory to choose matches");
+    asj_status status = winners1 && winners2 && keeper ? ASJ_OK
+                                                       : asj_fail(context, ASJ_ERROR_MEMORY, "no memory to choose matches");
     if (status == ASJ_OK)
         status = asj_place_index_create(context, c1, candidates, 1, &index1);
     if (status == ASJ_OK)

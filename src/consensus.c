@@ -2,12 +2,13 @@
 /* Step 7, agreement between neighbouring matches.
  *
  * In rooms one corner looks like another, so appearance alone leaves several partners to choose from. But each candidate carries an
- * affine map, which says where its neighbours must be and how they must be distorted. True candidates agree with their true neighbours;
- * false ones agree with nothing, or with fewer. No epipolar geometry is estimated: agreement is asked for between near neighbours only,
- * where a surface is nearly flat and perspective nearly affine, and it has to be rough only (`neighbour_tolerance` of the distance).
+ * affine map, which says where its neighbours must be and how they must be distorted. True candidates agree with their true
+ * neighbours; false ones agree with nothing, or with fewer. No epipolar geometry is estimated: agreement is asked for between
+ * near neighbours only, where a surface is nearly flat and perspective nearly affine, and it has to be rough only
+ * (`neighbour_tolerance` of the distance).
  *
- * Agreement of candidates c and d: with e_c, e_d the errors with which their maps predict each other's location, in image 2 and with the
- * inverse maps in image 1, and E the Frobenius norm,
+ * Agreement of candidates c and d: with e_c, e_d the errors with which their maps predict each other's location, in image 2 and
+ * with the inverse maps in image 1, and E the Frobenius norm,
  *
  *     r^2 = max over both images of [ (e_c + e_d) / 2 / (3 px + neighbour_tolerance * distance) ]^2
  *         + max over both directions of  |A_c - A_d|_E^2 / (map_tolerance^2 |A_c|_E |A_d|_E),
@@ -16,7 +17,7 @@
  * Relaxation labelling (Rosenfeld, Hummel and Zucker 1976), a few Jacobi steps. With a = (least distance among the competitors /
  * own distance)^2 x similarity, competitors being the candidates of the same place in either image:
  *
- *     support = half the sum, over the nearest places in image 1 and in image 2, of the largest w x confidence among their candidates,
+ *     support = half the sum, over the nearest places in image 1 and in image 2, of the largest w x confidence of their candidates,
  *     score = a (0.2 + support),     confidence = score / max(score of the best competitor, minimum_support),
  *
  * so that a place speaks with one voice, and places where nothing is sure hardly speak. 0.2 lets the first step be led by
@@ -57,7 +58,8 @@ void asj_place_index_free(asj_memory *memory, asj_place_index *index)
 
 /* --- agreement -------------------------------------------------------------------------------------------------------------- */
 
-/* Mean error of both predictions over what is allowed, squared. (dx, dy) leads from c to d in the image that the maps start from. */
+/* Mean error of both predictions over what is allowed, squared. (dx, dy) leads from c to d in the image that the maps start
+ * from. */
 static double misprediction(const double *map_c, const double *map_d, double dx, double dy, double ex, double ey, double tolerance)
 {
     double distance = sqrt(ex * ex + ey * ey), allowed = PIXELS + tolerance * distance;

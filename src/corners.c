@@ -3,18 +3,19 @@
  *
  * Length hypotheses. A branch that passes other junctions may end at one of them in the other image: occlusion, weak contrast and
  * crossing lines all cut or prolong the scan. So besides its own length a branch is given, longest first, the distances of other
- * junctions that lie within 3 px of it, at least 10 px from its start and 8 px before its end, and 4 px apart. Every combination of both
- * branches' lengths is one frame.
+ * junctions that lie within 3 px of it, at least 10 px from its start and 8 px before its end, and 4 px apart. Every
+ * combination of both branches' lengths is one frame.
  *
  * A place is a location. Matches are unique by place, and "another place" in the ratio test means farther than `separation`.
- * Neighbours of a place are the nearest others farther than `separation`, so that a cluster of duplicates is no neighbour of itself. */
+ * Neighbours of a place are the nearest others farther than `separation`, so that a cluster of duplicates is no neighbour of
+ * itself. */
 #include "corners.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_OUTSIDE 20.0f   /* px: where branches meet may lie a little outside the image (the detector moves 10 px at most, twice) */
+#define MOST_OUTSIDE 20.0f   /* px: where branches meet may lie a little outside the image */
 #define LEAST_LENGTH 3.0     /* px: a shorter branch has no direction worth a frame */
 #define RAY_DISTANCE 3.0     /* px */
 #define LEAST_START 10.0     /* px */

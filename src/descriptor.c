@@ -3,8 +3,8 @@
  * Arandjelovic and Zisserman 2012), so that the product of two is their Hellinger affinity, at most 1.
  *
  * No angle is computed: a gradient g between two neighbouring of the eight directions d_k, d_k+1 (45 degrees apart) is written as
- * g = alpha d_k + beta d_k+1 with alpha, beta >= 0, which are its votes. That is exact where + - * / are, and smooth across directions.
- * Samples vote into the four nearest cells, bilinearly. */
+ * g = alpha d_k + beta d_k+1 with alpha, beta >= 0, which are its votes. That is exact where + - * / are, and smooth across
+ * directions. Samples vote into the four nearest cells, bilinearly. */
 #include "descriptor.h"
 
 #include <math.h>

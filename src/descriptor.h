@@ -6,8 +6,8 @@
 
 #define ASJ_SIFT_LENGTH 128
 
-/* The gradient histogram of a size x size patch (size a multiple of 4) as a unit vector of ASJ_SIFT_LENGTH numbers in 1/ASJ_UNIT_ONE.
- * A flat patch gives zeros. */
+/* The gradient histogram of a size x size patch (size a multiple of 4) as a unit vector of ASJ_SIFT_LENGTH numbers in
+ * 1/ASJ_UNIT_ONE. A flat patch gives zeros. */
 void asj_descriptor_sift(const uint16_t *grey, int32_t size, int16_t *unit);
 
 #endif

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 7, distances of all pairs.
  *
- * Canonical patches: f and g are unit vectors, so |f - g|^2 = 2 - 2 <f, g>: all pairs are one product of two matrices, worked through in
- * blocks of rows. Of an L-junction with several length hypotheses the best pair of frames counts.
- * From each block the best partners of its rows and, row after row, of all columns are kept: memory for the full matrix is never needed.
- * Ties go to the smaller index, so the list depends on nothing but the input. */
+ * Canonical patches: f and g are unit vectors, so |f - g|^2 = 2 - 2 <f, g>: all pairs are one product of two matrices, worked
+ * through in blocks of rows. Of an L-junction with several length hypotheses the best pair of frames counts. From each block
+ * the best partners of its rows and, row after row, of all columns are kept: memory for the full matrix is never needed. Ties
+ * go to the smaller index, so the list depends on nothing but the input. */
 #include "distance.h"
 #include "descriptor.h"
 

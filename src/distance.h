@@ -40,7 +40,8 @@ asj_status asj_describe(asj_context *context, const asj_match_options *options, 
 asj_status asj_shortlist(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
                          asj_candidates *candidates);
 
-/* Fills distance2 and map of the pair candidate->i, candidate->j from the best pair of frames. Returns 0 when the pair gives no map. */
+/* Fills distance2 and map of the pair candidate->i, candidate->j from the best pair of frames. Returns 0 when the pair gives no
+ * map. */
 int32_t asj_compare(const asj_match_options *options, const asj_view *view1, const asj_view *view2, asj_candidate *candidate);
 
 /* Appends pairs (two numbers each), sorts by i, then j. */

@@ -2,10 +2,10 @@
 /* Step 7, guided pass: matches propose matches near them.
  *
  * The short list misses true partners where corners are many and alike, or where a branch's length is wrong. An accepted match says
- * where its neighbours must be, so the partners near that place are looked at as well, however they ranked: an L-junction is paired with
- * those that at least two of the eight matches nearest to it predict within 1.5 times the tolerance of consensus.c, with
- * both branches within 25 degrees of where the map turns them. What is proposed is then compared, aligned and judged like every other
- * candidate. Done from both images, so that swapping them changes nothing. */
+ * where its neighbours must be, so the partners near that place are looked at as well, however they ranked: an L-junction is
+ * paired with those that at least two of the eight matches nearest to it predict within 1.5 times the tolerance of consensus.c,
+ * with both branches within 25 degrees of where the map turns them. What is proposed is then compared, aligned and judged like
+ * every other candidate. Done from both images, so that swapping them changes nothing. */
 #include "guided.h"
 #include "align.h"
 
@@ -145,8 +145,8 @@ static int32_t known(const asj_candidate *list, size_t count, uint32_t i, uint32
 }
 
 /* Appends what `side` proposes to `fresh`. */
-static asj_status collect(asj_context *context, const proposals *all, uint32_t count, int32_t side, const asj_candidates *candidates,
-                          asj_candidates *fresh)
+static asj_status collect(asj_context *context, const proposals *all, uint32_t count, int32_t side,
+                          const asj_candidates *candidates, asj_candidates *fresh)
 {
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t k = 0; k < all[i].count; k++) {
@@ -154,7 +154,8 @@ static asj_status collect(asj_context *context, const proposals *all, uint32_t c
             if (all[i].votes[k] < VOTES || known(candidates->list, candidates->count, first, second))
                 continue;
             void *list = fresh->list;
-            asj_status status = asj_grow(&context->memory, &list, &fresh->capacity, fresh->count + 1, sizeof *fresh->list, fresh->count);
+            asj_status status = asj_grow(&context->memory, &list, &fresh->capacity, fresh->count + 1, sizeof *fresh->list,
+                                         fresh->count);
             if (status != ASJ_OK)
                 return asj_fail(context, status, "no memory for the guided pass");
             fresh->list = list;
@@ -165,8 +166,8 @@ static asj_status collect(asj_context *context, const proposals *all, uint32_t c
     return ASJ_OK;
 }
 
-static asj_status one_side(asj_context *context, const asj_match_options *options, const asj_corners *mine, const asj_corners *theirs,
-                           int32_t side, const guide *guides, size_t guide_count, const asj_candidates *candidates,
+static asj_status one_side(asj_context *context, const asj_match_options *options, const asj_corners *mine,
+                           const asj_corners *theirs, int32_t side, const guide *guides, size_t guide_count, const asj_candidates *candidates,
                            asj_candidates *fresh)
 {
     uint32_t *first = NULL, *l = NULL;
@@ -227,7 +228,8 @@ static asj_status append(asj_context *context, const asj_match_options *options,
     const size_t before = candidates->count;
     asj_candidates_sort(fresh);
     compare_all(context, options, view1, view2, fresh);
-    asj_status status = asj_grow(&context->memory, &list, &candidates->capacity, before + fresh->count, sizeof *candidates->list, before);
+    asj_status status = asj_grow(&context->memory, &list, &candidates->capacity, before + fresh->count, sizeof *candidates->list,
+                                 before);
     if (status != ASJ_OK)
         return asj_fail(context, status, "no memory for %zu candidates", before + fresh->count);
     candidates->list = list;

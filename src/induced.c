@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 7 as the paper has it: the neighbourhood of each junction, a square of fixed size in pixels, is carried into the other image by
- * the pair's map H, and back by its inverse from the other junction; D = D~(P(j_n), H P(j_n)) + D~(P(j_m), H^-1 P(j_m)), where D~ is the L2
- * distance of the grey levels, or of SIFT descriptors.
+/* Step 7 as the paper has it: the neighbourhood of each junction, a square of fixed size in pixels, is carried into the other
+ * image by the pair's map H, and back by its inverse from the other junction; D = D~(P(j_n), H P(j_n)) + D~(P(j_m), H^-1
+ * P(j_m)), where D~ is the L2 distance of the grey levels, or of SIFT descriptors.
  *
- * Kept for comparison; canonical patches (patch.c) cost a hundredth. Departure: a pair is dropped when more than a quarter of a warped
- * square lies outside its image (the paper does not say what happens there). */
+ * Kept for comparison; canonical patches (patch.c) cost a hundredth. Departure: a pair is dropped when more than a quarter of a
+ * warped square lies outside its image (the paper does not say what happens there). */
 #include "descriptor.h"
 #include "distance.h"
 

@@ -103,7 +103,8 @@ static asj_status refine(match_run *m)
         size_t added = 0;
         status = asj_progress(m->context, ASJ_STAGE_ALIGN, 0.85);
         if (status == ASJ_OK)
-            status = asj_guided(m->context, m->options, &m->view[0], &m->view[1], &m->candidates, m->choices, m->choice_count, &added);
+            status = asj_guided(m->context, m->options, &m->view[0], &m->view[1], &m->candidates, m->choices, m->choice_count,
+                                &added);
         stop_watch(m, ASJ_STAGE_ALIGN);
         if (added == 0)
             break;

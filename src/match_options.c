@@ -28,7 +28,8 @@ static const asj_option_info rows[] = {
     NUMBER(minimum_support, "", 0, 64, 1.25, 0, "neighbouring matches that must agree with a match, each counted 0 to 1"),
     NUMBER(minimum_similarity, "", -1, 1, 0.6, -1, "correlation that the aligned discs of a match need"),
     INTEGER(neighbours, "", 0, 64, 32, 0, "nearest junctions asked for support; 0 = none are asked"),
-    NUMBER(neighbour_tolerance, "", 0.01, 1, 0.1, 0.1, "error with which a match predicts its neighbour, as a part of the distance"),
+    NUMBER(neighbour_tolerance, "", 0.01, 1, 0.1, 0.1,
+           "error with which a match predicts its neighbour, as a part of the distance"),
     NUMBER(map_tolerance, "", 0.05, 5, 0.5, 0.5, "relative difference between the affine maps of neighbours"),
     INTEGER(guided_rounds, "", 0, 4, 1, 0, "times that accepted matches propose matches near them"),
     CHOICE(patches, 1, ASJ_PATCHES_CANONICAL, ASJ_PATCHES_INDUCED, patch_words,
@@ -99,9 +100,9 @@ asj_status asj_match_options_get(const asj_match_options *options, const char *k
     return asj_option_table_get(&table, options, key, text, text_size);
 }
 
-/* Measured on photographs (tests/accuracy/match_pairs.c): what the detector does for precision costs the matcher half of its matches and
- * gains it nothing, because a chance junction has no partner that agrees with its neighbours. So: weaker candidates, no strip or deviation
- * test, and corners that the line fit moves far (a blurred corner, a short branch) stay. */
+/* Measured on photographs (tests/accuracy/match_pairs.c): what the detector does for precision costs the matcher half of its
+ * matches and gains it nothing, because a chance junction has no partner that agrees with its neighbours. So: weaker
+ * candidates, no strip or deviation test, and corners that the line fit moves far (a blurred corner, a short branch) stay. */
 void asj_match_detect_options(asj_detect_options *options)
 {
     if (!options)

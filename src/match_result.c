@@ -22,8 +22,8 @@ static void refined_location(const asj_candidate *c, const asj_l_junction *l2, d
     *y = (double)l2->y + c->move2[1] - (c->map.to[2] * c->move1[0] + c->map.to[3] * c->move1[1]);
 }
 
-static void fill(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c, float ratio,
-                 asj_junction_match *m)
+static void fill(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c,
+                 float ratio, asj_junction_match *m)
 {
     const asj_l_junction *l1 = &view1->corners.l[c->i], *l2 = &view2->corners.l[c->j];
     const double *u1 = view1->corners.direction + 4 * (size_t)c->i, *u2 = view2->corners.direction + 4 * (size_t)c->j;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 7, patches: grey levels around an L-junction, brought into a form that does not depend on the viewpoint.
  *
- * In its own frame (location p, branch vectors a and b) an L-junction looks the same from everywhere, as far as the surface is flat:
- * x(u, v) = p + u a + v b. Sampling that once for each L-junction makes all pairs comparable by a product, where the paper warps a
- * neighbourhood for each pair. The pyramid level follows from the area of a sample's cell, so that a patch that shrinks the image is
- * not aliased.
+ * In its own frame (location p, branch vectors a and b) an L-junction looks the same from everywhere, as far as the surface is
+ * flat: x(u, v) = p + u a + v b. Sampling that once for each L-junction makes all pairs comparable by a product, where the
+ * paper warps a neighbourhood for each pair. The pyramid level follows from the area of a sample's cell, so that a patch that
+ * shrinks the image is not aliased.
  *
- * Why integers: planes, interpolation weights (8 bits), unit vectors (14 bits) and products are exact, so every back end can give the same
- * bits. The loss is below 1/256 of a grey level and 1e-4 of a correlation. */
+ * Why integers: planes, interpolation weights (8 bits), unit vectors (14 bits) and products are exact, so every back end can
+ * give the same bits. The loss is below 1/256 of a grey level and 1e-4 of a correlation. */
 #include "patch.h"
 
 #include <math.h>
@@ -183,7 +183,8 @@ int32_t asj_pyramid_level(const asj_pyramid *pyramid, double area)
 
 /* --- sampling --------------------------------------------------------------------------------------------------------------- */
 
-int32_t asj_pyramid_sample(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count, uint16_t *grey)
+int32_t asj_pyramid_sample(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
+                           uint16_t *grey)
 {
     const int32_t width = pyramid->width[level], height = pyramid->height[level];
     const uint16_t *plane = pyramid->plane[level];

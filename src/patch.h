@@ -10,8 +10,9 @@
 #define ASJ_PATCH_SIDE 24                                  /* largest */
 #define ASJ_PATCH_SAMPLES (ASJ_PATCH_SIDE * ASJ_PATCH_SIDE)
 
-/* Level l holds means of 2^l x 2^l pixels; its pixel (i, j) is centred at ((i + 0.5) 2^l - 0.5, (j + 0.5) 2^l - 0.5) of level 0. Grey levels
- * in 1/128. Each plane has one more column and row than its size: copies of the last ones, so that interpolation needs no test. */
+/* Level l holds means of 2^l x 2^l pixels; its pixel (i, j) is centred at ((i + 0.5) 2^l - 0.5, (j + 0.5) 2^l - 0.5) of level
+ * 0. Grey levels in 1/128. Each plane has one more column and row than its size: copies of the last ones, so that interpolation
+ * needs no test. */
 typedef struct asj_pyramid {
     int32_t levels;
     int32_t width[ASJ_PYRAMID_LEVELS];
@@ -24,20 +25,22 @@ typedef struct asj_pyramid {
 asj_status asj_pyramid_create(asj_context *context, const asj_image *image, double smoothing, asj_pyramid *pyramid);
 void asj_pyramid_free(asj_memory *memory, asj_pyramid *pyramid);
 
-/* The level on which neighbouring samples that span `area` px^2 (of level 0) are closest to 1 px apart, a little on the fine side. */
+/* The level on which neighbouring samples that span `area` px^2 (of level 0) are closest to 1 px apart, a little on the fine
+ * side. */
 int32_t asj_pyramid_level(const asj_pyramid *pyramid, double area);
 
 /* Grey levels (1/128) at x[i], y[i] (level 0 pixels), bilinear in 1/256 px; outside the image its border continues. Returns
  * how many lay inside. */
-int32_t asj_pyramid_sample(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count, uint16_t *grey);
+int32_t asj_pyramid_sample(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
+                           uint16_t *grey);
 
-/* Samples size x size grey levels of p + u a + v b, u (along the rows) and v equally spaced in [start, end]. Returns 0 when more than a
- * quarter of them lie outside the image. */
+/* Samples size x size grey levels of p + u a + v b, u (along the rows) and v equally spaced in [start, end]. Returns 0 when
+ * more than a quarter of them lie outside the image. */
 int32_t asj_patch_sample(const asj_pyramid *pyramid, const asj_affine_frame *frame, int32_t size, double start, double end,
                          uint16_t *grey);
 
-/* Zero mean and unit norm, in units of 1/ASJ_UNIT_ONE: the product of two such patches over ASJ_UNIT_ONE^2 is their correlation. A floor of one
- * grey level is added to the standard deviation, so that flat patches correlate with nothing. */
+/* Zero mean and unit norm, in units of 1/ASJ_UNIT_ONE: the product of two such patches over ASJ_UNIT_ONE^2 is their
+ * correlation. A floor of one grey level is added to the standard deviation, so that flat patches correlate with nothing. */
 #define ASJ_UNIT_ONE 16384
 void asj_patch_normalise(const uint16_t *grey, int32_t samples, int16_t *unit);
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 7, line segments: which parts of two matched branches correspond, and the matches as segment matches.
  *
- * A branch ends where the scan lost it: at a corner, behind something, or where contrast gave out. Only ends at the same scene point
- * make a segment match. With s = |A u| the magnification of the refined map along the branch (u its unit vector in image 1), lengths
- * l1 and l2 agree when s l1 and l2 differ by a factor of at most 1 + end_tolerance. Of all combinations of the branches' length hypotheses
- * that agree, the longest is taken. When none agrees, the longer branch is cut where the map puts the other's end: the
- * part that both images show. */
+ * A branch ends where the scan lost it: at a corner, behind something, or where contrast gave out. Only ends at the same scene
+ * point make a segment match. With s = |A u| the magnification of the refined map along the branch (u its unit vector in image
+ * 1), lengths l1 and l2 agree when s l1 and l2 differ by a factor of at most 1 + end_tolerance. Of all combinations of the
+ * branches' length hypotheses that agree, the longest is taken. When none agrees, the longer branch is cut where the map puts
+ * the other's end: the part that both images show. */
 #include "segments.h"
 
 #include <math.h>

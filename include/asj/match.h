@@ -47,7 +47,7 @@ typedef struct asj_match_options {
     /* agreement between neighbouring matches: consensus.c, guided.c */
     int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 32; paper 0 */
     double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1.25; paper 0 */
-    double neighbour_tolerance;  /* where a match predicts its neighbour: error allowed, as a part of the distance. 0.01 .. 1; 0.1 */
+    double neighbour_tolerance;  /* error of a predicted neighbour, as a part of the distance. 0.01 .. 1; 0.1 */
     double map_tolerance;        /* relative difference allowed between the affine maps of neighbours. 0.05 .. 5; 0.5 */
     int32_t guided_rounds;       /* times that accepted matches propose matches near them. 0 .. 4; 1; paper 0 */
     /* choice: assign.c */
@@ -55,7 +55,7 @@ typedef struct asj_match_options {
     double separation;           /* px: what is nearer is the same place; "another place" lies farther. 0 .. 100; 6; paper 0 */
     int32_t mutual;              /* 1 = each must be the other's best. 1; paper 0 */
     /* line segments: segments.c */
-    double end_tolerance;        /* branch ends correspond when the map brings their lengths together within this part. 0.01 .. 1; 0.12 */
+    double end_tolerance;        /* branch ends correspond when lengths agree within this part. 0.01 .. 1; 0.12 */
     double reserved[24];         /* zero */
 } asj_match_options;
 
@@ -108,7 +108,8 @@ typedef struct asj_match_result {
 /* Matches the junctions of two images: the pipeline of the paper, step 7. No epipolar geometry is estimated.
  *
  * image1, image2   views; only read, and only during the call
- * junctions1, 2    from asj_detect() or a file; may be NULL when the count is 0. Junctions with branches that differ in sharpness or
+ * junctions1, 2    from asj_detect() or a file; may be NULL when the count is 0. Junctions with branches that differ in
+ * sharpness or
  *                  certainty are all welcome: a false junction finds no partner, a missing one cannot be matched. So detect with
  *                  asj_match_detect_options()
  * options          NULL = preset `default`

@@ -3,8 +3,9 @@
  *
  *     match_pairs [options] PAIRS OUT [LINES]
  *
- * PAIRS/<name>/1.png and 2.png give OUT/<name>.csv, one line for each match: columns x1,y1,ax1,ay1,bx1,by1,x2,y2,ax2,ay2,bx2,by2, as a
- * scoring program reads them, and what else is known. LINES/<name>.csv: the segment matches, location left empty.
+ * PAIRS/<name>/1.png and 2.png give OUT/<name>.csv, one line for each match: columns
+ * x1,y1,ax1,ay1,bx1,by1,x2,y2,ax2,ay2,bx2,by2, as a scoring program reads them, and what else is known. LINES/<name>.csv: the
+ * segment matches, location left empty.
  *
  *     --preset paper         both presets of the library: detection and matching
  *     --detect KEY=VALUE     a detector option          --match KEY=VALUE    a matcher option
@@ -132,7 +133,8 @@ static int match_pair(const job *j, const char *name)
             fprintf(stderr, "match_pairs: %s: %s\n", name, asj_context_message(j->context));
     }
     if (failed == 0) {
-        printf("%-24s %5u %5u L-junctions %5u matches %8.1f ms (patches %.1f, distances %.1f, align %.1f, assign %.1f; %llu candidates)\n",
+        printf("%-24s %5u %5u L-junctions %5u matches %8.1f ms"
+               " (patches %.1f, distances %.1f, align %.1f, assign %.1f; %llu candidates)\n",
                name, r->l_junction_count1, r->l_junction_count2, r->match_count, r->total_ms, r->stage_ms[ASJ_STAGE_PATCHES],
                r->stage_ms[ASJ_STAGE_DISTANCES], r->stage_ms[ASJ_STAGE_ALIGN], r->stage_ms[ASJ_STAGE_ASSIGN],
                (unsigned long long)r->candidates);
@@ -204,7 +206,8 @@ int main(int count, char **arguments)
     asj_context_options_init(&context);
     int n = parse(count, arguments, &j, &context), failed = 0;
     if (n < 0) {
-        fprintf(stderr, "usage: match_pairs [--preset paper] [--detect KEY=VALUE] [--match KEY=VALUE] [--junctions SUFFIX] [--plain]"
+        fprintf(stderr, "usage: match_pairs [--preset paper] [--detect KEY=VALUE] [--match KEY=VALUE]"
+                        " [--junctions SUFFIX] [--plain]"
                         " [--threads N] PAIRS OUT [LINES]\n");
         return 2;
     }

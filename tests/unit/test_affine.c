@@ -8,7 +8,8 @@ static asj_affine_frame frame(int32_t n)
 {
     const double turn = 0.7 * n, opening = (20 + 140 * fmod(0.37 * n, 1)) * UNIT_PI / 180;
     const double a = 3 + 97 * fmod(0.61 * n, 1), b = 3 + 97 * fmod(0.29 * n, 1);
-    return (asj_affine_frame){10.0 * n, 400 - 3.0 * n, a * cos(turn), a * sin(turn), b * cos(turn + opening), b * sin(turn + opening)};
+    return (asj_affine_frame){10.0 * n, 400 - 3.0 * n, a * cos(turn), a * sin(turn),
+                              b * cos(turn + opening), b * sin(turn + opening)};
 }
 
 static void maps_the_branches(void **state)

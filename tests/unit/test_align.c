@@ -12,7 +12,8 @@ static double shade(double x, double y)
 }
 
 /* Image 2 shows at x' what image 1 shows at centre + m (x' - centre - shift). */
-static void make(asj_context *context, const double m[4], double shift_x, double shift_y, double gain, double offset, asj_pyramid *pyramid)
+static void make(asj_context *context, const double m[4], double shift_x, double shift_y, double gain, double offset,
+                 asj_pyramid *pyramid)
 {
     uint8_t *pixels = malloc((size_t)SIDE * SIDE);
     assert_non_null(pixels);
@@ -51,11 +52,13 @@ static void finds_a_known_map(void **state)
             assert_true(t.usable && t.solvable);
             assert_int_equal(asj_affine_invert(maps[n], inverse), 1);
             /* start: 8 % wrong in one length, 3 degrees in the direction of the other, location 1.7 px off */
-            const double start[4] = {inverse[0] * 1.08, inverse[1] + 0.05 * inverse[0], inverse[2] * 1.08, inverse[3] + 0.05 * inverse[2]};
+            const double start[4] = {inverse[0] * 1.08, inverse[1] + 0.05 * inverse[0],
+                                     inverse[2] * 1.08, inverse[3] + 0.05 * inverse[2]};
             asj_align(&disc, &t, &second, start, 120, 120, 10, 5, &found);
             assert_true(found.moved);
             assert_true((double)found.similarity > (double)found.first);
-            assert_true((double)found.similarity > 0.9); /* the floors of one grey level cost 3 % at a contrast of 35, 6 % at half of it */
+            /* the floors of one grey level cost 3 % each at a contrast of 35, 6 % at half of it */
+            assert_true((double)found.similarity > 0.9);
             unit_near("x", (double)n, gain, found.x, 121.4, 0.1);
             unit_near("y", (double)n, gain, found.y, 119.1, 0.1);
             for (int k = 0; k < 4; k++)

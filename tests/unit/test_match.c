@@ -83,7 +83,8 @@ static void scene_make(const double m[4], double wrong, scene *s)
 static asj_match_result *match(asj_context *context, const scene *a, const scene *b, const asj_match_options *options)
 {
     asj_match_result *result = NULL;
-    assert_int_equal(asj_match(context, &a->image, a->junctions, a->count, &b->image, b->junctions, b->count, options, &result), ASJ_OK);
+    assert_int_equal(asj_match(context, &a->image, a->junctions, a->count, &b->image, b->junctions, b->count, options,
+                               &result), ASJ_OK);
     assert_non_null(result);
     return result;
 }
@@ -104,8 +105,9 @@ static void finds_the_corners_of_an_oblique_copy(void **state)
         const asj_junction *j2 = &b.junctions[m->junction2];
         unit_near("x2", n, 0, (double)m->x2, (double)j2->x, 0.3); /* both true; the map was 5 % wrong */
         unit_near("y2", n, 0, (double)m->y2, (double)j2->y, 0.3);
-        unit_near("affine x", n, 0, m->affine[0] * (double)m->x1 + m->affine[1] * (double)m->y1 + m->affine[2], (double)m->x2, 1e-3);
-        unit_near("affine y", n, 0, m->affine[3] * (double)m->x1 + m->affine[4] * (double)m->y1 + m->affine[5], (double)m->y2, 1e-3);
+        const double *h = m->affine, x1 = (double)m->x1, y1 = (double)m->y1;
+        unit_near("affine x", n, 0, h[0] * x1 + h[1] * y1 + h[2], (double)m->x2, 1e-3);
+        unit_near("affine y", n, 0, h[3] * x1 + h[4] * y1 + h[5], (double)m->y2, 1e-3);
         assert_true(n == 0 || r->matches[n - 1].distance <= m->distance);
         assert_int_equal(m->end_a, ASJ_END_BOTH);
         assert_int_equal(m->end_b, ASJ_END_BOTH);
@@ -240,7 +242,8 @@ static void refuse(asj_context *context, const scene *a, const scene *b, const a
                    const char *word)
 {
     asj_match_result *r = NULL;
-    assert_int_equal(asj_match(context, &a->image, a->junctions, a->count, &b->image, b->junctions, b->count, options, &r), expected);
+    assert_int_equal(asj_match(context, &a->image, a->junctions, a->count, &b->image, b->junctions, b->count, options, &r),
+                     expected);
     assert_null(r);
     assert_non_null(strstr(asj_context_message(context), word));
 }
@@ -294,10 +297,10 @@ static void segments_of_matches(void **state)
     asj_junction_match matches[2];
     memset(matches, 0, sizeof matches);
     /* the same 100 px line seen from both its ends, and from each a second branch, one of them cut */
-    matches[0] = (asj_junction_match){.x1 = 10, .y1 = 10, .ax1 = 110, .ay1 = 10, .bx1 = 10, .by1 = 60, .x2 = 20, .y2 = 20, .ax2 = 120,
-                                      .ay2 = 20, .bx2 = 20, .by2 = 70, .end_a = ASJ_END_BOTH, .end_b = ASJ_END_CUT};
-    matches[1] = (asj_junction_match){.x1 = 109, .y1 = 11, .ax1 = 12, .ay1 = 10, .bx1 = 110, .by1 = 90, .x2 = 119, .y2 = 21, .ax2 = 22,
-                                      .ay2 = 20, .bx2 = 120, .by2 = 100, .end_a = ASJ_END_BOTH, .end_b = ASJ_END_INNER};
+    matches[0] = (asj_junction_match){.x1 = 10, .y1 = 10, .ax1 = 110, .ay1 = 10, .bx1 = 10, .by1 = 60, 
+                                      .x2 = 20, .y2 = 20, .ax2 = 120, .ay2 = 20, .bx2 = 20, .by2 = 70, .end_a = ASJ_END_BOTH, .end_b = ASJ_END_CUT};
+    matches[1] = (asj_junction_match){.x1 = 109, .y1 = 11, .ax1 = 12, .ay1 = 10, .bx1 = 110, .by1 = 90, 
+                                      .x2 = 119, .y2 = 21, .ax2 = 22, .ay2 = 20, .bx2 = 120, .by2 = 100, .end_a = ASJ_END_BOTH, .end_b = ASJ_END_INNER};
     const asj_match_result result = {.matches = matches, .match_count = 2};
     asj_segment_match s[4];
     assert_int_equal(asj_match_segments(&result, ASJ_END_CUT, s, 4), 3);

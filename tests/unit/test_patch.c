@@ -220,7 +220,8 @@ static void sift_votes_for_the_direction(void **state)
             double expected = k == low ? alpha / (alpha + beta) : k == high ? beta / (alpha + beta) : 0;
             unit_near("share", degrees, k, inner[k] * (double)inner[k] / sum, expected, 0.01);
         }
-        unit_near("norm", degrees, 0, asj_patch_product(unit, unit, ASJ_SIFT_LENGTH) / ((double)ASJ_UNIT_ONE * ASJ_UNIT_ONE), 1, 1e-3);
+        const double one = (double)ASJ_UNIT_ONE * ASJ_UNIT_ONE;
+        unit_near("norm", degrees, 0, asj_patch_product(unit, unit, ASJ_SIFT_LENGTH) / one, 1, 1e-3);
     }
 }
 
