@@ -167,8 +167,8 @@ static asj_status collect(asj_context *context, const proposals *all, uint32_t c
 }
 
 static asj_status one_side(asj_context *context, const asj_match_options *options, const asj_corners *mine,
-                           const asj_corners *theirs, int32_t side, const guide *guides, size_t guide_count, const asj_candidates *candidates,
-                           asj_candidates *fresh)
+                           const asj_corners *theirs, int32_t side, const guide *guides, size_t guide_count,
+                           const asj_candidates *candidates, asj_candidates *fresh)
 {
     uint32_t *first = NULL, *l = NULL;
     proposals *all = asj_allocate_zero(&context->memory, mine->count, sizeof *all);

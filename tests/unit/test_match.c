@@ -297,10 +297,12 @@ static void segments_of_matches(void **state)
     asj_junction_match matches[2];
     memset(matches, 0, sizeof matches);
     /* the same 100 px line seen from both its ends, and from each a second branch, one of them cut */
-    matches[0] = (asj_junction_match){.x1 = 10, .y1 = 10, .ax1 = 110, .ay1 = 10, .bx1 = 10, .by1 = 60, 
-                                      .x2 = 20, .y2 = 20, .ax2 = 120, .ay2 = 20, .bx2 = 20, .by2 = 70, .end_a = ASJ_END_BOTH, .end_b = ASJ_END_CUT};
-    matches[1] = (asj_junction_match){.x1 = 109, .y1 = 11, .ax1 = 12, .ay1 = 10, .bx1 = 110, .by1 = 90, 
-                                      .x2 = 119, .y2 = 21, .ax2 = 22, .ay2 = 20, .bx2 = 120, .by2 = 100, .end_a = ASJ_END_BOTH, .end_b = ASJ_END_INNER};
+    matches[0] = (asj_junction_match){.x1 = 10, .y1 = 10, .ax1 = 110, .ay1 = 10, .bx1 = 10, .by1 = 60,
+                                      .x2 = 20, .y2 = 20, .ax2 = 120, .ay2 = 20, .bx2 = 20, .by2 = 70,
+                                      .end_a = ASJ_END_BOTH, .end_b = ASJ_END_CUT};
+    matches[1] = (asj_junction_match){.x1 = 109, .y1 = 11, .ax1 = 12, .ay1 = 10, .bx1 = 110, .by1 = 90,
+                                      .x2 = 119, .y2 = 21, .ax2 = 22, .ay2 = 20, .bx2 = 120, .by2 = 100,
+                                      .end_a = ASJ_END_BOTH, .end_b = ASJ_END_INNER};
     const asj_match_result result = {.matches = matches, .match_count = 2};
     asj_segment_match s[4];
     assert_int_equal(asj_match_segments(&result, ASJ_END_CUT, s, 4), 3);
