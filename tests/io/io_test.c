@@ -4,6 +4,7 @@
 
 #include <dirent.h>
 #include <png.h>
+#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -242,4 +243,30 @@ void become_root(void)
 {
     if (was_root && seteuid(0))
         abort();
+}
+
+static int comma_is_written(void)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.1f", 0.5);
+    return strcmp(text, "0,5") == 0;
+}
+
+int set_comma_locale(void)
+{
+    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8", "ru_RU.UTF-8", "pt_BR.UTF-8"};
+    char command[2048], place[] = "/tmp/asj-locale-XXXXXX";
+    size_t i;
+    int made;
+
+    for (i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (setlocale(LC_ALL, names[i]))
+            return comma_is_written();
+    if (!mkdtemp(place))
+        return 0;
+    snprintf(command, sizeof command, "localedef -i de_DE -f UTF-8 %s/de_DE.UTF-8 >/dev/null 2>&1", place);
+    setenv("LOCPATH", place, 1);
+    made = !system(command) && setlocale(LC_ALL, "de_DE.UTF-8") && comma_is_written();
+    snprintf(command, sizeof command, "rm -r %s", place);
+    return !system(command) && made;
 }

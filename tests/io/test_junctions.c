@@ -7,7 +7,6 @@
 
 #include <glob.h>
 #include <jansson.h>
-#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -396,38 +395,12 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test_setup(the_authors_files_are_read, fresh),
 };
 
-/* Sets a locale with a decimal comma; one is made in a folder of its own where none is installed but its sources are. */
-static int set_comma_locale(void)
-{
-    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8", "ru_RU.UTF-8", "pt_BR.UTF-8"};
-    char command[2048], folder[] = "/tmp/asj-locale-XXXXXX";
-    size_t i;
-    int made;
-
-    for (i = 0; i < sizeof names / sizeof names[0]; i++)
-        if (setlocale(LC_ALL, names[i]))
-            return localeconv()->decimal_point[0] == ',';
-    if (!mkdtemp(folder))
-        return 0;
-    snprintf(command, sizeof command, "localedef -i de_DE -f UTF-8 %s/de_DE.UTF-8 >/dev/null 2>&1", folder);
-    setenv("LOCPATH", folder, 1);
-    made = !system(command) && setlocale(LC_ALL, "de_DE.UTF-8") && localeconv()->decimal_point[0] == ',';
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    return !system(command) && made;
-}
-
 /* With the argument "comma" in a locale whose decimal separator is a comma; exit code 77 when there is none. */
 int main(int argument_count, char **arguments)
 {
-    char text[32];
-    if (argument_count > 1 && !strcmp(arguments[1], "comma")) {
-        if (!set_comma_locale()) {
-            puts("SKIPPED: no locale with a decimal comma is installed, and localedef cannot make one");
-            return 77;
-        }
-        snprintf(text, sizeof text, "%.1f", 0.5);
-        if (strcmp(text, "0,5"))
-            return 1;
+    if (argument_count > 1 && !strcmp(arguments[1], "comma") && !set_comma_locale()) {
+        puts("SKIPPED: no locale with a decimal comma is installed, and localedef cannot make one");
+        return 77;
     }
     return cmocka_run_group_tests_name("io: junctions", tests, make_folder, remove_folder);
 }
