@@ -42,8 +42,8 @@ typedef struct measured {
 static const char help[] =
     "usage: detection [--size WIDTHxHEIGHT]... [--threads N]... [--runs N] [key=value ...]\n"
     "\n"
-    "Detects the junctions of the sample room, rendered at each size, and prints milliseconds for each stage: the medians of N runs\n"
-    "(5 unless asked otherwise, 3 beyond 8 megapixels) after one that is not counted. key=value sets a detector option.\n"
+    "Detects the junctions of the sample room, rendered at each size, and prints milliseconds for each stage: the medians of N\n"
+    "runs (5 unless asked otherwise, 3 beyond 8 megapixels) after one that is not counted. key=value sets a detector option.\n"
     "\n"
     "context   bytes per pixel that the library has taken from its allocator at most, results apart (asj_context_memory)\n"
     "process   bytes per pixel by which the resident memory of the process has grown at most during the first call, the image and\n"
@@ -165,7 +165,8 @@ static void print_growth(const measured *small, const measured *large)
     printf("context: %.1f bytes per pixel plus %.1f MB", context, ((double)large->context - context * pixels_of(large)) * 1e-6);
     if (small->process && large->process) {
         const double process = ((double)large->process - (double)small->process) / step;
-        printf("; process: %.1f bytes per pixel plus %.1f MB", process, ((double)large->process - process * pixels_of(large)) * 1e-6);
+        const double constant = (double)large->process - process * pixels_of(large);
+        printf("; process: %.1f bytes per pixel plus %.1f MB", process, constant * 1e-6);
     }
     printf("  (between %.1f and %.1f megapixels, %d thread%s)\n", pixels_of(small) * 1e-6, pixels_of(large) * 1e-6,
            (int)large->threads, large->threads == 1 ? "" : "s");
