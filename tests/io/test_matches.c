@@ -30,7 +30,8 @@ static float random_float(float low, float high)
 
 static void fill_match(asj_junction_match *m, uint32_t k)
 {
-    float *const places[] = {&m->x1, &m->y1, &m->ax1, &m->ay1, &m->bx1, &m->by1, &m->x2, &m->y2, &m->ax2, &m->ay2, &m->bx2, &m->by2};
+    float *const places[] = {&m->x1, &m->y1, &m->ax1, &m->ay1, &m->bx1, &m->by1, &m->x2, &m->y2, &m->ax2, &m->ay2, &m->bx2,
+                             &m->by2};
     size_t i;
     m->l1 = k;
     m->l2 = CORNERS - 1 - k;
