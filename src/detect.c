@@ -19,6 +19,7 @@ void asj_detector_free(asj_memory *memory, asj_detector **pointer)
     asj_frame_free(memory, &detector->frame);
     asj_field_free(memory, &detector->field);
     asj_isotropic_free(memory, &detector->isotropic);
+    asj_scan_cache_free(memory, &detector->scan_cache);
     asj_release(memory, detector);
     *pointer = NULL;
 }

@@ -26,6 +26,7 @@
 #include "scan.h"
 
 #include "ops.h"
+#include "scan_cache.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -44,6 +45,7 @@ void asj_scan_prepare(const asj_context *context, const asj_detect_options *opti
     const double log_p = fmin(log(options->scan_epsilon) - log_tests, 0);
     const double threshold = asj_nfa_arc_threshold(context->nfa, log_p, 2 * options->arc_half_width + 1);
     scan->field = field;
+    scan->cache = NULL;
     scan->half_width = options->arc_half_width;
     scan->tolerance = options->scan_tolerance;
     scan->axial = options->scan_axial;
@@ -54,34 +56,28 @@ void asj_scan_prepare(const asj_context *context, const asj_detect_options *opti
     }
 }
 
-/* The local junctions of the pixels that rays visit are computed in runs of ASJ_LANES pixels when first needed, and kept in a small
- * cache of one thread: rays visit 5 to 10 % of an indoor photograph. */
-#define CACHE_RUNS 512
-
-typedef struct run {
-    int64_t key; /* 1 + number of the run; 0 = empty */
-    asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES];
-} run;
-
 typedef struct walker {
     const asj_ops *ops;
     const asj_scan *scan;
     const asj_frame *frame;
-    run *cache;
+    const asj_scan_cache *cache;
+    size_t thread;
     uint16_t *scratch;
 } walker;
 
+/* The branches of a pixel; NULL outside the image. */
 static const asj_field_branch *branches_at(const walker *w, int64_t x, int64_t y)
 {
     if (x < 0 || y < 0 || x >= w->frame->width || y >= w->frame->height)
         return NULL;
-    int64_t key = y * w->frame->blocks + x / ASJ_LANES + 1;
-    run *entry = &w->cache[(y * 31 + x / ASJ_LANES) % CACHE_RUNS];
-    if (entry->key != key) {
-        w->ops->field_block(w->scan->field, w->frame, (int32_t)(x / ASJ_LANES * ASJ_LANES), (int32_t)y, w->scratch, entry->branches);
-        entry->key = key;
+    const uint32_t key = (uint32_t)y * (uint32_t)w->frame->blocks + (uint32_t)x / ASJ_LANES + 1;
+    const size_t slot = (w->thread << w->cache->bits) + (key * 2654435769u >> (32 - w->cache->bits)); /* Fibonacci hashing */
+    if (w->cache->keys[slot] != key) {
+        w->ops->field_block(w->scan->field, w->frame, (int32_t)x / ASJ_LANES * ASJ_LANES, (int32_t)y, w->scratch,
+                            w->cache->branches[slot]);
+        w->cache->keys[slot] = key;
     }
-    return entry->branches[x % ASJ_LANES];
+    return w->cache->branches[slot][x % ASJ_LANES];
 }
 
 /* Direction of a sample of the arc, and where it is. */
@@ -225,9 +221,14 @@ asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_f
     const size_t scratch_size = asj_field_scratch(scan->field);
     asj_status status = ASJ_OK;
     arc_table *table = asj_allocate(&context->memory, 1, sizeof *table);
-    run *cache = asj_allocate_zero(&context->memory, (size_t)threads * CACHE_RUNS, sizeof *cache);
+    asj_scan_cache own = {0};
+    const asj_scan_cache *cache = scan->cache;
+    if (!cache) {
+        status = asj_scan_cache_prepare(context, frame, threads, &own);
+        cache = &own;
+    }
     uint16_t *scratch = asj_allocate(&context->memory, (size_t)threads * scratch_size, sizeof *scratch);
-    if (table && cache && scratch) {
+    if (status == ASJ_OK && table && scratch) {
         fill_table(table);
 #ifdef _OPENMP
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
@@ -237,14 +238,14 @@ asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_f
 #ifdef _OPENMP
             thread = (size_t)omp_get_thread_num();
 #endif
-            const walker w = {context->ops, scan, frame, cache + thread * CACHE_RUNS, scratch + thread * scratch_size};
+            const walker w = {context->ops, scan, frame, cache, thread, scratch + thread * scratch_size};
             walk(&w, table, &rays[i]);
         }
-    } else {
+    } else if (status == ASJ_OK) {
         status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for following rays");
     }
     asj_release(&context->memory, scratch);
-    asj_release(&context->memory, cache);
+    asj_scan_cache_free(&context->memory, &own);
     asj_release(&context->memory, table);
     return status;
 }

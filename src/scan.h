@@ -16,6 +16,7 @@ typedef struct asj_ray {
 /* What is the same for all rays of an image; made once for a set of options and an image size. */
 typedef struct asj_scan {
     const asj_field *field;
+    const struct asj_scan_cache *cache; /* of this image, for as many threads as the context has; NULL = one for each call */
     int32_t half_width;  /* 2 w + 1 samples in an arc */
     int32_t tolerance;   /* failing steps in a row that a ray survives */
     int32_t axial;       /* scan by axis as well */

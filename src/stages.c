@@ -47,6 +47,10 @@ asj_status asj_stage_prepare(asj_detection_run *d, int32_t width, int32_t height
     struct asj_detector *detector = d->detector = context->detector;
     asj_isotropic_set_size(d->options, width, height, &detector->isotropic);
     asj_scan_prepare(context, d->options, &detector->field, width, height, &detector->scan);
+    status = asj_scan_cache_prepare(context, &detector->frame, context->threads, &detector->scan_cache);
+    if (status != ASJ_OK)
+        return status;
+    detector->scan.cache = &detector->scan_cache;
     d->scratch_size = asj_field_scratch(&detector->field);
     if (detector->isotropic.scratch > d->scratch_size)
         d->scratch_size = detector->isotropic.scratch;

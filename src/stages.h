@@ -7,6 +7,7 @@
 #include "isotropic.h"
 #include "locate.h"
 #include "scan.h"
+#include "scan_cache.h"
 
 /* Tables and scratch of the detector, kept in a context from image to image. */
 struct asj_detector {
@@ -16,6 +17,7 @@ struct asj_detector {
     asj_field field;
     asj_isotropic isotropic;
     asj_scan scan;
+    asj_scan_cache scan_cache;
 };
 
 /* What one call of asj_detect() passes from step to step. */

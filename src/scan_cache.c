@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "scan_cache.h"
+
+#include <string.h>
+
+#define LEAST_BITS 8
+#define MOST_BITS 14      /* 4 MB */
+#define MOST_RUNS 131072  /* of all threads together: 32 MB */
+
+void asj_scan_cache_free(asj_memory *memory, asj_scan_cache *cache)
+{
+    asj_release(memory, cache->keys);
+    asj_release(memory, cache->branches);
+    memset(cache, 0, sizeof *cache);
+}
+
+asj_status asj_scan_cache_prepare(asj_context *context, const asj_frame *frame, int32_t threads, asj_scan_cache *cache)
+{
+    const int64_t runs = (int64_t)frame->blocks * frame->height;
+    int32_t bits = LEAST_BITS;
+    while (bits < MOST_BITS && (int64_t)1 << bits < runs && (int64_t)threads << (bits + 1) <= MOST_RUNS)
+        bits++;
+    const size_t count = (size_t)threads << bits;
+    if (count > cache->capacity) {
+        asj_scan_cache_free(&context->memory, cache);
+        cache->keys = asj_allocate(&context->memory, count, sizeof *cache->keys);
+        cache->branches = asj_allocate(&context->memory, count, sizeof *cache->branches);
+        if (!cache->keys || !cache->branches) {
+            asj_scan_cache_free(&context->memory, cache);
+            return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the local junctions of %zu runs", count);
+        }
+        cache->capacity = count;
+    }
+    cache->threads = threads;
+    cache->bits = bits;
+    memset(cache->keys, 0, count * sizeof *cache->keys);
+    return ASJ_OK;
+}
