@@ -45,9 +45,9 @@ typedef struct asj_match_options {
     double max_move;             /* px an alignment may move the junction. 0.5 .. 20; 5 */
     double minimum_similarity;   /* correlation that the aligned discs of a match need. -1 .. 1; 0.6; paper -1 */
     /* agreement between neighbouring matches: consensus.c, guided.c */
-    int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 32; paper 0 */
-    double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1.25; paper 0 */
-    double neighbour_tolerance;  /* error of a predicted neighbour, as a part of the distance. 0.01 .. 1; 0.1 */
+    int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 40; paper 0 */
+    double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1; paper 0 */
+    double neighbour_tolerance;  /* error of a predicted neighbour, as a part of the distance. 0.01 .. 1; 0.08 */
     double map_tolerance;        /* relative difference allowed between the affine maps of neighbours. 0.05 .. 5; 0.5 */
     int32_t guided_rounds;       /* times that accepted matches propose matches near them. 0 .. 4; 1; paper 0 */
     /* choice: assign.c */
