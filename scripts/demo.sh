@@ -11,6 +11,7 @@ usage: sh scripts/demo.sh [IMAGE...]
 
 Installs what is missing (apt-get), builds asj-cli in build/, and finds the junctions of the photographs given, or of a room that
 it renders itself. Writes to out/: NAME.csv with the junctions and NAME.plot.png with the junctions drawn over the picture.
+Of the room it renders two views, and finds the corners that they have in common: room-matches.csv, room-matches.png.
 Exit code: 0 done, 1 something failed, 2 wrong usage, 3 packages are missing and cannot be installed here.
 END
 }
@@ -60,6 +61,21 @@ report_corners() {
     [ "$2" -gt 0 ]
 }
 
+# Matches the two views of the sample room, and checks them against out/room/.
+match_rooms() {
+    rm -f out/room-matches.csv out/room-matches.png
+    say 'Running build/cli/asj-cli match -o out/room-matches.csv --plot out/room-matches.png out/room-1.png out/room-2.png'
+    build/cli/asj-cli match --quiet -o out/room-matches.csv --plot out/room-matches.png out/room-1.png out/room-2.png || return 1
+    set -- $(LC_ALL=C awk -F, -f scripts/matches.awk out/room/1.csv out/room/2.csv out/room/correspondences.csv out/room-matches.csv)
+    [ $# = 3 ] || fail 'cannot compare with the true correspondences'
+    say
+    say "out/room-1.png and out/room-2.png: $2 matches"
+    say "    look at  $out/room-matches.png"
+    say "    numbers  $out/room-matches.csv"
+    say "    $3 of the matches join the same corner of the room within 3 px (both views show $1 corners)"
+    [ "$3" -gt 0 ]
+}
+
 need
 say 'Building asj-cli in build/'
 configure build -Dio=enabled -Dcli=enabled -Dcairo=enabled -Dopencv=enabled -Dtests=auto || exit 1
@@ -93,4 +109,8 @@ for image in "$@"; do
         report_corners "$image" || status=1
     fi
 done
+if [ "$photographs" = 0 ]; then
+    say
+    match_rooms || status=1
+fi
 [ "$status" = 0 ] || fail 'something failed: see the messages above'
