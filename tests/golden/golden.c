@@ -97,7 +97,8 @@ static int detect(const scene_row *row, list *found)
     asj_detect_options options;
     uint8_t *pixels = picture(row, &width, &height);
     const asj_image image = {pixels, ASJ_FORMAT_GRAY8, width, height, 0, 0};
-    int good = pixels && asj_detect_options_preset(&options, row->preset) == ASJ_OK && asj_context_create(NULL, &context) == ASJ_OK &&
+    int good = pixels && asj_detect_options_preset(&options, row->preset) == ASJ_OK &&
+               asj_context_create(NULL, &context) == ASJ_OK &&
                asj_detect(context, &image, &options, &detection) == ASJ_OK;
     memset(found, 0, sizeof *found);
     for (uint32_t i = 0; good && i < detection->junction_count; i++)
@@ -218,8 +219,8 @@ static int all_in(const char *scene, const char *direction, const list *from, co
         }
         if (least <= 1)
             continue;
-        printf("%s: junction %zu at (%.4f, %.4f) with %d branches is %s; ", scene, i, (double)j->x, (double)j->y, (int)j->branch_count,
-               direction);
+        printf("%s: junction %zu at (%.4f, %.4f) with %d branches is %s; ", scene, i, (double)j->x, (double)j->y,
+               (int)j->branch_count, direction);
         if (nearest)
             printf("nearest (%.4f, %.4f) with %d branches: %s off by %.1f tolerances\n", (double)nearest->x, (double)nearest->y,
                    (int)nearest->branch_count, least_what, least);

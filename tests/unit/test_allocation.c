@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Memory that cannot be had: the n-th allocation fails, for every n. No crash, no leak, the right status, and the context works on. */
+/* Memory that cannot be had: the n-th allocation fails, for every n. No crash, no leak, the right status, and the context works
+ * on. */
 #include "unit_test.h"
 
 #include <asj/asj.h>

@@ -266,8 +266,10 @@ static void test_clock(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_defaults), cmocka_unit_test(test_refused), cmocka_unit_test(test_threads), cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_messages), cmocka_unit_test(test_log),     cmocka_unit_test(test_progress), cmocka_unit_test(test_clock),
+        cmocka_unit_test(test_defaults), cmocka_unit_test(test_refused), cmocka_unit_test(test_threads),
+            cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_messages), cmocka_unit_test(test_log),     cmocka_unit_test(test_progress),
+            cmocka_unit_test(test_clock),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

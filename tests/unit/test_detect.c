@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The whole detector: known corners, images without any, borders, threads, reuse, turned images, formats, progress, dumps, options. */
+/* The whole detector: known corners, images without any, borders, threads, reuse, turned images, formats, progress, dumps,
+ * options. */
 #include "unit_test.h"
 
 #include <asj/asj.h>
@@ -149,7 +150,7 @@ static void test_shapes(void **state)
         }
 }
 
-/* Inner crossings of a board of tiles, all of them, with four branches; a crossing is where branches of other junctions must pass. */
+/* Inner crossings of a board of tiles, with four branches each; a crossing is where branches of other junctions must pass. */
 static void test_crossings(void **state)
 {
     const fixture *f = *state;
@@ -186,7 +187,8 @@ static void check_nothing(const fixture *f, const uint8_t *pixels, int32_t width
 
 static void test_tiny_and_flat(void **state)
 {
-    static const int32_t sizes[][2] = {{1, 1}, {1, 2}, {2, 1}, {2, 2}, {3, 3}, {1, 500}, {500, 1}, {2, 300}, {300, 2}, {7, 7}, {15, 15}, {33, 17}};
+    static const int32_t sizes[][2] = {{1, 1}, {1, 2}, {2, 1}, {2, 2}, {3, 3}, {1, 500}, {500, 1}, {2, 300}, {300, 2}, {7, 7},
+                                       {15, 15}, {33, 17}};
     for (size_t i = 0; i < UNIT_COUNT(sizes); i++) {
         const int32_t width = sizes[i][0], height = sizes[i][1];
         static const double grays[] = {0, 127, 255};
@@ -216,9 +218,9 @@ static void test_noise(void **state)
 
 /* ---- borders ---- */
 
-/* A corner of a bright block at 1 to 8 px from each border, its sides leading inwards. The gradient is zero outside and sectors keep their
- * number of pixels, so evidence is lost there and none is invented: from 3 px on every corner is found, and what is found nearer than
- * that is at the right place. */
+/* A corner of a bright block at 1 to 8 px from each border, its sides leading inwards. The gradient is zero outside and sectors
+ * keep their number of pixels, so evidence is lost there and none is invented: from 3 px on every corner is found, and what is
+ * found nearer than that is at the right place. */
 static void test_borders(void **state)
 {
     const fixture *f = *state;
@@ -347,8 +349,8 @@ static void test_reuse(void **state)
     free(pixels);
 }
 
-/* Turned by 90 degrees the picture has the same junctions, turned. Bins of directions and scan lines are not symmetric under that turn,
- * so nearly all, and to a tenth of a pixel. */
+/* Turned by 90 degrees the picture has the same junctions, turned. Bins of directions and scan lines are not symmetric under that
+ * turn, so nearly all, and to a tenth of a pixel. */
 static void test_quarter_turn(void **state)
 {
     const fixture *f = *state;
@@ -398,7 +400,8 @@ static void test_formats(void **state)
         floats[i] = (float)pixels[i] / 255;
         memset(colours + 4 * i, pixels[i], 4);
     }
-    const asj_image images[] = {{words, ASJ_FORMAT_GRAY16, width, height, 0, 0}, {floats, ASJ_FORMAT_GRAY_FLOAT, width, height, 0, 0},
+    const asj_image images[] = {{words, ASJ_FORMAT_GRAY16, width, height, 0, 0},
+                                {floats, ASJ_FORMAT_GRAY_FLOAT, width, height, 0, 0},
                                 {colours, ASJ_FORMAT_RGBA8, width, height, 0, 0}, {colours, ASJ_FORMAT_BGRA8, width, height, 0, 0}};
     for (size_t i = 0; i < UNIT_COUNT(images); i++) {
         assert_int_equal(asj_detect(f->context, &images[i], NULL, &other), ASJ_OK);

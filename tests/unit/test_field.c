@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 2 against a naive evaluation: strengths by trigonometry on the definition of the sectors, suppression, threshold, interpolation,
- * candidates. */
+/* Step 2 against a naive evaluation: strengths by trigonometry on the definition of the sectors, suppression, threshold,
+ * interpolation, candidates. */
 #include "field.h"
 #include "unit_test.h"
 

@@ -36,8 +36,9 @@ static double local_mean(const asj_frame *frame, int32_t x, int32_t y)
     return sum / count;
 }
 
-/* The denominator D of g~ = g / D, and the largest relative error that the whole numbers of gradient.c can make in it: the norms are
- * rounded down to 1/256, epsilon to the nearest, 256 / (sigma_0 L) to the nearest whole number (93.47 to 93), the scale down. */
+/* The denominator D of g~ = g / D, and the largest relative error that the whole numbers of gradient.c can make in it: the norms
+ * are rounded down to 1/256, epsilon to the nearest, 256 / (sigma_0 L) to the nearest whole number (93.47 to 93), the scale
+ * down. */
 static double denominator(const asj_frame *frame, int32_t x, int32_t y, double epsilon, double *error)
 {
     const vector g = difference(frame, x, y);
@@ -100,7 +101,8 @@ static void noise_frame(fixture *f, int32_t width, int32_t height, double sd, ui
 /* Every window is clipped differently in small images; the border itself is the larger part of them. */
 static void test_sizes(void **state)
 {
-    static const int32_t sizes[][2] = {{1, 1}, {1, 2}, {2, 1}, {1, 9}, {9, 1}, {2, 2}, {3, 3}, {4, 5}, {5, 4}, {17, 3}, {3, 40}, {33, 21}};
+    static const int32_t sizes[][2] = {{1, 1}, {1, 2}, {2, 1}, {1, 9}, {9, 1}, {2, 2}, {3, 3}, {4, 5}, {5, 4}, {17, 3}, {3, 40},
+                                       {33, 21}};
     fixture *f = *state;
     for (size_t i = 0; i < UNIT_COUNT(sizes); i++) {
         asj_frame frame;

@@ -213,7 +213,8 @@ static void test_refused(void **state)
         image.height = sides[i];
         expect(*state, &image, ASJ_ERROR_IMAGE, "empty");
     }
-    static const int32_t limits[][2] = {{ASJ_MAX_SIDE + 1, 1}, {1, ASJ_MAX_SIDE + 1}, {INT32_MAX, INT32_MAX}, {ASJ_MAX_SIDE, ASJ_MAX_SIDE},
+    static const int32_t limits[][2] = {{ASJ_MAX_SIDE + 1, 1}, {1, ASJ_MAX_SIDE + 1}, {INT32_MAX, INT32_MAX},
+                                        {ASJ_MAX_SIDE, ASJ_MAX_SIDE},
                                         {32768, 16385}};
     for (size_t i = 0; i < UNIT_COUNT(limits); i++) {
         image = good;

@@ -65,7 +65,8 @@ static int by_omega(const void *a, const void *b)
 /* Maxima of z over Delta with z > 1, by junction-ness. */
 static int32_t naive_peaks(const asj_frame *frame, const asj_sectors *s, double tau, int32_t x, int32_t y, peak peaks[MOST])
 {
-    uint16_t *scratch = malloc(asj_sector_scratch(s) * sizeof *scratch), *sums = malloc((size_t)s->count * ASJ_LANES * sizeof *sums);
+    uint16_t *scratch = malloc(asj_sector_scratch(s) * sizeof *scratch);
+    uint16_t *sums = malloc((size_t)s->count * ASJ_LANES * sizeof *sums);
     int32_t z[MOST], found = 0;
     assert_non_null(scratch);
     assert_non_null(sums);
@@ -90,7 +91,8 @@ static int32_t naive_peaks(const asj_frame *frame, const asj_sectors *s, double 
 /* ln NFA = ln #J(M) + sum of ln F(t; J_i), t the least omega. */
 static double naive_nfa(const fixture *f, const asj_sectors *s, const peak *peaks, int32_t m)
 {
-    double log_nfa = asj_nfa_log_junction_tests(f->frame.width, f->frame.height, f->options.isotropic_radii, f->options.sector_width, m);
+    double log_nfa = asj_nfa_log_junction_tests(f->frame.width, f->frame.height, f->options.isotropic_radii,
+                                                f->options.sector_width, m);
     for (int32_t i = 0; i < m; i++)
         log_nfa += asj_nfa_log_sector_tail(f->context->nfa, peaks[m - 1].omega, s->size[peaks[i].sector]);
     return log_nfa;
@@ -196,7 +198,8 @@ static void test_nfa(void **state)
         uint32_t radii;
         int32_t branches;
         double epsilon;
-    } settings[] = {{1u << 5 | 1u << 7 | 1u << 10 | 1u << 14, 5, 1}, {1u << 3 | 1u << 4, 3, 1e-3}, {1u << 9, 2, 100}, {1u << 30, 4, 1}};
+    } settings[] = {{1u << 5 | 1u << 7 | 1u << 10 | 1u << 14, 5, 1}, {1u << 3 | 1u << 4, 3, 1e-3}, {1u << 9, 2, 100},
+                    {1u << 30, 4, 1}};
     fixture *f = *state;
     for (size_t i = 0; i < UNIT_COUNT(settings); i++) {
         int meaningful = 0, rejected = 0, nothing = 0;
@@ -209,6 +212,35 @@ static void test_nfa(void **state)
         assert_int_equal(nothing, 0);
     }
     asj_detect_options_init(&f->options);
+}
+
+/* A whole row at once: the records of its runs one after the other. */
+static void test_row(void **state)
+{
+    fixture *f = *state;
+    uint16_t masks[16];
+    asj_isotropic_junction row[16 * ASJ_LANES + 1], block[ASJ_LANES];
+    make(f, 1u << 5 | 1u << 7 | 1u << 10 | 1u << 14, 5);
+    uint16_t *scratch = malloc(f->test.scratch * sizeof *scratch);
+    assert_non_null(scratch);
+    for (int32_t y = 0; y < f->frame.height; y += 7) {
+        int32_t at = 0;
+        for (int32_t b = 0; b < f->frame.blocks; b++) /* full, empty and sparse runs; none beyond the image */
+            masks[b] = (uint16_t)((b + y) % 4 == 0 ? 0xffff : (b + y) % 4 == 1 ? 0 : every_other(b * ASJ_LANES, y));
+        masks[f->frame.blocks - 1] &= (uint16_t)((1u << (f->frame.width - (f->frame.blocks - 1) * ASJ_LANES)) - 1);
+        memset(row, 0x77, sizeof row);
+        asj_isotropic_row(&f->test, &f->frame, y, masks, scratch, row);
+        for (int32_t b = 0; b < f->frame.blocks; b++) {
+            int32_t count = 0;
+            asj_isotropic_block(&f->test, &f->frame, b * ASJ_LANES, y, masks[b], scratch, block);
+            for (int32_t i = 0; i < ASJ_LANES; i++)
+                count += masks[b] >> i & 1;
+            assert_memory_equal(&row[at], block, (size_t)count * sizeof *block);
+            at += count;
+        }
+        assert_int_equal(row[at].x, 0x7777);
+    }
+    free(scratch);
 }
 
 /* All radii at once, as the options allow. */
@@ -328,6 +360,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_nfa),
+        cmocka_unit_test(test_row),
         cmocka_unit_test(test_tables),
         cmocka_unit_test(test_out_of_memory),
         cmocka_unit_test(test_thin),

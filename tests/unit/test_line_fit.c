@@ -32,8 +32,8 @@ static int tear_down(void **state)
     return leaked;
 }
 
-/* A bar of parallel edges: `width` px across, its first edge `offset` px from the middle of the picture along the normal. HUGE_VAL: a
- * half plane. */
+/* A bar of parallel edges: `width` px across, its first edge `offset` px from the middle of the picture along the normal.
+ * HUGE_VAL: a half plane. */
 static void picture(const fixture *f, double angle, double offset, double width, double noise, asj_frame *frame)
 {
     synth_scene scene;
@@ -57,7 +57,8 @@ static asj_draft_branch branch_at(double angle, double offset)
     return branch;
 }
 
-/* Directions all around, edges up to a pixel beside the start, first angles up to 5 degrees off. No noise: what is left are pixels. */
+/* Directions all around, edges up to a pixel beside the start, first angles up to 5 degrees off. No noise: what is left are
+ * pixels. */
 static void test_clean_edges(void **state)
 {
     const fixture *f = *state;
@@ -184,7 +185,8 @@ static void test_nothing_there(void **state)
 static void test_extremes(void **state)
 {
     const fixture *f = *state;
-    static const asj_line_range ranges[] = {{2, 3, {4, 2, 1}, 3}, {0, 5000, {4.5, 4.5, 4.5}, 3}, {5, 8, {0.5, 0.5, 0.5}, 3}, {5, 4, {2, 2, 2}, 3}};
+    static const asj_line_range ranges[] = {{2, 3, {4, 2, 1}, 3}, {0, 5000, {4.5, 4.5, 4.5}, 3}, {5, 8, {0.5, 0.5, 0.5}, 3},
+                                            {5, 4, {2, 2, 2}, 3}};
     for (int size = 1; size < 40; size = size * 3 + 1) {
         uint8_t *pixels = synth_noise_image(size, size, 128, 60, (uint64_t)size);
         asj_frame frame;

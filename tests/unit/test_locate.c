@@ -152,13 +152,14 @@ static void test_start(void **state)
     }
 }
 
-/* A corner of 90 degrees or more, seen from pixels up to a pixel away: its own place to half a pixel. (In sharper ones the two edges bend each
- * other's first fit; the fit over the length mends that.) */
+/* A corner of 90 degrees or more, seen from pixels up to a pixel away: its own place to half a pixel. (In sharper ones the two
+ * edges bend each other's first fit; the fit over the length mends that.) */
 static void test_corners(void **state)
 {
     const fixture *f = *state;
     for (int n = 0; n < 40; n++) {
-        const double angle = 0.157 * n, opening = (90 + n % 4 * 10) * UNIT_PI / 180, px = 40.3 + 0.07 * (n % 7), py = 40.6 - 0.09 * (n % 5);
+        const double angle = 0.157 * n, opening = (90 + n % 4 * 10) * UNIT_PI / 180, px = 40.3 + 0.07 * (n % 7),
+            py = 40.6 - 0.09 * (n % 5);
         const double angles[2] = {angle, angle + opening}, grays[2] = {170, -1};
         synth_scene scene;
         asj_frame frame;

@@ -51,7 +51,8 @@ static void test_zero(void **state)
 static void test_overflow(void **state)
 {
     static const size_t pairs[][2] = {{SIZE_MAX, 1}, {1, SIZE_MAX}, {SIZE_MAX / 2 + 1, 2}, {2, SIZE_MAX / 2 + 1},
-                                      {SIZE_MAX, SIZE_MAX}, {SIZE_MAX - 8, 1}, {(size_t)1 << (sizeof(size_t) * 4), (size_t)1 << (sizeof(size_t) * 4)}};
+                                      {SIZE_MAX, SIZE_MAX}, {SIZE_MAX - 8, 1},
+                                      {(size_t)1 << (sizeof(size_t) * 4), (size_t)1 << (sizeof(size_t) * 4)}};
     unit_counter counter = {0, 0, 0, 0};
     asj_memory memory = unit_memory(&counter);
     (void)state;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Options as text: reading, printing and checking, in any locale. With the argument "comma" in one with a decimal comma; exit code 77
- * when there is none. */
+/* Options as text: reading, printing and checking, in any locale. With the argument "comma" in one with a decimal comma; exit code
+ * 77 when there is none. */
 #define _POSIX_C_SOURCE 200809L
 #include "option_table.h"
 #include "unit_test.h"
@@ -119,7 +119,8 @@ static void test_integers(void **state)
     static const struct {
         const char *text;
         int32_t value;
-    } good[] = {{"0", 0}, {"-12", -12}, {"+3", 3}, {"7.0", 7}, {"1e3", 1000}, {"2147483647", INT32_MAX}, {"-2147483647", -INT32_MAX}};
+    } good[] = {{"0", 0}, {"-12", -12}, {"+3", 3}, {"7.0", 7}, {"1e3", 1000}, {"2147483647", INT32_MAX},
+                {"-2147483647", -INT32_MAX}};
     set s = filled(0);
     char text[64];
     (void)state;
@@ -225,19 +226,22 @@ static void check_refused(const char *key, const char *text)
 
 static void test_refused(void **state)
 {
-    static const char *const numbers[] = {"", " ", " 1", "1 ", "1x", "x", "1,5", "0x10", "inf", "-inf", "nan", "NAN", "1e", "1e+", "1e-", "e5",
-                                          "--1", "+-1", "+", "-", ".", "-.", "1..2", "1.2.3", "1e5.5", "1_000", "1e31", "-1.0000001e30", "1e999",
+    static const char *const numbers[] = {"", " ", " 1", "1 ", "1x", "x", "1,5", "0x10", "inf", "-inf", "nan", "NAN", "1e", "1e+",
+                                          "1e-", "e5", "--1", "+-1", "+", "-", ".", "-.", "1..2", "1.2.3", "1e5.5", "1_000", "1e31",
+                                              "-1.0000001e30", "1e999",
                                           "1e99999999999999999999", "\xd9\xa1", "1\n", "0x1p3"};
     static const char *const integers[] = {"", "1.5", "2147483648", "-2147483649", "1e10", "1e400", "yes", "1,000", "0.1"};
     static const char *const switches[] = {"", "2", "-1", "YES", "y", "yes ", "yesno", "nope", "00"};
     static const char *const choices[] = {"", "0", "on", "One", "one ", "one,two", "three-fou", "three_four_"};
-    static const char *const radii[] = {"", ",", "5,", ",5", "5,,7", "5-", "-5", "5--7", "5-7-9", "2", "0", "31", "2-5", "29-31", "999", "5000000000",
+    static const char *const radii[] = {"", ",", "5,", ",5", "5,,7", "5-", "-5", "5--7", "5-7-9", "2", "0", "31", "2-5", "29-31",
+                                        "999", "5000000000",
                                         "7-5", "10,7-5", "5 ,7", "5, 7", "5;7", "a", "5.0", "+5", "0005"};
     static const struct {
         const char *key;
         const char *const *texts;
         size_t count;
-    } all[] = {{"a_number", numbers, UNIT_COUNT(numbers)}, {"an_integer", integers, UNIT_COUNT(integers)}, {"a_switch", switches, UNIT_COUNT(switches)},
+    } all[] = {{"a_number", numbers, UNIT_COUNT(numbers)}, {"an_integer", integers, UNIT_COUNT(integers)},
+               {"a_switch", switches, UNIT_COUNT(switches)},
                {"a_word", choices, UNIT_COUNT(choices)},   {"radii", radii, UNIT_COUNT(radii)}};
     (void)state;
     for (size_t i = 0; i < UNIT_COUNT(all); i++)

@@ -112,7 +112,8 @@ static int has_number(const char *text, size_t length, double value)
 {
     for (const char *c = text + 2; c < text + length;) {
         char *end;
-        const int starts = ((*c >= '0' && *c <= '9') || (*c == '-' && c[1] >= '0' && c[1] <= '9')) && (c[-1] == ' ' || c[-1] == '(');
+        const int starts = ((*c >= '0' && *c <= '9') || (*c == '-' && c[1] >= '0' && c[1] <= '9')) &&
+                           (c[-1] == ' ' || c[-1] == '(');
         const double number = starts ? strtod(c, &end) : 0;
         if (starts && fabs(number - value) <= 1e-12 * fabs(value))
             return 1;

@@ -106,7 +106,8 @@ static void test_search(void **state)
                 for (int step = -20; step <= 20; step++)
                     best = fmax(best, naive_strength(&f->frame, 60, 60, start + 0.005 * step, lengths[n], tau));
                 assert_true(unit_turn(draft.branches[b].angle, start) <= 0.1 + 1e-9);
-                unit_near("strength", lengths[n], k, naive_strength(&f->frame, 60, 60, draft.branches[b].angle, lengths[n], tau), best, 0.02);
+                unit_near("strength", lengths[n], k, naive_strength(&f->frame, 60, 60, draft.branches[b].angle, lengths[n], tau),
+                          best, 0.02);
             }
         }
 }

@@ -122,14 +122,15 @@ static int32_t naive_forward(const fixture *f, const asj_ray *ray, double thresh
     return last;
 }
 
-/* Both scans at once. While the axial test passes, the forward one may fail for up to the field's radius, and is back when three steps in
- * a row pass with branches that look ahead; the axial length ends at most the field's radius behind the forward one. */
+/* Both scans at once. While the axial test passes, the forward one may fail for up to the field's radius, and is back when three
+ * steps in a row pass with branches that look ahead; the axial length ends at most the field's radius behind the forward one. */
 static void naive_both(const fixture *f, const asj_ray *ray, double threshold, int32_t *forward, int32_t *axial)
 {
     const int32_t bridge = f->options.field_radius, tolerance = f->options.scan_tolerance;
     int32_t failures = 0, passes_ahead = 0, failures_ahead = 0, axial_failures = 0;
     *forward = *axial = 0;
-    for (int32_t r = ray->start > 0 ? ray->start : 1; failures <= tolerance || (failures_ahead <= bridge && axial_failures <= tolerance); r++) {
+    for (int32_t r = ray->start > 0 ? ray->start : 1;
+         failures <= tolerance || (failures_ahead <= bridge && axial_failures <= tolerance); r++) {
         const arc sums = naive_arc(f, ray, r);
         const int closed = failures > tolerance;
         passes_ahead = sums.ahead >= threshold ? passes_ahead + 1 : 0;
@@ -187,7 +188,8 @@ static void random_rays(const fixture *f, asj_ray *rays, size_t count, uint64_t 
     synth_random random;
     synth_random_seed(&random, seed);
     for (size_t i = 0; i < count;) {
-        const double x = synth_random_between(&random, -3, f->frame.width + 3), y = synth_random_between(&random, -3, f->frame.height + 3);
+        const double x = synth_random_between(&random, -3, f->frame.width + 3);
+        const double y = synth_random_between(&random, -3, f->frame.height + 3);
         double angle = synth_random_between(&random, 0, 2 * UNIT_PI);
         const int32_t u = (int32_t)lrint(x), v = (int32_t)lrint(y);
         if (i % 8 != 0) { /* most of them along an edge: from a pixel with a strong branch into its direction, or nearly */
@@ -205,7 +207,8 @@ static void random_rays(const fixture *f, asj_ray *rays, size_t count, uint64_t 
 
 enum { RAYS = 400 };
 
-/* With the second scan off it is the paper's scan. Rounding may move a step that is at the threshold, one ray in a hundred at most. */
+/* With the second scan off it is the paper's scan. Rounding may move a step that is at the threshold, one ray in a hundred at
+ * most. */
 static void test_forward(void **state)
 {
     fixture *f = *state;
@@ -272,7 +275,8 @@ static void test_sides(void **state)
         synth_scene_init(&scene, SIZE, SIZE, 90);
         synth_add_rectangle(&scene, corner, width, height, angle, 150);
         take_picture(f, &scene, 2);
-        asj_ray rays[2] = {{corner.x, corner.y, angle, 3, 0, 0}, {corner.x, corner.y, fmod(angle + UNIT_PI / 2, 2 * UNIT_PI), 3, 0, 0}};
+        asj_ray rays[2] = {{corner.x, corner.y, angle, 3, 0, 0}, {corner.x, corner.y, fmod(angle + UNIT_PI / 2, 2 * UNIT_PI), 3,
+                                                                  0, 0}};
         assert_int_equal(asj_scan_rays(f->context, &f->scan, &f->frame, rays, 2), ASJ_OK);
         for (int i = 0; i < 2; i++) {
             const double length = 0.5 * (rays[i].forward + rays[i].axial), truth = i ? height : width;
@@ -347,8 +351,10 @@ static void test_threads_and_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_threshold, reset), cmocka_unit_test_setup(test_forward, reset),  cmocka_unit_test_setup(test_both, reset),
-        cmocka_unit_test_setup(test_sides, reset),     cmocka_unit_test_setup(test_nothing, reset),  cmocka_unit_test_setup(test_long_ray, reset),
+        cmocka_unit_test_setup(test_threshold, reset), cmocka_unit_test_setup(test_forward, reset),
+            cmocka_unit_test_setup(test_both, reset),
+        cmocka_unit_test_setup(test_sides, reset),     cmocka_unit_test_setup(test_nothing, reset),
+            cmocka_unit_test_setup(test_long_ray, reset),
         cmocka_unit_test_setup(test_threads_and_memory, reset),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

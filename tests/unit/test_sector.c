@@ -120,8 +120,8 @@ static void test_offsets(void **state)
     }
 }
 
-/* The widths of the numbers: no sector's sum leaves 16 bits at the largest gradient, strengths stay below 2^15 (they are compared as
- * signed numbers), and the tail tables of the isotropic test have an entry for each number of pixels. */
+/* The widths of the numbers: no sector's sum leaves 16 bits at the largest gradient, strengths stay below 2^15 (they are compared
+ * as signed numbers), and the tail tables of the isotropic test have an entry for each number of pixels. */
 static void test_ranges(void **state)
 {
     static const double widths[] = {1, 2, 3};
@@ -249,7 +249,8 @@ typedef struct edge {
     double blur, noise, contrast, strength[5]; /* strength for r = 3, 5, 7, 9, 12 */
 } edge;
 
-/* The stronger of the two sectors that hold the edge, looking either way, at the middle of an edge through the centre of a pixel. The profile is the error function at the pixels' centres. */
+/* The stronger of the two sectors that hold the edge, looking either way, at the middle of an edge through the centre of a pixel.
+ * The profile is the error function at the pixels' centres. */
 static double edge_strength(asj_context *context, const asj_sectors *s, double angle, const edge *row)
 {
     enum { SIZE = 81, MIDDLE = 40 };
@@ -286,8 +287,8 @@ static double edge_strength(asj_context *context, const asj_sectors *s, double a
     return best / (double)ASJ_STRENGTH_ONE;
 }
 
-/* Mean over orientations, within the 0.3 that the table states. Its weakest row, which is mostly noise, hangs on which of the two sectors
- * is looked at, and the table does not say. */
+/* Mean over orientations, within the 0.3 that the table states. Its weakest row, which is mostly noise, hangs on which of the two
+ * sectors is looked at, and the table does not say. */
 static void test_clean_edge(void **state)
 {
     static const edge rows[] = {

@@ -113,7 +113,8 @@ static void test_askew(void **state)
     clean.options.strip_half_width = 3;
     for (double askew = -0.3; askew < 0.3; askew += 0.03) {
         const double angle = 0.35 + askew;
-        unit_near("askew", askew, 0, test(&clean, 40 - 6 * cos(angle), 40 - 6 * sin(angle), angle, 12).deviation, fabs(askew), 0.03);
+        unit_near("askew", askew, 0, test(&clean, 40 - 6 * cos(angle), 40 - 6 * sin(angle), angle, 12).deviation, fabs(askew),
+                  0.03);
     }
     asj_frame_free(&f->context->memory, &clean.frame);
 }

@@ -60,7 +60,8 @@ void unit_half_plane(synth_scene *scene, int32_t size, synth_point through, doub
 double unit_gx(const asj_frame *frame, int32_t x, int32_t y);
 double unit_gy(const asj_frame *frame, int32_t x, int32_t y);
 
-/* gamma(q) of algorithm section 3, with trigonometry: |g| max(|cos(phi - alpha)| - |sin(phi - alpha)|, 0), phi at right angles to g. */
+/* gamma(q) of algorithm section 3, with trigonometry: |g| max(|cos(phi - alpha)| - |sin(phi - alpha)|, 0), phi at right angles to
+ * g. */
 double unit_gamma(double gx, double gy, double alpha);
 
 #endif
