@@ -191,19 +191,11 @@ static inline int32_t clamp(int32_t value, int32_t last)
     return value < 0 ? 0 : value > last ? last : value;
 }
 
-void asj_gradient_sample(const asj_frame *frame, double x, double y, double *gx, double *gy)
+/* At x0 + fx, y0 + fy, from the rows y0 - 1 .. y0 + 2 and the columns x0 - 1 .. x0 + 2: central differences at the four pixels around,
+ * bilinear, then from 1/128 to grey levels. */
+static inline void sample(const uint16_t *const row[4], const int32_t column[4], double fx, double fy, double *gx, double *gy)
 {
-    const int32_t right = frame->width - 1, bottom = frame->height - 1;
-    x = x < 0 ? 0 : x > right ? right : x;
-    y = y < 0 ? 0 : y > bottom ? bottom : y;
-    int32_t x0 = (int32_t)x, y0 = (int32_t)y;
-    double fx = x - x0, fy = y - y0;
-    int32_t column[4] = {clamp(x0 - 1, right), x0, clamp(x0 + 1, right), clamp(x0 + 2, right)};
-    const uint16_t *row[4];
-    for (int i = 0; i < 4; i++)
-        row[i] = frame->gray + (ptrdiff_t)clamp(y0 - 1 + i, bottom) * frame->stride;
 #define I(i, j) row[i][column[j]]
-    /* central differences at the four pixels, bilinear, then from 1/256 to grey levels */
     double top = (I(1, 2) - I(1, 0)) * (1 - fx) + (I(1, 3) - I(1, 1)) * fx;
     double low = (I(2, 2) - I(2, 0)) * (1 - fx) + (I(2, 3) - I(2, 1)) * fx;
     *gx = (top * (1 - fy) + low * fy) * (1.0 / (2 * ASJ_GRAY_ONE));
@@ -211,4 +203,30 @@ void asj_gradient_sample(const asj_frame *frame, double x, double y, double *gx,
     low = (I(3, 1) - I(1, 1)) * (1 - fx) + (I(3, 2) - I(1, 2)) * fx;
     *gy = (top * (1 - fy) + low * fy) * (1.0 / (2 * ASJ_GRAY_ONE));
 #undef I
+}
+
+static void sample_at_border(const asj_frame *frame, double x, double y, double *gx, double *gy)
+{
+    const int32_t right = frame->width - 1, bottom = frame->height - 1;
+    x = x < 0 ? 0 : x > right ? right : x;
+    y = y < 0 ? 0 : y > bottom ? bottom : y;
+    int32_t x0 = (int32_t)x, y0 = (int32_t)y;
+    const int32_t column[4] = {clamp(x0 - 1, right), x0, clamp(x0 + 1, right), clamp(x0 + 2, right)};
+    const uint16_t *row[4];
+    for (int i = 0; i < 4; i++)
+        row[i] = frame->gray + (ptrdiff_t)clamp(y0 - 1 + i, bottom) * frame->stride;
+    sample(row, column, x - x0, y - y0, gx, gy);
+}
+
+void asj_gradient_sample(const asj_frame *frame, double x, double y, double *gx, double *gy)
+{
+    static const int32_t column[4] = {-1, 0, 1, 2};
+    if (!(x >= 1 && y >= 1 && x < frame->width - 2 && y < frame->height - 2)) {
+        sample_at_border(frame, x, y, gx, gy);
+        return;
+    }
+    const int32_t x0 = (int32_t)x, y0 = (int32_t)y;
+    const uint16_t *middle = frame->gray + y0 * frame->stride + x0;
+    const uint16_t *const row[4] = {middle - frame->stride, middle, middle + frame->stride, middle + 2 * frame->stride};
+    sample(row, column, x - x0, y - y0, gx, gy);
 }
