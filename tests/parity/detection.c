@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The whole detector in every variant: the same junctions, bit for bit. Scenes always; photographs (PNG files, or folders of them) when
+ * named on the command line or found below ASJ_PAIRS. Exit status as parity. */
+#include "ops.h"
+#include "render.h"
+#include "scenes.h"
+
+#ifdef HAVE_PHOTOGRAPHS
+#include "photograph.h"
+#endif
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct run_state {
+    asj_context *context;
+    asj_detect_options options;
+    const char *setting; /* name of the options */
+    long images[ASJ_VARIANT_COUNT];
+    size_t junctions;
+    int failed;
+} run_state;
+
+static int same(const asj_detection *a, const asj_detection *b)
+{
+    return a->junction_count == b->junction_count && a->l_junction_count == b->l_junction_count && a->candidates == b->candidates &&
+           a->isotropic == b->isotropic && memcmp(a->junctions, b->junctions, a->junction_count * sizeof *a->junctions) == 0 &&
+           memcmp(a->l_junctions, b->l_junctions, a->l_junction_count * sizeof *a->l_junctions) == 0;
+}
+
+static asj_detection *detect(run_state *state, const asj_image *image, int32_t variant)
+{
+    asj_detection *found = NULL;
+    if (!asj_ops_fill(variant, state->context->ops))
+        return NULL;
+    if (asj_detect(state->context, image, &state->options, &found) != ASJ_OK) {
+        fprintf(stderr, "detection: %s\n", asj_context_message(state->context));
+        state->failed = 1;
+    }
+    return found;
+}
+
+static void compare(run_state *state, const char *name, const uint8_t *pixels, int32_t width, int32_t height)
+{
+    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, width, height, 0, 0};
+    asj_detection *expected = detect(state, &image, ASJ_VARIANT_REFERENCE);
+    for (int32_t v = 1; v < ASJ_VARIANT_COUNT && expected; v++) {
+        asj_detection *found = detect(state, &image, v);
+        if (!found)
+            continue;
+        state->images[v]++;
+        if (!same(found, expected)) {
+            printf("FAIL %s differs from the reference: %s, %d x %d, options %s\n", asj_ops_name(v), name, (int)width, (int)height,
+                   state->setting);
+            state->failed = 1;
+        }
+        asj_detection_free(&found);
+    }
+    if (expected)
+        state->junctions += expected->junction_count;
+    asj_detection_free(&expected);
+}
+
+static void compare_scene(run_state *state, const char *name, synth_scene *scene, double blur, double noise, uint64_t seed)
+{
+    uint8_t *pixels = synth_photograph(scene, blur, noise, seed);
+    if (pixels)
+        compare(state, name, pixels, scene->width, scene->height);
+    else
+        state->failed = 1;
+    free(pixels);
+    synth_scene_free(scene);
+}
+
+static void scenes(run_state *state, uint64_t count)
+{
+    for (uint64_t seed = 0; seed < count; seed++) {
+        synth_scene scene;
+        synth_parallelograms(&scene, 40, seed);
+        compare_scene(state, "parallelograms", &scene, 0.8, 4, seed);
+        synth_random_star(&scene, 25, seed);
+        compare_scene(state, "star", &scene, 1, 2, seed);
+        synth_tiles(&scene, seed % 2 ? SYNTH_RANDOM_TILES : SYNTH_CHECKERBOARD, seed);
+        compare_scene(state, "tiles", &scene, 0.8, (double)(seed % 3) * 4, seed);
+        synth_scene_init(&scene, 1 + (int32_t)(seed * 37 % 90), 1 + (int32_t)(seed * 23 % 70), 128);
+        compare_scene(state, "noise", &scene, 0, 20, seed);
+    }
+}
+
+#ifdef HAVE_PHOTOGRAPHS
+static void photographs(run_state *state, int count, char **paths)
+{
+    path_list list = {0};
+    for (int i = 0; i < count; i++)
+        if (path_list_add(&list, paths[i]) != 0)
+            state->failed = 1;
+    for (int32_t i = 0; i < list.count; i++) {
+        photograph p;
+        if (photograph_read(list.paths[i], &p) != 0) {
+            state->failed = 1;
+            continue;
+        }
+        compare(state, list.paths[i], p.pixels, p.width, p.height);
+        photograph_free(&p);
+    }
+    path_list_free(&list);
+}
+#endif
+
+static void settings(run_state *state)
+{
+    asj_detect_options_init(&state->options);
+    state->setting = "default";
+    scenes(state, 6);
+    asj_detect_options_preset(&state->options, ASJ_PRESET_PAPER);
+    state->setting = "paper";
+    scenes(state, 1);
+    asj_detect_options_init(&state->options);
+    state->options.field_radius = 5;
+    state->options.sector_width = 1.5;
+    state->setting = "field_radius=5, sector_width=1.5";
+    scenes(state, 2);
+}
+
+int main(int argc, char **argv)
+{
+    run_state state = {0};
+    int tested = 0;
+    if (asj_context_create(NULL, &state.context) != ASJ_OK)
+        return 1;
+    settings(&state);
+    asj_detect_options_init(&state.options);
+    state.setting = "default";
+#ifdef HAVE_PHOTOGRAPHS
+    char *pairs = getenv("ASJ_PAIRS");
+    if (argc > 1)
+        photographs(&state, argc - 1, argv + 1);
+    else if (pairs && *pairs)
+        photographs(&state, 1, &pairs);
+    else
+        printf("photographs: none named (ASJ_PAIRS)\n");
+#else
+    (void)argc;
+    (void)argv;
+    printf("photographs: built without libasj-io\n");
+#endif
+    for (int32_t v = 1; v < ASJ_VARIANT_COUNT; v++) {
+        printf("%-9s %ld images\n", asj_ops_name(v), state.images[v]);
+        tested += state.images[v] > 0;
+    }
+    printf("%zu junctions, %s\n", state.junctions, state.failed ? "FAILED" : "all equal");
+    if (state.junctions == 0)
+        state.failed = 1;
+    asj_context_free(&state.context);
+    return state.failed ? 1 : tested ? 0 : 77;
+}
