@@ -186,15 +186,16 @@ static void test_presets(void **state)
 /* Writes a value into a field as the program that fills the struct by hand would. */
 static void write_field(asj_detect_options *options, const asj_option_info *row, double value)
 {
-    const int32_t integer = (int32_t)(value > 2e9 ? 0 : value);
-    const uint32_t bits = value >= 0 ? (uint32_t)value : 0;
     char *at = (char *)options + row->offset;
-    if (row->type == ASJ_OPTION_NUMBER)
+    if (row->type == ASJ_OPTION_NUMBER) {
         memcpy(at, &value, sizeof value);
-    else if (row->type == ASJ_OPTION_RADII)
+    } else if (row->type == ASJ_OPTION_RADII) {
+        const uint32_t bits = (uint32_t)value;
         memcpy(at, &bits, sizeof bits);
-    else
+    } else {
+        const int32_t integer = (int32_t)value;
         memcpy(at, &integer, sizeof integer);
+    }
 }
 
 /* What is written comes back bit by bit, whichever value of the range it is; no other field moves. */
