@@ -6,13 +6,10 @@
 
 enum { MESSAGE_SIZE = 1024 };
 
-/* px that a junction may lie outside its image, as in asj_match(): branches may meet beyond the border. */
-#define MOST_OUTSIDE 10
-
 static int is_outside(const asj_junction *junction, const asj_image *image)
 {
-    return junction->x < -MOST_OUTSIDE || junction->y < -MOST_OUTSIDE ||
-           junction->x > (float)(image->width - 1 + MOST_OUTSIDE) || junction->y > (float)(image->height - 1 + MOST_OUTSIDE);
+    return junction->x < -ASJ_MAX_OUTSIDE || junction->y < -ASJ_MAX_OUTSIDE ||
+           junction->x > (float)(image->width - 1 + ASJ_MAX_OUTSIDE) || junction->y > (float)(image->height - 1 + ASJ_MAX_OUTSIDE);
 }
 
 static int check_places(cli_session *session, const char *path, const cli_match_input *input)

@@ -20,6 +20,9 @@ typedef struct asj_branch {
     float reserved;   /* zero */
 } asj_branch;
 
+/* px that a junction may lie outside its image: branches may meet beyond the border. The detector's largest max_move. */
+#define ASJ_MAX_OUTSIDE 10
+
 /* A junction: a point with two to five branches, in order of angle. */
 typedef struct asj_junction {
     float x, y;             /* px, sub-pixel; pixel centres at integers */

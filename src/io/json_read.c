@@ -222,7 +222,8 @@ static asj_status check_locations(const json_reader *reader)
     size_t i;
     for (i = 0; list->width && i < list->count; i++) {
         const asj_junction *j = &list->junctions[i];
-        if (!(j->x >= -1 && j->y >= -1 && j->x <= (float)list->width && j->y <= (float)list->height))
+        if (!(j->x >= -ASJ_MAX_OUTSIDE && j->y >= -ASJ_MAX_OUTSIDE && j->x <= (float)(list->width - 1 + ASJ_MAX_OUTSIDE) &&
+              j->y <= (float)(list->height - 1 + ASJ_MAX_OUTSIDE)))
             return asj_line_fail(reader->message, list->lines[i], "a junction outside the image of %d x %d pixels",
                                  (int)list->width, (int)list->height);
     }

@@ -201,6 +201,19 @@ static void a_plot_alone_prints_no_matches(void **state)
     expect_in(result, result->err, "asj-cli: nowhere/plot.png: ");
 }
 
+static void plots_take_the_place_of_no_other_file(void **state)
+{
+    (void)state;
+    int files = count_files(".");
+    const outcome *result = run_cli("match", "-o", "a.png", "--plot", "a.png", "first.png", "second.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "a.png: would be written twice");
+    result = run_cli("match", "--plot", "./second.png", "first.png", "second.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "second.png: is an input file");
+    assert_int_equal(count_files("."), files);
+}
+
 static void a_build_without_cairo_says_so(void **state)
 {
     (void)state;
@@ -225,6 +238,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(svg_and_pdf_hold_the_photographs),
         cmocka_unit_test(plots_are_repeatable),
         cmocka_unit_test(a_plot_alone_prints_no_matches),
+        cmocka_unit_test(plots_take_the_place_of_no_other_file),
     };
     const struct CMUnitTest without[] = {cmocka_unit_test(a_build_without_cairo_says_so)};
     program_start(argc, argv);

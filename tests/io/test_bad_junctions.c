@@ -74,8 +74,8 @@ static const bad_file bad_files[] = {
     {J "{\"x\":1e39,\"y\":2,\"branches\":[" B "," B "]}]}", 3, "\"x\"", ASJ_ERROR_FORMAT},
     {J "{\"x\":1,\"y\":2,\"scale\":-1,\"branches\":[" B "," B "]}]}", 3, "negative scale", ASJ_ERROR_FORMAT},
     {J "{\"x\":1,\"y\":2,\"branches\":[" B ",{\"angle\":1,\"length\":-2}]}]}", 3, "negative length", ASJ_ERROR_FORMAT},
-    {J G ",\n{\"x\":10.5,\"y\":2,\"branches\":[" B "," B "]}]}", 4, "outside", ASJ_ERROR_FORMAT},
-    {J G ",\n{\"x\":1,\"y\":-1.5,\"branches\":[" B "," B "]}]}", 4, "outside", ASJ_ERROR_FORMAT},
+    {J G ",\n{\"x\":19.5,\"y\":2,\"branches\":[" B "," B "]}]}", 4, "outside", ASJ_ERROR_FORMAT},
+    {J G ",\n{\"x\":1,\"y\":-10.5,\"branches\":[" B "," B "]}]}", 4, "outside", ASJ_ERROR_FORMAT},
 };
 
 static void check_refused(const char *path, const bad_file *bad)
