@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# The README keeps its word: its first C program builds, runs and prints the square's corners, the lines that match fit the interface,
-# and its option tables say what the library says.
+# The README keeps its word: its first C program builds, runs and prints the corners of the square, the lines that match fit the
+# interface, and its option tables say what the library says.
 # readme.sh README INCLUDE_DIRECTORY STATIC_LIBRARY C COMPILER...
 set -u
 readme=$1 include=$2 library=$3
