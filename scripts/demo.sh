@@ -66,7 +66,8 @@ match_rooms() {
     rm -f out/room-matches.csv out/room-matches.png
     say 'Running build/cli/asj-cli match -o out/room-matches.csv --plot out/room-matches.png out/room-1.png out/room-2.png'
     build/cli/asj-cli match --quiet -o out/room-matches.csv --plot out/room-matches.png out/room-1.png out/room-2.png || return 1
-    set -- $(LC_ALL=C awk -F, -f scripts/matches.awk out/room/1.csv out/room/2.csv out/room/correspondences.csv out/room-matches.csv)
+    set -- $(LC_ALL=C awk -F, -f scripts/matches.awk out/room/1.csv out/room/2.csv out/room/correspondences.csv \
+        out/room-matches.csv)
     [ $# = 3 ] || fail 'cannot compare with the true correspondences'
     say
     say "out/room-1.png and out/room-2.png: $2 matches"
