@@ -1,0 +1,366 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Time of the matcher on two views of the sample room: the whole call for several numbers of L-junctions a side, and what its
+ * parts do in a second. Detection is not counted. */
+#define _POSIX_C_SOURCE 200809L
+
+#include "align.h"
+#include "match_options.h"
+#include "random.h"
+#include "render.h"
+#include "room.h"
+
+#include <asj/match.h>
+#include <asj/version.h>
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define WIDTH 1052
+#define HEIGHT 780
+#define MAX_RUNS 99
+#define MAX_SIZES 16
+
+static const char help[] =
+    "usage: matching [--corners N]... [--threads N] [--runs N] [key=value ...]\n"
+    "\n"
+    "Matches two views of the sample room, 1052 x 780, with the N most meaningful L-junctions of either (50, 500 and 5000 unless\n"
+    "asked otherwise; where the room has fewer, random ones fill up), and prints milliseconds for each stage: medians of so many\n"
+    "runs (7) after one that is not counted, the least total, and the least of all threads' time. Then what the parts do in a second. key=value sets an option of\n"
+    "the matcher; 2 threads unless asked otherwise.\n";
+
+typedef struct settings {
+    size_t corners[MAX_SIZES];
+    int32_t corner_count, threads, runs;
+    asj_match_options options;
+} settings;
+
+typedef struct side {
+    uint8_t *pixels;
+    asj_image image;
+    asj_junction *all; /* by meaning, the random ones last */
+    size_t all_count;
+    asj_junction *list; /* what is matched */
+    size_t count;
+} side;
+
+static int fail(const char *what)
+{
+    fprintf(stderr, "matching: %s\n", what);
+    return -1;
+}
+
+/* --- two views and their junctions ------------------------------------------------------------------------------------------ */
+
+static uint8_t *render(int32_t index)
+{
+    synth_room room;
+    synth_view view;
+    uint8_t *pixels = NULL;
+    const synth_camera camera = synth_room_camera(index, WIDTH, HEIGHT);
+    if (synth_room_make(&room) != 0)
+        return NULL;
+    if (synth_view_make(&room, &camera, 1.0, &view) == 0) {
+        pixels = synth_photograph(&view.scene, 0.9, 2.0, (uint64_t)index + 1);
+        synth_view_free(&view);
+    }
+    synth_room_free(&room);
+    return pixels;
+}
+
+static int by_meaning(const void *a, const void *b)
+{
+    const asj_junction *p = a, *q = b;
+    if (p->log10_nfa != q->log10_nfa)
+        return p->log10_nfa < q->log10_nfa ? -1 : 1;
+    return p->y != q->y ? (p->y < q->y ? -1 : 1) : (p->x > q->x) - (p->x < q->x);
+}
+
+/* Corners at random places, for more than the room has. */
+static void fill_up(asj_junction *junctions, size_t count, uint64_t seed)
+{
+    synth_random random;
+    synth_random_seed(&random, seed);
+    for (size_t i = 0; i < count; i++) {
+        asj_junction *j = &junctions[i];
+        const double angle = synth_random_between(&random, 0, 4.5);
+        memset(j, 0, sizeof *j);
+        j->x = (float)synth_random_between(&random, 20, WIDTH - 20);
+        j->y = (float)synth_random_between(&random, 20, HEIGHT - 20);
+        j->branch_count = 2;
+        j->branches[0].angle = (float)angle;
+        j->branches[0].length = (float)synth_random_between(&random, 15, 120);
+        j->branches[1].angle = (float)(angle + synth_random_between(&random, 1, 1.7));
+        j->branches[1].length = (float)synth_random_between(&random, 15, 120);
+    }
+}
+
+static int make_side(asj_context *context, int32_t index, size_t most, side *s)
+{
+    asj_detect_options options;
+    asj_detection *found = NULL;
+    memset(s, 0, sizeof *s);
+    s->pixels = render(index);
+    if (!s->pixels)
+        return fail("cannot render the room");
+    s->image = (asj_image){s->pixels, ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0};
+    asj_detect_options_init(&options);
+    asj_match_detect_options(&options);
+    if (asj_detect(context, &s->image, &options, &found) != ASJ_OK)
+        return fail(asj_context_message(context));
+    s->all_count = found->junction_count + most;
+    s->all = malloc(s->all_count * sizeof *s->all);
+    s->list = malloc(s->all_count * sizeof *s->list);
+    if (!s->all || !s->list) {
+        asj_detection_free(&found);
+        return fail("no memory");
+    }
+    if (found->junction_count)
+        memcpy(s->all, found->junctions, found->junction_count * sizeof *s->all);
+    qsort(s->all, found->junction_count, sizeof *s->all, by_meaning);
+    fill_up(s->all + found->junction_count, most, (uint64_t)index + 100);
+    asj_detection_free(&found);
+    return 0;
+}
+
+static void free_side(side *s)
+{
+    free(s->pixels);
+    free(s->all);
+    free(s->list);
+}
+
+/* The first junctions that make `corners` L-junctions; those that would make too many are left out. */
+static void take(side *s, size_t corners, double minimum_opening)
+{
+    size_t sum = 0;
+    s->count = 0;
+    for (size_t i = 0; i < s->all_count && sum < corners; i++) {
+        const size_t more = asj_decompose(&s->all[i], 1, minimum_opening, NULL, 0);
+        if (more == 0 || sum + more > corners)
+            continue;
+        s->list[s->count++] = s->all[i];
+        sum += more;
+    }
+}
+
+/* --- the whole match -------------------------------------------------------------------------------------------------------- */
+
+enum { PATCHES, DISTANCES, ALIGN, ASSIGN, TOTAL, PARTS };
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values, int32_t count)
+{
+    qsort(values, (size_t)count, sizeof *values, ascending);
+    return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+}
+
+static int whole(asj_context *context, const side sides[2], const settings *set)
+{
+    static const int32_t stages[] = {ASJ_STAGE_PATCHES, ASJ_STAGE_DISTANCES, ASJ_STAGE_ALIGN, ASJ_STAGE_ASSIGN};
+    double ms[PARTS][MAX_RUNS];
+    uint32_t counts[3] = {0, 0, 0};
+    uint64_t candidates = 0;
+    double work = 0;
+    for (int32_t run = -1; run < set->runs; run++) {
+        asj_match_result *result = NULL;
+        const clock_t start = clock();
+        if (asj_match(context, &sides[0].image, sides[0].list, sides[0].count, &sides[1].image, sides[1].list, sides[1].count,
+                      &set->options, &result) != ASJ_OK)
+            return fail(asj_context_message(context));
+        const double used = (double)(clock() - start) * 1e3 / CLOCKS_PER_SEC;
+        work = run < 0 || used < work ? used : work;
+        for (int p = 0; run >= 0 && p < PARTS; p++)
+            ms[p][run] = p == TOTAL ? result->total_ms : result->stage_ms[stages[p]];
+        counts[0] = result->l_junction_count1;
+        counts[1] = result->l_junction_count2;
+        counts[2] = result->match_count;
+        candidates = result->candidates;
+        asj_match_result_free(&result);
+    }
+    printf("%6u %6u", (unsigned)counts[0], (unsigned)counts[1]);
+    for (int p = 0; p < PARTS; p++)
+        printf(" %9.2f", median(ms[p], set->runs));
+    printf(" %9.2f %9.2f %10llu %8u\n", ms[TOTAL][0], work, (unsigned long long)candidates, (unsigned)counts[2]);
+    fflush(stdout);
+    return 0;
+}
+
+/* --- its parts -------------------------------------------------------------------------------------------------------------- */
+
+typedef struct rates {
+    double patches, pairs, refinements; /* least milliseconds */
+    size_t frames, compared, refined;
+} rates;
+
+static void least(double *value, double since)
+{
+    const double now = asj_clock_ms() - since;
+    if (*value <= 0 || now < *value)
+        *value = now;
+}
+
+static asj_status prepare(asj_context *context, const side *s, const settings *set, int32_t which, asj_view *view)
+{
+    asj_status status = asj_corners_create(context, s->list, s->count, WIDTH, HEIGHT, &set->options, which, &view->corners);
+    return status == ASJ_OK ? asj_pyramid_create(context, &s->image, set->options.smoothing, &view->pyramid) : status;
+}
+
+static asj_status one_round(asj_context *context, const settings *set, asj_view views[2], rates *r)
+{
+    asj_candidates candidates = {NULL, 0, 0};
+    asj_status status = ASJ_OK;
+    double start = asj_clock_ms();
+    for (int v = 0; v < 2 && status == ASJ_OK; v++) {
+        asj_release(&context->memory, views[v].patches);
+        asj_release(&context->memory, views[v].usable);
+        views[v].patches = NULL;
+        views[v].usable = NULL;
+        status = asj_describe(context, &set->options, &views[v]);
+    }
+    least(&r->patches, start);
+    start = asj_clock_ms();
+    if (status == ASJ_OK)
+        status = asj_shortlist(context, &set->options, &views[0], &views[1], &candidates);
+    least(&r->pairs, start);
+    size_t kept = 0;
+    for (size_t k = 0; status == ASJ_OK && k < candidates.count; k++)
+        if (asj_compare(&set->options, &views[0], &views[1], &candidates.list[k]))
+            candidates.list[kept++] = candidates.list[k];
+    candidates.count = r->refined = kept;
+    start = asj_clock_ms();
+    if (status == ASJ_OK)
+        status = asj_align_candidates(context, &set->options, &views[0], &views[1], &candidates, 0);
+    least(&r->refinements, start);
+    asj_release(&context->memory, candidates.list);
+    return status;
+}
+
+static int parts(asj_context *context, const side sides[2], const settings *set)
+{
+    asj_view views[2];
+    rates r;
+    asj_status status = ASJ_OK;
+    memset(views, 0, sizeof views);
+    memset(&r, 0, sizeof r);
+    for (int32_t v = 0; v < 2 && status == ASJ_OK; v++)
+        status = prepare(context, &sides[v], set, v + 1, &views[v]);
+    for (int32_t run = 0; run < set->runs && status == ASJ_OK; run++)
+        status = one_round(context, set, views, &r);
+    r.frames = (size_t)views[0].corners.frame_count + views[1].corners.frame_count;
+    r.compared = (size_t)views[0].corners.count * views[1].corners.count;
+    if (status == ASJ_OK)
+        printf("%6u %6u  %9.0f %9.0f %12.0f   (%zu frames, %zu pairs, %zu refinements)\n", (unsigned)views[0].corners.count,
+               (unsigned)views[1].corners.count, (double)r.frames / r.patches * 1e3, (double)r.compared / r.pairs * 1e3,
+               (double)r.refined / r.refinements * 1e3, r.frames, r.compared, r.refined);
+    for (int v = 0; v < 2; v++) {
+        asj_corners_free(&context->memory, &views[v].corners);
+        asj_pyramid_free(&context->memory, &views[v].pyramid);
+        asj_release(&context->memory, views[v].patches);
+        asj_release(&context->memory, views[v].usable);
+    }
+    return status == ASJ_OK ? 0 : fail(asj_context_message(context));
+}
+
+/* --- command line ----------------------------------------------------------------------------------------------------------- */
+
+static int run(const settings *set)
+{
+    asj_context_options how;
+    asj_context *context = NULL;
+    side sides[2];
+    size_t most = 0;
+    int result = 0;
+    memset(sides, 0, sizeof sides);
+    asj_context_options_init(&how);
+    how.backend = ASJ_BACKEND_CPU;
+    how.threads = set->threads;
+    if (asj_context_create(&how, &context) != ASJ_OK)
+        return fail("cannot make a context");
+    for (int32_t k = 0; k < set->corner_count; k++)
+        most = set->corners[k] > most ? set->corners[k] : most;
+    for (int32_t v = 0; v < 2 && result == 0; v++)
+        result = make_side(context, v, most, &sides[v]);
+    printf("libasj %s, sample room %d x %d, %d threads; ms (medians)\n\n%6s %6s %9s %9s %9s %9s %9s %9s %9s %10s %8s\n",
+           asj_version_string(), WIDTH, HEIGHT, (int)asj_context_threads(context), "L1", "L2", "patches", "distances", "align",
+           "assign", "total", "least", "work", "candidates", "matches");
+    for (int pass = 0; pass < 2; pass++) {
+        if (pass)
+            printf("\n%6s %6s  %9s %9s %12s   each second\n", "L1", "L2", "patches", "pairs", "refinements");
+        for (int32_t k = 0; k < set->corner_count && result == 0; k++) {
+            for (int v = 0; v < 2; v++)
+                take(&sides[v], set->corners[k], set->options.minimum_opening);
+            result = pass == 0 ? whole(context, sides, set) : parts(context, sides, set);
+        }
+        if (set->options.patches != ASJ_PATCHES_CANONICAL || set->options.align_iterations == 0)
+            break; /* no such parts */
+    }
+    for (int v = 0; v < 2; v++)
+        free_side(&sides[v]);
+    asj_context_free(&context);
+    return result;
+}
+
+static int number(const char *text, long lowest, long highest, long *value)
+{
+    char *end;
+    *value = strtol(text, &end, 10);
+    return *text && !*end && *value >= lowest && *value <= highest ? 0 : -1;
+}
+
+static int set_option(settings *set, const char *text)
+{
+    char key[64], message[256];
+    const char *equals = strchr(text, '=');
+    if (!equals || (size_t)(equals - text) >= sizeof key)
+        return -1;
+    memcpy(key, text, (size_t)(equals - text));
+    key[equals - text] = 0;
+    if (asj_match_options_set(&set->options, key, equals + 1, message, sizeof message) == ASJ_OK)
+        return 0;
+    return fail(message);
+}
+
+static int parse(int argc, char **argv, settings *set)
+{
+    static const struct option longs[] = {{"corners", 1, NULL, 'c'}, {"threads", 1, NULL, 't'}, {"runs", 1, NULL, 'r'},
+                                          {NULL, 0, NULL, 0}};
+    long value = 0;
+    int c, result = 0;
+    while (result == 0 && (c = getopt_long(argc, argv, "", longs, NULL)) != -1) {
+        result = c == 'c' ? number(optarg, 1, 100000, &value) : c == 't' ? number(optarg, 1, 256, &value) :
+                 c == 'r' ? number(optarg, 1, MAX_RUNS, &value) : -1;
+        if (c == 't')
+            set->threads = (int32_t)value;
+        else if (c == 'r')
+            set->runs = (int32_t)value;
+        else if (set->corner_count < MAX_SIZES)
+            set->corners[set->corner_count++] = (size_t)value;
+    }
+    for (; result == 0 && optind < argc; optind++)
+        result = set_option(set, argv[optind]);
+    return result;
+}
+
+int main(int argc, char **argv)
+{
+    static const size_t usual[] = {50, 500, 5000};
+    settings set = {.threads = 2, .runs = 7};
+    asj_match_options_init(&set.options);
+    if (parse(argc, argv, &set) != 0) {
+        fputs(help, stderr);
+        return 2;
+    }
+    if (set.corner_count == 0) {
+        memcpy(set.corners, usual, sizeof usual);
+        set.corner_count = sizeof usual / sizeof *usual;
+    }
+    return run(&set) == 0 ? 0 : 1;
+}
