@@ -7,12 +7,14 @@
  * go to the smaller index, so the list depends on nothing but the input. */
 #include "distance.h"
 #include "descriptor.h"
+#include "ops.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define BLOCK_ROWS 64
+#define TILE_FRAMES 48 /* at least the frames of one L-junction: 16 */
 #define MAX_SHORTLIST 32
 #define UNUSABLE -1e30f
 
@@ -59,13 +61,25 @@ static int32_t norm2(const int16_t *patch, int32_t length)
     return asj_patch_product(patch, patch, length);
 }
 
+static const float one = 1.0f / ((float)ASJ_UNIT_ONE * (float)ASJ_UNIT_ONE);
+
+static int32_t units(const asj_match_options *options)
+{
+    return options->descriptor == ASJ_DESCRIPTOR_SIFT || options->normalise;
+}
+
+static inline float unit_affinity(int32_t product)
+{
+    return 2 * (float)product * one - 2;
+}
+
 /* Minus the squared distance: of unit vectors from their product, of others from their norms too. */
 static float affinity(const asj_match_options *options, const int16_t *f, const int16_t *g, int32_t length)
 {
-    static const float one = 1.0f / ((float)ASJ_UNIT_ONE * (float)ASJ_UNIT_ONE);
-    float product = (float)asj_patch_product(f, g, length);
-    if (options->descriptor == ASJ_DESCRIPTOR_SIFT || options->normalise)
-        return 2 * product * one - 2;
+    const int32_t whole = asj_patch_product(f, g, length);
+    const float product = (float)whole;
+    if (units(options))
+        return unit_affinity(whole);
     return (2 * product - (float)norm2(f, length) - (float)norm2(g, length)) * one;
 }
 
@@ -125,16 +139,48 @@ typedef struct table {
     int32_t limit;
     entry *rows, *columns; /* `limit` entries for each L-junction of image 1 and of image 2 */
     float *scores;         /* BLOCK_ROWS x count2 */
+    const asj_ops *ops;
 } table;
+
+/* Unit vectors: the pair of frames with the largest product is the best. Frames of image 2 are worked through in tiles that stay in
+ * the first cache. */
+static void multiply_row(const table *t, uint32_t i, float *scores)
+{
+    const asj_corners *c1 = &t->view1->corners, *c2 = &t->view2->corners;
+    const int32_t length = asj_patch_length(t->options);
+    int32_t products[TILE_FRAMES];
+    for (uint32_t j = 0; j < c2->count; j++)
+        scores[j] = UNUSABLE;
+    for (uint32_t first = 0, end; first < c2->count; first = end) {
+        const uint32_t start = c2->first_frame[first];
+        for (end = first + 1; end < c2->count && c2->first_frame[end + 1] - start <= TILE_FRAMES; end++)
+            ;
+        const int16_t *right = t->view2->patches + (size_t)start * (size_t)length;
+        for (uint32_t f = c1->first_frame[i]; f < c1->first_frame[i + 1]; f++) {
+            if (!t->view1->usable[f])
+                continue;
+            t->ops->patch_products(t->view1->patches + (size_t)f * (size_t)length, right, length,
+                                   (int32_t)(c2->first_frame[end] - start), products);
+            for (uint32_t j = first; j < end; j++)
+                for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++) {
+                    const float score = unit_affinity(products[g - start]);
+                    scores[j] = t->view2->usable[g] && score > scores[j] ? score : scores[j];
+                }
+        }
+    }
+}
 
 static void score_row(const table *t, uint32_t i, float *scores)
 {
     const uint32_t count = t->view2->corners.count;
     uint32_t f, g;
-    for (uint32_t j = 0; j < count; j++)
-        scores[j] = t->options->patches == ASJ_PATCHES_CANONICAL
-            ? best_frames(t->options, t->view1, t->view2, i, j, &f, &g)
-            : -asj_induced_distance(t->options, t->view1, t->view2, i, j);
+    if (t->options->patches == ASJ_PATCHES_CANONICAL && units(t->options))
+        multiply_row(t, i, scores);
+    else
+        for (uint32_t j = 0; j < count; j++)
+            scores[j] = t->options->patches == ASJ_PATCHES_CANONICAL
+                ? best_frames(t->options, t->view1, t->view2, i, j, &f, &g)
+                : -asj_induced_distance(t->options, t->view1, t->view2, i, j);
     for (uint32_t j = 0; j < count; j++)
         offer(t->rows + (size_t)i * (size_t)t->limit, t->limit, scores[j], j);
 }
@@ -225,7 +271,7 @@ asj_status asj_shortlist(asj_context *context, const asj_match_options *options,
 {
     asj_memory *memory = &context->memory;
     const size_t count1 = view1->corners.count, count2 = view2->corners.count, limit = (size_t)options->shortlist;
-    table t = {options, view1, view2, options->shortlist, NULL, NULL, NULL};
+    table t = {options, view1, view2, options->shortlist, NULL, NULL, NULL, context->ops};
     t.rows = asj_allocate(memory, count1 * limit, sizeof *t.rows);
     t.columns = asj_allocate(memory, count2 * limit, sizeof *t.columns);
     t.scores = asj_allocate(memory, BLOCK_ROWS * count2, sizeof *t.scores);

@@ -5,6 +5,7 @@
 #define ASJ_SRC_OPS_H
 
 #include "isotropic.h"
+#include "patch.h"
 #include "scan.h"
 
 typedef struct asj_ops {
@@ -20,6 +21,11 @@ typedef struct asj_ops {
     /* asj_isotropic_row() (isotropic.h) */
     void (*isotropic_row)(const asj_isotropic *test, const asj_frame *frame, int32_t y, const uint16_t *masks, uint16_t *scratch,
                           asj_isotropic_junction *junctions);
+
+    /* asj_patch_products() and asj_pyramid_sample_reference() (patch.h) */
+    void (*patch_products)(const int16_t *left, const int16_t *right, int32_t length, int32_t count, int32_t *products);
+    int32_t (*pyramid_sample)(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
+                              uint16_t *grey);
 } asj_ops;
 
 /* Sets of replacements, from weaker to stronger. */

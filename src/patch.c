@@ -9,6 +9,7 @@
  * Why integers: planes, interpolation weights (8 bits), unit vectors (14 bits) and products are exact, so every back end can
  * give the same bits. The loss is below 1/256 of a grey level and 1e-4 of a correlation. */
 #include "patch.h"
+#include "ops.h"
 
 #include <math.h>
 #include <string.h>
@@ -153,6 +154,7 @@ asj_status asj_pyramid_create(asj_context *context, const asj_image *image, doub
 {
     asj_frame frame;
     memset(pyramid, 0, sizeof *pyramid);
+    pyramid->ops = context->ops;
     memset(&frame, 0, sizeof frame);
     asj_status status = asj_image_check(context, image);
     if (status == ASJ_OK)
@@ -185,6 +187,12 @@ int32_t asj_pyramid_level(const asj_pyramid *pyramid, double area)
 
 int32_t asj_pyramid_sample(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
                            uint16_t *grey)
+{
+    return pyramid->ops->pyramid_sample(pyramid, level, x, y, count, grey);
+}
+
+int32_t asj_pyramid_sample_reference(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
+                                     uint16_t *grey)
 {
     const int32_t width = pyramid->width[level], height = pyramid->height[level];
     const uint16_t *plane = pyramid->plane[level];
@@ -253,4 +261,10 @@ int32_t asj_patch_product(const int16_t *left, const int16_t *right, int32_t sam
     for (int32_t i = 0; i < samples; i++)
         sum += (int32_t)left[i] * right[i];
     return sum;
+}
+
+void asj_patch_products(const int16_t *left, const int16_t *right, int32_t length, int32_t count, int32_t *products)
+{
+    for (int32_t k = 0; k < count; k++)
+        products[k] = asj_patch_product(left, right + (ptrdiff_t)k * length, length);
 }

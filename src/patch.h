@@ -18,6 +18,7 @@ typedef struct asj_pyramid {
     int32_t width[ASJ_PYRAMID_LEVELS];
     int32_t height[ASJ_PYRAMID_LEVELS];
     uint16_t *plane[ASJ_PYRAMID_LEVELS]; /* row y of level l at [y * (width[l] + 1)] */
+    const struct asj_ops *ops;           /* the context's */
 } asj_pyramid;
 
 /* From an image view: blurred with a Gaussian of standard deviation `smoothing` px (0 = not), then halved. Statuses as
@@ -33,6 +34,8 @@ int32_t asj_pyramid_level(const asj_pyramid *pyramid, double area);
  * how many lay inside. */
 int32_t asj_pyramid_sample(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
                            uint16_t *grey);
+int32_t asj_pyramid_sample_reference(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
+                                     uint16_t *grey);
 
 /* Samples size x size grey levels of p + u a + v b, u (along the rows) and v equally spaced in [start, end]. Returns 0 when
  * more than a quarter of them lie outside the image. */
@@ -46,5 +49,8 @@ void asj_patch_normalise(const uint16_t *grey, int32_t samples, int16_t *unit);
 
 /* Exact in 32 bits for unit vectors. */
 int32_t asj_patch_product(const int16_t *left, const int16_t *right, int32_t samples);
+
+/* Products of one vector with `count` others that follow each other; length is a multiple of 16. */
+void asj_patch_products(const int16_t *left, const int16_t *right, int32_t length, int32_t count, int32_t *products);
 
 #endif

@@ -396,4 +396,7 @@ void V_NAME(asj_ops)(asj_ops *ops)
 #endif
     ops->field_tile = field_tile;
     ops->isotropic_row = isotropic_row;
+#ifdef V_MORE
+    V_MORE(ops); /* what is not in this file */
+#endif
 }

@@ -28,8 +28,8 @@ static const char help[] =
     "\n"
     "Matches two views of the sample room, 1052 x 780, with the N most meaningful L-junctions of either (50, 500 and 5000 unless\n"
     "asked otherwise; where the room has fewer, random ones fill up), and prints milliseconds for each stage: medians of so many\n"
-    "runs (7) after one that is not counted, the least total, and the least of all threads' time. Then what the parts do in a second. key=value sets an option of\n"
-    "the matcher; 2 threads unless asked otherwise.\n";
+    "runs (7) after one that is not counted, the least total, and the least of all threads' time. Then what the parts do in a\n"
+    "second. key=value sets an option of the matcher; 2 threads unless asked otherwise.\n";
 
 typedef struct settings {
     size_t corners[MAX_SIZES];

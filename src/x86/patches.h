@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The matcher's operations with 32-bit lanes and gathers: names as in the reference, patch.c. Only avx2.c includes this. */
+#ifndef ASJ_SRC_X86_PATCHES_H
+#define ASJ_SRC_X86_PATCHES_H
+
+#include "../ops.h"
+
+static inline int32_t sum_lanes(__m256i v)
+{
+    __m128i s = _mm_add_epi32(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));
+    s = _mm_add_epi32(s, _mm_shuffle_epi32(s, 0x4e));
+    s = _mm_add_epi32(s, _mm_shuffle_epi32(s, 0xb1));
+    return _mm_cvtsi128_si32(s);
+}
+
+/* Four patches on the right at once; lengths are multiples of 16. Sums of whole numbers that fit: any order gives the same. */
+static void patch_products_avx2(const int16_t *left, const int16_t *right, int32_t length, int32_t count, int32_t *products)
+{
+    int32_t k = 0;
+    for (; k + 4 <= count; k += 4) {
+        const int16_t *r = right + (ptrdiff_t)k * length;
+        __m256i sum[4] = {v_zero(), v_zero(), v_zero(), v_zero()};
+        for (int32_t i = 0; i < length; i += 16) {
+            const __m256i l = v_load(left + i);
+            for (int32_t n = 0; n < 4; n++)
+                sum[n] = _mm256_add_epi32(sum[n], _mm256_madd_epi16(l, v_load(r + (ptrdiff_t)n * length + i)));
+        }
+        const __m256i low = _mm256_hadd_epi32(sum[0], sum[1]), high = _mm256_hadd_epi32(sum[2], sum[3]);
+        const __m256i all = _mm256_hadd_epi32(low, high);
+        _mm_storeu_si128((__m128i *)(void *)(products + k),
+                         _mm_add_epi32(_mm256_castsi256_si128(all), _mm256_extracti128_si256(all, 1)));
+    }
+    for (; k < count; k++) {
+        const int16_t *r = right + (ptrdiff_t)k * length;
+        __m256i sum = v_zero();
+        for (int32_t i = 0; i < length; i += 16)
+            sum = _mm256_add_epi32(sum, _mm256_madd_epi16(v_load(left + i), v_load(r + i)));
+        products[k] = sum_lanes(sum);
+    }
+}
+
+/* Two neighbouring grey levels in one gather, weighted and added by one multiplication: levels stay below 2^15. */
+static int32_t pyramid_sample_avx2(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
+                                   uint16_t *grey)
+{
+    const int32_t width = pyramid->width[level], height = pyramid->height[level], whole = count & ~7;
+    const int *plane = (const int *)(const void *)pyramid->plane[level];
+    const float step = 256.0f / (float)(1 << level);
+    const __m256 scale = _mm256_set1_ps(step), shift = _mm256_set1_ps(0.5f * step - 128.0f), zero = _mm256_setzero_ps();
+    const __m256 right = _mm256_set1_ps((float)(width - 1) * 256.0f), bottom = _mm256_set1_ps((float)(height - 1) * 256.0f);
+    const __m256 last_x = _mm256_set1_ps((float)(pyramid->width[0] - 1)), last_y = _mm256_set1_ps((float)(pyramid->height[0] - 1));
+    const __m256i stride = _mm256_set1_epi32(width + 1), fraction = _mm256_set1_epi32(255), one = _mm256_set1_epi32(256);
+    const __m256i half = _mm256_set1_epi32(1 << 14);
+    int32_t inside = 0;
+    for (int32_t i = 0; i < whole; i += 8) {
+        const __m256 px = _mm256_loadu_ps(x + i), py = _mm256_loadu_ps(y + i);
+        const __m256 in_x = _mm256_and_ps(_mm256_cmp_ps(px, zero, _CMP_GE_OQ), _mm256_cmp_ps(px, last_x, _CMP_LE_OQ));
+        const __m256 in_y = _mm256_and_ps(_mm256_cmp_ps(py, zero, _CMP_GE_OQ), _mm256_cmp_ps(py, last_y, _CMP_LE_OQ));
+        inside += __builtin_popcount((unsigned)_mm256_movemask_ps(_mm256_and_ps(in_x, in_y)));
+        __m256 fx = _mm256_max_ps(_mm256_add_ps(_mm256_mul_ps(px, scale), shift), zero);
+        __m256 fy = _mm256_max_ps(_mm256_add_ps(_mm256_mul_ps(py, scale), shift), zero);
+        const __m256i ix = _mm256_cvttps_epi32(_mm256_min_ps(fx, right)), iy = _mm256_cvttps_epi32(_mm256_min_ps(fy, bottom));
+        const __m256i wx = _mm256_and_si256(ix, fraction), wy = _mm256_and_si256(iy, fraction);
+        const __m256i weights = _mm256_or_si256(_mm256_sub_epi32(one, wx), _mm256_slli_epi32(wx, 16));
+        const __m256i at = _mm256_add_epi32(_mm256_mullo_epi32(_mm256_srai_epi32(iy, 8), stride), _mm256_srai_epi32(ix, 8));
+        __m256i upper = _mm256_madd_epi16(_mm256_i32gather_epi32(plane, at, 2), weights);
+        __m256i lower = _mm256_madd_epi16(_mm256_i32gather_epi32(plane, _mm256_add_epi32(at, stride), 2), weights);
+        upper = _mm256_mullo_epi32(_mm256_srai_epi32(upper, 1), _mm256_sub_epi32(one, wy));
+        lower = _mm256_mullo_epi32(_mm256_srai_epi32(lower, 1), wy);
+        const __m256i sum = _mm256_srai_epi32(_mm256_add_epi32(_mm256_add_epi32(upper, lower), half), 15);
+        _mm_storeu_si128((__m128i *)(void *)(grey + i),
+                         _mm_packus_epi32(_mm256_castsi256_si128(sum), _mm256_extracti128_si256(sum, 1)));
+    }
+    return inside + asj_pyramid_sample_reference(pyramid, level, x + whole, y + whole, count - whole, grey + whole);
+}
+
+#endif
