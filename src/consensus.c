@@ -62,11 +62,13 @@ void asj_place_index_free(asj_memory *memory, asj_place_index *index)
  * from. */
 static double misprediction(const double *map_c, const double *map_d, double dx, double dy, double ex, double ey, double tolerance)
 {
-    double distance = sqrt(ex * ex + ey * ey), allowed = PIXELS + tolerance * distance;
     double cx = map_c[0] * dx + map_c[1] * dy - ex, cy = map_c[2] * dx + map_c[3] * dy - ey;
-    double square = cx * cx + cy * cy, most = 4 * REACH * allowed * allowed;
-    if (square > most)
+    double square = cx * cx + cy * cy, far2 = ex * ex + ey * ey;
+    if (square > 8.001 * REACH * (PIXELS * PIXELS + tolerance * tolerance * far2)) /* (a + b)^2 <= 2 (a^2 + b^2) */
         return 2 * REACH; /* no square root for the many that are far off */
+    double allowed = PIXELS + tolerance * sqrt(far2);
+    if (square > 4 * REACH * allowed * allowed)
+        return 2 * REACH;
     double tx = map_d[0] * dx + map_d[1] * dy - ex, ty = map_d[2] * dx + map_d[3] * dy - ey;
     double mean = (sqrt(square) + sqrt(tx * tx + ty * ty)) * 0.5 / allowed;
     return mean * mean;
@@ -106,13 +108,21 @@ float asj_agreement(const asj_match_options *options, const asj_view *view1, con
 
 /* --- relaxation ------------------------------------------------------------------------------------------------------------- */
 
-/* One image's half of the graph. Weights are stored for every pair that is looked at, candidate by candidate, neighbour place by
- * neighbour place, in the order of the place index. */
+/* A neighbour that agrees. */
+typedef struct voice {
+    uint32_t position; /* in the order of the place index */
+    uint16_t weight;   /* agreement in 1/65535; not 0 */
+    uint16_t place;    /* which of the neighbour places it belongs to */
+} voice;
+
+/* One image's half of the graph. Most pairs that are looked at do not agree at all: only the others are stored, candidate by
+ * candidate, neighbour place by neighbour place, in the order of the place index. */
 typedef struct half {
     const asj_corners *corners;
     asj_place_index index;
-    size_t *offset;      /* of each candidate's weights */
-    uint16_t *weight;    /* agreement in 1/65535 */
+    size_t *offset;      /* candidate k hears voices[offset[k]] .. voices[offset[k] + heard[k] - 1] */
+    uint32_t *heard;
+    voice *voices;
     float *confidence;   /* in the order of the place index */
     uint32_t *position;  /* of each candidate there */
     float *best;         /* of each place */
@@ -121,6 +131,47 @@ typedef struct half {
 static uint32_t place_of(const half *h, const asj_candidate *c, int32_t side)
 {
     return h->corners->place[side == 1 ? c->i : c->j];
+}
+
+/* What candidate k hears goes to `voices`; returns how many they are. */
+static uint32_t hear_one(const asj_match_options *options, const asj_view *view1, const asj_view *view2,
+                         const asj_candidates *candidates, int32_t side, const half *h, size_t k, voice *voices)
+{
+    const asj_candidate *c = &candidates->list[k];
+    const uint32_t place = place_of(h, c, side);
+    const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
+    uint32_t count = 0;
+    for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++)
+        for (uint32_t m = h->index.start[neighbour[n]]; m < h->index.start[neighbour[n] + 1]; m++) {
+            float w = asj_agreement(options, view1, view2, c, &candidates->list[h->index.order[m]]);
+            const uint16_t weight = (uint16_t)(w * WEIGHT_ONE);
+            if (weight == 0)
+                continue;
+            voices[count++] = (voice){m, weight, (uint16_t)n};
+        }
+    return count;
+}
+
+/* Room for all that candidates may hear, then what they do hear. */
+static asj_status hear(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
+                       const asj_candidates *candidates, int32_t side, half *h)
+{
+    const size_t count = candidates->count;
+    size_t total = 0;
+    for (size_t k = 0; k < count; k++) {
+        const uint32_t place = place_of(h, &candidates->list[k], side);
+        const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
+        h->offset[k] = total;
+        for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++)
+            total += h->index.start[neighbour[n] + 1] - h->index.start[neighbour[n]];
+    }
+    h->voices = asj_allocate(&context->memory, total, sizeof *h->voices);
+    if (!h->voices)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu pairs of candidates", total);
+#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 64)
+    for (int64_t k = 0; k < (int64_t)count; k++)
+        h->heard[k] = hear_one(options, view1, view2, candidates, side, h, (size_t)k, h->voices + h->offset[k]);
+    return ASJ_OK;
 }
 
 static asj_status half_create(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
@@ -132,65 +183,42 @@ static asj_status half_create(asj_context *context, const asj_match_options *opt
     asj_status status = asj_place_index_create(context, h->corners, candidates, side, &h->index);
     if (status != ASJ_OK)
         return status;
-    h->offset = asj_allocate(memory, count + 1, sizeof *h->offset);
+    h->offset = asj_allocate(memory, count, sizeof *h->offset);
+    h->heard = asj_allocate(memory, count, sizeof *h->heard);
     h->confidence = asj_allocate(memory, count, sizeof *h->confidence);
     h->position = asj_allocate(memory, count, sizeof *h->position);
     h->best = asj_allocate(memory, h->corners->place_count, sizeof *h->best);
-    if (!h->offset || !h->confidence || !h->position || !h->best)
+    if (!h->offset || !h->heard || !h->confidence || !h->position || !h->best)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
-    size_t total = 0;
-    for (size_t k = 0; k < count; k++) {
-        const uint32_t place = place_of(h, &candidates->list[k], side);
-        const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
-        h->offset[k] = total;
-        for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++)
-            total += h->index.start[neighbour[n] + 1] - h->index.start[neighbour[n]];
+    for (size_t k = 0; k < count; k++)
         h->position[h->index.order[k]] = (uint32_t)k;
-    }
-    h->offset[count] = total;
-    h->weight = asj_allocate(memory, total, sizeof *h->weight);
-    if (!h->weight)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu pairs of candidates", total);
-#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 64)
-    for (int64_t k = 0; k < (int64_t)count; k++) {
-        const asj_candidate *c = &candidates->list[k];
-        const uint32_t place = place_of(h, c, side);
-        const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
-        uint16_t *weight = h->weight + h->offset[k];
-        for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++)
-            for (uint32_t m = h->index.start[neighbour[n]]; m < h->index.start[neighbour[n] + 1]; m++)
-                *weight++ = (uint16_t)(asj_agreement(options, view1, view2, c, &candidates->list[h->index.order[m]]) * WEIGHT_ONE);
-    }
-    return ASJ_OK;
+    return hear(context, options, view1, view2, candidates, side, h);
 }
 
 static void half_free(asj_memory *memory, half *h)
 {
     asj_place_index_free(memory, &h->index);
     asj_release(memory, h->offset);
-    asj_release(memory, h->weight);
+    asj_release(memory, h->heard);
+    asj_release(memory, h->voices);
     asj_release(memory, h->confidence);
     asj_release(memory, h->position);
     asj_release(memory, h->best);
 }
 
 /* Sum over the neighbour places of the largest weight x confidence. */
-static float ask(const half *h, const asj_candidate *c, size_t k, int32_t side)
+static float ask(const half *h, size_t k)
 {
-    const uint32_t place = place_of(h, c, side);
-    const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
-    const uint16_t *weight = h->weight + h->offset[k];
+    const voice *v = h->voices + h->offset[k], *end = v + h->heard[k];
     float support = 0;
-    for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++) {
-        const float *confidence = h->confidence + h->index.start[neighbour[n]];
-        const uint32_t size = h->index.start[neighbour[n] + 1] - h->index.start[neighbour[n]];
+    while (v < end) {
+        const uint16_t place = v->place;
         float largest = 0;
-        for (uint32_t m = 0; m < size; m++) {
-            float voice = (float)weight[m] * confidence[m];
-            largest = voice > largest ? voice : largest;
+        for (; v < end && v->place == place; v++) {
+            float loud = (float)v->weight * h->confidence[v->position];
+            largest = loud > largest ? loud : largest;
         }
         support += largest;
-        weight += size;
     }
     return support * (1 / WEIGHT_ONE);
 }
@@ -242,7 +270,7 @@ static void relax(asj_context *context, const asj_match_options *options, asj_ca
 #pragma omp parallel for num_threads(context->threads) schedule(static)
         for (int64_t k = 0; k < count; k++) {
             asj_candidate *c = &candidates->list[k];
-            c->support = (ask(&halves[0], c, (size_t)k, 1) + ask(&halves[1], c, (size_t)k, 2)) * 0.5f;
+            c->support = (ask(&halves[0], (size_t)k) + ask(&halves[1], (size_t)k)) * 0.5f;
             c->score = appearance[k] * (BASE + c->support);
         }
         for (int64_t k = 0; k < count; k++)

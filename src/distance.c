@@ -148,25 +148,30 @@ static void multiply_row(const table *t, uint32_t i, float *scores)
 {
     const asj_corners *c1 = &t->view1->corners, *c2 = &t->view2->corners;
     const int32_t length = asj_patch_length(t->options);
-    int32_t products[TILE_FRAMES];
+    int32_t products[TILE_FRAMES], largest[TILE_FRAMES];
     for (uint32_t j = 0; j < c2->count; j++)
         scores[j] = UNUSABLE;
     for (uint32_t first = 0, end; first < c2->count; first = end) {
         const uint32_t start = c2->first_frame[first];
+        int32_t asked = 0;
         for (end = first + 1; end < c2->count && c2->first_frame[end + 1] - start <= TILE_FRAMES; end++)
             ;
         const int16_t *right = t->view2->patches + (size_t)start * (size_t)length;
+        const int32_t frames = (int32_t)(c2->first_frame[end] - start);
         for (uint32_t f = c1->first_frame[i]; f < c1->first_frame[i + 1]; f++) {
             if (!t->view1->usable[f])
                 continue;
-            t->ops->patch_products(t->view1->patches + (size_t)f * (size_t)length, right, length,
-                                   (int32_t)(c2->first_frame[end] - start), products);
-            for (uint32_t j = first; j < end; j++)
-                for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++) {
-                    const float score = unit_affinity(products[g - start]);
-                    scores[j] = t->view2->usable[g] && score > scores[j] ? score : scores[j];
-                }
+            t->ops->patch_products(t->view1->patches + (size_t)f * (size_t)length, right, length, frames, products);
+            if (asked++ == 0)
+                memcpy(largest, products, (size_t)frames * sizeof *largest);
+            for (int32_t g = 0; g < frames; g++)
+                largest[g] = products[g] > largest[g] ? products[g] : largest[g];
         }
+        for (uint32_t j = first; j < end && asked > 0; j++)
+            for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++) {
+                const float score = unit_affinity(largest[g - start]);
+                scores[j] = t->view2->usable[g] && score > scores[j] ? score : scores[j];
+            }
     }
 }
 
