@@ -12,9 +12,14 @@
  * opposite. They replace the line segment detector that feeds ACJ. Preset `paper` asks for 5.15, which is sqrt(NM) K F <= 1 at radius 7
  * in a photograph of 0.8 megapixels: what the paper's number of tests would be if it counted one line of the image. */
 #include "field.h"
+#include "ops.h"
 
 #include <math.h>
 #include <string.h>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 #define TWO_PI 6.283185307179586
 
@@ -240,5 +245,22 @@ void asj_field_tile(const asj_field *field, const asj_frame *frame, int32_t run,
         for (int32_t b = 0; b < runs; b++)
             row[b] = (uint16_t)asj_field_candidates(field, frame, (run + b) * ASJ_LANES, y, scratch);
         asj_field_cut(frame, run, runs, row);
+    }
+}
+
+void asj_field_rows(const asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
+                    uint16_t *scratch, size_t scratch_size, uint16_t *masks)
+{
+    const int32_t per_tile = ASJ_FIELD_TILE / ASJ_LANES;
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(context->threads) schedule(dynamic)
+#endif
+    for (int32_t run = 0; run < frame->blocks; run += per_tile) {
+        const int32_t runs = frame->blocks - run < per_tile ? frame->blocks - run : per_tile;
+        size_t thread = 0;
+#ifdef _OPENMP
+        thread = (size_t)omp_get_thread_num();
+#endif
+        context->ops->field_tile(field, frame, run, runs, top, bottom, scratch + thread * scratch_size, masks);
     }
 }

@@ -191,8 +191,8 @@ static inline int32_t clamp(int32_t value, int32_t last)
     return value < 0 ? 0 : value > last ? last : value;
 }
 
-/* At x0 + fx, y0 + fy, from the rows y0 - 1 .. y0 + 2 and the columns x0 - 1 .. x0 + 2: central differences at the four pixels around,
- * bilinear, then from 1/128 to grey levels. */
+/* At x0 + fx, y0 + fy, from the rows y0 - 1 .. y0 + 2 and the columns x0 - 1 .. x0 + 2: central differences at the four pixels
+ * around, bilinear, then from 1/128 to grey levels. */
 static inline void sample(const uint16_t *const row[4], const int32_t column[4], double fx, double fy, double *gx, double *gy)
 {
 #define I(i, j) row[i][column[j]]

@@ -11,10 +11,15 @@
  * junctions at a third of the cost. Among overlapping junctions the more meaningful one stays; `more_branches_win` restores the rule
  * of ACJ that M + 1 branches within half a radius replace M. */
 #include "isotropic.h"
+#include "ops.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 #define TWO_PI 6.283185307179586
 #define MAX_SECTORS 188 /* floor(2 pi 30) */
@@ -57,7 +62,8 @@ static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t
     const size_t count = (size_t)entry->sectors.count, offsets = (size_t)entry->sectors.offset_count;
     const size_t block = asj_sector_scratch(&entry->sectors) + count * ASJ_LANES;
     const size_t row = (offsets + (size_t)entry->plan.slot_count + count + 2 * (size_t)entry->suppress) * ASJ_ISOTROPIC_LANES;
-    if (test->scratch < (block > row ? block : row)) /* radii come in rising order, so that the last one needs the most of everything */
+    /* radii come in rising order, so that the last one needs the most of everything */
+    if (test->scratch < (block > row ? block : row))
         test->scratch = block > row ? block : row;
     return status;
 }
@@ -171,8 +177,8 @@ static double opening(const asj_sectors *s, int32_t a, int32_t b)
     return TWO_PI * d / s->count;
 }
 
-void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *entry, const asj_isotropic_peak *peaks, int32_t count,
-                         asj_isotropic_junction *best)
+void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *entry, const asj_isotropic_peak *peaks,
+                         int32_t count, asj_isotropic_junction *best)
 {
     const asj_sectors *s = &entry->sectors;
     for (int32_t m = 2; m <= count; m++) {
@@ -225,6 +231,24 @@ void asj_isotropic_row(const asj_isotropic *test, const asj_frame *frame, int32_
             asj_isotropic_block(test, frame, b * ASJ_LANES, y, masks[b], scratch, junctions);
         for (uint32_t mask = masks[b]; mask; mask &= mask - 1)
             junctions++;
+    }
+}
+
+void asj_isotropic_rows(const asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
+                        const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
+                        asj_isotropic_junction *junctions)
+{
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 4)
+#endif
+    for (int32_t y = top; y < bottom; y++) {
+        size_t thread = 0;
+#ifdef _OPENMP
+        thread = (size_t)omp_get_thread_num();
+#endif
+        if (starts[y - top + 1] > starts[y - top])
+            context->ops->isotropic_row(test, frame, y, masks + (ptrdiff_t)y * frame->blocks, scratch + thread * scratch_size,
+                                        junctions + starts[y - top]);
     }
 }
 

@@ -45,14 +45,20 @@ void asj_isotropic_free(asj_memory *memory, asj_isotropic *test);
 /* Sets the numbers of tests for an image of this size. */
 void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, int32_t height, asj_isotropic *test);
 
-/* Tests the pixels x + i, bit i of `candidates` set; writes one record for each such bit, in order. A candidate that no radius makes
- * meaningful has branch_count 0. */
+/* Tests the pixels x + i, bit i of `candidates` set; writes one record for each such bit, in order. A candidate that no radius
+ * makes meaningful has branch_count 0. */
 void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int32_t x, int32_t y, uint32_t candidates,
                          uint16_t *scratch, asj_isotropic_junction *junctions);
 
 /* The same for a row: masks[b] are the candidates of run b. Records in order of x. */
 void asj_isotropic_row(const asj_isotropic *test, const asj_frame *frame, int32_t y, const uint16_t *masks, uint16_t *scratch,
                        asj_isotropic_junction *junctions);
+
+/* The same for rows top .. bottom - 1, by all threads of the context; `masks` are those of the whole image, the records of row y
+ * start at junctions[starts[y - top]], and starts[bottom - top] ends the last. `scratch_size` elements for each thread. */
+void asj_isotropic_rows(const asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
+                        const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
+                        asj_isotropic_junction *junctions);
 
 /* ---- for the vector forms of the above ---- */
 
@@ -69,11 +75,11 @@ typedef struct asj_isotropic_peak {
 int32_t asj_isotropic_insert(asj_isotropic_peak *peaks, int32_t count, int32_t most, asj_isotropic_peak peak);
 
 /* Makes *best the junction of these branches, if that one is meaningful, and more so than *best. */
-void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *entry, const asj_isotropic_peak *peaks, int32_t count,
-                         asj_isotropic_junction *best);
+void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *entry, const asj_isotropic_peak *peaks,
+                         int32_t count, asj_isotropic_junction *best);
 
-/* Sorts by meaningfulness and drops what lies close to something better (see isotropic.c). `taken` is one bit for each pixel, rows of
- * whole bytes, zero. Returns how many stay, at the front. */
+/* Sorts by meaningfulness and drops what lies close to something better (see isotropic.c). `taken` is one bit for each pixel, rows
+ * of whole bytes, zero. Returns how many stay, at the front. */
 size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const asj_detect_options *options,
                           int32_t width, int32_t height, uint8_t *taken);
 

@@ -1,12 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "ops.h"
 #include "field.h"
+#include "gradient.h"
 #include "simd/variants.h"
 
 /* The build says which variants it holds: ASJ_HAVE_SSE2, ASJ_HAVE_AVX2, ASJ_HAVE_AVX512, ASJ_HAVE_NEON. */
 
 static void fill_reference(asj_ops *ops)
 {
+    ops->gradient = asj_gradient;
+    ops->field_rows = asj_field_rows;
+    ops->isotropic_rows = asj_isotropic_rows;
+    ops->scan_rays = asj_scan_rays;
     ops->field_tile = asj_field_tile;
     ops->field_block = asj_field_block;
     ops->isotropic_row = asj_isotropic_row;

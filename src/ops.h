@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The one table of operations that back ends replace. Each step's own file holds the reference in portable C, which is the definition:
- * every replacement gives the same bits (tests/parity). Decisions on small data are not in the table: they exist once. */
+/* The one table of operations that back ends replace. Each step's own file holds the reference in portable C, which is the
+ * definition: every replacement gives the same bits (tests/parity). Decisions on small data are not in the table: they exist once. */
 #ifndef ASJ_SRC_OPS_H
 #define ASJ_SRC_OPS_H
 
@@ -10,6 +10,20 @@
 
 typedef struct asj_ops {
     const char *name;
+
+    /* ---- steps over whole images or bands of rows: what a device replaces, keeping its own copies of the planes ---- */
+
+    /* asj_gradient() (gradient.h) */
+    asj_status (*gradient)(asj_context *context, asj_frame *frame, const asj_detect_options *options);
+    /* asj_field_rows() (field.h) */
+    void (*field_rows)(const asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
+                       uint16_t *scratch, size_t scratch_size, uint16_t *masks);
+    /* asj_isotropic_rows() (isotropic.h) */
+    void (*isotropic_rows)(const asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top,
+                           int32_t bottom, const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
+                           asj_isotropic_junction *junctions);
+    /* asj_scan_rays() (scan.h) */
+    asj_status (*scan_rays)(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);
 
     /* ---- parts of an image: what an instruction set of the CPU replaces ---- */
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The local junctions of the pixels that rays visit (5 to 10 % of an indoor photograph) are computed in runs of ASJ_LANES pixels when
- * first needed, and kept: both scans of an image, and rays along one edge, visit the same ones. Each thread keeps its own. */
+/* The local junctions of the pixels that rays visit (5 to 10 % of an indoor photograph) are computed in runs of ASJ_LANES pixels
+ * when first needed, and kept: both scans of an image, and rays along one edge, visit the same ones. Each thread keeps its own. */
 #ifndef ASJ_SRC_SCAN_CACHE_H
 #define ASJ_SRC_SCAN_CACHE_H
 

@@ -7,17 +7,18 @@
  *     omega_k = sum of gamma(q) over the sector,   gamma(q) = |g~| max(|cos(phi - alpha)| - |sin(phi - alpha)|, 0)
  * phi, the direction of the edge, is at right angles to the gradient, so that with the unit vector u from p to q
  *     gamma = max(|g~x uy - g~y ux| - |g~x ux + g~y uy|, 0)
- * without any trigonometry, and the same for u and -u. Which products are taken (asj_sector_direction()) makes this hold to the bit,
- * and makes the four axes that mirror each other at the coordinate axes and the diagonals share theirs: back ends compute gamma once for
- * each axis and pixel.
+ * without any trigonometry, and the same for u and -u. Which products are taken (asj_sector_direction()) makes this hold to the
+ * bit, and makes the four axes that mirror each other at the coordinate axes and the diagonals share theirs: back ends compute
+ * gamma once for each axis and pixel.
  * Strength (eq. junction-ness-branch-fix-scale): z_k = (omega_k - J_k mu) / (sigma sqrt(J_k)), J_k pixels in the sector.
  *
  * The number of pixels differs from sector to sector; J_k is that of sector k. Offsets are sorted by angle once; a sector is then a
  * circular run of them, and all sums come from one prefix sum and K differences.
  *
- * Whole numbers: the gradient is in 1/1024, u in 2^-(bits + 6), and a product is the high half of the 16 x 16 bit product, so gamma is in
- * 2^-bits with bits = 9. Prefix sums may wrap around 16 bits; a sector's sum may not. |g~| <= L = 3.5 (gradient.c) and each gamma is
- * off by at most 2 units, hence a sum is below J (L 2^bits + 2): bits is 9 for sectors of up to 36 pixels and smaller for larger ones.
+ * Whole numbers: the gradient is in 1/1024, u in 2^-(bits + 6), and a product is the high half of the 16 x 16 bit product, so
+ * gamma is in 2^-bits with bits = 9. Prefix sums may wrap around 16 bits; a sector's sum may not. |g~| <= L = 3.5 (gradient.c) and
+ * each gamma is off by at most 2 units, hence a sum is below J (L 2^bits + 2): bits is 9 for sectors of up to 36 pixels and
+ * smaller for larger ones.
  *
  * Border: outside the image the gradient is zero. Sectors keep their full number of pixels there, so evidence is never invented and
  * the number of false alarms stays a bound; branches that point inwards lose nothing. */
@@ -174,8 +175,8 @@ static inline int16_t high_product(int16_t a, int16_t b)
 }
 
 /* prefix[i + 1] = prefix[i] + gamma at offset i, at ASJ_LANES pixels. */
-static inline void add_offset(const int16_t *restrict gx, const int16_t *restrict gy, asj_direction u, const uint16_t *restrict before,
-                              uint16_t *restrict after)
+static inline void add_offset(const int16_t *restrict gx, const int16_t *restrict gy, asj_direction u,
+                              const uint16_t *restrict before, uint16_t *restrict after)
 {
     for (int i = 0; i < ASJ_LANES; i++) {
         int16_t cross = (int16_t)(high_product(gx[i], u.y) - high_product(gy[i], u.cross_x));

@@ -37,8 +37,8 @@ void asj_sector_sums(const asj_sectors *sectors, const int16_t *gx, const int16_
 
 /* The factors of gamma for an offset, with high halves of products:
  *     gamma = max(|gx y - gy cross_x| - |gx x - gy dot_y|, 0)
- * x = |ux|, y = |uy|, cross_x = x and dot_y = -y where ux and uy have the same sign; -x and y where not, the axis being turned so that
- * x >= 0. A difference of two products that are both rounded down is off by less than one unit, a sum would be by two. */
+ * x = |ux|, y = |uy|, cross_x = x and dot_y = -y where ux and uy have the same sign; -x and y where not, the axis being turned so
+ * that x >= 0. A difference of two products that are both rounded down is off by less than one unit, a sum would be by two. */
 typedef struct asj_direction {
     int16_t x, y, cross_x, dot_y;
 } asj_direction;

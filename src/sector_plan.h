@@ -5,15 +5,15 @@
 
 #include "sector.h"
 
-/* gamma depends on the axis of an offset only, so it is computed once for each axis and pixel, as planes, and shared by all offsets on
- * that axis. The four mirror images of an axis share their products:
+/* gamma depends on the axis of an offset only, so it is computed once for each axis and pixel, as planes, and shared by all
+ * offsets on that axis. The four mirror images of an axis share their products:
  *     a >= b >= 0, high halves of products, as in asj_sector_direction()
  *     plane 0: axis ( a, b)   |gx b - gy a| - |gx a - gy -b|        plane 1: axis (-b, a)   the negative of plane 0
  *     plane 2: axis ( b, a)   |gx a - gy b| - |gx b - gy -a|        plane 3: axis ( a,-b)   the negative of plane 2
  * each cut at zero.
  *
- * Of the running sum over the offsets only the values where a sector begins or ends are needed: the slots. A sector that runs past the
- * last offset ends in an extra slot, which is the total plus another slot. */
+ * Of the running sum over the offsets only the values where a sector begins or ends are needed: the slots. A sector that runs past
+ * the last offset ends in an extra slot, which is the total plus another slot. */
 typedef struct asj_sector_plan {
     int32_t family_count;
     int16_t *a, *b;        /* for each family of four planes */

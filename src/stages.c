@@ -127,7 +127,7 @@ asj_status asj_stage_gradient(asj_detection_run *d, const asj_image *image)
     asj_frame *frame = &d->detector->frame;
     asj_status status = asj_frame_load(d->context, frame, image);
     if (status == ASJ_OK)
-        status = asj_gradient(d->context, frame, d->options);
+        status = d->context->ops->gradient(d->context, frame, d->options);
     if (status != ASJ_OK)
         return status;
     dump_plane(d, ASJ_DUMP_PLANE_U16, "gray", frame->gray, 1.0 / ASJ_GRAY_ONE);
@@ -166,8 +166,6 @@ static asj_status dump_candidates(const asj_detection_run *d)
     return ASJ_OK;
 }
 
-#define TILE_RUNS (ASJ_FIELD_TILE / ASJ_LANES)
-
 /* Step 2: candidates, one bit for each pixel. */
 asj_status asj_stage_candidates(asj_detection_run *d)
 {
@@ -178,31 +176,13 @@ asj_status asj_stage_candidates(asj_detection_run *d)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for the candidates");
     for (int32_t top = 0; top < height; top += ASJ_ROW_GROUP) {
         const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
-#ifdef _OPENMP
-#pragma omp parallel for num_threads(d->threads) schedule(dynamic)
-#endif
-        for (int32_t run = 0; run < blocks; run += TILE_RUNS)
-            d->context->ops->field_tile(&d->detector->field, frame, run, blocks - run < TILE_RUNS ? blocks - run : TILE_RUNS,
-                                        top, bottom, asj_stage_scratch(d), d->candidates);
+        d->context->ops->field_rows(d->context, &d->detector->field, frame, top, bottom, d->scratch, d->scratch_size,
+                                    d->candidates);
         asj_status status = asj_progress(d->context, ASJ_STAGE_CANDIDATES, 0.05 + 0.45 * bottom / height);
         if (status != ASJ_OK)
             return status;
     }
     return dump_candidates(d);
-}
-
-/* Step 3 for rows top .. bottom - 1, whose candidates have room in `records`: row y from record starts[y - top] on. */
-static void test_rows(const asj_detection_run *d, int32_t top, int32_t bottom, const size_t *starts, asj_isotropic_junction *records)
-{
-    const asj_frame *frame = &d->detector->frame;
-#ifdef _OPENMP
-#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 4)
-#endif
-    for (int32_t y = top; y < bottom; y++) {
-        const uint16_t *row = d->candidates + (ptrdiff_t)y * frame->blocks;
-        if (starts[y - top + 1] > starts[y - top])
-            d->context->ops->isotropic_row(&d->detector->isotropic, frame, y, row, asj_stage_scratch(d), records + starts[y - top]);
-    }
 }
 
 /* Tests all candidates, group by group; what passes is collected in d->isotropic. */
@@ -229,7 +209,8 @@ static asj_status test_candidates(asj_detection_run *d)
             break;
         }
         if (total > 0)
-            test_rows(d, top, bottom, starts, records);
+            d->context->ops->isotropic_rows(d->context, &d->detector->isotropic, frame, top, bottom, d->candidates, starts,
+                                            d->scratch, d->scratch_size, records);
         const asj_isotropic_junction *tested = records;
         for (size_t i = 0; i < total; i++)
             if (tested[i].branch_count)
@@ -327,7 +308,7 @@ asj_status asj_stage_scan(asj_detection_run *d)
                     rays[count++] = (asj_ray){draft->x, draft->y, draft->branches[b].angle, start, 0, 0};
                 }
         }
-        status = asj_scan_rays(d->context, &d->detector->scan, &d->detector->frame, rays, count);
+        status = d->context->ops->scan_rays(d->context, &d->detector->scan, &d->detector->frame, rays, count);
         for (size_t i = 0; i < count && status == ASJ_OK; i++)
             set_length(d, &rays[i], branches[i]);
     } else {

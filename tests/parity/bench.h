@@ -4,7 +4,7 @@
 
 #include "ops.h"
 
-/* Times every operation in every available variant, interleaved, and prints medians and ratios to the reference. 0 when it could. */
+/* Times every operation in every available variant, interleaved; prints medians and ratios to the reference. 0 when it could. */
 int bench_run(asj_context *context, const asj_ops *tables, const int *available);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The whole detector in every variant: the same junctions, bit for bit. Scenes always; photographs (PNG files, or folders of them) when
- * named on the command line or found below ASJ_PAIRS. Exit status as parity. */
+/* The whole detector in every variant: the same junctions, bit for bit. Scenes always; photographs (PNG files, or folders of
+ * them) when named on the command line or found below ASJ_PAIRS. Exit status as parity. */
 #include "ops.h"
 #include "render.h"
 #include "scenes.h"

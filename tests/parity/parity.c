@@ -52,9 +52,10 @@ static uint8_t *produce(const operation *op, const asj_ops *ops, const subject *
 
 static void describe(const char *what, const operation *op, const asj_ops *ops, const subject *s)
 {
-    printf("FAIL %s: %s of %s at %d x %d, content %s, field radius %d, width %g, radii %#x, seed %llu\n", what, op->name, ops->name,
-           (int)s->frame.width, (int)s->frame.height, content_name(s->content), (int)s->options.field_radius, s->options.sector_width,
-           (unsigned)s->options.isotropic_radii, (unsigned long long)s->seed);
+    const asj_detect_options *o = &s->options;
+    printf("FAIL %s: %s of %s at %d x %d, content %s, field radius %d, width %g, radii %#x, seed %llu\n", what, op->name,
+           ops->name, (int)s->frame.width, (int)s->frame.height, content_name(s->content), (int)o->field_radius,
+           o->sector_width, (unsigned)o->isotropic_radii, (unsigned long long)s->seed);
 }
 
 static void compare(run_state *state, const operation *op, const subject *s)

@@ -50,7 +50,8 @@ static int fill_scene(subject *s)
     for (int i = 0; i < 4; i++) {
         const synth_point corner = {synth_random_between(&s->random, 0, s->frame.width),
                                     synth_random_between(&s->random, 0, s->frame.height)};
-        synth_add_rectangle(&scene, corner, 40, 25, synth_random_between(&s->random, 0, 6), synth_random_between(&s->random, 30, 220));
+        const double angle = synth_random_between(&s->random, 0, 6);
+        synth_add_rectangle(&scene, corner, 40, 25, angle, synth_random_between(&s->random, 30, 220));
     }
     uint8_t *pixels = synth_photograph(&scene, 0.8, 2, s->seed);
     synth_scene_free(&scene);
