@@ -58,15 +58,21 @@ void asj_place_index_free(asj_memory *memory, asj_place_index *index)
 
 /* --- agreement -------------------------------------------------------------------------------------------------------------- */
 
+/* 4 REACH (PIXELS + tolerance |e|)^2 at most, without a root, since (a + b)^2 <= 2 (a^2 + b^2); a little more for rounding. */
+static inline double most_square(double ex, double ey, double tolerance)
+{
+    return 8.001 * REACH * (PIXELS * PIXELS + tolerance * tolerance * (ex * ex + ey * ey));
+}
+
 /* Mean error of both predictions over what is allowed, squared. (dx, dy) leads from c to d in the image that the maps start
  * from. */
 static double misprediction(const double *map_c, const double *map_d, double dx, double dy, double ex, double ey, double tolerance)
 {
     double cx = map_c[0] * dx + map_c[1] * dy - ex, cy = map_c[2] * dx + map_c[3] * dy - ey;
-    double square = cx * cx + cy * cy, far2 = ex * ex + ey * ey;
-    if (square > 8.001 * REACH * (PIXELS * PIXELS + tolerance * tolerance * far2)) /* (a + b)^2 <= 2 (a^2 + b^2) */
+    double square = cx * cx + cy * cy;
+    if (square > most_square(ex, ey, tolerance))
         return 2 * REACH; /* no square root for the many that are far off */
-    double allowed = PIXELS + tolerance * sqrt(far2);
+    double allowed = PIXELS + tolerance * sqrt(ex * ex + ey * ey);
     if (square > 4 * REACH * allowed * allowed)
         return 2 * REACH;
     double tx = map_d[0] * dx + map_d[1] * dy - ex, ty = map_d[2] * dx + map_d[3] * dy - ey;
@@ -115,6 +121,11 @@ typedef struct voice {
     uint16_t place;    /* which of the neighbour places it belongs to */
 } voice;
 
+/* Where a candidate stands, for a first look at many: x, y in image 1, x, y in image 2. */
+typedef struct spot {
+    double at[4];
+} spot;
+
 /* One image's half of the graph. Most pairs that are looked at do not agree at all: only the others are stored, candidate by
  * candidate, neighbour place by neighbour place, in the order of the place index. */
 typedef struct half {
@@ -123,7 +134,8 @@ typedef struct half {
     size_t *offset;      /* candidate k hears voices[offset[k]] .. voices[offset[k] + heard[k] - 1] */
     uint32_t *heard;
     voice *voices;
-    float *confidence;   /* in the order of the place index */
+    spot *spots;         /* in the order of the place index */
+    float *confidence;   /* likewise */
     uint32_t *position;  /* of each candidate there */
     float *best;         /* of each place */
 } half;
@@ -133,16 +145,33 @@ static uint32_t place_of(const half *h, const asj_candidate *c, int32_t side)
     return h->corners->place[side == 1 ? c->i : c->j];
 }
 
+static spot spot_of(const asj_view *view1, const asj_view *view2, const asj_candidate *c)
+{
+    const asj_l_junction *l1 = &view1->corners.l[c->i], *l2 = &view2->corners.l[c->j];
+    return (spot){{(double)l1->x, (double)l1->y, (double)l2->x, (double)l2->y}};
+}
+
+/* Does c's map miss d by so much that asj_agreement() is 0? */
+static inline int misses(const double *map, const spot *c, const spot *d, double tolerance)
+{
+    const double dx = d->at[0] - c->at[0], dy = d->at[1] - c->at[1], ex = d->at[2] - c->at[2], ey = d->at[3] - c->at[3];
+    const double cx = map[0] * dx + map[1] * dy - ex, cy = map[2] * dx + map[3] * dy - ey;
+    return cx * cx + cy * cy > most_square(ex, ey, tolerance);
+}
+
 /* What candidate k hears goes to `voices`; returns how many they are. */
 static uint32_t hear_one(const asj_match_options *options, const asj_view *view1, const asj_view *view2,
                          const asj_candidates *candidates, int32_t side, const half *h, size_t k, voice *voices)
 {
     const asj_candidate *c = &candidates->list[k];
+    const spot here = spot_of(view1, view2, c);
     const uint32_t place = place_of(h, c, side);
     const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
     uint32_t count = 0;
     for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++)
         for (uint32_t m = h->index.start[neighbour[n]]; m < h->index.start[neighbour[n] + 1]; m++) {
+            if (misses(c->map.to, &here, &h->spots[m], options->neighbour_tolerance))
+                continue;
             float w = asj_agreement(options, view1, view2, c, &candidates->list[h->index.order[m]]);
             const uint16_t weight = (uint16_t)(w * WEIGHT_ONE);
             if (weight == 0)
@@ -185,13 +214,16 @@ static asj_status half_create(asj_context *context, const asj_match_options *opt
         return status;
     h->offset = asj_allocate(memory, count, sizeof *h->offset);
     h->heard = asj_allocate(memory, count, sizeof *h->heard);
+    h->spots = asj_allocate(memory, count, sizeof *h->spots);
     h->confidence = asj_allocate(memory, count, sizeof *h->confidence);
     h->position = asj_allocate(memory, count, sizeof *h->position);
     h->best = asj_allocate(memory, h->corners->place_count, sizeof *h->best);
-    if (!h->offset || !h->heard || !h->confidence || !h->position || !h->best)
+    if (!h->offset || !h->heard || !h->spots || !h->confidence || !h->position || !h->best)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
-    for (size_t k = 0; k < count; k++)
+    for (size_t k = 0; k < count; k++) {
         h->position[h->index.order[k]] = (uint32_t)k;
+        h->spots[k] = spot_of(view1, view2, &candidates->list[h->index.order[k]]);
+    }
     return hear(context, options, view1, view2, candidates, side, h);
 }
 
@@ -200,6 +232,7 @@ static void half_free(asj_memory *memory, half *h)
     asj_place_index_free(memory, &h->index);
     asj_release(memory, h->offset);
     asj_release(memory, h->heard);
+    asj_release(memory, h->spots);
     asj_release(memory, h->voices);
     asj_release(memory, h->confidence);
     asj_release(memory, h->position);

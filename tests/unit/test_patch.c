@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* src/patch.c and src/descriptor.c: pyramids, sampling and distances against naive evaluations in floating point. */
 #include "descriptor.h"
+#include "ops.h"
 #include "patch.h"
 #include "unit_test.h"
 
@@ -247,6 +248,53 @@ static void out_of_memory(void **state)
     assert_true(succeeded);
 }
 
+static uint32_t shuffled(uint32_t *state)
+{
+    return *state = *state * 1664525u + 1013904223u;
+}
+
+/* Every form that this processor has gives the bits of the reference, inside the image, across its border and far outside. */
+static void variants_give_the_same_bits(void **state)
+{
+    (void)state;
+    enum { COUNT = 100, LENGTH = 144 };
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_pyramid pyramid;
+    static int16_t patches[COUNT][LENGTH];
+    uint32_t seed = 1;
+    uint8_t pixels[61 * 47];
+    for (size_t i = 0; i < sizeof pixels; i++)
+        pixels[i] = (uint8_t)(i % 5 ? shuffled(&seed) >> 24 : 255);
+    const asj_image image = unit_gray8(pixels, 61, 47);
+    assert_int_equal(asj_pyramid_create(context, &image, 0, &pyramid), ASJ_OK);
+    for (int32_t n = 0; n < COUNT * LENGTH; n++) /* as large as unit vectors of this length can be */
+        patches[n / LENGTH][n % LENGTH] = (int16_t)((int32_t)(shuffled(&seed) >> 16) % 2731 - 1365);
+    for (int32_t variant = 0; variant < ASJ_VARIANT_COUNT; variant++) {
+        asj_ops ops;
+        if (!asj_ops_fill(variant, &ops))
+            continue;
+        for (int32_t count = 0; count < COUNT; count++) {
+            int32_t expected[COUNT], products[COUNT];
+            float x[COUNT], y[COUNT];
+            uint16_t expected_grey[COUNT], grey[COUNT];
+            const int32_t level = count % pyramid.levels;
+            asj_patch_products(patches[count], patches[0], LENGTH, count, expected);
+            ops.patch_products(patches[count], patches[0], LENGTH, count, products);
+            assert_memory_equal(products, expected, (size_t)count * sizeof *products);
+            for (int32_t i = 0; i < count; i++) {
+                x[i] = (float)shuffled(&seed) * (80.0f / 4294967296.0f) - 10;
+                y[i] = i % 31 == 0 ? 1e9f : (float)shuffled(&seed) * (66.0f / 4294967296.0f) - 10;
+            }
+            assert_int_equal(ops.pyramid_sample(&pyramid, level, x, y, count, grey),
+                             asj_pyramid_sample_reference(&pyramid, level, x, y, count, expected_grey));
+            assert_memory_equal(grey, expected_grey, (size_t)count * sizeof *grey);
+        }
+    }
+    asj_pyramid_free(&context->memory, &pyramid);
+    unit_context_free(&counter, &context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -258,6 +306,7 @@ int main(void)
         cmocka_unit_test(the_product_is_the_correlation),
         cmocka_unit_test(patches_do_not_depend_on_the_viewpoint),
         cmocka_unit_test(sift_votes_for_the_direction),
+        cmocka_unit_test(variants_give_the_same_bits),
         cmocka_unit_test(out_of_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
