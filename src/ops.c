@@ -15,6 +15,7 @@ static void fill_reference(asj_ops *ops)
     ops->field_tile = asj_field_tile;
     ops->field_block = asj_field_block;
     ops->isotropic_row = asj_isotropic_row;
+    ops->blur_row = asj_blur_row;
     ops->patch_products = asj_patch_products;
     ops->pyramid_sample = asj_pyramid_sample_reference;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The one table of operations that back ends replace. Each step's own file holds the reference in portable C, which is the
- * definition: every replacement gives the same bits (tests/parity). Decisions on small data are not in the table: they exist once. */
+ * definition: every replacement gives the same bits (tests/parity). Decisions on small data are not in the table: they exist
+ * once. */
 #ifndef ASJ_SRC_OPS_H
 #define ASJ_SRC_OPS_H
 
@@ -36,7 +37,8 @@ typedef struct asj_ops {
     void (*isotropic_row)(const asj_isotropic *test, const asj_frame *frame, int32_t y, const uint16_t *masks, uint16_t *scratch,
                           asj_isotropic_junction *junctions);
 
-    /* asj_patch_products() and asj_pyramid_sample_reference() (patch.h) */
+    /* asj_blur_row(), asj_patch_products() and asj_pyramid_sample_reference() (patch.h) */
+    void (*blur_row)(const uint16_t *const *rows, const int32_t *taps, int32_t radius, int32_t width, uint16_t *to);
     void (*patch_products)(const int16_t *left, const int16_t *right, int32_t length, int32_t count, int32_t *products);
     int32_t (*pyramid_sample)(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
                               uint16_t *grey);

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #define WEIGHT_BITS 14
-#define LARGEST_RADIUS 6 /* 3 sigma of the largest blur */
+#define LARGEST_RADIUS ASJ_BLUR_RADIUS
 
 /* --- pyramid ---------------------------------------------------------------------------------------------------------------- */
 
@@ -37,32 +37,37 @@ static int32_t gaussian(double sigma, int32_t *taps)
     return radius;
 }
 
-/* One line of `count` samples, `from` with `radius` copies of the border before and after. */
-static void blur_line(const uint16_t *from, int32_t count, const int32_t *taps, int32_t radius, uint16_t *to)
+void asj_blur_row(const uint16_t *const *rows, const int32_t *taps, int32_t radius, int32_t width, uint16_t *to)
 {
-    for (int32_t x = 0; x < count; x++) {
-        int32_t sum = taps[0] * from[x] + (1 << (WEIGHT_BITS - 1));
+    for (int32_t x = 0; x < width; x++) {
+        int32_t sum = taps[0] * rows[0][x] + (1 << (WEIGHT_BITS - 1));
         for (int32_t i = 1; i <= radius; i++)
-            sum += taps[i] * ((int32_t)from[x - i] + from[x + i]);
+            sum += taps[i] * ((int32_t)rows[2 * i - 1][x] + rows[2 * i][x]);
         to[x] = (uint16_t)(sum >> WEIGHT_BITS);
     }
 }
 
-/* Vertically: one row of output from the rows around it. */
-static void blur_column(const uint16_t *plane, ptrdiff_t stride, int32_t width, int32_t height, int32_t y, const int32_t *taps,
-                        int32_t radius, int32_t *sums, uint16_t *to)
+/* Along a line that has `radius` copies of its border before and after it. */
+static void blur_line(const asj_ops *ops, const uint16_t *line, int32_t width, const int32_t *taps, int32_t radius, uint16_t *to)
 {
-    const uint16_t *centre = plane + y * stride;
-    for (int32_t x = 0; x < width; x++)
-        sums[x] = taps[0] * centre[x] + (1 << (WEIGHT_BITS - 1));
+    const uint16_t *rows[ASJ_BLUR_ROWS] = {line};
     for (int32_t i = 1; i <= radius; i++) {
-        const uint16_t *above = plane + (y - i < 0 ? 0 : y - i) * stride;
-        const uint16_t *below = plane + (y + i >= height ? height - 1 : y + i) * stride;
-        for (int32_t x = 0; x < width; x++)
-            sums[x] += taps[i] * ((int32_t)above[x] + below[x]);
+        rows[2 * i - 1] = line - i;
+        rows[2 * i] = line + i;
     }
-    for (int32_t x = 0; x < width; x++)
-        to[x] = (uint16_t)(sums[x] >> WEIGHT_BITS);
+    ops->blur_row(rows, taps, radius, width, to);
+}
+
+/* Vertically: one row of output from the rows around it. */
+static void blur_column(const asj_ops *ops, const uint16_t *plane, ptrdiff_t stride, int32_t width, int32_t height, int32_t y,
+                        const int32_t *taps, int32_t radius, uint16_t *to)
+{
+    const uint16_t *rows[ASJ_BLUR_ROWS] = {plane + y * stride};
+    for (int32_t i = 1; i <= radius; i++) {
+        rows[2 * i - 1] = plane + (y - i < 0 ? 0 : y - i) * stride;
+        rows[2 * i] = plane + (y + i >= height ? height - 1 : y + i) * stride;
+    }
+    ops->blur_row(rows, taps, radius, width, to);
 }
 
 static void copy_border(uint16_t *plane, int32_t width, int32_t height)
@@ -86,9 +91,8 @@ static asj_status fill_base(asj_context *context, const asj_frame *frame, double
     int32_t taps[LARGEST_RADIUS + 1];
     const int32_t radius = gaussian(smoothing, taps);
     const size_t padded = (size_t)width + 2 * LARGEST_RADIUS;
-    const size_t row = padded * sizeof(uint16_t) + (size_t)width * sizeof(int32_t);
     uint16_t *across = asj_allocate(&context->memory, (size_t)height * (size_t)stride, sizeof *across);
-    char *scratch = asj_allocate(&context->memory, (size_t)height, row); /* a strip for each row: no thread numbers needed */
+    uint16_t *scratch = asj_allocate(&context->memory, (size_t)height, padded * sizeof *scratch); /* a strip for each row */
     if (!across || !scratch) {
         asj_release(&context->memory, across);
         asj_release(&context->memory, scratch);
@@ -96,18 +100,17 @@ static asj_status fill_base(asj_context *context, const asj_frame *frame, double
     }
 #pragma omp parallel for num_threads(context->threads) schedule(static)
     for (int32_t y = 0; y < height; y++) {
-        uint16_t *line = (uint16_t *)(void *)(scratch + (size_t)y * row + (size_t)width * sizeof(int32_t)) + LARGEST_RADIUS;
+        uint16_t *line = scratch + (size_t)y * padded + LARGEST_RADIUS;
         memcpy(line, frame->gray + y * frame->stride, (size_t)width * sizeof *line);
         for (int32_t i = 1; i <= radius; i++) {
             line[-i] = line[0];
             line[width - 1 + i] = line[width - 1];
         }
-        blur_line(line, width, taps, radius, across + y * stride);
+        blur_line(context->ops, line, width, taps, radius, across + y * stride);
     }
 #pragma omp parallel for num_threads(context->threads) schedule(static)
     for (int32_t y = 0; y < height; y++)
-        blur_column(across, stride, width, height, y, taps, radius, (int32_t *)(void *)(scratch + (size_t)y * row),
-                    pyramid->plane[0] + y * stride);
+        blur_column(context->ops, across, stride, width, height, y, taps, radius, pyramid->plane[0] + y * stride);
     asj_release(&context->memory, across);
     asj_release(&context->memory, scratch);
     return ASJ_OK;

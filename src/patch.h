@@ -47,6 +47,12 @@ int32_t asj_patch_sample(const asj_pyramid *pyramid, const asj_affine_frame *fra
 #define ASJ_UNIT_ONE 16384
 void asj_patch_normalise(const uint16_t *grey, int32_t samples, int16_t *unit);
 
+/* One row of a Gaussian with taps that sum to 2^14: rows[0] is the middle one, rows[2 i - 1] and rows[2 i] those i before and after
+ * it; grey levels below 2^15. */
+#define ASJ_BLUR_RADIUS 6 /* 3 sigma of the largest blur */
+#define ASJ_BLUR_ROWS (2 * ASJ_BLUR_RADIUS + 1)
+void asj_blur_row(const uint16_t *const *rows, const int32_t *taps, int32_t radius, int32_t width, uint16_t *to);
+
 /* Exact in 32 bits for unit vectors. */
 int32_t asj_patch_product(const int16_t *left, const int16_t *right, int32_t samples);
 

@@ -38,5 +38,5 @@ static inline int v_any(vec v) { return !_mm256_testz_si256(v, v); }
 
 #define V_NAME(name) name##_avx2
 #include "patches.h" /* before kernels.h, which fills the table */
-#define V_MORE(ops) ((ops)->patch_products = patch_products_avx2, (ops)->pyramid_sample = pyramid_sample_avx2)
+#define V_MORE(ops) fill_patches(ops)
 #include "../simd/kernels.h"

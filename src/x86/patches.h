@@ -39,6 +39,27 @@ static void patch_products_avx2(const int16_t *left, const int16_t *right, int32
     }
 }
 
+/* Pairs of levels that share a tap are interleaved: one multiplication weights and adds both. */
+static void blur_row_avx2(const uint16_t *const *rows, const int32_t *taps, int32_t radius, int32_t width, uint16_t *to)
+{
+    const uint16_t *rest[ASJ_BLUR_ROWS];
+    const int32_t whole = width & ~15;
+    for (int32_t x = 0; x < whole; x += 16) {
+        const __m256i middle = v_load(rows[0] + x), half = _mm256_set1_epi32(1 << 13), tap0 = v_set1((int16_t)taps[0]);
+        __m256i low = _mm256_add_epi32(half, _mm256_madd_epi16(_mm256_unpacklo_epi16(middle, v_zero()), tap0));
+        __m256i high = _mm256_add_epi32(half, _mm256_madd_epi16(_mm256_unpackhi_epi16(middle, v_zero()), tap0));
+        for (int32_t i = 1; i <= radius; i++) {
+            const __m256i before = v_load(rows[2 * i - 1] + x), after = v_load(rows[2 * i] + x), tap = v_set1((int16_t)taps[i]);
+            low = _mm256_add_epi32(low, _mm256_madd_epi16(_mm256_unpacklo_epi16(before, after), tap));
+            high = _mm256_add_epi32(high, _mm256_madd_epi16(_mm256_unpackhi_epi16(before, after), tap));
+        }
+        v_store(to + x, _mm256_packus_epi32(_mm256_srai_epi32(low, 14), _mm256_srai_epi32(high, 14)));
+    }
+    for (int32_t i = 0; i <= 2 * radius; i++)
+        rest[i] = rows[i] + whole;
+    asj_blur_row(rest, taps, radius, width - whole, to + whole);
+}
+
 /* Two neighbouring grey levels in one gather, weighted and added by one multiplication: levels stay below 2^15. */
 static int32_t pyramid_sample_avx2(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
                                    uint16_t *grey)
@@ -72,6 +93,13 @@ static int32_t pyramid_sample_avx2(const asj_pyramid *pyramid, int32_t level, co
                          _mm_packus_epi32(_mm256_castsi256_si128(sum), _mm256_extracti128_si256(sum, 1)));
     }
     return inside + asj_pyramid_sample_reference(pyramid, level, x + whole, y + whole, count - whole, grey + whole);
+}
+
+static void fill_patches(asj_ops *ops)
+{
+    ops->blur_row = blur_row_avx2;
+    ops->patch_products = patch_products_avx2;
+    ops->pyramid_sample = pyramid_sample_avx2;
 }
 
 #endif

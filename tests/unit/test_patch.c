@@ -274,6 +274,16 @@ static void variants_give_the_same_bits(void **state)
         asj_ops ops;
         if (!asj_ops_fill(variant, &ops))
             continue;
+        for (int32_t radius = 0; radius <= ASJ_BLUR_RADIUS; radius++) {
+            const int32_t taps[] = {16384 - 2 * (3000 + 40 * radius) * (radius > 0), 3000, 40, 40, 40, 40, 40};
+            const uint16_t *rows[ASJ_BLUR_ROWS];
+            uint16_t expected[61], blurred[61];
+            for (int32_t r = 0; r < ASJ_BLUR_ROWS; r++)
+                rows[r] = pyramid.plane[0] + r * 62;
+            asj_blur_row(rows, taps, radius, 61, expected);
+            ops.blur_row(rows, taps, radius, 61, blurred);
+            assert_memory_equal(blurred, expected, sizeof expected);
+        }
         for (int32_t count = 0; count < COUNT; count++) {
             int32_t expected[COUNT], products[COUNT];
             float x[COUNT], y[COUNT];
