@@ -2,8 +2,8 @@
 /* Step 6: junctions -> ordered L-junctions (paper section "ASJ Matching", first half).
  *
  * Every pair of branches that are not parallel gives an L-junction. The order (the paper's partial order, whose two lines both read
- * "<"): a comes before b when (theta_b - theta_a) mod 2 pi < pi. With y down that is clockwise on the screen. Exactly one order of a
- * pair satisfies it, and an affine map that does not mirror preserves it. */
+ * "<"): a comes before b when (theta_b - theta_a) mod 2 pi < pi. With y down that is clockwise on the screen. Exactly one order of
+ * a pair satisfies it, and an affine map that does not mirror preserves it. */
 #include <asj/detect.h>
 
 #include <math.h>

@@ -32,8 +32,8 @@ static void stop_watch(double *stage_ms, int32_t stage, double *start)
     *start = now;
 }
 
-/* The pipeline. Lengths and orientations depend on each other: a ray along a branch that is a degree off leaves the edge early. So the
- * branches are scanned, oriented over their length, and scanned again where that moved them. */
+/* The pipeline. Lengths and orientations depend on each other: a ray along a branch that is a degree off leaves the edge early. So
+ * the branches are scanned, oriented over their length, and scanned again where that moved them. */
 static asj_status run_steps(asj_detection_run *d, const asj_image *image, double *stage_ms, double *clock)
 {
     static const struct {

@@ -15,7 +15,8 @@ double asj_angle_distance(double a, double b)
 double asj_angle_wrap(double angle)
 {
     angle = fmod(angle, 2 * PI);
-    return angle < 0 ? angle + 2 * PI : angle;
+    angle = angle < 0 ? angle + 2 * PI : angle;
+    return (float)angle < 6.2831853f ? angle : 0; /* results are floats: what rounds to 2 pi is 0, in every order of angles */
 }
 
 void asj_draft_select(asj_draft *draft, const int *keep)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The ray scan knows the end of an edge to about a pixel when the edge ends in plain sight, and worse where it ends at others: around a
- * corner the local junctions hold several branches, and which one is closest to the ray is a matter of noise. The corner itself is
- * located to a few tenths of a pixel. So when a junction lies on the line of a branch (within OFF_LINE px) and within snap_distance of
- * its end, that is where the branch ends. The paper has no such step (snap_distance = 0). */
+/* The ray scan knows the end of an edge to about a pixel when the edge ends in plain sight, and worse where it ends at others:
+ * around a corner the local junctions hold several branches, and which one is closest to the ray is a matter of noise. The corner
+ * itself is located to a few tenths of a pixel. So when a junction lies on the line of a branch (within OFF_LINE px) and within
+ * snap_distance of its end, that is where the branch ends. The paper has no such step (snap_distance = 0). */
 #include "ends.h"
 
 #include <math.h>

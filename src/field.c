@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 2: the very local junction at each pixel (paper, "Scale Ambiguity for Branches").
  *
- * Strengths z_k of all sectors of one small radius (sector.c); circular non-maximum suppression over the sectors within Delta = tau / r;
- * a maximum is kept when  K F(omega_k; J_k) <= field_epsilon  (eq. NFA-xia). At most four branches, strongest first. The angle is
- * that of the parabola through the maximum and its two neighbours.
+ * Strengths z_k of all sectors of one small radius (sector.c); circular non-maximum suppression over the sectors within Delta = tau
+ * / r; a maximum is kept when  K F(omega_k; J_k) <= field_epsilon  (eq. NFA-xia). At most four branches, strongest first. The angle
+ * is that of the parabola through the maximum and its two neighbours.
  *
- * Departure: the number of tests is K, the orientations of this one pixel. With all pixels of the image (the paper's #J(1)) no branch
- * survives at radius 3 and hardly one at 5, and rays end long before their edge does.
+ * Departure: the number of tests is K, the orientations of this one pixel. With all pixels of the image (the paper's #J(1)) no
+ * branch survives at radius 3 and hardly one at 5, and rays end long before their edge does.
  *
  * Candidates: pixels with two branches of z >= candidate_strength whose directions are more than 0.35 rad away from being equal or
- * opposite. They replace the line segment detector that feeds ACJ. Preset `paper` asks for 5.15, which is sqrt(NM) K F <= 1 at radius 7
- * in a photograph of 0.8 megapixels: what the paper's number of tests would be if it counted one line of the image. */
+ * opposite. They replace the line segment detector that feeds ACJ. Preset `paper` asks for 5.15, which is sqrt(NM) K F <= 1 at
+ * radius 7 in a photograph of 0.8 megapixels: what the paper's number of tests would be if it counted one line of the image. */
 #include "field.h"
 #include "ops.h"
 
@@ -72,8 +72,8 @@ size_t asj_field_scratch(const asj_field *field)
     return ((block > tile ? block : tile) + 31) / 32 * 32;
 }
 
-/* Loops over ASJ_LANES are written so that compilers turn them into a few vector instructions: 16-bit values, strengths below 2^15 so
- * that they can be compared as signed numbers, no branches. */
+/* Loops over ASJ_LANES are written so that compilers turn them into a few vector instructions: 16-bit values, strengths below 2^15
+ * so that they can be compared as signed numbers, no branches. */
 
 /* Turns sums into strengths, in place. */
 static void strengths(const asj_sectors *s, int16_t *restrict sums)
@@ -89,8 +89,8 @@ static void strengths(const asj_sectors *s, int16_t *restrict sums)
     }
 }
 
-/* peaks[k][i] = -1 where sector k of pixel i reaches least[k] and is the largest of its neighbourhood, else 0. Of equal neighbours the
- * first one counts. */
+/* peaks[k][i] = -1 where sector k of pixel i reaches least[k] and is the largest of its neighbourhood, else 0. Of equal neighbours
+ * the first one counts. */
 static void find_peaks(const asj_field *field, const int16_t *z, const uint16_t *least, int16_t *peaks)
 {
     const int32_t count = field->sectors.count;
@@ -202,8 +202,8 @@ uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, in
     if (!any_lane(some))
         return 0;
 
-    /* A pair (k, k + d) counts for apart <= d <= count / 2 - apart. The union of all peaks k + d in that range is built by doubling:
-     * `from`[k] holds the union over [k, k + width). The strengths are not needed any more: their place serves too. */
+    /* A pair (k, k + d) counts for apart <= d <= count / 2 - apart. The union of all peaks k + d in that range is built by
+     * doubling: `from`[k] holds the union over [k, k + width). The strengths are not needed any more: their place serves too. */
     const int32_t target = count / 2 - 2 * field->apart + 1;
     int32_t width = 1;
     int16_t *from = peaks, *spare = z, *to = peaks + (size_t)count * ASJ_LANES;

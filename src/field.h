@@ -48,7 +48,8 @@ uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, in
 void asj_field_tile(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
                     uint16_t *scratch, uint16_t *masks);
 
-/* The same for rows top .. bottom - 1 of the whole image, by all threads of the context; `scratch_size` elements for each thread. */
+/* The same for rows top .. bottom - 1 of the whole image, by all threads of the context; `scratch_size` elements for each
+ * thread. */
 void asj_field_rows(const asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
                     uint16_t *scratch, size_t scratch_size, uint16_t *masks);
 

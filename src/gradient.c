@@ -13,12 +13,12 @@
  *   - epsilon keeps flat surfaces flat: without it sensor and compression noise on a wall is blown up to unit strength.
  *   - one fixed scale for both axes. The paper gives each axis zero mean and unit variance over the image (option `standardise`
  *     restores it), which makes strengths depend on picture content and bends orientations.
- *   - L: one pixel's norm is cut at L times the local mean. White noise exceeds it once in 500 pixels (Rayleigh tail) and clean edges
- *     do not reach it; it bounds the sum over a sector, so that 16-bit arithmetic cannot overflow (sector.c).
+ *   - L: one pixel's norm is cut at L times the local mean. White noise exceeds it once in 500 pixels (Rayleigh tail) and clean
+ *     edges do not reach it; it bounds the sum over a sector, so that 16-bit arithmetic cannot overflow (sector.c).
  *
- * Everything is done in whole numbers, so that every back end gives the same bits. Gray levels come in 1/128, hence differences over
- * two pixels in 1/256 grey level per pixel; |g| is the exact integer square root. With S the window's sum of |g| over c pixels and
- * D = max(S + c round(256 epsilon), (|g| c T) >> 8), T = round(256 / (sigma_0 L)),
+ * Everything is done in whole numbers, so that every back end gives the same bits. Gray levels come in 1/128, hence differences
+ * over two pixels in 1/256 grey level per pixel; |g| is the exact integer square root. With S the window's sum of |g| over c pixels
+ * and D = max(S + c round(256 epsilon), (|g| c T) >> 8), T = round(256 / (sigma_0 L)),
  *     scale = floor(65536 C_c / D),  C_c = round(1024 c / sigma_0) < 32768,     g~ = (g scale + 32768) >> 16     in 1/1024.
  * g scale < 2^31 because |g| c <= 256 D / T. At the image border neighbours outside are replaced by the border pixel itself.
  * ">>" of a negative number is the arithmetic shift on every compiler that we know; asj_gradient() checks it at compile time. */
@@ -67,8 +67,8 @@ static void norm_row(const asj_frame *frame, int32_t y, int32_t *dx, int32_t *dy
         norm[x + 2] = (uint16_t)integer_sqrt(dx[x] * dx[x] + dy[x] * dy[x]);
 }
 
-/* floor(a / b) for whole numbers below 2^32: the quotient in double precision is within 2^-53 of itself of the true one, which is at
- * least 2^-32 of itself away from the next whole number unless it is one. */
+/* floor(a / b) for whole numbers below 2^32: the quotient in double precision is within 2^-53 of itself of the true one, which is
+ * at least 2^-32 of itself away from the next whole number unless it is one. */
 static inline uint32_t quotient(uint32_t a, uint32_t b)
 {
     return (uint32_t)((double)a / (double)b);

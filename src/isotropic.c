@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 3: isotropic junctions (the ACJ test, paper section "Detecting Junction Locations and Isotropic Branches").
  *
- * At a candidate pixel and a radius r: strengths of all sectors, circular non-maximum suppression, branches in order of omega. The M
- * strongest form a junction of junction-ness t = min omega (eq. junction-ness-entire), whose number of false alarms is
+ * At a candidate pixel and a radius r: strengths of all sectors, circular non-maximum suppression, branches in order of omega. The
+ * M strongest form a junction of junction-ness t = min omega (eq. junction-ness-entire), whose number of false alarms is
  *     NFA = #J(M) prod_{i=1..M} F(t; J_i)       M = 2 .. 5
  * (F: eq. acj-distribution-conv, an upper tail; #J(M): nfa.c). The best radius and M with NFA <= epsilon stay.
  * Two branches that open by more than pi - 2 Delta are an edge, not a junction.
  *
  * Departures: candidates come from the local field, not from line segments (field.c). Radii {5, 7, 10, 14} instead of all: the same
- * junctions at a third of the cost. Among overlapping junctions the more meaningful one stays; `more_branches_win` restores the rule
- * of ACJ that M + 1 branches within half a radius replace M. */
+ * junctions at a third of the cost. Among overlapping junctions the more meaningful one stays; `more_branches_win` restores the
+ * rule of ACJ that M + 1 branches within half a radius replace M. */
 #include "isotropic.h"
 #include "ops.h"
 
@@ -58,14 +58,25 @@ static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t
         status = make_tails(context, test, entry->sectors.size[k]);
         entry->tails[k] = test->tail_tables[entry->sectors.size[k]];
     }
-    /* in blocks: prefix sums, sums; in rows: gamma, slots, strengths */
-    const size_t count = (size_t)entry->sectors.count, offsets = (size_t)entry->sectors.offset_count;
-    const size_t block = asj_sector_scratch(&entry->sectors) + count * ASJ_LANES;
-    const size_t row = (offsets + (size_t)entry->plan.slot_count + count + 2 * (size_t)entry->suppress) * ASJ_ISOTROPIC_LANES;
-    /* radii come in rising order, so that the last one needs the most of everything */
-    if (test->scratch < (block > row ? block : row))
-        test->scratch = block > row ? block : row;
     return status;
+}
+
+/* In blocks: prefix sums, sums. In rows: gamma, which may be that of a larger radius, then slots and strengths. */
+static void measure_scratch(asj_isotropic *test)
+{
+    size_t offsets = 0, rest = 0;
+    test->scratch = 0;
+    for (int32_t r = 0; r < test->radius_count; r++) {
+        const asj_isotropic_radius *entry = &test->radii[r];
+        const size_t count = (size_t)entry->sectors.count;
+        const size_t block = asj_sector_scratch(&entry->sectors) + count * ASJ_LANES;
+        const size_t slots = (size_t)entry->plan.slot_count + count + 2 * (size_t)entry->suppress;
+        test->scratch = block > test->scratch ? block : test->scratch;
+        offsets = (size_t)entry->sectors.offset_count > offsets ? (size_t)entry->sectors.offset_count : offsets;
+        rest = slots > rest ? slots : rest;
+    }
+    const size_t row = (offsets + rest) * ASJ_ISOTROPIC_LANES;
+    test->scratch = row > test->scratch ? row : test->scratch;
 }
 
 /* Finds for each radius whose gammas it can share, and where they are there. */
@@ -99,6 +110,7 @@ asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *
             status = make_radius(context, test, r, options->sector_width);
     if (status == ASJ_OK)
         status = share_offsets(&context->memory, test);
+    measure_scratch(test);
     test->max_branches = options->max_branches;
     test->log_epsilon = log(options->epsilon);
     if (status != ASJ_OK)
@@ -183,6 +195,8 @@ void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *
     const asj_sectors *s = &entry->sectors;
     for (int32_t m = 2; m <= count; m++) {
         if (m == 2 && opening(s, peaks[0].sector, peaks[1].sector) > entry->straight)
+            continue;
+        if (test->log_tests[m] == -HUGE_VAL) /* so many branches do not fit at any radius: nothing was tested for */
             continue;
         double t = (double)peaks[m - 1].sum / (1 << s->gamma_bits), log_nfa = test->log_tests[m];
         for (int32_t i = 0; i < m; i++)

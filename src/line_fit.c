@@ -2,18 +2,18 @@
 /* Weighted line fit to an edge, the work of steps 3 and 5 (replaces the paper's search over +-0.1 rad, which is kept as the option
  * refinement = search: refine.c).
  *
- * In the frame of the branch (t along u, s along n = u turned by +90 degrees) samples lie at t = first, first + 1, .. and s = -w .. w.
- * Each has the weight of its raw gradient's agreement with the branch, w(t, s) = max(|g.n| - |g.u|, 0), the same form as the
- * junction-ness. Per t: centroid c(t) = sum w s / sum w and weight W(t) = sum w. Weighted least squares c = a + b t gives the line; it
- * is repeated around the line found, in a narrower band.
+ * In the frame of the branch (t along u, s along n = u turned by +90 degrees) samples lie at t = first, first + 1, .. and s = -w ..
+ * w. Each has the weight of its raw gradient's agreement with the branch, w(t, s) = max(|g.n| - |g.u|, 0), the same form as the
+ * junction-ness. Per t: centroid c(t) = sum w s / sum w and weight W(t) = sum w. Weighted least squares c = a + b t gives the line;
+ * it is repeated around the line found, in a narrower band.
  *
- * The two signs of g.n (dark to bright, bright to dark) are fitted apart. Indoor scenes are full of narrow bands, the two edges of a
- * door jamb or a skirting board, and a fit that mixes them follows neither. The stronger sign gives the line; when both are strong and
- * no more than THIN px apart all along, the branch is a thin line, and the middle of both is taken.
+ * The two signs of g.n (dark to bright, bright to dark) are fitted apart. Indoor scenes are full of narrow bands, the two edges of
+ * a door jamb or a skirting board, and a fit that mixes them follows neither. The stronger sign gives the line; when both are
+ * strong and no more than THIN px apart all along, the branch is a thin line, and the middle of both is taken.
  *
- * Covariance: with residuals e(t), variance s^2 = sum W e^2 / (n - 2) per unit of weight; then cov(a, b) = s^2 (X' W X)^-1. Neighbouring
- * samples share pixels, so s^2 is multiplied by factors that make errors and stated uncertainties agree on synthetic scenes
- * (tests/accuracy). */
+ * Covariance: with residuals e(t), variance s^2 = sum W e^2 / (n - 2) per unit of weight; then cov(a, b) = s^2 (X' W X)^-1.
+ * Neighbouring samples share pixels, so s^2 is multiplied by factors that make errors and stated uncertainties agree on synthetic
+ * scenes (tests/accuracy). */
 #include "line_fit.h"
 
 #include <math.h>

@@ -11,8 +11,8 @@ typedef struct asj_line_range {
     int32_t iterations;   /* 1 .. 3 */
 } asj_line_range;
 
-/* Moves branch->angle and branch->offset to the line under the branch of a junction at (x, y); sets their variances. branch->offset is
- * where the search starts. Returns 0, and leaves the branch alone, when there is too little edge. */
+/* Moves branch->angle and branch->offset to the line under the branch of a junction at (x, y); sets their variances. branch->offset
+ * is where the search starts. Returns 0, and leaves the branch alone, when there is too little edge. */
 int asj_line_fit(const asj_frame *frame, double x, double y, const asj_line_range *range, asj_draft_branch *branch);
 
 #endif

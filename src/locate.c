@@ -29,8 +29,8 @@ void asj_locate_start(const asj_isotropic_junction *junction, asj_draft *draft)
     }
 }
 
-/* Each line says n.(p - p0) = offset with variance v at the junction: weights 1 / v, covariance of the location the inverse of the normal
- * matrix. */
+/* Each line says n.(p - p0) = offset with variance v at the junction: weights 1 / v, covariance of the location the inverse of the
+ * normal matrix. */
 int asj_locate_meet(asj_draft *draft)
 {
     double xx = 0, xy = 0, yy = 0, bx = 0, by = 0, total = 0;
@@ -98,7 +98,8 @@ static int by_meaning(const void *a, const void *b)
     return p->x < q->x ? -1 : p->x > q->x;
 }
 
-/* Kept drafts are linked into a grid of cells as wide as the largest suppression radius, so that only the cells around need a look. */
+/* Kept drafts are linked into a grid of cells as wide as the largest suppression radius, so that only the cells around need a
+ * look. */
 #define CELL 11 /* px: max(3, 0.35 * 30) rounded up */
 
 static int32_t cell_columns(int32_t width)

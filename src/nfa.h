@@ -30,8 +30,8 @@ double asj_nfa_log_arc_tail(const asj_nfa *nfa, double s, int32_t n);
 /* Smallest s > 0 with ln G(s; n) <= log_p. A result > 0 even when every s passes: an arc without any junction is no event. */
 double asj_nfa_arc_threshold(const asj_nfa *nfa, double log_p, int32_t n);
 
-/* ln #J(M): natural logarithm of the number of tests for isotropic junctions of `branches` branches: width x height pixels, the radii
- * whose bits are set, sectors of half-width tau pixels. -HUGE_VAL when no such junction fits. */
+/* ln #J(M): natural logarithm of the number of tests for isotropic junctions of `branches` branches: width x height pixels, the
+ * radii whose bits are set, sectors of half-width tau pixels. -HUGE_VAL when no such junction fits. */
 double asj_nfa_log_junction_tests(int32_t width, int32_t height, uint32_t radii, double tau, int32_t branches);
 
 #endif

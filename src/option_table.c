@@ -86,7 +86,8 @@ static const asj_option_info *find(const asj_option_table *table, const char *ke
 /* Longest number that is read: more than any number needs, exact binary fractions included. */
 #define LONGEST_NUMBER 400
 
-/* What stands for the decimal point in the locale of the process, a few bytes. localeconv() would tell too, but is not thread safe. */
+/* What stands for the decimal point in the locale of the process, a few bytes. localeconv() would tell too, but is not thread
+ * safe. */
 static void decimal_point(char point[16])
 {
     snprintf(point, 16, "%.1f", 0.5);
@@ -198,7 +199,8 @@ static int parse(const asj_option_info *row, const char *text, double *value)
 asj_status asj_option_table_set(const asj_option_table *table, void *options, const char *key, const char *text,
                                 char *message, size_t message_size)
 {
-    static const char *const kinds[] = {"", "a number", "a whole number", "yes or no", "one of its words", "a set of radii such as 5,7,10 or 3-12"};
+    static const char *const kinds[] = {"", "a number", "a whole number", "yes or no", "one of its words",
+                                        "a set of radii such as 5,7,10 or 3-12"};
     if (!options || !key || !text)
         return ASJ_ERROR_ARGUMENT;
     const asj_option_info *row = find(table, key);

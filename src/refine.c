@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 5: orientation (paper, end of section "Junction Detection").
  *
- * line_fit (default): the line fit of line_fit.c over t = 5 .. L - 3 (less for short branches), then the meeting point of all lines. The
- * first pixels are left out because blur bends edges inwards at a corner. About three times as accurate as the search and a hundred
- * times cheaper.
+ * line_fit (default): the line fit of line_fit.c over t = 5 .. L - 3 (less for short branches), then the meeting point of all
+ * lines. The first pixels are left out because blur bends edges inwards at a corner. About three times as accurate as the search
+ * and a hundred times cheaper.
  *
- * search: the paper's  argmax_theta sum of gamma over S_p(r_theta, theta),  over theta +- 0.1 rad. The sector of scale r has constant
- * width 2 tau, so its number of pixels J differs from angle to angle; what is maximised is the normalised
+ * search: the paper's  argmax_theta sum of gamma over S_p(r_theta, theta),  over theta +- 0.1 rad. The sector of scale r has
+ * constant width 2 tau, so its number of pixels J differs from angle to angle; what is maximised is the normalised
  * (omega - J mu) / (sigma sqrt(J)), as the sum itself would prefer angles with more pixels. */
 #include "refine.h"
 #include "line_fit.h"
@@ -34,8 +34,8 @@ static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double dx, d
     s->pixels++;
 }
 
-/* Normalised junction-ness of the sector of radius `length` around `angle`, at a whole pixel. Walks along the axis (x or y) that the
- * branch is longer on, and across it over the few pixels that can be inside. */
+/* Normalised junction-ness of the sector of radius `length` around `angle`, at a whole pixel. Walks along the axis (x or y) that
+ * the branch is longer on, and across it over the few pixels that can be inside. */
 static double sector_strength(const asj_frame *frame, double x, double y, double angle, double length, double tau)
 {
     const double ux = cos(angle), uy = sin(angle), limit = cos(tau / length);
@@ -74,9 +74,9 @@ static void search(const asj_frame *frame, const asj_detect_options *options, as
     }
 }
 
-/* Fits the line over growing parts of the branch, each twice as long as the one before, so that the narrow band around the last line
- * always holds the edge. When a part longer than NEAR_PART moves the line significantly where it passes the junction, the edge is bent
- * (lenses do that): then the shorter part is believed. */
+/* Fits the line over growing parts of the branch, each twice as long as the one before, so that the narrow band around the last
+ * line always holds the edge. When a part longer than NEAR_PART moves the line significantly where it passes the junction, the edge
+ * is bent (lenses do that): then the shorter part is believed. */
 static void follow_line(const asj_frame *frame, const asj_draft *draft, asj_draft_branch *branch)
 {
     const double end = fmax(branch->length - 3, 8);
@@ -104,8 +104,8 @@ void asj_refine(const asj_context *context, const asj_frame *frame, const asj_de
     asj_locate_meet(draft);
 }
 
-/* A branch that runs along the border of the image, no farther from it than a gradient reaches, is the frame of the picture (a scan's
- * margin, a resampling filter's ringing), not an edge of the scene. */
+/* A branch that runs along the border of the image, no farther from it than a gradient reaches, is the frame of the picture (a
+ * scan's margin, a resampling filter's ringing), not an edge of the scene. */
 static int on_frame(const asj_frame *frame, const asj_draft *draft, const asj_draft_branch *branch)
 {
     const double reach = 2.5; /* px */
@@ -135,7 +135,8 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
         const asj_strip strip = asj_strip_test(context, frame, options, draft->x, draft->y, branch->angle, branch->length);
         branch->log_nfa = strip.log_nfa;
         keep[i] = branch->length >= options->minimum_length && branch->length > 0 && fabs(branch->offset) <= LARGEST_OFFSET &&
-                  (!options->strip_test || strip.log_nfa <= log_epsilon) && strip.deviation <= askew && strip.near_strength >= options->near_strength &&
+                  (!options->strip_test || strip.log_nfa <= log_epsilon) && strip.deviation <= askew &&
+                  strip.near_strength >= options->near_strength &&
                   !(options->ignore_frame && on_frame(frame, draft, branch));
     }
     merge(options, draft, keep);

@@ -5,8 +5,8 @@
 
 #include "draft.h"
 
-/* Orients the branches of a junction by the edge under their whole length (they have been scanned). With line fits the junction moves to
- * where the new lines meet. */
+/* Orients the branches of a junction by the edge under their whole length (they have been scanned). With line fits the junction
+ * moves to where the new lines meet. */
 void asj_refine(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft);
 
 /* Drops branches that are too short, off the junction, not meaningful, or twins of a better one; branch_count becomes 0 when no two

@@ -5,9 +5,9 @@
  *     q_d = p + r (cos a_d, sin a_d), rounded to a pixel,
  *     gamma~_d = omega_q^i max(|cos(theta_q^i - a_d)| - |sin(theta_q^i - a_d)|, 0)      (eq. junction-ness-pairwise-modified)
  * where (theta_q^i, omega_q^i) is that branch of the local junction at q whose angle is closest to theta. The derivative of the
- * junction-ness along r is S_r = sum of gamma~_d (the terms in delta'(r) are dropped, as in the paper). The step belongs to the branch
- * when  sqrt(NM) P(S >= S_r) <= scan_epsilon  with P the (2 w + 1)-fold tail of p~ (nfa.c, eq. probability-updated); that is a
- * threshold on S_r, computed once. A step without any local branch never passes (the threshold is positive).
+ * junction-ness along r is S_r = sum of gamma~_d (the terms in delta'(r) are dropped, as in the paper). The step belongs to the
+ * branch when  sqrt(NM) P(S >= S_r) <= scan_epsilon  with P the (2 w + 1)-fold tail of p~ (nfa.c, eq. probability-updated); that is
+ * a threshold on S_r, computed once. A step without any local branch never passes (the threshold is positive).
  *
  * Using local junctions instead of gradients is what lets a branch cross other junctions: at a crossing most pixels still have one
  * branch along the ray.
@@ -16,10 +16,10 @@
  *   - the ray survives one failing step (scan_tolerance = 0), which random crossings need;
  *   - it starts at radius 3, not at the isotropic scale (scan_start = 0), so that the length depends on nothing else;
  *   - "closest" is taken twice, modulo 2 pi (forward) and modulo pi (axial), and the length is the mean of both (scan_axial = no).
- *     The forward branch of a pixel dies about 2.6 px before the edge's end, when its sector leaves the edge; the axial one, which may
- *     look back, lives about 4 px longer. Their mean is within a pixel of the truth. While the axial test passes, the forward one may
- *     fail for up to the field's radius and come back: at the crossing of two thin lines no branch looks forward for a few pixels. A
- *     branch that looks back along the ray does not count as forward then, though |cos| would let it.
+ *     The forward branch of a pixel dies about 2.6 px before the edge's end, when its sector leaves the edge; the axial one, which
+ *     may look back, lives about 4 px longer. Their mean is within a pixel of the truth. While the axial test passes, the forward
+ *     one may fail for up to the field's radius and come back: at the crossing of two thin lines no branch looks forward for a few
+ *     pixels. A branch that looks back along the ray does not count as forward then, though |cos| would let it.
  *
  * Whole numbers throughout, so that every back end takes the same decisions: positions in 1/65536 px, unit vectors in 2^-30 for
  * positions and 2^-14 for angles, angles in 1/65536 of a turn. */
@@ -92,8 +92,8 @@ typedef struct direction {
     uint16_t angle;
 } direction;
 
-/* d / r turned into a rotation: cos and sin in 2^-30. One table of them for all rays, since r is a whole number; beyond the table the
- * arc is straight to within 0.01 px. */
+/* d / r turned into a rotation: cos and sin in 2^-30. One table of them for all rays, since r is a whole number; beyond the table
+ * the arc is straight to within 0.01 px. */
 #define REOPEN 3 /* steps in a row that must look ahead again after a crossing; one or two happen by chance in noise */
 #define TABLE_RADIUS 256
 typedef struct arc_table {

@@ -92,7 +92,8 @@ static int32_t common_divisor(int32_t a, int32_t b)
     return b == 0 ? a : common_divisor(b, a % b);
 }
 
-/* The unit vector of an offset is made from its smallest parallel and is the same, but for signs and order, in all eight octants. */
+/* The unit vector of an offset is made from its smallest parallel and is the same, but for signs and order, in all eight
+ * octants. */
 static void set_direction(asj_sectors *s, int32_t i, double unit)
 {
     const int32_t size_x = abs(s->dx[i]), size_y = abs(s->dy[i]), divisor = common_divisor(size_x, size_y);

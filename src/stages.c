@@ -272,7 +272,8 @@ asj_status asj_stage_locate(asj_detection_run *d)
     return status == ASJ_OK ? dump_points(d, ASJ_STAGE_LOCATE, "located", d->draft_count, draft_point) : status;
 }
 
-/* Whether a branch has no length yet, or has turned or moved away by more than half a pixel somewhere along the ray that gave it. */
+/* Whether a branch has no length yet, or has turned or moved away by more than half a pixel somewhere along the ray that gave
+ * it. */
 static int needs_scan(const asj_draft *draft, const asj_draft_branch *branch)
 {
     const double turned = asj_angle_distance(branch->angle, branch->scanned[2]) * branch->length;

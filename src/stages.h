@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The steps of the detector over a whole image: threads, memory, progress, dumps. What a step does to one place stands in the file of
- * its name; in which order they run, in detect.c. */
+/* The steps of the detector over a whole image: threads, memory, progress, dumps. What a step does to one place stands in the file
+ * of its name; in which order they run, in detect.c. */
 #ifndef ASJ_SRC_STAGES_H
 #define ASJ_SRC_STAGES_H
 

@@ -3,8 +3,8 @@
  *
  * Strip: the pixels q with 0.5 < t <= min(L, strip_length) and |s| <= strip_half_width in the branch's frame, each once.
  *     Omega = sum of gamma(q) = max(|g~.n| - |g~.u|, 0),   NFA = (NM)^(3/2) F(Omega; number of pixels)
- * Tests: NM places for the start and sqrt(NM) for the end; directions are not counted, since the strip's own width makes neighbouring
- * ones the same test.
+ * Tests: NM places for the start and sqrt(NM) for the end; directions are not counted, since the strip's own width makes
+ * neighbouring ones the same test.
  *
  * Departure: the paper accepts a branch by the NFA of the scan itself. That one is a good stopping rule and no guarantee: local
  * branches are maxima over orientations and neighbouring arcs share pixels, so in noise a step passes with probability 0.19 instead

@@ -47,7 +47,7 @@ typedef struct asj_detect_options {
     int32_t standardise;          /* 1 = give each gradient axis zero mean and unit variance over the image, as the paper does;
                                    * 0 = one fixed scale. default 0; paper 1 */
     /* step 3: isotropic junctions */
-    double candidate_strength;    /* standard deviations that two local branches of a candidate pixel need. 0 .. 12; 3; paper 5.15 */
+    double candidate_strength;    /* standard deviations that two local branches of a candidate need. 0 .. 12; 3; paper 5.15 */
     double epsilon;               /* NFA allowed for a junction, and for a branch. 1e-30 .. 1e6; 1 */
     uint32_t isotropic_radii;     /* bit r set = radius r is tested, 3 .. 30; 5,7,10,14; paper 3-12 */
     int32_t max_branches;         /* branches tested together. 2 .. 5; 5 */

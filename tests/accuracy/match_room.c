@@ -3,10 +3,11 @@
  *
  *     match_room [--check] [--first N] [--last N] [--threads N] [key=value ...]
  *
- * View 0 is matched with the views from --first (1) to --last (6). A match is right when the surface seen within 2 px of its place in the first view
- * appears within 4 px of its place in the second: corners lie on borders of surfaces, and a border seen from elsewhere may
- * hide what lies behind it, so the exact place alone would judge the background. --check: exit 1 when the average over the
- * pairs or a pair's matches are below what stands below; the aim is an average of 95 %. key=value sets an option of the matcher. */
+ * View 0 is matched with the views from --first (1) to --last (6). A match is right when the surface seen within 2 px of its place
+ * in the first view appears within 4 px of its place in the second: corners lie on borders of surfaces, and a border seen from
+ * elsewhere may hide what lies behind it, so the exact place alone would judge the background. --check: exit 1 when the average
+ * over the pairs or a pair's matches are below what stands below; the aim is an average of 95 %. key=value sets an option of the
+ * matcher. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "render.h"

@@ -25,8 +25,11 @@ static const char *program;
 static char folder[] = "/tmp/asj-test-XXXXXX";
 static outcome last;
 
+int without_cairo;
+
 void program_start(int argc, char **argv)
 {
+    without_cairo = argc > 2 && strcmp(argv[2], "without-cairo") == 0;
     program = argc > 1 ? argv[1] : NULL;
     if (!program || program[0] != '/' || !mkdtemp(folder) || chdir(folder) || mkdir("work", 0777) || chdir("work")) {
         fprintf(stderr, "usage: %s /path/to/asj-cli\n", argv[0]);

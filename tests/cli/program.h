@@ -17,6 +17,9 @@ typedef struct outcome {
 
 enum { MOST_ARGUMENTS = 600 };
 
+/* 1 when the build cannot plot: argv[2] is "without-cairo". */
+extern int without_cairo;
+
 /* Finds asj-cli as argv[1], makes a folder and goes there. Ends the test program where that fails. */
 void program_start(int argc, char **argv);
 

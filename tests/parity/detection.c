@@ -22,11 +22,17 @@ typedef struct run_state {
     int failed;
 } run_state;
 
+/* Of empty lists there is no first byte. */
+static int equal(const void *a, const void *b, size_t count, size_t size)
+{
+    return count == 0 || memcmp(a, b, count * size) == 0;
+}
+
 static int same(const asj_detection *a, const asj_detection *b)
 {
     return a->junction_count == b->junction_count && a->l_junction_count == b->l_junction_count && a->candidates == b->candidates &&
-           a->isotropic == b->isotropic && memcmp(a->junctions, b->junctions, a->junction_count * sizeof *a->junctions) == 0 &&
-           memcmp(a->l_junctions, b->l_junctions, a->l_junction_count * sizeof *a->l_junctions) == 0;
+           a->isotropic == b->isotropic && equal(a->junctions, b->junctions, a->junction_count, sizeof *a->junctions) &&
+           equal(a->l_junctions, b->l_junctions, a->l_junction_count, sizeof *a->l_junctions);
 }
 
 static asj_detection *detect(run_state *state, const asj_image *image, int32_t variant)
