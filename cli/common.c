@@ -15,8 +15,8 @@ enum { BACKEND, DEVICE, THREADS, MAX_MEGAPIXELS, TIME, QUIET };
 
 const cli_option cli_common_options[] = {
     {BACKEND, 0, "backend", "auto|cpu|opencl",
-     "where to compute; auto (the default) takes an OpenCL GPU when there is one, else the CPU"},
-    {DEVICE, 0, "device", "SPEC", "OpenCL device: its number, part of its name, or gpu, cpu, accelerator"},
+     "where to compute; this version has the CPU only: auto (the default) and cpu are the same"},
+    {DEVICE, 0, "device", "SPEC", "OpenCL device; not used in this version"},
     {THREADS, 0, "threads", "N",
      "threads on the CPU, 0 .. 256; 0 (the default) is one for each processor; the results do not depend on it"},
     {MAX_MEGAPIXELS, 0, "max-megapixels", "N", "refuse larger images before they are decoded (default 268, at most 536)"},

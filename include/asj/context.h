@@ -10,9 +10,9 @@ extern "C" {
 
 /* Where the data-parallel steps run. */
 enum {
-    ASJ_BACKEND_AUTO = 0,  /* an OpenCL GPU when there is one, else the CPU */
+    ASJ_BACKEND_AUTO = 0,  /* what is fastest; in this version the CPU */
     ASJ_BACKEND_CPU = 1,   /* always there */
-    ASJ_BACKEND_OPENCL = 2 /* ASJ_ERROR_DEVICE, with the reason, when it cannot be had */
+    ASJ_BACKEND_OPENCL = 2 /* not in this version: ASJ_ERROR_DEVICE */
 };
 
 enum { ASJ_LOG_ERROR = 0, ASJ_LOG_WARNING = 1, ASJ_LOG_INFO = 2, ASJ_LOG_DEBUG = 3 };
@@ -77,7 +77,7 @@ typedef struct asj_context_options {
     int32_t backend;                /* ASJ_BACKEND_..., default auto */
     int32_t threads;                /* threads of the CPU path, 0 .. 256; default 0 = as many as processors. The results do
                                      * not depend on it. 1 when the library was built without OpenMP. */
-    const char *device;             /* OpenCL device: index, part of its name, or "gpu", "cpu", "accelerator"; default NULL = any */
+    const char *device;             /* which OpenCL device: not looked at in this version; default NULL */
     asj_allocator allocator;        /* default: malloc and free */
     asj_log_callback log;           /* default NULL = silence */
     void *log_user;

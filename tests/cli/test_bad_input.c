@@ -205,8 +205,9 @@ static void a_result_that_does_not_fit_leaves_nothing(void **state)
     tight.rlim_cur = 2048; /* more than a message, less than a result */
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &tight), 0);
-    const outcome *result = without_cairo ? run_cli("detect", "-q", "-f", "json", "--out-dir", "full", "good.png", NULL)
-                                          : run_cli("detect", "-q", "-f", "json", "--out-dir", "full", "--plot", "png", "good.png", NULL);
+    const outcome *result =
+        without_cairo ? run_cli("detect", "-q", "-f", "json", "--out-dir", "full", "good.png", NULL)
+                      : run_cli("detect", "-q", "-f", "json", "--out-dir", "full", "--plot", "png", "good.png", NULL);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
     signal(SIGXFSZ, SIG_DFL);
     expect_code(result, 1);
