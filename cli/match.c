@@ -174,9 +174,9 @@ int cli_match(int argc, char **argv)
     if (result == CLI_SUCCESS) {
         r.arguments = &arguments;
         result = run_all(&r);
-        if (cli_interrupted() && r.at) {
+        if (cli_interrupted()) {
             cli_progress_clear(&r.session.progress);
-            cli_error("interrupted at %s", r.at);
+            cli_error("interrupted at %s", r.at ? r.at : arguments.images[0]);
             result = 128 + cli_interrupted();
         }
         cli_match_input_free(&r.inputs[0]);
