@@ -525,12 +525,49 @@ static void test_extreme_options(void **state)
     free(pixels);
 }
 
+/* Radii that share the gammas of a larger one, small fields, radii at which five branches do not fit: under sanitizers this
+ * checks the scratch, and everywhere that every number is finite and every order kept. Checkerboards have branches at angle 0. */
+static void test_radii(void **state)
+{
+    static const char *const radii[] = {"14,15", "23,25", "28,29", "3-30", "3", "3,4", "5,7,10,14"};
+    enum { SIDE = 120 };
+    static uint8_t board[SIDE * SIDE];
+    unit_counter counter;
+    asj_context *context = unit_context(&counter, 1);
+    (void)state;
+    for (int32_t i = 0; i < SIDE * SIDE; i++)
+        board[i] = (i % SIDE / 20 + i / SIDE / 20) % 2 ? 255 : 0;
+    const asj_image image = {board, ASJ_FORMAT_GRAY8, SIDE, SIDE, 0, 0};
+    for (size_t r = 0; r < sizeof radii / sizeof radii[0]; r++)
+        for (int32_t field = 3; field <= 9; field += 2) {
+            asj_detect_options options;
+            asj_detection *found = NULL;
+            asj_detect_options_init(&options);
+            options.field_radius = field;
+            assert_int_equal(asj_detect_options_set(&options, "isotropic_radii", radii[r], NULL, 0), ASJ_OK);
+            assert_int_equal(asj_detect(context, &image, &options, &found), ASJ_OK);
+            for (uint32_t j = 0; j < found->junction_count; j++) {
+                const asj_junction *junction = &found->junctions[j];
+                assert_true(isfinite(junction->log10_nfa));
+                for (int32_t b = 0; b < junction->branch_count; b++) {
+                    assert_true(isfinite(junction->branches[b].log10_nfa));
+                    assert_true(b == 0 || junction->branches[b].angle > junction->branches[b - 1].angle);
+                }
+            }
+            if (r == 6 && field == 7)
+                assert_true(found->junction_count > 10);
+            asj_detection_free(&found);
+        }
+    unit_context_free(&counter, &context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_shapes), cmocka_unit_test(test_crossings), cmocka_unit_test(test_tiny_and_flat),
         cmocka_unit_test(test_noise),  cmocka_unit_test(test_borders),   cmocka_unit_test(test_threads),
         cmocka_unit_test(test_reuse),  cmocka_unit_test(test_quarter_turn), cmocka_unit_test(test_formats),
+        cmocka_unit_test(test_radii),
         cmocka_unit_test(test_arguments), cmocka_unit_test(test_bad_options), cmocka_unit_test(test_extreme_options),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
