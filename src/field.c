@@ -248,8 +248,8 @@ void asj_field_tile(const asj_field *field, const asj_frame *frame, int32_t run,
     }
 }
 
-void asj_field_rows(const asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
-                    uint16_t *scratch, size_t scratch_size, uint16_t *masks)
+asj_status asj_field_rows(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
+                          uint16_t *scratch, size_t scratch_size, uint16_t *masks)
 {
     const int32_t per_tile = ASJ_FIELD_TILE / ASJ_LANES;
 #ifdef _OPENMP
@@ -263,4 +263,5 @@ void asj_field_rows(const asj_context *context, const asj_field *field, const as
 #endif
         context->ops->field_tile(field, frame, run, runs, top, bottom, scratch + thread * scratch_size, masks);
     }
+    return ASJ_OK;
 }

@@ -49,9 +49,9 @@ void asj_field_tile(const asj_field *field, const asj_frame *frame, int32_t run,
                     uint16_t *scratch, uint16_t *masks);
 
 /* The same for rows top .. bottom - 1 of the whole image, by all threads of the context; `scratch_size` elements for each
- * thread. */
-void asj_field_rows(const asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
-                    uint16_t *scratch, size_t scratch_size, uint16_t *masks);
+ * thread. A device may fail. */
+asj_status asj_field_rows(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
+                          uint16_t *scratch, size_t scratch_size, uint16_t *masks);
 
 /* ---- for the vector forms of the above ---- */
 

@@ -248,9 +248,9 @@ void asj_isotropic_row(const asj_isotropic *test, const asj_frame *frame, int32_
     }
 }
 
-void asj_isotropic_rows(const asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
-                        const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
-                        asj_isotropic_junction *junctions)
+asj_status asj_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
+                              const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
+                              asj_isotropic_junction *junctions)
 {
 #ifdef _OPENMP
 #pragma omp parallel for num_threads(context->threads) schedule(dynamic, 4)
@@ -264,6 +264,7 @@ void asj_isotropic_rows(const asj_context *context, const asj_isotropic *test, c
             context->ops->isotropic_row(test, frame, y, masks + (ptrdiff_t)y * frame->blocks, scratch + thread * scratch_size,
                                         junctions + starts[y - top]);
     }
+    return ASJ_OK;
 }
 
 /* Ties are broken by place, so that the order never depends on anything else. */

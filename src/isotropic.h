@@ -56,9 +56,9 @@ void asj_isotropic_row(const asj_isotropic *test, const asj_frame *frame, int32_
 
 /* The same for rows top .. bottom - 1, by all threads of the context; `masks` are those of the whole image, the records of row y
  * start at junctions[starts[y - top]], and starts[bottom - top] ends the last. `scratch_size` elements for each thread. */
-void asj_isotropic_rows(const asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
-                        const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
-                        asj_isotropic_junction *junctions);
+asj_status asj_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
+                              const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
+                              asj_isotropic_junction *junctions);
 
 /* ---- for the vector forms of the above ---- */
 

@@ -17,12 +17,12 @@ typedef struct asj_ops {
     /* asj_gradient() (gradient.h) */
     asj_status (*gradient)(asj_context *context, asj_frame *frame, const asj_detect_options *options);
     /* asj_field_rows() (field.h) */
-    void (*field_rows)(const asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
-                       uint16_t *scratch, size_t scratch_size, uint16_t *masks);
+    asj_status (*field_rows)(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
+                             uint16_t *scratch, size_t scratch_size, uint16_t *masks);
     /* asj_isotropic_rows() (isotropic.h) */
-    void (*isotropic_rows)(const asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top,
-                           int32_t bottom, const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
-                           asj_isotropic_junction *junctions);
+    asj_status (*isotropic_rows)(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top,
+                                 int32_t bottom, const uint16_t *masks, const size_t *starts, uint16_t *scratch,
+                                 size_t scratch_size, asj_isotropic_junction *junctions);
     /* asj_scan_rays() (scan.h) */
     asj_status (*scan_rays)(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);
 

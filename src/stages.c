@@ -176,9 +176,10 @@ asj_status asj_stage_candidates(asj_detection_run *d)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for the candidates");
     for (int32_t top = 0; top < height; top += ASJ_ROW_GROUP) {
         const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
-        d->context->ops->field_rows(d->context, &d->detector->field, frame, top, bottom, d->scratch, d->scratch_size,
-                                    d->candidates);
-        asj_status status = asj_progress(d->context, ASJ_STAGE_CANDIDATES, 0.05 + 0.45 * bottom / height);
+        asj_status status = d->context->ops->field_rows(d->context, &d->detector->field, frame, top, bottom, d->scratch,
+                                                        d->scratch_size, d->candidates);
+        if (status == ASJ_OK)
+            status = asj_progress(d->context, ASJ_STAGE_CANDIDATES, 0.05 + 0.45 * bottom / height);
         if (status != ASJ_OK)
             return status;
     }
@@ -209,8 +210,10 @@ static asj_status test_candidates(asj_detection_run *d)
             break;
         }
         if (total > 0)
-            d->context->ops->isotropic_rows(d->context, &d->detector->isotropic, frame, top, bottom, d->candidates, starts,
-                                            d->scratch, d->scratch_size, records);
+            status = d->context->ops->isotropic_rows(d->context, &d->detector->isotropic, frame, top, bottom, d->candidates, starts,
+                                                     d->scratch, d->scratch_size, records);
+        if (status != ASJ_OK)
+            break;
         const asj_isotropic_junction *tested = records;
         for (size_t i = 0; i < total; i++)
             if (tested[i].branch_count)
