@@ -2,11 +2,8 @@
 /* Time of every stage of the detector, and its memory, on the sample room at several sizes: README.md, "What is measured". */
 #define _POSIX_C_SOURCE 200809L
 
+#include "measure.h"
 #include "memory_use.h"
-#include "render.h"
-#include "room.h"
-
-#include <asj/asj.h>
 
 #include <getopt.h>
 #include <stdio.h>
@@ -55,35 +52,6 @@ static int fail(const char *what)
     return -1;
 }
 
-/* The caller frees it. */
-static uint8_t *render(size s)
-{
-    synth_room room;
-    synth_view view;
-    uint8_t *pixels = NULL;
-    const synth_camera camera = synth_room_camera(0, s.width, s.height);
-    if (synth_room_make(&room) != 0)
-        return NULL;
-    if (synth_view_make(&room, &camera, 1.0, &view) == 0) {
-        pixels = synth_photograph(&view.scene, 0.9, 2.0, 1);
-        synth_view_free(&view);
-    }
-    synth_room_free(&room);
-    return pixels;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double *values, int32_t count)
-{
-    qsort(values, (size_t)count, sizeof *values, ascending);
-    return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
-}
-
 /* Run -1 is not counted: it warms up, and its memory is measured. */
 static int run_all(asj_context *context, const asj_image *image, const settings *set, int32_t runs, measured *m)
 {
@@ -105,7 +73,7 @@ static int run_all(asj_context *context, const asj_image *image, const settings 
         asj_detection_free(&found);
     }
     for (int s = 0; s <= STAGES; s++)
-        m->ms[s] = median(ms[s], runs);
+        m->ms[s] = measure_median(ms[s], runs);
     asj_context_memory(context, NULL, &m->context);
     return 0;
 }
@@ -114,12 +82,8 @@ static int measure(const uint8_t *pixels, const settings *set, measured *m)
 {
     const asj_image image = {pixels, ASJ_FORMAT_GRAY8, m->size.width, m->size.height, 0, 0};
     const int large = (int64_t)m->size.width * m->size.height > 8000000;
-    asj_context_options how;
-    asj_context *context = NULL;
-    asj_context_options_init(&how);
-    how.backend = ASJ_BACKEND_CPU;
-    how.threads = m->threads;
-    if (asj_context_create(&how, &context) != ASJ_OK)
+    asj_context *context = measure_context(m->threads);
+    if (!context)
         return fail("cannot make a context");
     m->threads = asj_context_threads(context); /* 1 without OpenMP */
     const int result = run_all(context, &image, set, set->runs ? set->runs : large ? 3 : 5, m);
@@ -178,7 +142,7 @@ static int run_sizes(const settings *set)
     int result = 0;
     print_header();
     for (int32_t i = 0; i < set->size_count && result == 0; i++) {
-        uint8_t *pixels = render(set->sizes[i]);
+        uint8_t *pixels = measure_room(0, set->sizes[i].width, set->sizes[i].height);
         if (!pixels)
             return fail("cannot render the room");
         for (int32_t t = 0; t < set->thread_count && result == 0; t++) {
@@ -207,28 +171,18 @@ static int add_size(settings *set, const char *text)
     return 0;
 }
 
-static int parse_number(const char *text, long least, long most, int32_t *value)
-{
-    char *end;
-    const long number = strtol(text, &end, 10);
-    *value = (int32_t)number;
-    return *text && !*end && number >= least && number <= most ? 0 : -1;
-}
-
 static int add_threads(settings *set, const char *text)
 {
-    return set->thread_count == MAX_THREADS ? -1 : parse_number(text, 1, 256, &set->threads[set->thread_count++]);
+    return set->thread_count == MAX_THREADS ? -1 : measure_number(text, 1, 256, &set->threads[set->thread_count++]);
 }
 
 static int set_option(settings *set, const char *text)
 {
     char key[64], message[256];
-    const char *equals = strchr(text, '=');
-    if (!equals || (size_t)(equals - text) >= sizeof key)
+    const char *value = measure_key_value(text, key);
+    if (!value)
         return -1;
-    memcpy(key, text, (size_t)(equals - text));
-    key[equals - text] = 0;
-    if (asj_detect_options_set(&set->options, key, equals + 1, message, sizeof message) == ASJ_OK)
+    if (asj_detect_options_set(&set->options, key, value, message, sizeof message) == ASJ_OK)
         return 0;
     return fail(message);
 }
@@ -241,7 +195,7 @@ static int parse(int argc, char **argv, settings *set)
     int c, result = 0;
     while (result == 0 && (c = getopt_long(argc, argv, "", longs, NULL)) != -1)
         result = c == 's' ? add_size(set, optarg) : c == 't' ? add_threads(set, optarg) :
-                 c == 'r' ? parse_number(optarg, 1, MAX_RUNS, &set->runs) : -1;
+                 c == 'r' ? measure_number(optarg, 1, MAX_RUNS, &set->runs) : -1;
     for (; result == 0 && optind < argc; optind++)
         result = set_option(set, argv[optind]);
     if (set->size_count == 0) {

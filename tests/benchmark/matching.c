@@ -5,12 +5,8 @@
 
 #include "align.h"
 #include "match_options.h"
-#include "random.h"
-#include "render.h"
-#include "room.h"
-
-#include <asj/match.h>
-#include <asj/version.h>
+#include "measure.h"
+#include "views.h"
 
 #include <getopt.h>
 #include <stdio.h>
@@ -37,132 +33,17 @@ typedef struct settings {
     asj_match_options options;
 } settings;
 
-typedef struct side {
-    uint8_t *pixels;
-    asj_image image;
-    asj_junction *all; /* by meaning, the random ones last */
-    size_t all_count;
-    asj_junction *list; /* what is matched */
-    size_t count;
-} side;
-
 static int fail(const char *what)
 {
     fprintf(stderr, "matching: %s\n", what);
     return -1;
 }
 
-/* --- two views and their junctions ------------------------------------------------------------------------------------------ */
-
-static uint8_t *render(int32_t index)
-{
-    synth_room room;
-    synth_view view;
-    uint8_t *pixels = NULL;
-    const synth_camera camera = synth_room_camera(index, WIDTH, HEIGHT);
-    if (synth_room_make(&room) != 0)
-        return NULL;
-    if (synth_view_make(&room, &camera, 1.0, &view) == 0) {
-        pixels = synth_photograph(&view.scene, 0.9, 2.0, (uint64_t)index + 1);
-        synth_view_free(&view);
-    }
-    synth_room_free(&room);
-    return pixels;
-}
-
-static int by_meaning(const void *a, const void *b)
-{
-    const asj_junction *p = a, *q = b;
-    if (p->log10_nfa != q->log10_nfa)
-        return p->log10_nfa < q->log10_nfa ? -1 : 1;
-    return p->y != q->y ? (p->y < q->y ? -1 : 1) : (p->x > q->x) - (p->x < q->x);
-}
-
-/* Corners at random places, for more than the room has. */
-static void fill_up(asj_junction *junctions, size_t count, uint64_t seed)
-{
-    synth_random random;
-    synth_random_seed(&random, seed);
-    for (size_t i = 0; i < count; i++) {
-        asj_junction *j = &junctions[i];
-        const double angle = synth_random_between(&random, 0, 4.5);
-        memset(j, 0, sizeof *j);
-        j->x = (float)synth_random_between(&random, 20, WIDTH - 20);
-        j->y = (float)synth_random_between(&random, 20, HEIGHT - 20);
-        j->branch_count = 2;
-        j->branches[0].angle = (float)angle;
-        j->branches[0].length = (float)synth_random_between(&random, 15, 120);
-        j->branches[1].angle = (float)(angle + synth_random_between(&random, 1, 1.7));
-        j->branches[1].length = (float)synth_random_between(&random, 15, 120);
-    }
-}
-
-static int make_side(asj_context *context, int32_t index, size_t most, side *s)
-{
-    asj_detect_options options;
-    asj_detection *found = NULL;
-    memset(s, 0, sizeof *s);
-    s->pixels = render(index);
-    if (!s->pixels)
-        return fail("cannot render the room");
-    s->image = (asj_image){s->pixels, ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0};
-    asj_detect_options_init(&options);
-    asj_match_detect_options(&options);
-    if (asj_detect(context, &s->image, &options, &found) != ASJ_OK)
-        return fail(asj_context_message(context));
-    s->all_count = found->junction_count + most;
-    s->all = malloc(s->all_count * sizeof *s->all);
-    s->list = malloc(s->all_count * sizeof *s->list);
-    if (!s->all || !s->list) {
-        asj_detection_free(&found);
-        return fail("no memory");
-    }
-    if (found->junction_count)
-        memcpy(s->all, found->junctions, found->junction_count * sizeof *s->all);
-    qsort(s->all, found->junction_count, sizeof *s->all, by_meaning);
-    fill_up(s->all + found->junction_count, most, (uint64_t)index + 100);
-    asj_detection_free(&found);
-    return 0;
-}
-
-static void free_side(side *s)
-{
-    free(s->pixels);
-    free(s->all);
-    free(s->list);
-}
-
-/* The first junctions that make `corners` L-junctions; those that would make too many are left out. */
-static void take(side *s, size_t corners, double minimum_opening)
-{
-    size_t sum = 0;
-    s->count = 0;
-    for (size_t i = 0; i < s->all_count && sum < corners; i++) {
-        const size_t more = asj_decompose(&s->all[i], 1, minimum_opening, NULL, 0);
-        if (more == 0 || sum + more > corners)
-            continue;
-        s->list[s->count++] = s->all[i];
-        sum += more;
-    }
-}
-
 /* --- the whole match -------------------------------------------------------------------------------------------------------- */
 
 enum { PATCHES, DISTANCES, ALIGN, ASSIGN, TOTAL, PARTS };
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double *values, int32_t count)
-{
-    qsort(values, (size_t)count, sizeof *values, ascending);
-    return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
-}
-
-static int whole(asj_context *context, const side sides[2], const settings *set)
+static int whole(asj_context *context, const benchmark_view sides[2], const settings *set)
 {
     static const int32_t stages[] = {ASJ_STAGE_PATCHES, ASJ_STAGE_DISTANCES, ASJ_STAGE_ALIGN, ASJ_STAGE_ASSIGN};
     double ms[PARTS][MAX_RUNS];
@@ -187,7 +68,7 @@ static int whole(asj_context *context, const side sides[2], const settings *set)
     }
     printf("%6u %6u", (unsigned)counts[0], (unsigned)counts[1]);
     for (int p = 0; p < PARTS; p++)
-        printf(" %9.2f", median(ms[p], set->runs));
+        printf(" %9.2f", measure_median(ms[p], set->runs));
     printf(" %9.2f %9.2f %10llu %8u\n", ms[TOTAL][0], work, (unsigned long long)candidates, (unsigned)counts[2]);
     fflush(stdout);
     return 0;
@@ -207,7 +88,7 @@ static void least(double *value, double since)
         *value = now;
 }
 
-static asj_status prepare(asj_context *context, const side *s, const settings *set, int32_t which, asj_view *view)
+static asj_status prepare(asj_context *context, const benchmark_view *s, const settings *set, int32_t which, asj_view *view)
 {
     asj_status status = asj_corners_create(context, s->list, s->count, WIDTH, HEIGHT, &set->options, which, &view->corners);
     return status == ASJ_OK ? asj_pyramid_create(context, &s->image, set->options.smoothing, &view->pyramid) : status;
@@ -243,7 +124,7 @@ static asj_status one_round(asj_context *context, const settings *set, asj_view 
     return status;
 }
 
-static int parts(asj_context *context, const side sides[2], const settings *set)
+static int parts(asj_context *context, const benchmark_view sides[2], const settings *set)
 {
     asj_view views[2];
     rates r;
@@ -269,20 +150,33 @@ static int parts(asj_context *context, const side sides[2], const settings *set)
     return status == ASJ_OK ? 0 : fail(asj_context_message(context));
 }
 
+static int make_side(asj_context *context, int32_t index, size_t more, benchmark_view *side)
+{
+    const asj_image image = {measure_room(index, WIDTH, HEIGHT), ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0};
+    if (!image.data)
+        return fail("cannot render the room");
+    if (benchmark_view_make(context, &image, more, (uint64_t)index + 100, side) != 0)
+        return fail("no memory");
+    return 0;
+}
+
+static void free_side(benchmark_view *side)
+{
+    void *pixels = (void *)(uintptr_t)side->image.data;
+    benchmark_view_free(side);
+    free(pixels);
+}
+
 /* --- command line ----------------------------------------------------------------------------------------------------------- */
 
 static int run(const settings *set)
 {
-    asj_context_options how;
-    asj_context *context = NULL;
-    side sides[2];
+    asj_context *context = measure_context(set->threads);
+    benchmark_view sides[2];
     size_t most = 0;
     int result = 0;
     memset(sides, 0, sizeof sides);
-    asj_context_options_init(&how);
-    how.backend = ASJ_BACKEND_CPU;
-    how.threads = set->threads;
-    if (asj_context_create(&how, &context) != ASJ_OK)
+    if (!context)
         return fail("cannot make a context");
     for (int32_t k = 0; k < set->corner_count; k++)
         most = set->corners[k] > most ? set->corners[k] : most;
@@ -296,7 +190,7 @@ static int run(const settings *set)
             printf("\n%6s %6s  %9s %9s %12s   each second\n", "L1", "L2", "patches", "pairs", "refinements");
         for (int32_t k = 0; k < set->corner_count && result == 0; k++) {
             for (int v = 0; v < 2; v++)
-                take(&sides[v], set->corners[k], set->options.minimum_opening);
+                benchmark_view_take(&sides[v], set->corners[k], set->options.minimum_opening);
             result = pass == 0 ? whole(context, sides, set) : parts(context, sides, set);
         }
         if (set->options.patches != ASJ_PATCHES_CANONICAL || set->options.align_iterations == 0)
@@ -308,22 +202,13 @@ static int run(const settings *set)
     return result;
 }
 
-static int number(const char *text, long lowest, long highest, long *value)
-{
-    char *end;
-    *value = strtol(text, &end, 10);
-    return *text && !*end && *value >= lowest && *value <= highest ? 0 : -1;
-}
-
 static int set_option(settings *set, const char *text)
 {
     char key[64], message[256];
-    const char *equals = strchr(text, '=');
-    if (!equals || (size_t)(equals - text) >= sizeof key)
+    const char *value = measure_key_value(text, key);
+    if (!value)
         return -1;
-    memcpy(key, text, (size_t)(equals - text));
-    key[equals - text] = 0;
-    if (asj_match_options_set(&set->options, key, equals + 1, message, sizeof message) == ASJ_OK)
+    if (asj_match_options_set(&set->options, key, value, message, sizeof message) == ASJ_OK)
         return 0;
     return fail(message);
 }
@@ -332,15 +217,15 @@ static int parse(int argc, char **argv, settings *set)
 {
     static const struct option longs[] = {{"corners", 1, NULL, 'c'}, {"threads", 1, NULL, 't'}, {"runs", 1, NULL, 'r'},
                                           {NULL, 0, NULL, 0}};
-    long value = 0;
+    int32_t value = 0;
     int c, result = 0;
     while (result == 0 && (c = getopt_long(argc, argv, "", longs, NULL)) != -1) {
-        result = c == 'c' ? number(optarg, 1, 100000, &value) : c == 't' ? number(optarg, 1, 256, &value) :
-                 c == 'r' ? number(optarg, 1, MAX_RUNS, &value) : -1;
+        result = c == 'c' ? measure_number(optarg, 1, 100000, &value) : c == 't' ? measure_number(optarg, 1, 256, &value) :
+                 c == 'r' ? measure_number(optarg, 1, MAX_RUNS, &value) : -1;
         if (c == 't')
-            set->threads = (int32_t)value;
+            set->threads = value;
         else if (c == 'r')
-            set->runs = (int32_t)value;
+            set->runs = value;
         else if (set->corner_count < MAX_SIZES)
             set->corners[set->corner_count++] = (size_t)value;
     }
