@@ -7,6 +7,7 @@
 
 #include <asj/detect.h>
 
+struct asj_cl;       /* cl/state.h: an OpenCL device */
 struct asj_ops;      /* ops.h */
 struct asj_detector; /* detect.c: scratch of the detector, kept from image to image */
 
@@ -15,6 +16,7 @@ struct asj_context {
     asj_context_options options;
     int32_t threads;              /* >= 1 */
     struct asj_ops *ops;          /* the operations in the best form that this machine has */
+    struct asj_cl *cl;            /* the device that works; NULL = none, the CPU does everything */
     asj_nfa *nfa;
     struct asj_detector *detector;
     double progress;              /* last value reported */

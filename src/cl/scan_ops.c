@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "overrides.h"
+
+void asj_cl_fill_scan(asj_ops *ops)
+{
+    (void)ops;
+}
+
+void asj_cl_free_scan(asj_context *context)
+{
+    (void)context;
+}

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* What a context keeps for its device: context->cl. */
+#ifndef ASJ_SRC_CL_STATE_H
+#define ASJ_SRC_CL_STATE_H
+
+#include "loader.h"
+#include "runtime.h"
+
+struct asj_cl_detect; /* detect_ops.c */
+struct asj_cl_scan;   /* scan_ops.c */
+struct asj_cl_match;  /* match_ops.c */
+
+struct asj_cl {
+    asj_cl_api api;
+    cl_device_id device;
+    cl_context context;
+    cl_command_queue queue;
+    asj_cl_limits limits;
+    char name[128];         /* of the device */
+    char *identity;         /* device, platform, driver, versions: what a compiled program depends on beside its source */
+    cl_program *programs;   /* asj_cl_source_count; NULL = not built yet */
+    cl_kernel *kernels;     /* asj_cl_kernel_count; NULL = not made yet */
+    asj_cl_time *times;     /* asj_cl_kernel_count and the transfers; NULL = not measured */
+
+    struct asj_cl_detect *detect;
+    struct asj_cl_scan *scan;
+    struct asj_cl_match *match;
+};
+
+#endif
