@@ -1,46 +1,30 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The matcher on views of the sample room, whose geometry is known: how many of its key-point matches show the same point.
+/* The matcher on rendered rooms, whose geometry is known: how many of its key-point and segment matches show the same thing.
  *
- *     match_room [--check] [--first N] [--last N] [--threads N] [key=value ...]
+ *     match_room [--check] [--first N] [--last N] [--rooms] [--threads N] [key=value ...]
  *
- * View 0 is matched with the views from --first (1) to --last (6). A match is right when the surface seen within 2 px of its place
- * in the first view appears within 4 px of its place in the second: corners lie on borders of surfaces, and a border seen from
- * elsewhere may hide what lies behind it, so the exact place alone would judge the background. --check: exit 1 when the average
- * over the pairs or a pair's matches are below what stands below; the aim is an average of 95 %. key=value sets an option of the
- * matcher. */
+ * View 0 of the sample room is matched with the views from --first (1) to --last (6). --rooms: random rooms instead, two views
+ * each, seeds --first to --last. What counts as right: room_pair.h. --check (sample room): exit 1 when the average over the pairs
+ * or a pair's matches are below what stands below. key=value sets an option of the matcher. */
 #define _POSIX_C_SOURCE 200809L
 
-#include "render.h"
-#include "room.h"
-
-#include <asj/asj.h>
+#include "room_pair.h"
 
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define WIDTH 1052
-#define HEIGHT 780
-#define VIEWS 24
-#define AROUND 2.0  /* px */
-#define NEAR 4.0    /* px */
+#define MOST 100000
 
 static const double least_average = 0.86; /* share of right matches: measured 0.90 */
 static const uint32_t least_matches = 130; /* of each pair: measured 168 and more */
 
 typedef struct settings {
-    int32_t first, last, check;
+    int32_t first, last, check, random;
     asj_match_options options;
     asj_context *context;
 } settings;
-
-typedef struct seen {
-    synth_camera camera;
-    uint8_t *pixels;
-    asj_image image;
-    asj_detection *found;
-} seen;
 
 static int fail(const char *what)
 {
@@ -48,85 +32,116 @@ static int fail(const char *what)
     return -1;
 }
 
-static int look(const settings *set, const synth_room *room, int32_t index, seen *s)
+static double share(uint32_t right, uint32_t all)
 {
-    synth_view view;
-    asj_detect_options options;
-    memset(s, 0, sizeof *s);
-    s->camera = synth_room_camera(index, WIDTH, HEIGHT);
-    if (synth_view_make(room, &s->camera, 1.0, &view) != 0)
-        return fail("cannot make a view");
-    s->pixels = synth_photograph(&view.scene, 0.9, 2.0, (uint64_t)index + 1);
-    synth_view_free(&view);
-    if (!s->pixels)
-        return fail("cannot render a view");
-    s->image = (asj_image){s->pixels, ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0};
-    asj_detect_options_init(&options);
-    asj_match_detect_options(&options);
-    return asj_detect(set->context, &s->image, &options, &s->found) == ASJ_OK ? 0 : fail(asj_context_message(set->context));
+    return all ? 100.0 * right / all : 0;
 }
 
-static void forget(seen *s)
+static void print(const char *name, const room_score *s)
 {
-    asj_detection_free(&s->found);
-    free(s->pixels);
+    printf("%-8s %5u / %5u %5.1f %%  %5u / %5u %5.1f %%  %5u / %5u %5.1f %%\n", name, s->right_points, s->points,
+           share(s->right_points, s->points), s->right_segments, s->segments, share(s->right_segments, s->segments),
+           s->right_lines, s->lines, share(s->right_lines, s->lines));
+    fflush(stdout);
 }
 
-static int right(const synth_room *room, const seen *a, const seen *b, const asj_junction_match *m)
+static void add(room_score *sum, const room_score *s)
 {
-    for (int32_t j = -2; j <= 2; j++)
-        for (int32_t i = -2; i <= 2; i++) {
-            synth_point p;
-            const double x = (double)m->x1 + i * AROUND / 2, y = (double)m->y1 + j * AROUND / 2;
-            if (i * i + j * j > 4 || !synth_room_transfer(room, &a->camera, x, y, &b->camera, &p))
-                continue;
-            const double dx = p.x - (double)m->x2, dy = p.y - (double)m->y2;
-            if (dx * dx + dy * dy <= NEAR * NEAR)
-                return 1;
-        }
-    return 0;
+    sum->points += s->points;
+    sum->right_points += s->right_points;
+    sum->segments += s->segments;
+    sum->right_segments += s->right_segments;
+    sum->lines += s->lines;
+    sum->right_lines += s->right_lines;
 }
 
-/* Adds the pair's share to `sum`. */
-static int match_pair(const settings *set, const synth_room *room, const seen *a, const seen *b, int32_t index, double *sum)
+static int match_pair(const settings *set, const synth_room *room, const room_view *a, const room_view *b, const char *name,
+                      room_score *s)
 {
     asj_match_result *result = NULL;
-    uint32_t good = 0;
+    memset(s, 0, sizeof *s);
     if (asj_match(set->context, &a->image, a->found->junctions, a->found->junction_count, &b->image, b->found->junctions,
                   b->found->junction_count, &set->options, &result) != ASJ_OK)
         return fail(asj_context_message(set->context));
-    const uint32_t count = result->match_count;
-    for (uint32_t k = 0; k < count; k++)
-        good += (uint32_t)right(room, a, b, &result->matches[k]);
+    const int failed = room_pair_score(room, a, b, result, s);
     asj_match_result_free(&result);
-    const double share = count ? (double)good / count : 0;
-    printf("0-%-3d %4u / %4u  %5.1f %%\n", (int)index, (unsigned)good, (unsigned)count, 100 * share);
-    fflush(stdout);
-    *sum += share;
-    return set->check && count < least_matches ? fail("too few matches") : 0;
+    print(name, s);
+    return failed;
 }
 
-static int run(const settings *set)
+/* View `index` of the sample room, or of the random room with that seed. */
+static int look(const settings *set, const synth_room *room, int32_t seed, int32_t index, room_view *view)
+{
+    const synth_camera camera = set->random ? synth_room_random_camera((uint64_t)seed, index, ROOM_WIDTH, ROOM_HEIGHT)
+                                            : synth_room_camera(index, ROOM_WIDTH, ROOM_HEIGHT);
+    return room_view_make(set->context, room, camera, (uint64_t)index + 1, view);
+}
+
+static int sample_room(const settings *set)
 {
     synth_room room;
-    seen a, b;
-    double sum = 0;
+    room_view a, b;
+    room_score sum = {0, 0, 0, 0, 0, 0};
+    double average = 0;
     if (synth_room_make(&room) != 0)
         return fail("no room");
-    int result = look(set, &room, 0, &a);
-    printf("pair  right / matches (%d x %d)\n", WIDTH, HEIGHT);
+    int result = look(set, &room, 0, 0, &a);
     for (int32_t v = set->first; v <= set->last && result == 0; v++) {
-        result = look(set, &room, v, &b);
+        char name[16];
+        room_score s;
+        snprintf(name, sizeof name, "0-%d", (int)v);
+        result = look(set, &room, 0, v, &b);
         if (result == 0)
-            result = match_pair(set, &room, &a, &b, v, &sum);
-        forget(&b);
+            result = match_pair(set, &room, &a, &b, name, &s);
+        room_view_free(&b);
+        if (result == 0)
+            add(&sum, &s);
+        if (result == 0 && set->check && s.points < least_matches)
+            result = fail("too few matches");
+        average += result == 0 ? share(s.right_points, s.points) / (set->last - set->first + 1) : 0;
     }
-    forget(&a);
+    room_view_free(&a);
     synth_room_free(&room);
-    const double average = sum / (set->last - set->first + 1);
+    if (result == 0) {
+        print("all", &sum);
+        printf("average %.1f %%\n", average);
+    }
+    return result == 0 && set->check && !(average >= 100 * least_average) ? fail("the average is too low") : result;
+}
+
+static int random_rooms(const settings *set)
+{
+    static const char *const kinds[4] = {"bare", "repeated", "furnished", "pictures"};
+    room_score sums[5];
+    int result = 0;
+    memset(sums, 0, sizeof sums);
+    for (int32_t seed = set->first; seed <= set->last && result == 0; seed++) {
+        synth_room room;
+        room_view a, b;
+        room_score s;
+        char name[16];
+        snprintf(name, sizeof name, "%d", (int)seed);
+        if (synth_room_random(&room, (uint64_t)seed) != 0)
+            return fail("no room");
+        result = look(set, &room, seed, 0, &a);
+        if (result == 0) {
+            result = look(set, &room, seed, 1, &b);
+            if (result == 0)
+                result = match_pair(set, &room, &a, &b, name, &s);
+            room_view_free(&b);
+        }
+        room_view_free(&a);
+        synth_room_free(&room);
+        if (result == 0) {
+            add(&sums[seed % 4], &s);
+            add(&sums[4], &s);
+        }
+    }
+    for (int k = 0; k < 4 && result == 0; k++)
+        print(kinds[k], &sums[k]);
     if (result == 0)
-        printf("average %.1f %%\n", 100 * average);
-    return result == 0 && set->check && !(average >= least_average) ? fail("the average is too low") : result;
+        print("all", &sums[4]);
+    return result;
 }
 
 static int number(const char *text, long lowest, long highest, int32_t *value)
@@ -153,13 +168,14 @@ static int set_option(settings *set, const char *text)
 static int parse(int argc, char **argv, settings *set, int32_t *threads)
 {
     static const struct option longs[] = {{"check", 0, NULL, 'c'}, {"first", 1, NULL, 'f'}, {"last", 1, NULL, 'l'},
-                                          {"threads", 1, NULL, 't'}, {NULL, 0, NULL, 0}};
+                                          {"rooms", 0, NULL, 'r'}, {"threads", 1, NULL, 't'}, {NULL, 0, NULL, 0}};
     int c, result = 0;
     while (result == 0 && (c = getopt_long(argc, argv, "", longs, NULL)) != -1)
         switch (c) {
         case 'c': set->check = 1; break;
-        case 'f': result = number(optarg, 1, VIEWS, &set->first); break;
-        case 'l': result = number(optarg, 1, VIEWS, &set->last); break;
+        case 'f': result = number(optarg, 1, MOST, &set->first); break;
+        case 'l': result = number(optarg, 1, MOST, &set->last); break;
+        case 'r': set->random = 1; break;
         case 't': result = number(optarg, 0, 256, threads); break;
         default: result = -1;
         }
@@ -175,12 +191,13 @@ int main(int argc, char **argv)
     asj_match_options_init(&set.options);
     asj_context_options_init(&how);
     if (parse(argc, argv, &set, &how.threads) != 0) {
-        fputs("usage: match_room [--check] [--first N] [--last N] [--threads N] [key=value ...]\n", stderr);
+        fputs("usage: match_room [--check] [--first N] [--last N] [--rooms] [--threads N] [key=value ...]\n", stderr);
         return 2;
     }
     if (asj_context_create(&how, &set.context) != ASJ_OK)
         return fail("no context") != 0;
-    const int result = run(&set);
+    printf("pair     key points             segments               merged lines (right / all, %d x %d)\n", ROOM_WIDTH, ROOM_HEIGHT);
+    const int result = set.random ? random_rooms(&set) : sample_room(&set);
     asj_context_free(&set.context);
     return result == 0 ? 0 : 1;
 }

@@ -79,6 +79,11 @@ void synth_room_free(synth_room *room);
  * them. */
 synth_camera synth_room_camera(int32_t index, int32_t width, int32_t height);
 
+/* Another room for every seed, of four kinds in turn: bare, repeated things, furnished, pictures. 0, or -1 (memory). And a
+ * viewpoint in it for every index. */
+int synth_room_random(synth_room *room, uint64_t seed);
+synth_camera synth_room_random_camera(uint64_t seed, int32_t index, int32_t width, int32_t height);
+
 /* The picture's polygons, nearest last, and its junctions: edges with a step of at least `min_contrast` grey levels. 0, or -1. */
 int synth_view_make(const synth_room *room, const synth_camera *camera, double min_contrast, synth_view *view);
 void synth_view_free(synth_view *view);

@@ -16,14 +16,15 @@
 
 typedef struct settings {
     int32_t which[2], width, height;
+    long seed; /* of a random room; -1: the sample room */
     double blur, noise;
     const char *folder;
 } settings;
 
 static const char help[] =
-    "usage: sample-room [--first N] [--second N] [--width W] [--height H] [--blur PX] [--noise SD] FOLDER\n"
+    "usage: sample-room [--first N] [--second N] [--width W] [--height H] [--room SEED] [--blur PX] [--noise SD] FOLDER\n"
     "\n"
-    "Renders a furnished room from two viewpoints (0 and 1; other numbers are other places) into FOLDER:\n"
+    "Renders a furnished room (--room: a random one) from two viewpoints (0 and 1; other numbers are other places) into FOLDER:\n"
     "1.png, 2.png         8-bit grey, 1052x780 unless asked otherwise\n"
     "1.csv, 2.csv         true junctions: junction,x,y,corner,branch,angle,length,contrast (angle in rad; corner 0 = one thing\n"
     "                     hides another there)\n"
@@ -116,11 +117,13 @@ static int write_all(const settings *set)
 {
     synth_room room;
     synth_view views[2];
-    if (synth_room_make(&room) != 0)
+    if ((set->seed < 0 ? synth_room_make(&room) : synth_room_random(&room, (uint64_t)set->seed)) != 0)
         return fail(set->folder, "out of memory");
     int result = 0, made = 0;
     for (int i = 0; i < 2 && result == 0; i++) {
-        const synth_camera camera = synth_room_camera(set->which[i], set->width, set->height);
+        const synth_camera camera = set->seed < 0
+            ? synth_room_camera(set->which[i], set->width, set->height)
+            : synth_room_random_camera((uint64_t)set->seed, set->which[i], set->width, set->height);
         result = synth_view_make(&room, &camera, 1.0, &views[i]);
         made += result == 0;
         if (result == 0)
@@ -141,8 +144,8 @@ static int write_all(const settings *set)
 static int parse(int argc, char **argv, settings *set)
 {
     static const struct option longs[] = {{"first", 1, NULL, '1'}, {"second", 1, NULL, '2'}, {"width", 1, NULL, 'w'},
-                                          {"height", 1, NULL, 'h'}, {"blur", 1, NULL, 'b'}, {"noise", 1, NULL, 'n'},
-                                          {NULL, 0, NULL, 0}};
+                                          {"height", 1, NULL, 'h'}, {"room", 1, NULL, 'r'}, {"blur", 1, NULL, 'b'},
+                                          {"noise", 1, NULL, 'n'}, {NULL, 0, NULL, 0}};
     int c;
     while ((c = getopt_long(argc, argv, "", longs, NULL)) != -1)
         switch (c) {
@@ -150,6 +153,7 @@ static int parse(int argc, char **argv, settings *set)
         case '2': set->which[1] = (int32_t)strtol(optarg, NULL, 10); break;
         case 'w': set->width = (int32_t)strtol(optarg, NULL, 10); break;
         case 'h': set->height = (int32_t)strtol(optarg, NULL, 10); break;
+        case 'r': set->seed = strtol(optarg, NULL, 10); break;
         case 'b': set->blur = strtod(optarg, NULL); break;
         case 'n': set->noise = strtod(optarg, NULL); break;
         default: return -1;
@@ -160,7 +164,7 @@ static int parse(int argc, char **argv, settings *set)
 
 int main(int argc, char **argv)
 {
-    settings set = {{0, 1}, 1052, 780, 0.9, 2.0, NULL};
+    settings set = {{0, 1}, 1052, 780, -1, 0.9, 2.0, NULL};
     if (parse(argc, argv, &set) != 0) {
         fputs(help, stderr);
         return 2;

@@ -87,6 +87,37 @@ static void nothing_hidden_is_painted(void **state)
         }
 }
 
+/* Random rooms: the same, from two viewpoints each; every seed is another room, and the same one again. */
+static void random_rooms_are_painted_right(void **state)
+{
+    (void)state;
+    synth_random random;
+    synth_random_seed(&random, 2);
+    for (uint64_t seed = 0; seed < 16; seed++) {
+        synth_room room, again;
+        assert_int_equal(synth_room_random(&room, seed), 0);
+        assert_int_equal(synth_room_random(&again, seed), 0);
+        assert_int_equal(room.surface_count, again.surface_count);
+        assert_memory_equal(room.surfaces, again.surfaces, (size_t)room.surface_count * sizeof *room.surfaces);
+        synth_room_free(&again);
+        for (int32_t v = 0; v < 2; v++) {
+            synth_view view;
+            const synth_camera camera = synth_room_random_camera(seed, v, WIDTH, HEIGHT);
+            assert_int_equal(synth_view_make(&room, &camera, 3.0, &view), 0);
+            for (int i = 0; i < 1000; i++) {
+                synth_vector met;
+                const double x = synth_random_between(&random, 0.0, WIDTH - 1.0);
+                const double y = synth_random_between(&random, 0.0, HEIGHT - 1.0);
+                const int32_t top = synth_scene_top(&view.scene, x, y);
+                assert_true(top >= 0);
+                assert_int_equal(view.scene.polygons[top].tag, synth_room_trace(&room, &camera, x, y, &met));
+            }
+            synth_view_free(&view);
+        }
+        synth_room_free(&room);
+    }
+}
+
 static void corners_lie_where_they_project(void **state)
 {
     fixture *f = *state;
@@ -185,6 +216,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(projection_and_rays_agree),
         cmocka_unit_test(nothing_hidden_is_painted),
+        cmocka_unit_test(random_rooms_are_painted_right),
         cmocka_unit_test(corners_lie_where_they_project),
         cmocka_unit_test(correspondences_are_points_of_the_room),
         cmocka_unit_test(transfer_is_its_own_inverse),

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "room_pair.h"
+#include "render.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define AROUND 2.0  /* px */
+#define NEAR 4.0    /* px */
+#define NEAR_END 8.0 /* px */
+
+static int fail(const char *what)
+{
+    fprintf(stderr, "room: %s\n", what);
+    return -1;
+}
+
+int room_view_make(asj_context *context, const synth_room *room, synth_camera camera, uint64_t noise_seed, room_view *view)
+{
+    synth_view painted;
+    asj_detect_options options;
+    memset(view, 0, sizeof *view);
+    view->camera = camera;
+    if (synth_view_make(room, &camera, 1.0, &painted) != 0)
+        return fail("cannot make a view");
+    view->pixels = synth_photograph(&painted.scene, 0.9, 2.0, noise_seed);
+    synth_view_free(&painted);
+    if (!view->pixels)
+        return fail("cannot render a view");
+    view->image = (asj_image){view->pixels, ASJ_FORMAT_GRAY8, camera.width, camera.height, 0, 0};
+    asj_detect_options_init(&options);
+    asj_match_detect_options(&options);
+    return asj_detect(context, &view->image, &options, &view->found) == ASJ_OK ? 0 : fail(asj_context_message(context));
+}
+
+void room_view_free(room_view *view)
+{
+    asj_detection_free(&view->found);
+    free(view->pixels);
+    view->pixels = NULL;
+}
+
+int room_pair_right(const synth_room *room, const room_view *a, const room_view *b, float x1, float y1, float x2, float y2,
+                    double near)
+{
+    for (int32_t j = -2; j <= 2; j++)
+        for (int32_t i = -2; i <= 2; i++) {
+            synth_point p;
+            const double x = (double)x1 + i * AROUND / 2, y = (double)y1 + j * AROUND / 2;
+            if (i * i + j * j > 4 || !synth_room_transfer(room, &a->camera, x, y, &b->camera, &p))
+                continue;
+            const double dx = p.x - (double)x2, dy = p.y - (double)y2;
+            if (dx * dx + dy * dy <= near * near)
+                return 1;
+        }
+    return 0;
+}
+
+int room_pair_score(const synth_room *room, const room_view *a, const room_view *b, const asj_match_result *result, room_score *s)
+{
+    for (uint32_t k = 0; k < result->match_count; k++) {
+        const asj_junction_match *m = &result->matches[k];
+        const int right = room_pair_right(room, a, b, m->x1, m->y1, m->x2, m->y2, NEAR);
+        s->points++;
+        s->right_points += (uint32_t)right;
+        s->segments += 2;
+        s->right_segments += (uint32_t)(right && room_pair_right(room, a, b, m->ax1, m->ay1, m->ax2, m->ay2, NEAR_END));
+        s->right_segments += (uint32_t)(right && room_pair_right(room, a, b, m->bx1, m->by1, m->bx2, m->by2, NEAR_END));
+    }
+    const size_t count = asj_match_segments(result, ASJ_END_INNER, NULL, 0);
+    asj_segment_match *lines = malloc((count + 1) * sizeof *lines);
+    if (!lines)
+        return fail("no memory");
+    asj_match_segments(result, ASJ_END_INNER, lines, count);
+    s->lines += (uint32_t)count;
+    for (size_t k = 0; k < count; k++) {
+        const asj_segment_match *m = &lines[k];
+        s->right_lines += (uint32_t)(room_pair_right(room, a, b, m->x1, m->y1, m->x2, m->y2, NEAR_END) &&
+                                     room_pair_right(room, a, b, m->ex1, m->ey1, m->ex2, m->ey2, NEAR_END));
+    }
+    free(lines);
+    return 0;
+}
