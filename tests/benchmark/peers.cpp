@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* libasj beside what else there is: time of detection and matching against detectors and matchers of OpenCV, in one run, on the same
- * images, with the same number of threads, in turn. */
+/* libasj beside what else there is: time of detection and matching against detectors and matchers of OpenCV, in one run, on the
+ * same images, with the same number of threads, in turn. */
 #include "measure.h"
 #include "views.h"
 
@@ -31,10 +31,10 @@ namespace {
 const char help[] =
     "usage: peers [--threads N]... [--runs N] [--scale] [--quick] [FOLDER...]\n"
     "\n"
-    "Times libasj and OpenCV's SIFT, ORB, AKAZE, LSD and brute-force matching, all with their defaults, on two views of the sample\n"
-    "room (1052 x 780) and on the pairs of each folder (NAME/1.png, NAME/2.png), with 1 and 2 threads unless asked otherwise. All\n"
-    "take turns, N times (15) after a turn that is not counted. --scale: photographs are made as large as 1052 x 780. --quick: 2\n"
-    "turns, a small room.\n"
+    "Times libasj and OpenCV's SIFT, ORB, AKAZE, LSD and brute-force matching, all with their defaults, on two views of the\n"
+    "sample room (1052 x 780) and on the pairs of each folder (NAME/1.png, NAME/2.png), with 1 and 2 threads unless asked\n"
+    "otherwise. All take turns, N times (15) after a turn that is not counted. --scale: photographs are made as large as\n"
+    "1052 x 780. --quick: 2 turns, a small room.\n"
     "\n"
     "ms        median of wall time; least; cpu: median of the processor time of all threads, which other programs disturb less\n"
     "libasj /  its time divided by that one's, each of the three ways\n"
