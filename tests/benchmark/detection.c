@@ -4,6 +4,7 @@
 
 #include "measure.h"
 #include "memory_use.h"
+#include "profile.h"
 
 #include <getopt.h>
 #include <stdio.h>
@@ -24,6 +25,7 @@ typedef struct settings {
     size sizes[MAX_SIZES];
     int32_t threads[MAX_THREADS];
     int32_t size_count, thread_count, runs;
+    int profile;
     asj_detect_options options;
 } settings;
 
@@ -37,10 +39,11 @@ typedef struct measured {
 } measured;
 
 static const char help[] =
-    "usage: detection [--size WIDTHxHEIGHT]... [--threads N]... [--runs N] [key=value ...]\n"
+    "usage: detection [--size WIDTHxHEIGHT]... [--threads N]... [--runs N] [--profile] [--quick] [key=value ...]\n"
     "\n"
     "Detects the junctions of the sample room, rendered at each size, and prints milliseconds for each stage: the medians of N\n"
     "runs (5 unless asked otherwise, 3 beyond 8 megapixels) after one that is not counted. key=value sets a detector option.\n"
+    "--profile: for 1052 x 780, how far each stage is from the machine's bandwidth and peak. --quick: a small image, two runs.\n"
     "\n"
     "context   bytes per pixel that the library has taken from its allocator at most, results apart (asj_context_memory)\n"
     "process   bytes per pixel by which the resident memory of the process has grown at most during the first call, the image and\n"
@@ -136,6 +139,23 @@ static void print_growth(const measured *small, const measured *large)
            (int)large->threads, large->threads == 1 ? "" : "s");
 }
 
+static int run_profile(const settings *set)
+{
+    int result = 0;
+    for (int32_t i = 0; i < set->size_count && result == 0; i++) {
+        const asj_image image = {measure_room(0, set->sizes[i].width, set->sizes[i].height), ASJ_FORMAT_GRAY8, set->sizes[i].width,
+                                 set->sizes[i].height, 0, 0};
+        if (!image.data)
+            return fail("cannot render the room");
+        for (int32_t t = 0; t < set->thread_count && result == 0; t++) {
+            result = profile_print(&image, &set->options, set->threads[t], set->runs ? set->runs : 15);
+            printf("\n");
+        }
+        free((void *)(uintptr_t)image.data);
+    }
+    return result;
+}
+
 static int run_sizes(const settings *set)
 {
     measured last[MAX_THREADS], before_last[MAX_THREADS];
@@ -187,18 +207,12 @@ static int set_option(settings *set, const char *text)
     return fail(message);
 }
 
-static int parse(int argc, char **argv, settings *set)
+static void set_defaults(settings *set)
 {
-    static const struct option longs[] = {{"size", 1, NULL, 's'}, {"threads", 1, NULL, 't'}, {"runs", 1, NULL, 'r'},
-                                          {NULL, 0, NULL, 0}};
     static const size sizes[] = {{640, 480}, {1052, 780}, {2048, 1536}, {4000, 3000}, {8192, 6144}};
-    int c, result = 0;
-    while (result == 0 && (c = getopt_long(argc, argv, "", longs, NULL)) != -1)
-        result = c == 's' ? add_size(set, optarg) : c == 't' ? add_threads(set, optarg) :
-                 c == 'r' ? measure_number(optarg, 1, MAX_RUNS, &set->runs) : -1;
-    for (; result == 0 && optind < argc; optind++)
-        result = set_option(set, argv[optind]);
-    if (set->size_count == 0) {
+    if (set->size_count == 0 && set->profile) {
+        set->sizes[set->size_count++] = sizes[1];
+    } else if (set->size_count == 0) {
         memcpy(set->sizes, sizes, sizeof sizes);
         set->size_count = sizeof sizes / sizeof *sizes;
     }
@@ -207,6 +221,27 @@ static int parse(int argc, char **argv, settings *set)
         set->threads[1] = 2;
         set->thread_count = 2;
     }
+}
+
+static int parse(int argc, char **argv, settings *set)
+{
+    static const struct option longs[] = {{"size", 1, NULL, 's'}, {"threads", 1, NULL, 't'}, {"runs", 1, NULL, 'r'},
+                                          {"profile", 0, NULL, 'p'}, {"quick", 0, NULL, 'q'}, {NULL, 0, NULL, 0}};
+    int c, result = 0;
+    while (result == 0 && (c = getopt_long(argc, argv, "", longs, NULL)) != -1) {
+        if (c == 'p') {
+            set->profile = 1;
+        } else if (c == 'q') {
+            result = add_size(set, "320x240");
+            set->runs = 2;
+        } else {
+            result = c == 's' ? add_size(set, optarg) : c == 't' ? add_threads(set, optarg) :
+                     c == 'r' ? measure_number(optarg, 1, MAX_RUNS, &set->runs) : -1;
+        }
+    }
+    for (; result == 0 && optind < argc; optind++)
+        result = set_option(set, argv[optind]);
+    set_defaults(set);
     return result;
 }
 
@@ -219,5 +254,5 @@ int main(int argc, char **argv)
         fputs(help, stderr);
         return 2;
     }
-    return run_sizes(&set) == 0 ? 0 : 1;
+    return (set.profile ? run_profile(&set) : run_sizes(&set)) == 0 ? 0 : 1;
 }
