@@ -20,21 +20,22 @@
  * over two pixels in 1/256 grey level per pixel; |g| is the exact integer square root. With S the window's sum of |g| over c pixels
  * and D = max(S + c round(256 epsilon), (|g| c T) >> 8), T = round(256 / (sigma_0 L)),
  *     scale = floor(65536 C_c / D),  C_c = round(1024 c / sigma_0) < 32768,     g~ = (g scale + 32768) >> 16     in 1/1024.
- * g scale < 2^31 because |g| c <= 256 D / T. At the image border neighbours outside are replaced by the border pixel itself.
+ * g scale < 2^31 because |g| c <= 256 D / T. At the image border neighbours outside are replaced by the border pixel itself, which
+ * the gray plane repeats there.
+ * The window's sum is that of five column sums, which slide down the image, in two halves of 16 bits: the sum of the low bytes of
+ * |g| and the sum of the high bytes.
  * ">>" of a negative number is the arithmetic shift on every compiler that we know; asj_gradient() checks it at compile time. */
 #include "gradient.h"
+#include "ops.h"
+#include "threads.h"
 
 #include <math.h>
 #include <string.h>
 
 #define SIGMA_0 0.7825
+#define LEAST_PIXELS 32768 /* for a thread: about 40 us */
 
 typedef char arithmetic_shift_is_needed[(-3 >> 1) == -2 ? 1 : -1];
-
-typedef struct rows {
-    uint16_t *norms[5]; /* |g| of the last five rows, in 1/256, at [2 .. width + 1], zeros at both ends */
-    uint32_t *sums;     /* column sums of those five rows, same layout */
-} rows;
 
 /* Floor of the square root, for 0 <= s < 2^31. sqrtf() of the rounded float is off by one at most; the comparisons mend that on
  * any hardware. */
@@ -46,27 +47,6 @@ static inline int32_t integer_sqrt(int32_t s)
     return root;
 }
 
-static void difference_row(const asj_frame *frame, int32_t y, int32_t *restrict dx, int32_t *restrict dy)
-{
-    const int32_t width = frame->width;
-    const uint16_t *row = frame->gray + (ptrdiff_t)y * frame->stride;
-    const uint16_t *above = y > 0 ? row - frame->stride : row;
-    const uint16_t *below = y + 1 < frame->height ? row + frame->stride : row;
-    for (int32_t x = 1; x + 1 < width; x++)
-        dx[x] = row[x + 1] - row[x - 1];
-    dx[0] = row[width > 1 ? 1 : 0] - row[0];
-    dx[width - 1] = row[width - 1] - row[width > 1 ? width - 2 : 0];
-    for (int32_t x = 0; x < width; x++)
-        dy[x] = below[x] - above[x];
-}
-
-static void norm_row(const asj_frame *frame, int32_t y, int32_t *dx, int32_t *dy, uint16_t *norm)
-{
-    difference_row(frame, y, dx, dy);
-    for (int32_t x = 0; x < frame->width; x++)
-        norm[x + 2] = (uint16_t)integer_sqrt(dx[x] * dx[x] + dy[x] * dy[x]);
-}
-
 /* floor(a / b) for whole numbers below 2^32: the quotient in double precision is within 2^-53 of itself of the true one, which is
  * at least 2^-32 of itself away from the next whole number unless it is one. */
 static inline uint32_t quotient(uint32_t a, uint32_t b)
@@ -74,65 +54,88 @@ static inline uint32_t quotient(uint32_t a, uint32_t b)
     return (uint32_t)((double)a / (double)b);
 }
 
-static void normalise_row(const asj_frame *frame, int32_t y, const rows *window, uint32_t epsilon,
-                          const int32_t *dx, const int32_t *dy)
+void asj_gradient_slide(const asj_gradient_row *row, uint16_t *norms, uint16_t *low, uint16_t *high)
 {
-    const int32_t width = frame->width, height = frame->height;
-    const uint32_t window_rows = (uint32_t)((y + 2 < height ? y + 2 : height - 1) - (y > 2 ? y - 2 : 0) + 1);
-    const uint32_t limit = (uint32_t)(256 / (SIGMA_0 * ASJ_GRADIENT_LIMIT) + 0.5);
-    const uint16_t *norm = window->norms[y % 5];
-    int16_t *gx = frame->gradient_x + (ptrdiff_t)y * frame->stride;
-    int16_t *gy = frame->gradient_y + (ptrdiff_t)y * frame->stride;
-    for (int32_t x = 0; x < width; x++) {
-        const uint32_t *sum = window->sums + x;
-        uint32_t columns = (uint32_t)((x + 2 < width ? x + 2 : width - 1) - (x > 2 ? x - 2 : 0) + 1);
-        uint32_t count = columns * window_rows;
-        uint32_t numerator = (uint32_t)(ASJ_GRADIENT_ONE / SIGMA_0 * count + 0.5) << 16;
-        uint32_t denominator = sum[0] + sum[1] + sum[2] + sum[3] + sum[4] + count * epsilon;
-        uint32_t least = (norm[x + 2] * count * limit) >> 8;
-        int32_t scale = (int32_t)quotient(numerator, denominator > least ? denominator : least);
-        gx[x] = (int16_t)((dx[x] * scale + 32768) >> 16);
-        gy[x] = (int16_t)((dy[x] * scale + 32768) >> 16);
+    for (int32_t x = 0; x < row->width; x++) {
+        const int32_t dx = row->gray[x + 1] - row->gray[x - 1], dy = row->below[x] - row->above[x];
+        const uint16_t come = (uint16_t)integer_sqrt(dx * dx + dy * dy), leave = norms[x];
+        norms[x] = come;
+        low[x] = (uint16_t)(low[x] + (come & 255) - (leave & 255));
+        high[x] = (uint16_t)(high[x] + (come >> 8) - (leave >> 8));
     }
 }
 
-/* Adds |g| of row y to the window and takes that of row y - 5 out; rows outside the image count as zero. */
-static void slide(const asj_frame *frame, int32_t y, rows *window, int32_t *dx, int32_t *dy)
+asj_gradient_factors asj_gradient_set_factors(int32_t columns, int32_t rows, uint32_t epsilon)
 {
-    uint16_t *norm = window->norms[(y + 5) % 5];
-    for (int32_t x = 2; x < frame->width + 2; x++)
-        window->sums[x] -= norm[x];
-    if (y < frame->height)
-        norm_row(frame, y, dx, dy, norm);
-    else
-        memset(norm + 2, 0, (size_t)frame->width * sizeof *norm);
-    for (int32_t x = 2; x < frame->width + 2; x++)
-        window->sums[x] += norm[x];
+    const uint32_t limit = (uint32_t)(256 / (SIGMA_0 * ASJ_GRADIENT_LIMIT) + 0.5), count = (uint32_t)(columns * rows);
+    return (asj_gradient_factors){(uint32_t)(ASJ_GRADIENT_ONE / SIGMA_0 * count + 0.5) << 16, count * epsilon, count * limit};
 }
 
-/* Rows first .. last - 1. `scratch` has room for gradient_scratch() bytes. */
-static void gradient_band(const asj_frame *frame, uint32_t epsilon, int32_t first, int32_t last, void *scratch)
+void asj_gradient_pixel(const asj_gradient_row *row, int32_t x, const uint16_t *norms, const uint16_t *low, const uint16_t *high,
+                        int16_t *gx, int16_t *gy)
 {
-    const size_t length = (size_t)frame->width + 4;
-    rows window;
-    window.sums = scratch;
-    int32_t *dx = (int32_t *)(window.sums + length), *dy = dx + length;
-    for (int i = 0; i < 5; i++)
-        window.norms[i] = (uint16_t *)(dy + length) + (size_t)i * length;
-    memset(window.sums, 0, length * sizeof *window.sums);
-    memset(window.norms[0], 0, 5 * length * sizeof *window.norms[0]);
-    for (int32_t y = first > 2 ? first - 2 : 0; y < first + 2; y++)
-        slide(frame, y, &window, dx, dy);
-    for (int32_t y = first; y < last; y++) {
-        slide(frame, y + 2, &window, dx, dy);
-        difference_row(frame, y, dx, dy);
-        normalise_row(frame, y, &window, epsilon, dx, dy);
+    const int32_t columns = (x + 2 < row->width ? x + 2 : row->width - 1) - (x > 2 ? x - 2 : 0) + 1;
+    const asj_gradient_factors factors = asj_gradient_set_factors(columns, row->window_rows, row->epsilon);
+    const int32_t dx = row->gray[x + 1] - row->gray[x - 1], dy = row->below[x] - row->above[x];
+    uint32_t denominator = factors.epsilon;
+    for (int32_t i = x - 2; i <= x + 2; i++)
+        denominator += low[i] + 256u * high[i];
+    const uint32_t least = norms[x] * factors.limit >> 8;
+    const int32_t scale = (int32_t)quotient(factors.numerator, denominator > least ? denominator : least);
+    gx[x] = (int16_t)((dx * scale + 32768) >> 16);
+    gy[x] = (int16_t)((dy * scale + 32768) >> 16);
+}
+
+void asj_gradient_normalise(const asj_gradient_row *row, const uint16_t *norms, const uint16_t *low, const uint16_t *high,
+                            int16_t *gx, int16_t *gy)
+{
+    for (int32_t x = 0; x < row->width; x++)
+        asj_gradient_pixel(row, x, norms, low, high, gx, gy);
+}
+
+/* A row of the plane with its neighbours; those outside the image are the row itself. */
+static void find_row(const asj_frame *frame, int32_t y, asj_gradient_row *row)
+{
+    row->gray = frame->gray + (ptrdiff_t)y * frame->stride;
+    row->above = y > 0 ? row->gray - frame->stride : row->gray;
+    row->below = y + 1 < frame->height ? row->gray + frame->stride : row->gray;
+}
+
+/* Rows first .. last - 1. `scratch` holds gradient_scratch() zeros: the column sums in two halves, |g| of the last five rows, and a
+ * row of the plane that is constant. */
+static void gradient_band(const asj_ops *ops, const asj_frame *frame, uint32_t epsilon, int32_t first, int32_t last,
+                          uint16_t *scratch)
+{
+    const size_t length = asj_gradient_row_length(frame->width);
+    uint16_t *low = scratch + ASJ_GRADIENT_PAD, *high = low + length, *norms = high + length, *zeros = norms + 5 * length;
+    asj_gradient_row row = {zeros, zeros, zeros, frame->width, 0, epsilon};
+    for (int32_t y = first > 2 ? first - 2 : 0; y < last + 2; y++) {
+        uint16_t *ring = norms + (size_t)(y % 5) * length;
+        if (y < frame->height)
+            find_row(frame, y, &row);
+        else
+            row.above = row.gray = row.below = zeros;
+        ops->gradient_slide(&row, ring, low, high);
+        if (y < first + 2)
+            continue;
+        const int32_t centre = y - 2;
+        row.window_rows = (y < frame->height ? y : frame->height - 1) - (centre > 2 ? centre - 2 : 0) + 1;
+        find_row(frame, centre, &row);
+        ops->gradient_normalise(&row, norms + (size_t)(centre % 5) * length, low, high,
+                                frame->gradient_x + (ptrdiff_t)centre * frame->stride,
+                                frame->gradient_y + (ptrdiff_t)centre * frame->stride);
     }
 }
 
+size_t asj_gradient_row_length(int32_t width)
+{
+    return ((size_t)width + 31) / 32 * 32 + 2 * ASJ_GRADIENT_PAD;
+}
+
+/* Elements. */
 static size_t gradient_scratch(int32_t width)
 {
-    return (3 * sizeof(uint32_t) + 5 * sizeof(uint16_t)) * ((size_t)width + 4);
+    return 8 * asj_gradient_row_length(width);
 }
 
 /* The paper's standardisation: each axis to zero mean and unit variance over the image, in whole numbers:
@@ -164,21 +167,22 @@ static void standardise(const asj_frame *frame, int16_t *plane)
 asj_status asj_gradient(asj_context *context, asj_frame *frame, const asj_detect_options *options)
 {
     const uint32_t epsilon = (uint32_t)lrint(256 * options->gradient_epsilon);
-    const int32_t threads = context->threads;
-    const size_t size = (gradient_scratch(frame->width) + ASJ_ALIGNMENT - 1) / ASJ_ALIGNMENT * ASJ_ALIGNMENT;
-    char *scratch = asj_allocate(&context->memory, (size_t)threads, size);
-    if (!scratch)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the gradient's rows");
+    const int32_t bands = asj_threads_for(context, (int64_t)frame->width * frame->height, LEAST_PIXELS);
+    const size_t size = gradient_scratch(frame->width);
+    asj_status status = asj_grow(&context->memory, &frame->rows, &frame->row_capacity, (size_t)bands * size, sizeof(uint16_t), 0);
+    if (status != ASJ_OK)
+        return asj_fail(context, status, "no memory for the gradient's rows");
+    uint16_t *scratch = frame->rows;
+    memset(scratch, 0, (size_t)bands * size * sizeof *scratch);
 #ifdef _OPENMP
-#pragma omp parallel for num_threads(threads) schedule(static)
+#pragma omp parallel for num_threads(bands) schedule(static)
 #endif
-    for (int32_t band = 0; band < threads; band++) {
-        int32_t first = (int32_t)((int64_t)frame->height * band / threads);
-        int32_t last = (int32_t)((int64_t)frame->height * (band + 1) / threads);
+    for (int32_t band = 0; band < bands; band++) {
+        const int32_t first = (int32_t)((int64_t)frame->height * band / bands);
+        const int32_t last = (int32_t)((int64_t)frame->height * (band + 1) / bands);
         if (first < last)
-            gradient_band(frame, epsilon, first, last, scratch + (size_t)band * size);
+            gradient_band(context->ops, frame, epsilon, first, last, scratch + (size_t)band * size);
     }
-    asj_release(&context->memory, scratch);
     if (options->standardise) {
         standardise(frame, frame->gradient_x);
         standardise(frame, frame->gradient_y);

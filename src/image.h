@@ -9,23 +9,28 @@
 #define ASJ_GRAY_ONE 128
 #define ASJ_GRAY_MAX (255 * ASJ_GRAY_ONE)
 
+/* Samples of the gray plane on either side of a row that may be read: the border pixel again, then anything. */
+#define ASJ_GRAY_MARGIN 32
+
 /* Zeros around the gradient planes, so that sectors may look outside: more than the largest radius. */
 #define ASJ_MARGIN 32
 
 /* Pixels that the field and the isotropic test work on at once: a run in one row, starting at a multiple of it. */
 #define ASJ_LANES 16
 
-/* The image in working form. All planes share one layout: sample (x, y) at [y * stride + x] from the pointer, which stands
- * ASJ_MARGIN rows and columns inside its memory. */
+/* The image in working form. All planes share one layout: sample (x, y) at [y * stride + x] from the pointer; those of the gradient
+ * stand ASJ_MARGIN rows and columns inside their memory. */
 typedef struct asj_frame {
     int32_t width, height;
     int32_t blocks;               /* runs of ASJ_LANES pixels in a row */
     ptrdiff_t stride;             /* elements from row to row of gray, gx, gy */
-    uint16_t *gray;               /* without margin: row y at [y * stride], x < width only */
+    uint16_t *gray;               /* x = -1 and x = width repeat the border; no rows above and below */
     int16_t *gradient_x;          /* normalised gradient in 1/1024 units, zero in the margin */
     int16_t *gradient_y;
     void *memory[3];              /* what the three planes stand in */
     size_t capacity[3];
+    void *rows;                   /* scratch of asj_gradient() */
+    size_t row_capacity;
 } asj_frame;
 
 /* Checks a view: ASJ_OK, or the status and message that asj_detect() documents. Does not look at the pixels. */
@@ -34,6 +39,10 @@ asj_status asj_image_check(asj_context *context, const asj_image *image);
 /* Makes room for an image of this size; keeps the memory when it is large enough. */
 asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t width, int32_t height);
 void asj_frame_free(asj_memory *memory, asj_frame *frame);
+
+/* 8-bit colour to luma, BT.601 weights in 8 bits: (77 R + 150 G + 29 B + 128) >> 8 grey levels. `step` bytes from pixel to pixel,
+ * red at byte 0 or 2, blue at the other, green between them. */
+void asj_image_luma(const uint8_t *pixels, int32_t width, int32_t step, int32_t red, uint16_t *gray);
 
 /* Fills frame->gray from the view (asj_frame_prepare() first). Finds NaN and infinity. */
 asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image);

@@ -12,6 +12,9 @@ static void fill_reference(asj_ops *ops)
     ops->field_rows = asj_field_rows;
     ops->isotropic_rows = asj_isotropic_rows;
     ops->scan_rays = asj_scan_rays;
+    ops->image_luma = asj_image_luma;
+    ops->gradient_slide = asj_gradient_slide;
+    ops->gradient_normalise = asj_gradient_normalise;
     ops->field_tile = asj_field_tile;
     ops->field_block = asj_field_block;
     ops->isotropic_row = asj_isotropic_row;

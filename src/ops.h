@@ -28,6 +28,13 @@ typedef struct asj_ops {
 
     /* ---- parts of an image: what an instruction set of the CPU replaces ---- */
 
+    /* asj_image_luma() (image.h) */
+    void (*image_luma)(const uint8_t *pixels, int32_t width, int32_t step, int32_t red, uint16_t *gray);
+    /* asj_gradient_slide() and asj_gradient_normalise() (gradient.h) */
+    void (*gradient_slide)(const asj_gradient_row *row, uint16_t *norms, uint16_t *low, uint16_t *high);
+    void (*gradient_normalise)(const asj_gradient_row *row, const uint16_t *norms, const uint16_t *low, const uint16_t *high,
+                               int16_t *gx, int16_t *gy);
+
     /* asj_field_tile() and asj_field_block() (field.h) */
     void (*field_tile)(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs,
                        int32_t top, int32_t bottom, uint16_t *scratch, uint16_t *masks);

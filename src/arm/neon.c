@@ -42,5 +42,66 @@ static inline uint32_t v_bits(vec v)
 }
 static inline int v_any(vec v) { return vmaxvq_u16(vreinterpretq_u16_s16(v)) != 0; }
 
+static inline vec v_low(vec a, vec b) { return vmulq_s16(a, b); }
+static inline vec v_shift_right_8(vec a) { return vreinterpretq_s16_u16(vshrq_n_u16(vreinterpretq_u16_s16(a), 8)); }
+static inline vec v_shift_right_15(vec a) { return vreinterpretq_s16_u16(vshrq_n_u16(vreinterpretq_u16_s16(a), 15)); }
+static inline vec v_interleave_low(vec a, vec b) { return vzip1q_s16(a, b); }
+static inline vec v_interleave_high(vec a, vec b) { return vzip2q_s16(a, b); }
+
+/* ---- lanes of 32 bits ---- */
+
+static inline vec from32(int32x4_t a) { return vreinterpretq_s16_s32(a); }
+static inline int32x4_t to32(vec a) { return vreinterpretq_s32_s16(a); }
+static inline vec v_set1_32(int32_t x) { return from32(vdupq_n_s32(x)); }
+static inline vec v_add32(vec a, vec b) { return from32(vaddq_s32(to32(a), to32(b))); }
+static inline vec v_sub32(vec a, vec b) { return from32(vsubq_s32(to32(a), to32(b))); }
+/* signed 16-bit lanes: a b + next a next b */
+static inline vec v_pairs(vec a, vec b)
+{
+    return from32(vpaddq_s32(vmull_s16(vget_low_s16(a), vget_low_s16(b)), vmull_high_s16(a, b)));
+}
+/* the lower halves of products */
+static inline vec v_low32(vec a, vec b) { return from32(vmulq_s32(to32(a), to32(b))); }
+static inline vec v_max32(vec a, vec b) { return from32(vmaxq_s32(to32(a), to32(b))); }
+static inline vec v_shift_right32_8(vec a) { return vreinterpretq_s16_u32(vshrq_n_u32(vreinterpretq_u32_s16(a), 8)); }
+/* -1 where below zero, else 0 */
+static inline vec v_negative32(vec a) { return from32(vshrq_n_s32(to32(a), 31)); }
+/* the lower halves of all lanes, the higher ones; in the order that v_interleave_ takes apart */
+static inline vec v_pack_low(vec a, vec b) { return vuzp1q_s16(a, b); }
+static inline vec v_pack_high(vec a, vec b) { return vuzp2q_s16(a, b); }
+/* whole parts of sqrt(a) + more, of a / b, in single precision */
+static inline vec v_root(vec a, float more)
+{
+    return from32(vcvtq_s32_f32(vaddq_f32(vsqrtq_f32(vcvtq_f32_s32(to32(a))), vdupq_n_f32(more))));
+}
+static inline vec v_quotient(float a, vec b) { return from32(vcvtq_s32_f32(vdivq_f32(vdupq_n_f32(a), vcvtq_f32_s32(to32(b))))); }
+
+#include "../ops.h"
+
+/* Colour to luma: 8 pixels at once. Sums stay below 2^16. Name as in the reference, image.c. */
+static inline uint16x8_t luma(uint8x8_t red, uint8x8_t green, uint8x8_t blue)
+{
+    const uint16x8_t sum = vmlal_u8(vmlal_u8(vmull_u8(red, vdup_n_u8(77)), green, vdup_n_u8(150)), blue, vdup_n_u8(29));
+    return vshll_n_u8(vrshrn_n_u16(sum, 8), 7);
+}
+
+static void image_luma(const uint8_t *pixels, int32_t width, int32_t step, int32_t red, uint16_t *gray)
+{
+    const int32_t whole = width & ~7;
+    for (int32_t x = 0; x < whole; x += 8) {
+        const uint8_t *p = pixels + (ptrdiff_t)x * step;
+        uint8x8x3_t c;
+        if (step == 3) {
+            c = vld3_u8(p);
+        } else {
+            const uint8x8x4_t all = vld4_u8(p);
+            c = (uint8x8x3_t){{all.val[0], all.val[1], all.val[2]}};
+        }
+        vst1q_u16(gray + x, red == 0 ? luma(c.val[0], c.val[1], c.val[2]) : luma(c.val[2], c.val[1], c.val[0]));
+    }
+    asj_image_luma(pixels + (ptrdiff_t)whole * step, width - whole, step, red, gray + whole);
+}
+
+#define V_MORE(ops) ((ops)->image_luma = image_luma)
 #define V_NAME(name) name##_neon
 #include "../simd/kernels.h"

@@ -2,6 +2,7 @@
 /* The vector form of the hot operations, written once. A file for an instruction set defines vec, V_LANES (16-bit lanes), V_NAME
  * and the v_ functions (see x86/avx2.c) and includes this one. Names as in the reference: sector.c, field.c. */
 #include "../field.h"
+#include "../gradient.h"
 #include "variants.h"
 
 #include <string.h>
@@ -31,6 +32,7 @@ static inline vec peak(const int16_t *here, ptrdiff_t row, int32_t reach, int16_
     return v_not_and(v_greater(after, z), v_greater(z, before));
 }
 
+#include "gradient_kernels.h"
 #include "field_kernels.h"
 #include "isotropic_kernels.h"
 
@@ -39,6 +41,8 @@ void V_NAME(asj_ops)(asj_ops *ops)
 #if V_LANES <= ASJ_LANES
     ops->field_block = field_block;
 #endif
+    ops->gradient_slide = gradient_slide;
+    ops->gradient_normalise = gradient_normalise;
     ops->field_tile = field_tile;
     ops->isotropic_row = isotropic_row;
 #ifdef V_MORE

@@ -36,7 +36,45 @@ static inline uint32_t v_bits(vec v)
 }
 static inline int v_any(vec v) { return !_mm256_testz_si256(v, v); }
 
+static inline vec v_low(vec a, vec b) { return _mm256_mullo_epi16(a, b); }
+static inline vec v_shift_right_8(vec a) { return _mm256_srli_epi16(a, 8); }
+static inline vec v_shift_right_15(vec a) { return _mm256_srli_epi16(a, 15); }
+/* of each 128 bits */
+static inline vec v_interleave_low(vec a, vec b) { return _mm256_unpacklo_epi16(a, b); }
+static inline vec v_interleave_high(vec a, vec b) { return _mm256_unpackhi_epi16(a, b); }
+
+/* ---- lanes of 32 bits ---- */
+
+static inline vec v_set1_32(int32_t x) { return _mm256_set1_epi32(x); }
+static inline vec v_add32(vec a, vec b) { return _mm256_add_epi32(a, b); }
+static inline vec v_sub32(vec a, vec b) { return _mm256_sub_epi32(a, b); }
+/* signed 16-bit lanes: a b + next a next b */
+static inline vec v_pairs(vec a, vec b) { return _mm256_madd_epi16(a, b); }
+/* the lower halves of products */
+static inline vec v_low32(vec a, vec b) { return _mm256_mullo_epi32(a, b); }
+static inline vec v_max32(vec a, vec b) { return _mm256_max_epi32(a, b); }
+static inline vec v_shift_right32_8(vec a) { return _mm256_srli_epi32(a, 8); }
+/* -1 where below zero, else 0 */
+static inline vec v_negative32(vec a) { return _mm256_srai_epi32(a, 31); }
+/* the lower halves of all lanes, the higher ones; in the order that v_interleave_ takes apart */
+static inline vec v_pack_low(vec a, vec b)
+{
+    const vec half = _mm256_set1_epi32(0xffff);
+    return _mm256_packus_epi32(_mm256_and_si256(a, half), _mm256_and_si256(b, half));
+}
+static inline vec v_pack_high(vec a, vec b) { return _mm256_packs_epi32(_mm256_srai_epi32(a, 16), _mm256_srai_epi32(b, 16)); }
+/* whole parts of sqrt(a) + more, of a / b, in single precision */
+static inline vec v_root(vec a, float more)
+{
+    return _mm256_cvttps_epi32(_mm256_add_ps(_mm256_sqrt_ps(_mm256_cvtepi32_ps(a)), _mm256_set1_ps(more)));
+}
+static inline vec v_quotient(float a, vec b)
+{
+    return _mm256_cvttps_epi32(_mm256_div_ps(_mm256_set1_ps(a), _mm256_cvtepi32_ps(b)));
+}
+
 #define V_NAME(name) name##_avx2
-#include "patches.h" /* before kernels.h, which fills the table */
-#define V_MORE(ops) fill_patches(ops)
+#include "colour.h" /* before kernels.h, which fills the table */
+#include "patches.h"
+#define V_MORE(ops) (fill_patches(ops), (void)((ops)->image_luma = image_luma_avx2))
 #include "../simd/kernels.h"

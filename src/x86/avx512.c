@@ -34,5 +34,42 @@ static inline vec v_not_and(vec a, vec b) { return _mm512_andnot_si512(a, b); }
 static inline uint32_t v_bits(vec v) { return _mm512_movepi16_mask(v); }
 static inline int v_any(vec v) { return _mm512_test_epi16_mask(v, v) != 0; }
 
+static inline vec v_low(vec a, vec b) { return _mm512_mullo_epi16(a, b); }
+static inline vec v_shift_right_8(vec a) { return _mm512_srli_epi16(a, 8); }
+static inline vec v_shift_right_15(vec a) { return _mm512_srli_epi16(a, 15); }
+/* of each 128 bits */
+static inline vec v_interleave_low(vec a, vec b) { return _mm512_unpacklo_epi16(a, b); }
+static inline vec v_interleave_high(vec a, vec b) { return _mm512_unpackhi_epi16(a, b); }
+
+/* ---- lanes of 32 bits ---- */
+
+static inline vec v_set1_32(int32_t x) { return _mm512_set1_epi32(x); }
+static inline vec v_add32(vec a, vec b) { return _mm512_add_epi32(a, b); }
+static inline vec v_sub32(vec a, vec b) { return _mm512_sub_epi32(a, b); }
+/* signed 16-bit lanes: a b + next a next b */
+static inline vec v_pairs(vec a, vec b) { return _mm512_madd_epi16(a, b); }
+/* the lower halves of products */
+static inline vec v_low32(vec a, vec b) { return _mm512_mullo_epi32(a, b); }
+static inline vec v_max32(vec a, vec b) { return _mm512_max_epi32(a, b); }
+static inline vec v_shift_right32_8(vec a) { return _mm512_srli_epi32(a, 8); }
+/* -1 where below zero, else 0 */
+static inline vec v_negative32(vec a) { return _mm512_srai_epi32(a, 31); }
+/* the lower halves of all lanes, the higher ones; in the order that v_interleave_ takes apart */
+static inline vec v_pack_low(vec a, vec b)
+{
+    const vec half = _mm512_set1_epi32(0xffff);
+    return _mm512_packus_epi32(_mm512_and_si512(a, half), _mm512_and_si512(b, half));
+}
+static inline vec v_pack_high(vec a, vec b) { return _mm512_packs_epi32(_mm512_srai_epi32(a, 16), _mm512_srai_epi32(b, 16)); }
+/* whole parts of sqrt(a) + more, of a / b, in single precision */
+static inline vec v_root(vec a, float more)
+{
+    return _mm512_cvttps_epi32(_mm512_add_ps(_mm512_sqrt_ps(_mm512_cvtepi32_ps(a)), _mm512_set1_ps(more)));
+}
+static inline vec v_quotient(float a, vec b)
+{
+    return _mm512_cvttps_epi32(_mm512_div_ps(_mm512_set1_ps(a), _mm512_cvtepi32_ps(b)));
+}
+
 #define V_NAME(name) name##_avx512
 #include "../simd/kernels.h"

@@ -29,5 +29,46 @@ static inline vec v_not_and(vec a, vec b) { return _mm_andnot_si128(a, b); }
 static inline uint32_t v_bits(vec v) { return (uint32_t)_mm_movemask_epi8(_mm_packs_epi16(v, _mm_setzero_si128())); }
 static inline int v_any(vec v) { return _mm_movemask_epi8(v) != 0; }
 
+static inline vec v_low(vec a, vec b) { return _mm_mullo_epi16(a, b); }
+static inline vec v_shift_right_8(vec a) { return _mm_srli_epi16(a, 8); }
+static inline vec v_shift_right_15(vec a) { return _mm_srli_epi16(a, 15); }
+/* of each 128 bits */
+static inline vec v_interleave_low(vec a, vec b) { return _mm_unpacklo_epi16(a, b); }
+static inline vec v_interleave_high(vec a, vec b) { return _mm_unpackhi_epi16(a, b); }
+
+/* ---- lanes of 32 bits ---- */
+
+static inline vec v_set1_32(int32_t x) { return _mm_set1_epi32(x); }
+static inline vec v_add32(vec a, vec b) { return _mm_add_epi32(a, b); }
+static inline vec v_sub32(vec a, vec b) { return _mm_sub_epi32(a, b); }
+/* signed 16-bit lanes: a b + next a next b */
+static inline vec v_pairs(vec a, vec b) { return _mm_madd_epi16(a, b); }
+/* the lower halves of products */
+static inline vec v_low32(vec a, vec b)
+{
+    const vec even = _mm_mul_epu32(a, b), odd = _mm_mul_epu32(_mm_srli_epi64(a, 32), _mm_srli_epi64(b, 32));
+    return _mm_or_si128(_mm_and_si128(even, _mm_set1_epi64x(0xffffffff)), _mm_slli_epi64(odd, 32));
+}
+static inline vec v_max32(vec a, vec b)
+{
+    const vec greater = _mm_cmpgt_epi32(a, b);
+    return _mm_or_si128(_mm_and_si128(greater, a), _mm_andnot_si128(greater, b));
+}
+static inline vec v_shift_right32_8(vec a) { return _mm_srli_epi32(a, 8); }
+/* -1 where below zero, else 0 */
+static inline vec v_negative32(vec a) { return _mm_srai_epi32(a, 31); }
+/* the lower halves of all lanes, the higher ones; in the order that v_interleave_ takes apart */
+static inline vec v_pack_low(vec a, vec b)
+{
+    return _mm_packs_epi32(_mm_srai_epi32(_mm_slli_epi32(a, 16), 16), _mm_srai_epi32(_mm_slli_epi32(b, 16), 16));
+}
+static inline vec v_pack_high(vec a, vec b) { return _mm_packs_epi32(_mm_srai_epi32(a, 16), _mm_srai_epi32(b, 16)); }
+/* whole parts of sqrt(a) + more, of a / b, in single precision */
+static inline vec v_root(vec a, float more)
+{
+    return _mm_cvttps_epi32(_mm_add_ps(_mm_sqrt_ps(_mm_cvtepi32_ps(a)), _mm_set1_ps(more)));
+}
+static inline vec v_quotient(float a, vec b) { return _mm_cvttps_epi32(_mm_div_ps(_mm_set1_ps(a), _mm_cvtepi32_ps(b))); }
+
 #define V_NAME(name) name##_sse2
 #include "../simd/kernels.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "operations.h"
+#include "gradient.h"
 
 #include <string.h>
 
@@ -84,7 +85,56 @@ static void run_tiles(const asj_ops *ops, const subject *s, uint16_t *scratch, v
                         scratch, output);
 }
 
+/* The planes of the gradient with their margins, by asj_gradient() with these operations. */
+static size_t plane_elements(const subject *s)
+{
+    return (size_t)s->picture->stride * ((size_t)s->picture->height + 2 * ASJ_MARGIN);
+}
+
+static size_t planes_size(const subject *s)
+{
+    return 2 * plane_elements(s) * sizeof(int16_t);
+}
+
+static double all_pixels(const subject *s)
+{
+    return (double)s->frame.width * s->frame.height;
+}
+
+static void run_gradient(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
+{
+    const size_t count = plane_elements(s);
+    asj_ops *own = s->context->ops, these = *ops;
+    (void)scratch;
+    s->context->ops = &these;
+    if (asj_gradient(s->context, s->picture, &s->options) == ASJ_OK) {
+        memcpy(output, s->picture->memory[1], count * sizeof(int16_t));
+        memcpy((int16_t *)output + count, s->picture->memory[2], count * sizeof(int16_t));
+    }
+    s->context->ops = own;
+}
+
+/* A row in each of the four layouts. */
+static size_t luma_size(const subject *s)
+{
+    return 4 * (size_t)s->frame.width * sizeof(uint16_t);
+}
+
+static double luma_pixels(const subject *s)
+{
+    return 4.0 * s->frame.width;
+}
+
+static void run_luma(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
+{
+    (void)scratch;
+    for (int32_t i = 0; i < 4; i++)
+        ops->image_luma(s->colours, s->frame.width, 3 + i / 2, i % 2 * 2, (uint16_t *)output + i * s->frame.width);
+}
+
 const operation operations[] = {
+    {"luma", luma_size, luma_pixels, run_luma},
+    {"gradient", planes_size, all_pixels, run_gradient},
     {"field block", block_size, one_run, run_block},
     {"isotropic row", row_size, one_row, run_row},
     {"field tile", tile_size, tile_pixels, run_tiles},

@@ -41,10 +41,26 @@ static void fill_planes(subject *s)
         }
 }
 
-/* The gray plane from a scene (or noise), then the gradient by the reference. */
-static int fill_scene(subject *s)
+/* Grey levels of the same kinds. */
+static void fill_pixels(subject *s, uint8_t *pixels)
 {
-    const size_t count = (size_t)s->frame.width * (size_t)s->frame.height;
+    const int32_t width = s->frame.width, count = width * s->frame.height;
+    for (int32_t i = 0; i < count; i++) {
+        const int32_t x = i % width, y = i / width;
+        const double level = synth_random_between(&s->random, 0, 255.99);
+        switch (s->content) {
+        case CONTENT_RANDOM: pixels[i] = (uint8_t)level; break;
+        case CONTENT_CONSTANT: pixels[i] = (uint8_t)(x + 2 * y); break;
+        case CONTENT_SATURATED: pixels[i] = (x / 2 + y / 3) % 2 ? 255 : 0; break;
+        case CONTENT_SPARSE: pixels[i] = synth_random_unit(&s->random) < 0.01 ? (uint8_t)level : 0; break;
+        default: pixels[i] = 0; break;
+        }
+    }
+}
+
+/* A scene with noise. */
+static uint8_t *draw_scene(subject *s)
+{
     synth_scene scene;
     synth_scene_init(&scene, s->frame.width, s->frame.height, 110);
     for (int i = 0; i < 4; i++) {
@@ -55,13 +71,34 @@ static int fill_scene(subject *s)
     }
     uint8_t *pixels = synth_photograph(&scene, 0.8, 2, s->seed);
     synth_scene_free(&scene);
-    if (!pixels)
-        return 0;
-    for (size_t i = 0; i < count; i++)
-        s->frame.gray[i / (size_t)s->frame.width * (size_t)s->frame.stride + i % (size_t)s->frame.width] =
-            (uint16_t)(pixels[i] * ASJ_GRAY_ONE);
+    return pixels;
+}
+
+/* The picture; of a scene, also the gradient, by the reference. */
+static int fill_picture(subject *s)
+{
+    const int32_t width = s->frame.width, height = s->frame.height;
+    uint8_t *pixels = s->content == CONTENT_SCENE ? draw_scene(s) : malloc((size_t)width * (size_t)height);
+    asj_image image = {pixels, ASJ_FORMAT_GRAY8, width, height, 0, 0};
+    s->picture = calloc(1, sizeof *s->picture);
+    s->colours = malloc(4 * (size_t)width);
+    int ok = pixels && s->picture && s->colours;
+    if (ok && s->content != CONTENT_SCENE)
+        fill_pixels(s, pixels);
+    for (int32_t i = 0; ok && i < 4 * width; i++)
+        s->colours[i] = s->content == CONTENT_SATURATED ? 255 : (uint8_t)(synth_random_bits(&s->random) >> 40);
+    ok = ok && asj_frame_prepare(s->context, s->picture, width, height) == ASJ_OK &&
+         asj_frame_load(s->context, s->picture, &image) == ASJ_OK;
+    if (ok && s->content == CONTENT_SCENE) {
+        asj_ops *ops = s->context->ops, reference;
+        ok = asj_ops_fill(ASJ_VARIANT_REFERENCE, &reference);
+        s->context->ops = &reference;
+        ok = ok && asj_frame_load(s->context, &s->frame, &image) == ASJ_OK &&
+             asj_gradient(s->context, &s->frame, &s->options) == ASJ_OK;
+        s->context->ops = ops;
+    }
     free(pixels);
-    return asj_gradient(s->context, &s->frame, &s->options) == ASJ_OK;
+    return ok;
 }
 
 int subject_create(asj_context *context, int32_t width, int32_t height, int32_t content, int32_t radius, double tau, uint64_t seed,
@@ -75,15 +112,15 @@ int subject_create(asj_context *context, int32_t width, int32_t height, int32_t 
     asj_detect_options_init(&s->options);
     s->options.field_radius = radius;
     s->options.sector_width = tau;
+    s->options.gradient_epsilon = seed % 3 == 0 ? 0.05 : seed % 3 == 1 ? 0.4 : 16;
     if (seed % 4 == 3) /* the smallest and the largest, and both kinds of units */
         s->options.isotropic_radii = 1u << 3 | 1u << 8 | 1u << 21 | 1u << 30;
     int ok = asj_frame_prepare(context, &s->frame, width, height) == ASJ_OK &&
              asj_field_create(context, &s->options, &s->field) == ASJ_OK &&
              asj_isotropic_create(context, &s->options, &s->isotropic) == ASJ_OK;
-    if (ok && content == CONTENT_SCENE)
-        ok = fill_scene(s);
-    else if (ok)
+    if (ok && content != CONTENT_SCENE)
         fill_planes(s);
+    ok = ok && fill_picture(s);
     if (ok) {
         asj_isotropic_set_size(&s->options, width, height, &s->isotropic);
         s->scratch_size = asj_field_scratch(&s->field);
@@ -100,4 +137,8 @@ void subject_free(subject *s)
     asj_isotropic_free(&s->context->memory, &s->isotropic);
     asj_field_free(&s->context->memory, &s->field);
     asj_frame_free(&s->context->memory, &s->frame);
+    if (s->picture)
+        asj_frame_free(&s->context->memory, s->picture);
+    free(s->picture);
+    free(s->colours);
 }

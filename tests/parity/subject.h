@@ -21,6 +21,8 @@ typedef struct subject {
     asj_context *context;
     asj_detect_options options;
     asj_frame frame;
+    asj_frame *picture;  /* only its gray plane has contents: what asj_gradient() is run on */
+    uint8_t *colours;    /* 4 bytes for each pixel of a row */
     asj_field field;
     asj_isotropic isotropic;
     int32_t content;

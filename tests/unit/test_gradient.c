@@ -248,24 +248,32 @@ static void test_standardise_flat(void **state)
     asj_detect_options_init(&f->options);
 }
 
-/* Bands of rows by thread, also more threads than rows. */
-static void test_threads(void **state)
+/* Bands of rows by thread, also more bands than rows. */
+static void check_threads(fixture *f, int32_t width, int32_t height)
 {
     static const int32_t threads[] = {2, 3, 7, 50};
-    fixture *f = *state;
     asj_frame one, many;
-    noise_frame(f, 61, 23, 60, 8, &one);
+    noise_frame(f, width, height, 60, 8, &one);
     for (size_t i = 0; i < UNIT_COUNT(threads); i++) {
         f->context->threads = threads[i];
-        noise_frame(f, 61, 23, 60, 8, &many);
-        for (int32_t y = 0; y < 23; y++) {
-            assert_memory_equal(one.gradient_x + y * one.stride, many.gradient_x + y * many.stride, 61 * sizeof(int16_t));
-            assert_memory_equal(one.gradient_y + y * one.stride, many.gradient_y + y * many.stride, 61 * sizeof(int16_t));
+        noise_frame(f, width, height, 60, 8, &many);
+        for (int32_t y = 0; y < height; y++) {
+            const size_t bytes = (size_t)width * sizeof(int16_t);
+            assert_memory_equal(one.gray + y * one.stride - 1, many.gray + y * many.stride - 1, bytes + 2 * sizeof(int16_t));
+            assert_memory_equal(one.gradient_x + y * one.stride, many.gradient_x + y * many.stride, bytes);
+            assert_memory_equal(one.gradient_y + y * one.stride, many.gradient_y + y * many.stride, bytes);
         }
         asj_frame_free(&f->context->memory, &many);
     }
     f->context->threads = 1;
     asj_frame_free(&f->context->memory, &one);
+}
+
+static void test_threads(void **state)
+{
+    check_threads(*state, 61, 23);
+    check_threads(*state, 700, 301);
+    check_threads(*state, 60001, 3);
 }
 
 /* Bilinear between the central differences of the four pixels around; outside, the nearest place inside. */
@@ -292,14 +300,21 @@ static void test_sample(void **state)
 static void test_out_of_memory(void **state)
 {
     fixture *f = *state;
-    asj_frame frame;
-    noise_frame(f, 8, 8, 10, 1, &frame);
+    uint8_t pixels[64] = {0};
+    const asj_image image = unit_gray8(pixels, 8, 8);
+    asj_frame frame = {0};
     const long live = f->counter.live;
+    assert_int_equal(asj_frame_prepare(f->context, &frame, 8, 8), ASJ_OK);
+    assert_int_equal(asj_frame_load(f->context, &frame, &image), ASJ_OK);
     f->counter.fail_at = f->counter.calls + 1;
     assert_int_equal(asj_gradient(f->context, &frame, &f->options), ASJ_ERROR_MEMORY);
     f->counter.fail_at = 0;
-    assert_int_equal(f->counter.live, live);
+    assert_int_equal(asj_gradient(f->context, &frame, &f->options), ASJ_OK);
+    const long calls = f->counter.calls;
+    assert_int_equal(asj_gradient(f->context, &frame, &f->options), ASJ_OK);
+    assert_int_equal(f->counter.calls, calls); /* the second time in the same memory */
     asj_frame_free(&f->context->memory, &frame);
+    assert_int_equal(f->counter.live, live);
 }
 
 int main(void)
