@@ -120,7 +120,7 @@ static void draw(cairo_t *cairo, void *user)
     const growth_curve *curves = user;
     cairo_set_source_rgb(cairo, 1, 1, 1);
     cairo_paint(cairo);
-    cairo_select_font_face(cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_select_font_face(cairo, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL); /* the one inside cairo */
     cairo_set_font_size(cairo, 12);
     for (int i = 0; i < 4; i++) {
         axes a = {.x = WIDTH / 2 * (i % 2) + LEFT, .y = HEIGHT / 2 * (i / 2) + TOP,
