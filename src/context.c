@@ -2,11 +2,11 @@
 #define _POSIX_C_SOURCE 200809L
 #include "context.h"
 #include "detect.h"
+#include "opencl.h"
 #include "ops.h"
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -14,26 +14,13 @@
 #include <omp.h>
 #endif
 
-static void *allocate_default(void *user, size_t size)
-{
-    (void)user;
-    return malloc(size);
-}
-
-static void release_default(void *user, void *memory)
-{
-    (void)user;
-    free(memory);
-}
-
 void asj_context_options_init(asj_context_options *options)
 {
     if (!options)
         return;
     memset(options, 0, sizeof *options);
     options->backend = ASJ_BACKEND_AUTO;
-    options->allocator.allocate = allocate_default;
-    options->allocator.release = release_default;
+    asj_memory_allocator(NULL, &options->allocator);
     options->log_level = ASJ_LOG_WARNING;
 }
 
@@ -47,43 +34,50 @@ static int32_t thread_count(int32_t wanted)
 #endif
 }
 
-asj_status asj_context_create(const asj_context_options *options, asj_context **result)
+static asj_status fill(asj_context *context, const char *library)
+{
+    context->ops = asj_allocate(&context->memory, 1, sizeof *context->ops);
+    asj_status status = context->ops ? asj_nfa_create(&context->memory, &context->nfa) : ASJ_ERROR_MEMORY;
+    if (status != ASJ_OK)
+        return status;
+    asj_ops_best(context->ops);
+    return context->options.backend == ASJ_BACKEND_CPU ? ASJ_OK : asj_cl_create(context, library);
+}
+
+asj_status asj_context_create_from(const char *library, const asj_context_options *options, asj_context **result)
 {
     asj_context_options defaults;
+    asj_memory memory = {{0}, 0, 0};
     if (!result)
         return ASJ_ERROR_ARGUMENT;
     *result = NULL;
     asj_context_options_init(&defaults);
     if (!options)
         options = &defaults;
-    asj_allocator allocator = options->allocator;
-    if (!allocator.allocate && !allocator.release)
-        allocator = defaults.allocator;
-    if (!allocator.allocate || !allocator.release)
+    if (!asj_memory_allocator(options, &memory.allocator))
         return ASJ_ERROR_ARGUMENT;
     if (options->backend < ASJ_BACKEND_AUTO || options->backend > ASJ_BACKEND_OPENCL ||
         options->threads < 0 || options->threads > 256)
         return ASJ_ERROR_OPTION;
-    if (options->backend == ASJ_BACKEND_OPENCL)
-        return ASJ_ERROR_DEVICE;
-
-    asj_memory memory = {allocator, 0, 0};
     asj_context *context = asj_allocate_zero(&memory, 1, sizeof *context);
     if (!context)
         return ASJ_ERROR_MEMORY;
     context->memory = memory;
     context->options = *options;
-    context->options.device = NULL; /* the caller's string need not live on */
     context->threads = thread_count(options->threads);
-    context->ops = asj_allocate(&context->memory, 1, sizeof *context->ops);
-    asj_status status = context->ops ? asj_nfa_create(&context->memory, &context->nfa) : ASJ_ERROR_MEMORY;
+    asj_status status = fill(context, library);
+    context->options.device = NULL; /* the caller's string need not live on */
     if (status != ASJ_OK) {
         asj_context_free(&context);
         return status;
     }
-    asj_ops_best(context->ops);
     *result = context;
     return ASJ_OK;
+}
+
+asj_status asj_context_create(const asj_context_options *options, asj_context **context)
+{
+    return asj_context_create_from(NULL, options, context);
 }
 
 void asj_context_free(asj_context **pointer)
@@ -91,6 +85,7 @@ void asj_context_free(asj_context **pointer)
     if (!pointer || !*pointer)
         return;
     asj_context *context = *pointer;
+    asj_cl_free(context);
     asj_detector_free(&context->memory, &context->detector);
     asj_nfa_free(&context->memory, &context->nfa);
     asj_release(&context->memory, context->ops);
@@ -123,7 +118,8 @@ asj_status asj_fail(asj_context *context, asj_status status, const char *format,
     va_start(arguments, format);
     vsnprintf(context->message, sizeof context->message, format, arguments);
     va_end(arguments);
-    if (status != ASJ_ERROR_CANCELLED)
+    const int goes_on = status == ASJ_ERROR_DEVICE && context->cl && context->options.backend == ASJ_BACKEND_AUTO;
+    if (status != ASJ_ERROR_CANCELLED && !goes_on)
         asj_log(context, ASJ_LOG_ERROR, "%s", context->message);
     return status;
 }

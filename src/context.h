@@ -20,10 +20,15 @@ struct asj_context {
     asj_nfa *nfa;
     struct asj_detector *detector;
     double progress;              /* last value reported */
+    int32_t device_failures;      /* backend.h */
     char message[512];
 };
 
-/* Stores the message of asj_context_message() and logs it; returns `status`, so that a failing function can end with
+/* asj_context_create() with another libOpenCL than the system's, for tests; NULL = the system's. */
+asj_status asj_context_create_from(const char *library, const asj_context_options *options, asj_context **context);
+
+/* Stores the message of asj_context_message() and logs it as an error, unless the call may go on without the device; returns
+ * `status`, so that a failing function can end with
  * `return asj_fail(context, ASJ_ERROR_IMAGE, "stride %td is shorter than a row", stride);` */
 asj_status asj_fail(asj_context *context, asj_status status, const char *format, ...)
 #ifdef __GNUC__

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj_detect(): the paper's steps in order. */
+#include "backend.h"
 #include "detect.h"
+#include "opencl.h"
 #include "ops.h"
 #include "options.h"
 #include "result.h"
@@ -79,7 +81,6 @@ static asj_status begin(asj_context *context, const asj_image *image, const asj_
         return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
     d->options = *options;
     d->threads = context->threads;
-    context->progress = 0;
     asj_status status = asj_image_check(context, image);
     return status == ASJ_OK ? asj_stage_prepare(d, image->width, image->height) : status;
 }
@@ -91,7 +92,7 @@ static asj_status finish(asj_detection_run *d, const asj_image *image, const dou
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", d->draft_count);
     found->width = image->width;
     found->height = image->height;
-    found->backend = ASJ_BACKEND_CPU;
+    found->backend = asj_context_backend(d->context);
     found->candidates = d->candidate_total;
     found->isotropic = d->isotropic_count;
     memcpy(found->stage_ms, stage_ms, sizeof found->stage_ms);
@@ -99,26 +100,45 @@ static asj_status finish(asj_detection_run *d, const asj_image *image, const dou
     return ASJ_OK;
 }
 
+/* Arguments of the public functions. */
+typedef struct detect_call {
+    const asj_image *image;
+    const asj_detect_options *options;
+    asj_detection **result;
+    asj_local_branch *branches;
+    double start;
+} detect_call;
+
+static asj_status detect(asj_context *context, void *arguments)
+{
+    const detect_call *call = arguments;
+    const asj_detect_options *options = call->options;
+    asj_detect_options defaults;
+    asj_detection_run d;
+    double stage_ms[16] = {0}, clock = asj_clock_ms();
+    asj_status status = begin(context, call->image, &options, &defaults, call->result, &d);
+    if (status == ASJ_OK)
+        status = run_steps(&d, call->image, stage_ms, &clock);
+    if (status == ASJ_OK)
+        status = finish(&d, call->image, stage_ms, call->result);
+    if (status == ASJ_OK) {
+        stop_watch((*call->result)->stage_ms, ASJ_STAGE_DECOMPOSE, &clock);
+        (*call->result)->total_ms = clock - call->start;
+    }
+    asj_stage_release(&d);
+    return status;
+}
+
 asj_status asj_detect(asj_context *context, const asj_image *image, const asj_detect_options *options,
                       asj_detection **result)
 {
-    asj_detect_options defaults;
-    asj_detection_run d;
-    double stage_ms[16] = {0}, start = asj_clock_ms(), clock = start;
+    detect_call call = {image, options, result, NULL, asj_clock_ms()};
     if (result)
         *result = NULL;
-    asj_status status = begin(context, image, &options, &defaults, result, &d);
-    if (status == ASJ_OK)
-        status = run_steps(&d, image, stage_ms, &clock);
-    if (status == ASJ_OK)
-        status = finish(&d, image, stage_ms, result);
-    if (status == ASJ_OK) {
-        stop_watch((*result)->stage_ms, ASJ_STAGE_DECOMPOSE, &clock);
-        (*result)->total_ms = clock - start;
-    }
-    if (context)
-        asj_stage_release(&d);
-    return status;
+    if (!context)
+        return ASJ_ERROR_ARGUMENT;
+    context->progress = 0;
+    return asj_backend_run(context, detect, &call);
 }
 
 /* Step 2 for row y of the public field. */
@@ -146,12 +166,14 @@ static void field_row(const asj_detection_run *d, int32_t y, asj_local_branch *o
     }
 }
 
-asj_status asj_local_field(asj_context *context, const asj_image *image, const asj_detect_options *options,
-                           asj_local_branch *branches)
+static asj_status local_field(asj_context *context, void *arguments)
 {
+    const detect_call *call = arguments;
+    const asj_detect_options *options = call->options;
+    const asj_image *image = call->image;
     asj_detect_options defaults;
     asj_detection_run d;
-    asj_status status = begin(context, image, &options, &defaults, branches, &d);
+    asj_status status = begin(context, image, &options, &defaults, call->branches, &d);
     if (status == ASJ_OK)
         status = asj_stage_gradient(&d, image);
     for (int32_t top = 0; status == ASJ_OK && top < image->height; top += ASJ_ROW_GROUP) {
@@ -160,10 +182,65 @@ asj_status asj_local_field(asj_context *context, const asj_image *image, const a
 #pragma omp parallel for num_threads(d.threads) schedule(dynamic, 4)
 #endif
         for (int32_t y = top; y < bottom; y++)
-            field_row(&d, y, branches + (size_t)y * (size_t)image->width * ASJ_FIELD_BRANCHES);
+            field_row(&d, y, call->branches + (size_t)y * (size_t)image->width * ASJ_FIELD_BRANCHES);
         status = asj_progress(context, ASJ_STAGE_CANDIDATES, (double)bottom / image->height);
     }
-    if (context)
-        asj_stage_release(&d);
+    asj_stage_release(&d);
+    return status;
+}
+
+asj_status asj_local_field(asj_context *context, const asj_image *image, const asj_detect_options *options,
+                           asj_local_branch *branches)
+{
+    detect_call call = {image, options, NULL, branches, 0};
+    if (!context)
+        return ASJ_ERROR_ARGUMENT;
+    context->progress = 0;
+    return asj_backend_run(context, local_field, &call);
+}
+
+/* ---- preparation ---- */
+
+static asj_status build(asj_context *context, void *arguments)
+{
+    (void)arguments;
+    return context->cl ? asj_cl_build_all(context) : ASJ_OK;
+}
+
+/* Dark with a bright rectangle: every step of the detector has something to do. */
+static void draw_test_picture(uint8_t *pixels, int32_t width, int32_t height)
+{
+    const size_t row = (size_t)width, left = row / 4;
+    memset(pixels, 60, row * (size_t)height);
+    for (int32_t y = height / 4; y < height / 2; y++)
+        memset(pixels + (size_t)y * row + left, 200, row / 2 - left);
+}
+
+asj_status asj_prepare(asj_context *context, const asj_detect_options *options, int32_t width, int32_t height)
+{
+    const uint8_t pixel = 0;
+    asj_image image = {&pixel, ASJ_FORMAT_GRAY8, width, height, 0, 0};
+    asj_detection *found = NULL;
+    if (!context)
+        return ASJ_ERROR_ARGUMENT;
+    asj_status status = asj_image_check(context, &image);
+    if (status == ASJ_OK)
+        status = asj_backend_run(context, build, NULL);
+    if (status != ASJ_OK)
+        return status;
+    uint8_t *pixels = asj_allocate(&context->memory, (size_t)width * (size_t)height, 1);
+    if (!pixels)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for a test picture of %d x %d", (int)width, (int)height);
+    draw_test_picture(pixels, width, height);
+    image.data = pixels;
+    const asj_progress_callback progress = context->options.progress;
+    const asj_dump_callback dump = context->options.dump;
+    context->options.progress = NULL;
+    context->options.dump = NULL;
+    status = asj_detect(context, &image, options, &found);
+    context->options.progress = progress;
+    context->options.dump = dump;
+    asj_detection_free(&found);
+    asj_release(&context->memory, pixels);
     return status;
 }

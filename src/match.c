@@ -10,6 +10,7 @@
  *   guided.c     matches propose matches near them; once more from align.c on
  *   segments.c   which ends of the branches correspond */
 #include "align.h"
+#include "backend.h"
 #include "guided.h"
 #include "match_options.h"
 #include "match_result.h"
@@ -124,7 +125,7 @@ static asj_status finish(match_run *m, asj_match_result **result)
     memcpy(found->stage_ms, m->stage_ms, sizeof m->stage_ms);
     for (int32_t s = 0; s < ASJ_STAGE_COUNT; s++)
         found->total_ms += m->stage_ms[s];
-    found->backend = ASJ_BACKEND_CPU;
+    found->backend = asj_context_backend(m->context);
     found->candidates = m->candidates.count;
     *result = found;
     return ASJ_OK;
@@ -141,6 +142,38 @@ static void clean(match_run *m)
     }
     asj_release(memory, m->candidates.list);
     asj_release(memory, m->choices);
+}
+
+/* Arguments of asj_match(). */
+typedef struct match_call {
+    const asj_image *images[2];
+    const asj_junction *junctions[2];
+    size_t counts[2];
+    const asj_match_options *options;
+    asj_match_result **result;
+} match_call;
+
+static asj_status match(asj_context *context, void *arguments)
+{
+    const match_call *call = arguments;
+    match_run m;
+    memset(&m, 0, sizeof m);
+    m.context = context;
+    m.options = call->options;
+    m.clock = asj_clock_ms();
+    asj_status status = prepare(&m, call->images, call->junctions, call->counts);
+    if (status == ASJ_OK)
+        status = find_candidates(&m);
+    if (status == ASJ_OK)
+        status = refine(&m);
+    if (status == ASJ_OK)
+        status = finish(&m, call->result);
+    clean(&m);
+    if (status == ASJ_OK && asj_progress(context, ASJ_STAGE_ASSIGN, 1) != ASJ_OK) {
+        asj_match_result_free(call->result);
+        status = ASJ_ERROR_CANCELLED;
+    }
+    return status;
 }
 
 asj_status asj_match(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
@@ -161,26 +194,7 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
     }
     if (asj_match_options_check(options, message, sizeof message) != ASJ_OK)
         return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
-    const asj_image *const images[2] = {image1, image2};
-    const asj_junction *const junctions[2] = {junctions1, junctions2};
-    const size_t counts[2] = {count1, count2};
-    match_run m;
-    memset(&m, 0, sizeof m);
-    m.context = context;
-    m.options = options;
-    m.clock = asj_clock_ms();
+    match_call call = {{image1, image2}, {junctions1, junctions2}, {count1, count2}, options, result};
     context->progress = 0;
-    asj_status status = prepare(&m, images, junctions, counts);
-    if (status == ASJ_OK)
-        status = find_candidates(&m);
-    if (status == ASJ_OK)
-        status = refine(&m);
-    if (status == ASJ_OK)
-        status = finish(&m, result);
-    clean(&m);
-    if (status == ASJ_OK && asj_progress(context, ASJ_STAGE_ASSIGN, 1) != ASJ_OK) {
-        asj_match_result_free(result);
-        status = ASJ_ERROR_CANCELLED;
-    }
-    return status;
+    return asj_backend_run(context, match, &call);
 }

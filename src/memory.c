@@ -1,7 +1,28 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "memory.h"
 
+#include <stdlib.h>
 #include <string.h>
+
+static void *allocate_default(void *user, size_t size)
+{
+    (void)user;
+    return malloc(size);
+}
+
+static void release_default(void *user, void *memory)
+{
+    (void)user;
+    free(memory);
+}
+
+int asj_memory_allocator(const asj_context_options *options, asj_allocator *allocator)
+{
+    *allocator = (asj_allocator){allocate_default, release_default, NULL};
+    if (options && (options->allocator.allocate || options->allocator.release))
+        *allocator = options->allocator;
+    return allocator->allocate && allocator->release;
+}
 
 /* Before each aligned block stands what is needed to release and to count it. */
 typedef struct header {

@@ -10,6 +10,10 @@ typedef struct asj_memory {
     uint64_t now, peak; /* bytes held, and the most ever held */
 } asj_memory;
 
+/* The allocator that the options ask for; malloc() and free() when they name none or are NULL. 0 when they name only one of the
+ * functions. */
+int asj_memory_allocator(const asj_context_options *options, asj_allocator *allocator);
+
 /* `count` elements of `size` bytes, aligned to ASJ_ALIGNMENT, contents undefined; NULL when out of memory or when the product
  * overflows. A count of 0 gives a valid pointer. Not thread safe: call from the calling thread only. */
 #define ASJ_ALIGNMENT 64

@@ -17,6 +17,7 @@
 
 #include <asj/context.h>
 #include <asj/detect.h>
+#include <asj/device.h>
 #include <asj/field.h>
 #include <asj/image.h>
 #include <asj/junction.h>

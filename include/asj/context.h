@@ -8,11 +8,13 @@
 extern "C" {
 #endif
 
-/* Where the data-parallel steps run. */
+/* Where the data-parallel steps run. The results are the same everywhere. */
 enum {
-    ASJ_BACKEND_AUTO = 0,  /* what is fastest; in this version the CPU */
+    ASJ_BACKEND_AUTO = 0,  /* an OpenCL GPU when there is one, else the CPU; never a CPU through OpenCL, which is slower. When the
+                            * device fails, that image is done once more on the CPU, with one line of log (a warning); after
+                            * three failures the context stays on the CPU. */
     ASJ_BACKEND_CPU = 1,   /* always there */
-    ASJ_BACKEND_OPENCL = 2 /* not in this version: ASJ_ERROR_DEVICE */
+    ASJ_BACKEND_OPENCL = 2 /* an OpenCL device of any type, or ASJ_ERROR_DEVICE; failures of the device are errors */
 };
 
 enum { ASJ_LOG_ERROR = 0, ASJ_LOG_WARNING = 1, ASJ_LOG_INFO = 2, ASJ_LOG_DEBUG = 3 };
@@ -71,13 +73,26 @@ typedef struct asj_dump {
 } asj_dump;
 typedef void (*asj_dump_callback)(void *user, const asj_dump *dump);
 
+/* A store of compiled kernels, which saves their compilation at the next start. Either function may be NULL. They are called from
+ * the thread that calls the library. The library checks what it gets: entries may be damaged, cut, or of another device.
+ * `key` is a short text of letters, digits, '-', '_' and '.', different for every device, driver and source.
+ * get  returns the size of the entry, 0 when there is none, and copies the entry when it fits into `capacity` bytes
+ * put  stores `size` bytes, or does not: failures are no concern of the library */
+typedef struct asj_kernel_cache {
+    size_t (*get)(void *user, const char *key, void *data, size_t capacity);
+    void (*put)(void *user, const char *key, const void *data, size_t size);
+    void *user;
+} asj_kernel_cache;
+
 /* How a context is made. Fill it with asj_context_options_init() and change what you need: fields added later take their
  * defaults from there. */
 typedef struct asj_context_options {
     int32_t backend;                /* ASJ_BACKEND_..., default auto */
     int32_t threads;                /* threads of the CPU path, 0 .. 256; default 0 = as many as processors. The results do
                                      * not depend on it. 1 when the library was built without OpenMP. */
-    const char *device;             /* which OpenCL device: not looked at in this version; default NULL */
+    const char *device;             /* which OpenCL device: its number in asj_device_list, "gpu", "cpu", "accelerator", or a part
+                                     * of its name or its platform's, upper or lower case; the first that can be used is taken.
+                                     * Default NULL = any, GPUs first. ASJ_BACKEND_AUTO looks at GPUs only. */
     asj_allocator allocator;        /* default: malloc and free */
     asj_log_callback log;           /* default NULL = silence */
     void *log_user;
@@ -87,7 +102,8 @@ typedef struct asj_context_options {
     void *progress_user;
     asj_dump_callback dump;         /* default NULL; costs nothing when NULL */
     void *dump_user;
-    uint64_t reserved[16];          /* zero */
+    asj_kernel_cache kernel_cache;  /* default: none */
+    uint64_t reserved[13];          /* zero */
 } asj_context_options;
 
 /* Fills in the defaults. `options` may not be NULL (it is then left alone). */
@@ -102,7 +118,7 @@ typedef struct asj_context asj_context;
  * ASJ_ERROR_ARGUMENT  context is NULL, or only one of the allocator's functions is given
  * ASJ_ERROR_OPTION    backend or threads out of range
  * ASJ_ERROR_MEMORY
- * ASJ_ERROR_DEVICE    the back end that was asked for cannot be had */
+ * ASJ_ERROR_DEVICE    ASJ_BACKEND_OPENCL, and there is no such device: the log has the reason of each, one line for each */
 ASJ_API asj_status asj_context_create(const asj_context_options *options, asj_context **context);
 
 /* Frees a context and sets the pointer to NULL. NULL and a pointer to NULL are fine. Results made with the context stay valid
@@ -116,8 +132,8 @@ ASJ_API const char *asj_context_message(const asj_context *context);
 /* Number of threads that the CPU path uses. 0 for a NULL context. */
 ASJ_API int32_t asj_context_threads(const asj_context *context);
 
-/* Bytes that the context holds at the moment, and the most it has held since it was made; results, which are the caller's, apart.
- * Either pointer may be NULL. */
+/* Bytes that the context holds at the moment, and the most it has held since it was made; results, which are the caller's, and
+ * what OpenCL holds apart. Either pointer may be NULL. */
 ASJ_API void asj_context_memory(const asj_context *context, uint64_t *now, uint64_t *peak);
 
 #ifdef __cplusplus

@@ -45,6 +45,11 @@ typedef struct asj_detection {
 ASJ_API asj_status asj_detect(asj_context *context, const asj_image *image, const asj_detect_options *options,
                               asj_detection **result);
 
+/* Does ahead what the first asj_detect() with these options and an image of this size would do once: makes tables, allocates,
+ * compiles the kernels of the device. It detects the junctions of a test picture of that size, so it takes as long as that.
+ * `options` NULL = preset `default`. Never needed; errors as asj_detect(). */
+ASJ_API asj_status asj_prepare(asj_context *context, const asj_detect_options *options, int32_t width, int32_t height);
+
 /* Frees a result and sets the pointer to NULL. NULL and a pointer to NULL are fine. */
 ASJ_API void asj_detection_free(asj_detection **result);
 

@@ -50,7 +50,6 @@
     X(cl_int, WaitForEvents, (cl_uint, const cl_event *))                                                                         \
     X(cl_int, GetEventProfilingInfo, (cl_event, cl_profiling_info, size_t, void *, size_t *))                                     \
     X(cl_int, ReleaseEvent, (cl_event))                                                                                           \
-    X(cl_int, Flush, (cl_command_queue))                                                                                          \
     X(cl_int, Finish, (cl_command_queue))
 
 #define ASJ_CL_MEMBER(result, name, parameters) result(CL_API_CALL *name) parameters;

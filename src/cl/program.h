@@ -24,4 +24,15 @@ extern const int32_t asj_cl_source_count;
 extern const asj_cl_kernel_name asj_cl_kernel_names[];
 extern const int32_t asj_cl_kernel_count;
 
+/* ---- program.c ---- */
+
+/* No fast arithmetic: the bits must be those of the CPU. */
+#define ASJ_CL_BUILD_OPTIONS "-cl-std=CL1.2"
+
+/* Number of the kernel with this name; its program is built, and context->cl->kernels[number] is there, when that succeeds. */
+asj_status asj_cl_find_kernel(asj_context *context, const char *name, int32_t *number);
+
+/* Releases all programs and kernels. */
+void asj_cl_free_programs(asj_context *context);
+
 #endif

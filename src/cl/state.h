@@ -17,10 +17,10 @@ struct asj_cl {
     cl_command_queue queue;
     asj_cl_limits limits;
     char name[128];         /* of the device */
-    char *identity;         /* device, platform, driver, versions: what a compiled program depends on beside its source */
+    char identity[1024];    /* device, platform, driver, options: what a compiled program depends on beside its source */
     cl_program *programs;   /* asj_cl_source_count; NULL = not built yet */
-    cl_kernel *kernels;     /* asj_cl_kernel_count; NULL = not made yet */
-    asj_cl_time *times;     /* asj_cl_kernel_count and the transfers; NULL = not measured */
+    cl_kernel *kernels;     /* asj_cl_kernel_count; NULL = the program is not built yet */
+    asj_cl_time *times;     /* asj_cl_kernel_count and the transfers (command.c); NULL = not measured */
 
     struct asj_cl_detect *detect;
     struct asj_cl_scan *scan;

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "backend.h"
+#include "opencl.h"
+#include "ops.h"
+
+int32_t asj_context_backend(const asj_context *context)
+{
+    return context && context->cl ? ASJ_BACKEND_OPENCL : ASJ_BACKEND_CPU;
+}
+
+const char *asj_context_device(const asj_context *context)
+{
+    return context && context->cl ? asj_cl_name(context) : NULL;
+}
+
+asj_status asj_backend_run(asj_context *context, asj_status (*call)(asj_context *context, void *arguments), void *arguments)
+{
+    asj_status status = call(context, arguments);
+    if (status != ASJ_ERROR_DEVICE || !context->cl || context->options.backend != ASJ_BACKEND_AUTO)
+        return status;
+    const int for_good = ++context->device_failures >= ASJ_BACKEND_FAILURES;
+    asj_log(context, ASJ_LOG_WARNING, "%s; done on the CPU%s", context->message, for_good ? ", as all that follows" : " instead");
+    context->message[0] = '\0';
+    if (for_good)
+        asj_cl_free(context);
+    struct asj_cl *device = context->cl;
+    const asj_ops ops = *context->ops;
+    context->cl = NULL;
+    asj_ops_best(context->ops);
+    status = call(context, arguments);
+    if (!for_good) {
+        context->cl = device;
+        *context->ops = ops;
+    }
+    return status;
+}

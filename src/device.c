@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "device.h"
+#include "opencl.h"
+
+#include <string.h>
+
+const char *asj_device_type_name(int32_t type)
+{
+    static const char *const names[] = {"other", "cpu", "gpu", "accelerator"};
+    return type > ASJ_DEVICE_OTHER && type <= ASJ_DEVICE_ACCELERATOR ? names[type] : names[ASJ_DEVICE_OTHER];
+}
+
+/* ---- selectors ---- */
+
+/* ASCII only: names of devices are, and the locale must not matter. */
+static char lower(char c)
+{
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+static int starts_with(const char *text, const char *part)
+{
+    while (*part && lower(*text) == lower(*part)) {
+        text++;
+        part++;
+    }
+    return *part == '\0';
+}
+
+static int contains(const char *text, const char *part)
+{
+    for (; *text; text++)
+        if (starts_with(text, part))
+            return 1;
+    return 0;
+}
+
+static int same(const char *text, const char *word)
+{
+    return starts_with(text, word) && text[strlen(word)] == '\0';
+}
+
+/* 1 and the number when the text is nothing but digits; a number that no list reaches when it is too long. */
+static int parse_index(const char *text, size_t *index)
+{
+    *index = 0;
+    if (!*text)
+        return 0;
+    for (; *text; text++) {
+        if (*text < '0' || *text > '9')
+            return 0;
+        *index = *index > 1000000 ? 1000000 : 10 * *index + (size_t)(*text - '0');
+    }
+    return 1;
+}
+
+int asj_device_fits(const asj_device *device, size_t index, const char *selector)
+{
+    size_t wanted;
+    if (!selector || !*selector)
+        return 1;
+    if (parse_index(selector, &wanted))
+        return wanted == index;
+    for (int32_t type = ASJ_DEVICE_CPU; type <= ASJ_DEVICE_ACCELERATOR; type++)
+        if (same(selector, asj_device_type_name(type)))
+            return device->type == type;
+    return contains(device->name, selector) || contains(device->platform, selector);
+}
+
+size_t asj_device_choose(const asj_device *devices, size_t count, int32_t backend, const char *selector)
+{
+    static const int32_t ranks[] = {2, 2, 0, 1}; /* by type */
+    const int anything = !selector || !*selector;
+    size_t best = count;
+    int32_t best_rank = 3;
+    for (size_t i = 0; i < count; i++) {
+        const asj_device *device = &devices[i];
+        if (!device->usable || !asj_device_fits(device, i, selector) ||
+            (backend == ASJ_BACKEND_AUTO && device->type != ASJ_DEVICE_GPU))
+            continue;
+        const int32_t rank = anything ? ranks[device->type] : 0;
+        if (rank < best_rank) {
+            best = i;
+            best_rank = rank;
+        }
+    }
+    return best;
+}
+
+/* ---- lists ---- */
+
+/* What stands behind the public struct. */
+typedef struct device_list {
+    asj_device_list list; /* first: the public pointer is this one */
+    asj_memory memory;
+    asj_device *devices;
+} device_list;
+
+asj_status asj_device_list_create_from(const char *library, const asj_context_options *options, asj_device_list **result)
+{
+    asj_memory memory = {{0}, 0, 0};
+    if (!result)
+        return ASJ_ERROR_ARGUMENT;
+    *result = NULL;
+    if (!asj_memory_allocator(options, &memory.allocator))
+        return ASJ_ERROR_ARGUMENT;
+    device_list *made = asj_allocate_zero(&memory, 1, sizeof *made);
+    if (!made)
+        return ASJ_ERROR_MEMORY;
+    size_t count = 0;
+    asj_status status = asj_cl_list(&memory, library, &made->devices, &count, made->list.message, sizeof made->list.message);
+    if (status != ASJ_OK) {
+        asj_release(&memory, made);
+        return status;
+    }
+    made->memory = memory;
+    made->list.devices = made->devices;
+    made->list.count = (uint32_t)count;
+    *result = &made->list;
+    return ASJ_OK;
+}
+
+asj_status asj_device_list_create(const asj_context_options *options, asj_device_list **result)
+{
+    return asj_device_list_create_from(NULL, options, result);
+}
+
+void asj_device_list_free(asj_device_list **pointer)
+{
+    if (!pointer || !*pointer)
+        return;
+    device_list *made = (device_list *)*pointer;
+    asj_memory memory = made->memory;
+    asj_release(&memory, made->devices);
+    asj_release(&memory, made);
+    *pointer = NULL;
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Which device a context takes. */
+#ifndef ASJ_SRC_DEVICE_H
+#define ASJ_SRC_DEVICE_H
+
+#include <asj/device.h>
+
+/* Whether a selector (asj_context_options.device) fits device number `index`. NULL and "" fit all. */
+int asj_device_fits(const asj_device *device, size_t index, const char *selector);
+
+/* Index of the device to take for the back end (ASJ_BACKEND_...), or `count` when none will do: the first usable one that fits;
+ * without a selector GPUs before accelerators before the others. ASJ_BACKEND_AUTO takes GPUs only. */
+size_t asj_device_choose(const asj_device *devices, size_t count, int32_t backend, const char *selector);
+
+/* asj_device_list_create() with another libOpenCL than the system's; NULL = the system's. */
+asj_status asj_device_list_create_from(const char *library, const asj_context_options *options, asj_device_list **list);
+
+#endif
