@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The isotropic junctions of an image, before any branch is followed to its end: what the paper compares ASJ with (ACJ).
+ *
+ *     isotropic_junctions [--preset paper] [key=value ...] IMAGE FILE.json
+ *
+ * Steps 1 to 3 of the detector and the location, as the options say (preset default: line fits and their rejection of edges;
+ * preset paper: whole pixels). Every branch of a junction is as long as the junction's isotropic scale. The format is that of
+ * asj-cli detect (asj-junctions-1). */
+#include "photograph.h"
+
+#include "detect.h"
+#include "result.h"
+#include "stages.h"
+
+#include <asj/io.h>
+
+#include <stdio.h>
+#include <string.h>
+
+static int fail(const char *what)
+{
+    fprintf(stderr, "isotropic_junctions: %s\n", what);
+    return -1;
+}
+
+static asj_status run_steps(asj_detection_run *d, const asj_image *image)
+{
+    asj_status status = asj_stage_prepare(d, image->width, image->height);
+    if (status == ASJ_OK)
+        status = asj_stage_gradient(d, image);
+    if (status == ASJ_OK)
+        status = asj_stage_candidates(d);
+    if (status == ASJ_OK)
+        status = asj_stage_isotropic(d);
+    return status == ASJ_OK ? asj_stage_locate(d) : status;
+}
+
+/* The drafts as they are after step 3, or NULL. */
+static asj_detection *find(asj_context *context, const asj_detect_options *options, const asj_image *image)
+{
+    asj_detection_run d;
+    asj_detection *found = NULL;
+    memset(&d, 0, sizeof d);
+    d.context = context;
+    d.options = options;
+    d.threads = asj_context_threads(context);
+    if (run_steps(&d, image) == ASJ_OK) {
+        for (size_t i = 0; i < d.draft_count; i++)
+            for (int32_t b = 0; b < d.drafts[i].branch_count; b++) {
+                d.drafts[i].branches[b].length = d.drafts[i].radius;
+                d.drafts[i].branches[b].log_nfa = d.drafts[i].log_nfa;
+            }
+        found = asj_result_create(context, d.drafts, d.draft_count, options->minimum_opening);
+    }
+    asj_stage_release(&d);
+    if (!found) {
+        fail(asj_context_message(context));
+        return NULL;
+    }
+    found->width = image->width;
+    found->height = image->height;
+    found->backend = ASJ_BACKEND_CPU;
+    found->candidates = d.candidate_total;
+    found->isotropic = d.isotropic_count;
+    return found;
+}
+
+static int write_file(const char *path, const char *name, const asj_detection *found, const asj_detect_options *options)
+{
+    char message[512];
+    asj_detection_report report;
+    memset(&report, 0, sizeof report);
+    report.detection = found;
+    report.options = options;
+    report.image_name = name;
+    return asj_junctions_write(path, ASJ_FILE_JSON, &report, message, sizeof message) == ASJ_OK ? 0 : fail(message);
+}
+
+static int run(const asj_detect_options *options, const char *image_path, const char *path)
+{
+    photograph p;
+    asj_context_options how;
+    asj_context *context = NULL;
+    if (photograph_read(image_path, &p) != 0)
+        return -1;
+    const asj_image image = {p.pixels, ASJ_FORMAT_GRAY8, p.width, p.height, 0, 0};
+    asj_context_options_init(&how);
+    how.backend = ASJ_BACKEND_CPU;
+    how.threads = 1;
+    asj_detection *found = asj_context_create(&how, &context) == ASJ_OK ? find(context, options, &image) : NULL;
+    const int result = found ? write_file(path, image_path, found, options) : -1;
+    asj_detection_free(&found);
+    asj_context_free(&context);
+    photograph_free(&p);
+    return result;
+}
+
+int main(int argc, char **argv)
+{
+    asj_detect_options options;
+    int n = 1;
+    asj_detect_options_init(&options);
+    if (argc > 2 && strcmp(argv[1], "--preset") == 0) {
+        if (asj_detect_options_preset(&options, strcmp(argv[2], "paper") == 0 ? ASJ_PRESET_PAPER : ASJ_PRESET_DEFAULT) != ASJ_OK)
+            return 2;
+        n = 3;
+    }
+    for (; n < argc - 2; n++)
+        if (photograph_option(&options, argv[n]) != 0)
+            return 2;
+    if (n + 2 != argc) {
+        fprintf(stderr, "usage: isotropic_junctions [--preset paper] [key=value ...] IMAGE FILE.json\n");
+        return 2;
+    }
+    return run(&options, argv[n], argv[n + 1]) == 0 ? 0 : 1;
+}

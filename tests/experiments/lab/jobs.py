@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Independent jobs on a few threads, in order of importance, until their time is used up. Jobs wait for programs or for OpenCV and
+numpy, which let other threads run."""
+import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+from .library import Failure
+
+
+class Jobs:
+    """Collects jobs of one part and runs them: what was not begun in time, failed or was stopped is told in `cut`."""
+
+    def __init__(self, title, processes, budget):
+        self.title, self.processes, self.budget = title, processes, budget
+        self.queue, self.cut, self.lock, self.done = [], [], threading.Lock(), 0
+
+    def add(self, name, function, *arguments):
+        """function(limit, *arguments); limit: seconds that it may still take, or None"""
+        self.queue.append((name, function, arguments))
+
+    def _one(self, job, end, results):
+        name, function, arguments = job
+        left = None if end is None else end - time.monotonic()
+        try:
+            if left is not None and left <= 0:
+                raise Failure("not begun: the part's time was used up")
+            results[name] = function(left, *arguments)
+        except Failure as reason:
+            with self.lock:
+                self.cut.append("%s: %s" % (name, reason))
+        with self.lock:
+            self.done += 1
+            self._show()
+
+    def _show(self):
+        """Progress: a line that changes on a terminal, elsewhere a line for every tenth."""
+        if sys.stderr.isatty():
+            print("\r%-14s %4d / %d" % (self.title, self.done, len(self.queue)), end="", file=sys.stderr, flush=True)
+        elif self.done * 10 // len(self.queue) != (self.done - 1) * 10 // len(self.queue):
+            print("%-14s %4d / %d" % (self.title, self.done, len(self.queue)), file=sys.stderr, flush=True)
+
+    def run(self):
+        """{name: what the job returned}"""
+        results, start = {}, time.monotonic()
+        end = None if self.budget is None else start + self.budget
+        with ThreadPoolExecutor(self.processes) as pool:
+            for future in [pool.submit(self._one, job, end, results) for job in self.queue]:
+                future.result()
+        end_of_line = "\r" if sys.stderr.isatty() else ""
+        print("%s%-14s %d jobs in %.0f s" % (end_of_line, self.title, len(self.queue), time.monotonic() - start), file=sys.stderr)
+        self.queue = []
+        return results

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""One run of the command: what the parts share, and the parts in order."""
+import importlib
+import os
+import platform
+import shutil
+import sys
+import time
+
+import cv2
+
+from . import images, jobs, library, pairs, report
+
+# seconds that a part's jobs may take, on two processes; a quick run: a few in all
+BUDGETS = {"noise": 240, "repeatability": 240, "scale": 30, "points": 330, "lines": 60, "figures": 30, "ablation": 210}
+
+
+class Session:
+    def __init__(self, arguments, root, build):
+        self.arguments, self.quick, self.full = arguments, arguments.quick, arguments.full
+        self.out = os.path.abspath(os.path.join(root, arguments.out))
+        self.work = os.path.join(self.out, "work")
+        shutil.rmtree(self.work, ignore_errors=True)
+        self.library = library.Library(build, os.path.join(self.work, "junctions"))
+        self.shared = {}   # what a part leaves for later ones
+        self.real = [p for folder in arguments.pairs for p in pairs.read_folder(folder)]
+        self.rendered = pairs.render(self.library, os.path.join(self.work, "rendered"), self.quick)
+        if self.quick:
+            self.real = self.real[:1]
+        self.pairs = self.real + self.rendered
+
+    def jobs(self, name):
+        return jobs.Jobs(name, self.arguments.processes, None if self.full else BUDGETS[name])
+
+    def pictures(self):
+        """First views: of the photographs, where there are any, else of the rendered rooms."""
+        folder = os.path.join(self.work, "images")
+        chosen = self.real or self.rendered
+        return [images.Picture(p.name.replace(",", "").replace(" ", "-"), p.image1, folder) for p in chosen]
+
+    def about(self, seconds):
+        real = ", ".join(p.name for p in self.real) or "none given: rendered pairs alone (--pairs DIR names a folder of pairs)"
+        return {"library": self.library.version(), "pairs of photographs": real,
+                "rendered pairs": ", ".join(p.name for p in self.rendered),
+                "cut": "quick run: numbers mean little" if self.quick else "full run" if self.full else "default run",
+                "machine": "%s, %d processors, %d jobs at a time of one thread each"
+                           % (platform.machine(), os.cpu_count(), self.arguments.processes),
+                "OpenCV": cv2.__version__, "seconds": round(seconds)}
+
+
+def run(arguments, root, build):
+    cv2.setNumThreads(1)
+    start = time.monotonic()
+    session, done = Session(arguments, root, build), {}
+    for name in arguments.only:
+        begin = time.monotonic()
+        part = importlib.import_module("lab.parts." + name).run(session)
+        part.seconds = time.monotonic() - begin
+        done[name] = part
+        page = report.write(session.out, session.about(time.monotonic() - start), done)
+    print("%s (%.0f s)" % (page, time.monotonic() - start))
+    for name, part in done.items():
+        for line in part.cut:
+            print("left out: %s: %s" % (name, line), file=sys.stderr)
+    return 0
