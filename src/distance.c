@@ -4,7 +4,10 @@
  * Canonical patches: f and g are unit vectors, so |f - g|^2 = 2 - 2 <f, g>: all pairs are one product of two matrices, worked
  * through in blocks of rows. Of an L-junction with several length hypotheses the best pair of frames counts. From each block
  * the best partners of its rows and, row after row, of all columns are kept: memory for the full matrix is never needed. Ties
- * go to the smaller index, so the list depends on nothing but the input. */
+ * go to the smaller index, so the list depends on nothing but the input.
+ *
+ * Scores are whole numbers, so that any device ranks alike: <f, g> of unit vectors; 2 <f, g> - <f, f> - <g, g> of others, both in
+ * units of 1/ASJ_UNIT_ONE^2; of the paper's patches (induced.c) minus the distance in 2^-16. */
 #include "distance.h"
 #include "descriptor.h"
 #include "ops.h"
@@ -16,80 +19,74 @@
 #define BLOCK_ROWS 64
 #define TILE_FRAMES 48 /* at least the frames of one L-junction: 16 */
 #define MAX_SHORTLIST 32
-#define UNUSABLE -1e30f
+#define DISTANCE_ONE 65536 /* distances of raw patches are below 2^14 */
 
 int32_t asj_patch_length(const asj_match_options *options)
 {
     return options->descriptor == ASJ_DESCRIPTOR_SIFT ? ASJ_SIFT_LENGTH : options->patch_size * options->patch_size;
 }
 
-/* Raw canonical patches are always normalised when they are to be multiplied; `normalise` off keeps the mean in. */
-static void describe(const asj_match_options *options, const uint16_t *grey, int16_t *unit)
-{
-    const int32_t samples = options->patch_size * options->patch_size;
-    if (options->descriptor == ASJ_DESCRIPTOR_SIFT) {
-        asj_descriptor_sift(grey, options->patch_size, unit);
-    } else if (options->normalise) {
-        asj_patch_normalise(grey, samples, unit);
-    } else { /* as a share of the patch's own norm bound: white everywhere = 1 */
-        const float scale = (float)(ASJ_UNIT_ONE / (ASJ_GRAY_MAX * sqrt((double)samples)));
-        for (int32_t i = 0; i < samples; i++)
-            unit[i] = (int16_t)((float)grey[i] * scale + 0.5f);
-    }
-}
-
-asj_status asj_describe(asj_context *context, const asj_match_options *options, asj_view *view)
-{
-    const size_t length = (size_t)asj_patch_length(options);
-    const int64_t count = view->corners.frame_count;
-    view->patches = asj_allocate(&context->memory, (size_t)count * length, sizeof *view->patches);
-    view->usable = asj_allocate(&context->memory, (size_t)count, sizeof *view->usable);
-    if (!view->patches || !view->usable)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lld patches", (long long)count);
-#pragma omp parallel for num_threads(context->threads) schedule(static)
-    for (int64_t f = 0; f < count; f++) {
-        uint16_t grey[ASJ_PATCH_SAMPLES];
-        view->usable[f] = (uint8_t)asj_patch_sample(&view->pyramid, &view->corners.frames[f], options->patch_size,
-                                                    options->window_start, options->window_end, grey);
-        describe(options, grey, view->patches + (size_t)f * length);
-    }
-    return ASJ_OK;
-}
-
-static int32_t norm2(const int16_t *patch, int32_t length)
-{
-    return asj_patch_product(patch, patch, length);
-}
-
-static const float one = 1.0f / ((float)ASJ_UNIT_ONE * (float)ASJ_UNIT_ONE);
-
 static int32_t units(const asj_match_options *options)
 {
     return options->descriptor == ASJ_DESCRIPTOR_SIFT || options->normalise;
 }
 
-static inline float unit_affinity(int32_t product)
+static void describe(const asj_match_options *options, const asj_pyramid *pyramid, const uint16_t *grey, int16_t *unit)
 {
-    return 2 * (float)product * one - 2;
+    if (options->descriptor == ASJ_DESCRIPTOR_SIFT)
+        asj_descriptor_sift(grey, options->patch_size, unit);
+    else if (options->normalise)
+        pyramid->ops->patch_normalise(grey, options->patch_size, unit);
+    else
+        asj_patch_scale(grey, options->patch_size, unit);
 }
 
-/* Minus the squared distance: of unit vectors from their product, of others from their norms too. */
-static float affinity(const asj_match_options *options, const int16_t *f, const int16_t *g, int32_t length)
+asj_status asj_describe_frames(asj_context *context, const asj_match_options *options, asj_view *view)
 {
-    const int32_t whole = asj_patch_product(f, g, length);
-    const float product = (float)whole;
-    if (units(options))
-        return unit_affinity(whole);
-    return (2 * product - (float)norm2(f, length) - (float)norm2(g, length)) * one;
+    const size_t length = (size_t)asj_patch_length(options);
+    const int64_t count = view->corners.frame_count;
+    (void)context; /* without OpenMP */
+#pragma omp parallel for num_threads(context->threads) schedule(static)
+    for (int64_t f = 0; f < count; f++) {
+        uint16_t grey[ASJ_PATCH_SAMPLES];
+        view->usable[f] = (uint8_t)asj_patch_sample(&view->pyramid, &view->corners.frames[f], options->patch_size,
+                                                    options->window_start, options->window_end, grey);
+        describe(options, &view->pyramid, grey, view->patches + (size_t)f * length);
+    }
+    return ASJ_OK;
+}
+
+asj_status asj_describe(asj_context *context, const asj_match_options *options, asj_view *view)
+{
+    const size_t length = (size_t)asj_patch_length(options), count = view->corners.frame_count;
+    view->patches = asj_allocate(&context->memory, count * length, sizeof *view->patches);
+    view->usable = asj_allocate(&context->memory, count, sizeof *view->usable);
+    if (!view->patches || !view->usable)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu patches", count);
+    return context->ops->describe_frames(context, options, view);
+}
+
+static int32_t affinity(const asj_match_options *options, const int16_t *f, const int16_t *g, int32_t length)
+{
+    const int32_t product = asj_patch_product(f, g, length);
+    return units(options) ? product : 2 * product - asj_patch_product(f, f, length) - asj_patch_product(g, g, length);
+}
+
+/* |f - g|^2 of a score. */
+static float squared_distance(const asj_match_options *options, int32_t score)
+{
+    const float one = 1.0f / ((float)ASJ_UNIT_ONE * (float)ASJ_UNIT_ONE);
+    const float distance2 = units(options) ? 2 - 2 * ((float)score * one) : -(float)score * one;
+    return distance2 > 0 ? distance2 : 0;
 }
 
 /* The best pair of frames of a pair of L-junctions. */
-static float best_frames(const asj_match_options *options, const asj_view *view1, const asj_view *view2, uint32_t i, uint32_t j,
-                         uint32_t *frame1, uint32_t *frame2)
+static int32_t best_frames(const asj_match_options *options, const asj_view *view1, const asj_view *view2, uint32_t i, uint32_t j,
+                           uint32_t *frame1, uint32_t *frame2)
 {
     const int32_t length = asj_patch_length(options);
     const asj_corners *c1 = &view1->corners, *c2 = &view2->corners;
-    float best = UNUSABLE;
+    int32_t best = ASJ_NO_PARTNER;
     for (uint32_t f = c1->first_frame[i]; f < c1->first_frame[i + 1]; f++) {
         if (!view1->usable[f])
             continue;
@@ -97,7 +94,7 @@ static float best_frames(const asj_match_options *options, const asj_view *view1
         for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++) {
             if (!view2->usable[g])
                 continue;
-            float score = affinity(options, patch, view2->patches + (size_t)g * (size_t)length, length);
+            const int32_t score = affinity(options, patch, view2->patches + (size_t)g * (size_t)length, length);
             if (score > best) {
                 best = score;
                 *frame1 = f;
@@ -110,26 +107,21 @@ static float best_frames(const asj_match_options *options, const asj_view *view1
 
 /* --- short lists ------------------------------------------------------------------------------------------------------------ */
 
-typedef struct entry {
-    float score;
-    uint32_t index;
-} entry;
-
 /* Inserts into a list that falls; the earlier of equals stays first. */
-static void offer(entry *list, int32_t limit, float score, uint32_t index)
+static void offer(asj_partner *list, int32_t limit, int32_t score, uint32_t index)
 {
     if (score <= list[limit - 1].score)
         return;
     int32_t k = limit - 1;
     for (; k > 0 && list[k - 1].score < score; k--)
         list[k] = list[k - 1];
-    list[k] = (entry){score, index};
+    list[k] = (asj_partner){score, index};
 }
 
-static void clear(entry *list, size_t count)
+static void clear(asj_partner *list, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        list[i] = (entry){UNUSABLE, 0};
+        list[i] = (asj_partner){ASJ_NO_PARTNER, 0};
 }
 
 /* All that the two passes over a block share. */
@@ -137,20 +129,20 @@ typedef struct table {
     const asj_match_options *options;
     const asj_view *view1, *view2;
     int32_t limit;
-    entry *rows, *columns; /* `limit` entries for each L-junction of image 1 and of image 2 */
-    float *scores;         /* BLOCK_ROWS x count2 */
+    asj_partner *rows, *columns; /* `limit` for each L-junction of image 1 and of image 2 */
+    int32_t *scores;             /* BLOCK_ROWS x count2 */
     const asj_ops *ops;
 } table;
 
 /* Unit vectors: the pair of frames with the largest product is the best. Frames of image 2 are worked through in tiles that stay in
  * the first cache. */
-static void multiply_row(const table *t, uint32_t i, float *scores)
+static void multiply_row(const table *t, uint32_t i, int32_t *scores)
 {
     const asj_corners *c1 = &t->view1->corners, *c2 = &t->view2->corners;
     const int32_t length = asj_patch_length(t->options);
     int32_t products[TILE_FRAMES], largest[TILE_FRAMES];
     for (uint32_t j = 0; j < c2->count; j++)
-        scores[j] = UNUSABLE;
+        scores[j] = ASJ_NO_PARTNER;
     for (uint32_t first = 0, end; first < c2->count; first = end) {
         const uint32_t start = c2->first_frame[first];
         int32_t asked = 0;
@@ -169,13 +161,20 @@ static void multiply_row(const table *t, uint32_t i, float *scores)
         }
         for (uint32_t j = first; j < end && asked > 0; j++)
             for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++) {
-                const float score = unit_affinity(largest[g - start]);
+                const int32_t score = largest[g - start];
                 scores[j] = t->view2->usable[g] && score > scores[j] ? score : scores[j];
             }
     }
 }
 
-static void score_row(const table *t, uint32_t i, float *scores)
+/* The paper's distance as a score. */
+static int32_t induced_score(const table *t, uint32_t i, uint32_t j)
+{
+    const float distance = asj_induced_distance(t->options, t->view1, t->view2, i, j);
+    return distance < HUGE_VALF ? -(int32_t)lrintf(distance * DISTANCE_ONE) : ASJ_NO_PARTNER;
+}
+
+static void score_row(const table *t, uint32_t i, int32_t *scores)
 {
     const uint32_t count = t->view2->corners.count;
     uint32_t f, g;
@@ -185,7 +184,7 @@ static void score_row(const table *t, uint32_t i, float *scores)
         for (uint32_t j = 0; j < count; j++)
             scores[j] = t->options->patches == ASJ_PATCHES_CANONICAL
                 ? best_frames(t->options, t->view1, t->view2, i, j, &f, &g)
-                : -asj_induced_distance(t->options, t->view1, t->view2, i, j);
+                : induced_score(t, i, j);
     for (uint32_t j = 0; j < count; j++)
         offer(t->rows + (size_t)i * (size_t)t->limit, t->limit, scores[j], j);
 }
@@ -209,6 +208,19 @@ static asj_status work(asj_context *context, const table *t)
     return ASJ_OK;
 }
 
+asj_status asj_rank_partners(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
+                             asj_partner *rows, asj_partner *columns)
+{
+    const size_t count2 = view2->corners.count;
+    table t = {options, view1, view2, options->shortlist, rows, columns, NULL, context->ops};
+    t.scores = asj_allocate(&context->memory, BLOCK_ROWS * count2, sizeof *t.scores);
+    if (!t.scores)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the distances of %zu L-junctions", count2);
+    asj_status status = work(context, &t);
+    asj_release(&context->memory, t.scores);
+    return status;
+}
+
 static int by_pair(const void *left, const void *right)
 {
     const asj_candidate *p = left, *q = right;
@@ -230,26 +242,24 @@ asj_status asj_candidates_sort(asj_candidates *candidates)
 }
 
 /* The union of both lists as candidates. */
-static asj_status collect(asj_context *context, const table *t, asj_candidates *candidates)
+static asj_status collect(asj_context *context, size_t limit, const asj_partner *rows, uint32_t count1, const asj_partner *columns,
+                          uint32_t count2, asj_candidates *candidates)
 {
-    const uint32_t count1 = t->view1->corners.count, count2 = t->view2->corners.count;
-    const size_t most = ((size_t)count1 + count2) * (size_t)t->limit;
+    const size_t most = ((size_t)count1 + count2) * limit;
     candidates->list = asj_allocate(&context->memory, most, sizeof *candidates->list);
     if (!candidates->list)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", most);
     candidates->capacity = most;
     candidates->count = 0;
-    for (uint32_t n = 0; n < count1 + count2; n++)
-        for (int32_t k = 0; k < t->limit; k++) {
-            const entry *e = n < count1 ? &t->rows[(size_t)n * (size_t)t->limit + (size_t)k]
-                                        : &t->columns[(size_t)(n - count1) * (size_t)t->limit + (size_t)k];
-            if (e->score <= UNUSABLE)
-                break;
+    for (uint32_t n = 0; n < count1 + count2; n++) {
+        const asj_partner *list = n < count1 ? rows + n * limit : columns + (n - count1) * limit;
+        for (size_t k = 0; k < limit && list[k].score > ASJ_NO_PARTNER; k++) {
             asj_candidate *c = &candidates->list[candidates->count++];
             memset(c, 0, sizeof *c);
-            c->i = n < count1 ? n : e->index;
-            c->j = n < count1 ? e->index : n - count1;
+            c->i = n < count1 ? n : list[k].index;
+            c->j = n < count1 ? list[k].index : n - count1;
         }
+    }
     return asj_candidates_sort(candidates);
 }
 
@@ -258,10 +268,10 @@ int32_t asj_compare(const asj_match_options *options, const asj_view *view1, con
     const asj_corners *c1 = &view1->corners, *c2 = &view2->corners;
     uint32_t f = c1->first_frame[candidate->i], g = c2->first_frame[candidate->j];
     if (options->patches == ASJ_PATCHES_CANONICAL) {
-        float score = best_frames(options, view1, view2, candidate->i, candidate->j, &f, &g);
-        if (score <= UNUSABLE)
+        const int32_t score = best_frames(options, view1, view2, candidate->i, candidate->j, &f, &g);
+        if (score == ASJ_NO_PARTNER)
             return 0;
-        candidate->distance2 = -score > 0 ? -score : 0;
+        candidate->distance2 = squared_distance(options, score);
     } else {
         float distance = asj_induced_distance(options, view1, view2, candidate->i, candidate->j);
         if (!(distance < HUGE_VALF))
@@ -275,23 +285,22 @@ asj_status asj_shortlist(asj_context *context, const asj_match_options *options,
                          asj_candidates *candidates)
 {
     asj_memory *memory = &context->memory;
-    const size_t count1 = view1->corners.count, count2 = view2->corners.count, limit = (size_t)options->shortlist;
-    table t = {options, view1, view2, options->shortlist, NULL, NULL, NULL, context->ops};
-    t.rows = asj_allocate(memory, count1 * limit, sizeof *t.rows);
-    t.columns = asj_allocate(memory, count2 * limit, sizeof *t.columns);
-    t.scores = asj_allocate(memory, BLOCK_ROWS * count2, sizeof *t.scores);
+    const uint32_t count1 = view1->corners.count, count2 = view2->corners.count;
+    const size_t limit = (size_t)options->shortlist;
+    asj_partner *rows = asj_allocate(memory, count1 * limit, sizeof *rows);
+    asj_partner *columns = asj_allocate(memory, count2 * limit, sizeof *columns);
     asj_status status;
-    if (!t.rows || !t.columns || !t.scores) {
-        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the distances of %zu x %zu L-junctions", count1, count2);
+    if (!rows || !columns) {
+        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the partners of %u and %u L-junctions", (unsigned)count1,
+                          (unsigned)count2);
     } else {
-        clear(t.rows, count1 * limit);
-        clear(t.columns, count2 * limit);
-        status = work(context, &t);
+        clear(rows, count1 * limit);
+        clear(columns, count2 * limit);
+        status = context->ops->rank_partners(context, options, view1, view2, rows, columns);
         if (status == ASJ_OK)
-            status = collect(context, &t, candidates);
+            status = collect(context, limit, rows, count1, columns, count2, candidates);
     }
-    asj_release(memory, t.rows);
-    asj_release(memory, t.columns);
-    asj_release(memory, t.scores);
+    asj_release(memory, rows);
+    asj_release(memory, columns);
     return status;
 }

@@ -28,17 +28,31 @@ typedef struct asj_view {
     asj_corners corners;
     int16_t *patches;        /* canonical: unit vectors, `length` numbers for each frame */
     uint8_t *usable;         /* of each frame: its patch lies in the image */
+    uint64_t device_copy;    /* names what a device keeps of them; 0 = nothing */
 } asj_view;
+
+/* A partner of an L-junction. Scores are whole numbers, the larger the better (distance.c); of equals the smaller index. */
+#define ASJ_NO_PARTNER INT32_MIN
+typedef struct asj_partner {
+    int32_t score;           /* ASJ_NO_PARTNER = none */
+    uint32_t index;
+} asj_partner;
 
 /* Numbers in a described patch. */
 int32_t asj_patch_length(const asj_match_options *options);
 
 /* Fills view->patches (canonical patches only). */
 asj_status asj_describe(asj_context *context, const asj_match_options *options, asj_view *view);
+/* The part of it that back ends replace: patches and usable are allocated. */
+asj_status asj_describe_frames(asj_context *context, const asj_match_options *options, asj_view *view);
 
 /* The short list: for each L-junction of either image its options->shortlist best partners. */
 asj_status asj_shortlist(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
                          asj_candidates *candidates);
+/* The part of it that back ends replace: the options->shortlist best partners of L-junction i of image 1 from rows[i * shortlist]
+ * on, of j of image 2 from columns[j * shortlist] on, best first; the lists come in empty. */
+asj_status asj_rank_partners(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
+                             asj_partner *rows, asj_partner *columns);
 
 /* Fills distance2 and map of the pair candidate->i, candidate->j from the best pair of frames. Returns 0 when the pair gives no
  * map. */

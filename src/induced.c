@@ -28,8 +28,8 @@ static float difference(const asj_match_options *options, const uint16_t *grey1,
         asj_descriptor_sift(grey1, options->patch_size, unit1);
         asj_descriptor_sift(grey2, options->patch_size, unit2);
     } else {
-        asj_patch_normalise(grey1, samples, unit1);
-        asj_patch_normalise(grey2, samples, unit2);
+        asj_patch_normalise(grey1, options->patch_size, unit1);
+        asj_patch_normalise(grey2, options->patch_size, unit2);
     }
     double product = (double)asj_patch_product(unit1, unit2, length) / ((double)ASJ_UNIT_ONE * ASJ_UNIT_ONE);
     return product < 1 ? (float)sqrt(2 - 2 * product) : 0;

@@ -12,6 +12,8 @@ static void fill_reference(asj_ops *ops)
     ops->field_rows = asj_field_rows;
     ops->isotropic_rows = asj_isotropic_rows;
     ops->scan_rays = asj_scan_rays;
+    ops->describe_frames = asj_describe_frames;
+    ops->rank_partners = asj_rank_partners;
     ops->image_luma = asj_image_luma;
     ops->gradient_slide = asj_gradient_slide;
     ops->gradient_normalise = asj_gradient_normalise;
@@ -19,6 +21,8 @@ static void fill_reference(asj_ops *ops)
     ops->field_block = asj_field_block;
     ops->isotropic_row = asj_isotropic_row;
     ops->blur_row = asj_blur_row;
+    ops->patch_levels = asj_patch_levels;
+    ops->patch_normalise = asj_patch_normalise;
     ops->patch_products = asj_patch_products;
     ops->pyramid_sample = asj_pyramid_sample_reference;
 }

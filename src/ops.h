@@ -5,8 +5,8 @@
 #ifndef ASJ_SRC_OPS_H
 #define ASJ_SRC_OPS_H
 
+#include "distance.h"
 #include "isotropic.h"
-#include "patch.h"
 #include "scan.h"
 
 typedef struct asj_ops {
@@ -26,6 +26,11 @@ typedef struct asj_ops {
     /* asj_scan_rays() (scan.h) */
     asj_status (*scan_rays)(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);
 
+    /* asj_describe_frames() and asj_rank_partners() (distance.h) */
+    asj_status (*describe_frames)(asj_context *context, const asj_match_options *options, asj_view *view);
+    asj_status (*rank_partners)(asj_context *context, const asj_match_options *options, const asj_view *view1,
+                                const asj_view *view2, asj_partner *rows, asj_partner *columns);
+
     /* ---- parts of an image: what an instruction set of the CPU replaces ---- */
 
     /* asj_image_luma() (image.h) */
@@ -44,9 +49,12 @@ typedef struct asj_ops {
     void (*isotropic_row)(const asj_isotropic *test, const asj_frame *frame, int32_t y, const uint16_t *masks, uint16_t *scratch,
                           asj_isotropic_junction *junctions);
 
-    /* asj_blur_row(), asj_patch_products() and asj_pyramid_sample_reference() (patch.h) */
-    void (*blur_row)(const uint16_t *const *rows, const int32_t *taps, int32_t radius, int32_t width, uint16_t *to);
+    /* asj_patch_levels(), asj_patch_normalise() and asj_patch_products() (patch.h) */
+    int32_t (*patch_levels)(const asj_pyramid *pyramid, const asj_patch_grid *grid, int32_t size, uint16_t *grey);
+    void (*patch_normalise)(const uint16_t *grey, int32_t size, int16_t *unit);
     void (*patch_products)(const int16_t *left, const int16_t *right, int32_t length, int32_t count, int32_t *products);
+    /* asj_blur_row() and asj_pyramid_sample_reference() (pyramid.h) */
+    void (*blur_row)(const uint16_t *const *rows, const int32_t *taps, int32_t radius, int32_t width, uint16_t *to);
     int32_t (*pyramid_sample)(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
                               uint16_t *grey);
 } asj_ops;

@@ -1,57 +1,48 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Image pyramids and patches sampled in affine frames. All integer from the grey levels on. */
+/* Patches sampled in affine frames. All integer once a frame is rounded, so that any device gives the same bits. */
 #ifndef ASJ_SRC_PATCH_H
 #define ASJ_SRC_PATCH_H
 
 #include "affine.h"
-#include "image.h"
+#include "pyramid.h"
 
-#define ASJ_PYRAMID_LEVELS 6
 #define ASJ_PATCH_SIDE 24                                  /* largest */
 #define ASJ_PATCH_SAMPLES (ASJ_PATCH_SIDE * ASJ_PATCH_SIDE)
 
-/* Level l holds means of 2^l x 2^l pixels; its pixel (i, j) is centred at ((i + 0.5) 2^l - 0.5, (j + 0.5) 2^l - 0.5) of level
- * 0. Grey levels in 1/128. Each plane has one more column and row than its size: copies of the last ones, so that interpolation
- * needs no test. */
-typedef struct asj_pyramid {
-    int32_t levels;
-    int32_t width[ASJ_PYRAMID_LEVELS];
-    int32_t height[ASJ_PYRAMID_LEVELS];
-    uint16_t *plane[ASJ_PYRAMID_LEVELS]; /* row y of level l at [y * (width[l] + 1)] */
-    const struct asj_ops *ops;           /* the context's */
-} asj_pyramid;
+/* Where the samples of a patch lie: sample (i, j) at (x + i ax + j bx, y + i ay + j by), in 2^-ASJ_GRID_BITS px of level 0. All
+ * of them are within ASJ_GRID_LIMIT px of the origin, so that 32 bits hold every sum and product here. */
+#define ASJ_GRID_BITS 13
+#define ASJ_GRID_LIMIT 131072.0
+typedef struct asj_patch_grid {
+    int32_t level;           /* of the pyramid; -1 = the patch cannot be used: nothing is sampled */
+    int32_t x, y;
+    int32_t ax, ay, bx, by;
+} asj_patch_grid;
 
-/* From an image view: blurred with a Gaussian of standard deviation `smoothing` px (0 = not), then halved. Statuses as
- * asj_detect() has them for images. On failure the caller still frees. */
-asj_status asj_pyramid_create(asj_context *context, const asj_image *image, double smoothing, asj_pyramid *pyramid);
-void asj_pyramid_free(asj_memory *memory, asj_pyramid *pyramid);
+/* The grid of size x size samples p + u a + v b, u (along the rows) and v equally spaced in [start, end]. One that leaves the
+ * limits lies outside of any image by more than a quarter: level -1. */
+void asj_patch_grid_set(const asj_pyramid *pyramid, const asj_affine_frame *frame, int32_t size, double start, double end,
+                        asj_patch_grid *grid);
 
-/* The level on which neighbouring samples that span `area` px^2 (of level 0) are closest to 1 px apart, a little on the fine
- * side. */
-int32_t asj_pyramid_level(const asj_pyramid *pyramid, double area);
+/* The patch's grey levels (1/128), bilinear in 1/256 px, outside the image its border continues; size is a multiple of 4.
+ * Returns how many samples lie inside the image. */
+int32_t asj_patch_levels(const asj_pyramid *pyramid, const asj_patch_grid *grid, int32_t size, uint16_t *grey);
 
-/* Grey levels (1/128) at x[i], y[i] (level 0 pixels), bilinear in 1/256 px; outside the image its border continues. Returns
- * how many lay inside. */
-int32_t asj_pyramid_sample(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
-                           uint16_t *grey);
-int32_t asj_pyramid_sample_reference(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
-                                     uint16_t *grey);
-
-/* Samples size x size grey levels of p + u a + v b, u (along the rows) and v equally spaced in [start, end]. Returns 0 when
- * more than a quarter of them lie outside the image. */
+/* Both, with the context's form of asj_patch_levels(). Returns 0, and zeros for a grid beyond the limits, when more than a
+ * quarter of the samples lie outside the image. */
 int32_t asj_patch_sample(const asj_pyramid *pyramid, const asj_affine_frame *frame, int32_t size, double start, double end,
                          uint16_t *grey);
 
 /* Zero mean and unit norm, in units of 1/ASJ_UNIT_ONE: the product of two such patches over ASJ_UNIT_ONE^2 is their
  * correlation. A floor of one grey level is added to the standard deviation, so that flat patches correlate with nothing. */
 #define ASJ_UNIT_ONE 16384
-void asj_patch_normalise(const uint16_t *grey, int32_t samples, int16_t *unit);
+void asj_patch_normalise(const uint16_t *grey, int32_t size, int16_t *unit);
 
-/* One row of a Gaussian with taps that sum to 2^14: rows[0] is the middle one, rows[2 i - 1] and rows[2 i] those i before and after
- * it; grey levels below 2^15. */
-#define ASJ_BLUR_RADIUS 6 /* 3 sigma of the largest blur */
-#define ASJ_BLUR_ROWS (2 * ASJ_BLUR_RADIUS + 1)
-void asj_blur_row(const uint16_t *const *rows, const int32_t *taps, int32_t radius, int32_t width, uint16_t *to);
+/* What it multiplies N g - sum with, N = size^2, in 2^-32; from the sums of the levels g and of their squares. */
+int32_t asj_patch_unit_scale(int32_t sum, int64_t squares, int32_t size);
+
+/* With the mean in: white everywhere has unit norm. */
+void asj_patch_scale(const uint16_t *grey, int32_t size, int16_t *unit);
 
 /* Exact in 32 bits for unit vectors. */
 int32_t asj_patch_product(const int16_t *left, const int16_t *right, int32_t samples);

@@ -117,7 +117,7 @@ static void tiny_and_flat_images(void **state)
     int16_t unit[ASJ_PATCH_SAMPLES];
     assert_int_equal(asj_patch_sample(&pyramid, &frame, 16, -0.25, 1, grey), 0); /* nearly all outside */
     assert_int_equal(grey[255], 77 * ASJ_GRAY_ONE);
-    asj_patch_normalise(grey, 256, unit);
+    asj_patch_normalise(grey, 16, unit);
     assert_int_equal(asj_patch_product(unit, unit, 256), 0); /* flat: no direction at all */
     asj_descriptor_sift(grey, 16, unit);
     assert_int_equal(asj_patch_product(unit, unit, ASJ_SIFT_LENGTH), 0);
@@ -150,7 +150,7 @@ static void the_product_is_the_correlation(void **state)
         }
         for (int k = 0; k < 2; k++) {
             norm[k] = sqrt(norm[k]) + 16.0 * ASJ_GRAY_ONE; /* the floor of one grey level */
-            asj_patch_normalise(grey[k], 256, unit[k]);
+            asj_patch_normalise(grey[k], 16, unit[k]);
         }
         double one = (double)ASJ_UNIT_ONE * ASJ_UNIT_ONE;
         /* 256 entries of size 1/16 rounded to 1/16384: sqrt(256) / 16 / 16384 / sqrt(6) at one sigma */
@@ -185,7 +185,7 @@ static void patches_do_not_depend_on_the_viewpoint(void **state)
     assert_int_equal(asj_patch_sample(&there, &g, 16, -0.25, 1, grey[1]), 1);
     assert_int_equal(asj_patch_sample(&there, &other, 16, -0.25, 1, grey[2]), 1);
     for (int k = 0; k < 3; k++) {
-        asj_patch_normalise(grey[k], 256, unit[k]);
+        asj_patch_normalise(grey[k], 16, unit[k]);
         asj_descriptor_sift(grey[k], 16, sift[k]);
     }
     const double one = (double)ASJ_UNIT_ONE * ASJ_UNIT_ONE;
@@ -305,6 +305,89 @@ static void variants_give_the_same_bits(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Grids of all sizes, inside, across the border, folded and far away; levels from black to white. */
+static void patch_variants_give_the_same_bits(void **state)
+{
+    (void)state;
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_pyramid pyramid;
+    uint32_t seed = 7;
+    static uint8_t pixels[161 * 147];
+    for (size_t i = 0; i < sizeof pixels; i++)
+        pixels[i] = (uint8_t)(i % 7 ? shuffled(&seed) >> 24 : i % 3 ? 255 : 0);
+    const asj_image image = unit_gray8(pixels, 161, 147);
+    assert_int_equal(asj_pyramid_create(context, &image, 0, &pyramid), ASJ_OK);
+    for (int32_t variant = 0; variant < ASJ_VARIANT_COUNT; variant++) {
+        asj_ops ops;
+        if (!asj_ops_fill(variant, &ops))
+            continue;
+        for (int32_t n = 0; n < 400; n++) {
+            const int32_t size = 8 + 4 * (n % 5), scale = n % 20 == 19 ? 1 << 30 : 1 << (15 + n % 7);
+            int32_t number[6];
+            for (int32_t k = 0; k < 6; k++)
+                number[k] = (int32_t)((shuffled(&seed) >> 8) * (1.0 / 16777216) * scale) - (k < 2 ? 0 : scale / 2);
+            for (int32_t k = 2; k < 6; k++)
+                number[k] /= size;
+            const asj_patch_grid grid = {n % pyramid.levels, number[0], number[1], number[2], number[3], number[4], number[5]};
+            uint16_t expected[ASJ_PATCH_SAMPLES], grey[ASJ_PATCH_SAMPLES];
+            int16_t expected_unit[ASJ_PATCH_SAMPLES], unit[ASJ_PATCH_SAMPLES];
+            const size_t bytes = (size_t)(size * size) * sizeof *grey;
+            assert_int_equal(ops.patch_levels(&pyramid, &grid, size, grey), asj_patch_levels(&pyramid, &grid, size, expected));
+            assert_memory_equal(grey, expected, bytes);
+            for (int32_t i = 0; i < size * size && n % 3 > 0; i++) /* more contrast than interpolation leaves */
+                grey[i] = n % 3 == 1 ? (uint16_t)(shuffled(&seed) % (ASJ_GRAY_MAX + 1)) : i % 2 ? ASJ_GRAY_MAX : 0;
+            asj_patch_normalise(grey, size, expected_unit);
+            ops.patch_normalise(grey, size, unit);
+            assert_memory_equal(unit, expected_unit, bytes);
+        }
+    }
+    asj_pyramid_free(&context->memory, &pyramid);
+    unit_context_free(&counter, &context);
+}
+
+/* Whole-number positions show what the frame says; beyond the limits there is nothing. */
+static void grids_follow_their_frames(void **state)
+{
+    (void)state;
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_pyramid pyramid;
+    make(context, 400, 300, 0, &pyramid);
+    for (int32_t n = 0; n < 50; n++) {
+        const int32_t size = 8 + 4 * (n % 5);
+        const asj_affine_frame f = {150 + n, 140 - n, 20.0 + 2 * n, n - 20.3, 13.7 - n, 100.0 - n};
+        const double step = 1.25 / (size - 1);
+        uint16_t grey[ASJ_PATCH_SAMPLES];
+        asj_patch_grid grid;
+        asj_patch_grid_set(&pyramid, &f, size, -0.25, 1, &grid);
+        assert_int_equal(grid.level, asj_pyramid_level(&pyramid, asj_affine_area(&f) * step * step));
+        assert_int_equal(asj_patch_levels(&pyramid, &grid, size, grey), size * size);
+        for (int32_t k = 0; k < size * size; k++) {
+            const double u = -0.25 + step * (k % size), v = -0.25 + step * (k / size);
+            const float x = (float)(f.x + u * f.ax + v * f.bx), y = (float)(f.y + u * f.ay + v * f.by);
+            uint16_t expected;
+            asj_pyramid_sample_reference(&pyramid, grid.level, &x, &y, 1, &expected);
+            /* along either axis 1/256 px of the level and 48 roundings of 2^-14 px, of a slope of at most 10.3 grey levels per px
+             * and the rounding of pixels */
+            const double off = sqrt(2) * (ldexp(1, grid.level - 8) + 48 * ldexp(1, -14));
+            unit_near("level", n, k, grey[k], expected, 11.3 * ASJ_GRAY_ONE * off + 1);
+        }
+    }
+    const double far[] = {1e5, 1e6, 1e300, NAN, INFINITY};
+    for (size_t n = 0; n < UNIT_COUNT(far); n++)
+        for (int32_t k = 0; k < 6; k++) {
+            double number[6] = {100, 100, 100, 0, 0, 100};
+            number[k] = far[n];
+            const asj_affine_frame f = {number[0], number[1], number[2], number[3], number[4], number[5]};
+            uint16_t grey[ASJ_PATCH_SAMPLES];
+            assert_int_equal(asj_patch_sample(&pyramid, &f, 8, -0.25, 1.5, grey), 0);
+            assert_true(n == 0 || grey[63] == 0);
+        }
+    asj_pyramid_free(&context->memory, &pyramid);
+    unit_context_free(&counter, &context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -317,6 +400,8 @@ int main(void)
         cmocka_unit_test(patches_do_not_depend_on_the_viewpoint),
         cmocka_unit_test(sift_votes_for_the_direction),
         cmocka_unit_test(variants_give_the_same_bits),
+        cmocka_unit_test(patch_variants_give_the_same_bits),
+        cmocka_unit_test(grids_follow_their_frames),
         cmocka_unit_test(out_of_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
