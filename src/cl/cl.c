@@ -2,6 +2,7 @@
 /* A context's device, from the choice to the end. */
 #include "../device.h"
 #include "../opencl.h"
+#include "check.h"
 #include "enumerate.h"
 #include "error.h"
 #include "overrides.h"
@@ -179,6 +180,8 @@ asj_status asj_cl_create(asj_context *context, const char *library)
     asj_status status = search(context, library);
     if (status == ASJ_OK)
         status = make_tables(context);
+    if (status == ASJ_OK)
+        status = asj_cl_check(context);
     if (status == ASJ_OK) {
         fill_ops(context->ops);
         asj_log(context, ASJ_LOG_DEBUG, "OpenCL device: %s", context->cl->name);
@@ -187,7 +190,7 @@ asj_status asj_cl_create(asj_context *context, const char *library)
     asj_cl_free(context);
     if (status != ASJ_ERROR_DEVICE || context->options.backend == ASJ_BACKEND_OPENCL)
         return status;
-    asj_log(context, ASJ_LOG_INFO, "%s: the CPU does the work", context->message);
+    asj_log(context, ASJ_LOG_INFO, "%s; the CPU does the work", context->message);
     context->message[0] = '\0';
     return ASJ_OK;
 }
