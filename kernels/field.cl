@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 2 on a device: candidates for junctions, as in src/field.c. Two forms with the same results: field_pixels, a work item for
+ * each pixel, for devices with thousands of them; field_tiles, a work item for a tile of the image, for processors: there the
+ * planes of src/sector_plan.h, which neighbours share, save most of the work. Planes of the frame as in gradient.cl.
+ *
+ * The table, in ints (src/cl/field_ops.c): a, b of each family; OFFSET_INTS for each offset; where each plain slot ends; which
+ * plain slot each extra slot adds to the total; SECTOR_INTS for each sector. */
+
+typedef struct field_sizes {
+    int radius, sectors, suppress, apart, families, offsets, plain_slots, slots;
+} field_sizes;
+
+#define MARGIN 32
+#define LANES 16 /* pixels of a mask */
+#define MAX_OFFSETS 252 /* of radius 9 */
+
+#define OFFSET_INTS 7
+enum { OFFSET_DX, OFFSET_DY, OFFSET_PLANE, OFFSET_X, OFFSET_Y, OFFSET_CROSS_X, OFFSET_DOT_Y };
+#define SECTOR_INTS 5
+enum { SECTOR_LOW, SECTOR_HIGH, SECTOR_MEAN, SECTOR_SCALE, SECTOR_LEAST };
+
+typedef struct field_table {
+    __global const int *families, *offsets, *boundaries, *extras, *sectors;
+} field_table;
+
+static field_table open_table(const field_sizes *s, __global const int *table)
+{
+    field_table t;
+    t.families = table;
+    t.offsets = t.families + 2 * s->families;
+    t.boundaries = t.offsets + OFFSET_INTS * s->offsets;
+    t.extras = t.boundaries + s->plain_slots;
+    t.sectors = t.extras + (s->slots - s->plain_slots);
+    return t;
+}
+
+/* Distances between two sectors that are neither parallel nor opposite, as bits. */
+static ulong make_partners(const field_sizes *s)
+{
+    const int first = s->apart, last = s->sectors / 2 - s->apart;
+    return last < first ? 0 : (((ulong)1 << (last + 1)) - 1) & ~(((ulong)1 << first) - 1);
+}
+
+/* Whether two of the sectors whose bits are set have such a distance. */
+static int has_pair(ulong sectors, int count, ulong partners)
+{
+    ulong found = 0;
+    for (ulong rest = sectors; rest; rest &= rest - 1) {
+        const int k = 63 - (int)clz(rest & (0 - rest));
+        found |= (sectors >> k | sectors << (count - k)) & partners;
+    }
+    return found != 0;
+}
+
+/* ---- field_pixels: a work-group takes get_local_size() pixels, along the row a multiple of LANES ---- */
+
+static int strength(__local const ushort *slot, int step, __global const int *sector)
+{
+    const int sum = (ushort)(slot[sector[SECTOR_HIGH] * step] - slot[sector[SECTOR_LOW] * step]);
+    return (uint)max(sum - sector[SECTOR_MEAN], 0) * (uint)sector[SECTOR_SCALE] >> 16;
+}
+
+/* The peaks of a pixel, one bit for each sector. */
+static ulong find_peaks(const field_sizes *s, __global const int *sectors, __local const ushort *slot, int step)
+{
+    ulong peaks = 0;
+    for (int k = 0; k < s->sectors; k++) {
+        const int here = strength(slot, step, sectors + SECTOR_INTS * k);
+        int largest = here >= sectors[SECTOR_INTS * k + SECTOR_LEAST];
+        for (int d = 1; largest && d <= s->suppress; d++) {
+            const int before = k >= d ? k - d : k - d + s->sectors, after = k + d < s->sectors ? k + d : k + d - s->sectors;
+            largest = here > strength(slot, step, sectors + SECTOR_INTS * before) &&
+                      here >= strength(slot, step, sectors + SECTOR_INTS * after);
+        }
+        peaks |= (ulong)largest << k;
+    }
+    return peaks;
+}
+
+/* The slots of a pixel, `step` apart; (gx, gy) of the pixel at `here`, rows `pitch` apart. */
+static void fill_slots(const field_sizes *s, const field_table *t, __local const short2 *here, int pitch, __local ushort *slot,
+                       int step)
+{
+    ushort sum = 0;
+    int i = 0;
+    for (int j = 0; j < s->plain_slots; j++) {
+        for (const int end = t->boundaries[j]; i < end; i++) {
+            __global const int *o = t->offsets + OFFSET_INTS * i;
+            const short2 g = here[o[OFFSET_DY] * pitch + o[OFFSET_DX]];
+            const int cross = (g.x * o[OFFSET_Y] >> 16) - (g.y * o[OFFSET_CROSS_X] >> 16);
+            const int dot = (g.x * o[OFFSET_X] >> 16) - (g.y * o[OFFSET_DOT_Y] >> 16);
+            sum += (ushort)max((int)abs(cross) - (int)abs(dot), 0);
+        }
+        slot[j * step] = sum;
+    }
+    for (int j = s->plain_slots; j < s->slots; j++)
+        slot[j * step] = sum + slot[t->extras[j - s->plain_slots] * step];
+}
+
+__kernel void field_pixels(__global const short *gradient_x, __global const short *gradient_y, int width, int stride, int base,
+                           int top, int bottom, int blocks, __global const int *table, field_sizes sizes, __global ushort *masks,
+                           __local short2 *gradient, __local ushort *slots, __local uchar *found)
+{
+    const field_table t = open_table(&sizes, table);
+    const int columns = (int)get_local_size(0), rows = (int)get_local_size(1), items = columns * rows;
+    const int item = (int)(get_local_id(1) * get_local_size(0) + get_local_id(0));
+    const int pitch = columns + 2 * sizes.radius, area = pitch * (rows + 2 * sizes.radius);
+    const int left = (int)get_group_id(0) * columns, first = top + (int)get_group_id(1) * rows;
+    for (int i = item; i < area; i += items) {
+        const int x = left - sizes.radius + i % pitch, y = first - sizes.radius + i / pitch;
+        const int inside = x < width + sizes.radius && y < bottom + sizes.radius;
+        const size_t at = (size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN);
+        gradient[i] = inside ? (short2)(gradient_x[at], gradient_y[at]) : (short2)(0, 0);
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    fill_slots(&sizes, &t, gradient + ((int)get_local_id(1) + sizes.radius) * pitch + (int)get_local_id(0) + sizes.radius, pitch,
+               slots + item, items);
+    found[item] = (uchar)has_pair(find_peaks(&sizes, t.sectors, slots + item, items), sizes.sectors, make_partners(&sizes));
+    barrier(CLK_LOCAL_MEM_FENCE);
+    const int x = left + (int)get_local_id(0), y = first + (int)get_local_id(1);
+    if (x % LANES == 0 && x < width && y < bottom) {
+        uint mask = 0;
+        for (int i = 0; i < LANES && x + i < width; i++)
+            mask |= (uint)found[item + i] << i;
+        masks[(size_t)(y - top) * (size_t)blocks + (size_t)(x / LANES)] = (ushort)mask;
+    }
+}
+
+/* ---- field_tiles: a work item takes TILE x tile_rows pixels, GROUP pixels of a row at once; it is the whole work-group ---- */
+
+#define TILE 128
+#define GROUP 64
+
+static ushort16 excess(ushort16 a, ushort16 b)
+{
+    return max(a, b) - b;
+}
+
+/* The planes of src/sector_plan.h for one row of pixels. */
+static void gamma_planes(__global const int *family, int families, __global const short *gx, __global const short *gy, int width,
+                         int plane_stride, __local ushort *planes)
+{
+    for (int f = 0; f < families; f++, family += 2, planes += 4 * plane_stride) {
+        const short16 a = (short)family[0], b = (short)family[1];
+        for (int i = 0; i < width; i += LANES) {
+            const short16 x = vload16(0, gx + i), y = vload16(0, gy + i);
+            const short16 xa = mul_hi(x, a), xb = mul_hi(x, b);
+            const ushort16 cross = abs(xb - mul_hi(y, a)), dot = abs(xa - mul_hi(y, -b));
+            const ushort16 steep_cross = abs(xa - mul_hi(y, b)), steep_dot = abs(xb - mul_hi(y, -a));
+            vstore16(excess(cross, dot), 0, planes + i);
+            vstore16(excess(dot, cross), 0, planes + plane_stride + i);
+            vstore16(excess(steep_cross, steep_dot), 0, planes + 2 * plane_stride + i);
+            vstore16(excess(steep_dot, steep_cross), 0, planes + 3 * plane_stride + i);
+        }
+    }
+}
+
+static void store_group(ushort16 s0, ushort16 s1, ushort16 s2, ushort16 s3, __local ushort *to)
+{
+    vstore16(s0, 0, to);
+    vstore16(s1, 1, to);
+    vstore16(s2, 2, to);
+    vstore16(s3, 3, to);
+}
+
+/* The slots of a group of pixels; at[i]: where offset i's gamma of the group's first pixel is. */
+static void group_slots(const field_sizes *s, const field_table *t, __local const ushort *planes, const int *at,
+                        __local ushort *slots)
+{
+    ushort16 s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+    int i = 0, j = 0;
+    for (; j < s->plain_slots; j++) {
+        for (const int end = t->boundaries[j]; i < end; i++) {
+            __local const ushort *gamma = planes + at[i];
+            s0 += vload16(0, gamma);
+            s1 += vload16(1, gamma);
+            s2 += vload16(2, gamma);
+            s3 += vload16(3, gamma);
+        }
+        store_group(s0, s1, s2, s3, slots + j * GROUP);
+    }
+    for (; j < s->slots; j++) {
+        __local const ushort *low = slots + t->extras[j - s->plain_slots] * GROUP;
+        store_group(s0 + vload16(0, low), s1 + vload16(1, low), s2 + vload16(2, low), s3 + vload16(3, low), slots + j * GROUP);
+    }
+}
+
+/* Strengths of a group, with `suppress` sectors repeated at either end; returns whether any reaches the least of a candidate's
+ * branch. */
+static int group_strengths(const field_sizes *s, __global const int *sector, __local const ushort *slots, __local short *strengths)
+{
+    const int around = s->sectors * GROUP;
+    short16 some = 0;
+    for (int k = 0; k < s->sectors; k++, sector += SECTOR_INTS) {
+        __local const ushort *low = slots + sector[SECTOR_LOW] * GROUP, *high = slots + sector[SECTOR_HIGH] * GROUP;
+        __local short *z = strengths + (k + s->suppress) * GROUP;
+        const ushort16 mean = (ushort)sector[SECTOR_MEAN], scale = (ushort)sector[SECTOR_SCALE];
+        const short16 least = (short)(sector[SECTOR_LEAST] - 1);
+        for (int v = 0; v < GROUP / LANES; v++) {
+            const short16 here = as_short16(mul_hi(excess(vload16(v, high) - vload16(v, low), mean), scale));
+            some |= here > least;
+            vstore16(here, v, z);
+        }
+    }
+    if (!any(some))
+        return 0;
+    for (int i = 0; i < s->suppress * GROUP / LANES; i++) {
+        vstore16(vload16(i, strengths + around), i, strengths);
+        vstore16(vload16(i, strengths + s->suppress * GROUP), i, strengths + around + s->suppress * GROUP);
+    }
+    return 1;
+}
+
+/* -1 where the sector at z is a peak. */
+static short16 is_peak(__local const short *z, int suppress, int least)
+{
+    const short16 here = vload16(0, z);
+    short16 before = (short)(least - 1), after = 0;
+    for (int d = 1; d <= suppress; d++) {
+        before = max(before, vload16(0, z - d * GROUP));
+        after = max(after, vload16(0, z + d * GROUP));
+    }
+    return (here > before) & (here >= after);
+}
+
+/* The candidates among LANES pixels; z: their strengths of sector 0. */
+static uint find_candidates(const field_sizes *s, __global const int *sector, __local const short *z, ulong partners)
+{
+    ushort words[4 * LANES], lanes[LANES];
+    short16 seen = 0, twice = 0;
+    uint mask = 0;
+    for (int word = 0, k = 0; word < 4; word++) {
+        short16 bits = 0;
+        for (int bit = 0; bit < 16 && k < s->sectors; bit++, k++, z += GROUP, sector += SECTOR_INTS) {
+            const short16 peak = is_peak(z, s->suppress, sector[SECTOR_LEAST]);
+            twice |= seen & peak;
+            seen |= peak;
+            bits |= peak & (short)(1 << bit);
+        }
+        vstore16(as_ushort16(bits), word, words);
+    }
+    if (!any(twice))
+        return 0;
+    vstore16(as_ushort16(twice), 0, lanes);
+    for (int i = 0; i < LANES; i++)
+        if (lanes[i]) {
+            const ulong peaks = words[i] | (ulong)words[LANES + i] << 16 | (ulong)words[2 * LANES + i] << 32 |
+                                (ulong)words[3 * LANES + i] << 48;
+            mask |= (uint)has_pair(peaks, s->sectors, partners) << i;
+        }
+    return mask;
+}
+
+__kernel void field_tiles(__global const short *gradient_x, __global const short *gradient_y, int width, int stride, int base,
+                          int top, int bottom, int blocks, __global const int *table, field_sizes sizes, __global ushort *masks,
+                          int tile_rows, int plane_stride, __local ushort *planes, __local ushort *slots, __local short *strengths)
+{
+    const field_table t = open_table(&sizes, table);
+    const int radius = sizes.radius, depth = 2 * radius + 1, row_size = 4 * sizes.families * plane_stride;
+    const int left = TILE * (int)get_global_id(0), right = min(left + TILE, blocks * LANES);
+    const int first = top + tile_rows * (int)get_global_id(1), last = min(first + tile_rows, bottom);
+    const ulong partners = make_partners(&sizes);
+    int at[MAX_OFFSETS];
+    for (int y = first - radius; y < last + radius; y++) {
+        const size_t from = (size_t)(y - base) * (size_t)stride + (size_t)(left - radius + MARGIN);
+        const int centre = y - radius;
+        gamma_planes(t.families, sizes.families, gradient_x + from, gradient_y + from, right - left + 2 * radius, plane_stride,
+                     planes + (y + depth) % depth * row_size);
+        if (centre < first)
+            continue;
+        for (int i = 0; i < sizes.offsets; i++) {
+            __global const int *o = t.offsets + OFFSET_INTS * i;
+            at[i] = (centre + o[OFFSET_DY] + depth) % depth * row_size + o[OFFSET_PLANE] * plane_stride + o[OFFSET_DX] + radius;
+        }
+        __global ushort *to = masks + (size_t)(centre - top) * (size_t)blocks;
+        for (int group = left; group < right; group += GROUP) {
+            group_slots(&sizes, &t, planes + group - left, at, slots);
+            const int interesting = group_strengths(&sizes, t.sectors, slots, strengths);
+            for (int x = group; x < min(group + GROUP, right); x += LANES) {
+                __local const short *z = strengths + sizes.suppress * GROUP + x - group;
+                const uint mask = interesting ? find_candidates(&sizes, t.sectors, z, partners) : 0;
+                to[x / LANES] = (ushort)(width - x < LANES ? mask & ((1u << (width - x)) - 1) : mask);
+            }
+        }
+    }
+}

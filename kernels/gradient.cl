@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 1 on a device: the normalised gradient of src/gradient.c, where the formulas are explained. A work item takes eight pixels
+ * of a row. Planes are laid out as in src/image.h: sample (x, y) at [(y - base) * stride + x + MARGIN], row `base` being the first
+ * that the buffer holds. Both kernels write the margin too, as zeros. */
+
+#define MARGIN 32
+#define LIMIT 93 /* round(256 / (sigma_0 L)) */
+/* C_c = round(1024 c / 0.7825) */
+#define UNITS(c) ((2 * 1024 * 10000 * (c) + 7825) / (2 * 7825))
+
+/* Floor of the square root, 0 <= s < 2^31: the estimate is off by one at most. */
+static int8 integer_sqrt(int8 s)
+{
+    int8 root = convert_int8(sqrt(convert_float8(s)));
+    root += root * root > s;
+    return root - ((root + 1) * (root + 1) <= s);
+}
+
+/* Floor of a / b, 0 <= a < 2^31 - 2^12, 0 < b < 2^31. The first estimate is good to 2^-20 of itself, the second, of what is left,
+ * to one. */
+static int8 quotient(int8 a, int8 b)
+{
+    const float8 inverse = 1.0f / convert_float8(b);
+    int8 q = convert_int8(convert_float8(a) * inverse);
+    int8 rest = a - q * b;
+    const int8 more = convert_int8(convert_float8(rest) * inverse);
+    rest -= more * b;
+    q += more;
+    return q + (rest < 0) - (rest >= b);
+}
+
+/* Differences over two pixels, in 1/256 grey level per pixel; zero outside the image. */
+static void differences(__global const ushort *gray, int x, int y, int width, int height, int stride, int base, int8 *dx, int8 *dy)
+{
+    const int8 column = x + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
+    __global const ushort *row = gray + (size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN);
+    const ushort8 here = vload8(0, row);
+    const ushort8 left = select(vload8(0, row - 1), here, convert_ushort8(column == 0));
+    const ushort8 right = select(vload8(0, row + 1), here, convert_ushort8(column == width - 1));
+    const ushort8 above = y > 0 ? vload8(0, row - stride) : here, below = y + 1 < height ? vload8(0, row + stride) : here;
+    const int8 inside = column < width;
+    *dx = (convert_int8(right) - convert_int8(left)) & inside;
+    *dy = (convert_int8(below) - convert_int8(above)) & inside;
+}
+
+__kernel void gradient_norms(__global const ushort *gray, __global ushort *norms, int width, int height, int stride, int base,
+                             int first, int last)
+{
+    const int x = 8 * (int)get_global_id(0) - MARGIN, y = first + (int)get_global_id(1);
+    if (x >= stride - MARGIN || y >= last)
+        return;
+    int8 dx = 0, dy = 0;
+    if (x >= 0 && x < width && y >= 0 && y < height)
+        differences(gray, x, y, width, height, stride, base, &dx, &dy);
+    vstore8(convert_ushort8(integer_sqrt(dx * dx + dy * dy)), 0,
+            norms + (size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN));
+}
+
+/* Sum of the norms of the 5x5 window around each pixel. */
+static int8 window_sum(__global const ushort *norms, int stride)
+{
+    int8 sum = 0;
+    for (int row = -2; row <= 2; row++)
+        for (int column = -2; column <= 2; column++)
+            sum += convert_int8(vload8(0, norms + row * stride + column));
+    return sum;
+}
+
+__kernel void gradient_normalise(__global const ushort *gray, __global const ushort *norms, __global short *gradient_x,
+                                 __global short *gradient_y, int width, int height, int stride, int base, int first, int last,
+                                 int epsilon)
+{
+    const int x = 8 * (int)get_global_id(0) - MARGIN, y = first + (int)get_global_id(1);
+    if (x >= stride - MARGIN || y >= last)
+        return;
+    const size_t at = (size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN);
+    int8 dx = 0, dy = 0;
+    if (x >= 0 && x < width && y >= 0 && y < height) {
+        const int8 column = x + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
+        const int rows = min(y + 2, height - 1) - max(y - 2, 0) + 1;
+        const int8 count = rows * max(min(column + 2, width - 1) - max(column - 2, 0) + 1, 1);
+        const int8 least = (convert_int8(vload8(0, norms + at)) * count * LIMIT) >> 8;
+        const int8 scale = quotient(UNITS(count) << 16, max(window_sum(norms + at, stride) + count * epsilon, least));
+        differences(gray, x, y, width, height, stride, base, &dx, &dy);
+        dx = (dx * scale + 32768) >> 16;
+        dy = (dy * scale + 32768) >> 16;
+    }
+    vstore8(convert_short8(dx), 0, gradient_x + at);
+    vstore8(convert_short8(dy), 0, gradient_y + at);
+}
