@@ -50,7 +50,9 @@ int main(int argc, char **argv)
         case '2': set.which[1] = (int32_t)strtol(optarg, NULL, 10); break;
         case 'w': set.width = (int32_t)strtol(optarg, NULL, 10); break;
         case 'h': set.height = (int32_t)strtol(optarg, NULL, 10); break;
-        default: fputs("usage: room_judge [--room SEED] [--first N] [--second N] [--width W] [--height H] < POINTS\n", stderr); return 2;
+        default:
+            fputs("usage: room_judge [--room SEED] [--first N] [--second N] [--width W] [--height H] < POINTS\n", stderr);
+            return 2;
         }
     return judge(&set);
 }

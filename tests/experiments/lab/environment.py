@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 MARK = "ASJ_EXPERIMENTS_PYTHON"
-PROGRAMS = ("asj-cli", "noise", "sample-room", "isotropic_junctions", "room_judge")
+PROGRAMS = ("asj-cli", "accuracy", "noise", "sample-room", "isotropic_junctions", "room_judge")
 
 
 class Unavailable(Exception):

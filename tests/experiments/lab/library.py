@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 from . import junctions
 
-PATHS = {"asj-cli": "cli/asj-cli", "noise": "tests/accuracy/noise", "repeatability": "tests/accuracy/repeatability",
-         "match_room": "tests/accuracy/match_room", "sample-room": "tests/synth/sample-room",
+PATHS = {"asj-cli": "cli/asj-cli", "noise": "tests/accuracy/noise", "accuracy": "tests/accuracy/accuracy",
+         "repeatability": "tests/accuracy/repeatability", "sample-room": "tests/synth/sample-room",
          "isotropic_junctions": "tests/experiments/isotropic_junctions", "room_judge": "tests/experiments/room_judge"}
 
 
@@ -82,6 +82,16 @@ class Library:
 
     def detect(self, detector, image, limit=None):
         return junctions.read_json(self.detect_file(detector, image, limit)[0])
+
+    def match(self, arguments, image1, image2, limit=None):
+        """What asj-cli match writes as JSON, line segments included, and the seconds that the program took."""
+        def compute():
+            path = self._file(".match.json")
+            words = ("match", "--quiet", "--threads", 1) + tuple(arguments) + ("--lines", "-o", path, image1, image2)
+            seconds = self.run("asj-cli", words, limit)[1]
+            with open(path) as file:
+                return json.load(file), seconds
+        return self._once(("match", tuple(arguments), image1, image2), compute)
 
     def version(self):
         return self.run("asj-cli", ["--version"])[0].strip()

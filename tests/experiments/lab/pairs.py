@@ -22,8 +22,9 @@ class Pair:
     detections: dict = field(default_factory=dict)   # name of another detector -> its files for image 1 and 2
 
     @property
-    def rendered(self):
-        return self.kind == ROOM
+    def key(self):
+        """The name as part of a file's name."""
+        return self.name.replace(",", "").replace(" ", "-")
 
 
 def _detections(folder):
@@ -74,8 +75,10 @@ def render(library, folder, quick):
     for name, arguments in ROOMS[:2] if quick else ROOMS:
         if quick:
             arguments += ("--width", "526", "--height", "390")
-        place = os.path.join(folder, name.replace(",", "").replace(" ", "-"))
+        pair = Pair(name, ROOM, "", "", room=arguments)
+        place = os.path.join(folder, pair.key)
         os.makedirs(place)
         library.run("sample-room", arguments + (place,))
-        out.append(Pair(name, ROOM, os.path.join(place, "1.png"), os.path.join(place, "2.png"), room=arguments))
+        pair.image1, pair.image2 = os.path.join(place, "1.png"), os.path.join(place, "2.png")
+        out.append(pair)
     return out

@@ -36,7 +36,7 @@ class Session:
         """First views: of the photographs, where there are any, else of the rendered rooms."""
         folder = os.path.join(self.work, "images")
         chosen = self.real or self.rendered
-        return [images.Picture(p.name.replace(",", "").replace(" ", "-"), p.image1, folder) for p in chosen]
+        return [images.Picture(p.key + "-1", p.image1, folder) for p in chosen]
 
     def about(self, seconds):
         real = ", ".join(p.name for p in self.real) or "none given: rendered pairs alone (--pairs DIR names a folder of pairs)"

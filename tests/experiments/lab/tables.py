@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""The layout of the matching tables."""
+import numpy as np
+
+
+def accuracy(cell):
+    """Percent; a pair without a match counts as 0."""
+    return 100.0 * cell["correct"] / cell["total"] if cell["total"] else 0.0
+
+
+def summary(cells):
+    """Totals over pairs: average accuracy in percent, correct, total, mean seconds."""
+    return {"average": float(np.mean([accuracy(c) for c in cells])), "correct": sum(c["correct"] for c in cells),
+            "total": sum(c["total"] for c in cells), "seconds": float(np.mean([c["seconds"] for c in cells]))}
+
+
+def accuracy_rows(methods, names, cells):
+    """(header, rows): method, average accuracy, correct / total, seconds a pair, then every pair. cells: (method, pair) -> counts"""
+    header = ["", "average accuracy, %", "correct / total", "s a pair"] + list(names)
+    rows = []
+    for method in methods:
+        mine = {n: cells[method, n] for n in names if (method, n) in cells}
+        if not mine:
+            continue
+        all_of = summary(mine.values())
+        partly = "" if len(mine) == len(names) else " (%d pairs)" % len(mine)
+        seconds = "-" if np.isnan(all_of["seconds"]) else "%.2f" % all_of["seconds"]
+        row = [method, "%.1f%s" % (all_of["average"], partly), "%d / %d" % (all_of["correct"], all_of["total"]), seconds]
+        rows.append(row + ["%d / %d" % (mine[n]["correct"], mine[n]["total"]) if n in mine else "-" for n in names])
+    return header, rows
