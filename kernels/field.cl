@@ -126,126 +126,135 @@ __kernel void field_pixels(__global const short *gradient_x, __global const shor
     }
 }
 
-/* ---- field_tiles: a work item takes TILE x tile_rows pixels, GROUP pixels of a row at once; it is the whole work-group ---- */
+/* ---- field_tiles: a work item takes TILE x tile_rows pixels, GROUP vectors of a row at once; it is the whole work-group ---- */
 
-#define TILE 128
-#define GROUP 64
+#define TILE 128 /* pixels */
+#define GROUP 4  /* vectors of LANES pixels */
 
-static ushort16 excess(ushort16 a, ushort16 b)
+/* 16 numbers from anywhere. */
+struct __attribute__((packed)) anywhere {
+    ushort16 numbers;
+};
+
+static ushort16 load(__local const ushort *from)
 {
-    return max(a, b) - b;
+    return ((__local const struct anywhere *)from)->numbers;
 }
 
-/* The planes of src/sector_plan.h for one row of pixels. */
+/* The planes of src/sector_plan.h for one row of pixels, in vectors. */
 static void gamma_planes(__global const int *family, int families, __global const short *gx, __global const short *gy, int width,
-                         int plane_stride, __local ushort *planes)
+                         int plane_stride, __local ushort16 *planes)
 {
     for (int f = 0; f < families; f++, family += 2, planes += 4 * plane_stride) {
         const short16 a = (short)family[0], b = (short)family[1];
-        for (int i = 0; i < width; i += LANES) {
-            const short16 x = vload16(0, gx + i), y = vload16(0, gy + i);
-            const short16 xa = mul_hi(x, a), xb = mul_hi(x, b);
-            const ushort16 cross = abs(xb - mul_hi(y, a)), dot = abs(xa - mul_hi(y, -b));
-            const ushort16 steep_cross = abs(xa - mul_hi(y, b)), steep_dot = abs(xb - mul_hi(y, -a));
-            vstore16(excess(cross, dot), 0, planes + i);
-            vstore16(excess(dot, cross), 0, planes + plane_stride + i);
-            vstore16(excess(steep_cross, steep_dot), 0, planes + 2 * plane_stride + i);
-            vstore16(excess(steep_dot, steep_cross), 0, planes + 3 * plane_stride + i);
+        for (int i = 0; i < width; i++) {
+            const short16 x = vload16(i, gx), y = vload16(i, gy);
+            const short16 xa = high_product(x, a), xb = high_product(x, b);
+            const ushort16 cross = magnitude(xb - high_product(y, a)), dot = magnitude(xa - high_product(y, -b));
+            const ushort16 steep_cross = magnitude(xa - high_product(y, b)), steep_dot = magnitude(xb - high_product(y, -a));
+            planes[i] = excess(cross, dot);
+            planes[plane_stride + i] = excess(dot, cross);
+            planes[2 * plane_stride + i] = excess(steep_cross, steep_dot);
+            planes[3 * plane_stride + i] = excess(steep_dot, steep_cross);
         }
     }
-}
-
-static void store_group(ushort16 s0, ushort16 s1, ushort16 s2, ushort16 s3, __local ushort *to)
-{
-    vstore16(s0, 0, to);
-    vstore16(s1, 1, to);
-    vstore16(s2, 2, to);
-    vstore16(s3, 3, to);
 }
 
 /* The slots of a group of pixels; at[i]: where offset i's gamma of the group's first pixel is. */
 static void group_slots(const field_sizes *s, const field_table *t, __local const ushort *planes, const int *at,
-                        __local ushort *slots)
+                        __local ushort16 *slots)
 {
     ushort16 s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+    __local ushort16 *slot = slots;
     int i = 0, j = 0;
-    for (; j < s->plain_slots; j++) {
+    for (; j < s->plain_slots; j++, slot += GROUP) {
         for (const int end = t->boundaries[j]; i < end; i++) {
             __local const ushort *gamma = planes + at[i];
-            s0 += vload16(0, gamma);
-            s1 += vload16(1, gamma);
-            s2 += vload16(2, gamma);
-            s3 += vload16(3, gamma);
+            s0 += load(gamma);
+            s1 += load(gamma + LANES);
+            s2 += load(gamma + 2 * LANES);
+            s3 += load(gamma + 3 * LANES);
         }
-        store_group(s0, s1, s2, s3, slots + j * GROUP);
+        slot[0] = s0;
+        slot[1] = s1;
+        slot[2] = s2;
+        slot[3] = s3;
     }
-    for (; j < s->slots; j++) {
-        __local const ushort *low = slots + t->extras[j - s->plain_slots] * GROUP;
-        store_group(s0 + vload16(0, low), s1 + vload16(1, low), s2 + vload16(2, low), s3 + vload16(3, low), slots + j * GROUP);
+    for (; j < s->slots; j++, slot += GROUP) {
+        __local const ushort16 *low = slots + t->extras[j - s->plain_slots] * GROUP;
+        slot[0] = s0 + low[0];
+        slot[1] = s1 + low[1];
+        slot[2] = s2 + low[2];
+        slot[3] = s3 + low[3];
     }
 }
 
 /* Strengths of a group, with `suppress` sectors repeated at either end; returns whether any reaches the least of a candidate's
  * branch. */
-static int group_strengths(const field_sizes *s, __global const int *sector, __local const ushort *slots, __local short *strengths)
+static int group_strengths(const field_sizes *s, __global const int *sector, __local const ushort16 *slots,
+                           __local short16 *strengths)
 {
-    const int around = s->sectors * GROUP;
+    __local short16 *z = strengths + s->suppress * GROUP;
     short16 some = 0;
-    for (int k = 0; k < s->sectors; k++, sector += SECTOR_INTS) {
-        __local const ushort *low = slots + sector[SECTOR_LOW] * GROUP, *high = slots + sector[SECTOR_HIGH] * GROUP;
-        __local short *z = strengths + (k + s->suppress) * GROUP;
+    for (int k = 0; k < s->sectors; k++, sector += SECTOR_INTS, z += GROUP) {
+        __local const ushort16 *low = slots + sector[SECTOR_LOW] * GROUP, *high = slots + sector[SECTOR_HIGH] * GROUP;
         const ushort16 mean = (ushort)sector[SECTOR_MEAN], scale = (ushort)sector[SECTOR_SCALE];
         const short16 least = (short)(sector[SECTOR_LEAST] - 1);
-        for (int v = 0; v < GROUP / LANES; v++) {
-            const short16 here = as_short16(mul_hi(excess(vload16(v, high) - vload16(v, low), mean), scale));
-            some |= here > least;
-            vstore16(here, v, z);
+        for (int v = 0; v < GROUP; v++) {
+            z[v] = as_short16(high_product_unsigned(excess(high[v] - low[v], mean), scale));
+            some |= z[v] > least;
         }
     }
-    if (!any(some))
+    if (!any16(some))
         return 0;
-    for (int i = 0; i < s->suppress * GROUP / LANES; i++) {
-        vstore16(vload16(i, strengths + around), i, strengths);
-        vstore16(vload16(i, strengths + s->suppress * GROUP), i, strengths + around + s->suppress * GROUP);
+    for (int i = 0; i < s->suppress * GROUP; i++) {
+        strengths[i] = strengths[s->sectors * GROUP + i];
+        z[i] = strengths[s->suppress * GROUP + i];
     }
     return 1;
 }
 
 /* -1 where the sector at z is a peak. */
-static short16 is_peak(__local const short *z, int suppress, int least)
+static short16 is_peak(__local const short16 *z, int suppress, int least)
 {
-    const short16 here = vload16(0, z);
     short16 before = (short)(least - 1), after = 0;
     for (int d = 1; d <= suppress; d++) {
-        before = max(before, vload16(0, z - d * GROUP));
-        after = max(after, vload16(0, z + d * GROUP));
+        before = max(before, z[-d * GROUP]);
+        after = max(after, z[d * GROUP]);
     }
-    return (here > before) & (here >= after);
+    return (z[0] > before) & (z[0] >= after);
 }
 
 /* The candidates among LANES pixels; z: their strengths of sector 0. */
-static uint find_candidates(const field_sizes *s, __global const int *sector, __local const short *z, ulong partners)
+static uint find_candidates(const field_sizes *s, __global const int *sector, __local const short16 *z, ulong partners)
 {
-    ushort words[4 * LANES], lanes[LANES];
-    short16 seen = 0, twice = 0;
+    union {
+        ushort16 vectors[4];
+        ushort numbers[4][LANES];
+    } words;
+    union {
+        short16 vector;
+        short numbers[LANES];
+    } twice;
+    short16 seen = 0;
     uint mask = 0;
+    twice.vector = 0;
     for (int word = 0, k = 0; word < 4; word++) {
         short16 bits = 0;
         for (int bit = 0; bit < 16 && k < s->sectors; bit++, k++, z += GROUP, sector += SECTOR_INTS) {
             const short16 peak = is_peak(z, s->suppress, sector[SECTOR_LEAST]);
-            twice |= seen & peak;
+            twice.vector |= seen & peak;
             seen |= peak;
             bits |= peak & (short)(1 << bit);
         }
-        vstore16(as_ushort16(bits), word, words);
+        words.vectors[word] = as_ushort16(bits);
     }
-    if (!any(twice))
+    if (!any16(twice.vector))
         return 0;
-    vstore16(as_ushort16(twice), 0, lanes);
     for (int i = 0; i < LANES; i++)
-        if (lanes[i]) {
-            const ulong peaks = words[i] | (ulong)words[LANES + i] << 16 | (ulong)words[2 * LANES + i] << 32 |
-                                (ulong)words[3 * LANES + i] << 48;
+        if (twice.numbers[i]) {
+            const ulong peaks = words.numbers[0][i] | (ulong)words.numbers[1][i] << 16 | (ulong)words.numbers[2][i] << 32 |
+                                (ulong)words.numbers[3][i] << 48;
             mask |= (uint)has_pair(peaks, s->sectors, partners) << i;
         }
     return mask;
@@ -253,33 +262,38 @@ static uint find_candidates(const field_sizes *s, __global const int *sector, __
 
 __kernel void field_tiles(__global const short *gradient_x, __global const short *gradient_y, int width, int stride, int base,
                           int top, int bottom, int blocks, __global const int *table, field_sizes sizes, __global ushort *masks,
-                          int tile_rows, int plane_stride, __local ushort *planes, __local ushort *slots, __local short *strengths)
+                          int tile_rows, int plane_stride, __local ushort16 *planes, __local ushort16 *slots,
+                          __local short16 *strengths)
 {
     const field_table t = open_table(&sizes, table);
     const int radius = sizes.radius, depth = 2 * radius + 1, row_size = 4 * sizes.families * plane_stride;
     const int left = TILE * (int)get_global_id(0), right = min(left + TILE, blocks * LANES);
+    const int reach = (right - left + 2 * radius + LANES - 1) / LANES;
     const int first = top + tile_rows * (int)get_global_id(1), last = min(first + tile_rows, bottom);
     const ulong partners = make_partners(&sizes);
     int at[MAX_OFFSETS];
     for (int y = first - radius; y < last + radius; y++) {
         const size_t from = (size_t)(y - base) * (size_t)stride + (size_t)(left - radius + MARGIN);
         const int centre = y - radius;
-        gamma_planes(t.families, sizes.families, gradient_x + from, gradient_y + from, right - left + 2 * radius, plane_stride,
+        gamma_planes(t.families, sizes.families, gradient_x + from, gradient_y + from, reach, plane_stride,
                      planes + (y + depth) % depth * row_size);
         if (centre < first)
             continue;
         for (int i = 0; i < sizes.offsets; i++) {
             __global const int *o = t.offsets + OFFSET_INTS * i;
-            at[i] = (centre + o[OFFSET_DY] + depth) % depth * row_size + o[OFFSET_PLANE] * plane_stride + o[OFFSET_DX] + radius;
+            at[i] = ((centre + o[OFFSET_DY] + depth) % depth * row_size + o[OFFSET_PLANE] * plane_stride) * LANES +
+                    o[OFFSET_DX] + radius;
         }
-        __global ushort *to = masks + (size_t)(centre - top) * (size_t)blocks;
-        for (int group = left; group < right; group += GROUP) {
-            group_slots(&sizes, &t, planes + group - left, at, slots);
+        __global ushort *to = masks + (size_t)(centre - top) * (size_t)blocks + (size_t)(left / LANES);
+        for (int x = left; x < right; x += GROUP * LANES, to += GROUP) {
+            const int runs = min(GROUP, (right - x) / LANES);
+            group_slots(&sizes, &t, (__local const ushort *)planes + x - left, at, slots);
             const int interesting = group_strengths(&sizes, t.sectors, slots, strengths);
-            for (int x = group; x < min(group + GROUP, right); x += LANES) {
-                __local const short *z = strengths + sizes.suppress * GROUP + x - group;
+            for (int v = 0; v < runs; v++) {
+                __local const short16 *z = strengths + sizes.suppress * GROUP + v;
+                const int inside = width - x - v * LANES;
                 const uint mask = interesting ? find_candidates(&sizes, t.sectors, z, partners) : 0;
-                to[x / LANES] = (ushort)(width - x < LANES ? mask & ((1u << (width - x)) - 1) : mask);
+                to[v] = (ushort)(inside < LANES ? mask & ((1u << inside) - 1) : mask);
             }
         }
     }

@@ -43,7 +43,7 @@ static void differences(__global const ushort *gray, int x, int y, int width, in
     *dy = (convert_int8(below) - convert_int8(above)) & inside;
 }
 
-__kernel void gradient_norms(__global const ushort *gray, __global ushort *norms, int width, int height, int stride, int base,
+__kernel void gradient_norms(__global const ushort *gray, __global ushort8 *norms, int width, int height, int stride, int base,
                              int first, int last)
 {
     const int x = 8 * (int)get_global_id(0) - MARGIN, y = first + (int)get_global_id(1);
@@ -52,8 +52,7 @@ __kernel void gradient_norms(__global const ushort *gray, __global ushort *norms
     int8 dx = 0, dy = 0;
     if (x >= 0 && x < width && y >= 0 && y < height)
         differences(gray, x, y, width, height, stride, base, &dx, &dy);
-    vstore8(convert_ushort8(integer_sqrt(dx * dx + dy * dy)), 0,
-            norms + (size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN));
+    norms[((size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN)) / 8] = convert_ushort8(integer_sqrt(dx * dx + dy * dy));
 }
 
 /* Sum of the norms of the 5x5 window around each pixel. */
@@ -66,8 +65,8 @@ static int8 window_sum(__global const ushort *norms, int stride)
     return sum;
 }
 
-__kernel void gradient_normalise(__global const ushort *gray, __global const ushort *norms, __global short *gradient_x,
-                                 __global short *gradient_y, int width, int height, int stride, int base, int first, int last,
+__kernel void gradient_normalise(__global const ushort *gray, __global const ushort *norms, __global short8 *gradient_x,
+                                 __global short8 *gradient_y, int width, int height, int stride, int base, int first, int last,
                                  int epsilon)
 {
     const int x = 8 * (int)get_global_id(0) - MARGIN, y = first + (int)get_global_id(1);
@@ -85,6 +84,6 @@ __kernel void gradient_normalise(__global const ushort *gray, __global const ush
         dx = (dx * scale + 32768) >> 16;
         dy = (dy * scale + 32768) >> 16;
     }
-    vstore8(convert_short8(dx), 0, gradient_x + at);
-    vstore8(convert_short8(dy), 0, gradient_y + at);
+    gradient_x[at / 8] = convert_short8(dx);
+    gradient_y[at / 8] = convert_short8(dy);
 }

@@ -120,63 +120,59 @@ typedef struct window {
     uint first;    /* number of the first of these */
 } window;
 
-static ushort16 excess(ushort16 a, ushort16 b)
-{
-    return max(a, b) - b;
-}
-
 static void window_gammas(__global const short *gx, __global const short *gy, int second, int stride, __global const int *o,
-                          int count, __local ushort *gammas)
+                          int count, __local ushort16 *gammas)
 {
     for (int i = 0; i < count; i++, o += OFFSET_INTS) {
         const int at = o[OFFSET_DY] * stride + o[OFFSET_DX];
         const short16 x = (short16)(vload8(0, gx + at), vload8(0, gx + at + second));
         const short16 y = (short16)(vload8(0, gy + at), vload8(0, gy + at + second));
-        const ushort16 cross = abs(mul_hi(x, (short16)(short)o[OFFSET_Y]) - mul_hi(y, (short16)(short)o[OFFSET_CROSS_X]));
-        const ushort16 dot = abs(mul_hi(x, (short16)(short)o[OFFSET_X]) - mul_hi(y, (short16)(short)o[OFFSET_DOT_Y]));
-        vstore16(excess(cross, dot), i, gammas);
+        const short16 cross = high_product(x, (short)o[OFFSET_Y]) - high_product(y, (short)o[OFFSET_CROSS_X]);
+        const short16 dot = high_product(x, (short)o[OFFSET_X]) - high_product(y, (short)o[OFFSET_DOT_Y]);
+        gammas[i] = gamma16(cross, dot);
     }
 }
 
 /* Slots of src/sector_plan.h. */
-static void window_slots(__global const int *radius, __global const int *table, __local const ushort *gammas, __local ushort *slots)
+static void window_slots(__global const int *radius, __global const int *table, __local const ushort16 *gammas,
+                         __local ushort16 *slots)
 {
     __global const int *from = table + radius[RADIUS_FROM_AT], *slot = table + radius[RADIUS_SLOT_AT];
     ushort16 sum = 0;
     int i = 0, j = 0;
     for (; j < radius[RADIUS_PLAIN_SLOTS]; j++) {
         for (const int end = slot[j]; i < end; i++)
-            sum += vload16(from[i], gammas);
-        vstore16(sum, j, slots);
+            sum += gammas[from[i]];
+        slots[j] = sum;
     }
     for (; j < radius[RADIUS_SLOTS]; j++)
-        vstore16(sum + vload16(slot[j], slots), j, slots);
+        slots[j] = sum + slots[slot[j]];
 }
 
 /* Strengths, with `suppress` sectors repeated at either end. */
-static void window_strengths(__global const int *radius, __global const int *sector, __local const ushort *slots,
-                             __local ushort *strengths)
+static void window_strengths(__global const int *radius, __global const int *sector, __local const ushort16 *slots,
+                             __local ushort16 *strengths)
 {
     const int count = radius[RADIUS_SECTORS], suppress = radius[RADIUS_SUPPRESS];
     for (int k = 0; k < count; k++, sector += SECTOR_INTS) {
-        const ushort16 sum = vload16(sector[SECTOR_HIGH], slots) - vload16(sector[SECTOR_LOW], slots);
+        const ushort16 sum = slots[sector[SECTOR_HIGH]] - slots[sector[SECTOR_LOW]];
         const ushort16 mean = (ushort)sector[SECTOR_MEAN], scale = (ushort)sector[SECTOR_SCALE];
-        vstore16(mul_hi(excess(sum, mean), scale), k + suppress, strengths);
+        strengths[k + suppress] = high_product_unsigned(excess(sum, mean), scale);
     }
     for (int k = 0; k < suppress; k++) {
-        vstore16(vload16(k + count, strengths), k, strengths);
-        vstore16(vload16(k + suppress, strengths), k + count + suppress, strengths);
+        strengths[k] = strengths[k + count];
+        strengths[k + count + suppress] = strengths[k + suppress];
     }
 }
 
 /* -1 where the sector at row k of the strengths is a peak. */
-static short16 is_peak(__local const ushort *strengths, int k, int suppress)
+static short16 is_peak(__local const ushort16 *strengths, int k, int suppress)
 {
-    const ushort16 here = vload16(k, strengths);
+    const ushort16 here = strengths[k];
     ushort16 before = STRENGTH_ONE, after = 0;
     for (int d = 1; d <= suppress; d++) {
-        before = max(before, vload16(k - d, strengths));
-        after = max(after, vload16(k + d, strengths));
+        before = max(before, strengths[k - d]);
+        after = max(after, strengths[k + d]);
     }
     return (here > before) & (here >= after);
 }
@@ -191,15 +187,15 @@ static uint16 put(uint16 *place, uint16 next)
 }
 
 /* The five first peaks of each lane, in the order of asj_isotropic_insert(), one after the other. */
-static void window_peaks(__global const int *radius, __global const int *sector, __local const ushort *slots,
-                         __local const ushort *strengths, __local uint *list)
+static void window_peaks(__global const int *radius, __global const int *sector, __local const ushort16 *slots,
+                         __local const ushort16 *strengths, __local uint16 *list)
 {
     uint16 first = 0, second = 0, third = 0, fourth = 0, fifth = 0;
     for (int k = 0; k < radius[RADIUS_SECTORS]; k++, sector += SECTOR_INTS) {
         const short16 peak = is_peak(strengths, k + radius[RADIUS_SUPPRESS], radius[RADIUS_SUPPRESS]);
-        if (!any(peak))
+        if (!any16(peak))
             continue;
-        const ushort16 sum = (vload16(sector[SECTOR_HIGH], slots) - vload16(sector[SECTOR_LOW], slots)) & as_ushort16(peak);
+        const ushort16 sum = (slots[sector[SECTOR_HIGH]] - slots[sector[SECTOR_LOW]]) & as_ushort16(peak);
         uint16 next = convert_uint16(sum) << 16 | (convert_uint16(as_ushort16(peak)) & (uint)k);
         next = put(&first, next);
         next = put(&second, next);
@@ -207,17 +203,17 @@ static void window_peaks(__global const int *radius, __global const int *sector,
         next = put(&fourth, next);
         put(&fifth, next);
     }
-    vstore16(first, 0, list);
-    vstore16(second, 1, list);
-    vstore16(third, 2, list);
-    vstore16(fourth, 3, list);
-    vstore16(fifth, 4, list);
+    list[0] = first;
+    list[1] = second;
+    list[2] = third;
+    list[3] = fourth;
+    list[4] = fifth;
 }
 
 __kernel void isotropic_windows(__global const short *gradient_x, __global const short *gradient_y, int stride, int base,
                                 __global const int *table, int radii, int most, __global const window *windows,
-                                __global uint *peaks, __local ushort *gammas, __local ushort *slots, __local ushort *strengths,
-                                __local uint *list)
+                                __global uint *peaks, __local ushort16 *gammas, __local ushort16 *slots,
+                                __local ushort16 *strengths, __local uint16 *list)
 {
     const window pair[2] = {windows[2 * get_global_id(0)], windows[2 * get_global_id(0) + 1]};
     const size_t at = (size_t)(pair[0].y - base) * (size_t)stride + (size_t)(pair[0].x + MARGIN);
@@ -235,7 +231,7 @@ __kernel void isotropic_windows(__global const short *gradient_x, __global const
             for (int i = 0; i < WINDOW; i++)
                 if (pair[w].bits >> i & 1) {
                     for (int m = 0; m < most; m++)
-                        peaks[to + m] = list[m * LANES + w * WINDOW + i];
+                        peaks[to + m] = ((__local const uint *)list)[m * LANES + w * WINDOW + i];
                     to += radii * most;
                 }
         }

@@ -10,8 +10,8 @@ typedef struct field_sizes {
 } field_sizes;
 
 /* As in the kernel. */
-#define TILE 128
-#define GROUP 64
+#define TILE 128 /* pixels */
+#define GROUP 4  /* vectors of ASJ_LANES pixels */
 #define TILE_ROWS 64 /* those above and below that a tile needs are made by its neighbours as well */
 
 static int32_t *add_sectors(const asj_field *field, int32_t *next)
@@ -68,17 +68,19 @@ typedef struct launch {
         ASJ_CL_INT(l->frame->blocks), ASJ_CL_BUFFER(&detect->field_table.buffer), ASJ_CL_STRUCT(&l->sizes, sizeof l->sizes),     \
         ASJ_CL_BUFFER(&detect->masks)
 
+/* Vectors. */
 static int32_t plane_stride(const field_sizes *s)
 {
-    return (TILE + 2 * s->radius + ASJ_LANES - 1) / ASJ_LANES * ASJ_LANES;
+    return (TILE + 2 * s->radius + ASJ_LANES - 1) / ASJ_LANES;
 }
 
 /* Bytes of local memory of a tile: planes of all rows in reach, slots, strengths. */
 static void tile_memory(const field_sizes *s, size_t bytes[3])
 {
-    bytes[0] = (size_t)(2 * s->radius + 1) * 4 * (size_t)s->families * (size_t)plane_stride(s) * sizeof(uint16_t);
-    bytes[1] = (size_t)s->slots * GROUP * sizeof(uint16_t);
-    bytes[2] = (size_t)(s->sectors + 2 * s->suppress) * GROUP * sizeof(int16_t);
+    const size_t vector = ASJ_LANES * sizeof(int16_t);
+    bytes[0] = (size_t)(2 * s->radius + 1) * 4 * (size_t)s->families * (size_t)plane_stride(s) * vector;
+    bytes[1] = (size_t)s->slots * GROUP * vector;
+    bytes[2] = (size_t)(s->sectors + 2 * s->suppress) * GROUP * vector;
 }
 
 static asj_status run_tiles(asj_context *context, struct asj_cl_detect *detect, const launch *l, const size_t bytes[3])
