@@ -15,8 +15,9 @@ enum { BACKEND, DEVICE, THREADS, MAX_MEGAPIXELS, TIME, QUIET };
 
 const cli_option cli_common_options[] = {
     {BACKEND, 0, "backend", "auto|cpu|opencl",
-     "where to compute; this version has the CPU only: auto (the default) and cpu are the same"},
-    {DEVICE, 0, "device", "SPEC", "OpenCL device; not used in this version"},
+     "where to compute; auto (the default): an OpenCL GPU when there is one, else the CPU; the results do not depend on it"},
+    {DEVICE, 0, "device", "SPEC",
+     "this OpenCL device: its number in 'asj-cli devices', gpu, cpu, accelerator, or a part of its name; implies --backend opencl"},
     {THREADS, 0, "threads", "N",
      "threads on the CPU, 0 .. 256; 0 (the default) is one for each processor; the results do not depend on it"},
     {MAX_MEGAPIXELS, 0, "max-megapixels", "N", "refuse larger images before they are decoded (default 268, at most 536)"},
@@ -87,6 +88,15 @@ static void print_log(void *user, int32_t level, const char *message)
     session->errors += level == ASJ_LOG_ERROR;
 }
 
+int cli_common_check(const char *command, cli_common *common)
+{
+    if (common->device && common->backend == ASJ_BACKEND_CPU)
+        return cli_usage_error(command, "--device is an OpenCL device, and --backend cpu excludes those");
+    if (common->device)
+        common->backend = ASJ_BACKEND_OPENCL;
+    return CLI_SUCCESS;
+}
+
 static int32_t report_progress(void *user, int32_t stage, double done)
 {
     cli_session *session = user;
@@ -107,6 +117,7 @@ int cli_session_open(cli_session *session, const cli_common *common, size_t imag
     options.log_level = common->quiet ? ASJ_LOG_ERROR : ASJ_LOG_WARNING;
     options.progress = report_progress;
     options.progress_user = session;
+    cli_kernel_cache_init(&session->cache, &options.kernel_cache);
     asj_status status = asj_context_create(&options, &session->context);
     if (status == ASJ_OK)
         return CLI_SUCCESS;

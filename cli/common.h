@@ -3,6 +3,7 @@
 #ifndef ASJ_CLI_COMMON_H
 #define ASJ_CLI_COMMON_H
 
+#include "kernel_cache.h"
 #include "parse.h"
 #include "progress.h"
 
@@ -24,10 +25,14 @@ extern const cli_option cli_common_options[];
 extern const size_t cli_common_option_count;
 int cli_common_take(void *common, int id, const char *text);
 
+/* After all options are read: --device asks for OpenCL. CLI_SUCCESS, or CLI_USAGE after saying why. */
+int cli_common_check(const char *command, cli_common *common);
+
 /* The library's context and the progress line that belongs to it. */
 typedef struct cli_session {
     asj_context *context;
     cli_progress progress;
+    cli_kernel_cache cache;
     int errors; /* said by the library's log while it made the context */
 } cli_session;
 

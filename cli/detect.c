@@ -66,9 +66,8 @@ static int detect_pixels(run *r, const char *image, const cli_output *output, co
     cli_progress_clear(&r->session.progress);
     if (result == CLI_SUCCESS && !r->arguments->common.quiet)
         print_summary(image, output, detection);
-    if (result == CLI_SUCCESS && r->arguments->common.time)
-        {
-        cli_timing_detection(image, detection);
+    if (result == CLI_SUCCESS && r->arguments->common.time) {
+        cli_timing_detection(image, r->session.context, detection);
         cli_timing_files(r->read_ms, write_ms);
     }
     asj_detection_free(&detection);

@@ -137,7 +137,8 @@ static int check(cli_detect_arguments *arguments)
     for (size_t i = 0; i < arguments->image_count; i++)
         if (strcmp(arguments->images[i], "-") == 0)
             return cli_usage_error("detect", "images are not read from standard input (a file named - is ./-)");
-    return check_plot(arguments);
+    int result = cli_common_check("detect", &arguments->common);
+    return result == CLI_SUCCESS ? check_plot(arguments) : result;
 }
 
 int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *arguments)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj-cli: the library's functions as a program. */
 #include "detect.h"
+#include "devices.h"
 #include "interrupt.h"
 #include "match.h"
 #include "message.h"
@@ -21,6 +22,7 @@ typedef struct command {
 static const command commands[] = {
     {"detect", "find the junctions in photographs", cli_detect},
     {"match", "find the same corners in two photographs", cli_match},
+    {"devices", "list what can compute", cli_devices},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 

@@ -137,8 +137,8 @@ static void print_times(const run *r, double write_ms)
 {
     for (int v = 0; v < 2; v++)
         if (r->inputs[v].detection)
-            cli_timing_detection(r->inputs[v].name, r->inputs[v].detection);
-    cli_timing_match("matching", r->result);
+            cli_timing_detection(r->inputs[v].name, r->session.context, r->inputs[v].detection);
+    cli_timing_match("matching", r->session.context, r->result);
     cli_timing_files(r->inputs[0].read_ms + r->inputs[1].read_ms, write_ms);
 }
 

@@ -191,8 +191,8 @@ static int check(cli_match_arguments *arguments, char **operands, int operand_co
         if (strcmp(operands[v], "-") == 0 || (arguments->junctions[v] && strcmp(arguments->junctions[v], "-") == 0))
             return cli_usage_error("match", "nothing is read from standard input (a file named - is ./-)");
     }
-    int result = CLI_SUCCESS;
-    if (arguments->plot)
+    int result = cli_common_check("match", &arguments->common);
+    if (result == CLI_SUCCESS && arguments->plot)
         result = cli_plot_format_of_name("match", arguments->plot, &arguments->plot_format);
     return result == CLI_SUCCESS ? check_files(arguments) : result;
 }

@@ -2,6 +2,8 @@
 #include "timing.h"
 #include "message.h"
 
+#include <asj/device.h>
+
 #include <stdio.h>
 
 static void print_row(const char *stage, double ms, double total_ms)
@@ -9,23 +11,27 @@ static void print_row(const char *stage, double ms, double total_ms)
     fprintf(stderr, "  %-12s %9.2f ms %5.1f %%\n", stage, ms, total_ms > 0 ? 100 * ms / total_ms : 0.0);
 }
 
-static const char *backend(int32_t number)
+/* The context may have lost its device since. */
+static const char *backend(const asj_context *context, int32_t number)
 {
-    return number == ASJ_BACKEND_OPENCL ? "OpenCL" : "CPU";
+    if (number != ASJ_BACKEND_OPENCL)
+        return "CPU";
+    const char *device = asj_context_device(context);
+    return device ? device : "OpenCL";
 }
 
-void cli_timing_detection(const char *name, const asj_detection *detection)
+void cli_timing_detection(const char *name, const asj_context *context, const asj_detection *detection)
 {
-    cli_note("%s: %d x %d, %s", name, (int)detection->width, (int)detection->height, backend(detection->backend));
+    cli_note("%s: %d x %d, %s", name, (int)detection->width, (int)detection->height, backend(context, detection->backend));
     for (int32_t stage = ASJ_STAGE_GRADIENT; stage <= ASJ_STAGE_DECOMPOSE; stage++)
         print_row(asj_stage_name(stage), detection->stage_ms[stage], detection->total_ms);
     print_row("detection", detection->total_ms, detection->total_ms);
 }
 
-void cli_timing_match(const char *name, const asj_match_result *result)
+void cli_timing_match(const char *name, const asj_context *context, const asj_match_result *result)
 {
     cli_note("%s: %lu and %lu L-junctions, %s", name, (unsigned long)result->l_junction_count1,
-             (unsigned long)result->l_junction_count2, backend(result->backend));
+             (unsigned long)result->l_junction_count2, backend(context, result->backend));
     for (int32_t stage = ASJ_STAGE_PATCHES; stage <= ASJ_STAGE_ASSIGN; stage++)
         print_row(asj_stage_name(stage), result->stage_ms[stage], result->total_ms);
     print_row("matching", result->total_ms, result->total_ms);

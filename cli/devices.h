@@ -1,0 +1,8 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_CLI_DEVICES_H
+#define ASJ_CLI_DEVICES_H
+
+/* `asj-cli devices`: returns the exit code. */
+int cli_devices(int argc, char **argv);
+
+#endif
