@@ -12,6 +12,7 @@
  * rule of ACJ that M + 1 branches within half a radius replace M. */
 #include "isotropic.h"
 #include "ops.h"
+#include "threads.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -54,6 +55,9 @@ static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t
     entry->tails = asj_allocate(&context->memory, (size_t)entry->sectors.count, sizeof *entry->tails);
     if (!entry->tails)
         return ASJ_ERROR_MEMORY;
+    entry->least = asj_allocate_zero(&context->memory, (size_t)entry->sectors.count, sizeof *entry->least);
+    if (!entry->least)
+        return ASJ_ERROR_MEMORY;
     for (int32_t k = 0; status == ASJ_OK && k < entry->sectors.count; k++) {
         status = make_tails(context, test, entry->sectors.size[k]);
         entry->tails[k] = test->tail_tables[entry->sectors.size[k]];
@@ -61,7 +65,7 @@ static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t
     return status;
 }
 
-/* In blocks: prefix sums, sums. In rows: gamma, which may be that of a larger radius, then slots and strengths. */
+/* In blocks: prefix sums, sums. In bands: gamma in runs, which may be those of a larger radius, then slots and strengths. */
 static void measure_scratch(asj_isotropic *test)
 {
     size_t offsets = 0, rest = 0;
@@ -72,7 +76,8 @@ static void measure_scratch(asj_isotropic *test)
         const size_t block = asj_sector_scratch(&entry->sectors) + count * ASJ_LANES;
         const size_t slots = (size_t)entry->plan.slot_count + count + 2 * (size_t)entry->suppress;
         test->scratch = block > test->scratch ? block : test->scratch;
-        offsets = (size_t)entry->sectors.offset_count > offsets ? (size_t)entry->sectors.offset_count : offsets;
+        const size_t in_runs = (size_t)entry->runs.count * ASJ_ISOTROPIC_RUN;
+        offsets = in_runs > offsets ? in_runs : offsets;
         rest = slots > rest ? slots : rest;
     }
     const size_t row = (offsets + rest) * ASJ_ISOTROPIC_LANES;
@@ -87,9 +92,10 @@ static asj_status share_offsets(asj_memory *memory, asj_isotropic *test)
         entry->source = r;
         if (r + 1 < test->radius_count && test->radii[r + 1].sectors.gamma_bits == entry->sectors.gamma_bits)
             entry->source = test->radii[r + 1].source;
-        entry->from = asj_allocate(memory, (size_t)entry->sectors.offset_count, sizeof *entry->from);
+        entry->from = asj_allocate(memory, 2 * (size_t)entry->sectors.offset_count, sizeof *entry->from);
         if (!entry->from)
             return ASJ_ERROR_MEMORY;
+        entry->place = entry->from + entry->sectors.offset_count;
         /* both lists are in order of angle, then distance */
         const asj_sectors *all = &test->radii[entry->source].sectors, *some = &entry->sectors;
         for (int32_t i = 0, j = 0; i < some->offset_count; i++, j++) {
@@ -101,6 +107,75 @@ static asj_status share_offsets(asj_memory *memory, asj_isotropic *test)
     return ASJ_OK;
 }
 
+/* Half the number of pixels in a row of the disc, without the middle one. */
+static int32_t half_row(int32_t radius, int32_t dy)
+{
+    int32_t dx = 0;
+    while ((dx + 1) * (dx + 1) + dy * dy <= radius * radius)
+        dx++;
+    return dx;
+}
+
+static asj_status make_runs(asj_memory *memory, int32_t radius, asj_isotropic_runs *runs)
+{
+    for (int32_t dy = -radius; dy <= radius; dy++)
+        runs->count += (2 * half_row(radius, dy) + ASJ_ISOTROPIC_RUN) / ASJ_ISOTROPIC_RUN;
+    const size_t count = (size_t)runs->count;
+    runs->memory = asj_allocate_zero(memory, count, 4 * sizeof *runs->factors + 2 * sizeof(int16_t));
+    if (!runs->memory)
+        return ASJ_ERROR_MEMORY;
+    runs->factors = runs->memory;
+    runs->dx = (int16_t *)(runs->factors + 4 * count);
+    runs->dy = runs->dx + count;
+    int32_t r = 0;
+    for (int32_t dy = -radius; dy <= radius; dy++)
+        for (int32_t dx = -half_row(radius, dy); dx <= half_row(radius, dy); dx += ASJ_ISOTROPIC_RUN, r++) {
+            runs->dx[r] = (int16_t)dx;
+            runs->dy[r] = (int16_t)dy;
+        }
+    return ASJ_OK;
+}
+
+/* Places of the offsets in the runs of the radius that holds them. */
+static void find_places(asj_isotropic_radius *entry, const asj_isotropic_runs *runs)
+{
+    for (int32_t i = 0; i < entry->sectors.offset_count; i++) {
+        const int32_t dx = entry->sectors.dx[i], dy = entry->sectors.dy[i];
+        int32_t r = 0;
+        while (runs->dy[r] != dy || dx < runs->dx[r] || dx >= runs->dx[r] + ASJ_ISOTROPIC_RUN)
+            r++;
+        entry->place[i] = (int16_t)(r * ASJ_ISOTROPIC_RUN + dx - runs->dx[r]);
+    }
+}
+
+static void set_factors(const asj_isotropic_radius *entry)
+{
+    for (int32_t i = 0; i < entry->sectors.offset_count; i++) {
+        const asj_direction u = asj_sector_direction(&entry->sectors, i);
+        int16_t(*factors)[ASJ_ISOTROPIC_RUN] = entry->runs.factors + entry->place[i] / ASJ_ISOTROPIC_RUN * 4;
+        const int32_t at = entry->place[i] % ASJ_ISOTROPIC_RUN;
+        factors[0][at] = u.x;
+        factors[1][at] = u.y;
+        factors[2][at] = u.cross_x;
+        factors[3][at] = u.dot_y;
+    }
+}
+
+static asj_status arrange_runs(asj_memory *memory, asj_isotropic *test)
+{
+    asj_status status = ASJ_OK;
+    for (int32_t r = test->radius_count - 1; r >= 0 && status == ASJ_OK; r--) {
+        asj_isotropic_radius *entry = &test->radii[r];
+        if (entry->source == r)
+            status = make_runs(memory, entry->sectors.radius, &entry->runs);
+        if (status == ASJ_OK)
+            find_places(entry, &test->radii[entry->source].runs);
+        if (status == ASJ_OK && entry->source == r)
+            set_factors(entry);
+    }
+    return status;
+}
+
 asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *options, asj_isotropic *test)
 {
     asj_status status = ASJ_OK;
@@ -110,6 +185,8 @@ asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *
             status = make_radius(context, test, r, options->sector_width);
     if (status == ASJ_OK)
         status = share_offsets(&context->memory, test);
+    if (status == ASJ_OK)
+        status = arrange_runs(&context->memory, test);
     measure_scratch(test);
     test->max_branches = options->max_branches;
     test->log_epsilon = log(options->epsilon);
@@ -123,6 +200,8 @@ void asj_isotropic_free(asj_memory *memory, asj_isotropic *test)
     for (int32_t i = 0; i <= ASJ_MAX_RADIUS; i++) {
         asj_release(memory, test->radii[i].tails);
         asj_release(memory, test->radii[i].from);
+        asj_release(memory, test->radii[i].runs.memory);
+        asj_release(memory, test->radii[i].least);
         asj_sector_plan_free(memory, &test->radii[i].plan);
         asj_sectors_free(memory, &test->radii[i].sectors);
     }
@@ -131,18 +210,59 @@ void asj_isotropic_free(asj_memory *memory, asj_isotropic *test)
     memset(test, 0, sizeof *test);
 }
 
-void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, int32_t height, asj_isotropic *test)
-{
-    for (int32_t m = 2; m <= ASJ_MAX_BRANCHES; m++)
-        test->log_tests[m] = asj_nfa_log_junction_tests(width, height, options->isotropic_radii, options->sector_width, m);
-}
-
 static double log_tail(const double *table, double t)
 {
     double position = t * ASJ_TAIL_STEPS;
     int32_t i = (int32_t)position;
     double rest = position - i;
     return table[i] * (1 - rest) + table[i + 1] * rest;
+}
+
+/* The least sum of sector k with ln F <= log_p; more than any sum when there is none. */
+static int32_t least_sum(const asj_isotropic_radius *entry, int32_t k, double log_p)
+{
+    const asj_sectors *s = &entry->sectors;
+    const int32_t one = 1 << s->gamma_bits, most = (int32_t)(s->size[k] * (ASJ_GRADIENT_LIMIT * one + 2));
+    int32_t low = 0, high = most + 1;
+    while (low < high) {
+        const int32_t middle = (low + high) / 2;
+        if (log_tail(entry->tails[k], (double)middle / one) <= log_p)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low > most ? INT32_MAX : low;
+}
+
+/* M branches of which the weakest has sum t are meaningful when ln #J(M) + sum of ln F(t; J_i) <= ln epsilon. One of the M terms
+ * is at most their mean, so t is at least the least sum, over the sectors, with ln F <= (ln epsilon - ln #J(M)) / M. A branch below
+ * all these for M = 2, 3, .. cannot be among meaningful ones. A millionth is for rounding. */
+static void set_least(const asj_isotropic *test, asj_isotropic_radius *entry)
+{
+    const asj_sectors *s = &entry->sectors;
+    int32_t least = INT32_MAX;
+    for (int32_t m = 2; m <= ASJ_MAX_BRANCHES; m++) {
+        entry->least_sum[m] = INT32_MAX;
+        if (m > test->max_branches || test->log_tests[m] == -HUGE_VAL)
+            continue;
+        for (int32_t k = 0; k < s->count; k++) {
+            const int32_t sum = least_sum(entry, k, (test->log_epsilon - test->log_tests[m]) / m + 1e-6);
+            entry->least_sum[m] = sum < entry->least_sum[m] ? sum : entry->least_sum[m];
+        }
+        least = entry->least_sum[m] < least ? entry->least_sum[m] : least;
+    }
+    for (int32_t k = 0; k < s->count; k++) {
+        const uint16_t strength = least > 65535 ? INT16_MAX : asj_sector_strength(s, k, (uint16_t)least);
+        entry->least[k] = strength > ASJ_STRENGTH_ONE ? strength : ASJ_STRENGTH_ONE + 1;
+    }
+}
+
+void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, int32_t height, asj_isotropic *test)
+{
+    for (int32_t m = 2; m <= ASJ_MAX_BRANCHES; m++)
+        test->log_tests[m] = asj_nfa_log_junction_tests(width, height, options->isotropic_radii, options->sector_width, m);
+    for (int32_t r = 0; r < test->radius_count; r++)
+        set_least(test, &test->radii[r]);
 }
 
 int32_t asj_isotropic_insert(asj_isotropic_peak *peaks, int32_t count, int32_t most, asj_isotropic_peak peak)
@@ -196,7 +316,7 @@ void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *
     for (int32_t m = 2; m <= count; m++) {
         if (m == 2 && opening(s, peaks[0].sector, peaks[1].sector) > entry->straight)
             continue;
-        if (test->log_tests[m] == -HUGE_VAL) /* so many branches do not fit at any radius: nothing was tested for */
+        if (peaks[m - 1].sum < entry->least_sum[m]) /* also when so many branches do not fit at any radius */
             continue;
         double t = (double)peaks[m - 1].sum / (1 << s->gamma_bits), log_nfa = test->log_tests[m];
         for (int32_t i = 0; i < m; i++)
@@ -237,32 +357,41 @@ void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int3
     }
 }
 
-void asj_isotropic_row(const asj_isotropic *test, const asj_frame *frame, int32_t y, const uint16_t *masks, uint16_t *scratch,
-                       asj_isotropic_junction *junctions)
+void asj_isotropic_band(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
+                        uint16_t *scratch, asj_isotropic_junction *junctions)
 {
-    for (int32_t b = 0; b < frame->blocks; b++) {
-        if (masks[b])
-            asj_isotropic_block(test, frame, b * ASJ_LANES, y, masks[b], scratch, junctions);
-        for (uint32_t mask = masks[b]; mask; mask &= mask - 1)
-            junctions++;
-    }
+    for (int32_t y = top; y < bottom; y++)
+        for (int32_t b = 0; b < frame->blocks; b++) {
+            const uint32_t candidates = masks[(ptrdiff_t)y * frame->blocks + b];
+            if (candidates)
+                asj_isotropic_block(test, frame, b * ASJ_LANES, y, candidates, scratch, junctions);
+            for (uint32_t rest = candidates; rest; rest &= rest - 1)
+                junctions++;
+        }
 }
+
+/* Bands with enough candidates to be worth a thread, and enough of them for all threads to end together. */
+#define LEAST_CANDIDATES 64
+#define BANDS_PER_THREAD 4
 
 asj_status asj_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
                               const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
                               asj_isotropic_junction *junctions)
 {
+    const int32_t rows = bottom - top, threads = asj_threads_for(context, (int64_t)starts[rows], LEAST_CANDIDATES);
+    const int32_t bands = threads == 1 || rows < BANDS_PER_THREAD * threads ? threads : BANDS_PER_THREAD * threads;
 #ifdef _OPENMP
-#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 4)
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
 #endif
-    for (int32_t y = top; y < bottom; y++) {
+    for (int32_t band = 0; band < bands; band++) {
+        const int32_t first = (int32_t)((int64_t)rows * band / bands), last = (int32_t)((int64_t)rows * (band + 1) / bands);
         size_t thread = 0;
 #ifdef _OPENMP
         thread = (size_t)omp_get_thread_num();
 #endif
-        if (starts[y - top + 1] > starts[y - top])
-            context->ops->isotropic_row(test, frame, y, masks + (ptrdiff_t)y * frame->blocks, scratch + thread * scratch_size,
-                                        junctions + starts[y - top]);
+        if (starts[last] > starts[first])
+            context->ops->isotropic_band(test, frame, top + first, top + last, masks, scratch + thread * scratch_size,
+                                         junctions + starts[first]);
     }
     return ASJ_OK;
 }

@@ -17,15 +17,29 @@ typedef struct asj_isotropic_junction {
     double log_nfa;                      /* natural logarithm */
 } asj_isotropic_junction;
 
+/* The offsets of a radius in runs of neighbours in a row, some of which are not within the radius: those, and those of the centre,
+ * have no direction. */
+#define ASJ_ISOTROPIC_RUN 8
+typedef struct asj_isotropic_runs {
+    int32_t count;
+    int16_t *dx, *dy;                      /* of the first offset of each run */
+    int16_t (*factors)[ASJ_ISOTROPIC_RUN]; /* four rows for each run: x, y, cross_x, dot_y of asj_direction */
+    void *memory;
+} asj_isotropic_runs;
+
 /* Constants of one radius. */
 typedef struct asj_isotropic_radius {
     asj_sectors sectors;
     asj_sector_plan plan;
     int32_t source;       /* index of the largest radius with the same unit vectors: its offsets hold those of this one, */
     int16_t *from;        /* offset i of this one at from[i] */
+    int16_t *place;       /* and in the runs of that radius at place[i] */
+    asj_isotropic_runs runs; /* of a radius that is a source */
     int32_t suppress;     /* sectors to either side over which a branch must be the largest */
     double straight;      /* two branches that open wider are an edge */
     const double **tails; /* for each sector: ln F(i / ASJ_TAIL_STEPS; J_k), i = 0, 1, .. */
+    int32_t least_sum[ASJ_MAX_BRANCHES + 1]; /* of M branches the weakest has at least this sum, or they are not meaningful */
+    uint16_t *least;      /* for each sector: the least strength of a branch that may be one of meaningful ones */
 } asj_isotropic_radius;
 
 /* The whole test: made once for a set of options and an image size. */
@@ -36,13 +50,13 @@ typedef struct asj_isotropic {
     double log_epsilon;
     int32_t max_branches;
     double *tail_tables[128]; /* by number of pixels; shared by the radii */
-    size_t scratch;           /* elements of uint16_t for asj_isotropic_block() and asj_isotropic_row() */
+    size_t scratch;           /* elements of uint16_t for asj_isotropic_block() and asj_isotropic_band() */
 } asj_isotropic;
 
 asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *options, asj_isotropic *test);
 void asj_isotropic_free(asj_memory *memory, asj_isotropic *test);
 
-/* Sets the numbers of tests for an image of this size. */
+/* Sets the numbers of tests for an image of this size, and what follows from them. */
 void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, int32_t height, asj_isotropic *test);
 
 /* Tests the pixels x + i, bit i of `candidates` set; writes one record for each such bit, in order. A candidate that no radius
@@ -50,12 +64,11 @@ void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, in
 void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int32_t x, int32_t y, uint32_t candidates,
                          uint16_t *scratch, asj_isotropic_junction *junctions);
 
-/* The same for a row: masks[b] are the candidates of run b. Records in order of x. */
-void asj_isotropic_row(const asj_isotropic *test, const asj_frame *frame, int32_t y, const uint16_t *masks, uint16_t *scratch,
-                       asj_isotropic_junction *junctions);
+/* The same for rows top .. bottom - 1, whose candidates are those of the whole image's `masks`. Records in order of y, then x. */
+void asj_isotropic_band(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
+                        uint16_t *scratch, asj_isotropic_junction *junctions);
 
-/* The same for rows top .. bottom - 1, by all threads of the context; `masks` are those of the whole image, the records of row y
- * start at junctions[starts[y - top]], and starts[bottom - top] ends the last. `scratch_size` elements for each thread. */
+/* The same by all threads of the context; the records of row y start at junctions[starts[y - top]], and starts[bottom - top] ends the last. `scratch_size` elements for each thread. */
 asj_status asj_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
                               const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
                               asj_isotropic_junction *junctions);

@@ -19,7 +19,7 @@ static void fill_reference(asj_ops *ops)
     ops->gradient_normalise = asj_gradient_normalise;
     ops->field_tile = asj_field_tile;
     ops->field_block = asj_field_block;
-    ops->isotropic_row = asj_isotropic_row;
+    ops->isotropic_band = asj_isotropic_band;
     ops->blur_row = asj_blur_row;
     ops->patch_levels = asj_patch_levels;
     ops->patch_normalise = asj_patch_normalise;

@@ -45,9 +45,9 @@ typedef struct asj_ops {
                        int32_t top, int32_t bottom, uint16_t *scratch, uint16_t *masks);
     void (*field_block)(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y,
                         uint16_t *scratch, asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES]);
-    /* asj_isotropic_row() (isotropic.h) */
-    void (*isotropic_row)(const asj_isotropic *test, const asj_frame *frame, int32_t y, const uint16_t *masks, uint16_t *scratch,
-                          asj_isotropic_junction *junctions);
+    /* asj_isotropic_band() (isotropic.h) */
+    void (*isotropic_band)(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
+                           uint16_t *scratch, asj_isotropic_junction *junctions);
 
     /* asj_patch_levels(), asj_patch_normalise() and asj_patch_products() (patch.h) */
     int32_t (*patch_levels)(const asj_pyramid *pyramid, const asj_patch_grid *grid, int32_t size, uint16_t *grey);

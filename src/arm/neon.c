@@ -9,7 +9,9 @@ typedef int16x8_t vec;
 
 static inline vec v_load(const void *p) { return vreinterpretq_s16_u8(vld1q_u8(p)); }
 /* 8 lanes each from several places */
-static inline vec v_load_windows(const int16_t *const *p, ptrdiff_t at) { return v_load(p[0] + at); }
+static inline vec v_load_places(const int16_t *p, const ptrdiff_t *at) { return v_load(p + at[0]); }
+/* the same 8 lanes again and again */
+static inline vec v_load_repeated(const int16_t *p) { return v_load(p); }
 static inline void v_store(void *p, vec v) { vst1q_u8(p, vreinterpretq_u8_s16(v)); }
 static inline vec v_set1(int16_t x) { return vdupq_n_s16(x); }
 static inline vec v_zero(void) { return vdupq_n_s16(0); }
@@ -47,6 +49,22 @@ static inline vec v_shift_right_8(vec a) { return vreinterpretq_s16_u16(vshrq_n_
 static inline vec v_shift_right_15(vec a) { return vreinterpretq_s16_u16(vshrq_n_u16(vreinterpretq_u16_s16(a), 15)); }
 static inline vec v_interleave_low(vec a, vec b) { return vzip1q_s16(a, b); }
 static inline vec v_interleave_high(vec a, vec b) { return vzip2q_s16(a, b); }
+static inline vec v_interleave32_low(vec a, vec b)
+{
+    return vreinterpretq_s16_s32(vzip1q_s32(vreinterpretq_s32_s16(a), vreinterpretq_s32_s16(b)));
+}
+static inline vec v_interleave32_high(vec a, vec b)
+{
+    return vreinterpretq_s16_s32(vzip2q_s32(vreinterpretq_s32_s16(a), vreinterpretq_s32_s16(b)));
+}
+static inline vec v_interleave64_low(vec a, vec b)
+{
+    return vreinterpretq_s16_s64(vzip1q_s64(vreinterpretq_s64_s16(a), vreinterpretq_s64_s16(b)));
+}
+static inline vec v_interleave64_high(vec a, vec b)
+{
+    return vreinterpretq_s16_s64(vzip2q_s64(vreinterpretq_s64_s16(a), vreinterpretq_s64_s16(b)));
+}
 
 /* ---- lanes of 32 bits ---- */
 

@@ -1,45 +1,78 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 3 in vectors: isotropic junctions at the candidates of a row. Part of kernels.h. */
+/* Step 3 in vectors: isotropic junctions at the candidates of a band of rows. Part of kernels.h.
+ *
+ * Candidates come in clusters of two or three pixels, so vectors of neighbouring pixels would be mostly empty. Instead gammas are
+ * computed for 8 neighbouring offsets of one candidate at once, which are contiguous in the image, for V_LANES candidates from
+ * anywhere in the band; squares of 8 x 8 are then turned round, and from there on a vector holds V_LANES candidates. */
 
-/* Candidates come in clusters of a few pixels, so the unit is a window of 8 pixels that starts at a candidate, and a vector holds
- * V_LANES / WINDOW of them from anywhere in a row. */
-#define WINDOW 8
-#define WINDOWS (V_LANES / WINDOW)
+#define SQUARE ASJ_ISOTROPIC_RUN
+#define SQUARES (V_LANES / SQUARE) /* side by side in a vector */
 
-typedef struct windows {
+typedef struct batch {
     int32_t count;
-    int32_t x[WINDOWS];
-    uint32_t candidates[WINDOWS]; /* bit i: pixel x + i */
-} windows;
+    ptrdiff_t at[SQUARE][SQUARES]; /* of candidate 8 j + i, in the planes, at [i][j] */
+    asj_isotropic_junction *junctions; /* the candidates' records, in order */
+} batch;
 
-/* gamma at each offset; gx, gy: where the windows start. */
-static void window_gammas(const asj_sectors *s, const int16_t *const *gx, const int16_t *const *gy, ptrdiff_t stride,
-                          uint16_t *gamma)
+/* Columns become rows, in each 128 bits. */
+static inline void turn_square(vec v[SQUARE])
 {
-    for (int32_t i = 0; i < s->offset_count; i++) {
-        const ptrdiff_t at = s->dy[i] * stride + s->dx[i];
-        const asj_direction u = asj_sector_direction(s, i);
-        const vec x = v_load_windows(gx, at), y = v_load_windows(gy, at);
-        const vec cross = v_abs(v_sub(v_high(x, v_set1(u.y)), v_high(y, v_set1(u.cross_x))));
-        const vec dot = v_abs(v_sub(v_high(x, v_set1(u.x)), v_high(y, v_set1(u.dot_y))));
-        v_store(gamma + i * V_LANES, v_sub_saturated(cross, dot));
+    vec t[SQUARE];
+    for (int i = 0; i < 4; i++) {
+        t[2 * i] = v_interleave_low(v[2 * i], v[2 * i + 1]);
+        t[2 * i + 1] = v_interleave_high(v[2 * i], v[2 * i + 1]);
+    }
+    for (int i = 0; i < 8; i += 4)
+        for (int j = 0; j < 2; j++) {
+            v[i + 2 * j] = v_interleave32_low(t[i + j], t[i + j + 2]);
+            v[i + 2 * j + 1] = v_interleave32_high(t[i + j], t[i + j + 2]);
+        }
+    for (int i = 0; i < 4; i++) {
+        t[2 * i] = v_interleave64_low(v[i], v[i + 4]);
+        t[2 * i + 1] = v_interleave64_high(v[i], v[i + 4]);
+    }
+    for (int i = 0; i < SQUARE; i++)
+        v[i] = t[i];
+}
+
+/* gamma at each offset of all runs. */
+static void batch_gammas(const asj_isotropic_runs *runs, const asj_frame *frame, const batch *b, uint16_t *gamma)
+{
+    for (int32_t r = 0; r < runs->count; r++, gamma += SQUARE * V_LANES) {
+        const ptrdiff_t to = runs->dy[r] * frame->stride + runs->dx[r];
+        const int16_t *gx = frame->gradient_x + to, *gy = frame->gradient_y + to;
+        int16_t(*const factors)[SQUARE] = runs->factors + 4 * r;
+        const vec ux = v_load_repeated(factors[0]), uy = v_load_repeated(factors[1]);
+        const vec cross_x = v_load_repeated(factors[2]), dot_y = v_load_repeated(factors[3]);
+        vec v[SQUARE];
+        for (int i = 0; i < SQUARE; i++) {
+            const vec x = v_load_places(gx, b->at[i]), y = v_load_places(gy, b->at[i]);
+            const vec cross = v_abs(v_sub(v_high(x, uy), v_high(y, cross_x)));
+            const vec dot = v_abs(v_sub(v_high(x, ux), v_high(y, dot_y)));
+            v[i] = v_sub_saturated(cross, dot);
+        }
+        turn_square(v);
+        for (int i = 0; i < SQUARE; i++)
+            v_store(gamma + i * V_LANES, v[i]);
     }
 }
 
 /* Slots of asj_sector_plan, then strengths. */
-static void window_strengths(const asj_isotropic_radius *entry, const uint16_t *gamma, uint16_t *slots, int16_t *z)
+static void batch_strengths(const asj_isotropic_radius *entry, const uint16_t *gamma, uint16_t *slots, int16_t *z)
 {
     const asj_sectors *s = &entry->sectors;
     const asj_sector_plan *plan = &entry->plan;
-    vec sum = v_zero();
+    vec total = v_zero();
     uint16_t *slot = slots;
     for (int32_t j = 0, i = 0; j < plan->plain_count; j++, slot += V_LANES) {
+        vec sum = v_zero();
         for (const int32_t end = plan->boundary[j]; i < end; i++)
-            sum = v_add(sum, v_load(gamma + entry->from[i] * V_LANES));
-        v_store(slot, sum);
+            sum = v_add(sum, v_load(gamma + entry->place[i] * V_LANES));
+        total = v_add(total, sum);
+        v_store(slot, total);
     }
     for (int32_t e = 0; e < plan->slot_count - plan->plain_count; e++, slot += V_LANES)
-        v_store(slot, v_add(sum, v_load(slots + plan->extra[e] * V_LANES)));
+        v_store(slot, v_add(total, v_load(slots + plan->extra[e] * V_LANES)));
     for (int32_t k = 0; k < s->count; k++) {
         const vec low = v_load(slots + plan->low[k] * V_LANES), high = v_load(slots + plan->high[k] * V_LANES);
         v_store(z + (k + entry->suppress) * V_LANES, v_strength(v_sub(high, low), s->mean[k], s->scale[k]));
@@ -47,78 +80,65 @@ static void window_strengths(const asj_isotropic_radius *entry, const uint16_t *
     repeat_ends(z, s->count, entry->suppress, V_LANES);
 }
 
-/* One radius: the branches of each candidate lane, then the shared decision. junctions[i]: of lane i. */
-static void test_windows(const asj_isotropic *test, const asj_isotropic_radius *entry, uint32_t lanes, const uint16_t *slots,
-                         const int16_t *z, asj_isotropic_junction *const *junctions)
+/* One radius: the branches of each candidate that may matter, then the shared decision. */
+static void test_batch(const asj_isotropic *test, const asj_isotropic_radius *entry, const batch *b, const uint16_t *slots,
+                       const int16_t *z)
 {
+    const uint32_t lanes = (uint32_t)(((uint64_t)1 << b->count) - 1);
     asj_isotropic_peak peaks[V_LANES][ASJ_MAX_BRANCHES];
     int32_t counts[V_LANES] = {0};
-    for (int32_t k = 0; k < entry->sectors.count; k++) {
-        const int16_t *here = z + (k + entry->suppress) * V_LANES;
-        for (uint32_t bits = v_bits(peak(here, V_LANES, entry->suppress, ASJ_STRENGTH_ONE + 1)) & lanes; bits; bits &= bits - 1) {
+    z += entry->suppress * V_LANES;
+    for (int32_t k = 0; k < entry->sectors.count; k++, z += V_LANES) {
+        const int16_t least = (int16_t)entry->least[k];
+        if (!v_any(v_greater(v_load(z), v_set1((int16_t)(least - 1)))))
+            continue;
+        for (uint32_t bits = v_bits(peak(z, V_LANES, entry->suppress, least)) & lanes; bits; bits &= bits - 1) {
             const int i = __builtin_ctz(bits);
             const int sum = slots[entry->plan.high[k] * V_LANES + i] - slots[entry->plan.low[k] * V_LANES + i];
-            const asj_isotropic_peak found = {k, (uint16_t)sum, (uint16_t)here[i]};
+            const asj_isotropic_peak found = {k, (uint16_t)sum, (uint16_t)z[i]};
             counts[i] = asj_isotropic_insert(peaks[i], counts[i], test->max_branches, found);
         }
     }
-    for (; lanes; lanes &= lanes - 1) {
-        const int i = __builtin_ctz(lanes);
-        asj_isotropic_judge(test, entry, peaks[i], counts[i], junctions[i]);
-    }
+    for (int32_t i = 0; i < b->count; i++)
+        if (counts[i] > 1)
+            asj_isotropic_judge(test, entry, peaks[i], counts[i], &b->junctions[i]);
 }
 
-/* Writes the records of the windows' candidates; returns where the next ones go. */
-static asj_isotropic_junction *finish_windows(const asj_isotropic *test, const asj_frame *frame, int32_t y, const windows *w,
-                                              uint16_t *scratch, asj_isotropic_junction *next)
+static void finish_batch(const asj_isotropic *test, const asj_frame *frame, batch *b, uint16_t *scratch)
 {
-    const int16_t *gx[WINDOWS], *gy[WINDOWS];
-    asj_isotropic_junction *junctions[V_LANES];
-    uint32_t lanes = 0;
-    for (int32_t i = 0; i < WINDOWS; i++) {
-        const int32_t from = i < w->count ? i : 0; /* unused ones look where another looks */
-        const ptrdiff_t at = y * frame->stride + w->x[from];
-        gx[i] = frame->gradient_x + at;
-        gy[i] = frame->gradient_y + at;
-        for (uint32_t bits = i < w->count ? w->candidates[i] : 0; bits; bits &= bits - 1) {
-            const int lane = i * WINDOW + __builtin_ctz(bits);
-            lanes |= (uint32_t)1 << lane;
-            memset(next, 0, sizeof *next);
-            next->x = (uint16_t)(w->x[i] + lane % WINDOW);
-            next->y = (uint16_t)y;
-            junctions[lane] = next++;
-        }
-    }
+    for (int32_t i = b->count; i < V_LANES; i++) /* unused ones look where another looks */
+        b->at[i % SQUARE][i / SQUARE] = b->at[0][0];
     for (int32_t r = 0; r < test->radius_count; r++) {
         const asj_isotropic_radius *entry = &test->radii[r];
-        const asj_sectors *source = &test->radii[entry->source].sectors;
-        uint16_t *slots = scratch + (size_t)source->offset_count * V_LANES;
+        const asj_isotropic_runs *runs = &test->radii[entry->source].runs;
+        uint16_t *slots = scratch + (size_t)runs->count * SQUARE * V_LANES;
         int16_t *z = (int16_t *)slots + (size_t)entry->plan.slot_count * V_LANES;
         if (r == 0 || entry->source != test->radii[r - 1].source)
-            window_gammas(source, gx, gy, frame->stride, scratch);
-        window_strengths(entry, scratch, slots, z);
-        test_windows(test, entry, lanes, slots, z, junctions);
+            batch_gammas(runs, frame, b, scratch);
+        batch_strengths(entry, scratch, slots, z);
+        test_batch(test, entry, b, slots, z);
     }
-    return next;
+    b->junctions += b->count;
+    b->count = 0;
 }
 
-static void isotropic_row(const asj_isotropic *test, const asj_frame *frame, int32_t y, const uint16_t *masks, uint16_t *scratch,
-                          asj_isotropic_junction *junctions)
+static void isotropic_band(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
+                           uint16_t *scratch, asj_isotropic_junction *junctions)
 {
-    windows w = {0};
-    for (int32_t b = 0; b < frame->blocks; b++)
-        for (uint32_t bits = masks[b]; bits; bits &= bits - 1) {
-            const int32_t x = b * ASJ_LANES + __builtin_ctz(bits);
-            if (w.count == 0 || x >= w.x[w.count - 1] + WINDOW) {
-                if (w.count == WINDOWS) {
-                    junctions = finish_windows(test, frame, y, &w, scratch, junctions);
-                    w.count = 0;
-                }
-                w.x[w.count] = x;
-                w.candidates[w.count++] = 0;
+    batch b = {0};
+    b.junctions = junctions;
+    for (int32_t y = top; y < bottom; y++)
+        for (int32_t run = 0; run < frame->blocks; run++)
+            for (uint32_t bits = masks[(ptrdiff_t)y * frame->blocks + run]; bits; bits &= bits - 1) {
+                const int32_t x = run * ASJ_LANES + __builtin_ctz(bits);
+                asj_isotropic_junction *junction = &b.junctions[b.count];
+                memset(junction, 0, sizeof *junction);
+                junction->x = (uint16_t)x;
+                junction->y = (uint16_t)y;
+                b.at[b.count % SQUARE][b.count / SQUARE] = y * frame->stride + x;
+                if (++b.count == V_LANES)
+                    finish_batch(test, frame, &b, scratch);
             }
-            w.candidates[w.count - 1] |= (uint32_t)1 << (x - w.x[w.count - 1]);
-        }
-    if (w.count > 0)
-        finish_windows(test, frame, y, &w, scratch, junctions);
+    if (b.count > 0)
+        finish_batch(test, frame, &b, scratch);
 }

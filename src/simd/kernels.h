@@ -44,7 +44,7 @@ void V_NAME(asj_ops)(asj_ops *ops)
     ops->gradient_slide = gradient_slide;
     ops->gradient_normalise = gradient_normalise;
     ops->field_tile = field_tile;
-    ops->isotropic_row = isotropic_row;
+    ops->isotropic_band = isotropic_band;
 #ifdef V_MORE
     V_MORE(ops); /* what is not in this file */
 #endif

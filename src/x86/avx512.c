@@ -9,12 +9,14 @@ typedef __m512i vec;
 
 static inline vec v_load(const void *p) { return _mm512_loadu_si512(p); }
 /* 8 lanes each from several places */
-static inline vec v_load_windows(const int16_t *const *p, ptrdiff_t at)
+static inline vec v_load_places(const int16_t *p, const ptrdiff_t *at)
 {
-    const __m256i low = _mm256_loadu2_m128i((const __m128i *)(p[1] + at), (const __m128i *)(p[0] + at));
-    const __m256i high = _mm256_loadu2_m128i((const __m128i *)(p[3] + at), (const __m128i *)(p[2] + at));
+    const __m256i low = _mm256_loadu2_m128i((const __m128i *)(p + at[1]), (const __m128i *)(p + at[0]));
+    const __m256i high = _mm256_loadu2_m128i((const __m128i *)(p + at[3]), (const __m128i *)(p + at[2]));
     return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
 }
+/* the same 8 lanes again and again */
+static inline vec v_load_repeated(const int16_t *p) { return _mm512_broadcast_i32x4(_mm_loadu_si128((const __m128i *)p)); }
 static inline void v_store(void *p, vec v) { _mm512_storeu_si512(p, v); }
 static inline vec v_set1(int16_t x) { return _mm512_set1_epi16(x); }
 static inline vec v_zero(void) { return _mm512_setzero_si512(); }
@@ -40,6 +42,10 @@ static inline vec v_shift_right_15(vec a) { return _mm512_srli_epi16(a, 15); }
 /* of each 128 bits */
 static inline vec v_interleave_low(vec a, vec b) { return _mm512_unpacklo_epi16(a, b); }
 static inline vec v_interleave_high(vec a, vec b) { return _mm512_unpackhi_epi16(a, b); }
+static inline vec v_interleave32_low(vec a, vec b) { return _mm512_unpacklo_epi32(a, b); }
+static inline vec v_interleave32_high(vec a, vec b) { return _mm512_unpackhi_epi32(a, b); }
+static inline vec v_interleave64_low(vec a, vec b) { return _mm512_unpacklo_epi64(a, b); }
+static inline vec v_interleave64_high(vec a, vec b) { return _mm512_unpackhi_epi64(a, b); }
 
 /* ---- lanes of 32 bits ---- */
 

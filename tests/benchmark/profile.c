@@ -64,16 +64,16 @@ static void count_block(const asj_field *field, const asj_frame *frame, int32_t 
     wrapped.field_block(field, frame, x, y, scratch, branches);
 }
 
-static void count_row(const asj_isotropic *test, const asj_frame *frame, int32_t y, const uint16_t *masks, uint16_t *scratch,
-                      asj_isotropic_junction *junctions)
+static void count_band(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
+                       uint16_t *scratch, asj_isotropic_junction *junctions)
 {
     int32_t candidates = 0, runs = 0, branches = 0;
-    for (int32_t b = 0; b < frame->blocks; b++) {
+    for (ptrdiff_t b = (ptrdiff_t)top * frame->blocks; b < (ptrdiff_t)bottom * frame->blocks; b++) {
         runs += masks[b] != 0;
         for (uint32_t mask = masks[b]; mask; mask &= mask - 1)
             candidates++;
     }
-    wrapped.isotropic_row(test, frame, y, masks, scratch, junctions);
+    wrapped.isotropic_band(test, frame, top, bottom, masks, scratch, junctions);
     for (int32_t i = 0; i < candidates; i++)
         branches += junctions[i].branch_count;
     add(&counted.candidates, candidates);
@@ -194,7 +194,7 @@ static int count_work(asj_context *context, const asj_image *image, const asj_de
     wrapped = *context->ops;
     context->ops->field_tile = count_tile;
     context->ops->field_block = count_block;
-    context->ops->isotropic_row = count_row;
+    context->ops->isotropic_band = count_band;
     context->options.dump = count_points;
     const asj_status status = asj_detect(context, image, options, &found);
     context->options.dump = NULL;

@@ -2,6 +2,7 @@
 #include "operations.h"
 #include "gradient.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* A place for operations on one run; the same for every variant. */
@@ -12,38 +13,47 @@ static void choose(const subject *s, int32_t *x, int32_t *y)
     *y = (int32_t)(synth_random_unit(&random) * s->frame.height);
 }
 
+enum { BAND = 3 };
+
+/* Every third run of the band has candidates, and not the same ones. */
+static void choose_candidates(const subject *s, int32_t top, int32_t bottom, uint16_t *masks)
+{
+    synth_random random = s->random;
+    for (int32_t y = top; y < bottom; y++) {
+        uint16_t *row = masks + (ptrdiff_t)y * s->frame.blocks;
+        for (int32_t b = 0; b < s->frame.blocks; b++)
+            row[b] = synth_random_unit(&random) < 0.4 ? (uint16_t)(synth_random_bits(&random) & synth_random_bits(&random)) : 0;
+        asj_field_cut(&s->frame, 0, s->frame.blocks, row);
+    }
+}
+
 static double one_run(const subject *s)
 {
     (void)s;
     return ASJ_LANES;
 }
 
-/* Every third run of the row has candidates, and not the same ones. */
-static void choose_candidates(const subject *s, uint16_t *masks)
+static double band_pixels(const subject *s)
 {
-    synth_random random = s->random;
-    for (int32_t b = 0; b < s->frame.blocks; b++)
-        masks[b] = synth_random_unit(&random) < 0.4 ? (uint16_t)(synth_random_bits(&random) & synth_random_bits(&random)) : 0;
-    asj_field_cut(&s->frame, 0, s->frame.blocks, masks);
+    return (double)BAND * s->frame.width;
 }
 
-static double one_row(const subject *s)
+static size_t band_size(const subject *s)
 {
-    return s->frame.width;
+    return BAND * (size_t)s->frame.width * sizeof(asj_isotropic_junction);
 }
 
-static size_t row_size(const subject *s)
+static void run_band(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
 {
-    return (size_t)s->frame.width * sizeof(asj_isotropic_junction);
-}
-
-static void run_row(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
-{
-    uint16_t masks[512];
+    uint16_t *masks = calloc((size_t)s->frame.blocks * (size_t)s->frame.height, sizeof *masks);
     int32_t x, y;
     choose(s, &x, &y);
-    choose_candidates(s, masks);
-    ops->isotropic_row(&s->isotropic, &s->frame, y, masks, scratch, output);
+    const int32_t bottom = y + BAND < s->frame.height ? y + BAND : s->frame.height;
+    if (!masks)
+        abort();
+    choose_candidates(s, y, bottom, masks);
+    ops->isotropic_band(&s->isotropic, &s->frame, y, bottom, masks, scratch, output);
+    free(masks);
 }
 
 static size_t block_size(const subject *s)
@@ -136,7 +146,7 @@ const operation operations[] = {
     {"luma", luma_size, luma_pixels, run_luma},
     {"gradient", planes_size, all_pixels, run_gradient},
     {"field block", block_size, one_run, run_block},
-    {"isotropic row", row_size, one_row, run_row},
+    {"isotropic band", band_size, band_pixels, run_band},
     {"field tile", tile_size, tile_pixels, run_tiles},
 };
 const size_t operation_count = sizeof operations / sizeof operations[0];

@@ -214,32 +214,39 @@ static void test_nfa(void **state)
     asj_detect_options_init(&f->options);
 }
 
-/* A whole row at once: the records of its runs one after the other. */
-static void test_row(void **state)
+/* Bands of rows at once: the records of their runs one after the other. */
+static void test_band(void **state)
 {
+    enum { ROWS = 3 };
     fixture *f = *state;
-    uint16_t masks[16];
-    asj_isotropic_junction row[16 * ASJ_LANES + 1], block[ASJ_LANES];
     make(f, 1u << 5 | 1u << 7 | 1u << 10 | 1u << 14, 5);
+    const int32_t blocks = f->frame.blocks, last = f->frame.width - (blocks - 1) * ASJ_LANES;
+    asj_isotropic_junction block[ASJ_LANES], *band = malloc((ROWS * (size_t)f->frame.width + 1) * sizeof *band);
+    uint16_t *masks = malloc((size_t)blocks * (size_t)f->frame.height * sizeof *masks);
     uint16_t *scratch = malloc(f->test.scratch * sizeof *scratch);
-    assert_non_null(scratch);
-    for (int32_t y = 0; y < f->frame.height; y += 7) {
+    assert_true(band && masks && scratch);
+    for (int32_t y = 0; y < f->frame.height; y++)
+        for (int32_t b = 0; b < blocks; b++) { /* full, empty and sparse runs; none beyond the image */
+            const int kind = (b + y) % 4;
+            const uint32_t mask = kind == 0 ? 0xffff : kind == 1 ? 0 : every_other(b * ASJ_LANES, y);
+            masks[y * blocks + b] = (uint16_t)(b == blocks - 1 ? mask & ((1u << last) - 1) : mask);
+        }
+    for (int32_t top = 0; top + ROWS <= f->frame.height; top += 7) {
         int32_t at = 0;
-        for (int32_t b = 0; b < f->frame.blocks; b++) /* full, empty and sparse runs; none beyond the image */
-            masks[b] = (uint16_t)((b + y) % 4 == 0 ? 0xffff : (b + y) % 4 == 1 ? 0 : every_other(b * ASJ_LANES, y));
-        masks[f->frame.blocks - 1] &= (uint16_t)((1u << (f->frame.width - (f->frame.blocks - 1) * ASJ_LANES)) - 1);
-        memset(row, 0x77, sizeof row);
-        asj_isotropic_row(&f->test, &f->frame, y, masks, scratch, row);
-        for (int32_t b = 0; b < f->frame.blocks; b++) {
+        memset(band, 0x77, (ROWS * (size_t)f->frame.width + 1) * sizeof *band);
+        asj_isotropic_band(&f->test, &f->frame, top, top + ROWS, masks, scratch, band);
+        for (int32_t i = top * blocks; i < (top + ROWS) * blocks; i++) {
             int32_t count = 0;
-            asj_isotropic_block(&f->test, &f->frame, b * ASJ_LANES, y, masks[b], scratch, block);
-            for (int32_t i = 0; i < ASJ_LANES; i++)
-                count += masks[b] >> i & 1;
-            assert_memory_equal(&row[at], block, (size_t)count * sizeof *block);
+            asj_isotropic_block(&f->test, &f->frame, i % blocks * ASJ_LANES, i / blocks, masks[i], scratch, block);
+            for (int32_t bit = 0; bit < ASJ_LANES; bit++)
+                count += masks[i] >> bit & 1;
+            assert_memory_equal(&band[at], block, (size_t)count * sizeof *block);
             at += count;
         }
-        assert_int_equal(row[at].x, 0x7777);
+        assert_int_equal(band[at].x, 0x7777);
     }
+    free(band);
+    free(masks);
     free(scratch);
 }
 
@@ -360,7 +367,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_nfa),
-        cmocka_unit_test(test_row),
+        cmocka_unit_test(test_band),
         cmocka_unit_test(test_tables),
         cmocka_unit_test(test_out_of_memory),
         cmocka_unit_test(test_thin),
