@@ -223,7 +223,8 @@ static int take_ways(const char *text, experiment *e)
 static int parse(int argc, char **argv, experiment *e)
 {
     static const struct option longs[] = {{"images", 1, NULL, 'n'}, {"first", 1, NULL, 'f'}, {"check", 0, NULL, 'c'},
-                                          {"ways", 1, NULL, 'w'}, {"preset", 1, NULL, 'p'}, {"help", 0, NULL, 'h'}, {NULL, 0, NULL, 0}};
+                                          {"ways", 1, NULL, 'w'}, {"preset", 1, NULL, 'p'}, {"help", 0, NULL, 'h'},
+                                          {NULL, 0, NULL, 0}};
     int c;
     while ((c = getopt_long(argc, argv, "", longs, NULL)) != -1)
         switch (c) {
@@ -241,7 +242,8 @@ static int parse(int argc, char **argv, experiment *e)
                 return fail("--preset: default, paper");
             break;
         case 'h':
-            printf("usage: noise [--images N] [--first SEED] [--preset default|paper] [--ways any,scanned,steps] [--check] [key=value ...]\n"
+            printf("usage: noise [--images N] [--first SEED] [--preset default|paper] [--ways any,scanned,steps] [--check]\n"
+                   "             [key=value ...]\n"
                    "False branches per image of 256 x 256 Gaussian noise, one ray in a random direction from every pixel.\n");
             return 1;
         default: return -1;

@@ -91,7 +91,7 @@ def _agree(a, i, b, k, criterion):
 
 
 def correspondences(a, b, criterion):
-    """One-to-one pairs of indices of `a` (already mapped) and `b`, closest first. criterion None: location and angles alone."""
+    """One-to-one pairs of indices of `a` (already mapped) and `b`, closest first. criterion "angles": location and angles alone."""
     d = np.hypot(a.place[:, None, 0] - b.place[None, :, 0], a.place[:, None, 1] - b.place[None, :, 1])
     i, k = np.nonzero(d < PLACE_LIMIT)
     keep = _agree(a, i, b, k, criterion)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Key-points of OpenCV, matched as the paper's table does: nearest neighbour from image 1 to image 2, kept when the second nearest is
-farther by 1.5 in squared distance. The Hamming distance of binary descriptors is a squared distance.
+"""Key-points of OpenCV, matched as the paper's table does: nearest neighbour from image 1 to image 2, kept when the second nearest
+is farther by 1.5 in squared distance. The Hamming distance of binary descriptors is a squared distance.
 
 Affine-SIFT finds the same point in several simulated views: its second nearest is the nearest that lies elsewhere (6 px), and of
 matches between the same places (1 px) one counts. A new peer is a class with detect() and a line in PEERS."""

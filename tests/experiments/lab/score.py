@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Which matches are right, by the truth of their pair.
 
-Points (the paper's "#correct" of key-points): homography: within 5 px of the mapped point; fundamental matrix: both epipolar distances
-below 3 px; rendered rooms: the surface seen within 2 px of the place in the first view appears within 4 px of the place in the
-second (tests/accuracy/room_pair.h, by its own code).
+Points (the paper's "#correct" of key-points): homography: within 5 px of the mapped point; fundamental matrix: both epipolar
+distances below 3 px; rendered rooms: the surface seen within 2 px of the place in the first view appears within 4 px of the place
+in the second (tests/accuracy/room_pair.h, by its own code).
 
 Segments (the paper's strict rule: "endpoints of corresponding line-segments are correct"): both ends, within 10 px or 5 % of the
 length, whichever is more (homography), 3 px from the epipolar lines (fundamental matrix), 8 px (rooms); and where people have
@@ -115,4 +115,5 @@ def _along(labelled, a, b):
         cosine = np.abs(((q - p) * u).sum(-1)) / other
         overlap = np.minimum(np.maximum(*along), length) - np.maximum(np.minimum(*along), 0)
         close = (across[0] + across[1] < 2 * ALONG_DISTANCE) & (np.maximum(*across) < 2 * ALONG_DISTANCE)
-        return ((length >= 1) & close & (overlap > 0.5 * np.minimum(length, other)) & (cosine > np.cos(np.radians(ALONG_ANGLE)))).astype(int)
+        parallel = cosine > np.cos(np.radians(ALONG_ANGLE))
+        return ((length >= 1) & close & parallel & (overlap > 0.5 * np.minimum(length, other))).astype(int)

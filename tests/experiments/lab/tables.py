@@ -15,7 +15,8 @@ def summary(cells):
 
 
 def accuracy_rows(methods, names, cells):
-    """(header, rows): method, average accuracy, correct / total, seconds a pair, then every pair. cells: (method, pair) -> counts"""
+    """(header, rows): method, average accuracy, correct / total, seconds a pair, then every pair.
+    cells: (method, pair) -> counts"""
     header = ["", "average accuracy, %", "correct / total", "s a pair"] + list(names)
     rows = []
     for method in methods:

@@ -58,8 +58,9 @@ def _add_peers(session, jobs):
 
 def run(session):
     part = Part("Line-segment matching")
-    part.text("Strict rule: both end points must correspond, within 10 px or 5 % of the length (homography), 3 px from the epipolar "
-              "lines (fundamental matrix), 8 px (rendered rooms); people's line labels, where there are any, must not contradict.")
+    part.text("Strict rule: both end points must correspond, within 10 px or 5 % of the length (homography), 3 px from the "
+              "epipolar lines (fundamental matrix), 8 px (rendered rooms); people's line labels, where there are any, must not "
+              "contradict.")
     if not peer_lines.available():
         part.text("This OpenCV has no line descriptors (opencv-contrib has): no peers.")
     jobs = session.jobs("lines")

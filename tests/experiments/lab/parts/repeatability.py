@@ -1,30 +1,55 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Part 2: repeatability against ACJ, under zoom, blur, noise, compression and gain."""
+"""Part 2: repeatability against ACJ, under zoom, blur, noise, compression and gain, and between the views of a homography."""
+import os
+
+import cv2
 import numpy as np
 
-from .. import charts, criteria, images, library
+from .. import charts, criteria, images, junctions, library, pairs
 from ..report import Part
 
-# name in the report -> detector, criterion, whether its junctions are taken apart into L-junctions
-METHODS = {
-    "default, ASJ": (library.DEFAULT, criteria.ASJ, False),
-    "paper, ASJ": (library.PAPER, criteria.ASJ, False),
-    "isotropic of default, ACJ": (library.ISOTROPIC_DEFAULT, criteria.ACJ, False),
-    "isotropic of paper, ACJ": (library.ISOTROPIC_PAPER, criteria.ACJ, False),
-    "default, L-junctions": (library.DEFAULT, criteria.ASJ, True),
-    "default, place alone": (library.DEFAULT, criteria.PLACE, False),
-}
+
+class Method:
+    """A detector with the criterion that its junctions are judged by; apart: taken apart into L-junctions first."""
+
+    def __init__(self, criterion, detector=None, apart=False, folder=None, name=None):
+        self.criterion, self.detector, self.apart, self.folder, self.name = criterion, detector, apart, folder, name
+
+    def found(self, session, path, limit, given=None):
+        """Junctions of a picture, or None. given: {detector's name: file} beside the photograph"""
+        if self.detector:
+            found = session.library.detect(self.detector, path, limit)
+        else:
+            base = os.path.splitext(os.path.basename(path))[0]
+            file = os.path.join(self.folder, base + ".asj") if self.folder else (given or {}).get(self.name)
+            if not file or not os.path.exists(file):
+                return None
+            found = junctions.read_asj(file)
+        return found.decomposed() if self.apart else found
 
 
-def _found(session, method, path, limit):
-    detector, _, apart = METHODS[method]
-    found = session.library.detect(detector, path, limit)
-    return found.decomposed() if apart else found
+def methods(session):
+    """{name in the report: Method}"""
+    out = {
+        "default, ASJ": Method(criteria.ASJ, library.DEFAULT),
+        "paper, ASJ": Method(criteria.ASJ, library.PAPER),
+        "isotropic of default, ACJ": Method(criteria.ACJ, library.ISOTROPIC_DEFAULT),
+        "isotropic of paper, ACJ": Method(criteria.ACJ, library.ISOTROPIC_PAPER),
+        "default, L-junctions": Method(criteria.ASJ, library.DEFAULT, apart=True),
+        "default, place alone": Method(criteria.PLACE, library.DEFAULT),
+    }
+    for name, folder in session.arguments.detector:
+        out["%s, ASJ" % name] = Method(criteria.ASJ, folder=folder, name=name)
+    for name in dict.fromkeys(n for p in session.pairs for n in p.detections):
+        out.setdefault("%s, ASJ" % name, Method(criteria.ASJ, name=name))
+    return out
 
 
-def _rate(limit, session, method, original, changed, change):
-    first, second = (_found(session, method, path, limit) for path in (original, changed))
-    correct, total = criteria.rate(first, second, change, METHODS[method][1])
+def _rate(limit, session, method, paths, change, given=({}, {})):
+    first, second = (method.found(session, path, limit, files) for path, files in zip(paths, given))
+    if first is None or second is None:
+        return None
+    correct, total = criteria.rate(first, second, change, method.criterion)
     return {"correct": correct, "total": total, "total_2": len(second)}
 
 
@@ -36,26 +61,89 @@ def _mean(cells):
     return float(np.mean([_percent(c) for c in cells])) if cells else float("nan")
 
 
+def _pictures(session):
+    chosen = session.pictures()
+    return chosen[:1] if session.quick else chosen
+
+
+def _add_changes(session, jobs, all_methods):
+    for picture in _pictures(session):
+        steps = [("zoom", f) + picture.zoomed(f) for f in images.FACTORS]
+        for kind, (levels, _, _) in images.CHANGES.items():
+            steps += [(kind, level) + picture.changed(kind, level) for level in levels]
+        for kind, level, path, change in steps:
+            for name, method in all_methods.items():
+                jobs.add((kind, level, name, picture.key), _rate, session, method, (picture.original(), path), change)
+
+
+def _add_homographies(session, jobs, all_methods):
+    """The two views of pairs whose truth is a homography."""
+    folder = os.path.join(session.work, "images")
+    for pair in [p for p in session.real if p.kind == pairs.HOMOGRAPHY]:
+        views = [images.Picture("%s-%d" % (pair.key, i), path, folder) for i, path in ((1, pair.image1), (2, pair.image2))]
+        height, width = cv2.imread(pair.image2, cv2.IMREAD_GRAYSCALE).shape
+        change = criteria.Homography(pair.matrix, pair.side, (width, height))
+        given = [{n: files[i] for n, files in pair.detections.items()} for i in (0, 1)]
+        for name, method in all_methods.items():
+            paths = [v.original() for v in views]
+            jobs.add(("homography", pair.name, name, pair.name), _rate, session, method, paths, change, given)
+
+
+def _report_kind(part, cells, kind, levels, names, unit):
+    """Table and panel for one kind of change."""
+    rates = {n: [_mean([c for k, c in cells.items() if k[:3] == (kind, v, n) and c]) for v in levels] for n in names}
+    rates = {n: r for n, r in rates.items() if np.isfinite(r).any()}
+    part.numbers[kind] = {"levels": levels, "percent": rates}
+    part.table(["%s, %s" % (kind, unit)] + ["%g" % v for v in levels], [[n] + ["%.1f" % v for v in r] for n, r in rates.items()])
+    return {"title": kind, "x_label": unit, "y_label": "repeatability, %", "y_range": (0, 102),
+            "series": {n: (levels, r) for n, r in rates.items()}, "ticks": levels}
+
+
+def _report_homographies(part, cells, names):
+    chosen = list(dict.fromkeys(k[1] for k in cells if k[0] == "homography"))
+    if not chosen:
+        return
+    part.heading("Between the views of known homographies")
+    rows = []
+    for name in names:
+        mine = [cells.get(("homography", p, name, p)) for p in chosen]
+        if any(mine):
+            part.numbers.setdefault("homography", {})[name] = dict(zip(chosen, mine))
+            rows.append([name] + ["%.1f (%d / %d)" % (_percent(c), c["correct"], c["total"]) if c else "-" for c in mine])
+    part.table(["percent of the junctions of image 1 that image 2 shows"] + chosen, rows)
+
+
 def run(session):
     part = Part("Repeatability against ACJ")
     part.text("Share of the junctions of the original that have a correspondence in the changed copy, in percent, mean over the "
               "pictures. Corresponding: location within 3 px, every branch within pi/20 of one of the other's, the same number of "
-              "branches, and (ACJ) isotropic scales or (ASJ) every branch length within 3 px of one of the other's.")
-    jobs, pictures = session.jobs("repeatability"), session.pictures()
-    if session.quick:
-        pictures = pictures[:1]
-    for picture in pictures:
-        for factor in images.FACTORS:
-            path, change = picture.zoomed(factor)
-            for method in METHODS:
-                jobs.add(("zoom", factor, method, picture.key), _rate, session, method, picture.original(), path, change)
-    cells = jobs.run()
-    rates = {m: [_mean([c for k, c in cells.items() if k[:3] == ("zoom", f, m)]) for f in images.FACTORS] for m in METHODS}
-    part.chart(charts.curves([{"x_label": "zoom factor", "y_label": "repeatability, %", "y_range": (0, 102),
-                               "series": {m: (images.FACTORS, r) for m, r in rates.items()}}]),
-               "Mean of %d pictures." % len(pictures))
-    part.table(["zoom"] + ["%.1f" % f for f in images.FACTORS], [[m] + ["%.1f" % v for v in r] for m, r in rates.items()])
-    part.numbers["zoom"] = {"factors": images.FACTORS, "rates": rates,
-                            "cells": [dict(c, factor=k[1], method=k[2], picture=k[3]) for k, c in cells.items()]}
+              "branches, and (ACJ) isotropic scales or (ASJ) every branch length within 3 px of one of the other's. One to one, "
+              "closest first. \"Isotropic\": the junctions before their branches are followed.")
+    all_methods, jobs = methods(session), session.jobs("repeatability")
+    _add_changes(session, jobs, all_methods)
+    _add_homographies(session, jobs, all_methods)
+    cells = {k: c for k, c in jobs.run().items() if c}
+    part.heading("Zoom: the paper's figure")
+    zoom = _report_kind(part, cells, "zoom", list(images.FACTORS), all_methods, "factor")
+    part.chart(charts.curves([zoom], height=4), "Mean of %d pictures: %s." % (len(_pictures(session)), ", ".join(
+        p.key for p in _pictures(session))))
+    part.heading("Blur, noise, compression, gain")
+    panels = [_report_kind(part, cells, kind, list(levels), all_methods, unit)
+              for kind, (levels, _, unit) in images.CHANGES.items()]
+    part.chart(charts.curves(panels[:2]))
+    part.chart(charts.curves(panels[2:]))
+    _report_homographies(part, cells, all_methods)
+    part.numbers["cells"] = [dict(c, change=k[0], level=k[1], method=k[2], picture=k[3]) for k, c in cells.items()]
+    part.numbers["above"] = _above(part.numbers["zoom"])
+    part.text("The default preset is above the paper preset and above the isotropic junctions at every zoom factor below 1: %s."
+              % ("yes" if all(part.numbers["above"]) else "no, not at " + ", ".join(
+                  "%g" % f for f, ok in zip(images.FACTORS[1:], part.numbers["above"]) if not ok)))
     part.cut = jobs.cut
     return part
+
+
+def _above(zoom):
+    """For every factor below 1: the default preset repeats more than the paper preset and the isotropic junctions."""
+    rates = zoom["percent"]
+    others = [r for n, r in rates.items() if n in ("paper, ASJ", "isotropic of default, ACJ", "isotropic of paper, ACJ")]
+    return [all(rates["default, ASJ"][i] > r[i] for r in others) for i in range(1, len(zoom["levels"]))]

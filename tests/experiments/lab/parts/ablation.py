@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Part 7: what each departure from the paper is worth. Two ways: from the paper preset to the default one option at a time, and the
+default with a single option set back. The detector's options are judged by repeatability and by what the default matcher makes of
+the junctions; the matcher's options on the junctions that asj-cli match finds."""
+import os
+
+import numpy as np
+
+from .. import criteria, images, matches, options, pairs, score
+from ..library import Detector
+from ..report import Part
+from ..tables import accuracy
+
+FACTORS = (0.9, 0.7, 0.5)
+NOTICEABLE = {"accuracy": 0.5, "correct": 0.01, "repeatability": 0.5}  # points of percent, share of the correct ones, points
+MATCHING = "matching"  # the detector as asj-cli match sets it
+
+
+def _configurations(departures):
+    """[(kind, departure or None, words)]: the path from all of the paper's values, then the default with one set back"""
+    path = [("path", d, options.words(departures[:n + 1], "ours") + options.words(departures[n + 1:], "paper"))
+            for n, d in enumerate(departures)]
+    path.insert(0, ("path", None, options.words(departures, "paper")))
+    return path + [("back", d, options.words([d], "paper")) for d in departures]
+
+
+def _ends(configurations):
+    """The two ends of the path and one option set back."""
+    last = max(n for n, c in enumerate(configurations) if c[0] == "path")
+    return [configurations[0], configurations[last], configurations[-1]]
+
+
+# ---- jobs ----
+
+def _repeatability(limit, session, detector, picture):
+    first = session.library.detect(detector, picture.original(), limit)
+    rates = []
+    for factor in FACTORS:
+        path, change = picture.zoomed(factor)
+        correct, total = criteria.rate(first, session.library.detect(detector, path, limit), change, criteria.ASJ)
+        rates.append(100.0 * correct / total if total else 0.0)
+    return {"repeatability": float(np.mean(rates)), "junctions": len(first),
+            "ms": session.library.detect_file(detector, picture.original(), limit)[1]}
+
+
+def _junction_files(session, detector, pair, limit):
+    folder = os.path.join(session.work, "images")
+    views = [images.Picture("%s-%d" % (pair.key, i), path, folder) for i, path in ((1, pair.image1), (2, pair.image2))]
+    return [session.library.detect_file(detector, v.original(), limit)[0] for v in views]
+
+
+def _matching(limit, session, detector, words, pair):
+    if detector == MATCHING:
+        detector = Detector(MATCHING, session.shared["matching options"])
+    first, second = _junction_files(session, detector, pair, limit)
+    data, seconds = session.library.match(words + ("--junctions1", first, "--junctions2", second), pair.image1, pair.image2, limit)
+    found = matches.of_library(data, seconds)
+    right = score.Judge(session.library, pair).points(found.p1, found.p2)
+    return {"total": len(right), "correct": int(right.sum()), "seconds": data["timing"]["total_ms"] / 1000}
+
+
+# ---- report ----
+
+def _summary(cells, key):
+    """Measures of one configuration, from the jobs that were done."""
+    repeats = [c for k, c in cells.items() if k[:-1] == key + ("repeat",)]
+    matched = [c for k, c in cells.items() if k[:-1] == key + ("match",)]
+    out = {}
+    if repeats:
+        out = {name: float(np.mean([c[name] for c in repeats])) for name in ("repeatability", "junctions", "ms")}
+    if matched:
+        out.update(accuracy=float(np.mean([accuracy(c) for c in matched])), correct=sum(c["correct"] for c in matched),
+                   total=sum(c["total"] for c in matched), seconds=float(np.mean([c["seconds"] for c in matched])),
+                   pairs=len(matched))
+    return out
+
+
+COLUMNS = (("accuracy", "accuracy, %", "%.1f"), ("correct", "correct", "%d"), ("total", "total", "%d"),
+           ("seconds", "matching, s", "%.2f"), ("repeatability", "repeatability, %", "%.1f"), ("junctions", "junctions", "%.0f"), ("ms", "detection, ms", "%.0f"))
+
+
+def _cells(measures, columns):
+    return [form % measures[name] if name in measures else "-" for name, _, form in columns]
+
+
+def _verdict(default, back):
+    """What the departure is worth: the default against the default with this option set back."""
+    if not default or default.get("pairs") != back.get("pairs"):
+        return "not measured"
+    gains = {n: default[n] - back[n] for n in ("accuracy", "repeatability") if n in default and n in back}
+    if "correct" in default:
+        gains["correct"] = (default["correct"] - back["correct"]) / max(default["correct"], 1)
+    up = [n for n, g in gains.items() if g >= NOTICEABLE[n]]
+    down = [n for n, g in gains.items() if g <= -NOTICEABLE[n]]
+    if up and down:
+        return "mixed: + %s, - %s" % (", ".join(up), ", ".join(down))
+    return "pays: " + ", ".join(up) if up else "costs: " + ", ".join(down) if down else "no difference"
+
+
+def _tables(part, title, cells, configurations):
+    part.heading(title)
+    known = {(kind, d): _summary(cells, (title, kind, d)) for kind, d, _ in configurations}
+    columns = [c for c in COLUMNS if any(c[0] in m for m in known.values())]
+    header = [c[1] for c in columns]
+    path = [(d, m) for (kind, d), m in known.items() if kind == "path"]
+    part.table(["from the paper preset, one option at a time"] + header,
+               [[d.text if d else "paper preset"] + _cells(m, columns) for d, m in path])
+    default = path[-1][1]
+    rows = [["default"] + _cells(default, columns) + [""]]
+    rows += [["%s = %s" % (d.key, d.paper)] + _cells(m, columns) + [_verdict(default, m)]
+             for (kind, d), m in known.items() if kind == "back"]
+    part.table(["the default with one option set back to the paper's"] + header + ["the departure"], rows)
+    part.numbers[title] = {
+        "path": [dict(m, option=d.text if d else "paper preset") for d, m in path],
+        "back": [dict(m, option=d.key, value=d.paper, departure=_verdict(default, m))
+                 for (kind, d), m in known.items() if kind == "back"]}
+
+
+def run(session):
+    part = Part("Ablation: what each departure from the paper is worth")
+    part.text("Accuracy: mean over the pairs; repeatability: ASJ criterion, mean over zooms 0.9, 0.7, 0.5 and the pictures. A "
+              "departure pays when the default is better by at least 0.5 points of accuracy or repeatability or by 1 % of the "
+              "correct matches than the default without it, and nothing is worse by as much.")
+    judged = [p for p in session.pairs if p.kind != pairs.LINES]
+    pictures, few = session.pictures()[::2], judged[::2]
+    if session.quick:
+        judged, pictures, few = judged[-1:], pictures[:1], judged[-1:]
+    lib, sample = session.library, session.rendered[0]
+    session.shared["matching options"] = options.detector_of_matching(lib, sample.image1, sample.image2)
+    detector = _configurations(options.of_detector(lib, sample.image1))
+    matcher = _configurations(options.of_matcher(lib, sample.image1, sample.image2))
+    if session.quick:
+        detector, matcher = (_ends(c) for c in (detector, matcher))
+    jobs = session.jobs("ablation")
+    for kind, d, words in reversed(matcher):   # the paper's induced patches last: they take longest
+        for pair in judged:
+            jobs.add(("Matcher", kind, d, "match", pair.name), _matching, session, MATCHING, words, pair)
+    for kind, d, words in reversed(detector):
+        found = Detector("ablation", words)
+        for picture in pictures:
+            jobs.add(("Detector", kind, d, "repeat", picture.key), _repeatability, session, found, picture)
+        for pair in few:
+            jobs.add(("Detector", kind, d, "match", pair.name), _matching, session, found, (), pair)
+    cells = jobs.run()
+    part.text("Detector: pictures %s; pairs %s. Matcher: pairs %s." % (
+        ", ".join(p.key for p in pictures), ", ".join(p.name for p in few), ", ".join(p.name for p in judged)))
+    _tables(part, "Detector", cells, detector)
+    _tables(part, "Matcher", cells, matcher)
+    part.cut = jobs.cut
+    return part
