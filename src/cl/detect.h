@@ -26,6 +26,7 @@ struct asj_cl_detect {
     asj_cl_buffer gradient_x, gradient_y; /* those of `frame`, rows first .. last - 1; frame NULL = of none */
     const asj_frame *frame;
     int32_t width, height, first, last;
+    uint64_t generation; /* of the gradient on the device: another number whenever it may have changed */
     asj_cl_table field_table, isotropic_table;
     asj_cl_buffer masks, candidates, peaks;
     asj_cl_host_buffer host_candidates, host_peaks;

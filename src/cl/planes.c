@@ -51,7 +51,7 @@ asj_status asj_cl_planes_need(asj_context *context, const asj_frame *frame, int3
         first = -ASJ_MARGIN;
         last = frame->height + ASJ_MARGIN;
     }
-    detect->frame = NULL;
+    asj_cl_planes_forget(context);
     status = upload(context, detect, frame, first, last);
     if (status != ASJ_OK)
         return status;
@@ -65,6 +65,8 @@ asj_status asj_cl_planes_need(asj_context *context, const asj_frame *frame, int3
 
 void asj_cl_planes_forget(asj_context *context)
 {
-    if (context->cl && context->cl->detect)
+    if (context->cl && context->cl->detect) {
         context->cl->detect->frame = NULL;
+        context->cl->detect->generation++;
+    }
 }

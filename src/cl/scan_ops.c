@@ -1,12 +1,295 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 4 on the device (kernels/ray_scan.cl). What is known of the image's local junctions is kept until the gradient changes, so
+ * that the second scan of an image finds what the first one computed. An image that is not on the device as a whole is left to the
+ * CPU. */
+#include "detect.h"
 #include "overrides.h"
+#include "state.h"
 
-void asj_cl_fill_scan(asj_ops *ops)
+#include <asj/device.h>
+
+#include <math.h>
+#include <string.h>
+
+#define TWO_PI 6.283185307179586
+
+/* As in the kernel. */
+#define TABLE_RADIUS 256
+#define TABLE_WIDTH 4
+#define OFFSET_INTS 6
+#define SECTOR_INTS 5
+
+typedef struct scan_sizes {
+    int32_t radius, sectors, suppress, offsets, plain_slots, slots;
+} scan_sizes;
+
+typedef struct scan_ray {
+    int64_t x, y;
+    int32_t ux, uy, angle, radius, forward, axial;
+    int32_t forward_failures, ahead_passes, ahead_failures, axial_failures;
+} scan_ray;
+
+typedef struct scan_image {
+    int32_t width, height, blocks, half_width, tolerance, axial, bridge, threshold, ahead;
+} scan_image;
+
+struct asj_cl_scan {
+    asj_cl_table field, angles;
+    asj_cl_buffer rays, known, asked, entries, branches, counts;
+    asj_cl_host_buffer host_rays;
+    uint64_t generation;    /* of the gradient that all this belongs to */
+    uint32_t done;          /* entries with branches */
+    uint32_t capacity;      /* entries that there is room for */
+};
+
+static asj_status get(asj_context *context, struct asj_cl_scan **scan)
 {
-    (void)ops;
+    if (!context->cl->scan)
+        context->cl->scan = asj_allocate_zero(&context->memory, 1, sizeof *context->cl->scan);
+    *scan = context->cl->scan;
+    return *scan ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the rays' state on the device");
 }
 
 void asj_cl_free_scan(asj_context *context)
 {
-    (void)context;
+    struct asj_cl_scan *scan = context->cl->scan;
+    if (!scan)
+        return;
+    asj_cl_buffer *const buffers[] = {&scan->rays, &scan->known, &scan->asked, &scan->entries, &scan->branches, &scan->counts};
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
+        asj_cl_release(context, buffers[i]);
+    asj_cl_table_free(context, &scan->field);
+    asj_cl_table_free(context, &scan->angles);
+    asj_release(&context->memory, scan->host_rays.memory);
+    asj_release(&context->memory, scan);
+    context->cl->scan = NULL;
+}
+
+/* ---- tables ---- */
+
+static asj_status load_angles(asj_context *context, asj_cl_table *table, const asj_scan *scan)
+{
+    const double one = (double)(1 << 30);
+    int32_t *next;
+    asj_status status = asj_cl_table_begin(context, table, 2 * (TABLE_RADIUS * TABLE_WIDTH + 1024), &next);
+    if (status != ASJ_OK)
+        return status;
+    for (int32_t r = 0; r < TABLE_RADIUS; r++)
+        for (int32_t d = 0; d < TABLE_WIDTH; d++) {
+            *next++ = r > 0 ? (int32_t)lrint(one * cos((double)d / r)) : 0;
+            *next++ = r > 0 ? (int32_t)lrint(one * sin((double)d / r)) : 0;
+        }
+    for (int32_t i = 0; i < 1024; i++) {
+        *next++ = scan->unit[i][0];
+        *next++ = scan->unit[i][1];
+    }
+    return asj_cl_table_end(context, table, 2 * (TABLE_RADIUS * TABLE_WIDTH + 1024));
+}
+
+static void fill_field(const asj_field *field, int32_t *next)
+{
+    const asj_sectors *s = &field->sectors;
+    const asj_sector_plan *plan = &field->plan;
+    for (int32_t i = 0; i < s->offset_count; i++) {
+        const asj_direction u = asj_sector_direction(s, i);
+        const int32_t offset[OFFSET_INTS] = {s->dx[i], s->dy[i], u.x, u.y, u.cross_x, u.dot_y};
+        memcpy(next, offset, sizeof offset);
+        next += OFFSET_INTS;
+    }
+    for (int32_t j = 0; j < plan->plain_count; j++)
+        *next++ = plan->boundary[j];
+    for (int32_t j = 0; j < plan->slot_count - plan->plain_count; j++)
+        *next++ = plan->extra[j];
+    for (int32_t k = 0; k < s->count; k++) {
+        const int32_t sector[SECTOR_INTS] = {plan->low[k], plan->high[k], s->mean[k], s->scale[k], field->keep[k]};
+        memcpy(next, sector, sizeof sector);
+        next += SECTOR_INTS;
+    }
+}
+
+/* *changed: another field than before. */
+static asj_status load_field(asj_context *context, asj_cl_table *table, const asj_field *field, int32_t *changed)
+{
+    const size_t count = OFFSET_INTS * (size_t)field->sectors.offset_count + (size_t)field->plan.slot_count +
+                         SECTOR_INTS * (size_t)field->sectors.count;
+    int32_t *numbers;
+    asj_status status = asj_cl_table_begin(context, table, count, &numbers);
+    if (status != ASJ_OK)
+        return status;
+    fill_field(field, numbers);
+    *changed = table->held_count != count || memcmp(table->held, numbers, count * sizeof *numbers) != 0;
+    return asj_cl_table_end(context, table, count);
+}
+
+/* Small groups share the work evenly: rays differ in length. */
+static size_t group_size(const asj_context *context)
+{
+    return asj_cl_get_limits(context)->max_work_group < 16 ? 1 : 16;
+}
+
+/* ---- rays ---- */
+
+static asj_status send_rays(asj_context *context, struct asj_cl_scan *state, const asj_ray *rays, size_t count)
+{
+    const double one = (double)((int64_t)1 << 30);
+    asj_status status = asj_cl_host_reserve(context, &state->host_rays, count * sizeof(scan_ray));
+    if (status == ASJ_OK)
+        status = asj_cl_reserve(context, &state->rays, count * sizeof(scan_ray));
+    if (status != ASJ_OK)
+        return status;
+    scan_ray *to = state->host_rays.memory;
+    for (size_t i = 0; i < count; i++) {
+        memset(&to[i], 0, sizeof to[i]);
+        to[i].x = llrint(rays[i].x * 65536);
+        to[i].y = llrint(rays[i].y * 65536);
+        to[i].ux = (int32_t)llrint(cos(rays[i].angle) * one);
+        to[i].uy = (int32_t)llrint(sin(rays[i].angle) * one);
+        to[i].angle = (uint16_t)llrint(rays[i].angle * (65536 / TWO_PI));
+        to[i].radius = rays[i].start > 0 ? rays[i].start : 1;
+    }
+    return asj_cl_write(context, &state->rays, 0, to, count * sizeof(scan_ray));
+}
+
+static asj_status fetch_rays(asj_context *context, const asj_scan *scan, struct asj_cl_scan *state, asj_ray *rays, size_t count)
+{
+    const scan_ray *from = state->host_rays.memory;
+    const int32_t bridge = scan->field->sectors.radius;
+    asj_status status = asj_cl_read(context, &state->rays, 0, state->host_rays.memory, count * sizeof(scan_ray));
+    for (size_t i = 0; i < count && status == ASJ_OK; i++) {
+        rays[i].forward = from[i].forward;
+        rays[i].axial = from[i].axial;
+        if (scan->axial && rays[i].axial > rays[i].forward + bridge)
+            rays[i].axial = rays[i].forward + bridge;
+    }
+    return status;
+}
+
+/* ---- local junctions ---- */
+
+static asj_status forget(asj_context *context, struct asj_cl_scan *state, size_t runs)
+{
+    const uint32_t none[2] = {0, 0};
+    state->done = 0;
+    asj_status status = asj_cl_reserve(context, &state->known, runs * sizeof(uint32_t));
+    if (status == ASJ_OK)
+        status = asj_cl_reserve(context, &state->asked, runs * sizeof(uint32_t));
+    if (status == ASJ_OK)
+        status = asj_cl_reserve(context, &state->entries, runs * sizeof(uint32_t));
+    if (status == ASJ_OK)
+        status = asj_cl_reserve(context, &state->counts, sizeof none);
+    if (status == ASJ_OK)
+        status = asj_cl_write(context, &state->counts, 0, none, sizeof none);
+    if (status == ASJ_OK)
+        status = asj_cl_zero(context, &state->known, 0, runs * sizeof(uint32_t));
+    return status == ASJ_OK ? asj_cl_zero(context, &state->asked, 0, runs * sizeof(uint32_t)) : status;
+}
+
+/* Room for `count` entries; when it grows, all of them are to be computed again. */
+static asj_status make_room(asj_context *context, struct asj_cl_scan *state, size_t count, size_t runs)
+{
+    const size_t entry = ASJ_LANES * ASJ_FIELD_BRANCHES * sizeof(uint32_t), least = runs / 8 > 1024 ? runs / 8 : 1024;
+    if (count <= state->capacity)
+        return ASJ_OK;
+    size_t capacity = 2 * count > least ? 2 * count : least;
+    capacity = capacity < runs ? capacity : runs;
+    state->capacity = 0;
+    state->done = 0;
+    asj_status status = asj_cl_reserve(context, &state->branches, capacity * entry);
+    if (status == ASJ_OK)
+        state->capacity = (uint32_t)capacity;
+    return status;
+}
+
+/* All entries up to `count` that have no branches yet. */
+static asj_status compute(asj_context *context, struct asj_cl_scan *state, const asj_field *field, const asj_frame *frame,
+                          uint32_t count)
+{
+    const struct asj_cl_detect *detect = context->cl->detect;
+    asj_status status = make_room(context, state, count, (size_t)frame->blocks * (size_t)frame->height);
+    if (status != ASJ_OK)
+        return status;
+    const scan_sizes sizes = {field->sectors.radius, field->sectors.count, field->suppress, field->sectors.offset_count,
+                              field->plan.plain_count, field->plan.slot_count};
+    const asj_cl_argument arguments[] = {
+        ASJ_CL_BUFFER(&detect->gradient_x), ASJ_CL_BUFFER(&detect->gradient_y), ASJ_CL_INT(frame->stride),
+        ASJ_CL_INT(detect->first), ASJ_CL_INT(frame->blocks), ASJ_CL_BUFFER(&state->field.buffer), ASJ_CL_STRUCT(&sizes, sizeof sizes),
+        ASJ_CL_BUFFER(&state->entries), ASJ_CL_INT(state->done), ASJ_CL_INT(count), ASJ_CL_BUFFER(&state->branches),
+        ASJ_CL_BUFFER(&state->known)};
+    const size_t local = group_size(context), global = (count - state->done + local - 1) / local * local;
+    status = asj_cl_run(context, "scan_runs", 1, &global, &local, arguments, 12);
+    if (status == ASJ_OK)
+        state->done = count;
+    return status;
+}
+
+/* Walks as far as all rays can; counts: entries, rays that go on. */
+static asj_status walk(asj_context *context, struct asj_cl_scan *state, const scan_image *image, size_t count, uint32_t counts[2])
+{
+    const size_t local = group_size(context), global = (count + local - 1) / local * local;
+    const asj_cl_argument arguments[] = {
+        ASJ_CL_STRUCT(image, sizeof *image), ASJ_CL_BUFFER(&state->angles.buffer), ASJ_CL_BUFFER(&state->rays), ASJ_CL_INT(count),
+        ASJ_CL_BUFFER(&state->known), ASJ_CL_BUFFER(&state->branches), ASJ_CL_BUFFER(&state->asked),
+        ASJ_CL_BUFFER(&state->entries), ASJ_CL_BUFFER(&state->counts)};
+    asj_status status = asj_cl_zero(context, &state->counts, sizeof(uint32_t), sizeof(uint32_t));
+    if (status == ASJ_OK)
+        status = asj_cl_run(context, "scan_walk", 1, &global, &local, arguments, 9);
+    return status == ASJ_OK ? asj_cl_read(context, &state->counts, 0, counts, 2 * sizeof *counts) : status;
+}
+
+/* Tables, and what is known already. */
+static asj_status prepare(asj_context *context, struct asj_cl_scan *state, const asj_scan *scan, const asj_frame *frame)
+{
+    int32_t changed = 0;
+    asj_status status = asj_cl_planes_need(context, frame, 0, frame->height);
+    if (status == ASJ_OK)
+        status = load_angles(context, &state->angles, scan);
+    if (status == ASJ_OK)
+        status = load_field(context, &state->field, scan->field, &changed);
+    if (status != ASJ_OK || (!changed && state->generation == context->cl->detect->generation))
+        return status;
+    state->generation = 0;
+    status = forget(context, state, (size_t)frame->blocks * (size_t)frame->height);
+    if (status == ASJ_OK)
+        status = make_room(context, state, 1, (size_t)frame->blocks * (size_t)frame->height);
+    if (status == ASJ_OK)
+        state->generation = context->cl->detect->generation;
+    return status;
+}
+
+/* Whether the device has room for all runs of the image, to be on the safe side. */
+static int fits(const asj_context *context, const asj_frame *frame)
+{
+    const asj_cl_limits *limits = asj_cl_get_limits(context);
+    const uint64_t bytes = (uint64_t)frame->blocks * (uint64_t)frame->height * ASJ_LANES * ASJ_FIELD_BRANCHES * sizeof(uint32_t);
+    return asj_cl_plane_rows(context, frame) == frame->height + 2 * ASJ_MARGIN && bytes <= limits->largest_buffer &&
+           bytes <= limits->global_memory / 4;
+}
+
+static asj_status scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count)
+{
+    struct asj_cl_scan *state;
+    uint32_t counts[2] = {0, 1};
+    if (count == 0 || count > INT32_MAX / 2 || !fits(context, frame))
+        return count == 0 ? ASJ_OK : asj_scan_rays(context, scan, frame, rays, count);
+    asj_status status = get(context, &state);
+    if (status == ASJ_OK)
+        status = prepare(context, state, scan, frame);
+    if (status == ASJ_OK)
+        status = send_rays(context, state, rays, count);
+    const scan_image image = {frame->width, frame->height, frame->blocks, scan->half_width, scan->tolerance, scan->axial,
+                              scan->axial ? scan->field->sectors.radius : -1, scan->threshold,
+                              asj_cl_get_limits(context)->type == ASJ_DEVICE_CPU ? 4 : 32};
+    while (status == ASJ_OK && counts[1] > 0) {
+        status = walk(context, state, &image, count, counts);
+        if (status == ASJ_OK && counts[0] > state->done)
+            status = compute(context, state, scan->field, frame, counts[0]);
+    }
+    if (status != ASJ_OK && context->cl)
+        state->generation = 0; /* whatever there is may be half done */
+    return status == ASJ_OK ? fetch_rays(context, scan, state, rays, count) : status;
+}
+
+void asj_cl_fill_scan(asj_ops *ops)
+{
+    ops->scan_rays = scan_rays;
 }

@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 4 on a device: rays that follow branches, as in src/scan.c, over local junctions, as in src/field.c.
+ *
+ * Rays visit 5 to 10 % of the runs of LANES pixels. So both go in turns: a ray walks until it comes to a run whose local junctions
+ * are not known, asks for all runs of its next steps, and stops (scan_walk); then those that were asked for are computed
+ * (scan_runs). Each run that was asked for has an entry: its number in entries[] and its branches in branches[]. asked[] is touched
+ * by atomic operations only, known[] (1 + entry, 0 = not known) written by scan_runs only, so nothing is read while it is written.
+ * The order of the entries differs from time to time, the results do not.
+ *
+ * Planes of the frame as in gradient.cl. */
+
+#define MARGIN 32
+#define LANES 16
+#define BRANCHES 4
+#define MAX_SLOTS 176  /* of radius 9: two for each sector, and one more for each that runs past the last offset */
+#define MAX_SECTORS 56
+
+/* ---- local junctions ---- */
+
+typedef struct scan_sizes {
+    int radius, sectors, suppress, offsets, plain_slots, slots;
+} scan_sizes;
+
+/* The table, in ints (src/cl/scan_ops.c): OFFSET_INTS for each offset; where each plain slot ends; which plain slot each extra slot
+ * adds to the total; SECTOR_INTS for each sector (src/sector_plan.h). */
+#define OFFSET_INTS 6
+enum { OFFSET_DX, OFFSET_DY, OFFSET_X, OFFSET_Y, OFFSET_CROSS_X, OFFSET_DOT_Y };
+#define SECTOR_INTS 5
+enum { SECTOR_LOW, SECTOR_HIGH, SECTOR_MEAN, SECTOR_SCALE, SECTOR_LEAST };
+
+typedef struct scan_table {
+    __global const int *offsets, *boundaries, *extras, *sectors;
+} scan_table;
+
+static scan_table open_table(const scan_sizes *s, __global const int *table)
+{
+    scan_table t;
+    t.offsets = table;
+    t.boundaries = t.offsets + OFFSET_INTS * s->offsets;
+    t.extras = t.boundaries + s->plain_slots;
+    t.sectors = t.extras + (s->slots - s->plain_slots);
+    return t;
+}
+
+/* Sums of gamma up to each slot at LANES pixels, whose gradient stands at gx, gy. */
+static void run_slots(const scan_sizes *s, const scan_table *t, __global const short *gx, __global const short *gy, int stride,
+                      ushort16 *slots)
+{
+    ushort16 sum = 0;
+    int i = 0, j = 0;
+    for (; j < s->plain_slots; j++) {
+        for (const int end = t->boundaries[j]; i < end; i++) {
+            __global const int *o = t->offsets + OFFSET_INTS * i;
+            const int at = o[OFFSET_DY] * stride + o[OFFSET_DX];
+            const short16 x = vload16(0, gx + at), y = vload16(0, gy + at);
+            const short16 cross = high_product(x, (short)o[OFFSET_Y]) - high_product(y, (short)o[OFFSET_CROSS_X]);
+            const short16 dot = high_product(x, (short)o[OFFSET_X]) - high_product(y, (short)o[OFFSET_DOT_Y]);
+            sum += gamma16(cross, dot);
+        }
+        slots[j] = sum;
+    }
+    for (; j < s->slots; j++)
+        slots[j] = sum + slots[t->extras[j - s->plain_slots]];
+}
+
+static void run_strengths(const scan_sizes *s, __global const int *sector, const ushort16 *slots, short16 *strengths)
+{
+    for (int k = 0; k < s->sectors; k++, sector += SECTOR_INTS) {
+        const ushort16 sum = slots[sector[SECTOR_HIGH]] - slots[sector[SECTOR_LOW]];
+        const ushort16 mean = (ushort)sector[SECTOR_MEAN], scale = (ushort)sector[SECTOR_SCALE];
+        strengths[k] = as_short16(high_product_unsigned(excess(sum, mean), scale));
+    }
+}
+
+/* -1 where sector k is a peak. */
+static short16 is_peak(const scan_sizes *s, const short16 *strengths, int k, int least)
+{
+    const short16 here = strengths[k];
+    short16 before = (short)(least - 1), after = 0;
+    if (!any16(here > before))
+        return 0;
+    for (int d = 1; d <= s->suppress; d++) {
+        before = max(before, strengths[k >= d ? k - d : k - d + s->sectors]);
+        after = max(after, strengths[k + d < s->sectors ? k + d : k + d - s->sectors]);
+    }
+    return (here > before) & (here >= after);
+}
+
+/* A branch in a list that falls: strength in the high half, angle (1/65536 of a turn) in the low half. Of equal strengths the first
+ * one stays first. */
+static void insert(uint *list, uint branch)
+{
+    for (int i = 0; i < BRANCHES; i++) {
+        const uint other = list[i];
+        if (branch >> 16 > other >> 16) {
+            list[i] = branch;
+            branch = other;
+        }
+    }
+}
+
+/* The vertex of the parabola through three neighbouring strengths. */
+static uint interpolate(int sectors, int k, int before, int peak, int after)
+{
+    const int shift = (after - before) * (65536 / sectors) / (2 * (2 * peak - before - after));
+    return (uint)peak << 16 | (uint)(65536 * k / sectors + shift & 65535);
+}
+
+__kernel void scan_runs(__global const short *gradient_x, __global const short *gradient_y, int stride, int base, int blocks,
+                        __global const int *table, scan_sizes sizes, __global const uint *entries, int first, int last,
+                        __global uint *branches, __global uint *known)
+{
+    const int entry = first + (int)get_global_id(0);
+    if (entry >= last)
+        return;
+    const scan_table t = open_table(&sizes, table);
+    const uint run = entries[entry];
+    const int x = (int)(run % (uint)blocks) * LANES, y = (int)(run / (uint)blocks);
+    const size_t at = (size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN);
+    ushort16 slots[MAX_SLOTS];
+    short16 strengths[MAX_SECTORS];
+    uint list[LANES * BRANCHES];
+    run_slots(&sizes, &t, gradient_x + at, gradient_y + at, stride, slots);
+    run_strengths(&sizes, t.sectors, slots, strengths);
+    for (int i = 0; i < LANES * BRANCHES; i++)
+        list[i] = 0;
+    for (int k = 0; k < sizes.sectors; k++) {
+        const short16 peak = is_peak(&sizes, strengths, k, t.sectors[SECTOR_INTS * k + SECTOR_LEAST]);
+        short peaks[LANES], before[LANES], here[LANES], after[LANES];
+        if (!any16(peak))
+            continue;
+        vstore16(peak, 0, peaks);
+        vstore16(strengths[k > 0 ? k - 1 : sizes.sectors - 1], 0, before);
+        vstore16(strengths[k], 0, here);
+        vstore16(strengths[k + 1 < sizes.sectors ? k + 1 : 0], 0, after);
+        for (int i = 0; i < LANES; i++)
+            if (peaks[i])
+                insert(list + i * BRANCHES, interpolate(sizes.sectors, k, before[i], here[i], after[i]));
+    }
+    __global uint *to = branches + (size_t)entry * (LANES * BRANCHES);
+    for (int i = 0; i < LANES * BRANCHES; i++)
+        to[i] = list[i];
+    known[run] = (uint)entry + 1;
+}
+
+/* ---- rays ---- */
+
+#define REOPEN 3        /* as in src/scan.c */
+#define TABLE_RADIUS 256
+#define TABLE_WIDTH 4
+
+typedef struct scan_ray {
+    long x, y;      /* start, 1/65536 px */
+    int ux, uy;     /* direction, 2^-30 */
+    int angle;      /* of it, 1/65536 of a turn */
+    int radius;     /* of the next step; 0 = the ray has ended */
+    int forward, axial;
+    int forward_failures, ahead_passes, ahead_failures, axial_failures;
+} scan_ray;
+
+typedef struct scan_image {
+    int width, height, blocks, half_width, tolerance, axial, bridge, threshold;
+    int ahead; /* steps that a ray asks for, beside a quarter of its length */
+} scan_image;
+
+/* cos and sin of d / r in 2^-30 at [r TABLE_WIDTH + d], then those of 1024 angles in 2^-14. */
+typedef struct scan_angles {
+    __global const int2 *arc, *units;
+} scan_angles;
+
+typedef struct sample {
+    long x, y;
+    int cosine, sine; /* 2^-14 */
+} sample;
+
+static sample place(const scan_ray *ray, const scan_angles *angles, int r, int d)
+{
+    const int size = abs(d);
+    const int2 turn = r < TABLE_RADIUS ? angles->arc[r * TABLE_WIDTH + size] : (int2)(1 << 30, (int)(((uint)size << 30) / (uint)r));
+    const long c = turn.x, s = d < 0 ? -turn.y : turn.y;
+    const long ex = (c * ray->ux - s * ray->uy) >> 30, ey = (c * ray->uy + s * ray->ux) >> 30;
+    sample at;
+    at.x = (ray->x + ((r * ex) >> 14) + 32768) >> 16;
+    at.y = (ray->y + ((r * ey) >> 14) + 32768) >> 16;
+    at.cosine = (int)(ex >> 16);
+    at.sine = (int)(ey >> 16);
+    return at;
+}
+
+/* The run of a sample; -1 outside the image. */
+static int run_at(const scan_image *image, const sample *at)
+{
+    if (at->x < 0 || at->y < 0 || at->x >= image->width || at->y >= image->height)
+        return -1;
+    return (int)at->y * image->blocks + (int)at->x / LANES;
+}
+
+/* gamma~ of a branch seen from the ray; *ahead: whether it points along the ray. */
+static int junctionness(const scan_angles *angles, uint branch, const sample *at, int *ahead)
+{
+    const int2 unit = angles->units[(((branch & 65535) + 32) >> 6) & 1023];
+    const int along = unit.x * at->cosine + unit.y * at->sine, across = unit.x * at->sine - unit.y * at->cosine;
+    const int difference = (int)abs(along) - (int)abs(across);
+    *ahead = along > 0;
+    return difference > 0 ? (int)((uint)(difference >> 14) * (branch >> 16) >> 14) : 0;
+}
+
+/* The branch closest to an angle modulo `turn`; of equals the first. */
+static uint closest(uint4 list, int angle, int turn)
+{
+    const int4 distance = convert_int4(list & 65535) - angle & turn - 1;
+    const int4 folded = select(min(distance, turn - distance), (int4)65536, list < 65536);
+    uint best = list.s0;
+    int least = folded.s0;
+    best = folded.s1 < least ? list.s1 : best;
+    least = min(folded.s1, least);
+    best = folded.s2 < least ? list.s2 : best;
+    least = min(folded.s2, least);
+    return folded.s3 < least ? list.s3 : best;
+}
+
+/* Sums over the arc at radius r: forward, ahead, axial. Returns 0 when a run is not known. */
+static int arc_sums(const scan_image *image, const scan_angles *angles, const scan_ray *ray, int r, __global const uint *known,
+                    __global const uint *branches, int4 *sums)
+{
+    *sums = 0;
+    for (int d = -image->half_width; d <= image->half_width; d++) {
+        const sample at = place(ray, angles, r, d);
+        const int run = run_at(image, &at);
+        int ahead;
+        if (run < 0)
+            continue;
+        const uint entry = known[run];
+        if (entry == 0)
+            return 0;
+        const uint4 list = vload4((size_t)(entry - 1) * LANES + (size_t)((int)at.x & LANES - 1), branches);
+        if (list.s0 < 65536)
+            continue;
+        const int gamma = junctionness(angles, closest(list, ray->angle, 65536), &at, &ahead);
+        sums->s0 += gamma;
+        sums->s1 += ahead ? gamma : 0;
+        if (image->axial)
+            sums->s2 += junctionness(angles, closest(list, ray->angle, 32768), &at, &ahead);
+    }
+    return 1;
+}
+
+/* One step; returns 0 when the ray ends here. */
+static int step(const scan_image *image, scan_ray *ray, int4 sums)
+{
+    ray->ahead_passes = sums.s1 >= image->threshold ? ray->ahead_passes + 1 : 0;
+    ray->ahead_failures = ray->ahead_passes ? 0 : ray->ahead_failures + 1;
+    ray->axial_failures = sums.s2 >= image->threshold ? 0 : ray->axial_failures + 1;
+    if (ray->ahead_passes >= REOPEN)
+        ray->forward_failures = 0;
+    else if (sums.s0 < image->threshold || ray->forward_failures > image->tolerance)
+        ray->forward_failures++;
+    else
+        ray->forward_failures = 0;
+    if (ray->forward_failures == 0)
+        ray->forward = ray->radius;
+    if (ray->axial_failures == 0)
+        ray->axial = ray->radius;
+    return ray->forward_failures <= image->tolerance ||
+           (ray->ahead_failures <= image->bridge && ray->axial_failures <= image->tolerance);
+}
+
+/* counts: entries; rays that go on. */
+__kernel void scan_walk(scan_image image, __global const int2 *angle_table, __global scan_ray *rays, int count,
+                        __global const uint *known, __global const uint *branches, volatile __global uint *asked,
+                        __global uint *entries, volatile __global uint *counts)
+{
+    const int number = (int)get_global_id(0);
+    if (number >= count)
+        return;
+    const scan_angles angles = {angle_table, angle_table + TABLE_RADIUS * TABLE_WIDTH};
+    scan_ray ray = rays[number];
+    int4 sums;
+    if (ray.radius == 0)
+        return;
+    while (ray.radius && arc_sums(&image, &angles, &ray, ray.radius, known, branches, &sums))
+        ray.radius = step(&image, &ray, sums) ? ray.radius + 1 : 0;
+    rays[number] = ray;
+    if (ray.radius == 0)
+        return;
+    atomic_inc(counts + 1);
+    for (int r = ray.radius, last = r + r / 4 + image.ahead; r < last; r++)
+        for (int d = -image.half_width; d <= image.half_width; d++) {
+            const sample at = place(&ray, &angles, r, d);
+            const int run = run_at(&image, &at);
+            if (run >= 0 && atomic_xchg(asked + run, 1) == 0)
+                entries[atomic_inc(counts)] = (uint)run;
+        }
+}
