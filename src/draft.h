@@ -14,6 +14,7 @@ typedef struct asj_draft_branch {
     double offset;          /* px: the fitted line passes this far from the junction, along (-sin, cos) of the angle */
     double angle_variance;  /* rad^2 of the fit */
     double offset_variance; /* px^2 of the fit at the junction */
+    double apart;           /* px between the two edges of a thin line, 0 = one edge */
 } asj_draft_branch;
 
 typedef struct asj_draft {

@@ -15,10 +15,11 @@
  * Neighbouring samples share pixels, so s^2 is multiplied by factors that make errors and stated uncertainties agree on synthetic
  * scenes (tests/accuracy). */
 #include "line_fit.h"
+#include "ops.h"
 
 #include <math.h>
 
-#define MAX_SAMPLES 96
+#define MAX_SAMPLES ASJ_PROFILE_SAMPLES
 #define OFFSET_CORRELATION 3.0
 #define ANGLE_CORRELATION 10.0
 #define LEAST_ERROR 0.03 /* px: systematic error of a centroid (sampling, interpolation), at either end of a line */
@@ -35,40 +36,46 @@ typedef struct line {
     double a_variance, b_variance;
 } line;
 
-static void add_sample(samples *out, double t, double sum, double moment)
+static void add_sample(samples *out, double t, double middle, double sum, double moment)
 {
     if (sum <= 0)
         return;
     out->t[out->count] = t;
-    out->centroid[out->count] = moment / sum;
+    out->centroid[out->count] = middle + moment / sum;
     out->weight[out->count++] = sum;
     out->mass += sum;
 }
 
 /* Samples the band around a line: those whose gradient points along +n into out[1], along -n into out[0]. */
-static void collect(const asj_frame *frame, double x, double y, double ux, double uy, const asj_line_range *range,
-                    double half_width, const line *around, samples out[2])
+static void collect(const asj_ops *ops, const asj_frame *frame, double x, double y, double ux, double uy,
+                    const asj_line_range *range, double half_width, const line *around, samples out[2])
 {
     const int32_t reach = (int32_t)ceil(half_width);
-    double step = (range->last - range->first) / (MAX_SAMPLES - 1);
-    if (step < 1)
-        step = 1;
-    out[0].count = out[1].count = 0;
-    out[0].mass = out[1].mass = 0;
-    for (int32_t k = 0; k < MAX_SAMPLES && range->first + k * step <= range->last + 1e-9; k++) {
-        const double t = range->first + k * step, middle = around->a + around->b * t;
-        double sum[2] = {0, 0}, moment[2] = {0, 0};
-        for (int32_t i = -reach; i <= reach; i++) {
-            double s = middle + half_width * i / reach, gx, gy;
-            asj_gradient_sample(frame, x + t * ux - s * uy, y + t * uy + s * ux, &gx, &gy);
-            double across = gy * ux - gx * uy, weight = fabs(across) - fabs(gx * ux + gy * uy);
-            if (weight > 0) {
-                sum[across > 0] += weight;
-                moment[across > 0] += weight * s;
-            }
+    const double step = fmax((range->last - range->first) / (MAX_SAMPLES - 1), 1);
+    asj_line_profile profile;
+    asj_profile_sums sums;
+    profile.ux = (float)ux;
+    profile.uy = (float)uy;
+    profile.first = (float)range->first;
+    profile.step = (float)step;
+    profile.a = (float)around->a;
+    profile.b = (float)around->b;
+    for (int32_t i = -reach; i <= reach; i++)
+        profile.offset[i + reach] = (float)(half_width * i / reach);
+    profile.offsets = 2 * reach + 1;
+    profile.count = (int32_t)((range->last - range->first) / step + 1e-9) + 1;
+    profile.x = (int32_t)floor(x);
+    profile.y = (int32_t)floor(y);
+    profile.origin_x = (float)(x - profile.x);
+    profile.origin_y = (float)(y - profile.y);
+    ops->line_profile(frame, &profile, &sums);
+    for (int32_t side = 0; side < 2; side++) {
+        out[side].count = 0;
+        out[side].mass = 0;
+        for (int32_t k = 0; k < profile.count; k++) {
+            const double t = range->first + k * step;
+            add_sample(&out[side], t, around->a + around->b * t, (double)sums.w[side][k], (double)sums.moment[side][k]);
         }
-        add_sample(&out[0], t, sum[0], moment[0]);
-        add_sample(&out[1], t, sum[1], moment[1]);
     }
 }
 
@@ -99,6 +106,21 @@ static int solve(const samples *in, line *out)
     return 1;
 }
 
+/* Between the lines of both signs when they are no more than THIN apart all along: 1, and how far they are. */
+static int thin(const line lines[2], double first, double last, line *middle, double *apart)
+{
+    const double near = fabs(lines[1].a - lines[0].a + (lines[1].b - lines[0].b) * first);
+    const double far = fabs(lines[1].a - lines[0].a + (lines[1].b - lines[0].b) * last);
+    if (near > THIN || far > THIN)
+        return 0;
+    *apart = 0.5 * (near + far);
+    middle->a = 0.5 * (lines[0].a + lines[1].a);
+    middle->b = 0.5 * (lines[0].b + lines[1].b);
+    middle->a_variance = 0.25 * (lines[0].a_variance + lines[1].a_variance);
+    middle->b_variance = 0.25 * (lines[0].b_variance + lines[1].b_variance);
+    return 1;
+}
+
 /* The line of the stronger sign, or the middle of a thin line's two edges. *apart is the distance between those, else 0. */
 static int choose(const samples list[2], const asj_line_range *range, line *found, double *apart)
 {
@@ -110,27 +132,19 @@ static int choose(const samples list[2], const asj_line_range *range, line *foun
     *found = lines[strong];
     if (list[!strong].mass < 0.4 * list[strong].mass || !solve(&list[!strong], &lines[!strong]))
         return 1;
-    double near = fabs(lines[1].a - lines[0].a + (lines[1].b - lines[0].b) * range->first);
-    double far = fabs(lines[1].a - lines[0].a + (lines[1].b - lines[0].b) * range->last);
-    if (near > THIN || far > THIN)
-        return 1;
-    *apart = 0.5 * (near + far);
-    found->a = 0.5 * (lines[0].a + lines[1].a);
-    found->b = 0.5 * (lines[0].b + lines[1].b);
-    found->a_variance = 0.25 * (lines[0].a_variance + lines[1].a_variance);
-    found->b_variance = 0.25 * (lines[0].b_variance + lines[1].b_variance);
+    thin(lines, range->first, range->last, found, apart);
     return 1;
 }
 
-int asj_line_fit(const asj_frame *frame, double x, double y, const asj_line_range *range, asj_draft_branch *branch)
+int asj_line_fit(const asj_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range, asj_draft_branch *branch)
 {
     const double ux = cos(branch->angle), uy = sin(branch->angle);
     line found = {branch->offset, 0, 0, 0};
-    double apart = 0;
+    double apart = branch->apart;
     samples list[2];
     for (int32_t i = 0; i < range->iterations; i++) {
         double half_width = range->half_width[i] + 0.5 * apart;
-        collect(frame, x, y, ux, uy, range, half_width < 4.5 ? half_width : 4.5, &found, list);
+        collect(ops, frame, x, y, ux, uy, range, half_width < 4.5 ? half_width : 4.5, &found, list);
         if (!choose(list, range, &found, &apart))
             return 0;
     }
@@ -138,7 +152,43 @@ int asj_line_fit(const asj_frame *frame, double x, double y, const asj_line_rang
         return 0;
     branch->angle = asj_angle_wrap(branch->angle + atan(found.b));
     branch->offset = found.a / sqrt(1 + found.b * found.b);
+    branch->apart = apart;
     branch->offset_variance = found.a_variance;
     branch->angle_variance = found.b_variance;
+    return 1;
+}
+
+static int solve_sums(const asj_line_sums *sums, line *out)
+{
+    const double w = (double)sums->w, t = (double)sums->t, tt = (double)sums->tt, c = (double)sums->s, tc = (double)sums->ts;
+    const double determinant = w * tt - t * t;
+    if (!(determinant > 1e-2 * w * tt)) /* less than a few pixels of the branch */
+        return 0;
+    *out = (line){(tt * c - t * tc) / determinant, (w * tc - t * c) / determinant, 0, 0};
+    return 1;
+}
+
+int asj_line_guess(const asj_ops *ops, const asj_frame *frame, double x, double y, const double t[2], double half_width,
+                   asj_draft_branch *branch)
+{
+    const double wide = fmin(half_width + 0.5 * branch->apart, 4.5);
+    const double s[2] = {branch->offset - wide, branch->offset + wide};
+    asj_line_band band;
+    asj_line_sums sums[2];
+    line lines[2], found;
+    asj_line_band_set(frame, x, y, branch->angle, t, s, &band);
+    ops->line_sums(frame, &band, sums);
+    const int strong = sums[1].w > sums[0].w;
+    double apart = 0;
+    if (!solve_sums(&sums[strong], &lines[strong]))
+        return 0;
+    found = lines[strong];
+    if ((double)sums[!strong].w >= 0.4 * (double)sums[strong].w && solve_sums(&sums[!strong], &lines[!strong]))
+        thin(lines, t[0], t[1], &found, &apart);
+    if (!(fabs(found.b) < 1))
+        return 0;
+    branch->apart = apart;
+    branch->angle = asj_angle_wrap(branch->angle + atan(found.b));
+    branch->offset = found.a / sqrt(1 + found.b * found.b);
     return 1;
 }

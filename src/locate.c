@@ -29,6 +29,17 @@ void asj_locate_start(const asj_isotropic_junction *junction, asj_draft *draft)
     }
 }
 
+/* Moves the junction; its lines stay where they are. */
+static void move(asj_draft *draft, double dx, double dy)
+{
+    draft->x += dx;
+    draft->y += dy;
+    for (int32_t i = 0; i < draft->branch_count; i++) {
+        asj_draft_branch *branch = &draft->branches[i];
+        branch->offset -= -sin(branch->angle) * dx + cos(branch->angle) * dy;
+    }
+}
+
 /* Each line says n.(p - p0) = offset with variance v at the junction: weights 1 / v, covariance of the location the inverse of the
  * normal matrix. */
 int asj_locate_meet(asj_draft *draft)
@@ -48,43 +59,70 @@ int asj_locate_meet(asj_draft *draft)
     double determinant = xx * yy - xy * xy;
     if (!(determinant > 0.02 * total * total))
         return 0;
-    double dx = (yy * bx - xy * by) / determinant, dy = (xx * by - xy * bx) / determinant;
-    draft->x += dx;
-    draft->y += dy;
+    move(draft, (yy * bx - xy * by) / determinant, (xx * by - xy * bx) / determinant);
     draft->location_variance = (xx + yy) / (2 * determinant);
-    for (int32_t i = 0; i < draft->branch_count; i++) {
-        asj_draft_branch *branch = &draft->branches[i];
-        branch->offset -= -sin(branch->angle) * dx + cos(branch->angle) * dy;
-    }
     return 1;
 }
 
-static void fit_branches(const asj_frame *frame, const asj_line_range *range, asj_draft *draft)
+#define NEAR 2 /* px: where the fits begin */
+
+static double fit_end(const asj_draft *draft)
+{
+    return draft->radius > 10 ? draft->radius : 10;
+}
+
+static void fit_branches(const asj_context *context, const asj_frame *frame, const asj_line_range *range, asj_draft *draft)
 {
     int keep[ASJ_MAX_BRANCHES];
     for (int32_t i = 0; i < draft->branch_count; i++)
-        keep[i] = asj_line_fit(frame, draft->x, draft->y, range, &draft->branches[i]);
+        keep[i] = asj_line_fit(context->ops, frame, draft->x, draft->y, range, &draft->branches[i]);
     asj_draft_select(draft, keep);
 }
 
-void asj_locate(const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
+static void guess_branches(const asj_context *context, const asj_frame *frame, double half_width, asj_draft *draft)
+{
+    const double t[2] = {NEAR, fit_end(draft)};
+    int keep[ASJ_MAX_BRANCHES];
+    for (int32_t i = 0; i < draft->branch_count; i++)
+        keep[i] = asj_line_guess(context->ops, frame, draft->x, draft->y, t, half_width, &draft->branches[i]);
+    asj_draft_select(draft, keep);
+}
+
+/* Moves the draft to where the branches meet; 0 when that is no junction. */
+static int meet(const asj_detect_options *options, double opening_slack, double move_slack, asj_draft *draft)
+{
+    return asj_draft_has_opening(draft, fmax(options->minimum_opening * (PI / 180) - opening_slack, 0)) && asj_locate_meet(draft) &&
+           hypot(draft->x - draft->x0, draft->y - draft->y0) <= options->max_move + move_slack;
+}
+
+void asj_locate_guess(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
 {
     const double least = options->minimum_opening * (PI / 180), slack = 8 * (PI / 180);
-    const double end = draft->radius > 10 ? draft->radius : 10;
-    const asj_line_range coarse = {2, end, {4, 0, 0}, 1}, fine = {2, end, {2.5, 2, 0}, 2};
-    if (options->refinement == ASJ_REFINE_LINE_FIT) {
-        fit_branches(frame, &coarse, draft);
-        if (asj_draft_has_opening(draft, fmax(least - slack, 0))) /* most are edges, and seen to be by now */
-            fit_branches(frame, &fine, draft);
+    if (options->refinement != ASJ_REFINE_LINE_FIT) {
+        if (!asj_draft_has_opening(draft, least))
+            draft->branch_count = 0;
+        return;
     }
-    if (!asj_draft_has_opening(draft, least)) {
+    guess_branches(context, frame, 4, draft);
+    if (!asj_draft_has_opening(draft, fmax(least - slack, 0))) { /* most are edges, and seen to be by now */
         draft->branch_count = 0;
         return;
     }
+    guess_branches(context, frame, 2.5, draft);
+    for (int32_t i = 0; i < draft->branch_count; i++)
+        draft->branches[i].offset_variance = 1;
+    if (!meet(options, slack, 1, draft))
+        draft->branch_count = 0;
+}
+
+void asj_locate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
+{
+    const asj_line_range fine = {NEAR, fit_end(draft), {2.5, 2, 0}, 2};
     if (options->refinement != ASJ_REFINE_LINE_FIT)
         return;
-    int meets = asj_locate_meet(draft);
-    if (!meets || hypot(draft->x - draft->x0, draft->y - draft->y0) > options->max_move)
+    move(draft, draft->x0 - draft->x, draft->y0 - draft->y); /* the guess is good enough to tell twins */
+    fit_branches(context, frame, &fine, draft);
+    if (!meet(options, 0, 0, draft))
         draft->branch_count = 0;
 }
 
@@ -112,20 +150,37 @@ size_t asj_locate_cells(size_t count, int32_t width, int32_t height)
     return (size_t)cell_columns(width) * (size_t)cell_columns(height) + count;
 }
 
-static int suppressed(const asj_draft *drafts, const asj_draft *draft, int32_t columns, int64_t cell, const int32_t *heads,
-                      const int32_t *next)
+/* Whether each branch of a draft is one of the other's too, and the other one is not likely to be rejected yet because it moves too
+ * far. */
+static int same_junction(const asj_draft *draft, const asj_draft *other)
+{
+    const double turn = 10 * (PI / 180), surely_near = 1.5;
+    if (draft->branch_count != other->branch_count || hypot(other->x - other->x0, other->y - other->y0) > surely_near)
+        return 0;
+    for (int32_t i = 0; i < draft->branch_count; i++) {
+        int found = 0;
+        for (int32_t j = 0; j < other->branch_count; j++)
+            found |= asj_angle_distance(draft->branches[i].angle, other->branches[j].angle) < turn;
+        if (!found)
+            return 0;
+    }
+    return 1;
+}
+
+static int suppressed(const asj_draft *drafts, const asj_draft *draft, int same, int32_t columns, int64_t cell,
+                      const int32_t *heads, const int32_t *next)
 {
     for (int dy = -1; dy <= 1; dy++)
         for (int dx = -1; dx <= 1; dx++)
             for (int32_t i = heads[cell + dy * columns + dx]; i >= 0; i = next[i]) {
-                double radius = fmax(3, 0.35 * drafts[i].radius);
-                if (hypot(drafts[i].x - draft->x, drafts[i].y - draft->y) < radius)
+                const double radius = same ? 1.5 : fmax(3, 0.35 * drafts[i].radius);
+                if (hypot(drafts[i].x - draft->x, drafts[i].y - draft->y) < radius && (!same || same_junction(draft, &drafts[i])))
                     return 1;
             }
     return 0;
 }
 
-size_t asj_locate_suppress(asj_draft *drafts, size_t count, int32_t width, int32_t height, int32_t *cells)
+size_t asj_locate_suppress(asj_draft *drafts, size_t count, int same, int32_t width, int32_t height, int32_t *cells)
 {
     const int32_t columns = cell_columns(width), rows = cell_columns(height);
     int32_t *heads = cells, *next = cells + (size_t)columns * (size_t)rows;
@@ -141,7 +196,7 @@ size_t asj_locate_suppress(asj_draft *drafts, size_t count, int32_t width, int32
         cx = cx < 1 ? 1 : cx > columns - 2 ? columns - 2 : cx;
         cy = cy < 1 ? 1 : cy > rows - 2 ? rows - 2 : cy;
         int64_t cell = (int64_t)cy * columns + cx;
-        if (suppressed(drafts, &draft, columns, cell, heads, next))
+        if (suppressed(drafts, &draft, same, columns, cell, heads, next))
             continue;
         drafts[kept] = draft;
         next[kept] = heads[cell];

@@ -20,6 +20,8 @@ static void fill_reference(asj_ops *ops)
     ops->field_tile = asj_field_tile;
     ops->field_block = asj_field_block;
     ops->isotropic_band = asj_isotropic_band;
+    ops->line_sums = asj_line_sums_of;
+    ops->line_profile = asj_line_profile_of;
     ops->blur_row = asj_blur_row;
     ops->patch_levels = asj_patch_levels;
     ops->patch_normalise = asj_patch_normalise;

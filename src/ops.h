@@ -7,6 +7,7 @@
 
 #include "distance.h"
 #include "isotropic.h"
+#include "line_sums.h"
 #include "scan.h"
 
 typedef struct asj_ops {
@@ -48,6 +49,9 @@ typedef struct asj_ops {
     /* asj_isotropic_band() (isotropic.h) */
     void (*isotropic_band)(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
                            uint16_t *scratch, asj_isotropic_junction *junctions);
+    /* asj_line_sums_of(), asj_line_profile_of() (line_sums.h) */
+    void (*line_sums)(const asj_frame *frame, const asj_line_band *band, asj_line_sums sums[2]);
+    void (*line_profile)(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums);
 
     /* asj_patch_levels(), asj_patch_normalise() and asj_patch_products() (patch.h) */
     int32_t (*patch_levels)(const asj_pyramid *pyramid, const asj_patch_grid *grid, int32_t size, uint16_t *grey);

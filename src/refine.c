@@ -17,7 +17,9 @@
 
 #define PI 3.141592653589793
 #define BENT 3       /* standard uncertainties */
-#define NEAR_PART 80 /* px */
+#define NEAR_PART 80   /* px */
+#define WIDE 2         /* px: half-width of the band in which a line is looked for */
+#define HALF_WIDTH 1.6 /* and of that in which it is fitted */
 #define LARGEST_OFFSET 2 /* px: a line that misses the junction by more belongs to something else */
 
 typedef struct sums {
@@ -74,16 +76,32 @@ static void search(const asj_frame *frame, const asj_detect_options *options, as
     }
 }
 
-/* Fits the line over growing parts of the branch, each twice as long as the one before, so that the narrow band around the last
- * line always holds the edge. When a part longer than NEAR_PART moves the line significantly where it passes the junction, the edge
- * is bent (lenses do that): then the shorter part is believed. */
-static void follow_line(const asj_frame *frame, const asj_draft *draft, asj_draft_branch *branch)
+/* The part of a branch that its line is fitted to. */
+static double first_px(const asj_draft_branch *branch)
 {
-    const double end = fmax(branch->length - 3, 8);
+    return fmin(5, 0.25 * branch->length + 0.5);
+}
+
+static double last_px(const asj_draft_branch *branch)
+{
+    return fmax(branch->length - 3, 8);
+}
+
+/* Finds the line over growing parts of the branch, each twice as long as the one before, so that the narrow band around the last
+ * line always holds the edge. The whole branch is fitted in earnest. When a part longer than NEAR_PART moves the line significantly
+ * where it passes the junction, the edge is bent (lenses do that): then the shorter part is believed. */
+static void follow_line(const asj_context *context, const asj_frame *frame, const asj_draft *draft, asj_draft_branch *branch)
+{
+    const double first = first_px(branch), end = last_px(branch);
     asj_draft_branch longer = *branch;
     for (double reach = NEAR_PART / 4;; reach *= 2) {
-        const asj_line_range range = {fmin(5, 0.25 * branch->length + 0.5), fmin(end, reach), {1.6, 1.6, 0}, 2};
-        if (!asj_line_fit(frame, draft->x, draft->y, &range, &longer) ||
+        const double last = fmin(end, reach), t[2] = {first, last};
+        const asj_line_range range = {first, last, {WIDE, HALF_WIDTH, HALF_WIDTH}, 3};
+        if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, HALF_WIDTH, &longer))
+            return;
+        if (reach < end && reach < NEAR_PART)
+            continue;
+        if (!asj_line_fit(context->ops, frame, draft->x, draft->y, &range, &longer) ||
             (reach > NEAR_PART && fabs(longer.offset - branch->offset) > BENT * sqrt(branch->offset_variance)))
             return;
         *branch = longer;
@@ -94,13 +112,31 @@ static void follow_line(const asj_frame *frame, const asj_draft *draft, asj_draf
 
 void asj_refine(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
 {
-    (void)context;
     if (options->refinement == ASJ_REFINE_SEARCH) {
         search(frame, options, draft);
         return;
     }
     for (int32_t i = 0; i < draft->branch_count; i++)
-        follow_line(frame, draft, &draft->branches[i]);
+        follow_line(context, frame, draft, &draft->branches[i]);
+    asj_locate_meet(draft);
+}
+
+void asj_orient(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
+{
+    if (options->refinement == ASJ_REFINE_SEARCH) {
+        search(frame, options, draft);
+        return;
+    }
+    for (int32_t i = 0; i < draft->branch_count; i++) {
+        asj_draft_branch *branch = &draft->branches[i];
+        const double end = last_px(branch);
+        for (double reach = NEAR_PART / 4;; reach *= 2) {
+            const double t[2] = {first_px(branch), fmin(end, reach)};
+            if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, branch) ||
+                !asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, branch) || reach >= end)
+                break;
+        }
+    }
     asj_locate_meet(draft);
 }
 

@@ -56,6 +56,8 @@ void asj_scan_prepare(const asj_context *context, const asj_detect_options *opti
     }
 }
 
+#define MAX_ARC 7 /* 2 arc_half_width + 1 */
+
 typedef struct walker {
     const asj_ops *ops;
     const asj_scan *scan;
@@ -63,21 +65,35 @@ typedef struct walker {
     const asj_scan_cache *cache;
     size_t thread;
     uint16_t *scratch;
+    /* of each sample of the arc: the run it was in last; neighbouring steps are mostly in the same */
+    uint32_t keys[MAX_ARC];
+    const asj_field_branch (*runs[MAX_ARC])[ASJ_FIELD_BRANCHES];
 } walker;
 
-/* The branches of a pixel; NULL outside the image. */
-static const asj_field_branch *branches_at(const walker *w, int64_t x, int64_t y)
+/* The local junctions of run `block` of row y. */
+static const asj_field_branch (*run_at(walker *w, uint32_t key, int32_t block, int32_t y))[ASJ_FIELD_BRANCHES]
 {
-    if (x < 0 || y < 0 || x >= w->frame->width || y >= w->frame->height)
-        return NULL;
-    const uint32_t key = (uint32_t)y * (uint32_t)w->frame->blocks + (uint32_t)x / ASJ_LANES + 1;
     const size_t slot = (w->thread << w->cache->bits) + (key * 2654435769u >> (32 - w->cache->bits)); /* Fibonacci hashing */
     if (w->cache->keys[slot] != key) {
-        w->ops->field_block(w->scan->field, w->frame, (int32_t)x / ASJ_LANES * ASJ_LANES, (int32_t)y, w->scratch,
-                            w->cache->branches[slot]);
+        w->ops->field_block(w->scan->field, w->frame, block * ASJ_LANES, y, w->scratch, w->cache->branches[slot]);
         w->cache->keys[slot] = key;
+        memset(w->keys, 0, sizeof w->keys); /* one of them may have been there */
     }
-    return w->cache->branches[slot][x % ASJ_LANES];
+    return (const asj_field_branch (*)[ASJ_FIELD_BRANCHES])w->cache->branches[slot];
+}
+
+/* The branches of the pixel where sample i of the arc is; all of strength 0 outside the image. */
+static const asj_field_branch *branches_at(walker *w, int32_t i, int64_t x, int64_t y)
+{
+    static const asj_field_branch none[ASJ_FIELD_BRANCHES];
+    if (x < 0 || y < 0 || x >= w->frame->width || y >= w->frame->height)
+        return none;
+    const uint32_t key = (uint32_t)y * (uint32_t)w->frame->blocks + (uint32_t)x / ASJ_LANES + 1;
+    if (w->keys[i] != key) {
+        w->runs[i] = run_at(w, key, (int32_t)(x / ASJ_LANES), (int32_t)y);
+        w->keys[i] = key;
+    }
+    return w->runs[i][x % ASJ_LANES];
 }
 
 /* Direction of a sample of the arc, and where it is. */
@@ -124,29 +140,27 @@ static sample place(const direction *ray, const arc_table *table, int32_t r, int
 static int32_t junctionness(const asj_scan *scan, asj_field_branch branch, const sample *at, int *ahead)
 {
     const int16_t *unit = scan->unit[(branch.angle + 32) >> 6 & 1023];
-    int32_t along = unit[0] * at->cosine + unit[1] * at->sine;
-    int32_t across = unit[0] * at->sine - unit[1] * at->cosine;
+    const int32_t along = unit[0] * at->cosine + unit[1] * at->sine;
+    const int32_t across = unit[0] * at->sine - unit[1] * at->cosine;
+    const int32_t gamma = ((abs(along) - abs(across)) >> 14) * branch.strength >> 14;
     *ahead = along > 0;
-    along = along < 0 ? -along : along;
-    across = across < 0 ? -across : across;
-    return along > across ? (int32_t)((int64_t)((along - across) >> 14) * branch.strength >> 14) : 0;
+    return gamma > 0 ? gamma : 0;
 }
 
-/* The branch closest to the ray's direction, modulo 2 pi (turn = 65536) or modulo pi (turn = 32768); of equals the strongest. */
-static asj_field_branch closest(const asj_field_branch *list, uint16_t angle, int32_t turn)
+/* Which branches are closest to the ray's direction, modulo 2 pi and modulo pi; of equals the strongest. Branches that are none
+ * come last. No jumps: which branch it is cannot be predicted. */
+static void closest(const asj_field_branch *list, uint16_t angle, int32_t *forward, int32_t *axial)
 {
-    asj_field_branch best = {0, 0};
-    int32_t least = 65536;
-    for (int i = 0; i < ASJ_FIELD_BRANCHES && list[i].strength; i++) {
-        int32_t distance = (list[i].angle - angle) & (turn - 1);
-        if (2 * distance > turn)
-            distance = turn - distance;
-        if (distance < least) {
-            least = distance;
-            best = list[i];
-        }
+    int32_t nearest = INT32_MAX, nearest_axis = INT32_MAX; /* 4 x distance + index */
+    for (int32_t i = 0; i < ASJ_FIELD_BRANCHES; i++) {
+        const int32_t turn = (uint16_t)(list[i].angle - angle), none = list[i].strength ? 0 : 1 << 20;
+        const int32_t distance = turn > 32768 ? 65536 - turn : turn, axis = distance > 16384 ? 32768 - distance : distance;
+        const int32_t order = (distance | none) * ASJ_FIELD_BRANCHES + i, axis_order = (axis | none) * ASJ_FIELD_BRANCHES + i;
+        nearest = order < nearest ? order : nearest;
+        nearest_axis = axis_order < nearest_axis ? axis_order : nearest_axis;
     }
-    return best;
+    *forward = nearest % ASJ_FIELD_BRANCHES;
+    *axial = nearest_axis % ASJ_FIELD_BRANCHES;
 }
 
 /* Sums over the arc at one radius. */
@@ -154,51 +168,80 @@ typedef struct arc {
     int32_t forward, ahead, axial; /* of the forward branches; of those among them that point ahead; of the axial branches */
 } arc;
 
-static arc arc_sums(const walker *w, const arc_table *table, const direction *way, int32_t r)
+static arc arc_sums(walker *w, const arc_table *table, const direction *way, int32_t r)
 {
     const asj_scan *scan = w->scan;
     arc sums = {0, 0, 0};
-    for (int32_t d = -scan->half_width; d <= scan->half_width; d++) {
-        const sample at = place(way, table, r, d);
-        const asj_field_branch *list = branches_at(w, at.x, at.y);
-        int ahead;
-        if (!list || !list[0].strength)
-            continue;
-        const int32_t gamma = junctionness(scan, closest(list, way->angle, 65536), &at, &ahead);
+    for (int32_t i = 0; i <= 2 * scan->half_width; i++) {
+        const sample at = place(way, table, r, i - scan->half_width);
+        const asj_field_branch *list = branches_at(w, i, at.x, at.y);
+        int32_t forward, axial;
+        int ahead, ignored;
+        closest(list, way->angle, &forward, &axial);
+        const int32_t gamma = junctionness(scan, list[forward], &at, &ahead);
         sums.forward += gamma;
         sums.ahead += ahead ? gamma : 0;
-        if (scan->axial)
-            sums.axial += junctionness(scan, closest(list, way->angle, 32768), &at, &ahead);
+        sums.axial += junctionness(scan, list[axial], &at, &ignored);
     }
+    sums.axial = scan->axial ? sums.axial : 0;
     return sums;
 }
 
-static void walk(const walker *w, const arc_table *table, asj_ray *ray)
+/* What a walk along a ray has come to. */
+typedef struct progress {
+    int32_t forward_failures, ahead_passes, ahead_failures, axial_failures; /* in a row */
+} progress;
+
+/* Takes the step to radius r; 0 when the ray ends. */
+static int advance(const asj_scan *scan, const arc *sums, int32_t bridge, int32_t r, progress *p, asj_ray *ray)
+{
+    p->ahead_passes = sums->ahead >= scan->threshold ? p->ahead_passes + 1 : 0;
+    p->ahead_failures = p->ahead_passes ? 0 : p->ahead_failures + 1;
+    p->axial_failures = sums->axial >= scan->threshold ? 0 : p->axial_failures + 1;
+    if (p->ahead_passes >= REOPEN)
+        p->forward_failures = 0; /* back after a crossing */
+    else if (sums->forward < scan->threshold || p->forward_failures > scan->tolerance)
+        p->forward_failures++;
+    else
+        p->forward_failures = 0;
+    if (p->forward_failures == 0)
+        ray->forward = r;
+    if (p->axial_failures == 0)
+        ray->axial = r;
+    return p->forward_failures <= scan->tolerance || (p->ahead_failures <= bridge && p->axial_failures <= scan->tolerance);
+}
+
+/* Whether a step passes in every way. */
+static int passes(const asj_scan *scan, const arc *sums)
+{
+    return sums->ahead >= scan->threshold && (!scan->axial || sums->axial >= scan->threshold);
+}
+
+/* While nothing fails, every other step need not be looked at: when the one behind it passes, its own failure would be tolerated
+ * and leave no trace. */
+static void walk(walker *w, const arc_table *table, asj_ray *ray)
 {
     const asj_scan *scan = w->scan;
     const double one = (double)((int64_t)1 << 30);
     const direction way = {llrint(ray->x * 65536), llrint(ray->y * 65536), llrint(cos(ray->angle) * one),
                            llrint(sin(ray->angle) * one), (uint16_t)llrint(ray->angle * (65536 / TWO_PI))};
     const int32_t bridge = scan->axial ? scan->field->sectors.radius : -1;
-    int32_t forward_failures = 0, ahead_passes = 0, ahead_failures = 0, axial_failures = 0;
+    progress p = {0, 0, 0, 0};
+    int goes_on = 1;
     ray->forward = ray->axial = 0;
-    for (int32_t r = ray->start > 0 ? ray->start : 1;; r++) {
-        const arc sums = arc_sums(w, table, &way, r);
-        ahead_passes = sums.ahead >= scan->threshold ? ahead_passes + 1 : 0;
-        ahead_failures = ahead_passes ? 0 : ahead_failures + 1;
-        axial_failures = sums.axial >= scan->threshold ? 0 : axial_failures + 1;
-        if (ahead_passes >= REOPEN)
-            forward_failures = 0; /* back after a crossing */
-        else if (sums.forward < scan->threshold || forward_failures > scan->tolerance)
-            forward_failures++;
-        else
-            forward_failures = 0;
-        if (forward_failures == 0)
-            ray->forward = r;
-        if (axial_failures == 0)
-            ray->axial = r;
-        if (forward_failures > scan->tolerance && (ahead_failures > bridge || axial_failures > scan->tolerance))
-            break;
+    for (int32_t r = ray->start > 0 ? ray->start : 1; goes_on; r++) {
+        if (scan->tolerance > 0 && p.forward_failures == 0 && (!scan->axial || p.axial_failures == 0)) {
+            const arc next = arc_sums(w, table, &way, r + 1);
+            if (!passes(scan, &next)) {
+                const arc sums = arc_sums(w, table, &way, r);
+                goes_on = advance(scan, &sums, bridge, r, &p, ray);
+            }
+            r++;
+            goes_on = goes_on && advance(scan, &next, bridge, r, &p, ray);
+        } else {
+            const arc sums = arc_sums(w, table, &way, r);
+            goes_on = advance(scan, &sums, bridge, r, &p, ray);
+        }
     }
     if (scan->axial && ray->axial > ray->forward + bridge)
         ray->axial = ray->forward + bridge;
@@ -238,7 +281,7 @@ asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_f
 #ifdef _OPENMP
             thread = (size_t)omp_get_thread_num();
 #endif
-            const walker w = {context->ops, scan, frame, cache, thread, scratch + thread * scratch_size};
+            walker w = {context->ops, scan, frame, cache, thread, scratch + thread * scratch_size, {0}, {NULL}};
             walk(&w, table, &rays[i]);
         }
     } else if (status == ASJ_OK) {

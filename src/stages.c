@@ -200,7 +200,6 @@ static asj_status test_candidates(asj_detection_run *d)
         for (int32_t y = top; y < bottom; y++)
             starts[y - top + 1] = starts[y - top] + count_bits(d->candidates + (ptrdiff_t)y * frame->blocks, (size_t)frame->blocks);
         const size_t total = starts[bottom - top];
-        d->candidate_total += total;
         status = asj_grow(memory, &records, &record_capacity, total, sizeof(asj_isotropic_junction), 0);
         if (status == ASJ_OK)
             status = asj_grow(memory, &found, &found_capacity, d->isotropic_count + total, sizeof(asj_isotropic_junction),
@@ -240,18 +239,20 @@ static asj_status thin(asj_detection_run *d)
 /* Step 3: isotropic junctions. */
 asj_status asj_stage_isotropic(asj_detection_run *d)
 {
+    const asj_frame *frame = &d->detector->frame;
+    d->candidate_total = count_bits(d->candidates, (size_t)frame->blocks * (size_t)frame->height);
     asj_status status = test_candidates(d);
     return status == ASJ_OK ? thin(d) : status;
 }
 
-static asj_status suppress(asj_detection_run *d)
+static asj_status suppress(asj_detection_run *d, int same)
 {
     const asj_frame *frame = &d->detector->frame;
     const size_t count = asj_locate_cells(d->draft_count, frame->width, frame->height);
     int32_t *cells = asj_allocate(&d->context->memory, count, sizeof *cells);
     if (!cells)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu cells", count);
-    d->draft_count = asj_locate_suppress(d->drafts, d->draft_count, frame->width, frame->height, cells);
+    d->draft_count = asj_locate_suppress(d->drafts, d->draft_count, same, frame->width, frame->height, cells);
     asj_release(&d->context->memory, cells);
     return ASJ_OK;
 }
@@ -268,12 +269,23 @@ asj_status asj_stage_locate(asj_detection_run *d)
 #endif
     for (int64_t i = 0; i < count; i++) {
         asj_locate_start(&d->isotropic[i], &d->drafts[i]);
-        asj_locate(&d->detector->frame, d->options, &d->drafts[i]);
+        asj_locate_guess(d->context, &d->detector->frame, d->options, &d->drafts[i]);
     }
     d->draft_count = d->isotropic_count;
-    asj_status status = suppress(d);
+    asj_status status = suppress(d, 1);
+    if (status != ASJ_OK)
+        return status;
+    const int64_t left = (int64_t)d->draft_count;
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 8)
+#endif
+    for (int64_t i = 0; i < left; i++)
+        asj_locate(d->context, &d->detector->frame, d->options, &d->drafts[i]);
+    status = suppress(d, 0);
     return status == ASJ_OK ? dump_points(d, ASJ_STAGE_LOCATE, "located", d->draft_count, draft_point) : status;
 }
+
+#define SCANNED_AGAIN 24 /* px: the last part of a branch, which a better angle may change */
 
 /* Whether a branch has no length yet, or has turned or moved away by more than half a pixel somewhere along the ray that gave
  * it. */
@@ -293,31 +305,66 @@ static void set_length(const asj_detection_run *d, const asj_ray *ray, asj_draft
     branch->scanned[2] = ray->angle;
 }
 
+/* One ray for each branch that needs it: from the junction on, or over the last part of a branch whose length is known. */
+static size_t list_rays(const asj_detection_run *d, asj_ray *rays, asj_draft_branch **branches)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < d->draft_count; i++) {
+        asj_draft *draft = &d->drafts[i];
+        const int32_t start = d->options->scan_start;
+        for (int32_t b = 0; b < draft->branch_count; b++) {
+            asj_draft_branch *branch = &draft->branches[b];
+            const int32_t again = start > 0 ? (int32_t)branch->length - SCANNED_AGAIN : 0;
+            if (!needs_scan(draft, branch))
+                continue;
+            branches[count] = branch;
+            const int32_t first = again > start ? again : start > 0 ? start : (int32_t)draft->radius;
+            rays[count++] = (asj_ray){draft->x, draft->y, branch->angle, first, 0, 0};
+        }
+    }
+    return count;
+}
+
+static asj_status scan_rays(asj_detection_run *d, asj_ray *rays, size_t count)
+{
+    return d->context->ops->scan_rays(d->context, &d->detector->scan, &d->detector->frame, rays, count);
+}
+
+static asj_status scan_branches(asj_detection_run *d, asj_ray *rays, asj_draft_branch **branches)
+{
+    const size_t count = list_rays(d, rays, branches);
+    size_t left = 0;
+    asj_status status = scan_rays(d, rays, count);
+    for (size_t i = 0; i < count && status == ASJ_OK; i++) {
+        if (d->options->scan_start <= 0 || rays[i].start == d->options->scan_start ||
+            (rays[i].forward > 0 && (rays[i].axial > 0 || !d->options->scan_axial))) {
+            set_length(d, &rays[i], branches[i]);
+        } else { /* it ends before the last part */
+            branches[left] = branches[i];
+            rays[left] = rays[i];
+            rays[left++].start = d->options->scan_start;
+        }
+    }
+    if (left > 0 && status == ASJ_OK)
+        status = scan_rays(d, rays, left);
+    for (size_t i = 0; i < left && status == ASJ_OK; i++)
+        set_length(d, &rays[i], branches[i]);
+    return status;
+}
+
 /* Step 4: branch lengths, where they are not known or no longer hold. */
 asj_status asj_stage_scan(asj_detection_run *d)
 {
-    size_t count = 0, total = 0;
+    size_t total = 0;
     for (size_t i = 0; i < d->draft_count; i++)
         total += (size_t)d->drafts[i].branch_count;
     asj_ray *rays = asj_allocate(&d->context->memory, total, sizeof *rays);
     asj_draft_branch **branches = asj_allocate(&d->context->memory, total, sizeof *branches);
     asj_status status = ASJ_OK;
-    if (rays && branches) {
-        for (size_t i = 0; i < d->draft_count; i++) {
-            asj_draft *draft = &d->drafts[i];
-            const int32_t start = d->options->scan_start > 0 ? d->options->scan_start : (int32_t)draft->radius;
-            for (int32_t b = 0; b < draft->branch_count; b++)
-                if (needs_scan(draft, &draft->branches[b])) {
-                    branches[count] = &draft->branches[b];
-                    rays[count++] = (asj_ray){draft->x, draft->y, draft->branches[b].angle, start, 0, 0};
-                }
-        }
-        status = d->context->ops->scan_rays(d->context, &d->detector->scan, &d->detector->frame, rays, count);
-        for (size_t i = 0; i < count && status == ASJ_OK; i++)
-            set_length(d, &rays[i], branches[i]);
-    } else {
+    if (rays && branches)
+        status = scan_branches(d, rays, branches);
+    else
         status = asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu rays", total);
-    }
     asj_release(&d->context->memory, branches);
     asj_release(&d->context->memory, rays);
     return status;
@@ -331,7 +378,7 @@ asj_status asj_stage_orient(asj_detection_run *d)
 #pragma omp parallel for num_threads(d->threads) schedule(dynamic, 8)
 #endif
     for (int64_t i = 0; i < count; i++)
-        asj_refine(d->context, &d->detector->frame, d->options, &d->drafts[i]);
+        asj_orient(d->context, &d->detector->frame, d->options, &d->drafts[i]);
     return ASJ_OK;
 }
 
@@ -356,7 +403,7 @@ asj_status asj_stage_validate(asj_detection_run *d)
         asj_refine(d->context, &d->detector->frame, d->options, &d->drafts[i]);
         asj_validate(d->context, &d->detector->frame, d->options, &d->drafts[i]);
     }
-    asj_status status = suppress(d);
+    asj_status status = suppress(d, 0);
     if (status == ASJ_OK)
         status = snap_ends(d);
     return status == ASJ_OK ? dump_points(d, ASJ_STAGE_REFINE, "junctions", d->draft_count, draft_point) : status;

@@ -81,6 +81,7 @@ static inline vec v_quotient(float a, vec b)
 
 #define V_NAME(name) name##_avx2
 #include "colour.h" /* before kernels.h, which fills the table */
+#include "lines.h"
 #include "patches.h"
-#define V_MORE(ops) (fill_patches(ops), (void)((ops)->image_luma = image_luma_avx2))
+#define V_MORE(ops) (fill_patches(ops), fill_lines(ops), (void)((ops)->image_luma = image_luma_avx2))
 #include "../simd/kernels.h"

@@ -67,11 +67,11 @@ static void test_clean_edges(void **state)
         asj_frame frame;
         picture(f, angle, offset, HUGE_VAL, 0, &frame);
         asj_draft_branch branch = branch_at(angle + start, 0);
-        assert_true(asj_line_fit(&frame, MIDDLE, MIDDLE, &near_range, &branch));
+        assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &near_range, &branch));
         unit_near("angle", n, 1, unit_turn(branch.angle, angle), 0, UNIT_PI / 180);
         unit_near("offset", n, 1, branch.offset, offset, 0.1);
         assert_true(branch.angle >= 0 && branch.angle < 2 * UNIT_PI);
-        assert_true(asj_line_fit(&frame, MIDDLE, MIDDLE, &long_range, &branch));
+        assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &long_range, &branch));
         unit_near("angle", n, 2, unit_turn(branch.angle, angle), 0, 0.2 * UNIT_PI / 180);
         unit_near("offset", n, 2, branch.offset, offset, 0.05);
         asj_frame_free(&f->context->memory, &frame);
@@ -95,7 +95,7 @@ static void test_noise(void **state)
         const asj_image image = unit_gray8(pixels, SIZE, SIZE);
         unit_frame(f->context, &image, NULL, &frame);
         asj_draft_branch branch = branch_at(angle, offset);
-        assert_true(asj_line_fit(&frame, MIDDLE, MIDDLE, &long_range, &branch));
+        assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &long_range, &branch));
         angle_ratio += pow(unit_turn(branch.angle, angle), 2) / branch.angle_variance;
         offset_ratio += pow(branch.offset - offset, 2) / branch.offset_variance;
         assert_true(unit_turn(branch.angle, angle) < 0.05);
@@ -117,8 +117,8 @@ static void test_thin_lines(void **state)
             asj_frame frame;
             picture(f, angle, -0.5 * widths[w], widths[w], 0, &frame);
             asj_draft_branch branch = branch_at(angle + 0.04, 0.4);
-            assert_true(asj_line_fit(&frame, MIDDLE, MIDDLE, &near_range, &branch));
-            assert_true(asj_line_fit(&frame, MIDDLE, MIDDLE, &long_range, &branch));
+            assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &near_range, &branch));
+            assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &long_range, &branch));
             unit_near("angle", widths[w], n, unit_turn(branch.angle, angle), 0, 0.006);
             unit_near("middle", widths[w], n, branch.offset, 0, 0.1);
             asj_frame_free(&f->context->memory, &frame);
@@ -135,7 +135,7 @@ static void test_bands(void **state)
             asj_frame frame;
             picture(f, angle, 0, width, 0, &frame);
             asj_draft_branch branch = branch_at(angle + 0.03 * (n % 3 - 1), 0.5);
-            assert_true(asj_line_fit(&frame, MIDDLE, MIDDLE, &near_range, &branch));
+            assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &near_range, &branch));
             unit_near("angle", width, n, unit_turn(branch.angle, angle), 0, 0.02);
             unit_near("offset", width, n, branch.offset, 0, 0.15);
             asj_frame_free(&f->context->memory, &frame);
@@ -161,7 +161,7 @@ static void test_stairs(void **state)
             }
             unit_frame_of(f->context, &scene, 1, 0, NULL, &frame);
             asj_draft_branch branch = branch_at(angle, 0);
-            assert_true(asj_line_fit(&frame, MIDDLE, MIDDLE, &long_range, &branch));
+            assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &long_range, &branch));
             unit_near("angle", width, n, unit_turn(branch.angle, angle), 0, 0.01);
             unit_near("offset", width, n, branch.offset, 0, 0.1);
             asj_frame_free(&f->context->memory, &frame);
@@ -176,7 +176,7 @@ static void test_nothing_there(void **state)
     synth_scene_init(&scene, SIZE, SIZE, 100);
     unit_frame_of(f->context, &scene, 0, 0, NULL, &frame);
     asj_draft_branch branch = branch_at(1, 0.25), before = branch;
-    assert_false(asj_line_fit(&frame, MIDDLE, MIDDLE, &near_range, &branch));
+    assert_false(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &near_range, &branch));
     assert_memory_equal(&branch, &before, sizeof branch);
     asj_frame_free(&f->context->memory, &frame);
 }
@@ -196,7 +196,7 @@ static void test_extremes(void **state)
         for (size_t r = 0; r < UNIT_COUNT(ranges); r++)
             for (int n = 0; n < 16; n++) {
                 asj_draft_branch branch = branch_at(n * UNIT_PI / 8, n - 8);
-                asj_line_fit(&frame, n * 7 - 50, n * 3 - 20, &ranges[r], &branch);
+                asj_line_fit(f->context->ops, &frame, n * 7 - 50, n * 3 - 20, &ranges[r], &branch);
                 assert_true(isfinite(branch.angle) && isfinite(branch.offset));
                 assert_true(isfinite(branch.angle_variance) && isfinite(branch.offset_variance));
             }

@@ -31,6 +31,12 @@ static int tear_down(void **state)
     return leaked;
 }
 
+static void locate(const fixture *f, const asj_frame *frame, asj_draft *draft)
+{
+    asj_locate_guess(f->context, frame, &f->options, draft);
+    asj_locate(f->context, frame, &f->options, draft);
+}
+
 /* ---- meeting points ---- */
 
 static asj_draft draft_at(double x, double y, int32_t count, const double *angles, const double *offsets, const double *variances)
@@ -171,7 +177,7 @@ static void test_corners(void **state)
             asj_isotropic_junction junction = isotropic_at(40 + k % 2, 40 + k / 2, 2, seen);
             asj_draft draft;
             asj_locate_start(&junction, &draft);
-            asj_locate(&frame, &f->options, &draft);
+            locate(f, &frame, &draft);
             assert_int_equal(draft.branch_count, 2);
             unit_near("distance", n, k, hypot(draft.x - px, draft.y - py), 0, 0.5);
             unit_near("angle", n, k, unit_turn(draft.branches[0].angle, angle), 0, 0.06);
@@ -196,7 +202,7 @@ static void test_edges_are_rejected(void **state)
         asj_isotropic_junction junction = isotropic_at(40, 40, 2, seen);
         asj_draft draft;
         asj_locate_start(&junction, &draft);
-        asj_locate(&frame, &f->options, &draft);
+        locate(f, &frame, &draft);
         assert_int_equal(draft.branch_count, 0);
         asj_frame_free(&f->context->memory, &frame);
     }
@@ -218,7 +224,7 @@ static void test_max_move(void **state)
             asj_draft draft;
             f->options.max_move = most;
             asj_locate_start(&junction, &draft);
-            asj_locate(&frame, &f->options, &draft);
+            locate(f, &frame, &draft);
             if (away < most - 0.3)
                 assert_int_equal(draft.branch_count, 2);
             if (away > most + 0.3)
@@ -241,12 +247,12 @@ static void test_search_keeps_pixels(void **state)
     unit_frame_of(f->context, &scene, 1, 0, NULL, &frame);
     asj_isotropic_junction junction = isotropic_at(40, 41, 2, open);
     asj_locate_start(&junction, &draft);
-    asj_locate(&frame, &f->options, &draft);
+    locate(f, &frame, &draft);
     assert_int_equal(draft.branch_count, 2);
     assert_true(draft.x == 40 && draft.y == 41);
     junction = isotropic_at(40, 41, 2, straight);
     asj_locate_start(&junction, &draft);
-    asj_locate(&frame, &f->options, &draft);
+    locate(f, &frame, &draft);
     assert_int_equal(draft.branch_count, 0);
     asj_frame_free(&f->context->memory, &frame);
     asj_detect_options_init(&f->options);
@@ -303,7 +309,7 @@ static void test_suppress(void **state)
         memcpy(copy, drafts, sizeof copy);
         int32_t *cells = malloc(asj_locate_cells(count, width, height) * sizeof *cells);
         assert_non_null(cells);
-        const size_t kept = asj_locate_suppress(drafts, count, width, height, cells);
+        const size_t kept = asj_locate_suppress(drafts, count, 0, width, height, cells);
         assert_int_equal(kept, naive_suppress(copy, count, expected));
         for (size_t i = 0; i < kept; i++)
             assert_memory_equal(&drafts[i], &expected[i], sizeof drafts[i]);

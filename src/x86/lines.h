@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Sums over the pixels of a band: names as in the reference, line_sums.c. Only avx2.c includes this. */
+#ifndef ASJ_SRC_X86_LINES_H
+#define ASJ_SRC_X86_LINES_H
+
+#include "../ops.h"
+
+typedef struct lane_sums {
+    __m256 w, t, tt, s, ts;
+} lane_sums;
+
+static inline void add_lanes(lane_sums *to, __m256 w, __m256 t, __m256 s)
+{
+    const __m256 wt = _mm256_mul_ps(w, t);
+    to->w = _mm256_add_ps(to->w, w);
+    to->t = _mm256_add_ps(to->t, wt);
+    to->tt = _mm256_add_ps(to->tt, _mm256_mul_ps(wt, t));
+    to->s = _mm256_add_ps(to->s, _mm256_mul_ps(w, s));
+    to->ts = _mm256_add_ps(to->ts, _mm256_mul_ps(wt, s));
+}
+
+static inline float total(__m256 v)
+{
+    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+    return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
+}
+
+/* 8 grey values each of a minus those of b */
+static inline __m256 difference(const uint16_t *a, const uint16_t *b)
+{
+    const __m256i p = _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)(const void *)a));
+    const __m256i q = _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)(const void *)b));
+    return _mm256_cvtepi32_ps(_mm256_sub_epi32(p, q));
+}
+
+static inline __m256 between(__m256 v, __m256 low, __m256 high)
+{
+    return _mm256_and_ps(_mm256_cmp_ps(v, low, _CMP_GE_OQ), _mm256_cmp_ps(v, high, _CMP_LE_OQ));
+}
+
+static inline asj_line_sums total_sums(const lane_sums *list)
+{
+    return (asj_line_sums){total(list->w), total(list->t), total(list->tt), total(list->s), total(list->ts)};
+}
+
+static void line_sums_avx2(const asj_frame *frame, const asj_line_band *band, asj_line_sums sums[2])
+{
+    const __m256 zero = _mm256_setzero_ps(), sign = _mm256_set1_ps(-0.0f), lane = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+    const __m256 ux = _mm256_set1_ps(band->ux), uy = _mm256_set1_ps(band->uy);
+    const __m256 near_t = _mm256_set1_ps(band->first), far_t = _mm256_set1_ps(band->last);
+    const __m256 near_s = _mm256_set1_ps(band->low), far_s = _mm256_set1_ps(band->high);
+    lane_sums up = {zero, zero, zero, zero, zero}, down = up;
+    for (int32_t row = band->top; row <= band->bottom; row++) {
+        int32_t first, last;
+        asj_line_band_row(band, row, &first, &last);
+        const uint16_t *pixels = frame->gray + (band->y + row) * frame->stride + band->x;
+        const float dy = (float)row - band->origin_y;
+        const __m256 row_t = _mm256_set1_ps(dy * band->uy), row_s = _mm256_set1_ps(dy * band->ux);
+        const __m256 end = _mm256_set1_ps((float)last);
+        for (int32_t column = first; column <= last; column += ASJ_LINE_LANES) {
+            const __m256 at = _mm256_add_ps(_mm256_set1_ps((float)column), lane);
+            const __m256 dx = _mm256_sub_ps(at, _mm256_set1_ps(band->origin_x));
+            const __m256 t = _mm256_add_ps(row_t, _mm256_mul_ps(dx, ux)), s = _mm256_sub_ps(row_s, _mm256_mul_ps(dx, uy));
+            const __m256 inside = _mm256_and_ps(_mm256_and_ps(between(t, near_t, far_t), between(s, near_s, far_s)),
+                                                _mm256_cmp_ps(at, end, _CMP_LE_OQ));
+            const uint16_t *p = pixels + column;
+            const __m256 gx = difference(p + 1, p - 1), gy = difference(p + frame->stride, p - frame->stride);
+            const __m256 across = _mm256_sub_ps(_mm256_mul_ps(gy, ux), _mm256_mul_ps(gx, uy));
+            const __m256 along = _mm256_add_ps(_mm256_mul_ps(gx, ux), _mm256_mul_ps(gy, uy));
+            __m256 w = _mm256_sub_ps(_mm256_andnot_ps(sign, across), _mm256_andnot_ps(sign, along));
+            w = _mm256_and_ps(_mm256_max_ps(w, zero), inside);
+            const __m256 is_up = _mm256_cmp_ps(across, zero, _CMP_GT_OQ);
+            add_lanes(&up, _mm256_and_ps(w, is_up), t, s);
+            add_lanes(&down, _mm256_andnot_ps(is_up, w), t, s);
+        }
+    }
+    sums[0] = total_sums(&down);
+    sums[1] = total_sums(&up);
+}
+
+/* Central differences at the four pixels around 8 samples, bilinear; at[i]: the upper left one of sample i. */
+static inline void sample_eight(const uint16_t *gray, int32_t stride, __m256i at, __m256i right, __m256 low, __m256 *gx, __m256 *gy)
+{
+    const int *const pairs = (const int *)(const void *)gray; /* two grey values each */
+#define PAIRS(offset) _mm256_i32gather_epi32(pairs, _mm256_add_epi32(at, _mm256_set1_epi32(offset)), 2)
+    const __m256i above = PAIRS(-stride), below = PAIRS(2 * stride);
+    const __m256i left0 = PAIRS(-1), right0 = PAIRS(1), left1 = PAIRS(stride - 1), right1 = PAIRS(stride + 1);
+#undef PAIRS
+    const __m256i middle0 = _mm256_or_si256(_mm256_srli_epi32(left0, 16), _mm256_slli_epi32(right0, 16));
+    const __m256i middle1 = _mm256_or_si256(_mm256_srli_epi32(left1, 16), _mm256_slli_epi32(right1, 16));
+    const __m256i weights = _mm256_or_si256(_mm256_sub_epi32(_mm256_set1_epi32(4096), right), _mm256_slli_epi32(right, 16));
+    const __m256i x0 = _mm256_madd_epi16(_mm256_sub_epi16(right0, left0), weights);
+    const __m256i x1 = _mm256_madd_epi16(_mm256_sub_epi16(right1, left1), weights);
+    const __m256i y0 = _mm256_madd_epi16(_mm256_sub_epi16(middle1, above), weights);
+    const __m256i y1 = _mm256_madd_epi16(_mm256_sub_epi16(below, middle0), weights);
+    *gx = _mm256_add_ps(_mm256_cvtepi32_ps(x0), _mm256_mul_ps(low, _mm256_cvtepi32_ps(_mm256_sub_epi32(x1, x0))));
+    *gy = _mm256_add_ps(_mm256_cvtepi32_ps(y0), _mm256_mul_ps(low, _mm256_cvtepi32_ps(_mm256_sub_epi32(y1, y0))));
+}
+
+static inline __m256i whole_part(__m256 v)
+{
+    const __m256i whole = _mm256_cvttps_epi32(v);
+    return _mm256_add_epi32(whole, _mm256_castps_si256(_mm256_cmp_ps(_mm256_cvtepi32_ps(whole), v, _CMP_GT_OQ)));
+}
+
+static void line_profile_avx2(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums)
+{
+    const __m256 zero = _mm256_setzero_ps(), sign = _mm256_set1_ps(-0.0f), lane = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+    const __m256 ux = _mm256_set1_ps(profile->ux), uy = _mm256_set1_ps(profile->uy);
+    const int32_t stride = (int32_t)frame->stride;
+    const uint16_t *gray = frame->gray + profile->y * frame->stride + profile->x;
+    if (frame->stride > 30000 || !asj_line_profile_inside(frame, profile)) { /* its products stay below 2^31 */
+        asj_line_profile_of(frame, profile, sums);
+        return;
+    }
+    for (int32_t k = 0; k < profile->count; k += ASJ_LINE_LANES) {
+        const __m256 last = _mm256_set1_ps((float)(profile->count - 1)); /* lanes past the end repeat it */
+        const __m256 index = _mm256_min_ps(_mm256_add_ps(_mm256_set1_ps((float)k), lane), last);
+        const __m256 t = _mm256_add_ps(_mm256_set1_ps(profile->first), _mm256_mul_ps(index, _mm256_set1_ps(profile->step)));
+        const __m256 middle = _mm256_add_ps(_mm256_set1_ps(profile->a), _mm256_mul_ps(_mm256_set1_ps(profile->b), t));
+        const __m256 x0 = _mm256_add_ps(_mm256_set1_ps(profile->origin_x), _mm256_mul_ps(t, ux));
+        const __m256 y0 = _mm256_add_ps(_mm256_set1_ps(profile->origin_y), _mm256_mul_ps(t, uy));
+        __m256 up = zero, down = zero, up_moment = zero, down_moment = zero;
+        for (int32_t i = 0; i < profile->offsets; i++) {
+            const __m256 offset = _mm256_set1_ps(profile->offset[i]), s = _mm256_add_ps(middle, offset);
+            const __m256 x = _mm256_sub_ps(x0, _mm256_mul_ps(s, uy)), y = _mm256_add_ps(y0, _mm256_mul_ps(s, ux));
+            const __m256i ix = whole_part(x), iy = whole_part(y);
+            const __m256 part = _mm256_sub_ps(x, _mm256_cvtepi32_ps(ix)), low = _mm256_sub_ps(y, _mm256_cvtepi32_ps(iy));
+            const __m256i right = _mm256_cvttps_epi32(_mm256_mul_ps(part, _mm256_set1_ps(4096.0f)));
+            const __m256i at = _mm256_add_epi32(_mm256_mullo_epi32(iy, _mm256_set1_epi32(stride)), ix);
+            __m256 gx, gy;
+            sample_eight(gray, stride, at, right, low, &gx, &gy);
+            const __m256 across = _mm256_sub_ps(_mm256_mul_ps(gy, ux), _mm256_mul_ps(gx, uy));
+            const __m256 along = _mm256_add_ps(_mm256_mul_ps(gx, ux), _mm256_mul_ps(gy, uy));
+            const __m256 w = _mm256_max_ps(_mm256_sub_ps(_mm256_andnot_ps(sign, across), _mm256_andnot_ps(sign, along)), zero);
+            const __m256 is_up = _mm256_cmp_ps(across, zero, _CMP_GT_OQ), moment = _mm256_mul_ps(w, offset);
+            up = _mm256_add_ps(up, _mm256_and_ps(w, is_up));
+            down = _mm256_add_ps(down, _mm256_andnot_ps(is_up, w));
+            up_moment = _mm256_add_ps(up_moment, _mm256_and_ps(moment, is_up));
+            down_moment = _mm256_add_ps(down_moment, _mm256_andnot_ps(is_up, moment));
+        }
+        _mm256_storeu_ps(sums->w[0] + k, down);
+        _mm256_storeu_ps(sums->w[1] + k, up);
+        _mm256_storeu_ps(sums->moment[0] + k, down_moment);
+        _mm256_storeu_ps(sums->moment[1] + k, up_moment);
+    }
+}
+
+static void fill_lines(asj_ops *ops)
+{
+    ops->line_sums = line_sums_avx2;
+    ops->line_profile = line_profile_avx2;
+}
+
+#endif
