@@ -212,9 +212,9 @@ static asj_status compute(asj_context *context, struct asj_cl_scan *state, const
                               field->plan.plain_count, field->plan.slot_count};
     const asj_cl_argument arguments[] = {
         ASJ_CL_BUFFER(&detect->gradient_x), ASJ_CL_BUFFER(&detect->gradient_y), ASJ_CL_INT(frame->stride),
-        ASJ_CL_INT(detect->first), ASJ_CL_INT(frame->blocks), ASJ_CL_BUFFER(&state->field.buffer), ASJ_CL_STRUCT(&sizes, sizeof sizes),
-        ASJ_CL_BUFFER(&state->entries), ASJ_CL_INT(state->done), ASJ_CL_INT(count), ASJ_CL_BUFFER(&state->branches),
-        ASJ_CL_BUFFER(&state->known)};
+        ASJ_CL_INT(detect->first), ASJ_CL_INT(frame->blocks), ASJ_CL_BUFFER(&state->field.buffer),
+        ASJ_CL_STRUCT(&sizes, sizeof sizes), ASJ_CL_BUFFER(&state->entries), ASJ_CL_INT(state->done), ASJ_CL_INT(count),
+        ASJ_CL_BUFFER(&state->branches), ASJ_CL_BUFFER(&state->known)};
     const size_t local = group_size(context), global = (count - state->done + local - 1) / local * local;
     status = asj_cl_run(context, "scan_runs", 1, &global, &local, arguments, 12);
     if (status == ASJ_OK)
@@ -284,7 +284,7 @@ static asj_status scan_rays(asj_context *context, const asj_scan *scan, const as
         if (status == ASJ_OK && counts[0] > state->done)
             status = compute(context, state, scan->field, frame, counts[0]);
     }
-    if (status != ASJ_OK && context->cl)
+    if (status != ASJ_OK && state)
         state->generation = 0; /* whatever there is may be half done */
     return status == ASJ_OK ? fetch_rays(context, scan, state, rays, count) : status;
 }

@@ -40,8 +40,8 @@ run() { # NAME LINKER_OPTIONS
 }
 run shared $(pkg-config --libs asj) -Wl,-rpath,"$libraries"
 if [ -e "$libraries/libasj.a" ]; then
-    openmp=$(pkg-config --static --libs asj | grep -o -e -fopenmp | head -n 1)
-    run static "$libraries/libasj.a" $openmp -lm
+    more=$(pkg-config --static --libs asj | grep -oE -e '-fopenmp|-ldl' | sort -u)
+    run static "$libraries/libasj.a" $more -lm
     if ldd "$work/static" 2> /dev/null | grep -q libasj; then echo 'the static program needs libasj.so'; exit 1; fi
 else
     echo 'no static library in this build'

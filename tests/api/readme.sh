@@ -23,8 +23,8 @@ block $program > "$work/first.c"
     printf '}\n'
 } > "$work/match.c"
 "$@" -std=c99 -Wall -Wextra -Wpedantic -Werror -I"$include" -c "$work/match.c" -o "$work/match.o" || exit 1
-"$@" -std=c99 -Wall -Wextra -Wpedantic -Werror -I"$include" "$work/first.c" "$library" -fopenmp -lm -o "$work/first" ||
-    "$@" -std=c99 -I"$include" "$work/first.c" "$library" -lm -o "$work/first" || exit 1
+"$@" -std=c99 -Wall -Wextra -Wpedantic -Werror -I"$include" "$work/first.c" "$library" -fopenmp -lm -ldl -o "$work/first" ||
+    "$@" -std=c99 -I"$include" "$work/first.c" "$library" -lm -ldl -o "$work/first" || exit 1
 "$work/first" > "$work/corners" || exit 1
 cat "$work/corners"
 awk 'function near(v, w) { return v > w - 0.3 && v < w + 0.3 }
@@ -67,8 +67,8 @@ int main(void)
     return 0;
 }
 END
-"$@" -std=c99 -I"$include" "$work/options.c" "$library" -fopenmp -lm -o "$work/options" ||
-    "$@" -std=c99 -I"$include" "$work/options.c" "$library" -lm -o "$work/options" || exit 1
+"$@" -std=c99 -I"$include" "$work/options.c" "$library" -fopenmp -lm -ldl -o "$work/options" ||
+    "$@" -std=c99 -I"$include" "$work/options.c" "$library" -lm -ldl -o "$work/options" || exit 1
 "$work/options" > "$work/rows"
 # switches and choices have their words as range in the README: compared without that column
 sed -E 's/^(\| `[a-z_]+` \|) (yes, no|[a-z_]+, [a-z_, ]+) \|/\1/' "$readme" > "$work/readme"

@@ -10,11 +10,11 @@
 
 #include <asj/asj.h>
 
-/* Compilers inside drivers keep what they allocate. Asked for by the leak sanitizer. */
+/* Compilers inside drivers, which are C++, keep what they allocate. Asked for by the leak sanitizer. */
 const char *__lsan_default_suppressions(void);
 const char *__lsan_default_suppressions(void)
 {
-    return "leak:libpocl\nleak:libLLVM\nleak:libclang-cpp\n";
+    return "leak:libpocl\nleak:libLLVM\nleak:libclang-cpp\nleak:libstdc++\n";
 }
 
 /* ---- entries ---- */
