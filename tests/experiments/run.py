@@ -42,6 +42,7 @@ def parse(arguments):
     p.add_argument("--out", metavar="DIR", default="out/experiments", help="folder of the report (%(default)s)")
     p.add_argument("--only", metavar="PART,...", type=parts, default=list(PARTS), help="some of " + ", ".join(PARTS))
     p.add_argument("--quick", action="store_true", help="a cut of about a minute: few images, no slow method")
+    p.add_argument("--check", action="store_true", help="only check the measures, against those of tests/accuracy too")
     p.add_argument("--full", action="store_true", help="no time budgets, 1000 images wherever the paper has them")
     p.add_argument("--build", metavar="DIR", help="a build folder of meson's that is up to date; otherwise one is made")
     p.add_argument("--processes", metavar="N", type=int, default=2, help="jobs at a time (%(default)s)")

@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 MARK = "ASJ_EXPERIMENTS_PYTHON"
-PROGRAMS = ("asj-cli", "accuracy", "noise", "sample-room", "isotropic_junctions", "room_judge")
+PROGRAMS = ("asj-cli", "accuracy", "match_room", "noise", "repeatability", "sample-room", "isotropic_junctions", "room_judge")
 
 
 class Unavailable(Exception):
@@ -29,9 +29,13 @@ def _make(folder, requirements):
         return python
     print("experiments: making a virtual environment in %s" % folder, flush=True)
     steps = ([sys.executable, "-m", "venv", folder],
-             [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", requirements])
+             [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--retries", "1", "--timeout", "20", "-r",
+              requirements])
     for step in steps:
-        done = subprocess.run(step, capture_output=True, text=True, timeout=600)
+        try:
+            done = subprocess.run(step, capture_output=True, text=True, timeout=600)
+        except subprocess.TimeoutExpired as late:
+            raise Unavailable("no virtual environment: %s took more than ten minutes" % " ".join(step[:4])) from late
         if done.returncode != 0:
             lines = (done.stderr or done.stdout).strip().splitlines() or ["no message"]
             raise Unavailable("no virtual environment: %s" % lines[-1])

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from . import junctions
 
 PATHS = {"asj-cli": "cli/asj-cli", "noise": "tests/accuracy/noise", "accuracy": "tests/accuracy/accuracy",
-         "repeatability": "tests/accuracy/repeatability", "sample-room": "tests/synth/sample-room",
+         "repeatability": "tests/accuracy/repeatability", "match_room": "tests/accuracy/match_room",
+         "sample-room": "tests/synth/sample-room",
          "isotropic_junctions": "tests/experiments/isotropic_junctions", "room_judge": "tests/experiments/room_judge"}
 
 

@@ -9,7 +9,7 @@ import time
 
 import cv2
 
-from . import images, jobs, library, pairs, report
+from . import checks, images, jobs, library, pairs, report
 
 # seconds that a part's jobs may take, on two processes; a quick run: a few in all
 BUDGETS = {"noise": 240, "repeatability": 240, "scale": 30, "points": 330, "lines": 60, "figures": 30, "ablation": 210}
@@ -32,11 +32,22 @@ class Session:
     def jobs(self, name):
         return jobs.Jobs(name, self.arguments.processes, None if self.full else BUDGETS[name])
 
+    def view(self, pair, index):
+        """Image 1 or 2 of a pair, KEY-1 or KEY-2, in grey."""
+        folder = self.arguments.write_images or os.path.join(self.work, "images")
+        return images.Picture("%s-%d" % (pair.key, index), (pair.image1, pair.image2)[index - 1], folder)
+
     def pictures(self):
         """First views: of the photographs, where there are any, else of the rendered rooms."""
-        folder = os.path.join(self.work, "images")
-        chosen = self.real or self.rendered
-        return [images.Picture(p.key + "-1", p.image1, folder) for p in chosen]
+        return [self.view(p, 1) for p in self.real or self.rendered]
+
+    def write_images(self):
+        """What other detectors have to work on for --detector."""
+        for pair in self.pairs:
+            for index in (1, 2):
+                self.view(pair, index).original()
+        for picture in self.pictures():
+            picture.copies()
 
     def about(self, seconds):
         real = ", ".join(p.name for p in self.real) or "none given: rendered pairs alone (--pairs DIR names a folder of pairs)"
@@ -52,13 +63,19 @@ def run(arguments, root, build):
     cv2.setNumThreads(1)
     start = time.monotonic()
     session, done = Session(arguments, root, build), {}
-    for name in arguments.only:
+    if arguments.write_images:
+        session.write_images()
+        return 0
+    if arguments.check or arguments.quick:
+        checks.run(session)
+    for name in () if arguments.check else arguments.only:
         begin = time.monotonic()
         part = importlib.import_module("lab.parts." + name).run(session)
         part.seconds = time.monotonic() - begin
         done[name] = part
         page = report.write(session.out, session.about(time.monotonic() - start), done)
-    print("%s (%.0f s)" % (page, time.monotonic() - start))
+    if done:
+        print("%s (%.0f s)" % (page, time.monotonic() - start))
     for name, part in done.items():
         for line in part.cut:
             print("left out: %s: %s" % (name, line), file=sys.stderr)

@@ -2,11 +2,9 @@
 """Part 7: what each departure from the paper is worth. Two ways: from the paper preset to the default one option at a time, and the
 default with a single option set back. The detector's options are judged by repeatability and by what the default matcher makes of
 the junctions; the matcher's options on the junctions that asj-cli match finds."""
-import os
-
 import numpy as np
 
-from .. import criteria, images, matches, options, pairs, score
+from .. import criteria, matches, options, pairs, score
 from ..library import Detector
 from ..report import Part
 from ..tables import accuracy
@@ -44,9 +42,7 @@ def _repeatability(limit, session, detector, picture):
 
 
 def _junction_files(session, detector, pair, limit):
-    folder = os.path.join(session.work, "images")
-    views = [images.Picture("%s-%d" % (pair.key, i), path, folder) for i, path in ((1, pair.image1), (2, pair.image2))]
-    return [session.library.detect_file(detector, v.original(), limit)[0] for v in views]
+    return [session.library.detect_file(detector, session.view(pair, i).original(), limit)[0] for i in (1, 2)]
 
 
 def _matching(limit, session, detector, words, pair):
@@ -76,7 +72,8 @@ def _summary(cells, key):
 
 
 COLUMNS = (("accuracy", "accuracy, %", "%.1f"), ("correct", "correct", "%d"), ("total", "total", "%d"),
-           ("seconds", "matching, s", "%.2f"), ("repeatability", "repeatability, %", "%.1f"), ("junctions", "junctions", "%.0f"), ("ms", "detection, ms", "%.0f"))
+           ("seconds", "matching, s", "%.2f"), ("repeatability", "repeatability, %", "%.1f"),
+           ("junctions", "junctions", "%.0f"), ("ms", "detection, ms", "%.0f"))
 
 
 def _cells(measures, columns):

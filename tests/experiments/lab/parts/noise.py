@@ -56,7 +56,7 @@ UNBOUNDED = ("paper preset: steps of the scan alone", "the same, literal filter 
 
 
 def _images(session, usual):
-    return min(usual, 10) if session.quick else 1000 if session.full else usual
+    return min(usual, 3) if session.quick else 1000 if session.full else usual
 
 
 def _mean(cells):

@@ -68,24 +68,19 @@ def _pictures(session):
 
 def _add_changes(session, jobs, all_methods):
     for picture in _pictures(session):
-        steps = [("zoom", f) + picture.zoomed(f) for f in images.FACTORS]
-        for kind, (levels, _, _) in images.CHANGES.items():
-            steps += [(kind, level) + picture.changed(kind, level) for level in levels]
-        for kind, level, path, change in steps:
+        for kind, level, path, change in picture.copies():
             for name, method in all_methods.items():
                 jobs.add((kind, level, name, picture.key), _rate, session, method, (picture.original(), path), change)
 
 
 def _add_homographies(session, jobs, all_methods):
     """The two views of pairs whose truth is a homography."""
-    folder = os.path.join(session.work, "images")
     for pair in [p for p in session.real if p.kind == pairs.HOMOGRAPHY]:
-        views = [images.Picture("%s-%d" % (pair.key, i), path, folder) for i, path in ((1, pair.image1), (2, pair.image2))]
+        paths = [session.view(pair, i).original() for i in (1, 2)]
         height, width = cv2.imread(pair.image2, cv2.IMREAD_GRAYSCALE).shape
         change = criteria.Homography(pair.matrix, pair.side, (width, height))
         given = [{n: files[i] for n, files in pair.detections.items()} for i in (0, 1)]
         for name, method in all_methods.items():
-            paths = [v.original() for v in views]
             jobs.add(("homography", pair.name, name, pair.name), _rate, session, method, paths, change, given)
 
 
