@@ -1,48 +1,49 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 3 on a device: the strongest branches at candidates, for each radius, as in src/isotropic.c; the host judges them. Two forms
  * with the same results: isotropic_candidates, a work-group for each candidate, for devices with thousands of work items;
- * isotropic_windows, a work item for two windows of pixels, for processors. Planes of the frame as in gradient.cl.
+ * isotropic_batches, a work item for LANES candidates, for processors. Planes of the frame as in gradient.cl.
  *
  * A peak is one number: its sum in the upper half, its sector in the lower; 0 = none. Those of candidate c for radius r go to
- * peaks[(c * radii + r) * most], in the order of asj_isotropic_insert().
+ * peaks[(c * radii + r) * most], in the order of asj_isotropic_insert(). A candidate is x in the lower half, y in the upper.
  *
- * The table, in ints (src/cl/isotropic_ops.c): RADIUS_INTS for each radius, which say where in the table the rest is. */
+ * The table, in ints (src/cl/isotropic_ops.c): RADIUS_INTS for each radius, which say where in the table the rest is. Gammas are
+ * held by runs of RUN neighbours in a row (asj_isotropic_runs). */
 
 #define MARGIN 32
-#define STRENGTH_ONE 256
 #define MAX_BRANCHES 5
 
 #define RADIUS_INTS 9
 enum {
     RADIUS_SECTORS, RADIUS_SUPPRESS, RADIUS_PLAIN_SLOTS, RADIUS_SLOTS,
-    RADIUS_OFFSETS,     /* number of offsets when gammas of its own are made; 0 = those of the radius before serve it */
-    RADIUS_OFFSET_AT,   /* OFFSET_INTS for each of these */
-    RADIUS_FROM_AT,     /* for each of its own offsets: which of those it is */
+    RADIUS_RUNS,        /* number of runs when gammas of its own are made; 0 = those of the radius before serve it */
+    RADIUS_RUN_AT,      /* RUN_INTS for each of these */
+    RADIUS_PLACE_AT,    /* for each offset: its place in the runs */
     RADIUS_SLOT_AT,     /* where each plain slot ends; which plain slot each extra slot adds to the total */
     RADIUS_SECTOR_AT    /* SECTOR_INTS for each sector */
 };
-#define OFFSET_INTS 6
-enum { OFFSET_DX, OFFSET_DY, OFFSET_X, OFFSET_Y, OFFSET_CROSS_X, OFFSET_DOT_Y };
-#define SECTOR_INTS 6
-enum { SECTOR_LOW, SECTOR_HIGH, SECTOR_MEAN, SECTOR_SCALE, SECTOR_FIRST, SECTOR_SIZE };
+#define RUN 8
+#define RUN_INTS (2 + 4 * RUN)
+enum { RUN_DX, RUN_DY, RUN_X, RUN_Y = RUN_X + RUN, RUN_CROSS_X = RUN_Y + RUN, RUN_DOT_Y = RUN_CROSS_X + RUN };
+#define SECTOR_INTS 7
+enum { SECTOR_LOW, SECTOR_HIGH, SECTOR_MEAN, SECTOR_SCALE, SECTOR_LEAST, SECTOR_FIRST, SECTOR_SIZE };
 
 /* ---- isotropic_candidates ---- */
 
-/* gamma at offset o of the pixel at (gx, gy). */
-static ushort gamma(__global const short *gx, __global const short *gy, int stride, __global const int *o)
+/* gamma at offset i of a run of the pixel at (gx, gy). */
+static ushort gamma(__global const short *gx, __global const short *gy, int stride, __global const int *run, int i)
 {
-    const int at = o[OFFSET_DY] * stride + o[OFFSET_DX], x = gx[at], y = gy[at];
-    const int cross = (x * o[OFFSET_Y] >> 16) - (y * o[OFFSET_CROSS_X] >> 16);
-    const int dot = (x * o[OFFSET_X] >> 16) - (y * o[OFFSET_DOT_Y] >> 16);
+    const int at = run[RUN_DY] * stride + run[RUN_DX] + i, x = gx[at], y = gy[at];
+    const int cross = (x * run[RUN_Y + i] >> 16) - (y * run[RUN_CROSS_X + i] >> 16);
+    const int dot = (x * run[RUN_X + i] >> 16) - (y * run[RUN_DOT_Y + i] >> 16);
     return (ushort)max((int)abs(cross) - (int)abs(dot), 0);
 }
 
-/* The sum of a sector: a circular run of the radius' `count` offsets. */
-static uint sector_sum(__local const ushort *gammas, __global const int *from, int count, __global const int *sector)
+/* The sum of a sector: circularly so many of the radius' `count` offsets. */
+static uint sector_sum(__local const ushort *gammas, __global const int *places, int count, __global const int *sector)
 {
     ushort sum = 0;
     for (int i = 0, at = sector[SECTOR_FIRST]; i < sector[SECTOR_SIZE]; i++, at = at + 1 < count ? at + 1 : 0)
-        sum += gammas[from[at]];
+        sum += gammas[places[at]];
     return sum;
 }
 
@@ -52,10 +53,10 @@ static uint strength(uint sum, __global const int *sector)
 }
 
 /* Whether sector k is a peak. */
-static int is_largest(__local const uint *strengths, int k, int count, int suppress)
+static int is_largest(__local const uint *strengths, int k, int count, int suppress, uint least)
 {
     const uint here = strengths[k];
-    int largest = here > STRENGTH_ONE;
+    int largest = here >= least;
     for (int d = 1; largest && d <= suppress; d++)
         largest = here > strengths[k >= d ? k - d : k - d + count] && here >= strengths[k + d < count ? k + d : k + d - count];
     return largest;
@@ -88,20 +89,21 @@ __kernel void isotropic_candidates(__global const short *gradient_x, __global co
     __global uint *to = peaks + (size_t)candidate * (size_t)(radii * most);
     for (int r = 0; r < radii; r++, to += most) {
         __global const int *radius = table + RADIUS_INTS * r, *sectors = table + radius[RADIUS_SECTOR_AT];
+        __global const int *runs = table + radius[RADIUS_RUN_AT];
         const int count = radius[RADIUS_SECTORS];
-        for (int i = item; i < radius[RADIUS_OFFSETS]; i += items)
-            gammas[i] = gamma(gradient_x + at, gradient_y + at, stride, table + radius[RADIUS_OFFSET_AT] + OFFSET_INTS * i);
+        for (int i = item; i < radius[RADIUS_RUNS] * RUN; i += items)
+            gammas[i] = gamma(gradient_x + at, gradient_y + at, stride, runs + i / RUN * RUN_INTS, i % RUN);
         barrier(CLK_LOCAL_MEM_FENCE);
         const int own = table[radius[RADIUS_SLOT_AT] + radius[RADIUS_PLAIN_SLOTS] - 1]; /* the last plain slot is the total */
         for (int k = item; k < count; k += items) {
             __global const int *sector = sectors + SECTOR_INTS * k;
-            const uint sum = sector_sum(gammas, table + radius[RADIUS_FROM_AT], own, sector);
+            const uint sum = sector_sum(gammas, table + radius[RADIUS_PLACE_AT], own, sector);
             strengths[k] = strength(sum, sector);
             found[k] = sum << 16 | (uint)k;
         }
         barrier(CLK_LOCAL_MEM_FENCE);
         for (int k = item; k < count; k += items)
-            if (!is_largest(strengths, k, count, radius[RADIUS_SUPPRESS]))
+            if (!is_largest(strengths, k, count, radius[RADIUS_SUPPRESS], (uint)sectors[SECTOR_INTS * k + SECTOR_LEAST]))
                 found[k] = 0;
         barrier(CLK_LOCAL_MEM_FENCE);
         if (item == 0)
@@ -109,72 +111,88 @@ __kernel void isotropic_candidates(__global const short *gradient_x, __global co
     }
 }
 
-/* ---- isotropic_windows: the work-group is one item; it takes windows 2 i and 2 i + 1, lanes 0..7 and 8..15 ---- */
+/* ---- isotropic_batches: a work item is the whole work-group ---- */
 
-#define WINDOW 8
 #define LANES 16
 
-typedef struct window {
-    int x, y;      /* of its first pixel */
-    uint bits;     /* bit i: pixel x + i is a candidate */
-    uint first;    /* number of the first of these */
-} window;
+/* The numbers of a and b in turns, in each half: those from its first four, or from its last. */
+#define FIRST_FOUR(a, b) (a).s0, (b).s0, (a).s1, (b).s1, (a).s2, (b).s2, (a).s3, (b).s3
+#define LAST_FOUR(a, b) (a).s4, (b).s4, (a).s5, (b).s5, (a).s6, (b).s6, (a).s7, (b).s7
 
-static void window_gammas(__global const short *gx, __global const short *gy, int second, int stride, __global const int *o,
-                          int count, __local ushort16 *gammas)
+/* Turns the two squares of 8 x 8 numbers that stand side by side in v: columns become rows. Taking row i and
+ * row i + 4 in turns, three times, does that. */
+static void turn_squares(ushort16 v[RUN])
 {
-    for (int i = 0; i < count; i++, o += OFFSET_INTS) {
-        const int at = o[OFFSET_DY] * stride + o[OFFSET_DX];
-        const short16 x = (short16)(vload8(0, gx + at), vload8(0, gx + at + second));
-        const short16 y = (short16)(vload8(0, gy + at), vload8(0, gy + at + second));
-        const short16 cross = high_product(x, (short)o[OFFSET_Y]) - high_product(y, (short)o[OFFSET_CROSS_X]);
-        const short16 dot = high_product(x, (short)o[OFFSET_X]) - high_product(y, (short)o[OFFSET_DOT_Y]);
-        gammas[i] = gamma16(cross, dot);
+    ushort16 t[RUN];
+    for (int round = 0; round < 3; round++) {
+        for (int i = 0; i < RUN / 2; i++) {
+            t[2 * i] = (ushort16)(FIRST_FOUR(v[i].lo, v[i + RUN / 2].lo), FIRST_FOUR(v[i].hi, v[i + RUN / 2].hi));
+            t[2 * i + 1] = (ushort16)(LAST_FOUR(v[i].lo, v[i + RUN / 2].lo), LAST_FOUR(v[i].hi, v[i + RUN / 2].hi));
+        }
+        for (int i = 0; i < RUN; i++)
+            v[i] = t[i];
+    }
+}
+
+static short16 twice(__global const int *factors)
+{
+    const short8 once = convert_short8(vload8(0, factors));
+    return (short16)(once, once);
+}
+
+/* Gammas at all runs; at[i]: candidate i in the planes. */
+static void batch_gammas(__global const short *gradient_x, __global const short *gradient_y, const int *at, int stride,
+                         __global const int *run, int count, __local ushort16 *gammas)
+{
+    for (int r = 0; r < count; r++, run += RUN_INTS, gammas += RUN) {
+        const int to = run[RUN_DY] * stride + run[RUN_DX];
+        const short16 ux = twice(run + RUN_X), uy = twice(run + RUN_Y);
+        const short16 cross_x = twice(run + RUN_CROSS_X), dot_y = twice(run + RUN_DOT_Y);
+        __global const short *gx = gradient_x + to, *gy = gradient_y + to;
+        ushort16 v[RUN];
+        for (int i = 0; i < RUN; i++) {
+            const short16 x = (short16)(vload8(0, gx + at[i]), vload8(0, gx + at[i + RUN]));
+            const short16 y = (short16)(vload8(0, gy + at[i]), vload8(0, gy + at[i + RUN]));
+            v[i] = gamma16(high_product(x, uy) - high_product(y, cross_x), high_product(x, ux) - high_product(y, dot_y));
+        }
+        turn_squares(v);
+        for (int i = 0; i < RUN; i++)
+            gammas[i] = v[i];
     }
 }
 
 /* Slots of src/sector_plan.h. */
-static void window_slots(__global const int *radius, __global const int *table, __local const ushort16 *gammas,
-                         __local ushort16 *slots)
+static void batch_slots(__global const int *radius, __global const int *table, __local const ushort16 *gammas,
+                        __local ushort16 *slots)
 {
-    __global const int *from = table + radius[RADIUS_FROM_AT], *slot = table + radius[RADIUS_SLOT_AT];
-    ushort16 sum = 0;
+    __global const int *places = table + radius[RADIUS_PLACE_AT], *slot = table + radius[RADIUS_SLOT_AT];
+    ushort16 total = 0;
     int i = 0, j = 0;
     for (; j < radius[RADIUS_PLAIN_SLOTS]; j++) {
+        ushort16 sum = 0;
         for (const int end = slot[j]; i < end; i++)
-            sum += gammas[from[i]];
-        slots[j] = sum;
+            sum += gammas[places[i]];
+        total += sum;
+        slots[j] = total;
     }
     for (; j < radius[RADIUS_SLOTS]; j++)
-        slots[j] = sum + slots[slot[j]];
+        slots[j] = total + slots[slot[j]];
 }
 
 /* Strengths, with `suppress` sectors repeated at either end. */
-static void window_strengths(__global const int *radius, __global const int *sector, __local const ushort16 *slots,
-                             __local ushort16 *strengths)
+static void batch_strengths(__global const int *radius, __global const int *sector, __local const ushort16 *slots,
+                            __local short16 *strengths)
 {
     const int count = radius[RADIUS_SECTORS], suppress = radius[RADIUS_SUPPRESS];
     for (int k = 0; k < count; k++, sector += SECTOR_INTS) {
         const ushort16 sum = slots[sector[SECTOR_HIGH]] - slots[sector[SECTOR_LOW]];
         const ushort16 mean = (ushort)sector[SECTOR_MEAN], scale = (ushort)sector[SECTOR_SCALE];
-        strengths[k + suppress] = high_product_unsigned(excess(sum, mean), scale);
+        strengths[k + suppress] = as_short16(high_product_unsigned(excess(sum, mean), scale));
     }
     for (int k = 0; k < suppress; k++) {
         strengths[k] = strengths[k + count];
         strengths[k + count + suppress] = strengths[k + suppress];
     }
-}
-
-/* -1 where the sector at row k of the strengths is a peak. */
-static short16 is_peak(__local const ushort16 *strengths, int k, int suppress)
-{
-    const ushort16 here = strengths[k];
-    ushort16 before = STRENGTH_ONE, after = 0;
-    for (int d = 1; d <= suppress; d++) {
-        before = max(before, strengths[k - d]);
-        after = max(after, strengths[k + d]);
-    }
-    return (here > before) & (here >= after);
 }
 
 /* Puts numbers where their sum is larger, and returns the others. */
@@ -187,12 +205,21 @@ static uint16 put(uint16 *place, uint16 next)
 }
 
 /* The five first peaks of each lane, in the order of asj_isotropic_insert(), one after the other. */
-static void window_peaks(__global const int *radius, __global const int *sector, __local const ushort16 *slots,
-                         __local const ushort16 *strengths, __local uint16 *list)
+static void batch_peaks(__global const int *radius, __global const int *sector, __local const ushort16 *slots,
+                        __local const short16 *strength, __local uint16 *list)
 {
+    const int suppress = radius[RADIUS_SUPPRESS];
     uint16 first = 0, second = 0, third = 0, fourth = 0, fifth = 0;
-    for (int k = 0; k < radius[RADIUS_SECTORS]; k++, sector += SECTOR_INTS) {
-        const short16 peak = is_peak(strengths, k + radius[RADIUS_SUPPRESS], radius[RADIUS_SUPPRESS]);
+    strength += suppress;
+    for (int k = 0; k < radius[RADIUS_SECTORS]; k++, sector += SECTOR_INTS, strength++) {
+        short16 before = (short)(sector[SECTOR_LEAST] - 1), after = 0;
+        if (!any16(strength[0] > before))
+            continue;
+        for (int d = 1; d <= suppress; d++) {
+            before = max(before, strength[-d]);
+            after = max(after, strength[d]);
+        }
+        const short16 peak = (strength[0] > before) & (strength[0] >= after);
         if (!any16(peak))
             continue;
         const ushort16 sum = (slots[sector[SECTOR_HIGH]] - slots[sector[SECTOR_LOW]]) & as_ushort16(peak);
@@ -210,30 +237,27 @@ static void window_peaks(__global const int *radius, __global const int *sector,
     list[4] = fifth;
 }
 
-__kernel void isotropic_windows(__global const short *gradient_x, __global const short *gradient_y, int stride, int base,
-                                __global const int *table, int radii, int most, __global const window *windows,
-                                __global uint *peaks, __local ushort16 *gammas, __local ushort16 *slots,
-                                __local ushort16 *strengths, __local uint16 *list)
+__kernel void isotropic_batches(__global const short *gradient_x, __global const short *gradient_y, int stride, int base,
+                                __global const int *table, int radii, int most, __global const uint *candidates,
+                                __global uint *peaks, int count, __local ushort16 *gammas, __local ushort16 *slots,
+                                __local short16 *strengths, __local uint16 *list)
 {
-    const window pair[2] = {windows[2 * get_global_id(0)], windows[2 * get_global_id(0) + 1]};
-    const size_t at = (size_t)(pair[0].y - base) * (size_t)stride + (size_t)(pair[0].x + MARGIN);
-    const int second = (pair[1].y - pair[0].y) * stride + pair[1].x - pair[0].x;
+    const int first = LANES * (int)get_global_id(0), lanes = min(count - first, LANES);
+    int at[LANES];
+    for (int i = 0; i < LANES; i++) { /* lanes to spare look where the first does */
+        const uint place = candidates[first + (i < lanes ? i : 0)];
+        at[i] = ((int)(place >> 16) - base) * stride + (int)(place & 0xffff) + MARGIN;
+    }
     for (int r = 0; r < radii; r++) {
         __global const int *radius = table + RADIUS_INTS * r, *sectors = table + radius[RADIUS_SECTOR_AT];
-        if (radius[RADIUS_OFFSETS] > 0)
-            window_gammas(gradient_x + at, gradient_y + at, second, stride, table + radius[RADIUS_OFFSET_AT],
-                          radius[RADIUS_OFFSETS], gammas);
-        window_slots(radius, table, gammas, slots);
-        window_strengths(radius, sectors, slots, strengths);
-        window_peaks(radius, sectors, slots, strengths, list);
-        for (int w = 0; w < 2; w++) {
-            size_t to = (size_t)pair[w].first * (size_t)(radii * most) + (size_t)(r * most);
-            for (int i = 0; i < WINDOW; i++)
-                if (pair[w].bits >> i & 1) {
-                    for (int m = 0; m < most; m++)
-                        peaks[to + m] = ((__local const uint *)list)[m * LANES + w * WINDOW + i];
-                    to += radii * most;
-                }
-        }
+        if (radius[RADIUS_RUNS] > 0)
+            batch_gammas(gradient_x, gradient_y, at, stride, table + radius[RADIUS_RUN_AT], radius[RADIUS_RUNS], gammas);
+        batch_slots(radius, table, gammas, slots);
+        batch_strengths(radius, sectors, slots, strengths);
+        batch_peaks(radius, sectors, slots, strengths, list);
+        for (int i = 0; i < lanes; i++)
+            for (int m = 0; m < most; m++)
+                peaks[((size_t)(first + i) * (size_t)radii + (size_t)r) * (size_t)most + (size_t)m] =
+                    ((__local const uint *)list)[m * LANES + i];
     }
 }

@@ -1,46 +1,41 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 3 on the device (kernels/isotropic.cl): it finds the strongest branches of each candidate, the host judges them. */
 #include "detect.h"
+#include "../threads.h"
 
 #include <asj/device.h>
 #include <string.h>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 /* As in the kernels. */
 #define RADIUS_NUMBERS 9
-#define WINDOW 8
-#define WINDOW_LANES 16
-
-/* As in the kernel. */
-typedef struct window {
-    int32_t x, y;
-    uint32_t bits, first;
-} window;
+#define RUN ASJ_ISOTROPIC_RUN
+#define RUN_NUMBERS (2 + 4 * RUN)
+#define SECTOR_NUMBERS 7
+#define LANES 16
 
 /* Candidates that are sent at once: enough for any device to be busy, few enough for their peaks to stay in a cache. */
 #define MOST_CANDIDATES 65536
+#define LEAST_CANDIDATES 512 /* to judge, for a thread: about 50 us */
 
 static size_t table_size(const asj_isotropic *test)
 {
     size_t count = 0;
     for (int32_t r = 0; r < test->radius_count; r++) {
         const asj_isotropic_radius *entry = &test->radii[r];
-        count += RADIUS_NUMBERS + (6 + 1) * (size_t)test->radii[entry->source].sectors.offset_count +
-                 (size_t)entry->plan.slot_count + 6 * (size_t)entry->sectors.count;
+        count += RADIUS_NUMBERS + (size_t)entry->sectors.offset_count + (size_t)entry->plan.slot_count +
+                 RUN_NUMBERS * (size_t)test->radii[entry->source].runs.count + SECTOR_NUMBERS * (size_t)entry->sectors.count;
     }
     return count;
 }
 
-static int32_t *add_offsets(const asj_sectors *s, int32_t *next)
+static int32_t *add_runs(const asj_isotropic_runs *runs, int32_t *next)
 {
-    for (int32_t i = 0; i < s->offset_count; i++) {
-        const asj_direction u = asj_sector_direction(s, i);
-        const int32_t offset[6] = {s->dx[i], s->dy[i], u.x, u.y, u.cross_x, u.dot_y};
-        for (int j = 0; j < 6; j++)
-            *next++ = offset[j];
+    for (int32_t r = 0; r < runs->count; r++) {
+        *next++ = runs->dx[r];
+        *next++ = runs->dy[r];
+        for (int32_t row = 4 * r; row < 4 * r + 4; row++)
+            for (int32_t i = 0; i < RUN; i++)
+                *next++ = runs->factors[row][i];
     }
     return next;
 }
@@ -58,8 +53,9 @@ static int32_t *add_sectors(const asj_isotropic_radius *entry, int32_t *next)
 {
     const asj_sectors *s = &entry->sectors;
     for (int32_t k = 0; k < s->count; k++) {
-        const int32_t sector[6] = {entry->plan.low[k], entry->plan.high[k], s->mean[k], s->scale[k], s->first[k], s->size[k]};
-        for (int j = 0; j < 6; j++)
+        const int32_t sector[SECTOR_NUMBERS] = {entry->plan.low[k], entry->plan.high[k], s->mean[k], s->scale[k],
+                                                entry->least[k],    s->first[k],         s->size[k]};
+        for (int j = 0; j < SECTOR_NUMBERS; j++)
             *next++ = sector[j];
     }
     return next;
@@ -74,19 +70,20 @@ static asj_status load_table(asj_context *context, asj_cl_table *table, const as
     int32_t *next = numbers + RADIUS_NUMBERS * test->radius_count;
     for (int32_t r = 0; r < test->radius_count; r++) {
         const asj_isotropic_radius *entry = &test->radii[r];
-        const asj_sectors *s = &entry->sectors, *source = &test->radii[entry->source].sectors;
+        const asj_sectors *s = &entry->sectors;
+        const asj_isotropic_runs *runs = &test->radii[entry->source].runs;
         const int shared = r > 0 && entry->source == test->radii[r - 1].source;
         int32_t *radius = numbers + RADIUS_NUMBERS * r;
         radius[0] = s->count;
         radius[1] = entry->suppress;
         radius[2] = entry->plan.plain_count;
         radius[3] = entry->plan.slot_count;
-        radius[4] = shared ? 0 : source->offset_count;
+        radius[4] = shared ? 0 : runs->count;
         radius[5] = (int32_t)(next - numbers);
-        next = shared ? next : add_offsets(source, next);
+        next = shared ? next : add_runs(runs, next);
         radius[6] = (int32_t)(next - numbers);
         for (int32_t i = 0; i < s->offset_count; i++)
-            *next++ = entry->from[i];
+            *next++ = entry->place[i];
         radius[7] = (int32_t)(next - numbers);
         next = add_slots(&entry->plan, next);
         radius[8] = (int32_t)(next - numbers);
@@ -95,14 +92,14 @@ static asj_status load_table(asj_context *context, asj_cl_table *table, const as
     return asj_cl_table_end(context, table, (size_t)(next - numbers));
 }
 
-/* The largest of all radii: offsets, slots, sectors with those that are repeated. */
-static void largest(const asj_isotropic *test, size_t *offsets, size_t *slots, size_t *sectors)
+/* The largest of all radii: gammas, slots, sectors with those that are repeated. */
+static void largest(const asj_isotropic *test, size_t *gammas, size_t *slots, size_t *sectors)
 {
-    *offsets = *slots = *sectors = 0;
+    *gammas = *slots = *sectors = 0;
     for (int32_t r = 0; r < test->radius_count; r++) {
         const asj_isotropic_radius *entry = &test->radii[r];
         const size_t count = (size_t)(entry->sectors.count + 2 * entry->suppress);
-        *offsets = (size_t)entry->sectors.offset_count > *offsets ? (size_t)entry->sectors.offset_count : *offsets;
+        *gammas = (size_t)entry->runs.count * RUN > *gammas ? (size_t)entry->runs.count * RUN : *gammas;
         *slots = (size_t)entry->plan.slot_count > *slots ? (size_t)entry->plan.slot_count : *slots;
         *sectors = count > *sectors ? count : *sectors;
     }
@@ -116,32 +113,6 @@ typedef struct batch {
     int32_t first, last;
     size_t count;          /* candidates */
 } batch;
-
-/* Windows start at a candidate that none before it holds, as in src/simd/isotropic_kernels.h. An even number of them. */
-static size_t list_windows(const batch *b, window *windows)
-{
-    size_t count = 0;
-    uint32_t number = 0;
-    for (int32_t y = b->first; y < b->last; y++)
-        for (int32_t run = 0, end = -1; run < b->frame->blocks; run++) {
-            uint32_t bits = b->masks[(ptrdiff_t)y * b->frame->blocks + run];
-            for (int32_t x = run * ASJ_LANES; bits; bits >>= 1, x++) {
-                if (!(bits & 1))
-                    continue;
-                if (x >= end) {
-                    windows[count++] = (window){x, y, 0, number};
-                    end = x + WINDOW;
-                }
-                windows[count - 1].bits |= (uint32_t)1 << (x - windows[count - 1].x);
-                number++;
-            }
-        }
-    if (count % 2) {
-        windows[count] = windows[count - 1];
-        windows[count++].bits = 0;
-    }
-    return count;
-}
 
 static void list_candidates(const batch *b, uint32_t *places)
 {
@@ -159,44 +130,38 @@ static void list_candidates(const batch *b, uint32_t *places)
         ASJ_CL_INT(detect->first), ASJ_CL_BUFFER(&detect->isotropic_table.buffer), ASJ_CL_INT(b->test->radius_count),           \
         ASJ_CL_INT(b->test->max_branches), ASJ_CL_BUFFER(&detect->candidates), ASJ_CL_BUFFER(&detect->peaks)
 
-/* Sends the list in host_candidates. */
-static asj_status send(asj_context *context, struct asj_cl_detect *detect, size_t bytes)
+static asj_status send_candidates(asj_context *context, struct asj_cl_detect *detect, const batch *b)
 {
-    asj_status status = asj_cl_reserve(context, &detect->candidates, bytes);
-    return status == ASJ_OK ? asj_cl_write(context, &detect->candidates, 0, detect->host_candidates.memory, bytes) : status;
-}
-
-static asj_status run_windows(asj_context *context, struct asj_cl_detect *detect, const batch *b, const size_t bytes[4])
-{
-    static const size_t local = 1;
-    asj_status status = asj_cl_host_reserve(context, &detect->host_candidates, (b->count + 1) * sizeof(window));
-    if (status != ASJ_OK)
-        return status;
-    const size_t count = list_windows(b, detect->host_candidates.memory), global = count / 2;
-    const asj_cl_argument arguments[] = {COMMON_ARGUMENTS, ASJ_CL_LOCAL(bytes[0]), ASJ_CL_LOCAL(bytes[1]), ASJ_CL_LOCAL(bytes[2]),
-                                         ASJ_CL_LOCAL(bytes[3])};
-    status = send(context, detect, count * sizeof(window));
+    const size_t bytes = b->count * sizeof(uint32_t);
+    asj_status status = asj_cl_host_reserve(context, &detect->host_candidates, bytes);
     if (status == ASJ_OK)
-        status = asj_cl_run(context, "isotropic_windows", 1, &global, &local, arguments,
-                            (int32_t)(sizeof arguments / sizeof arguments[0]));
-    return status;
-}
-
-static asj_status run_candidates(asj_context *context, struct asj_cl_detect *detect, const batch *b, size_t offsets, size_t sectors)
-{
-    size_t local = 64, most = 1;
-    asj_status status = asj_cl_host_reserve(context, &detect->host_candidates, b->count * sizeof(uint32_t));
-    if (status == ASJ_OK)
-        status = asj_cl_kernel_limits(context, "isotropic_candidates", &most, NULL);
+        status = asj_cl_reserve(context, &detect->candidates, bytes);
     if (status != ASJ_OK)
         return status;
     list_candidates(b, detect->host_candidates.memory);
+    return asj_cl_write(context, &detect->candidates, 0, detect->host_candidates.memory, bytes);
+}
+
+static asj_status run_batches(asj_context *context, struct asj_cl_detect *detect, const batch *b, const size_t bytes[4])
+{
+    static const size_t local = 1;
+    const size_t global = (b->count + LANES - 1) / LANES;
+    const asj_cl_argument arguments[] = {COMMON_ARGUMENTS, ASJ_CL_INT(b->count), ASJ_CL_LOCAL(bytes[0]), ASJ_CL_LOCAL(bytes[1]),
+                                         ASJ_CL_LOCAL(bytes[2]), ASJ_CL_LOCAL(bytes[3])};
+    return asj_cl_run(context, "isotropic_batches", 1, &global, &local, arguments,
+                      (int32_t)(sizeof arguments / sizeof arguments[0]));
+}
+
+static asj_status run_candidates(asj_context *context, struct asj_cl_detect *detect, const batch *b, size_t gammas, size_t sectors)
+{
+    const size_t longest = asj_cl_get_limits(context)->max_work_item[0];
+    size_t local = 64, most = 1;
+    asj_status status = asj_cl_kernel_limits(context, "isotropic_candidates", &most, NULL);
     local = local <= most ? local : most;
-    local = local <= asj_cl_get_limits(context)->max_work_item[0] ? local : asj_cl_get_limits(context)->max_work_item[0];
+    local = local <= longest ? local : longest;
     const size_t global = b->count * local;
-    const asj_cl_argument arguments[] = {COMMON_ARGUMENTS, ASJ_CL_LOCAL(offsets * sizeof(uint16_t)),
+    const asj_cl_argument arguments[] = {COMMON_ARGUMENTS, ASJ_CL_LOCAL(gammas * sizeof(uint16_t)),
                                          ASJ_CL_LOCAL(sectors * sizeof(uint32_t)), ASJ_CL_LOCAL(sectors * sizeof(uint32_t))};
-    status = send(context, detect, b->count * sizeof(uint32_t));
     if (status == ASJ_OK)
         status = asj_cl_run(context, "isotropic_candidates", 1, &global, &local, arguments,
                             (int32_t)(sizeof arguments / sizeof arguments[0]));
@@ -208,7 +173,7 @@ static asj_status find_peaks(asj_context *context, struct asj_cl_detect *detect,
 {
     const size_t bytes = b->count * (size_t)(b->test->radius_count * b->test->max_branches) * sizeof(uint32_t);
     const asj_cl_limits *limits = asj_cl_get_limits(context);
-    size_t offsets, slots, sectors;
+    size_t gammas, slots, sectors;
     asj_status status = asj_cl_planes_need(context, b->frame, b->first, b->last);
     if (status == ASJ_OK)
         status = load_table(context, &detect->isotropic_table, b->test);
@@ -216,15 +181,17 @@ static asj_status find_peaks(asj_context *context, struct asj_cl_detect *detect,
         status = asj_cl_reserve(context, &detect->peaks, bytes);
     if (status == ASJ_OK)
         status = asj_cl_host_reserve(context, &detect->host_peaks, bytes);
+    if (status == ASJ_OK)
+        status = send_candidates(context, detect, b);
     if (status != ASJ_OK)
         return status;
-    largest(b->test, &offsets, &slots, &sectors);
-    const size_t lanes = WINDOW_LANES * sizeof(uint16_t);
-    const size_t local[4] = {offsets * lanes, slots * lanes, sectors * lanes, ASJ_MAX_BRANCHES * WINDOW_LANES * sizeof(uint32_t)};
+    largest(b->test, &gammas, &slots, &sectors);
+    const size_t lanes = LANES * sizeof(uint16_t);
+    const size_t local[4] = {gammas * lanes, slots * lanes, sectors * lanes, ASJ_MAX_BRANCHES * LANES * sizeof(uint32_t)};
     if (limits->type == ASJ_DEVICE_CPU && local[0] + local[1] + local[2] + local[3] <= limits->local_memory)
-        status = run_windows(context, detect, b, local);
+        status = run_batches(context, detect, b, local);
     else
-        status = run_candidates(context, detect, b, offsets, sectors);
+        status = run_candidates(context, detect, b, gammas, sectors);
     return status == ASJ_OK ? asj_cl_read(context, &detect->peaks, 0, detect->host_peaks.memory, bytes) : status;
 }
 
@@ -260,12 +227,11 @@ static void judge_row(const batch *b, int32_t y, const uint32_t *peaks, asj_isot
     }
 }
 
-/* Candidates that a buffer has room for: their peaks, or a window for each, and one more. */
+/* Candidates whose peaks a buffer has room for. */
 static size_t most_candidates(const asj_context *context, size_t numbers)
 {
-    const size_t bytes = numbers * sizeof(uint32_t) > sizeof(window) ? numbers * sizeof(uint32_t) : sizeof(window);
-    const uint64_t most = asj_cl_get_limits(context)->largest_buffer / bytes;
-    return most > MOST_CANDIDATES ? MOST_CANDIDATES : most > 0 ? (size_t)most - 1 : 0;
+    const uint64_t most = asj_cl_get_limits(context)->largest_buffer / (numbers * sizeof(uint32_t));
+    return most > MOST_CANDIDATES ? MOST_CANDIDATES : (size_t)most;
 }
 
 asj_status asj_cl_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top,
@@ -288,8 +254,10 @@ asj_status asj_cl_isotropic_rows(asj_context *context, const asj_isotropic *test
         if (status != ASJ_OK || b.count == 0)
             continue;
         const uint32_t *peaks = detect->host_peaks.memory;
+        const int32_t threads = asj_threads_for(context, (int64_t)b.count, LEAST_CANDIDATES);
+        (void)threads;
 #ifdef _OPENMP
-#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 4)
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
 #endif
         for (int32_t y = first; y < last; y++)
             judge_row(&b, y, peaks + (starts[y - top] - starts[first - top]) * numbers, junctions + starts[y - top]);
