@@ -43,7 +43,7 @@ static size_t band_size(const subject *s)
     return BAND * (size_t)s->frame.width * sizeof(asj_isotropic_junction);
 }
 
-static void run_band(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
+static asj_status run_band(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
     uint16_t *masks = calloc((size_t)s->frame.blocks * (size_t)s->frame.height, sizeof *masks);
     int32_t x, y;
@@ -52,8 +52,9 @@ static void run_band(const asj_ops *ops, const subject *s, uint16_t *scratch, vo
     if (!masks)
         abort();
     choose_candidates(s, y, bottom, masks);
-    ops->isotropic_band(&s->isotropic, &s->frame, y, bottom, masks, scratch, output);
+    context->ops->isotropic_band(&s->isotropic, &s->frame, y, bottom, masks, scratch, output);
     free(masks);
+    return ASJ_OK;
 }
 
 static size_t block_size(const subject *s)
@@ -62,13 +63,14 @@ static size_t block_size(const subject *s)
     return ASJ_LANES * ASJ_FIELD_BRANCHES * sizeof(asj_field_branch);
 }
 
-static void run_block(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
+static asj_status run_block(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
     int32_t x, y;
     asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES];
     choose(s, &x, &y);
-    ops->field_block(&s->field, &s->frame, x, y, scratch, branches);
+    context->ops->field_block(&s->field, &s->frame, x, y, scratch, branches);
     memcpy(output, branches, sizeof branches);
+    return ASJ_OK;
 }
 
 static double tile_pixels(const subject *s)
@@ -84,15 +86,16 @@ static size_t tile_size(const subject *s)
 }
 
 /* The whole image in tiles, but for the rows above `top`, which must stay as they are. */
-static void run_tiles(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
+static asj_status run_tiles(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
     const int32_t per_tile = ASJ_FIELD_TILE / ASJ_LANES, blocks = s->frame.blocks;
     int32_t x, top;
     choose(s, &x, &top);
     top /= 2;
     for (int32_t run = 0; run < blocks; run += per_tile)
-        ops->field_tile(&s->field, &s->frame, run, blocks - run < per_tile ? blocks - run : per_tile, top, s->frame.height,
-                        scratch, output);
+        context->ops->field_tile(&s->field, &s->frame, run, blocks - run < per_tile ? blocks - run : per_tile, top, s->frame.height,
+                                 scratch, output);
+    return ASJ_OK;
 }
 
 /* The planes of the gradient with their margins, by asj_gradient() with these operations. */
@@ -111,17 +114,69 @@ static double all_pixels(const subject *s)
     return (double)s->frame.width * s->frame.height;
 }
 
-static void run_gradient(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
+/* Two planes of gradients. */
+static double gradient_bytes(const subject *s)
+{
+    return 4 * all_pixels(s);
+}
+
+/* And the gray plane. */
+static double step_1_bytes(const subject *s)
+{
+    return 6 * all_pixels(s);
+}
+
+static asj_status run_gradient(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
     const size_t count = plane_elements(s);
-    asj_ops *own = s->context->ops, these = *ops;
     (void)scratch;
-    s->context->ops = &these;
-    if (asj_gradient(s->context, s->picture, &s->options) == ASJ_OK) {
-        memcpy(output, s->picture->memory[1], count * sizeof(int16_t));
-        memcpy((int16_t *)output + count, s->picture->memory[2], count * sizeof(int16_t));
+    for (int32_t y = 0; y < s->picture->height; y++)
+        for (int32_t x = 0; x < s->picture->width; x++) { /* nothing that an earlier run has left */
+            s->picture->gradient_x[y * s->picture->stride + x] = 12345;
+            s->picture->gradient_y[y * s->picture->stride + x] = -12345;
+        }
+    asj_status status = context->ops->gradient(context, s->picture, &s->options);
+    memcpy(output, s->picture->memory[1], count * sizeof(int16_t));
+    memcpy((int16_t *)output + count, s->picture->memory[2], count * sizeof(int16_t));
+    asj_release(&context->memory, s->picture->rows); /* this context's, which the frame would keep */
+    s->picture->rows = NULL;
+    s->picture->row_capacity = 0;
+    return status;
+}
+
+/* Rows from `top` on; those above must stay as they are. */
+static asj_status run_field_rows(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    int32_t x, top;
+    choose(s, &x, &top);
+    return context->ops->field_rows(context, &s->field, &s->frame, top / 2, s->frame.height, scratch, s->scratch_size, output);
+}
+
+static size_t records_size(const subject *s)
+{
+    return (size_t)s->frame.width * (size_t)s->frame.height * sizeof(asj_isotropic_junction);
+}
+
+static asj_status run_isotropic_rows(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    const size_t runs = (size_t)s->frame.blocks * (size_t)s->frame.height, rows = (size_t)s->frame.height;
+    uint16_t *masks = calloc(runs, sizeof *masks);
+    size_t *starts = calloc(rows + 1, sizeof *starts);
+    asj_status status = ASJ_ERROR_MEMORY;
+    if (masks && starts) {
+        choose_candidates(s, s->frame.height / 3, s->frame.height, masks);
+        for (size_t i = 0; i < runs; i++) {
+            const size_t y = i / (size_t)s->frame.blocks;
+            starts[y + 1] = i % (size_t)s->frame.blocks ? starts[y + 1] : starts[y];
+            for (uint32_t bits = masks[i]; bits; bits &= bits - 1)
+                starts[y + 1]++;
+        }
+        status = context->ops->isotropic_rows(context, &s->isotropic, &s->frame, 0, s->frame.height, masks, starts, scratch,
+                                              s->scratch_size, output);
     }
-    s->context->ops = own;
+    free(starts);
+    free(masks);
+    return status;
 }
 
 /* A row in each of the four layouts. */
@@ -135,18 +190,21 @@ static double luma_pixels(const subject *s)
     return 4.0 * s->frame.width;
 }
 
-static void run_luma(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output)
+static asj_status run_luma(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
     (void)scratch;
     for (int32_t i = 0; i < 4; i++)
-        ops->image_luma(s->colours, s->frame.width, 3 + i / 2, i % 2 * 2, (uint16_t *)output + i * s->frame.width);
+        context->ops->image_luma(s->colours, s->frame.width, 3 + i / 2, i % 2 * 2, (uint16_t *)output + i * s->frame.width);
+    return ASJ_OK;
 }
 
 const operation operations[] = {
-    {"luma", luma_size, luma_pixels, run_luma},
-    {"gradient", planes_size, all_pixels, run_gradient},
-    {"field block", block_size, one_run, run_block},
-    {"isotropic band", band_size, band_pixels, run_band},
-    {"field tile", tile_size, tile_pixels, run_tiles},
+    {"luma", 0, luma_size, luma_pixels, NULL, run_luma},
+    {"gradient", 1, planes_size, all_pixels, step_1_bytes, run_gradient},
+    {"field block", 0, block_size, one_run, NULL, run_block},
+    {"isotropic band", 0, band_size, band_pixels, NULL, run_band},
+    {"field tile", 0, tile_size, tile_pixels, NULL, run_tiles},
+    {"field rows", 1, tile_size, tile_pixels, gradient_bytes, run_field_rows},
+    {"isotropic rows", 1, records_size, all_pixels, gradient_bytes, run_isotropic_rows},
 };
 const size_t operation_count = sizeof operations / sizeof operations[0];

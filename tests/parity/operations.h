@@ -7,9 +7,11 @@
 
 typedef struct operation {
     const char *name;
-    size_t (*size)(const subject *s); /* bytes that run() may write */
+    int whole;                          /* over the whole image: devices have it */
+    size_t (*size)(const subject *s);   /* bytes that run() may write */
     double (*pixels)(const subject *s); /* of the image that one run() serves */
-    void (*run)(const asj_ops *ops, const subject *s, uint16_t *scratch, void *output);
+    double (*bytes)(const subject *s);  /* least traffic of one run(): what goes in and comes out; NULL = not worth telling */
+    asj_status (*run)(asj_context *context, const subject *s, uint16_t *scratch, void *output); /* by context->ops */
 } operation;
 
 extern const operation operations[];

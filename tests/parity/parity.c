@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Every variant of every operation against the reference, bit for bit: parity [--bench] [--seed N] [--rounds N] [--sabotage]
- * Exit status 0 = all equal, 1 = not, 77 = only the reference is there (nothing was compared). */
+/* Every variant of every operation against the reference, bit for bit; with --devices, every OpenCL device instead, with the
+ * operations that devices have; with --bench, times of all of them:
+ *     parity [--devices] [--bench] [--seed N] [--rounds N] [--sabotage]
+ * Exit status 0 = all equal, 1 = not, 77 = nothing but the reference is there. */
 #define _POSIX_C_SOURCE 200809L
 #include "bench.h"
 #include "operations.h"
+#include "targets.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,12 +16,9 @@
 #define PATTERN 0xa5
 
 typedef struct run_state {
-    asj_context *context;
-    asj_ops tables[ASJ_VARIANT_COUNT];
-    int available[ASJ_VARIANT_COUNT];
+    target_list list;
     uint64_t seed;
-    long compared[ASJ_VARIANT_COUNT];
-    int sabotage; /* flip a bit of every variant's output: the program must then fail */
+    int sabotage; /* flip a bit of every target's output: the program must then fail */
     int failed;
 } run_state;
 
@@ -30,8 +30,8 @@ static int guards_hold(const uint8_t *block, size_t size)
     return 1;
 }
 
-/* Runs an operation into a guarded block, which the caller frees; NULL when a guard was hit. */
-static uint8_t *produce(const operation *op, const asj_ops *ops, const subject *s)
+/* Runs an operation into a guarded block, which the caller frees; NULL with a word in *fault when it failed or a guard was hit. */
+static uint8_t *produce(const operation *op, target *t, const subject *s, const char **fault)
 {
     const size_t size = op->size(s), scratch_size = s->scratch_size * sizeof(uint16_t);
     uint8_t *output = malloc(size + 2 * GUARD);
@@ -41,55 +41,65 @@ static uint8_t *produce(const operation *op, const asj_ops *ops, const subject *
     uint8_t *scratch = block;
     memset(output, PATTERN, size + 2 * GUARD);
     memset(scratch, PATTERN, scratch_size + 2 * GUARD);
-    op->run(ops, s, (uint16_t *)(scratch + GUARD), output + GUARD);
+    target_prepare(t, s->frame.stride);
+    const asj_status status = op->run(t->context, s, (uint16_t *)(scratch + GUARD), output + GUARD);
     const int ok = guards_hold(output, size) && guards_hold(scratch, scratch_size);
     free(scratch);
-    if (ok)
+    *fault = status != ASJ_OK ? asj_context_message(t->context) : ok ? NULL : "written outside its memory";
+    if (!*fault)
         return output;
     free(output);
     return NULL;
 }
 
-static void describe(const char *what, const operation *op, const asj_ops *ops, const subject *s)
+static void describe(const char *what, const operation *op, const target *t, const subject *s)
 {
     const asj_detect_options *o = &s->options;
     printf("FAIL %s: %s of %s at %d x %d, content %s, field radius %d, width %g, radii %#x, seed %llu\n", what, op->name,
-           ops->name, (int)s->frame.width, (int)s->frame.height, content_name(s->content), (int)o->field_radius,
+           t->name, (int)s->frame.width, (int)s->frame.height, content_name(s->content), (int)o->field_radius,
            o->sector_width, (unsigned)o->isotropic_radii, (unsigned long long)s->seed);
+}
+
+static int same(const run_state *state, const operation *op, target *t, const subject *s, const uint8_t *expected)
+{
+    const size_t size = op->size(s);
+    const char *fault;
+    uint8_t *output = produce(op, t, s, &fault);
+    if (output && state->sabotage)
+        output[GUARD + size / 2] ^= 4;
+    const int equal = output && memcmp(output, expected, size + 2 * GUARD) == 0;
+    if (!equal)
+        describe(output ? "differs" : fault, op, t, s);
+    for (size_t i = 0, shown = 0; output && i < size && shown < 4; i++)
+        if (output[GUARD + i] != expected[GUARD + i] && ++shown)
+            printf("    byte %zu is %#x, expected %#x\n", i, output[GUARD + i], expected[GUARD + i]);
+    free(output);
+    return equal;
 }
 
 static void compare(run_state *state, const operation *op, const subject *s)
 {
-    const size_t size = op->size(s);
-    uint8_t *expected = produce(op, &state->tables[ASJ_VARIANT_REFERENCE], s);
+    target *targets = state->list.targets;
+    const char *fault;
+    uint8_t *expected = produce(op, &targets[0], s, &fault);
     if (!expected) {
-        describe("written outside its memory", op, &state->tables[ASJ_VARIANT_REFERENCE], s);
+        describe(fault, op, &targets[0], s);
         state->failed = 1;
         return;
     }
-    for (int32_t v = 1; v < ASJ_VARIANT_COUNT; v++) {
-        if (!state->available[v])
-            continue;
-        uint8_t *output = produce(op, &state->tables[v], s);
-        if (output && state->sabotage)
-            output[GUARD + size / 2] ^= 4;
-        if (!output || memcmp(output, expected, size + 2 * GUARD) != 0) {
-            describe(output ? "differs" : "written outside its memory", op, &state->tables[v], s);
-            for (size_t i = 0, shown = 0; output && i < size && shown < 4; i++)
-                if (output[GUARD + i] != expected[GUARD + i] && ++shown)
-                    printf("    byte %zu is %#x, expected %#x\n", i, output[GUARD + i], expected[GUARD + i]);
-            state->failed = 1;
+    for (int32_t i = 1; i < state->list.count; i++)
+        if (targets[i].context && (op->whole || targets[i].form == FORM_NONE)) {
+            if (!same(state, op, &targets[i], s, expected))
+                state->failed = 1;
+            targets[i].compared++;
         }
-        state->compared[v]++;
-        free(output);
-    }
     free(expected);
 }
 
 static void compare_all(run_state *state, int32_t width, int32_t height, int32_t content, int32_t radius, double tau)
 {
     subject s;
-    if (!subject_create(state->context, width, height, content, radius, tau, state->seed++, &s))
+    if (!subject_create(state->list.targets[0].context, width, height, content, radius, tau, state->seed++, &s))
         state->failed = 1;
     else
         for (size_t i = 0; i < operation_count; i++)
@@ -109,36 +119,43 @@ static void round_of_cases(run_state *state)
                 compare_all(state, sizes[i][0], sizes[i][1], content, radii[r], widths[(r + i) % 4]);
 }
 
-static int open_tables(run_state *state)
-{
-    int count = 0;
-    for (int32_t v = 0; v < ASJ_VARIANT_COUNT; v++) {
-        state->available[v] = asj_ops_fill(v, &state->tables[v]);
-        count += state->available[v];
-    }
-    return count;
-}
-
 static int report(const run_state *state)
 {
-    for (int32_t v = 1; v < ASJ_VARIANT_COUNT; v++)
-        if (state->available[v])
-            printf("%-9s %ld comparisons with the reference\n", asj_ops_name(v), state->compared[v]);
+    for (int32_t i = 1; i < state->list.count; i++) {
+        const target *t = &state->list.targets[i];
+        if (t->context)
+            printf("%-9s %ld comparisons with the reference\n", t->name, t->compared);
         else
-            printf("%-9s not tested: not built, or this processor lacks it\n", asj_ops_name(v));
+            printf("%-9s not tested: not built, or this processor lacks it\n", t->name);
+    }
     printf(state->failed ? "FAILED\n" : "all equal\n");
     return state->failed;
+}
+
+static int work(run_state *state, int devices, long rounds)
+{
+    const int32_t count = targets_open(devices, &state->list);
+    if (count < 0)
+        return 1;
+    if (count == 0)
+        return targets_missing(&state->list);
+    printf("first seed %llu\n", (unsigned long long)state->seed);
+    for (long i = 0; i < rounds; i++)
+        round_of_cases(state);
+    return report(state);
 }
 
 int main(int argc, char **argv)
 {
     run_state state = {0};
-    int bench = 0;
+    int bench = 0, devices = 0;
     long rounds = 1;
     state.seed = 1;
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--bench") == 0)
             bench = 1;
+        else if (strcmp(argv[i], "--devices") == 0)
+            devices = 1;
         else if (strcmp(argv[i], "--sabotage") == 0)
             state.sabotage = 1;
         else if (strcmp(argv[i], "--seed") == 0 && i + 1 < argc)
@@ -146,26 +163,11 @@ int main(int argc, char **argv)
         else if (strcmp(argv[i], "--rounds") == 0 && i + 1 < argc)
             rounds = strtol(argv[++i], NULL, 10);
         else {
-            fprintf(stderr, "usage: parity [--bench] [--seed N] [--rounds N] [--sabotage]\n");
+            fprintf(stderr, "usage: parity [--devices] [--bench] [--seed N] [--rounds N] [--sabotage]\n");
             return 2;
         }
     }
-    asj_context_options options;
-    asj_context_options_init(&options);
-    options.threads = 1;
-    if (asj_context_create(&options, &state.context) != ASJ_OK)
-        return 1;
-    int status = 77;
-    if (open_tables(&state) < 2)
-        printf("only the reference is there: nothing to compare\n");
-    else if (bench)
-        status = bench_run(state.context, state.tables, state.available);
-    else {
-        printf("first seed %llu\n", (unsigned long long)state.seed);
-        for (long i = 0; i < rounds; i++)
-            round_of_cases(&state);
-        status = report(&state);
-    }
-    asj_context_free(&state.context);
+    const int status = bench ? bench_run(1052, 780) : work(&state, devices, rounds);
+    targets_close(&state.list);
     return status;
 }
