@@ -63,6 +63,7 @@ look_for() {
         cmocka) want libcmocka-dev pkg-config --exists cmocka ;;
         clang) want clang clang --version ;;
         libomp) want libomp-dev eval 'printf "#include <omp.h>\n" | clang -fopenmp -fsyntax-only -x c -' ;;
+        venv) want python3-venv python3 -c 'import venv, ensurepip' ;;
         mandoc) want mandoc eval 'printf ".Dd 1 January 2026\n" | mandoc -T lint -W fatal' ;;
         esac
     done
@@ -95,7 +96,7 @@ apt() {
         apt-get -q -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# need [cmocka] [clang] [libomp] [mandoc]: installs what is missing for the build, and for these.
+# need [cmocka] [clang] [libomp] [mandoc] [venv]: installs what is missing for the build, and for these.
 need() {
     mkdir -p "$logs" && [ -w "$logs" ] || fail "cannot write into $logs"
     look_for "$@"

@@ -85,12 +85,12 @@ core_alone() {
 with_clang() {
     CC=clang CXX=clang++
     export CC CXX
-    build_and_test build-clang '--no-suite accuracy' -Dauto_features=enabled --werror
+    build_and_test build-clang '--no-suite accuracy --no-suite experiments' -Dauto_features=enabled --werror
 }
 
 # Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code.
 with_sanitizers() {
-    build_and_test build-sanitize '--no-suite accuracy --timeout-multiplier 4' -Dauto_features=enabled --buildtype=debugoptimized \
+    build_and_test build-sanitize '--no-suite accuracy --no-suite experiments --timeout-multiplier 4' -Dauto_features=enabled --buildtype=debugoptimized \
         -Db_sanitize=address,undefined -Dc_args=-fno-sanitize-recover=undefined -Dcpp_args=-fno-sanitize-recover=undefined &&
         logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2
 }
@@ -98,7 +98,7 @@ with_sanitizers() {
 more_checks() {
     step style sh "$root/scripts/style.sh"
     step sanitizers with_sanitizers
-    step fewer-parts build_and_test build-fewer '--no-suite accuracy' \
+    step fewer-parts build_and_test build-fewer '--no-suite accuracy --no-suite experiments' \
         -Dopencv=disabled -Dcairo=disabled -Dopenmp=disabled -Dio=enabled -Dcli=enabled -Dtests=enabled --werror
     step no-cli build build-no-cli -Dcli=disabled -Dtests=disabled --werror
     step core core_alone
@@ -123,7 +123,7 @@ done
 
 start_of_all=$(date +%s)
 if [ "$everything" = true ]; then
-    need cmocka clang libomp mandoc
+    need cmocka clang libomp mandoc venv
     step tests build_and_test build-test '' -Dauto_features=enabled --werror
     more_checks
 else
