@@ -90,8 +90,9 @@ with_clang() {
 
 # Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code.
 with_sanitizers() {
-    build_and_test build-sanitize '--no-suite accuracy --no-suite experiments --timeout-multiplier 4' -Dauto_features=enabled --buildtype=debugoptimized \
-        -Db_sanitize=address,undefined -Dc_args=-fno-sanitize-recover=undefined -Dcpp_args=-fno-sanitize-recover=undefined &&
+    build_and_test build-sanitize '--no-suite accuracy --no-suite experiments --timeout-multiplier 4' -Dauto_features=enabled \
+        --buildtype=debugoptimized -Db_sanitize=address,undefined -Dc_args=-fno-sanitize-recover=undefined \
+        -Dcpp_args=-fno-sanitize-recover=undefined &&
         logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2
 }
 
