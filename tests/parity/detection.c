@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The whole detector in every variant: the same junctions, bit for bit. Scenes always; photographs (PNG files, or folders of
- * them) when named on the command line or found below ASJ_PAIRS. Exit status as parity. */
-#include "ops.h"
+/* The whole detector in every variant, or with --devices on every OpenCL device: the same junctions, bit for bit. Scenes always;
+ * photographs (PNG files, or folders of them) when named on the command line or found below ASJ_PAIRS:
+ *     detection-parity [--devices] [FILE|FOLDER...]
+ * Exit status as parity. */
 #include "render.h"
 #include "scenes.h"
+#include "targets.h"
 
 #ifdef HAVE_PHOTOGRAPHS
 #include "photograph.h"
@@ -14,10 +16,9 @@
 #include <string.h>
 
 typedef struct run_state {
-    asj_context *context;
+    target_list list;
     asj_detect_options options;
     const char *setting; /* name of the options */
-    long images[ASJ_VARIANT_COUNT];
     size_t junctions;
     int failed;
 } run_state;
@@ -35,13 +36,12 @@ static int same(const asj_detection *a, const asj_detection *b)
            equal(a->l_junctions, b->l_junctions, a->l_junction_count, sizeof *a->l_junctions);
 }
 
-static asj_detection *detect(run_state *state, const asj_image *image, int32_t variant)
+static asj_detection *detect(run_state *state, target *t, const asj_image *image)
 {
     asj_detection *found = NULL;
-    if (!asj_ops_fill(variant, state->context->ops))
-        return NULL;
-    if (asj_detect(state->context, image, &state->options, &found) != ASJ_OK) {
-        fprintf(stderr, "detection: %s\n", asj_context_message(state->context));
+    target_prepare(t, (image->width + ASJ_LANES - 1) / ASJ_LANES * ASJ_LANES + 2 * ASJ_MARGIN);
+    if (asj_detect(t->context, image, &state->options, &found) != ASJ_OK) {
+        printf("FAIL %s: %s\n", t->name, asj_context_message(t->context));
         state->failed = 1;
     }
     return found;
@@ -50,14 +50,15 @@ static asj_detection *detect(run_state *state, const asj_image *image, int32_t v
 static void compare(run_state *state, const char *name, const uint8_t *pixels, int32_t width, int32_t height)
 {
     const asj_image image = {pixels, ASJ_FORMAT_GRAY8, width, height, 0, 0};
-    asj_detection *expected = detect(state, &image, ASJ_VARIANT_REFERENCE);
-    for (int32_t v = 1; v < ASJ_VARIANT_COUNT && expected; v++) {
-        asj_detection *found = detect(state, &image, v);
-        if (!found)
+    asj_detection *expected = detect(state, &state->list.targets[0], &image);
+    for (int32_t i = 1; i < state->list.count && expected; i++) {
+        target *t = &state->list.targets[i];
+        if (!t->context)
             continue;
-        state->images[v]++;
-        if (!same(found, expected)) {
-            printf("FAIL %s differs from the reference: %s, %d x %d, options %s\n", asj_ops_name(v), name, (int)width, (int)height,
+        asj_detection *found = detect(state, t, &image);
+        t->compared++;
+        if (found && !same(found, expected)) {
+            printf("FAIL %s differs from the reference: %s, %d x %d, options %s\n", t->name, name, (int)width, (int)height,
                    state->setting);
             state->failed = 1;
         }
@@ -118,7 +119,7 @@ static void settings(run_state *state)
 {
     asj_detect_options_init(&state->options);
     state->setting = "default";
-    scenes(state, 6);
+    scenes(state, state->list.devices ? 50 : 6);
     asj_detect_options_preset(&state->options, ASJ_PRESET_PAPER);
     state->setting = "paper";
     scenes(state, 1);
@@ -127,37 +128,52 @@ static void settings(run_state *state)
     state->options.sector_width = 1.5;
     state->setting = "field_radius=5, sector_width=1.5";
     scenes(state, 2);
+    asj_detect_options_init(&state->options);
+    state->setting = "default";
+}
+
+static void named_photographs(run_state *state, int count, char **paths)
+{
+#ifdef HAVE_PHOTOGRAPHS
+    char *pairs = getenv("ASJ_PAIRS");
+    if (count > 0)
+        photographs(state, count, paths);
+    else if (pairs && *pairs)
+        photographs(state, 1, &pairs);
+    else
+        printf("photographs: none named (ASJ_PAIRS)\n");
+#else
+    (void)state;
+    (void)count;
+    (void)paths;
+    printf("photographs: built without libasj-io\n");
+#endif
+}
+
+static int report(run_state *state)
+{
+    for (int32_t i = 1; i < state->list.count; i++)
+        if (state->list.targets[i].context)
+            printf("%-9s %ld images\n", state->list.targets[i].name, state->list.targets[i].compared);
+    if (state->junctions == 0)
+        state->failed = 1;
+    printf("%zu junctions, %s\n", state->junctions, state->failed ? "FAILED" : "all equal");
+    return state->failed;
 }
 
 int main(int argc, char **argv)
 {
-    run_state state = {0};
-    int tested = 0;
-    if (asj_context_create(NULL, &state.context) != ASJ_OK)
-        return 1;
-    settings(&state);
-    asj_detect_options_init(&state.options);
-    state.setting = "default";
-#ifdef HAVE_PHOTOGRAPHS
-    char *pairs = getenv("ASJ_PAIRS");
-    if (argc > 1)
-        photographs(&state, argc - 1, argv + 1);
-    else if (pairs && *pairs)
-        photographs(&state, 1, &pairs);
-    else
-        printf("photographs: none named (ASJ_PAIRS)\n");
-#else
-    (void)argc;
-    (void)argv;
-    printf("photographs: built without libasj-io\n");
-#endif
-    for (int32_t v = 1; v < ASJ_VARIANT_COUNT; v++) {
-        printf("%-9s %ld images\n", asj_ops_name(v), state.images[v]);
-        tested += state.images[v] > 0;
+    static run_state state;
+    const int devices = argc > 1 && strcmp(argv[1], "--devices") == 0;
+    const int32_t count = targets_open(devices, &state.list);
+    int status = 1;
+    if (count == 0)
+        status = targets_missing(&state.list);
+    if (count > 0) {
+        settings(&state);
+        named_photographs(&state, argc - 1 - devices, argv + 1 + devices);
+        status = report(&state);
     }
-    printf("%zu junctions, %s\n", state.junctions, state.failed ? "FAILED" : "all equal");
-    if (state.junctions == 0)
-        state.failed = 1;
-    asj_context_free(&state.context);
-    return state.failed ? 1 : tested ? 0 : 77;
+    targets_close(&state.list);
+    return status;
 }
