@@ -77,7 +77,8 @@ __kernel void gradient_normalise(__global const ushort *gray, __global const ush
     if (x >= 0 && x < width && y >= 0 && y < height) {
         const int8 column = x + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
         const int rows = min(y + 2, height - 1) - max(y - 2, 0) + 1;
-        const int8 count = rows * max(min(column + 2, width - 1) - max(column - 2, 0) + 1, 1);
+        /* vectors on both sides of min() and max(): Oclgrind 21 takes a scalar there for a vector */
+        const int8 count = rows * max(min(column + 2, (int8)(width - 1)) - max(column - 2, (int8)0) + 1, (int8)1);
         const int8 least = (convert_int8(vload8(0, norms + at)) * count * LIMIT) >> 8;
         const int8 scale = quotient(UNITS(count) << 16, max(window_sum(norms + at, stride) + count * epsilon, least));
         differences(gray, x, y, width, height, stride, base, &dx, &dy);
