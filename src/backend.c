@@ -13,7 +13,7 @@ const char *asj_context_device(const asj_context *context)
     return context && context->cl ? asj_cl_name(context) : NULL;
 }
 
-asj_status asj_backend_run(asj_context *context, asj_status (*call)(asj_context *context, void *arguments), void *arguments)
+static asj_status run(asj_context *context, asj_status (*call)(asj_context *context, void *arguments), void *arguments)
 {
     asj_status status = call(context, arguments);
     if (status != ASJ_ERROR_DEVICE || !context->cl || context->options.backend != ASJ_BACKEND_AUTO)
@@ -32,5 +32,13 @@ asj_status asj_backend_run(asj_context *context, asj_status (*call)(asj_context 
         context->cl = device;
         *context->ops = ops;
     }
+    return status;
+}
+
+asj_status asj_backend_run(asj_context *context, asj_status (*call)(asj_context *context, void *arguments), void *arguments)
+{
+    asj_memory_open(&context->memory);
+    const asj_status status = run(context, call, arguments);
+    asj_memory_close(&context->memory);
     return status;
 }

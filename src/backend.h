@@ -11,7 +11,7 @@
 #define ASJ_BACKEND_FAILURES 3
 
 /* Runs a call, which must leave nothing behind when it fails. When it ends in ASJ_ERROR_DEVICE and the context may choose
- * (ASJ_BACKEND_AUTO), it runs once more, without the device. */
+ * (ASJ_BACKEND_AUTO), it runs once more, without the device. Memory that the call releases is kept for the next one. */
 asj_status asj_backend_run(asj_context *context, asj_status (*call)(asj_context *context, void *arguments), void *arguments);
 
 #endif

@@ -47,7 +47,7 @@ static asj_status fill(asj_context *context, const char *library)
 asj_status asj_context_create_from(const char *library, const asj_context_options *options, asj_context **result)
 {
     asj_context_options defaults;
-    asj_memory memory = {{0}, 0, 0};
+    asj_memory memory = {0};
     if (!result)
         return ASJ_ERROR_ARGUMENT;
     *result = NULL;
@@ -89,6 +89,7 @@ void asj_context_free(asj_context **pointer)
     asj_detector_free(&context->memory, &context->detector);
     asj_nfa_free(&context->memory, &context->nfa);
     asj_release(&context->memory, context->ops);
+    asj_memory_trim(&context->memory);
     asj_memory memory = context->memory;
     asj_release(&memory, context);
     *pointer = NULL;

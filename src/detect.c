@@ -87,16 +87,16 @@ static asj_status begin(asj_context *context, const asj_image *image, const asj_
 
 static asj_status finish(asj_detection_run *d, const asj_image *image, const double *stage_ms, asj_detection **result)
 {
-    asj_detection *found = asj_result_create(d->context, d->drafts, d->draft_count, d->options->minimum_opening);
-    if (!found)
-        return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", d->draft_count);
+    asj_status status = asj_result_fill(d->context, d->drafts, d->draft_count, d->options->minimum_opening, result);
+    if (status != ASJ_OK)
+        return asj_fail(d->context, status, "no memory for %zu junctions", d->draft_count);
+    asj_detection *found = *result;
     found->width = image->width;
     found->height = image->height;
     found->backend = asj_context_backend(d->context);
     found->candidates = d->candidate_total;
     found->isotropic = d->isotropic_count;
     memcpy(found->stage_ms, stage_ms, sizeof found->stage_ms);
-    *result = found;
     return ASJ_OK;
 }
 
@@ -115,7 +115,7 @@ static asj_status detect(asj_context *context, void *arguments)
     const asj_detect_options *options = call->options;
     asj_detect_options defaults;
     asj_detection_run d;
-    double stage_ms[16] = {0}, clock = asj_clock_ms();
+    double stage_ms[16] = {0}, clock = call->start;
     asj_status status = begin(context, call->image, &options, &defaults, call->result, &d);
     if (status == ASJ_OK)
         status = run_steps(&d, call->image, stage_ms, &clock);
@@ -129,16 +129,24 @@ static asj_status detect(asj_context *context, void *arguments)
     return status;
 }
 
-asj_status asj_detect(asj_context *context, const asj_image *image, const asj_detect_options *options,
-                      asj_detection **result)
+asj_status asj_detect_into(asj_context *context, const asj_image *image, const asj_detect_options *options,
+                           asj_detection **result)
 {
     detect_call call = {image, options, result, NULL, asj_clock_ms()};
-    if (result)
-        *result = NULL;
+    if (result && *result)
+        asj_result_clear(*result);
     if (!context)
         return ASJ_ERROR_ARGUMENT;
     context->progress = 0;
     return asj_backend_run(context, detect, &call);
+}
+
+asj_status asj_detect(asj_context *context, const asj_image *image, const asj_detect_options *options,
+                      asj_detection **result)
+{
+    if (result)
+        *result = NULL;
+    return asj_detect_into(context, image, options, result);
 }
 
 /* Step 2 for row y of the public field. */

@@ -98,7 +98,7 @@ typedef struct device_list {
 
 asj_status asj_device_list_create_from(const char *library, const asj_context_options *options, asj_device_list **result)
 {
-    asj_memory memory = {{0}, 0, 0};
+    asj_memory memory = {0};
     if (!result)
         return ASJ_ERROR_ARGUMENT;
     *result = NULL;

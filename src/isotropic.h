@@ -68,7 +68,8 @@ void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int3
 void asj_isotropic_band(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
                         uint16_t *scratch, asj_isotropic_junction *junctions);
 
-/* The same by all threads of the context; the records of row y start at junctions[starts[y - top]], and starts[bottom - top] ends the last. `scratch_size` elements for each thread. */
+/* The same by all threads of the context; the records of row y start at junctions[starts[y - top]], and starts[bottom - top] ends
+ * the last. `scratch_size` elements for each thread. */
 asj_status asj_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
                               const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
                               asj_isotropic_junction *junctions);

@@ -83,7 +83,7 @@ asj_match_result *asj_match_result_create(const asj_context *context, const asj_
                                           const asj_view *view2, const asj_candidates *candidates, const asj_choice *choices,
                                           size_t count)
 {
-    asj_memory memory = {context->memory.allocator, 0, 0};
+    asj_memory memory = {.allocator = context->memory.allocator};
     result *r = asj_allocate_zero(&memory, 1, sizeof *r);
     if (!r)
         return NULL;

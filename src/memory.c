@@ -24,29 +24,131 @@ int asj_memory_allocator(const asj_context_options *options, asj_allocator *allo
     return allocator->allocate && allocator->release;
 }
 
+/* What the sanitizer is told about blocks that are kept: nobody may touch them. */
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define ADDRESS_SANITIZER
+#endif
+#elif defined(__SANITIZE_ADDRESS__)
+#define ADDRESS_SANITIZER
+#endif
+#ifdef ADDRESS_SANITIZER
+#include <sanitizer/asan_interface.h>
+#define FORBID(block, size) ASAN_POISON_MEMORY_REGION(block, size)
+#define ALLOW(block, size) ASAN_UNPOISON_MEMORY_REGION(block, size)
+#else
+#define FORBID(block, size) ((void)(block), (void)(size))
+#define ALLOW(block, size) ((void)(block), (void)(size))
+#endif
+
+#define CALLS_KEPT 8 /* calls that a block may be of no use to before it is given back */
+
 /* Before each aligned block stands what is needed to release and to count it. */
-typedef struct header {
+typedef struct asj_spare {
     void *start;
     size_t bytes;
+    struct asj_spare *next; /* of a block that is kept */
+    uint64_t call;          /* that released it */
 } header;
 
-void *asj_allocate(asj_memory *memory, size_t count, size_t size)
+#define EXTRA (ASJ_ALIGNMENT + sizeof(header))
+
+static void *block_of(header *head)
 {
-    const size_t extra = ASJ_ALIGNMENT + sizeof(header);
-    if (size != 0 && count > (SIZE_MAX - extra) / size)
+    return head + 1;
+}
+
+static size_t size_of(const header *head)
+{
+    return (size_t)((char *)head->start + head->bytes - (const char *)(head + 1));
+}
+
+static void give_back(asj_memory *memory, header *head)
+{
+    memory->now -= head->bytes;
+    ALLOW(block_of(head), size_of(head));
+    memory->allocator.release(memory->allocator.user, head->start);
+}
+
+/* Gives back what is kept, but for blocks released since call `since`. */
+static void trim(asj_memory *memory, uint64_t since)
+{
+    for (header **link = &memory->spare; *link;) {
+        header *head = *link;
+        if (head->call >= since) {
+            link = &head->next;
+            continue;
+        }
+        *link = head->next;
+        give_back(memory, head);
+    }
+}
+
+/* The smallest kept block that is large enough, and not far too large. */
+static void *take_spare(asj_memory *memory, size_t bytes)
+{
+    header **best = NULL;
+    for (header **link = &memory->spare; *link; link = &(*link)->next)
+        if ((*link)->bytes >= bytes && (*link)->bytes / 4 <= bytes && (!best || (*link)->bytes < (*best)->bytes))
+            best = link;
+    if (!best)
         return NULL;
-    size_t bytes = count * size + extra;
+    header *head = *best;
+    *best = head->next;
+    ALLOW(block_of(head), size_of(head));
+    return block_of(head);
+}
+
+/* A list that grows from call to call leaves the block that it has outgrown. */
+static void drop_outgrown(asj_memory *memory, size_t bytes)
+{
+    header **largest = NULL;
+    for (header **link = &memory->spare; *link; link = &(*link)->next)
+        if ((*link)->bytes < bytes && (*link)->bytes >= bytes / 2 && (!largest || (*link)->bytes > (*largest)->bytes))
+            largest = link;
+    if (!largest)
+        return;
+    header *head = *largest;
+    *largest = head->next;
+    give_back(memory, head);
+}
+
+static void *take_new(asj_memory *memory, size_t bytes)
+{
+    drop_outgrown(memory, bytes);
     char *start = memory->allocator.allocate(memory->allocator.user, bytes);
+    if (!start && memory->spare) {
+        trim(memory, UINT64_MAX);
+        start = memory->allocator.allocate(memory->allocator.user, bytes);
+    }
     if (!start)
         return NULL;
-    uintptr_t address = (uintptr_t)(start + extra) & ~(uintptr_t)(ASJ_ALIGNMENT - 1);
-    char *block = start + (address - (uintptr_t)start);
-    header head = {start, bytes};
-    memcpy(block - sizeof head, &head, sizeof head);
+    const uintptr_t address = (uintptr_t)(start + EXTRA) & ~(uintptr_t)(ASJ_ALIGNMENT - 1);
+    header *head = (header *)(void *)(start + (address - (uintptr_t)start)) - 1;
+    *head = (header){start, bytes, NULL, 0};
     memory->now += bytes;
     if (memory->now > memory->peak)
         memory->peak = memory->now;
-    return block;
+    return block_of(head);
+}
+
+/* `more`: elements for which a new block has room besides. */
+static void *take(asj_memory *memory, size_t count, size_t size, size_t more)
+{
+    if (size != 0 && (count > (SIZE_MAX - EXTRA) / size || more > (SIZE_MAX - EXTRA) / size - count))
+        return NULL;
+    void *block = take_spare(memory, count * size + EXTRA);
+    return block ? block : take_new(memory, (count + more) * size + EXTRA);
+}
+
+void *asj_allocate(asj_memory *memory, size_t count, size_t size)
+{
+    return take(memory, count, size, 0);
+}
+
+void *asj_allocate_list(asj_memory *memory, size_t count, size_t size)
+{
+    return take(memory, count, size, memory->open ? count / 2 : 0);
 }
 
 void *asj_allocate_zero(asj_memory *memory, size_t count, size_t size)
@@ -61,10 +163,32 @@ void asj_release(asj_memory *memory, void *block)
 {
     if (!block)
         return;
-    header head;
-    memcpy(&head, (char *)block - sizeof head, sizeof head);
-    memory->now -= head.bytes;
-    memory->allocator.release(memory->allocator.user, head.start);
+    header *head = (header *)block - 1;
+    if (!memory->open) {
+        give_back(memory, head);
+        return;
+    }
+    head->call = memory->call;
+    head->next = memory->spare;
+    memory->spare = head;
+    FORBID(block, size_of(head));
+}
+
+void asj_memory_open(asj_memory *memory)
+{
+    if (memory->open++ == 0)
+        memory->call++;
+}
+
+void asj_memory_close(asj_memory *memory)
+{
+    if (--memory->open == 0 && memory->call >= CALLS_KEPT)
+        trim(memory, memory->call - CALLS_KEPT + 1);
+}
+
+void asj_memory_trim(asj_memory *memory)
+{
+    trim(memory, UINT64_MAX);
 }
 
 asj_status asj_grow(asj_memory *memory, void **block, size_t *capacity, size_t count, size_t size, size_t keep)
@@ -74,7 +198,7 @@ asj_status asj_grow(asj_memory *memory, void **block, size_t *capacity, size_t c
     size_t wanted = *capacity + *capacity / 2;
     if (wanted < count)
         wanted = count;
-    void *larger = asj_allocate(memory, wanted, size);
+    void *larger = asj_allocate_list(memory, wanted, size);
     if (!larger)
         return ASJ_ERROR_MEMORY;
     if (keep)

@@ -7,7 +7,10 @@
 
 typedef struct asj_memory {
     asj_allocator allocator;
-    uint64_t now, peak; /* bytes held, and the most ever held */
+    uint64_t now, peak;      /* bytes held, and the most ever held */
+    struct asj_spare *spare; /* released blocks that are kept */
+    int32_t open;            /* asj_memory_open() less asj_memory_close() */
+    uint64_t call;           /* how often it was opened */
 } asj_memory;
 
 /* The allocator that the options ask for; malloc() and free() when they name none or are NULL. 0 when they name only one of the
@@ -22,11 +25,23 @@ void *asj_allocate(asj_memory *memory, size_t count, size_t size);
 /* The same, all bytes zero. */
 void *asj_allocate_zero(asj_memory *memory, size_t count, size_t size);
 
+/* The same for a list whose length depends on what a picture shows: a block that will be kept has room for half as many again, so
+ * that the next picture's list fits as well. */
+void *asj_allocate_list(asj_memory *memory, size_t count, size_t size);
+
 /* NULL is fine. */
 void asj_release(asj_memory *memory, void *block);
 
 /* A block that grows: makes *block at least `count` elements of `size` bytes large, keeping the first `keep` elements.
  * *capacity (elements) is updated; growth is geometric. On failure nothing changes. */
 asj_status asj_grow(asj_memory *memory, void **block, size_t *capacity, size_t count, size_t size, size_t keep);
+
+/* Between these two released blocks are kept and handed out again, so that a call that does what the one before did allocates
+ * nothing. A block that has been of no use to several calls is given back. */
+void asj_memory_open(asj_memory *memory);
+void asj_memory_close(asj_memory *memory);
+
+/* Gives back all blocks that are kept. */
+void asj_memory_trim(asj_memory *memory);
 
 #endif

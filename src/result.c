@@ -10,8 +10,8 @@
 typedef struct result {
     asj_detection detection; /* first: the public pointer is this one */
     asj_memory memory;       /* the allocator; results outlive their context */
-    asj_junction *junctions;
-    asj_l_junction *l_junctions;
+    void *junctions, *l_junctions;
+    size_t capacity, l_capacity;
 } result;
 
 static void convert(const asj_draft *draft, asj_junction *out)
@@ -34,37 +34,56 @@ static void convert(const asj_draft *draft, asj_junction *out)
     }
 }
 
-asj_detection *asj_result_create(const asj_context *context, const asj_draft *drafts, size_t count, double minimum_opening)
+void asj_result_clear(asj_detection *detection)
 {
-    asj_memory memory = {context->memory.allocator, 0, 0};
-    result *r = asj_allocate_zero(&memory, 1, sizeof *r);
-    asj_detection *detection = r ? &r->detection : NULL;
-    if (!r)
-        return NULL;
-    r->memory = memory;
-    if (count == 0)
-        return detection;
-    r->junctions = asj_allocate(&r->memory, count, sizeof *r->junctions);
-    if (!r->junctions) {
-        asj_detection_free(&detection);
-        return NULL;
-    }
+    memset(detection, 0, sizeof *detection);
+}
+
+/* Room for half as many again: the next picture's list fits too. */
+static asj_status reserve(asj_memory *memory, void **list, size_t *capacity, size_t count, size_t size)
+{
+    return count > *capacity ? asj_grow(memory, list, capacity, count + count / 2, size, 0) : ASJ_OK;
+}
+
+static asj_status fill(result *r, const asj_draft *drafts, size_t count, double minimum_opening)
+{
+    asj_status status = reserve(&r->memory, &r->junctions, &r->capacity, count, sizeof(asj_junction));
+    if (status != ASJ_OK || count == 0)
+        return status;
+    asj_junction *junctions = r->junctions;
     for (size_t i = 0; i < count; i++)
-        convert(&drafts[i], &r->junctions[i]);
-    size_t l_count = asj_decompose(r->junctions, count, minimum_opening, NULL, 0);
-    if (l_count > 0) {
-        r->l_junctions = asj_allocate(&r->memory, l_count, sizeof *r->l_junctions);
-        if (!r->l_junctions) {
-            asj_detection_free(&detection);
-            return NULL;
-        }
-        asj_decompose(r->junctions, count, minimum_opening, r->l_junctions, l_count);
+        convert(&drafts[i], &junctions[i]);
+    const size_t l_count = asj_decompose(junctions, count, minimum_opening, NULL, 0);
+    status = reserve(&r->memory, &r->l_junctions, &r->l_capacity, l_count, sizeof(asj_l_junction));
+    if (status != ASJ_OK)
+        return status;
+    if (l_count > 0)
+        asj_decompose(junctions, count, minimum_opening, r->l_junctions, l_count);
+    r->detection.junctions = junctions;
+    r->detection.junction_count = (uint32_t)count;
+    r->detection.l_junctions = l_count > 0 ? r->l_junctions : NULL;
+    r->detection.l_junction_count = (uint32_t)l_count;
+    return ASJ_OK;
+}
+
+asj_status asj_result_fill(const asj_context *context, const asj_draft *drafts, size_t count, double minimum_opening,
+                           asj_detection **detection)
+{
+    result *r = (result *)*detection;
+    if (r) {
+        asj_result_clear(&r->detection);
+        return fill(r, drafts, count, minimum_opening);
     }
-    detection->junctions = r->junctions;
-    detection->junction_count = (uint32_t)count;
-    detection->l_junctions = r->l_junctions;
-    detection->l_junction_count = (uint32_t)l_count;
-    return detection;
+    asj_memory memory = {.allocator = context->memory.allocator};
+    r = asj_allocate_zero(&memory, 1, sizeof *r);
+    if (!r)
+        return ASJ_ERROR_MEMORY;
+    r->memory = memory;
+    *detection = &r->detection;
+    const asj_status status = fill(r, drafts, count, minimum_opening);
+    if (status != ASJ_OK)
+        asj_detection_free(detection);
+    return status;
 }
 
 void asj_detection_free(asj_detection **pointer)

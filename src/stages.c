@@ -99,7 +99,7 @@ static asj_status dump_points(const asj_detection_run *d, int32_t stage, const c
 {
     if (!d->context->options.dump)
         return ASJ_OK;
-    int32_t *points = asj_allocate(&d->context->memory, count, 2 * sizeof *points);
+    int32_t *points = asj_allocate_list(&d->context->memory, count, 2 * sizeof *points);
     if (!points)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory to dump %zu points", count);
     for (size_t i = 0; i < count; i++)
@@ -152,7 +152,7 @@ static asj_status dump_candidates(const asj_detection_run *d)
     if (!d->context->options.dump)
         return ASJ_OK;
     const size_t total = count_bits(d->candidates, runs);
-    int32_t *points = asj_allocate(&d->context->memory, total, 2 * sizeof *points), *next = points;
+    int32_t *points = asj_allocate_list(&d->context->memory, total, 2 * sizeof *points), *next = points;
     if (!points)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory to dump %zu points", total);
     for (size_t i = 0; i < runs; i++)
@@ -249,7 +249,7 @@ static asj_status suppress(asj_detection_run *d, int same)
 {
     const asj_frame *frame = &d->detector->frame;
     const size_t count = asj_locate_cells(d->draft_count, frame->width, frame->height);
-    int32_t *cells = asj_allocate(&d->context->memory, count, sizeof *cells);
+    int32_t *cells = asj_allocate_list(&d->context->memory, count, sizeof *cells);
     if (!cells)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu cells", count);
     d->draft_count = asj_locate_suppress(d->drafts, d->draft_count, same, frame->width, frame->height, cells);
@@ -261,7 +261,7 @@ static asj_status suppress(asj_detection_run *d, int same)
 asj_status asj_stage_locate(asj_detection_run *d)
 {
     const int64_t count = (int64_t)d->isotropic_count;
-    d->drafts = asj_allocate(&d->context->memory, d->isotropic_count, sizeof *d->drafts);
+    d->drafts = asj_allocate_list(&d->context->memory, d->isotropic_count, sizeof *d->drafts);
     if (!d->drafts)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", d->isotropic_count);
 #ifdef _OPENMP
@@ -358,8 +358,8 @@ asj_status asj_stage_scan(asj_detection_run *d)
     size_t total = 0;
     for (size_t i = 0; i < d->draft_count; i++)
         total += (size_t)d->drafts[i].branch_count;
-    asj_ray *rays = asj_allocate(&d->context->memory, total, sizeof *rays);
-    asj_draft_branch **branches = asj_allocate(&d->context->memory, total, sizeof *branches);
+    asj_ray *rays = asj_allocate_list(&d->context->memory, total, sizeof *rays);
+    asj_draft_branch **branches = asj_allocate_list(&d->context->memory, total, sizeof *branches);
     asj_status status = ASJ_OK;
     if (rays && branches)
         status = scan_branches(d, rays, branches);
@@ -384,7 +384,7 @@ asj_status asj_stage_orient(asj_detection_run *d)
 
 static asj_status snap_ends(asj_detection_run *d)
 {
-    const asj_draft **order = asj_allocate(&d->context->memory, d->draft_count, sizeof *order);
+    const asj_draft **order = asj_allocate_list(&d->context->memory, d->draft_count, sizeof *order);
     if (!order)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", d->draft_count);
     asj_ends_snap(d->drafts, d->draft_count, d->options->snap_distance, order);

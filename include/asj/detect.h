@@ -45,6 +45,14 @@ typedef struct asj_detection {
 ASJ_API asj_status asj_detect(asj_context *context, const asj_image *image, const asj_detect_options *options,
                               asj_detection **result);
 
+/* The same into a result of an earlier call, for streams of images: its memory is used again. `*result` may be NULL: it is then
+ * made. After the first images of a size such a stream allocates nothing, neither for the context, which keeps its scratch memory,
+ * nor for the result, unless an image holds half as many candidates or junctions again as any before it.
+ * The arrays of the earlier result are overwritten: to keep the junctions of the last image beside those of this one, take turns
+ * with two results. On failure *result is still the caller's, but empty; or NULL, if it was. */
+ASJ_API asj_status asj_detect_into(asj_context *context, const asj_image *image, const asj_detect_options *options,
+                                   asj_detection **result);
+
 /* Does ahead what the first asj_detect() with these options and an image of this size would do once: makes tables, allocates,
  * compiles the kernels of the device. It detects the junctions of a test picture of that size, so it takes as long as that.
  * `options` NULL = preset `default`. Never needed; errors as asj_detect(). */

@@ -50,7 +50,7 @@ static asj_detection *find(asj_context *context, const asj_detect_options *optio
                 d.drafts[i].branches[b].length = d.drafts[i].radius;
                 d.drafts[i].branches[b].log_nfa = d.drafts[i].log_nfa;
             }
-        found = asj_result_create(context, d.drafts, d.draft_count, options->minimum_opening);
+        asj_result_fill(context, d.drafts, d.draft_count, options->minimum_opening, &found);
     }
     asj_stage_release(&d);
     if (!found) {

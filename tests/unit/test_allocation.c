@@ -119,12 +119,78 @@ static void test_local_field(void **state)
     free(pixels);
 }
 
+/* A stream of frames: a scene that moves, with other noise in every frame. */
+static void test_stream(void **state)
+{
+    enum { FRAMES = 6, STREAM_WIDTH = 160, STREAM_HEIGHT = 120 };
+    unit_counter counter;
+    asj_context *context = unit_context(&counter, 2);
+    asj_detection *found = NULL;
+    long calls = 0;
+    (void)state;
+    for (int frame = 0; frame < FRAMES; frame++) {
+        synth_scene scene;
+        synth_scene_init(&scene, STREAM_WIDTH, STREAM_HEIGHT, 110);
+        for (int i = 0; i < 6; i++)
+            synth_add_rectangle(&scene, (synth_point){10 + 24 * i + 0.7 * frame, 20 + 11 * i}, 20, 26, 0.1 * i + 0.02 * frame, 170);
+        uint8_t *pixels = unit_picture(&scene, 1, 2, (uint64_t)frame);
+        const asj_image image = unit_gray8(pixels, STREAM_WIDTH, STREAM_HEIGHT);
+        assert_int_equal(asj_detect_into(context, &image, NULL, &found), ASJ_OK);
+        assert_true(found->junction_count >= 8 && found->width == STREAM_WIDTH);
+        asj_detection *fresh = NULL;
+        const long before = counter.calls;
+        assert_int_equal(asj_detect(context, &image, NULL, &fresh), ASJ_OK);
+        assert_int_equal(counter.calls - before, 3); /* the result and its two lists */
+        counter.calls -= 3;
+        assert_int_equal(fresh->junction_count, found->junction_count);
+        assert_memory_equal(fresh->junctions, found->junctions, found->junction_count * sizeof *found->junctions);
+        assert_memory_equal(fresh->l_junctions, found->l_junctions, found->l_junction_count * sizeof *found->l_junctions);
+        asj_detection_free(&fresh);
+        if (frame > 0)
+            assert_int_equal(counter.calls, calls); /* nothing after the first frame */
+        calls = counter.calls;
+        free(pixels);
+    }
+    asj_detection_free(&found);
+    unit_context_free(&counter, &context);
+}
+
+/* A result that is used again is emptied first, also when nothing comes of the call. */
+static void test_into(void **state)
+{
+    uint8_t *pixels = picture(WIDTH, HEIGHT);
+    const asj_image image = unit_gray8(pixels, WIDTH, HEIGHT), none = {0};
+    unit_counter counter;
+    asj_context *context = unit_context(&counter, 1);
+    asj_detection *found = NULL;
+    (void)state;
+    assert_int_equal(asj_detect_into(context, &none, NULL, &found), ASJ_ERROR_IMAGE);
+    assert_null(found);
+    assert_int_equal(asj_detect_into(context, &image, NULL, NULL), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(asj_detect_into(context, &image, NULL, &found), ASJ_OK);
+    assert_true(found->junction_count >= 3);
+    asj_detection *same = found;
+    assert_int_equal(asj_detect_into(context, &none, NULL, &found), ASJ_ERROR_IMAGE);
+    assert_ptr_equal(found, same);
+    assert_true(found->junction_count == 0 && !found->junctions && found->l_junction_count == 0 && !found->l_junctions);
+    assert_int_equal(asj_detect_into(context, &image, NULL, &found), ASJ_OK);
+    assert_true(found->junction_count >= 3);
+    assert_int_equal(asj_detect_into(NULL, &image, NULL, &found), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(found->junction_count, 0);
+    asj_context_free(&context); /* the result lives on */
+    asj_detection_free(&found);
+    assert_int_equal(counter.live, 0);
+    free(pixels);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_create),
         cmocka_unit_test(test_detect),
         cmocka_unit_test(test_local_field),
+        cmocka_unit_test(test_stream),
+        cmocka_unit_test(test_into),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -107,11 +107,76 @@ static void test_grow(void **state)
     assert_true(memory.now == 0);
 }
 
+/* While it is open: what is released comes back, if it is large enough and not far too large; after calls without use it goes. */
+static void test_kept(void **state)
+{
+    unit_counter counter = {0, 0, 0, 0};
+    asj_memory memory = unit_memory(&counter);
+    (void)state;
+    asj_memory_open(&memory);
+    void *block = asj_allocate(&memory, 1000, 1), *other = asj_allocate(&memory, 3000, 1);
+    assert_true(block && other);
+    asj_release(&memory, block);
+    asj_release(&memory, other);
+    assert_int_equal(counter.live, 2);
+    assert_ptr_equal(asj_allocate(&memory, 300, 3), block); /* the smaller one of two that fit */
+    assert_ptr_equal(asj_allocate_zero(&memory, 990, 1), other);
+    assert_true(((char *)other)[0] == 0 && ((char *)other)[989] == 0);
+    assert_int_equal(counter.calls, 2);
+    asj_release(&memory, block);
+    void *small = asj_allocate(&memory, 10, 1);
+    assert_ptr_not_equal(small, block);
+    asj_memory_close(&memory);
+    asj_release(&memory, other); /* closed: not kept */
+    assert_int_equal(counter.live, 2);
+    for (int call = 0; call < 20; call++) {
+        asj_memory_open(&memory);
+        asj_memory_close(&memory);
+        assert_int_equal(counter.live, call < 7 ? 2 : 1);
+    }
+    asj_memory_open(&memory);
+    asj_release(&memory, small);
+    asj_memory_open(&memory); /* inside another */
+    asj_memory_close(&memory);
+    assert_int_equal(counter.live, 1);
+    counter.fail_at = counter.calls + 1;
+    block = asj_allocate(&memory, 5000, 1); /* refused; once more without what is kept */
+    assert_non_null(block);
+    assert_int_equal(counter.live, 1);
+    asj_release(&memory, block);
+    asj_memory_close(&memory);
+    asj_memory_trim(&memory);
+    assert_int_equal(counter.live, 0);
+    assert_true(memory.now == 0);
+}
+
+/* A list has room for half as many again when it will be kept. */
+static void test_list(void **state)
+{
+    unit_counter counter = {0, 0, 0, 0};
+    asj_memory memory = unit_memory(&counter);
+    (void)state;
+    asj_memory_open(&memory);
+    asj_release(&memory, asj_allocate_list(&memory, 100, 24));
+    asj_release(&memory, asj_allocate_list(&memory, 150, 24));
+    assert_int_equal(counter.calls, 1);
+    asj_release(&memory, asj_allocate_list(&memory, 170, 24));
+    assert_int_equal(counter.calls, 2);
+    assert_null(asj_allocate_list(&memory, SIZE_MAX / 24, 24));
+    assert_null(asj_allocate_list(&memory, SIZE_MAX, 1));
+    assert_int_equal(counter.calls, 2);
+    asj_memory_close(&memory);
+    asj_memory_trim(&memory);
+    assert_int_equal(counter.live, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_alignment_and_counts), cmocka_unit_test(test_zero), cmocka_unit_test(test_overflow),
         cmocka_unit_test(test_failure),              cmocka_unit_test(test_grow),
+        cmocka_unit_test(test_kept),
+        cmocka_unit_test(test_list),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -443,7 +443,7 @@ static void test_out_of_memory(void **state)
     long fail_at = 1;
     for (; fail_at < 100; fail_at++) {
         counter count = {0, 0, fail_at};
-        asj_memory memory = {{count_allocate, count_release, &count}, 0, 0};
+        asj_memory memory = {.allocator = {count_allocate, count_release, &count}};
         asj_nfa *nfa = NULL;
         asj_status status = asj_nfa_create(&memory, &nfa);
         if (status == ASJ_OK) {

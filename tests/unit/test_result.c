@@ -37,7 +37,8 @@ static void test_conversion(void **state)
     (void)state;
     fill(drafts, COUNT);
     drafts[0].branches[1].angle = nextafter(2 * UNIT_PI, 0); /* rounds to 2 pi, which is not in [0, 2 pi) */
-    asj_detection *made = asj_result_create(context, drafts, COUNT, 15);
+    asj_detection *made = NULL;
+    assert_int_equal(asj_result_fill(context, drafts, COUNT, 15, &made), ASJ_OK);
     assert_non_null(made);
     asj_context_free(&context); /* the result lives on */
     assert_int_equal(made->junction_count, COUNT);
@@ -75,7 +76,8 @@ static void test_empty_and_without_l(void **state)
     unit_counter counter;
     asj_context *context = unit_context(&counter, 1);
     (void)state;
-    asj_detection *made = asj_result_create(context, NULL, 0, 25);
+    asj_detection *made = NULL;
+    assert_int_equal(asj_result_fill(context, NULL, 0, 25, &made), ASJ_OK);
     assert_non_null(made);
     assert_true(!made->junctions && !made->l_junctions && made->junction_count == 0 && made->l_junction_count == 0);
     asj_detection_free(&made);
@@ -84,14 +86,15 @@ static void test_empty_and_without_l(void **state)
         drafts[i].branch_count = 2;
         drafts[i].branches[1].angle = drafts[i].branches[0].angle + 0.1; /* too narrow */
     }
-    made = asj_result_create(context, drafts, 3, 25);
+    assert_int_equal(asj_result_fill(context, drafts, 3, 25, &made), ASJ_OK);
     assert_true(made && made->junction_count == 3 && !made->l_junctions && made->l_junction_count == 0);
     asj_detection_free(&made);
     for (long n = 1; n <= 3; n++) { /* the struct, the junctions, the L-junctions */
         const long live = counter.live;
         counter.fail_at = counter.calls + n;
         fill(drafts, 3);
-        assert_null(asj_result_create(context, drafts, 3, 25));
+        assert_int_equal(asj_result_fill(context, drafts, 3, 25, &made), ASJ_ERROR_MEMORY);
+        assert_null(made);
         assert_int_equal(counter.live, live);
     }
     counter.fail_at = 0;

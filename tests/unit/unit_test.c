@@ -34,7 +34,7 @@ void unit_release(void *user, void *block)
 
 asj_memory unit_memory(unit_counter *counter)
 {
-    return (asj_memory){{unit_allocate, unit_release, counter}, 0, 0};
+    return (asj_memory){.allocator = {unit_allocate, unit_release, counter}};
 }
 
 asj_context *unit_context(unit_counter *counter, int32_t threads)
