@@ -59,6 +59,7 @@ asj_status asj_describe_frames(asj_context *context, const asj_match_options *op
 asj_status asj_describe(asj_context *context, const asj_match_options *options, asj_view *view)
 {
     const size_t length = (size_t)asj_patch_length(options), count = view->corners.frame_count;
+    view->device_copy = 0;
     view->patches = asj_allocate(&context->memory, count * length, sizeof *view->patches);
     view->usable = asj_allocate(&context->memory, count, sizeof *view->usable);
     if (!view->patches || !view->usable)

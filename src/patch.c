@@ -112,9 +112,14 @@ void asj_patch_normalise(const uint16_t *grey, int32_t size, int16_t *unit)
         unit[i] = (int16_t)((scale * (samples * grey[i] - sum) + ((int64_t)1 << 31)) >> 32);
 }
 
+int32_t asj_patch_plain_scale(int32_t size)
+{
+    return (int32_t)(((int64_t)ASJ_UNIT_ONE << 32) / (ASJ_GRAY_MAX * size));
+}
+
 void asj_patch_scale(const uint16_t *grey, int32_t size, int16_t *unit)
 {
-    const int64_t scale = ((int64_t)ASJ_UNIT_ONE << 32) / (ASJ_GRAY_MAX * size);
+    const int64_t scale = asj_patch_plain_scale(size);
     for (int32_t i = 0; i < size * size; i++)
         unit[i] = (int16_t)((scale * grey[i] + ((int64_t)1 << 31)) >> 32);
 }

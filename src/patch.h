@@ -41,8 +41,9 @@ void asj_patch_normalise(const uint16_t *grey, int32_t size, int16_t *unit);
 /* What it multiplies N g - sum with, N = size^2, in 2^-32; from the sums of the levels g and of their squares. */
 int32_t asj_patch_unit_scale(int32_t sum, int64_t squares, int32_t size);
 
-/* With the mean in: white everywhere has unit norm. */
+/* With the mean in: white everywhere has unit norm. What levels are multiplied with is in 2^-32. */
 void asj_patch_scale(const uint16_t *grey, int32_t size, int16_t *unit);
+int32_t asj_patch_plain_scale(int32_t size);
 
 /* Exact in 32 bits for unit vectors. */
 int32_t asj_patch_product(const int16_t *left, const int16_t *right, int32_t samples);

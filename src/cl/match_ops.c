@@ -1,12 +1,381 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 7 on the device: canonical patches (kernels/patch.cl), products of all pairs and best partners (kernels/distance.cl). The
+ * planes of the pyramid come from the host, which needs them as well; patches stay on the device between the two steps. SIFT
+ * descriptors, patches that keep their mean when they are compared, and the paper's induced patches are left to the CPU. */
+#include "detect.h"
 #include "overrides.h"
+#include "state.h"
 
-void asj_cl_fill_match(asj_ops *ops)
+#include <asj/device.h>
+
+#include <string.h>
+
+#define VIEWS 2
+#define MOST_FRAMES (ASJ_MAX_HYPOTHESES * ASJ_MAX_HYPOTHESES) /* of an L-junction */
+
+/* As in the kernels. */
+typedef struct patch_pyramid {
+    int32_t width[ASJ_PYRAMID_LEVELS], height[ASJ_PYRAMID_LEVELS], offset[ASJ_PYRAMID_LEVELS];
+} patch_pyramid;
+
+#define SUMS_BYTES 16 /* patch_sums */
+#define ROWS 4
+#define COLUMNS 2
+
+/* A view's patches as the device has them. */
+typedef struct device_view {
+    uint64_t number; /* asj_view.device_copy; 0 = empty */
+    asj_cl_buffer patches, usable, frames;
+} device_view;
+
+struct asj_cl_match {
+    uint64_t last_number;
+    device_view views[VIEWS];
+    asj_cl_buffer planes, grids, inside;
+    asj_cl_buffer products, scores, lists, rows, columns;
+    asj_cl_host_buffer host_grids;
+};
+
+static asj_status get(asj_context *context, struct asj_cl_match **match)
 {
-    (void)ops;
+    if (!context->cl->match)
+        context->cl->match = asj_allocate_zero(&context->memory, 1, sizeof *context->cl->match);
+    *match = context->cl->match;
+    return *match ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the matcher's state on the device");
 }
 
 void asj_cl_free_match(asj_context *context)
 {
-    (void)context;
+    struct asj_cl_match *match = context->cl->match;
+    if (!match)
+        return;
+    asj_cl_buffer *const buffers[] = {&match->planes, &match->grids, &match->inside, &match->products,
+                                      &match->scores, &match->lists, &match->rows,   &match->columns};
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
+        asj_cl_release(context, buffers[i]);
+    for (int v = 0; v < VIEWS; v++) {
+        asj_cl_release(context, &match->views[v].patches);
+        asj_cl_release(context, &match->views[v].usable);
+        asj_cl_release(context, &match->views[v].frames);
+    }
+    asj_release(&context->memory, match->host_grids.memory);
+    asj_release(&context->memory, match);
+    context->cl->match = NULL;
+}
+
+static int processor(const asj_context *context)
+{
+    return asj_cl_get_limits(context)->type == ASJ_DEVICE_CPU;
+}
+
+static size_t round_up(size_t count, size_t multiple)
+{
+    return (count + multiple - 1) / multiple * multiple;
+}
+
+/* The size asked for, or 1 where the device does not have such groups. Sizes are fixed: each new one is compiled anew by some. */
+static size_t group_size(const asj_context *context, size_t size)
+{
+    return asj_cl_get_limits(context)->max_work_group < size ? 1 : size;
+}
+
+/* Whether a buffer of this size is a modest part of the device's memory. */
+static int fits(const asj_context *context, uint64_t bytes)
+{
+    const asj_cl_limits *limits = asj_cl_get_limits(context);
+    return bytes <= limits->largest_buffer && bytes <= limits->global_memory / 4;
+}
+
+/* ---- patches ---- */
+
+static asj_status send_planes(asj_context *context, struct asj_cl_match *match, const asj_pyramid *pyramid, patch_pyramid *sizes)
+{
+    size_t elements[ASJ_PYRAMID_LEVELS], total = 0;
+    memset(sizes, 0, sizeof *sizes);
+    for (int32_t l = 0; l < pyramid->levels; l++) {
+        elements[l] = ((size_t)pyramid->width[l] + 1) * ((size_t)pyramid->height[l] + 1);
+        sizes->width[l] = pyramid->width[l];
+        sizes->height[l] = pyramid->height[l];
+        sizes->offset[l] = (int32_t)total;
+        total += elements[l];
+    }
+    asj_status status = asj_cl_reserve(context, &match->planes, total * sizeof(uint16_t));
+    for (int32_t l = 0; l < pyramid->levels && status == ASJ_OK; l++)
+        status = asj_cl_write(context, &match->planes, (size_t)sizes->offset[l] * sizeof(uint16_t), pyramid->plane[l],
+                              elements[l] * sizeof(uint16_t));
+    return status;
+}
+
+static asj_status send_grids(asj_context *context, struct asj_cl_match *match, const asj_match_options *options,
+                             const asj_view *view)
+{
+    const int64_t count = view->corners.frame_count;
+    const size_t bytes = (size_t)count * sizeof(asj_patch_grid);
+    asj_status status = asj_cl_host_reserve(context, &match->host_grids, bytes);
+    if (status == ASJ_OK)
+        status = asj_cl_reserve(context, &match->grids, bytes);
+    if (status != ASJ_OK)
+        return status;
+    asj_patch_grid *grids = match->host_grids.memory;
+#pragma omp parallel for num_threads(context->threads) schedule(static)
+    for (int64_t f = 0; f < count; f++)
+        asj_patch_grid_set(&view->pyramid, &view->corners.frames[f], options->patch_size, options->window_start,
+                           options->window_end, &grids[f]);
+    return asj_cl_write(context, &match->grids, 0, grids, bytes);
+}
+
+static asj_status run_describe(asj_context *context, struct asj_cl_match *match, const asj_match_options *options,
+                               const patch_pyramid *sizes, device_view *to, size_t count)
+{
+    const size_t samples = (size_t)(options->patch_size * options->patch_size);
+    const int small = processor(context) || group_size(context, 64) == 1;
+    const size_t local[2] = {small ? 1 : 16, small ? 1 : 4}, global[2] = {count * local[0], local[1]};
+    const asj_cl_argument arguments[] = {
+        ASJ_CL_BUFFER(&match->planes), ASJ_CL_STRUCT(sizes, sizeof *sizes), ASJ_CL_BUFFER(&match->grids),
+        ASJ_CL_INT(options->patch_size), ASJ_CL_INT(options->normalise ? 0 : asj_patch_plain_scale(options->patch_size)),
+        ASJ_CL_BUFFER(&to->patches), ASJ_CL_BUFFER(&match->inside), ASJ_CL_LOCAL(samples * sizeof(uint16_t)),
+        ASJ_CL_LOCAL((local[0] * local[1] + 1) * SUMS_BYTES)};
+    asj_status status = asj_cl_reserve(context, &to->patches, count * samples * sizeof(int16_t));
+    if (status == ASJ_OK)
+        status = asj_cl_reserve(context, &match->inside, count * sizeof(int32_t));
+    return status == ASJ_OK ? asj_cl_run(context, "patch_describe", 2, global, local, arguments, 9) : status;
+}
+
+/* What is written where an L-junction's frames begin, and which frames can be used. */
+static asj_status send_frames(asj_context *context, device_view *to, const asj_view *view)
+{
+    const size_t starts = ((size_t)view->corners.count + 1) * sizeof(uint32_t), count = view->corners.frame_count;
+    asj_status status = asj_cl_reserve(context, &to->usable, count);
+    if (status == ASJ_OK)
+        status = asj_cl_write(context, &to->usable, 0, view->usable, count);
+    if (status == ASJ_OK)
+        status = asj_cl_reserve(context, &to->frames, starts);
+    return status == ASJ_OK ? asj_cl_write(context, &to->frames, 0, view->corners.first_frame, starts) : status;
+}
+
+static asj_status fetch_patches(asj_context *context, struct asj_cl_match *match, const asj_match_options *options,
+                                const device_view *from, asj_view *view)
+{
+    const size_t samples = (size_t)(options->patch_size * options->patch_size), count = view->corners.frame_count;
+    asj_status status = asj_cl_read(context, &from->patches, 0, view->patches, count * samples * sizeof(int16_t));
+    int32_t *inside = match->host_grids.memory; /* the grids are there by now; a grid is larger than a number */
+    if (status == ASJ_OK)
+        status = asj_cl_read(context, &match->inside, 0, inside, count * sizeof *inside);
+    for (size_t f = 0; f < count && status == ASJ_OK; f++)
+        view->usable[f] = (size_t)inside[f] * 4 >= 3 * samples;
+    return status;
+}
+
+/* The older of the two; its contents are lost. */
+static device_view *free_view(struct asj_cl_match *match)
+{
+    device_view *view = &match->views[match->views[0].number > match->views[1].number];
+    view->number = 0;
+    return view;
+}
+
+static asj_status describe_frames(asj_context *context, const asj_match_options *options, asj_view *view)
+{
+    const uint64_t count = view->corners.frame_count, samples = (uint64_t)(options->patch_size * options->patch_size);
+    const uint64_t pixels = ((uint64_t)view->pyramid.width[0] + 1) * ((uint64_t)view->pyramid.height[0] + 1);
+    patch_pyramid sizes;
+    struct asj_cl_match *match;
+    if (options->descriptor == ASJ_DESCRIPTOR_SIFT || count == 0 || count > INT32_MAX / 64 ||
+        !fits(context, 2 * pixels * sizeof(uint16_t)) || !fits(context, count * samples * sizeof(int16_t)))
+        return asj_describe_frames(context, options, view);
+    asj_status status = get(context, &match);
+    if (status != ASJ_OK)
+        return status;
+    device_view *to = free_view(match);
+    status = send_planes(context, match, &view->pyramid, &sizes);
+    if (status == ASJ_OK)
+        status = send_grids(context, match, options, view);
+    if (status == ASJ_OK)
+        status = run_describe(context, match, options, &sizes, to, (size_t)count);
+    if (status == ASJ_OK)
+        status = fetch_patches(context, match, options, to, view);
+    if (status == ASJ_OK)
+        status = send_frames(context, to, view);
+    if (status == ASJ_OK)
+        view->device_copy = to->number = ++match->last_number;
+    return status;
+}
+
+/* ---- partners ---- */
+
+/* The device's copy of a view; one that was described elsewhere is brought there. `other` stays. */
+static asj_status find_view(asj_context *context, struct asj_cl_match *match, const asj_match_options *options,
+                            const asj_view *view, const device_view *other, device_view **found)
+{
+    for (int v = 0; v < VIEWS; v++)
+        if (view->device_copy > 0 && match->views[v].number == view->device_copy) {
+            *found = &match->views[v];
+            return ASJ_OK;
+        }
+    const size_t bytes = (size_t)view->corners.frame_count * (size_t)asj_patch_length(options) * sizeof(int16_t);
+    device_view *to = other ? &match->views[other == &match->views[0]] : free_view(match);
+    to->number = 0;
+    asj_status status = asj_cl_reserve(context, &to->patches, bytes);
+    if (status == ASJ_OK)
+        status = asj_cl_write(context, &to->patches, 0, view->patches, bytes);
+    *found = to;
+    return status == ASJ_OK ? send_frames(context, to, view) : status;
+}
+
+/* A block of L-junctions of image 1, and how the work is divided. */
+typedef struct block {
+    const device_view *views[2];
+    uint32_t count2, frames2; /* L-junctions and frames of image 2 */
+    int32_t length, limit, parts;
+    uint32_t first, count;    /* L-junctions of the block */
+    uint32_t frame, frames;   /* its frames */
+} block;
+
+static asj_status run_products(asj_context *context, struct asj_cl_match *match, const block *b)
+{
+    const size_t side = group_size(context, 64) > 1 ? 8 : 1, local[2] = {side, side};
+    const size_t global[2] = {round_up((b->frames + ROWS - 1) / ROWS, local[0]),
+                              round_up((b->frames2 + COLUMNS - 1) / COLUMNS, local[1])};
+    const asj_cl_argument arguments[] = {
+        ASJ_CL_BUFFER(&b->views[0]->patches), ASJ_CL_BUFFER(&b->views[1]->patches), ASJ_CL_INT(b->length), ASJ_CL_INT(b->frame),
+        ASJ_CL_INT(b->frames), ASJ_CL_INT(b->frames2), ASJ_CL_INT(b->frames2), ASJ_CL_BUFFER(&match->products), ASJ_CL_INT(-1)};
+    if (processor(context))
+        return asj_cl_run(context, "distance_products_paired", 2, global, local, arguments, 9);
+    return asj_cl_run(context, "distance_products", 2, global, local, arguments, 8);
+}
+
+static asj_status run_scores(asj_context *context, struct asj_cl_match *match, const block *b)
+{
+    const size_t local[2] = {group_size(context, 64), 1};
+    const size_t global[2] = {round_up(b->count2, local[0]), b->count};
+    const asj_cl_argument arguments[] = {
+        ASJ_CL_BUFFER(&match->products), ASJ_CL_INT(b->frames2), ASJ_CL_BUFFER(&b->views[0]->frames),
+        ASJ_CL_BUFFER(&b->views[0]->usable), ASJ_CL_BUFFER(&b->views[1]->frames), ASJ_CL_BUFFER(&b->views[1]->usable),
+        ASJ_CL_INT(b->first), ASJ_CL_INT(b->count), ASJ_CL_INT(b->count2), ASJ_CL_BUFFER(&match->scores)};
+    return asj_cl_run(context, "distance_scores", 2, global, local, arguments, 10);
+}
+
+/* With one part only, the rows' lists are made where they belong. */
+static asj_status run_rows(asj_context *context, struct asj_cl_match *match, const block *b)
+{
+    const size_t local[2] = {(size_t)b->parts, 1}, global[2] = {(size_t)b->parts, b->count};
+    const size_t local_merge = group_size(context, 16), global_merge = round_up(b->count, local_merge);
+    const asj_cl_buffer *to = b->parts > 1 ? &match->lists : &match->rows;
+    const asj_cl_argument rows[] = {ASJ_CL_BUFFER(&match->scores), ASJ_CL_INT(b->parts > 1 ? 0 : b->first), ASJ_CL_INT(b->count),
+                                    ASJ_CL_INT(b->count2), ASJ_CL_INT(b->parts), ASJ_CL_INT(b->limit), ASJ_CL_BUFFER(to)};
+    const asj_cl_argument merge[] = {ASJ_CL_BUFFER(&match->lists), ASJ_CL_INT(b->first), ASJ_CL_INT(b->count),
+                                     ASJ_CL_INT(b->parts), ASJ_CL_INT(b->limit), ASJ_CL_BUFFER(&match->rows)};
+    asj_status status = asj_cl_run(context, "distance_rows", 2, global, local, rows, 7);
+    if (status == ASJ_OK && b->parts > 1)
+        status = asj_cl_run(context, "distance_merge", 1, &global_merge, &local_merge, merge, 6);
+    return status;
+}
+
+static asj_status run_columns(asj_context *context, struct asj_cl_match *match, const block *b)
+{
+    const size_t local = group_size(context, 16), global = round_up(b->count2, local);
+    const asj_cl_argument arguments[] = {ASJ_CL_BUFFER(&match->scores), ASJ_CL_INT(b->first), ASJ_CL_INT(b->count),
+                                         ASJ_CL_INT(b->count2), ASJ_CL_INT(b->limit), ASJ_CL_BUFFER(&match->columns)};
+    return asj_cl_run(context, "distance_columns", 1, &global, &local, arguments, 6);
+}
+
+/* Frames of image 1 whose products are held at once: on a processor what its caches like. At least those of an L-junction. */
+static uint32_t block_frames(const asj_context *context, uint32_t frames2)
+{
+    const asj_cl_limits *limits = asj_cl_get_limits(context);
+    uint64_t bytes = processor(context) ? 4 << 20 : limits->global_memory / 16;
+    bytes = bytes < limits->largest_buffer ? bytes : limits->largest_buffer;
+    const uint64_t frames = bytes / ((uint64_t)frames2 * sizeof(int32_t)), most = processor(context) ? 256 : 65536;
+    return (uint32_t)(frames < MOST_FRAMES ? MOST_FRAMES : frames < most ? frames : most);
+}
+
+static asj_status reserve_block(asj_context *context, struct asj_cl_match *match, const block *b, uint32_t most, uint32_t count1)
+{
+    const struct {
+        asj_cl_buffer *buffer;
+        size_t bytes;
+    } wanted[] = {{&match->products, (size_t)most * b->frames2 * sizeof(int32_t)},
+                  {&match->scores, (size_t)most * b->count2 * sizeof(int32_t)},
+                  {&match->lists, (size_t)most * (size_t)(b->parts * b->limit) * sizeof(asj_partner)},
+                  {&match->rows, (size_t)count1 * (size_t)b->limit * sizeof(asj_partner)},
+                  {&match->columns, (size_t)b->count2 * (size_t)b->limit * sizeof(asj_partner)}};
+    asj_status status = ASJ_OK;
+    for (size_t i = 0; i < sizeof wanted / sizeof wanted[0] && status == ASJ_OK; i++)
+        status = asj_cl_reserve(context, wanted[i].buffer, wanted[i].bytes);
+    return status;
+}
+
+static asj_status run_block(asj_context *context, struct asj_cl_match *match, const block *b)
+{
+    asj_status status = run_products(context, match, b);
+    if (status == ASJ_OK)
+        status = run_scores(context, match, b);
+    if (status == ASJ_OK)
+        status = run_rows(context, match, b);
+    if (status == ASJ_OK)
+        status = run_columns(context, match, b);
+    return status == ASJ_OK ? asj_cl_finish(context) : status;
+}
+
+/* Where the block that begins with L-junction `first` ends. */
+static uint32_t block_end(const asj_corners *corners, uint32_t first, uint32_t most)
+{
+    const uint32_t *start = corners->first_frame;
+    uint32_t end = first + 1;
+    while (end < corners->count && end - first < most && start[end + 1] - start[first] <= most)
+        end++;
+    return end;
+}
+
+static asj_status run_blocks(asj_context *context, struct asj_cl_match *match, block *b, const asj_corners *corners)
+{
+    const uint32_t most = block_frames(context, b->frames2);
+    asj_status status = reserve_block(context, match, b, most, corners->count);
+    for (uint32_t end; status == ASJ_OK && b->first < corners->count; b->first = end) {
+        end = block_end(corners, b->first, most);
+        b->count = end - b->first;
+        b->frame = corners->first_frame[b->first];
+        b->frames = corners->first_frame[end] - b->frame;
+        status = run_block(context, match, b);
+        if (status == ASJ_OK)
+            status = asj_progress(context, ASJ_STAGE_DISTANCES, 0.2 + 0.4 * (double)end / (double)corners->count);
+    }
+    return status;
+}
+
+static asj_status rank_partners(asj_context *context, const asj_match_options *options, const asj_view *view1,
+                                const asj_view *view2, asj_partner *rows, asj_partner *columns)
+{
+    const asj_corners *c1 = &view1->corners, *c2 = &view2->corners;
+    const size_t limit = (size_t)options->shortlist, bytes1 = c1->count * limit * sizeof *rows;
+    const size_t bytes2 = c2->count * limit * sizeof *columns;
+    device_view *views[2] = {NULL, NULL};
+    struct asj_cl_match *match;
+    if (options->patches != ASJ_PATCHES_CANONICAL || (options->descriptor != ASJ_DESCRIPTOR_SIFT && !options->normalise) ||
+        c1->frame_count == 0 || c2->frame_count == 0 || c1->frame_count > INT32_MAX / 64 || c2->frame_count > INT32_MAX / 64 ||
+        !fits(context, (uint64_t)c2->frame_count * MOST_FRAMES * sizeof(int32_t)))
+        return asj_rank_partners(context, options, view1, view2, rows, columns);
+    asj_status status = get(context, &match);
+    if (status == ASJ_OK)
+        status = find_view(context, match, options, view1, NULL, &views[0]);
+    if (status == ASJ_OK)
+        status = find_view(context, match, options, view2, views[0], &views[1]);
+    if (status != ASJ_OK)
+        return status;
+    block b = {{views[0], views[1]}, c2->count, c2->frame_count, asj_patch_length(options), options->shortlist,
+               processor(context) ? 1 : (int32_t)group_size(context, 16), 0, 0, 0, 0};
+    status = asj_cl_reserve(context, &match->columns, bytes2);
+    if (status == ASJ_OK)
+        status = asj_cl_write(context, &match->columns, 0, columns, bytes2);
+    if (status == ASJ_OK)
+        status = run_blocks(context, match, &b, c1);
+    if (status == ASJ_OK)
+        status = asj_cl_read(context, &match->rows, 0, rows, bytes1);
+    return status == ASJ_OK ? asj_cl_read(context, &match->columns, 0, columns, bytes2) : status;
+}
+
+void asj_cl_fill_match(asj_ops *ops)
+{
+    ops->describe_frames = describe_frames;
+    ops->rank_partners = rank_partners;
 }
