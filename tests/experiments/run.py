@@ -44,6 +44,7 @@ def parse(arguments):
     p.add_argument("--quick", action="store_true", help="a cut of about a minute: few images, no slow method")
     p.add_argument("--check", action="store_true", help="only check the measures, against those of tests/accuracy too")
     p.add_argument("--full", action="store_true", help="no time budgets, 1000 images wherever the paper has them")
+    p.add_argument("--keep", action="store_true", help="keep OUT/work: pictures, junctions and matches")
     p.add_argument("--build", metavar="DIR", help="a build folder of meson's that is up to date; otherwise one is made")
     p.add_argument("--processes", metavar="N", type=int, default=2, help="jobs at a time (%(default)s)")
     p.add_argument("--detector", metavar="NAME=DIR", action="append", type=named, default=[],

@@ -3,6 +3,7 @@
 import base64
 import html
 import json
+import math
 import os
 from dataclasses import dataclass, field
 
@@ -24,6 +25,7 @@ class Part:
     title: str
     blocks: list = field(default_factory=list)    # HTML
     numbers: dict = field(default_factory=dict)   # for report.json
+    findings: list = field(default_factory=list)  # sentences for the head of the page
     cut: list = field(default_factory=list)       # what was left out, and why
     seconds: float = 0.0
 
@@ -60,6 +62,24 @@ def _part_html(key, part):
     return "\n".join(out + part.blocks + ["<p><small>%.0f s</small></p>" % part.seconds])
 
 
+def _findings_html(parts):
+    lines = ["<li>%s</li>" % html.escape(f) for p in parts.values() for f in p.findings]
+    lines += ["<li><b>%s: %d things left out</b>, listed there</li>" % (html.escape(p.title), len(p.cut))
+              for p in parts.values() if p.cut]
+    return "<ul>%s</ul>" % "".join(lines) if lines else ""
+
+
+def _plain(value):
+    """For JSON: no NaN, no numpy, no tuples as keys."""
+    if isinstance(value, dict):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return value
+
+
 def write(folder, about, parts):
     """about: {what: text} for the head of the page. Returns the path of the page."""
     os.makedirs(folder, exist_ok=True)
@@ -67,13 +87,13 @@ def write(folder, about, parts):
                    for k, v in about.items())
     contents = "".join('<li><a href="#%s">%s</a></li>' % (k, html.escape(p.title)) for k, p in parts.items())
     page = ("<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>libasj: experiments</title><style>%s</style></head>"
-            "<body><h1>libasj: the paper's experiments</h1><table>%s</table><ol>%s</ol>%s</body></html>\n"
-            % (STYLE, head, contents, "\n".join(_part_html(k, p) for k, p in parts.items())))
+            "<body><h1>libasj: the paper's experiments</h1><table>%s</table><ol>%s</ol>%s%s</body></html>\n"
+            % (STYLE, head, contents, _findings_html(parts), "\n".join(_part_html(k, p) for k, p in parts.items())))
     path = os.path.join(folder, "report.html")
     with open(path, "w", encoding="utf-8") as file:
         file.write(page)
-    data = {"about": about, "parts": {k: {"seconds": round(p.seconds, 1), "left_out": p.cut, "numbers": p.numbers}
-                                      for k, p in parts.items()}}
+    data = {"about": about, "parts": {k: {"seconds": round(p.seconds, 1), "left_out": p.cut, "findings": p.findings,
+                                          "numbers": _plain(p.numbers)} for k, p in parts.items()}}
     with open(os.path.join(folder, "report.json"), "w", encoding="utf-8") as file:
         json.dump(data, file, indent=1)
         file.write("\n")

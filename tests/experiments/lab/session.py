@@ -74,6 +74,8 @@ def run(arguments, root, build):
         part.seconds = time.monotonic() - begin
         done[name] = part
         page = report.write(session.out, session.about(time.monotonic() - start), done)
+    if not arguments.keep:
+        shutil.rmtree(session.work, ignore_errors=True)
     if done:
         print("%s (%.0f s)" % (page, time.monotonic() - start))
     for name, part in done.items():

@@ -14,6 +14,17 @@ def summary(cells):
             "total": sum(c["total"] for c in cells), "seconds": float(np.mean([c["seconds"] for c in cells]))}
 
 
+def finding(what, methods, names, cells):
+    """One sentence: average accuracy and correct matches of every method that has all the pairs."""
+    parts = []
+    for method in methods:
+        mine = [cells[method, n] for n in names if (method, n) in cells]
+        if mine and len(mine) == len(names):
+            all_of = summary(mine)
+            parts.append("%s %.1f %% (%d / %d)" % (method, all_of["average"], all_of["correct"], all_of["total"]))
+    return "%s, average accuracy: %s." % (what, "; ".join(parts))
+
+
 def accuracy_rows(methods, names, cells):
     """(header, rows): method, average accuracy, correct / total, seconds a pair, then every pair.
     cells: (method, pair) -> counts"""

@@ -107,6 +107,10 @@ def _tables(part, title, cells, configurations):
     rows += [["%s = %s" % (d.key, d.paper)] + _cells(m, columns) + [_verdict(default, m)]
              for (kind, d), m in known.items() if kind == "back"]
     part.table(["the default with one option set back to the paper's"] + header + ["the departure"], rows)
+    for verdict in ("pays", "costs", "mixed", "no difference", "not measured"):
+        keys = [r[0] for r in rows[1:] if r[-1].startswith(verdict)]
+        if keys:
+            part.findings.append("%s, the departure from %s: %s." % (title, ", ".join(keys), verdict))
     part.numbers[title] = {
         "path": [dict(m, option=d.text if d else "paper preset") for d, m in path],
         "back": [dict(m, option=d.key, value=d.paper, departure=_verdict(default, m))

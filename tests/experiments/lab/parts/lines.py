@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import matches, methods, peer_lines, score
 from ..report import Part
-from ..tables import accuracy_rows
+from ..tables import accuracy_rows, finding
 
 MERGED = "libasj, merged lines (--lines)"
 BRANCHES = "%s, branches of the matches"
@@ -70,7 +70,9 @@ def run(session):
     for title, chosen in (("Photographs", session.real), ("Rendered pairs", session.rendered)):
         if chosen:
             part.heading(title)
-            part.table(*accuracy_rows(names, [p.name for p in chosen], cells))
+            chosen = [p.name for p in chosen]
+            part.table(*accuracy_rows(names, chosen, cells))
+            part.findings.append(finding("Line segments, " + title.lower(), names, chosen, cells))
     part.numbers = {"cells": [dict(c, method=m, pair=p) for (m, p), c in cells.items()]}
     part.cut = jobs.cut
     return part

@@ -96,9 +96,11 @@ def run(session):
     part.chart(charts.curves([{"x_label": "epsilon", "y_label": "false detections in an image", "log": True, "series": series}],
                              height=4), "Both axes logarithmic; zeros do not show.")
     broken = [row for row, (n, values) in rows.items() if row not in UNBOUNDED and not _bounded(n, values)]
-    part.text("Bounded at every epsilon: " + (", ".join(r for r in rows if r not in UNBOUNDED and r not in broken) or "none") + ".")
+    kept = [r for r in rows if r not in UNBOUNDED and r not in broken]
+    part.findings.append("False detections: bounded by epsilon at every epsilon: %s." % ("; ".join(kept) or "none"))
     if broken:
-        part.text("Above epsilon: " + ", ".join(broken) + ".")
+        part.findings.append("False detections: above epsilon: %s." % "; ".join(broken))
+    part.text(*part.findings)
     part.numbers = {"epsilon": EPSILONS, "paper": PAPER, "broken": broken,
                     "rows": {row: {"images": n, "mean": [None if np.isnan(v) else float(v) for v in values]}
                              for row, (n, values) in rows.items()}}

@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import methods, pairs, peer_points, score
 from ..report import Part
-from ..tables import accuracy_rows
+from ..tables import accuracy_rows, finding
 
 
 def _score(limit, session, method, pair):
@@ -47,14 +47,15 @@ def run(session):
         if chosen:
             part.heading(title)
             header, rows = accuracy_rows(names, chosen, cells)
-            part.table(header, rows, best=_best(rows, len(chosen)))
+            part.table(header, rows, best=_best(rows))
+            part.findings.append(finding("Key-points, " + title.lower(), names, chosen, cells))
     part.numbers = {"cells": [dict(c, method=m, pair=p) for (m, p), c in cells.items()]}
     unjudged = [p.name for p in session.pairs if p not in judged]
     part.cut = jobs.cut + ["%s: its truth is labelled lines, which say nothing of points" % n for n in unjudged]
     return part
 
 
-def _best(rows, count):
+def _best(rows):
     """The cell of the highest average accuracy."""
     values = [float(r[1].split()[0]) if r[1][0].isdigit() else -1 for r in rows]
     return {(int(np.argmax(values)), 1)} if rows else ()

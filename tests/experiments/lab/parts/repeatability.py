@@ -130,9 +130,10 @@ def run(session):
     _report_homographies(part, cells, all_methods)
     part.numbers["cells"] = [dict(c, change=k[0], level=k[1], method=k[2], picture=k[3]) for k, c in cells.items()]
     part.numbers["above"] = _above(part.numbers["zoom"])
-    part.text("The default preset is above the paper preset and above the isotropic junctions at every zoom factor below 1: %s."
-              % ("yes" if all(part.numbers["above"]) else "no, not at " + ", ".join(
-                  "%g" % f for f, ok in zip(images.FACTORS[1:], part.numbers["above"]) if not ok)))
+    below = [f for f, ok in zip(images.FACTORS[1:], part.numbers["above"]) if not ok]
+    part.findings.append("Repeatability of the default preset above the paper preset's and the isotropic junctions' at every zoom "
+                         "below 1: %s." % ("no, not at " + ", ".join("%g" % f for f in below) if below else "yes"))
+    part.text(*part.findings)
     part.cut = jobs.cut
     return part
 

@@ -76,6 +76,7 @@ def run(session):
         series[name] = (images.FACTORS, median)
         rows.append([name, "-" if slope is None else "%.2f" % slope] + [
             "%.2f (%d: %.0f %%)" % (m, len(r), 100 * c) if len(r) else "-" for m, r, c in zip(median, ratios, close)])
+        part.findings.append("Scale against zoom, %s: slope %s." % (name, rows[-1][1]))
         part.numbers[name] = {"slope": slope, "factors": images.FACTORS, "median": median, "quartiles": spread,
                               "count": [len(r) for r in ratios], "within_tenth": close}
     part.table(["median ratio of scales (count: share within 10 % of s)", "slope"] + ["%.1f" % f for f in images.FACTORS], rows)
