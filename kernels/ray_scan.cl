@@ -245,8 +245,8 @@ static int arc_sums(const scan_image *image, const scan_angles *angles, const sc
     return 1;
 }
 
-/* One step; returns 0 when the ray ends here. */
-static int step(const scan_image *image, scan_ray *ray, int4 sums)
+/* The step to a radius; returns 0 when the ray ends there. */
+static int step(const scan_image *image, scan_ray *ray, int radius, int4 sums)
 {
     ray->ahead_passes = sums.s1 >= image->threshold ? ray->ahead_passes + 1 : 0;
     ray->ahead_failures = ray->ahead_passes ? 0 : ray->ahead_failures + 1;
@@ -258,11 +258,37 @@ static int step(const scan_image *image, scan_ray *ray, int4 sums)
     else
         ray->forward_failures = 0;
     if (ray->forward_failures == 0)
-        ray->forward = ray->radius;
+        ray->forward = radius;
     if (ray->axial_failures == 0)
-        ray->axial = ray->radius;
+        ray->axial = radius;
     return ray->forward_failures <= image->tolerance ||
            (ray->ahead_failures <= image->bridge && ray->axial_failures <= image->tolerance);
+}
+
+/* Whether every other step need not be looked at, as in src/scan.c. */
+static int strides(const scan_image *image, const scan_ray *ray)
+{
+    return image->tolerance > 0 && ray->forward_failures == 0 && (!image->axial || ray->axial_failures == 0);
+}
+
+/* One step or two; returns 0 when a run that they need is not known. */
+static int advance(const scan_image *image, const scan_angles *angles, scan_ray *ray, __global const uint *known,
+                   __global const uint *branches)
+{
+    const int r = ray->radius, two = strides(image, ray);
+    int goes_on = 1;
+    int4 sums, next;
+    if (two && !arc_sums(image, angles, ray, r + 1, known, branches, &next))
+        return 0;
+    if (!two || next.s1 < image->threshold || (image->axial && next.s2 < image->threshold)) {
+        if (!arc_sums(image, angles, ray, r, known, branches, &sums))
+            return 0;
+        goes_on = step(image, ray, r, sums);
+    }
+    if (two && goes_on)
+        goes_on = step(image, ray, r + 1, next);
+    ray->radius = goes_on ? r + 1 + two : 0;
+    return 1;
 }
 
 /* counts: entries; rays that go on. */
@@ -275,11 +301,10 @@ __kernel void scan_walk(scan_image image, __global const int2 *angle_table, __gl
         return;
     const scan_angles angles = {angle_table, angle_table + TABLE_RADIUS * TABLE_WIDTH};
     scan_ray ray = rays[number];
-    int4 sums;
     if (ray.radius == 0)
         return;
-    while (ray.radius && arc_sums(&image, &angles, &ray, ray.radius, known, branches, &sums))
-        ray.radius = step(&image, &ray, sums) ? ray.radius + 1 : 0;
+    while (ray.radius && advance(&image, &angles, &ray, known, branches))
+        ;
     rays[number] = ray;
     if (ray.radius == 0)
         return;
