@@ -55,36 +55,57 @@ __kernel void gradient_norms(__global const ushort *gray, __global ushort8 *norm
     norms[((size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN)) / 8] = convert_ushort8(integer_sqrt(dx * dx + dy * dy));
 }
 
-/* Sum of the norms of the 5x5 window around each pixel. */
-static int8 window_sum(__global const ushort *norms, int stride)
+/* Sums of the norms of five neighbours in a row; rows outside the image have none. */
+static int8 row_sum(__global const ushort *norms, int x, int y, int height, int stride, int base)
 {
     int8 sum = 0;
-    for (int row = -2; row <= 2; row++)
+    if (y >= 0 && y < height) {
+        __global const ushort *row = norms + (size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN);
         for (int column = -2; column <= 2; column++)
-            sum += convert_int8(vload8(0, norms + row * stride + column));
+            sum += convert_int8(vload8(0, row + column));
+    }
     return sum;
 }
+
+/* Numbers of pixels in the windows of a row. */
+static int8 window_counts(int x, int y, int width, int height)
+{
+    const int8 column = x + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
+    const int rows = min(y + 2, height - 1) - max(y - 2, 0) + 1;
+    /* vectors on both sides of min() and max(): Oclgrind 21 takes a scalar there for a vector */
+    return rows * max(min(column + 2, (int8)(width - 1)) - max(column - 2, (int8)0) + 1, (int8)1);
+}
+
+/* Here a work item takes ROWS such pieces, one below the other, so that they share the sums of rows. */
+#define ROWS 4
 
 __kernel void gradient_normalise(__global const ushort *gray, __global const ushort *norms, __global short8 *gradient_x,
                                  __global short8 *gradient_y, int width, int height, int stride, int base, int first, int last,
                                  int epsilon)
 {
-    const int x = 8 * (int)get_global_id(0) - MARGIN, y = first + (int)get_global_id(1);
-    if (x >= stride - MARGIN || y >= last)
+    const int x = 8 * (int)get_global_id(0) - MARGIN, top = first + ROWS * (int)get_global_id(1);
+    if (x >= stride - MARGIN || top >= last)
         return;
-    const size_t at = (size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN);
-    int8 dx = 0, dy = 0;
-    if (x >= 0 && x < width && y >= 0 && y < height) {
-        const int8 column = x + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
-        const int rows = min(y + 2, height - 1) - max(y - 2, 0) + 1;
-        /* vectors on both sides of min() and max(): Oclgrind 21 takes a scalar there for a vector */
-        const int8 count = rows * max(min(column + 2, (int8)(width - 1)) - max(column - 2, (int8)0) + 1, (int8)1);
-        const int8 least = (convert_int8(vload8(0, norms + at)) * count * LIMIT) >> 8;
-        const int8 scale = quotient(UNITS(count) << 16, max(window_sum(norms + at, stride) + count * epsilon, least));
-        differences(gray, x, y, width, height, stride, base, &dx, &dy);
-        dx = (dx * scale + 32768) >> 16;
-        dy = (dy * scale + 32768) >> 16;
+    const int inside = x >= 0 && x < width, rows = inside ? height : 0; /* beside the image all is zero */
+    int8 sum_0 = row_sum(norms, x, top - 2, rows, stride, base), sum_1 = row_sum(norms, x, top - 1, rows, stride, base);
+    int8 sum_2 = row_sum(norms, x, top, rows, stride, base), sum_3 = row_sum(norms, x, top + 1, rows, stride, base);
+    for (int y = top; y < min(top + ROWS, last); y++) {
+        const size_t at = (size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN);
+        const int8 sum_4 = row_sum(norms, x, y + 2, rows, stride, base);
+        int8 dx = 0, dy = 0;
+        if (y >= 0 && y < rows) {
+            const int8 count = window_counts(x, y, width, height), sum = sum_0 + sum_1 + sum_2 + sum_3 + sum_4;
+            const int8 least = (convert_int8(vload8(0, norms + at)) * count * LIMIT) >> 8;
+            const int8 scale = quotient(UNITS(count) << 16, max(sum + count * epsilon, least));
+            differences(gray, x, y, width, height, stride, base, &dx, &dy);
+            dx = (dx * scale + 32768) >> 16;
+            dy = (dy * scale + 32768) >> 16;
+        }
+        gradient_x[at / 8] = convert_short8(dx);
+        gradient_y[at / 8] = convert_short8(dy);
+        sum_0 = sum_1;
+        sum_1 = sum_2;
+        sum_2 = sum_3;
+        sum_3 = sum_4;
     }
-    gradient_x[at / 8] = convert_short8(dx);
-    gradient_y[at / 8] = convert_short8(dy);
 }

@@ -7,14 +7,16 @@
 
 #include <math.h>
 
-#define PIXELS 8 /* of a work item */
+/* As in the kernels: of a work item. */
+#define PIXELS 8
+#define ROWS 4
 
-/* Runs a kernel of gradient.cl for whole rows first .. last - 1, margins included. */
-static asj_status run(asj_context *context, const char *kernel, const asj_frame *frame, int32_t first, int32_t last,
+/* Runs a kernel of gradient.cl for whole rows, margins included, so many by each work item. */
+static asj_status run(asj_context *context, const char *kernel, const asj_frame *frame, int32_t row_count, int32_t by_item,
                       const asj_cl_argument *arguments, int32_t count)
 {
     static const size_t local[2] = {16, 4};
-    const size_t columns = (size_t)frame->stride / PIXELS, rows = (size_t)(last - first);
+    const size_t columns = (size_t)frame->stride / PIXELS, rows = (size_t)((row_count + by_item - 1) / by_item);
     const size_t global[2] = {(columns + local[0] - 1) / local[0] * local[0], (rows + local[1] - 1) / local[1] * local[1]};
     return asj_cl_run(context, kernel, 2, global, local, arguments, count);
 }
@@ -32,9 +34,9 @@ static asj_status calculate(asj_context *context, struct asj_cl_detect *detect, 
         ASJ_CL_BUFFER(&detect->gray), ASJ_CL_BUFFER(&detect->norms), ASJ_CL_BUFFER(&detect->gradient_x),
         ASJ_CL_BUFFER(&detect->gradient_y), ASJ_CL_INT(frame->width), ASJ_CL_INT(frame->height), ASJ_CL_INT(stride),
         ASJ_CL_INT(base), ASJ_CL_INT(top - more), ASJ_CL_INT(bottom + more), ASJ_CL_INT(epsilon)};
-    asj_status status = run(context, "gradient_norms", frame, top - reach, bottom + reach, norms, 8);
+    asj_status status = run(context, "gradient_norms", frame, bottom - top + 2 * reach, 1, norms, 8);
     if (status == ASJ_OK)
-        status = run(context, "gradient_normalise", frame, top - more, bottom + more, normalise, 11);
+        status = run(context, "gradient_normalise", frame, bottom - top + 2 * more, ROWS, normalise, 11);
     return status;
 }
 
