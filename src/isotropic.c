@@ -23,6 +23,7 @@
 #endif
 
 #define TWO_PI 6.283185307179586
+#define TWIN 2 /* px: of junctions nearer than this the most meaningful one stays */
 #define MAX_SECTORS 188 /* floor(2 pi 30) */
 #define ASJ_TAIL_STEPS 4 /* table entries for a junction-ness of 1; linear interpolation is then good to 0.01 in ln F */
 
@@ -333,6 +334,22 @@ void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *
     }
 }
 
+/* Where candidates lie close together, their neighbours say the same: of the odd squares of a chess board those are left out that
+ * have candidates on all four sides. */
+void asj_isotropic_select(uint16_t *masks, int32_t blocks, int32_t height)
+{
+    for (int32_t y = 0; y < height; y++) {
+        uint16_t *row = masks + (ptrdiff_t)y * blocks;
+        const uint32_t odd = y & 1 ? 0x5555 : 0xaaaa;
+        for (int32_t b = 0; b < blocks; b++) {
+            const uint32_t here = row[b], before = b > 0 ? row[b - 1] : 0u, after = b + 1 < blocks ? row[b + 1] : 0u;
+            const uint32_t left = here << 1 | before >> 15, right = here >> 1 | after << 15;
+            const uint32_t above = y > 0 ? row[b - blocks] : 0u, below = y + 1 < height ? row[b + blocks] : 0u;
+            row[b] = (uint16_t)(here & ~(odd & left & right & above & below));
+        }
+    }
+}
+
 void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int32_t x, int32_t y, uint32_t candidates,
                          uint16_t *scratch, asj_isotropic_junction *junctions)
 {
@@ -441,7 +458,7 @@ size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const
         const asj_isotropic_junction junction = junctions[i];
         if (taken[junction.y * row_bytes + junction.x / 8] >> junction.x % 8 & 1)
             continue;
-        take(taken, width, height, junction.x, junction.y, options->more_branches_win ? 0.5 * junction.radius : 2);
+        take(taken, width, height, junction.x, junction.y, options->more_branches_win ? 0.5 * junction.radius : TWIN);
         junctions[kept++] = junction;
     }
     if (options->more_branches_win)

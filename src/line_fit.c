@@ -136,7 +136,8 @@ static int choose(const samples list[2], const asj_line_range *range, line *foun
     return 1;
 }
 
-int asj_line_fit(const asj_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range, asj_draft_branch *branch)
+int asj_line_fit(const asj_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
+                 asj_draft_branch *branch)
 {
     const double ux = cos(branch->angle), uy = sin(branch->angle);
     line found = {branch->offset, 0, 0, 0};

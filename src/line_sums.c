@@ -18,7 +18,8 @@
 #define FAR 16000.0f /* columns */
 
 /* Columns where a direction's projection lies within `range`: along x it changes by `per_column` (not 0), along y by `per_row`. */
-static void set_columns(double per_column, double per_row, double origin_x, const double range[2], float *from, float *to, float *step)
+static void set_columns(double per_column, double per_row, double origin_x, const double range[2], float *from, float *to,
+                        float *step)
 {
     if (fabs(per_column) < 1e-3) {
         *from = -FAR;

@@ -20,6 +20,8 @@
 #define NEAR_PART 80   /* px */
 #define WIDE 2         /* px: half-width of the band in which a line is looked for */
 #define HALF_WIDTH 1.6 /* and of that in which it is fitted */
+#define DOUBT 6         /* natural logarithm of a number of false alarms */
+#define OPENING_DOUBT 5 /* degrees */
 #define LARGEST_OFFSET 2 /* px: a line that misses the junction by more belongs to something else */
 
 typedef struct sums {
@@ -87,20 +89,19 @@ static double last_px(const asj_draft_branch *branch)
     return fmax(branch->length - 3, 8);
 }
 
-/* Finds the line over growing parts of the branch, each twice as long as the one before, so that the narrow band around the last
- * line always holds the edge. The whole branch is fitted in earnest. When a part longer than NEAR_PART moves the line significantly
- * where it passes the junction, the edge is bent (lenses do that): then the shorter part is believed. */
+/* The line over the whole branch, which asj_orient() has found roughly. Long branches are fitted over growing parts, each twice as
+ * long as the one before, so that the narrow band around the last line always holds the edge. When a part longer than NEAR_PART
+ * moves the line significantly where it passes the junction, the edge is bent (lenses do that): then the shorter part is
+ * believed. */
 static void follow_line(const asj_context *context, const asj_frame *frame, const asj_draft *draft, asj_draft_branch *branch)
 {
     const double first = first_px(branch), end = last_px(branch);
     asj_draft_branch longer = *branch;
-    for (double reach = NEAR_PART / 4;; reach *= 2) {
+    for (double reach = NEAR_PART;; reach *= 2) {
         const double last = fmin(end, reach), t[2] = {first, last};
         const asj_line_range range = {first, last, {WIDE, HALF_WIDTH, HALF_WIDTH}, 3};
         if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, HALF_WIDTH, &longer))
             return;
-        if (reach < end && reach < NEAR_PART)
-            continue;
         if (!asj_line_fit(context->ops, frame, draft->x, draft->y, &range, &longer) ||
             (reach > NEAR_PART && fabs(longer.offset - branch->offset) > BENT * sqrt(branch->offset_variance)))
             return;
@@ -132,9 +133,12 @@ void asj_orient(const asj_context *context, const asj_frame *frame, const asj_de
         const double end = last_px(branch);
         for (double reach = NEAR_PART / 4;; reach *= 2) {
             const double t[2] = {first_px(branch), fmin(end, reach)};
-            if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, branch) ||
-                !asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, branch) || reach >= end)
+            if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, branch))
                 break;
+            if (reach >= end) {
+                asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, branch);
+                break;
+            }
         }
     }
     asj_locate_meet(draft);
@@ -160,6 +164,30 @@ static void merge(const asj_detect_options *options, const asj_draft *draft, int
             if (keep[i] && keep[j] && asj_angle_distance(a->angle, b->angle) < least)
                 keep[b->log_nfa < a->log_nfa ? i : j] = 0;
         }
+}
+
+/* Whether a strip of some length is meaningful, or nearly so: the angle will still become better. */
+static int hopeful(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, const asj_draft *draft,
+                   const asj_draft_branch *branch)
+{
+    static const double lengths[] = {20, 50, 12, 8}; /* px: most that are meaningful are so at 20 */
+    const double limit = log(options->epsilon) + DOUBT;
+    for (int i = 0; i < 4; i++)
+        if (asj_strip_test(context, frame, options, draft->x, draft->y, branch->angle, lengths[i]).log_nfa <= limit)
+            return 1;
+    return 0;
+}
+
+void asj_foresee(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
+{
+    int keep[ASJ_MAX_BRANCHES];
+    if (!options->strip_test)
+        return;
+    for (int32_t i = 0; i < draft->branch_count; i++)
+        keep[i] = hopeful(context, frame, options, draft, &draft->branches[i]);
+    asj_draft_select(draft, keep);
+    if (!asj_draft_has_opening(draft, fmax(options->minimum_opening - OPENING_DOUBT, 0) * (PI / 180)))
+        draft->branch_count = 0;
 }
 
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)

@@ -241,6 +241,8 @@ asj_status asj_stage_isotropic(asj_detection_run *d)
 {
     const asj_frame *frame = &d->detector->frame;
     d->candidate_total = count_bits(d->candidates, (size_t)frame->blocks * (size_t)frame->height);
+    if (d->options->refinement == ASJ_REFINE_LINE_FIT) /* else locations are pixels, and each counts */
+        asj_isotropic_select(d->candidates, frame->blocks, frame->height);
     asj_status status = test_candidates(d);
     return status == ASJ_OK ? thin(d) : status;
 }
@@ -279,8 +281,10 @@ asj_status asj_stage_locate(asj_detection_run *d)
 #ifdef _OPENMP
 #pragma omp parallel for num_threads(d->threads) schedule(dynamic, 8)
 #endif
-    for (int64_t i = 0; i < left; i++)
+    for (int64_t i = 0; i < left; i++) {
         asj_locate(d->context, &d->detector->frame, d->options, &d->drafts[i]);
+        asj_foresee(d->context, &d->detector->frame, d->options, &d->drafts[i]);
+    }
     status = suppress(d, 0);
     return status == ASJ_OK ? dump_points(d, ASJ_STAGE_LOCATE, "located", d->draft_count, draft_point) : status;
 }

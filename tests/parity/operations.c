@@ -2,6 +2,7 @@
 #include "operations.h"
 #include "gradient.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -198,11 +199,75 @@ static asj_status run_luma(asj_context *context, const subject *s, uint16_t *scr
     return ASJ_OK;
 }
 
+/* A line that starts anywhere, up to 10 px outside too. */
+static double choose_line(const subject *s, synth_random *random, double *x, double *y, double *length)
+{
+    *x = synth_random_unit(random) * (s->picture->width + 20) - 10;
+    *y = synth_random_unit(random) * (s->picture->height + 20) - 10;
+    *length = 3 + 90 * synth_random_unit(random) * synth_random_unit(random);
+    return 6.2831853 * synth_random_unit(random);
+}
+
+static size_t line_sums_size(const subject *s)
+{
+    (void)s;
+    return 2 * sizeof(asj_line_sums);
+}
+
+static asj_status run_line_sums(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    synth_random random = s->random;
+    asj_line_band band;
+    double x, y, length;
+    const double angle = choose_line(s, &random, &x, &y, &length), t[2] = {2, length}, across[2] = {-4.5, 4};
+    (void)scratch;
+    asj_line_band_set(s->picture, x, y, angle, t, across, &band);
+    context->ops->line_sums(s->picture, &band, output);
+    return ASJ_OK;
+}
+
+static size_t line_profile_size(const subject *s)
+{
+    (void)s;
+    return sizeof(asj_profile_sums);
+}
+
+static asj_status run_line_profile(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    synth_random random = s->random;
+    asj_line_profile profile = {0};
+    asj_profile_sums *sums = output;
+    double x, y, length;
+    const double angle = choose_line(s, &random, &x, &y, &length);
+    (void)scratch;
+    profile.ux = (float)cos(angle);
+    profile.uy = (float)sin(angle);
+    profile.x = (int32_t)floor(x);
+    profile.y = (int32_t)floor(y);
+    profile.origin_x = (float)(x - profile.x);
+    profile.origin_y = (float)(y - profile.y);
+    profile.first = 2;
+    profile.step = (float)(1 + synth_random_unit(&random));
+    profile.a = (float)synth_random_unit(&random);
+    profile.b = 0.1f;
+    profile.count = (int32_t)length;
+    profile.offsets = 5;
+    for (int32_t i = 0; i < profile.offsets; i++)
+        profile.offset[i] = 0.8f * (float)(i - 2);
+    context->ops->line_profile(s->picture, &profile, sums);
+    for (int32_t side = 0; side < 2; side++)
+        for (int32_t k = profile.count; k < ASJ_PROFILE_SAMPLES; k++)
+            sums->w[side][k] = sums->moment[side][k] = 0;
+    return ASJ_OK;
+}
+
 const operation operations[] = {
     {"luma", 0, luma_size, luma_pixels, NULL, run_luma},
     {"gradient", 1, planes_size, all_pixels, step_1_bytes, run_gradient},
     {"field block", 0, block_size, one_run, NULL, run_block},
     {"isotropic band", 0, band_size, band_pixels, NULL, run_band},
+    {"line sums", 0, line_sums_size, one_run, NULL, run_line_sums},
+    {"line profile", 0, line_profile_size, one_run, NULL, run_line_profile},
     {"field tile", 0, tile_size, tile_pixels, NULL, run_tiles},
     {"field rows", 1, tile_size, tile_pixels, gradient_bytes, run_field_rows},
     {"isotropic rows", 1, records_size, all_pixels, gradient_bytes, run_isotropic_rows},
