@@ -446,21 +446,77 @@ static void take(uint8_t *taken, int32_t width, int32_t height, int32_t x, int32
                 taken[(size_t)(y + dy) * row_bytes + (size_t)((x + dx) / 8)] |= (uint8_t)(1 << (x + dx) % 8);
 }
 
+/* A junction's place in the list and its log_nfa as a float, turned into a whole number in the same order. */
+typedef struct rank {
+    uint32_t key, index;
+} rank;
+
+static uint32_t key_of(double log_nfa)
+{
+    const float rounded = (float)log_nfa + 0.0f; /* no negative zero */
+    uint32_t bits;
+    memcpy(&bits, &rounded, sizeof bits);
+    return bits >> 31 ? ~bits : bits | 0x80000000u;
+}
+
+/* Ranks by meaningfulness: three passes over 11 bits of the keys each, then what the floats do not tell. `spare` is as long as
+ * `ranks`; returns the one of both that holds the result. */
+static rank *sort_ranks(const asj_isotropic_junction *junctions, rank *ranks, rank *spare, size_t count)
+{
+    for (int shift = 0; shift < 32; shift += 11) {
+        size_t starts[2048] = {0}, next = 0;
+        for (size_t i = 0; i < count; i++)
+            starts[ranks[i].key >> shift & 2047]++;
+        for (size_t b = 0; b < 2048; b++) {
+            const size_t here = starts[b];
+            starts[b] = next;
+            next += here;
+        }
+        for (size_t i = 0; i < count; i++)
+            spare[starts[ranks[i].key >> shift & 2047]++] = ranks[i];
+        rank *swap = ranks;
+        ranks = spare;
+        spare = swap;
+    }
+    for (size_t i = 1; i < count; i++) {
+        const rank moved = ranks[i];
+        size_t j = i;
+        for (; j > 0 && ranks[j - 1].key == moved.key && by_meaning(&junctions[ranks[j - 1].index], &junctions[moved.index]) > 0; j--)
+            ranks[j] = ranks[j - 1];
+        ranks[j] = moved;
+    }
+    return ranks;
+}
+
+size_t asj_isotropic_thin_scratch(size_t count, int32_t width, int32_t height)
+{
+    return count * (2 * sizeof(rank) + sizeof(asj_isotropic_junction)) + ((size_t)width + 7) / 8 * (size_t)height;
+}
+
 size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const asj_detect_options *options,
-                          int32_t width, int32_t height, uint8_t *taken)
+                          int32_t width, int32_t height, void *scratch)
 {
     const size_t row_bytes = ((size_t)width + 7) / 8;
+    asj_isotropic_junction *stay = scratch;
+    rank *ranks = (rank *)(void *)(stay + count), *spare = ranks + count;
+    uint8_t *taken = (uint8_t *)(void *)(spare + count);
     size_t kept = 0;
     if (count == 0)
         return 0;
-    qsort(junctions, count, sizeof *junctions, options->more_branches_win ? by_branches : by_meaning);
+    if (options->more_branches_win)
+        qsort(junctions, count, sizeof *junctions, by_branches);
+    for (size_t i = 0; i < count; i++)
+        ranks[i] = (rank){key_of(junctions[i].log_nfa), (uint32_t)i};
+    const rank *order = options->more_branches_win ? ranks : sort_ranks(junctions, ranks, spare, count);
+    memset(taken, 0, row_bytes * (size_t)height);
     for (size_t i = 0; i < count; i++) {
-        const asj_isotropic_junction junction = junctions[i];
-        if (taken[junction.y * row_bytes + junction.x / 8] >> junction.x % 8 & 1)
+        const asj_isotropic_junction *junction = &junctions[order[i].index];
+        if (taken[junction->y * row_bytes + junction->x / 8] >> junction->x % 8 & 1)
             continue;
-        take(taken, width, height, junction.x, junction.y, options->more_branches_win ? 0.5 * junction.radius : TWIN);
-        junctions[kept++] = junction;
+        take(taken, width, height, junction->x, junction->y, options->more_branches_win ? 0.5 * junction->radius : TWIN);
+        stay[kept++] = *junction;
     }
+    memcpy(junctions, stay, kept * sizeof *stay);
     if (options->more_branches_win)
         qsort(junctions, kept, sizeof *junctions, by_meaning);
     return kept;

@@ -95,9 +95,10 @@ int32_t asj_isotropic_insert(asj_isotropic_peak *peaks, int32_t count, int32_t m
 void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *entry, const asj_isotropic_peak *peaks,
                          int32_t count, asj_isotropic_junction *best);
 
-/* Sorts by meaningfulness and drops what lies close to something better (see isotropic.c). `taken` is one bit for each pixel, rows
- * of whole bytes, zero. Returns how many stay, at the front. */
+/* Sorts by meaningfulness and drops what lies close to something better (see isotropic.c). Returns how many stay, at the front.
+ * `scratch`: asj_isotropic_thin_scratch() bytes, aligned as by malloc(). */
 size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const asj_detect_options *options,
-                          int32_t width, int32_t height, uint8_t *taken);
+                          int32_t width, int32_t height, void *scratch);
+size_t asj_isotropic_thin_scratch(size_t count, int32_t width, int32_t height);
 
 #endif

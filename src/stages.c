@@ -227,12 +227,11 @@ static asj_status test_candidates(asj_detection_run *d)
 static asj_status thin(asj_detection_run *d)
 {
     const asj_frame *frame = &d->detector->frame;
-    const size_t bytes = ((size_t)frame->width + 7) / 8 * (size_t)frame->height;
-    uint8_t *taken = asj_allocate_zero(&d->context->memory, bytes, 1);
-    if (!taken)
-        return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for a map of %zu bytes", bytes);
-    d->isotropic_count = asj_isotropic_thin(d->isotropic, d->isotropic_count, d->options, frame->width, frame->height, taken);
-    asj_release(&d->context->memory, taken);
+    void *scratch = asj_allocate(&d->context->memory, asj_isotropic_thin_scratch(d->isotropic_count, frame->width, frame->height), 1);
+    if (!scratch)
+        return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory to order %zu junctions", d->isotropic_count);
+    d->isotropic_count = asj_isotropic_thin(d->isotropic, d->isotropic_count, d->options, frame->width, frame->height, scratch);
+    asj_release(&d->context->memory, scratch);
     return dump_points(d, ASJ_STAGE_ISOTROPIC, "isotropic", d->isotropic_count, isotropic_point);
 }
 
@@ -289,14 +288,14 @@ asj_status asj_stage_locate(asj_detection_run *d)
     return status == ASJ_OK ? dump_points(d, ASJ_STAGE_LOCATE, "located", d->draft_count, draft_point) : status;
 }
 
-#define SCANNED_AGAIN 24 /* px: the last part of a branch, which a better angle may change */
+#define SCANNED_AGAIN 16 /* px: the last part of a branch, which a better angle may change */
 
-/* Whether a branch has no length yet, or has turned or moved away by more than half a pixel somewhere along the ray that gave
+/* Whether a branch has no length yet, or has turned or moved away by more than a pixel somewhere along the ray that gave
  * it. */
 static int needs_scan(const asj_draft *draft, const asj_draft_branch *branch)
 {
     const double turned = asj_angle_distance(branch->angle, branch->scanned[2]) * branch->length;
-    return branch->length <= 0 || turned + hypot(draft->x - branch->scanned[0], draft->y - branch->scanned[1]) > 0.5;
+    return branch->length <= 0 || turned + hypot(draft->x - branch->scanned[0], draft->y - branch->scanned[1]) > 1;
 }
 
 static void set_length(const asj_detection_run *d, const asj_ray *ray, asj_draft_branch *branch)

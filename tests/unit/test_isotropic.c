@@ -338,9 +338,9 @@ static void test_thin(void **state)
     synth_random_seed(&random, 2);
     for (int round = 0; round < 40; round++) {
         const int32_t width = sizes[round % 5][0], height = sizes[round % 5][1];
-        const size_t count = (size_t)(round * 7.5), bytes = ((size_t)width + 7) / 8 * (size_t)height;
-        uint8_t *taken = calloc(bytes, 1);
-        assert_non_null(taken);
+        const size_t count = (size_t)(round * 7.5);
+        void *scratch = malloc(asj_isotropic_thin_scratch(count, width, height));
+        assert_non_null(scratch);
         f->options.more_branches_win = round % 2;
         memset(list, 0, sizeof list);
         for (size_t i = 0; i < count; i++) {
@@ -354,11 +354,11 @@ static void test_thin(void **state)
                     list[i].radius = list[k].radius, list[i].branch_count = list[k].branch_count, list[i].log_nfa = list[k].log_nfa;
         }
         memcpy(copy, list, sizeof copy);
-        const size_t kept = asj_isotropic_thin(list, count, &f->options, width, height, taken);
+        const size_t kept = asj_isotropic_thin(list, count, &f->options, width, height, scratch);
         assert_int_equal(kept, naive_thin(copy, count, f->options.more_branches_win, expected));
         for (size_t i = 0; i < kept; i++)
             assert_true(list[i].x == expected[i].x && list[i].y == expected[i].y && list[i].log_nfa == expected[i].log_nfa);
-        free(taken);
+        free(scratch);
     }
     asj_detect_options_init(&f->options);
 }
