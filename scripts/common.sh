@@ -40,6 +40,15 @@ has_opencv() {
         [ -e /opt/homebrew/include/opencv4/opencv2/imgcodecs.hpp ]
 }
 
+has_opencl_headers() {
+    printf '#define CL_TARGET_OPENCL_VERSION 120\n#include <CL/cl.h>\n' | ${CC:-cc} -x c -fsyntax-only -
+}
+
+# A loader, and the driver for processors.
+has_opencl_driver() {
+    [ -e /etc/OpenCL/vendors/pocl.icd ] && /sbin/ldconfig -p | grep -q 'libOpenCL\.so\.1'
+}
+
 # want "PACKAGE..." COMMAND...: the packages are missing unless the command works. What counts is what is there, not how it came.
 want() {
     packages=$1
@@ -64,6 +73,9 @@ look_for() {
         clang) want clang clang --version ;;
         libomp) want libomp-dev eval 'printf "#include <omp.h>\n" | clang -fopenmp -fsyntax-only -x c -' ;;
         venv) want python3-venv python3 -c 'import venv, ensurepip' ;;
+        opencl) want opencl-headers has_opencl_headers ;;
+        pocl) want 'pocl-opencl-icd ocl-icd-libopencl1' has_opencl_driver ;;
+        oclgrind) want oclgrind oclgrind --version ;;
         mandoc) want mandoc eval 'printf ".Dd 1 January 2026\n" | mandoc -T lint -W fatal' ;;
         esac
     done
@@ -96,7 +108,7 @@ apt() {
         apt-get -q -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# need [cmocka] [clang] [libomp] [mandoc] [venv]: installs what is missing for the build, and for these.
+# need [cmocka] [clang] [libomp] [mandoc] [venv] [opencl] [pocl] [oclgrind]: installs what is missing for the build, and for these.
 need() {
     mkdir -p "$logs" && [ -w "$logs" ] || fail "cannot write into $logs"
     look_for "$@"

@@ -86,6 +86,11 @@ static int fits(const asj_context *context, uint64_t bytes)
     return bytes <= limits->largest_buffer && bytes <= limits->global_memory / 4;
 }
 
+static int patches_fit(const asj_context *context, const asj_match_options *options, const asj_view *view)
+{
+    return fits(context, (uint64_t)view->corners.frame_count * (uint64_t)asj_patch_length(options) * sizeof(int16_t));
+}
+
 /* ---- patches ---- */
 
 static asj_status send_planes(asj_context *context, struct asj_cl_match *match, const asj_pyramid *pyramid, patch_pyramid *sizes)
@@ -176,12 +181,12 @@ static device_view *free_view(struct asj_cl_match *match)
 
 static asj_status describe_frames(asj_context *context, const asj_match_options *options, asj_view *view)
 {
-    const uint64_t count = view->corners.frame_count, samples = (uint64_t)(options->patch_size * options->patch_size);
+    const uint64_t count = view->corners.frame_count;
     const uint64_t pixels = ((uint64_t)view->pyramid.width[0] + 1) * ((uint64_t)view->pyramid.height[0] + 1);
     patch_pyramid sizes;
     struct asj_cl_match *match;
     if (options->descriptor == ASJ_DESCRIPTOR_SIFT || count == 0 || count > INT32_MAX / 64 ||
-        !fits(context, 2 * pixels * sizeof(uint16_t)) || !fits(context, count * samples * sizeof(int16_t)))
+        !fits(context, 2 * pixels * sizeof(uint16_t)) || !patches_fit(context, options, view))
         return asj_describe_frames(context, options, view);
     asj_status status = get(context, &match);
     if (status != ASJ_OK)
@@ -353,6 +358,7 @@ static asj_status rank_partners(asj_context *context, const asj_match_options *o
     struct asj_cl_match *match;
     if (options->patches != ASJ_PATCHES_CANONICAL || (options->descriptor != ASJ_DESCRIPTOR_SIFT && !options->normalise) ||
         c1->frame_count == 0 || c2->frame_count == 0 || c1->frame_count > INT32_MAX / 64 || c2->frame_count > INT32_MAX / 64 ||
+        !patches_fit(context, options, view1) || !patches_fit(context, options, view2) ||
         !fits(context, (uint64_t)c2->frame_count * MOST_FRAMES * sizeof(int32_t)))
         return asj_rank_partners(context, options, view1, view2, rows, columns);
     asj_status status = get(context, &match);

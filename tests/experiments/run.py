@@ -46,6 +46,7 @@ def parse(arguments):
     p.add_argument("--full", action="store_true", help="no time budgets, 1000 images wherever the paper has them")
     p.add_argument("--keep", action="store_true", help="keep OUT/work: pictures, junctions and matches")
     p.add_argument("--build", metavar="DIR", help="a build folder of meson's that is up to date; otherwise one is made")
+    p.add_argument("--minutes", metavar="N", type=float, default=17, help="time for all parts together (%(default)s)")
     p.add_argument("--processes", metavar="N", type=int, default=2, help="jobs at a time (%(default)s)")
     p.add_argument("--detector", metavar="NAME=DIR", action="append", type=named, default=[],
                    help="another detector's junctions, .asj files: see README.md")

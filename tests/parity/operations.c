@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "operations.h"
 #include "gradient.h"
+#include "more_operations.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -271,5 +272,8 @@ const operation operations[] = {
     {"field tile", 0, tile_size, tile_pixels, NULL, run_tiles},
     {"field rows", 1, tile_size, tile_pixels, gradient_bytes, run_field_rows},
     {"isotropic rows", 1, records_size, all_pixels, gradient_bytes, run_isotropic_rows},
+    {"rays", 1, rays_size, all_pixels, NULL, run_rays},
+    {"patches", 1, patches_size, all_pixels, patches_bytes, run_patches},
+    {"partners", 1, partners_size, all_pixels, NULL, run_partners},
 };
 const size_t operation_count = sizeof operations / sizeof operations[0];

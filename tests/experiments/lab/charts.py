@@ -38,9 +38,6 @@ def curves(panels, width=7.5, height=3.2):
             axis.set_ylim(*panel["y_range"])
         if panel.get("ticks"):
             axis.set_xticks(panel["ticks"])
-    if len(panels) == 1:
-        axes[0].legend(fontsize=8)
-    else:
-        handles, labels = axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=2 if max(map(len, labels)) > 30 else 4, fontsize=8)
     return _svg(figure)

@@ -90,10 +90,11 @@ class Picture:
         pixels, change = zoom(gray, factor)
         return (self.original() if factor == 1.0 else self._write("%s.zoom-%.1f" % (self.key, factor), pixels)), change
 
-    def copies(self):
-        """All of them: (kind, level, path, Zoom)"""
-        zooms = [("zoom", f) + self.zoomed(f) for f in FACTORS]
-        return zooms + [(kind, v) + self.changed(kind, v) for kind, (levels, _, _) in CHANGES.items() for v in levels]
+    def copies(self, kind):
+        """All copies of one kind, "zoom" or one of CHANGES: (level, path, Zoom)"""
+        if kind == "zoom":
+            return [(f,) + self.zoomed(f) for f in FACTORS]
+        return [(v,) + self.changed(kind, v) for v in CHANGES[kind][0]]
 
     def changed(self, kind, level):
         """(path, Zoom)"""

@@ -4,17 +4,22 @@ numpy, which let other threads run."""
 import sys
 import threading
 import time
+from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 
 from .library import Failure
 
 
+OUT_OF_TIME = "not begun, the part's time was used up"
+
+
 class Jobs:
-    """Collects jobs of one part and runs them: what was not begun in time, failed or was stopped is told in `cut`."""
+    """Collects jobs of one part and runs them; their names are tuples. What was not begun in time, failed or was stopped is told
+    in `cut`."""
 
     def __init__(self, title, processes, budget):
         self.title, self.processes, self.budget = title, processes, budget
-        self.queue, self.cut, self.lock, self.done = [], [], threading.Lock(), 0
+        self.queue, self.missed, self.lock, self.done = [], [], threading.Lock(), 0
 
     def add(self, name, function, *arguments):
         """function(limit, *arguments); limit: seconds that it may still take, or None"""
@@ -25,14 +30,21 @@ class Jobs:
         left = None if end is None else end - time.monotonic()
         try:
             if left is not None and left <= 0:
-                raise Failure("not begun: the part's time was used up")
+                raise Failure(OUT_OF_TIME)
             results[name] = function(left, *arguments)
         except Failure as reason:
             with self.lock:
-                self.cut.append("%s: %s" % (name, reason))
+                self.missed.append((name, str(reason)))
         with self.lock:
             self.done += 1
             self._show()
+
+    @property
+    def cut(self):
+        """Lines of text: single jobs that failed, and how many were not begun, by the first parts of their names."""
+        out = ["%s: %s" % (", ".join(map(str, name)), reason) for name, reason in self.missed if reason != OUT_OF_TIME]
+        late = Counter(str(name[0]) for name, reason in self.missed if reason == OUT_OF_TIME)
+        return out + ["%s: %d jobs %s" % (first, number, OUT_OF_TIME) for first, number in late.items()]
 
     def _show(self):
         """Progress: a line that changes on a terminal, elsewhere a line for every tenth."""

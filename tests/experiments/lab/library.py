@@ -2,9 +2,10 @@
 """The library's results, through asj-cli and the C programs beside the tests."""
 import json
 import os
+import signal
 import subprocess
+import tempfile
 import threading
-import time
 from dataclasses import dataclass
 
 from . import junctions
@@ -33,6 +34,18 @@ ISOTROPIC_DEFAULT = Detector("isotropic, default", (), True)
 ISOTROPIC_PAPER = Detector("isotropic, paper", ("--preset", "paper"), True)
 
 
+def _wait(process, limit):
+    """(exit code, seconds of processor time: what runs beside it does not count); kills it after `limit` seconds"""
+    timer = threading.Timer(limit, process.kill) if limit is not None else None
+    if timer:
+        timer.start()
+    _, status, usage = os.wait4(process.pid, 0)
+    if timer:
+        timer.cancel()
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, usage.ru_utime + usage.ru_stime
+
+
 class Library:
     """Runs the programs of a build, one thread each. What was computed once in a run is not computed again."""
 
@@ -41,19 +54,23 @@ class Library:
         self.lock, self.results, self.serial = threading.Lock(), {}, 0
         os.makedirs(work, exist_ok=True)
 
-    def run(self, program, arguments, limit=None, text=None):
-        """(standard output, seconds)"""
+    def run(self, program, arguments, limit=None, text=""):
+        """(standard output, seconds of processor time)"""
         command = [os.path.join(self.build, PATHS[program])] + [str(a) for a in arguments]
-        start = time.monotonic()
-        try:
-            done = subprocess.run(command, input=text, capture_output=True, text=True, timeout=limit)
-        except subprocess.TimeoutExpired as late:
-            raise Failure("%s: stopped after %.0f s" % (program, limit)) from late
-        except OSError as error:
-            raise Failure("%s: %s" % (program, error.strerror)) from error
-        if done.returncode != 0:
-            raise Failure("%s: %s" % (program, (done.stderr or "exit code %d" % done.returncode).strip()))
-        return done.stdout, time.monotonic() - start
+        with tempfile.TemporaryFile("w+") as given, tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as errors:
+            given.write(text)
+            given.seek(0)
+            try:
+                code, seconds = _wait(subprocess.Popen(command, stdin=given, stdout=out, stderr=errors), limit)
+            except OSError as error:
+                raise Failure("%s: %s" % (program, error.strerror)) from error
+            for file in (out, errors):
+                file.seek(0)
+            if code == -signal.SIGKILL and limit is not None:
+                raise Failure("%s: stopped after %.0f s" % (program, limit))
+            if code != 0:
+                raise Failure("%s: %s" % (program, (errors.read() or "exit code %d" % code).strip()))
+            return out.read(), seconds
 
     def _file(self, ending):
         with self.lock:
@@ -69,23 +86,20 @@ class Library:
             return entry[1]
 
     def detect_file(self, detector, image, limit=None):
-        """Path of a JSON file with the junctions of an image, and the milliseconds that the detection took."""
+        """Path of a JSON file with the junctions of an image, and the seconds of processor time that the program took."""
         def compute():
             path = self._file(".json")
             if detector.isotropic:
-                words = [a for a in detector.arguments]
-                self.run("isotropic_junctions", words + [image, path], limit)
-            else:
-                self.run("asj-cli", ("detect", "--quiet", "--threads", 1) + detector.arguments + ("-o", path, image), limit)
-            with open(path) as file:
-                return path, json.load(file)["timing"]["total_ms"]
+                return path, self.run("isotropic_junctions", detector.arguments + (image, path), limit)[1]
+            words = ("detect", "--quiet", "--threads", 1) + detector.arguments + ("-o", path, image)
+            return path, self.run("asj-cli", words, limit)[1]
         return self._once((detector, image), compute)
 
     def detect(self, detector, image, limit=None):
         return junctions.read_json(self.detect_file(detector, image, limit)[0])
 
     def match(self, arguments, image1, image2, limit=None):
-        """What asj-cli match writes as JSON, line segments included, and the seconds that the program took."""
+        """What asj-cli match writes as JSON, line segments included, and the seconds of processor time."""
         def compute():
             path = self._file(".match.json")
             words = ("match", "--quiet", "--threads", 1) + tuple(arguments) + ("--lines", "-o", path, image1, image2)

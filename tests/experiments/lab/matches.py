@@ -11,7 +11,7 @@ NONE = np.zeros((0, 2))
 @dataclass
 class Matches:
     """Points p1 in image 1 and p2 in image 2, n x 2; segments from a to b in image 1 and 2, m x 2 each.
-    Seconds: all that it took."""
+    Seconds: processor time of all that it took."""
     p1: np.ndarray = field(default_factory=lambda: NONE)
     p2: np.ndarray = field(default_factory=lambda: NONE)
     a1: np.ndarray = field(default_factory=lambda: NONE)

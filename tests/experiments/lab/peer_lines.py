@@ -49,9 +49,9 @@ PEERS = {
 
 def match(name, pair):
     detector, by_ratio = PEERS[name]
-    start = time.monotonic()
+    start = time.thread_time()
     (s1, d1), (s2, d2) = (_segments(detector, cv2.imread(p, cv2.IMREAD_GRAYSCALE)) for p in (pair.image1, pair.image2))
     if min(len(s1), len(s2)) < 2:
-        return Matches(any_order=True, seconds=time.monotonic() - start)
+        return Matches(any_order=True, seconds=time.thread_time() - start)
     i, k = _pairs(d1, d2, by_ratio).T
-    return Matches(a1=s1[i, :2], b1=s1[i, 2:], a2=s2[k, :2], b2=s2[k, 2:], any_order=True, seconds=time.monotonic() - start)
+    return Matches(a1=s1[i, :2], b1=s1[i, 2:], a2=s2[k, :2], b2=s2[k, 2:], any_order=True, seconds=time.thread_time() - start)

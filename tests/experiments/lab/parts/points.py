@@ -22,10 +22,10 @@ def _peer(_limit, session, name, pair):
 
 def run(session):
     part = Part("Key-point matching")
-    part.text("Number of correct matches, of matches, accuracy, and seconds for the pair (reading, detecting, matching, one "
-              "thread). Correct: within 5 px under the homography, both epipolar distances below 3 px under the fundamental "
-              "matrix, and on rendered rooms the same place of the same surface (4 px). A pair without a match counts as 0 % in "
-              "the average.",
+    part.text("Number of correct matches, of matches, accuracy, and seconds of processor time for the pair (reading, "
+              "detecting, matching). Correct: within 5 px under the homography, both epipolar distances below 3 px under the "
+              "fundamental matrix, and on rendered rooms the same place of the same surface (4 px). A pair without a match "
+              "counts as 0 % in the average.",
               "Peers are OpenCV's, with their default settings (ORB: 2000 features), nearest neighbour, ratio 1.5 on squared "
               "distance, one way.")
     judged = [p for p in session.pairs if p.kind != pairs.LINES]

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Whole-image operations on lists: rays (scan_operation.c), patches and partners (match_operations.c). As operations.h has them. */
+#ifndef ASJ_TESTS_PARITY_MORE_OPERATIONS_H
+#define ASJ_TESTS_PARITY_MORE_OPERATIONS_H
+
+#include "operations.h"
+
+size_t rays_size(const subject *s);
+asj_status run_rays(asj_context *context, const subject *s, uint16_t *scratch, void *output);
+
+/* Canonical patches of random frames, and which of them can be used. */
+size_t patches_size(const subject *s);
+double patches_bytes(const subject *s);
+asj_status run_patches(asj_context *context, const subject *s, uint16_t *scratch, void *output);
+
+/* The best partners of random L-junctions. */
+size_t partners_size(const subject *s);
+asj_status run_partners(asj_context *context, const subject *s, uint16_t *scratch, void *output);
+
+#endif
