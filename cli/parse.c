@@ -155,7 +155,7 @@ static int say_unknown(const cli_syntax *syntax, const getopt_tables *tables, co
 
 static int take_option(const cli_syntax *syntax, const getopt_tables *tables, size_t number, const char *text)
 {
-    const cli_group *group;
+    const cli_group *group = NULL;
     if (number >= tables->option_count) {
         size_t t;
         const asj_option_info *row = find_row(syntax, number - tables->option_count, &t);
