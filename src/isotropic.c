@@ -481,8 +481,11 @@ static rank *sort_ranks(const asj_isotropic_junction *junctions, rank *ranks, ra
     for (size_t i = 1; i < count; i++) {
         const rank moved = ranks[i];
         size_t j = i;
-        for (; j > 0 && ranks[j - 1].key == moved.key && by_meaning(&junctions[ranks[j - 1].index], &junctions[moved.index]) > 0; j--)
+        for (; j > 0 && ranks[j - 1].key == moved.key; j--) {
+            if (by_meaning(&junctions[ranks[j - 1].index], &junctions[moved.index]) <= 0)
+                break;
             ranks[j] = ranks[j - 1];
+        }
         ranks[j] = moved;
     }
     return ranks;

@@ -135,10 +135,11 @@ static void sample_at(const asj_frame *frame, const asj_line_profile *profile, f
     sample(row, column, (int32_t)((x - (float)ix) * 4096.0f), y - (float)iy, gx, gy);
 }
 
-void asj_line_profile_of(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums)
+void asj_line_profile_part(const asj_frame *frame, const asj_line_profile *profile, int32_t from, int32_t to,
+                           asj_profile_sums *sums)
 {
     const float ux = profile->ux, uy = profile->uy;
-    for (int32_t k = 0; k < profile->count; k++) {
+    for (int32_t k = from; k < to; k++) {
         const float t = profile->first + (float)k * profile->step, middle = profile->a + profile->b * t;
         float w[2] = {0, 0}, moment[2] = {0, 0};
         for (int32_t i = 0; i < profile->offsets; i++) {
@@ -158,11 +159,16 @@ void asj_line_profile_of(const asj_frame *frame, const asj_line_profile *profile
     }
 }
 
-int asj_line_profile_inside(const asj_frame *frame, const asj_line_profile *profile)
+void asj_line_profile_of(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums)
 {
-    const float last = profile->first + (float)(profile->count - 1) * profile->step, spare = 3;
+    asj_line_profile_part(frame, profile, 0, profile->count, sums);
+}
+
+int asj_line_profile_inside(const asj_frame *frame, const asj_line_profile *profile, int32_t from, int32_t to)
+{
+    const float spare = 3;
     for (int32_t i = 0; i < 4; i++) {
-        const float t = i & 1 ? last : profile->first;
+        const float t = profile->first + (float)(i & 1 ? to - 1 : from) * profile->step;
         const float s = profile->a + profile->b * t + profile->offset[i & 2 ? profile->offsets - 1 : 0];
         const float x = (float)profile->x + profile->origin_x + t * profile->ux - s * profile->uy;
         const float y = (float)profile->y + profile->origin_y + t * profile->uy + s * profile->ux;

@@ -51,8 +51,14 @@ typedef struct asj_profile_sums {
 
 void asj_line_profile_of(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums);
 
-/* Whether all samples have the pixels around them that interpolation wants, with a pixel to spare. */
-int asj_line_profile_inside(const asj_frame *frame, const asj_line_profile *profile);
+/* ---- for its vector forms ---- */
+
+/* The same for from <= k < to. */
+void asj_line_profile_part(const asj_frame *frame, const asj_line_profile *profile, int32_t from, int32_t to,
+                           asj_profile_sums *sums);
+
+/* Whether all samples of these k have the pixels around them that interpolation wants, with a pixel to spare. */
+int asj_line_profile_inside(const asj_frame *frame, const asj_line_profile *profile, int32_t from, int32_t to);
 
 /* The columns of a row that may be inside, from *first to *last. */
 static inline void asj_line_band_row(const asj_line_band *band, int32_t row, int32_t *first, int32_t *last)

@@ -6,6 +6,7 @@
 #include "refine.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #ifdef _OPENMP
@@ -227,7 +228,8 @@ static asj_status test_candidates(asj_detection_run *d)
 static asj_status thin(asj_detection_run *d)
 {
     const asj_frame *frame = &d->detector->frame;
-    void *scratch = asj_allocate(&d->context->memory, asj_isotropic_thin_scratch(d->isotropic_count, frame->width, frame->height), 1);
+    const size_t bytes = asj_isotropic_thin_scratch(d->isotropic_count, frame->width, frame->height);
+    void *scratch = asj_allocate(&d->context->memory, bytes, 1);
     if (!scratch)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory to order %zu junctions", d->isotropic_count);
     d->isotropic_count = asj_isotropic_thin(d->isotropic, d->isotropic_count, d->options, frame->width, frame->height, scratch);
@@ -288,6 +290,7 @@ asj_status asj_stage_locate(asj_detection_run *d)
     return status == ASJ_OK ? dump_points(d, ASJ_STAGE_LOCATE, "located", d->draft_count, draft_point) : status;
 }
 
+#define STRIP 64         /* px */
 #define SCANNED_AGAIN 16 /* px: the last part of a branch, which a better angle may change */
 
 /* Whether a branch has no length yet, or has turned or moved away by more than a pixel somewhere along the ray that gave
@@ -328,6 +331,16 @@ static size_t list_rays(const asj_detection_run *d, asj_ray *rays, asj_draft_bra
     return count;
 }
 
+/* From top to bottom in strips, in a strip from left to right: rays that follow each other then need the same local junctions. */
+static int by_strip(const void *a, const void *b)
+{
+    const asj_draft *p = a, *q = b;
+    const int32_t row = (int32_t)p->y / STRIP, other = (int32_t)q->y / STRIP;
+    if (row != other)
+        return row < other ? -1 : 1;
+    return p->x != q->x ? p->x < q->x ? -1 : 1 : (p->y > q->y) - (p->y < q->y);
+}
+
 static asj_status scan_rays(asj_detection_run *d, asj_ray *rays, size_t count)
 {
     return d->context->ops->scan_rays(d->context, &d->detector->scan, &d->detector->frame, rays, count);
@@ -335,6 +348,8 @@ static asj_status scan_rays(asj_detection_run *d, asj_ray *rays, size_t count)
 
 static asj_status scan_branches(asj_detection_run *d, asj_ray *rays, asj_draft_branch **branches)
 {
+    if (d->draft_count > 1)
+        qsort(d->drafts, d->draft_count, sizeof *d->drafts, by_strip);
     const size_t count = list_rays(d, rays, branches);
     size_t left = 0;
     asj_status status = scan_rays(d, rays, count);

@@ -56,12 +56,12 @@ asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, con
     const double major = along_x ? x : y, minor = along_x ? y : x;
     const double major_step = along_x ? ux : uy, slope = along_x ? uy / ux : ux / uy;
     const double end = major + reach * major_step;
-    const double spread = half_width / fabs(major_step) + 1;
+    const double spread = half_width / fabs(major_step) + 1e-6;
     const int32_t first = (int32_t)floor(fmin(major, end) - half_width), last = (int32_t)ceil(fmax(major, end) + half_width);
     sums s = {0, 0, 0, 0, 0, 0, 0};
     for (int32_t i = first; i <= last; i++) {
-        double middle = minor + (i - major) * slope;
-        for (int32_t j = (int32_t)floor(middle - spread); j <= (int32_t)ceil(middle + spread); j++) {
+        const double middle = minor + (i - major) * slope;
+        for (int32_t j = (int32_t)ceil(middle - spread); j <= (int32_t)floor(middle + spread); j++) {
             int32_t px = along_x ? i : j, py = along_x ? j : i;
             double t = (px - x) * ux + (py - y) * uy, across = (py - y) * ux - (px - x) * uy;
             if (t > 0.5 && t <= reach && fabs(across) <= half_width)

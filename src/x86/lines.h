@@ -26,12 +26,11 @@ static inline float total(__m256 v)
     return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
 }
 
-/* 8 grey values each of a minus those of b */
+/* 8 grey values each of a minus those of b: none is above 32640 (image.h) */
 static inline __m256 difference(const uint16_t *a, const uint16_t *b)
 {
-    const __m256i p = _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)(const void *)a));
-    const __m256i q = _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)(const void *)b));
-    return _mm256_cvtepi32_ps(_mm256_sub_epi32(p, q));
+    const __m128i p = _mm_loadu_si128((const __m128i *)(const void *)a), q = _mm_loadu_si128((const __m128i *)(const void *)b);
+    return _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_sub_epi16(p, q)));
 }
 
 static inline __m256 between(__m256 v, __m256 low, __m256 high)
@@ -110,11 +109,13 @@ static void line_profile_avx2(const asj_frame *frame, const asj_line_profile *pr
     const __m256 ux = _mm256_set1_ps(profile->ux), uy = _mm256_set1_ps(profile->uy);
     const int32_t stride = (int32_t)frame->stride;
     const uint16_t *gray = frame->gray + profile->y * frame->stride + profile->x;
-    if (frame->stride > 30000 || !asj_line_profile_inside(frame, profile)) { /* its products stay below 2^31 */
-        asj_line_profile_of(frame, profile, sums);
-        return;
-    }
+    const int whole = asj_line_profile_inside(frame, profile, 0, profile->count);
     for (int32_t k = 0; k < profile->count; k += ASJ_LINE_LANES) {
+        const int32_t to = k + ASJ_LINE_LANES < profile->count ? k + ASJ_LINE_LANES : profile->count;
+        if (frame->stride > 30000 || (!whole && !asj_line_profile_inside(frame, profile, k, to))) { /* indices stay below 2^31 */
+            asj_line_profile_part(frame, profile, k, to, sums);
+            continue;
+        }
         const __m256 last = _mm256_set1_ps((float)(profile->count - 1)); /* lanes past the end repeat it */
         const __m256 index = _mm256_min_ps(_mm256_add_ps(_mm256_set1_ps((float)k), lane), last);
         const __m256 t = _mm256_add_ps(_mm256_set1_ps(profile->first), _mm256_mul_ps(index, _mm256_set1_ps(profile->step)));
