@@ -3,9 +3,9 @@
  *
  * Rays visit 5 to 10 % of the runs of LANES pixels. So both go in turns: a ray walks until it comes to a run whose local junctions
  * are not known, asks for all runs of its next steps, and stops (scan_walk); then those that were asked for are computed
- * (scan_runs). Each run that was asked for has an entry: its number in entries[] and its branches in branches[]. asked[] is touched
- * by atomic operations only, known[] (1 + entry, 0 = not known) written by scan_runs only, so nothing is read while it is written.
- * The order of the entries differs from time to time, the results do not.
+ * (scan_runs or scan_pixels). Each run that was asked for has an entry: its number in entries[] and its branches in branches[].
+ * asked[] is touched by atomic operations only, known[] (1 + entry, 0 = not known) written when entries are computed only, so
+ * nothing is read while it is written. The order of the entries differs from time to time, the results do not.
  *
  * Planes of the frame as in gradient.cl. */
 
@@ -86,17 +86,20 @@ static short16 is_peak(const scan_sizes *s, const short16 *strengths, int k, int
     return (here > before) & (here >= after);
 }
 
-/* A branch in a list that falls: strength in the high half, angle (1/65536 of a turn) in the low half. Of equal strengths the first
- * one stays first. */
+/* A branch takes a place of a list that falls, when it is stronger than what is there; returns the one that goes on to the next
+ * place. Strength in the high half, angle (1/65536 of a turn) in the low half. */
+static uint take_place(uint *place, uint branch)
+{
+    const uint other = *place;
+    const int stronger = branch >> 16 > other >> 16;
+    *place = stronger ? branch : other;
+    return stronger ? other : branch;
+}
+
 static void insert(uint *list, uint branch)
 {
-    for (int i = 0; i < BRANCHES; i++) {
-        const uint other = list[i];
-        if (branch >> 16 > other >> 16) {
-            list[i] = branch;
-            branch = other;
-        }
-    }
+    for (int i = 0; i < BRANCHES; i++)
+        branch = take_place(list + i, branch);
 }
 
 /* The vertex of the parabola through three neighbouring strengths. */
@@ -106,6 +109,8 @@ static uint interpolate(int sectors, int k, int before, int peak, int after)
     return (uint)peak << 16 | (uint)(65536 * k / sectors + shift & 65535);
 }
 
+/* Two forms with the same results: scan_runs, a work item for each entry, for processors; scan_pixels, one for each pixel, for
+ * devices with thousands of them. */
 __kernel void scan_runs(__global const short *gradient_x, __global const short *gradient_y, int stride, int base, int blocks,
                         __global const int *table, scan_sizes sizes, __global const uint *entries, int first, int last,
                         __global uint *branches, __global uint *known)
@@ -141,6 +146,73 @@ __kernel void scan_runs(__global const short *gradient_x, __global const short *
     for (int i = 0; i < LANES * BRANCHES; i++)
         to[i] = list[i];
     known[run] = (uint)entry + 1;
+}
+
+/* slot: those of this pixel, `step` apart. */
+static void pixel_slots(const scan_sizes *s, const scan_table *t, __global const short *gx, __global const short *gy, int stride,
+                        __local ushort *slot, int step)
+{
+    ushort sum = 0;
+    int i = 0, j = 0;
+    for (; j < s->plain_slots; j++) {
+        for (const int end = t->boundaries[j]; i < end; i++) {
+            __global const int *o = t->offsets + OFFSET_INTS * i;
+            const int at = o[OFFSET_DY] * stride + o[OFFSET_DX], x = gx[at], y = gy[at];
+            const int cross = (x * o[OFFSET_Y] >> 16) - (y * o[OFFSET_CROSS_X] >> 16);
+            const int dot = (x * o[OFFSET_X] >> 16) - (y * o[OFFSET_DOT_Y] >> 16);
+            sum += (ushort)max((int)abs(cross) - (int)abs(dot), 0);
+        }
+        slot[j * step] = sum;
+    }
+    for (; j < s->slots; j++)
+        slot[j * step] = sum + slot[t->extras[j - s->plain_slots] * step];
+}
+
+static int pixel_strength(const scan_sizes *s, const scan_table *t, __local const ushort *slot, int step, int k)
+{
+    __global const int *sector = t->sectors + SECTOR_INTS * (k < 0 ? k + s->sectors : k < s->sectors ? k : k - s->sectors);
+    const int sum = (ushort)(slot[sector[SECTOR_HIGH] * step] - slot[sector[SECTOR_LOW] * step]);
+    return (int)((uint)max(sum - sector[SECTOR_MEAN], 0) * (uint)sector[SECTOR_SCALE] >> 16);
+}
+
+/* The branches of a pixel. */
+static uint4 pixel_branches(const scan_sizes *s, const scan_table *t, __local const ushort *slot, int step)
+{
+    uint first = 0, second = 0, third = 0, fourth = 0;
+    for (int k = 0; k < s->sectors; k++) {
+        const int here = pixel_strength(s, t, slot, step, k);
+        int peak = here >= t->sectors[SECTOR_INTS * k + SECTOR_LEAST];
+        for (int d = 1; peak && d <= s->suppress; d++)
+            peak = here > pixel_strength(s, t, slot, step, k - d) && here >= pixel_strength(s, t, slot, step, k + d);
+        if (!peak)
+            continue;
+        const int before = pixel_strength(s, t, slot, step, k - 1), after = pixel_strength(s, t, slot, step, k + 1);
+        uint branch = interpolate(s->sectors, k, before, here, after);
+        branch = take_place(&first, branch);
+        branch = take_place(&second, branch);
+        branch = take_place(&third, branch);
+        take_place(&fourth, branch);
+    }
+    return (uint4)(first, second, third, fourth);
+}
+
+/* A work-group takes whole entries. slots: sizes.slots for each work item. */
+__kernel void scan_pixels(__global const short *gradient_x, __global const short *gradient_y, int stride, int base, int blocks,
+                          __global const int *table, scan_sizes sizes, __global const uint *entries, int first, int last,
+                          __global uint *branches, __global uint *known, __local ushort *slots)
+{
+    const int entry = first + (int)(get_global_id(0) / LANES), lane = (int)(get_global_id(0) % LANES);
+    if (entry >= last)
+        return;
+    const scan_table t = open_table(&sizes, table);
+    const uint run = entries[entry];
+    const int x = (int)(run % (uint)blocks) * LANES + lane, y = (int)(run / (uint)blocks), step = (int)get_local_size(0);
+    const size_t at = (size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN);
+    __local ushort *slot = slots + get_local_id(0);
+    pixel_slots(&sizes, &t, gradient_x + at, gradient_y + at, stride, slot, step);
+    vstore4(pixel_branches(&sizes, &t, slot, step), (size_t)entry * LANES + (size_t)lane, branches);
+    if (lane == 0)
+        known[run] = (uint)entry + 1;
 }
 
 /* ---- rays ---- */

@@ -10,6 +10,8 @@
 
 #include <string.h>
 
+/* Sizes of work-groups are fixed, as some drivers compile a kernel anew for each, and at most 64: every device has those. */
+
 #define VIEWS 2
 #define MOST_FRAMES (ASJ_MAX_HYPOTHESES * ASJ_MAX_HYPOTHESES) /* of an L-junction */
 
@@ -73,12 +75,6 @@ static size_t round_up(size_t count, size_t multiple)
     return (count + multiple - 1) / multiple * multiple;
 }
 
-/* The size asked for, or 1 where the device does not have such groups. Sizes are fixed: each new one is compiled anew by some. */
-static size_t group_size(const asj_context *context, size_t size)
-{
-    return asj_cl_get_limits(context)->max_work_group < size ? 1 : size;
-}
-
 /* Whether a buffer of this size is a modest part of the device's memory. */
 static int fits(const asj_context *context, uint64_t bytes)
 {
@@ -133,8 +129,7 @@ static asj_status run_describe(asj_context *context, struct asj_cl_match *match,
                                const patch_pyramid *sizes, device_view *to, size_t count)
 {
     const size_t samples = (size_t)(options->patch_size * options->patch_size);
-    const int small = processor(context) || group_size(context, 64) == 1;
-    const size_t local[2] = {small ? 1 : 16, small ? 1 : 4}, global[2] = {count * local[0], local[1]};
+    const size_t local[2] = {processor(context) ? 1 : 16, processor(context) ? 1 : 4}, global[2] = {count * local[0], local[1]};
     const asj_cl_argument arguments[] = {
         ASJ_CL_BUFFER(&match->planes), ASJ_CL_STRUCT(sizes, sizeof *sizes), ASJ_CL_BUFFER(&match->grids),
         ASJ_CL_INT(options->patch_size), ASJ_CL_INT(options->normalise ? 0 : asj_patch_plain_scale(options->patch_size)),
@@ -238,7 +233,7 @@ typedef struct block {
 
 static asj_status run_products(asj_context *context, struct asj_cl_match *match, const block *b)
 {
-    const size_t side = group_size(context, 64) > 1 ? 8 : 1, local[2] = {side, side};
+    const size_t local[2] = {8, 8};
     const size_t global[2] = {round_up((b->frames + ROWS - 1) / ROWS, local[0]),
                               round_up((b->frames2 + COLUMNS - 1) / COLUMNS, local[1])};
     const asj_cl_argument arguments[] = {
@@ -251,7 +246,7 @@ static asj_status run_products(asj_context *context, struct asj_cl_match *match,
 
 static asj_status run_scores(asj_context *context, struct asj_cl_match *match, const block *b)
 {
-    const size_t local[2] = {group_size(context, 64), 1};
+    const size_t local[2] = {64, 1};
     const size_t global[2] = {round_up(b->count2, local[0]), b->count};
     const asj_cl_argument arguments[] = {
         ASJ_CL_BUFFER(&match->products), ASJ_CL_INT(b->frames2), ASJ_CL_BUFFER(&b->views[0]->frames),
@@ -264,7 +259,7 @@ static asj_status run_scores(asj_context *context, struct asj_cl_match *match, c
 static asj_status run_rows(asj_context *context, struct asj_cl_match *match, const block *b)
 {
     const size_t local[2] = {(size_t)b->parts, 1}, global[2] = {(size_t)b->parts, b->count};
-    const size_t local_merge = group_size(context, 16), global_merge = round_up(b->count, local_merge);
+    const size_t local_merge = 16, global_merge = round_up(b->count, local_merge);
     const asj_cl_buffer *to = b->parts > 1 ? &match->lists : &match->rows;
     const asj_cl_argument rows[] = {ASJ_CL_BUFFER(&match->scores), ASJ_CL_INT(b->parts > 1 ? 0 : b->first), ASJ_CL_INT(b->count),
                                     ASJ_CL_INT(b->count2), ASJ_CL_INT(b->parts), ASJ_CL_INT(b->limit), ASJ_CL_BUFFER(to)};
@@ -278,7 +273,7 @@ static asj_status run_rows(asj_context *context, struct asj_cl_match *match, con
 
 static asj_status run_columns(asj_context *context, struct asj_cl_match *match, const block *b)
 {
-    const size_t local = group_size(context, 16), global = round_up(b->count2, local);
+    const size_t local = 16, global = round_up(b->count2, local);
     const asj_cl_argument arguments[] = {ASJ_CL_BUFFER(&match->scores), ASJ_CL_INT(b->first), ASJ_CL_INT(b->count),
                                          ASJ_CL_INT(b->count2), ASJ_CL_INT(b->limit), ASJ_CL_BUFFER(&match->columns)};
     return asj_cl_run(context, "distance_columns", 1, &global, &local, arguments, 6);
@@ -369,7 +364,7 @@ static asj_status rank_partners(asj_context *context, const asj_match_options *o
     if (status != ASJ_OK)
         return status;
     block b = {{views[0], views[1]}, c2->count, c2->frame_count, asj_patch_length(options), options->shortlist,
-               processor(context) ? 1 : (int32_t)group_size(context, 16), 0, 0, 0, 0};
+               processor(context) ? 1 : 16, 0, 0, 0, 0};
     status = asj_cl_reserve(context, &match->columns, bytes2);
     if (status == ASJ_OK)
         status = asj_cl_write(context, &match->columns, 0, columns, bytes2);

@@ -19,6 +19,8 @@
 #define OFFSET_INTS 6
 #define SECTOR_INTS 5
 
+#define GROUP 16 /* work items: small groups share the work evenly, as rays differ in length */
+
 typedef struct scan_sizes {
     int32_t radius, sectors, suppress, offsets, plain_slots, slots;
 } scan_sizes;
@@ -121,12 +123,6 @@ static asj_status load_field(asj_context *context, asj_cl_table *table, const as
     return asj_cl_table_end(context, table, count);
 }
 
-/* Small groups share the work evenly: rays differ in length. */
-static size_t group_size(const asj_context *context)
-{
-    return asj_cl_get_limits(context)->max_work_group < 16 ? 1 : 16;
-}
-
 /* ---- rays ---- */
 
 static asj_status send_rays(asj_context *context, struct asj_cl_scan *state, const asj_ray *rays, size_t count)
@@ -210,13 +206,17 @@ static asj_status compute(asj_context *context, struct asj_cl_scan *state, const
         return status;
     const scan_sizes sizes = {field->sectors.radius, field->sectors.count, field->suppress, field->sectors.offset_count,
                               field->plan.plain_count, field->plan.slot_count};
+    const size_t entries = count - state->done, pixels = 64, memory = pixels * (size_t)sizes.slots * sizeof(uint16_t);
     const asj_cl_argument arguments[] = {
         ASJ_CL_BUFFER(&detect->gradient_x), ASJ_CL_BUFFER(&detect->gradient_y), ASJ_CL_INT(frame->stride),
         ASJ_CL_INT(detect->first), ASJ_CL_INT(frame->blocks), ASJ_CL_BUFFER(&state->field.buffer),
         ASJ_CL_STRUCT(&sizes, sizeof sizes), ASJ_CL_BUFFER(&state->entries), ASJ_CL_INT(state->done), ASJ_CL_INT(count),
-        ASJ_CL_BUFFER(&state->branches), ASJ_CL_BUFFER(&state->known)};
-    const size_t local = group_size(context), global = (count - state->done + local - 1) / local * local;
-    status = asj_cl_run(context, "scan_runs", 1, &global, &local, arguments, 12);
+        ASJ_CL_BUFFER(&state->branches), ASJ_CL_BUFFER(&state->known), ASJ_CL_LOCAL(memory)};
+    const asj_cl_limits *limits = asj_cl_get_limits(context);
+    const int by_pixel = limits->type != ASJ_DEVICE_CPU && memory <= limits->local_memory;
+    const size_t local = by_pixel ? pixels : GROUP, items = by_pixel ? entries * ASJ_LANES : entries;
+    const size_t global = (items + local - 1) / local * local;
+    status = asj_cl_run(context, by_pixel ? "scan_pixels" : "scan_runs", 1, &global, &local, arguments, by_pixel ? 13 : 12);
     if (status == ASJ_OK)
         state->done = count;
     return status;
@@ -225,7 +225,7 @@ static asj_status compute(asj_context *context, struct asj_cl_scan *state, const
 /* Walks as far as all rays can; counts: entries, rays that go on. */
 static asj_status walk(asj_context *context, struct asj_cl_scan *state, const scan_image *image, size_t count, uint32_t counts[2])
 {
-    const size_t local = group_size(context), global = (count + local - 1) / local * local;
+    const size_t local = GROUP, global = (count + local - 1) / local * local;
     const asj_cl_argument arguments[] = {
         ASJ_CL_STRUCT(image, sizeof *image), ASJ_CL_BUFFER(&state->angles.buffer), ASJ_CL_BUFFER(&state->rays), ASJ_CL_INT(count),
         ASJ_CL_BUFFER(&state->known), ASJ_CL_BUFFER(&state->branches), ASJ_CL_BUFFER(&state->asked),
