@@ -16,6 +16,9 @@ PATHS = {"asj-cli": "cli/asj-cli", "noise": "tests/accuracy/noise", "accuracy": 
          "isotropic_junctions": "tests/experiments/isotropic_junctions", "room_judge": "tests/experiments/room_judge"}
 
 
+ALONE = ("--quiet", "--backend", "cpu", "--threads", "1")  # other jobs run beside it, and processor time is what is reported
+
+
 class Failure(Exception):
     """A program failed or took longer than it may."""
 
@@ -91,7 +94,7 @@ class Library:
             path = self._file(".json")
             if detector.isotropic:
                 return path, self.run("isotropic_junctions", detector.arguments + (image, path), limit)[1]
-            words = ("detect", "--quiet", "--threads", 1) + detector.arguments + ("-o", path, image)
+            words = ("detect",) + ALONE + detector.arguments + ("-o", path, image)
             return path, self.run("asj-cli", words, limit)[1]
         return self._once((detector, image), compute)
 
@@ -102,7 +105,7 @@ class Library:
         """What asj-cli match writes as JSON, line segments included, and the seconds of processor time."""
         def compute():
             path = self._file(".match.json")
-            words = ("match", "--quiet", "--threads", 1) + tuple(arguments) + ("--lines", "-o", path, image1, image2)
+            words = ("match",) + ALONE + tuple(arguments) + ("--lines", "-o", path, image1, image2)
             seconds = self.run("asj-cli", words, limit)[1]
             with open(path) as file:
                 return json.load(file), seconds

@@ -16,10 +16,10 @@ SHARES = {"noise": 220, "repeatability": 230, "scale": 20, "points": 300, "lines
 
 
 class Session:
-    def __init__(self, arguments, root, build):
+    def __init__(self, arguments, build):
         self.start = time.monotonic()
         self.arguments, self.quick, self.full = arguments, arguments.quick, arguments.full
-        self.out = os.path.abspath(os.path.join(root, arguments.out))
+        self.out = arguments.out
         self.work = os.path.join(self.out, "work")
         shutil.rmtree(self.work, ignore_errors=True)
         self.library = library.Library(build, os.path.join(self.work, "junctions"))
@@ -65,10 +65,10 @@ class Session:
                 "OpenCV": cv2.__version__, "seconds": round(seconds)}
 
 
-def run(arguments, root, build):
+def run(arguments, build):
     cv2.setNumThreads(1)
     start = time.monotonic()
-    session, done = Session(arguments, root, build), {}
+    session, done = Session(arguments, build), {}
     if arguments.write_images:
         session.write_images()
         return 0
