@@ -115,31 +115,6 @@ static void find_peaks(const asj_field *field, const int16_t *z, const uint16_t 
     }
 }
 
-/* The vertex of the parabola through three neighbouring strengths, in 1/65536 of a turn. The maximum is larger than the one before,
- * so the denominator is positive. */
-static uint16_t interpolate(const asj_sectors *s, int32_t k, int32_t before, int32_t peak, int32_t after)
-{
-    const int32_t width = 65536 / s->count;
-    int32_t shift = (after - before) * width / (2 * (2 * peak - before - after));
-    return (uint16_t)(65536 * k / s->count + shift);
-}
-
-static void insert(asj_field_branch *list, asj_field_branch branch)
-{
-    for (int i = 0; i < ASJ_FIELD_BRANCHES; i++)
-        if (branch.strength > list[i].strength) {
-            asj_field_branch moved = list[i];
-            list[i] = branch;
-            branch = moved;
-        }
-}
-
-void asj_field_add(const asj_field *field, int32_t k, int32_t before, int32_t peak, int32_t after,
-                   asj_field_branch list[ASJ_FIELD_BRANCHES])
-{
-    insert(list, (asj_field_branch){interpolate(&field->sectors, k, before, peak, after), (uint16_t)peak});
-}
-
 /* Strengths and peaks at ASJ_LANES pixels; where they stand in the scratch. */
 static void evaluate(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, const uint16_t *least,
                      uint16_t *scratch, int16_t **z, int16_t **peaks)
@@ -175,8 +150,10 @@ void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, 
         if (!any_lane(peak))
             continue;
         for (int i = 0; i < ASJ_LANES; i++)
-            if (peak[i])
-                asj_field_add(field, k, before[i], here[i], after[i], branches[i]);
+            if (peak[i]) {
+                const int32_t shift = asj_field_shift(65536 / s->count, before[i], here[i], after[i]);
+                asj_field_insert(branches[i], (asj_field_branch){(uint16_t)(65536 * k / s->count + shift), (uint16_t)here[i]});
+            }
     }
 }
 

@@ -55,9 +55,23 @@ asj_status asj_field_rows(asj_context *context, const asj_field *field, const as
 
 /* ---- for the vector forms of the above ---- */
 
-/* Puts the peak at sector k, with the strengths of the sectors before and after, into a pixel's list. */
-void asj_field_add(const asj_field *field, int32_t k, int32_t before, int32_t peak, int32_t after,
-                   asj_field_branch list[ASJ_FIELD_BRANCHES]);
+/* How far the vertex of the parabola through three neighbouring strengths is from the middle one, whose sector is `width` wide. The
+ * maximum is larger than the one before, so the denominator is positive. */
+static inline int32_t asj_field_shift(int32_t width, int32_t before, int32_t peak, int32_t after)
+{
+    return (after - before) * width / (2 * (2 * peak - before - after));
+}
+
+/* Puts a branch into a pixel's list, strongest first; of equals the one put in first comes first. */
+static inline void asj_field_insert(asj_field_branch list[ASJ_FIELD_BRANCHES], asj_field_branch branch)
+{
+    int i = ASJ_FIELD_BRANCHES - 1;
+    if (branch.strength <= list[i].strength)
+        return;
+    for (; i > 0 && list[i - 1].strength < branch.strength; i--)
+        list[i] = list[i - 1];
+    list[i] = branch;
+}
 
 /* Clears the bits of pixels outside the image; masks[0] is that of run `run`. */
 void asj_field_cut(const asj_frame *frame, int32_t run, int32_t runs, uint16_t *masks);

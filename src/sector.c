@@ -66,10 +66,12 @@ static int32_t list_offsets(int32_t radius, offset *list)
 static asj_status make_room(asj_memory *memory, asj_sectors *s)
 {
     size_t offsets = (size_t)s->offset_count, count = (size_t)s->count;
-    s->memory = asj_allocate(memory, 1, 4 * offsets * sizeof(int16_t) + count * (2 * sizeof(int32_t) + 2 * sizeof(uint16_t)));
+    const size_t per_offset = sizeof *s->factors + 4 * sizeof(int16_t), per_sector = 2 * sizeof(int32_t) + 2 * sizeof(uint16_t);
+    s->memory = asj_allocate(memory, 1, offsets * per_offset + count * per_sector);
     if (!s->memory)
         return ASJ_ERROR_MEMORY;
-    s->first = s->memory;
+    s->factors = s->memory;
+    s->first = (int32_t *)(s->factors + offsets);
     s->size = s->first + count;
     s->dx = (int16_t *)(s->size + count);
     s->dy = s->dx + offsets;
@@ -101,6 +103,23 @@ static void set_direction(asj_sectors *s, int32_t i, double unit)
     const int32_t ux = (int32_t)lrint(fmin(unit * x / length, 32767)), uy = (int32_t)lrint(fmin(unit * y / length, 32767));
     s->ux[i] = (int16_t)(s->dx[i] < 0 ? -ux : ux);
     s->uy[i] = (int16_t)(s->dy[i] < 0 ? -uy : uy);
+}
+
+static int32_t twice(int16_t value)
+{
+    const uint32_t half = (uint16_t)value, both = half << 16 | half;
+    int32_t word;
+    memcpy(&word, &both, sizeof word);
+    return word;
+}
+
+static void set_factors(asj_sectors *s, int32_t i)
+{
+    const asj_direction u = asj_sector_direction(s, i);
+    s->factors[i][0] = twice(u.y);
+    s->factors[i][1] = twice(u.cross_x);
+    s->factors[i][2] = twice(u.x);
+    s->factors[i][3] = twice(u.dot_y);
 }
 
 /* The members of sector k are a circular run; finds where it starts. */
@@ -135,6 +154,7 @@ static void fill(asj_sectors *s, const offset *list, double tau)
         s->dx[i] = (int16_t)list[i].dx;
         s->dy[i] = (int16_t)list[i].dy;
         set_direction(s, i, unit);
+        set_factors(s, i);
     }
     for (int32_t k = 0; k < s->count; k++) {
         s->mean[k] = (uint16_t)lrint(one * ASJ_GAMMA_MEAN * s->size[k]);

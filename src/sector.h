@@ -17,6 +17,7 @@ typedef struct asj_sectors {
     int32_t gamma_bits;   /* junction-ness is held in 1 / 2^gamma_bits */
     int16_t *dx, *dy;     /* the offsets */
     int16_t *ux, *uy;     /* their unit vectors, 1 = 2^(gamma_bits + 6), at most 32767 in size */
+    int32_t (*factors)[4]; /* of each offset: y, cross_x, x and dot_y of its asj_direction, each in both halves of a word */
     int32_t *first;       /* sector k: the `size[k]` offsets from `first[k]` on, circularly */
     int32_t *size;
     uint16_t *mean;       /* expected sum under the null model, 1 / 2^gamma_bits */

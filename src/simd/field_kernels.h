@@ -18,8 +18,9 @@ static void prefix_sums(const asj_sectors *s, const int16_t *gx, const int16_t *
     }
     for (int32_t i = 0; i < s->offset_count; i++) {
         const ptrdiff_t at = s->dy[i] * stride + s->dx[i];
-        const asj_direction u = asj_sector_direction(s, i);
-        const vec ux = v_set1(u.x), uy = v_set1(u.y), cross_x = v_set1(u.cross_x), dot_y = v_set1(u.dot_y);
+        const int32_t *factors = s->factors[i];
+        const vec uy = v_set1_32(factors[0]), cross_x = v_set1_32(factors[1]);
+        const vec ux = v_set1_32(factors[2]), dot_y = v_set1_32(factors[3]);
         prefix += ASJ_LANES;
         for (int v = 0; v < V_RUN; v++) {
             const vec x = v_load(gx + at + v * V_LANES), y = v_load(gy + at + v * V_LANES);
@@ -55,14 +56,18 @@ static void field_block(const asj_field *field, const asj_frame *frame, int32_t 
             v_store(z + (k + pad) * ASJ_LANES + v * V_LANES, v_strength(sector_sum(s, scratch, k, v), s->mean[k], s->scale[k]));
     repeat_ends(z, s->count, pad, ASJ_LANES);
     memset(branches, 0, ASJ_LANES * sizeof *branches);
-    for (int32_t k = 0; k < s->count; k++)
+    const int32_t width = 65536 / s->count;
+    for (int32_t k = 0; k < s->count; k++) {
+        const int32_t angle = 65536 * k / s->count;
         for (int v = 0; v < V_RUN; v++) {
             const int16_t *here = z + (k + pad) * ASJ_LANES + v * V_LANES;
             for (uint32_t bits = v_bits(peak(here, ASJ_LANES, field->suppress, (int16_t)field->keep[k])); bits; bits &= bits - 1) {
                 const int i = __builtin_ctz(bits);
-                asj_field_add(field, k, here[i - ASJ_LANES], here[i], here[i + ASJ_LANES], branches[v * V_LANES + i]);
+                const int32_t shift = asj_field_shift(width, here[i - ASJ_LANES], here[i], here[i + ASJ_LANES]);
+                asj_field_insert(branches[v * V_LANES + i], (asj_field_branch){(uint16_t)(angle + shift), (uint16_t)here[i]});
             }
         }
+    }
 }
 #endif
 
