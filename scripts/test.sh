@@ -86,7 +86,7 @@ core_alone() {
 with_clang() {
     CC=clang CXX=clang++
     export CC CXX
-    build_and_test build-clang '--no-suite accuracy --no-suite experiments' -Dauto_features=enabled --werror
+    build_and_test build-clang '--no-suite accuracy --no-suite experiments --no-suite opencl' -Dauto_features=enabled --werror
 }
 
 # Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code.
