@@ -20,6 +20,7 @@ typedef struct measured {
     double limit;       /* GB/s of a copy */
     double times[RUNS]; /* ms of one run */
     double kernels;     /* of these, in kernels */
+    double processor;   /* what all threads of this process spend on a run: of a device that is this processor, its work */
 } measured;
 
 static int by_value(const void *a, const void *b)
@@ -43,6 +44,13 @@ static double time_once(const operation *op, target *t, const subject *s, uint16
     for (int i = 0; i < repeat; i++)
         op->run(t->context, s, scratch, output);
     return (clock_ms(t) - start) / repeat;
+}
+
+static double process_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
 /* Time that the device itself takes for one run. */
@@ -72,6 +80,8 @@ static void show(const operation *op, const measured *m, const subject *s, doubl
 {
     const double ms = m->times[RUNS / 2];
     printf("%-14s %-40s %9.3f ms %8.3f ns/px %7.2f x", op->name, m->target->name, ms, 1e6 * ms / op->pixels(s), reference / ms);
+    if (m->target->form != FORM_NONE)
+        printf(", processor %8.3f ms", m->processor);
     if (op->bytes) {
         const double on_device = m->target->form == FORM_NONE ? ms : m->kernels, rate = 1e-6 * op->bytes(s) / on_device;
         if (m->target->form != FORM_NONE)
@@ -97,6 +107,10 @@ static void bench_operation(const operation *op, const subject *s, measured *all
     for (int32_t i = 0; i < count; i++) {
         if (!op->whole && all[i].target->form != FORM_NONE)
             continue;
+        const double before = process_ms();
+        for (int run = 0; run < RUNS; run++)
+            op->run(all[i].target->context, s, scratch, output);
+        all[i].processor = (process_ms() - before) / RUNS;
         all[i].kernels = kernel_time(op, all[i].target, s, scratch, output);
         qsort(all[i].times, RUNS, sizeof all[i].times[0], by_value);
         show(op, &all[i], s, all[0].times[RUNS / 2]);
