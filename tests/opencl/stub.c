@@ -113,8 +113,13 @@ static void count_event(cl_int error, const cl_event *event)
 
 PASS(GetPlatformIDs, (cl_uint room, cl_platform_id *list, cl_uint *found), (room, list, found))
 PASS(GetPlatformInfo, (cl_platform_id of, cl_platform_info what, size_t room, void *to, size_t *size), (of, what, room, to, size))
-PASS(GetDeviceIDs, (cl_platform_id of, cl_device_type type, cl_uint room, cl_device_id *list, cl_uint *found),
-     (of, type, room, list, found))
+
+EXPORT cl_int CL_API_CALL clGetDeviceIDs(cl_platform_id of, cl_device_type type, cl_uint room, cl_device_id *list, cl_uint *found)
+{
+    if (fails("clGetDeviceIDs", 0))
+        return FAILURE;
+    return state.no_devices ? CL_DEVICE_NOT_FOUND : real.GetDeviceIDs(of, type, room, list, found);
+}
 
 EXPORT cl_int CL_API_CALL clGetDeviceInfo(cl_device_id of, cl_device_info what, size_t room, void *to, size_t *size)
 {

@@ -12,6 +12,8 @@ typedef struct stub_state {
     int64_t fail_at;         /* the number of the call that fails, from 1; 0 = none */
     int32_t fail_from_there; /* 1 = and all after it, but for those that release: a device that is lost */
     int32_t all_are_gpus;    /* 1 = every device says that it is a GPU */
+    int32_t no_devices;      /* 1 = platforms have none */
+    int32_t reserved_1;
     const char *counted;     /* only calls with this in their name are counted; NULL = all */
     /* what has happened */
     int64_t calls;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Every call of OpenCL fails once: the n-th alone, for every n, and the n-th with all after it, for some; where kernels are
  * compiled, those about programs. A context that asked for OpenCL reports an error, or gives the right result; one that may choose
- * gives the right result in any case. Nothing is left behind: no memory, no object of OpenCL.
+ * gives the right result in any case. Nothing is left behind: no memory, no object of OpenCL. The same where there is nothing to
+ * use: a platform without devices, a library that is none.
  *
  * usage: test_faults PATH-OF-STUB [STEP]. With a step (slow builds), only every so many calls. Exit code 77 = there is no device,
  * unless ASJ_REQUIRE_OPENCL is 1. */
@@ -210,6 +211,42 @@ static void all_failures(const setting *set)
     fflush(stdout);
 }
 
+/* --- nothing to use --------------------------------------------------------------------------------------------------------- */
+
+/* Choosing gives the CPU's result in silence, insisting an error that says why. */
+static void nothing_to_use(const char *name, const char *reason)
+{
+    const setting choose = {name, ASJ_BACKEND_AUTO, 0, 1, 1, NULL}, insist = {name, ASJ_BACKEND_OPENCL, 0, 1, 1, NULL};
+    asj_context *context = NULL;
+    work_answer a;
+    memset(&a, 0, sizeof a);
+    tell_stub(&choose, 0);
+    if (open_context(&choose, &context) != ASJ_OK || work_run(context, &images, &a) != ASJ_OK || !work_same(&a, &expected))
+        complain(&choose, 0, "no result: %s", heard);
+    if (*heard || a.backend != ASJ_BACKEND_CPU)
+        complain(&choose, 0, "not the CPU in silence: %s", heard);
+    work_forget(&a);
+    asj_context_free(&context);
+    check_rest(&choose, 0);
+    tell_stub(&insist, 0);
+    if (open_context(&insist, &context) != ASJ_ERROR_DEVICE || context || !strstr(heard, reason))
+        complain(&insist, 0, "not an error about '%s': %s", reason, heard);
+    check_rest(&insist, 0);
+}
+
+static void all_that_is_nothing(void)
+{
+    const char *const whole = library;
+    stub->no_devices = 1;
+    nothing_to_use("a platform without devices", "has no devices");
+    stub->no_devices = 0;
+    library = "libm.so.6";
+    nothing_to_use("a library without OpenCL", "libm.so.6 has no cl");
+    library = "/nonexistent/libOpenCL.so.1";
+    nothing_to_use("no library", "no OpenCL library");
+    library = whole;
+}
+
 /* --- beginning and end ------------------------------------------------------------------------------------------------------ */
 
 static int find_stub(void)
@@ -271,6 +308,8 @@ int main(int argc, char **argv)
     if (find_stub() != 0 || work_images_make(&images) != 0)
         return 99;
     int result = make_expected();
+    if (result == 0)
+        all_that_is_nothing();
     for (size_t i = 0; i < sizeof settings / sizeof settings[0] && result == 0 && problems < 20; i++)
         all_failures(&settings[i]);
     for (size_t i = 0; i < entry_count; i++)
