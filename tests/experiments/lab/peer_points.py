@@ -14,6 +14,7 @@ from .matches import NONE, Matches
 RATIO = 1.5
 ELSEWHERE = 6.0  # px
 NEAREST = 12     # candidates of Affine-SIFT looked at for one that lies elsewhere
+BLOCK = 500      # rows of distances held at a time
 
 
 def _make(name, *arguments, **options):
@@ -51,13 +52,9 @@ class Sift:
         (p1, d1), (p2, d2) = (_features(self.extractor, image) for image in (first, second))
         if min(len(p1), len(p2)) < 2:
             return NONE, NONE
-        index, distance = _nearest(d1, d2, min(NEAREST if self.affine else 2, len(p2)))
-        second_best = distance[:, 1]
-        if self.affine:
-            far = np.hypot(*np.moveaxis(p2[index] - p2[index[:, :1]], -1, 0)) > ELSEWHERE
-            second_best = np.where(far.any(1), distance[np.arange(len(far)), far.argmax(1)], distance[:, -1])
-        kept = RATIO * distance[:, 0] <= second_best
-        p1, p2 = p1[kept], p2[index[kept, 0]]
+        index, best, second_best = _nearest(d1, d2, p2 if self.affine else None)
+        kept = RATIO * best <= second_best
+        p1, p2 = p1[kept], p2[index[kept]]
         if self.affine and len(p1):
             kept = np.unique(np.round(np.column_stack([p1, p2])), axis=0, return_index=True)[1]
             p1, p2 = p1[kept], p2[kept]
@@ -70,17 +67,34 @@ def _features(extractor, image):
     return place, descriptors
 
 
-def _nearest(d1, d2, count):
-    """For each row of d1 the `count` nearest rows of d2 and their squared distances, nearest first."""
+def _nearest(d1, d2, places):
+    """For each row of d1: index of the nearest row of d2, its squared distance, and that of the second nearest; with places the
+    nearest of the first NEAREST that lies elsewhere."""
     d1, d2 = d1.astype(np.float32), d2.astype(np.float32)
     norm, out = (d2 * d2).sum(1), []
-    for rows in np.array_split(d1, max(1, len(d1) // 1000)):
+    for begin in range(0, len(d1), BLOCK):
+        rows = d1[begin:begin + BLOCK]
         squared = norm - 2 * rows @ d2.T + (rows * rows).sum(1)[:, None]
-        near = np.argpartition(squared, count - 1, axis=1)[:, :count]
-        values = np.take_along_axis(squared, near, 1)
-        order = values.argsort(1)
-        out.append((np.take_along_axis(near, order, 1), np.take_along_axis(values, order, 1)))
+        out.append(_two_best(squared, places))
     return tuple(np.concatenate(parts) for parts in zip(*out))
+
+
+def _two_best(squared, places):
+    every = np.arange(len(squared))
+    first = squared.argmin(1)
+    best = squared[every, first]
+    current, second, left = first, np.zeros(len(squared), np.float32), every
+    for _ in range(NEAREST):
+        squared[left, current] = np.inf
+        current = squared[left].argmin(1) if len(left) < len(squared) else squared.argmin(1)
+        second[left] = squared[left, current]
+        if places is None:
+            break
+        near = np.hypot(*(places[current] - places[first[left]]).T) <= ELSEWHERE
+        left, current = left[near], current[near]
+        if not len(left):
+            break
+    return first, best, second
 
 
 # name -> maker of something with match(gray image, gray image) -> points of image 1, points of image 2
