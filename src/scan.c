@@ -38,22 +38,33 @@
 
 #define TWO_PI 6.283185307179586
 
-void asj_scan_prepare(const asj_context *context, const asj_detect_options *options, const asj_field *field,
-                      int32_t width, int32_t height, asj_scan *scan)
+void asj_scan_set_size(const asj_context *context, const asj_detect_options *options, int32_t width, int32_t height, asj_scan *scan)
 {
     const double log_tests = 0.5 * log((double)width * height);
     const double log_p = fmin(log(options->scan_epsilon) - log_tests, 0);
     const double threshold = asj_nfa_arc_threshold(context->nfa, log_p, 2 * options->arc_half_width + 1);
+    scan->threshold = (int32_t)fmax(1, ceil(threshold * ASJ_STRENGTH_ONE));
+}
+
+void asj_scan_prepare(const asj_context *context, const asj_detect_options *options, const asj_field *field,
+                      int32_t width, int32_t height, asj_scan *scan)
+{
+    const double one = (double)(1 << 30);
     scan->field = field;
     scan->cache = NULL;
     scan->half_width = options->arc_half_width;
     scan->tolerance = options->scan_tolerance;
     scan->axial = options->scan_axial;
-    scan->threshold = (int32_t)fmax(1, ceil(threshold * ASJ_STRENGTH_ONE));
     for (int i = 0; i < 1024; i++) {
         scan->unit[i][0] = (int16_t)lrint(16384 * cos(TWO_PI * i / 1024));
         scan->unit[i][1] = (int16_t)lrint(16384 * sin(TWO_PI * i / 1024));
     }
+    for (int32_t r = 0; r < ASJ_SCAN_TABLE_RADIUS; r++)
+        for (int32_t d = 0; d < 4; d++) {
+            scan->arc_cosine[r][d] = r ? (int32_t)lrint(one * cos((double)d / r)) : 0;
+            scan->arc_sine[r][d] = r ? (int32_t)lrint(one * sin((double)d / r)) : 0;
+        }
+    asj_scan_set_size(context, options, width, height, scan);
 }
 
 #define MAX_ARC 7 /* 2 arc_half_width + 1 */
@@ -108,22 +119,16 @@ typedef struct direction {
     uint16_t angle;
 } direction;
 
+#define REOPEN 3 /* steps in a row that must look ahead again after a crossing; one or two happen by chance in noise */
+
 /* d / r turned into a rotation: cos and sin in 2^-30. One table of them for all rays, since r is a whole number; beyond the table
  * the arc is straight to within 0.01 px. */
-#define REOPEN 3 /* steps in a row that must look ahead again after a crossing; one or two happen by chance in noise */
-#define TABLE_RADIUS 256
-typedef struct arc_table {
-    int32_t cosine[TABLE_RADIUS][4], sine[TABLE_RADIUS][4];
-} arc_table;
-
-static sample place(const direction *ray, const arc_table *table, int32_t r, int32_t d)
+static sample place(const asj_scan *scan, const direction *ray, int32_t r, int32_t d)
 {
     const int32_t size = d < 0 ? -d : d;
-    int64_t c = (int64_t)1 << 30, s = ((int64_t)size << 30) / r;
-    if (r < TABLE_RADIUS) {
-        c = table->cosine[r][size];
-        s = table->sine[r][size];
-    }
+    const int in_table = r < ASJ_SCAN_TABLE_RADIUS;
+    const int64_t c = in_table ? scan->arc_cosine[r][size] : (int64_t)1 << 30;
+    int64_t s = in_table ? scan->arc_sine[r][size] : ((int64_t)size << 30) / r;
     if (d < 0)
         s = -s;
     /* (cos a_d, sin a_d) = (c ux - s uy, c uy + s ux) */
@@ -168,12 +173,12 @@ typedef struct arc {
     int32_t forward, ahead, axial; /* of the forward branches; of those among them that point ahead; of the axial branches */
 } arc;
 
-static arc arc_sums(walker *w, const arc_table *table, const direction *way, int32_t r)
+static arc arc_sums(walker *w, const direction *way, int32_t r)
 {
     const asj_scan *scan = w->scan;
     arc sums = {0, 0, 0};
     for (int32_t i = 0; i <= 2 * scan->half_width; i++) {
-        const sample at = place(way, table, r, i - scan->half_width);
+        const sample at = place(scan, way, r, i - scan->half_width);
         const asj_field_branch *list = branches_at(w, i, at.x, at.y);
         int32_t forward, axial;
         int ahead, ignored;
@@ -219,7 +224,7 @@ static int passes(const asj_scan *scan, const arc *sums)
 
 /* While nothing fails, every other step need not be looked at: when the one behind it passes, its own failure would be tolerated
  * and leave no trace. */
-static void walk(walker *w, const arc_table *table, asj_ray *ray)
+static void walk(walker *w, asj_ray *ray)
 {
     const asj_scan *scan = w->scan;
     const double one = (double)((int64_t)1 << 30);
@@ -231,15 +236,15 @@ static void walk(walker *w, const arc_table *table, asj_ray *ray)
     ray->forward = ray->axial = 0;
     for (int32_t r = ray->start > 0 ? ray->start : 1; goes_on; r++) {
         if (scan->tolerance > 0 && p.forward_failures == 0 && (!scan->axial || p.axial_failures == 0)) {
-            const arc next = arc_sums(w, table, &way, r + 1);
+            const arc next = arc_sums(w, &way, r + 1);
             if (!passes(scan, &next)) {
-                const arc sums = arc_sums(w, table, &way, r);
+                const arc sums = arc_sums(w, &way, r);
                 goes_on = advance(scan, &sums, bridge, r, &p, ray);
             }
             r++;
             goes_on = goes_on && advance(scan, &next, bridge, r, &p, ray);
         } else {
-            const arc sums = arc_sums(w, table, &way, r);
+            const arc sums = arc_sums(w, &way, r);
             goes_on = advance(scan, &sums, bridge, r, &p, ray);
         }
     }
@@ -247,48 +252,61 @@ static void walk(walker *w, const arc_table *table, asj_ray *ray)
         ray->axial = ray->forward + bridge;
 }
 
-static void fill_table(arc_table *table)
+/* The next ray of thread `own`: of its part of the list, then of what others have left. Neighbours in the list need the same local
+ * junctions, which each thread computes for itself. next[i]: first ray of part i that nobody has taken. Returns `count` at the end. */
+static size_t take_ray(size_t *next, size_t threads, size_t own, size_t count)
 {
-    const double one = (double)(1 << 30);
-    memset(table, 0, sizeof *table);
-    for (int32_t r = 1; r < TABLE_RADIUS; r++)
-        for (int32_t d = 0; d < 4; d++) {
-            table->cosine[r][d] = (int32_t)lrint(one * cos((double)d / r));
-            table->sine[r][d] = (int32_t)lrint(one * sin((double)d / r));
-        }
+    for (size_t k = 0; k < threads; k++) {
+        const size_t part = (own + k) % threads, end = count * (part + 1) / threads;
+        size_t ray;
+#ifdef _OPENMP
+#pragma omp atomic capture
+#endif
+        ray = next[part]++;
+        if (ray < end)
+            return ray;
+    }
+    return count;
+}
+
+static void follow_rays(const asj_context *context, const asj_scan *scan, const asj_frame *frame, const asj_scan_cache *cache,
+                        uint16_t *scratch, size_t *next, int32_t threads, asj_ray *rays, size_t count)
+{
+    for (int32_t i = 0; i < threads; i++)
+        next[i] = count * (size_t)i / (size_t)threads;
+#ifdef _OPENMP
+#pragma omp parallel num_threads(threads)
+#endif
+    {
+        size_t thread = 0;
+#ifdef _OPENMP
+        thread = (size_t)omp_get_thread_num();
+#endif
+        walker w = {context->ops, scan, frame, cache, thread, scratch + thread * asj_field_scratch(scan->field), {0}, {NULL}};
+        for (size_t i = take_ray(next, (size_t)threads, thread, count); i < count;
+             i = take_ray(next, (size_t)threads, thread, count))
+            walk(&w, &rays[i]);
+    }
 }
 
 asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count)
 {
     const int32_t threads = (size_t)context->threads < count ? context->threads : (int32_t)(count ? count : 1);
-    const size_t scratch_size = asj_field_scratch(scan->field);
     asj_status status = ASJ_OK;
-    arc_table *table = asj_allocate(&context->memory, 1, sizeof *table);
     asj_scan_cache own = {0};
     const asj_scan_cache *cache = scan->cache;
     if (!cache) {
         status = asj_scan_cache_prepare(context, frame, threads, &own);
         cache = &own;
     }
-    uint16_t *scratch = asj_allocate(&context->memory, (size_t)threads * scratch_size, sizeof *scratch);
-    if (status == ASJ_OK && table && scratch) {
-        fill_table(table);
-#ifdef _OPENMP
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
-#endif
-        for (int64_t i = 0; i < (int64_t)count; i++) {
-            size_t thread = 0;
-#ifdef _OPENMP
-            thread = (size_t)omp_get_thread_num();
-#endif
-            walker w = {context->ops, scan, frame, cache, thread, scratch + thread * scratch_size, {0}, {NULL}};
-            walk(&w, table, &rays[i]);
-        }
-    } else if (status == ASJ_OK) {
+    uint16_t *scratch = asj_allocate(&context->memory, (size_t)threads * asj_field_scratch(scan->field), sizeof *scratch);
+    size_t *next = asj_allocate(&context->memory, (size_t)threads, sizeof *next);
+    if (status == ASJ_OK && scratch && next)
+        follow_rays(context, scan, frame, cache, scratch, next, threads, rays, count);
+    else if (status == ASJ_OK)
         status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for following rays");
-    }
+    asj_release(&context->memory, next);
     asj_release(&context->memory, scratch);
     asj_scan_cache_free(&context->memory, &own);
-    asj_release(&context->memory, table);
     return status;
 }

@@ -13,6 +13,8 @@ typedef struct asj_ray {
     int32_t forward, axial; /* out: last radius that passed, 0 = none; axial 0 when not asked for */
 } asj_ray;
 
+#define ASJ_SCAN_TABLE_RADIUS 256
+
 /* What is the same for all rays of an image; made once for a set of options and an image size. */
 typedef struct asj_scan {
     const asj_field *field;
@@ -22,10 +24,15 @@ typedef struct asj_scan {
     int32_t axial;       /* scan by axis as well */
     int32_t threshold;   /* least sum of an arc, in 1/256 standard deviations */
     int16_t unit[1024][2]; /* cos and sin of 1024 angles, 1 = 16384 */
+    int32_t arc_cosine[ASJ_SCAN_TABLE_RADIUS][4], arc_sine[ASJ_SCAN_TABLE_RADIUS][4]; /* of d / r at [r][d], 1 = 2^30 */
 } asj_scan;
 
 void asj_scan_prepare(const asj_context *context, const asj_detect_options *options, const asj_field *field,
                       int32_t width, int32_t height, asj_scan *scan);
+
+/* The same for another size of the image. */
+void asj_scan_set_size(const asj_context *context, const asj_detect_options *options, int32_t width, int32_t height,
+                       asj_scan *scan);
 
 /* Follows `count` rays. */
 asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);

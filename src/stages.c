@@ -32,6 +32,7 @@ static asj_status prepare_tables(asj_context *context, const asj_detect_options 
         status = asj_isotropic_create(context, options, &detector->isotropic);
     if (status != ASJ_OK)
         return status;
+    asj_scan_prepare(context, options, &detector->field, 1, 1, &detector->scan);
     detector->options = *options;
     detector->ready = 1;
     return ASJ_OK;
@@ -47,7 +48,7 @@ asj_status asj_stage_prepare(asj_detection_run *d, int32_t width, int32_t height
         return status;
     struct asj_detector *detector = d->detector = context->detector;
     asj_isotropic_set_size(d->options, width, height, &detector->isotropic);
-    asj_scan_prepare(context, d->options, &detector->field, width, height, &detector->scan);
+    asj_scan_set_size(context, d->options, width, height, &detector->scan);
     status = asj_scan_cache_prepare(context, &detector->frame, context->threads, &detector->scan_cache);
     if (status != ASJ_OK)
         return status;

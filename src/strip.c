@@ -46,6 +46,12 @@ static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double ux, d
     }
 }
 
+/* floor() for what is near the image, without a call. */
+static inline int32_t whole(double value)
+{
+    return (int32_t)(value + 131072) - 131072;
+}
+
 /* Walks along the axis (x or y) that the strip is longer on, and across it over the few pixels that can be inside. */
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          double x, double y, double angle, double length)
@@ -61,7 +67,8 @@ asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, con
     sums s = {0, 0, 0, 0, 0, 0, 0};
     for (int32_t i = first; i <= last; i++) {
         const double middle = minor + (i - major) * slope;
-        for (int32_t j = (int32_t)ceil(middle - spread); j <= (int32_t)floor(middle + spread); j++) {
+        const int32_t to = whole(middle + spread);
+        for (int32_t j = whole(middle - spread) + 1; j <= to; j++) {
             int32_t px = along_x ? i : j, py = along_x ? j : i;
             double t = (px - x) * ux + (py - y) * uy, across = (py - y) * ux - (px - x) * uy;
             if (t > 0.5 && t <= reach && fabs(across) <= half_width)
