@@ -9,6 +9,9 @@ from .. import charts, criteria, images, junctions, library, pairs
 from ..report import Part
 
 
+RIVALS = ("paper, ASJ", "isotropic of paper, ACJ", "isotropic of default, ACJ")
+
+
 class Method:
     """A detector with the criterion that its junctions are judged by; apart: taken apart into L-junctions first."""
 
@@ -134,17 +137,20 @@ def run(session):
     part.chart(charts.curves(panels[2:]))
     _report_homographies(part, cells, all_methods)
     part.numbers["cells"] = [dict(c, change=k[0], level=k[1], method=k[2], picture=k[3]) for k, c in cells.items()]
-    part.numbers["above"] = _above(part.numbers["zoom"])
-    below = [f for f, ok in zip(images.FACTORS[1:], part.numbers["above"]) if not ok]
-    part.findings.append("Repeatability of the default preset above the paper preset's and the isotropic junctions' at every zoom "
-                         "below 1: %s." % ("no, not at " + ", ".join("%g" % f for f in below) if below else "yes"))
-    part.text(*part.findings)
+    _compare(part)
     part.cut = jobs.cut
     return part
 
 
-def _above(zoom):
-    """For every factor below 1: the default preset repeats more than the paper preset and the isotropic junctions."""
-    rates = zoom["percent"]
-    others = [r for n, r in rates.items() if n in ("paper, ASJ", "isotropic of default, ACJ", "isotropic of paper, ACJ")]
-    return [all(rates["default, ASJ"][i] > r[i] for r in others) for i in range(1, len(zoom["levels"]))]
+def _compare(part):
+    """At which zoom factors below 1 the default preset repeats more than its rivals."""
+    zoom = part.numbers["zoom"]
+    rates, factors = zoom["percent"], zoom["levels"]
+    for name in [n for n in RIVALS if n in rates and "default, ASJ" in rates]:
+        below = [f for i, f in enumerate(factors) if i > 0 and not rates["default, ASJ"][i] > rates[name][i]]
+        part.findings.append("Repeatability of the default preset (ASJ) above %s at every zoom below 1: %s." % (
+            name, "no, not at " + ", ".join("%g" % f for f in below) if below else "yes"))
+    part.text(*part.findings)
+    part.text("The ACJ criterion asks little near 1: isotropic scales end at the largest radius tested (14 px in the default preset, "
+              "12 px in the paper's), where |s r1 - r2| stays below 3 px down to a zoom of 0.79 and 0.75. There isotropic junctions "
+              "are judged by location and angles alone, and every branch length besides for ASJ.")
