@@ -253,7 +253,8 @@ static void walk(walker *w, asj_ray *ray)
 }
 
 /* The next ray of thread `own`: of its part of the list, then of what others have left. Neighbours in the list need the same local
- * junctions, which each thread computes for itself. next[i]: first ray of part i that nobody has taken. Returns `count` at the end. */
+ * junctions, which each thread computes for itself. next[i]: first ray of part i that nobody has taken. Returns `count` at the
+ * end. */
 static size_t take_ray(size_t *next, size_t threads, size_t own, size_t count)
 {
     for (size_t k = 0; k < threads; k++) {
