@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_OUTSIDE 20.0f   /* px: where branches meet may lie a little outside the image */
+#define MOST_OUTSIDE ((float)ASJ_MAX_OUTSIDE) /* px: where branches meet may lie a little outside the image */
 #define LEAST_LENGTH 3.0     /* px: a shorter branch has no direction worth a frame */
 #define RAY_DISTANCE 3.0     /* px */
 #define LEAST_START 10.0     /* px */

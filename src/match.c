@@ -8,12 +8,14 @@
  *   consensus.c  agreement between neighbouring candidates     (paper: not done)
  *   assign.c     ratio test, mutual check
  *   guided.c     matches propose matches near them; once more from align.c on
+ *   verify.c     each match asks the matches around it
  *   segments.c   which ends of the branches correspond */
 #include "align.h"
 #include "backend.h"
 #include "guided.h"
 #include "match_options.h"
 #include "match_result.h"
+#include "verify.h"
 
 #include <string.h>
 
@@ -112,6 +114,9 @@ static asj_status refine(match_run *m)
         if (status == ASJ_OK)
             status = choose(m);
     }
+    if (status == ASJ_OK)
+        status = asj_verify(m->context, m->options, &m->view[0], &m->view[1], &m->candidates, m->choices, &m->choice_count);
+    stop_watch(m, ASJ_STAGE_ASSIGN);
     return status;
 }
 

@@ -43,20 +43,24 @@ typedef struct asj_match_options {
     int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map; 0 = none. 0 .. 30; 6; paper 0 */
     double align_radius;         /* px: radius of the disc around the junction that is aligned. 8 .. 64; 20 */
     double max_move;             /* px an alignment may move the junction. 0.5 .. 20; 5 */
-    double minimum_similarity;   /* correlation that the aligned discs of a match need. -1 .. 1; 0.6; paper -1 */
+    double minimum_similarity;   /* correlation that the aligned discs of a match need. -1 .. 1; 0.4; paper -1 */
     /* agreement between neighbouring matches: consensus.c, guided.c */
     int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 40; paper 0 */
     double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1; paper 0 */
     double neighbour_tolerance;  /* error of a predicted neighbour, as a part of the distance. 0.01 .. 1; 0.08 */
     double map_tolerance;        /* relative difference allowed between the affine maps of neighbours. 0.05 .. 5; 0.5 */
     int32_t guided_rounds;       /* times that accepted matches propose matches near them. 0 .. 4; 1; paper 0 */
+    /* a last look at the matches: verify.c */
+    int32_t witnesses;           /* nearest matches, in either image, asked about a match; 0 = none. 0 .. 64; 16; paper 0 */
+    double witness_distance;     /* px at which a witness counts by half. 10 .. 10000; 100 */
+    double minimum_agreement;    /* mean agreement with them that a match needs. 0 .. 1; 0.22; paper 0 */
     /* choice: assign.c */
     double ratio;                /* the second best at another place must be worse by this factor. 1 .. 10; 1.5 */
     double separation;           /* px: what is nearer is the same place; "another place" lies farther. 0 .. 100; 6; paper 0 */
     int32_t mutual;              /* 1 = each must be the other's best. 1; paper 0 */
     /* line segments: segments.c */
     double end_tolerance;        /* branch ends correspond when lengths agree within this part. 0.01 .. 1; 0.12 */
-    double reserved[24];         /* zero */
+    double reserved[21];         /* zero */
 } asj_match_options;
 
 /* As for the detector: see options.h. */
@@ -118,8 +122,8 @@ typedef struct asj_match_result {
  * Each location takes part in one match at most. The result does not depend on the number of threads, and swapping the images
  * swaps the matches. Memory: the patches (patch_size^2 x 2 bytes for each frame) and short lists.
  *
- * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that is not finite, lies more than 20 px outside its image, has a wrong branch
- *                      count or a negative length
+ * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that is not finite, lies more than ASJ_MAX_OUTSIDE px outside its image, has a
+ *                      wrong branch count or a negative length
  * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED   as asj_detect() */
 ASJ_API asj_status asj_match(asj_context *context,
                              const asj_image *image1, const asj_junction *junctions1, size_t count1,
@@ -142,9 +146,10 @@ typedef struct asj_segment_match {
     float x2, y2, ex2, ey2;   /* image 2 */
 } asj_segment_match;
 
-/* The matches as line-segment matches: two for each match, whose ends correspond at least as `minimum_end` says (ASJ_END_...);
- * a pair that lies on a longer one in both images is dropped. Writes at most `capacity` of them and returns how
- * many there are in all (2 x match_count at most). */
+/* The matches as line-segment matches: the two branches of each match, then the other branches of the same two junctions that
+ * the map takes to each other; those whose far ends correspond at least as `minimum_end` says (ASJ_END_...). A pair found
+ * from both its ends comes once. Writes at most `capacity` of them and returns how many there are in all (ASJ_MAX_BRANCHES x
+ * match_count at most). */
 ASJ_API size_t asj_match_segments(const asj_match_result *result, int32_t minimum_end,
                                   asj_segment_match *segments, size_t capacity);
 

@@ -316,6 +316,44 @@ static void segments_of_matches(void **state)
     assert_int_equal(asj_match_segments(NULL, ASJ_END_BOTH, s, 4), 0);
 }
 
+/* A match of two junctions with four branches each: the other two correspond too, by direction; and what is a part of a longer
+ * segment is a segment. */
+static void segments_of_other_branches(void **state)
+{
+    (void)state;
+    const asj_l_junction first[] = {{7, 0, 1, 50, 50, 90, 50, 50, 80}, {7, 1, 2, 50, 50, 50, 80, 20, 50},
+                                    {7, 2, 3, 50, 50, 20, 50, 50, 10}};
+    const asj_l_junction second[] = {{3, 0, 1, 60, 60, 100, 60, 60, 90}, {3, 1, 2, 60, 60, 60, 90, 29, 61},
+                                     {3, 2, 3, 60, 60, 29, 61, 60, 40}};
+    asj_junction_match matches[2];
+    memset(matches, 0, sizeof matches);
+    matches[0] = (asj_junction_match){.affine = {1, 0, 10, 0, 1, 10}, .x1 = 50, .y1 = 50, .ax1 = 90, .ay1 = 50, .bx1 = 50,
+                                      .by1 = 80, .x2 = 60, .y2 = 60, .ax2 = 100, .ay2 = 60, .bx2 = 60, .by2 = 90,
+                                      .end_a = ASJ_END_BOTH, .end_b = ASJ_END_BOTH};
+    asj_match_result result = {.matches = matches, .match_count = 1, .l_junctions1 = first, .l_junctions2 = second,
+                               .l_junction_count1 = 3, .l_junction_count2 = 3};
+    asj_segment_match s[2 * ASJ_MAX_BRANCHES];
+    assert_int_equal(asj_match_segments(&result, ASJ_END_CUT, s, 2 * ASJ_MAX_BRANCHES), 4);
+    assert_int_equal(s[2].end, ASJ_END_BOTH); /* to the left */
+    unit_near("left", 1, 0, (double)s[2].ex1, 20, 1e-4);
+    unit_near("left", 2, 0, (double)s[2].ex2, 29, 1e-4);
+    assert_int_equal(s[3].end, ASJ_END_CUT); /* upwards: 40 px against 20 */
+    unit_near("up", 1, 0, (double)s[3].ey1, 30, 1e-4);
+    unit_near("up", 2, 0, (double)s[3].ey2, 40, 1e-4);
+    assert_int_equal(asj_match_segments(&result, ASJ_END_BOTH, NULL, 0), 3);
+    result.l_junction_count2 = 1; /* nothing is known of other branches there */
+    assert_int_equal(asj_match_segments(&result, ASJ_END_CUT, NULL, 0), 2);
+    matches[1] = matches[0]; /* from the middle of branch a to its end: another segment, as is its branch b */
+    matches[1].x1 = 70;
+    matches[1].x2 = 80;
+    matches[1].bx1 = 70;
+    matches[1].bx2 = 80;
+    result.match_count = 2;
+    assert_int_equal(asj_match_segments(&result, ASJ_END_BOTH, NULL, 0), 4);
+    matches[1] = matches[0];
+    assert_int_equal(asj_match_segments(&result, ASJ_END_BOTH, NULL, 0), 2);
+}
+
 static void out_of_memory(void **state)
 {
     (void)state;
@@ -375,6 +413,7 @@ int main(void)
         cmocka_unit_test(empty_sets_and_single_junctions),
         cmocka_unit_test(bad_input_is_refused),
         cmocka_unit_test(segments_of_matches),
+        cmocka_unit_test(segments_of_other_branches),
         cmocka_unit_test(out_of_memory),
         cmocka_unit_test(options_are_read_and_written),
     };
