@@ -120,15 +120,18 @@ __kernel void isotropic_candidates(__global const short *gradient_x, __global co
 #define LAST_FOUR(a, b) (a).s4, (b).s4, (a).s5, (b).s5, (a).s6, (b).s6, (a).s7, (b).s7
 
 /* Turns the two squares of 8 x 8 numbers that stand side by side in v: columns become rows. Taking row i and
- * row i + 4 in turns, three times, does that. */
+ * row i + 4 in turns, three times, does that. Unrolled, the rows stay in registers. */
 static void turn_squares(ushort16 v[RUN])
 {
     ushort16 t[RUN];
+#pragma unroll
     for (int round = 0; round < 3; round++) {
+#pragma unroll
         for (int i = 0; i < RUN / 2; i++) {
             t[2 * i] = (ushort16)(FIRST_FOUR(v[i].lo, v[i + RUN / 2].lo), FIRST_FOUR(v[i].hi, v[i + RUN / 2].hi));
             t[2 * i + 1] = (ushort16)(LAST_FOUR(v[i].lo, v[i + RUN / 2].lo), LAST_FOUR(v[i].hi, v[i + RUN / 2].hi));
         }
+#pragma unroll
         for (int i = 0; i < RUN; i++)
             v[i] = t[i];
     }
@@ -150,12 +153,14 @@ static void batch_gammas(__global const short *gradient_x, __global const short 
         const short16 cross_x = twice(run + RUN_CROSS_X), dot_y = twice(run + RUN_DOT_Y);
         __global const short *gx = gradient_x + to, *gy = gradient_y + to;
         ushort16 v[RUN];
+#pragma unroll
         for (int i = 0; i < RUN; i++) {
             const short16 x = (short16)(vload8(0, gx + at[i]), vload8(0, gx + at[i + RUN]));
             const short16 y = (short16)(vload8(0, gy + at[i]), vload8(0, gy + at[i + RUN]));
             v[i] = gamma16(high_product(x, uy) - high_product(y, cross_x), high_product(x, ux) - high_product(y, dot_y));
         }
         turn_squares(v);
+#pragma unroll
         for (int i = 0; i < RUN; i++)
             gammas[i] = v[i];
     }
