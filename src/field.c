@@ -31,6 +31,22 @@ static uint16_t strength_of_tail(const asj_context *context, const asj_sectors *
     return strength > 0 ? strength : 1;
 }
 
+static int32_t twice(int32_t number)
+{
+    const uint32_t half = (uint32_t)number & 0xffff;
+    return (int32_t)(half << 16 | half);
+}
+
+static void set_limits(asj_field *field)
+{
+    const asj_sectors *s = &field->sectors;
+    for (int32_t k = 0; k < s->count; k++) {
+        const int32_t limits[4] = {twice(s->mean[k]), twice(s->scale[k]), twice(field->keep[k] - 1),
+                                   twice(field->candidate[k] - 1)};
+        memcpy(field->limits[k], limits, sizeof limits);
+    }
+}
+
 asj_status asj_field_create(asj_context *context, const asj_detect_options *options, asj_field *field)
 {
     asj_sectors *s = &field->sectors;
@@ -48,6 +64,7 @@ asj_status asj_field_create(asj_context *context, const asj_detect_options *opti
     const double per_radian = s->count / TWO_PI;
     field->suppress = (int32_t)lrint(options->sector_width / options->field_radius * per_radian);
     field->apart = (int32_t)ceil(0.35 * per_radian);
+    set_limits(field);
     return ASJ_OK;
 }
 

@@ -27,6 +27,7 @@ typedef struct asj_field {
     uint16_t candidate[ASJ_FIELD_MAX_SECTORS]; /* least strength of a branch that makes a candidate */
     int32_t suppress;                          /* sectors to either side over which a branch must be the largest */
     int32_t apart;                             /* sectors that the two branches of a candidate are from 0 and from pi, at least */
+    int32_t limits[ASJ_FIELD_MAX_SECTORS][4];  /* for vector forms, each twice in 32 bits: mean, scale, keep - 1, candidate - 1 */
 } asj_field;
 
 asj_status asj_field_create(asj_context *context, const asj_detect_options *options, asj_field *field);

@@ -2,72 +2,79 @@
 /* Step 2 in vectors: local junctions of a run, candidates of a tile. Part of kernels.h. */
 
 #define V_RUN (ASJ_LANES / V_LANES) /* vectors in a run */
-#define GROUP 4                     /* vectors worked on at once: as many running sums stay in registers */
+#define GROUP (V_LANES > 16 ? 2 : 4) /* vectors worked on at once: as many running sums stay in registers */
 #define GROUP_PIXELS (GROUP * V_LANES)
 
 typedef char tiles_are_whole_groups[ASJ_FIELD_TILE % GROUP_PIXELS == 0 ? 1 : -1];
 
 #if V_LANES <= ASJ_LANES
-/* prefix[i + 1] = prefix[i] + gamma at offset i */
-static void prefix_sums(const asj_sectors *s, const int16_t *gx, const int16_t *gy, ptrdiff_t stride, uint16_t *prefix)
+/* The slots of asj_sector_plan for a run; gx, gy: at its first pixel. */
+static void run_slots(const asj_field *field, const int16_t *gx, const int16_t *gy, ptrdiff_t stride, uint16_t *slots)
 {
+    const asj_sectors *s = &field->sectors;
+    const asj_sector_plan *plan = &field->plan;
+    uint16_t *slot = slots;
     vec sum[V_RUN];
-    for (int v = 0; v < V_RUN; v++) {
+    for (int v = 0; v < V_RUN; v++)
         sum[v] = v_zero();
-        v_store(prefix + v * V_LANES, sum[v]);
-    }
-    for (int32_t i = 0; i < s->offset_count; i++) {
-        const ptrdiff_t at = s->dy[i] * stride + s->dx[i];
-        const int32_t *factors = s->factors[i];
-        const vec uy = v_set1_32(factors[0]), cross_x = v_set1_32(factors[1]);
-        const vec ux = v_set1_32(factors[2]), dot_y = v_set1_32(factors[3]);
-        prefix += ASJ_LANES;
-        for (int v = 0; v < V_RUN; v++) {
-            const vec x = v_load(gx + at + v * V_LANES), y = v_load(gy + at + v * V_LANES);
-            const vec cross = v_abs(v_sub(v_high(x, uy), v_high(y, cross_x)));
-            const vec dot = v_abs(v_sub(v_high(x, ux), v_high(y, dot_y)));
-            sum[v] = v_add(sum[v], v_sub_saturated(cross, dot)); /* gamma */
-            v_store(prefix + v * V_LANES, sum[v]);
+    for (int32_t j = 0, i = 0; j < plan->plain_count; j++, slot += ASJ_LANES) {
+        for (const int32_t end = plan->boundary[j]; i < end; i++) {
+            const ptrdiff_t at = s->dy[i] * stride + s->dx[i];
+            const int32_t *factors = s->factors[i];
+            const vec uy = v_set1_32(factors[0]), cross_x = v_set1_32(factors[1]);
+            const vec ux = v_set1_32(factors[2]), dot_y = v_set1_32(factors[3]);
+            for (int v = 0; v < V_RUN; v++) {
+                const vec x = v_load(gx + at + v * V_LANES), y = v_load(gy + at + v * V_LANES);
+                const vec cross = v_abs(v_sub(v_high(x, uy), v_high(y, cross_x)));
+                const vec dot = v_abs(v_sub(v_high(x, ux), v_high(y, dot_y)));
+                sum[v] = v_add(sum[v], v_sub_saturated(cross, dot)); /* gamma */
+            }
         }
+        for (int v = 0; v < V_RUN; v++)
+            v_store(slot + v * V_LANES, sum[v]);
     }
+    for (int32_t e = 0; e < plan->slot_count - plan->plain_count; e++, slot += ASJ_LANES)
+        for (int v = 0; v < V_RUN; v++)
+            v_store(slot + v * V_LANES, v_add(sum[v], v_load(slots + plan->extra[e] * ASJ_LANES + v * V_LANES)));
 }
 
-/* The sum of sector k, vector v of the run. */
-static inline vec sector_sum(const asj_sectors *s, const uint16_t *prefix, int32_t k, int v)
+/* The peaks of sector k of a run, whose strengths start at z. */
+static inline void add_peaks(const asj_field *field, int32_t k, const int16_t *z,
+                             asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES])
 {
-    const int32_t end = s->first[k] + s->size[k], past = end - s->offset_count;
-    prefix += v * V_LANES;
-    const vec low = v_load(prefix + (size_t)s->first[k] * ASJ_LANES);
-    if (past <= 0)
-        return v_sub(v_load(prefix + (size_t)end * ASJ_LANES), low);
-    return v_add(v_sub(v_load(prefix + (size_t)s->offset_count * ASJ_LANES), low), v_load(prefix + (size_t)past * ASJ_LANES));
+    const int32_t angle = 65536 * k / field->sectors.count, width = 65536 / field->sectors.count;
+    const vec below = v_set1_32(field->limits[k][2]);
+    for (int v = 0; v < V_RUN; v++) {
+        const int16_t *here = z + v * V_LANES;
+        if (!v_any(v_greater(v_load(here), below)))
+            continue;
+        for (uint32_t bits = v_bits(peak(here, ASJ_LANES, field->suppress, below)); bits; bits &= bits - 1) {
+            const int i = __builtin_ctz(bits);
+            const int32_t shift = asj_field_shift(width, here[i - ASJ_LANES], here[i], here[i + ASJ_LANES]);
+            asj_field_insert(branches[v * V_LANES + i], (asj_field_branch){(uint16_t)(angle + shift), (uint16_t)here[i]});
+        }
+    }
 }
 
 static void field_block(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
                         asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES])
 {
     const asj_sectors *s = &field->sectors;
+    const asj_sector_plan *plan = &field->plan;
     const ptrdiff_t at = y * frame->stride + x;
-    const int32_t pad = field->suppress;
-    int16_t *z = (int16_t *)(scratch + asj_sector_scratch(s));
-    prefix_sums(s, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch);
-    for (int32_t k = 0; k < s->count; k++)
-        for (int v = 0; v < V_RUN; v++)
-            v_store(z + (k + pad) * ASJ_LANES + v * V_LANES, v_strength(sector_sum(s, scratch, k, v), s->mean[k], s->scale[k]));
-    repeat_ends(z, s->count, pad, ASJ_LANES);
-    memset(branches, 0, ASJ_LANES * sizeof *branches);
-    const int32_t width = 65536 / s->count;
+    int16_t *z = (int16_t *)scratch + plan->slot_count * ASJ_LANES, *first = z + field->suppress * ASJ_LANES;
+    run_slots(field, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch);
     for (int32_t k = 0; k < s->count; k++) {
-        const int32_t angle = 65536 * k / s->count;
-        for (int v = 0; v < V_RUN; v++) {
-            const int16_t *here = z + (k + pad) * ASJ_LANES + v * V_LANES;
-            for (uint32_t bits = v_bits(peak(here, ASJ_LANES, field->suppress, (int16_t)field->keep[k])); bits; bits &= bits - 1) {
-                const int i = __builtin_ctz(bits);
-                const int32_t shift = asj_field_shift(width, here[i - ASJ_LANES], here[i], here[i + ASJ_LANES]);
-                asj_field_insert(branches[v * V_LANES + i], (asj_field_branch){(uint16_t)(angle + shift), (uint16_t)here[i]});
-            }
-        }
+        const uint16_t *low = scratch + plan->low[k] * ASJ_LANES, *high = scratch + plan->high[k] * ASJ_LANES;
+        const vec mean = v_set1_32(field->limits[k][0]), scale = v_set1_32(field->limits[k][1]);
+        for (int v = 0; v < ASJ_LANES; v += V_LANES)
+            v_store(first + k * ASJ_LANES + v,
+                    v_high_unsigned(v_sub_saturated(v_sub(v_load(high + v), v_load(low + v)), mean), scale));
     }
+    repeat_ends(z, s->count, field->suppress, ASJ_LANES);
+    memset(branches, 0, ASJ_LANES * sizeof *branches);
+    for (int32_t k = 0; k < s->count; k++)
+        add_peaks(field, k, first + k * ASJ_LANES, branches);
 }
 #endif
 
@@ -107,48 +114,47 @@ static void fill_slots(const tile *t, int32_t x)
     const asj_sector_plan *plan = &t->field->plan;
     const uint16_t *const *middle = t->rows + s->radius;
     uint16_t *slot = t->slots;
-    vec s0 = v_zero(), s1 = s0, s2 = s0, s3 = s0;
-    int32_t i = 0;
-    for (int32_t j = 0; j < plan->plain_count; j++, slot += GROUP_PIXELS) {
+    vec sum[GROUP];
+    for (int v = 0; v < GROUP; v++)
+        sum[v] = v_zero();
+    for (int32_t j = 0, i = 0; j < plan->plain_count; j++, slot += GROUP_PIXELS) {
         for (const int32_t end = plan->boundary[j]; i < end; i++) {
             const uint16_t *gamma = middle[s->dy[i]] + t->place[i] + x;
-            s0 = v_add(s0, v_load(gamma));
-            s1 = v_add(s1, v_load(gamma + V_LANES));
-            s2 = v_add(s2, v_load(gamma + 2 * V_LANES));
-            s3 = v_add(s3, v_load(gamma + 3 * V_LANES));
+            for (int v = 0; v < GROUP; v++)
+                sum[v] = v_add(sum[v], v_load(gamma + v * V_LANES));
         }
-        v_store(slot, s0);
-        v_store(slot + V_LANES, s1);
-        v_store(slot + 2 * V_LANES, s2);
-        v_store(slot + 3 * V_LANES, s3);
+        for (int v = 0; v < GROUP; v++)
+            v_store(slot + v * V_LANES, sum[v]);
     }
     for (int32_t e = 0; e < plan->slot_count - plan->plain_count; e++, slot += GROUP_PIXELS) {
         const uint16_t *from = t->slots + plan->extra[e] * GROUP_PIXELS;
-        v_store(slot, v_add(s0, v_load(from)));
-        v_store(slot + V_LANES, v_add(s1, v_load(from + V_LANES)));
-        v_store(slot + 2 * V_LANES, v_add(s2, v_load(from + 2 * V_LANES)));
-        v_store(slot + 3 * V_LANES, v_add(s3, v_load(from + 3 * V_LANES)));
+        for (int v = 0; v < GROUP; v++)
+            v_store(slot + v * V_LANES, v_add(sum[v], v_load(from + v * V_LANES)));
     }
 }
 
-/* Strengths of a group from its slots; returns whether any reaches the least of a candidate's branch. */
-static int fill_strengths(const tile *t)
+/* Strengths of a group from its slots; above[v]: where any reaches the least of a candidate's branch. */
+static void fill_strengths(const tile *t, vec above[GROUP])
 {
     const asj_sectors *s = &t->field->sectors;
     const asj_sector_plan *plan = &t->field->plan;
     int16_t *z = t->z + t->field->suppress * GROUP_PIXELS;
-    vec any = v_zero();
+    vec any[GROUP];
+    for (int v = 0; v < GROUP; v++)
+        any[v] = v_zero();
     for (int32_t k = 0; k < s->count; k++, z += GROUP_PIXELS) {
         const uint16_t *low = t->slots + plan->low[k] * GROUP_PIXELS, *high = t->slots + plan->high[k] * GROUP_PIXELS;
-        const vec mean = v_set1((int16_t)s->mean[k]), scale = v_set1((int16_t)s->scale[k]);
-        const vec least = v_set1((int16_t)(t->field->candidate[k] - 1));
-        for (int v = 0; v < GROUP_PIXELS; v += V_LANES) {
-            const vec strength = v_high_unsigned(v_sub_saturated(v_sub(v_load(high + v), v_load(low + v)), mean), scale);
-            any = v_or(any, v_greater(strength, least));
-            v_store(z + v, strength);
+        const int32_t *limits = t->field->limits[k];
+        const vec mean = v_set1_32(limits[0]), scale = v_set1_32(limits[1]), least = v_set1_32(limits[3]);
+        for (int v = 0; v < GROUP; v++) {
+            const vec sum = v_sub(v_load(high + v * V_LANES), v_load(low + v * V_LANES));
+            const vec strength = v_high_unsigned(v_sub_saturated(sum, mean), scale);
+            any[v] = v_or(any[v], v_greater(strength, least));
+            v_store(z + v * V_LANES, strength);
         }
     }
-    return v_any(any);
+    for (int v = 0; v < GROUP; v++)
+        above[v] = any[v];
 }
 
 /* Whether two of the sectors whose bits are set are neither parallel nor opposite. */
@@ -172,12 +178,13 @@ static uint32_t find_candidates(const tile *t, int v)
     uint16_t words[4][V_LANES];
     vec seen = v_zero(), twice = seen;
     for (int32_t word = 0, k = 0; word < 4; word++) {
-        vec bits = v_zero();
-        for (int32_t bit = 0; bit < 16 && k < count; bit++, k++, here += GROUP_PIXELS) {
-            const vec is_peak = peak(here, GROUP_PIXELS, field->suppress, (int16_t)field->candidate[k]);
+        vec bits = v_zero(), bit = v_set1(1);
+        for (const int32_t end = k + 16 < count ? k + 16 : count; k < end; k++, here += GROUP_PIXELS) {
+            const vec is_peak = peak(here, GROUP_PIXELS, field->suppress, v_set1_32(field->limits[k][3]));
             twice = v_or(twice, v_and(seen, is_peak));
             seen = v_or(seen, is_peak);
-            bits = v_or(bits, v_and(is_peak, v_set1((int16_t)(uint16_t)(1u << bit))));
+            bits = v_or(bits, v_and(is_peak, bit));
+            bit = v_add(bit, bit);
         }
         v_store(words[word], bits);
     }
@@ -199,15 +206,15 @@ static void tile_row(const tile *t, int32_t runs, uint16_t *masks)
     for (int32_t first = 0; first < runs; first += per_group) {
         const int32_t last = runs - first < per_group ? runs : first + per_group;
         uint16_t found[GROUP_PIXELS / ASJ_LANES] = {0};
+        vec above[GROUP];
         fill_slots(t, first * ASJ_LANES);
-        if (fill_strengths(t)) {
-            repeat_ends(t->z, t->field->sectors.count, t->field->suppress, GROUP_PIXELS);
-            for (int v = 0; v < GROUP; v++) {
-                const uint32_t bits = find_candidates(t, v);
-                for (int part = 0; part < V_LANES; part += ASJ_LANES) {
-                    const int pixel = v * V_LANES + part;
-                    found[pixel / ASJ_LANES] |= (uint16_t)((bits >> part) << pixel % ASJ_LANES);
-                }
+        fill_strengths(t, above);
+        repeat_ends(t->z, t->field->sectors.count, t->field->suppress, GROUP_PIXELS);
+        for (int v = 0; v < GROUP; v++) {
+            const uint32_t bits = v_any(above[v]) ? find_candidates(t, v) : 0;
+            for (int part = 0; part < V_LANES; part += ASJ_LANES) {
+                const int pixel = v * V_LANES + part;
+                found[pixel / ASJ_LANES] |= (uint16_t)((bits >> part) << pixel % ASJ_LANES);
             }
         }
         memcpy(masks + first, found, (size_t)(last - first) * sizeof *masks);

@@ -89,10 +89,10 @@ static void test_batch(const asj_isotropic *test, const asj_isotropic_radius *en
     int32_t counts[V_LANES] = {0};
     z += entry->suppress * V_LANES;
     for (int32_t k = 0; k < entry->sectors.count; k++, z += V_LANES) {
-        const int16_t least = (int16_t)entry->least[k];
-        if (!v_any(v_greater(v_load(z), v_set1((int16_t)(least - 1)))))
+        const vec below = v_set1((int16_t)(entry->least[k] - 1));
+        if (!v_any(v_greater(v_load(z), below)))
             continue;
-        for (uint32_t bits = v_bits(peak(z, V_LANES, entry->suppress, least)) & lanes; bits; bits &= bits - 1) {
+        for (uint32_t bits = v_bits(peak(z, V_LANES, entry->suppress, below)) & lanes; bits; bits &= bits - 1) {
             const int i = __builtin_ctz(bits);
             const int sum = slots[entry->plan.high[k] * V_LANES + i] - slots[entry->plan.low[k] * V_LANES + i];
             const asj_isotropic_peak found = {k, (uint16_t)sum, (uint16_t)z[i]};

@@ -19,12 +19,11 @@ static void repeat_ends(int16_t *z, int32_t count, int32_t pad, size_t row)
     memcpy(z + (size_t)(count + pad) * row, z + (size_t)pad * row, (size_t)pad * row * sizeof *z);
 }
 
-/* -1 where the sector at `here` is a peak: above `least` - 1 and its `reach` neighbours before it, not below those after it. */
-static inline vec peak(const int16_t *here, ptrdiff_t row, int32_t reach, int16_t least)
+/* -1 where the sector at `here` is a peak: above `below` and its `reach` neighbours before it, not below those after it. */
+static inline vec peak(const int16_t *here, ptrdiff_t row, int32_t reach, vec below)
 {
     const vec z = v_load(here);
-    vec before = v_set1((int16_t)(least - 1)), after = v_load(here + row);
-    before = v_max(before, v_load(here - row));
+    vec before = v_max(below, v_load(here - row)), after = v_load(here + row);
     for (int32_t d = 2; d <= reach; d++) {
         before = v_max(before, v_load(here - d * row));
         after = v_max(after, v_load(here + d * row));
