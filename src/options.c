@@ -40,7 +40,7 @@ static const asj_option_info rows[] = {
     ROW(refinement, ASJ_OPTION_CHOICE, "", 0, 1, ASJ_REFINE_LINE_FIT, ASJ_REFINE_SEARCH, refinements,
            "how branches are oriented: line_fit (and sub-pixel location) or search"),
     NUMBER(minimum_opening, "deg", 0, 80, 25, 0, "two branches must open by this much, and by at most 180 minus this"),
-    NUMBER(max_move, "px", 0.5, 10, 2.5, 2.5, "farthest that a junction may move while it is located"),
+    NUMBER(max_move, "px", 0.5, 10, 2.5, 2.5, "farthest that a junction may move while it is located, again when it is refined"),
     NUMBER(merge_angle, "deg", 0, 60, 15, 0, "of two branches closer than this one stays"),
     SWITCH(strip_test, 1, 0, "report a branch only if the strip along it is meaningful"),
     NUMBER(max_deviation, "deg", 1, 90, 12, 90, "largest angle between a branch and the edges under it"),

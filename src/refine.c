@@ -190,10 +190,16 @@ void asj_foresee(const asj_context *context, const asj_frame *frame, const asj_d
         draft->branch_count = 0;
 }
 
+/* Lines over whole branches may move the junction as far again as those of the first fit (locate.c); what moves farther has drifted
+ * to another edge. */
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
 {
     const double log_epsilon = log(options->epsilon), askew = options->max_deviation * (PI / 180);
     int keep[ASJ_MAX_BRANCHES];
+    if (hypot(draft->x - draft->x0, draft->y - draft->y0) > 2 * options->max_move) {
+        draft->branch_count = 0;
+        return;
+    }
     for (int32_t i = 0; i < draft->branch_count; i++) {
         asj_draft_branch *branch = &draft->branches[i];
         const asj_strip strip = asj_strip_test(context, frame, options, draft->x, draft->y, branch->angle, branch->length);
