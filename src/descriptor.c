@@ -3,8 +3,9 @@
  * Arandjelovic and Zisserman 2012), so that the product of two is their Hellinger affinity, at most 1.
  *
  * No angle is computed: a gradient g between two neighbouring of the eight directions d_k, d_k+1 (45 degrees apart) is written as
- * g = alpha d_k + beta d_k+1 with alpha, beta >= 0, which are its votes. That is exact where + - * / are, and smooth across
- * directions. Samples vote into the four nearest cells, bilinearly. */
+ * g = alpha d_k + beta d_k+1 with alpha, beta >= 0, which are its votes: an axis gets what is left of its component after the
+ * other one, a diagonal sqrt(2) times the smaller of its two. That is smooth across directions and needs no branch. Samples vote
+ * into the four nearest cells, bilinearly: first rows into rows of cells, then columns. */
 #include "descriptor.h"
 
 #include <math.h>
@@ -13,62 +14,83 @@
 #define CELLS 4
 #define DIRECTIONS 8
 
-/* Votes of a gradient: direction numbers k, k + 1 counted from +x towards +y. */
-static int32_t vote(float gx, float gy, float *alpha, float *beta)
+/* Weight of the samples of a side for each cell; a sample counts in the two cells nearest to it. */
+static void find_weights(int32_t size, float weights[CELLS][ASJ_PATCH_SIDE])
 {
-    static const float root2 = 1.41421356f;
-    float ax = fabsf(gx), ay = fabsf(gy);
-    int32_t steep = ay > ax, flip = (gx < 0) != (gy < 0);
-    float major = steep ? ay : ax, minor = steep ? ax : ay;
-    float axis = major - minor, diagonal = minor * root2;
-    /* octants counter as the quadrant and the steeper axis say; in every second one the diagonal comes first */
-    int32_t quadrant = gx >= 0 ? (gy >= 0 ? 0 : 3) : (gy >= 0 ? 1 : 2);
-    int32_t second = flip ? !steep : steep; /* second octant of the quadrant: the diagonal first, then the next axis */
-    *alpha = second ? diagonal : axis;
-    *beta = second ? axis : diagonal;
-    return 2 * quadrant + second;
-}
-
-/* Index of the lower of the two cells that a sample at `i` of `size` votes into (-1 .. 3) and the weight of the upper one. */
-static int32_t cell(int32_t i, int32_t size, float *upper)
-{
-    float position = ((float)i + 0.5f) * CELLS / (float)size - 0.5f;
-    int32_t lower = position < 0 ? -1 : (int32_t)position;
-    *upper = position - (float)lower;
-    return lower;
-}
-
-static void accumulate(float histogram[CELLS][CELLS][DIRECTIONS], int32_t x, int32_t y, int32_t size, float gx, float gy)
-{
-    float alpha, beta, wx, wy;
-    int32_t direction = vote(gx, gy, &alpha, &beta), next = (direction + 1) & (DIRECTIONS - 1);
-    int32_t cx = cell(x, size, &wx), cy = cell(y, size, &wy);
-    for (int32_t j = 0; j < 2; j++)
-        for (int32_t i = 0; i < 2; i++) {
-            if (cx + i < 0 || cx + i >= CELLS || cy + j < 0 || cy + j >= CELLS)
-                continue;
-            float weight = (i ? wx : 1 - wx) * (j ? wy : 1 - wy);
-            histogram[cy + j][cx + i][direction] += weight * alpha;
-            histogram[cy + j][cx + i][next] += weight * beta;
+    for (int32_t c = 0; c < CELLS; c++)
+        for (int32_t i = 0; i < size; i++) {
+            const float away = fabsf(((float)i + 0.5f) * CELLS / (float)size - 0.5f - (float)c);
+            weights[c][i] = away < 1 ? 1 - away : 0;
         }
+}
+
+static inline float positive(float value)
+{
+    return value > 0 ? value : 0;
+}
+
+static inline float smaller(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+/* Votes of one row of samples, direction by direction from +x towards +y. */
+static void vote(const float *gx, const float *gy, int32_t size, float votes[DIRECTIONS][ASJ_PATCH_SIDE])
+{
+    const float root2 = 1.41421356f;
+    for (int32_t i = 0; i < size; i++) {
+        const float right = positive(gx[i]), left = positive(-gx[i]), down = positive(gy[i]), up = positive(-gy[i]);
+        const float across = right + left, along = down + up;
+        votes[0][i] = positive(right - along);
+        votes[1][i] = root2 * smaller(right, down);
+        votes[2][i] = positive(down - across);
+        votes[3][i] = root2 * smaller(left, down);
+        votes[4][i] = positive(left - along);
+        votes[5][i] = root2 * smaller(left, up);
+        votes[6][i] = positive(up - across);
+        votes[7][i] = root2 * smaller(right, up);
+    }
+}
+
+/* Differences of neighbours; at the border of the patch the sample itself is the neighbour. */
+static void differentiate(const uint16_t *grey, int32_t size, int32_t y, float *gx, float *gy)
+{
+    const uint16_t *row = grey + y * size, *above = y > 0 ? row - size : row, *below = y + 1 < size ? row + size : row;
+    for (int32_t x = 0; x < size; x++)
+        gy[x] = (float)((int32_t)below[x] - (int32_t)above[x]);
+    gx[0] = (float)((int32_t)row[1] - (int32_t)row[0]);
+    for (int32_t x = 1; x + 1 < size; x++)
+        gx[x] = (float)((int32_t)row[x + 1] - (int32_t)row[x - 1]);
+    gx[size - 1] = (float)((int32_t)row[size - 1] - (int32_t)row[size - 2]);
 }
 
 void asj_descriptor_sift(const uint16_t *grey, int32_t size, int16_t *unit)
 {
-    float histogram[CELLS][CELLS][DIRECTIONS];
-    memset(histogram, 0, sizeof histogram);
-    for (int32_t y = 0; y < size; y++)
-        for (int32_t x = 0; x < size; x++) {
-            int32_t left = x > 0 ? x - 1 : x, right = x + 1 < size ? x + 1 : x;
-            int32_t above = y > 0 ? y - 1 : y, below = y + 1 < size ? y + 1 : y;
-            float gx = (float)(grey[y * size + right] - grey[y * size + left]);
-            float gy = (float)(grey[below * size + x] - grey[above * size + x]);
-            accumulate(histogram, x, y, size, gx, gy);
+    float weights[CELLS][ASJ_PATCH_SIDE], rows[CELLS][DIRECTIONS][ASJ_PATCH_SIDE], entry[ASJ_SIFT_LENGTH], sum = 0;
+    memset(rows, 0, sizeof rows);
+    find_weights(size, weights);
+    for (int32_t y = 0; y < size; y++) {
+        float gx[ASJ_PATCH_SIDE], gy[ASJ_PATCH_SIDE], votes[DIRECTIONS][ASJ_PATCH_SIDE];
+        differentiate(grey, size, y, gx, gy);
+        vote(gx, gy, size, votes);
+        for (int32_t c = 0; c < CELLS; c++) {
+            const float weight = weights[c][y];
+            for (int32_t d = 0; d < DIRECTIONS && weight > 0; d++)
+                for (int32_t x = 0; x < size; x++)
+                    rows[c][d][x] += weight * votes[d][x];
         }
-    const float *entry = &histogram[0][0][0];
-    float sum = 0;
-    for (int32_t i = 0; i < ASJ_SIFT_LENGTH; i++)
-        sum += entry[i];
+    }
+    const int32_t half = size / CELLS; /* columns that can reach a cell: from half a cell before it to half a cell after it */
+    for (int32_t c = 0; c < CELLS; c++)
+        for (int32_t k = 0; k < CELLS; k++)
+            for (int32_t d = 0; d < DIRECTIONS; d++) {
+                const int32_t first = (2 * k - 1) * half / 2, end = first + 2 * half;
+                float votes = 0;
+                for (int32_t x = first < 0 ? 0 : first; x < end && x < size; x++)
+                    votes += weights[k][x] * rows[c][d][x];
+                entry[(c * CELLS + k) * DIRECTIONS + d] = votes;
+                sum += votes;
+            }
     for (int32_t i = 0; i < ASJ_SIFT_LENGTH; i++)
         unit[i] = sum > 0 ? (int16_t)(sqrtf(entry[i] / sum) * ASJ_UNIT_ONE + 0.5f) : 0;
 }

@@ -61,7 +61,10 @@ int32_t asj_compare(const asj_match_options *options, const asj_view *view1, con
 /* Appends pairs (two numbers each), sorts by i, then j. */
 asj_status asj_candidates_sort(asj_candidates *candidates);
 
-/* induced.c: the paper's distance of a pair; HUGE_VALF when its map leaves the image. */
+/* induced.c: fills view->patches and view->usable with the squares around the L-junctions, one for each. */
+asj_status asj_induced_describe(asj_context *context, const asj_match_options *options, asj_view *view);
+
+/* induced.c: the paper's distance of a pair, whose views are described so; HUGE_VALF when its map leaves the image. */
 float asj_induced_distance(const asj_match_options *options, const asj_view *view1, const asj_view *view2, uint32_t i, uint32_t j);
 
 #endif

@@ -10,54 +10,76 @@
 
 #include <math.h>
 
-/* Distance of two descriptions in grey levels (raw), or in units of the descriptor. */
-static float difference(const asj_match_options *options, const uint16_t *grey1, const uint16_t *grey2)
+/* What is compared: grey levels, grey levels brought to zero mean and unit norm, or a descriptor. */
+static void describe(const asj_match_options *options, const uint16_t *grey, int16_t *description)
 {
-    const int32_t samples = options->patch_size * options->patch_size, sift = options->descriptor == ASJ_DESCRIPTOR_SIFT;
-    if (!sift && !options->normalise) {
+    if (options->descriptor == ASJ_DESCRIPTOR_SIFT)
+        asj_descriptor_sift(grey, options->patch_size, description);
+    else if (options->normalise)
+        asj_patch_normalise(grey, options->patch_size, description);
+    else
+        for (int32_t i = 0; i < options->patch_size * options->patch_size; i++)
+            description[i] = (int16_t)grey[i]; /* below 2^15 */
+}
+
+/* Distance of two descriptions in grey levels (raw), or in units of the descriptor. */
+static float difference(const asj_match_options *options, const int16_t *left, const int16_t *right)
+{
+    const int32_t length = asj_patch_length(options);
+    if (options->descriptor != ASJ_DESCRIPTOR_SIFT && !options->normalise) {
         int64_t sum = 0;
-        for (int32_t i = 0; i < samples; i++) {
-            int32_t d = (int32_t)grey1[i] - (int32_t)grey2[i];
+        for (int32_t i = 0; i < length; i++) {
+            const int32_t d = (int32_t)left[i] - (int32_t)right[i];
             sum += (int64_t)d * d;
         }
         return (float)(sqrt((double)sum) / ASJ_GRAY_ONE);
     }
-    int16_t unit1[ASJ_PATCH_SAMPLES], unit2[ASJ_PATCH_SAMPLES];
-    int32_t length = sift ? ASJ_SIFT_LENGTH : samples;
-    if (sift) {
-        asj_descriptor_sift(grey1, options->patch_size, unit1);
-        asj_descriptor_sift(grey2, options->patch_size, unit2);
-    } else {
-        asj_patch_normalise(grey1, options->patch_size, unit1);
-        asj_patch_normalise(grey2, options->patch_size, unit2);
-    }
-    double product = (double)asj_patch_product(unit1, unit2, length) / ((double)ASJ_UNIT_ONE * ASJ_UNIT_ONE);
+    const double product = (double)asj_patch_product(left, right, length) / ((double)ASJ_UNIT_ONE * ASJ_UNIT_ONE);
     return product < 1 ? (float)sqrt(2 - 2 * product) : 0;
 }
 
-/* D~ of the square around `from` and its image around `to`. */
-static float one_way(const asj_match_options *options, const asj_pyramid *pyramid1, const asj_affine_frame *from,
-                     const asj_pyramid *pyramid2, const asj_affine_frame *to, const double map[4])
+/* The square of an L-junction does not depend on its partner: it is described once. */
+asj_status asj_induced_describe(asj_context *context, const asj_match_options *options, asj_view *view)
 {
-    uint16_t grey1[ASJ_PATCH_SAMPLES], grey2[ASJ_PATCH_SAMPLES];
+    const size_t length = (size_t)asj_patch_length(options);
+    const int64_t count = view->corners.count;
     const double side = 2 * options->patch_radius;
-    const asj_affine_frame square = {from->x, from->y, side, 0, 0, side};
-    const asj_affine_frame warped = {to->x, to->y, side * map[0], side * map[2], side * map[1], side * map[3]};
-    if (!asj_patch_sample(pyramid1, &square, options->patch_size, -0.5, 0.5, grey1) ||
-        !asj_patch_sample(pyramid2, &warped, options->patch_size, -0.5, 0.5, grey2))
+    view->patches = asj_allocate(&context->memory, (size_t)count * length, sizeof *view->patches);
+    view->usable = asj_allocate(&context->memory, (size_t)count, sizeof *view->usable);
+    if (!view->patches || !view->usable)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lld patches", (long long)count);
+#pragma omp parallel for num_threads(context->threads) schedule(static)
+    for (int64_t l = 0; l < count; l++) {
+        uint16_t grey[ASJ_PATCH_SAMPLES];
+        const asj_affine_frame square = {(double)view->corners.l[l].x, (double)view->corners.l[l].y, side, 0, 0, side};
+        view->usable[l] = (uint8_t)asj_patch_sample(&view->pyramid, &square, options->patch_size, -0.5, 0.5, grey);
+        describe(options, grey, view->patches + (size_t)l * length);
+    }
+    return ASJ_OK;
+}
+
+/* D~ of the square around L-junction `from` of one view and its image around `to` of the other. */
+static float one_way(const asj_match_options *options, const asj_view *view1, uint32_t from, const asj_view *view2, uint32_t to,
+                     const double map[4])
+{
+    uint16_t grey[ASJ_PATCH_SAMPLES];
+    int16_t description[ASJ_PATCH_SAMPLES];
+    const double side = 2 * options->patch_radius;
+    const asj_l_junction *l = &view2->corners.l[to];
+    const asj_affine_frame warped = {(double)l->x, (double)l->y, side * map[0], side * map[2], side * map[1], side * map[3]};
+    if (!view1->usable[from] || !asj_patch_sample(&view2->pyramid, &warped, options->patch_size, -0.5, 0.5, grey))
         return HUGE_VALF;
-    return difference(options, grey1, grey2);
+    describe(options, grey, description);
+    return difference(options, view1->patches + (size_t)from * (size_t)asj_patch_length(options), description);
 }
 
 float asj_induced_distance(const asj_match_options *options, const asj_view *view1, const asj_view *view2, uint32_t i, uint32_t j)
 {
     const asj_corners *c1 = &view1->corners, *c2 = &view2->corners;
-    if (c1->first_frame[i] == c1->first_frame[i + 1] || c2->first_frame[j] == c2->first_frame[j + 1])
-        return HUGE_VALF;
-    const asj_affine_frame *f1 = &c1->frames[c1->first_frame[i]], *f2 = &c2->frames[c2->first_frame[j]];
     asj_linear map;
-    if (!asj_affine_between(f1, f2, &map))
+    if (c1->first_frame[i] == c1->first_frame[i + 1] || c2->first_frame[j] == c2->first_frame[j + 1] || !view1->usable[i] ||
+        !view2->usable[j] || !asj_affine_between(&c1->frames[c1->first_frame[i]], &c2->frames[c2->first_frame[j]], &map))
         return HUGE_VALF;
-    float there = one_way(options, &view1->pyramid, f1, &view2->pyramid, f2, map.to);
-    return there < HUGE_VALF ? there + one_way(options, &view2->pyramid, f2, &view1->pyramid, f1, map.from) : HUGE_VALF;
+    const float there = one_way(options, view1, i, view2, j, map.to);
+    return there < HUGE_VALF ? there + one_way(options, view2, j, view1, i, map.from) : HUGE_VALF;
 }

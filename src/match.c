@@ -50,8 +50,9 @@ static asj_status prepare(match_run *m, const asj_image *const images[2], const 
                                         &view->corners);
         if (status == ASJ_OK)
             status = asj_pyramid_create(m->context, images[v], m->options->smoothing, &view->pyramid);
-        if (status == ASJ_OK && m->options->patches == ASJ_PATCHES_CANONICAL)
-            status = asj_describe(m->context, m->options, view);
+        if (status == ASJ_OK)
+            status = m->options->patches == ASJ_PATCHES_CANONICAL ? asj_describe(m->context, m->options, view)
+                                                                  : asj_induced_describe(m->context, m->options, view);
     }
     stop_watch(m, ASJ_STAGE_PATCHES);
     return status;
