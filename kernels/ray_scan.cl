@@ -86,20 +86,22 @@ static short16 is_peak(const scan_sizes *s, const short16 *strengths, int k, int
     return (here > before) & (here >= after);
 }
 
-/* A branch takes a place of a list that falls, when it is stronger than what is there; returns the one that goes on to the next
- * place. Strength in the high half, angle (1/65536 of a turn) in the low half. */
-static uint take_place(uint *place, uint branch)
+/* A branch takes a place of a list that falls, when it is stronger than what is there or `moves`, being what had the place before;
+ * returns the one that goes on to the next place. Of equals the one put in first comes first. Strength in the high half, angle
+ * (1/65536 of a turn) in the low half. */
+static uint take_place(uint *place, uint branch, int *moves)
 {
     const uint other = *place;
-    const int stronger = branch >> 16 > other >> 16;
-    *place = stronger ? branch : other;
-    return stronger ? other : branch;
+    *moves |= branch >> 16 > other >> 16;
+    *place = *moves ? branch : other;
+    return *moves ? other : branch;
 }
 
 static void insert(uint *list, uint branch)
 {
+    int moves = 0;
     for (int i = 0; i < BRANCHES; i++)
-        branch = take_place(list + i, branch);
+        branch = take_place(list + i, branch, &moves);
 }
 
 /* The vertex of the parabola through three neighbouring strengths. */
@@ -188,10 +190,11 @@ static uint4 pixel_branches(const scan_sizes *s, const scan_table *t, __local co
             continue;
         const int before = pixel_strength(s, t, slot, step, k - 1), after = pixel_strength(s, t, slot, step, k + 1);
         uint branch = interpolate(s->sectors, k, before, here, after);
-        branch = take_place(&first, branch);
-        branch = take_place(&second, branch);
-        branch = take_place(&third, branch);
-        take_place(&fourth, branch);
+        int moves = 0;
+        branch = take_place(&first, branch, &moves);
+        branch = take_place(&second, branch, &moves);
+        branch = take_place(&third, branch, &moves);
+        take_place(&fourth, branch, &moves);
     }
     return (uint4)(first, second, third, fourth);
 }
