@@ -13,6 +13,7 @@
  * radius 7 in a photograph of 0.8 megapixels: what the paper's number of tests would be if it counted one line of the image. */
 #include "field.h"
 #include "ops.h"
+#include "threads.h"
 
 #include <math.h>
 #include <string.h>
@@ -22,6 +23,7 @@
 #endif
 
 #define TWO_PI 6.283185307179586
+#define LEAST_RUNS 128 /* for a thread: about 25 us */
 
 static uint16_t strength_of_tail(const asj_context *context, const asj_sectors *s, int32_t k, double log_p)
 {
@@ -245,9 +247,12 @@ void asj_field_tile(const asj_field *field, const asj_frame *frame, int32_t run,
 asj_status asj_field_rows(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
                           uint16_t *scratch, size_t scratch_size, uint16_t *masks)
 {
-    const int32_t per_tile = ASJ_FIELD_TILE / ASJ_LANES;
+    const int32_t threads = asj_threads_for(context, (int64_t)frame->blocks * (bottom - top), LEAST_RUNS);
+    /* tiles are half as wide where there are so few that threads would wait for the last one */
+    const int32_t largest = ASJ_FIELD_TILE / ASJ_LANES, many = 8 * threads * largest;
+    const int32_t per_tile = threads == 1 || frame->blocks >= many ? largest : largest / 2;
 #ifdef _OPENMP
-#pragma omp parallel for num_threads(context->threads) schedule(dynamic)
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
 #endif
     for (int32_t run = 0; run < frame->blocks; run += per_tile) {
         const int32_t runs = frame->blocks - run < per_tile ? frame->blocks - run : per_tile;

@@ -137,7 +137,7 @@ static void *take(asj_memory *memory, size_t count, size_t size, size_t more)
 {
     if (size != 0 && (count > (SIZE_MAX - EXTRA) / size || more > (SIZE_MAX - EXTRA) / size - count))
         return NULL;
-    void *block = take_spare(memory, count * size + EXTRA);
+    void *block = memory->open ? take_spare(memory, count * size + EXTRA) : NULL;
     return block ? block : take_new(memory, (count + more) * size + EXTRA);
 }
 

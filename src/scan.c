@@ -27,6 +27,7 @@
 
 #include "ops.h"
 #include "scan_cache.h"
+#include "threads.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -292,7 +293,7 @@ static void follow_rays(const asj_context *context, const asj_scan *scan, const 
 
 asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count)
 {
-    const int32_t threads = (size_t)context->threads < count ? context->threads : (int32_t)(count ? count : 1);
+    const int32_t threads = asj_threads_for(context, (int64_t)count, 2); /* a ray takes about 20 us */
     asj_status status = ASJ_OK;
     asj_scan_cache own = {0};
     const asj_scan_cache *cache = scan->cache;

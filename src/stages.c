@@ -4,6 +4,7 @@
 #include "gradient.h"
 #include "ops.h"
 #include "refine.h"
+#include "threads.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,6 +13,8 @@
 #ifdef _OPENMP
 #include <omp.h>
 #endif
+
+#define LEAST_JUNCTIONS 4 /* for a thread: about 40 us */
 
 static asj_status prepare_tables(asj_context *context, const asj_detect_options *options)
 {
@@ -25,6 +28,7 @@ static asj_status prepare_tables(asj_context *context, const asj_detect_options 
     if (detector->ready && memcmp(&detector->options, options, sizeof *options) == 0)
         return ASJ_OK;
     detector->ready = 0;
+    detector->width = detector->height = 0;
     asj_field_free(&context->memory, &detector->field);
     asj_isotropic_free(&context->memory, &detector->isotropic);
     asj_status status = asj_field_create(context, options, &detector->field);
@@ -47,8 +51,12 @@ asj_status asj_stage_prepare(asj_detection_run *d, int32_t width, int32_t height
     if (status != ASJ_OK)
         return status;
     struct asj_detector *detector = d->detector = context->detector;
-    asj_isotropic_set_size(d->options, width, height, &detector->isotropic);
-    asj_scan_set_size(context, d->options, width, height, &detector->scan);
+    if (width != detector->width || height != detector->height) {
+        asj_isotropic_set_size(d->options, width, height, &detector->isotropic);
+        asj_scan_set_size(context, d->options, width, height, &detector->scan);
+        detector->width = width;
+        detector->height = height;
+    }
     status = asj_scan_cache_prepare(context, &detector->frame, context->threads, &detector->scan_cache);
     if (status != ASJ_OK)
         return status;
@@ -265,11 +273,14 @@ static asj_status suppress(asj_detection_run *d, int same)
 asj_status asj_stage_locate(asj_detection_run *d)
 {
     const int64_t count = (int64_t)d->isotropic_count;
+    int32_t threads = asj_threads_for(d->context, count, 4 * LEAST_JUNCTIONS); /* a quick look each */
     d->drafts = asj_allocate_list(&d->context->memory, d->isotropic_count, sizeof *d->drafts);
     if (!d->drafts)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", d->isotropic_count);
 #ifdef _OPENMP
-#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 16)
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 16)
+#else
+    (void)threads;
 #endif
     for (int64_t i = 0; i < count; i++) {
         asj_locate_start(&d->isotropic[i], &d->drafts[i]);
@@ -280,8 +291,11 @@ asj_status asj_stage_locate(asj_detection_run *d)
     if (status != ASJ_OK)
         return status;
     const int64_t left = (int64_t)d->draft_count;
+    threads = asj_threads_for(d->context, left, LEAST_JUNCTIONS);
 #ifdef _OPENMP
-#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 8)
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
+#else
+    (void)threads;
 #endif
     for (int64_t i = 0; i < left; i++) {
         asj_locate(d->context, &d->detector->frame, d->options, &d->drafts[i]);
@@ -393,8 +407,11 @@ asj_status asj_stage_scan(asj_detection_run *d)
 asj_status asj_stage_orient(asj_detection_run *d)
 {
     const int64_t count = (int64_t)d->draft_count;
+    const int32_t threads = asj_threads_for(d->context, count, LEAST_JUNCTIONS);
 #ifdef _OPENMP
-#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 8)
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
+#else
+    (void)threads;
 #endif
     for (int64_t i = 0; i < count; i++)
         asj_orient(d->context, &d->detector->frame, d->options, &d->drafts[i]);
@@ -415,8 +432,11 @@ static asj_status snap_ends(asj_detection_run *d)
 asj_status asj_stage_validate(asj_detection_run *d)
 {
     const int64_t count = (int64_t)d->draft_count;
+    const int32_t threads = asj_threads_for(d->context, count, LEAST_JUNCTIONS);
 #ifdef _OPENMP
-#pragma omp parallel for num_threads(d->threads) schedule(dynamic, 8)
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
+#else
+    (void)threads;
 #endif
     for (int64_t i = 0; i < count; i++) {
         asj_refine(d->context, &d->detector->frame, d->options, &d->drafts[i]);

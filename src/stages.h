@@ -14,6 +14,7 @@ struct asj_detector {
     asj_frame frame;
     asj_detect_options options; /* the tables below were made for these */
     int ready;
+    int32_t width, height;      /* and for images of this size */
     asj_field field;
     asj_isotropic isotropic;
     asj_scan scan;

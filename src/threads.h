@@ -4,12 +4,12 @@
 
 #include "context.h"
 
-/* How many threads to share `items` out to, when fewer than `least` items are not worth a thread: 1 to those of the context.
- * Waking a thread and waiting for it costs some 10 us. */
+/* How many threads to share `items` out to: 1 when they are not worth two, with `least` items for each, or else those of the
+ * context. Waking threads and waiting for them costs some 10 us; run-time libraries end threads and make new ones when their number
+ * changes from region to region, which costs more, so there is nothing between. */
 static inline int32_t asj_threads_for(const asj_context *context, int64_t items, int64_t least)
 {
-    const int64_t useful = items / least;
-    return useful >= context->threads ? context->threads : useful > 1 ? (int32_t)useful : 1;
+    return items / 2 >= least ? context->threads : 1;
 }
 
 #endif
