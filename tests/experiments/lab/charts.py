@@ -38,6 +38,9 @@ def curves(panels, width=7.5, height=3.2):
             axis.set_ylim(*panel["y_range"])
         if panel.get("ticks"):
             axis.set_xticks(panel["ticks"])
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=2 if max(map(len, labels)) > 30 else 4, fontsize=8)
+    entries = {}
+    for axis in axes:
+        entries.update(zip(*reversed(axis.get_legend_handles_labels())))
+    columns = 2 if max(map(len, entries), default=0) > 30 else 4
+    figure.legend(entries.values(), entries.keys(), loc="outside lower center", ncols=columns, fontsize=8)
     return _svg(figure)

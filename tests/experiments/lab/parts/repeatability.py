@@ -151,6 +151,6 @@ def _compare(part):
         part.findings.append("Repeatability of the default preset (ASJ) above %s at every zoom below 1: %s." % (
             name, "no, not at " + ", ".join("%g" % f for f in below) if below else "yes"))
     part.text(*part.findings)
-    part.text("The ACJ criterion asks little near 1: isotropic scales end at the largest radius tested (14 px in the default preset, "
-              "12 px in the paper's), where |s r1 - r2| stays below 3 px down to a zoom of 0.79 and 0.75. There isotropic "
+    part.text("The ACJ criterion asks little near 1: isotropic scales end at the largest radius tested (14 px in the default "
+              "preset, 12 px in the paper's), where |s r1 - r2| stays below 3 px down to a zoom of 0.79 and 0.75. There isotropic "
               "junctions are judged by location and angles alone, and every branch length besides for ASJ.")
