@@ -128,7 +128,44 @@ static void test_line_fit(void **state)
     }
 }
 
+/* The quick fits find the sides to half a degree, and do not touch lengths. */
+static void test_orient(void **state)
+{
+    const fixture *f = *state;
+    for (int n = 0; n < 16; n++) {
+        asj_draft draft = corner_draft(corner_x + 0.5 * cos(n), corner_y + 0.5 * sin(n), n % 2 ? 0.035 : -0.035);
+        asj_orient(f->context, &f->frame, &f->options, &draft);
+        unit_near("distance", n, 0, hypot(draft.x - corner_x, draft.y - corner_y), 0, 0.3);
+        for (int b = 0; b < 2; b++) {
+            unit_near("angle", n, b, unit_turn(draft.branches[b].angle, angles[b]), 0, 0.5 * UNIT_PI / 180);
+            assert_true(draft.branches[b].length == sides[b]);
+        }
+    }
+}
+
 /* ---- validation ---- */
+
+/* Before the scan: what no length makes meaningful goes, and with it a junction that has no other opening. */
+static void test_foresee(void **state)
+{
+    fixture *f = *state;
+    asj_draft draft = corner_draft(corner_x, corner_y, 0);
+    asj_foresee(f->context, &f->frame, &f->options, &draft);
+    assert_int_equal(draft.branch_count, 2);
+    draft.branches[2] = draft.branches[0];
+    draft.branches[2].angle += UNIT_PI; /* into the flat part */
+    draft.branch_count = 3;
+    asj_foresee(f->context, &f->frame, &f->options, &draft);
+    assert_int_equal(draft.branch_count, 2);
+    draft.branches[0].angle += UNIT_PI;
+    asj_foresee(f->context, &f->frame, &f->options, &draft);
+    assert_int_equal(draft.branch_count, 0);
+    draft = corner_draft(corner_x, corner_y, UNIT_PI);
+    f->options.strip_test = 0; /* nothing is asked of strips */
+    asj_foresee(f->context, &f->frame, &f->options, &draft);
+    assert_int_equal(draft.branch_count, 2);
+    asj_detect_options_init(&f->options);
+}
 
 static int32_t validated(const fixture *f, asj_draft *draft)
 {
@@ -162,6 +199,12 @@ static void test_dropped_branches(void **state)
     draft.branches[0].offset = -2.1;
     draft.branch_count = 2;
     assert_int_equal(validated(f, &draft), 0);
+    draft = corner_draft(corner_x, corner_y, 0);
+    draft.x0 += 2 * f->options.max_move + 0.1; /* seen somewhere else */
+    assert_int_equal(validated(f, &draft), 0);
+    draft = corner_draft(corner_x, corner_y, 0);
+    draft.x0 += 2 * f->options.max_move - 0.1;
+    assert_int_equal(validated(f, &draft), 2);
     draft = corner_draft(corner_x, corner_y, UNIT_PI); /* into the flat part: not meaningful */
     assert_int_equal(validated(f, &draft), 0);
     draft = corner_draft(corner_x, corner_y, 0);
@@ -216,6 +259,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_search, reset),           cmocka_unit_test_setup(test_line_fit, reset),
+        cmocka_unit_test_setup(test_orient, reset),           cmocka_unit_test_setup(test_foresee, reset),
         cmocka_unit_test_setup(test_good_corner, reset),      cmocka_unit_test_setup(test_dropped_branches, reset),
         cmocka_unit_test_setup(test_merge, reset),            cmocka_unit_test_setup(test_order_and_opening, reset),
     };
