@@ -182,6 +182,29 @@ static int check_files(const cli_match_arguments *arguments)
     return cli_check_collisions("match", outputs, output_count, inputs, input_count);
 }
 
+/* Names that promise something else than they would get. */
+static int check_output(const cli_match_arguments *arguments)
+{
+    static const char *const others[] = {"asj", "png", "svg", "pdf", "jpg", "jpeg", NULL};
+    const char *dot = arguments->output && !arguments->format ? strrchr(arguments->output, '.') : NULL;
+    if (dot && cli_find_word(others, dot + 1) >= 0)
+        return cli_usage_error("match", "--output: %s: matches are written as csv or json (a picture: --plot)", arguments->output);
+    return CLI_SUCCESS;
+}
+
+/* Options of the detector when it has nothing to do. */
+static int check_detector(const cli_match_arguments *arguments)
+{
+    if (!arguments->junctions[0] || !arguments->junctions[1])
+        return CLI_SUCCESS;
+    if (arguments->detect_settings.count > 0)
+        return cli_usage_error("match", "%s changes nothing: the junctions of both images come from files",
+                               arguments->detect_settings.list[0].key);
+    if (arguments->detect_preset >= 0)
+        return cli_usage_error("match", "--detect-preset changes nothing: the junctions of both images come from files");
+    return CLI_SUCCESS;
+}
+
 static int check(cli_match_arguments *arguments, char **operands, int operand_count)
 {
     if (operand_count != 2)
@@ -192,6 +215,10 @@ static int check(cli_match_arguments *arguments, char **operands, int operand_co
             return cli_usage_error("match", "nothing is read from standard input (a file named - is ./-)");
     }
     int result = cli_common_check("match", &arguments->common);
+    if (result == CLI_SUCCESS)
+        result = check_output(arguments);
+    if (result == CLI_SUCCESS)
+        result = check_detector(arguments);
     if (result == CLI_SUCCESS && arguments->plot)
         result = cli_plot_format_of_name("match", arguments->plot, &arguments->plot_format);
     return result == CLI_SUCCESS ? check_files(arguments) : result;

@@ -45,7 +45,7 @@ static void help_names_every_option_of_the_library(void **state)
 
 /* Each line of arguments, and what standard error must contain. */
 static const struct {
-    const char *arguments[10];
+    const char *arguments[12];
     const char *message;
 } wrong[] = {
     {{"match"}, "which images?"},
@@ -71,8 +71,14 @@ static const struct {
     {{"match", "--plot-layout", "left", "first.png", "first.png"}, "--plot-layout: 'left'"},
     {{"match", "--plot-background", "red", "first.png", "first.png"}, "--plot-background: 'red'"},
     {{"match", "--plot-scale", "0", "first.png", "first.png"}, "--plot-scale: '0'"},
-    {{"match", "-o", "./first.png", "first.png", "second.png"}, "first.png: is an input file"},
-    {{"match", "--junctions1", "good.asj", "-o", "good.asj", "first.png", "second.png"}, "good.asj: is an input file"},
+    {{"match", "-f", "csv", "-o", "./first.png", "first.png", "second.png"}, "first.png: is an input file"},
+    {{"match", "--junctions1", "good.asj", "-f", "csv", "-o", "good.asj", "first.png", "second.png"}, "good.asj: is an input file"},
+    {{"match", "-o", "new.asj", "first.png", "second.png"}, "new.asj: matches are written as csv or json"},
+    {{"match", "-o", "new.png", "first.png", "second.png"}, "(a picture: --plot)"},
+    {{"match", "--junctions1", "good.asj", "--junctions2", "good.asj", "--epsilon", "2", "first.png", "second.png"},
+     "epsilon changes nothing"},
+    {{"match", "--junctions1", "good.asj", "--junctions2", "good.asj", "--detect-preset", "paper", "first.png", "second.png"},
+     "--detect-preset changes nothing"},
 };
 
 static void wrong_usage_ends_with_2_and_says_why(void **state)
