@@ -115,7 +115,8 @@ static void drop_outgrown(asj_memory *memory, size_t bytes)
 
 static void *take_new(asj_memory *memory, size_t bytes)
 {
-    drop_outgrown(memory, bytes);
+    if (memory->open)
+        drop_outgrown(memory, bytes);
     char *start = memory->allocator.allocate(memory->allocator.user, bytes);
     if (!start && memory->spare) {
         trim(memory, UINT64_MAX);
