@@ -99,12 +99,14 @@ static void *take_spare(asj_memory *memory, size_t bytes)
     return block_of(head);
 }
 
-/* A list that grows from call to call leaves the block that it has outgrown. */
+/* A list that grows from call to call leaves the block that it has outgrown. Blocks of this call are not it: the next call needs
+ * them again. */
 static void drop_outgrown(asj_memory *memory, size_t bytes)
 {
     header **largest = NULL;
     for (header **link = &memory->spare; *link; link = &(*link)->next)
-        if ((*link)->bytes < bytes && (*link)->bytes >= bytes / 2 && (!largest || (*link)->bytes > (*largest)->bytes))
+        if ((*link)->call < memory->call && (*link)->bytes < bytes && (*link)->bytes >= bytes / 2 &&
+            (!largest || (*link)->bytes > (*largest)->bytes))
             largest = link;
     if (!largest)
         return;
@@ -116,6 +118,7 @@ static void drop_outgrown(asj_memory *memory, size_t bytes)
 static void *take_new(asj_memory *memory, size_t bytes)
 {
     if (memory->open)
+        if (memory->open)
         drop_outgrown(memory, bytes);
     char *start = memory->allocator.allocate(memory->allocator.user, bytes);
     if (!start && memory->spare) {
