@@ -173,7 +173,7 @@ static int hopeful(const asj_context *context, const asj_frame *frame, const asj
     static const double lengths[] = {20, 50, 12, 8}; /* px: most that are meaningful are so at 20 */
     const double limit = log(options->epsilon) + DOUBT;
     for (int i = 0; i < 4; i++)
-        if (asj_strip_test(context, frame, options, draft->x, draft->y, branch->angle, lengths[i]).log_nfa <= limit)
+        if (asj_strip_log_nfa(context, frame, options, draft->x, draft->y, branch->angle, lengths[i]) <= limit)
             return 1;
     return 0;
 }

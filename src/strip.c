@@ -28,7 +28,8 @@ typedef struct sums {
     int32_t pixels, near_pixels;
 } sums;
 
-static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double ux, double uy, int near, sums *s)
+/* `all`: not the junction-ness alone. */
+static inline void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double ux, double uy, int near, int all, sums *s)
 {
     if (x < 0 || y < 0 || x >= frame->width || y >= frame->height)
         return;
@@ -36,10 +37,12 @@ static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double ux, d
     const double gx = (double)frame->gradient_x[at] / ASJ_GRADIENT_ONE, gy = (double)frame->gradient_y[at] / ASJ_GRADIENT_ONE;
     const double along = gx * ux + gy * uy, across = gy * ux - gx * uy, gamma = fabs(across) - fabs(along);
     s->gamma += gamma > 0 ? gamma : 0;
+    s->pixels++;
+    if (!all)
+        return;
     s->uu += along * along;
     s->un += along * across;
     s->nn += across * across;
-    s->pixels++;
     if (near) {
         s->near_gamma += gamma > 0 ? gamma : 0;
         s->near_pixels++;
@@ -53,8 +56,8 @@ static inline int32_t whole(double value)
 }
 
 /* Walks along the axis (x or y) that the strip is longer on, and across it over the few pixels that can be inside. */
-asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                         double x, double y, double angle, double length)
+static inline sums add_up(const asj_frame *frame, const asj_detect_options *options, double x, double y, double angle,
+                          double length, int all)
 {
     const double ux = cos(angle), uy = sin(angle), half_width = options->strip_half_width;
     const double reach = fmin(length, options->strip_length);
@@ -72,16 +75,33 @@ asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, con
             int32_t px = along_x ? i : j, py = along_x ? j : i;
             double t = (px - x) * ux + (py - y) * uy, across = (py - y) * ux - (px - x) * uy;
             if (t > 0.5 && t <= reach && fabs(across) <= half_width)
-                add_pixel(frame, px, py, ux, uy, t <= NEAR, &s);
+                add_pixel(frame, px, py, ux, uy, t <= NEAR, all, &s);
         }
     }
-    if (s.pixels == 0)
-        return (asj_strip){HUGE_VAL, 0, 0};
+    return s;
+}
+
+static double log_nfa(const asj_context *context, const asj_frame *frame, const sums *s)
+{
     const double log_tests = 1.5 * log((double)frame->width * frame->height);
-    asj_strip strip;
-    strip.log_nfa = log_tests + asj_nfa_log_sector_tail(context->nfa, s.gamma, s.pixels);
+    return s->pixels ? log_tests + asj_nfa_log_sector_tail(context->nfa, s->gamma, s->pixels) : HUGE_VAL;
+}
+
+double asj_strip_log_nfa(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                         double x, double y, double angle, double length)
+{
+    const sums s = add_up(frame, options, x, y, angle, length, 0);
+    return log_nfa(context, frame, &s);
+}
+
+asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                         double x, double y, double angle, double length)
+{
+    const sums s = add_up(frame, options, x, y, angle, length, 1);
+    asj_strip strip = {log_nfa(context, frame, &s), 0, 0};
+    if (s.pixels == 0)
+        return strip;
     strip.deviation = fabs(0.5 * atan2(2 * s.un, s.nn - s.uu));
-    strip.near_strength = 0;
     if (s.near_pixels > 0)
         strip.near_strength = (s.near_gamma - s.near_pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(s.near_pixels));
     return strip;

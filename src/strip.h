@@ -15,4 +15,8 @@ typedef struct asj_strip {
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          double x, double y, double angle, double length);
 
+/* Its log_nfa alone. */
+double asj_strip_log_nfa(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                         double x, double y, double angle, double length);
+
 #endif
