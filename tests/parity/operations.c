@@ -262,6 +262,11 @@ static asj_status run_line_profile(asj_context *context, const subject *s, uint1
     return ASJ_OK;
 }
 
+static double one_line(const subject *s)
+{
+    return s->frame.width;
+}
+
 const operation operations[] = {
     {"luma", 0, luma_size, luma_pixels, NULL, run_luma},
     {"gradient", 1, planes_size, all_pixels, step_1_bytes, run_gradient},
@@ -269,6 +274,9 @@ const operation operations[] = {
     {"isotropic band", 0, band_size, band_pixels, NULL, run_band},
     {"line sums", 0, line_sums_size, one_run, NULL, run_line_sums},
     {"line profile", 0, line_profile_size, one_run, NULL, run_line_profile},
+    {"blur row", 0, blur_size, one_line, NULL, run_blur},
+    {"pyramid samples", 0, samples_size, one_run, NULL, run_samples},
+    {"patch products", 0, products_size, one_run, NULL, run_products},
     {"field tile", 0, tile_size, tile_pixels, NULL, run_tiles},
     {"field rows", 1, tile_size, tile_pixels, gradient_bytes, run_field_rows},
     {"isotropic rows", 1, records_size, all_pixels, gradient_bytes, run_isotropic_rows},

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "more_operations.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SAMPLES 333 /* no multiple of any vector */
+#define PRODUCTS 37
+
+size_t blur_size(const subject *s)
+{
+    return (size_t)s->frame.width * sizeof(uint16_t);
+}
+
+/* Rows of any grey levels, every radius, taps of both signs of rounding that sum to 2^14. */
+asj_status run_blur(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    static uint16_t grey[ASJ_BLUR_ROWS][8192];
+    synth_random random = s->random;
+    const uint16_t *rows[ASJ_BLUR_ROWS];
+    const int32_t radius = 1 + (int32_t)(s->seed % ASJ_BLUR_RADIUS), width = s->frame.width < 8192 ? s->frame.width : 8192;
+    int32_t taps[ASJ_BLUR_RADIUS + 1], rest = 1 << 14;
+    (void)scratch;
+    for (int32_t i = 1; i <= radius; i++) {
+        taps[i] = (int32_t)synth_random_between(&random, 0, (1 << 13) / radius);
+        rest -= 2 * taps[i];
+    }
+    taps[0] = rest;
+    for (int32_t r = 0; r < 2 * radius + 1; r++) {
+        for (int32_t x = 0; x < width; x++)
+            grey[r][x] = (uint16_t)synth_random_between(&random, 0, s->content == CONTENT_SATURATED ? 2 : 32640.999);
+        rows[r] = grey[r];
+    }
+    memset(output, 0, blur_size(s));
+    context->ops->blur_row(rows, taps, radius, width, output);
+    return ASJ_OK;
+}
+
+size_t samples_size(const subject *s)
+{
+    (void)s;
+    return SAMPLES * sizeof(uint16_t) + sizeof(int32_t);
+}
+
+/* Random places of every level, some outside, some far outside. */
+asj_status run_samples(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    asj_pyramid pyramid;
+    synth_random random = s->random;
+    float x[SAMPLES], y[SAMPLES];
+    uint8_t *pixels = asj_allocate(&context->memory, (size_t)s->frame.width * (size_t)s->frame.height, 1);
+    uint16_t grey[SAMPLES];
+    (void)scratch;
+    if (!pixels)
+        return ASJ_ERROR_MEMORY;
+    for (int32_t i = 0; i < s->frame.width * s->frame.height; i++)
+        pixels[i] = (uint8_t)(synth_random_bits(&random) >> 56);
+    for (int32_t i = 0; i < SAMPLES; i++) {
+        const double beyond = i % 17 ? 3 : 1e6;
+        x[i] = (float)synth_random_between(&random, -beyond, s->frame.width + beyond);
+        y[i] = (float)synth_random_between(&random, -beyond, s->frame.height + beyond);
+    }
+    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, s->frame.width, s->frame.height, 0, 0};
+    const asj_status status = asj_pyramid_create(context, &image, 0, &pyramid);
+    if (status == ASJ_OK) {
+        const int32_t level = (int32_t)(s->seed % (uint64_t)pyramid.levels);
+        const int32_t inside = context->ops->pyramid_sample(&pyramid, level, x, y, SAMPLES, grey);
+        memcpy(output, &inside, sizeof inside);
+        memcpy((char *)output + sizeof inside, grey, sizeof grey);
+    }
+    asj_pyramid_free(&context->memory, &pyramid);
+    asj_release(&context->memory, pixels);
+    return status;
+}
+
+size_t products_size(const subject *s)
+{
+    (void)s;
+    return PRODUCTS * sizeof(int32_t);
+}
+
+/* Vectors of every length that patches have, with entries as large as unit vectors allow. */
+asj_status run_products(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    static int16_t vectors[PRODUCTS + 1][ASJ_PATCH_SAMPLES];
+    synth_random random = s->random;
+    const int32_t side = 8 + 4 * (int32_t)(s->seed % 5), length = side * side;
+    const double most = ASJ_UNIT_ONE / sqrt(length);
+    int16_t right[PRODUCTS * ASJ_PATCH_SAMPLES];
+    (void)scratch;
+    for (int32_t k = 0; k <= PRODUCTS; k++)
+        for (int32_t i = 0; i < length; i++)
+            vectors[k][i] = (int16_t)(k == 0 ? most : synth_random_between(&random, -most, most));
+    for (int32_t k = 0; k < PRODUCTS; k++)
+        memcpy(right + k * length, vectors[k + 1], (size_t)length * sizeof *right);
+    context->ops->patch_products(vectors[0], right, length, PRODUCTS, output);
+    return ASJ_OK;
+}
