@@ -57,7 +57,7 @@ void asj_line_profile_of(const asj_frame *frame, const asj_line_profile *profile
 void asj_line_profile_part(const asj_frame *frame, const asj_line_profile *profile, int32_t from, int32_t to,
                            asj_profile_sums *sums);
 
-/* Whether all samples of these k have the pixels around them that interpolation wants, with a pixel to spare. */
+/* Whether all samples of these k have the pixels around them that interpolation wants. */
 int asj_line_profile_inside(const asj_frame *frame, const asj_line_profile *profile, int32_t from, int32_t to);
 
 /* The columns of a row that may be inside, from *first to *last. */
