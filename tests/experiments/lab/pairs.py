@@ -24,7 +24,7 @@ class Pair:
     @property
     def key(self):
         """The name as part of a file's name."""
-        return self.name.replace(",", "").replace(" ", "-")
+        return self.name.replace(":", "").replace(" ", "-")
 
 
 def _detections(folder):
@@ -60,13 +60,21 @@ def read_folder(folder):
 
 # name, arguments: what each is for stands in the name; seeds modulo 4 are the kinds of tests/synth/random_room.c
 ROOMS = (
-    ("room, parallax", ("--first", "0", "--second", "1")),
-    ("room, far apart", ("--first", "0", "--second", "4")),
-    ("low texture", ("--room", "4")),
-    ("repeated texture", ("--room", "5")),
-    ("occlusion", ("--room", "6")),
-    ("pictures", ("--room", "7")),
+    ("room: parallax", ("--first", "0", "--second", "1")),
+    ("room: far apart", ("--first", "0", "--second", "4")),
+    ("room: low texture", ("--room", "4")),
+    ("room: repeated texture", ("--room", "5")),
+    ("room: occlusion", ("--room", "6")),
+    ("room: pictures", ("--room", "7")),
 )
+
+
+def check_names(chosen):
+    """Results go by the names of pairs, pictures by their keys."""
+    keys = [p.key for p in chosen]
+    twice = sorted({k for k in keys if keys.count(k) > 1})
+    if twice:
+        raise ValueError("several pairs are called %s" % ", ".join(twice))
 
 
 def render(library, folder, quick):

@@ -29,6 +29,7 @@ class Session:
         if self.quick:
             self.real = self.real[:1]
         self.pairs = self.real + self.rendered
+        pairs.check_names(self.pairs)
 
     def jobs(self, name):
         """The jobs of a part, with its share of the time that is left."""
