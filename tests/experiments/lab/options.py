@@ -14,8 +14,7 @@ class Departure:
     paper: str
     ours: str
 
-    @property
-    def text(self):
+    def __str__(self):
         return "%s: %s -> %s" % (self.key, self.paper, self.ours)
 
 

@@ -11,6 +11,7 @@ from ..tables import accuracy
 
 FACTORS = (0.9, 0.7, 0.5)
 NOTICEABLE = {"accuracy": 0.5, "correct": 0.01, "repeatability": 0.5}  # points of percent, share of the correct ones, points
+NEEDS_BACK = {"neighbours": ("minimum_support",)}  # nobody asked, no support
 MATCHING = "matching"  # the detector as asj-cli match sets it
 
 
@@ -18,7 +19,12 @@ def _configurations(departures):
     """[(kind, departure or None, words)]: the path from all of the paper's values, then the default with one set back"""
     path = [("path", d, options.words(departures[n + 1:], "paper")) for n, d in enumerate(departures)]
     path.insert(0, ("path", None, options.words(departures, "paper")))
-    return path + [("back", d, options.words([d], "paper")) for d in departures]
+    return path + [("back", d, options.words(_together(d, departures), "paper")) for d in departures]
+
+
+def _together(departure, departures):
+    """The options that are set back with this one."""
+    return [d for d in departures if d == departure or d.key in NEEDS_BACK.get(departure.key, ())]
 
 
 def _is_default(configuration):
@@ -105,18 +111,20 @@ def _tables(part, title, cells, configurations):
     header = [c[1] for c in columns]
     path = [(d, m) for (kind, d), m in known.items() if kind == "path"]
     part.table(["from the paper preset, one option at a time"] + header,
-               [[d.text if d else "paper preset"] + _cells(m, columns) for d, m in path])
+               [[str(d) if d else "paper preset"] + _cells(m, columns) for d, m in path])
     default = path[-1][1]
     rows = [["default"] + _cells(default, columns) + [""]]
-    rows += [["%s = %s" % (d.key, d.paper)] + _cells(m, columns) + [_verdict(default, m)]
-             for (kind, d), m in known.items() if kind == "back"]
+    single = [d for kind, d, _ in configurations if kind == "back"]
+    for d in single:
+        name = ", ".join("%s = %s" % (e.key, e.paper) for e in _together(d, single))
+        rows.append([name] + _cells(known["back", d], columns) + [_verdict(default, known["back", d])])
     part.table(["the default with one option set back to the paper's"] + header + ["the departure"], rows)
     for verdict in ("pays", "costs", "mixed", "no difference", "not measured"):
         keys = [r[0] for r in rows[1:] if r[-1].startswith(verdict)]
         if keys:
-            part.findings.append("%s, the departure from %s: %s." % (title, ", ".join(keys), verdict))
+            part.findings.append("%s, %s: the departure from %s." % (title, verdict, "; ".join(keys)))
     part.numbers[title] = {
-        "path": [dict(m, option=d.text if d else "paper preset") for d, m in path],
+        "path": [dict(m, option=str(d) if d else "paper preset") for d, m in path],
         "back": [dict(m, option=d.key, value=d.paper, departure=_verdict(default, m))
                  for (kind, d), m in known.items() if kind == "back"]}
 
