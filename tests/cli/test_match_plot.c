@@ -205,7 +205,8 @@ static void plots_take_the_place_of_no_other_file(void **state)
 {
     (void)state;
     int files = count_files(".");
-    const outcome *result = run_cli("match", "-o", "a.png", "--plot", "a.png", "first.png", "second.png", NULL);
+    const outcome *result = run_cli("match", "--format", "csv", "-o", "a.png", "--plot", "a.png", "first.png",
+                                    "second.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "a.png: would be written twice");
     result = run_cli("match", "--plot", "./second.png", "first.png", "second.png", NULL);
