@@ -23,7 +23,7 @@ static const char *const descriptor_words[] = {"raw", "sift", NULL};
 
 static const asj_option_info rows[] = {
     CHOICE(descriptor, 1, ASJ_DESCRIPTOR_RAW, ASJ_DESCRIPTOR_RAW, descriptor_words, "what describes a patch: raw or sift"),
-    NUMBER(ratio, "", 1, 10, 1.5, 1.5, "the second best match at another place must be worse by this factor"),
+    NUMBER(ratio, "", 1, 10, 1.25, 1.5, "the second best match at another place must be worse by this factor"),
     SWITCH(mutual, 1, 0, "two junctions match only if each is the other's best"),
     NUMBER(minimum_support, "", 0, 64, 1, 0, "neighbouring matches that must agree with a match, each counted 0 to 1"),
     NUMBER(minimum_similarity, "", -1, 1, 0.4, -1, "correlation that the aligned discs of a match need"),
@@ -34,7 +34,7 @@ static const asj_option_info rows[] = {
     INTEGER(guided_rounds, "", 0, 4, 1, 0, "times that accepted matches propose matches near them"),
     INTEGER(witnesses, "", 0, 64, 16, 0, "nearest matches that are asked whether they agree with a match; 0 = none are asked"),
     NUMBER(witness_distance, "px", 10, 10000, 100, 100, "distance at which a witness counts by half"),
-    NUMBER(minimum_agreement, "", 0, 1, 0.22, 0, "mean agreement with the witnesses, each counted 0 to 1, that a match needs"),
+    NUMBER(minimum_agreement, "", 0, 1, 0.24, 0, "mean agreement with the witnesses, each counted 0 to 1, that a match needs"),
     CHOICE(patches, 1, ASJ_PATCHES_CANONICAL, ASJ_PATCHES_INDUCED, patch_words,
            "canonical: one patch for each L-junction; induced: warped by each pair's own map"),
     SWITCH(normalise, 1, 0, "bring raw patches to zero mean and unit norm"),
@@ -46,7 +46,7 @@ static const asj_option_info rows[] = {
     INTEGER(shortlist, "", 1, 32, 4, 16, "best candidates kept for each L-junction of either image"),
     INTEGER(align_iterations, "", 0, 30, 6, 0, "steps that refine the affine map of a candidate on the images; 0 = none"),
     NUMBER(align_radius, "px", 8, 64, 20, 20, "radius of the disc that is aligned"),
-    NUMBER(max_move, "px", 0.5, 20, 5, 5, "farthest that the alignment may move a junction"),
+    NUMBER(max_move, "px", 0.5, 20, 8, 8, "farthest that the alignment may move a junction"),
     NUMBER(separation, "px", 0, 100, 6, 0, "what is nearer than this is the same place"),
     NUMBER(minimum_opening, "deg", 0, 80, 20, 20, "branches that open by less give no frame"),
     INTEGER(length_hypotheses, "", 1, 4, 3, 1, "lengths tried for a branch: its own, and junctions that lie on it"),

@@ -42,7 +42,7 @@ typedef struct asj_match_options {
     int32_t shortlist;           /* best candidates kept for each L-junction of either image. 1 .. 32; 4 */
     int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map; 0 = none. 0 .. 30; 6; paper 0 */
     double align_radius;         /* px: radius of the disc around the junction that is aligned. 8 .. 64; 20 */
-    double max_move;             /* px an alignment may move the junction. 0.5 .. 20; 5 */
+    double max_move;             /* px an alignment may move the junction. 0.5 .. 20; 8 */
     double minimum_similarity;   /* correlation that the aligned discs of a match need. -1 .. 1; 0.4; paper -1 */
     /* agreement between neighbouring matches: consensus.c, guided.c */
     int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 40; paper 0 */
@@ -53,9 +53,9 @@ typedef struct asj_match_options {
     /* a last look at the matches: verify.c */
     int32_t witnesses;           /* nearest matches, in either image, asked about a match; 0 = none. 0 .. 64; 16; paper 0 */
     double witness_distance;     /* px at which a witness counts by half. 10 .. 10000; 100 */
-    double minimum_agreement;    /* mean agreement with them that a match needs. 0 .. 1; 0.22; paper 0 */
+    double minimum_agreement;    /* mean agreement with them that a match needs. 0 .. 1; 0.24; paper 0 */
     /* choice: assign.c */
-    double ratio;                /* the second best at another place must be worse by this factor. 1 .. 10; 1.5 */
+    double ratio;                /* the second best at another place must be worse by this factor. 1 .. 10; 1.25; paper 1.5 */
     double separation;           /* px: what is nearer is the same place; "another place" lies farther. 0 .. 100; 6; paper 0 */
     int32_t mutual;              /* 1 = each must be the other's best. 1; paper 0 */
     /* line segments: segments.c */
