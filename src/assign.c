@@ -8,7 +8,7 @@
  * it.
  *
  * The ratio is of distances as they are, not of their squares, as Lowe has it; 1.5 on distances is 2.25 on squares, and what others
- * call 1.5 on squares is 1.22 here. The paper does not say which; the preset `paper` takes its 1.5 as distances. By default 1.25,
+ * call 1.5 on squares is 1.22 here. The paper does not say which; the preset `paper` takes its 1.5 as distances. By default 1.1,
  * since verify.c drops what a weaker ratio lets through.
  *
  * The ratio is that of scores, best over second: of distances, second over best, when no neighbours are asked. */

@@ -55,7 +55,7 @@ typedef struct asj_match_options {
     double witness_distance;     /* px at which a witness counts by half. 10 .. 10000; 100 */
     double minimum_agreement;    /* mean agreement with them that a match needs. 0 .. 1; 0.24; paper 0 */
     /* choice: assign.c */
-    double ratio;                /* the second best at another place must be worse by this factor. 1 .. 10; 1.25; paper 1.5 */
+    double ratio;                /* the second best at another place must be worse by this factor. 1 .. 10; 1.1; paper 1.5 */
     double separation;           /* px: what is nearer is the same place; "another place" lies farther. 0 .. 100; 6; paper 0 */
     int32_t mutual;              /* 1 = each must be the other's best. 1; paper 0 */
     /* line segments: segments.c */
