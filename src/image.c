@@ -199,20 +199,23 @@ asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_imag
     const ptrdiff_t row_bytes = (ptrdiff_t)image->width * find_format(image->format)->bytes_per_pixel;
     const ptrdiff_t stride = image->stride ? image->stride : row_bytes;
     const int32_t height = image->height, threads = asj_threads_for(context, (int64_t)image->width * height, LEAST_PIXELS);
-    int32_t bad = height; /* first row that is not finite */
+    int32_t failed = 0; /* not a reduction, for which some compilers export a symbol of their own */
     conversion c;
     prepare_conversion(context, image, &c);
 #ifdef _OPENMP
-#pragma omp parallel for num_threads(threads) schedule(static) reduction(min : bad)
+#pragma omp parallel for num_threads(threads) schedule(static)
 #else
     (void)threads;
 #endif
-    for (int32_t y = 0; y < height; y++) {
-        const char *row = (const char *)image->data + (ptrdiff_t)y * stride;
-        if (!load_row(&c, frame->gray + (ptrdiff_t)y * frame->stride, row, image) && y < bad)
-            bad = y;
-    }
-    if (bad < height)
-        return asj_fail(context, ASJ_ERROR_IMAGE, "row %d of the image holds NaN or infinity", (int)bad);
+    for (int32_t y = 0; y < height; y++)
+        if (!load_row(&c, frame->gray + (ptrdiff_t)y * frame->stride, (const char *)image->data + (ptrdiff_t)y * stride, image)) {
+#ifdef _OPENMP
+#pragma omp atomic write
+#endif
+            failed = 1;
+        }
+    for (int32_t y = 0; failed && y < height; y++)
+        if (!load_row(&c, frame->gray + (ptrdiff_t)y * frame->stride, (const char *)image->data + (ptrdiff_t)y * stride, image))
+            return asj_fail(context, ASJ_ERROR_IMAGE, "row %d of the image holds NaN or infinity", (int)y);
     return ASJ_OK;
 }
