@@ -61,7 +61,7 @@ void asj_scan_prepare(const asj_context *context, const asj_detect_options *opti
         scan->unit[i][1] = (int16_t)lrint(16384 * sin(TWO_PI * i / 1024));
     }
     for (int32_t r = 0; r < ASJ_SCAN_TABLE_RADIUS; r++)
-        for (int32_t d = 0; d < 4; d++) {
+        for (int32_t d = 0; d < ASJ_SCAN_TABLE_WIDTH; d++) {
             scan->arc_cosine[r][d] = r ? (int32_t)lrint(one * cos((double)d / r)) : 0;
             scan->arc_sine[r][d] = r ? (int32_t)lrint(one * sin((double)d / r)) : 0;
         }
@@ -114,17 +114,11 @@ typedef struct sample {
     int32_t cosine, sine; /* of a_d, 1 = 16384 */
 } sample;
 
-typedef struct direction {
-    int64_t x, y;   /* start of the ray, 1/65536 px */
-    int64_t ux, uy; /* its unit vector, 2^-30 */
-    uint16_t angle;
-} direction;
-
 #define REOPEN 3 /* steps in a row that must look ahead again after a crossing; one or two happen by chance in noise */
 
 /* d / r turned into a rotation: cos and sin in 2^-30. One table of them for all rays, since r is a whole number; beyond the table
  * the arc is straight to within 0.01 px. */
-static sample place(const asj_scan *scan, const direction *ray, int32_t r, int32_t d)
+static sample place(const asj_scan *scan, const asj_ray_direction *ray, int32_t r, int32_t d)
 {
     const int32_t size = d < 0 ? -d : d;
     const int in_table = r < ASJ_SCAN_TABLE_RADIUS;
@@ -174,7 +168,7 @@ typedef struct arc {
     int32_t forward, ahead, axial; /* of the forward branches; of those among them that point ahead; of the axial branches */
 } arc;
 
-static arc arc_sums(walker *w, const direction *way, int32_t r)
+static arc arc_sums(walker *w, const asj_ray_direction *way, int32_t r)
 {
     const asj_scan *scan = w->scan;
     arc sums = {0, 0, 0};
@@ -223,14 +217,26 @@ static int passes(const asj_scan *scan, const arc *sums)
     return sums->ahead >= scan->threshold && (!scan->axial || sums->axial >= scan->threshold);
 }
 
+asj_ray_direction asj_scan_direction(const asj_ray *ray)
+{
+    const double one = (double)((int64_t)1 << 30);
+    return (asj_ray_direction){llrint(ray->x * 65536), llrint(ray->y * 65536), llrint(cos(ray->angle) * one),
+                               llrint(sin(ray->angle) * one), (uint16_t)llrint(ray->angle * (65536 / TWO_PI))};
+}
+
+void asj_scan_finish(const asj_scan *scan, asj_ray *ray)
+{
+    const int32_t bridge = scan->field->sectors.radius;
+    if (scan->axial && ray->axial > ray->forward + bridge)
+        ray->axial = ray->forward + bridge;
+}
+
 /* While nothing fails, every other step need not be looked at: when the one behind it passes, its own failure would be tolerated
  * and leave no trace. */
 static void walk(walker *w, asj_ray *ray)
 {
     const asj_scan *scan = w->scan;
-    const double one = (double)((int64_t)1 << 30);
-    const direction way = {llrint(ray->x * 65536), llrint(ray->y * 65536), llrint(cos(ray->angle) * one),
-                           llrint(sin(ray->angle) * one), (uint16_t)llrint(ray->angle * (65536 / TWO_PI))};
+    const asj_ray_direction way = asj_scan_direction(ray);
     const int32_t bridge = scan->axial ? scan->field->sectors.radius : -1;
     progress p = {0, 0, 0, 0};
     int goes_on = 1;
@@ -249,8 +255,7 @@ static void walk(walker *w, asj_ray *ray)
             goes_on = advance(scan, &sums, bridge, r, &p, ray);
         }
     }
-    if (scan->axial && ray->axial > ray->forward + bridge)
-        ray->axial = ray->forward + bridge;
+    asj_scan_finish(scan, ray);
 }
 
 /* The next ray of thread `own`: of its part of the list, then of what others have left. Neighbours in the list need the same local

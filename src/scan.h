@@ -14,6 +14,7 @@ typedef struct asj_ray {
 } asj_ray;
 
 #define ASJ_SCAN_TABLE_RADIUS 256
+#define ASJ_SCAN_TABLE_WIDTH 4
 
 /* What is the same for all rays of an image; made once for a set of options and an image size. */
 typedef struct asj_scan {
@@ -24,7 +25,8 @@ typedef struct asj_scan {
     int32_t axial;       /* scan by axis as well */
     int32_t threshold;   /* least sum of an arc, in 1/256 standard deviations */
     int16_t unit[1024][2]; /* cos and sin of 1024 angles, 1 = 16384 */
-    int32_t arc_cosine[ASJ_SCAN_TABLE_RADIUS][4], arc_sine[ASJ_SCAN_TABLE_RADIUS][4]; /* of d / r at [r][d], 1 = 2^30 */
+    int32_t arc_cosine[ASJ_SCAN_TABLE_RADIUS][ASJ_SCAN_TABLE_WIDTH]; /* of d / r at [r][d], 1 = 2^30 */
+    int32_t arc_sine[ASJ_SCAN_TABLE_RADIUS][ASJ_SCAN_TABLE_WIDTH];
 } asj_scan;
 
 void asj_scan_prepare(const asj_context *context, const asj_detect_options *options, const asj_field *field,
@@ -33,6 +35,18 @@ void asj_scan_prepare(const asj_context *context, const asj_detect_options *opti
 /* The same for another size of the image. */
 void asj_scan_set_size(const asj_context *context, const asj_detect_options *options, int32_t width, int32_t height,
                        asj_scan *scan);
+
+/* A ray in whole numbers, as it is walked along. */
+typedef struct asj_ray_direction {
+    int64_t x, y;   /* start of the ray, 1/65536 px */
+    int64_t ux, uy; /* its unit vector, 2^-30 */
+    uint16_t angle; /* 1/65536 of a turn */
+} asj_ray_direction;
+
+asj_ray_direction asj_scan_direction(const asj_ray *ray);
+
+/* The last step of a walk: the axial length ends no farther behind the forward one than a crossing may be bridged. */
+void asj_scan_finish(const asj_scan *scan, asj_ray *ray);
 
 /* Follows `count` rays. */
 asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);

@@ -8,14 +8,9 @@
 
 #include <asj/device.h>
 
-#include <math.h>
 #include <string.h>
 
-#define TWO_PI 6.283185307179586
-
 /* As in the kernel. */
-#define TABLE_RADIUS 256
-#define TABLE_WIDTH 4
 #define OFFSET_INTS 6
 #define SECTOR_INTS 5
 
@@ -71,21 +66,21 @@ void asj_cl_free_scan(asj_context *context)
 
 static asj_status load_angles(asj_context *context, asj_cl_table *table, const asj_scan *scan)
 {
-    const double one = (double)(1 << 30);
+    const size_t numbers = 2 * (ASJ_SCAN_TABLE_RADIUS * ASJ_SCAN_TABLE_WIDTH + 1024);
     int32_t *next;
-    asj_status status = asj_cl_table_begin(context, table, 2 * (TABLE_RADIUS * TABLE_WIDTH + 1024), &next);
+    asj_status status = asj_cl_table_begin(context, table, numbers, &next);
     if (status != ASJ_OK)
         return status;
-    for (int32_t r = 0; r < TABLE_RADIUS; r++)
-        for (int32_t d = 0; d < TABLE_WIDTH; d++) {
-            *next++ = r > 0 ? (int32_t)lrint(one * cos((double)d / r)) : 0;
-            *next++ = r > 0 ? (int32_t)lrint(one * sin((double)d / r)) : 0;
+    for (int32_t r = 0; r < ASJ_SCAN_TABLE_RADIUS; r++)
+        for (int32_t d = 0; d < ASJ_SCAN_TABLE_WIDTH; d++) {
+            *next++ = scan->arc_cosine[r][d];
+            *next++ = scan->arc_sine[r][d];
         }
     for (int32_t i = 0; i < 1024; i++) {
         *next++ = scan->unit[i][0];
         *next++ = scan->unit[i][1];
     }
-    return asj_cl_table_end(context, table, 2 * (TABLE_RADIUS * TABLE_WIDTH + 1024));
+    return asj_cl_table_end(context, table, numbers);
 }
 
 static void fill_field(const asj_field *field, int32_t *next)
@@ -127,7 +122,6 @@ static asj_status load_field(asj_context *context, asj_cl_table *table, const as
 
 static asj_status send_rays(asj_context *context, struct asj_cl_scan *state, const asj_ray *rays, size_t count)
 {
-    const double one = (double)((int64_t)1 << 30);
     asj_status status = asj_cl_host_reserve(context, &state->host_rays, count * sizeof(scan_ray));
     if (status == ASJ_OK)
         status = asj_cl_reserve(context, &state->rays, count * sizeof(scan_ray));
@@ -136,11 +130,12 @@ static asj_status send_rays(asj_context *context, struct asj_cl_scan *state, con
     scan_ray *to = state->host_rays.memory;
     for (size_t i = 0; i < count; i++) {
         memset(&to[i], 0, sizeof to[i]);
-        to[i].x = llrint(rays[i].x * 65536);
-        to[i].y = llrint(rays[i].y * 65536);
-        to[i].ux = (int32_t)llrint(cos(rays[i].angle) * one);
-        to[i].uy = (int32_t)llrint(sin(rays[i].angle) * one);
-        to[i].angle = (uint16_t)llrint(rays[i].angle * (65536 / TWO_PI));
+        const asj_ray_direction way = asj_scan_direction(&rays[i]);
+        to[i].x = way.x;
+        to[i].y = way.y;
+        to[i].ux = (int32_t)way.ux;
+        to[i].uy = (int32_t)way.uy;
+        to[i].angle = way.angle;
         to[i].radius = rays[i].start > 0 ? rays[i].start : 1;
     }
     return asj_cl_write(context, &state->rays, 0, to, count * sizeof(scan_ray));
@@ -149,13 +144,11 @@ static asj_status send_rays(asj_context *context, struct asj_cl_scan *state, con
 static asj_status fetch_rays(asj_context *context, const asj_scan *scan, struct asj_cl_scan *state, asj_ray *rays, size_t count)
 {
     const scan_ray *from = state->host_rays.memory;
-    const int32_t bridge = scan->field->sectors.radius;
     asj_status status = asj_cl_read(context, &state->rays, 0, state->host_rays.memory, count * sizeof(scan_ray));
     for (size_t i = 0; i < count && status == ASJ_OK; i++) {
         rays[i].forward = from[i].forward;
         rays[i].axial = from[i].axial;
-        if (scan->axial && rays[i].axial > rays[i].forward + bridge)
-            rays[i].axial = rays[i].forward + bridge;
+        asj_scan_finish(scan, &rays[i]);
     }
     return status;
 }
