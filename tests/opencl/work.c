@@ -8,13 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Drivers keep what they allocate. Asked for by the leak sanitizer. */
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-    return "leak:libpocl\nleak:libLLVM\nleak:libclang-cpp\nleak:libOpenCL\n";
-}
-
 int work_images_make(work_images *images)
 {
     for (int v = 0; v < 2; v++) {

@@ -12,13 +12,6 @@
 #include "cl/state.h"
 #endif
 
-/* What OpenCL and its compiler keep until the end of the process is no concern of these tests. */
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-    return "leak:libpocl\nleak:libLLVM\nleak:libclang-cpp\nleak:libOpenCL\nleak:libstdc++\n";
-}
-
 static asj_status open_context(int32_t backend, const char *device, asj_context **context)
 {
     asj_context_options options;

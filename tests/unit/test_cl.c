@@ -10,13 +10,6 @@
 
 #include <asj/asj.h>
 
-/* Compilers inside drivers, which are C++, keep what they allocate. Asked for by the leak sanitizer. */
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void)
-{
-    return "leak:libpocl\nleak:libLLVM\nleak:libclang-cpp\nleak:libstdc++\n";
-}
-
 /* ---- entries ---- */
 
 static void test_keys(void **state)
