@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 2 on a device: candidates for junctions, as in src/field.c. Two forms with the same results: field_pixels, a work item for
- * each pixel, for devices with thousands of them; field_tiles, a work item for a tile of the image, for processors: there the
+ * each pixel of the rows that have candidates, for devices with thousands of them; field_tiles, a work item for a tile of the image, for processors: there the
  * planes of src/sector_plan.h, which neighbours share, save most of the work. Planes of the frame as in gradient.cl.
  *
  * The table, in ints (src/cl/field_ops.c): a, b of each family; OFFSET_INTS for each offset; where each plain slot ends; which
  * plain slot each extra slot adds to the total; SECTOR_INTS for each sector. */
 
 typedef struct field_sizes {
-    int radius, sectors, suppress, apart, families, offsets, plain_slots, slots;
+    int radius, sectors, suppress, apart, families, offsets, plain_slots, slots, step;
 } field_sizes;
 
 #define MARGIN 32
@@ -50,6 +50,13 @@ static int has_pair(ulong sectors, int count, ulong partners)
         found |= (sectors >> k | sectors << (count - k)) & partners;
     }
     return found != 0;
+}
+
+/* Of LANES pixels those that are inside the image, and of each pair (step 2) the first. */
+static uint thin(uint mask, int inside, int step)
+{
+    mask &= inside < LANES ? (1u << max(inside, 0)) - 1 : 0xffffu;
+    return step > 1 ? mask & ~((mask & 0x5555u) << 1) : mask;
 }
 
 /* ---- field_pixels: a work-group takes get_local_size() pixels, along the row a multiple of LANES ---- */
@@ -104,8 +111,9 @@ __kernel void field_pixels(__global const short *gradient_x, __global const shor
     const field_table t = open_table(&sizes, table);
     const int columns = (int)get_local_size(0), rows = (int)get_local_size(1), items = columns * rows;
     const int item = (int)(get_local_id(1) * get_local_size(0) + get_local_id(0));
-    const int pitch = columns + 2 * sizes.radius, area = pitch * (rows + 2 * sizes.radius);
-    const int left = (int)get_group_id(0) * columns, first = top + (int)get_group_id(1) * rows;
+    const int pitch = columns + 2 * sizes.radius, area = pitch * ((rows - 1) * sizes.step + 1 + 2 * sizes.radius);
+    const int aligned = (top + sizes.step - 1) / sizes.step * sizes.step;
+    const int left = (int)get_group_id(0) * columns, first = aligned + (int)get_group_id(1) * rows * sizes.step;
     for (int i = item; i < area; i += items) {
         const int x = left - sizes.radius + i % pitch, y = first - sizes.radius + i / pitch;
         const int inside = x < width + sizes.radius && y < bottom + sizes.radius;
@@ -113,16 +121,19 @@ __kernel void field_pixels(__global const short *gradient_x, __global const shor
         gradient[i] = inside ? (short2)(gradient_x[at], gradient_y[at]) : (short2)(0, 0);
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    fill_slots(&sizes, &t, gradient + ((int)get_local_id(1) + sizes.radius) * pitch + (int)get_local_id(0) + sizes.radius, pitch,
+    fill_slots(&sizes, &t,
+               gradient + ((int)get_local_id(1) * sizes.step + sizes.radius) * pitch + (int)get_local_id(0) + sizes.radius, pitch,
                slots + item, items);
     found[item] = (uchar)has_pair(find_peaks(&sizes, t.sectors, slots + item, items), sizes.sectors, make_partners(&sizes));
     barrier(CLK_LOCAL_MEM_FENCE);
-    const int x = left + (int)get_local_id(0), y = first + (int)get_local_id(1);
-    if (x % LANES == 0 && x < width && y < bottom) {
+    const int x = left + (int)get_local_id(0), y = first + (int)get_local_id(1) * sizes.step;
+    if (x % LANES == 0 && x < width) {
         uint mask = 0;
-        for (int i = 0; i < LANES && x + i < width; i++)
+        for (int i = 0; i < LANES; i++)
             mask |= (uint)found[item + i] << i;
-        masks[(size_t)(y - top) * (size_t)blocks + (size_t)(x / LANES)] = (ushort)mask;
+        __global ushort *to = masks + x / LANES;
+        for (int row = y == aligned ? top : y; row < min(y + sizes.step, bottom); row++)
+            to[(size_t)(row - top) * (size_t)blocks] = (ushort)(row == y ? thin(mask, width - x, sizes.step) : 0);
     }
 }
 
@@ -279,21 +290,25 @@ __kernel void field_tiles(__global const short *gradient_x, __global const short
                      planes + (y + depth) % depth * row_size);
         if (centre < first)
             continue;
+        __global ushort *to = masks + (size_t)(centre - top) * (size_t)blocks + (size_t)(left / LANES);
+        if (centre % sizes.step != 0) {
+            for (int i = 0; i < (right - left) / LANES; i++)
+                to[i] = 0;
+            continue;
+        }
         for (int i = 0; i < sizes.offsets; i++) {
             __global const int *o = t.offsets + OFFSET_INTS * i;
             at[i] = ((centre + o[OFFSET_DY] + depth) % depth * row_size + o[OFFSET_PLANE] * plane_stride) * LANES +
                     o[OFFSET_DX] + radius;
         }
-        __global ushort *to = masks + (size_t)(centre - top) * (size_t)blocks + (size_t)(left / LANES);
         for (int x = left; x < right; x += GROUP * LANES, to += GROUP) {
             const int runs = min(GROUP, (right - x) / LANES);
             group_slots(&sizes, &t, (__local const ushort *)planes + x - left, at, slots);
             const int interesting = group_strengths(&sizes, t.sectors, slots, strengths);
             for (int v = 0; v < runs; v++) {
                 __local const short16 *z = strengths + sizes.suppress * GROUP + v;
-                const int inside = width - x - v * LANES;
                 const uint mask = interesting ? find_candidates(&sizes, t.sectors, z, partners) : 0;
-                to[v] = (ushort)(inside < LANES ? mask & ((1u << inside) - 1) : mask);
+                to[v] = (ushort)thin(mask, width - x - v * LANES, sizes.step);
             }
         }
     }

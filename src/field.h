@@ -27,6 +27,7 @@ typedef struct asj_field {
     uint16_t candidate[ASJ_FIELD_MAX_SECTORS]; /* least strength of a branch that makes a candidate */
     int32_t suppress;                          /* sectors to either side over which a branch must be the largest */
     int32_t apart;                             /* sectors that the two branches of a candidate are from 0 and from pi, at least */
+    int32_t step;                              /* option candidate_step */
     int32_t limits[ASJ_FIELD_MAX_SECTORS][4];  /* for vector forms, each twice in 32 bits: mean, scale, keep - 1, candidate - 1 */
 } asj_field;
 
@@ -45,7 +46,7 @@ void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, 
 uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch);
 
 /* The same for a tile: `runs` runs (at most ASJ_FIELD_TILE pixels) from run `run` on, rows top .. bottom - 1; those of run b of
- * row y go to masks[y * frame->blocks + b]. Pixels outside the image are none. */
+ * row y go to masks[y * frame->blocks + b]. Pixels outside the image are none; of the others those that asj_field_thin() leaves. */
 void asj_field_tile(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
                     uint16_t *scratch, uint16_t *masks);
 
@@ -74,8 +75,15 @@ static inline void asj_field_insert(asj_field_branch list[ASJ_FIELD_BRANCHES], a
     list[i] = branch;
 }
 
-/* Clears the bits of pixels outside the image; masks[0] is that of run `run`. */
-void asj_field_cut(const asj_frame *frame, int32_t run, int32_t runs, uint16_t *masks);
+/* Whether row y has candidates. */
+static inline int asj_field_has_candidates(const asj_field *field, int32_t y)
+{
+    return y % field->step == 0;
+}
+
+/* Clears the bits of pixels outside the image, and all but the first of each pair (candidate_step 2); masks[0] is that of run
+ * `run`. */
+void asj_field_thin(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, uint16_t *masks);
 
 /* Elements from plane to plane of a tile's row (sector_plan.h). */
 size_t asj_field_plane_stride(const asj_field *field);

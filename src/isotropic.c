@@ -334,22 +334,6 @@ void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *
     }
 }
 
-/* Where candidates lie close together, their neighbours say the same: of the odd squares of a chess board those are left out that
- * have candidates on all four sides. */
-void asj_isotropic_select(uint16_t *masks, int32_t blocks, int32_t height)
-{
-    for (int32_t y = 0; y < height; y++) {
-        uint16_t *row = masks + (ptrdiff_t)y * blocks;
-        const uint32_t odd = y & 1 ? 0x5555 : 0xaaaa;
-        for (int32_t b = 0; b < blocks; b++) {
-            const uint32_t here = row[b], before = b > 0 ? row[b - 1] : 0u, after = b + 1 < blocks ? row[b + 1] : 0u;
-            const uint32_t left = here << 1 | before >> 15, right = here >> 1 | after << 15;
-            const uint32_t above = y > 0 ? row[b - blocks] : 0u, below = y + 1 < height ? row[b + blocks] : 0u;
-            row[b] = (uint16_t)(here & ~(odd & left & right & above & below));
-        }
-    }
-}
-
 void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int32_t x, int32_t y, uint32_t candidates,
                          uint16_t *scratch, asj_isotropic_junction *junctions)
 {

@@ -42,9 +42,6 @@ typedef struct asj_isotropic_radius {
     uint16_t *least;      /* for each sector: the least strength of a branch that may be one of meaningful ones */
 } asj_isotropic_radius;
 
-/* Leaves those of neighbouring candidates that are tested; masks[y * blocks + b], bit i: pixel (ASJ_LANES b + i, y). */
-void asj_isotropic_select(uint16_t *masks, int32_t blocks, int32_t height);
-
 /* The whole test: made once for a set of options and an image size. */
 typedef struct asj_isotropic {
     int32_t radius_count;

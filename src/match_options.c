@@ -111,6 +111,7 @@ void asj_match_detect_options(asj_detect_options *options)
     if (!options)
         return;
     options->candidate_strength = 2;
+    options->candidate_step = 1;
     options->epsilon = 1e4;
     options->scan_epsilon = 10;
     options->minimum_opening = 20;

@@ -251,8 +251,6 @@ asj_status asj_stage_isotropic(asj_detection_run *d)
 {
     const asj_frame *frame = &d->detector->frame;
     d->candidate_total = count_bits(d->candidates, (size_t)frame->blocks * (size_t)frame->height);
-    if (d->options->refinement == ASJ_REFINE_LINE_FIT) /* else locations are pixels, and each counts */
-        asj_isotropic_select(d->candidates, frame->blocks, frame->height);
     asj_status status = test_candidates(d);
     return status == ASJ_OK ? thin(d) : status;
 }

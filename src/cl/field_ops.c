@@ -6,7 +6,7 @@
 
 /* As field_sizes in the kernel. */
 typedef struct field_sizes {
-    int32_t radius, sectors, suppress, apart, families, offsets, plain_slots, slots;
+    int32_t radius, sectors, suppress, apart, families, offsets, plain_slots, slots, step;
 } field_sizes;
 
 /* As in the kernel. */
@@ -97,7 +97,7 @@ static asj_status run_tiles(asj_context *context, struct asj_cl_detect *detect, 
 static void pixel_memory(const field_sizes *s, size_t columns, size_t rows, size_t bytes[3])
 {
     const size_t around = 2 * (size_t)s->radius;
-    bytes[0] = (columns + around) * (rows + around) * 2 * sizeof(int16_t);
+    bytes[0] = (columns + around) * ((rows - 1) * (size_t)s->step + 1 + around) * 2 * sizeof(int16_t);
     bytes[1] = columns * rows * (size_t)s->slots * sizeof(uint16_t);
     bytes[2] = columns * rows;
 }
@@ -116,7 +116,9 @@ static asj_status run_pixels(asj_context *context, struct asj_cl_detect *detect,
                             sizes[choice][0] <= limits->max_work_item[0] && sizes[choice][1] <= limits->max_work_item[1]))
             break;
     }
-    const size_t *local = sizes[choice], columns = (size_t)l->frame->width, rows = (size_t)(l->bottom - l->top);
+    const int32_t step = l->sizes.step, first = (l->top + step - 1) / step; /* at least one work-group, which clears the rest */
+    const size_t *local = sizes[choice], columns = (size_t)l->frame->width;
+    const size_t rows = (size_t)((l->bottom + step - 1) / step - first) + (l->bottom <= first * step);
     const size_t global[2] = {(columns + local[0] - 1) / local[0] * local[0], (rows + local[1] - 1) / local[1] * local[1]};
     const asj_cl_argument arguments[] = {COMMON_ARGUMENTS, ASJ_CL_LOCAL(bytes[0]), ASJ_CL_LOCAL(bytes[1]), ASJ_CL_LOCAL(bytes[2])};
     return asj_cl_run(context, "field_pixels", 2, global, local, arguments, (int32_t)(sizeof arguments / sizeof arguments[0]));
@@ -140,7 +142,7 @@ static asj_status make_rows(asj_context *context, const asj_field *field, const 
         return status;
     const launch l = {frame,
                       {field->sectors.radius, field->sectors.count, field->suppress, field->apart, field->plan.family_count,
-                       field->sectors.offset_count, field->plan.plain_count, field->plan.slot_count},
+                       field->sectors.offset_count, field->plan.plain_count, field->plan.slot_count, field->step},
                       top, bottom};
     const asj_cl_limits *limits = asj_cl_get_limits(context);
     tile_memory(&l.sizes, bytes);

@@ -240,11 +240,16 @@ static void field_tile(const asj_field *field, const asj_frame *frame, int32_t r
         const int32_t centre = y - radius;
         gamma_planes(&field->plan, frame->gradient_x + at, frame->gradient_y + at, width, stride,
                      ring + (size_t)((y + depth) % depth) * row);
+        uint16_t *found = masks + (ptrdiff_t)centre * frame->blocks + run;
         if (centre < top)
             continue;
+        if (!asj_field_has_candidates(field, centre)) {
+            memset(found, 0, (size_t)runs * sizeof *found);
+            continue;
+        }
         for (int32_t i = 0; i < depth; i++)
             t.rows[i] = ring + (size_t)((centre + i - radius + depth) % depth) * row;
-        tile_row(&t, runs, masks + (ptrdiff_t)centre * frame->blocks + run);
-        asj_field_cut(frame, run, runs, masks + (ptrdiff_t)centre * frame->blocks + run);
+        tile_row(&t, runs, found);
+        asj_field_thin(field, frame, run, runs, found);
     }
 }

@@ -21,11 +21,13 @@ enum { BAND = 3 };
 static void choose_candidates(const subject *s, int32_t top, int32_t bottom, uint16_t *masks)
 {
     synth_random random = s->random;
+    asj_field all = s->field;
+    all.step = 1;
     for (int32_t y = top; y < bottom; y++) {
         uint16_t *row = masks + (ptrdiff_t)y * s->frame.blocks;
         for (int32_t b = 0; b < s->frame.blocks; b++)
             row[b] = synth_random_unit(&random) < 0.4 ? (uint16_t)(synth_random_bits(&random) & synth_random_bits(&random)) : 0;
-        asj_field_cut(&s->frame, 0, s->frame.blocks, row);
+        asj_field_thin(&all, &s->frame, 0, s->frame.blocks, row);
     }
 }
 

@@ -113,6 +113,7 @@ int subject_create(asj_context *context, int32_t width, int32_t height, int32_t 
     s->options.field_radius = radius;
     s->options.sector_width = tau;
     s->options.gradient_epsilon = seed % 3 == 0 ? 0.05 : seed % 3 == 1 ? 0.4 : 16;
+    s->options.candidate_step = 1 + (int32_t)(seed / 3 % 2);
     if (seed % 4 == 3) /* the smallest and the largest, and both kinds of units */
         s->options.isotropic_radii = 1u << 3 | 1u << 8 | 1u << 21 | 1u << 30;
     int ok = asj_frame_prepare(context, &s->frame, width, height) == ASJ_OK &&

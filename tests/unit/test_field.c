@@ -240,6 +240,39 @@ static void test_candidates(void **state)
     asj_detect_options_init(&f->options);
 }
 
+/* candidate_step 2: of the candidates in even rows the first of each pair; none in odd rows. */
+static void test_candidate_step(void **state)
+{
+    fixture *f = *state;
+    asj_field field;
+    const size_t count = (size_t)f->frame.blocks * (size_t)f->frame.height;
+    uint16_t *all = malloc(count * sizeof *all), *thin = malloc(count * sizeof *thin), *scratch;
+    int kept = 0, gone = 0;
+    assert_true(all && thin);
+    f->options.candidate_strength = 2;
+    for (int32_t step = 1; step <= 2; step++) {
+        f->options.candidate_step = step;
+        make_field(f, &field);
+        scratch = malloc(asj_field_scratch(&field) * sizeof *scratch);
+        assert_non_null(scratch);
+        asj_field_tile(&field, &f->frame, 0, f->frame.blocks, 0, f->frame.height, scratch, step == 1 ? all : thin);
+        free(scratch);
+        asj_field_free(&f->context->memory, &field);
+    }
+    for (size_t i = 0; i < count; i++)
+        for (int bit = 0; bit < ASJ_LANES; bit++) {
+            const int here = all[i] >> bit & 1, before = bit % 2 == 1 && (all[i] >> (bit - 1) & 1);
+            const int expected = i / (size_t)f->frame.blocks % 2 == 0 && here && !before;
+            assert_int_equal(thin[i] >> bit & 1, expected);
+            kept += expected;
+            gone += here && !expected;
+        }
+    assert_true(kept > 20 && gone > 20);
+    free(all);
+    free(thin);
+    asj_detect_options_init(&f->options);
+}
+
 /* A clean edge has its two branches along it, to a quarter of a sector step. */
 static void test_edge_direction(void **state)
 {
@@ -317,7 +350,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_threshold),  cmocka_unit_test(test_constants),      cmocka_unit_test(test_branches),
-        cmocka_unit_test(test_candidates), cmocka_unit_test(test_edge_direction), cmocka_unit_test(test_public),
+        cmocka_unit_test(test_candidates), cmocka_unit_test(test_candidate_step), cmocka_unit_test(test_edge_direction),
+        cmocka_unit_test(test_public),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -363,34 +363,6 @@ static void test_thin(void **state)
     asj_detect_options_init(&f->options);
 }
 
-static int is_set(const uint16_t *masks, int32_t blocks, int32_t height, int32_t x, int32_t y)
-{
-    return x >= 0 && y >= 0 && x < blocks * ASJ_LANES && y < height && (masks[y * blocks + x / ASJ_LANES] >> x % ASJ_LANES & 1);
-}
-
-/* Pixel by pixel: an odd square of the chess board goes when all four sides are candidates. */
-static void test_select(void **state)
-{
-    enum { BLOCKS = 3, HEIGHT = 20 };
-    synth_random random;
-    (void)state;
-    synth_random_seed(&random, 5);
-    for (int round = 0; round < 20; round++) {
-        uint16_t masks[BLOCKS * HEIGHT], before[BLOCKS * HEIGHT];
-        for (int i = 0; i < BLOCKS * HEIGHT; i++)
-            masks[i] = (uint16_t)(synth_random_bits(&random) | synth_random_bits(&random) | synth_random_bits(&random));
-        memcpy(before, masks, sizeof before);
-        asj_isotropic_select(masks, BLOCKS, HEIGHT);
-        for (int32_t y = 0; y < HEIGHT; y++)
-            for (int32_t x = 0; x < BLOCKS * ASJ_LANES; x++) {
-                const int surrounded = is_set(before, BLOCKS, HEIGHT, x - 1, y) && is_set(before, BLOCKS, HEIGHT, x + 1, y) &&
-                                       is_set(before, BLOCKS, HEIGHT, x, y - 1) && is_set(before, BLOCKS, HEIGHT, x, y + 1);
-                const int expected = is_set(before, BLOCKS, HEIGHT, x, y) && !((x + y) % 2 && surrounded);
-                assert_int_equal(is_set(masks, BLOCKS, HEIGHT, x, y), expected);
-            }
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -398,7 +370,6 @@ int main(void)
         cmocka_unit_test(test_band),
         cmocka_unit_test(test_tables),
         cmocka_unit_test(test_out_of_memory),
-        cmocka_unit_test(test_select),
         cmocka_unit_test(test_thin),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -168,7 +168,6 @@ static void test_presets(void **state)
     asj_detect_options_init(NULL);
     assert_int_equal(asj_detect_options_preset(&standard, ASJ_PRESET_DEFAULT), ASJ_OK);
     assert_memory_equal(&options, &standard, sizeof options);
-    assert_int_equal(options.reserved_1, 0);
     for (size_t i = 0; i < UNIT_COUNT(options.reserved); i++)
         assert_true(options.reserved[i] == 0);
     assert_int_equal(asj_detect_options_preset(NULL, ASJ_PRESET_PAPER), ASJ_ERROR_ARGUMENT);
