@@ -221,6 +221,8 @@ __kernel void scan_pixels(__global const short *gradient_x, __global const short
 /* ---- rays ---- */
 
 #define REOPEN 3        /* as in src/scan.c */
+#define STRIDE 4
+#define PLAIN 4
 #define TABLE_RADIUS 256
 #define TABLE_WIDTH 4
 
@@ -229,6 +231,7 @@ typedef struct scan_ray {
     int ux, uy;     /* direction, 2^-30 */
     int angle;      /* of it, 1/65536 of a turn */
     int radius;     /* of the next step; 0 = the ray has ended */
+    int looked;     /* last step that is to be looked at by itself */
     int forward, axial;
     int forward_failures, ahead_passes, ahead_failures, axial_failures;
 } scan_ray;
@@ -236,6 +239,8 @@ typedef struct scan_ray {
 typedef struct scan_image {
     int width, height, blocks, half_width, tolerance, axial, bridge, threshold;
     int ahead; /* steps that a ray asks for, beside a quarter of its length */
+    int edge;  /* least sum of gamma of a row under which there is an edge, 2^-24 */
+    int stride, base; /* of the planes */
 } scan_image;
 
 /* cos and sin of d / r in 2^-30 at [r TABLE_WIDTH + d], then those of 1024 angles in 2^-14. */
@@ -340,36 +345,67 @@ static int step(const scan_image *image, scan_ray *ray, int radius, int4 sums)
            (ray->ahead_failures <= image->bridge && ray->axial_failures <= image->tolerance);
 }
 
-/* Whether every other step need not be looked at, as in src/scan.c. */
-static int strides(const scan_image *image, const scan_ray *ray)
+/* Whether there is an edge along the ray at a radius. */
+static int has_edge(const scan_image *image, const scan_ray *ray, int r, __global const short *gradient_x,
+                    __global const short *gradient_y)
 {
-    return image->tolerance > 0 && ray->forward_failures == 0 && (!image->axial || ray->axial_failures == 0);
+    const long x = ray->x + (((long)r * ray->ux) >> 14) + 32768, y = ray->y + (((long)r * ray->uy) >> 14) + 32768;
+    const long across_x = -(ray->uy >> 14), across_y = ray->ux >> 14;
+    const int ux = ray->ux >> 16, uy = ray->uy >> 16;
+    int sum = 0;
+    if (x >> 16 < 0 || y >> 16 < 0 || x >> 16 >= image->width || y >> 16 >= image->height)
+        return 0;
+    for (int d = -1; d <= 1; d++) {
+        const int row = (int)((y + d * across_y) >> 16) - image->base, column = (int)((x + d * across_x) >> 16) + MARGIN;
+        const size_t at = (size_t)row * (size_t)image->stride + (size_t)column;
+        const int gx = gradient_x[at], gy = gradient_y[at];
+        sum += max((int)abs(gy * ux - gx * uy) - (int)abs(gx * ux + gy * uy), 0);
+    }
+    return sum >= image->edge;
 }
 
-/* One step or two; returns 0 when a run that they need is not known. */
-static int advance(const scan_image *image, const scan_angles *angles, scan_ray *ray, __global const uint *known,
-                   __global const uint *branches)
+/* Passes over the steps that have an edge under them beyond doubt. */
+static void pass_over(const scan_image *image, scan_ray *ray, __global const short *gradient_x, __global const short *gradient_y)
 {
-    const int r = ray->radius, two = strides(image, ray);
-    int goes_on = 1;
-    int4 sums, next;
-    if (two && !arc_sums(image, angles, ray, r + 1, known, branches, &next))
-        return 0;
-    if (!two || next.s1 < image->threshold || (image->axial && next.s2 < image->threshold)) {
-        if (!arc_sums(image, angles, ray, r, known, branches, &sums))
-            return 0;
-        goes_on = step(image, ray, r, sums);
+    int end = ray->radius;
+    while (has_edge(image, ray, end, gradient_x, gradient_y))
+        end++;
+    if (end - ray->radius <= PLAIN)
+        return;
+    ray->forward = end - PLAIN - 1;
+    ray->axial = image->axial ? ray->forward : 0;
+    ray->ahead_failures = 0;
+    ray->radius = end - PLAIN;
+}
+
+/* One step or a stride, as in src/scan.c; returns 0 when a run that it needs is not known. */
+static int advance(const scan_image *image, const scan_angles *angles, scan_ray *ray, __global const short *gradient_x,
+                   __global const short *gradient_y, __global const uint *known, __global const uint *branches)
+{
+    int stride = 1, goes_on = 1;
+    int4 sums;
+    if (ray->radius > ray->looked && image->tolerance > 0 && ray->forward_failures == 0 &&
+        (!image->axial || ray->axial_failures == 0)) {
+        pass_over(image, ray, gradient_x, gradient_y);
+        stride = STRIDE;
     }
-    if (two && goes_on)
-        goes_on = step(image, ray, r + 1, next);
-    ray->radius = goes_on ? r + 1 + two : 0;
+    if (!arc_sums(image, angles, ray, ray->radius + stride - 1, known, branches, &sums))
+        return 0;
+    if (stride > 1) {
+        ray->looked = ray->radius + stride - 1;
+        stride = sums.s1 >= image->threshold && (!image->axial || sums.s2 >= image->threshold) ? stride : 0;
+    }
+    if (stride > 0)
+        goes_on = step(image, ray, ray->radius + stride - 1, sums);
+    ray->radius = goes_on ? ray->radius + stride : 0;
     return 1;
 }
 
 /* counts: entries; rays that go on. */
-__kernel void scan_walk(scan_image image, __global const int2 *angle_table, __global scan_ray *rays, int count,
-                        __global const uint *known, __global const uint *branches, volatile __global uint *asked,
-                        __global uint *entries, volatile __global uint *counts)
+__kernel void scan_walk(__global const short *gradient_x, __global const short *gradient_y, scan_image image,
+                        __global const int2 *angle_table, __global scan_ray *rays, int count, __global const uint *known,
+                        __global const uint *branches, volatile __global uint *asked, __global uint *entries,
+                        volatile __global uint *counts)
 {
     const int number = (int)get_global_id(0);
     if (number >= count)
@@ -378,7 +414,7 @@ __kernel void scan_walk(scan_image image, __global const int2 *angle_table, __gl
     scan_ray ray = rays[number];
     if (ray.radius == 0)
         return;
-    while (ray.radius && advance(&image, &angles, &ray, known, branches))
+    while (ray.radius && advance(&image, &angles, &ray, gradient_x, gradient_y, known, branches))
         ;
     rays[number] = ray;
     if (ray.radius == 0)

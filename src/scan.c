@@ -231,29 +231,66 @@ void asj_scan_finish(const asj_scan *scan, asj_ray *ray)
         ray->axial = ray->forward + bridge;
 }
 
-/* While nothing fails, every other step need not be looked at: when the one behind it passes, its own failure would be tolerated
- * and leave no trace. */
+#define STRIDE 4
+#define PLAIN 4
+
+/* Whether there is an edge along the ray at radius r: three pixels across, rounded. The border's margin is zero. */
+static int has_edge(const asj_frame *frame, const asj_ray_direction *way, int32_t r)
+{
+    const int64_t x = way->x + ((r * way->ux) >> 14) + 32768, y = way->y + ((r * way->uy) >> 14) + 32768;
+    const int64_t across_x = -(way->uy >> 14), across_y = way->ux >> 14;
+    const int32_t ux = (int32_t)(way->ux >> 16), uy = (int32_t)(way->uy >> 16);
+    int32_t sum = 0;
+    if (x >> 16 < 0 || y >> 16 < 0 || x >> 16 >= frame->width || y >> 16 >= frame->height)
+        return 0;
+    for (int32_t d = -1; d <= 1; d++) {
+        const ptrdiff_t at = (ptrdiff_t)((y + d * across_y) >> 16) * frame->stride + (ptrdiff_t)((x + d * across_x) >> 16);
+        const int32_t gx = frame->gradient_x[at], gy = frame->gradient_y[at];
+        const int32_t gamma = abs(gy * ux - gx * uy) - abs(gx * ux + gy * uy);
+        sum += gamma > 0 ? gamma : 0;
+    }
+    return sum >= ASJ_SCAN_EDGE;
+}
+
+/* Passes over the steps from r on that have an edge under them beyond doubt; returns the first one that must be looked at. */
+static int32_t pass_over(const walker *w, const asj_ray_direction *way, int32_t r, progress *p, asj_ray *ray)
+{
+    int32_t end = r;
+    while (has_edge(w->frame, way, end))
+        end++;
+    if (end - r <= PLAIN)
+        return r;
+    ray->forward = end - PLAIN - 1;
+    ray->axial = w->scan->axial ? ray->forward : 0;
+    p->ahead_failures = 0;
+    return end - PLAIN;
+}
+
+/* looked: the last step that is to be looked at by itself, since a stride to it has failed. */
 static void walk(walker *w, asj_ray *ray)
 {
     const asj_scan *scan = w->scan;
     const asj_ray_direction way = asj_scan_direction(ray);
     const int32_t bridge = scan->axial ? scan->field->sectors.radius : -1;
     progress p = {0, 0, 0, 0};
+    arc far = {0, 0, 0};
     int goes_on = 1;
     ray->forward = ray->axial = 0;
-    for (int32_t r = ray->start > 0 ? ray->start : 1; goes_on; r++) {
-        if (scan->tolerance > 0 && p.forward_failures == 0 && (!scan->axial || p.axial_failures == 0)) {
-            const arc next = arc_sums(w, &way, r + 1);
-            if (!passes(scan, &next)) {
-                const arc sums = arc_sums(w, &way, r);
-                goes_on = advance(scan, &sums, bridge, r, &p, ray);
-            }
-            r++;
-            goes_on = goes_on && advance(scan, &next, bridge, r, &p, ray);
+    for (int32_t r = ray->start > 0 ? ray->start : 1, looked = 0; goes_on;) {
+        arc sums;
+        int32_t stride = 1;
+        if (r > looked && scan->tolerance > 0 && p.forward_failures == 0 && (!scan->axial || p.axial_failures == 0)) {
+            r = pass_over(w, &way, r, &p, ray);
+            looked = r + STRIDE - 1;
+            far = arc_sums(w, &way, looked);
+            stride = passes(scan, &far) ? STRIDE : 0;
+            sums = far;
         } else {
-            const arc sums = arc_sums(w, &way, r);
-            goes_on = advance(scan, &sums, bridge, r, &p, ray);
+            sums = r == looked ? far : arc_sums(w, &way, r);
         }
+        if (stride > 0)
+            goes_on = advance(scan, &sums, bridge, r + stride - 1, &p, ray);
+        r += stride;
     }
     asj_scan_finish(scan, ray);
 }

@@ -16,6 +16,9 @@ typedef struct asj_ray {
 #define ASJ_SCAN_TABLE_RADIUS 256
 #define ASJ_SCAN_TABLE_WIDTH 4
 
+/* Least sum of gamma of three pixels across a ray under which there is an edge: 1.2 in 2^-24 (of gradient and direction). */
+#define ASJ_SCAN_EDGE (ASJ_GRADIENT_ONE * 16384 / 5 * 6)
+
 /* What is the same for all rays of an image; made once for a set of options and an image size. */
 typedef struct asj_scan {
     const asj_field *field;

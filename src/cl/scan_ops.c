@@ -22,12 +22,13 @@ typedef struct scan_sizes {
 
 typedef struct scan_ray {
     int64_t x, y;
-    int32_t ux, uy, angle, radius, forward, axial;
+    int32_t ux, uy, angle, radius, looked, forward, axial;
     int32_t forward_failures, ahead_passes, ahead_failures, axial_failures;
+    int32_t padding;
 } scan_ray;
 
 typedef struct scan_image {
-    int32_t width, height, blocks, half_width, tolerance, axial, bridge, threshold, ahead;
+    int32_t width, height, blocks, half_width, tolerance, axial, bridge, threshold, ahead, edge, stride, base;
 } scan_image;
 
 struct asj_cl_scan {
@@ -219,13 +220,15 @@ static asj_status compute(asj_context *context, struct asj_cl_scan *state, const
 static asj_status walk(asj_context *context, struct asj_cl_scan *state, const scan_image *image, size_t count, uint32_t counts[2])
 {
     const size_t local = GROUP, global = (count + local - 1) / local * local;
+    const struct asj_cl_detect *detect = context->cl->detect;
     const asj_cl_argument arguments[] = {
-        ASJ_CL_STRUCT(image, sizeof *image), ASJ_CL_BUFFER(&state->angles.buffer), ASJ_CL_BUFFER(&state->rays), ASJ_CL_INT(count),
-        ASJ_CL_BUFFER(&state->known), ASJ_CL_BUFFER(&state->branches), ASJ_CL_BUFFER(&state->asked),
-        ASJ_CL_BUFFER(&state->entries), ASJ_CL_BUFFER(&state->counts)};
+        ASJ_CL_BUFFER(&detect->gradient_x), ASJ_CL_BUFFER(&detect->gradient_y), ASJ_CL_STRUCT(image, sizeof *image),
+        ASJ_CL_BUFFER(&state->angles.buffer), ASJ_CL_BUFFER(&state->rays), ASJ_CL_INT(count), ASJ_CL_BUFFER(&state->known),
+        ASJ_CL_BUFFER(&state->branches), ASJ_CL_BUFFER(&state->asked), ASJ_CL_BUFFER(&state->entries),
+        ASJ_CL_BUFFER(&state->counts)};
     asj_status status = asj_cl_zero(context, &state->counts, sizeof(uint32_t), sizeof(uint32_t));
     if (status == ASJ_OK)
-        status = asj_cl_run(context, "scan_walk", 1, &global, &local, arguments, 9);
+        status = asj_cl_run(context, "scan_walk", 1, &global, &local, arguments, 11);
     return status == ASJ_OK ? asj_cl_read(context, &state->counts, 0, counts, 2 * sizeof *counts) : status;
 }
 
@@ -271,7 +274,8 @@ static asj_status scan_rays(asj_context *context, const asj_scan *scan, const as
         status = send_rays(context, state, rays, count);
     const scan_image image = {frame->width, frame->height, frame->blocks, scan->half_width, scan->tolerance, scan->axial,
                               scan->axial ? scan->field->sectors.radius : -1, scan->threshold,
-                              asj_cl_get_limits(context)->type == ASJ_DEVICE_CPU ? 4 : 32};
+                              asj_cl_get_limits(context)->type == ASJ_DEVICE_CPU ? 4 : 32, ASJ_SCAN_EDGE, (int32_t)frame->stride,
+                              status == ASJ_OK ? context->cl->detect->first : 0};
     while (status == ASJ_OK && counts[1] > 0) {
         status = walk(context, state, &image, count, counts);
         if (status == ASJ_OK && counts[0] > state->done)
