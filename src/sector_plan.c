@@ -7,12 +7,14 @@
 static asj_status make_room(asj_memory *memory, const asj_sectors *s, asj_sector_plan *plan)
 {
     const size_t offsets = (size_t)s->offset_count, sectors = (size_t)s->count;
-    plan->memory = asj_allocate_zero(memory, 4 * offsets + 4 * sectors + 1, sizeof(int16_t));
+    plan->memory = asj_allocate_zero(memory, 6 * offsets + 4 * sectors + 1, sizeof(int16_t));
     if (!plan->memory)
         return ASJ_ERROR_MEMORY;
     plan->a = plan->memory;
     plan->b = plan->a + offsets;
-    plan->plane = plan->b + offsets;
+    plan->used[0] = plan->b + offsets;
+    plan->used[1] = plan->used[0] + offsets;
+    plan->plane = plan->used[1] + offsets;
     plan->boundary = plan->plane + offsets;
     plan->extra = plan->boundary + offsets + 1;
     plan->low = plan->extra + sectors;
@@ -39,7 +41,10 @@ static void assign_planes(const asj_sectors *s, asj_sector_plan *plan)
         const int16_t ux = (int16_t)abs(s->ux[i]), uy = (int16_t)abs(s->uy[i]);
         const int mirrored = (s->ux[i] < 0) != (s->uy[i] < 0) && ux && uy, steep = uy > ux;
         const int16_t family = steep ? find_family(plan, uy, ux) : find_family(plan, ux, uy);
-        plan->plane[i] = (int16_t)(4 * family + (mirrored ? steep ? 1 : 3 : steep ? 2 : 0));
+        const int plane = mirrored ? steep ? 1 : 3 : steep ? 2 : 0;
+        int16_t *used = &plan->used[s->dy[i] & 1][family];
+        plan->plane[i] = (int16_t)(4 * family + plane);
+        *used = (int16_t)(*used | 1 << plane);
     }
 }
 

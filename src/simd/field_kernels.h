@@ -78,11 +78,14 @@ static void field_block(const asj_field *field, const asj_frame *frame, int32_t 
 }
 #endif
 
-/* The planes of asj_sector_plan for one row of pixels. */
-static void gamma_planes(const asj_sector_plan *plan, const int16_t *gx, const int16_t *gy, int32_t width, size_t stride,
-                         uint16_t *planes)
+/* The planes of asj_sector_plan for one row of pixels; used[f]: those of family f that are wanted. */
+static void gamma_planes(const asj_sector_plan *plan, const int16_t *used, const int16_t *gx, const int16_t *gy, int32_t width,
+                         size_t stride, uint16_t *planes)
 {
     for (int32_t f = 0; f < plan->family_count; f++, planes += 4 * stride) {
+        const int wanted = used[f];
+        if (!wanted)
+            continue;
         const vec a = v_set1(plan->a[f]), b = v_set1(plan->b[f]);
         const vec minus_a = v_set1((int16_t)-plan->a[f]), minus_b = v_set1((int16_t)-plan->b[f]);
         for (int32_t i = 0; i < width; i += V_LANES) {
@@ -90,10 +93,14 @@ static void gamma_planes(const asj_sector_plan *plan, const int16_t *gx, const i
             const vec xa = v_high(x, a), xb = v_high(x, b);
             const vec cross = v_abs(v_sub(xb, v_high(y, a))), dot = v_abs(v_sub(xa, v_high(y, minus_b)));
             const vec steep_cross = v_abs(v_sub(xa, v_high(y, b))), steep_dot = v_abs(v_sub(xb, v_high(y, minus_a)));
-            v_store(planes + i, v_sub_saturated(cross, dot));
-            v_store(planes + stride + i, v_sub_saturated(dot, cross));
-            v_store(planes + 2 * stride + i, v_sub_saturated(steep_cross, steep_dot));
-            v_store(planes + 3 * stride + i, v_sub_saturated(steep_dot, steep_cross));
+            if (wanted & 1)
+                v_store(planes + i, v_sub_saturated(cross, dot));
+            if (wanted & 2)
+                v_store(planes + stride + i, v_sub_saturated(dot, cross));
+            if (wanted & 4)
+                v_store(planes + 2 * stride + i, v_sub_saturated(steep_cross, steep_dot));
+            if (wanted & 8)
+                v_store(planes + 3 * stride + i, v_sub_saturated(steep_dot, steep_cross));
         }
     }
 }
@@ -229,17 +236,20 @@ static void field_tile(const asj_field *field, const asj_frame *frame, int32_t r
     const int32_t groups = (runs * ASJ_LANES + GROUP_PIXELS - 1) / GROUP_PIXELS, width = groups * GROUP_PIXELS + 2 * radius;
     const size_t stride = asj_field_plane_stride(field), row = stride * 4 * (size_t)field->plan.family_count;
     uint16_t *ring = scratch;
+    int16_t all[ASJ_FIELD_MAX_OFFSETS];
     tile t;
     t.field = field;
     t.slots = ring + (size_t)depth * row;
     t.z = (int16_t *)t.slots + (size_t)field->plan.slot_count * ASJ_FIELD_TILE;
     for (int32_t i = 0; i < s->offset_count; i++)
         t.place[i] = field->plan.plane[i] * (int32_t)stride + s->dx[i] + radius;
+    for (int32_t f = 0; f < field->plan.family_count; f++)
+        all[f] = (int16_t)(field->plan.used[0][f] | field->plan.used[1][f]);
     for (int32_t y = top - radius; y < bottom + radius; y++) {
         const ptrdiff_t at = y * frame->stride + run * ASJ_LANES - radius;
         const int32_t centre = y - radius;
-        gamma_planes(&field->plan, frame->gradient_x + at, frame->gradient_y + at, width, stride,
-                     ring + (size_t)((y + depth) % depth) * row);
+        gamma_planes(&field->plan, field->step > 1 ? field->plan.used[y & 1] : all, frame->gradient_x + at,
+                     frame->gradient_y + at, width, stride, ring + (size_t)((y + depth) % depth) * row);
         uint16_t *found = masks + (ptrdiff_t)centre * frame->blocks + run;
         if (centre < top)
             continue;
