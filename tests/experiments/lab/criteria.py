@@ -90,15 +90,27 @@ def _agree(a, i, b, k, criterion):
     return ok
 
 
+def _near(a, b):
+    """Indices of all pairs of places closer than PLACE_LIMIT, and their distances."""
+    by_x = np.argsort(b[:, 0], kind="stable")
+    x = b[by_x, 0]
+    known = np.nonzero(np.isfinite(a).all(1))[0]
+    first, last = (np.searchsorted(x, a[known, 0] + d) for d in (-PLACE_LIMIT, PLACE_LIMIT))
+    number = last - first
+    i = np.repeat(known, number)
+    k = by_x[np.arange(number.sum()) - np.repeat(np.cumsum(number) - number, number) + np.repeat(first, number)]
+    d = np.hypot(*(a[i] - b[k]).T)
+    near = d < PLACE_LIMIT
+    return i[near], k[near], d[near]
+
+
 def correspondences(a, b, criterion):
     """One-to-one pairs of indices of `a` (already mapped) and `b`, closest first. criterion "angles": location and angles alone."""
-    d = np.hypot(a.place[:, None, 0] - b.place[None, :, 0], a.place[:, None, 1] - b.place[None, :, 1])
-    i, k = np.nonzero(d < PLACE_LIMIT)
+    i, k, d = _near(a.place, b.place)
     keep = _agree(a, i, b, k, criterion)
-    i, k = i[keep], k[keep]
-    order = np.lexsort((k, i, d[i, k]))
+    i, k, d = i[keep], k[keep], d[keep]
     used_a, used_b, out = set(), set(), []
-    for n in order:
+    for n in np.lexsort((k, i, d)):
         if i[n] not in used_a and k[n] not in used_b:
             used_a.add(i[n])
             used_b.add(k[n])
@@ -111,3 +123,14 @@ def rate(first, second, change, criterion):
     expected, visible = change.expected(first)
     pairs = correspondences(expected, second, criterion)
     return int(visible[pairs[:, 0]].sum()), int(visible.sum())
+
+
+SHIFTS = np.array([(0.5, 0.0), (0.0, 0.5), (0.5, 0.5)])   # of the image's size
+
+
+def chance(first, second, change, criterion, size):
+    """As rate(), after the changed image (width, height) went around by half its size: what the number of junctions and their usual
+    directions make by chance. Mean over the shifts."""
+    moved = [replace(second, place=(second.place + shift * size) % size) for shift in SHIFTS]
+    rates = [rate(first, m, change, criterion) for m in moved]
+    return float(np.mean([correct for correct, _ in rates])), rates[0][1]

@@ -17,16 +17,22 @@ class Jobs:
     """Collects jobs of one part and runs them; their names are tuples. What was not begun in time, failed or was stopped is told
     in `cut`."""
 
-    def __init__(self, title, processes, budget):
-        self.title, self.processes, self.budget = title, processes, budget
+    def __init__(self, title, processes, budget, programs_seconds):
+        """programs_seconds(): processor time of the programs that the calling thread has run"""
+        self.title, self.processes, self.budget, self.programs_seconds = title, processes, budget, programs_seconds
+        self.cost = Counter()   # first part of a job's name -> seconds of processor time
         self.queue, self.missed, self.lock, self.done = [], [], threading.Lock(), 0
 
     def add(self, name, function, *arguments):
         """function(limit, *arguments); limit: seconds that it may still take, or None"""
         self.queue.append((name, function, arguments))
 
+    def _spent(self):
+        return time.thread_time() + self.programs_seconds()
+
     def _one(self, job, end, results):
         name, function, arguments = job
+        before = self._spent()
         left = None if end is None else end - time.monotonic()
         try:
             if left is not None and left <= 0:
@@ -36,6 +42,7 @@ class Jobs:
             with self.lock:
                 self.missed.append((name, str(reason)))
         with self.lock:
+            self.cost[str(name[0])] += self._spent() - before
             self.done += 1
             self._show()
 

@@ -55,7 +55,12 @@ class Library:
     def __init__(self, build, work):
         self.build, self.work = build, work
         self.lock, self.results, self.serial = threading.Lock(), {}, 0
+        self.spent = threading.local()   # .seconds: processor time of the programs that this thread ran
         os.makedirs(work, exist_ok=True)
+
+    def programs_seconds(self):
+        """Processor time of the programs that the calling thread has run so far."""
+        return getattr(self.spent, "seconds", 0.0)
 
     def run(self, program, arguments, limit=None, text=""):
         """(standard output, seconds of processor time)"""
@@ -67,6 +72,7 @@ class Library:
                 code, seconds = _wait(subprocess.Popen(command, stdin=given, stdout=out, stderr=errors), limit)
             except OSError as error:
                 raise Failure("%s: %s" % (program, error.strerror)) from error
+            self.spent.seconds = self.programs_seconds() + seconds
             for file in (out, errors):
                 file.seek(0)
             if code == -signal.SIGKILL and limit is not None:
@@ -99,7 +105,8 @@ class Library:
         return self._once((detector, image), compute)
 
     def detect(self, detector, image, limit=None):
-        return junctions.read_json(self.detect_file(detector, image, limit)[0])
+        path = self.detect_file(detector, image, limit)[0]
+        return self._once(("junctions", path), lambda: junctions.read_json(path))
 
     def match(self, arguments, image1, image2, limit=None):
         """What asj-cli match writes as JSON, line segments included, and the seconds of processor time."""

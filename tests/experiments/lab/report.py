@@ -27,7 +27,13 @@ class Part:
     numbers: dict = field(default_factory=dict)   # for report.json
     findings: list = field(default_factory=list)  # sentences for the head of the page
     cut: list = field(default_factory=list)       # what was left out, and why
+    cost: dict = field(default_factory=dict)      # kind of job -> seconds of processor time
     seconds: float = 0.0
+    processor: float = 0.0                        # seconds of processor time, of programs too
+
+    def account(self, jobs):
+        """What the jobs left out, and what they took."""
+        self.cut, self.cost = jobs.cut, {k: round(v, 1) for k, v in jobs.cost.items()}
 
     def heading(self, text):
         self.blocks.append("<h3>%s</h3>" % html.escape(text))
@@ -59,7 +65,7 @@ def _part_html(key, part):
     out = ['<h2 id="%s">%s</h2>' % (key, html.escape(part.title))]
     if part.cut:
         out.append('<div class="cut"><b>Left out:</b><ul>%s</ul></div>' % "".join("<li>%s</li>" % html.escape(c) for c in part.cut))
-    return "\n".join(out + part.blocks + ["<p><small>%.0f s</small></p>" % part.seconds])
+    return "\n".join(out + part.blocks + ["<p><small>%.0f s; %.0f s of processor time</small></p>" % (part.seconds, part.processor)])
 
 
 def _findings_html(parts):
@@ -92,7 +98,7 @@ def write(folder, about, parts):
     path = os.path.join(folder, "report.html")
     with open(path, "w", encoding="utf-8") as file:
         file.write(page)
-    data = {"about": about, "parts": {k: {"seconds": round(p.seconds, 1), "left_out": p.cut, "findings": p.findings,
+    data = {"about": about, "parts": {k: {"seconds": round(p.seconds, 1), "processor_seconds": round(p.processor, 1), "cost": p.cost, "left_out": p.cut, "findings": p.findings,
                                           "numbers": _plain(p.numbers)} for k, p in parts.items()}}
     with open(os.path.join(folder, "report.json"), "w", encoding="utf-8") as file:
         json.dump(data, file, indent=1)

@@ -36,7 +36,8 @@ class Session:
         left = 60 * self.arguments.minutes - (time.monotonic() - self.start)
         wanted = self.arguments.only[self.arguments.only.index(name):]
         budget = max(left, 0) * SHARES[name] / sum(SHARES[n] for n in wanted)
-        return jobs.Jobs(name, self.arguments.processes, None if self.full else budget)
+        return jobs.Jobs(name, self.arguments.processes, None if self.full else budget,
+                         self.library.programs_seconds)
 
     def view(self, pair, index):
         """Image 1 or 2 of a pair, KEY-1 or KEY-2, in grey."""
@@ -66,6 +67,12 @@ class Session:
                 "OpenCV": cv2.__version__, "seconds": round(seconds)}
 
 
+def _processor_seconds():
+    """Of this process and of the programs that it ran."""
+    t = os.times()
+    return t.user + t.system + t.children_user + t.children_system
+
+
 def run(arguments, build):
     cv2.setNumThreads(1)
     start = time.monotonic()
@@ -76,9 +83,10 @@ def run(arguments, build):
     if arguments.check or arguments.quick:
         checks.run(session)
     for name in () if arguments.check else arguments.only:
-        begin = time.monotonic()
+        begin, spent = time.monotonic(), _processor_seconds()
         part = importlib.import_module("lab.parts." + name).run(session)
         part.seconds = time.monotonic() - begin
+        part.processor = _processor_seconds() - spent
         done[name] = part
         page = report.write(session.out, session.about(time.monotonic() - start), done)
     if not arguments.keep:

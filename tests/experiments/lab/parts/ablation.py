@@ -166,5 +166,5 @@ def run(session):
         ", ".join(p.key for p in pictures), ", ".join(p.name for p in few), ", ".join(p.name for p in judged)))
     _tables(part, "Detector", cells, detector)
     _tables(part, "Matcher", cells, matcher)
-    part.cut = jobs.cut
+    part.account(jobs)
     return part

@@ -74,5 +74,5 @@ def run(session):
             part.table(*accuracy_rows(names, chosen, cells))
             part.findings.append(finding("Line segments, " + title.lower(), names, chosen, cells))
     part.numbers = {"cells": [dict(c, method=m, pair=p) for (m, p), c in cells.items()]}
-    part.cut = jobs.cut
+    part.account(jobs)
     return part

@@ -11,7 +11,7 @@ from ..report import Part
 EPSILONS = (0.01, 0.1, 1, 10, 100, 200)
 PAPER = (0.002, 0.006, 0.198, 5.923, 66.472, 132.676)
 PIXELS = 256 * 256
-CHUNK = 50   # images a job, at most
+CHUNK = 25   # images a job, at most
 
 
 def _branches(limit, session, preset, way, images, first, options=()):
@@ -46,11 +46,11 @@ def _junctions(limit, session, preset, _way, images, first):
 ROWS = {
     "default: strip test, length of the scan": (_branches, "default", "scanned", 1000),
     "paper preset: strip test, length of the scan": (_branches, "paper", "scanned", 1000),
-    "default: strip test, best of 16 lengths": (_branches, "default", "any", 100),
+    "default: strip test, best of 16 lengths": (_branches, "default", "any", 40),
     "default: junctions of the whole detector": (_junctions, "default", "", 1000),
     "paper preset: junctions of the whole detector": (_junctions, "paper", "", 1000),
     "paper preset: steps of the scan alone": (_branches, "paper", "steps", 50),
-    "the same, literal filter of local branches": (_literal, "paper", "steps", 50),
+    "the same, literal filter of local branches": (_literal, "paper", "steps", 25),
 }
 UNBOUNDED = ("paper preset: steps of the scan alone", "the same, literal filter of local branches")
 
@@ -104,7 +104,7 @@ def run(session):
     part.numbers = {"epsilon": EPSILONS, "paper": PAPER, "broken": broken,
                     "rows": {row: {"images": n, "mean": [None if np.isnan(v) else float(v) for v in values]}
                              for row, (n, values) in rows.items()}}
-    part.cut = jobs.cut
+    part.account(jobs)
     return part
 
 

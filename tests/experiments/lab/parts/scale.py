@@ -86,5 +86,5 @@ def run(session):
         part.picture(_circles(session, pictures[0], factor), "jpeg",
                      "%s zoomed by %.1f. Left: isotropic scales, yellow: s r1, red: r2. Right: branches, yellow: those of the "
                      "original times s, green: those found." % (pictures[0].key, factor))
-    part.cut = jobs.cut
+    part.account(jobs)
     return part
