@@ -65,7 +65,8 @@ def _part_html(key, part):
     out = ['<h2 id="%s">%s</h2>' % (key, html.escape(part.title))]
     if part.cut:
         out.append('<div class="cut"><b>Left out:</b><ul>%s</ul></div>' % "".join("<li>%s</li>" % html.escape(c) for c in part.cut))
-    return "\n".join(out + part.blocks + ["<p><small>%.0f s; %.0f s of processor time</small></p>" % (part.seconds, part.processor)])
+    return "\n".join(out + part.blocks + [
+        "<p><small>%.0f s; %.0f s of processor time</small></p>" % (part.seconds, part.processor)])
 
 
 def _findings_html(parts):
@@ -86,6 +87,11 @@ def _plain(value):
     return value
 
 
+def _part_data(part):
+    return {"seconds": round(part.seconds, 1), "processor_seconds": round(part.processor, 1), "cost": part.cost,
+            "left_out": part.cut, "findings": part.findings, "numbers": _plain(part.numbers)}
+
+
 def write(folder, about, parts):
     """about: {what: text} for the head of the page. Returns the path of the page."""
     os.makedirs(folder, exist_ok=True)
@@ -98,8 +104,7 @@ def write(folder, about, parts):
     path = os.path.join(folder, "report.html")
     with open(path, "w", encoding="utf-8") as file:
         file.write(page)
-    data = {"about": about, "parts": {k: {"seconds": round(p.seconds, 1), "processor_seconds": round(p.processor, 1), "cost": p.cost, "left_out": p.cut, "findings": p.findings,
-                                          "numbers": _plain(p.numbers)} for k, p in parts.items()}}
+    data = {"about": about, "parts": {k: _part_data(p) for k, p in parts.items()}}
     with open(os.path.join(folder, "report.json"), "w", encoding="utf-8") as file:
         json.dump(data, file, indent=1)
         file.write("\n")

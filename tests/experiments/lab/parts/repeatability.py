@@ -113,7 +113,8 @@ def _report_kind(part, cells, kind, levels, names, unit, head=""):
     whole = [p for p in pictures if all(p in complete[n] for n in names)]
     rates = {n: [_mean([cells[kind, v, n, p] for p in whole]) for v in levels] for n in names}
     part.numbers[kind] = {"levels": levels, "percent": rates, "pictures": whole}
-    part.table([head or "%% repeated: %s, %s" % (kind, unit)] + ["%g" % v for v in levels], [[n] + ["%.1f" % v for v in r] for n, r in rates.items()],
+    part.table([head or "%% repeated: %s, %s" % (kind, unit)] + ["%g" % v for v in levels],
+               [[n] + ["%.1f" % v for v in r] for n, r in rates.items()],
                "Mean of %d pictures: %s." % (len(whole), ", ".join(whole)))
     return {"title": kind, "x_label": unit, "y_label": "repeatability, %", "y_range": (0, 102),
             "series": {n: (levels, r) for n, r in rates.items()}, "ticks": levels}
@@ -138,11 +139,11 @@ TEXT = (
     "Corresponding: location within 3 px, every branch within pi/20 of one of the other's, the same number of branches, and (ACJ) "
     "isotropic scales or (ASJ) every branch length within 3 px of one of the other's. One to one, closest first.",
     "ASJ are whole junctions, branches followed to their ends. The paper compares them with the ACJ detector: its counterpart is "
-    "the paper preset before branches are followed. The default preset has an isotropic stage of its own, with sub-pixel lines that "
-    "the ACJ detector lacks; it is shown beside.")
+    "the paper preset before branches are followed. The default preset has an isotropic stage of its own, with sub-pixel lines "
+    "that the ACJ detector lacks; it is shown beside.")
 WHY = (
-    "The ACJ criterion asks little near 1: isotropic scales end at the largest radius tested (14 px in the default preset, 12 px in "
-    "the paper's), where |s r1 - r2| stays below 3 px down to a zoom of 0.79 and 0.75. There isotropic junctions are judged by "
+    "The ACJ criterion asks little near 1: isotropic scales end at the largest radius tested (14 px in the default preset, 12 px "
+    "in the paper's), where |s r1 - r2| stays below 3 px down to a zoom of 0.79 and 0.75. There isotropic junctions are judged by "
     "location and angles alone, ASJ by every branch length besides. The row \"%s\" asks the same of both: location, angles, "
     "isotropic scale." % LIKE)
 
@@ -158,8 +159,8 @@ def run(session):
     zoom = _report_kind(part, cells, "zoom", list(images.FACTORS), all_methods, "factor")
     part.chart(charts.curves([zoom], height=4.6))
     part.heading("By chance")
-    part.text("The same after the junctions of the copy were moved around by half the image (mean of three ways): what their number "
-              "and the usual directions of walls make by chance.")
+    part.text("The same after the junctions of the copy were moved around by half the image (mean of three ways): what their "
+              "number and the usual directions of walls make by chance.")
     _report_kind(part, cells, "chance", [f for f in images.FACTORS if f < 1], BY_CHANCE, "factor", "% by chance: zoom, factor")
     _compare(part)
     part.heading("Blur, noise, compression, gain")
@@ -185,6 +186,6 @@ def _compare(part):
         part.findings.append("Repeatability of the default preset (ASJ criterion) above %s at every zoom below 1: %s." % (
             name, _above(rates, factors, OURS, name)))
     if LIKE in rates and STAGE in rates:
-        part.findings.append("Repeatability with the same criterion (ACJ) for both, the default preset above its isotropic stage: %s." %
-                             _above(rates, factors, LIKE, STAGE))
+        part.findings.append("Repeatability with the same criterion (ACJ) for both, the default preset above its isotropic stage: "
+                             "%s." % _above(rates, factors, LIKE, STAGE))
     part.text(*part.findings, WHY)
