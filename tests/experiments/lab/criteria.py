@@ -10,8 +10,8 @@ Junction 1 of the original and junction 2 of the changed image correspond when t
 
 The paper does not say what the rate is a share of, nor how several candidates are settled. Here correspondences are one to one,
 closest first, and the rate is their share of the junctions of the original that the changed image shows. This is what
-tests/accuracy/repeatability.c computes (column "rate"), for zooms; test_criteria.py compares the two. "place" leaves everything
-but the location away.
+tests/accuracy/repeatability.c computes (column "rate"), for zooms; checks.py compares the two. "place" leaves everything but the
+location away, "angles" the scales.
 
 For maps that are no zoom, s p1 is the mapped point, a direction goes through the map's derivative at p1, s r1 of a branch is the
 distance of the mapped ends, and s r1 of an isotropic scale uses the root of the derivative's determinant.
@@ -23,7 +23,7 @@ import numpy as np
 PLACE_LIMIT = 3.0          # px
 ANGLE_LIMIT = np.pi / 20   # rad
 SCALE_LIMIT = 3.0          # px
-ASJ, ACJ, PLACE = "asj", "acj", "place"
+ASJ, ACJ, PLACE, ANGLES = "asj", "acj", "place", "angles"
 
 
 def angle_distance(a, b):
@@ -105,7 +105,7 @@ def _near(a, b):
 
 
 def correspondences(a, b, criterion):
-    """One-to-one pairs of indices of `a` (already mapped) and `b`, closest first. criterion "angles": location and angles alone."""
+    """One-to-one pairs of indices of `a` (already mapped) and `b`, closest first."""
     i, k, d = _near(a.place, b.place)
     keep = _agree(a, i, b, k, criterion)
     i, k, d = i[keep], k[keep], d[keep]

@@ -73,7 +73,7 @@ def _findings_html(parts):
     lines = ["<li>%s</li>" % html.escape(f) for p in parts.values() for f in p.findings]
     lines += ["<li><b>%s: %d things left out</b>, listed there</li>" % (html.escape(p.title), len(p.cut))
               for p in parts.values() if p.cut]
-    return "<ul>%s</ul>" % "".join(lines) if lines else ""
+    return "<h3>Findings</h3><ul>%s</ul>" % "".join(lines) if lines else ""
 
 
 def _plain(value):
@@ -99,7 +99,7 @@ def write(folder, about, parts):
                    for k, v in about.items())
     contents = "".join('<li><a href="#%s">%s</a></li>' % (k, html.escape(p.title)) for k, p in parts.items())
     page = ("<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>libasj: experiments</title><style>%s</style></head>"
-            "<body><h1>libasj: the paper's experiments</h1><table>%s</table><ol>%s</ol>%s%s</body></html>\n"
+            "<body><h1>libasj: the paper's experiments</h1><table>%s</table><h3>Parts</h3><ol>%s</ol>%s%s</body></html>\n"
             % (STYLE, head, contents, _findings_html(parts), "\n".join(_part_html(k, p) for k, p in parts.items())))
     path = os.path.join(folder, "report.html")
     with open(path, "w", encoding="utf-8") as file:

@@ -59,7 +59,7 @@ class Session:
 
     def about(self, seconds):
         real = ", ".join(p.name for p in self.real) or "none given: rendered pairs alone (--pairs DIR names a folder of pairs)"
-        return {"library": self.library.version(), "pairs of photographs": real,
+        return {"library": self.library.version().splitlines()[0], "pairs of photographs": real,
                 "rendered pairs": ", ".join(p.name for p in self.rendered),
                 "cut": "quick run: numbers mean little" if self.quick else "full run" if self.full else "default run",
                 "machine": "%s, %d processors, %d jobs at a time of one thread each"

@@ -28,7 +28,7 @@ def finding(what, methods, names, cells):
 def accuracy_rows(methods, names, cells):
     """(header, rows): method, average accuracy, correct / total, seconds a pair, then every pair.
     cells: (method, pair) -> counts"""
-    header = ["", "average accuracy, %", "correct / total", "s a pair"] + list(names)
+    header = ["method: correct / total of every pair", "average accuracy, %", "correct / total", "s a pair"] + list(names)
     rows = []
     for method in methods:
         mine = {n: cells[method, n] for n in names if (method, n) in cells}

@@ -90,11 +90,11 @@ def run(session):
     rows = {row: _mean([v for k, v in cells.items() if k[0] == row]) for row in ROWS if any(k[0] == row for k in cells)}
     body = [["bound (epsilon)", ""] + ["%g" % e for e in EPSILONS], ["the paper's Table 1", 1000] + [_text(v) for v in PAPER]]
     body += [[row, n] + [_text(v) for v in values] for row, (n, values) in rows.items()]
-    part.table(["false detections in an image", "images"] + ["%g" % e for e in EPSILONS], body)
+    part.table(["false detections in an image at epsilon", "images"] + ["%g" % e for e in EPSILONS], body)
     series = {"bound": (EPSILONS, EPSILONS), "paper's Table 1": (EPSILONS, PAPER)}
     series.update({row: (EPSILONS, np.where(values > 0, values, np.nan)) for row, (_, values) in rows.items()})
     part.chart(charts.curves([{"x_label": "epsilon", "y_label": "false detections in an image", "log": True, "series": series}],
-                             height=4), "Both axes logarithmic; zeros do not show.")
+                             height=4.8), "Both axes logarithmic; zeros do not show.")
     broken = [row for row, (n, values) in rows.items() if row not in UNBOUNDED and not _bounded(n, values)]
     kept = [r for r in rows if r not in UNBOUNDED and r not in broken]
     part.findings.append("False detections: bounded by epsilon at every epsilon: %s." % ("; ".join(kept) or "none"))

@@ -16,12 +16,13 @@ ROWS = {
     "isotropic: scale, default": (library.ISOTROPIC_DEFAULT, True),
     "isotropic: scale, paper": (library.ISOTROPIC_PAPER, True),
 }
+LEAST_DRAWN = 600      # px: a copy narrower than that is drawn enlarged
 LEAST_LENGTH = 20.0   # px in the original: below, the unit of the isotropic radii counts more than the zoom
 
 
 def paired(first, second, change):
     """Indices of junctions that agree in location and angles."""
-    return criteria.correspondences(change.expected(first)[0], second, "angles")
+    return criteria.correspondences(change.expected(first)[0], second, criteria.ANGLES)
 
 
 def _ratios(limit, session, detector, isotropic, picture, factor):
@@ -39,17 +40,21 @@ def _ratios(limit, session, detector, isotropic, picture, factor):
 def _circles(session, picture, factor):
     """The zoomed copy with circles: yellow s r1, red r2 (isotropic); lines: yellow s times the branch, green the branch found."""
     path, change = picture.zoomed(factor)
-    canvas = [cv2.imread(path, cv2.IMREAD_COLOR) for _ in range(2)]
+    ground = cv2.imread(path, cv2.IMREAD_COLOR)
+    times = max(1, round(LEAST_DRAWN / ground.shape[1]))
+    ground = cv2.resize(ground, None, fx=times, fy=times, interpolation=cv2.INTER_NEAREST)
+    canvas, enlarge = [ground.copy(), ground.copy()], criteria.Zoom(times, times)
     for which, detector in enumerate((library.ISOTROPIC_PAPER, library.DEFAULT)):
         first, second = (session.library.detect(detector, p) for p in (picture.original(), path))
-        expected = change.expected(first)[0]
-        for i, k in paired(first, second, change):
+        partners = paired(first, second, change)
+        wanted, found = (enlarge.expected(j)[0] for j in (change.expected(first)[0], second))
+        for i, k in partners:
             if which == 0:
-                drawing.circle(canvas[0], expected.place[i], expected.scale[i], drawing.YELLOW)
-                drawing.circle(canvas[0], second.place[k], second.scale[k], drawing.RED)
+                drawing.circle(canvas[0], wanted.place[i], wanted.scale[i], drawing.YELLOW, 2)
+                drawing.circle(canvas[0], found.place[k], found.scale[k], drawing.RED, 2)
             else:
-                drawing.junction(canvas[1], expected, i, drawing.YELLOW, 3)
-                drawing.junction(canvas[1], second, k, drawing.GREEN, 1)
+                drawing.junction(canvas[1], wanted, i, drawing.YELLOW, 3)
+                drawing.junction(canvas[1], found, k, drawing.GREEN, 1)
     return drawing.encode(drawing.beside(canvas))
 
 
@@ -65,7 +70,7 @@ def run(session):
             for name, (detector, isotropic) in ROWS.items():
                 jobs.add((name, factor, picture.key), _ratios, session, detector, isotropic, picture, factor)
     cells = jobs.run()
-    series, rows = {"the zoom itself": (images.FACTORS, images.FACTORS)}, []
+    series, rows, shares = {"the zoom itself": (images.FACTORS, images.FACTORS)}, [], []
     for name in ROWS:
         ratios = [np.concatenate([c for k, c in cells.items() if k[:2] == (name, f)] or [np.zeros(0)]) for f in images.FACTORS]
         median = [float(np.median(r)) if len(r) else float("nan") for r in ratios]
@@ -74,12 +79,14 @@ def run(session):
         slope = float(np.polyfit(np.array(images.FACTORS)[known], np.array(median)[known], 1)[0]) if known.sum() > 1 else None
         close = [float(np.mean(np.abs(r - f) < 0.1 * f)) if len(r) else float("nan") for r, f in zip(ratios, images.FACTORS)]
         series[name] = (images.FACTORS, median)
-        rows.append([name, "-" if slope is None else "%.2f" % slope] + [
-            "%.2f (%d: %.0f %%)" % (m, len(r), 100 * c) if len(r) else "-" for m, r, c in zip(median, ratios, close)])
+        rows.append([name, "-" if slope is None else "%.2f" % (round(slope, 2) + 0.0)] + [
+            "%.2f" % m if len(r) else "-" for m, r in zip(median, ratios)])
+        shares.append([name] + ["%.0f (%d)" % (100 * c, len(r)) if len(r) else "-" for r, c in zip(ratios, close)])
         part.findings.append("Scale against zoom, %s: slope %s." % (name, rows[-1][1]))
         part.numbers[name] = {"slope": slope, "factors": images.FACTORS, "median": median, "quartiles": spread,
                               "count": [len(r) for r in ratios], "within_tenth": close}
-    part.table(["median ratio of scales (count: share within 10 % of s)", "slope"] + ["%.1f" % f for f in images.FACTORS], rows)
+    part.table(["median ratio of scales at zoom s", "slope"] + ["%.1f" % f for f in images.FACTORS], rows)
+    part.table(["% of ratios within a tenth of s (ratios)"] + ["%.1f" % f for f in images.FACTORS], shares)
     part.chart(charts.curves([{"x_label": "zoom factor s", "y_label": "median of r2 / r1", "y_range": (0, 1.3), "series": series}],
                              height=4))
     for factor in (0.6, 0.3):
