@@ -12,7 +12,7 @@ import cv2
 from . import checks, images, jobs, library, pairs, report
 
 # The parts' shares of the time; what one leaves over goes to those after it.
-SHARES = {"noise": 220, "repeatability": 230, "scale": 20, "points": 300, "lines": 50, "figures": 30, "ablation": 200}
+SHARES = {"noise": 170, "repeatability": 210, "scale": 15, "points": 380, "lines": 25, "figures": 20, "ablation": 600}
 
 
 class Session:

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Part 7: what each departure from the paper is worth. Two ways: from the paper preset to the default one option at a time, and the
 default with a single option set back. The detector's options are judged by repeatability and by what the default matcher makes of
-the junctions; the matcher's options on the junctions that asj-cli match finds."""
+the junctions, and on synthetic scenes; the matcher's options on the junctions that asj-cli match finds."""
+import json
+
 import numpy as np
 
 from .. import criteria, matches, options, pairs, score
@@ -10,8 +12,12 @@ from ..report import Part
 from ..tables import accuracy
 
 FACTORS = (0.9, 0.7, 0.5)
-NOTICEABLE = {"accuracy": 0.5, "correct": 0.01, "repeatability": 0.5}  # points of percent, share of the correct ones, points
+POINTS = ("accuracy", "repeatability", "lines accuracy", "recall", "precision", "lengths")   # differences count in points
+SHARES = ("correct", "lines correct")                                                      # these in percent
+TIMES = ("seconds", "detection")
+NOTICEABLE_POINTS, NOTICEABLE_SHARE, NOTICEABLE_TIME = 0.5, 0.01, 0.2
 NEEDS_BACK = {"neighbours": ("minimum_support",)}  # nobody asked, no support
+SYNTHETIC = {"recall": "recall", "precision": "precision", "lengths": "<=3"}
 MATCHING = "matching"  # the detector as asj-cli match sets it
 
 
@@ -60,11 +66,28 @@ def _matching(limit, session, detector, words, pair):
     first, second = _junction_files(session, detector, pair, limit)
     data, seconds = session.library.match(words + ("--junctions1", first, "--junctions2", second), pair.image1, pair.image2, limit)
     found = matches.of_library(data, seconds)
-    right = score.Judge(session.library, pair).points(found.p1, found.p2)
-    return {"total": len(right), "correct": int(right.sum()), "seconds": seconds}
+    judge = score.Judge(session.library, pair)
+    right, lines = judge.points(found.p1, found.p2), judge.segments(*found.lines)
+    judged = np.isfinite(lines)
+    return {"total": len(right), "correct": int(right.sum()), "seconds": seconds, "lines total": int(judged.sum()),
+            "lines correct": int(lines[judged].sum())}
+
+
+def _synthetic(limit, session, words):
+    """Means over the scenes of tests/accuracy/accuracy.c, in percent."""
+    options = ["%s=%s" % (flag[2:].replace("-", "_"), value) for flag, value in zip(words[::2], words[1::2])]
+    scenes = 1 if session.quick else 4
+    text = session.library.run("accuracy", ["--scenes", scenes, "--threads", 1, "--format", "json"] + options, limit)[0]
+    rows = [json.loads(line) for line in text.splitlines() if line.startswith("{")]
+    mean = {name: np.mean([row[key] for row in rows if row[key] is not None]) for name, key in SYNTHETIC.items()}
+    return {name: 100.0 * float(value) for name, value in mean.items()}
 
 
 # ---- report ----
+
+def _accuracy(cell, prefix):
+    return accuracy({n: cell[prefix + n] for n in ("correct", "total")})
+
 
 def _summary(cells, key):
     """Measures of one configuration, from the jobs that were done."""
@@ -74,31 +97,43 @@ def _summary(cells, key):
     if repeats:
         out = {name: float(np.mean([c[name] for c in repeats])) for name in ("repeatability", "junctions", "detection")}
         out["pictures"] = len(repeats)
+    out.update(cells.get(key + ("synthetic", "scenes"), {}))
     if matched:
-        out.update(accuracy=float(np.mean([accuracy(c) for c in matched])), correct=sum(c["correct"] for c in matched),
-                   total=sum(c["total"] for c in matched), seconds=float(np.mean([c["seconds"] for c in matched])),
-                   pairs=len(matched))
+        for prefix in ("", "lines "):
+            out[prefix + "accuracy"] = float(np.mean([_accuracy(c, prefix) for c in matched]))
+            out.update({prefix + n: sum(c[prefix + n] for c in matched) for n in ("correct", "total")})
+        out.update(seconds=float(np.mean([c["seconds"] for c in matched])), pairs=len(matched))
     return out
 
 
-COLUMNS = (("accuracy", "accuracy, %", "%.1f"), ("correct", "correct", "%d"), ("total", "total", "%d"),
-           ("seconds", "matching, s", "%.2f"), ("repeatability", "repeatability, %", "%.1f"),
-           ("junctions", "junctions", "%.0f"), ("detection", "detection, s", "%.2f"))
+COLUMNS = (("accuracy", "points: accuracy, %", "%.1f"), ("correct", "correct", "%d"), ("total", "total", "%d"),
+           ("lines accuracy", "lines: accuracy, %", "%.1f"), ("lines correct", "correct", "%d"), ("lines total", "total", "%d"),
+           ("seconds", "matching, s", "%.2f"), ("repeatability", "repeat- ability, %", "%.1f"), ("recall", "recall, %", "%.1f"),
+           ("precision", "precision, %", "%.1f"), ("lengths", "lengths, %", "%.1f"), ("junctions", "junctions", "%.0f"),
+           ("detection", "detection, s", "%.2f"))
 
 
 def _cells(measures, columns):
     return [form % measures[name] if name in measures else "-" for name, _, form in columns]
 
 
+def _gains(default, back):
+    """By how many times what is noticeable the default is better, for every measure."""
+    out = {n: (default[n] - back[n]) / NOTICEABLE_POINTS for n in POINTS if n in default and n in back}
+    out.update({n: (default[n] - back[n]) / max(default[n], 1) / NOTICEABLE_SHARE for n in SHARES if n in default and n in back})
+    out.update({n: (back[n] - default[n]) / back[n] / NOTICEABLE_TIME for n in TIMES if n in default and back.get(n)})
+    return out
+
+
 def _verdict(default, back):
     """What the departure is worth: the default against the default with this option set back."""
     if not default or any(default.get(n) != back.get(n) for n in ("pairs", "pictures")):
         return "not measured"
-    gains = {n: default[n] - back[n] for n in ("accuracy", "repeatability") if n in default and n in back}
-    if "correct" in default:
-        gains["correct"] = (default["correct"] - back["correct"]) / max(default["correct"], 1)
-    up = [n for n, g in gains.items() if g >= NOTICEABLE[n]]
-    down = [n for n, g in gains.items() if g <= -NOTICEABLE[n]]
+    titles = {"seconds": "matching time", "detection": "detection time", "correct": "correct points"}
+    up, down = [], []
+    for name, gain in _gains(default, back).items():
+        if abs(gain) >= 1:
+            (up if gain > 0 else down).append(titles.get(name, name))
     if up and down:
         return "mixed: + %s, - %s" % (", ".join(up), ", ".join(down))
     return "pays: " + ", ".join(up) if up else "costs: " + ", ".join(down) if down else "no difference"
@@ -131,6 +166,7 @@ def _tables(part, title, cells, configurations):
 
 def _add_detector(session, jobs, kind, departure, words, pictures, some_pairs):
     found = Detector("ablation", words)
+    jobs.add(("Detector", kind, departure, "synthetic", "scenes"), _synthetic, session, words)
     for picture in pictures:
         jobs.add(("Detector", kind, departure, "repeat", picture.key), _repeatability, session, found, picture)
     for pair in some_pairs:
@@ -139,10 +175,11 @@ def _add_detector(session, jobs, kind, departure, words, pictures, some_pairs):
 
 def run(session):
     part = Part("Ablation: what each departure from the paper is worth")
-    part.text("Accuracy: mean over the pairs; repeatability: ASJ criterion, mean over zooms 0.9, 0.7, 0.5 and the pictures. A "
-              "departure pays when the default is better by at least 0.5 points of accuracy or repeatability or by 1 % of the "
-              "correct matches than the default without it, and nothing is worse by as much. Times: processor seconds "
-              "of the program, for a picture or a pair.")
+    part.text("Accuracy: mean over the pairs, of key-points and of merged lines; repeatability: ASJ criterion, mean over zooms "
+              "0.9, 0.7, 0.5 and the pictures; recall, precision, lengths within 3 px: means over synthetic scenes "
+              "(tests/accuracy); times: processor seconds of the program, for a picture or a pair. A departure pays when the default "
+              "is better than the default without it by at least 0.5 points, 1 % of the correct matches or 20 % of the time, and "
+              "nothing is worse by as much.")
     judged = [p for p in session.pairs if p.kind != pairs.LINES]
     pictures, few = session.pictures()[::2], judged[::2]
     if session.quick:
