@@ -178,8 +178,8 @@ def run(session):
     part.text("Accuracy: mean over the pairs, of key-points and of merged lines; repeatability: ASJ criterion, mean over zooms "
               "0.9, 0.7, 0.5 and the pictures; recall, precision, lengths within 3 px: means over synthetic scenes "
               "(tests/accuracy); times: processor seconds of the program, for a picture or a pair. A departure pays when the "
-              "default is better than the default without it by at least 0.5 points, 1 % of the correct matches or 20 % of the time, and "
-              "nothing is worse by as much.")
+              "default is better than the default without it by at least 0.5 points, 1 % of the correct matches or 20 % of the "
+              "time, and nothing is worse by as much.")
     judged = [p for p in session.pairs if p.kind != pairs.LINES]
     pictures, few = session.pictures()[::2], judged[::2]
     if session.quick:
