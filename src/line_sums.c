@@ -7,8 +7,8 @@
  * at the same t enter those only through sum w and sum w s. What is missing are residuals, and the smooth edge of the band that
  * interpolation gives. Tests of junctions that are mostly none, and first lines of fits to come, need neither.
  *
- * The sums of ASJ_LINE_LANES neighbouring columns are kept apart and added at the end, in float: vector forms then give the same
- * bits. */
+ * The sums of ASJ_LINE_LANES neighbouring columns, and of every other row, are kept apart and added at the end, in float: vector
+ * forms then give the same bits. */
 #include "line_sums.h"
 
 #include <math.h>
@@ -72,14 +72,17 @@ static void add_pixel(lanes *to, int lane, float w, float t, float s)
     to->ts[lane] += wt * s;
 }
 
-static float total(const float v[LANES])
+static float total(const float even[LANES], const float odd[LANES])
 {
+    float v[LANES];
+    for (int i = 0; i < LANES; i++)
+        v[i] = even[i] + odd[i];
     return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
 }
 
 void asj_line_sums_of(const asj_frame *frame, const asj_line_band *band, asj_line_sums sums[2])
 {
-    lanes list[2];
+    lanes list[2][2]; /* of even and odd rows */
     memset(list, 0, sizeof list);
     for (int32_t row = band->top; row <= band->bottom; row++) {
         int32_t first, last;
@@ -94,11 +97,13 @@ void asj_line_sums_of(const asj_frame *frame, const asj_line_band *band, asj_lin
             const float gx = (float)(p[1] - p[-1]), gy = (float)(p[frame->stride] - p[-frame->stride]);
             const float across = gy * band->ux - gx * band->uy, w = fabsf(across) - fabsf(gx * band->ux + gy * band->uy);
             if (w > 0)
-                add_pixel(&list[across > 0], (column - first) % LANES, w, t, s);
+                add_pixel(&list[(row - band->top) & 1][across > 0], (column - first) % LANES, w, t, s);
         }
     }
     for (int i = 0; i < 2; i++)
-        sums[i] = (asj_line_sums){total(list[i].w), total(list[i].t), total(list[i].tt), total(list[i].s), total(list[i].ts)};
+        sums[i] = (asj_line_sums){total(list[0][i].w, list[1][i].w), total(list[0][i].t, list[1][i].t),
+                                  total(list[0][i].tt, list[1][i].tt), total(list[0][i].s, list[1][i].s),
+                                  total(list[0][i].ts, list[1][i].ts)};
 }
 
 /* Central differences at the four pixels around the sample, bilinear: along x in whole numbers (1/4096 px), along y in float. */

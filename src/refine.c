@@ -19,7 +19,7 @@
 #define BENT 3       /* standard uncertainties */
 #define NEAR_PART 80   /* px */
 #define WIDE 2         /* px: half-width of the band in which a line is looked for */
-#define HALF_WIDTH 1.6 /* and of that in which it is fitted */
+#define HALF_WIDTH 1.6 /* and of that in which it is fitted last */
 #define DOUBT 6         /* natural logarithm of a number of false alarms */
 #define OPENING_DOUBT 5 /* degrees */
 #define LARGEST_OFFSET 2 /* px: a line that misses the junction by more belongs to something else */
@@ -99,8 +99,8 @@ static void follow_line(const asj_context *context, const asj_frame *frame, cons
     asj_draft_branch longer = *branch;
     for (double reach = NEAR_PART;; reach *= 2) {
         const double last = fmin(end, reach), t[2] = {first, last};
-        const asj_line_range range = {first, last, {WIDE, HALF_WIDTH, HALF_WIDTH}, 3};
-        if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, HALF_WIDTH, &longer))
+        const asj_line_range range = {first, last, {WIDE, HALF_WIDTH, 0}, 2};
+        if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, &longer))
             return;
         if (!asj_line_fit(context->ops, frame, draft->x, draft->y, &range, &longer) ||
             (reach > NEAR_PART && fabs(longer.offset - branch->offset) > BENT * sqrt(branch->offset_variance)))

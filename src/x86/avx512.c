@@ -78,4 +78,6 @@ static inline vec v_quotient(float a, vec b)
 }
 
 #define V_NAME(name) name##_avx512
+#include "lines512.h" /* before kernels.h, which fills the table */
+#define V_MORE(ops) fill_lines(ops)
 #include "../simd/kernels.h"

@@ -38,19 +38,22 @@ static inline __m256 between(__m256 v, __m256 low, __m256 high)
     return _mm256_and_ps(_mm256_cmp_ps(v, low, _CMP_GE_OQ), _mm256_cmp_ps(v, high, _CMP_LE_OQ));
 }
 
-static inline asj_line_sums total_sums(const lane_sums *list)
+static inline asj_line_sums total_sums(const lane_sums *even, const lane_sums *odd)
 {
-    return (asj_line_sums){total(list->w), total(list->t), total(list->tt), total(list->s), total(list->ts)};
+    return (asj_line_sums){total(_mm256_add_ps(even->w, odd->w)), total(_mm256_add_ps(even->t, odd->t)),
+                           total(_mm256_add_ps(even->tt, odd->tt)), total(_mm256_add_ps(even->s, odd->s)),
+                           total(_mm256_add_ps(even->ts, odd->ts))};
 }
 
-static void line_sums_avx2(const asj_frame *frame, const asj_line_band *band, asj_line_sums sums[2])
+/* Every other row from band->top + odd on; sides: as in asj_line_sums_of(). */
+static inline void add_rows(const asj_frame *frame, const asj_line_band *band, int32_t odd, lane_sums sides[2])
 {
     const __m256 zero = _mm256_setzero_ps(), sign = _mm256_set1_ps(-0.0f), lane = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
     const __m256 ux = _mm256_set1_ps(band->ux), uy = _mm256_set1_ps(band->uy);
     const __m256 near_t = _mm256_set1_ps(band->first), far_t = _mm256_set1_ps(band->last);
     const __m256 near_s = _mm256_set1_ps(band->low), far_s = _mm256_set1_ps(band->high);
     lane_sums up = {zero, zero, zero, zero, zero}, down = up;
-    for (int32_t row = band->top; row <= band->bottom; row++) {
+    for (int32_t row = band->top + odd; row <= band->bottom; row += 2) {
         int32_t first, last;
         asj_line_band_row(band, row, &first, &last);
         const uint16_t *pixels = frame->gray + (band->y + row) * frame->stride + band->x;
@@ -74,8 +77,17 @@ static void line_sums_avx2(const asj_frame *frame, const asj_line_band *band, as
             add_lanes(&down, _mm256_andnot_ps(is_up, w), t, s);
         }
     }
-    sums[0] = total_sums(&down);
-    sums[1] = total_sums(&up);
+    sides[0] = down;
+    sides[1] = up;
+}
+
+static void line_sums_avx2(const asj_frame *frame, const asj_line_band *band, asj_line_sums sums[2])
+{
+    lane_sums even[2], odd[2];
+    add_rows(frame, band, 0, even);
+    add_rows(frame, band, 1, odd);
+    for (int i = 0; i < 2; i++)
+        sums[i] = total_sums(&even[i], &odd[i]);
 }
 
 /* Central differences at the four pixels around 8 samples, bilinear; at[i]: the upper left one of sample i. */
