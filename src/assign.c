@@ -3,13 +3,13 @@
  *
  * Of all candidates at a place the best one stands for it: a junction has several L-junctions, and they must not compete with each
  * other. For the same reason the second best of the ratio test must have its partner at another place, farther than
- * `separation` from the partner of the best. With `mutual` the candidate must be the best of both its places, and the ratio is
- * taken on both sides. Without it several places of image 1 may choose one of image 2; then the one with the best score keeps
- * it.
+ * `separation` from the partner of the best. Partners are taken where the alignment has put them: junctions of a cluster, a few
+ * pixels from each other, all say the same then and do not compete, while things that repeat stay rivals. With `mutual` the
+ * candidate must be the best of both its places, and the ratio is taken on both sides. Without it several places of image 1 may
+ * choose one of image 2; then the one with the best score keeps it.
  *
  * The ratio is of distances as they are, not of their squares, as Lowe has it; 1.5 on distances is 2.25 on squares, and what others
- * call 1.5 on squares is 1.22 here. The paper does not say which; the preset `paper` takes its 1.5 as distances. By default 1.1,
- * since verify.c drops what a weaker ratio lets through.
+ * call 1.5 on squares is 1.22 here. The paper does not say which; its 1.5 is taken as one of distances.
  *
  * The ratio is that of scores, best over second: of distances, second over best, when no neighbours are asked. */
 #include "assign.h"
@@ -29,6 +29,16 @@ static int better(const asj_candidate *list, uint32_t left, uint32_t right)
     return list[left].score > list[right].score || (list[left].score == list[right].score && left < right);
 }
 
+/* Where the candidate has the location of its L-junction in image `side` in the other image, whose corners are `others`. */
+static void partner(const asj_candidate *c, const asj_corners *others, int32_t side, double at[2])
+{
+    const asj_l_junction *l = &others->l[side == 1 ? c->j : c->i];
+    const double *mine = side == 1 ? c->move1 : c->move2, *theirs = side == 1 ? c->move2 : c->move1;
+    const double *map = side == 1 ? c->map.to : c->map.from;
+    at[0] = (double)l->x + theirs[0] - map[0] * mine[0] - map[1] * mine[1];
+    at[1] = (double)l->y + theirs[1] - map[2] * mine[0] - map[3] * mine[1];
+}
+
 static void find_winners(const asj_candidates *candidates, const asj_place_index *index, const asj_corners *corners,
                          const asj_corners *others, int32_t side, double separation, winner *winners)
 {
@@ -42,11 +52,12 @@ static void find_winners(const asj_candidates *candidates, const asj_place_index
         for (uint32_t m = first + 1; m < end; m++)
             best = better(list, index->order[m], best) ? index->order[m] : best;
         winners[p].candidate = best;
-        const asj_l_junction *at = &others->l[side == 1 ? list[best].j : list[best].i];
+        double at[2], to[2];
+        partner(&list[best], others, side, at);
         for (uint32_t m = first; m < end; m++) {
             const asj_candidate *c = &list[index->order[m]];
-            const asj_l_junction *l = &others->l[side == 1 ? c->j : c->i];
-            double dx = (double)l->x - (double)at->x, dy = (double)l->y - (double)at->y;
+            partner(c, others, side, to);
+            const double dx = to[0] - at[0], dy = to[1] - at[1];
             if (dx * dx + dy * dy > separation * separation && c->score > winners[p].second)
                 winners[p].second = c->score;
         }
@@ -54,7 +65,8 @@ static void find_winners(const asj_candidates *candidates, const asj_place_index
 }
 
 /* The verdict on the best candidate of a place of image 1. */
-static int accept(const asj_match_options *options, const asj_candidate *c, const winner *mine, const winner *theirs, float *ratio)
+static int accept(const asj_match_options *options, const asj_candidate *c, const winner *mine, const winner *theirs, float needed,
+                  float *ratio)
 {
     float second = mine->second;
     if (options->mutual) {
@@ -63,7 +75,7 @@ static int accept(const asj_match_options *options, const asj_candidate *c, cons
         second = theirs->second > second ? theirs->second : second;
     }
     *ratio = second > 0 ? c->score / second : HUGE_VALF;
-    return c->score > 0 && *ratio >= (float)options->ratio && c->support >= (float)options->minimum_support &&
+    return c->score > 0 && *ratio >= (float)options->ratio && c->support >= needed &&
            (options->align_iterations == 0 || c->similarity >= (float)options->minimum_similarity);
 }
 
@@ -72,6 +84,7 @@ static size_t choose(const asj_match_options *options, const asj_view *view1, co
                      const asj_candidates *candidates, const winner *winners1, const winner *winners2, uint32_t *keeper,
                      asj_choice *choices)
 {
+    const float needed = asj_needed_support(options, &view1->corners, &view2->corners);
     size_t count = 0;
     for (uint32_t p = 0; p < view1->corners.place_count; p++) {
         asj_choice choice = {winners1[p].candidate, 0};
@@ -79,7 +92,7 @@ static size_t choose(const asj_match_options *options, const asj_view *view1, co
             continue;
         const asj_candidate *c = &candidates->list[choice.candidate];
         const uint32_t q = view2->corners.place[c->j];
-        if (!accept(options, c, &winners1[p], &winners2[q], &choice.ratio))
+        if (!accept(options, c, &winners1[p], &winners2[q], needed, &choice.ratio))
             continue;
         if (keeper[q] == 0) {
             choices[count++] = choice;

@@ -4,34 +4,25 @@
  * In rooms one corner looks like another, so appearance alone leaves several partners to choose from. But each candidate carries an
  * affine map, which says where its neighbours must be and how they must be distorted. True candidates agree with their true
  * neighbours; false ones agree with nothing, or with fewer. No epipolar geometry is estimated: agreement is asked for between
- * near neighbours only, where a surface is nearly flat and perspective nearly affine, and it has to be rough only
- * (`neighbour_tolerance` of the distance).
- *
- * Agreement of candidates c and d: with e_c, e_d the errors with which their maps predict each other's location, in image 2 and
- * with the inverse maps in image 1, and E the Frobenius norm,
- *
- *     r^2 = max over both images of [ (e_c + e_d) / 2 / (3 px + neighbour_tolerance * distance) ]^2
- *         + max over both directions of  |A_c - A_d|_E^2 / (map_tolerance^2 |A_c|_E |A_d|_E),
- *     w = (1 - r^2 / 5)^2 for r^2 < 5, else 0  (Tukey's biweight, about exp(-r^2 / 2), but it ends and needs no exponential).
+ * near neighbours only, where a surface is nearly flat, and along edges, and it has to be rough only (agreement.c).
  *
  * Relaxation labelling (Rosenfeld, Hummel and Zucker 1976), a few Jacobi steps. With a = (least distance among the competitors /
  * own distance)^2 x similarity, competitors being the candidates of the same place in either image:
  *
  *     support = half the sum, over the nearest places in image 1 and in image 2, of the largest w x confidence of their candidates,
- *     score = a (0.2 + support),     confidence = score / max(score of the best competitor, minimum_support),
+ *     score = a (0.2 + support),     confidence = score / max(score of the best competitor, needed support),
  *
- * so that a place speaks with one voice, and places where nothing is sure hardly speak. 0.2 lets the first step be led by
- * appearance; between 0.1 and 0.4 it changes nothing. */
+ * so that a place speaks with one voice, and places where nothing is sure hardly speak. Support is needed in proportion to the
+ * number of neighbours that can be asked, because so grows what chance supplies: minimum_support when all `neighbours` are
+ * there, less in an image with fewer corners. */
 #include "consensus.h"
 
 #include <math.h>
 #include <string.h>
 
-#define PIXELS 3.0 /* error allowed to any prediction: location errors of two junctions and their map */
-#define REACH 5.0  /* r^2 at which agreement ends */
-#define BASE 0.2f
-#define STEPS 5
-#define WEIGHT_ONE 65535.0f
+#define BASE 0.2f /* lets appearance lead the first step; between 0.1 and 0.4 it changes nothing */
+#define STEPS 5   /* word travels that far from corner to corner; 4 or 8 change one match in two hundred */
+#define WEIGHT_ONE 65535.0f /* agreement 1 in 16 bits */
 
 asj_status asj_place_index_create(asj_context *context, const asj_corners *corners, const asj_candidates *candidates, int32_t side,
                                   asj_place_index *index)
@@ -54,62 +45,6 @@ void asj_place_index_free(asj_memory *memory, asj_place_index *index)
     asj_release(memory, index->start);
     asj_release(memory, index->order);
     index->start = index->order = NULL;
-}
-
-/* --- agreement -------------------------------------------------------------------------------------------------------------- */
-
-/* 4 REACH (PIXELS + tolerance |e|)^2 at most, without a root, since (a + b)^2 <= 2 (a^2 + b^2); a little more for rounding. */
-static inline double most_square(double ex, double ey, double tolerance)
-{
-    return 8.001 * REACH * (PIXELS * PIXELS + tolerance * tolerance * (ex * ex + ey * ey));
-}
-
-/* Mean error of both predictions over what is allowed, squared. (dx, dy) leads from c to d in the image that the maps start
- * from. */
-static double misprediction(const double *map_c, const double *map_d, double dx, double dy, double ex, double ey, double tolerance)
-{
-    double cx = map_c[0] * dx + map_c[1] * dy - ex, cy = map_c[2] * dx + map_c[3] * dy - ey;
-    double square = cx * cx + cy * cy;
-    if (square > most_square(ex, ey, tolerance))
-        return 2 * REACH; /* no square root for the many that are far off */
-    double allowed = PIXELS + tolerance * sqrt(ex * ex + ey * ey);
-    if (square > 4 * REACH * allowed * allowed)
-        return 2 * REACH;
-    double tx = map_d[0] * dx + map_d[1] * dy - ex, ty = map_d[2] * dx + map_d[3] * dy - ey;
-    double mean = (sqrt(square) + sqrt(tx * tx + ty * ty)) * 0.5 / allowed;
-    return mean * mean;
-}
-
-static double unlikeness(const double *a, const double *b)
-{
-    double difference = 0, size_a = 0, size_b = 0;
-    for (int i = 0; i < 4; i++) {
-        difference += (a[i] - b[i]) * (a[i] - b[i]);
-        size_a += a[i] * a[i];
-        size_b += b[i] * b[i];
-    }
-    return difference / sqrt(size_a * size_b);
-}
-
-float asj_agreement(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c,
-                    const asj_candidate *d)
-{
-    const asj_l_junction *c1 = &view1->corners.l[c->i], *d1 = &view1->corners.l[d->i];
-    const asj_l_junction *c2 = &view2->corners.l[c->j], *d2 = &view2->corners.l[d->j];
-    double x1 = (double)d1->x - (double)c1->x, y1 = (double)d1->y - (double)c1->y;
-    double x2 = (double)d2->x - (double)c2->x, y2 = (double)d2->y - (double)c2->y;
-    if (x1 * x1 + y1 * y1 < 1 || x2 * x2 + y2 * y2 < 1) /* two corners of one image on one place of the other */
-        return 0;
-    double there = misprediction(c->map.to, d->map.to, x1, y1, x2, y2, options->neighbour_tolerance);
-    if (there >= REACH)
-        return 0;
-    double back = misprediction(c->map.from, d->map.from, x2, y2, x1, y1, options->neighbour_tolerance);
-    double to = unlikeness(c->map.to, d->map.to), from = unlikeness(c->map.from, d->map.from);
-    double r2 = (there > back ? there : back) + (to > from ? to : from) / (options->map_tolerance * options->map_tolerance);
-    if (!(r2 < REACH))
-        return 0;
-    double w = 1 - r2 / REACH;
-    return (float)(w * w);
 }
 
 /* --- relaxation ------------------------------------------------------------------------------------------------------------- */
@@ -151,14 +86,6 @@ static spot spot_of(const asj_view *view1, const asj_view *view2, const asj_cand
     return (spot){{(double)l1->x, (double)l1->y, (double)l2->x, (double)l2->y}};
 }
 
-/* Does c's map miss d by so much that asj_agreement() is 0? */
-static inline int misses(const double *map, const spot *c, const spot *d, double tolerance)
-{
-    const double dx = d->at[0] - c->at[0], dy = d->at[1] - c->at[1], ex = d->at[2] - c->at[2], ey = d->at[3] - c->at[3];
-    const double cx = map[0] * dx + map[1] * dy - ex, cy = map[2] * dx + map[3] * dy - ey;
-    return cx * cx + cy * cy > most_square(ex, ey, tolerance);
-}
-
 /* What candidate k hears goes to `voices`; returns how many they are. */
 static uint32_t hear_one(const asj_match_options *options, const asj_view *view1, const asj_view *view2,
                          const asj_candidates *candidates, int32_t side, const half *h, size_t k, voice *voices)
@@ -168,9 +95,12 @@ static uint32_t hear_one(const asj_match_options *options, const asj_view *view1
     const uint32_t place = place_of(h, c, side);
     const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
     uint32_t count = 0;
-    for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++)
+    for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++) {
+        const int32_t edge = asj_edge_possible(h->corners, side == 1 ? c->i : c->j, neighbour[n]);
         for (uint32_t m = h->index.start[neighbour[n]]; m < h->index.start[neighbour[n] + 1]; m++) {
-            if (misses(c->map.to, &here, &h->spots[m], options->neighbour_tolerance))
+            const double *there = h->spots[m].at;
+            const asj_way way = {there[0] - here.at[0], there[1] - here.at[1], there[2] - here.at[2], there[3] - here.at[3]};
+            if (!edge && asj_way_misses(options, c, &way))
                 continue;
             float w = asj_agreement(options, view1, view2, c, &candidates->list[h->index.order[m]]);
             const uint16_t weight = (uint16_t)(w * WEIGHT_ONE);
@@ -178,6 +108,7 @@ static uint32_t hear_one(const asj_match_options *options, const asj_view *view1
                 continue;
             voices[count++] = (voice){m, weight, (uint16_t)n};
         }
+    }
     return count;
 }
 
@@ -292,11 +223,25 @@ static void set_confidence(const asj_candidates *candidates, half halves[2], con
             halves[s].confidence[halves[s].position[k]] = confidence[k];
 }
 
+/* How many neighbours of one image are asked, but at least one: a match that stands alone has no support. */
+static uint32_t asked(const asj_corners *corners, uint32_t limit)
+{
+    const uint32_t others = corners->place_count > 2 ? corners->place_count - 1 : 1;
+    return others < limit ? others : limit;
+}
+
+float asj_needed_support(const asj_match_options *options, const asj_corners *corners1, const asj_corners *corners2)
+{
+    const uint32_t limit = (uint32_t)options->neighbours;
+    const double share = limit > 0 ? (asked(corners1, limit) + asked(corners2, limit)) / (2.0 * limit) : 1;
+    return (float)(options->minimum_support * share);
+}
+
 static void relax(asj_context *context, const asj_match_options *options, asj_candidates *candidates, half halves[2],
                   const float *appearance, float *score)
 {
     const int64_t count = (int64_t)candidates->count;
-    const float least = options->minimum_support > 1e-6 ? (float)options->minimum_support : 1e-6f;
+    const float needed = asj_needed_support(options, halves[0].corners, halves[1].corners), least = needed > 1e-6f ? needed : 1e-6f;
     (void)context; /* without OpenMP */
     set_confidence(candidates, halves, appearance);
     for (int step = 0; step < STEPS; step++) {

@@ -21,6 +21,7 @@
 #define LEAST_START 10.0     /* px */
 #define LEAST_BEFORE_END 8.0 /* px */
 #define LEAST_APART 4.0      /* px */
+#define OPPOSITE (-0.978147601) /* cosine of 180 - 12 degrees: half the least opening of branches, and less */
 
 static asj_status check(asj_context *context, const asj_junction *junctions, size_t count, int32_t width, int32_t height,
                         int32_t which)
@@ -73,7 +74,9 @@ static asj_status find_places(asj_context *context, asj_corners *corners)
     corners->place = asj_allocate(memory, corners->count, sizeof *corners->place);
     corners->place_x = asj_allocate(memory, corners->count, sizeof *corners->place_x);
     corners->place_y = asj_allocate(memory, corners->count, sizeof *corners->place_y);
-    if (!spots || !corners->place || !corners->place_x || !corners->place_y) {
+    corners->first_of_place = asj_allocate(memory, (size_t)corners->count + 1, sizeof *corners->first_of_place);
+    corners->l_of_place = asj_allocate(memory, corners->count, sizeof *corners->l_of_place);
+    if (!spots || !corners->place || !corners->place_x || !corners->place_y || !corners->first_of_place || !corners->l_of_place) {
         asj_release(memory, spots);
         return no_memory(context);
     }
@@ -85,11 +88,13 @@ static asj_status find_places(asj_context *context, asj_corners *corners)
         if (i == 0 || spots[i].x != spots[i - 1].x || spots[i].y != spots[i - 1].y) {
             corners->place_x[places] = (double)spots[i].x;
             corners->place_y[places] = (double)spots[i].y;
-            places++;
+            corners->first_of_place[places++] = i;
         }
         corners->place[spots[i].l] = places - 1;
+        corners->l_of_place[i] = spots[i].l;
     }
     corners->place_count = places;
+    corners->first_of_place[places] = corners->count;
     asj_release(memory, spots);
     return ASJ_OK;
 }
@@ -220,6 +225,31 @@ static asj_status make_frames(asj_context *context, const asj_match_options *opt
     return ASJ_OK;
 }
 
+/* Does another L-junction of the place have a branch opposite to u? */
+static int continues(const asj_corners *corners, uint32_t l, const double u[2])
+{
+    const uint32_t place = corners->place[l];
+    for (uint32_t m = corners->first_of_place[place]; m < corners->first_of_place[place + 1]; m++) {
+        const double *v = corners->direction + 4 * (size_t)corners->l_of_place[m];
+        if (corners->l_of_place[m] != l &&
+            (u[0] * v[0] + u[1] * v[1] < OPPOSITE || u[0] * v[2] + u[1] * v[3] < OPPOSITE))
+            return 1;
+    }
+    return 0;
+}
+
+static asj_status find_stems(asj_context *context, asj_corners *corners)
+{
+    corners->stem = asj_allocate(&context->memory, corners->count, sizeof *corners->stem);
+    if (!corners->stem)
+        return no_memory(context);
+    for (uint32_t l = 0; l < corners->count; l++) {
+        const double *u = corners->direction + 4 * (size_t)l;
+        corners->stem[l] = continues(corners, l, u) != continues(corners, l, u + 2);
+    }
+    return ASJ_OK;
+}
+
 asj_status asj_corners_create(asj_context *context, const asj_junction *junctions, size_t count, int32_t width, int32_t height,
                               const asj_match_options *options, int32_t which, asj_corners *corners)
 {
@@ -239,13 +269,16 @@ asj_status asj_corners_create(asj_context *context, const asj_junction *junction
         status = find_neighbours(context, options, corners);
     if (status == ASJ_OK)
         status = make_frames(context, options, corners);
+    if (status == ASJ_OK)
+        status = find_stems(context, corners);
     return status;
 }
 
 void asj_corners_free(asj_memory *memory, asj_corners *corners)
 {
     void *blocks[] = {corners->l, corners->lengths, corners->direction, corners->first_frame, corners->frames, corners->place,
-                      corners->place_x, corners->place_y, corners->neighbour, corners->neighbour_count};
+                      corners->place_x, corners->place_y, corners->neighbour, corners->neighbour_count,
+                      corners->first_of_place, corners->l_of_place, corners->stem};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         asj_release(memory, blocks[i]);
     memset(corners, 0, sizeof *corners);

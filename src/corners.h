@@ -27,7 +27,10 @@ typedef struct asj_corners {
 
     /* Places: distinct locations. L-junctions of one junction share theirs; so do records of a file with the same coordinates. */
     uint32_t *place;             /* of each L-junction */
-    uint32_t place_count;
+    uint32_t place_count;        /* in order of x */
+    uint32_t *first_of_place;    /* place p has l_of_place[first_of_place[p]] .. l_of_place[first_of_place[p + 1] - 1] */
+    uint32_t *l_of_place;
+    uint8_t *stem;               /* of each L-junction: is it part of a T? One of its branches goes on beyond the location */
     double *place_x, *place_y;
     uint32_t *neighbour;         /* [k * place .. + neighbour_count[place]]: nearest other places, nearest first */
     uint32_t *neighbour_count;

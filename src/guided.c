@@ -3,20 +3,18 @@
  *
  * The short list misses true partners where corners are many and alike, or where a branch's length is wrong. An accepted match says
  * where its neighbours must be, so the partners near that place are looked at as well, however they ranked: an L-junction is
- * paired with those that at least two of the eight matches nearest to it predict within 1.5 times the tolerance of consensus.c,
- * with both branches within 25 degrees of where the map turns them. What is proposed is then compared, aligned and judged like
- * every other candidate. Done from both images, so that swapping them changes nothing. */
+ * paired with those that one of the matches nearest to it predicts within the tolerance of agreement.c, with both branches about
+ * where the map turns them. What is proposed is then compared, aligned and judged like every other candidate. Done from both
+ * images, so that swapping them changes nothing. */
 #include "guided.h"
 #include "align.h"
 
 #include <math.h>
 #include <string.h>
 
-#define NEAREST 8
-#define VOTES 2
-#define WIDER 1.5
-#define PIXELS 3.0
-#define LEAST_COSINE 0.906307787 /* 25 degrees */
+#define NEAREST 8                /* matches asked: two or three surfaces meet at a corner; 4 or 16 find as much within 1 % */
+#define PIXELS 3.0               /* as in agreement.c */
+#define LEAST_COSINE 0.906307787 /* 25 degrees: what map_tolerance lets two maps differ by, 0.5 in norm, is about that */
 #define MOST_PROPOSALS 32        /* for one L-junction; where more are possible, none is likely */
 
 /* Accepted matches as seen from one image. */
@@ -28,7 +26,6 @@ typedef struct guide {
 typedef struct proposals {
     uint32_t count;
     uint32_t partner[MOST_PROPOSALS];
-    uint8_t votes[MOST_PROPOSALS];
 } proposals;
 
 static uint32_t nearest_guides(const guide *guides, size_t count, double x, double y, uint32_t *out)
@@ -60,23 +57,13 @@ static int turns(const double map[4], const double u[2], const double v[2])
 static void propose(proposals *p, uint32_t partner)
 {
     for (uint32_t k = 0; k < p->count; k++)
-        if (p->partner[k] == partner) {
-            p->votes[k]++;
+        if (p->partner[k] == partner)
             return;
-        }
-    if (p->count < MOST_PROPOSALS) {
-        p->partner[p->count] = partner;
-        p->votes[p->count++] = 1;
-    }
+    if (p->count < MOST_PROPOSALS)
+        p->partner[p->count++] = partner;
 }
 
-/* L-junctions of one image in order of x, so that those near a place are found by bisection. */
-typedef struct by_x {
-    const asj_corners *corners;
-    const uint32_t *first;  /* L-junctions of place p: l[first[p]] .. l[first[p + 1] - 1]; places are in order of x */
-    const uint32_t *l;
-} by_x;
-
+/* Places are in order of x, so that those near one are found by bisection. */
 static uint32_t first_place(const asj_corners *corners, double x)
 {
     uint32_t low = 0, high = corners->place_count;
@@ -90,46 +77,31 @@ static uint32_t first_place(const asj_corners *corners, double x)
     return low;
 }
 
-static void ask(const asj_match_options *options, const asj_corners *mine, uint32_t i, const guide *g, const by_x *others,
+static void ask(const asj_match_options *options, const asj_corners *mine, uint32_t i, const guide *g, const asj_corners *others,
                 proposals *p)
 {
     const double *u = mine->direction + 4 * (size_t)i;
     double dx = (double)mine->l[i].x - g->x1, dy = (double)mine->l[i].y - g->y1;
     double px = g->map[0] * dx + g->map[1] * dy, py = g->map[2] * dx + g->map[3] * dy;
-    double radius = (PIXELS + options->neighbour_tolerance * sqrt(px * px + py * py)) * WIDER;
+    double radius = PIXELS + options->neighbour_tolerance * sqrt(px * px + py * py);
     px += g->x2;
     py += g->y2;
-    for (uint32_t q = first_place(others->corners, px - radius); q < others->corners->place_count; q++) {
-        double ex = others->corners->place_x[q] - px, ey = others->corners->place_y[q] - py;
+    for (uint32_t q = first_place(others, px - radius); q < others->place_count; q++) {
+        double ex = others->place_x[q] - px, ey = others->place_y[q] - py;
         if (ex > radius)
             break;
         if (ex * ex + ey * ey > radius * radius)
             continue;
-        for (uint32_t k = others->first[q]; k < others->first[q + 1]; k++) {
-            const double *v = others->corners->direction + 4 * (size_t)others->l[k];
+        for (uint32_t m = others->first_of_place[q]; m < others->first_of_place[q + 1]; m++) {
+            const uint32_t k = others->l_of_place[m];
+            const double *v = others->direction + 4 * (size_t)k;
             if (turns(g->map, u, v) && turns(g->map, u + 2, v + 2))
-                propose(p, others->l[k]);
+                propose(p, k);
         }
     }
 }
 
 /* --- both directions -------------------------------------------------------------------------------------------------------- */
-
-/* L-junctions place by place. */
-static asj_status index_places(asj_context *context, const asj_corners *corners, uint32_t **first, uint32_t **l)
-{
-    *first = asj_allocate_zero(&context->memory, (size_t)corners->place_count + 2, sizeof **first);
-    *l = asj_allocate(&context->memory, corners->count, sizeof **l);
-    if (!*first || !*l)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
-    for (uint32_t i = 0; i < corners->count; i++)
-        (*first)[corners->place[i] + 2]++;
-    for (uint32_t p = 2; p < corners->place_count + 2; p++)
-        (*first)[p] += (*first)[p - 1];
-    for (uint32_t i = 0; i < corners->count; i++)
-        (*l)[(*first)[corners->place[i] + 1]++] = i;
-    return ASJ_OK;
-}
 
 static int32_t known(const asj_candidate *list, size_t count, uint32_t i, uint32_t j)
 {
@@ -151,7 +123,7 @@ static asj_status collect(asj_context *context, const proposals *all, uint32_t c
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t k = 0; k < all[i].count; k++) {
             uint32_t first = side == 1 ? i : all[i].partner[k], second = side == 1 ? all[i].partner[k] : i;
-            if (all[i].votes[k] < VOTES || known(candidates->list, candidates->count, first, second))
+            if (known(candidates->list, candidates->count, first, second))
                 continue;
             void *list = fresh->list;
             asj_status status = asj_grow(&context->memory, &list, &fresh->capacity, fresh->count + 1, sizeof *fresh->list,
@@ -170,24 +142,19 @@ static asj_status one_side(asj_context *context, const asj_match_options *option
                            const asj_corners *theirs, int32_t side, const guide *guides, size_t guide_count,
                            const asj_candidates *candidates, asj_candidates *fresh)
 {
-    uint32_t *first = NULL, *l = NULL;
     proposals *all = asj_allocate_zero(&context->memory, mine->count, sizeof *all);
-    asj_status status = all ? index_places(context, theirs, &first, &l)
-                            : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
+    asj_status status = all ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
     if (status == ASJ_OK) {
-        const by_x others = {theirs, first, l};
         const int64_t count = mine->count;
 #pragma omp parallel for num_threads(context->threads) schedule(dynamic, 16)
         for (int64_t i = 0; i < count; i++) {
             uint32_t near[NEAREST];
             uint32_t n = nearest_guides(guides, guide_count, (double)mine->l[i].x, (double)mine->l[i].y, near);
             for (uint32_t k = 0; k < n; k++)
-                ask(options, mine, (uint32_t)i, &guides[near[k]], &others, &all[i]);
+                ask(options, mine, (uint32_t)i, &guides[near[k]], theirs, &all[i]);
         }
         status = collect(context, all, mine->count, side, candidates, fresh);
     }
-    asj_release(&context->memory, first);
-    asj_release(&context->memory, l);
     asj_release(&context->memory, all);
     return status;
 }

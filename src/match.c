@@ -5,7 +5,8 @@
  *   patch.c      patches in those frames                       (paper: induced.c)
  *   distance.c   all pairs, short list
  *   align.c      each candidate's map refined on the images    (paper: not done)
- *   consensus.c  agreement between neighbouring candidates     (paper: not done)
+ *   consensus.c  support from neighbouring candidates          (paper: not done)
+ *   agreement.c  .. what it means that two candidates agree
  *   assign.c     ratio test, mutual check
  *   guided.c     matches propose matches near them; once more from align.c on
  *   verify.c     each match asks the matches around it

@@ -23,7 +23,7 @@ static const char *const descriptor_words[] = {"raw", "sift", NULL};
 
 static const asj_option_info rows[] = {
     CHOICE(descriptor, 1, ASJ_DESCRIPTOR_RAW, ASJ_DESCRIPTOR_RAW, descriptor_words, "what describes a patch: raw or sift"),
-    NUMBER(ratio, "", 1, 10, 1.1, 1.5, "the second best match at another place must be worse by this factor"),
+    NUMBER(ratio, "", 1, 10, 1.5, 1.5, "the second best match at another place must be worse by this factor"),
     SWITCH(mutual, 1, 0, "two junctions match only if each is the other's best"),
     NUMBER(minimum_support, "", 0, 64, 1, 0, "neighbouring matches that must agree with a match, each counted 0 to 1"),
     NUMBER(minimum_similarity, "", -1, 1, 0.4, -1, "correlation that the aligned discs of a match need"),
@@ -34,7 +34,7 @@ static const asj_option_info rows[] = {
     INTEGER(guided_rounds, "", 0, 4, 1, 0, "times that accepted matches propose matches near them"),
     INTEGER(witnesses, "", 0, 64, 16, 0, "nearest matches that are asked whether they agree with a match; 0 = none are asked"),
     NUMBER(witness_distance, "px", 10, 10000, 100, 100, "distance at which a witness counts by half"),
-    NUMBER(minimum_agreement, "", 0, 1, 0.24, 0, "mean agreement with the witnesses, each counted 0 to 1, that a match needs"),
+    NUMBER(minimum_agreement, "", 0, 1, 0.28, 0, "mean agreement with the witnesses, each counted 0 to 1, that a match needs"),
     CHOICE(patches, 1, ASJ_PATCHES_CANONICAL, ASJ_PATCHES_INDUCED, patch_words,
            "canonical: one patch for each L-junction; induced: warped by each pair's own map"),
     SWITCH(normalise, 1, 0, "bring raw patches to zero mean and unit norm"),
