@@ -23,6 +23,7 @@
 #endif
 
 #define TWO_PI 6.283185307179586
+#define ROUNDING 1e-6 /* of log_nfa */
 #define TWIN 2 /* px: of junctions nearer than this the most meaningful one stays */
 #define MAX_SECTORS 188 /* floor(2 pi 30) */
 #define ASJ_TAIL_STEPS 4 /* table entries for a junction-ness of 1; linear interpolation is then good to 0.01 in ln F */
@@ -59,10 +60,14 @@ static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t
     entry->least = asj_allocate_zero(&context->memory, (size_t)entry->sectors.count, sizeof *entry->least);
     if (!entry->least)
         return ASJ_ERROR_MEMORY;
+    int32_t fewest = entry->sectors.size[0];
     for (int32_t k = 0; status == ASJ_OK && k < entry->sectors.count; k++) {
         status = make_tails(context, test, entry->sectors.size[k]);
         entry->tails[k] = test->tail_tables[entry->sectors.size[k]];
+        if (entry->sectors.size[k] < fewest)
+            fewest = entry->sectors.size[k];
     }
+    entry->lowest_tail = test->tail_tables[fewest];
     return status;
 }
 
@@ -320,6 +325,8 @@ void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *
         if (peaks[m - 1].sum < entry->least_sum[m]) /* also when so many branches do not fit at any radius */
             continue;
         double t = (double)peaks[m - 1].sum / (1 << s->gamma_bits), log_nfa = test->log_tests[m];
+        if (best->branch_count && log_nfa + m * log_tail(entry->lowest_tail, t) - ROUNDING > best->log_nfa)
+            continue;
         for (int32_t i = 0; i < m; i++)
             log_nfa += log_tail(entry->tails[peaks[i].sector], t);
         if (log_nfa > test->log_epsilon || (best->branch_count && log_nfa >= best->log_nfa))
@@ -345,7 +352,7 @@ void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int3
             junctions[count].x = (uint16_t)(x + i);
             junctions[count++].y = (uint16_t)y;
         }
-    for (int32_t r = 0; r < test->radius_count; r++) {
+    for (int32_t r = test->radius_count - 1; r >= 0; r--) {
         const asj_isotropic_radius *entry = &test->radii[r];
         uint16_t *sums = scratch + asj_sector_scratch(&entry->sectors);
         asj_sector_sums(&entry->sectors, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, sums);
@@ -401,6 +408,11 @@ asj_status asj_isotropic_rows(asj_context *context, const asj_isotropic *test, c
 static int by_place(const asj_isotropic_junction *p, const asj_isotropic_junction *q)
 {
     return p->y != q->y ? p->y - q->y : p->x - q->x;
+}
+
+static int in_rows(const void *a, const void *b)
+{
+    return by_place(a, b);
 }
 
 static int by_meaning(const void *a, const void *b)
@@ -477,16 +489,15 @@ static rank *sort_ranks(const asj_isotropic_junction *junctions, rank *ranks, ra
 
 size_t asj_isotropic_thin_scratch(size_t count, int32_t width, int32_t height)
 {
-    return count * (2 * sizeof(rank) + sizeof(asj_isotropic_junction)) + ((size_t)width + 7) / 8 * (size_t)height;
+    return count * (2 * sizeof(rank) + 1) + ((size_t)width + 7) / 8 * (size_t)height;
 }
 
 size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const asj_detect_options *options,
                           int32_t width, int32_t height, void *scratch)
 {
     const size_t row_bytes = ((size_t)width + 7) / 8;
-    asj_isotropic_junction *stay = scratch;
-    rank *ranks = (rank *)(void *)(stay + count), *spare = ranks + count;
-    uint8_t *taken = (uint8_t *)(void *)(spare + count);
+    rank *ranks = scratch, *spare = ranks + count;
+    uint8_t *stays = (uint8_t *)(void *)(spare + count), *taken = stays + count;
     size_t kept = 0;
     if (count == 0)
         return 0;
@@ -495,16 +506,18 @@ size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const
     for (size_t i = 0; i < count; i++)
         ranks[i] = (rank){key_of(junctions[i].log_nfa), (uint32_t)i};
     const rank *order = options->more_branches_win ? ranks : sort_ranks(junctions, ranks, spare, count);
-    memset(taken, 0, row_bytes * (size_t)height);
+    memset(stays, 0, count + row_bytes * (size_t)height);
     for (size_t i = 0; i < count; i++) {
         const asj_isotropic_junction *junction = &junctions[order[i].index];
         if (taken[junction->y * row_bytes + junction->x / 8] >> junction->x % 8 & 1)
             continue;
         take(taken, width, height, junction->x, junction->y, options->more_branches_win ? 0.5 * junction->radius : TWIN);
-        stay[kept++] = *junction;
+        stays[order[i].index] = 1;
     }
-    memcpy(junctions, stay, kept * sizeof *stay);
+    for (size_t i = 0; i < count; i++)
+        if (stays[i])
+            junctions[kept++] = junctions[i];
     if (options->more_branches_win)
-        qsort(junctions, kept, sizeof *junctions, by_meaning);
+        qsort(junctions, kept, sizeof *junctions, in_rows);
     return kept;
 }

@@ -38,6 +38,7 @@ typedef struct asj_isotropic_radius {
     int32_t suppress;     /* sectors to either side over which a branch must be the largest */
     double straight;      /* two branches that open wider are an edge */
     const double **tails; /* for each sector: ln F(i / ASJ_TAIL_STEPS; J_k), i = 0, 1, .. */
+    const double *lowest_tail; /* the lowest of them: that of the sector with the fewest pixels */
     int32_t least_sum[ASJ_MAX_BRANCHES + 1]; /* of M branches the weakest has at least this sum, or they are not meaningful */
     uint16_t *least;      /* for each sector: the least strength of a branch that may be one of meaningful ones */
 } asj_isotropic_radius;
@@ -92,7 +93,8 @@ int32_t asj_isotropic_insert(asj_isotropic_peak *peaks, int32_t count, int32_t m
 void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *entry, const asj_isotropic_peak *peaks,
                          int32_t count, asj_isotropic_junction *best);
 
-/* Sorts by meaningfulness and drops what lies close to something better (see isotropic.c). Returns how many stay, at the front.
+/* Of junctions in order of y, then x, drops those that lie close to something better (see isotropic.c). Returns how many stay, at
+ * the front, in the same order: what comes next then finds most of the image in the cache.
  * `scratch`: asj_isotropic_thin_scratch() bytes, aligned as by malloc(). */
 size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const asj_detect_options *options,
                           int32_t width, int32_t height, void *scratch);

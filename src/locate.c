@@ -79,9 +79,9 @@ static void fit_branches(const asj_context *context, const asj_frame *frame, con
     asj_draft_select(draft, keep);
 }
 
-static void guess_branches(const asj_context *context, const asj_frame *frame, double half_width, asj_draft *draft)
+static void guess_branches(const asj_context *context, const asj_frame *frame, double half_width, double end, asj_draft *draft)
 {
-    const double t[2] = {NEAR, fit_end(draft)};
+    const double t[2] = {NEAR, end};
     int keep[ASJ_MAX_BRANCHES];
     for (int32_t i = 0; i < draft->branch_count; i++)
         keep[i] = asj_line_guess(context->ops, frame, draft->x, draft->y, t, half_width, &draft->branches[i]);
@@ -103,12 +103,12 @@ void asj_locate_guess(const asj_context *context, const asj_frame *frame, const 
             draft->branch_count = 0;
         return;
     }
-    guess_branches(context, frame, 4, draft);
+    guess_branches(context, frame, 4, 10, draft); /* px: enough to tell edges */
     if (!asj_draft_has_opening(draft, fmax(least - slack, 0))) { /* most are edges, and seen to be by now */
         draft->branch_count = 0;
         return;
     }
-    guess_branches(context, frame, 2.5, draft);
+    guess_branches(context, frame, 2.5, fit_end(draft), draft);
     for (int32_t i = 0; i < draft->branch_count; i++)
         draft->branches[i].offset_variance = 1;
     if (!meet(options, slack, 1, draft))

@@ -57,7 +57,7 @@ static int override(int32_t variant, asj_ops *ops)
 #ifdef ASJ_HAVE_AVX512
     case ASJ_VARIANT_AVX512:
         if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("avx512f") ||
-            !__builtin_cpu_supports("avx512bw"))
+            !__builtin_cpu_supports("avx512bw") || !__builtin_cpu_supports("avx512vl"))
             return 0;
         override(ASJ_VARIANT_AVX2, ops); /* what 16 lanes do better */
         asj_ops_avx512(ops);

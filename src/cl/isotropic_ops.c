@@ -201,13 +201,14 @@ static void judge(const asj_isotropic *test, const uint32_t *peaks, int32_t x, i
     memset(junction, 0, sizeof *junction);
     junction->x = (uint16_t)x;
     junction->y = (uint16_t)y;
-    for (int32_t r = 0; r < test->radius_count; r++, peaks += test->max_branches) {
+    for (int32_t r = test->radius_count - 1; r >= 0; r--) {
         const asj_isotropic_radius *entry = &test->radii[r];
+        const uint32_t *own = peaks + r * test->max_branches;
         asj_isotropic_peak list[ASJ_MAX_BRANCHES];
         int32_t count = 0;
-        for (; count < test->max_branches && peaks[count]; count++) {
-            const int32_t k = (int32_t)(peaks[count] & 65535);
-            const uint16_t sum = (uint16_t)(peaks[count] >> 16);
+        for (; count < test->max_branches && own[count]; count++) {
+            const int32_t k = (int32_t)(own[count] & 65535);
+            const uint16_t sum = (uint16_t)(own[count] >> 16);
             list[count] = (asj_isotropic_peak){k, sum, asj_sector_strength(&entry->sectors, k, sum)};
         }
         asj_isotropic_judge(test, entry, list, count, junction);

@@ -108,12 +108,12 @@ static void finish_batch(const asj_isotropic *test, const asj_frame *frame, batc
 {
     for (int32_t i = b->count; i < V_LANES; i++) /* unused ones look where another looks */
         b->at[i % SQUARE][i / SQUARE] = b->at[0][0];
-    for (int32_t r = 0; r < test->radius_count; r++) {
+    for (int32_t r = test->radius_count - 1; r >= 0; r--) {
         const asj_isotropic_radius *entry = &test->radii[r];
         const asj_isotropic_runs *runs = &test->radii[entry->source].runs;
         uint16_t *slots = scratch + (size_t)runs->count * SQUARE * V_LANES;
         int16_t *z = (int16_t *)slots + (size_t)entry->plan.slot_count * V_LANES;
-        if (r == 0 || entry->source != test->radii[r - 1].source)
+        if (entry->source == r)
             batch_gammas(runs, frame, b, scratch);
         batch_strengths(entry, scratch, slots, z);
         test_batch(test, entry, b, slots, z);

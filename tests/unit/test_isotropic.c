@@ -303,6 +303,18 @@ static int close_to(const asj_isotropic_junction *kept, const asj_isotropic_junc
     return hypot(kept->x - other->x, kept->y - other->y) <= radius + 1e-12;
 }
 
+static int in_rows(const void *a, const void *b)
+{
+    const asj_isotropic_junction *p = a, *q = b;
+    return p->y != q->y ? p->y - q->y : p->x - q->x;
+}
+
+static void sort_rows(asj_isotropic_junction *list, size_t count)
+{
+    if (count > 0)
+        qsort(list, count, sizeof *list, in_rows);
+}
+
 /* Greedy by definition: the best one that is left stays, what is near it goes. */
 static size_t naive_thin(asj_isotropic_junction *list, size_t count, int more_branches_win, asj_isotropic_junction *kept)
 {
@@ -319,12 +331,7 @@ static size_t naive_thin(asj_isotropic_junction *list, size_t count, int more_br
         count = left;
         n++;
     }
-    for (size_t i = 1; i < n; i++) /* handed out by meaning */
-        for (size_t k = i; k > 0 && before(&kept[k], &kept[k - 1], 0); k--) {
-            const asj_isotropic_junction swap = kept[k];
-            kept[k] = kept[k - 1];
-            kept[k - 1] = swap;
-        }
+    sort_rows(kept, n);
     return n;
 }
 
@@ -353,6 +360,7 @@ static void test_thin(void **state)
                 if (list[k].x == list[i].x && list[k].y == list[i].y)
                     list[i].radius = list[k].radius, list[i].branch_count = list[k].branch_count, list[i].log_nfa = list[k].log_nfa;
         }
+        sort_rows(list, count);
         memcpy(copy, list, sizeof copy);
         const size_t kept = asj_isotropic_thin(list, count, &f->options, width, height, scratch);
         assert_int_equal(kept, naive_thin(copy, count, f->options.more_branches_win, expected));
