@@ -12,7 +12,7 @@
     ROW(field, ASJ_OPTION_INTEGER, unit, minimum, maximum, standard, paper, NULL, help)
 #define SWITCH(field, standard, paper, help) ROW(field, ASJ_OPTION_SWITCH, "", 0, 1, standard, paper, NULL, help)
 
-#define RADII_DEFAULT (1u << 5 | 1u << 7 | 1u << 10 | 1u << 14)
+#define RADII_DEFAULT (1u << 7 | 1u << 14)
 #define RADII_PAPER (((1u << 13) - 1) & ~((1u << 3) - 1)) /* 3 .. 12 */
 
 static const char *const refinements[] = {"line_fit", "search", NULL};

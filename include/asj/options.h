@@ -49,7 +49,7 @@ typedef struct asj_detect_options {
     /* step 3: isotropic junctions */
     double candidate_strength;    /* standard deviations that two local branches of a candidate need. 0 .. 12; 2.7; paper 5.15 */
     double epsilon;               /* NFA allowed for a junction, and for a branch. 1e-30 .. 1e6; 1 */
-    uint32_t isotropic_radii;     /* bit r set = radius r is tested, 3 .. 30; 5,7,10,14; paper 3-12 */
+    uint32_t isotropic_radii;     /* bit r set = radius r is tested, 3 .. 30; 7,14; paper 3-12 */
     int32_t max_branches;         /* branches tested together. 2 .. 5; 5 */
     int32_t more_branches_win;    /* 1 = among junctions closer than half a radius the one with more branches stays. 0; paper 1 */
     /* step 4: branch lengths */
