@@ -25,85 +25,97 @@
 #define LEAST_ERROR 0.03 /* px: systematic error of a centroid (sampling, interpolation), at either end of a line */
 #define THIN 4.5
 
+/* The samples of a band around the line s = a + b t. Centroids are r(t) from there; no sum needs one, but for the residuals. */
 typedef struct samples {
-    int32_t count;
-    double mass;
-    double t[MAX_SAMPLES], centroid[MAX_SAMPLES], weight[MAX_SAMPLES];
+    asj_line_profile profile;
+    asj_profile_sums sums; /* W(t) and W(t) r(t) */
+    double first, step, a, b;
 } samples;
+
+/* Of the samples of one sign: how many, sums of W, W t, W t^2, W r, W t r. */
+typedef struct moments {
+    int32_t count;
+    double w, t, tt, r, tr;
+} moments;
 
 typedef struct line {
     double a, b; /* s = a + b t */
     double a_variance, b_variance;
 } line;
 
-static void add_sample(samples *out, double t, double middle, double sum, double moment)
-{
-    if (sum <= 0)
-        return;
-    out->t[out->count] = t;
-    out->centroid[out->count] = middle + moment / sum;
-    out->weight[out->count++] = sum;
-    out->mass += sum;
-}
-
-/* Samples the band around a line: those whose gradient points along +n into out[1], along -n into out[0]. */
+/* Those whose gradient points along +n are of sign 1, along -n of sign 0. */
 static void collect(const asj_ops *ops, const asj_frame *frame, double x, double y, double ux, double uy,
-                    const asj_line_range *range, double half_width, const line *around, samples out[2])
+                    const asj_line_range *range, double half_width, const line *around, samples *out)
 {
     const int32_t reach = (int32_t)ceil(half_width);
-    const double step = fmax((range->last - range->first) / (MAX_SAMPLES - 1), 1);
-    asj_line_profile profile;
-    asj_profile_sums sums;
-    profile.ux = (float)ux;
-    profile.uy = (float)uy;
-    profile.first = (float)range->first;
-    profile.step = (float)step;
-    profile.a = (float)around->a;
-    profile.b = (float)around->b;
+    asj_line_profile *profile = &out->profile;
+    out->first = range->first;
+    out->step = fmax((range->last - range->first) / (MAX_SAMPLES - 1), 1);
+    out->a = around->a;
+    out->b = around->b;
+    profile->ux = (float)ux;
+    profile->uy = (float)uy;
+    profile->first = (float)range->first;
+    profile->step = (float)out->step;
+    profile->a = (float)around->a;
+    profile->b = (float)around->b;
     for (int32_t i = -reach; i <= reach; i++)
-        profile.offset[i + reach] = (float)(half_width * i / reach);
-    profile.offsets = 2 * reach + 1;
-    profile.count = (int32_t)((range->last - range->first) / step + 1e-9) + 1;
-    profile.x = (int32_t)floor(x);
-    profile.y = (int32_t)floor(y);
-    profile.origin_x = (float)(x - profile.x);
-    profile.origin_y = (float)(y - profile.y);
-    ops->line_profile(frame, &profile, &sums);
-    for (int32_t side = 0; side < 2; side++) {
-        out[side].count = 0;
-        out[side].mass = 0;
-        for (int32_t k = 0; k < profile.count; k++) {
-            const double t = range->first + k * step;
-            add_sample(&out[side], t, around->a + around->b * t, (double)sums.w[side][k], (double)sums.moment[side][k]);
+        profile->offset[i + reach] = (float)(half_width * i / reach);
+    profile->offsets = 2 * reach + 1;
+    profile->count = (int32_t)((range->last - range->first) / out->step + 1e-9) + 1;
+    profile->x = (int32_t)floor(x);
+    profile->y = (int32_t)floor(y);
+    profile->origin_x = (float)(x - profile->x);
+    profile->origin_y = (float)(y - profile->y);
+    ops->line_profile(frame, profile, &out->sums);
+}
+
+static void add_up(const samples *in, moments list[2])
+{
+    moments sums[2] = {{0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0}};
+    for (int32_t k = 0; k < in->profile.count; k++) {
+        const double t = in->first + k * in->step;
+        for (int32_t side = 0; side < 2; side++) {
+            const double w = (double)in->sums.w[side][k], r = (double)in->sums.moment[side][k], wt = w * t;
+            sums[side].count += w > 0;
+            sums[side].w += w;
+            sums[side].t += wt;
+            sums[side].tt += wt * t;
+            sums[side].r += r;
+            sums[side].tr += r * t;
         }
     }
+    list[0] = sums[0];
+    list[1] = sums[1];
 }
 
 /* Weighted least squares; returns 0 when the samples do not determine a line. */
-static int solve(const samples *in, line *out)
+static int solve(const samples *in, const moments *m, line *out)
 {
-    double w = 0, wt = 0, wtt = 0, wc = 0, wtc = 0, error = 0;
-    for (int32_t i = 0; i < in->count; i++) {
-        double weight = in->weight[i], t = in->t[i], c = in->centroid[i];
-        w += weight;
-        wt += weight * t;
-        wtt += weight * t * t;
-        wc += weight * c;
-        wtc += weight * t * c;
-    }
-    double determinant = w * wtt - wt * wt;
-    if (in->count < 3 || !(determinant > 1e-9 * w * wtt))
+    const double determinant = m->w * m->tt - m->t * m->t;
+    if (m->count < 3 || !(determinant > 1e-9 * m->w * m->tt))
         return 0;
-    out->a = (wtt * wc - wt * wtc) / determinant;
-    out->b = (w * wtc - wt * wc) / determinant;
-    for (int32_t i = 0; i < in->count; i++) {
-        double e = in->centroid[i] - out->a - out->b * in->t[i];
-        error += in->weight[i] * e * e;
-    }
-    const double variance = error / (in->count - 2), span = in->t[in->count - 1] - in->t[0];
-    out->a_variance = OFFSET_CORRELATION * variance * wtt / determinant + LEAST_ERROR * LEAST_ERROR;
-    out->b_variance = ANGLE_CORRELATION * variance * w / determinant + 2 * LEAST_ERROR * LEAST_ERROR / (span * span);
+    *out = (line){in->a + (m->tt * m->r - m->t * m->tr) / determinant, in->b + (m->w * m->tr - m->t * m->r) / determinant, 0, 0};
     return 1;
+}
+
+/* Of a line that these samples have given. */
+static void find_variances(const samples *in, const moments *m, int32_t side, line *out)
+{
+    const double determinant = m->w * m->tt - m->t * m->t, a = out->a - in->a, b = out->b - in->b;
+    double error = 0, first = HUGE_VAL, last = 0;
+    for (int32_t k = 0; k < in->profile.count; k++) {
+        const double w = (double)in->sums.w[side][k], t = in->first + k * in->step;
+        if (!(w > 0))
+            continue;
+        const double e = (double)in->sums.moment[side][k] / w - a - b * t;
+        error += w * e * e;
+        first = fmin(first, t);
+        last = t;
+    }
+    const double variance = error / (m->count - 2), span = last - first;
+    out->a_variance = OFFSET_CORRELATION * variance * m->tt / determinant + LEAST_ERROR * LEAST_ERROR;
+    out->b_variance = ANGLE_CORRELATION * variance * m->w / determinant + 2 * LEAST_ERROR * LEAST_ERROR / (span * span);
 }
 
 /* Between the lines of both signs when they are no more than THIN apart all along: 1, and how far they are. */
@@ -121,17 +133,24 @@ static int thin(const line lines[2], double first, double last, line *middle, do
     return 1;
 }
 
-/* The line of the stronger sign, or the middle of a thin line's two edges. *apart is the distance between those, else 0. */
-static int choose(const samples list[2], const asj_line_range *range, line *found, double *apart)
+/* The line of the stronger sign, or the middle of a thin line's two edges. *apart is the distance between those, else 0. With
+ * variances when they are wanted. */
+static int choose(const samples *in, const asj_line_range *range, int variances, line *found, double *apart)
 {
-    const int strong = list[1].mass > list[0].mass;
+    moments list[2];
     line lines[2];
+    add_up(in, list);
+    const int strong = list[1].w > list[0].w;
     *apart = 0;
-    if (!solve(&list[strong], &lines[strong]))
+    if (!solve(in, &list[strong], &lines[strong]))
         return 0;
+    if (variances)
+        find_variances(in, &list[strong], strong, &lines[strong]);
     *found = lines[strong];
-    if (list[!strong].mass < 0.4 * list[strong].mass || !solve(&list[!strong], &lines[!strong]))
+    if (list[!strong].w < 0.4 * list[strong].w || !solve(in, &list[!strong], &lines[!strong]))
         return 1;
+    if (variances)
+        find_variances(in, &list[!strong], !strong, &lines[!strong]);
     thin(lines, range->first, range->last, found, apart);
     return 1;
 }
@@ -142,11 +161,11 @@ int asj_line_fit(const asj_ops *ops, const asj_frame *frame, double x, double y,
     const double ux = cos(branch->angle), uy = sin(branch->angle);
     line found = {branch->offset, 0, 0, 0};
     double apart = branch->apart;
-    samples list[2];
+    samples list;
     for (int32_t i = 0; i < range->iterations; i++) {
         double half_width = range->half_width[i] + 0.5 * apart;
-        collect(ops, frame, x, y, ux, uy, range, half_width < 4.5 ? half_width : 4.5, &found, list);
-        if (!choose(list, range, &found, &apart))
+        collect(ops, frame, x, y, ux, uy, range, half_width < 4.5 ? half_width : 4.5, &found, &list);
+        if (!choose(&list, range, i + 1 == range->iterations, &found, &apart))
             return 0;
     }
     if (!(fabs(found.b) < 1))
