@@ -22,6 +22,7 @@ static void fill_reference(asj_ops *ops)
     ops->isotropic_band = asj_isotropic_band;
     ops->line_sums = asj_line_sums_of;
     ops->line_profile = asj_line_profile_of;
+    ops->strip_sums = asj_strip_sums_of;
     ops->blur_row = asj_blur_row;
     ops->patch_levels = asj_patch_levels;
     ops->patch_normalise = asj_patch_normalise;

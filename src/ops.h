@@ -9,6 +9,7 @@
 #include "isotropic.h"
 #include "line_sums.h"
 #include "scan.h"
+#include "strip.h"
 
 typedef struct asj_ops {
     const char *name;
@@ -52,6 +53,8 @@ typedef struct asj_ops {
     /* asj_line_sums_of(), asj_line_profile_of() (line_sums.h) */
     void (*line_sums)(const asj_frame *frame, const asj_line_band *band, asj_line_sums sums[2]);
     void (*line_profile)(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums);
+    /* asj_strip_sums_of() (strip.h) */
+    void (*strip_sums)(const asj_frame *frame, const asj_strip_walk *walk, asj_strip_sums *sums);
 
     /* asj_patch_levels(), asj_patch_normalise() and asj_patch_products() (patch.h) */
     int32_t (*patch_levels)(const asj_pyramid *pyramid, const asj_patch_grid *grid, int32_t size, uint16_t *grey);

@@ -18,70 +18,84 @@
  * pixels away, across a rim or a gap, has less there than noise would have. */
 #include "strip.h"
 #include "gradient.h"
+#include "ops.h"
 
 #include <math.h>
+#include <string.h>
 
 #define NEAR 6 /* px: the part of the strip next to the junction */
 
-typedef struct sums {
-    double gamma, uu, un, nn, near_gamma;
-    int32_t pixels, near_pixels;
-} sums;
+typedef struct lanes {
+    double gamma[ASJ_STRIP_LANES], uu[ASJ_STRIP_LANES], un[ASJ_STRIP_LANES], nn[ASJ_STRIP_LANES], near_gamma[ASJ_STRIP_LANES];
+} lanes;
 
-/* `all`: not the junction-ness alone. */
-static inline void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double ux, double uy, int near, int all, sums *s)
+static double total(const double v[ASJ_STRIP_LANES])
 {
-    if (x < 0 || y < 0 || x >= frame->width || y >= frame->height)
+    return (v[0] + v[2]) + (v[1] + v[3]);
+}
+
+/* A pixel at (dx, dy) from the strip's start. */
+static inline void add_pixel(const asj_strip_walk *walk, double dx, double dy, double gx, double gy, int32_t lane, lanes *to,
+                             asj_strip_sums *sums)
+{
+    const double ux = walk->ux, uy = walk->uy, t = dx * ux + dy * uy, s = dy * ux - dx * uy;
+    if (!(t > 0.5 && t <= walk->reach && fabs(s) <= walk->half_width))
         return;
-    const ptrdiff_t at = y * frame->stride + x;
-    const double gx = (double)frame->gradient_x[at] / ASJ_GRADIENT_ONE, gy = (double)frame->gradient_y[at] / ASJ_GRADIENT_ONE;
-    const double along = gx * ux + gy * uy, across = gy * ux - gx * uy, gamma = fabs(across) - fabs(along);
-    s->gamma += gamma > 0 ? gamma : 0;
-    s->pixels++;
-    if (!all)
-        return;
-    s->uu += along * along;
-    s->un += along * across;
-    s->nn += across * across;
-    if (near) {
-        s->near_gamma += gamma > 0 ? gamma : 0;
-        s->near_pixels++;
+    const double along = gx * ux + gy * uy, across = gy * ux - gx * uy, gamma = fmax(fabs(across) - fabs(along), 0);
+    to->gamma[lane] += gamma;
+    to->uu[lane] += along * along;
+    to->un[lane] += along * across;
+    to->nn[lane] += across * across;
+    sums->pixels++;
+    if (t <= walk->near) {
+        to->near_gamma[lane] += gamma;
+        sums->near_pixels++;
     }
 }
 
-/* floor() for what is near the image, without a call. */
-static inline int32_t whole(double value)
+/* The sums of ASJ_STRIP_LANES neighbours across are kept apart and added at the end: vector forms then give the same bits. */
+void asj_strip_sums_of(const asj_frame *frame, const asj_strip_walk *walk, asj_strip_sums *sums)
 {
-    return (int32_t)(value + 131072) - 131072;
-}
-
-/* Walks along the axis (x or y) that the strip is longer on, and across it over the few pixels that can be inside. */
-static inline sums add_up(const asj_frame *frame, const asj_detect_options *options, double x, double y, double angle,
-                          double length, int all)
-{
-    const double ux = cos(angle), uy = sin(angle), half_width = options->strip_half_width;
-    const double reach = fmin(length, options->strip_length);
-    const int along_x = fabs(ux) >= fabs(uy);
-    const double major = along_x ? x : y, minor = along_x ? y : x;
-    const double major_step = along_x ? ux : uy, slope = along_x ? uy / ux : ux / uy;
-    const double end = major + reach * major_step;
-    const double spread = half_width / fabs(major_step) + 1e-6;
-    const int32_t first = (int32_t)floor(fmin(major, end) - half_width), last = (int32_t)ceil(fmax(major, end) + half_width);
-    sums s = {0, 0, 0, 0, 0, 0, 0};
-    for (int32_t i = first; i <= last; i++) {
-        const double middle = minor + (i - major) * slope;
-        const int32_t to = whole(middle + spread);
-        for (int32_t j = whole(middle - spread) + 1; j <= to; j++) {
-            int32_t px = along_x ? i : j, py = along_x ? j : i;
-            double t = (px - x) * ux + (py - y) * uy, across = (py - y) * ux - (px - x) * uy;
-            if (t > 0.5 && t <= reach && fabs(across) <= half_width)
-                add_pixel(frame, px, py, ux, uy, t <= NEAR, all, &s);
+    lanes list;
+    memset(&list, 0, sizeof list);
+    memset(sums, 0, sizeof *sums);
+    for (int32_t i = walk->first; i <= walk->last; i++) {
+        int32_t first, last;
+        asj_strip_step(frame, walk, i, &first, &last);
+        for (int32_t j = first; j <= last; j++) {
+            const int32_t x = walk->along_x ? i : j, y = walk->along_x ? j : i;
+            const ptrdiff_t at = y * frame->stride + x;
+            add_pixel(walk, x - walk->x, y - walk->y, frame->gradient_x[at], frame->gradient_y[at], (j - first) % ASJ_STRIP_LANES,
+                      &list, sums);
         }
     }
-    return s;
+    sums->gamma = total(list.gamma);
+    sums->uu = total(list.uu);
+    sums->un = total(list.un);
+    sums->nn = total(list.nn);
+    sums->near_gamma = total(list.near_gamma);
 }
 
-static double log_nfa(const asj_context *context, const asj_frame *frame, const sums *s)
+static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double x, double y,
+                             double angle, double length)
+{
+    asj_strip_walk walk = {x, y, cos(angle), sin(angle), fmin(length, options->strip_length), options->strip_half_width,
+                           NEAR, 0, 0, 0, 0, 0};
+    walk.along_x = fabs(walk.ux) >= fabs(walk.uy);
+    const double start = walk.along_x ? x : y, step = walk.along_x ? walk.ux : walk.uy, end = start + walk.reach * step;
+    const int32_t size = walk.along_x ? frame->width : frame->height;
+    walk.slope = walk.along_x ? walk.uy / walk.ux : walk.ux / walk.uy;
+    walk.spread = walk.half_width / fabs(step) + 1e-6;
+    walk.first = (int32_t)fmax(floor(fmin(start, end) - walk.half_width), 0);
+    walk.last = (int32_t)fmin(ceil(fmax(start, end) + walk.half_width), size - 1);
+    asj_strip_sums sums;
+    context->ops->strip_sums(frame, &walk, &sums);
+    sums.gamma /= ASJ_GRADIENT_ONE;
+    sums.near_gamma /= ASJ_GRADIENT_ONE;
+    return sums;
+}
+
+static double log_nfa(const asj_context *context, const asj_frame *frame, const asj_strip_sums *s)
 {
     const double log_tests = 1.5 * log((double)frame->width * frame->height);
     return s->pixels ? log_tests + asj_nfa_log_sector_tail(context->nfa, s->gamma, s->pixels) : HUGE_VAL;
@@ -90,14 +104,14 @@ static double log_nfa(const asj_context *context, const asj_frame *frame, const 
 double asj_strip_log_nfa(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          double x, double y, double angle, double length)
 {
-    const sums s = add_up(frame, options, x, y, angle, length, 0);
+    const asj_strip_sums s = add_up(context, frame, options, x, y, angle, length);
     return log_nfa(context, frame, &s);
 }
 
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          double x, double y, double angle, double length)
 {
-    const sums s = add_up(frame, options, x, y, angle, length, 1);
+    const asj_strip_sums s = add_up(context, frame, options, x, y, angle, length);
     asj_strip strip = {log_nfa(context, frame, &s), 0, 0};
     if (s.pixels == 0)
         return strip;

@@ -264,6 +264,26 @@ static asj_status run_line_profile(asj_context *context, const subject *s, uint1
     return ASJ_OK;
 }
 
+static size_t strip_size(const subject *s)
+{
+    (void)s;
+    return sizeof(asj_strip);
+}
+
+/* In any direction, in and around the image, of any width and length. */
+static asj_status run_strip(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    synth_random random = s->random;
+    asj_detect_options options = s->options;
+    double x, y, length;
+    const double angle = choose_line(s, &random, &x, &y, &length);
+    (void)scratch;
+    options.strip_half_width = synth_random_between(&random, 0.5, 4);
+    const asj_strip strip = asj_strip_test(context, &s->frame, &options, x, y, angle, length);
+    memcpy(output, &strip, sizeof strip);
+    return ASJ_OK;
+}
+
 static double one_line(const subject *s)
 {
     return s->frame.width;
@@ -276,6 +296,7 @@ const operation operations[] = {
     {"isotropic band", 0, band_size, band_pixels, NULL, run_band},
     {"line sums", 0, line_sums_size, one_run, NULL, run_line_sums},
     {"line profile", 0, line_profile_size, one_run, NULL, run_line_profile},
+    {"strip", 0, strip_size, one_run, NULL, run_strip},
     {"blur row", 0, blur_size, one_line, NULL, run_blur},
     {"pyramid samples", 0, samples_size, one_run, NULL, run_samples},
     {"patch products", 0, products_size, one_run, NULL, run_products},
