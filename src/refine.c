@@ -18,6 +18,7 @@
 #define PI 3.141592653589793
 #define BENT 3       /* standard uncertainties */
 #define NEAR_PART 80   /* px */
+#define SETTLED 0.1    /* px at the end of a branch */
 #define WIDE 2         /* px: half-width of the band in which a line is looked for */
 #define HALF_WIDTH 1.6 /* and of that in which it is fitted last */
 #define DOUBT 6         /* natural logarithm of a number of false alarms */
@@ -122,25 +123,30 @@ void asj_refine(const asj_context *context, const asj_frame *frame, const asj_de
     asj_locate_meet(draft);
 }
 
+/* The line over the whole branch, roughly: guessed over parts that grow from one at whose end it is known to a pixel, and once more
+ * unless that would move it no further. */
+static void find_line(const asj_context *context, const asj_frame *frame, const asj_draft *draft, asj_draft_branch *branch)
+{
+    const double end = last_px(branch), uncertainty = sqrt(branch->angle_variance);
+    double reach = NEAR_PART / 4;
+    while (reach < end && 2 * reach * uncertainty < 1)
+        reach *= 2;
+    for (int32_t rounds = 0; rounds < 2; reach *= 2) {
+        const double t[2] = {first_px(branch), fmin(end, reach)}, before = branch->angle;
+        if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, branch))
+            return;
+        rounds += reach < end ? 0 : asj_angle_distance(branch->angle, before) * end > SETTLED ? 1 : 2;
+    }
+}
+
 void asj_orient(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
 {
     if (options->refinement == ASJ_REFINE_SEARCH) {
         search(frame, options, draft);
         return;
     }
-    for (int32_t i = 0; i < draft->branch_count; i++) {
-        asj_draft_branch *branch = &draft->branches[i];
-        const double end = last_px(branch);
-        for (double reach = NEAR_PART / 4;; reach *= 2) {
-            const double t[2] = {first_px(branch), fmin(end, reach)};
-            if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, branch))
-                break;
-            if (reach >= end) {
-                asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, branch);
-                break;
-            }
-        }
-    }
+    for (int32_t i = 0; i < draft->branch_count; i++)
+        find_line(context, frame, draft, &draft->branches[i]);
     asj_locate_meet(draft);
 }
 

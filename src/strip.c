@@ -76,8 +76,8 @@ void asj_strip_sums_of(const asj_frame *frame, const asj_strip_walk *walk, asj_s
     sums->near_gamma = total(list.near_gamma);
 }
 
-static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double x, double y,
-                             double angle, double length)
+static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double x,
+                             double y, double angle, double length)
 {
     asj_strip_walk walk = {x, y, cos(angle), sin(angle), fmin(length, options->strip_length), options->strip_half_width,
                            NEAR, 0, 0, 0, 0, 0};
