@@ -69,6 +69,8 @@ static inline void asj_line_band_row(const asj_line_band *band, int32_t row, int
     high = band->far_s + s < high ? band->far_s + s : high;
     low = low > (float)band->left ? low : (float)band->left;
     high = high < (float)band->right ? high : (float)band->right;
+    low = low < (float)(band->right + 1) ? low : (float)(band->right + 1); /* none: still near the image, for who reads there */
+    high = high > (float)(band->left - 1) ? high : (float)(band->left - 1);
     *first = (int32_t)(low + 32768.99f) - 32768; /* a pixel too many does no harm: its t and s tell */
     *last = (int32_t)(high + 32768.01f) - 32768;
 }
