@@ -25,7 +25,7 @@ static const asj_option_info rows[] = {
     CHOICE(descriptor, 1, ASJ_DESCRIPTOR_RAW, ASJ_DESCRIPTOR_RAW, descriptor_words, "what describes a patch: raw or sift"),
     NUMBER(ratio, "", 1, 10, 1.5, 1.5, "the second best match at another place must be worse by this factor"),
     SWITCH(mutual, 1, 0, "two junctions match only if each is the other's best"),
-    NUMBER(minimum_support, "", 0, 64, 2, 0, "neighbouring matches that must agree with a match, each counted 0 to 1"),
+    NUMBER(minimum_support, "", 0, 64, 1.5, 0, "neighbouring matches that must agree with a match, each counted 0 to 1"),
     NUMBER(minimum_similarity, "", -1, 1, 0.4, -1, "correlation that the aligned discs of a match need"),
     INTEGER(neighbours, "", 0, 64, 40, 0, "nearest junctions asked for support; 0 = none are asked"),
     NUMBER(neighbour_tolerance, "", 0.01, 1, 0.08, 0.08,
@@ -112,6 +112,7 @@ void asj_match_detect_options(asj_detect_options *options)
         return;
     options->candidate_strength = 2;
     options->candidate_step = 1;
+    options->isotropic_radii = (1u << 5) | (1u << 7) | (1u << 10) | (1u << 14);
     options->epsilon = 1e4;
     options->scan_epsilon = 10;
     options->minimum_opening = 20;
