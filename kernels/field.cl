@@ -52,11 +52,11 @@ static int has_pair(ulong sectors, int count, ulong partners)
     return found != 0;
 }
 
-/* Of LANES pixels those that are inside the image, and of each pair (step 2) the first. */
+/* Of LANES pixels those that are inside the image and in columns with candidates. */
 static uint thin(uint mask, int inside, int step)
 {
     mask &= inside < LANES ? (1u << max(inside, 0)) - 1 : 0xffffu;
-    return step > 1 ? mask & ~((mask & 0x5555u) << 1) : mask;
+    return step > 1 ? mask & 0x5555u : mask;
 }
 
 /* ---- field_pixels: a work-group takes get_local_size() pixels, along the row a multiple of LANES ---- */

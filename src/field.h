@@ -11,7 +11,7 @@
 #define ASJ_FIELD_MAX_SECTORS 56  /* of that radius */
 #define ASJ_FIELD_MAX_OFFSETS 252
 
-/* Largest width in pixels of what asj_field_tile() takes at once. */
+/* Most pixels of a row that asj_field_tile() looks at; with those between them (candidate_step), it may be as much wider. */
 #define ASJ_FIELD_TILE 128
 
 /* A branch of a very local junction; strength 0 = none. */
@@ -45,8 +45,8 @@ void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, 
  * opposite. */
 uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch);
 
-/* The same for a tile: `runs` runs (at most ASJ_FIELD_TILE pixels) from run `run` on, rows top .. bottom - 1; those of run b of
- * row y go to masks[y * frame->blocks + b]. Pixels outside the image are none; of the others those that asj_field_thin() leaves. */
+/* The same for a tile: `runs` runs (at most candidate_step * ASJ_FIELD_TILE pixels) from run `run` on, rows top .. bottom - 1; those of run b of
+ * row y go to masks[y * frame->blocks + b]. Pixels outside the image are none, nor those that asj_field_thin() clears. */
 void asj_field_tile(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
                     uint16_t *scratch, uint16_t *masks);
 
@@ -81,11 +81,10 @@ static inline int asj_field_has_candidates(const asj_field *field, int32_t y)
     return y % field->step == 0;
 }
 
-/* Clears the bits of pixels outside the image, and all but the first of each pair (candidate_step 2); masks[0] is that of run
- * `run`. */
+/* Clears the bits of pixels outside the image and of those in columns without candidates; masks[0] is that of run `run`. */
 void asj_field_thin(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, uint16_t *masks);
 
-/* Elements from plane to plane of a tile's row (sector_plan.h). */
+/* Elements of a plane of a tile's row (sector_plan.h) whose columns are candidate_step apart. */
 size_t asj_field_plane_stride(const asj_field *field);
 
 #endif

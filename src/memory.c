@@ -118,7 +118,6 @@ static void drop_outgrown(asj_memory *memory, size_t bytes)
 static void *take_new(asj_memory *memory, size_t bytes)
 {
     if (memory->open)
-        if (memory->open)
         drop_outgrown(memory, bytes);
     char *start = memory->allocator.allocate(memory->allocator.user, bytes);
     if (!start && memory->spare) {

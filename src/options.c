@@ -20,9 +20,9 @@ static const char *const refinements[] = {"line_fit", "search", NULL};
 static const asj_option_info rows[] = {
     NUMBER(epsilon, "NFA", 1e-30, 1e6, 1, 1, "false alarms allowed in an image of noise, for junctions and for branches"),
     NUMBER(minimum_length, "px", 0, 1000, 7, 0, "branches shorter than this are dropped"),
-    NUMBER(candidate_strength, "sd", 0, 12, 2.7, 5.15,
+    NUMBER(candidate_strength, "sd", 0, 12, 2.4, 5.15,
            "strength that two local branches need at a candidate pixel; lower finds weaker corners"),
-    INTEGER(candidate_step, "px", 1, 2, 2, 1, "rows from one with candidates to the next; of as many neighbours in a row one is tested"),
+    INTEGER(candidate_step, "px", 1, 2, 2, 1, "from one pixel that may be a candidate to the next, along x and along y"),
     NUMBER(gradient_epsilon, "grey/px", 0.05, 16, 0.4, 0.05,
            "gradient below which a surface counts as flat; raise it against compression noise"),
     SWITCH(standardise, 0, 1, "give each gradient axis zero mean and unit variance over the image"),

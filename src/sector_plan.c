@@ -44,7 +44,7 @@ static void assign_planes(const asj_sectors *s, asj_sector_plan *plan)
         const int plane = mirrored ? steep ? 1 : 3 : steep ? 2 : 0;
         int16_t *used = &plan->used[s->dy[i] & 1][family];
         plan->plane[i] = (int16_t)(4 * family + plane);
-        *used = (int16_t)(*used | 1 << plane);
+        *used = (int16_t)(*used | 1 << (plane + 4 * (s->dx[i] & 1)));
     }
 }
 

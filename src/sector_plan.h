@@ -17,7 +17,8 @@
 typedef struct asj_sector_plan {
     int32_t family_count;
     int16_t *a, *b;        /* for each family of four planes */
-    int16_t *used[2];      /* for each family: bit p set = plane p is used by offsets to even rows [0], to odd rows [1] */
+    int16_t *used[2];      /* for each family, in even rows [0] and odd rows [1] from the centre's: bit p set = plane p is used in
+                            * even columns, bit p + 4 in odd columns */
     int16_t *plane;        /* for each offset */
     int32_t slot_count;    /* with the extra ones */
     int32_t plain_count;   /* the slots before the extra ones */

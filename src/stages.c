@@ -15,6 +15,7 @@
 #endif
 
 #define LEAST_JUNCTIONS 4 /* for a thread: about 40 us */
+#define LEAST_LIST 256    /* elements that there is room for, so that the next of a stream of pictures needs no more */
 
 static asj_status prepare_tables(asj_context *context, const asj_detect_options *options)
 {
@@ -196,6 +197,11 @@ asj_status asj_stage_candidates(asj_detection_run *d)
     return dump_candidates(d);
 }
 
+static size_t at_least(size_t count)
+{
+    return count > LEAST_LIST ? count : LEAST_LIST;
+}
+
 /* Tests all candidates, group by group; what passes is collected in d->isotropic. */
 static asj_status test_candidates(asj_detection_run *d)
 {
@@ -210,9 +216,9 @@ static asj_status test_candidates(asj_detection_run *d)
         for (int32_t y = top; y < bottom; y++)
             starts[y - top + 1] = starts[y - top] + count_bits(d->candidates + (ptrdiff_t)y * frame->blocks, (size_t)frame->blocks);
         const size_t total = starts[bottom - top];
-        status = asj_grow(memory, &records, &record_capacity, total, sizeof(asj_isotropic_junction), 0);
+        status = asj_grow(memory, &records, &record_capacity, at_least(total), sizeof(asj_isotropic_junction), 0);
         if (status == ASJ_OK)
-            status = asj_grow(memory, &found, &found_capacity, d->isotropic_count + total, sizeof(asj_isotropic_junction),
+            status = asj_grow(memory, &found, &found_capacity, at_least(d->isotropic_count + total), sizeof(asj_isotropic_junction),
                               d->isotropic_count);
         if (status != ASJ_OK) {
             asj_fail(d->context, status, "no memory for %zu candidates", d->isotropic_count + total);
@@ -272,7 +278,7 @@ asj_status asj_stage_locate(asj_detection_run *d)
 {
     const int64_t count = (int64_t)d->isotropic_count;
     int32_t threads = asj_threads_for(d->context, count, 4 * LEAST_JUNCTIONS); /* a quick look each */
-    d->drafts = asj_allocate_list(&d->context->memory, d->isotropic_count, sizeof *d->drafts);
+    d->drafts = asj_allocate_list(&d->context->memory, at_least(d->isotropic_count), sizeof *d->drafts);
     if (!d->drafts)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", d->isotropic_count);
 #ifdef _OPENMP
@@ -389,8 +395,8 @@ asj_status asj_stage_scan(asj_detection_run *d)
     size_t total = 0;
     for (size_t i = 0; i < d->draft_count; i++)
         total += (size_t)d->drafts[i].branch_count;
-    asj_ray *rays = asj_allocate_list(&d->context->memory, total, sizeof *rays);
-    asj_draft_branch **branches = asj_allocate_list(&d->context->memory, total, sizeof *branches);
+    asj_ray *rays = asj_allocate_list(&d->context->memory, at_least(total), sizeof *rays);
+    asj_draft_branch **branches = asj_allocate_list(&d->context->memory, at_least(total), sizeof *branches);
     asj_status status = ASJ_OK;
     if (rays && branches)
         status = scan_branches(d, rays, branches);
@@ -418,7 +424,7 @@ asj_status asj_stage_orient(asj_detection_run *d)
 
 static asj_status snap_ends(asj_detection_run *d)
 {
-    const asj_draft **order = asj_allocate_list(&d->context->memory, d->draft_count, sizeof *order);
+    const asj_draft **order = asj_allocate_list(&d->context->memory, at_least(d->draft_count), sizeof *order);
     if (!order)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", d->draft_count);
     asj_ends_snap(d->drafts, d->draft_count, d->options->snap_distance, order);

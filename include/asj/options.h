@@ -47,7 +47,7 @@ typedef struct asj_detect_options {
     int32_t standardise;          /* 1 = give each gradient axis zero mean and unit variance over the image, as the paper does;
                                    * 0 = one fixed scale. default 0; paper 1 */
     /* step 3: isotropic junctions */
-    double candidate_strength;    /* standard deviations that two local branches of a candidate need. 0 .. 12; 2.7; paper 5.15 */
+    double candidate_strength;    /* standard deviations that two local branches of a candidate need. 0 .. 12; 2.4; paper 5.15 */
     double epsilon;               /* NFA allowed for a junction, and for a branch. 1e-30 .. 1e6; 1 */
     uint32_t isotropic_radii;     /* bit r set = radius r is tested, 3 .. 30; 7,14; paper 3-12 */
     int32_t max_branches;         /* branches tested together. 2 .. 5; 5 */
@@ -71,8 +71,8 @@ typedef struct asj_detect_options {
     double strip_length;          /* px from the junction that the strip test looks at. 10 .. 1000; 60 */
     double max_deviation;         /* deg between a branch and the dominant direction of the edges under it. 1 .. 90; 12; paper 90 */
     int32_t ignore_frame;         /* 1 = drop branches that run along the border of the image, within 2.5 px. 1; paper 0 */
-    int32_t candidate_step;       /* px: of each square of this side, in the rows that are its multiples, at most one pixel is a
-                                   * candidate (step 3). 1 or 2; 2; paper 1 */
+    int32_t candidate_step;       /* px from one pixel that may be a candidate to the next, along x and along y (step 3).
+                                   * 1 .. 2; 2; paper 1 */
     double snap_distance;         /* px: a branch that ends this close to a junction on its line ends there. 0 .. 30; 8; paper 0 */
     double near_strength;         /* standard deviations that a branch needs in its first 6 px. -10 .. 10; 0; paper -10 */
     double reserved[20];          /* zero */

@@ -105,16 +105,21 @@ static void gamma_planes(const asj_sector_plan *plan, const int16_t *used, const
     }
 }
 
-/* What a tile is worked on with. */
+/* What a tile is worked on with. A row's planes hold its even columns, then the odd ones, where candidates are two apart, so that
+ * what neighbouring candidates need is always next to each other. */
 typedef struct tile {
     const asj_field *field;
+    int32_t margin;                                     /* columns to the left of the tile */
+    size_t stride;                                      /* from plane to plane */
+    uint16_t *ring;
+    int16_t *row;                                       /* of the gradient, taken apart */
     const uint16_t *rows[2 * ASJ_FIELD_MAX_RADIUS + 1]; /* planes of the rows from the centre's - radius on, at x - radius */
     int32_t place[ASJ_FIELD_MAX_OFFSETS];               /* of each offset: its plane and column from there */
     uint16_t *slots;
     int16_t *z;
 } tile;
 
-/* The slots of asj_sector_plan for a group of pixels, `x` from the tile's left. */
+/* The slots of asj_sector_plan for a group of pixels, the first one number x of the tile's row. */
 static void fill_slots(const tile *t, int32_t x)
 {
     const asj_sectors *s = &t->field->sectors;
@@ -206,51 +211,96 @@ static uint32_t find_candidates(const tile *t, int v)
     return found;
 }
 
+/* Eight bits in even places. */
+static inline uint32_t spread(uint32_t bits)
+{
+    bits = (bits | bits << 4) & 0x0f0f;
+    bits = (bits | bits << 2) & 0x3333;
+    return (bits | bits << 1) & 0x5555;
+}
+
 /* Masks of the runs of a row of the tile; `runs` of them are inside it. */
 static void tile_row(const tile *t, int32_t runs, uint16_t *masks)
 {
-    const int32_t per_group = GROUP_PIXELS / ASJ_LANES;
+    const int32_t step = t->field->step, per_run = ASJ_LANES / step, per_group = GROUP_PIXELS / per_run;
     for (int32_t first = 0; first < runs; first += per_group) {
         const int32_t last = runs - first < per_group ? runs : first + per_group;
-        uint16_t found[GROUP_PIXELS / ASJ_LANES] = {0};
+        uint16_t found[GROUP_PIXELS / 8] = {0};
         vec above[GROUP];
-        fill_slots(t, first * ASJ_LANES);
+        fill_slots(t, first * per_run);
         fill_strengths(t, above);
         repeat_ends(t->z, t->field->sectors.count, t->field->suppress, GROUP_PIXELS);
         for (int v = 0; v < GROUP; v++) {
             const uint32_t bits = v_any(above[v]) ? find_candidates(t, v) : 0;
-            for (int part = 0; part < V_LANES; part += ASJ_LANES) {
+            for (int part = 0; part < V_LANES; part += 8) {
                 const int pixel = v * V_LANES + part;
-                found[pixel / ASJ_LANES] |= (uint16_t)((bits >> part) << pixel % ASJ_LANES);
+                const uint32_t eight = bits >> part & 255;
+                found[pixel / per_run] |= (uint16_t)(step > 1 ? spread(eight) : eight << pixel % per_run);
             }
         }
         memcpy(masks + first, found, (size_t)(last - first) * sizeof *masks);
     }
 }
 
+/* Planes of row y into their place in the ring; gx, gy: at the first column of the left margin; `width`: columns of each kind. */
+static void fill_planes(const tile *t, int32_t y, const int16_t *gx, const int16_t *gy, int32_t width)
+{
+    const asj_sector_plan *plan = &t->field->plan;
+    const int32_t step = t->field->step, depth = 2 * t->field->sectors.radius + 1;
+    const size_t half = t->stride / (size_t)step, row = t->stride * 4 * (size_t)plan->family_count;
+    uint16_t *planes = t->ring + (size_t)((y + depth) % depth) * row;
+    int16_t used[ASJ_FIELD_MAX_OFFSETS];
+    for (int32_t column = 0; column < step; column++) {
+        for (int32_t f = 0; f < plan->family_count; f++) {
+            const int both = plan->used[0][f] | plan->used[1][f];
+            used[f] = (int16_t)(step > 1 ? plan->used[y & 1][f] >> 4 * column & 15 : (both | both >> 4) & 15);
+        }
+        if (step > 1) {
+            const int32_t whole = (width + V_LANES - 1) / V_LANES * V_LANES;
+            int16_t *x_row = t->row, *y_row = x_row + half;
+            for (int32_t i = 0; i < whole; i++) {
+                x_row[i] = gx[step * i + column];
+                y_row[i] = gy[step * i + column];
+            }
+            gamma_planes(plan, used, x_row, y_row, width, t->stride, planes + (size_t)column * half);
+        } else {
+            gamma_planes(plan, used, gx, gy, width, t->stride, planes);
+        }
+    }
+}
+
+static void open_tile(const asj_field *field, uint16_t *scratch, tile *t)
+{
+    const asj_sectors *s = &field->sectors;
+    const int32_t step = field->step, depth = 2 * s->radius + 1;
+    const size_t half = asj_field_plane_stride(field);
+    t->field = field;
+    t->margin = (s->radius + step - 1) / step * step;
+    t->stride = half * (size_t)step;
+    t->ring = scratch;
+    t->row = (int16_t *)scratch + (size_t)depth * t->stride * 4 * (size_t)field->plan.family_count;
+    t->slots = (uint16_t *)t->row + 2 * t->stride;
+    t->z = (int16_t *)t->slots + (size_t)field->plan.slot_count * ASJ_FIELD_TILE;
+    for (int32_t i = 0; i < s->offset_count; i++) {
+        const int32_t column = s->dx[i] + t->margin;
+        t->place[i] = field->plan.plane[i] * (int32_t)t->stride + column % step * (int32_t)half + column / step;
+    }
+}
+
 static void field_tile(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
                        uint16_t *scratch, uint16_t *masks)
 {
-    const asj_sectors *s = &field->sectors;
-    const int32_t radius = s->radius, depth = 2 * radius + 1;
-    const int32_t groups = (runs * ASJ_LANES + GROUP_PIXELS - 1) / GROUP_PIXELS, width = groups * GROUP_PIXELS + 2 * radius;
-    const size_t stride = asj_field_plane_stride(field), row = stride * 4 * (size_t)field->plan.family_count;
-    uint16_t *ring = scratch;
-    int16_t all[ASJ_FIELD_MAX_OFFSETS];
+    const int32_t radius = field->sectors.radius, depth = 2 * radius + 1, per_run = ASJ_LANES / field->step;
+    const int32_t groups = (runs * per_run + GROUP_PIXELS - 1) / GROUP_PIXELS;
     tile t;
-    t.field = field;
-    t.slots = ring + (size_t)depth * row;
-    t.z = (int16_t *)t.slots + (size_t)field->plan.slot_count * ASJ_FIELD_TILE;
-    for (int32_t i = 0; i < s->offset_count; i++)
-        t.place[i] = field->plan.plane[i] * (int32_t)stride + s->dx[i] + radius;
-    for (int32_t f = 0; f < field->plan.family_count; f++)
-        all[f] = (int16_t)(field->plan.used[0][f] | field->plan.used[1][f]);
+    open_tile(field, scratch, &t);
+    const int32_t width = groups * GROUP_PIXELS + 2 * t.margin / field->step;
+    const size_t row = t.stride * 4 * (size_t)field->plan.family_count;
     for (int32_t y = top - radius; y < bottom + radius; y++) {
-        const ptrdiff_t at = y * frame->stride + run * ASJ_LANES - radius;
+        const ptrdiff_t at = y * frame->stride + run * ASJ_LANES - t.margin;
         const int32_t centre = y - radius;
-        gamma_planes(&field->plan, field->step > 1 ? field->plan.used[y & 1] : all, frame->gradient_x + at,
-                     frame->gradient_y + at, width, stride, ring + (size_t)((y + depth) % depth) * row);
         uint16_t *found = masks + (ptrdiff_t)centre * frame->blocks + run;
+        fill_planes(&t, y, frame->gradient_x + at, frame->gradient_y + at, width);
         if (centre < top)
             continue;
         if (!asj_field_has_candidates(field, centre)) {
@@ -258,7 +308,7 @@ static void field_tile(const asj_field *field, const asj_frame *frame, int32_t r
             continue;
         }
         for (int32_t i = 0; i < depth; i++)
-            t.rows[i] = ring + (size_t)((centre + i - radius + depth) % depth) * row;
+            t.rows[i] = t.ring + (size_t)((centre + i - radius + depth) % depth) * row;
         tile_row(&t, runs, found);
         asj_field_thin(field, frame, run, runs, found);
     }
