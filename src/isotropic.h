@@ -39,6 +39,7 @@ typedef struct asj_isotropic_radius {
     double straight;      /* two branches that open wider are an edge */
     const double **tails; /* for each sector: ln F(i / ASJ_TAIL_STEPS; J_k), i = 0, 1, .. */
     const double *lowest_tail; /* the lowest of them: that of the sector with the fewest pixels */
+    double lowest_end;    /* and the largest sum that such a sector may have: its table ends there */
     int32_t least_sum[ASJ_MAX_BRANCHES + 1]; /* of M branches the weakest has at least this sum, or they are not meaningful */
     uint16_t *least;      /* for each sector: the least strength of a branch that may be one of meaningful ones */
 } asj_isotropic_radius;
