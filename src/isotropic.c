@@ -326,7 +326,8 @@ void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *
         if (peaks[m - 1].sum < entry->least_sum[m]) /* also when so many branches do not fit at any radius */
             continue;
         double t = (double)peaks[m - 1].sum / (1 << s->gamma_bits), log_nfa = test->log_tests[m];
-        if (best->branch_count && t <= entry->lowest_end && log_nfa + m * log_tail(entry->lowest_tail, t) - ROUNDING > best->log_nfa)
+        if (best->branch_count && t <= entry->lowest_end &&
+            log_nfa + m * log_tail(entry->lowest_tail, t) - ROUNDING > best->log_nfa)
             continue;
         for (int32_t i = 0; i < m; i++)
             log_nfa += log_tail(entry->tails[peaks[i].sector], t);
