@@ -24,13 +24,11 @@
 
 #include <math.h>
 
-#define PIXELS 3.0    /* px, error allowed anywhere: location errors of two junctions and their map; as RAY_DISTANCE of corners.c */
-#define REACH 5.0     /* r^2 at which agreement ends: where exp(-r^2 / 2) is below a tenth */
 #define LEAST_WAY 10.0 /* px: nearer corners say nothing of an edge's direction; as LEAST_START of corners.c */
 
 static float biweight(double r2)
 {
-    const double w = r2 < REACH ? 1 - r2 / REACH : 0;
+    const double w = r2 < ASJ_AGREEMENT_REACH ? 1 - r2 / ASJ_AGREEMENT_REACH : 0;
     return (float)(w * w);
 }
 
@@ -44,29 +42,16 @@ static asj_way way_between(const asj_view *view1, const asj_view *view2, const a
 
 /* --- on one surface --------------------------------------------------------------------------------------------------------- */
 
-/* 4 REACH (PIXELS + tolerance |e|)^2 at most, without a root, since (a + b)^2 <= 2 (a^2 + b^2); a little more for rounding. A map
- * that misses by twice what both together may belongs to nothing near, whatever the other one says. */
-static double most_square(double ex, double ey, double tolerance)
-{
-    return 8.001 * REACH * (PIXELS * PIXELS + tolerance * tolerance * (ex * ex + ey * ey));
-}
-
-int32_t asj_way_misses(const asj_match_options *options, const asj_candidate *c, const asj_way *way)
-{
-    const double *map = c->map.to;
-    const double x = map[0] * way->x1 + map[1] * way->y1 - way->x2, y = map[2] * way->x1 + map[3] * way->y1 - way->y2;
-    return x * x + y * y > most_square(way->x2, way->y2, options->neighbour_tolerance);
-}
-
 /* [ |p - e| / allowed ]^2. (dx, dy) leads from c to d in the image that the maps start from, e in the other. */
 static double misprediction(const double *map_c, const double *map_d, double dx, double dy, double ex, double ey, double tolerance)
 {
     const double cx = map_c[0] * dx + map_c[1] * dy, cy = map_c[2] * dx + map_c[3] * dy;
     const double tx = map_d[0] * dx + map_d[1] * dy, ty = map_d[2] * dx + map_d[3] * dy;
-    const double most = most_square(ex, ey, tolerance);
+    const double most = asj_most_square(ex, ey, tolerance);
     if ((cx - ex) * (cx - ex) + (cy - ey) * (cy - ey) > most || (tx - ex) * (tx - ex) + (ty - ey) * (ty - ey) > most)
-        return REACH;
-    const double c = sqrt(cx * cx + cy * cy), t = sqrt(tx * tx + ty * ty), allowed = PIXELS + tolerance * sqrt(ex * ex + ey * ey);
+        return ASJ_AGREEMENT_REACH;
+    const double c = sqrt(cx * cx + cy * cy), t = sqrt(tx * tx + ty * ty);
+    const double allowed = ASJ_AGREEMENT_PIXELS + tolerance * sqrt(ex * ex + ey * ey);
     const double sx = cx * t + tx * c, sy = cy * t + ty * c, s = sqrt(sx * sx + sy * sy);
     const double scale = s > 0 ? sqrt(c * t) / s : 0, px = sx * scale - ex, py = sy * scale - ey;
     return (px * px + py * py) / (allowed * allowed);
@@ -86,7 +71,7 @@ static double unlikeness(const double *a, const double *b)
 static float on_surface(const asj_match_options *options, const asj_candidate *c, const asj_candidate *d, const asj_way *way)
 {
     const double there = misprediction(c->map.to, d->map.to, way->x1, way->y1, way->x2, way->y2, options->neighbour_tolerance);
-    if (there >= REACH)
+    if (there >= ASJ_AGREEMENT_REACH)
         return 0;
     const double back = misprediction(c->map.from, d->map.from, way->x2, way->y2, way->x1, way->y1, options->neighbour_tolerance);
     const double to = unlikeness(c->map.to, d->map.to), from = unlikeness(c->map.from, d->map.from);
@@ -95,41 +80,25 @@ static float on_surface(const asj_match_options *options, const asj_candidate *c
 
 /* --- along one edge --------------------------------------------------------------------------------------------------------- */
 
-/* [ distance of the way's end from the branch's line / PIXELS ]^2; *ahead: does the branch lead towards it? */
-static double off_line(const double u[2], double ex, double ey, int32_t *ahead)
-{
-    const double across = (u[0] * ey - u[1] * ex) / PIXELS;
-    *ahead = u[0] * ex + u[1] * ey > 0;
-    return across * across;
-}
-
-int32_t asj_edge_possible(const asj_corners *corners, uint32_t l, uint32_t place)
-{
-    const double *u = corners->direction + 4 * (size_t)l;
-    const double x = corners->place_x[place] - (double)corners->l[l].x, y = corners->place_y[place] - (double)corners->l[l].y;
-    int32_t ahead;
-    return !corners->stem[l] && (off_line(u, x, y, &ahead) < REACH || off_line(u + 2, x, y, &ahead) < REACH);
-}
-
-/* r^2 of the two branches in one image, REACH or more when they do not share an edge. s of `from` and t of `to`, which lies
- * (ex, ey) away. *sides tells which way they lead. */
+/* r^2 of the two branches in one image, as much as ends agreement when they do not share an edge: s of `from` and t of `to`, which
+ * lies (ex, ey) away. *sides tells which way they lead. */
 static double shared(const asj_corners *corners, uint32_t from, uint32_t s, uint32_t to, uint32_t t, double ex, double ey,
                      double tolerance, int32_t *sides)
 {
     int32_t ahead, onwards;
-    const double off_s = off_line(corners->direction + 4 * (size_t)from + 2 * s, ex, ey, &ahead);
-    const double off_t = off_line(corners->direction + 4 * (size_t)to + 2 * t, ex, ey, &onwards);
+    const double off_s = asj_off_line(corners->direction + 4 * (size_t)from + 2 * s, ex, ey, &ahead);
+    const double off_t = asj_off_line(corners->direction + 4 * (size_t)to + 2 * t, ex, ey, &onwards);
     const double covered = (ahead ? (double)corners->lengths[2 * (size_t)from + s].length[0] : 0) +
                            (onwards ? 0 : (double)corners->lengths[2 * (size_t)to + t].length[0]);
     *sides = 2 * ahead + onwards;
-    return covered >= (1 - tolerance) * sqrt(ex * ex + ey * ey) ? 0.5 * (off_s + off_t) : REACH;
+    return covered >= (1 - tolerance) * sqrt(ex * ex + ey * ey) ? 0.5 * (off_s + off_t) : ASJ_AGREEMENT_REACH;
 }
 
-static float on_edge(const asj_match_options *options, const asj_corners *k1, const asj_corners *k2, const asj_candidate *c,
+static float edge_of(const asj_match_options *options, const asj_corners *k1, const asj_corners *k2, const asj_candidate *c,
                      const asj_candidate *d, const asj_way *e)
 {
     const double square1 = e->x1 * e->x1 + e->y1 * e->y1, square2 = e->x2 * e->x2 + e->y2 * e->y2;
-    double least = REACH;
+    double least = ASJ_AGREEMENT_REACH;
     if (square1 < LEAST_WAY * LEAST_WAY || square2 < LEAST_WAY * LEAST_WAY || k1->stem[c->i] || k1->stem[d->i] || k2->stem[c->j] ||
         k2->stem[d->j])
         return 0;
@@ -137,11 +106,12 @@ static float on_edge(const asj_match_options *options, const asj_corners *k1, co
         for (uint32_t t = 0; t < 2; t++) {
             int32_t sides1, sides2 = -1;
             const double r1 = shared(k1, c->i, s, d->i, t, e->x1, e->y1, options->end_tolerance, &sides1);
-            const double r2 = r1 < least ? shared(k2, c->j, s, d->j, t, e->x2, e->y2, options->end_tolerance, &sides2) : REACH;
+            const double r2 = r1 < least ? shared(k2, c->j, s, d->j, t, e->x2, e->y2, options->end_tolerance, &sides2)
+                                         : ASJ_AGREEMENT_REACH;
             const double larger = r1 > r2 ? r1 : r2;
             least = larger < least && sides1 == sides2 ? larger : least;
         }
-    if (least >= REACH)
+    if (least >= ASJ_AGREEMENT_REACH)
         return 0;
     const double cx = c->map.to[0] * e->x1 + c->map.to[1] * e->y1, cy = c->map.to[2] * e->x1 + c->map.to[3] * e->y1;
     const double dx = d->map.to[0] * e->x1 + d->map.to[1] * e->y1, dy = d->map.to[2] * e->x1 + d->map.to[3] * e->y1;
@@ -167,12 +137,9 @@ float asj_surface_agreement(const asj_match_options *options, const asj_view *vi
     return together(&way) ? 0 : on_surface(options, c, d, &way);
 }
 
-float asj_agreement(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c,
-                    const asj_candidate *d)
+float asj_edge_agreement(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c,
+                         const asj_candidate *d)
 {
     const asj_way way = way_between(view1, view2, c, d);
-    if (together(&way))
-        return 0;
-    const float surface = on_surface(options, c, d, &way), edge = on_edge(options, &view1->corners, &view2->corners, c, d, &way);
-    return surface > edge ? surface : edge;
+    return edge_of(options, &view1->corners, &view2->corners, c, d, &way);
 }

@@ -96,13 +96,18 @@ static uint32_t hear_one(const asj_match_options *options, const asj_view *view1
     const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
     uint32_t count = 0;
     for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++) {
-        const int32_t edge = asj_edge_possible(h->corners, side == 1 ? c->i : c->j, neighbour[n]);
+        const double x = h->corners->place_x[neighbour[n]] - here.at[2 * side - 2];
+        const double y = h->corners->place_y[neighbour[n]] - here.at[2 * side - 1];
+        const uint32_t edges = asj_edges_through(h->corners, side == 1 ? c->i : c->j, 3, x, y);
         for (uint32_t m = h->index.start[neighbour[n]]; m < h->index.start[neighbour[n] + 1]; m++) {
             const double *there = h->spots[m].at;
             const asj_way way = {there[0] - here.at[0], there[1] - here.at[1], there[2] - here.at[2], there[3] - here.at[3]};
-            if (!edge && asj_way_misses(options, c, &way))
-                continue;
-            float w = asj_agreement(options, view1, view2, c, &candidates->list[h->index.order[m]]);
+            const uint32_t shared = side == 1 ? asj_edges_through(&view2->corners, c->j, edges, way.x2, way.y2)
+                                              : asj_edges_through(&view1->corners, c->i, edges, way.x1, way.y1);
+            const asj_candidate *d = &candidates->list[h->index.order[m]];
+            float w = asj_way_misses(options, c, &way) ? 0 : asj_surface_agreement(options, view1, view2, c, d);
+            const float v = shared ? asj_edge_agreement(options, view1, view2, c, d) : 0;
+            w = v > w ? v : w;
             const uint16_t weight = (uint16_t)(w * WEIGHT_ONE);
             if (weight == 0)
                 continue;

@@ -45,8 +45,9 @@ def judge_rooms(build, last):
     lines = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()[1:]
     out = {}
     for line in lines:
-        name, counts = line[:24].strip(), line[24:].split()
-        out[None if name == "as they are" else tuple(name.split())] = "%s, %s %%" % (counts[0], counts[3])
+        words = line.split()
+        name, counts = (None, words[3:]) if words[:3] == ["as", "they", "are"] else (tuple(words[:2]), words[2:])
+        out[name] = "%s, %s %%" % (counts[0], counts[3])
     return out
 
 

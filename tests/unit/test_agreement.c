@@ -41,7 +41,7 @@ static void map(asj_candidate *c, uint32_t l, double a, double b, double p, doub
     assert_true(asj_affine_invert(to, c->map.from));
 }
 
-/* on_surface: of the surface alone. */
+/* Of the surface, or of the edge. */
 static float agree(stage *s, int on_surface)
 {
     unit_counter counter = {0, 0, 0, 0};
@@ -55,7 +55,7 @@ static float agree(stage *s, int on_surface)
     s->c.i = s->c.j = 0;
     s->d.i = s->d.j = k->count - 1;
     float (*measure)(const asj_match_options *, const asj_view *, const asj_view *, const asj_candidate *, const asj_candidate *) =
-        on_surface ? asj_surface_agreement : asj_agreement;
+        on_surface ? asj_surface_agreement : asj_edge_agreement;
     const float there = measure(&s->options, &s->view[0], &s->view[1], &s->c, &s->d);
     const float back = measure(&s->options, &s->view[0], &s->view[1], &s->d, &s->c);
     assert_true(there - back < 1e-5f && back - there < 1e-5f);
