@@ -21,8 +21,8 @@ typedef struct asj_way {
     double x1, y1, x2, y2;
 } asj_way;
 
-/* 4 REACH (PIXELS + tolerance |e|)^2 at most, without a root, since (a + b)^2 <= 2 (a^2 + b^2); a little more for rounding. A map that
- * misses by twice what both together may belongs to nothing near, whatever the other one says. */
+/* 4 REACH (PIXELS + tolerance |e|)^2 at most, without a root, since (a + b)^2 <= 2 (a^2 + b^2); a little more for rounding. A map
+ * that misses by twice what both together may belongs to nothing near, whatever the other one says. */
 static inline double asj_most_square(double ex, double ey, double tolerance)
 {
     const double pixels = ASJ_AGREEMENT_PIXELS;
