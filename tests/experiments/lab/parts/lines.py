@@ -64,8 +64,8 @@ def run(session):
     if not peer_lines.available():
         part.text("This OpenCV has no line descriptors (opencv-contrib has): no peers.")
     jobs = session.jobs("lines")
-    names = _add_library(session, jobs)
-    names += _add_peers(session, jobs)
+    peers = _add_peers(session, jobs)   # first: they are quick
+    names = _add_library(session, jobs) + peers
     cells = jobs.run()
     for title, chosen in (("Photographs", session.real), ("Rendered pairs", session.rendered)):
         if chosen:

@@ -51,8 +51,9 @@ def run(session):
             part.findings.append(finding("Key-points, " + title.lower(), names, chosen, cells))
     part.numbers = {"cells": [dict(c, method=m, pair=p) for (m, p), c in cells.items()]}
     unjudged = [p.name for p in session.pairs if p not in judged]
+    if unjudged:
+        part.text("Not in these tables: %s, whose truth is labelled lines, which say nothing of points." % ", ".join(unjudged))
     part.account(jobs)
-    part.cut += ["%s: its truth is labelled lines, which say nothing of points" % n for n in unjudged]
     return part
 
 
