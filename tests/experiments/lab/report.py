@@ -12,7 +12,8 @@ body { font: 15px/1.5 sans-serif; max-width: 1250px; margin: 2em auto; padding: 
 h1 { font-size: 1.6em; } h2 { margin-top: 2.2em; border-bottom: 1px solid #ccc; } h3 { margin-bottom: .3em; }
 table { border-collapse: collapse; margin: .8em 0; font-size: 13px; display: block; overflow-x: auto; }
 th, td { padding: .2em .6em; text-align: right; border-bottom: 1px solid #e4e4e4; white-space: nowrap; }
-th:first-child, td:first-child { text-align: left; } thead th { border-bottom: 2px solid #999; vertical-align: bottom; white-space: normal; }
+th:first-child, td:first-child { text-align: left; }
+thead th { border-bottom: 2px solid #999; vertical-align: bottom; white-space: normal; }
 td.best { font-weight: bold; }
 caption { text-align: left; color: #555; caption-side: bottom; padding-top: .3em; white-space: normal; }
 figure { margin: 1em 0; } figcaption { color: #555; font-size: 13px; } img, svg { max-width: 100%; height: auto; }
