@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 2 on a device: candidates for junctions, as in src/field.c. Two forms with the same results: field_pixels, a work item for
- * each pixel of the rows that have candidates, for devices with thousands of them; field_tiles, a work item for a tile of the image, for processors: there the
- * planes of src/sector_plan.h, which neighbours share, save most of the work. Planes of the frame as in gradient.cl.
+ * each pixel of the rows that have candidates, for devices with thousands of them; field_tiles, a work item for a tile of the
+ * image, for processors: there the planes of src/sector_plan.h, which neighbours share, save most of the work. Planes of the frame
+ * as in gradient.cl.
  *
  * The table, in ints (src/cl/field_ops.c): a, b of each family; OFFSET_INTS for each offset; where each plain slot ends; which
  * plain slot each extra slot adds to the total; SECTOR_INTS for each sector. */

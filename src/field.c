@@ -94,7 +94,8 @@ size_t asj_field_scratch(const asj_field *field)
     const size_t block = asj_sector_scratch(&field->sectors) + 3 * count * ASJ_LANES;
     const size_t stride = asj_field_plane_stride(field), step = (size_t)field->step;
     const size_t ring = depth * 4 * (size_t)field->plan.family_count * stride * step;
-    const size_t tile = ring + 2 * stride * step + ((size_t)field->plan.slot_count + count + 2 * (size_t)field->suppress) * ASJ_FIELD_TILE;
+    const size_t lists = (size_t)field->plan.slot_count + count + 2 * (size_t)field->suppress;
+    const size_t tile = ring + 2 * stride * step + lists * ASJ_FIELD_TILE;
     return ((block > tile ? block : tile) + 31) / 32 * 32;
 }
 

@@ -45,8 +45,9 @@ void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, 
  * opposite. */
 uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch);
 
-/* The same for a tile: `runs` runs (at most candidate_step * ASJ_FIELD_TILE pixels) from run `run` on, rows top .. bottom - 1; those of run b of
- * row y go to masks[y * frame->blocks + b]. Pixels outside the image are none, nor those that asj_field_thin() clears. */
+/* The same for a tile: `runs` runs (at most candidate_step * ASJ_FIELD_TILE pixels) from run `run` on, rows top .. bottom - 1;
+ * those of run b of row y go to masks[y * frame->blocks + b]. Pixels outside the image are none, nor those that asj_field_thin()
+ * clears. */
 void asj_field_tile(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
                     uint16_t *scratch, uint16_t *masks);
 

@@ -26,7 +26,7 @@ static const asj_option_info rows[] = {
     NUMBER(ratio, "", 1, 10, 1.5, 1.5, "the second best match at another place must be worse by this factor"),
     SWITCH(mutual, 1, 0, "two junctions match only if each is the other's best"),
     NUMBER(minimum_support, "", 0, 64, 1.5, 0, "neighbouring matches that must agree with a match, each counted 0 to 1"),
-    NUMBER(minimum_similarity, "", -1, 1, 0.4, -1, "correlation that the aligned discs of a match need"),
+    NUMBER(minimum_similarity, "", -1, 1, -1, -1, "correlation that the aligned discs of a match need"),
     INTEGER(neighbours, "", 0, 64, 40, 0, "nearest junctions asked for support; 0 = none are asked"),
     NUMBER(neighbour_tolerance, "", 0.01, 1, 0.08, 0.08,
            "error with which a match predicts its neighbour, as a part of the distance"),
@@ -105,7 +105,8 @@ asj_status asj_match_options_get(const asj_match_options *options, const char *k
 
 /* Measured on photographs (tests/accuracy/match_pairs.c): what the detector does for precision costs the matcher half of its
  * matches and gains it nothing, because a chance junction has no partner that agrees with its neighbours. So: weaker
- * candidates, no strip or deviation test, and corners that the line fit moves far (a blurred corner, a short branch) stay. */
+ * candidates, no strip test, corners that the line fit moves far (a blurred corner, a short branch) stay, and a branch is as long
+ * as its junction's scale at least, whatever lies between. */
 void asj_match_detect_options(asj_detect_options *options)
 {
     if (!options)
@@ -114,10 +115,10 @@ void asj_match_detect_options(asj_detect_options *options)
     options->candidate_step = 1;
     options->isotropic_radii = (1u << 5) | (1u << 7) | (1u << 10) | (1u << 14);
     options->epsilon = 1e4;
+    options->scan_start = 0;
     options->scan_epsilon = 10;
     options->minimum_opening = 20;
     options->max_move = 5;
     options->strip_test = 0;
-    options->max_deviation = 90;
     options->near_strength = -10;
 }

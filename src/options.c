@@ -19,7 +19,7 @@ static const char *const refinements[] = {"line_fit", "search", NULL};
 
 static const asj_option_info rows[] = {
     NUMBER(epsilon, "NFA", 1e-30, 1e6, 1, 1, "false alarms allowed in an image of noise, for junctions and for branches"),
-    NUMBER(minimum_length, "px", 0, 1000, 7, 0, "branches shorter than this are dropped"),
+    NUMBER(minimum_length, "px", 0, 1000, 0, 0, "branches shorter than this are dropped"),
     NUMBER(candidate_strength, "sd", 0, 12, 2.4, 5.15,
            "strength that two local branches need at a candidate pixel; lower finds weaker corners"),
     INTEGER(candidate_step, "px", 1, 2, 2, 1, "from one pixel that may be a candidate to the next, along x and along y"),
@@ -44,7 +44,7 @@ static const asj_option_info rows[] = {
     NUMBER(max_move, "px", 0.5, 10, 2.5, 2.5, "farthest that a junction may move while it is located, again when it is refined"),
     NUMBER(merge_angle, "deg", 0, 60, 15, 0, "of two branches closer than this one stays"),
     SWITCH(strip_test, 1, 0, "report a branch only if the strip along it is meaningful"),
-    NUMBER(max_deviation, "deg", 1, 90, 12, 90, "largest angle between a branch and the edges under it"),
+    NUMBER(max_deviation, "deg", 1, 90, 90, 90, "largest angle between a branch and the edges under it"),
     NUMBER(near_strength, "sd", -10, 10, 0, -10, "strength that a branch needs in its first 6 px: it must reach the junction"),
     NUMBER(snap_distance, "px", 0, 30, 8, 0, "a branch that ends this close to a junction on its line ends at it"),
     SWITCH(ignore_frame, 1, 0, "drop branches that run along the border of the image"),

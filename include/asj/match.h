@@ -43,7 +43,7 @@ typedef struct asj_match_options {
     int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map; 0 = none. 0 .. 30; 6; paper 0 */
     double align_radius;         /* px: radius of the disc around the junction that is aligned. 8 .. 64; 20 */
     double max_move;             /* px an alignment may move the junction. 0.5 .. 20; 8 */
-    double minimum_similarity;   /* correlation that the aligned discs of a match need. -1 .. 1; 0.4; paper -1 */
+    double minimum_similarity;   /* correlation that the aligned discs of a match need. -1 .. 1; -1 */
     /* agreement between neighbouring matches: consensus.c, guided.c */
     int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 40; paper 0 */
     double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1; paper 0 */
@@ -134,8 +134,8 @@ ASJ_API asj_status asj_match(asj_context *context,
 ASJ_API void asj_match_result_free(asj_match_result **result);
 
 /* Changes detector options to what matching wants: weaker junctions too, since the matcher tells the false ones.
- * candidate_strength 2, candidate_step 1, isotropic_radii 5,7,10,14, epsilon 1e4, scan_epsilon 10, minimum_opening 20, max_move 5,
- * no strip test, max_deviation 90, near_strength -10. NULL is ignored. */
+ * candidate_strength 2, candidate_step 1, isotropic_radii 5,7,10,14, epsilon 1e4, scan_start 0, scan_epsilon 10,
+ * minimum_opening 20, max_move 5, no strip test, near_strength -10. NULL is ignored. */
 ASJ_API void asj_match_detect_options(asj_detect_options *options);
 
 /* A pair of line segments from image 1 and image 2: a matched branch. */

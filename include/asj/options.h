@@ -64,12 +64,12 @@ typedef struct asj_detect_options {
                                    * 0 .. 80; 25; paper 0 */
     double max_move;              /* px a junction may move while it is located by line fits. 0.5 .. 10; 2.5 */
     /* validation */
-    double minimum_length;        /* px: shorter branches are dropped. 0 .. 1000; 7; paper 0 */
+    double minimum_length;        /* px: shorter branches are dropped. 0 .. 1000; 0 */
     double merge_angle;           /* deg: of two branches closer than this one stays. 0 .. 60; 15; paper 0 */
     int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`. 1; paper 0 */
     double strip_half_width;      /* px. 0.5 .. 4; 1.5 */
     double strip_length;          /* px from the junction that the strip test looks at. 10 .. 1000; 60 */
-    double max_deviation;         /* deg between a branch and the dominant direction of the edges under it. 1 .. 90; 12; paper 90 */
+    double max_deviation;         /* deg between a branch and the dominant direction of the edges under it. 1 .. 90; 90 */
     int32_t ignore_frame;         /* 1 = drop branches that run along the border of the image, within 2.5 px. 1; paper 0 */
     int32_t candidate_step;       /* px from one pixel that may be a candidate to the next, along x and along y (step 3).
                                    * 1 .. 2; 2; paper 1 */

@@ -283,7 +283,7 @@ static void json_has_its_schema(void **state)
     assert_true(json_real_value(json_object_get(stored, "gradient_epsilon")) == options.gradient_epsilon);
     assert_true(json_is_boolean(json_object_get(stored, "strip_test")));
     assert_string_equal(json_string_value(json_object_get(stored, "refinement")), "line_fit");
-    assert_int_equal(json_integer_value(json_array_get(json_object_get(stored, "isotropic_radii"), 0)), 5);
+    assert_int_equal(json_integer_value(json_array_get(json_object_get(stored, "isotropic_radii"), 0)), 7);
     json_decref(root);
 }
 

@@ -187,12 +187,14 @@ static void test_good_corner(void **state)
 static void test_dropped_branches(void **state)
 {
     fixture *f = *state;
+    f->options.minimum_length = 7;
     asj_draft draft = corner_draft(corner_x, corner_y, 0);
     draft.branches[1].length = f->options.minimum_length - 0.1; /* short: no second branch left */
     assert_int_equal(validated(f, &draft), 0);
     draft = corner_draft(corner_x, corner_y, 0);
     draft.branches[0].length = f->options.minimum_length + 0.1;
     assert_int_equal(validated(f, &draft), 2);
+    f->options.minimum_length = 0;
     draft = corner_draft(corner_x, corner_y, 0);
     draft.branches[0].offset = 2.1; /* belongs to something else */
     assert_int_equal(validated(f, &draft), 0);
