@@ -5,8 +5,8 @@
     sweep.py [--last SEED] BUILD PAIRS
 
 BUILD is a build folder of the library, PAIRS a folder of pairs in the format of tests/experiments/README.md. Rooms: the random
-rooms 1 to SEED (24) of `match_room --sweep`, all matches together. Pairs: `match_pairs`, average accuracy of those that have truth for
-points. Needs NumPy.
+rooms 1 to SEED (24) of `match_room --sweep`, all matches together. Pairs: `match_pairs`, average accuracy of those that have
+truth for points. Needs NumPy.
 """
 import argparse
 import csv
