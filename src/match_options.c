@@ -113,7 +113,6 @@ void asj_match_detect_options(asj_detect_options *options)
         return;
     options->candidate_strength = 2;
     options->candidate_step = 1;
-    options->isotropic_radii = (1u << 5) | (1u << 7) | (1u << 10) | (1u << 14);
     options->epsilon = 1e4;
     options->scan_start = 0;
     options->scan_epsilon = 10;
