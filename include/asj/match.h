@@ -134,8 +134,8 @@ ASJ_API asj_status asj_match(asj_context *context,
 ASJ_API void asj_match_result_free(asj_match_result **result);
 
 /* Changes detector options to what matching wants: weaker junctions too, since the matcher tells the false ones.
- * candidate_strength 2, candidate_step 1, epsilon 1e4, scan_start 0, scan_epsilon 10, minimum_opening 20, max_move 5, no strip test,
- * near_strength -10. NULL is ignored. */
+ * candidate_strength 2, candidate_step 1, epsilon 1e4, scan_start 0, scan_epsilon 10, minimum_opening 20, max_move 5, no strip
+ * test, near_strength -10. NULL is ignored. */
 ASJ_API void asj_match_detect_options(asj_detect_options *options);
 
 /* A pair of line segments from image 1 and image 2: a matched branch. */
