@@ -52,7 +52,7 @@ static void count_tile(const asj_field *field, const asj_frame *frame, int32_t r
                        uint16_t *scratch, uint16_t *masks)
 {
     const int32_t around = 2 * field->sectors.radius;
-    add(&counted.tile_pixels, (double)runs * ASJ_LANES * (bottom - top));
+    add(&counted.tile_pixels, (double)runs * ASJ_LANES * (bottom - top) / (field->step * field->step));
     add(&counted.plane_pixels, (double)(runs * ASJ_LANES + around) * (bottom - top + around));
     wrapped.field_tile(field, frame, run, runs, top, bottom, scratch, masks);
 }
@@ -112,11 +112,25 @@ static cost gradient_cost(double pixels)
     return (cost){9 * pixels, 22 * pixels, 0};
 }
 
+/* Of the planes for each pixel: a family of four takes 6 products, 4 differences, 4 absolute values, and a saturated difference for
+ * each of its planes; where candidates are two apart, that depends on row and column being even or odd. */
+static double plane_operations(const asj_field *field)
+{
+    double operations = 0;
+    for (int32_t f = 0; f < field->plan.family_count; f++)
+        for (int32_t part = 0; part < 4; part++) {
+            int used = field->step > 1 ? field->plan.used[part / 2][f] >> 4 * (part % 2) & 15 : 15;
+            operations += used ? 14 : 0;
+            for (; used; used &= used - 1)
+                operations++;
+        }
+    return operations / 4;
+}
+
 static cost candidates_cost(const asj_field *field, const work *w, double pixels)
 {
-    /* both gradients in (4), masks out (1/8). A family of four planes takes 6 products, 4 differences, 4 absolute values and 4
-     * saturated differences. */
-    const double planes = 18.0 * field->plan.family_count * w->plane_pixels;
+    /* both gradients in (4), masks out (1/8) */
+    const double planes = plane_operations(field) * w->plane_pixels;
     const double sums = (field->sectors.offset_count + sector_operations(&field->sectors, field->suppress)) * w->tile_pixels;
     return (cost){4.125 * pixels, planes + sums, 0};
 }
