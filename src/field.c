@@ -12,9 +12,10 @@
  * opposite. They replace the line segment detector that feeds ACJ. Preset `paper` asks for 5.15, which is sqrt(NM) K F <= 1 at
  * radius 7 in a photograph of 0.8 megapixels: what the paper's number of tests would be if it counted one line of the image.
  *
- * The fits that follow move a junction by a pixel or two, and a corner has some thirty candidates. So every other pixel of every
- * other row is enough (candidate_step = 1 takes them all). What is found is the same but for corners so weak that few of their
- * pixels reach candidate_strength; a little less of that (2.4 instead of 3) brings them back, for a third of the time. */
+ * The fits that follow move a junction by a pixel or two, and a clear corner has a hundred candidates. So every other pixel of
+ * every other row is enough (candidate_step = 1 takes them all), for half the time up to the fits. What is found is the same but
+ * for corners so weak that few of their pixels reach candidate_strength; a little less of that (2.4 instead of 3) brings most of
+ * them back. */
 #include "field.h"
 #include "ops.h"
 #include "threads.h"

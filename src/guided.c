@@ -7,13 +7,13 @@
  * where the map turns them. What is proposed is then compared, aligned and judged like every other candidate. Done from both
  * images, so that swapping them changes nothing. */
 #include "guided.h"
+#include "agreement.h"
 #include "align.h"
 
 #include <math.h>
 #include <string.h>
 
 #define NEAREST 8                /* matches asked: two or three surfaces meet at a corner; 4 or 16 find as much within 1 % */
-#define PIXELS 3.0               /* as in agreement.c */
 #define LEAST_COSINE 0.906307787 /* 25 degrees: what map_tolerance lets two maps differ by, 0.5 in norm, is about that */
 #define MOST_PROPOSALS 32        /* for one L-junction; where more are possible, none is likely */
 
@@ -83,7 +83,7 @@ static void ask(const asj_match_options *options, const asj_corners *mine, uint3
     const double *u = mine->direction + 4 * (size_t)i;
     double dx = (double)mine->l[i].x - g->x1, dy = (double)mine->l[i].y - g->y1;
     double px = g->map[0] * dx + g->map[1] * dy, py = g->map[2] * dx + g->map[3] * dy;
-    double radius = PIXELS + options->neighbour_tolerance * sqrt(px * px + py * py);
+    double radius = ASJ_AGREEMENT_PIXELS + options->neighbour_tolerance * sqrt(px * px + py * py);
     px += g->x2;
     py += g->y2;
     for (uint32_t q = first_place(others, px - radius); q < others->place_count; q++) {

@@ -8,7 +8,7 @@
  * Two branches that open by more than pi - 2 Delta are an edge, not a junction.
  *
  * Departures: candidates come from the local field, not from line segments (field.c). Radii {7, 14} instead of all: the same
- * junctions at a fifth of the cost (5 finds nothing that 7 does not, 10 hardly anything). Among overlapping junctions the more
+ * junctions at less than half the cost (5 finds nothing that 7 does not, 10 hardly anything). Among overlapping junctions the more
  * meaningful one stays; `more_branches_win` restores the rule of ACJ that M + 1 branches within half a radius replace M. */
 #include "isotropic.h"
 #include "ops.h"

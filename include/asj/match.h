@@ -39,23 +39,23 @@ typedef struct asj_match_options {
     double patch_radius;         /* px: half a side of an induced patch. 4 .. 64; 16 */
     double smoothing;            /* px: standard deviation of the blur before anything is sampled. 0 .. 2; 0.8; paper 0 */
     /* alignment of short-listed pairs: align.c */
-    int32_t shortlist;           /* best candidates kept for each L-junction of either image. 1 .. 32; 4 */
+    int32_t shortlist;           /* best candidates kept for each L-junction of either image. 1 .. 32; 4; paper 16 */
     int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map; 0 = none. 0 .. 30; 6; paper 0 */
     double align_radius;         /* px: radius of the disc around the junction that is aligned. 8 .. 64; 20 */
     double max_move;             /* px an alignment may move the junction. 0.5 .. 20; 8 */
     double minimum_similarity;   /* correlation that the aligned discs of a match need. -1 .. 1; -1 */
     /* agreement between neighbouring matches: consensus.c, guided.c */
     int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 40; paper 0 */
-    double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1; paper 0 */
+    double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1.5; paper 0 */
     double neighbour_tolerance;  /* error of a predicted neighbour, as a part of the distance. 0.01 .. 1; 0.08 */
     double map_tolerance;        /* relative difference allowed between the affine maps of neighbours. 0.05 .. 5; 0.5 */
     int32_t guided_rounds;       /* times that accepted matches propose matches near them. 0 .. 4; 1; paper 0 */
     /* a last look at the matches: verify.c */
     int32_t witnesses;           /* nearest matches, in either image, asked about a match; 0 = none. 0 .. 64; 16; paper 0 */
     double witness_distance;     /* px at which a witness counts by half. 10 .. 10000; 100 */
-    double minimum_agreement;    /* mean agreement with them that a match needs. 0 .. 1; 0.24; paper 0 */
+    double minimum_agreement;    /* mean agreement with them that a match needs. 0 .. 1; 0.28; paper 0 */
     /* choice: assign.c */
-    double ratio;                /* the second best at another place must be worse by this factor. 1 .. 10; 1.1; paper 1.5 */
+    double ratio;                /* the second best at another place must be worse by this factor. 1 .. 10; 1.5 */
     double separation;           /* px: what is nearer is the same place; "another place" lies farther. 0 .. 100; 6; paper 0 */
     int32_t mutual;              /* 1 = each must be the other's best. 1; paper 0 */
     /* line segments: segments.c */

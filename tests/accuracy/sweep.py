@@ -64,6 +64,8 @@ def main():
     keys = list(dict.fromkeys(key for key, _ in rooms))
     for key in keys:
         values = [v for k, v in rooms if k == key]
+        if len(values) < 2:  # switched off by its lowest value
+            continue
         first = ["%s: %s" % (v, rooms[key, v]) for v in values]
         second = ["%s: %s" % (v, judge_pairs(a.build, a.pairs, known, "%s=%s" % (key, v))) for v in values]
         print("| `%s` | %s |" % (key, " | ".join(first + second)), flush=True)

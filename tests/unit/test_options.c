@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The detector's option table against its struct and against what include/asj/options.h says about each field (first argument: that
- * file). */
+/* The detector's option table against its struct, and both tables against what include/asj/options.h and match.h say about each
+ * field (arguments: these files). */
 #include "options.h"
 #include "unit_test.h"
 
-static char *header;
+#include <asj/match.h>
+
+static char *header, *match_header;
 
 /* The fields as the header declares them, with the places that their types give them. */
 typedef struct field {
@@ -96,11 +98,11 @@ static void test_rows_are_sound(void **state)
 /* ---- the header's comments ---- */
 
 /* The comment behind a field of the struct. */
-static const char *comment_of(const char *name, size_t *length)
+static const char *comment_of(const char *text, const char *name, size_t *length)
 {
     char declared[64];
     snprintf(declared, sizeof declared, " %s; ", name);
-    const char *at = strstr(header, declared);
+    const char *at = strstr(text, declared);
     const char *start = at ? strstr(at, "/*") : NULL, *end = start ? strstr(start, "*/") : NULL;
     if (!end || end - at > 600)
         fail_msg("%s has no comment in the header", name);
@@ -129,6 +131,23 @@ static int has_text(const char *text, size_t length, const char *wanted)
 }
 
 /* Range, default and, where it differs, the paper's value stand in the field's comment. */
+static void check_comment(const char *text, const asj_option_info *row, const char *standard, const char *paper)
+{
+    size_t length;
+    const char *comment = comment_of(text, row->key, &length);
+    int right = row->default_value == row->paper_value || has_text(comment, length, "paper");
+    if (row->type == ASJ_OPTION_CHOICE || row->type == ASJ_OPTION_RADII) {
+        right &= has_text(comment, length, standard) && has_text(comment, length, paper);
+    } else {
+        right &= has_number(comment, length, row->default_value) && has_number(comment, length, row->paper_value);
+        if (row->type != ASJ_OPTION_SWITCH)
+            right &= has_number(comment, length, row->minimum) && has_number(comment, length, row->maximum);
+    }
+    if (!right)
+        fail_msg("%s: %g .. %g, default %s, paper %s is not what the header says: %.*s", row->key, row->minimum, row->maximum,
+                 standard, paper, (int)length, comment);
+}
+
 static void test_header_comments(void **state)
 {
     asj_detect_options standard, paper;
@@ -138,22 +157,24 @@ static void test_header_comments(void **state)
     for (size_t k = 0; k < asj_detect_option_count(); k++) {
         const asj_option_info *row = asj_detect_option(k);
         char text[2][64];
-        size_t length;
-        const char *comment = comment_of(row->key, &length);
         assert_int_equal(asj_detect_options_get(&standard, row->key, text[0], sizeof text[0]), ASJ_OK);
         assert_int_equal(asj_detect_options_get(&paper, row->key, text[1], sizeof text[1]), ASJ_OK);
-        const int same = row->default_value == row->paper_value;
-        int right = same || has_text(comment, length, "paper");
-        if (row->type == ASJ_OPTION_CHOICE || row->type == ASJ_OPTION_RADII) {
-            right &= has_text(comment, length, text[0]) && has_text(comment, length, text[1]);
-        } else {
-            right &= has_number(comment, length, row->default_value) && has_number(comment, length, row->paper_value);
-            if (row->type != ASJ_OPTION_SWITCH)
-                right &= has_number(comment, length, row->minimum) && has_number(comment, length, row->maximum);
-        }
-        if (!right)
-            fail_msg("%s: %g .. %g, default %s, paper %s is not what the header says: %.*s", row->key, row->minimum, row->maximum,
-                     text[0], text[1], (int)length, comment);
+        check_comment(header, row, text[0], text[1]);
+    }
+}
+
+static void test_match_header_comments(void **state)
+{
+    asj_match_options standard, paper;
+    (void)state;
+    asj_match_options_init(&standard);
+    assert_int_equal(asj_match_options_preset(&paper, ASJ_PRESET_PAPER), ASJ_OK);
+    for (size_t k = 0; k < asj_match_option_count(); k++) {
+        const asj_option_info *row = asj_match_option(k);
+        char text[2][64];
+        assert_int_equal(asj_match_options_get(&standard, row->key, text[0], sizeof text[0]), ASJ_OK);
+        assert_int_equal(asj_match_options_get(&paper, row->key, text[1], sizeof text[1]), ASJ_OK);
+        check_comment(match_header, row, text[0], text[1]);
     }
 }
 
@@ -284,15 +305,17 @@ int main(int argument_count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rows_match_fields), cmocka_unit_test(test_rows_are_sound),
-        cmocka_unit_test(test_header_comments), cmocka_unit_test(test_presets),           cmocka_unit_test(test_round_trips),
-        cmocka_unit_test(test_out_of_range),    cmocka_unit_test(test_field_radius),
+        cmocka_unit_test(test_header_comments), cmocka_unit_test(test_match_header_comments), cmocka_unit_test(test_presets),
+        cmocka_unit_test(test_round_trips),     cmocka_unit_test(test_out_of_range),          cmocka_unit_test(test_field_radius),
     };
-    header = argument_count > 1 ? read_file(arguments[1]) : NULL;
-    if (!header) {
-        fprintf(stderr, "usage: test_options include/asj/options.h\n");
+    header = argument_count > 2 ? read_file(arguments[1]) : NULL;
+    match_header = argument_count > 2 ? read_file(arguments[2]) : NULL;
+    if (!header || !match_header) {
+        fprintf(stderr, "usage: test_options include/asj/options.h include/asj/match.h\n");
         return 2;
     }
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    free(match_header);
     free(header);
     return failed;
 }
