@@ -7,7 +7,7 @@
  * peaks[(c * radii + r) * most], in the order of asj_isotropic_insert(). A candidate is x in the lower half, y in the upper.
  *
  * The table, in ints (src/cl/isotropic_ops.c): RADIUS_INTS for each radius, which say where in the table the rest is. Gammas are
- * held by runs of RUN neighbours in a row (asj_isotropic_runs). */
+ * held by runs of RUN neighbours in a row (asj_sector_runs). */
 
 #define MARGIN 32
 #define MAX_BRANCHES 5

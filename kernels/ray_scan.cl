@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 4 on a device: rays that follow branches, as in src/scan.c, over local junctions, as in src/field.c.
+/* Step 4 on a device: rays that follow branches, as in src/ray_walk.c, over local junctions, as in src/field.c.
  *
  * Rays visit 5 to 10 % of the runs of LANES pixels. So both go in turns: a ray walks until it comes to a run whose local junctions
  * are not known, asks for all runs of its next steps, and stops (scan_walk); then those that were asked for are computed

@@ -149,28 +149,36 @@ asj_status asj_detect(asj_context *context, const asj_image *image, const asj_de
     return asj_detect_into(context, image, options, result);
 }
 
+static asj_local_branch local_branch(const asj_detection_run *d, asj_field_branch branch)
+{
+    const asj_sectors *s = &d->detector->field.sectors;
+    asj_local_branch out = {0};
+    if (!branch.strength)
+        return out;
+    const int32_t k = (int32_t)((branch.angle * (int64_t)s->count + 32768) / 65536) % s->count, n = s->size[k];
+    const double strength = (double)branch.strength / ASJ_STRENGTH_ONE;
+    const double sum = n * ASJ_GAMMA_MEAN + strength * ASJ_GAMMA_SD * sqrt(n);
+    out.angle = (float)(branch.angle * (TWO_PI / 65536));
+    out.strength = (float)strength;
+    out.log10_nfa = (float)((log(s->count) + asj_nfa_log_sector_tail(d->context->nfa, sum, n)) / log(10));
+    return out;
+}
+
 /* Step 2 for row y of the public field. */
 static void field_row(const asj_detection_run *d, int32_t y, asj_local_branch *out)
 {
+    enum { PART = 2 * ASJ_FIELD_BATCH };
     const asj_frame *frame = &d->detector->frame;
-    const asj_sectors *s = &d->detector->field.sectors;
-    asj_field_branch found[ASJ_LANES][ASJ_FIELD_BRANCHES];
-    for (int32_t x = 0; x < frame->width; x++) {
-        if (x % ASJ_LANES == 0)
-            d->context->ops->field_block(&d->detector->field, frame, x, y, asj_stage_scratch(d), found);
-        for (int i = 0; i < ASJ_FIELD_BRANCHES; i++) {
-            const asj_field_branch branch = found[x % ASJ_LANES][i];
-            asj_local_branch *to = &out[(size_t)x * ASJ_FIELD_BRANCHES + (size_t)i];
-            memset(to, 0, sizeof *to);
-            if (!branch.strength)
-                continue;
-            const int32_t k = (int32_t)((branch.angle * (int64_t)s->count + 32768) / 65536) % s->count, n = s->size[k];
-            const double strength = (double)branch.strength / ASJ_STRENGTH_ONE;
-            const double sum = n * ASJ_GAMMA_MEAN + strength * ASJ_GAMMA_SD * sqrt(n);
-            to->angle = (float)(branch.angle * (TWO_PI / 65536));
-            to->strength = (float)strength;
-            to->log10_nfa = (float)((log(s->count) + asj_nfa_log_sector_tail(d->context->nfa, sum, n)) / log(10));
-        }
+    asj_field_branch found[PART][ASJ_FIELD_BRANCHES];
+    asj_pixel pixels[PART];
+    for (int32_t first = 0; first < frame->width; first += PART) {
+        const int32_t count = frame->width - first < PART ? frame->width - first : PART;
+        for (int32_t i = 0; i < count; i++)
+            pixels[i] = (asj_pixel){first + i, y};
+        d->context->ops->field_pixels(&d->detector->field, frame, pixels, count, asj_stage_scratch(d), found);
+        for (int32_t i = 0; i < count; i++)
+            for (int b = 0; b < ASJ_FIELD_BRANCHES; b++)
+                *out++ = local_branch(d, found[i][b]);
     }
 }
 

@@ -60,8 +60,11 @@ asj_status asj_field_create(asj_context *context, const asj_detect_options *opti
     asj_status status = asj_sectors_create(&context->memory, options->field_radius, options->sector_width, s);
     if (status == ASJ_OK)
         status = asj_sector_plan_create(&context->memory, s, &field->plan);
+    if (status == ASJ_OK)
+        status = asj_sector_runs_create(&context->memory, s, &field->runs);
     if (status != ASJ_OK)
         return asj_fail(context, status, "no memory for the sectors of radius %d", (int)options->field_radius);
+    asj_sector_runs_places(&field->runs, s, field->place);
     const double log_p = log(options->field_epsilon / s->count);
     const uint16_t wanted = (uint16_t)lrint(options->candidate_strength * ASJ_STRENGTH_ONE);
     for (int32_t k = 0; k < s->count; k++) {
@@ -78,6 +81,7 @@ asj_status asj_field_create(asj_context *context, const asj_detect_options *opti
 
 void asj_field_free(asj_memory *memory, asj_field *field)
 {
+    asj_sector_runs_free(memory, &field->runs);
     asj_sector_plan_free(memory, &field->plan);
     asj_sectors_free(memory, &field->sectors);
 }
@@ -87,8 +91,8 @@ size_t asj_field_plane_stride(const asj_field *field)
     return (size_t)(ASJ_FIELD_TILE + 2 * field->sectors.radius + 31) / 32 * 32;
 }
 
-/* For a block: prefix sums, strengths, peaks, pairs. For a tile: a ring of gamma planes,
- * a row of the gradient, slots, strengths. */
+/* For a block: prefix sums, strengths, peaks, pairs. For a tile: a ring of gamma planes, a row of the gradient, slots, strengths.
+ * For pixels in vectors: gamma in runs, slots, strengths. */
 size_t asj_field_scratch(const asj_field *field)
 {
     const size_t count = (size_t)field->sectors.count, depth = 2 * (size_t)field->sectors.radius + 1;
@@ -97,7 +101,9 @@ size_t asj_field_scratch(const asj_field *field)
     const size_t ring = depth * 4 * (size_t)field->plan.family_count * stride * step;
     const size_t lists = (size_t)field->plan.slot_count + count + 2 * (size_t)field->suppress;
     const size_t tile = ring + 2 * stride * step + lists * ASJ_FIELD_TILE;
-    return ((block > tile ? block : tile) + 31) / 32 * 32;
+    const size_t pixels = ((size_t)field->runs.count * ASJ_SECTOR_RUN + lists) * ASJ_FIELD_BATCH;
+    const size_t most = block > tile ? block : tile;
+    return ((most > pixels ? most : pixels) + 31) / 32 * 32;
 }
 
 /* Loops over ASJ_LANES are written so that compilers turn them into a few vector instructions: 16-bit values, strengths below 2^15
@@ -182,6 +188,21 @@ void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, 
                 const int32_t shift = asj_field_shift(65536 / s->count, before[i], here[i], after[i]);
                 asj_field_insert(branches[i], (asj_field_branch){(uint16_t)(65536 * k / s->count + shift), (uint16_t)here[i]});
             }
+    }
+}
+
+void asj_field_pixels(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,
+                      asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
+{
+    asj_field_branch run[ASJ_LANES][ASJ_FIELD_BRANCHES];
+    for (int32_t i = 0, block = -1, row = -1; i < count; i++) {
+        const int32_t x = pixels[i].x, y = pixels[i].y;
+        if (x / ASJ_LANES != block || y != row) {
+            block = x / ASJ_LANES;
+            row = y;
+            asj_field_block(field, frame, block * ASJ_LANES, row, scratch, run);
+        }
+        memcpy(branches[i], run[x % ASJ_LANES], sizeof run[0]);
     }
 }
 

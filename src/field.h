@@ -4,6 +4,7 @@
 #define ASJ_SRC_FIELD_H
 
 #include "sector_plan.h"
+#include "sector_runs.h"
 
 #include <asj/field.h>
 
@@ -23,6 +24,8 @@ typedef struct asj_field_branch {
 typedef struct asj_field {
     asj_sectors sectors;
     asj_sector_plan plan;
+    asj_sector_runs runs;
+    int16_t place[ASJ_FIELD_MAX_OFFSETS];      /* of each offset in the runs */
     uint16_t keep[ASJ_FIELD_MAX_SECTORS];      /* least strength of a branch */
     uint16_t candidate[ASJ_FIELD_MAX_SECTORS]; /* least strength of a branch that makes a candidate */
     int32_t suppress;                          /* sectors to either side over which a branch must be the largest */
@@ -41,6 +44,15 @@ size_t asj_field_scratch(const asj_field *field);
 void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
                      asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES]);
 
+/* A pixel of the image. */
+typedef struct asj_pixel {
+    int32_t x, y;
+} asj_pixel;
+
+/* The branches at `count` pixels; neighbours in a row had best follow each other. */
+void asj_field_pixels(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,
+                      asj_field_branch (*branches)[ASJ_FIELD_BRANCHES]);
+
 /* Candidates for junctions among these pixels: bit i is set when pixel x + i has two strong branches that are neither parallel nor
  * opposite. */
 uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch);
@@ -57,6 +69,9 @@ asj_status asj_field_rows(asj_context *context, const asj_field *field, const as
                           uint16_t *scratch, size_t scratch_size, uint16_t *masks);
 
 /* ---- for the vector forms of the above ---- */
+
+/* Pixels that a vector form of asj_field_pixels() may work on at once; the scratch has room for them. */
+#define ASJ_FIELD_BATCH 32
 
 /* How far the vertex of the parabola through three neighbouring strengths is from the middle one, whose sector is `width` wide. The
  * maximum is larger than the one before, so the denominator is positive. */

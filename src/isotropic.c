@@ -83,7 +83,7 @@ static void measure_scratch(asj_isotropic *test)
         const size_t block = asj_sector_scratch(&entry->sectors) + count * ASJ_LANES;
         const size_t slots = (size_t)entry->plan.slot_count + count + 2 * (size_t)entry->suppress;
         test->scratch = block > test->scratch ? block : test->scratch;
-        const size_t in_runs = (size_t)entry->runs.count * ASJ_ISOTROPIC_RUN;
+        const size_t in_runs = (size_t)entry->runs.count * ASJ_SECTOR_RUN;
         offsets = in_runs > offsets ? in_runs : offsets;
         rest = slots > rest ? slots : rest;
     }
@@ -94,91 +94,19 @@ static void measure_scratch(asj_isotropic *test)
 /* Finds for each radius whose gammas it can share, and where they are there. */
 static asj_status share_offsets(asj_memory *memory, asj_isotropic *test)
 {
-    for (int32_t r = test->radius_count - 1; r >= 0; r--) {
+    asj_status status = ASJ_OK;
+    for (int32_t r = test->radius_count - 1; r >= 0 && status == ASJ_OK; r--) {
         asj_isotropic_radius *entry = &test->radii[r];
         entry->source = r;
         if (r + 1 < test->radius_count && test->radii[r + 1].sectors.gamma_bits == entry->sectors.gamma_bits)
             entry->source = test->radii[r + 1].source;
-        entry->from = asj_allocate(memory, 2 * (size_t)entry->sectors.offset_count, sizeof *entry->from);
-        if (!entry->from)
+        else
+            status = asj_sector_runs_create(memory, &entry->sectors, &entry->runs);
+        entry->place = asj_allocate(memory, (size_t)entry->sectors.offset_count, sizeof *entry->place);
+        if (!entry->place)
             return ASJ_ERROR_MEMORY;
-        entry->place = entry->from + entry->sectors.offset_count;
-        /* both lists are in order of angle, then distance */
-        const asj_sectors *all = &test->radii[entry->source].sectors, *some = &entry->sectors;
-        for (int32_t i = 0, j = 0; i < some->offset_count; i++, j++) {
-            while (all->dx[j] != some->dx[i] || all->dy[j] != some->dy[i])
-                j++;
-            entry->from[i] = (int16_t)j;
-        }
-    }
-    return ASJ_OK;
-}
-
-/* Half the number of pixels in a row of the disc, without the middle one. */
-static int32_t half_row(int32_t radius, int32_t dy)
-{
-    int32_t dx = 0;
-    while ((dx + 1) * (dx + 1) + dy * dy <= radius * radius)
-        dx++;
-    return dx;
-}
-
-static asj_status make_runs(asj_memory *memory, int32_t radius, asj_isotropic_runs *runs)
-{
-    for (int32_t dy = -radius; dy <= radius; dy++)
-        runs->count += (2 * half_row(radius, dy) + ASJ_ISOTROPIC_RUN) / ASJ_ISOTROPIC_RUN;
-    const size_t count = (size_t)runs->count;
-    runs->memory = asj_allocate_zero(memory, count, 4 * sizeof *runs->factors + 2 * sizeof(int16_t));
-    if (!runs->memory)
-        return ASJ_ERROR_MEMORY;
-    runs->factors = runs->memory;
-    runs->dx = (int16_t *)(runs->factors + 4 * count);
-    runs->dy = runs->dx + count;
-    int32_t r = 0;
-    for (int32_t dy = -radius; dy <= radius; dy++)
-        for (int32_t dx = -half_row(radius, dy); dx <= half_row(radius, dy); dx += ASJ_ISOTROPIC_RUN, r++) {
-            runs->dx[r] = (int16_t)dx;
-            runs->dy[r] = (int16_t)dy;
-        }
-    return ASJ_OK;
-}
-
-/* Places of the offsets in the runs of the radius that holds them. */
-static void find_places(asj_isotropic_radius *entry, const asj_isotropic_runs *runs)
-{
-    for (int32_t i = 0; i < entry->sectors.offset_count; i++) {
-        const int32_t dx = entry->sectors.dx[i], dy = entry->sectors.dy[i];
-        int32_t r = 0;
-        while (runs->dy[r] != dy || dx < runs->dx[r] || dx >= runs->dx[r] + ASJ_ISOTROPIC_RUN)
-            r++;
-        entry->place[i] = (int16_t)(r * ASJ_ISOTROPIC_RUN + dx - runs->dx[r]);
-    }
-}
-
-static void set_factors(const asj_isotropic_radius *entry)
-{
-    for (int32_t i = 0; i < entry->sectors.offset_count; i++) {
-        const asj_direction u = asj_sector_direction(&entry->sectors, i);
-        int16_t(*factors)[ASJ_ISOTROPIC_RUN] = entry->runs.factors + entry->place[i] / ASJ_ISOTROPIC_RUN * 4;
-        const int32_t at = entry->place[i] % ASJ_ISOTROPIC_RUN;
-        factors[0][at] = u.x;
-        factors[1][at] = u.y;
-        factors[2][at] = u.cross_x;
-        factors[3][at] = u.dot_y;
-    }
-}
-
-static asj_status arrange_runs(asj_memory *memory, asj_isotropic *test)
-{
-    asj_status status = ASJ_OK;
-    for (int32_t r = test->radius_count - 1; r >= 0 && status == ASJ_OK; r--) {
-        asj_isotropic_radius *entry = &test->radii[r];
-        if (entry->source == r)
-            status = make_runs(memory, entry->sectors.radius, &entry->runs);
         if (status == ASJ_OK)
-            find_places(entry, &test->radii[entry->source].runs);
-        if (status == ASJ_OK && entry->source == r)
-            set_factors(entry);
+            asj_sector_runs_places(&test->radii[entry->source].runs, &entry->sectors, entry->place);
     }
     return status;
 }
@@ -192,8 +120,6 @@ asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *
             status = make_radius(context, test, r, options->sector_width);
     if (status == ASJ_OK)
         status = share_offsets(&context->memory, test);
-    if (status == ASJ_OK)
-        status = arrange_runs(&context->memory, test);
     measure_scratch(test);
     test->max_branches = options->max_branches;
     test->log_epsilon = log(options->epsilon);
@@ -206,8 +132,8 @@ void asj_isotropic_free(asj_memory *memory, asj_isotropic *test)
 {
     for (int32_t i = 0; i <= ASJ_MAX_RADIUS; i++) {
         asj_release(memory, test->radii[i].tails);
-        asj_release(memory, test->radii[i].from);
-        asj_release(memory, test->radii[i].runs.memory);
+        asj_release(memory, test->radii[i].place);
+        asj_sector_runs_free(memory, &test->radii[i].runs);
         asj_release(memory, test->radii[i].least);
         asj_sector_plan_free(memory, &test->radii[i].plan);
         asj_sectors_free(memory, &test->radii[i].sectors);

@@ -17,24 +17,13 @@ typedef struct asj_isotropic_junction {
     double log_nfa;                      /* natural logarithm */
 } asj_isotropic_junction;
 
-/* The offsets of a radius in runs of neighbours in a row, some of which are not within the radius: those, and those of the centre,
- * have no direction. */
-#define ASJ_ISOTROPIC_RUN 8
-typedef struct asj_isotropic_runs {
-    int32_t count;
-    int16_t *dx, *dy;                      /* of the first offset of each run */
-    int16_t (*factors)[ASJ_ISOTROPIC_RUN]; /* four rows for each run: x, y, cross_x, dot_y of asj_direction */
-    void *memory;
-} asj_isotropic_runs;
-
 /* Constants of one radius. */
 typedef struct asj_isotropic_radius {
     asj_sectors sectors;
     asj_sector_plan plan;
     int32_t source;       /* index of the largest radius with the same unit vectors: its offsets hold those of this one, */
-    int16_t *from;        /* offset i of this one at from[i] */
-    int16_t *place;       /* and in the runs of that radius at place[i] */
-    asj_isotropic_runs runs; /* of a radius that is a source */
+    int16_t *place;       /* offset i in its runs at place[i] */
+    asj_sector_runs runs; /* of a radius that is a source */
     int32_t suppress;     /* sectors to either side over which a branch must be the largest */
     double straight;      /* two branches that open wider are an edge */
     const double **tails; /* for each sector: ln F(i / ASJ_TAIL_STEPS; J_k), i = 0, 1, .. */

@@ -18,7 +18,7 @@ static void fill_reference(asj_ops *ops)
     ops->gradient_slide = asj_gradient_slide;
     ops->gradient_normalise = asj_gradient_normalise;
     ops->field_tile = asj_field_tile;
-    ops->field_block = asj_field_block;
+    ops->field_pixels = asj_field_pixels;
     ops->isotropic_band = asj_isotropic_band;
     ops->line_sums = asj_line_sums_of;
     ops->line_profile = asj_line_profile_of;

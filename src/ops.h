@@ -42,11 +42,11 @@ typedef struct asj_ops {
     void (*gradient_normalise)(const asj_gradient_row *row, const uint16_t *norms, const uint16_t *low, const uint16_t *high,
                                int16_t *gx, int16_t *gy);
 
-    /* asj_field_tile() and asj_field_block() (field.h) */
+    /* asj_field_tile() and asj_field_pixels() (field.h) */
     void (*field_tile)(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs,
                        int32_t top, int32_t bottom, uint16_t *scratch, uint16_t *masks);
-    void (*field_block)(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y,
-                        uint16_t *scratch, asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES]);
+    void (*field_pixels)(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count,
+                         uint16_t *scratch, asj_field_branch (*branches)[ASJ_FIELD_BRANCHES]);
     /* asj_isotropic_band() (isotropic.h) */
     void (*isotropic_band)(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
                            uint16_t *scratch, asj_isotropic_junction *junctions);

@@ -39,18 +39,6 @@ void asj_scan_prepare(const asj_context *context, const asj_detect_options *opti
 void asj_scan_set_size(const asj_context *context, const asj_detect_options *options, int32_t width, int32_t height,
                        asj_scan *scan);
 
-/* A ray in whole numbers, as it is walked along. */
-typedef struct asj_ray_direction {
-    int64_t x, y;   /* start of the ray, 1/65536 px */
-    int64_t ux, uy; /* its unit vector, 2^-30 */
-    uint16_t angle; /* 1/65536 of a turn */
-} asj_ray_direction;
-
-asj_ray_direction asj_scan_direction(const asj_ray *ray);
-
-/* The last step of a walk: the axial length ends no farther behind the forward one than a crossing may be bridged. */
-void asj_scan_finish(const asj_scan *scan, asj_ray *ray);
-
 /* Follows `count` rays. */
 asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);
 

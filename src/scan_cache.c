@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-#define LEAST_BITS 8
-#define MOST_BITS 14      /* 4 MB */
-#define MOST_RUNS 131072  /* of all threads together: 32 MB */
+#define LEAST_BITS 10
+#define MOST_BITS 16       /* 1.3 MB */
+#define MOST_PIXELS 1048576 /* of all threads together: 20 MB */
 
 void asj_scan_cache_free(asj_memory *memory, asj_scan_cache *cache)
 {
@@ -16,9 +16,9 @@ void asj_scan_cache_free(asj_memory *memory, asj_scan_cache *cache)
 
 asj_status asj_scan_cache_prepare(asj_context *context, const asj_frame *frame, int32_t threads, asj_scan_cache *cache)
 {
-    const int64_t runs = (int64_t)frame->blocks * frame->height;
+    const int64_t visited = (int64_t)frame->width * frame->height / 16; /* mostly fewer */
     int32_t bits = LEAST_BITS;
-    while (bits < MOST_BITS && (int64_t)1 << bits < runs && (int64_t)threads << (bits + 1) <= MOST_RUNS)
+    while (bits < MOST_BITS && (int64_t)1 << bits < visited && (int64_t)threads << (bits + 1) <= MOST_PIXELS)
         bits++;
     const size_t count = (size_t)threads << bits;
     if (count > cache->capacity) {
@@ -27,7 +27,7 @@ asj_status asj_scan_cache_prepare(asj_context *context, const asj_frame *frame, 
         cache->branches = asj_allocate(&context->memory, count, sizeof *cache->branches);
         if (!cache->keys || !cache->branches) {
             asj_scan_cache_free(&context->memory, cache);
-            return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the local junctions of %zu runs", count);
+            return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the local junctions of %zu pixels", count);
         }
         cache->capacity = count;
     }

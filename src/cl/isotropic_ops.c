@@ -8,7 +8,7 @@
 
 /* As in the kernels. */
 #define RADIUS_NUMBERS 9
-#define RUN ASJ_ISOTROPIC_RUN
+#define RUN ASJ_SECTOR_RUN
 #define RUN_NUMBERS (2 + 4 * RUN)
 #define SECTOR_NUMBERS 7
 #define LANES 16
@@ -28,7 +28,7 @@ static size_t table_size(const asj_isotropic *test)
     return count;
 }
 
-static int32_t *add_runs(const asj_isotropic_runs *runs, int32_t *next)
+static int32_t *add_runs(const asj_sector_runs *runs, int32_t *next)
 {
     for (int32_t r = 0; r < runs->count; r++) {
         *next++ = runs->dx[r];
@@ -71,7 +71,7 @@ static asj_status load_table(asj_context *context, asj_cl_table *table, const as
     for (int32_t r = 0; r < test->radius_count; r++) {
         const asj_isotropic_radius *entry = &test->radii[r];
         const asj_sectors *s = &entry->sectors;
-        const asj_isotropic_runs *runs = &test->radii[entry->source].runs;
+        const asj_sector_runs *runs = &test->radii[entry->source].runs;
         const int shared = r > 0 && entry->source == test->radii[r - 1].source;
         int32_t *radius = numbers + RADIUS_NUMBERS * r;
         radius[0] = s->count;

@@ -4,6 +4,7 @@
  * CPU. */
 #include "detect.h"
 #include "overrides.h"
+#include "ray_walk.h"
 #include "state.h"
 
 #include <asj/device.h>
@@ -131,7 +132,7 @@ static asj_status send_rays(asj_context *context, struct asj_cl_scan *state, con
     scan_ray *to = state->host_rays.memory;
     for (size_t i = 0; i < count; i++) {
         memset(&to[i], 0, sizeof to[i]);
-        const asj_ray_direction way = asj_scan_direction(&rays[i]);
+        const asj_ray_direction way = asj_ray_walk_direction(&rays[i]);
         to[i].x = way.x;
         to[i].y = way.y;
         to[i].ux = (int32_t)way.ux;
@@ -149,7 +150,7 @@ static asj_status fetch_rays(asj_context *context, const asj_scan *scan, struct 
     for (size_t i = 0; i < count && status == ASJ_OK; i++) {
         rays[i].forward = from[i].forward;
         rays[i].axial = from[i].axial;
-        asj_scan_finish(scan, &rays[i]);
+        asj_ray_walk_finish(scan, &rays[i]);
     }
     return status;
 }

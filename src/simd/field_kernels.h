@@ -1,82 +1,48 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 2 in vectors: local junctions of a run, candidates of a tile. Part of kernels.h. */
+/* Step 2 in vectors: local junctions at some pixels, candidates of a tile. Part of kernels.h. */
 
-#define V_RUN (ASJ_LANES / V_LANES) /* vectors in a run */
 #define GROUP (V_LANES > 16 ? 2 : 4) /* vectors worked on at once: as many running sums stay in registers */
 #define GROUP_PIXELS (GROUP * V_LANES)
 
 typedef char tiles_are_whole_groups[ASJ_FIELD_TILE % GROUP_PIXELS == 0 ? 1 : -1];
 
-#if V_LANES <= ASJ_LANES
-/* The slots of asj_sector_plan for a run; gx, gy: at its first pixel. */
-static void run_slots(const asj_field *field, const int16_t *gx, const int16_t *gy, ptrdiff_t stride, uint16_t *slots)
+/* The branches at the pixels of a batch, whose strengths start at z. */
+static void find_branches(const asj_field *field, const int16_t *z, int32_t count,
+                          asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
 {
-    const asj_sectors *s = &field->sectors;
-    const asj_sector_plan *plan = &field->plan;
-    uint16_t *slot = slots;
-    vec sum[V_RUN];
-    for (int v = 0; v < V_RUN; v++)
-        sum[v] = v_zero();
-    for (int32_t j = 0, i = 0; j < plan->plain_count; j++, slot += ASJ_LANES) {
-        for (const int32_t end = plan->boundary[j]; i < end; i++) {
-            const ptrdiff_t at = s->dy[i] * stride + s->dx[i];
-            const int32_t *factors = s->factors[i];
-            const vec uy = v_set1_32(factors[0]), cross_x = v_set1_32(factors[1]);
-            const vec ux = v_set1_32(factors[2]), dot_y = v_set1_32(factors[3]);
-            for (int v = 0; v < V_RUN; v++) {
-                const vec x = v_load(gx + at + v * V_LANES), y = v_load(gy + at + v * V_LANES);
-                const vec cross = v_abs(v_sub(v_high(x, uy), v_high(y, cross_x)));
-                const vec dot = v_abs(v_sub(v_high(x, ux), v_high(y, dot_y)));
-                sum[v] = v_add(sum[v], v_sub_saturated(cross, dot)); /* gamma */
-            }
-        }
-        for (int v = 0; v < V_RUN; v++)
-            v_store(slot + v * V_LANES, sum[v]);
-    }
-    for (int32_t e = 0; e < plan->slot_count - plan->plain_count; e++, slot += ASJ_LANES)
-        for (int v = 0; v < V_RUN; v++)
-            v_store(slot + v * V_LANES, v_add(sum[v], v_load(slots + plan->extra[e] * ASJ_LANES + v * V_LANES)));
-}
-
-/* The peaks of sector k of a run, whose strengths start at z. */
-static inline void add_peaks(const asj_field *field, int32_t k, const int16_t *z,
-                             asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES])
-{
-    const int32_t angle = 65536 * k / field->sectors.count, width = 65536 / field->sectors.count;
-    const vec below = v_set1_32(field->limits[k][2]);
-    for (int v = 0; v < V_RUN; v++) {
-        const int16_t *here = z + v * V_LANES;
-        if (!v_any(v_greater(v_load(here), below)))
+    const uint32_t lanes = (uint32_t)(((uint64_t)1 << count) - 1);
+    const int32_t width = 65536 / field->sectors.count;
+    for (int32_t k = 0; k < field->sectors.count; k++, z += V_LANES) {
+        const int32_t angle = 65536 * k / field->sectors.count;
+        const vec below = v_set1_32(field->limits[k][2]);
+        if (!v_any(v_greater(v_load(z), below)))
             continue;
-        for (uint32_t bits = v_bits(peak(here, ASJ_LANES, field->suppress, below)); bits; bits &= bits - 1) {
+        for (uint32_t bits = v_bits(peak(z, V_LANES, field->suppress, below)) & lanes; bits; bits &= bits - 1) {
             const int i = __builtin_ctz(bits);
-            const int32_t shift = asj_field_shift(width, here[i - ASJ_LANES], here[i], here[i + ASJ_LANES]);
-            asj_field_insert(branches[v * V_LANES + i], (asj_field_branch){(uint16_t)(angle + shift), (uint16_t)here[i]});
+            const int32_t shift = asj_field_shift(width, z[i - V_LANES], z[i], z[i + V_LANES]);
+            asj_field_insert(branches[i], (asj_field_branch){(uint16_t)(angle + shift), (uint16_t)z[i]});
         }
     }
 }
 
-static void field_block(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
-                        asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES])
+static void field_pixels(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,
+                         asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
 {
     const asj_sectors *s = &field->sectors;
-    const asj_sector_plan *plan = &field->plan;
-    const ptrdiff_t at = y * frame->stride + x;
-    int16_t *z = (int16_t *)scratch + plan->slot_count * ASJ_LANES, *first = z + field->suppress * ASJ_LANES;
-    run_slots(field, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch);
-    for (int32_t k = 0; k < s->count; k++) {
-        const uint16_t *low = scratch + plan->low[k] * ASJ_LANES, *high = scratch + plan->high[k] * ASJ_LANES;
-        const vec mean = v_set1_32(field->limits[k][0]), scale = v_set1_32(field->limits[k][1]);
-        for (int v = 0; v < ASJ_LANES; v += V_LANES)
-            v_store(first + k * ASJ_LANES + v,
-                    v_high_unsigned(v_sub_saturated(v_sub(v_load(high + v), v_load(low + v)), mean), scale));
+    uint16_t *slots = scratch + (size_t)field->runs.count * SQUARE * V_LANES;
+    int16_t *z = (int16_t *)slots + (size_t)field->plan.slot_count * V_LANES;
+    memset(branches, 0, (size_t)count * sizeof *branches);
+    for (int32_t first = 0; first < count; first += V_LANES) {
+        const int32_t last = count - first < V_LANES ? count : first + V_LANES;
+        batch b = {0};
+        for (int32_t i = first; i < last; i++)
+            add_to_batch(&b, pixels[i].y * frame->stride + pixels[i].x);
+        fill_batch(&b);
+        batch_gammas(&field->runs, frame, &b, scratch);
+        batch_strengths(s, &field->plan, field->place, field->suppress, scratch, slots, z);
+        find_branches(field, z + field->suppress * V_LANES, b.count, branches + first);
     }
-    repeat_ends(z, s->count, field->suppress, ASJ_LANES);
-    memset(branches, 0, ASJ_LANES * sizeof *branches);
-    for (int32_t k = 0; k < s->count; k++)
-        add_peaks(field, k, first + k * ASJ_LANES, branches);
 }
-#endif
 
 /* The planes of asj_sector_plan for one row of pixels; used[f]: those of family f that are wanted. */
 static void gamma_planes(const asj_sector_plan *plan, const int16_t *used, const int16_t *gx, const int16_t *gy, int32_t width,

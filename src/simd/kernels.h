@@ -32,14 +32,13 @@ static inline vec peak(const int16_t *here, ptrdiff_t row, int32_t reach, vec be
 }
 
 #include "gradient_kernels.h"
+#include "batch_kernels.h"
 #include "field_kernels.h"
 #include "isotropic_kernels.h"
 
 void V_NAME(asj_ops)(asj_ops *ops)
 {
-#if V_LANES <= ASJ_LANES
-    ops->field_block = field_block;
-#endif
+    ops->field_pixels = field_pixels;
     ops->gradient_slide = gradient_slide;
     ops->gradient_normalise = gradient_normalise;
     ops->field_tile = field_tile;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* How far each stage is from what the machine can do.
  *
- * What a stage works on is counted while it runs, by wrappers around the operations of src/ops.h: pixels of tiles, runs of 16
- * pixels, candidates. Bytes and operations follow from that and from the tables of the sectors; each is stated beside its line
+ * What a stage works on is counted while it runs, by wrappers around the operations of src/ops.h: pixels of tiles, candidates,
+ * pixels that rays visit. Bytes and operations follow from that and from the tables of the sectors; each is stated beside its line
  * below.
  *
  * bytes       what must come from and go to memory if caches were perfect: every sample of a plane that the stage looks at, once
@@ -27,7 +27,7 @@ typedef struct work {
     double tile_pixels;  /* whose field is evaluated for candidates */
     double plane_pixels; /* with the rows and columns around the tiles */
     double candidates, candidate_runs, candidate_branches;
-    double runs;         /* of 16 pixels, whose branches are wanted by rays */
+    double visited;      /* pixels whose branches are wanted by rays */
     double located;      /* junctions that go on to the scan */
 } work;
 
@@ -57,11 +57,11 @@ static void count_tile(const asj_field *field, const asj_frame *frame, int32_t r
     wrapped.field_tile(field, frame, run, runs, top, bottom, scratch, masks);
 }
 
-static void count_block(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
-                        asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES])
+static void count_pixels(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,
+                         asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
 {
-    add(&counted.runs, 1);
-    wrapped.field_block(field, frame, x, y, scratch, branches);
+    add(&counted.visited, count);
+    wrapped.field_pixels(field, frame, pixels, count, scratch, branches);
 }
 
 static void count_band(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
@@ -164,12 +164,12 @@ static cost locate_cost(const asj_detection *found, const work *w, double pixels
 
 static cost scan_cost(const asj_field *field, const work *w, double pixels)
 {
-    /* the field of the runs that rays visit: gradients around them in, four branches for each pixel out */
+    /* the field of the pixels that rays visit: gradients around them in, four branches for each pixel out */
     const asj_sectors *s = &field->sectors;
-    const double around = (ASJ_LANES + 2.0 * s->radius) * (2.0 * s->radius + 1);
-    const double bytes = 4 * least(pixels, w->runs * around) + w->runs * ASJ_LANES * ASJ_FIELD_BRANCHES * sizeof(asj_field_branch);
+    const double around = (2.0 * s->radius + 1) * (2.0 * s->radius + 1);
+    const double bytes = 4 * least(pixels, w->visited * around) + w->visited * ASJ_FIELD_BRANCHES * sizeof(asj_field_branch);
     const double operations = OFFSET_OPERATIONS * s->offset_count + sector_operations(s, field->suppress);
-    return (cost){bytes, operations * w->runs * ASJ_LANES, 0};
+    return (cost){bytes, operations * w->visited, 0};
 }
 
 static cost refine_cost(const asj_detection *found, const work *w, double pixels)
@@ -207,7 +207,7 @@ static int count_work(asj_context *context, const asj_image *image, const asj_de
     memset(&counted, 0, sizeof counted);
     wrapped = *context->ops;
     context->ops->field_tile = count_tile;
-    context->ops->field_block = count_block;
+    context->ops->field_pixels = count_pixels;
     context->ops->isotropic_band = count_band;
     context->options.dump = count_points;
     const asj_status status = asj_detect(context, image, options, &found);
@@ -218,7 +218,7 @@ static int count_work(asj_context *context, const asj_image *image, const asj_de
     all_costs(context, found, &counted, costs);
     printf("%.0f candidates, %.0f isotropic junctions, %.0f located, %u junctions; %.2f %% of the pixels visited by rays\n\n",
            counted.candidates, (double)found->isotropic, counted.located, (unsigned)found->junction_count,
-           counted.runs * ASJ_LANES / ((double)image->width * image->height) * 100);
+           counted.visited / ((double)image->width * image->height) * 100);
     asj_detection_free(&found);
     return 0;
 }

@@ -61,19 +61,40 @@ static asj_status run_band(asj_context *context, const subject *s, uint16_t *scr
     return ASJ_OK;
 }
 
-static size_t block_size(const subject *s)
+enum { MOST_PIXELS = 100 };
+
+/* Not a whole number of vectors, mostly. */
+static int32_t pixel_count(const subject *s)
 {
-    (void)s;
-    return ASJ_LANES * ASJ_FIELD_BRANCHES * sizeof(asj_field_branch);
+    synth_random random = s->random;
+    return 1 + (int32_t)(synth_random_unit(&random) * MOST_PIXELS);
 }
 
-static asj_status run_block(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+static double some_pixels(const subject *s)
 {
-    int32_t x, y;
-    asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES];
-    choose(s, &x, &y);
-    context->ops->field_block(&s->field, &s->frame, x, y, scratch, branches);
-    memcpy(output, branches, sizeof branches);
+    return pixel_count(s);
+}
+
+static size_t pixels_size(const subject *s)
+{
+    return (size_t)pixel_count(s) * ASJ_FIELD_BRANCHES * sizeof(asj_field_branch);
+}
+
+/* From anywhere, corners and neighbours among them. */
+static asj_status run_pixels(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    synth_random random = s->random;
+    asj_pixel pixels[MOST_PIXELS];
+    const int32_t count = pixel_count(s), right = s->frame.width - 1, bottom = s->frame.height - 1;
+    for (int32_t i = 0; i < count; i++) {
+        const int32_t x = (int32_t)(synth_random_unit(&random) * s->frame.width);
+        pixels[i] = (asj_pixel){x, (int32_t)(synth_random_unit(&random) * s->frame.height)};
+        if (i % 8 == 7)
+            pixels[i] = (asj_pixel){i & 8 ? right : 0, i & 16 ? bottom : 0};
+        else if (i % 3 == 2)
+            pixels[i] = (asj_pixel){pixels[i - 1].x < right ? pixels[i - 1].x + 1 : 0, pixels[i - 1].y};
+    }
+    context->ops->field_pixels(&s->field, &s->frame, pixels, count, scratch, output);
     return ASJ_OK;
 }
 
@@ -292,7 +313,7 @@ static double one_line(const subject *s)
 const operation operations[] = {
     {"luma", 0, luma_size, luma_pixels, NULL, run_luma},
     {"gradient", 1, planes_size, all_pixels, step_1_bytes, run_gradient},
-    {"field block", 0, block_size, one_run, NULL, run_block},
+    {"field pixels", 0, pixels_size, some_pixels, NULL, run_pixels},
     {"isotropic band", 0, band_size, band_pixels, NULL, run_band},
     {"line sums", 0, line_sums_size, one_run, NULL, run_line_sums},
     {"line profile", 0, line_profile_size, one_run, NULL, run_line_profile},

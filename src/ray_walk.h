@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* One ray of step 4, step by step: which arc it has to look at next, and what follows from it. */
+#ifndef ASJ_SRC_RAY_WALK_H
+#define ASJ_SRC_RAY_WALK_H
+
+#include "scan.h"
+
+#define ASJ_MAX_ARC 7 /* 2 arc_half_width + 1 */
+
+/* A ray in whole numbers, as it is walked along. */
+typedef struct asj_ray_direction {
+    int64_t x, y;   /* start of the ray, 1/65536 px */
+    int64_t ux, uy; /* its unit vector, 2^-30 */
+    uint16_t angle; /* 1/65536 of a turn */
+} asj_ray_direction;
+
+/* A sample of an arc: its pixel, and the direction a_d to it, 1 = 16384. */
+typedef struct asj_arc_sample {
+    int64_t x, y;
+    int32_t cosine, sine;
+} asj_arc_sample;
+
+/* Sums over the arc at one radius. */
+typedef struct asj_arc_sums {
+    int32_t forward, ahead, axial; /* of the forward branches; of those among them that point ahead; of the axial branches */
+} asj_arc_sums;
+
+/* What a walk along a ray has come to. */
+typedef struct asj_ray_progress {
+    int32_t forward_failures, ahead_passes, ahead_failures, axial_failures; /* in a row */
+} asj_ray_progress;
+
+typedef struct asj_ray_walk {
+    asj_ray *ray;
+    asj_ray_direction way;
+    int32_t r;       /* the step to take */
+    int32_t looked;  /* the last step that is taken by itself, since a stride to it has failed */
+    int strides;     /* whether the arc asked for is some steps ahead */
+    asj_arc_sums far; /* of the arc at `looked` */
+    asj_ray_progress progress;
+} asj_ray_walk;
+
+void asj_ray_walk_start(asj_ray *ray, asj_ray_walk *walk);
+
+/* The radius of the arc that is to be looked at next. */
+int32_t asj_ray_walk_next(const asj_scan *scan, const asj_frame *frame, asj_ray_walk *walk);
+
+/* The samples of the arc at radius r, 2 half_width + 1 of them. */
+void asj_ray_walk_samples(const asj_scan *scan, const asj_ray_walk *walk, int32_t r, asj_arc_sample *samples);
+
+/* The sums of an arc; branches[i]: the local junction at sample i, all of strength 0 outside the image. */
+asj_arc_sums asj_ray_walk_sums(const asj_scan *scan, const asj_ray_walk *walk, const asj_arc_sample *samples,
+                               asj_field_branch (*branches)[ASJ_FIELD_BRANCHES]);
+
+/* Takes the arc that asj_ray_walk_next() asked for; 0 when the ray ends, whose lengths are set then. */
+int asj_ray_walk_take(const asj_scan *scan, const asj_arc_sums *sums, asj_ray_walk *walk);
+
+asj_ray_direction asj_ray_walk_direction(const asj_ray *ray);
+
+/* The last step of a walk: the axial length ends no farther behind the forward one than a crossing may be bridged. */
+void asj_ray_walk_finish(const asj_scan *scan, asj_ray *ray);
+
+#endif

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Strengths of all sectors at pixels that are no neighbours, in vectors. Part of kernels.h.
+ *
+ * Gammas are computed for 8 neighbouring offsets of one pixel at once, which are contiguous in the image, for V_LANES pixels from
+ * anywhere; squares of 8 x 8 are then turned round, and from there on a vector holds V_LANES pixels. */
+
+#define SQUARE ASJ_SECTOR_RUN
+#define SQUARES (V_LANES / SQUARE) /* side by side in a vector */
+
+/* Pixels to work on together. */
+typedef struct batch {
+    int32_t count;
+    ptrdiff_t at[SQUARE][SQUARES]; /* of pixel 8 j + i, in the planes, at [i][j] */
+} batch;
+
+static inline void add_to_batch(batch *b, ptrdiff_t at)
+{
+    b->at[b->count % SQUARE][b->count / SQUARE] = at;
+    b->count++;
+}
+
+/* Unused lanes look where another looks. */
+static inline void fill_batch(batch *b)
+{
+    for (int32_t i = b->count; i < V_LANES; i++)
+        b->at[i % SQUARE][i / SQUARE] = b->at[0][0];
+}
+
+/* Columns become rows, in each 128 bits. */
+static inline void turn_square(vec v[SQUARE])
+{
+    vec t[SQUARE];
+    for (int i = 0; i < 4; i++) {
+        t[2 * i] = v_interleave_low(v[2 * i], v[2 * i + 1]);
+        t[2 * i + 1] = v_interleave_high(v[2 * i], v[2 * i + 1]);
+    }
+    for (int i = 0; i < 8; i += 4)
+        for (int j = 0; j < 2; j++) {
+            v[i + 2 * j] = v_interleave32_low(t[i + j], t[i + j + 2]);
+            v[i + 2 * j + 1] = v_interleave32_high(t[i + j], t[i + j + 2]);
+        }
+    for (int i = 0; i < 4; i++) {
+        t[2 * i] = v_interleave64_low(v[i], v[i + 4]);
+        t[2 * i + 1] = v_interleave64_high(v[i], v[i + 4]);
+    }
+    for (int i = 0; i < SQUARE; i++)
+        v[i] = t[i];
+}
+
+/* gamma at each offset of all runs. */
+static void batch_gammas(const asj_sector_runs *runs, const asj_frame *frame, const batch *b, uint16_t *gamma)
+{
+    for (int32_t r = 0; r < runs->count; r++, gamma += SQUARE * V_LANES) {
+        const ptrdiff_t to = runs->dy[r] * frame->stride + runs->dx[r];
+        const int16_t *gx = frame->gradient_x + to, *gy = frame->gradient_y + to;
+        int16_t(*const factors)[SQUARE] = runs->factors + 4 * r;
+        const vec ux = v_load_repeated(factors[0]), uy = v_load_repeated(factors[1]);
+        const vec cross_x = v_load_repeated(factors[2]), dot_y = v_load_repeated(factors[3]);
+        vec v[SQUARE];
+        for (int i = 0; i < SQUARE; i++) {
+            const vec x = v_load_places(gx, b->at[i]), y = v_load_places(gy, b->at[i]);
+            const vec cross = v_abs(v_sub(v_high(x, uy), v_high(y, cross_x)));
+            const vec dot = v_abs(v_sub(v_high(x, ux), v_high(y, dot_y)));
+            v[i] = v_sub_saturated(cross, dot);
+        }
+        turn_square(v);
+        for (int i = 0; i < SQUARE; i++)
+            v_store(gamma + i * V_LANES, v[i]);
+    }
+}
+
+/* Slots of asj_sector_plan, then strengths, with `suppress` sectors repeated at either end. `place`: of each offset among the
+ * gammas. */
+static void batch_strengths(const asj_sectors *s, const asj_sector_plan *plan, const int16_t *place, int32_t suppress,
+                            const uint16_t *gamma, uint16_t *slots, int16_t *z)
+{
+    vec total = v_zero();
+    uint16_t *slot = slots;
+    for (int32_t j = 0, i = 0; j < plan->plain_count; j++, slot += V_LANES) {
+        vec sum = v_zero();
+        for (const int32_t end = plan->boundary[j]; i < end; i++)
+            sum = v_add(sum, v_load(gamma + place[i] * V_LANES));
+        total = v_add(total, sum);
+        v_store(slot, total);
+    }
+    for (int32_t e = 0; e < plan->slot_count - plan->plain_count; e++, slot += V_LANES)
+        v_store(slot, v_add(total, v_load(slots + plan->extra[e] * V_LANES)));
+    for (int32_t k = 0; k < s->count; k++) {
+        const vec low = v_load(slots + plan->low[k] * V_LANES), high = v_load(slots + plan->high[k] * V_LANES);
+        v_store(z + (k + suppress) * V_LANES, v_strength(v_sub(high, low), s->mean[k], s->scale[k]));
+    }
+    repeat_ends(z, s->count, suppress, V_LANES);
+}
