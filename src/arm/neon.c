@@ -23,6 +23,7 @@ static inline vec v_sub_saturated(vec a, vec b)
 }
 static inline vec v_abs(vec a) { return vabsq_s16(a); }
 static inline vec v_max(vec a, vec b) { return vmaxq_s16(a, b); }
+static inline vec v_min(vec a, vec b) { return vminq_s16(a, b); }
 /* floor(a b / 2^15) saturates for a = b = -2^15 only, which does not occur */
 static inline vec v_high(vec a, vec b) { return vshrq_n_s16(vqdmulhq_s16(a, b), 1); }
 static inline vec v_high_unsigned(vec a, vec b)
@@ -33,6 +34,7 @@ static inline vec v_high_unsigned(vec a, vec b)
 }
 static inline vec v_and(vec a, vec b) { return vandq_s16(a, b); }
 static inline vec v_or(vec a, vec b) { return vorrq_s16(a, b); }
+static inline vec v_xor(vec a, vec b) { return veorq_s16(a, b); }
 /* -1 where a > b, and where not a > b, and b */
 static inline vec v_greater(vec a, vec b) { return vreinterpretq_s16_u16(vcgtq_s16(a, b)); }
 static inline vec v_not_and(vec a, vec b) { return vbicq_s16(b, a); }
@@ -87,6 +89,8 @@ static inline vec v_negative32(vec a) { return from32(vshrq_n_s32(to32(a), 31));
 /* the lower halves of all lanes, the higher ones; in the order that v_interleave_ takes apart */
 static inline vec v_pack_low(vec a, vec b) { return vuzp1q_s16(a, b); }
 static inline vec v_pack_high(vec a, vec b) { return vuzp2q_s16(a, b); }
+/* such a pack of a and b as they came from memory, put into memory's order */
+static inline vec v_in_order(vec packed) { return packed; }
 /* whole parts of sqrt(a) + more, of a / b, in single precision */
 static inline vec v_root(vec a, float more)
 {

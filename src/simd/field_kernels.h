@@ -208,6 +208,16 @@ static void tile_row(const tile *t, int32_t runs, uint16_t *masks)
     }
 }
 
+/* Takes a row apart: the even ones of 2 `count` numbers, and the odd ones. */
+static void split_row(const int16_t *row, int32_t count, int16_t *even, int16_t *odd)
+{
+    for (int32_t i = 0; i < count; i += V_LANES) {
+        const vec a = v_load(row + 2 * i), b = v_load(row + 2 * i + V_LANES);
+        v_store(even + i, v_in_order(v_pack_low(a, b)));
+        v_store(odd + i, v_in_order(v_pack_high(a, b)));
+    }
+}
+
 /* Planes of row y into their place in the ring; gx, gy: at the first column of the left margin; `width`: columns of each kind. */
 static void fill_planes(const tile *t, int32_t y, const int16_t *gx, const int16_t *gy, int32_t width)
 {
@@ -215,23 +225,18 @@ static void fill_planes(const tile *t, int32_t y, const int16_t *gx, const int16
     const int32_t step = t->field->step, depth = 2 * t->field->sectors.radius + 1;
     const size_t half = t->stride / (size_t)step, row = t->stride * 4 * (size_t)plan->family_count;
     uint16_t *planes = t->ring + (size_t)((y + depth) % depth) * row;
-    int16_t used[ASJ_FIELD_MAX_OFFSETS];
+    int16_t used[ASJ_FIELD_MAX_OFFSETS], *x_row = t->row, *y_row = x_row + t->stride;
+    if (step > 1) {
+        split_row(gx, width, x_row, x_row + half);
+        split_row(gy, width, y_row, y_row + half);
+    }
     for (int32_t column = 0; column < step; column++) {
         for (int32_t f = 0; f < plan->family_count; f++) {
             const int both = plan->used[0][f] | plan->used[1][f];
             used[f] = (int16_t)(step > 1 ? plan->used[y & 1][f] >> 4 * column & 15 : (both | both >> 4) & 15);
         }
-        if (step > 1) {
-            const int32_t whole = (width + V_LANES - 1) / V_LANES * V_LANES;
-            int16_t *x_row = t->row, *y_row = x_row + half;
-            for (int32_t i = 0; i < whole; i++) {
-                x_row[i] = gx[step * i + column];
-                y_row[i] = gy[step * i + column];
-            }
-            gamma_planes(plan, used, x_row, y_row, width, t->stride, planes + (size_t)column * half);
-        } else {
-            gamma_planes(plan, used, gx, gy, width, t->stride, planes);
-        }
+        const size_t at = (size_t)column * half;
+        gamma_planes(plan, used, step > 1 ? x_row + at : gx, step > 1 ? y_row + at : gy, width, t->stride, planes + at);
     }
 }
 

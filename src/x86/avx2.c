@@ -23,10 +23,12 @@ static inline vec v_sub(vec a, vec b) { return _mm256_sub_epi16(a, b); }
 static inline vec v_sub_saturated(vec a, vec b) { return _mm256_subs_epu16(a, b); }
 static inline vec v_abs(vec a) { return _mm256_abs_epi16(a); }
 static inline vec v_max(vec a, vec b) { return _mm256_max_epi16(a, b); }
+static inline vec v_min(vec a, vec b) { return _mm256_min_epi16(a, b); }
 static inline vec v_high(vec a, vec b) { return _mm256_mulhi_epi16(a, b); }
 static inline vec v_high_unsigned(vec a, vec b) { return _mm256_mulhi_epu16(a, b); }
 static inline vec v_and(vec a, vec b) { return _mm256_and_si256(a, b); }
 static inline vec v_or(vec a, vec b) { return _mm256_or_si256(a, b); }
+static inline vec v_xor(vec a, vec b) { return _mm256_xor_si256(a, b); }
 /* -1 where a > b, and where not a > b, and b */
 static inline vec v_greater(vec a, vec b) { return _mm256_cmpgt_epi16(a, b); }
 static inline vec v_not_and(vec a, vec b) { return _mm256_andnot_si256(a, b); }
@@ -69,6 +71,8 @@ static inline vec v_pack_low(vec a, vec b)
     return _mm256_packus_epi32(_mm256_and_si256(a, half), _mm256_and_si256(b, half));
 }
 static inline vec v_pack_high(vec a, vec b) { return _mm256_packs_epi32(_mm256_srai_epi32(a, 16), _mm256_srai_epi32(b, 16)); }
+/* such a pack of a and b as they came from memory, put into memory's order */
+static inline vec v_in_order(vec packed) { return _mm256_permute4x64_epi64(packed, 0xd8); }
 /* whole parts of sqrt(a) + more, of a / b, in single precision */
 static inline vec v_root(vec a, float more)
 {

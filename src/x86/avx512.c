@@ -25,10 +25,12 @@ static inline vec v_sub(vec a, vec b) { return _mm512_sub_epi16(a, b); }
 static inline vec v_sub_saturated(vec a, vec b) { return _mm512_subs_epu16(a, b); }
 static inline vec v_abs(vec a) { return _mm512_abs_epi16(a); }
 static inline vec v_max(vec a, vec b) { return _mm512_max_epi16(a, b); }
+static inline vec v_min(vec a, vec b) { return _mm512_min_epi16(a, b); }
 static inline vec v_high(vec a, vec b) { return _mm512_mulhi_epi16(a, b); }
 static inline vec v_high_unsigned(vec a, vec b) { return _mm512_mulhi_epu16(a, b); }
 static inline vec v_and(vec a, vec b) { return _mm512_and_si512(a, b); }
 static inline vec v_or(vec a, vec b) { return _mm512_or_si512(a, b); }
+static inline vec v_xor(vec a, vec b) { return _mm512_xor_si512(a, b); }
 /* -1 where a > b, and where not a > b, and b */
 static inline vec v_greater(vec a, vec b) { return _mm512_movm_epi16(_mm512_cmpgt_epi16_mask(a, b)); }
 static inline vec v_not_and(vec a, vec b) { return _mm512_andnot_si512(a, b); }
@@ -67,6 +69,11 @@ static inline vec v_pack_low(vec a, vec b)
     return _mm512_packus_epi32(_mm512_and_si512(a, half), _mm512_and_si512(b, half));
 }
 static inline vec v_pack_high(vec a, vec b) { return _mm512_packs_epi32(_mm512_srai_epi32(a, 16), _mm512_srai_epi32(b, 16)); }
+/* such a pack of a and b as they came from memory, put into memory's order */
+static inline vec v_in_order(vec packed)
+{
+    return _mm512_permutexvar_epi64(_mm512_set_epi64(7, 5, 3, 1, 6, 4, 2, 0), packed);
+}
 /* whole parts of sqrt(a) + more, of a / b, in single precision */
 static inline vec v_root(vec a, float more)
 {

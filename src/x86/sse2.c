@@ -20,10 +20,12 @@ static inline vec v_sub(vec a, vec b) { return _mm_sub_epi16(a, b); }
 static inline vec v_sub_saturated(vec a, vec b) { return _mm_subs_epu16(a, b); }
 static inline vec v_abs(vec a) { return _mm_max_epi16(a, _mm_sub_epi16(_mm_setzero_si128(), a)); }
 static inline vec v_max(vec a, vec b) { return _mm_max_epi16(a, b); }
+static inline vec v_min(vec a, vec b) { return _mm_min_epi16(a, b); }
 static inline vec v_high(vec a, vec b) { return _mm_mulhi_epi16(a, b); }
 static inline vec v_high_unsigned(vec a, vec b) { return _mm_mulhi_epu16(a, b); }
 static inline vec v_and(vec a, vec b) { return _mm_and_si128(a, b); }
 static inline vec v_or(vec a, vec b) { return _mm_or_si128(a, b); }
+static inline vec v_xor(vec a, vec b) { return _mm_xor_si128(a, b); }
 /* -1 where a > b, and where not a > b, and b */
 static inline vec v_greater(vec a, vec b) { return _mm_cmpgt_epi16(a, b); }
 static inline vec v_not_and(vec a, vec b) { return _mm_andnot_si128(a, b); }
@@ -69,6 +71,8 @@ static inline vec v_pack_low(vec a, vec b)
     return _mm_packs_epi32(_mm_srai_epi32(_mm_slli_epi32(a, 16), 16), _mm_srai_epi32(_mm_slli_epi32(b, 16), 16));
 }
 static inline vec v_pack_high(vec a, vec b) { return _mm_packs_epi32(_mm_srai_epi32(a, 16), _mm_srai_epi32(b, 16)); }
+/* such a pack of a and b as they came from memory, put into memory's order */
+static inline vec v_in_order(vec packed) { return packed; }
 /* whole parts of sqrt(a) + more, of a / b, in single precision */
 static inline vec v_root(vec a, float more)
 {
