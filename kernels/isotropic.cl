@@ -4,7 +4,7 @@
  * isotropic_batches, a work item for LANES candidates, for processors. Planes of the frame as in gradient.cl.
  *
  * A peak is one number: its sum in the upper half, its sector in the lower; 0 = none. Those of candidate c for radius r go to
- * peaks[(c * radii + r) * most], in the order of asj_isotropic_insert(). A candidate is x in the lower half, y in the upper.
+ * peaks[(c * radii + r) * most], in the order of asj_isotropic_judge(). A candidate is x in the lower half, y in the upper.
  *
  * The table, in ints (src/cl/isotropic_ops.c): RADIUS_INTS for each radius, which say where in the table the rest is. Gammas are
  * held by runs of RUN neighbours in a row (asj_sector_runs). */
@@ -209,7 +209,7 @@ static uint16 put(uint16 *place, uint16 next)
     return select(next, old, larger);
 }
 
-/* The five first peaks of each lane, in the order of asj_isotropic_insert(), one after the other. */
+/* The five first peaks of each lane, in the order of asj_isotropic_judge(), one after the other. */
 static void batch_peaks(__global const int *radius, __global const int *sector, __local const ushort16 *slots,
                         __local const short16 *strength, __local uint16 *list)
 {

@@ -53,7 +53,7 @@ static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t
     if (status != ASJ_OK)
         return status;
     entry->suppress = (int32_t)lrint(tau / radius * entry->sectors.count / TWO_PI);
-    entry->straight = TWO_PI / 2 - 2 * tau / radius;
+    entry->straight = (int32_t)((0.5 - tau / radius / (TWO_PI / 2)) * entry->sectors.count);
     entry->tails = asj_allocate(&context->memory, (size_t)entry->sectors.count, sizeof *entry->tails);
     if (!entry->tails)
         return ASJ_ERROR_MEMORY;
@@ -198,7 +198,8 @@ void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, in
         set_least(test, &test->radii[r]);
 }
 
-int32_t asj_isotropic_insert(asj_isotropic_peak *peaks, int32_t count, int32_t most, asj_isotropic_peak peak)
+/* Puts a peak into a list of at most `most`, ordered by sum; of equals the one put in first comes first. Returns the new count. */
+static int32_t insert(asj_isotropic_peak *peaks, int32_t count, int32_t most, asj_isotropic_peak peak)
 {
     for (int32_t i = 0; i < count; i++)
         if (peak.sum > peaks[i].sum) {
@@ -228,44 +229,57 @@ static int32_t find_peaks(const asj_isotropic_radius *entry, const uint16_t *sum
             largest = z[k] > z[left] && z[k] >= z[right];
         }
         if (largest)
-            found = asj_isotropic_insert(peaks, found, most, (asj_isotropic_peak){k, sums[(size_t)k * ASJ_LANES], z[k]});
+            found = insert(peaks, found, most, (asj_isotropic_peak){k, sums[(size_t)k * ASJ_LANES], z[k]});
     }
     return found;
 }
 
-/* Angle between two sectors, in [0, pi]. */
-static double opening(const asj_sectors *s, int32_t a, int32_t b)
+/* From one sector to the other, the shorter way round. */
+static int32_t sectors_apart(const asj_sectors *s, int32_t a, int32_t b)
 {
-    int32_t d = a > b ? a - b : b - a;
-    if (2 * d > s->count)
-        d = s->count - d;
-    return TWO_PI * d / s->count;
+    const int32_t d = a > b ? a - b : b - a;
+    return 2 * d > s->count ? s->count - d : d;
+}
+
+/* ln NFA of the first m branches. */
+static double log_alarms(const asj_isotropic *test, const asj_isotropic_radius *entry, const asj_isotropic_peak *peaks, int32_t m,
+                         double t)
+{
+    double log_nfa = test->log_tests[m];
+    for (int32_t i = 0; i < m; i++)
+        log_nfa += log_tail(entry->tails[peaks[i].sector], t);
+    return log_nfa;
 }
 
 void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *entry, const asj_isotropic_peak *peaks,
                          int32_t count, asj_isotropic_junction *best)
 {
     const asj_sectors *s = &entry->sectors;
+    const double unit = 1.0 / (1 << s->gamma_bits);
+    double least = best->branch_count ? best->log_nfa : HUGE_VAL;
+    int32_t branches = 0;
     for (int32_t m = 2; m <= count; m++) {
-        if (m == 2 && opening(s, peaks[0].sector, peaks[1].sector) > entry->straight)
+        if (m == 2 && sectors_apart(s, peaks[0].sector, peaks[1].sector) > entry->straight)
             continue;
         if (peaks[m - 1].sum < entry->least_sum[m]) /* also when so many branches do not fit at any radius */
             continue;
-        double t = (double)peaks[m - 1].sum / (1 << s->gamma_bits), log_nfa = test->log_tests[m];
-        if (best->branch_count && t <= entry->lowest_end &&
-            log_nfa + m * log_tail(entry->lowest_tail, t) - ROUNDING > best->log_nfa)
+        const double t = peaks[m - 1].sum * unit;
+        if (t <= entry->lowest_end && test->log_tests[m] + m * log_tail(entry->lowest_tail, t) - ROUNDING > least)
             continue;
-        for (int32_t i = 0; i < m; i++)
-            log_nfa += log_tail(entry->tails[peaks[i].sector], t);
-        if (log_nfa > test->log_epsilon || (best->branch_count && log_nfa >= best->log_nfa))
+        const double log_nfa = log_alarms(test, entry, peaks, m, t);
+        if (log_nfa > test->log_epsilon || log_nfa >= least)
             continue;
-        best->log_nfa = log_nfa;
-        best->radius = (uint16_t)s->radius;
-        best->branch_count = (uint16_t)m;
-        for (int32_t i = 0; i < m; i++) {
-            best->angle[i] = (uint16_t)(65536 * peaks[i].sector / s->count);
-            best->strength[i] = peaks[i].strength;
-        }
+        least = log_nfa;
+        branches = m;
+    }
+    if (branches == 0)
+        return;
+    best->log_nfa = least;
+    best->radius = (uint16_t)s->radius;
+    best->branch_count = (uint16_t)branches;
+    for (int32_t i = 0; i < branches; i++) {
+        best->angle[i] = (uint16_t)(65536 * peaks[i].sector / s->count);
+        best->strength[i] = peaks[i].strength;
     }
 }
 
@@ -363,11 +377,15 @@ static int by_branches(const void *a, const void *b)
 static void take(uint8_t *taken, int32_t width, int32_t height, int32_t x, int32_t y, double radius)
 {
     const size_t row_bytes = ((size_t)width + 7) / 8;
-    const int32_t reach = (int32_t)radius;
-    for (int32_t dy = -reach; dy <= reach; dy++)
-        for (int32_t dx = -reach; dx <= reach; dx++)
-            if (dx * dx + dy * dy <= radius * radius && x + dx >= 0 && x + dx < width && y + dy >= 0 && y + dy < height)
-                taken[(size_t)(y + dy) * row_bytes + (size_t)((x + dx) / 8)] |= (uint8_t)(1 << (x + dx) % 8);
+    const int32_t reach = (int32_t)radius, top = y > reach ? y - reach : 0, bottom = y + reach < height ? y + reach : height - 1;
+    for (int32_t row = top; row <= bottom; row++) {
+        int32_t half = 0;
+        while ((half + 1) * (half + 1) + (row - y) * (row - y) <= radius * radius)
+            half++;
+        const int32_t right = x + half < width ? x + half : width - 1;
+        for (int32_t column = x > half ? x - half : 0; column <= right; column++)
+            taken[(size_t)row * row_bytes + (size_t)(column / 8)] |= (uint8_t)(1 << column % 8);
+    }
 }
 
 /* A junction's place in the list and its log_nfa as a float, turned into a whole number in the same order. */

@@ -25,7 +25,7 @@ typedef struct asj_isotropic_radius {
     int16_t *place;       /* offset i in its runs at place[i] */
     asj_sector_runs runs; /* of a radius that is a source */
     int32_t suppress;     /* sectors to either side over which a branch must be the largest */
-    double straight;      /* two branches that open wider are an edge */
+    int32_t straight;     /* two branches that are more sectors apart are an edge: by more than pi - 2 Delta */
     const double **tails; /* for each sector: ln F(i / ASJ_TAIL_STEPS; J_k), i = 0, 1, .. */
     const double *lowest_tail; /* the lowest of them: that of the sector with the fewest pixels */
     double lowest_end;    /* and the largest sum that such a sector may have: its table ends there */
@@ -76,10 +76,8 @@ typedef struct asj_isotropic_peak {
     uint16_t sum, strength;
 } asj_isotropic_peak;
 
-/* Puts a peak into a list of at most `most`, ordered by sum; of equals the one put in first comes first. Returns the new count. */
-int32_t asj_isotropic_insert(asj_isotropic_peak *peaks, int32_t count, int32_t most, asj_isotropic_peak peak);
-
-/* Makes *best the junction of these branches, if that one is meaningful, and more so than *best. */
+/* Makes *best the junction of these branches, strongest first, if that one is meaningful, and more so than *best. Branches are
+ * ordered by sum; of equals the one with the lower sector comes first. */
 void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *entry, const asj_isotropic_peak *peaks,
                          int32_t count, asj_isotropic_junction *best);
 

@@ -216,6 +216,7 @@ static asj_status test_candidates(asj_detection_run *d)
         for (int32_t y = top; y < bottom; y++)
             starts[y - top + 1] = starts[y - top] + count_bits(d->candidates + (ptrdiff_t)y * frame->blocks, (size_t)frame->blocks);
         const size_t total = starts[bottom - top];
+        d->candidate_total += total;
         status = asj_grow(memory, &records, &record_capacity, at_least(total), sizeof(asj_isotropic_junction), 0);
         if (status == ASJ_OK)
             status = asj_grow(memory, &found, &found_capacity, at_least(d->isotropic_count + total), sizeof(asj_isotropic_junction),
@@ -255,8 +256,6 @@ static asj_status thin(asj_detection_run *d)
 /* Step 3: isotropic junctions. */
 asj_status asj_stage_isotropic(asj_detection_run *d)
 {
-    const asj_frame *frame = &d->detector->frame;
-    d->candidate_total = count_bits(d->candidates, (size_t)frame->blocks * (size_t)frame->height);
     asj_status status = test_candidates(d);
     return status == ASJ_OK ? thin(d) : status;
 }

@@ -4,28 +4,68 @@
  * Candidates come in clusters of two or three pixels, so vectors of neighbouring pixels would be mostly empty: see
  * batch_kernels.h. */
 
+/* The strongest peaks of each candidate, by sum; of equals the first. Sums start at -2^15, so that they compare as signed numbers,
+ * and at a sum of 0 there is none. */
+typedef struct ranking {
+    vec sums[ASJ_MAX_BRANCHES], sectors[ASJ_MAX_BRANCHES];
+} ranking;
+
+/* Puts one peak of each candidate, or none, in its place. */
+static inline void insert_peaks(ranking *ranked, int32_t most, vec sum, vec sector)
+{
+    for (int32_t m = 0; m < most; m++) {
+        const vec larger = v_greater(sum, ranked->sums[m]), change = v_and(larger, v_xor(sector, ranked->sectors[m]));
+        const vec rest = v_min(sum, ranked->sums[m]);
+        ranked->sums[m] = v_max(sum, ranked->sums[m]);
+        ranked->sectors[m] = v_xor(ranked->sectors[m], change);
+        sum = rest;
+        sector = v_xor(sector, change);
+    }
+}
+
+/* Of `suppress` + 1 sectors that follow each other a candidate has one peak at most, so that these are put in at once. */
+static void rank_peaks(const asj_isotropic_radius *entry, int32_t most, const uint16_t *slots, const int16_t *z, ranking *ranked)
+{
+    const asj_sector_plan *plan = &entry->plan;
+    const int32_t count = entry->sectors.count, together = entry->suppress + 1;
+    const vec none = v_set1(INT16_MIN);
+    for (int32_t m = 0; m < most; m++) {
+        ranked->sums[m] = none;
+        ranked->sectors[m] = v_zero();
+    }
+    for (int32_t k = 0; k < count;) {
+        vec sum = v_zero(), sector = v_zero();
+        for (const int32_t end = count - k < together ? count : k + together; k < end; k++) {
+            const vec is_peak = peak(z + k * V_LANES, V_LANES, entry->suppress, v_set1((int16_t)(entry->least[k] - 1)));
+            const vec high = v_load(slots + plan->high[k] * V_LANES), low = v_load(slots + plan->low[k] * V_LANES);
+            sum = v_or(sum, v_and(is_peak, v_sub(high, low)));
+            sector = v_or(sector, v_and(is_peak, v_set1((int16_t)k)));
+        }
+        insert_peaks(ranked, most, v_add(sum, none), sector);
+    }
+}
+
 /* One radius: the branches of each candidate that may matter, then the shared decision. */
 static void test_batch(const asj_isotropic *test, const asj_isotropic_radius *entry, const uint16_t *slots, const int16_t *z,
                        int32_t count, asj_isotropic_junction *junctions)
 {
-    const uint32_t lanes = (uint32_t)(((uint64_t)1 << count) - 1);
-    asj_isotropic_peak peaks[V_LANES][ASJ_MAX_BRANCHES];
-    int32_t counts[V_LANES] = {0};
+    ranking ranked;
+    uint16_t sums[ASJ_MAX_BRANCHES][V_LANES], sectors[ASJ_MAX_BRANCHES][V_LANES];
     z += entry->suppress * V_LANES;
-    for (int32_t k = 0; k < entry->sectors.count; k++, z += V_LANES) {
-        const vec below = v_set1((int16_t)(entry->least[k] - 1));
-        if (!v_any(v_greater(v_load(z), below)))
-            continue;
-        for (uint32_t bits = v_bits(peak(z, V_LANES, entry->suppress, below)) & lanes; bits; bits &= bits - 1) {
-            const int i = __builtin_ctz(bits);
-            const int sum = slots[entry->plan.high[k] * V_LANES + i] - slots[entry->plan.low[k] * V_LANES + i];
-            const asj_isotropic_peak found = {k, (uint16_t)sum, (uint16_t)z[i]};
-            counts[i] = asj_isotropic_insert(peaks[i], counts[i], test->max_branches, found);
-        }
+    rank_peaks(entry, test->max_branches, slots, z, &ranked);
+    for (int32_t m = 0; m < test->max_branches; m++) {
+        v_store(sums[m], v_add(ranked.sums[m], v_set1(INT16_MIN)));
+        v_store(sectors[m], ranked.sectors[m]);
     }
-    for (int32_t i = 0; i < count; i++)
-        if (counts[i] > 1)
-            asj_isotropic_judge(test, entry, peaks[i], counts[i], &junctions[i]);
+    for (int32_t i = 0; i < count; i++) {
+        asj_isotropic_peak peaks[ASJ_MAX_BRANCHES];
+        int32_t found = 0;
+        for (; found < test->max_branches && sums[found][i]; found++) {
+            const int32_t k = sectors[found][i];
+            peaks[found] = (asj_isotropic_peak){k, sums[found][i], (uint16_t)z[k * V_LANES + i]};
+        }
+        asj_isotropic_judge(test, entry, peaks, found, &junctions[i]);
+    }
 }
 
 /* `junctions`: the candidates' records, in order. */
