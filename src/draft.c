@@ -14,7 +14,7 @@ double asj_angle_distance(double a, double b)
 
 double asj_angle_wrap(double angle)
 {
-    angle = fmod(angle, 2 * PI);
+    angle = fabs(angle) >= 2 * PI ? fmod(angle, 2 * PI) : angle;
     angle = angle < 0 ? angle + 2 * PI : angle;
     return (float)angle < 6.2831853f ? angle : 0; /* results are floats: what rounds to 2 pi is 0, in every order of angles */
 }

@@ -178,37 +178,53 @@ int asj_line_fit(const asj_ops *ops, const asj_frame *frame, double x, double y,
     return 1;
 }
 
-static int solve_sums(const asj_line_sums *sums, line *out)
+asj_rough_line asj_rough_line_of(const asj_draft_branch *branch)
 {
-    const double w = (double)sums->w, t = (double)sums->t, tt = (double)sums->tt, c = (double)sums->s, tc = (double)sums->ts;
+    return (asj_rough_line){cos(branch->angle), sin(branch->angle), branch->offset, branch->apart};
+}
+
+void asj_rough_line_keep(const asj_rough_line *rough, asj_draft_branch *branch)
+{
+    branch->angle = asj_angle_wrap(atan2(rough->uy, rough->ux));
+    branch->offset = rough->offset;
+    branch->apart = rough->apart;
+}
+
+/* From sums around t = `middle` and s = rough->offset. */
+static int solve_sums(const asj_line_sums *sums, const asj_rough_line *rough, double middle, line *out)
+{
+    const double ux = rough->ux, uy = rough->uy, w = (double)sums->w, x = (double)sums->x, y = (double)sums->y;
+    const double xx = (double)sums->xx, xy = (double)sums->xy, yy = (double)sums->yy;
+    const double t = ux * x + uy * y, tt = ux * ux * xx + 2 * ux * uy * xy + uy * uy * yy;
+    const double s = ux * y - uy * x, ts = ux * uy * (yy - xx) + (ux * ux - uy * uy) * xy;
     const double determinant = w * tt - t * t;
-    if (!(determinant > 1e-2 * w * tt)) /* less than a few pixels of the branch */
+    if (!(determinant > 1e-2 * w * (tt + middle * (2 * t + middle * w)))) /* less than a few pixels of the branch */
         return 0;
-    *out = (line){(tt * c - t * tc) / determinant, (w * tc - t * c) / determinant, 0, 0};
+    const double b = (w * ts - t * s) / determinant;
+    *out = (line){rough->offset + (tt * s - t * ts) / determinant - b * middle, b, 0, 0};
     return 1;
 }
 
 int asj_line_guess(const asj_ops *ops, const asj_frame *frame, double x, double y, const double t[2], double half_width,
-                   asj_draft_branch *branch)
+                   asj_rough_line *rough)
 {
-    const double wide = fmin(half_width + 0.5 * branch->apart, 4.5);
-    const double s[2] = {branch->offset - wide, branch->offset + wide};
+    const double wide = half_width + 0.5 * rough->apart, middle = 0.5 * (t[0] + t[1]), ux = rough->ux, uy = rough->uy;
     asj_line_band band;
     asj_line_sums sums[2];
     line lines[2], found;
-    asj_line_band_set(frame, x, y, branch->angle, t, s, &band);
+    asj_line_band_set(frame, x + middle * ux - rough->offset * uy, y + middle * uy + rough->offset * ux, ux, uy,
+                      0.5 * (t[1] - t[0]), wide < 4.5 ? wide : 4.5, &band);
     ops->line_sums(frame, &band, sums);
     const int strong = sums[1].w > sums[0].w;
     double apart = 0;
-    if (!solve_sums(&sums[strong], &lines[strong]))
+    if (!solve_sums(&sums[strong], rough, middle, &lines[strong]))
         return 0;
     found = lines[strong];
-    if ((double)sums[!strong].w >= 0.4 * (double)sums[strong].w && solve_sums(&sums[!strong], &lines[!strong]))
+    if ((double)sums[!strong].w >= 0.4 * (double)sums[strong].w && solve_sums(&sums[!strong], rough, middle, &lines[!strong]))
         thin(lines, t[0], t[1], &found, &apart);
     if (!(fabs(found.b) < 1))
         return 0;
-    branch->apart = apart;
-    branch->angle = asj_angle_wrap(branch->angle + atan(found.b));
-    branch->offset = found.a / sqrt(1 + found.b * found.b);
+    const double unit = 1 / sqrt(1 + found.b * found.b);
+    *rough = (asj_rough_line){(ux - found.b * uy) * unit, (uy + found.b * ux) * unit, found.a * unit, apart};
     return 1;
 }

@@ -18,8 +18,17 @@ struct asj_ops;
 int asj_line_fit(const struct asj_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
                  asj_draft_branch *branch);
 
-/* One iteration of the same on whole pixels, t[0] .. t[1] px along the branch: a tenth of the time, no variances. */
+/* The line under a branch as guesses move it: by its direction, since angles take longer. */
+typedef struct asj_rough_line {
+    double ux, uy;
+    double offset, apart; /* as in asj_draft_branch */
+} asj_rough_line;
+
+asj_rough_line asj_rough_line_of(const asj_draft_branch *branch);
+void asj_rough_line_keep(const asj_rough_line *rough, asj_draft_branch *branch);
+
+/* One iteration of the same on whole pixels, t[0] .. t[1] px along the line: a tenth of the time, no variances. */
 int asj_line_guess(const struct asj_ops *ops, const asj_frame *frame, double x, double y, const double t[2], double half_width,
-                   asj_draft_branch *branch);
+                   asj_rough_line *rough);
 
 #endif

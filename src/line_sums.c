@@ -7,103 +7,119 @@
  * at the same t enter those only through sum w and sum w s. What is missing are residuals, and the smooth edge of the band that
  * interpolation gives. Tests of junctions that are mostly none, and first lines of fits to come, need neither.
  *
- * The sums of ASJ_LINE_LANES neighbouring columns, and of every other row, are kept apart and added at the end, in float: vector
- * forms then give the same bits. */
+ * Every column has its own sums of w, w y and w y^2; those with x follow from them. ASJ_LINE_LANES neighbouring columns are kept
+ * apart and added at the end, in float: vector forms then give the same bits. */
 #include "line_sums.h"
 
 #include <math.h>
 #include <string.h>
 
 #define LANES ASJ_LINE_LANES
-#define FAR 16000.0f /* columns */
+#define FAR 1e6f   /* rows */
+#define LEAST 1e-9 /* of a projection that changes from row to row */
 
-/* Columns where a direction's projection lies within `range`: along x it changes by `per_column` (not 0), along y by `per_row`. */
-static void set_columns(double per_column, double per_row, double origin_x, const double range[2], float *from, float *to,
-                        float *step)
+/* Where a direction's projection, which along x changes by `per_column` and along y by `per_row`, is within +-half. */
+static void set_rows(double per_column, double per_row, double half, float *reach, float *step)
 {
-    if (fabs(per_column) < 1e-3) {
-        *from = -FAR;
-        *to = FAR;
-        *step = 0;
-        return;
-    }
-    const double a = origin_x + range[0] / per_column, b = origin_x + range[1] / per_column;
-    *from = (float)fmin(a, b);
-    *to = (float)fmax(a, b);
-    *step = (float)(-per_row / per_column);
+    const double size = fabs(per_row);
+    *reach = size < LEAST ? FAR : (float)(half / size);
+    *step = size < LEAST ? 0 : (float)(-per_column / per_row);
 }
 
-void asj_line_band_set(const asj_frame *frame, double x, double y, double angle, const double t[2], const double s[2],
+/* floor() for what is near the image, without a call. */
+static int32_t whole(double value)
+{
+    return (int32_t)(value + 524288) - 524288;
+}
+
+static int32_t larger(int32_t a, int32_t b)
+{
+    return a > b ? a : b;
+}
+
+static int32_t smaller(int32_t a, int32_t b)
+{
+    return a < b ? a : b;
+}
+
+void asj_line_band_set(const asj_frame *frame, double x, double y, double ux, double uy, double half_length, double half_width,
                        asj_line_band *band)
 {
-    const double ux = cos(angle), uy = sin(angle), px = floor(x), py = floor(y);
-    const double along = fmin(t[0] * uy, t[1] * uy), along_end = fmax(t[0] * uy, t[1] * uy);
-    const double across = fmin(s[0] * ux, s[1] * ux), across_end = fmax(s[0] * ux, s[1] * ux);
+    const double wide = half_length * fabs(ux) + half_width * fabs(uy), high = half_length * fabs(uy) + half_width * fabs(ux);
     band->ux = (float)ux;
     band->uy = (float)uy;
-    band->first = (float)t[0];
-    band->last = (float)t[1];
-    band->low = (float)s[0];
-    band->high = (float)s[1];
-    band->x = (int32_t)px;
-    band->y = (int32_t)py;
-    band->origin_x = (float)(x - px);
-    band->origin_y = (float)(y - py);
-    band->left = 1 - band->x;
-    band->right = frame->width - 2 - band->x;
-    const double top = floor(y - py + along + across), bottom = ceil(y - py + along_end + across_end);
-    band->top = (int32_t)fmax(top, 1 - py);
-    band->bottom = (int32_t)fmin(bottom, frame->height - 2 - py);
-    set_columns(ux, uy, x - px, t, &band->near_t, &band->far_t, &band->step_t);
-    set_columns(-uy, ux, x - px, s, &band->near_s, &band->far_s, &band->step_s);
+    band->x = whole(x);
+    band->y = whole(y);
+    band->middle_x = (float)(x - band->x);
+    band->middle_y = (float)(y - band->y);
+    band->left = larger(-whole(wide - x), 1) - band->x;
+    band->right = smaller(whole(x + wide), frame->width - 2) - band->x;
+    band->top = larger(-whole(high - y), 1) - band->y;
+    band->bottom = smaller(whole(y + high), frame->height - 2) - band->y;
+    set_rows(ux, uy, half_length, &band->reach_t, &band->step_t);
+    set_rows(-uy, ux, half_width, &band->reach_s, &band->step_s);
 }
 
 typedef struct lanes {
-    float w[LANES], t[LANES], tt[LANES], s[LANES], ts[LANES];
+    float w[LANES], x[LANES], y[LANES], xx[LANES], xy[LANES], yy[LANES];
 } lanes;
 
-static void add_pixel(lanes *to, int lane, float w, float t, float s)
+/* The rows of a column that are inside, from the middle's. */
+static void column_rows(const asj_line_band *band, float dx, float *first, float *last)
 {
-    const float wt = w * t;
-    to->w[lane] += w;
-    to->t[lane] += wt;
-    to->tt[lane] += wt * t;
-    to->s[lane] += w * s;
-    to->ts[lane] += wt * s;
+    const float t = band->step_t * dx, s = band->step_s * dx;
+    const float first_t = t - band->reach_t, first_s = s - band->reach_s, last_t = t + band->reach_t, last_s = s + band->reach_s;
+    *first = first_t > first_s ? first_t : first_s;
+    *last = last_t < last_s ? last_t : last_s;
 }
 
-static float total(const float even[LANES], const float odd[LANES])
+static void add_column(const asj_frame *frame, const asj_line_band *band, int32_t column, lanes sides[2])
 {
-    float v[LANES];
-    for (int i = 0; i < LANES; i++)
-        v[i] = even[i] + odd[i];
+    const int32_t lane = (column - band->left) % LANES;
+    const float dx = (float)column - band->middle_x;
+    float first, last, w[2] = {0, 0}, y[2] = {0, 0}, yy[2] = {0, 0};
+    column_rows(band, dx, &first, &last);
+    for (int32_t row = band->top; row <= band->bottom; row++) {
+        const float dy = (float)row - band->middle_y;
+        if (!(dy >= first && dy <= last))
+            continue;
+        const uint16_t *p = frame->gray + (band->y + row) * frame->stride + band->x + column;
+        const float gx = (float)(p[1] - p[-1]), gy = (float)(p[frame->stride] - p[-frame->stride]);
+        const float across = gy * band->ux - gx * band->uy, weight = fabsf(across) - fabsf(gx * band->ux + gy * band->uy);
+        if (!(weight > 0))
+            continue;
+        w[across > 0] += weight;
+        y[across > 0] += weight * dy;
+        yy[across > 0] += weight * dy * dy;
+    }
+    for (int i = 0; i < 2; i++) {
+        const float x = w[i] * dx;
+        sides[i].w[lane] += w[i];
+        sides[i].x[lane] += x;
+        sides[i].y[lane] += y[i];
+        sides[i].xx[lane] += x * dx;
+        sides[i].xy[lane] += y[i] * dx;
+        sides[i].yy[lane] += yy[i];
+    }
+}
+
+static float total(const float lane[LANES])
+{
+    float v[LANES / 2];
+    for (int i = 0; i < LANES / 2; i++)
+        v[i] = lane[i] + lane[LANES / 2 + i];
     return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
 }
 
 void asj_line_sums_of(const asj_frame *frame, const asj_line_band *band, asj_line_sums sums[2])
 {
-    lanes list[2][2]; /* of even and odd rows */
-    memset(list, 0, sizeof list);
-    for (int32_t row = band->top; row <= band->bottom; row++) {
-        int32_t first, last;
-        asj_line_band_row(band, row, &first, &last);
-        const uint16_t *pixels = frame->gray + (band->y + row) * frame->stride + band->x;
-        const float dy = (float)row - band->origin_y, row_t = dy * band->uy, row_s = dy * band->ux;
-        for (int32_t column = first; column <= last; column++) {
-            const float dx = (float)column - band->origin_x, t = row_t + dx * band->ux, s = row_s - dx * band->uy;
-            if (!(t >= band->first && t <= band->last && s >= band->low && s <= band->high))
-                continue;
-            const uint16_t *p = pixels + column;
-            const float gx = (float)(p[1] - p[-1]), gy = (float)(p[frame->stride] - p[-frame->stride]);
-            const float across = gy * band->ux - gx * band->uy, w = fabsf(across) - fabsf(gx * band->ux + gy * band->uy);
-            if (w > 0)
-                add_pixel(&list[(row - band->top) & 1][across > 0], (column - first) % LANES, w, t, s);
-        }
-    }
+    lanes sides[2];
+    memset(sides, 0, sizeof sides);
+    for (int32_t column = band->left; column <= band->right; column++)
+        add_column(frame, band, column, sides);
     for (int i = 0; i < 2; i++)
-        sums[i] = (asj_line_sums){total(list[0][i].w, list[1][i].w), total(list[0][i].t, list[1][i].t),
-                                  total(list[0][i].tt, list[1][i].tt), total(list[0][i].s, list[1][i].s),
-                                  total(list[0][i].ts, list[1][i].ts)};
+        sums[i] = (asj_line_sums){total(sides[i].w),  total(sides[i].x),  total(sides[i].y),
+                                  total(sides[i].xx), total(sides[i].xy), total(sides[i].yy)};
 }
 
 /* Central differences at the four pixels around the sample, bilinear: along x in whole numbers (1/4096 px), along y in float. */

@@ -5,27 +5,26 @@
 
 #include "image.h"
 
-#define ASJ_LINE_LANES 8
+#define ASJ_LINE_LANES 16
 
-/* The pixels with first <= t <= last and low <= s <= high, t = (p - origin).u, s = (p - origin).n, n = u turned by +90 degrees. */
+/* The pixels around a middle with |(p - middle).u| <= half_length and |(p - middle).n| <= half_width, n = u turned by +90
+ * degrees. */
 typedef struct asj_line_band {
     float ux, uy;
-    float first, last, low, high;
-    int32_t x, y;                    /* a pixel near the origin, from which columns and rows are counted */
-    float origin_x, origin_y;        /* the origin from there, less than a pixel */
-    int32_t top, bottom;             /* rows, counted from y */
-    int32_t left, right;             /* columns that the image has, counted from x */
-    float near_t, far_t, step_t;     /* columns of the band's ends: near_t + step_t (row - origin_y) .. */
-    float near_s, far_s, step_s;     /* and of its sides */
+    int32_t x, y;                       /* a pixel near the middle, from which columns and rows are counted */
+    float middle_x, middle_y;           /* the middle from there, less than a pixel */
+    int32_t top, bottom, left, right;   /* what it is within, of the image too */
+    float reach_t, step_t;              /* rows of the band's ends: middle_y + step_t (column - middle_x) -+ reach_t */
+    float reach_s, step_s;              /* and of its sides */
 } asj_line_band;
 
-/* With weights w of the pixels whose gradient points along +n or along -n: sums of w, w t, w t^2, w s, w t s. */
+/* With weights w of the pixels whose gradient points along +n or along -n: sums of w, w x, w x^2 ..; (x, y) from the middle. */
 typedef struct asj_line_sums {
-    float w, t, tt, s, ts;
+    float w, x, y, xx, xy, yy;
 } asj_line_sums;
 
-/* Pixels at the border of the image, where a gradient has one neighbour only, are left out. */
-void asj_line_band_set(const asj_frame *frame, double x, double y, double angle, const double t[2], const double s[2],
+/* Around (x, y). Pixels at the border of the image, where a gradient has one neighbour only, are left out. */
+void asj_line_band_set(const asj_frame *frame, double x, double y, double ux, double uy, double half_length, double half_width,
                        asj_line_band *band);
 
 /* sums[1]: the gradient points along +n, sums[0]: along -n. */
@@ -60,19 +59,20 @@ void asj_line_profile_part(const asj_frame *frame, const asj_line_profile *profi
 /* Whether all samples of these k have the pixels around them that interpolation wants. */
 int asj_line_profile_inside(const asj_frame *frame, const asj_line_profile *profile, int32_t from, int32_t to);
 
-/* The columns of a row that may be inside, from *first to *last. */
-static inline void asj_line_band_row(const asj_line_band *band, int32_t row, int32_t *first, int32_t *last)
+/* The rows that ASJ_LINE_LANES columns from `column` on may have inside, from *first to *last. */
+static inline void asj_line_band_rows(const asj_line_band *band, int32_t column, int32_t *first, int32_t *last)
 {
-    const float dy = (float)row - band->origin_y, t = band->step_t * dy, s = band->step_s * dy;
-    float low = band->near_t + t, high = band->far_t + t;
-    low = band->near_s + s > low ? band->near_s + s : low;
-    high = band->far_s + s < high ? band->far_s + s : high;
-    low = low > (float)band->left ? low : (float)band->left;
-    high = high < (float)band->right ? high : (float)band->right;
-    low = low < (float)(band->right + 1) ? low : (float)(band->right + 1); /* none: still near the image, for who reads there */
-    high = high > (float)(band->left - 1) ? high : (float)(band->left - 1);
-    *first = (int32_t)(low + 32768.99f) - 32768; /* a pixel too many does no harm: its t and s tell */
-    *last = (int32_t)(high + 32768.01f) - 32768;
+    const float dx = (float)column - band->middle_x, end = dx + (ASJ_LINE_LANES - 1);
+    const float t = band->step_t * dx, end_t = band->step_t * end, s = band->step_s * dx, end_s = band->step_s * end;
+    const float top_t = (t < end_t ? t : end_t) - band->reach_t, bottom_t = (t > end_t ? t : end_t) + band->reach_t;
+    const float top_s = (s < end_s ? s : end_s) - band->reach_s, bottom_s = (s > end_s ? s : end_s) + band->reach_s;
+    float top = band->middle_y + (top_t > top_s ? top_t : top_s);
+    float bottom = band->middle_y + (bottom_t < bottom_s ? bottom_t : bottom_s);
+    top = top > (float)band->top ? top : (float)band->top;
+    bottom = bottom < (float)band->bottom ? bottom : (float)band->bottom;
+    *first = top <= bottom + 1 ? (int32_t)(top + 131072) - 131072 : band->bottom + 1; /* a row too many does no harm */
+    *last = top <= bottom + 1 ? (int32_t)(bottom + 131073) - 131072 : band->bottom;
+    *last = *last < band->bottom ? *last : band->bottom;
 }
 
 #endif

@@ -79,13 +79,31 @@ static void fit_branches(const asj_context *context, const asj_frame *frame, con
     asj_draft_select(draft, keep);
 }
 
-static void guess_branches(const asj_context *context, const asj_frame *frame, double half_width, double end, asj_draft *draft)
+/* Moves the lines; those that there are stay, with their branches. */
+static void guess_lines(const asj_context *context, const asj_frame *frame, double half_width, double end, asj_draft *draft,
+                        asj_rough_line *lines)
 {
     const double t[2] = {NEAR, end};
-    int keep[ASJ_MAX_BRANCHES];
-    for (int32_t i = 0; i < draft->branch_count; i++)
-        keep[i] = asj_line_guess(context->ops, frame, draft->x, draft->y, t, half_width, &draft->branches[i]);
+    int keep[ASJ_MAX_BRANCHES], kept = 0;
+    for (int32_t i = 0; i < draft->branch_count; i++) {
+        lines[kept] = lines[i];
+        keep[i] = asj_line_guess(context->ops, frame, draft->x, draft->y, t, half_width, &lines[kept]);
+        kept += keep[i];
+    }
     asj_draft_select(draft, keep);
+}
+
+/* As asj_draft_has_opening(). */
+static int have_opening(const asj_rough_line *lines, int32_t count, double least)
+{
+    const double sine = sin(least);
+    for (int32_t i = 0; i < count; i++)
+        for (int32_t j = i + 1; j < count; j++) {
+            const double cross = fabs(lines[i].ux * lines[j].uy - lines[i].uy * lines[j].ux);
+            if (cross > 0 && cross >= sine)
+                return 1;
+        }
+    return 0;
 }
 
 /* Moves the draft to where the branches meet; 0 when that is no junction. */
@@ -98,19 +116,24 @@ static int meet(const asj_detect_options *options, double opening_slack, double 
 void asj_locate_guess(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
 {
     const double least = options->minimum_opening * (PI / 180), slack = 8 * (PI / 180);
+    asj_rough_line lines[ASJ_MAX_BRANCHES];
     if (options->refinement != ASJ_REFINE_LINE_FIT) {
         if (!asj_draft_has_opening(draft, least))
             draft->branch_count = 0;
         return;
     }
-    guess_branches(context, frame, 4, 10, draft); /* px: enough to tell edges */
-    if (!asj_draft_has_opening(draft, fmax(least - slack, 0))) { /* most are edges, and seen to be by now */
+    for (int32_t i = 0; i < draft->branch_count; i++)
+        lines[i] = asj_rough_line_of(&draft->branches[i]);
+    guess_lines(context, frame, 4, 10, draft, lines); /* px: enough to tell edges */
+    if (!have_opening(lines, draft->branch_count, fmax(least - slack, 0))) { /* most are edges, and seen to be by now */
         draft->branch_count = 0;
         return;
     }
-    guess_branches(context, frame, 2.5, fit_end(draft), draft);
-    for (int32_t i = 0; i < draft->branch_count; i++)
+    guess_lines(context, frame, 2.5, fit_end(draft), draft, lines);
+    for (int32_t i = 0; i < draft->branch_count; i++) {
+        asj_rough_line_keep(&lines[i], &draft->branches[i]);
         draft->branches[i].offset_variance = 1;
+    }
     if (!meet(options, slack, 1, draft))
         draft->branch_count = 0;
 }

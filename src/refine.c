@@ -101,8 +101,10 @@ static void follow_line(const asj_context *context, const asj_frame *frame, cons
     for (double reach = NEAR_PART;; reach *= 2) {
         const double last = fmin(end, reach), t[2] = {first, last};
         const asj_line_range range = {first, last, {WIDE, HALF_WIDTH, 0}, 2};
-        if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, &longer))
+        asj_rough_line line = asj_rough_line_of(&longer);
+        if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, &line))
             return;
+        asj_rough_line_keep(&line, &longer);
         if (!asj_line_fit(context->ops, frame, draft->x, draft->y, &range, &longer) ||
             (reach > NEAR_PART && fabs(longer.offset - branch->offset) > BENT * sqrt(branch->offset_variance)))
             return;
@@ -128,15 +130,19 @@ void asj_refine(const asj_context *context, const asj_frame *frame, const asj_de
 static void find_line(const asj_context *context, const asj_frame *frame, const asj_draft *draft, asj_draft_branch *branch)
 {
     const double end = last_px(branch), uncertainty = sqrt(branch->angle_variance);
+    asj_rough_line line = asj_rough_line_of(branch);
     double reach = NEAR_PART / 4;
     while (reach < end && 2 * reach * uncertainty < 1)
         reach *= 2;
     for (int32_t rounds = 0; rounds < 2; reach *= 2) {
-        const double t[2] = {first_px(branch), fmin(end, reach)}, before = branch->angle;
-        if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, branch))
-            return;
-        rounds += reach < end ? 0 : asj_angle_distance(branch->angle, before) * end > SETTLED ? 1 : 2;
+        const double t[2] = {first_px(branch), fmin(end, reach)};
+        const asj_rough_line before = line;
+        if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, &line))
+            break;
+        const double turn = fabs(before.ux * line.uy - before.uy * line.ux); /* its sine */
+        rounds += reach < end ? 0 : turn * end > SETTLED ? 1 : 2;
     }
+    asj_rough_line_keep(&line, branch);
 }
 
 void asj_orient(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
@@ -160,7 +166,13 @@ static int on_frame(const asj_frame *frame, const asj_draft *draft, const asj_dr
            fmin(draft->x, x) >= frame->width - 1 - reach || fmin(draft->y, y) >= frame->height - 1 - reach;
 }
 
-/* Of two branches closer than merge_angle the more meaningful one stays. */
+/* Of two branches closer than merge_angle the more meaningful one stays; of those that lie on one line, the stronger one. */
+static int less_meaningful(const asj_draft_branch *a, const asj_draft_branch *b)
+{
+    const double same = 1e-3; /* decades of what rounding makes of one line */
+    return fabs(a->log_nfa - b->log_nfa) > same ? a->log_nfa > b->log_nfa : a->strength < b->strength;
+}
+
 static void merge(const asj_detect_options *options, const asj_draft *draft, int *keep)
 {
     const double least = options->merge_angle * (PI / 180);
@@ -168,7 +180,7 @@ static void merge(const asj_detect_options *options, const asj_draft *draft, int
         for (int32_t j = i + 1; j < draft->branch_count; j++) {
             const asj_draft_branch *a = &draft->branches[i], *b = &draft->branches[j];
             if (keep[i] && keep[j] && asj_angle_distance(a->angle, b->angle) < least)
-                keep[b->log_nfa < a->log_nfa ? i : j] = 0;
+                keep[less_meaningful(a, b) ? i : j] = 0;
         }
 }
 

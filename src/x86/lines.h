@@ -6,24 +6,26 @@
 #include "../ops.h"
 
 typedef struct lane_sums {
-    __m256 w, t, tt, s, ts;
+    __m256 w, x, y, xx, xy, yy;
 } lane_sums;
 
-static inline void add_lanes(lane_sums *to, __m256 w, __m256 t, __m256 s)
-{
-    const __m256 wt = _mm256_mul_ps(w, t);
-    to->w = _mm256_add_ps(to->w, w);
-    to->t = _mm256_add_ps(to->t, wt);
-    to->tt = _mm256_add_ps(to->tt, _mm256_mul_ps(wt, t));
-    to->s = _mm256_add_ps(to->s, _mm256_mul_ps(w, s));
-    to->ts = _mm256_add_ps(to->ts, _mm256_mul_ps(wt, s));
-}
+/* Of 8 columns while their rows are walked along: sums of w, w y, w y^2. */
+typedef struct column_sums {
+    __m256 w, y, yy;
+} column_sums;
 
-static inline float total(__m256 v)
+static inline float total(__m256 low, __m256 high)
 {
-    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+    const __m256 eight = _mm256_add_ps(low, high);
+    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
     const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
     return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
+}
+
+static inline asj_line_sums total_sums(const lane_sums *low, const lane_sums *high)
+{
+    return (asj_line_sums){total(low->w, high->w),   total(low->x, high->x),   total(low->y, high->y),
+                           total(low->xx, high->xx), total(low->xy, high->xy), total(low->yy, high->yy)};
 }
 
 /* 8 grey values each of a minus those of b: none is above 32640 (image.h) */
@@ -33,61 +35,68 @@ static inline __m256 difference(const uint16_t *a, const uint16_t *b)
     return _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_sub_epi16(p, q)));
 }
 
-static inline __m256 between(__m256 v, __m256 low, __m256 high)
+static inline void add_lanes(column_sums *to, __m256 w, __m256 dy)
 {
-    return _mm256_and_ps(_mm256_cmp_ps(v, low, _CMP_GE_OQ), _mm256_cmp_ps(v, high, _CMP_LE_OQ));
+    const __m256 y = _mm256_mul_ps(w, dy);
+    to->w = _mm256_add_ps(to->w, w);
+    to->y = _mm256_add_ps(to->y, y);
+    to->yy = _mm256_add_ps(to->yy, _mm256_mul_ps(y, dy));
 }
 
-static inline asj_line_sums total_sums(const lane_sums *even, const lane_sums *odd)
+static inline void add_columns(lane_sums *to, const column_sums *columns, __m256 dx)
 {
-    return (asj_line_sums){total(_mm256_add_ps(even->w, odd->w)), total(_mm256_add_ps(even->t, odd->t)),
-                           total(_mm256_add_ps(even->tt, odd->tt)), total(_mm256_add_ps(even->s, odd->s)),
-                           total(_mm256_add_ps(even->ts, odd->ts))};
+    const __m256 x = _mm256_mul_ps(columns->w, dx);
+    to->w = _mm256_add_ps(to->w, columns->w);
+    to->x = _mm256_add_ps(to->x, x);
+    to->y = _mm256_add_ps(to->y, columns->y);
+    to->xx = _mm256_add_ps(to->xx, _mm256_mul_ps(x, dx));
+    to->xy = _mm256_add_ps(to->xy, _mm256_mul_ps(columns->y, dx));
+    to->yy = _mm256_add_ps(to->yy, columns->yy);
 }
 
-/* Every other row from band->top + odd on; sides: as in asj_line_sums_of(). */
-static inline void add_rows(const asj_frame *frame, const asj_line_band *band, int32_t odd, lane_sums sides[2])
+/* The 8 columns from `column` on. */
+static inline void sum_columns(const asj_frame *frame, const asj_line_band *band, int32_t column, lane_sums sides[2])
 {
     const __m256 zero = _mm256_setzero_ps(), sign = _mm256_set1_ps(-0.0f), lane = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
     const __m256 ux = _mm256_set1_ps(band->ux), uy = _mm256_set1_ps(band->uy);
-    const __m256 near_t = _mm256_set1_ps(band->first), far_t = _mm256_set1_ps(band->last);
-    const __m256 near_s = _mm256_set1_ps(band->low), far_s = _mm256_set1_ps(band->high);
-    lane_sums up = {zero, zero, zero, zero, zero}, down = up;
-    for (int32_t row = band->top + odd; row <= band->bottom; row += 2) {
-        int32_t first, last;
-        asj_line_band_row(band, row, &first, &last);
-        const uint16_t *pixels = frame->gray + (band->y + row) * frame->stride + band->x;
-        const float dy = (float)row - band->origin_y;
-        const __m256 row_t = _mm256_set1_ps(dy * band->uy), row_s = _mm256_set1_ps(dy * band->ux);
-        const __m256 end = _mm256_set1_ps((float)last);
-        for (int32_t column = first; column <= last; column += ASJ_LINE_LANES) {
-            const __m256 at = _mm256_add_ps(_mm256_set1_ps((float)column), lane);
-            const __m256 dx = _mm256_sub_ps(at, _mm256_set1_ps(band->origin_x));
-            const __m256 t = _mm256_add_ps(row_t, _mm256_mul_ps(dx, ux)), s = _mm256_sub_ps(row_s, _mm256_mul_ps(dx, uy));
-            const __m256 inside = _mm256_and_ps(_mm256_and_ps(between(t, near_t, far_t), between(s, near_s, far_s)),
-                                                _mm256_cmp_ps(at, end, _CMP_LE_OQ));
-            const uint16_t *p = pixels + column;
-            const __m256 gx = difference(p + 1, p - 1), gy = difference(p + frame->stride, p - frame->stride);
-            const __m256 across = _mm256_sub_ps(_mm256_mul_ps(gy, ux), _mm256_mul_ps(gx, uy));
-            const __m256 along = _mm256_add_ps(_mm256_mul_ps(gx, ux), _mm256_mul_ps(gy, uy));
-            __m256 w = _mm256_sub_ps(_mm256_andnot_ps(sign, across), _mm256_andnot_ps(sign, along));
-            w = _mm256_and_ps(_mm256_max_ps(w, zero), inside);
-            const __m256 is_up = _mm256_cmp_ps(across, zero, _CMP_GT_OQ);
-            add_lanes(&up, _mm256_and_ps(w, is_up), t, s);
-            add_lanes(&down, _mm256_andnot_ps(is_up, w), t, s);
-        }
+    const __m256 at = _mm256_add_ps(_mm256_set1_ps((float)column), lane), dx = _mm256_sub_ps(at, _mm256_set1_ps(band->middle_x));
+    const __m256 valid = _mm256_cmp_ps(at, _mm256_set1_ps((float)band->right), _CMP_LE_OQ);
+    const __m256 t = _mm256_mul_ps(_mm256_set1_ps(band->step_t), dx), s = _mm256_mul_ps(_mm256_set1_ps(band->step_s), dx);
+    const __m256 reach_t = _mm256_set1_ps(band->reach_t), reach_s = _mm256_set1_ps(band->reach_s);
+    const __m256 first = _mm256_max_ps(_mm256_sub_ps(t, reach_t), _mm256_sub_ps(s, reach_s));
+    const __m256 last = _mm256_min_ps(_mm256_add_ps(t, reach_t), _mm256_add_ps(s, reach_s));
+    const ptrdiff_t stride = frame->stride;
+    int32_t first_row, last_row;
+    asj_line_band_rows(band, column, &first_row, &last_row);
+    const uint16_t *p = frame->gray + (band->y + first_row) * stride + band->x + column;
+    column_sums up = {zero, zero, zero}, down = up;
+    for (int32_t row = first_row; row <= last_row; row++, p += stride) {
+        const __m256 gx = difference(p + 1, p - 1), gy = difference(p + stride, p - stride);
+        const __m256 across = _mm256_sub_ps(_mm256_mul_ps(gy, ux), _mm256_mul_ps(gx, uy));
+        const __m256 along = _mm256_add_ps(_mm256_mul_ps(gx, ux), _mm256_mul_ps(gy, uy));
+        const __m256 dy = _mm256_set1_ps((float)row - band->middle_y), is_up = _mm256_cmp_ps(across, zero, _CMP_GT_OQ);
+        const __m256 inside = _mm256_and_ps(_mm256_cmp_ps(dy, first, _CMP_GE_OQ), _mm256_cmp_ps(dy, last, _CMP_LE_OQ));
+        __m256 w = _mm256_sub_ps(_mm256_andnot_ps(sign, across), _mm256_andnot_ps(sign, along));
+        w = _mm256_and_ps(_mm256_max_ps(w, zero), _mm256_and_ps(valid, inside));
+        add_lanes(&up, _mm256_and_ps(w, is_up), dy);
+        add_lanes(&down, _mm256_andnot_ps(is_up, w), dy);
     }
-    sides[0] = down;
-    sides[1] = up;
+    add_columns(&sides[0], &down, dx);
+    add_columns(&sides[1], &up, dx);
 }
 
 static void line_sums_avx2(const asj_frame *frame, const asj_line_band *band, asj_line_sums sums[2])
 {
-    lane_sums even[2], odd[2];
-    add_rows(frame, band, 0, even);
-    add_rows(frame, band, 1, odd);
+    const __m256 zero = _mm256_setzero_ps();
+    const lane_sums none = {zero, zero, zero, zero, zero, zero};
+    lane_sums low[2] = {none, none}, high[2] = {none, none};
+    for (int32_t column = band->left; column <= band->right; column += ASJ_LINE_LANES) {
+        sum_columns(frame, band, column, low);
+        if (column + 8 <= band->right)
+            sum_columns(frame, band, column + 8, high);
+    }
     for (int i = 0; i < 2; i++)
-        sums[i] = total_sums(&even[i], &odd[i]);
+        sums[i] = total_sums(&low[i], &high[i]);
 }
 
 /* Central differences at the four pixels around 8 samples, bilinear; at[i]: the upper left one of sample i. */
@@ -122,8 +131,8 @@ static void line_profile_avx2(const asj_frame *frame, const asj_line_profile *pr
     const int32_t stride = (int32_t)frame->stride;
     const uint16_t *gray = frame->gray + profile->y * frame->stride + profile->x;
     const int whole = asj_line_profile_inside(frame, profile, 0, profile->count);
-    for (int32_t k = 0; k < profile->count; k += ASJ_LINE_LANES) {
-        const int32_t to = k + ASJ_LINE_LANES < profile->count ? k + ASJ_LINE_LANES : profile->count;
+    for (int32_t k = 0; k < profile->count; k += 8) {
+        const int32_t to = k + 8 < profile->count ? k + 8 : profile->count;
         if (frame->stride > 30000 || (!whole && !asj_line_profile_inside(frame, profile, k, to))) { /* indices stay below 2^31 */
             asj_line_profile_part(frame, profile, k, to, sums);
             continue;

@@ -6,20 +6,14 @@
 #include "../ops.h"
 
 typedef struct lane_sums {
-    __m512 w, t, tt, s, ts;
+    __m512 w, x, y, xx, xy, yy;
 } lane_sums;
 
-/* To the sums of the lanes in `on`. */
-static inline void add_lanes(lane_sums *to, __mmask16 on, __m512 w, __m512 wt, __m512 wtt, __m512 ws, __m512 wts)
-{
-    to->w = _mm512_mask_add_ps(to->w, on, to->w, w);
-    to->t = _mm512_mask_add_ps(to->t, on, to->t, wt);
-    to->tt = _mm512_mask_add_ps(to->tt, on, to->tt, wtt);
-    to->s = _mm512_mask_add_ps(to->s, on, to->s, ws);
-    to->ts = _mm512_mask_add_ps(to->ts, on, to->ts, wts);
-}
+/* Of 16 columns while their rows are walked along: sums of w, w y, w y^2. */
+typedef struct column_sums {
+    __m512 w, y, yy;
+} column_sums;
 
-/* The lower lanes are those of even rows, the higher ones of odd rows. */
 static inline float total(__m512 v)
 {
     const __m256 high = _mm256_castpd_ps(_mm512_extractf64x4_pd(_mm512_castps_pd(v), 1));
@@ -31,85 +25,79 @@ static inline float total(__m512 v)
 
 static inline asj_line_sums total_sums(const lane_sums *list)
 {
-    return (asj_line_sums){total(list->w), total(list->t), total(list->tt), total(list->s), total(list->ts)};
+    return (asj_line_sums){total(list->w), total(list->x), total(list->y), total(list->xx), total(list->xy), total(list->yy)};
 }
 
-/* 8 grey values each at two places: none is above 32640 (image.h) */
-static inline __m256i grey(const uint16_t *even, const uint16_t *odd)
+/* 16 grey values each of a minus those of b: none is above 32640 (image.h) */
+static inline __m512 difference(const uint16_t *a, const uint16_t *b)
 {
-    return _mm256_loadu2_m128i((const __m128i *)(const void *)odd, (const __m128i *)(const void *)even);
+    const __m256i p = _mm256_loadu_si256((const __m256i *)(const void *)a);
+    const __m256i q = _mm256_loadu_si256((const __m256i *)(const void *)b);
+    return _mm512_cvtepi32_ps(_mm512_cvtepi16_epi32(_mm256_sub_epi16(p, q)));
 }
 
-static inline __m512 halves(float even, float odd)
+/* To the sums of the lanes in `on`. */
+static inline void add_lanes(column_sums *to, __mmask16 on, __m512 w, __m512 wy, __m512 wyy)
 {
-    const __m512d low = _mm512_castps_pd(_mm512_set1_ps(even));
-    return _mm512_castpd_ps(_mm512_insertf64x4(low, _mm256_castps_pd(_mm256_set1_ps(odd)), 1));
+    to->w = _mm512_mask_add_ps(to->w, on, to->w, w);
+    to->y = _mm512_mask_add_ps(to->y, on, to->y, wy);
+    to->yy = _mm512_mask_add_ps(to->yy, on, to->yy, wyy);
 }
 
-static inline __m512 difference(__m256i a, __m256i b)
+static inline void add_columns(lane_sums *to, const column_sums *columns, __m512 dx)
 {
-    return _mm512_cvtepi32_ps(_mm512_cvtepi16_epi32(_mm256_sub_epi16(a, b)));
+    const __m512 x = _mm512_mul_ps(columns->w, dx);
+    to->w = _mm512_add_ps(to->w, columns->w);
+    to->x = _mm512_add_ps(to->x, x);
+    to->y = _mm512_add_ps(to->y, columns->y);
+    to->xx = _mm512_add_ps(to->xx, _mm512_mul_ps(x, dx));
+    to->xy = _mm512_add_ps(to->xy, _mm512_mul_ps(columns->y, dx));
+    to->yy = _mm512_add_ps(to->yy, columns->yy);
 }
 
-/* A row of the band as far as it has been walked along. */
-typedef struct band_row {
-    const uint16_t *pixels;
-    int32_t column, last;
-} band_row;
-
-/* Two rows at once; lanes of one that is at its end add nothing. */
-static inline void add_two_rows(const asj_frame *frame, const asj_line_band *band, int32_t row, band_row even, band_row odd,
-                                lane_sums *down, lane_sums *up)
+/* The 16 columns from `column` on. */
+static inline void sum_columns(const asj_frame *frame, const asj_line_band *band, int32_t column, lane_sums sides[2])
 {
-    const __m512 lane = _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7);
-    const __m512 ux = _mm512_set1_ps(band->ux), uy = _mm512_set1_ps(band->uy), zero = _mm512_setzero_ps();
-    const float dy = (float)row - band->origin_y, next = (float)(row + 1) - band->origin_y;
-    const __m512 row_t = halves(dy * band->uy, next * band->uy), row_s = halves(dy * band->ux, next * band->ux);
-    const __m512 end = halves((float)even.last, (float)odd.last);
+    const __m512 lane = _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15), zero = _mm512_setzero_ps();
+    const __m512 ux = _mm512_set1_ps(band->ux), uy = _mm512_set1_ps(band->uy), middle_y = _mm512_set1_ps(band->middle_y);
+    const __m512 at = _mm512_add_ps(_mm512_set1_ps((float)column), lane), dx = _mm512_sub_ps(at, _mm512_set1_ps(band->middle_x));
+    const __mmask16 valid = _mm512_cmp_ps_mask(at, _mm512_set1_ps((float)band->right), _CMP_LE_OQ);
+    const __m512 t = _mm512_mul_ps(_mm512_set1_ps(band->step_t), dx), s = _mm512_mul_ps(_mm512_set1_ps(band->step_s), dx);
+    const __m512 reach_t = _mm512_set1_ps(band->reach_t), reach_s = _mm512_set1_ps(band->reach_s);
+    const __m512 first = _mm512_max_ps(_mm512_sub_ps(t, reach_t), _mm512_sub_ps(s, reach_s));
+    const __m512 last = _mm512_min_ps(_mm512_add_ps(t, reach_t), _mm512_add_ps(s, reach_s));
     const ptrdiff_t stride = frame->stride;
-    for (; even.column <= even.last || odd.column <= odd.last; even.column += ASJ_LINE_LANES, odd.column += ASJ_LINE_LANES) {
-        even.column = even.column <= even.last ? even.column : even.last + 1;
-        odd.column = odd.column <= odd.last ? odd.column : odd.last + 1;
-        const __m512 at = _mm512_add_ps(halves((float)even.column, (float)odd.column), lane);
-        const __m512 dx = _mm512_sub_ps(at, _mm512_set1_ps(band->origin_x));
-        const __m512 t = _mm512_add_ps(row_t, _mm512_mul_ps(dx, ux)), s = _mm512_sub_ps(row_s, _mm512_mul_ps(dx, uy));
-        __mmask16 inside = _mm512_cmp_ps_mask(at, end, _CMP_LE_OQ);
-        inside = _mm512_mask_cmp_ps_mask(inside, t, _mm512_set1_ps(band->first), _CMP_GE_OQ);
-        inside = _mm512_mask_cmp_ps_mask(inside, t, _mm512_set1_ps(band->last), _CMP_LE_OQ);
-        inside = _mm512_mask_cmp_ps_mask(inside, s, _mm512_set1_ps(band->low), _CMP_GE_OQ);
-        inside = _mm512_mask_cmp_ps_mask(inside, s, _mm512_set1_ps(band->high), _CMP_LE_OQ);
-        const uint16_t *p = even.pixels + even.column, *q = odd.pixels + odd.column;
-        const __m512 gx = difference(grey(p + 1, q + 1), grey(p - 1, q - 1));
-        const __m512 gy = difference(grey(p + stride, q + stride), grey(p - stride, q - stride));
+    int32_t first_row, last_row;
+    asj_line_band_rows(band, column, &first_row, &last_row);
+    const uint16_t *p = frame->gray + (band->y + first_row) * stride + band->x + column;
+    column_sums up = {zero, zero, zero}, down = up;
+    __m512 rows = _mm512_set1_ps((float)first_row);
+    for (int32_t row = first_row; row <= last_row; row++, p += stride) {
+        const __m512 gx = difference(p + 1, p - 1), gy = difference(p + stride, p - stride);
         const __m512 across = _mm512_sub_ps(_mm512_mul_ps(gy, ux), _mm512_mul_ps(gx, uy));
         const __m512 along = _mm512_add_ps(_mm512_mul_ps(gx, ux), _mm512_mul_ps(gy, uy));
-        const __m512 w = _mm512_sub_ps(_mm512_abs_ps(across), _mm512_abs_ps(along));
+        const __m512 w = _mm512_sub_ps(_mm512_abs_ps(across), _mm512_abs_ps(along)), dy = _mm512_sub_ps(rows, middle_y);
+        __mmask16 inside = _mm512_mask_cmp_ps_mask(valid, dy, first, _CMP_GE_OQ);
+        inside = _mm512_mask_cmp_ps_mask(inside, dy, last, _CMP_LE_OQ);
         inside = _mm512_mask_cmp_ps_mask(inside, w, zero, _CMP_GT_OQ);
         const __mmask16 is_up = _mm512_cmp_ps_mask(across, zero, _CMP_GT_OQ);
-        const __m512 wt = _mm512_mul_ps(w, t), wtt = _mm512_mul_ps(wt, t), ws = _mm512_mul_ps(w, s), wts = _mm512_mul_ps(wt, s);
-        add_lanes(up, inside & is_up, w, wt, wtt, ws, wts);
-        add_lanes(down, (__mmask16)(inside & ~is_up), w, wt, wtt, ws, wts);
+        const __m512 wy = _mm512_mul_ps(w, dy), wyy = _mm512_mul_ps(wy, dy);
+        add_lanes(&up, inside & is_up, w, wy, wyy);
+        add_lanes(&down, (__mmask16)(inside & ~is_up), w, wy, wyy);
+        rows = _mm512_add_ps(rows, _mm512_set1_ps(1));
     }
+    add_columns(&sides[0], &down, dx);
+    add_columns(&sides[1], &up, dx);
 }
 
 static void line_sums_avx512(const asj_frame *frame, const asj_line_band *band, asj_line_sums sums[2])
 {
     const __m512 zero = _mm512_setzero_ps();
-    lane_sums up = {zero, zero, zero, zero, zero}, down = up;
-    for (int32_t row = band->top; row <= band->bottom; row += 2) {
-        band_row even, odd;
-        even.pixels = frame->gray + (band->y + row) * frame->stride + band->x;
-        asj_line_band_row(band, row, &even.column, &even.last);
-        odd = even;
-        odd.column = odd.last + 1;
-        if (row < band->bottom) {
-            odd.pixels += frame->stride;
-            asj_line_band_row(band, row + 1, &odd.column, &odd.last);
-        }
-        add_two_rows(frame, band, row, even, odd, &down, &up);
-    }
-    sums[0] = total_sums(&down);
-    sums[1] = total_sums(&up);
+    lane_sums sides[2] = {{zero, zero, zero, zero, zero, zero}, {zero, zero, zero, zero, zero, zero}};
+    for (int32_t column = band->left; column <= band->right; column += ASJ_LINE_LANES)
+        sum_columns(frame, band, column, sides);
+    sums[0] = total_sums(&sides[0]);
+    sums[1] = total_sums(&sides[1]);
 }
 
 /* As in lines.h. */
@@ -179,7 +167,7 @@ static inline void profile_sixteen(const asj_frame *frame, const asj_line_profil
 
 static void line_profile_avx512(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums)
 {
-    const int32_t lanes = 2 * ASJ_LINE_LANES;
+    const int32_t lanes = ASJ_LINE_LANES;
     const int whole = asj_line_profile_inside(frame, profile, 0, profile->count);
     for (int32_t k = 0; k < profile->count; k += lanes) {
         const int32_t to = k + lanes < profile->count ? k + lanes : profile->count;

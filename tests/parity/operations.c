@@ -243,9 +243,9 @@ static asj_status run_line_sums(asj_context *context, const subject *s, uint16_t
     synth_random random = s->random;
     asj_line_band band;
     double x, y, length;
-    const double angle = choose_line(s, &random, &x, &y, &length), t[2] = {2, length}, across[2] = {-4.5, 4};
+    const double angle = choose_line(s, &random, &x, &y, &length), half_width = synth_random_between(&random, 0.5, 5);
     (void)scratch;
-    asj_line_band_set(s->picture, x, y, angle, t, across, &band);
+    asj_line_band_set(s->picture, x, y, cos(angle), sin(angle), 0.5 * length, half_width, &band);
     context->ops->line_sums(s->picture, &band, output);
     return ASJ_OK;
 }
