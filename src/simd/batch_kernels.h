@@ -91,3 +91,31 @@ static void batch_strengths(const asj_sectors *s, const asj_sector_plan *plan, c
     }
     repeat_ends(z, s->count, suppress, V_LANES);
 }
+
+/* Peaks of each pixel, largest value first; of equals the one put in first. Of as many sectors in a row as peaks suppress, and one
+ * more, a pixel has one peak at most, so that the peaks of these are put in at once. */
+typedef struct ranking {
+    vec values[ASJ_MAX_BRANCHES], sectors[ASJ_MAX_BRANCHES];
+} ranking;
+
+/* `most` places with the value that stands for no peak. */
+static inline void start_ranking(ranking *ranked, int32_t most, vec none)
+{
+    for (int32_t m = 0; m < most; m++) {
+        ranked->values[m] = none;
+        ranked->sectors[m] = v_zero();
+    }
+}
+
+/* One peak of each pixel, or none. */
+static inline void insert_peaks(ranking *ranked, int32_t most, vec value, vec sector)
+{
+    for (int32_t m = 0; m < most; m++) {
+        const vec larger = v_greater(value, ranked->values[m]), change = v_and(larger, v_xor(sector, ranked->sectors[m]));
+        const vec rest = v_min(value, ranked->values[m]);
+        ranked->values[m] = v_max(value, ranked->values[m]);
+        ranked->sectors[m] = v_xor(ranked->sectors[m], change);
+        value = rest;
+        sector = v_xor(sector, change);
+    }
+}

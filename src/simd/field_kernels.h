@@ -6,23 +6,42 @@
 
 typedef char tiles_are_whole_groups[ASJ_FIELD_TILE % GROUP_PIXELS == 0 ? 1 : -1];
 
+/* The strongest peaks of each pixel. */
+static void rank_by_strength(const asj_field *field, const int16_t *z, ranking *ranked)
+{
+    const int32_t count = field->sectors.count, together = field->suppress + 1;
+    start_ranking(ranked, ASJ_FIELD_BRANCHES, v_zero());
+    for (int32_t k = 0; k < count;) {
+        vec strength = v_zero(), sector = v_zero();
+        for (const int32_t end = count - k < together ? count : k + together; k < end; k++) {
+            const vec is_peak = peak(z + k * V_LANES, V_LANES, field->suppress, v_set1_32(field->limits[k][2]));
+            strength = v_or(strength, v_and(is_peak, v_load(z + k * V_LANES)));
+            sector = v_or(sector, v_and(is_peak, v_set1((int16_t)k)));
+        }
+        insert_peaks(ranked, ASJ_FIELD_BRANCHES, strength, sector);
+    }
+}
+
 /* The branches at the pixels of a batch, whose strengths start at z. */
 static void find_branches(const asj_field *field, const int16_t *z, int32_t count,
                           asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
 {
-    const uint32_t lanes = (uint32_t)(((uint64_t)1 << count) - 1);
     const int32_t width = 65536 / field->sectors.count;
-    for (int32_t k = 0; k < field->sectors.count; k++, z += V_LANES) {
-        const int32_t angle = 65536 * k / field->sectors.count;
-        const vec below = v_set1_32(field->limits[k][2]);
-        if (!v_any(v_greater(v_load(z), below)))
-            continue;
-        for (uint32_t bits = v_bits(peak(z, V_LANES, field->suppress, below)) & lanes; bits; bits &= bits - 1) {
-            const int i = __builtin_ctz(bits);
-            const int32_t shift = asj_field_shift(width, z[i - V_LANES], z[i], z[i + V_LANES]);
-            asj_field_insert(branches[i], (asj_field_branch){(uint16_t)(angle + shift), (uint16_t)z[i]});
-        }
+    uint16_t strengths[ASJ_FIELD_BRANCHES][V_LANES], sectors[ASJ_FIELD_BRANCHES][V_LANES];
+    ranking ranked;
+    rank_by_strength(field, z, &ranked);
+    for (int32_t m = 0; m < ASJ_FIELD_BRANCHES; m++) {
+        v_store(strengths[m], ranked.values[m]);
+        v_store(sectors[m], ranked.sectors[m]);
     }
+    memset(branches, 0, (size_t)count * sizeof *branches);
+    for (int32_t i = 0; i < count; i++)
+        for (int32_t m = 0; m < ASJ_FIELD_BRANCHES && strengths[m][i]; m++) {
+            const int32_t k = sectors[m][i];
+            const int16_t *here = z + k * V_LANES + i;
+            const int32_t angle = 65536 * k / field->sectors.count + asj_field_shift(width, here[-V_LANES], *here, here[V_LANES]);
+            branches[i][m] = (asj_field_branch){(uint16_t)angle, strengths[m][i]};
+        }
 }
 
 static void field_pixels(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,
@@ -31,7 +50,6 @@ static void field_pixels(const asj_field *field, const asj_frame *frame, const a
     const asj_sectors *s = &field->sectors;
     uint16_t *slots = scratch + (size_t)field->runs.count * SQUARE * V_LANES;
     int16_t *z = (int16_t *)slots + (size_t)field->plan.slot_count * V_LANES;
-    memset(branches, 0, (size_t)count * sizeof *branches);
     for (int32_t first = 0; first < count; first += V_LANES) {
         const int32_t last = count - first < V_LANES ? count : first + V_LANES;
         batch b = {0};

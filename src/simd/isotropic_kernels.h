@@ -4,35 +4,13 @@
  * Candidates come in clusters of two or three pixels, so vectors of neighbouring pixels would be mostly empty: see
  * batch_kernels.h. */
 
-/* The strongest peaks of each candidate, by sum; of equals the first. Sums start at -2^15, so that they compare as signed numbers,
- * and at a sum of 0 there is none. */
-typedef struct ranking {
-    vec sums[ASJ_MAX_BRANCHES], sectors[ASJ_MAX_BRANCHES];
-} ranking;
-
-/* Puts one peak of each candidate, or none, in its place. */
-static inline void insert_peaks(ranking *ranked, int32_t most, vec sum, vec sector)
-{
-    for (int32_t m = 0; m < most; m++) {
-        const vec larger = v_greater(sum, ranked->sums[m]), change = v_and(larger, v_xor(sector, ranked->sectors[m]));
-        const vec rest = v_min(sum, ranked->sums[m]);
-        ranked->sums[m] = v_max(sum, ranked->sums[m]);
-        ranked->sectors[m] = v_xor(ranked->sectors[m], change);
-        sum = rest;
-        sector = v_xor(sector, change);
-    }
-}
-
-/* Of `suppress` + 1 sectors that follow each other a candidate has one peak at most, so that these are put in at once. */
-static void rank_peaks(const asj_isotropic_radius *entry, int32_t most, const uint16_t *slots, const int16_t *z, ranking *ranked)
+/* The strongest peaks of each candidate by sum. Sums start at -2^15, so that they compare as signed numbers; one of 0 is none. */
+static void rank_by_sum(const asj_isotropic_radius *entry, int32_t most, const uint16_t *slots, const int16_t *z, ranking *ranked)
 {
     const asj_sector_plan *plan = &entry->plan;
     const int32_t count = entry->sectors.count, together = entry->suppress + 1;
     const vec none = v_set1(INT16_MIN);
-    for (int32_t m = 0; m < most; m++) {
-        ranked->sums[m] = none;
-        ranked->sectors[m] = v_zero();
-    }
+    start_ranking(ranked, most, none);
     for (int32_t k = 0; k < count;) {
         vec sum = v_zero(), sector = v_zero();
         for (const int32_t end = count - k < together ? count : k + together; k < end; k++) {
@@ -52,9 +30,9 @@ static void test_batch(const asj_isotropic *test, const asj_isotropic_radius *en
     ranking ranked;
     uint16_t sums[ASJ_MAX_BRANCHES][V_LANES], sectors[ASJ_MAX_BRANCHES][V_LANES];
     z += entry->suppress * V_LANES;
-    rank_peaks(entry, test->max_branches, slots, z, &ranked);
+    rank_by_sum(entry, test->max_branches, slots, z, &ranked);
     for (int32_t m = 0; m < test->max_branches; m++) {
-        v_store(sums[m], v_add(ranked.sums[m], v_set1(INT16_MIN)));
+        v_store(sums[m], v_add(ranked.values[m], v_set1(INT16_MIN)));
         v_store(sectors[m], ranked.sectors[m]);
     }
     for (int32_t i = 0; i < count; i++) {
