@@ -32,7 +32,7 @@ static float biweight(double r2)
     return (float)(w * w);
 }
 
-static asj_way way_between(const asj_view *view1, const asj_view *view2, const asj_candidate *c, const asj_candidate *d)
+asj_way asj_way_between(const asj_view *view1, const asj_view *view2, const asj_candidate *c, const asj_candidate *d)
 {
     const asj_l_junction *c1 = &view1->corners.l[c->i], *d1 = &view1->corners.l[d->i];
     const asj_l_junction *c2 = &view2->corners.l[c->j], *d2 = &view2->corners.l[d->j];
@@ -42,12 +42,20 @@ static asj_way way_between(const asj_view *view1, const asj_view *view2, const a
 
 /* --- on one surface --------------------------------------------------------------------------------------------------------- */
 
+/* The square of how far a map may miss: one that misses by twice what both together may belongs to nothing near, whatever the other
+ * one says. 4 REACH (PIXELS + tolerance |e|)^2 at most, without a root, since (a + b)^2 <= 2 (a^2 + b^2). */
+static double most_square(double ex, double ey, double tolerance)
+{
+    const double pixels = ASJ_AGREEMENT_PIXELS;
+    return 8.001 * ASJ_AGREEMENT_REACH * (pixels * pixels + tolerance * tolerance * (ex * ex + ey * ey));
+}
+
 /* [ |p - e| / allowed ]^2. (dx, dy) leads from c to d in the image that the maps start from, e in the other. */
 static double misprediction(const double *map_c, const double *map_d, double dx, double dy, double ex, double ey, double tolerance)
 {
     const double cx = map_c[0] * dx + map_c[1] * dy, cy = map_c[2] * dx + map_c[3] * dy;
     const double tx = map_d[0] * dx + map_d[1] * dy, ty = map_d[2] * dx + map_d[3] * dy;
-    const double most = asj_most_square(ex, ey, tolerance);
+    const double most = most_square(ex, ey, tolerance);
     if ((cx - ex) * (cx - ex) + (cy - ey) * (cy - ey) > most || (tx - ex) * (tx - ex) + (ty - ey) * (ty - ey) > most)
         return ASJ_AGREEMENT_REACH;
     const double c = sqrt(cx * cx + cy * cy), t = sqrt(tx * tx + ty * ty);
@@ -68,8 +76,16 @@ static double unlikeness(const double *a, const double *b)
     return difference / sqrt(size_a * size_b);
 }
 
-static float on_surface(const asj_match_options *options, const asj_candidate *c, const asj_candidate *d, const asj_way *way)
+/* Two corners of one image on one place of the other. */
+static int32_t together(const asj_way *way)
 {
+    return way->x1 * way->x1 + way->y1 * way->y1 < 1 || way->x2 * way->x2 + way->y2 * way->y2 < 1;
+}
+
+float asj_surface_agreement(const asj_match_options *options, const asj_candidate *c, const asj_candidate *d, const asj_way *way)
+{
+    if (together(way))
+        return 0;
     const double there = misprediction(c->map.to, d->map.to, way->x1, way->y1, way->x2, way->y2, options->neighbour_tolerance);
     if (there >= ASJ_AGREEMENT_REACH)
         return 0;
@@ -80,22 +96,30 @@ static float on_surface(const asj_match_options *options, const asj_candidate *c
 
 /* --- along one edge --------------------------------------------------------------------------------------------------------- */
 
+/* [ distance of the way's end from the branch's line / 3 px ]^2; *ahead: does the branch lead towards it? */
+static double off_line(const double u[2], double ex, double ey, int32_t *ahead)
+{
+    const double across = (u[0] * ey - u[1] * ex) / ASJ_AGREEMENT_PIXELS;
+    *ahead = u[0] * ex + u[1] * ey > 0;
+    return across * across;
+}
+
 /* r^2 of the two branches in one image, as much as ends agreement when they do not share an edge: s of `from` and t of `to`, which
  * lies (ex, ey) away. *sides tells which way they lead. */
 static double shared(const asj_corners *corners, uint32_t from, uint32_t s, uint32_t to, uint32_t t, double ex, double ey,
                      double tolerance, int32_t *sides)
 {
     int32_t ahead, onwards;
-    const double off_s = asj_off_line(corners->direction + 4 * (size_t)from + 2 * s, ex, ey, &ahead);
-    const double off_t = asj_off_line(corners->direction + 4 * (size_t)to + 2 * t, ex, ey, &onwards);
+    const double off_s = off_line(corners->direction + 4 * (size_t)from + 2 * s, ex, ey, &ahead);
+    const double off_t = off_line(corners->direction + 4 * (size_t)to + 2 * t, ex, ey, &onwards);
     const double covered = (ahead ? (double)corners->lengths[2 * (size_t)from + s].length[0] : 0) +
                            (onwards ? 0 : (double)corners->lengths[2 * (size_t)to + t].length[0]);
     *sides = 2 * ahead + onwards;
     return covered >= (1 - tolerance) * sqrt(ex * ex + ey * ey) ? 0.5 * (off_s + off_t) : ASJ_AGREEMENT_REACH;
 }
 
-static float edge_of(const asj_match_options *options, const asj_corners *k1, const asj_corners *k2, const asj_candidate *c,
-                     const asj_candidate *d, const asj_way *e)
+float asj_edge_agreement(const asj_match_options *options, const asj_corners *k1, const asj_corners *k2, const asj_candidate *c,
+                         const asj_candidate *d, const asj_way *e)
 {
     const double square1 = e->x1 * e->x1 + e->y1 * e->y1, square2 = e->x2 * e->x2 + e->y2 * e->y2;
     double least = ASJ_AGREEMENT_REACH;
@@ -122,24 +146,32 @@ static float edge_of(const asj_match_options *options, const asj_corners *k1, co
     return biweight(least + unequal * unequal);
 }
 
-/* --- together --------------------------------------------------------------------------------------------------------------- */
+/* --- first looks at many ---------------------------------------------------------------------------------------------------- */
 
-/* Two corners of one image on one place of the other. */
-static int32_t together(const asj_way *way)
+uint64_t asj_look_at(const asj_look *look, const asj_spots *spots, uint32_t first, uint32_t count)
 {
-    return way->x1 * way->x1 + way->y1 * way->y1 < 1 || way->x2 * way->x2 + way->y2 * way->y2 < 1;
+    uint64_t seen = 0;
+    for (uint32_t n = 0; n < count; n++) {
+        const uint32_t m = first + n;
+        const float ex = spots->x[m] - look->x, ey = spots->y[m] - look->y;
+        const float most = (float)ASJ_LOOK_MOST + look->slope * (ex * ex + ey * ey);
+        const float cx = look->px - ex, cy = look->py - ey;
+        const float dx = spots->map[0][m] * look->way_x + spots->map[1][m] * look->way_y - ex;
+        const float dy = spots->map[2][m] * look->way_x + spots->map[3][m] * look->way_y - ey;
+        int32_t may = cx * cx + cy * cy <= most && dx * dx + dy * dy <= most;
+        for (uint32_t t = 0; t < 2; t++)
+            if (look->edges >> t & 1)
+                may |= fabsf(look->branch[t][0] * ey - look->branch[t][1] * ex) <= (float)ASJ_LOOK_ACROSS;
+        seen |= (uint64_t)may << n;
+    }
+    return seen;
 }
 
-float asj_surface_agreement(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c,
-                            const asj_candidate *d)
+uint32_t asj_edges_through(const asj_corners *corners, uint32_t l, uint32_t among, double ex, double ey)
 {
-    const asj_way way = way_between(view1, view2, c, d);
-    return together(&way) ? 0 : on_surface(options, c, d, &way);
-}
-
-float asj_edge_agreement(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c,
-                         const asj_candidate *d)
-{
-    const asj_way way = way_between(view1, view2, c, d);
-    return edge_of(options, &view1->corners, &view2->corners, c, d, &way);
+    const double *u = corners->direction + 4 * (size_t)l;
+    if (among == 0 || corners->stem[l])
+        return 0;
+    const uint32_t a = fabs(u[0] * ey - u[1] * ex) <= ASJ_LOOK_ACROSS, b = fabs(u[2] * ey - u[3] * ex) <= ASJ_LOOK_ACROSS;
+    return among & (a | b << 1);
 }

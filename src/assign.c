@@ -116,9 +116,9 @@ asj_status asj_assign(asj_context *context, const asj_match_options *options, co
     asj_status status = winners1 && winners2 && keeper ? ASJ_OK
                                                        : asj_fail(context, ASJ_ERROR_MEMORY, "no memory to choose matches");
     if (status == ASJ_OK)
-        status = asj_place_index_create(context, c1, candidates, 1, &index1);
+        status = asj_place_index_create(context, c1, candidates, 1, 0, &index1);
     if (status == ASJ_OK)
-        status = asj_place_index_create(context, c2, candidates, 2, &index2);
+        status = asj_place_index_create(context, c2, candidates, 2, 0, &index2);
     if (status == ASJ_OK) {
         find_winners(candidates, &index1, c1, c2, 1, options->separation, winners1);
         find_winners(candidates, &index2, c2, c1, 2, options->separation, winners2);

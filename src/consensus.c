@@ -22,57 +22,12 @@
 
 #define BASE 0.2f /* lets appearance lead the first step; between 0.1 and 0.4 it changes nothing */
 #define STEPS 5   /* word travels that far from corner to corner; 4 or 8 change one match in two hundred */
-#define WEIGHT_ONE 65535.0f /* agreement 1 in 16 bits */
 
-asj_status asj_place_index_create(asj_context *context, const asj_corners *corners, const asj_candidates *candidates, int32_t side,
-                                  asj_place_index *index)
-{
-    index->start = asj_allocate_zero(&context->memory, (size_t)corners->place_count + 2, sizeof *index->start);
-    index->order = asj_allocate(&context->memory, candidates->count, sizeof *index->order);
-    if (!index->start || !index->order)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for an index of %zu candidates", candidates->count);
-    for (size_t k = 0; k < candidates->count; k++)
-        index->start[corners->place[side == 1 ? candidates->list[k].i : candidates->list[k].j] + 2]++;
-    for (uint32_t p = 2; p < corners->place_count + 2; p++)
-        index->start[p] += index->start[p - 1];
-    for (size_t k = 0; k < candidates->count; k++)
-        index->order[index->start[corners->place[side == 1 ? candidates->list[k].i : candidates->list[k].j] + 1]++] = (uint32_t)k;
-    return ASJ_OK;
-}
-
-void asj_place_index_free(asj_memory *memory, asj_place_index *index)
-{
-    asj_release(memory, index->start);
-    asj_release(memory, index->order);
-    index->start = index->order = NULL;
-}
-
-/* --- relaxation ------------------------------------------------------------------------------------------------------------- */
-
-/* A neighbour that agrees. */
-typedef struct voice {
-    uint32_t position; /* in the order of the place index */
-    uint16_t weight;   /* agreement in 1/65535; not 0 */
-    uint16_t place;    /* which of the neighbour places it belongs to */
-} voice;
-
-/* Where a candidate stands, for a first look at many: x, y in image 1, x, y in image 2. */
-typedef struct spot {
-    double at[4];
-} spot;
-
-/* One image's half of the graph. Most pairs that are looked at do not agree at all: only the others are stored, candidate by
- * candidate, neighbour place by neighbour place, in the order of the place index. */
+/* One image's half of the graph. */
 typedef struct half {
     const asj_corners *corners;
     asj_place_index index;
-    size_t *offset;      /* candidate k hears voices[offset[k]] .. voices[offset[k] + heard[k] - 1] */
-    uint32_t *heard;
-    voice *voices;
-    spot *spots;         /* in the order of the place index */
-    float *confidence;   /* likewise */
-    uint32_t *position;  /* of each candidate there */
-    float *best;         /* of each place */
+    float *best; /* of each place */
 } half;
 
 static uint32_t place_of(const half *h, const asj_candidate *c, int32_t side)
@@ -80,116 +35,38 @@ static uint32_t place_of(const half *h, const asj_candidate *c, int32_t side)
     return h->corners->place[side == 1 ? c->i : c->j];
 }
 
-static spot spot_of(const asj_view *view1, const asj_view *view2, const asj_candidate *c)
+static asj_status half_create(asj_context *context, const asj_corners *corners, const asj_candidates *candidates, int32_t side,
+                              half *h)
 {
-    const asj_l_junction *l1 = &view1->corners.l[c->i], *l2 = &view2->corners.l[c->j];
-    return (spot){{(double)l1->x, (double)l1->y, (double)l2->x, (double)l2->y}};
-}
-
-/* What candidate k hears goes to `voices`; returns how many they are. */
-static uint32_t hear_one(const asj_match_options *options, const asj_view *view1, const asj_view *view2,
-                         const asj_candidates *candidates, int32_t side, const half *h, size_t k, voice *voices)
-{
-    const asj_candidate *c = &candidates->list[k];
-    const spot here = spot_of(view1, view2, c);
-    const uint32_t place = place_of(h, c, side);
-    const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
-    uint32_t count = 0;
-    for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++) {
-        const double x = h->corners->place_x[neighbour[n]] - here.at[2 * side - 2];
-        const double y = h->corners->place_y[neighbour[n]] - here.at[2 * side - 1];
-        const uint32_t edges = asj_edges_through(h->corners, side == 1 ? c->i : c->j, 3, x, y);
-        for (uint32_t m = h->index.start[neighbour[n]]; m < h->index.start[neighbour[n] + 1]; m++) {
-            const double *there = h->spots[m].at;
-            const asj_way way = {there[0] - here.at[0], there[1] - here.at[1], there[2] - here.at[2], there[3] - here.at[3]};
-            const uint32_t shared = side == 1 ? asj_edges_through(&view2->corners, c->j, edges, way.x2, way.y2)
-                                              : asj_edges_through(&view1->corners, c->i, edges, way.x1, way.y1);
-            const asj_candidate *d = &candidates->list[h->index.order[m]];
-            float w = asj_way_misses(options, c, &way) ? 0 : asj_surface_agreement(options, view1, view2, c, d);
-            const float v = shared ? asj_edge_agreement(options, view1, view2, c, d) : 0;
-            w = v > w ? v : w;
-            const uint16_t weight = (uint16_t)(w * WEIGHT_ONE);
-            if (weight == 0)
-                continue;
-            voices[count++] = (voice){m, weight, (uint16_t)n};
-        }
-    }
-    return count;
-}
-
-/* Room for all that candidates may hear, then what they do hear. */
-static asj_status hear(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
-                       const asj_candidates *candidates, int32_t side, half *h)
-{
-    const size_t count = candidates->count;
-    size_t total = 0;
-    for (size_t k = 0; k < count; k++) {
-        const uint32_t place = place_of(h, &candidates->list[k], side);
-        const uint32_t *neighbour = h->corners->neighbour + (size_t)place * h->corners->neighbour_limit;
-        h->offset[k] = total;
-        for (uint32_t n = 0; n < h->corners->neighbour_count[place]; n++)
-            total += h->index.start[neighbour[n] + 1] - h->index.start[neighbour[n]];
-    }
-    h->voices = asj_allocate(&context->memory, total, sizeof *h->voices);
-    if (!h->voices)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu pairs of candidates", total);
-#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 64)
-    for (int64_t k = 0; k < (int64_t)count; k++)
-        h->heard[k] = hear_one(options, view1, view2, candidates, side, h, (size_t)k, h->voices + h->offset[k]);
-    return ASJ_OK;
-}
-
-static asj_status half_create(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
-                              const asj_candidates *candidates, int32_t side, half *h)
-{
-    asj_memory *memory = &context->memory;
-    const size_t count = candidates->count;
-    h->corners = side == 1 ? &view1->corners : &view2->corners;
-    asj_status status = asj_place_index_create(context, h->corners, candidates, side, &h->index);
+    h->corners = corners;
+    asj_status status = asj_place_index_create(context, corners, candidates, side, 0, &h->index);
     if (status != ASJ_OK)
         return status;
-    h->offset = asj_allocate(memory, count, sizeof *h->offset);
-    h->heard = asj_allocate(memory, count, sizeof *h->heard);
-    h->spots = asj_allocate(memory, count, sizeof *h->spots);
-    h->confidence = asj_allocate(memory, count, sizeof *h->confidence);
-    h->position = asj_allocate(memory, count, sizeof *h->position);
-    h->best = asj_allocate(memory, h->corners->place_count, sizeof *h->best);
-    if (!h->offset || !h->heard || !h->spots || !h->confidence || !h->position || !h->best)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
-    for (size_t k = 0; k < count; k++) {
-        h->position[h->index.order[k]] = (uint32_t)k;
-        h->spots[k] = spot_of(view1, view2, &candidates->list[h->index.order[k]]);
-    }
-    return hear(context, options, view1, view2, candidates, side, h);
+    h->best = asj_allocate(&context->memory, corners->place_count, sizeof *h->best);
+    return h->best ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %u places", (unsigned)corners->place_count);
 }
 
 static void half_free(asj_memory *memory, half *h)
 {
     asj_place_index_free(memory, &h->index);
-    asj_release(memory, h->offset);
-    asj_release(memory, h->heard);
-    asj_release(memory, h->spots);
-    asj_release(memory, h->voices);
-    asj_release(memory, h->confidence);
-    asj_release(memory, h->position);
     asj_release(memory, h->best);
 }
 
 /* Sum over the neighbour places of the largest weight x confidence. */
-static float ask(const half *h, size_t k)
+static float ask(const asj_hearing *h, uint32_t number, const float *confidence)
 {
-    const voice *v = h->voices + h->offset[k], *end = v + h->heard[k];
+    const asj_voice *v = h->voices + h->offset[number - 1], *end = v + h->heard[number - 1];
     float support = 0;
     while (v < end) {
         const uint16_t place = v->place;
         float largest = 0;
         for (; v < end && v->place == place; v++) {
-            float loud = (float)v->weight * h->confidence[v->position];
+            float loud = (float)v->weight * confidence[v->number];
             largest = loud > largest ? loud : largest;
         }
         support += largest;
     }
-    return support * (1 / WEIGHT_ONE);
+    return support * (1 / ASJ_VOICE_ONE);
 }
 
 /* best[place] = the largest (sign 1) or smallest (sign -1) value of the place's candidates. */
@@ -221,13 +98,6 @@ static void rate(const asj_candidates *candidates, int32_t aligned, half halves[
     }
 }
 
-static void set_confidence(const asj_candidates *candidates, half halves[2], const float *confidence)
-{
-    for (size_t k = 0; k < candidates->count; k++)
-        for (int s = 0; s < 2; s++)
-            halves[s].confidence[halves[s].position[k]] = confidence[k];
-}
-
 /* How many neighbours of one image are asked, but at least one: a match that stands alone has no support. */
 static uint32_t asked(const asj_corners *corners, uint32_t limit)
 {
@@ -242,38 +112,62 @@ float asj_needed_support(const asj_match_options *options, const asj_corners *co
     return (float)(options->minimum_support * share);
 }
 
+/* What the graph holds for each candidate: appearance and score in the order of the list, confidence by number. */
+typedef struct ratings {
+    float *appearance, *score, *confidence;
+} ratings;
+
 static void relax(asj_context *context, const asj_match_options *options, asj_candidates *candidates, half halves[2],
-                  const float *appearance, float *score)
+                  const asj_voices *voices, const ratings *r)
 {
     const int64_t count = (int64_t)candidates->count;
     const float needed = asj_needed_support(options, halves[0].corners, halves[1].corners), least = needed > 1e-6f ? needed : 1e-6f;
     (void)context; /* without OpenMP */
-    set_confidence(candidates, halves, appearance);
+    for (int64_t k = 0; k < count; k++)
+        r->confidence[candidates->list[k].number - 1] = r->appearance[k];
     for (int step = 0; step < STEPS; step++) {
 #pragma omp parallel for num_threads(context->threads) schedule(static)
         for (int64_t k = 0; k < count; k++) {
             asj_candidate *c = &candidates->list[k];
-            c->support = (ask(&halves[0], (size_t)k) + ask(&halves[1], (size_t)k)) * 0.5f;
-            c->score = appearance[k] * (BASE + c->support);
+            c->support = (ask(&voices->side[0], c->number, r->confidence) + ask(&voices->side[1], c->number, r->confidence)) * 0.5f;
+            c->score = r->score[k] = r->appearance[k] * (BASE + c->support);
         }
-        for (int64_t k = 0; k < count; k++)
-            score[k] = candidates->list[k].score;
-        best_of_places(&halves[0], score, 1);
-        best_of_places(&halves[1], score, 1);
+        best_of_places(&halves[0], r->score, 1);
+        best_of_places(&halves[1], r->score, 1);
         for (int64_t k = 0; k < count; k++) {
             const asj_candidate *c = &candidates->list[k];
             float b1 = halves[0].best[place_of(&halves[0], c, 1)], b2 = halves[1].best[place_of(&halves[1], c, 2)];
             float best = b1 > b2 ? b1 : b2;
-            score[k] /= best > least ? best : least;
+            r->confidence[c->number - 1] = r->score[k] / (best > least ? best : least);
         }
-        set_confidence(candidates, halves, score);
     }
 }
 
-asj_status asj_consensus(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
-                         asj_candidates *candidates)
+static asj_status agree(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
+                        asj_candidates *candidates, const asj_voices *voices)
 {
     asj_memory *memory = &context->memory;
+    const size_t count = candidates->count;
+    half halves[2];
+    memset(halves, 0, sizeof halves);
+    float *block = asj_allocate(memory, count, 3 * sizeof *block);
+    asj_status status = block ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
+    for (int32_t s = 0; s < 2 && status == ASJ_OK; s++)
+        status = half_create(context, s == 0 ? &view1->corners : &view2->corners, candidates, s + 1, &halves[s]);
+    if (status == ASJ_OK) {
+        const ratings r = {block, block + count, block + 2 * count};
+        rate(candidates, options->align_iterations > 0, halves, r.score, r.appearance);
+        relax(context, options, candidates, halves, voices, &r);
+    }
+    for (int s = 0; s < 2; s++)
+        half_free(memory, &halves[s]);
+    asj_release(memory, block);
+    return status;
+}
+
+asj_status asj_consensus(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
+                         asj_candidates *candidates, asj_voices *voices)
+{
     if (options->neighbours == 0) {
         for (size_t k = 0; k < candidates->count; k++) {
             asj_candidate *c = &candidates->list[k];
@@ -282,21 +176,6 @@ asj_status asj_consensus(asj_context *context, const asj_match_options *options,
         }
         return ASJ_OK;
     }
-    half halves[2];
-    memset(halves, 0, sizeof halves);
-    float *appearance = asj_allocate(memory, candidates->count, sizeof *appearance);
-    float *scratch = asj_allocate(memory, candidates->count, sizeof *scratch);
-    asj_status status = appearance && scratch ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates",
-                                                                  candidates->count);
-    for (int32_t s = 0; s < 2 && status == ASJ_OK; s++)
-        status = half_create(context, options, view1, view2, candidates, s + 1, &halves[s]);
-    if (status == ASJ_OK) {
-        rate(candidates, options->align_iterations > 0, halves, scratch, appearance);
-        relax(context, options, candidates, halves, appearance, scratch);
-    }
-    for (int s = 0; s < 2; s++)
-        half_free(memory, &halves[s]);
-    asj_release(memory, appearance);
-    asj_release(memory, scratch);
-    return status;
+    const asj_status status = asj_voices_extend(context, options, view1, view2, candidates, voices);
+    return status == ASJ_OK ? agree(context, options, view1, view2, candidates, voices) : status;
 }

@@ -6,7 +6,8 @@
  *   distance.c   all pairs, short list
  *   align.c      each candidate's map refined on the images    (paper: not done)
  *   consensus.c  support from neighbouring candidates          (paper: not done)
- *   agreement.c  .. what it means that two candidates agree
+ *   voices.c     .. which of them agree
+ *   agreement.c  .. what that means
  *   assign.c     ratio test, mutual check
  *   guided.c     matches propose matches near them; once more from align.c on
  *   verify.c     each match asks the matches around it
@@ -26,6 +27,7 @@ typedef struct match_run {
     const asj_match_options *options;
     asj_view view[2];
     asj_candidates candidates;
+    asj_voices voices;
     asj_choice *choices;
     size_t choice_count;
     double stage_ms[16];
@@ -84,7 +86,7 @@ static asj_status find_candidates(match_run *m)
 
 static asj_status choose(match_run *m)
 {
-    asj_status status = asj_consensus(m->context, m->options, &m->view[0], &m->view[1], &m->candidates);
+    asj_status status = asj_consensus(m->context, m->options, &m->view[0], &m->view[1], &m->candidates, &m->voices);
     if (status == ASJ_OK)
         status = asj_assign(m->context, m->options, &m->view[0], &m->view[1], &m->candidates, m->choices, &m->choice_count);
     stop_watch(m, ASJ_STAGE_ASSIGN);
@@ -149,6 +151,7 @@ static void clean(match_run *m)
     }
     asj_release(memory, m->candidates.list);
     asj_release(memory, m->choices);
+    asj_voices_free(memory, &m->voices);
 }
 
 /* Arguments of asj_match(). */

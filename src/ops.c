@@ -28,6 +28,7 @@ static void fill_reference(asj_ops *ops)
     ops->patch_normalise = asj_patch_normalise;
     ops->patch_products = asj_patch_products;
     ops->pyramid_sample = asj_pyramid_sample_reference;
+    ops->look_at = asj_look_at;
 }
 
 const char *asj_ops_name(int32_t variant)

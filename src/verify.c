@@ -19,6 +19,7 @@
  *
  * Twice, the second time without the witnesses that the first round found false. */
 #include "verify.h"
+#include "agreement.h"
 
 #define ROUNDS 2          /* a third one changes nothing */
 #define MOST_WITNESSES 64 /* the option's maximum */
@@ -85,7 +86,8 @@ static double agreement(const trial *t, size_t self)
         for (uint32_t k = 0; k < found; k++) {
             const asj_candidate *other = &t->candidates->list[t->choices[witness[k]].candidate];
             const double weight = 1 / (1 + square[k] / reach);
-            sum += weight * (double)asj_surface_agreement(t->options, t->view1, t->view2, c, other);
+            const asj_way way = asj_way_between(t->view1, t->view2, c, other);
+            sum += weight * (double)asj_surface_agreement(t->options, c, other, &way);
             asked += weight;
         }
     }

@@ -6,6 +6,7 @@
 
 #define SAMPLES 333 /* no multiple of any vector */
 #define PRODUCTS 37
+#define SPOTS 61
 
 size_t blur_size(const subject *s)
 {
@@ -94,5 +95,36 @@ asj_status run_products(asj_context *context, const subject *s, uint16_t *scratc
     for (int32_t k = 0; k < PRODUCTS; k++)
         memcpy(right + k * length, vectors[k + 1], (size_t)length * sizeof *right);
     context->ops->patch_products(vectors[0], right, length, PRODUCTS, output);
+    return ASJ_OK;
+}
+
+size_t looks_size(const subject *s)
+{
+    (void)s;
+    return ASJ_LOOK_COUNT * sizeof(uint64_t);
+}
+
+/* Looks of all counts and at all kinds of edges, at spots of which about half are near. */
+asj_status run_looks(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    static float numbers[6][SPOTS + ASJ_LOOK_COUNT + ASJ_LOOK_MORE];
+    const asj_spots spots = {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4], numbers[5]}};
+    synth_random random = s->random;
+    uint64_t *seen = output;
+    (void)scratch;
+    for (int32_t k = 0; k < 6; k++)
+        for (int32_t m = 0; m < SPOTS + ASJ_LOOK_COUNT; m++)
+            numbers[k][m] = (float)(k < 2 ? synth_random_between(&random, 0, 200)
+                                          : synth_random_between(&random, -0.3, 0.3) + (k == 2 || k == 5));
+    for (uint32_t count = 1; count <= ASJ_LOOK_COUNT; count++) {
+        asj_look look = {.x = 100, .y = 90, .slope = (float)synth_random_between(&random, 0, 0.5), .edges = count % 4};
+        look.way_x = (float)synth_random_between(&random, -90, 90);
+        look.way_y = (float)synth_random_between(&random, -90, 90);
+        look.px = look.way_x + (float)synth_random_between(&random, -20, 20);
+        look.py = look.way_y + (float)synth_random_between(&random, -20, 20);
+        for (int32_t t = 0; t < 4; t++)
+            look.branch[t / 2][t % 2] = (float)synth_random_between(&random, -1, 1);
+        seen[count - 1] = context->ops->look_at(&look, &spots, (uint32_t)(synth_random_bits(&random) % SPOTS), count);
+    }
     return ASJ_OK;
 }

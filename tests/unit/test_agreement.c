@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* src/agreement.c: exact under perspective; corners of one edge agree across surfaces, Ts and what lies off the edge do not. */
 #include "agreement.h"
+#include "random.h"
 #include "unit_test.h"
 
 #define SIDE 600
@@ -41,6 +42,13 @@ static void map(asj_candidate *c, uint32_t l, double a, double b, double p, doub
     assert_true(asj_affine_invert(to, c->map.from));
 }
 
+static float measure(const stage *s, const asj_candidate *c, const asj_candidate *d, int on_surface)
+{
+    const asj_way way = asj_way_between(&s->view[0], &s->view[1], c, d);
+    return on_surface ? asj_surface_agreement(&s->options, c, d, &way)
+                      : asj_edge_agreement(&s->options, &s->view[0].corners, &s->view[1].corners, c, d, &way);
+}
+
 /* Of the surface, or of the edge. */
 static float agree(stage *s, int on_surface)
 {
@@ -54,10 +62,7 @@ static float agree(stage *s, int on_surface)
     const asj_corners *k = &s->view[0].corners;
     s->c.i = s->c.j = 0;
     s->d.i = s->d.j = k->count - 1;
-    float (*measure)(const asj_match_options *, const asj_view *, const asj_view *, const asj_candidate *, const asj_candidate *) =
-        on_surface ? asj_surface_agreement : asj_edge_agreement;
-    const float there = measure(&s->options, &s->view[0], &s->view[1], &s->c, &s->d);
-    const float back = measure(&s->options, &s->view[0], &s->view[1], &s->d, &s->c);
+    const float there = measure(s, &s->c, &s->d, on_surface), back = measure(s, &s->d, &s->c, on_surface);
     assert_true(there - back < 1e-5f && back - there < 1e-5f);
     for (int v = 0; v < 2; v++)
         asj_corners_free(&context->memory, &s->view[v].corners);
@@ -143,12 +148,86 @@ static void ts_say_nothing_of_edges(void **state)
     assert_true(agree(&s, 0) == 0);
 }
 
+/* --- first looks ------------------------------------------------------------------------------------------------------------ */
+
+enum { PLACES = 60 };
+
+/* Two views of places; in one of five they hardly move and branches lie along the ways between these. */
+static void scatter(synth_random *random, asj_junction junctions[2][PLACES], asj_candidate *candidates)
+{
+    for (uint32_t k = 0; k < PLACES; k++) {
+        const double a = synth_random_between(random, 0.5, 2), b = synth_random_between(random, -0.5, 0.5);
+        const double off = k % 5 == 0 ? 4 : 60;
+        const double x = 60 + 8 * k, y = 100 + (k % 5 == 0 ? 0 : synth_random_between(random, 0, 100));
+        const double angle = k % 5 == 0 ? 0 : synth_random_between(random, 0, 6);
+        set(&junctions[0][k], x, y, angle, 300);
+        set(&junctions[1][k], x + synth_random_between(random, -off, off), y + synth_random_between(random, -off, off), angle, 300);
+        map(&candidates[k], k, a, b, -b, a);
+    }
+}
+
+/* What c sees of d, as the matcher asks it; side 0 or 1. */
+static int sees(const stage *s, const asj_candidate *c, const asj_candidate *d, int side)
+{
+    const asj_way way = asj_way_between(&s->view[0], &s->view[1], c, d);
+    const asj_corners *others = &s->view[1 - side].corners;
+    const uint32_t here = side == 0 ? c->j : c->i, there = side == 0 ? d->j : d->i;
+    const double *u = others->direction + 4 * (size_t)here, *map = side == 0 ? c->map.to : c->map.from;
+    const double *their = side == 0 ? d->map.to : d->map.from, tolerance = s->options.neighbour_tolerance;
+    const double x = side == 0 ? way.x1 : way.x2, y = side == 0 ? way.y1 : way.y2;
+    float numbers[6][1 + ASJ_LOOK_MORE] = {{others->l[there].x}, {others->l[there].y}};
+    for (int k = 0; k < 4; k++)
+        numbers[2 + k][0] = (float)their[k];
+    const asj_spots spots = {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4], numbers[5]}};
+    const asj_look look = {others->l[here].x, others->l[here].y, (float)x, (float)y, (float)(map[0] * x + map[1] * y),
+                           (float)(map[2] * x + map[3] * y), (float)(ASJ_LOOK_SLOPE * tolerance * tolerance),
+                           asj_edges_through(&s->view[side].corners, side == 0 ? c->i : c->j, 3, x, y),
+                           {{(float)u[0], (float)u[1]}, {(float)u[2], (float)u[3]}}};
+    return (int)asj_look_at(&look, &spots, 0, 1);
+}
+
+/* Whatever agrees is seen, and much of what does not is not. */
+static void looks_lose_nothing(void **state)
+{
+    (void)state;
+    static asj_junction junctions[2][PLACES];
+    asj_candidate candidates[PLACES];
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    synth_random random;
+    stage s;
+    int agreed[2] = {0, 0}, unseen = 0;
+    synth_random_seed(&random, 7);
+    memset(&s, 0, sizeof s);
+    asj_match_options_init(&s.options);
+    scatter(&random, junctions, candidates);
+    for (int v = 0; v < 2; v++)
+        assert_int_equal(asj_corners_create(context, junctions[v], PLACES, SIDE, SIDE, &s.options, v + 1, &s.view[v].corners),
+                         ASJ_OK);
+    for (uint32_t k = 0; k < PLACES * PLACES; k++) {
+        const asj_candidate *c = &candidates[k / PLACES], *d = &candidates[k % PLACES];
+        const int surface = measure(&s, c, d, 1) > 0, edge = measure(&s, c, d, 0) > 0;
+        agreed[0] += surface;
+        agreed[1] += edge && !surface;
+        for (int side = 0; side < 2; side++) {
+            const int seen = sees(&s, c, d, side);
+            assert_true(seen || !(surface || edge));
+            unseen += !seen;
+        }
+    }
+    assert_true(agreed[0] > 100 && agreed[1] > 20 && unseen > PLACES * PLACES / 2);
+    for (int v = 0; v < 2; v++)
+        asj_corners_free(&context->memory, &s.view[v].corners);
+    unit_context_free(&counter, &context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(perspective_is_no_error),
         cmocka_unit_test(corners_of_one_edge_agree),
         cmocka_unit_test(ts_say_nothing_of_edges),
+        cmocka_unit_test(looks_lose_nothing),
     };
     return cmocka_run_group_tests_name("agreement", tests, NULL, NULL);
 }
