@@ -68,12 +68,15 @@ static void list_peaks(__local const uint *peaks, int count, int most, __global 
     uint list[MAX_BRANCHES] = {0, 0, 0, 0, 0};
     for (int k = 0; k < count; k++) {
         uint next = peaks[k];
-        for (int i = 0; next && i < MAX_BRANCHES; i++)
-            if (next >> 16 > list[i] >> 16) {
+        int moves = 0; /* what has had to leave its place takes the next one, also from its equal */
+        for (int i = 0; next && i < MAX_BRANCHES; i++) {
+            moves |= next >> 16 > list[i] >> 16;
+            if (moves) {
                 const uint old = list[i];
                 list[i] = next;
                 next = old;
             }
+        }
     }
     for (int i = 0; i < most; i++)
         to[i] = list[i];
@@ -200,13 +203,13 @@ static void batch_strengths(__global const int *radius, __global const int *sect
     }
 }
 
-/* Puts numbers where their sum is larger, and returns the others. */
-static uint16 put(uint16 *place, uint16 next)
+/* Puts numbers where their sum is larger, or where they move on to from the place before, and returns the others. */
+static uint16 put(uint16 *place, uint16 next, int16 *moves)
 {
     const uint16 old = *place;
-    const int16 larger = next > (old | 65535);
-    *place = select(old, next, larger);
-    return select(next, old, larger);
+    *moves |= next > (old | 65535);
+    *place = select(old, next, *moves);
+    return select(next, old, *moves);
 }
 
 /* The five first peaks of each lane, in the order of asj_isotropic_judge(), one after the other. */
@@ -229,11 +232,12 @@ static void batch_peaks(__global const int *radius, __global const int *sector, 
             continue;
         const ushort16 sum = (slots[sector[SECTOR_HIGH]] - slots[sector[SECTOR_LOW]]) & as_ushort16(peak);
         uint16 next = convert_uint16(sum) << 16 | (convert_uint16(as_ushort16(peak)) & (uint)k);
-        next = put(&first, next);
-        next = put(&second, next);
-        next = put(&third, next);
-        next = put(&fourth, next);
-        put(&fifth, next);
+        int16 moves = 0;
+        next = put(&first, next, &moves);
+        next = put(&second, next, &moves);
+        next = put(&third, next, &moves);
+        next = put(&fourth, next, &moves);
+        put(&fifth, next, &moves);
     }
     list[0] = first;
     list[1] = second;

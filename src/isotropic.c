@@ -201,14 +201,12 @@ void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, in
 /* Puts a peak into a list of at most `most`, ordered by sum; of equals the one put in first comes first. Returns the new count. */
 static int32_t insert(asj_isotropic_peak *peaks, int32_t count, int32_t most, asj_isotropic_peak peak)
 {
-    for (int32_t i = 0; i < count; i++)
-        if (peak.sum > peaks[i].sum) {
-            asj_isotropic_peak swap = peaks[i];
-            peaks[i] = peak;
-            peak = swap;
-        }
-    if (count < most)
-        peaks[count++] = peak;
+    if (count == most && peak.sum <= peaks[most - 1].sum)
+        return count;
+    int32_t i = count < most ? count++ : most - 1;
+    for (; i > 0 && peaks[i - 1].sum < peak.sum; i--)
+        peaks[i] = peaks[i - 1];
+    peaks[i] = peak;
     return count;
 }
 

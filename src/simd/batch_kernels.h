@@ -107,11 +107,13 @@ static inline void start_ranking(ranking *ranked, int32_t most, vec none)
     }
 }
 
-/* One peak of each pixel, or none. */
+/* One peak of each pixel, or none. What has had to leave its place takes the next one, also from its equal. */
 static inline void insert_peaks(ranking *ranked, int32_t most, vec value, vec sector)
 {
+    vec moves = v_zero();
     for (int32_t m = 0; m < most; m++) {
-        const vec larger = v_greater(value, ranked->values[m]), change = v_and(larger, v_xor(sector, ranked->sectors[m]));
+        moves = v_or(moves, v_greater(value, ranked->values[m]));
+        const vec change = v_and(moves, v_xor(sector, ranked->sectors[m]));
         const vec rest = v_min(value, ranked->values[m]);
         ranked->values[m] = v_max(value, ranked->values[m]);
         ranked->sectors[m] = v_xor(ranked->sectors[m], change);
