@@ -23,6 +23,23 @@ static void rank_by_sum(const asj_isotropic_radius *entry, int32_t most, const u
     }
 }
 
+/* -1 where the strongest branches may be meaningful, for what asj_isotropic_judge() asks first; most candidates fail at a small
+ * radius. */
+static vec worth_judging(const asj_isotropic *test, const asj_isotropic_radius *entry, const ranking *ranked)
+{
+    const vec turn = v_sub(ranked->sectors[0], ranked->sectors[1]), apart = v_max(turn, v_sub(v_zero(), turn));
+    const vec around = v_sub(v_set1((int16_t)entry->sectors.count), apart);
+    const vec edge = v_greater(v_min(apart, around), v_set1((int16_t)entry->straight));
+    vec worth = v_zero();
+    for (int32_t m = 2; m <= test->max_branches; m++) {
+        const int32_t least = entry->least_sum[m] > 1 ? entry->least_sum[m] : 1; /* a sum of 0 is no branch */
+        const vec below = v_set1((int16_t)(least <= UINT16_MAX ? least - 1 + INT16_MIN : INT16_MAX));
+        const vec enough = v_greater(ranked->values[m - 1], below);
+        worth = v_or(worth, m == 2 ? v_not_and(edge, enough) : enough);
+    }
+    return worth;
+}
+
 /* One radius: the branches of each candidate that may matter, then the shared decision. */
 static void test_batch(const asj_isotropic *test, const asj_isotropic_radius *entry, const uint16_t *slots, const int16_t *z,
                        int32_t count, asj_isotropic_junction *junctions)
@@ -35,7 +52,9 @@ static void test_batch(const asj_isotropic *test, const asj_isotropic_radius *en
         v_store(sums[m], v_add(ranked.values[m], v_set1(INT16_MIN)));
         v_store(sectors[m], ranked.sectors[m]);
     }
-    for (int32_t i = 0; i < count; i++) {
+    const uint32_t lanes = (uint32_t)(((uint64_t)1 << count) - 1);
+    for (uint32_t bits = v_bits(worth_judging(test, entry, &ranked)) & lanes; bits; bits &= bits - 1) {
+        const int i = __builtin_ctz(bits);
         asj_isotropic_peak peaks[ASJ_MAX_BRANCHES];
         int32_t found = 0;
         for (; found < test->max_branches && sums[found][i]; found++) {
