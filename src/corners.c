@@ -99,26 +99,58 @@ static asj_status find_places(asj_context *context, asj_corners *corners)
     return ASJ_OK;
 }
 
-/* The `limit` nearest places farther than `separation`, nearest first, ties by number. */
-static uint32_t nearest(const asj_corners *corners, uint32_t place, double separation, uint32_t limit, uint32_t *out)
+uint32_t asj_first_place(const asj_corners *corners, double x)
 {
-    double far[64];
-    uint32_t count = 0;
-    const double least = separation * separation;
-    for (uint32_t q = 0; q < corners->place_count; q++) {
-        double dx = corners->place_x[q] - corners->place_x[place], dy = corners->place_y[q] - corners->place_y[place];
-        double d = dx * dx + dy * dy;
-        if (q == place || d <= least || (count == limit && d >= far[count - 1]))
-            continue;
-        uint32_t k = count < limit ? count++ : limit - 1;
-        for (; k > 0 && far[k - 1] > d; k--) {
-            far[k] = far[k - 1];
-            out[k] = out[k - 1];
-        }
-        far[k] = d;
-        out[k] = q;
+    uint32_t low = 0, high = corners->place_count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (corners->place_x[middle] < x)
+            low = middle + 1;
+        else
+            high = middle;
     }
-    return count;
+    return low;
+}
+
+/* A list of places, nearest first, ties by number. */
+typedef struct nearest {
+    uint32_t count, limit;
+    uint32_t *place;
+    double square[64]; /* of their distances */
+} nearest;
+
+static void insert(nearest *list, uint32_t place, double square)
+{
+    uint32_t k = list->count;
+    while (k > 0 && (list->square[k - 1] > square || (list->square[k - 1] == square && list->place[k - 1] > place)))
+        k--;
+    if (k == list->limit)
+        return;
+    list->count += list->count < list->limit;
+    for (uint32_t m = list->count - 1; m > k; m--) {
+        list->square[m] = list->square[m - 1];
+        list->place[m] = list->place[m - 1];
+    }
+    list->square[k] = square;
+    list->place[k] = place;
+}
+
+/* The nearest places farther than `separation`: from the place itself outwards in x, until x alone is too far away. */
+static uint32_t find_nearest(const asj_corners *corners, uint32_t place, double separation, uint32_t limit, uint32_t *out)
+{
+    const double x = corners->place_x[place], y = corners->place_y[place], least = separation * separation;
+    nearest list = {.limit = limit, .place = out};
+    for (uint32_t left = place, right = place + 1; left > 0 || right < corners->place_count;) {
+        const int32_t back = right == corners->place_count ||
+                             (left > 0 && x - corners->place_x[left - 1] <= corners->place_x[right] - x);
+        const uint32_t q = back ? --left : right++;
+        const double dx = corners->place_x[q] - x, dy = corners->place_y[q] - y, square = dx * dx + dy * dy;
+        if (list.count == limit && dx * dx > list.square[limit - 1])
+            break;
+        if (square > least)
+            insert(&list, q, square);
+    }
+    return list.count;
 }
 
 static asj_status find_neighbours(asj_context *context, const asj_match_options *options, asj_corners *corners)
@@ -133,23 +165,25 @@ static asj_status find_neighbours(asj_context *context, const asj_match_options 
     const int64_t count = corners->place_count;
 #pragma omp parallel for num_threads(context->threads) schedule(static)
     for (int64_t p = 0; p < count; p++)
-        corners->neighbour_count[p] = nearest(corners, (uint32_t)p, options->separation, corners->neighbour_limit,
-                                              corners->neighbour + (size_t)p * corners->neighbour_limit);
+        corners->neighbour_count[p] = find_nearest(corners, (uint32_t)p, options->separation, corners->neighbour_limit,
+                                                   corners->neighbour + (size_t)p * corners->neighbour_limit);
     return ASJ_OK;
 }
 
 /* --- lengths and frames ----------------------------------------------------------------------------------------------------- */
 
-/* Inserts a length into the falling list of extra lengths [1 ..], keeping those LEAST_APART from longer ones. */
+/* Appends extra lengths, falling, LEAST_APART from each other. Only places with an x that the branch passes are looked at. */
 static void find_lengths(const asj_corners *corners, double x, double y, const double u[2], double own, int32_t limit,
                          asj_lengths *lengths)
 {
     lengths->count = 1;
     lengths->length[0] = (float)own;
     double before = own - LEAST_BEFORE_END;
+    const double most = x + (u[0] > 0 ? before * u[0] : 0) + RAY_DISTANCE + 1;
+    const uint32_t first = asj_first_place(corners, x + (u[0] < 0 ? before * u[0] : 0) - RAY_DISTANCE - 1);
     while (lengths->count < limit) { /* the longest one not longer than `before` */
         double best = 0;
-        for (uint32_t q = 0; q < corners->place_count; q++) {
+        for (uint32_t q = first; q < corners->place_count && corners->place_x[q] <= most; q++) {
             double dx = corners->place_x[q] - x, dy = corners->place_y[q] - y;
             double along = dx * u[0] + dy * u[1];
             if (along >= LEAST_START && along <= before && along > best && fabs(dx * u[1] - dy * u[0]) < RAY_DISTANCE)

@@ -43,4 +43,7 @@ asj_status asj_corners_create(asj_context *context, const asj_junction *junction
                               const asj_match_options *options, int32_t which, asj_corners *corners);
 void asj_corners_free(asj_memory *memory, asj_corners *corners);
 
+/* The first place that is not left of x. */
+uint32_t asj_first_place(const asj_corners *corners, double x);
+
 #endif

@@ -63,20 +63,6 @@ static void propose(proposals *p, uint32_t partner)
         p->partner[p->count++] = partner;
 }
 
-/* Places are in order of x, so that those near one are found by bisection. */
-static uint32_t first_place(const asj_corners *corners, double x)
-{
-    uint32_t low = 0, high = corners->place_count;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (corners->place_x[middle] < x)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 static void ask(const asj_match_options *options, const asj_corners *mine, uint32_t i, const guide *g, const asj_corners *others,
                 proposals *p)
 {
@@ -86,7 +72,7 @@ static void ask(const asj_match_options *options, const asj_corners *mine, uint3
     double radius = ASJ_AGREEMENT_PIXELS + options->neighbour_tolerance * sqrt(px * px + py * py);
     px += g->x2;
     py += g->y2;
-    for (uint32_t q = first_place(others, px - radius); q < others->place_count; q++) {
+    for (uint32_t q = asj_first_place(others, px - radius); q < others->place_count; q++) {
         double ex = others->place_x[q] - px, ey = others->place_y[q] - py;
         if (ex > radius)
             break;
