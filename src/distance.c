@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 7, distances of all pairs.
  *
- * Canonical patches: f and g are unit vectors, so |f - g|^2 = 2 - 2 <f, g>: all pairs are one product of two matrices, worked
- * through in blocks of rows. Of an L-junction with several length hypotheses the best pair of frames counts. From each block
- * the best partners of its rows and, row after row, of all columns are kept: memory for the full matrix is never needed. Ties
- * go to the smaller index, so the list depends on nothing but the input.
+ * Canonical patches: f and g are unit vectors, so |f - g|^2 = 2 - 2 <f, g>. Of an L-junction with several length hypotheses the
+ * best pair of frames counts. The best partners of every L-junction are short-listed (rank.c); ties go to the smaller index, so the
+ * list depends on nothing but the input.
  *
  * Scores are whole numbers, so that any device ranks alike: <f, g> of unit vectors; 2 <f, g> - <f, f> - <g, g> of others, both in
  * units of 1/ASJ_UNIT_ONE^2; of the paper's patches (induced.c) minus the distance in 2^-16. */
@@ -16,17 +15,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BLOCK_ROWS 64
-#define TILE_FRAMES 48 /* at least the frames of one L-junction: 16 */
-#define MAX_SHORTLIST 32
-#define DISTANCE_ONE 65536 /* distances of raw patches are below 2^14 */
-
 int32_t asj_patch_length(const asj_match_options *options)
 {
     return options->descriptor == ASJ_DESCRIPTOR_SIFT ? ASJ_SIFT_LENGTH : options->patch_size * options->patch_size;
 }
 
-static int32_t units(const asj_match_options *options)
+int32_t asj_patch_units(const asj_match_options *options)
 {
     return options->descriptor == ASJ_DESCRIPTOR_SIFT || options->normalise;
 }
@@ -70,20 +64,19 @@ asj_status asj_describe(asj_context *context, const asj_match_options *options, 
 static int32_t affinity(const asj_match_options *options, const int16_t *f, const int16_t *g, int32_t length)
 {
     const int32_t product = asj_patch_product(f, g, length);
-    return units(options) ? product : 2 * product - asj_patch_product(f, f, length) - asj_patch_product(g, g, length);
+    return asj_patch_units(options) ? product : 2 * product - asj_patch_product(f, f, length) - asj_patch_product(g, g, length);
 }
 
 /* |f - g|^2 of a score. */
 static float squared_distance(const asj_match_options *options, int32_t score)
 {
     const float one = 1.0f / ((float)ASJ_UNIT_ONE * (float)ASJ_UNIT_ONE);
-    const float distance2 = units(options) ? 2 - 2 * ((float)score * one) : -(float)score * one;
+    const float distance2 = asj_patch_units(options) ? 2 - 2 * ((float)score * one) : -(float)score * one;
     return distance2 > 0 ? distance2 : 0;
 }
 
-/* The best pair of frames of a pair of L-junctions. */
-static int32_t best_frames(const asj_match_options *options, const asj_view *view1, const asj_view *view2, uint32_t i, uint32_t j,
-                           uint32_t *frame1, uint32_t *frame2)
+int32_t asj_best_frames(const asj_match_options *options, const asj_view *view1, const asj_view *view2, uint32_t i, uint32_t j,
+                        uint32_t *frame1, uint32_t *frame2)
 {
     const int32_t length = asj_patch_length(options);
     const asj_corners *c1 = &view1->corners, *c2 = &view2->corners;
@@ -108,118 +101,10 @@ static int32_t best_frames(const asj_match_options *options, const asj_view *vie
 
 /* --- short lists ------------------------------------------------------------------------------------------------------------ */
 
-/* Inserts into a list that falls; the earlier of equals stays first. */
-static void offer(asj_partner *list, int32_t limit, int32_t score, uint32_t index)
-{
-    if (score <= list[limit - 1].score)
-        return;
-    int32_t k = limit - 1;
-    for (; k > 0 && list[k - 1].score < score; k--)
-        list[k] = list[k - 1];
-    list[k] = (asj_partner){score, index};
-}
-
 static void clear(asj_partner *list, size_t count)
 {
     for (size_t i = 0; i < count; i++)
         list[i] = (asj_partner){ASJ_NO_PARTNER, 0};
-}
-
-/* All that the two passes over a block share. */
-typedef struct table {
-    const asj_match_options *options;
-    const asj_view *view1, *view2;
-    int32_t limit;
-    asj_partner *rows, *columns; /* `limit` for each L-junction of image 1 and of image 2 */
-    int32_t *scores;             /* BLOCK_ROWS x count2 */
-    const asj_ops *ops;
-} table;
-
-/* Unit vectors: the pair of frames with the largest product is the best. Frames of image 2 are worked through in tiles that stay in
- * the first cache. */
-static void multiply_row(const table *t, uint32_t i, int32_t *scores)
-{
-    const asj_corners *c1 = &t->view1->corners, *c2 = &t->view2->corners;
-    const int32_t length = asj_patch_length(t->options);
-    int32_t products[TILE_FRAMES], largest[TILE_FRAMES];
-    for (uint32_t j = 0; j < c2->count; j++)
-        scores[j] = ASJ_NO_PARTNER;
-    for (uint32_t first = 0, end; first < c2->count; first = end) {
-        const uint32_t start = c2->first_frame[first];
-        int32_t asked = 0;
-        for (end = first + 1; end < c2->count && c2->first_frame[end + 1] - start <= TILE_FRAMES; end++)
-            ;
-        const int16_t *right = t->view2->patches + (size_t)start * (size_t)length;
-        const int32_t frames = (int32_t)(c2->first_frame[end] - start);
-        for (uint32_t f = c1->first_frame[i]; f < c1->first_frame[i + 1]; f++) {
-            if (!t->view1->usable[f])
-                continue;
-            t->ops->patch_products(t->view1->patches + (size_t)f * (size_t)length, right, length, frames, products);
-            if (asked++ == 0)
-                memcpy(largest, products, (size_t)frames * sizeof *largest);
-            for (int32_t g = 0; g < frames; g++)
-                largest[g] = products[g] > largest[g] ? products[g] : largest[g];
-        }
-        for (uint32_t j = first; j < end && asked > 0; j++)
-            for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++) {
-                const int32_t score = largest[g - start];
-                scores[j] = t->view2->usable[g] && score > scores[j] ? score : scores[j];
-            }
-    }
-}
-
-/* The paper's distance as a score. */
-static int32_t induced_score(const table *t, uint32_t i, uint32_t j)
-{
-    const float distance = asj_induced_distance(t->options, t->view1, t->view2, i, j);
-    return distance < HUGE_VALF ? -(int32_t)lrintf(distance * DISTANCE_ONE) : ASJ_NO_PARTNER;
-}
-
-static void score_row(const table *t, uint32_t i, int32_t *scores)
-{
-    const uint32_t count = t->view2->corners.count;
-    uint32_t f, g;
-    if (t->options->patches == ASJ_PATCHES_CANONICAL && units(t->options))
-        multiply_row(t, i, scores);
-    else
-        for (uint32_t j = 0; j < count; j++)
-            scores[j] = t->options->patches == ASJ_PATCHES_CANONICAL
-                ? best_frames(t->options, t->view1, t->view2, i, j, &f, &g)
-                : induced_score(t, i, j);
-    for (uint32_t j = 0; j < count; j++)
-        offer(t->rows + (size_t)i * (size_t)t->limit, t->limit, scores[j], j);
-}
-
-static asj_status work(asj_context *context, const table *t)
-{
-    const int64_t count1 = t->view1->corners.count, count2 = t->view2->corners.count;
-    for (int64_t first = 0; first < count1; first += BLOCK_ROWS) {
-        const int64_t end = first + BLOCK_ROWS < count1 ? first + BLOCK_ROWS : count1;
-#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 4)
-        for (int64_t i = first; i < end; i++)
-            score_row(t, (uint32_t)i, t->scores + (i - first) * count2);
-#pragma omp parallel for num_threads(context->threads) schedule(static)
-        for (int64_t j = 0; j < count2; j++)
-            for (int64_t i = first; i < end; i++)
-                offer(t->columns + j * t->limit, t->limit, t->scores[(i - first) * count2 + j], (uint32_t)i);
-        asj_status status = asj_progress(context, ASJ_STAGE_DISTANCES, 0.2 + 0.4 * (double)end / (double)count1);
-        if (status != ASJ_OK)
-            return status;
-    }
-    return ASJ_OK;
-}
-
-asj_status asj_rank_partners(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
-                             asj_partner *rows, asj_partner *columns)
-{
-    const size_t count2 = view2->corners.count;
-    table t = {options, view1, view2, options->shortlist, rows, columns, NULL, context->ops};
-    t.scores = asj_allocate(&context->memory, BLOCK_ROWS * count2, sizeof *t.scores);
-    if (!t.scores)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the distances of %zu L-junctions", count2);
-    asj_status status = work(context, &t);
-    asj_release(&context->memory, t.scores);
-    return status;
 }
 
 static int by_pair(const void *left, const void *right)
@@ -269,7 +154,7 @@ int32_t asj_compare(const asj_match_options *options, const asj_view *view1, con
     const asj_corners *c1 = &view1->corners, *c2 = &view2->corners;
     uint32_t f = c1->first_frame[candidate->i], g = c2->first_frame[candidate->j];
     if (options->patches == ASJ_PATCHES_CANONICAL) {
-        const int32_t score = best_frames(options, view1, view2, candidate->i, candidate->j, &f, &g);
+        const int32_t score = asj_best_frames(options, view1, view2, candidate->i, candidate->j, &f, &g);
         if (score == ASJ_NO_PARTNER)
             return 0;
         candidate->distance2 = squared_distance(options, score);

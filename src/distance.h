@@ -39,8 +39,9 @@ typedef struct asj_partner {
     uint32_t index;
 } asj_partner;
 
-/* Numbers in a described patch. */
+/* Numbers in a described patch; whether they are unit vectors. */
 int32_t asj_patch_length(const asj_match_options *options);
+int32_t asj_patch_units(const asj_match_options *options);
 
 /* Fills view->patches (canonical patches only). */
 asj_status asj_describe(asj_context *context, const asj_match_options *options, asj_view *view);
@@ -50,10 +51,14 @@ asj_status asj_describe_frames(asj_context *context, const asj_match_options *op
 /* The short list: for each L-junction of either image its options->shortlist best partners. */
 asj_status asj_shortlist(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
                          asj_candidates *candidates);
-/* The part of it that back ends replace: the options->shortlist best partners of L-junction i of image 1 from rows[i * shortlist]
- * on, of j of image 2 from columns[j * shortlist] on, best first; the lists come in empty. */
+/* rank.c, the part of it that back ends replace: the options->shortlist best partners of L-junction i of image 1 from
+ * rows[i * shortlist] on, of j of image 2 from columns[j * shortlist] on, best first; the lists come in empty. */
 asj_status asj_rank_partners(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
                              asj_partner *rows, asj_partner *columns);
+
+/* The best pair of frames of a pair of L-junctions and its score; ASJ_NO_PARTNER when there is none that can be used. */
+int32_t asj_best_frames(const asj_match_options *options, const asj_view *view1, const asj_view *view2, uint32_t i, uint32_t j,
+                        uint32_t *frame1, uint32_t *frame2);
 
 /* Fills distance2 and map of the pair candidate->i, candidate->j from the best pair of frames. Returns 0 when the pair gives no
  * map. */

@@ -2,6 +2,7 @@
 #include "ops.h"
 #include "field.h"
 #include "gradient.h"
+#include "sketch.h"
 #include "simd/variants.h"
 
 /* The build says which variants it holds: ASJ_HAVE_SSE2, ASJ_HAVE_AVX2, ASJ_HAVE_AVX512, ASJ_HAVE_NEON. */
@@ -27,6 +28,7 @@ static void fill_reference(asj_ops *ops)
     ops->patch_levels = asj_patch_levels;
     ops->patch_normalise = asj_patch_normalise;
     ops->patch_products = asj_patch_products;
+    ops->sketch_above = asj_sketch_above;
     ops->pyramid_sample = asj_pyramid_sample_reference;
     ops->look_at = asj_look_at;
 }

@@ -60,7 +60,11 @@ typedef struct asj_ops {
     /* asj_patch_levels(), asj_patch_normalise() and asj_patch_products() (patch.h) */
     int32_t (*patch_levels)(const asj_pyramid *pyramid, const asj_patch_grid *grid, int32_t size, uint16_t *grey);
     void (*patch_normalise)(const uint16_t *grey, int32_t size, int16_t *unit);
-    void (*patch_products)(const int16_t *left, const int16_t *right, int32_t length, int32_t count, int32_t *products);
+    void (*patch_products)(const int16_t *left, const int16_t *rights, int32_t length, const int32_t *which, int32_t count,
+                           int32_t *products);
+    /* asj_sketch_above() (sketch.h) */
+    int32_t (*sketch_above)(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first,
+                            int32_t end, int32_t *which);
     /* asj_blur_row() and asj_pyramid_sample_reference() (pyramid.h) */
     void (*blur_row)(const uint16_t *const *rows, const int32_t *taps, int32_t radius, int32_t width, uint16_t *to);
     int32_t (*pyramid_sample)(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,

@@ -132,8 +132,9 @@ int32_t asj_patch_product(const int16_t *left, const int16_t *right, int32_t sam
     return sum;
 }
 
-void asj_patch_products(const int16_t *left, const int16_t *right, int32_t length, int32_t count, int32_t *products)
+void asj_patch_products(const int16_t *left, const int16_t *rights, int32_t length, const int32_t *which, int32_t count,
+                        int32_t *products)
 {
     for (int32_t k = 0; k < count; k++)
-        products[k] = asj_patch_product(left, right + (ptrdiff_t)k * length, length);
+        products[k] = asj_patch_product(left, rights + (ptrdiff_t)which[k] * length, length);
 }

@@ -48,7 +48,8 @@ int32_t asj_patch_plain_scale(int32_t size);
 /* Exact in 32 bits for unit vectors. */
 int32_t asj_patch_product(const int16_t *left, const int16_t *right, int32_t samples);
 
-/* Products of one vector with `count` others that follow each other; length is a multiple of 16. */
-void asj_patch_products(const int16_t *left, const int16_t *right, int32_t length, int32_t count, int32_t *products);
+/* Products of one vector with those of `rights` that `which` numbers; length is a multiple of 16. */
+void asj_patch_products(const int16_t *left, const int16_t *rights, int32_t length, const int32_t *which, int32_t count,
+                        int32_t *products);
 
 #endif

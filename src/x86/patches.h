@@ -4,6 +4,9 @@
 #define ASJ_SRC_X86_PATCHES_H
 
 #include "../ops.h"
+#include "../sketch.h"
+
+#include <string.h>
 
 static inline int32_t sum_lanes(__m256i v)
 {
@@ -14,29 +17,58 @@ static inline int32_t sum_lanes(__m256i v)
 }
 
 /* Four patches on the right at once; lengths are multiples of 16. Sums of whole numbers that fit: any order gives the same. */
-static void patch_products_avx2(const int16_t *left, const int16_t *right, int32_t length, int32_t count, int32_t *products)
+static void patch_products_avx2(const int16_t *left, const int16_t *rights, int32_t length, const int32_t *which, int32_t count,
+                                int32_t *products)
 {
-    int32_t k = 0;
-    for (; k + 4 <= count; k += 4) {
-        const int16_t *r = right + (ptrdiff_t)k * length;
+    for (int32_t k = 0; k < count; k += 4) {
+        const int32_t last = count - k < 4 ? count - k - 1 : 3;
+        const int16_t *r[4];
         __m256i sum[4] = {v_zero(), v_zero(), v_zero(), v_zero()};
+        for (int32_t n = 0; n < 4; n++)
+            r[n] = rights + (ptrdiff_t)which[k + (n < last ? n : last)] * length;
         for (int32_t i = 0; i < length; i += 16) {
             const __m256i l = v_load(left + i);
             for (int32_t n = 0; n < 4; n++)
-                sum[n] = _mm256_add_epi32(sum[n], _mm256_madd_epi16(l, v_load(r + (ptrdiff_t)n * length + i)));
+                sum[n] = _mm256_add_epi32(sum[n], _mm256_madd_epi16(l, v_load(r[n] + i)));
         }
         const __m256i low = _mm256_hadd_epi32(sum[0], sum[1]), high = _mm256_hadd_epi32(sum[2], sum[3]);
         const __m256i all = _mm256_hadd_epi32(low, high);
-        _mm_storeu_si128((__m128i *)(void *)(products + k),
-                         _mm_add_epi32(_mm256_castsi256_si128(all), _mm256_extracti128_si256(all, 1)));
+        int32_t four[4];
+        _mm_storeu_si128((__m128i *)(void *)four, _mm_add_epi32(_mm256_castsi256_si128(all), _mm256_extracti128_si256(all, 1)));
+        for (int32_t n = 0; n <= last; n++)
+            products[k + n] = four[n];
     }
-    for (; k < count; k++) {
-        const int16_t *r = right + (ptrdiff_t)k * length;
-        __m256i sum = v_zero();
-        for (int32_t i = 0; i < length; i += 16)
-            sum = _mm256_add_epi32(sum, _mm256_madd_epi16(v_load(left + i), v_load(r + i)));
-        products[k] = sum_lanes(sum);
+}
+
+/* Eight bits: where a bound is above the smaller of least and most. */
+static inline unsigned above(__m256i bound, const int32_t *least, __m256i most)
+{
+    const __m256i result = _mm256_cmpgt_epi32(bound, _mm256_min_epi32(v_load(least), most));
+    return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(result));
+}
+
+static int32_t sketch_above_avx2(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first,
+                                 int32_t end, int32_t *which)
+{
+    const __m256i limit = _mm256_set1_epi32(most);
+    int32_t count = 0;
+    for (int32_t start = first - first % ASJ_SKETCH_LANES; start < end; start += ASJ_SKETCH_LANES) {
+        const int16_t *r = right + (ptrdiff_t)start * ASJ_SKETCH;
+        __m256i low = v_zero(), high = v_zero();
+        for (int32_t k = 0; k < ASJ_SKETCH; k += 2, r += 2 * ASJ_SKETCH_LANES) {
+            int32_t pair;
+            memcpy(&pair, left + k, sizeof pair);
+            const __m256i two = _mm256_set1_epi32(pair);
+            low = _mm256_add_epi32(low, _mm256_madd_epi16(two, v_load(r)));
+            high = _mm256_add_epi32(high, _mm256_madd_epi16(two, v_load(r + ASJ_SKETCH_LANES)));
+        }
+        unsigned bits = above(low, least + start, limit) | above(high, least + start + 8, limit) << 8;
+        bits &= start < first ? 0xffffu << (first - start) : 0xffffu;
+        bits &= end - start < ASJ_SKETCH_LANES ? (1u << (end - start)) - 1 : 0xffffu;
+        for (; bits; bits &= bits - 1)
+            which[count++] = start + __builtin_ctz(bits);
     }
+    return count;
 }
 
 /* Pairs of levels that share a tap are interleaved: one multiplication weights and adds both. */
@@ -236,6 +268,7 @@ static void fill_patches(asj_ops *ops)
     ops->patch_levels = patch_levels_avx2;
     ops->patch_normalise = patch_normalise_avx2;
     ops->patch_products = patch_products_avx2;
+    ops->sketch_above = sketch_above_avx2;
     ops->pyramid_sample = pyramid_sample_avx2;
     ops->look_at = look_at_avx2;
 }

@@ -321,6 +321,7 @@ const operation operations[] = {
     {"blur row", 0, blur_size, one_line, NULL, run_blur},
     {"pyramid samples", 0, samples_size, one_run, NULL, run_samples},
     {"patch products", 0, products_size, one_run, NULL, run_products},
+    {"sketches", 0, sketches_size, one_run, NULL, run_sketches},
     {"looks", 0, looks_size, one_run, NULL, run_looks},
     {"field tile", 0, tile_size, tile_pixels, NULL, run_tiles},
     {"field rows", 1, tile_size, tile_pixels, gradient_bytes, run_field_rows},

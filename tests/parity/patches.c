@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "more_operations.h"
+#include "sketch.h"
 
 #include <math.h>
 #include <string.h>
@@ -88,13 +89,45 @@ asj_status run_products(asj_context *context, const subject *s, uint16_t *scratc
     const int32_t side = 8 + 4 * (int32_t)(s->seed % 5), length = side * side;
     const double most = ASJ_UNIT_ONE / sqrt(length);
     int16_t right[PRODUCTS * ASJ_PATCH_SAMPLES];
+    int32_t which[PRODUCTS];
     (void)scratch;
     for (int32_t k = 0; k <= PRODUCTS; k++)
         for (int32_t i = 0; i < length; i++)
             vectors[k][i] = (int16_t)(k == 0 ? most : synth_random_between(&random, -most, most));
     for (int32_t k = 0; k < PRODUCTS; k++)
         memcpy(right + k * length, vectors[k + 1], (size_t)length * sizeof *right);
-    context->ops->patch_products(vectors[0], right, length, PRODUCTS, output);
+    for (int32_t k = 0; k < PRODUCTS; k++)
+        which[k] = (int32_t)(synth_random_bits(&random) % PRODUCTS);
+    context->ops->patch_products(vectors[0], right, length, which, PRODUCTS, output);
+    return ASJ_OK;
+}
+
+size_t sketches_size(const subject *s)
+{
+    (void)s;
+    return (SPOTS + 1) * sizeof(int32_t);
+}
+
+/* Sketches as large as they get, ranges that start and end anywhere, thresholds of all kinds. */
+asj_status run_sketches(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    enum { ROOM = (SPOTS + ASJ_SKETCH_LANES) / ASJ_SKETCH_LANES * ASJ_SKETCH_LANES };
+    static int16_t right[ROOM * ASJ_SKETCH];
+    synth_random random = s->random;
+    const double largest = ASJ_UNIT_ONE / sqrt(ASJ_SKETCH);
+    int16_t left[ASJ_SKETCH];
+    int32_t least[ROOM], *which = output;
+    const int32_t first = (int32_t)(s->seed % 20), end = SPOTS - (int32_t)(s->seed % 17);
+    (void)scratch;
+    for (int32_t k = 0; k < ASJ_SKETCH; k++)
+        left[k] = (int16_t)synth_random_between(&random, -largest, largest);
+    for (int32_t k = 0; k < ROOM * ASJ_SKETCH; k++)
+        right[k] = (int16_t)synth_random_between(&random, -largest, largest);
+    for (int32_t g = 0; g < ROOM; g++)
+        least[g] = g % 7 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : ASJ_NO_PARTNER;
+    const int32_t most = s->seed % 3 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : INT32_MAX;
+    memset(output, 0, sketches_size(s));
+    which[SPOTS] = context->ops->sketch_above(left, right, least, most, first, end, which);
     return ASJ_OK;
 }
 

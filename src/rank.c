@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 7, short lists: the best partners of every L-junction, among all pairs.
+ *
+ * Rows are worked through in blocks, the columns of a row in tiles. From each tile the best partners of its row are kept, from each
+ * block, row after row, those of all columns: memory for the full matrix is never needed, and a pair that is on neither list cannot
+ * come on one later. So only pairs are compared whose sketch says that they may be better than the last ones on the lists of
+ * both (sketch.c); blocks and tiles start small, for lists to compare with. */
+#include "ops.h"
+#include "sketch.h"
+
+#include <math.h>
+#include <string.h>
+
+#define FIRST_ROWS 8
+#define MOST_ROWS 64
+#define FIRST_FRAMES 16 /* the frames of one L-junction at least */
+#define MOST_FRAMES 256
+#define DISTANCE_ONE 65536 /* distances of raw patches are below 2^14 */
+
+/* All that the two passes over a block share. */
+typedef struct table {
+    const asj_match_options *options;
+    const asj_ops *ops;
+    const asj_view *view1, *view2;
+    int32_t limit, length;       /* of a list, of a patch */
+    asj_partner *rows, *columns; /* `limit` for each L-junction of image 1 and of image 2 */
+    int32_t *scores;             /* MOST_ROWS x count2; ASJ_NO_PARTNER also where the pair cannot come on a list */
+    int16_t *left, *right;       /* sketches; NULL: every pair is compared */
+    int32_t *least;              /* of each frame of image 2: the last score on its L-junction's list */
+    uint32_t *owner;             /* .. and that L-junction */
+} table;
+
+/* Inserts into a list that falls; the earlier of equals stays first. */
+static void offer(asj_partner *list, int32_t limit, int32_t score, uint32_t index)
+{
+    if (score <= list[limit - 1].score)
+        return;
+    int32_t k = limit - 1;
+    for (; k > 0 && list[k - 1].score < score; k--)
+        list[k] = list[k - 1];
+    list[k] = (asj_partner){score, index};
+}
+
+/* --- unit vectors: the pair of frames with the largest product is the best -------------------------------------------------- */
+
+/* Which frames first .. end - 1 of image 2 to compare with frame f of image 1, whose L-junction's list ends with `most`. */
+static int32_t find_frames(const table *t, uint32_t f, uint32_t first, uint32_t end, int32_t most, int32_t *frames)
+{
+    if (t->left)
+        return t->ops->sketch_above(t->left + (size_t)f * ASJ_SKETCH, t->right, t->least, most, (int32_t)first, (int32_t)end,
+                                    frames);
+    for (uint32_t g = first; g < end; g++)
+        frames[g - first] = (int32_t)g;
+    return (int32_t)(end - first);
+}
+
+/* L-junctions first .. end - 1 of image 2 against L-junction i. */
+static void multiply_tile(const table *t, uint32_t i, uint32_t first, uint32_t end, int32_t *scores)
+{
+    const asj_corners *c1 = &t->view1->corners, *c2 = &t->view2->corners;
+    asj_partner *list = t->rows + (size_t)i * (size_t)t->limit;
+    int32_t frames[MOST_FRAMES], products[MOST_FRAMES];
+    for (uint32_t f = c1->first_frame[i]; f < c1->first_frame[i + 1]; f++) {
+        if (!t->view1->usable[f])
+            continue;
+        const int32_t count = find_frames(t, f, c2->first_frame[first], c2->first_frame[end], list[t->limit - 1].score, frames);
+        t->ops->patch_products(t->view1->patches + (size_t)f * (size_t)t->length, t->view2->patches, t->length, frames, count,
+                               products);
+        for (int32_t k = 0; k < count; k++) {
+            int32_t *score = &scores[t->owner[frames[k]]];
+            *score = products[k] > *score && t->view2->usable[frames[k]] ? products[k] : *score;
+        }
+    }
+    for (uint32_t j = first; j < end; j++)
+        offer(list, t->limit, scores[j], j);
+}
+
+static void multiply_row(const table *t, uint32_t i, int32_t *scores)
+{
+    const asj_corners *c2 = &t->view2->corners;
+    for (uint32_t j = 0; j < c2->count; j++)
+        scores[j] = ASJ_NO_PARTNER;
+    for (uint32_t first = 0, end; first < c2->count; first = end) {
+        const uint32_t start = c2->first_frame[first], wanted = FIRST_FRAMES + start / 2;
+        const uint32_t most = wanted < MOST_FRAMES ? wanted : MOST_FRAMES;
+        for (end = first + 1; end < c2->count && c2->first_frame[end + 1] - start <= most; end++)
+            ;
+        multiply_tile(t, i, first, end, scores);
+    }
+}
+
+/* --- others ----------------------------------------------------------------------------------------------------------------- */
+
+/* The paper's distance as a score. */
+static int32_t induced_score(const table *t, uint32_t i, uint32_t j)
+{
+    const float distance = asj_induced_distance(t->options, t->view1, t->view2, i, j);
+    return distance < HUGE_VALF ? -(int32_t)lrintf(distance * DISTANCE_ONE) : ASJ_NO_PARTNER;
+}
+
+static void score_row(const table *t, uint32_t i, int32_t *scores)
+{
+    const uint32_t count = t->view2->corners.count;
+    uint32_t f, g;
+    for (uint32_t j = 0; j < count; j++) {
+        scores[j] = t->options->patches == ASJ_PATCHES_CANONICAL
+            ? asj_best_frames(t->options, t->view1, t->view2, i, j, &f, &g)
+            : induced_score(t, i, j);
+        offer(t->rows + (size_t)i * (size_t)t->limit, t->limit, scores[j], j);
+    }
+}
+
+/* --- blocks of rows --------------------------------------------------------------------------------------------------------- */
+
+static int32_t products_do(const asj_match_options *options)
+{
+    return options->patches == ASJ_PATCHES_CANONICAL && asj_patch_units(options);
+}
+
+/* Rows first .. end - 1 offer themselves to column j. */
+static void offer_rows(const table *t, int64_t first, int64_t end, uint32_t j)
+{
+    const asj_corners *c2 = &t->view2->corners;
+    asj_partner *list = t->columns + (size_t)j * (size_t)t->limit;
+    for (int64_t i = first; i < end; i++)
+        offer(list, t->limit, t->scores[(size_t)(i - first) * c2->count + j], (uint32_t)i);
+    for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++)
+        t->least[g] = list[t->limit - 1].score;
+}
+
+static asj_status work(asj_context *context, const table *t)
+{
+    const int64_t count1 = t->view1->corners.count, count2 = t->view2->corners.count;
+    for (int64_t first = 0, end; first < count1; first = end) {
+        const int64_t wanted = FIRST_ROWS + first / 4;
+        end = first + (wanted < MOST_ROWS ? wanted : MOST_ROWS);
+        end = end < count1 ? end : count1;
+#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 2)
+        for (int64_t i = first; i < end; i++)
+            (products_do(t->options) ? multiply_row : score_row)(t, (uint32_t)i, t->scores + (i - first) * count2);
+#pragma omp parallel for num_threads(context->threads) schedule(static)
+        for (int64_t j = 0; j < count2; j++)
+            offer_rows(t, first, end, (uint32_t)j);
+        asj_status status = asj_progress(context, ASJ_STAGE_DISTANCES, 0.2 + 0.4 * (double)end / (double)count1);
+        if (status != ASJ_OK)
+            return status;
+    }
+    return ASJ_OK;
+}
+
+static asj_status prepare(asj_context *context, table *t)
+{
+    asj_memory *memory = &context->memory;
+    const asj_corners *c2 = &t->view2->corners;
+    const size_t padded = (size_t)asj_sketch_blocks(c2->frame_count) * ASJ_SKETCH_LANES;
+    t->scores = asj_allocate(memory, MOST_ROWS * (size_t)c2->count, sizeof *t->scores);
+    t->least = asj_allocate_zero(memory, padded, sizeof *t->least);
+    t->owner = asj_allocate(memory, c2->frame_count, sizeof *t->owner);
+    if (!t->scores || !t->least || !t->owner)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the distances of %u L-junctions", (unsigned)c2->count);
+    for (uint32_t j = 0; j < c2->count; j++)
+        for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++) {
+            t->owner[g] = j;
+            t->least[g] = ASJ_NO_PARTNER;
+        }
+    if (!products_do(t->options) || t->options->descriptor != ASJ_DESCRIPTOR_RAW)
+        return ASJ_OK;
+    const asj_status status = asj_sketch_left(context, t->options, t->view1, &t->left);
+    return status == ASJ_OK ? asj_sketch_right(context, t->options, t->view2, &t->right) : status;
+}
+
+asj_status asj_rank_partners(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
+                             asj_partner *rows, asj_partner *columns)
+{
+    asj_memory *memory = &context->memory;
+    table t = {.options = options, .ops = context->ops, .view1 = view1, .view2 = view2, .limit = options->shortlist,
+               .length = asj_patch_length(options), .rows = rows, .columns = columns};
+    asj_status status = prepare(context, &t);
+    if (status == ASJ_OK)
+        status = work(context, &t);
+    asj_release(memory, t.scores);
+    asj_release(memory, t.least);
+    asj_release(memory, t.owner);
+    asj_release(memory, t.left);
+    asj_release(memory, t.right);
+    return status;
+}
