@@ -70,23 +70,13 @@ static void collect(const asj_ops *ops, const asj_frame *frame, double x, double
     ops->line_profile(frame, profile, &out->sums);
 }
 
-static void add_up(const samples *in, moments list[2])
+/* From sums over k: t = first + k step. */
+static moments moments_of(const samples *in, int32_t side)
 {
-    moments sums[2] = {{0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0}};
-    for (int32_t k = 0; k < in->profile.count; k++) {
-        const double t = in->first + k * in->step;
-        for (int32_t side = 0; side < 2; side++) {
-            const double w = (double)in->sums.w[side][k], r = (double)in->sums.moment[side][k], wt = w * t;
-            sums[side].count += w > 0;
-            sums[side].w += w;
-            sums[side].t += wt;
-            sums[side].tt += wt * t;
-            sums[side].r += r;
-            sums[side].tr += r * t;
-        }
-    }
-    list[0] = sums[0];
-    list[1] = sums[1];
+    const struct asj_profile_totals *sums = &in->sums.totals[side];
+    const double first = in->first, step = in->step, w = (double)sums->w, k = step * (double)sums->k, r = (double)sums->r;
+    return (moments){in->sums.counts[side], w, first * w + k, first * (first * w + 2 * k) + step * step * (double)sums->kk, r,
+                     first * r + step * (double)sums->kr};
 }
 
 /* Weighted least squares; returns 0 when the samples do not determine a line. */
@@ -110,7 +100,7 @@ static void find_variances(const samples *in, const moments *m, int32_t side, li
             continue;
         const double e = (double)in->sums.moment[side][k] / w - a - b * t;
         error += w * e * e;
-        first = fmin(first, t);
+        first = first < t ? first : t;
         last = t;
     }
     const double variance = error / (m->count - 2), span = last - first;
@@ -137,9 +127,8 @@ static int thin(const line lines[2], double first, double last, line *middle, do
  * variances when they are wanted. */
 static int choose(const samples *in, const asj_line_range *range, int variances, line *found, double *apart)
 {
-    moments list[2];
+    const moments list[2] = {moments_of(in, 0), moments_of(in, 1)};
     line lines[2];
-    add_up(in, list);
     const int strong = list[1].w > list[0].w;
     *apart = 0;
     if (!solve(in, &list[strong], &lines[strong]))

@@ -21,9 +21,10 @@
 /* Where a direction's projection, which along x changes by `per_column` and along y by `per_row`, is within +-half. */
 static void set_rows(double per_column, double per_row, double half, float *reach, float *step)
 {
-    const double size = fabs(per_row);
-    *reach = size < LEAST ? FAR : (float)(half / size);
-    *step = size < LEAST ? 0 : (float)(-per_column / per_row);
+    const int changes = fabs(per_row) > LEAST;
+    const double inverse = changes ? 1 / per_row : 0;
+    *reach = changes ? (float)(half * fabs(inverse)) : FAR;
+    *step = (float)(-per_column * inverse);
 }
 
 /* floor() for what is near the image, without a call. */
@@ -180,9 +181,30 @@ void asj_line_profile_part(const asj_frame *frame, const asj_line_profile *profi
     }
 }
 
+static void total_profile(int32_t count, int32_t side, asj_profile_sums *sums)
+{
+    const float *w = sums->w[side], *r = sums->moment[side];
+    lanes list; /* y: of the moments */
+    memset(&list, 0, sizeof list);
+    sums->counts[side] = 0;
+    for (int32_t k = 0; k < count; k++) {
+        const int32_t lane = k % LANES;
+        const float at = (float)k, weighted = w[k] * at;
+        sums->counts[side] += w[k] > 0;
+        list.w[lane] += w[k];
+        list.x[lane] += weighted;
+        list.xx[lane] += weighted * at;
+        list.y[lane] += r[k];
+        list.xy[lane] += r[k] * at;
+    }
+    sums->totals[side] = (struct asj_profile_totals){total(list.w), total(list.x), total(list.xx), total(list.y), total(list.xy)};
+}
+
 void asj_line_profile_of(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums)
 {
     asj_line_profile_part(frame, profile, 0, profile->count, sums);
+    for (int32_t side = 0; side < 2; side++)
+        total_profile(profile->count, side, sums);
 }
 
 int asj_line_profile_inside(const asj_frame *frame, const asj_line_profile *profile, int32_t from, int32_t to)

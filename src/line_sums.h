@@ -46,6 +46,10 @@ typedef struct asj_line_profile {
 /* With weights w of the samples whose gradient points along -n and along +n: sums of w and of w offset, for each k. */
 typedef struct asj_profile_sums {
     float w[2][ASJ_PROFILE_SAMPLES], moment[2][ASJ_PROFILE_SAMPLES];
+    int32_t counts[2]; /* of k with any */
+    struct asj_profile_totals {
+        float w, k, kk, r, kr; /* over all k: of w, w k, w k^2, and of the moments, also times k */
+    } totals[2];
 } asj_profile_sums;
 
 void asj_line_profile_of(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums);

@@ -14,18 +14,32 @@ typedef struct column_sums {
     __m256 w, y, yy;
 } column_sums;
 
-static inline float total(__m256 low, __m256 high)
+/* Neighbouring halves, quarters, .. of a and of b added up: of all lanes, as far apart as in total() of line_sums.c. */
+static inline __m256 halves(__m256 a, __m256 b)
 {
-    const __m256 eight = _mm256_add_ps(low, high);
-    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
-    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
-    return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
+    return _mm256_add_ps(_mm256_permute2f128_ps(a, b, 0x20), _mm256_permute2f128_ps(a, b, 0x31));
 }
 
+static inline __m256 quarters(__m256 a, __m256 b)
+{
+    const __m256d c = _mm256_castps_pd(a), d = _mm256_castps_pd(b);
+    return _mm256_add_ps(_mm256_castpd_ps(_mm256_unpacklo_pd(c, d)), _mm256_castpd_ps(_mm256_unpackhi_pd(c, d)));
+}
+
+static inline __m256 last_two(__m256 a, __m256 b)
+{
+    return _mm256_add_ps(_mm256_shuffle_ps(a, b, 0x88), _mm256_shuffle_ps(a, b, 0xdd));
+}
+
+/* All six at once, of both halves of the lanes. */
 static inline asj_line_sums total_sums(const lane_sums *low, const lane_sums *high)
 {
-    return (asj_line_sums){total(low->w, high->w),   total(low->x, high->x),   total(low->y, high->y),
-                           total(low->xx, high->xx), total(low->xy, high->xy), total(low->yy, high->yy)};
+    const __m256 w = _mm256_add_ps(low->w, high->w), xx = _mm256_add_ps(low->xx, high->xx);
+    const __m256 x = _mm256_add_ps(low->x, high->x), xy = _mm256_add_ps(low->xy, high->xy);
+    const __m256 y = _mm256_add_ps(low->y, high->y), yy = _mm256_add_ps(low->yy, high->yy), third = halves(y, yy);
+    float list[8];
+    _mm256_storeu_ps(list, last_two(quarters(halves(w, xx), halves(x, xy)), quarters(third, third))); /* w x y - xx xy yy */
+    return (asj_line_sums){list[0], list[1], list[2], list[4], list[5], list[6]};
 }
 
 /* 8 grey values each of a minus those of b: none is above 32640 (image.h) */
@@ -124,6 +138,29 @@ static inline __m256i whole_part(__m256 v)
     return _mm256_add_epi32(whole, _mm256_castps_si256(_mm256_cmp_ps(_mm256_cvtepi32_ps(whole), v, _CMP_GT_OQ)));
 }
 
+/* As total_profile() of line_sums.c. */
+static inline void total_profile(int32_t count, int32_t side, asj_profile_sums *sums)
+{
+    const __m256 zero = _mm256_setzero_ps(), lane = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+    lane_sums parts[2] = {{zero, zero, zero, zero, zero, zero}, {zero, zero, zero, zero, zero, zero}};
+    sums->counts[side] = 0;
+    for (int32_t k = 0; k < count; k += 8) {
+        lane_sums *part = &parts[k / 8 % 2];
+        const __m256 at = _mm256_add_ps(_mm256_set1_ps((float)k), lane);
+        const __m256 valid = _mm256_cmp_ps(at, _mm256_set1_ps((float)count), _CMP_LT_OQ);
+        const __m256 w = _mm256_and_ps(valid, _mm256_loadu_ps(sums->w[side] + k)), weighted = _mm256_mul_ps(w, at);
+        const __m256 r = _mm256_and_ps(valid, _mm256_loadu_ps(sums->moment[side] + k));
+        sums->counts[side] += __builtin_popcount((unsigned)_mm256_movemask_ps(_mm256_cmp_ps(w, zero, _CMP_GT_OQ)));
+        part->w = _mm256_add_ps(part->w, w);
+        part->x = _mm256_add_ps(part->x, weighted);
+        part->xx = _mm256_add_ps(part->xx, _mm256_mul_ps(weighted, at));
+        part->y = _mm256_add_ps(part->y, r);
+        part->xy = _mm256_add_ps(part->xy, _mm256_mul_ps(r, at));
+    }
+    const asj_line_sums all = total_sums(&parts[0], &parts[1]);
+    sums->totals[side] = (struct asj_profile_totals){all.w, all.x, all.xx, all.y, all.xy};
+}
+
 static void line_profile_avx2(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums)
 {
     const __m256 zero = _mm256_setzero_ps(), sign = _mm256_set1_ps(-0.0f), lane = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
@@ -167,6 +204,8 @@ static void line_profile_avx2(const asj_frame *frame, const asj_line_profile *pr
         _mm256_storeu_ps(sums->moment[0] + k, down_moment);
         _mm256_storeu_ps(sums->moment[1] + k, up_moment);
     }
+    for (int32_t side = 0; side < 2; side++)
+        total_profile(profile->count, side, sums);
 }
 
 static void fill_lines(asj_ops *ops)

@@ -14,18 +14,41 @@ typedef struct column_sums {
     __m512 w, y, yy;
 } column_sums;
 
-static inline float total(__m512 v)
+/* Neighbouring halves, quarters, .. of a and of b added up: of all lanes, as far apart as in total() of line_sums.c. */
+static inline __m512 halves(__m512 a, __m512 b)
 {
-    const __m256 high = _mm256_castpd_ps(_mm512_extractf64x4_pd(_mm512_castps_pd(v), 1));
-    const __m256 eight = _mm256_add_ps(_mm512_castps512_ps256(v), high);
-    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
-    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
-    return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
+    return _mm512_add_ps(_mm512_shuffle_f32x4(a, b, 0x44), _mm512_shuffle_f32x4(a, b, 0xee));
 }
 
-static inline asj_line_sums total_sums(const lane_sums *list)
+static inline __m512 quarters(__m512 a, __m512 b)
 {
-    return (asj_line_sums){total(list->w), total(list->x), total(list->y), total(list->xx), total(list->xy), total(list->yy)};
+    return _mm512_add_ps(_mm512_shuffle_f32x4(a, b, 0x88), _mm512_shuffle_f32x4(a, b, 0xdd));
+}
+
+static inline __m512 eighths(__m512 a, __m512 b)
+{
+    const __m512d c = _mm512_castps_pd(a), d = _mm512_castps_pd(b);
+    return _mm512_add_ps(_mm512_castpd_ps(_mm512_unpacklo_pd(c, d)), _mm512_castpd_ps(_mm512_unpackhi_pd(c, d)));
+}
+
+static inline __m512 last_two(__m512 a, __m512 b)
+{
+    return _mm512_add_ps(_mm512_shuffle_ps(a, b, 0x88), _mm512_shuffle_ps(a, b, 0xdd));
+}
+
+/* All twelve at once: down and up in turns until they are single numbers. */
+static inline void total_sums(const lane_sums sides[2], asj_line_sums sums[2])
+{
+    const lane_sums *down = &sides[0], *up = &sides[1];
+    const __m512 first = quarters(halves(down->w, down->xx), halves(up->w, up->xx));
+    const __m512 second = quarters(halves(down->x, down->xy), halves(up->x, up->xy));
+    const __m512 third = quarters(halves(down->y, down->yy), halves(up->y, up->yy));
+    const __m512 all = last_two(eighths(first, second), eighths(third, third)); /* w x y - xx xy yy - w x y .. */
+    float list[16];
+    _mm512_storeu_ps(list, all);
+    for (int i = 0; i < 2; i++)
+        sums[i] = (asj_line_sums){list[8 * i],     list[8 * i + 1], list[8 * i + 2],
+                                  list[8 * i + 4], list[8 * i + 5], list[8 * i + 6]};
 }
 
 /* 16 grey values each of a minus those of b: none is above 32640 (image.h) */
@@ -67,8 +90,9 @@ static inline void sum_columns(const asj_frame *frame, const asj_line_band *band
     const __m512 first = _mm512_max_ps(_mm512_sub_ps(t, reach_t), _mm512_sub_ps(s, reach_s));
     const __m512 last = _mm512_min_ps(_mm512_add_ps(t, reach_t), _mm512_add_ps(s, reach_s));
     const ptrdiff_t stride = frame->stride;
-    int32_t first_row, last_row;
-    asj_line_band_rows(band, column, &first_row, &last_row);
+    int32_t first_row = band->top, last_row = band->bottom;
+    if (band->right - band->left >= ASJ_LINE_LANES)
+        asj_line_band_rows(band, column, &first_row, &last_row);
     const uint16_t *p = frame->gray + (band->y + first_row) * stride + band->x + column;
     column_sums up = {zero, zero, zero}, down = up;
     __m512 rows = _mm512_set1_ps((float)first_row);
@@ -96,8 +120,18 @@ static void line_sums_avx512(const asj_frame *frame, const asj_line_band *band, 
     lane_sums sides[2] = {{zero, zero, zero, zero, zero, zero}, {zero, zero, zero, zero, zero, zero}};
     for (int32_t column = band->left; column <= band->right; column += ASJ_LINE_LANES)
         sum_columns(frame, band, column, sides);
-    sums[0] = total_sums(&sides[0]);
-    sums[1] = total_sums(&sides[1]);
+    total_sums(sides, sums);
+}
+
+/* Four neighbours each, from `offset` on: the first two and the last two. */
+static inline void four_each(const uint16_t *gray, __m512i at, int32_t offset, __m512i *first, __m512i *last)
+{
+    const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+    const __m512i place = _mm512_add_epi32(at, _mm512_set1_epi32(offset));
+    const __m512i low = _mm512_i32gather_epi64(_mm512_castsi512_si256(place), (const void *)gray, 2);
+    const __m512i high = _mm512_i32gather_epi64(_mm512_extracti64x4_epi64(place, 1), (const void *)gray, 2);
+    *first = _mm512_permutex2var_epi32(low, even, high);
+    *last = _mm512_permutex2var_epi32(low, _mm512_add_epi32(even, _mm512_set1_epi32(1)), high);
 }
 
 /* As in lines.h. */
@@ -106,8 +140,10 @@ static inline void sample_sixteen(const uint16_t *gray, int32_t stride, __m512i 
 {
 #define PAIRS(offset) _mm512_i32gather_epi32(_mm512_add_epi32(at, _mm512_set1_epi32(offset)), (const void *)gray, 2)
     const __m512i above = PAIRS(-stride), below = PAIRS(2 * stride);
-    const __m512i left0 = PAIRS(-1), right0 = PAIRS(1), left1 = PAIRS(stride - 1), right1 = PAIRS(stride + 1);
 #undef PAIRS
+    __m512i left0, right0, left1, right1;
+    four_each(gray, at, -1, &left0, &right0);
+    four_each(gray, at, stride - 1, &left1, &right1);
     const __m512i middle0 = _mm512_or_si512(_mm512_srli_epi32(left0, 16), _mm512_slli_epi32(right0, 16));
     const __m512i middle1 = _mm512_or_si512(_mm512_srli_epi32(left1, 16), _mm512_slli_epi32(right1, 16));
     const __m512i weights = _mm512_or_si512(_mm512_sub_epi32(_mm512_set1_epi32(4096), right), _mm512_slli_epi32(right, 16));
@@ -165,6 +201,33 @@ static inline void profile_sixteen(const asj_frame *frame, const asj_line_profil
     _mm512_storeu_ps(sums->moment[1] + k, up_moment);
 }
 
+/* As total_profile() of line_sums.c. */
+static inline void total_profile(int32_t count, asj_profile_sums *sums)
+{
+    const __m512 zero = _mm512_setzero_ps();
+    lane_sums sides[2] = {{zero, zero, zero, zero, zero, zero}, {zero, zero, zero, zero, zero, zero}};
+    asj_line_sums list[2];
+    sums->counts[0] = sums->counts[1] = 0;
+    __m512 at = _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    for (int32_t k = 0; k < count; k += ASJ_LINE_LANES) {
+        const __mmask16 valid = (__mmask16)(count - k < ASJ_LINE_LANES ? (1 << (count - k)) - 1 : 0xffff);
+        for (int i = 0; i < 2; i++) {
+            const __m512 w = _mm512_maskz_loadu_ps(valid, sums->w[i] + k), r = _mm512_maskz_loadu_ps(valid, sums->moment[i] + k);
+            const __m512 weighted = _mm512_mul_ps(w, at);
+            sums->counts[i] += __builtin_popcount(_mm512_cmp_ps_mask(w, zero, _CMP_GT_OQ));
+            sides[i].w = _mm512_add_ps(sides[i].w, w);
+            sides[i].x = _mm512_add_ps(sides[i].x, weighted);
+            sides[i].xx = _mm512_add_ps(sides[i].xx, _mm512_mul_ps(weighted, at));
+            sides[i].y = _mm512_add_ps(sides[i].y, r);
+            sides[i].xy = _mm512_add_ps(sides[i].xy, _mm512_mul_ps(r, at));
+        }
+        at = _mm512_add_ps(at, _mm512_set1_ps(ASJ_LINE_LANES));
+    }
+    total_sums(sides, list);
+    for (int i = 0; i < 2; i++)
+        sums->totals[i] = (struct asj_profile_totals){list[i].w, list[i].x, list[i].xx, list[i].y, list[i].xy};
+}
+
 static void line_profile_avx512(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums)
 {
     const int32_t lanes = ASJ_LINE_LANES;
@@ -176,6 +239,7 @@ static void line_profile_avx512(const asj_frame *frame, const asj_line_profile *
         else
             profile_sixteen(frame, profile, k, sums);
     }
+    total_profile(profile->count, sums);
 }
 
 static void fill_lines(asj_ops *ops)
