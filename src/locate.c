@@ -29,38 +29,57 @@ void asj_locate_start(const asj_isotropic_junction *junction, asj_draft *draft)
     }
 }
 
-/* Moves the junction; its lines stay where they are. */
-static void move(asj_draft *draft, double dx, double dy)
+static void get_lines(const asj_draft *draft, asj_rough_line *lines)
+{
+    for (int32_t i = 0; i < draft->branch_count; i++)
+        lines[i] = asj_rough_line_of(&draft->branches[i]);
+}
+
+/* Moves the junction; its lines, whose directions these are, stay where they are. */
+static void move(asj_draft *draft, const asj_rough_line *lines, double dx, double dy)
 {
     draft->x += dx;
     draft->y += dy;
-    for (int32_t i = 0; i < draft->branch_count; i++) {
-        asj_draft_branch *branch = &draft->branches[i];
-        branch->offset -= -sin(branch->angle) * dx + cos(branch->angle) * dy;
-    }
+    for (int32_t i = 0; i < draft->branch_count; i++)
+        draft->branches[i].offset -= -lines[i].uy * dx + lines[i].ux * dy;
 }
 
-/* Each line says n.(p - p0) = offset with variance v at the junction: weights 1 / v, covariance of the location the inverse of the
- * normal matrix. */
-int asj_locate_meet(asj_draft *draft)
+typedef struct meeting {
+    double dx, dy, variance;
+} meeting;
+
+/* Each line says n.(p - p0) = offset with weight 1 / variance: covariance of the location the inverse of the normal matrix. */
+static int meet_lines(const asj_rough_line *lines, const double *weights, int32_t count, meeting *m)
 {
     double xx = 0, xy = 0, yy = 0, bx = 0, by = 0, total = 0;
-    for (int32_t i = 0; i < draft->branch_count; i++) {
-        const asj_draft_branch *branch = &draft->branches[i];
-        double nx = -sin(branch->angle), ny = cos(branch->angle);
-        double weight = 1 / branch->offset_variance;
+    for (int32_t i = 0; i < count; i++) {
+        const double nx = -lines[i].uy, ny = lines[i].ux, weight = weights[i];
         xx += weight * nx * nx;
         xy += weight * nx * ny;
         yy += weight * ny * ny;
-        bx += weight * nx * branch->offset;
-        by += weight * ny * branch->offset;
+        bx += weight * nx * lines[i].offset;
+        by += weight * ny * lines[i].offset;
         total += weight;
     }
-    double determinant = xx * yy - xy * xy;
+    const double determinant = xx * yy - xy * xy;
     if (!(determinant > 0.02 * total * total))
         return 0;
-    move(draft, (yy * bx - xy * by) / determinant, (xx * by - xy * bx) / determinant);
-    draft->location_variance = (xx + yy) / (2 * determinant);
+    *m = (meeting){(yy * bx - xy * by) / determinant, (xx * by - xy * bx) / determinant, (xx + yy) / (2 * determinant)};
+    return 1;
+}
+
+int asj_locate_meet(asj_draft *draft)
+{
+    asj_rough_line lines[ASJ_MAX_BRANCHES];
+    double weights[ASJ_MAX_BRANCHES];
+    meeting m;
+    get_lines(draft, lines);
+    for (int32_t i = 0; i < draft->branch_count; i++)
+        weights[i] = 1 / draft->branches[i].offset_variance;
+    if (!meet_lines(lines, weights, draft->branch_count, &m))
+        return 0;
+    move(draft, lines, m.dx, m.dy);
+    draft->location_variance = m.variance;
     return 1;
 }
 
@@ -106,46 +125,53 @@ static int have_opening(const asj_rough_line *lines, int32_t count, double least
     return 0;
 }
 
-/* Moves the draft to where the branches meet; 0 when that is no junction. */
-static int meet(const asj_detect_options *options, double opening_slack, double move_slack, asj_draft *draft)
+/* Whether the lines make a junction near its pixel, and where. */
+static int guess_meeting(const asj_detect_options *options, const asj_rough_line *lines, int32_t count, double least, meeting *m)
 {
-    return asj_draft_has_opening(draft, fmax(options->minimum_opening * (PI / 180) - opening_slack, 0)) && asj_locate_meet(draft) &&
-           hypot(draft->x - draft->x0, draft->y - draft->y0) <= options->max_move + move_slack;
+    double weights[ASJ_MAX_BRANCHES];
+    for (int32_t i = 0; i < count; i++)
+        weights[i] = 1;
+    return have_opening(lines, count, least) && meet_lines(lines, weights, count, m) &&
+           hypot(m->dx, m->dy) <= options->max_move + 1;
 }
 
 void asj_locate_guess(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
 {
-    const double least = options->minimum_opening * (PI / 180), slack = 8 * (PI / 180);
+    const double opening = options->minimum_opening * (PI / 180), least = fmax(opening - 8 * (PI / 180), 0);
     asj_rough_line lines[ASJ_MAX_BRANCHES];
+    meeting m;
     if (options->refinement != ASJ_REFINE_LINE_FIT) {
-        if (!asj_draft_has_opening(draft, least))
+        if (!asj_draft_has_opening(draft, opening))
             draft->branch_count = 0;
         return;
     }
-    for (int32_t i = 0; i < draft->branch_count; i++)
-        lines[i] = asj_rough_line_of(&draft->branches[i]);
+    get_lines(draft, lines);
     guess_lines(context, frame, 4, 10, draft, lines); /* px: enough to tell edges */
-    if (!have_opening(lines, draft->branch_count, fmax(least - slack, 0))) { /* most are edges, and seen to be by now */
+    if (!have_opening(lines, draft->branch_count, least)) { /* most are edges, and seen to be by now */
         draft->branch_count = 0;
         return;
     }
     guess_lines(context, frame, 2.5, fit_end(draft), draft, lines);
-    for (int32_t i = 0; i < draft->branch_count; i++) {
-        asj_rough_line_keep(&lines[i], &draft->branches[i]);
-        draft->branches[i].offset_variance = 1;
-    }
-    if (!meet(options, slack, 1, draft))
+    if (!guess_meeting(options, lines, draft->branch_count, least, &m)) {
         draft->branch_count = 0;
+        return;
+    }
+    for (int32_t i = 0; i < draft->branch_count; i++)
+        asj_rough_line_keep(&lines[i], &draft->branches[i]);
+    move(draft, lines, m.dx, m.dy);
 }
 
 void asj_locate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
 {
     const asj_line_range fine = {NEAR, fit_end(draft), {2.5, 2, 0}, 2};
+    asj_rough_line lines[ASJ_MAX_BRANCHES];
     if (options->refinement != ASJ_REFINE_LINE_FIT)
         return;
-    move(draft, draft->x0 - draft->x, draft->y0 - draft->y); /* the guess is good enough to tell twins */
+    get_lines(draft, lines);
+    move(draft, lines, draft->x0 - draft->x, draft->y0 - draft->y); /* the guess is good enough to tell twins */
     fit_branches(context, frame, &fine, draft);
-    if (!meet(options, 0, 0, draft))
+    if (!asj_draft_has_opening(draft, options->minimum_opening * (PI / 180)) || !asj_locate_meet(draft) ||
+        hypot(draft->x - draft->x0, draft->y - draft->y0) > options->max_move)
         draft->branch_count = 0;
 }
 

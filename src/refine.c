@@ -188,24 +188,33 @@ static void merge(const asj_detect_options *options, const asj_draft *draft, int
 static int hopeful(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, const asj_draft *draft,
                    const asj_draft_branch *branch)
 {
-    static const double lengths[] = {20, 50, 12, 8}; /* px: most that are meaningful are so at 20 */
-    const double limit = log(options->epsilon) + DOUBT;
-    for (int i = 0; i < 4; i++)
-        if (asj_strip_log_nfa(context, frame, options, draft->x, draft->y, branch->angle, lengths[i]) <= limit)
-            return 1;
-    return 0;
+    const double limit = log(options->epsilon) + DOUBT, x = draft->x, y = draft->y, angle = branch->angle;
+    return asj_strip_passes(context, frame, options, x, y, angle, 20, 12, limit) || /* px: most that are meaningful are so at 20 */
+           asj_strip_passes(context, frame, options, x, y, angle, 50, 8, limit);
 }
 
+static int has_opening(const asj_detect_options *options, const asj_draft *draft, const int *keep)
+{
+    asj_draft rest = *draft;
+    asj_draft_select(&rest, keep);
+    return asj_draft_has_opening(&rest, fmax(options->minimum_opening - OPENING_DOUBT, 0) * (PI / 180));
+}
+
+/* As soon as no two branches that may be left open, the draft is none. */
 void asj_foresee(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
 {
     int keep[ASJ_MAX_BRANCHES];
     if (!options->strip_test)
         return;
     for (int32_t i = 0; i < draft->branch_count; i++)
+        keep[i] = 1;
+    int opens = has_opening(options, draft, keep);
+    for (int32_t i = 0; i < draft->branch_count && opens; i++) {
         keep[i] = hopeful(context, frame, options, draft, &draft->branches[i]);
+        opens = keep[i] || has_opening(options, draft, keep);
+    }
     asj_draft_select(draft, keep);
-    if (!asj_draft_has_opening(draft, fmax(options->minimum_opening - OPENING_DOUBT, 0) * (PI / 180)))
-        draft->branch_count = 0;
+    draft->branch_count = opens ? draft->branch_count : 0;
 }
 
 /* Lines over whole branches may move the junction as far again as those of the first fit (locate.c); what moves farther has drifted

@@ -77,10 +77,10 @@ void asj_strip_sums_of(const asj_frame *frame, const asj_strip_walk *walk, asj_s
 }
 
 static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double x,
-                             double y, double angle, double length)
+                             double y, double angle, double length, double near)
 {
     asj_strip_walk walk = {x, y, cos(angle), sin(angle), fmin(length, options->strip_length), options->strip_half_width,
-                           NEAR, 0, 0, 0, 0, 0};
+                           near, 0, 0, 0, 0, 0};
     walk.along_x = fabs(walk.ux) >= fabs(walk.uy);
     const double start = walk.along_x ? x : y, step = walk.along_x ? walk.ux : walk.uy, end = start + walk.reach * step;
     const int32_t size = walk.along_x ? frame->width : frame->height;
@@ -95,24 +95,24 @@ static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame,
     return sums;
 }
 
-static double log_nfa(const asj_context *context, const asj_frame *frame, const asj_strip_sums *s)
+static double log_nfa(const asj_context *context, const asj_frame *frame, double gamma, int32_t pixels)
 {
     const double log_tests = 1.5 * log((double)frame->width * frame->height);
-    return s->pixels ? log_tests + asj_nfa_log_sector_tail(context->nfa, s->gamma, s->pixels) : HUGE_VAL;
+    return pixels ? log_tests + asj_nfa_log_sector_tail(context->nfa, gamma, pixels) : HUGE_VAL;
 }
 
-double asj_strip_log_nfa(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                         double x, double y, double angle, double length)
+int asj_strip_passes(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double x, double y,
+                     double angle, double length, double shorter, double limit)
 {
-    const asj_strip_sums s = add_up(context, frame, options, x, y, angle, length);
-    return log_nfa(context, frame, &s);
+    const asj_strip_sums s = add_up(context, frame, options, x, y, angle, length, shorter);
+    return log_nfa(context, frame, s.gamma, s.pixels) <= limit || log_nfa(context, frame, s.near_gamma, s.near_pixels) <= limit;
 }
 
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          double x, double y, double angle, double length)
 {
-    const asj_strip_sums s = add_up(context, frame, options, x, y, angle, length);
-    asj_strip strip = {log_nfa(context, frame, &s), 0, 0};
+    const asj_strip_sums s = add_up(context, frame, options, x, y, angle, length, NEAR);
+    asj_strip strip = {log_nfa(context, frame, s.gamma, s.pixels), 0, 0};
     if (s.pixels == 0)
         return strip;
     strip.deviation = fabs(0.5 * atan2(2 * s.un, s.nn - s.uu));

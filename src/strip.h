@@ -15,9 +15,9 @@ typedef struct asj_strip {
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          double x, double y, double angle, double length);
 
-/* Its log_nfa alone. */
-double asj_strip_log_nfa(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                         double x, double y, double angle, double length);
+/* Whether the log_nfa of that strip, or of one only `shorter` px long, is at most `limit`. */
+int asj_strip_passes(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double x, double y,
+                     double angle, double length, double shorter, double limit);
 
 /* ---- what an instruction set replaces ---- */
 

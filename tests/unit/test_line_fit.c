@@ -78,6 +78,36 @@ static void test_clean_edges(void **state)
     }
 }
 
+/* On whole pixels: rows are in the band or not, which costs up to half of one where the edge crosses none. The middle of a thin
+ * line too. */
+static void test_guesses(void **state)
+{
+    const fixture *f = *state;
+    static const double widths[] = {HUGE_VAL, 2}, t[2] = {2, 14}, far[2] = {5, 40};
+    for (size_t w = 0; w < UNIT_COUNT(widths); w++)
+        for (int n = 0; n < 72; n++) {
+            const double angle = n * UNIT_PI / 36 + 0.01, offset = 0.3 * (n % 5 - 2), start = 0.09 * (n % 3 - 1);
+            asj_frame frame;
+            picture(f, angle, isinf(widths[w]) ? offset : offset - 0.5 * widths[w], widths[w], 0, &frame);
+            asj_draft_branch branch = branch_at(angle + start, 0);
+            asj_rough_line line = asj_rough_line_of(&branch);
+            assert_true(asj_line_guess(f->context->ops, &frame, MIDDLE, MIDDLE, t, 4, &line));
+            assert_true(asj_line_guess(f->context->ops, &frame, MIDDLE, MIDDLE, t, 2.5, &line));
+            asj_rough_line_keep(&line, &branch);
+            assert_true(branch.angle >= 0 && branch.angle < 2 * UNIT_PI);
+            unit_near("angle", widths[w], n, unit_turn(branch.angle, angle), 0, 2 * UNIT_PI / 180);
+            unit_near("offset", widths[w], n, branch.offset, offset, 0.5);
+            unit_near("apart", widths[w], n, branch.apart > 0, w == 1, 0);
+            for (int i = 0; i < 3; i++)
+                assert_true(asj_line_guess(f->context->ops, &frame, MIDDLE, MIDDLE, far, 2, &line));
+            unit_near("direction", widths[w], n, hypot(line.ux, line.uy), 1, 1e-12);
+            asj_rough_line_keep(&line, &branch);
+            unit_near("angle", widths[w], n, unit_turn(branch.angle, angle), 0, UNIT_PI / 180);
+            unit_near("offset", widths[w], n, branch.offset, offset, 0.5);
+            asj_frame_free(&f->context->memory, &frame);
+        }
+}
+
 /* Noise: errors shrink with the stated uncertainties, which are right within a factor of two over many edges. */
 static void test_noise(void **state)
 {
@@ -178,6 +208,11 @@ static void test_nothing_there(void **state)
     asj_draft_branch branch = branch_at(1, 0.25), before = branch;
     assert_false(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &near_range, &branch));
     assert_memory_equal(&branch, &before, sizeof branch);
+    static const double t[2] = {2, 10};
+    asj_rough_line line = asj_rough_line_of(&branch);
+    const asj_rough_line same = line;
+    assert_false(asj_line_guess(f->context->ops, &frame, MIDDLE, MIDDLE, t, 4, &line));
+    assert_memory_equal(&line, &same, sizeof line);
     asj_frame_free(&f->context->memory, &frame);
 }
 
@@ -199,6 +234,10 @@ static void test_extremes(void **state)
                 asj_line_fit(f->context->ops, &frame, n * 7 - 50, n * 3 - 20, &ranges[r], &branch);
                 assert_true(isfinite(branch.angle) && isfinite(branch.offset));
                 assert_true(isfinite(branch.angle_variance) && isfinite(branch.offset_variance));
+                const double t[2] = {ranges[r].first, ranges[r].last};
+                asj_rough_line line = asj_rough_line_of(&branch);
+                asj_line_guess(f->context->ops, &frame, n * 7 - 50, n * 3 - 20, t, ranges[r].half_width[0], &line);
+                assert_true(isfinite(line.ux) && isfinite(line.uy) && isfinite(line.offset) && isfinite(line.apart));
             }
         asj_frame_free(&f->context->memory, &frame);
         free(pixels);
@@ -208,8 +247,13 @@ static void test_extremes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clean_edges), cmocka_unit_test(test_noise),  cmocka_unit_test(test_thin_lines),
-        cmocka_unit_test(test_bands),       cmocka_unit_test(test_stairs), cmocka_unit_test(test_nothing_there),
+        cmocka_unit_test(test_clean_edges),
+        cmocka_unit_test(test_guesses),
+        cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_thin_lines),
+        cmocka_unit_test(test_bands),
+        cmocka_unit_test(test_stairs),
+        cmocka_unit_test(test_nothing_there),
         cmocka_unit_test(test_extremes),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

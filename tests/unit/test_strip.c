@@ -92,6 +92,26 @@ static void test_random(void **state)
     asj_detect_options_init(&f->options);
 }
 
+/* Either of the two lengths is enough. */
+static void test_passes(void **state)
+{
+    fixture *f = *state;
+    synth_random random;
+    int passed = 0;
+    synth_random_seed(&random, 13);
+    for (int i = 0; i < 1000; i++) {
+        const double x = synth_random_between(&random, -5, 95), y = synth_random_between(&random, -5, 75);
+        const double angle = synth_random_between(&random, 0, 2 * UNIT_PI), limit = synth_random_between(&random, -10, 30);
+        const double shorter = synth_random_between(&random, 2, 30), length = shorter + synth_random_between(&random, 0, 30);
+        const double least = fmin(naive(f, x, y, angle, length).log_nfa, naive(f, x, y, angle, shorter).log_nfa);
+        const int passes = asj_strip_passes(f->context, &f->frame, &f->options, x, y, angle, length, shorter, limit);
+        if (fabs(least - limit) > 1e-6)
+            assert_int_equal(passes, least <= limit);
+        passed += passes;
+    }
+    assert_in_range(passed, 100, 900);
+}
+
 /* Along the edge of the rectangle: meaningful and straight; across it, or turned away: not. */
 static void test_edge(void **state)
 {
@@ -131,6 +151,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random),
+        cmocka_unit_test(test_passes),
         cmocka_unit_test(test_edge),
         cmocka_unit_test(test_askew),
         cmocka_unit_test(test_empty),
