@@ -95,14 +95,14 @@ static void test_guesses(void **state)
             assert_true(asj_line_guess(f->context->ops, &frame, MIDDLE, MIDDLE, t, 2.5, &line));
             asj_rough_line_keep(&line, &branch);
             assert_true(branch.angle >= 0 && branch.angle < 2 * UNIT_PI);
-            unit_near("angle", widths[w], n, unit_turn(branch.angle, angle), 0, 2 * UNIT_PI / 180);
+            unit_near("angle", widths[w], n, unit_turn(branch.angle, angle), 0, 0.5 / (t[1] - t[0]));
             unit_near("offset", widths[w], n, branch.offset, offset, 0.5);
             unit_near("apart", widths[w], n, branch.apart > 0, w == 1, 0);
             for (int i = 0; i < 3; i++)
                 assert_true(asj_line_guess(f->context->ops, &frame, MIDDLE, MIDDLE, far, 2, &line));
             unit_near("direction", widths[w], n, hypot(line.ux, line.uy), 1, 1e-12);
             asj_rough_line_keep(&line, &branch);
-            unit_near("angle", widths[w], n, unit_turn(branch.angle, angle), 0, UNIT_PI / 180);
+            unit_near("angle", widths[w], n, unit_turn(branch.angle, angle), 0, 0.5 / (far[1] - far[0]));
             unit_near("offset", widths[w], n, branch.offset, offset, 0.5);
             asj_frame_free(&f->context->memory, &frame);
         }
