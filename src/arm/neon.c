@@ -35,9 +35,9 @@ static inline vec v_high_unsigned(vec a, vec b)
 static inline vec v_and(vec a, vec b) { return vandq_s16(a, b); }
 static inline vec v_or(vec a, vec b) { return vorrq_s16(a, b); }
 static inline vec v_xor(vec a, vec b) { return veorq_s16(a, b); }
-/* -1 where a > b, and where not a > b, and b */
+/* -1 where a > b, and where a > b but not c > d */
 static inline vec v_greater(vec a, vec b) { return vreinterpretq_s16_u16(vcgtq_s16(a, b)); }
-static inline vec v_not_and(vec a, vec b) { return vbicq_s16(b, a); }
+static inline vec v_greater_but(vec a, vec b, vec c, vec d) { return vbicq_s16(v_greater(a, b), v_greater(c, d)); }
 /* one bit for each lane that is -1 (the others are 0) */
 static inline uint32_t v_bits(vec v)
 {

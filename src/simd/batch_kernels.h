@@ -57,6 +57,7 @@ static void batch_gammas(const asj_sector_runs *runs, const asj_frame *frame, co
         const vec ux = v_load_repeated(factors[0]), uy = v_load_repeated(factors[1]);
         const vec cross_x = v_load_repeated(factors[2]), dot_y = v_load_repeated(factors[3]);
         vec v[SQUARE];
+#pragma GCC unroll 8 /* so that they stay in registers */
         for (int i = 0; i < SQUARE; i++) {
             const vec x = v_load_places(gx, b->at[i]), y = v_load_places(gy, b->at[i]);
             const vec cross = v_abs(v_sub(v_high(x, uy), v_high(y, cross_x)));

@@ -153,23 +153,30 @@ static void fill_strengths(const tile *t, vec above[GROUP])
         above[v] = any[v];
 }
 
-/* Whether two of the sectors whose bits are set are neither parallel nor opposite. */
-static int has_pair(uint64_t sectors, int32_t count, uint64_t partners)
+/* Bit k of the result is bit k + by of `count` sectors. */
+static inline uint64_t turn(uint64_t sectors, int32_t count, int32_t by)
 {
-    for (uint64_t rest = sectors; rest; rest &= rest - 1) {
-        const int k = __builtin_ctzll(rest);
-        if ((sectors >> k | sectors << (count - k)) & partners)
-            return 1;
+    return (sectors >> by | sectors << (count - by)) & (((uint64_t)1 << count) - 1);
+}
+
+/* Whether two of the sectors whose bits are set are at least `apart` from 0 and from pi. All that may be the first one's partner
+ * are united by doubling, which takes the same steps at every pixel. */
+static inline int has_pair(uint64_t sectors, int32_t count, int32_t apart)
+{
+    const int32_t wanted = count / 2 - 2 * apart + 1;
+    uint64_t from = sectors;
+    for (int32_t width = 1, more; width < wanted; width += more) {
+        more = width < wanted - width ? width : wanted - width;
+        from |= turn(from, count, more);
     }
-    return 0;
+    return (sectors & turn(from, count, apart)) != 0;
 }
 
 /* Candidates among the pixels of vector v: the peaks of each pixel as bits in four words, then its pairs. */
 static uint32_t find_candidates(const tile *t, int v)
 {
     const asj_field *field = t->field;
-    const int32_t count = field->sectors.count, first = field->apart, last = count / 2 - field->apart;
-    const uint64_t partners = last < first ? 0 : (((uint64_t)1 << (last + 1)) - 1) & ~(((uint64_t)1 << first) - 1);
+    const int32_t count = field->sectors.count;
     const int16_t *here = t->z + field->suppress * GROUP_PIXELS + v * V_LANES;
     uint16_t words[4][V_LANES];
     vec seen = v_zero(), twice = seen;
@@ -189,8 +196,7 @@ static uint32_t find_candidates(const tile *t, int v)
         const int i = __builtin_ctz(lanes);
         const uint64_t sectors = words[0][i] | (uint32_t)words[1][i] << 16 | (uint64_t)words[2][i] << 32 |
                                  (uint64_t)words[3][i] << 48;
-        if (has_pair(sectors, count, partners))
-            found |= (uint32_t)1 << i;
+        found |= (uint32_t)has_pair(sectors, count, field->apart) << i;
     }
     return found;
 }

@@ -28,14 +28,13 @@ static void rank_by_sum(const asj_isotropic_radius *entry, int32_t most, const u
 static vec worth_judging(const asj_isotropic *test, const asj_isotropic_radius *entry, const ranking *ranked)
 {
     const vec turn = v_sub(ranked->sectors[0], ranked->sectors[1]), apart = v_max(turn, v_sub(v_zero(), turn));
-    const vec around = v_sub(v_set1((int16_t)entry->sectors.count), apart);
-    const vec edge = v_greater(v_min(apart, around), v_set1((int16_t)entry->straight));
+    const vec opening = v_min(apart, v_sub(v_set1((int16_t)entry->sectors.count), apart));
     vec worth = v_zero();
     for (int32_t m = 2; m <= test->max_branches; m++) {
         const int32_t least = entry->least_sum[m] > 1 ? entry->least_sum[m] : 1; /* a sum of 0 is no branch */
         const vec below = v_set1((int16_t)(least <= UINT16_MAX ? least - 1 + INT16_MIN : INT16_MAX));
-        const vec enough = v_greater(ranked->values[m - 1], below);
-        worth = v_or(worth, m == 2 ? v_not_and(edge, enough) : enough);
+        const vec straight = v_set1((int16_t)(m == 2 ? entry->straight : INT16_MAX));
+        worth = v_or(worth, v_greater_but(ranked->values[m - 1], below, opening, straight));
     }
     return worth;
 }

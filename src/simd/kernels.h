@@ -28,7 +28,7 @@ static inline vec peak(const int16_t *here, ptrdiff_t row, int32_t reach, vec be
         before = v_max(before, v_load(here - d * row));
         after = v_max(after, v_load(here + d * row));
     }
-    return v_not_and(v_greater(after, z), v_greater(z, before));
+    return v_greater_but(z, before, after, z);
 }
 
 #include "gradient_kernels.h"

@@ -29,9 +29,9 @@ static inline vec v_high_unsigned(vec a, vec b) { return _mm256_mulhi_epu16(a, b
 static inline vec v_and(vec a, vec b) { return _mm256_and_si256(a, b); }
 static inline vec v_or(vec a, vec b) { return _mm256_or_si256(a, b); }
 static inline vec v_xor(vec a, vec b) { return _mm256_xor_si256(a, b); }
-/* -1 where a > b, and where not a > b, and b */
+/* -1 where a > b, and where a > b but not c > d */
 static inline vec v_greater(vec a, vec b) { return _mm256_cmpgt_epi16(a, b); }
-static inline vec v_not_and(vec a, vec b) { return _mm256_andnot_si256(a, b); }
+static inline vec v_greater_but(vec a, vec b, vec c, vec d) { return _mm256_andnot_si256(v_greater(c, d), v_greater(a, b)); }
 /* one bit for each lane that is -1 (the others are 0) */
 static inline uint32_t v_bits(vec v)
 {

@@ -31,9 +31,12 @@ static inline vec v_high_unsigned(vec a, vec b) { return _mm512_mulhi_epu16(a, b
 static inline vec v_and(vec a, vec b) { return _mm512_and_si512(a, b); }
 static inline vec v_or(vec a, vec b) { return _mm512_or_si512(a, b); }
 static inline vec v_xor(vec a, vec b) { return _mm512_xor_si512(a, b); }
-/* -1 where a > b, and where not a > b, and b */
+/* -1 where a > b, and where a > b but not c > d */
 static inline vec v_greater(vec a, vec b) { return _mm512_movm_epi16(_mm512_cmpgt_epi16_mask(a, b)); }
-static inline vec v_not_and(vec a, vec b) { return _mm512_andnot_si512(a, b); }
+static inline vec v_greater_but(vec a, vec b, vec c, vec d)
+{
+    return _mm512_movm_epi16(_mm512_mask_cmple_epi16_mask(_mm512_cmpgt_epi16_mask(a, b), c, d));
+}
 /* one bit for each lane that is -1 (the others are 0) */
 static inline uint32_t v_bits(vec v) { return _mm512_movepi16_mask(v); }
 static inline int v_any(vec v) { return _mm512_test_epi16_mask(v, v) != 0; }

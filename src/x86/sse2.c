@@ -26,9 +26,9 @@ static inline vec v_high_unsigned(vec a, vec b) { return _mm_mulhi_epu16(a, b); 
 static inline vec v_and(vec a, vec b) { return _mm_and_si128(a, b); }
 static inline vec v_or(vec a, vec b) { return _mm_or_si128(a, b); }
 static inline vec v_xor(vec a, vec b) { return _mm_xor_si128(a, b); }
-/* -1 where a > b, and where not a > b, and b */
+/* -1 where a > b, and where a > b but not c > d */
 static inline vec v_greater(vec a, vec b) { return _mm_cmpgt_epi16(a, b); }
-static inline vec v_not_and(vec a, vec b) { return _mm_andnot_si128(a, b); }
+static inline vec v_greater_but(vec a, vec b, vec c, vec d) { return _mm_andnot_si128(v_greater(c, d), v_greater(a, b)); }
 /* one bit for each lane that is -1 (the others are 0) */
 static inline uint32_t v_bits(vec v) { return (uint32_t)_mm_movemask_epi8(_mm_packs_epi16(v, _mm_setzero_si128())); }
 static inline int v_any(vec v) { return _mm_movemask_epi8(v) != 0; }
