@@ -17,6 +17,7 @@
  *
  * Sums run in ASJ_LANE lanes in a fixed order: the same bits on any machine, and compilers can use vectors. */
 #include "align.h"
+#include "ops.h"
 
 #include <math.h>
 #include <string.h>
@@ -121,17 +122,14 @@ static void solve(const double a[36], double b[6])
 
 static int32_t sample_grid(const asj_disc *disc, const asj_pyramid *pyramid, double x, double y, uint16_t *grid)
 {
-    float line_x[GRID_SIDE], line_y[GRID_SIDE];
+    float grid_x[GRID_SIDE * GRID_SIDE], grid_y[GRID_SIDE * GRID_SIDE];
     const int32_t level = asj_pyramid_level(pyramid, (double)disc->step * (double)disc->step);
-    int32_t inside = 0;
-    for (int32_t j = 0; j < GRID_SIDE; j++) {
+    for (int32_t j = 0; j < GRID_SIDE; j++)
         for (int32_t i = 0; i < GRID_SIDE; i++) {
-            line_x[i] = (float)x + (float)(i - ASJ_DISC_RADIUS - 1) * disc->step;
-            line_y[i] = (float)y + (float)(j - ASJ_DISC_RADIUS - 1) * disc->step;
+            grid_x[j * GRID_SIDE + i] = (float)x + (float)(i - ASJ_DISC_RADIUS - 1) * disc->step;
+            grid_y[j * GRID_SIDE + i] = (float)y + (float)(j - ASJ_DISC_RADIUS - 1) * disc->step;
         }
-        inside += asj_pyramid_sample(pyramid, level, line_x, line_y, GRID_SIDE, grid + j * GRID_SIDE);
-    }
-    return inside;
+    return asj_pyramid_sample(pyramid, level, grid_x, grid_y, GRID_SIDE * GRID_SIDE, grid);
 }
 
 /* Makes a derivative orthogonal to the constant and to the template, in units of the normalised template. */
@@ -178,20 +176,15 @@ void asj_template_create(const asj_disc *disc, const asj_pyramid *pyramid, doubl
 
 /* --- alignment -------------------------------------------------------------------------------------------------------------- */
 
-/* Samples the source under the current map; returns how many samples lie in the image. */
-static int32_t sample_source(const asj_disc *disc, const asj_pyramid *pyramid, const asj_alignment *now, float *value)
+static int32_t sample_source(const asj_disc *disc, const asj_pyramid *pyramid, const asj_disc_map *map, float *value)
 {
     float x[ASJ_DISC_SAMPLES], y[ASJ_DISC_SAMPLES];
     uint16_t grey[ASJ_DISC_SAMPLES];
-    const float l0 = (float)now->linear[0], l1 = (float)now->linear[1], l2 = (float)now->linear[2], l3 = (float)now->linear[3];
-    const float cx = (float)now->x, cy = (float)now->y;
-    double area = fabs(now->linear[0] * now->linear[3] - now->linear[1] * now->linear[2]);
-    const int32_t level = asj_pyramid_level(pyramid, area * (double)disc->step * (double)disc->step);
     for (int32_t i = 0; i < ASJ_DISC_SAMPLES; i++) {
-        x[i] = cx + l0 * disc->x[i] + l1 * disc->y[i];
-        y[i] = cy + l2 * disc->x[i] + l3 * disc->y[i];
+        x[i] = map->x + map->linear[0] * disc->x[i] + map->linear[1] * disc->y[i];
+        y[i] = map->y + map->linear[2] * disc->x[i] + map->linear[3] * disc->y[i];
     }
-    int32_t inside = asj_pyramid_sample(pyramid, level, x, y, disc->count, grey);
+    const int32_t inside = asj_pyramid_sample(pyramid, map->level, x, y, disc->count, grey);
     for (int32_t i = 0; i < disc->count; i++)
         value[i] = (float)grey[i];
     for (int32_t i = disc->count; i < ASJ_DISC_SAMPLES; i++)
@@ -199,15 +192,32 @@ static int32_t sample_source(const asj_disc *disc, const asj_pyramid *pyramid, c
     return inside;
 }
 
-/* One step: the map followed by the inverse of the increment. Returns 0 when nothing is left to gain or the increment is wild. */
-static int32_t step(const asj_disc *disc, const asj_template *t, const float *value, asj_alignment *now)
+void asj_disc_compare(const asj_disc *disc, const asj_template *t, const asj_pyramid *pyramid, const asj_disc_map *map,
+                      asj_disc_sums *sums)
 {
-    float error[ASJ_DISC_SAMPLES];
-    double b[6];
+    float value[ASJ_DISC_SAMPLES];
+    sums->inside = sample_source(disc, pyramid, map, value);
+    normalise(disc, value);
+    sums->similarity = product(value, t->value);
     for (int32_t i = 0; i < ASJ_DISC_SAMPLES; i++)
-        error[i] = value[i] - t->value[i];
+        value[i] -= t->value[i];
     for (int32_t k = 0; k < 6; k++)
-        b[k] = (double)product(t->descent[k], error);
+        sums->descent[k] = product(t->descent[k], value);
+}
+
+static asj_disc_map map_of(const asj_disc *disc, const asj_pyramid *pyramid, const asj_alignment *now)
+{
+    const double *l = now->linear, area = fabs(l[0] * l[3] - l[1] * l[2]);
+    return (asj_disc_map){asj_pyramid_level(pyramid, area * (double)disc->step * (double)disc->step), (float)now->x, (float)now->y,
+                          {(float)l[0], (float)l[1], (float)l[2], (float)l[3]}};
+}
+
+/* One step: the map followed by the inverse of the increment. Returns 0 when nothing is left to gain or the increment is wild. */
+static int32_t step(const asj_disc *disc, const asj_template *t, const float descent[6], asj_alignment *now)
+{
+    double b[6];
+    for (int32_t k = 0; k < 6; k++)
+        b[k] = (double)descent[k];
     solve(t->factor, b);
     const double radius = (double)disc->radius, limit = 2 * (double)disc->step;
     double length = sqrt(b[0] * b[0] + b[1] * b[1]), change = fabs(b[2]) + fabs(b[3]) + fabs(b[4]) + fabs(b[5]);
@@ -233,22 +243,21 @@ void asj_align(const asj_disc *disc, const asj_template *t, const asj_pyramid *p
 {
     const asj_alignment start = {x, y, {linear[0], linear[1], linear[2], linear[3]}, 0, 0, 0};
     asj_alignment now = start;
-    float value[ASJ_DISC_SAMPLES];
     int32_t best_inside = 0;
     *result = start;
     for (int32_t n = 0; n <= iterations; n++) {
-        int32_t inside = sample_source(disc, pyramid, &now, value);
-        normalise(disc, value);
-        float similarity = product(value, t->value);
-        if (n == 0 || similarity > result->similarity) {
-            float first = n == 0 ? similarity : result->first;
+        const asj_disc_map map = map_of(disc, pyramid, &now);
+        asj_disc_sums sums;
+        pyramid->ops->disc_compare(disc, t, pyramid, &map, &sums);
+        if (n == 0 || sums.similarity > result->similarity) {
+            float first = n == 0 ? sums.similarity : result->first;
             *result = now;
             result->first = first;
-            result->similarity = similarity;
+            result->similarity = sums.similarity;
             result->moved = n > 0;
-            best_inside = inside;
+            best_inside = sums.inside;
         }
-        if (n == iterations || !t->solvable || !step(disc, t, value, &now))
+        if (n == iterations || !t->solvable || !step(disc, t, sums.descent, &now))
             break;
     }
     const double *l = result->linear;

@@ -33,6 +33,23 @@ typedef struct asj_template {
 void asj_disc_create(double radius, asj_disc *disc);
 void asj_template_create(const asj_disc *disc, const asj_pyramid *pyramid, double x, double y, asj_template *t);
 
+/* Where the samples of the disc lie in the source: (x, y) + linear sample. */
+typedef struct asj_disc_map {
+    int32_t level; /* of the pyramid */
+    float x, y;
+    float linear[4];
+} asj_disc_map;
+
+typedef struct asj_disc_sums {
+    int32_t inside;   /* samples in the image */
+    float similarity; /* correlation with the template */
+    float descent[6]; /* products of the template's descent with what the normalised source differs by from the template */
+} asj_disc_sums;
+
+/* Compares the source with the template. */
+void asj_disc_compare(const asj_disc *disc, const asj_template *t, const asj_pyramid *pyramid, const asj_disc_map *map,
+                      asj_disc_sums *sums);
+
 /* Result of an alignment: source = (x, y) + linear (template - its centre). */
 typedef struct asj_alignment {
     double x, y;

@@ -30,6 +30,7 @@ static void fill_reference(asj_ops *ops)
     ops->patch_products = asj_patch_products;
     ops->sketch_above = asj_sketch_above;
     ops->pyramid_sample = asj_pyramid_sample_reference;
+    ops->disc_compare = asj_disc_compare;
     ops->look_at = asj_look_at;
 }
 

@@ -6,6 +6,7 @@
 #define ASJ_SRC_OPS_H
 
 #include "agreement.h"
+#include "align.h"
 #include "distance.h"
 #include "isotropic.h"
 #include "line_sums.h"
@@ -69,6 +70,9 @@ typedef struct asj_ops {
     void (*blur_row)(const uint16_t *const *rows, const int32_t *taps, int32_t radius, int32_t width, uint16_t *to);
     int32_t (*pyramid_sample)(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
                               uint16_t *grey);
+    /* asj_disc_compare() (align.h) */
+    void (*disc_compare)(const asj_disc *disc, const asj_template *t, const asj_pyramid *pyramid, const asj_disc_map *map,
+                         asj_disc_sums *sums);
     /* asj_look_at() (agreement.h) */
     uint64_t (*look_at)(const asj_look *look, const asj_spots *spots, uint32_t first, uint32_t count);
 } asj_ops;

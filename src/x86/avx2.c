@@ -87,6 +87,8 @@ static inline vec v_quotient(float a, vec b)
 #include "colour.h" /* before kernels.h, which fills the table */
 #include "lines.h"
 #include "patches.h"
+#include "discs.h" /* after patches.h */
 #include "strips.h"
-#define V_MORE(ops) (fill_patches(ops), fill_lines(ops), fill_strips(ops), (void)((ops)->image_luma = image_luma_avx2))
+#define V_MORE(ops) \
+    (fill_patches(ops), fill_discs(ops), fill_lines(ops), fill_strips(ops), (void)((ops)->image_luma = image_luma_avx2))
 #include "../simd/kernels.h"

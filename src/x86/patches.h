@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The matcher's operations with 32-bit lanes and gathers: names as in patch.c and pyramid.c. Only avx2.c includes this. */
+/* The matcher's operations with 32-bit lanes and gathers: names as in the files that define them. Only avx2.c includes this. */
 #ifndef ASJ_SRC_X86_PATCHES_H
 #define ASJ_SRC_X86_PATCHES_H
 
@@ -120,25 +120,43 @@ static inline __m256i bilinear(const plane_avx2 *plane, __m256i ix, __m256i iy)
     return _mm256_srai_epi32(_mm256_add_epi32(_mm256_add_epi32(upper, lower), half), 15);
 }
 
+/* .. and what for positions in px of level 0. */
+typedef struct sampler_avx2 {
+    plane_avx2 plane;
+    __m256 scale, shift, right, bottom, last_x, last_y;
+} sampler_avx2;
+
+static inline sampler_avx2 sampler_of(const asj_pyramid *pyramid, int32_t level)
+{
+    const float scale = 256.0f / (float)(1 << level);
+    return (sampler_avx2){plane_of(pyramid, level), _mm256_set1_ps(scale), _mm256_set1_ps(0.5f * scale - 128.0f),
+                          _mm256_set1_ps((float)(pyramid->width[level] - 1) * 256.0f),
+                          _mm256_set1_ps((float)(pyramid->height[level] - 1) * 256.0f),
+                          _mm256_set1_ps((float)(pyramid->width[0] - 1)), _mm256_set1_ps((float)(pyramid->height[0] - 1))};
+}
+
+/* Eight levels, and a bit for each position inside the image. */
+static inline __m256i sample_positions(const sampler_avx2 *s, __m256 x, __m256 y, unsigned *inside)
+{
+    const __m256 zero = _mm256_setzero_ps();
+    const __m256 in_x = _mm256_and_ps(_mm256_cmp_ps(x, zero, _CMP_GE_OQ), _mm256_cmp_ps(x, s->last_x, _CMP_LE_OQ));
+    const __m256 in_y = _mm256_and_ps(_mm256_cmp_ps(y, zero, _CMP_GE_OQ), _mm256_cmp_ps(y, s->last_y, _CMP_LE_OQ));
+    const __m256 fx = _mm256_max_ps(_mm256_add_ps(_mm256_mul_ps(x, s->scale), s->shift), zero);
+    const __m256 fy = _mm256_max_ps(_mm256_add_ps(_mm256_mul_ps(y, s->scale), s->shift), zero);
+    *inside = (unsigned)_mm256_movemask_ps(_mm256_and_ps(in_x, in_y));
+    return bilinear(&s->plane, _mm256_cvttps_epi32(_mm256_min_ps(fx, s->right)), _mm256_cvttps_epi32(_mm256_min_ps(fy, s->bottom)));
+}
+
 static int32_t pyramid_sample_avx2(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
                                    uint16_t *grey)
 {
-    const int32_t width = pyramid->width[level], height = pyramid->height[level], whole = count & ~7;
-    const plane_avx2 plane = plane_of(pyramid, level);
-    const float step = 256.0f / (float)(1 << level);
-    const __m256 scale = _mm256_set1_ps(step), shift = _mm256_set1_ps(0.5f * step - 128.0f), zero = _mm256_setzero_ps();
-    const __m256 right = _mm256_set1_ps((float)(width - 1) * 256.0f), bottom = _mm256_set1_ps((float)(height - 1) * 256.0f);
-    const __m256 last_x = _mm256_set1_ps((float)(pyramid->width[0] - 1)), last_y = _mm256_set1_ps((float)(pyramid->height[0] - 1));
+    const sampler_avx2 sampler = sampler_of(pyramid, level);
+    const int32_t whole = count & ~7;
     int32_t inside = 0;
     for (int32_t i = 0; i < whole; i += 8) {
-        const __m256 px = _mm256_loadu_ps(x + i), py = _mm256_loadu_ps(y + i);
-        const __m256 in_x = _mm256_and_ps(_mm256_cmp_ps(px, zero, _CMP_GE_OQ), _mm256_cmp_ps(px, last_x, _CMP_LE_OQ));
-        const __m256 in_y = _mm256_and_ps(_mm256_cmp_ps(py, zero, _CMP_GE_OQ), _mm256_cmp_ps(py, last_y, _CMP_LE_OQ));
-        inside += __builtin_popcount((unsigned)_mm256_movemask_ps(_mm256_and_ps(in_x, in_y)));
-        const __m256 fx = _mm256_max_ps(_mm256_add_ps(_mm256_mul_ps(px, scale), shift), zero);
-        const __m256 fy = _mm256_max_ps(_mm256_add_ps(_mm256_mul_ps(py, scale), shift), zero);
-        const __m256i sum = bilinear(&plane, _mm256_cvttps_epi32(_mm256_min_ps(fx, right)),
-                                     _mm256_cvttps_epi32(_mm256_min_ps(fy, bottom)));
+        unsigned in;
+        const __m256i sum = sample_positions(&sampler, _mm256_loadu_ps(x + i), _mm256_loadu_ps(y + i), &in);
+        inside += __builtin_popcount(in);
         _mm_storeu_si128((__m128i *)(void *)(grey + i),
                          _mm_packus_epi32(_mm256_castsi256_si128(sum), _mm256_extracti128_si256(sum, 1)));
     }

@@ -17,12 +17,14 @@ asj_status run_patches(asj_context *context, const subject *s, uint16_t *scratch
 size_t partners_size(const subject *s);
 asj_status run_partners(asj_context *context, const subject *s, uint16_t *scratch, void *output);
 
-/* Parts of the matcher that instruction sets replace (patches.c): a blurred row, samples of a pyramid, products of patches,
+/* Parts of the matcher that instruction sets replace (patches.c): a blurred row, samples of a pyramid, discs, products of patches,
  * bounds of them, looks at candidates. */
 size_t blur_size(const subject *s);
 asj_status run_blur(asj_context *context, const subject *s, uint16_t *scratch, void *output);
 size_t samples_size(const subject *s);
 asj_status run_samples(asj_context *context, const subject *s, uint16_t *scratch, void *output);
+size_t discs_size(const subject *s);
+asj_status run_discs(asj_context *context, const subject *s, uint16_t *scratch, void *output);
 size_t products_size(const subject *s);
 asj_status run_products(asj_context *context, const subject *s, uint16_t *scratch, void *output);
 size_t sketches_size(const subject *s);

@@ -320,6 +320,7 @@ const operation operations[] = {
     {"strip", 0, strip_size, one_run, NULL, run_strip},
     {"blur row", 0, blur_size, one_line, NULL, run_blur},
     {"pyramid samples", 0, samples_size, one_run, NULL, run_samples},
+    {"discs", 0, discs_size, one_run, NULL, run_discs},
     {"patch products", 0, products_size, one_run, NULL, run_products},
     {"sketches", 0, sketches_size, one_run, NULL, run_sketches},
     {"looks", 0, looks_size, one_run, NULL, run_looks},

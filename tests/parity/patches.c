@@ -8,6 +8,7 @@
 #define SAMPLES 333 /* no multiple of any vector */
 #define PRODUCTS 37
 #define SPOTS 61
+#define DISCS 11
 
 size_t blur_size(const subject *s)
 {
@@ -44,26 +45,35 @@ size_t samples_size(const subject *s)
     return SAMPLES * sizeof(uint16_t) + sizeof(int32_t);
 }
 
+/* Of pixels of any grey level. */
+static asj_status make_pyramid(asj_context *context, const subject *s, synth_random *random, asj_pyramid *pyramid)
+{
+    const size_t count = (size_t)s->frame.width * (size_t)s->frame.height;
+    uint8_t *pixels = asj_allocate(&context->memory, count, 1);
+    if (!pixels)
+        return ASJ_ERROR_MEMORY;
+    for (size_t i = 0; i < count; i++)
+        pixels[i] = (uint8_t)(synth_random_bits(random) >> 56);
+    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, s->frame.width, s->frame.height, 0, 0};
+    const asj_status status = asj_pyramid_create(context, &image, 0, pyramid);
+    asj_release(&context->memory, pixels);
+    return status;
+}
+
 /* Random places of every level, some outside, some far outside. */
 asj_status run_samples(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
-    asj_pyramid pyramid;
+    asj_pyramid pyramid = {0};
     synth_random random = s->random;
     float x[SAMPLES], y[SAMPLES];
-    uint8_t *pixels = asj_allocate(&context->memory, (size_t)s->frame.width * (size_t)s->frame.height, 1);
     uint16_t grey[SAMPLES];
     (void)scratch;
-    if (!pixels)
-        return ASJ_ERROR_MEMORY;
-    for (int32_t i = 0; i < s->frame.width * s->frame.height; i++)
-        pixels[i] = (uint8_t)(synth_random_bits(&random) >> 56);
+    const asj_status status = make_pyramid(context, s, &random, &pyramid);
     for (int32_t i = 0; i < SAMPLES; i++) {
         const double beyond = i % 17 ? 3 : 1e6;
         x[i] = (float)synth_random_between(&random, -beyond, s->frame.width + beyond);
         y[i] = (float)synth_random_between(&random, -beyond, s->frame.height + beyond);
     }
-    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, s->frame.width, s->frame.height, 0, 0};
-    const asj_status status = asj_pyramid_create(context, &image, 0, &pyramid);
     if (status == ASJ_OK) {
         const int32_t level = (int32_t)(s->seed % (uint64_t)pyramid.levels);
         const int32_t inside = context->ops->pyramid_sample(&pyramid, level, x, y, SAMPLES, grey);
@@ -71,7 +81,37 @@ asj_status run_samples(asj_context *context, const subject *s, uint16_t *scratch
         memcpy((char *)output + sizeof inside, grey, sizeof grey);
     }
     asj_pyramid_free(&context->memory, &pyramid);
-    asj_release(&context->memory, pixels);
+    return status;
+}
+
+size_t discs_size(const subject *s)
+{
+    (void)s;
+    return DISCS * sizeof(asj_disc_sums);
+}
+
+/* Discs of all radii under maps of all kinds, across the border and far outside. */
+asj_status run_discs(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    asj_pyramid pyramid = {0};
+    asj_disc disc;
+    asj_template t;
+    synth_random random = s->random;
+    const double width = s->frame.width, height = s->frame.height;
+    (void)scratch;
+    const asj_status status = make_pyramid(context, s, &random, &pyramid);
+    asj_disc_create(synth_random_between(&random, 8, 64), &disc);
+    if (status == ASJ_OK)
+        asj_template_create(&disc, &pyramid, synth_random_between(&random, 0, width), synth_random_between(&random, 0, height), &t);
+    for (int32_t n = 0; n < DISCS && status == ASJ_OK; n++) {
+        const double beyond = n % 5 ? 5 : 1e4;
+        asj_disc_map map = {n % pyramid.levels, (float)synth_random_between(&random, -beyond, width + beyond),
+                            (float)synth_random_between(&random, -beyond, height + beyond), {0, 0, 0, 0}};
+        for (int32_t k = 0; k < 4; k++)
+            map.linear[k] = (float)synth_random_between(&random, -2, 2);
+        context->ops->disc_compare(&disc, &t, &pyramid, &map, (asj_disc_sums *)output + n);
+    }
+    asj_pyramid_free(&context->memory, &pyramid);
     return status;
 }
 
