@@ -26,7 +26,7 @@ typedef struct table {
     asj_partner *rows, *columns; /* `limit` for each L-junction of image 1 and of image 2 */
     int32_t *scores;             /* MOST_ROWS x count2; ASJ_NO_PARTNER also where the pair cannot come on a list */
     int16_t *left, *right;       /* sketches; NULL: every pair is compared */
-    int32_t *least;              /* of each frame of image 2: the last score on its L-junction's list */
+    int32_t *least;              /* of each frame of image 2: the threshold of its L-junction's list */
     uint32_t *owner;             /* .. and that L-junction */
 } table;
 
@@ -41,9 +41,16 @@ static void offer(asj_partner *list, int32_t limit, int32_t score, uint32_t inde
     list[k] = (asj_partner){score, index};
 }
 
+/* Below what a product is not worth looking for. */
+static int32_t threshold(const asj_partner *list, int32_t limit)
+{
+    const int32_t score = list[limit - 1].score;
+    return score > ASJ_SKETCH_LEAST ? score : ASJ_SKETCH_LEAST;
+}
+
 /* --- unit vectors: the pair of frames with the largest product is the best -------------------------------------------------- */
 
-/* Which frames first .. end - 1 of image 2 to compare with frame f of image 1, whose L-junction's list ends with `most`. */
+/* Which frames first .. end - 1 of image 2 to compare with frame f of image 1, whose L-junction's list has the threshold `most`. */
 static int32_t find_frames(const table *t, uint32_t f, uint32_t first, uint32_t end, int32_t most, int32_t *frames)
 {
     if (t->left)
@@ -63,7 +70,7 @@ static void multiply_tile(const table *t, uint32_t i, uint32_t first, uint32_t e
     for (uint32_t f = c1->first_frame[i]; f < c1->first_frame[i + 1]; f++) {
         if (!t->view1->usable[f])
             continue;
-        const int32_t count = find_frames(t, f, c2->first_frame[first], c2->first_frame[end], list[t->limit - 1].score, frames);
+        const int32_t count = find_frames(t, f, c2->first_frame[first], c2->first_frame[end], threshold(list, t->limit), frames);
         t->ops->patch_products(t->view1->patches + (size_t)f * (size_t)t->length, t->view2->patches, t->length, frames, count,
                                products);
         for (int32_t k = 0; k < count; k++) {
@@ -125,7 +132,7 @@ static void offer_rows(const table *t, int64_t first, int64_t end, uint32_t j)
     for (int64_t i = first; i < end; i++)
         offer(list, t->limit, t->scores[(size_t)(i - first) * c2->count + j], (uint32_t)i);
     for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++)
-        t->least[g] = list[t->limit - 1].score;
+        t->least[g] = threshold(list, t->limit);
 }
 
 static asj_status work(asj_context *context, const table *t)
@@ -161,7 +168,7 @@ static asj_status prepare(asj_context *context, table *t)
     for (uint32_t j = 0; j < c2->count; j++)
         for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++) {
             t->owner[g] = j;
-            t->least[g] = ASJ_NO_PARTNER;
+            t->least[g] = ASJ_SKETCH_LEAST;
         }
     if (!products_do(t->options) || t->options->descriptor != ASJ_DESCRIPTOR_RAW)
         return ASJ_OK;

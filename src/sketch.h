@@ -14,6 +14,9 @@ asj_status asj_sketch_left(asj_context *context, const asj_match_options *option
 asj_status asj_sketch_right(asj_context *context, const asj_match_options *options, const asj_view *view, int16_t **sketches);
 int32_t asj_sketch_blocks(uint32_t frames);
 
+/* No bound is below it; thresholds lie within it and as much above zero. */
+#define ASJ_SKETCH_LEAST (-0x40000000)
+
 /* Those of `right` from first to end - 1 whose patch's product with that of `left` may be above the smaller of most and of its
  * number in `least`: writes which, in order, and returns how many. `least` has a number for each sketch of whole blocks. */
 int32_t asj_sketch_above(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first, int32_t end,

@@ -3,6 +3,7 @@
  * and the v_ functions (see x86/avx2.c) and includes this one. Names as in the reference: sector.c, field.c. */
 #include "../field.h"
 #include "../gradient.h"
+#include "../sketch.h"
 #include "variants.h"
 
 #include <string.h>
@@ -35,6 +36,7 @@ static inline vec peak(const int16_t *here, ptrdiff_t row, int32_t reach, vec be
 #include "batch_kernels.h"
 #include "field_kernels.h"
 #include "isotropic_kernels.h"
+#include "sketch_kernels.h"
 
 void V_NAME(asj_ops)(asj_ops *ops)
 {
@@ -43,6 +45,7 @@ void V_NAME(asj_ops)(asj_ops *ops)
     ops->gradient_normalise = gradient_normalise;
     ops->field_tile = field_tile;
     ops->isotropic_band = isotropic_band;
+    ops->sketch_above = sketch_above;
 #ifdef V_MORE
     V_MORE(ops); /* what is not in this file */
 #endif

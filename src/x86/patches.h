@@ -4,9 +4,6 @@
 #define ASJ_SRC_X86_PATCHES_H
 
 #include "../ops.h"
-#include "../sketch.h"
-
-#include <string.h>
 
 static inline int32_t sum_lanes(__m256i v)
 {
@@ -38,37 +35,6 @@ static void patch_products_avx2(const int16_t *left, const int16_t *rights, int3
         for (int32_t n = 0; n <= last; n++)
             products[k + n] = four[n];
     }
-}
-
-/* Eight bits: where a bound is above the smaller of least and most. */
-static inline unsigned above(__m256i bound, const int32_t *least, __m256i most)
-{
-    const __m256i result = _mm256_cmpgt_epi32(bound, _mm256_min_epi32(v_load(least), most));
-    return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(result));
-}
-
-static int32_t sketch_above_avx2(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first,
-                                 int32_t end, int32_t *which)
-{
-    const __m256i limit = _mm256_set1_epi32(most);
-    int32_t count = 0;
-    for (int32_t start = first - first % ASJ_SKETCH_LANES; start < end; start += ASJ_SKETCH_LANES) {
-        const int16_t *r = right + (ptrdiff_t)start * ASJ_SKETCH;
-        __m256i low = v_zero(), high = v_zero();
-        for (int32_t k = 0; k < ASJ_SKETCH; k += 2, r += 2 * ASJ_SKETCH_LANES) {
-            int32_t pair;
-            memcpy(&pair, left + k, sizeof pair);
-            const __m256i two = _mm256_set1_epi32(pair);
-            low = _mm256_add_epi32(low, _mm256_madd_epi16(two, v_load(r)));
-            high = _mm256_add_epi32(high, _mm256_madd_epi16(two, v_load(r + ASJ_SKETCH_LANES)));
-        }
-        unsigned bits = above(low, least + start, limit) | above(high, least + start + 8, limit) << 8;
-        bits &= start < first ? 0xffffu << (first - start) : 0xffffu;
-        bits &= end - start < ASJ_SKETCH_LANES ? (1u << (end - start)) - 1 : 0xffffu;
-        for (; bits; bits &= bits - 1)
-            which[count++] = start + __builtin_ctz(bits);
-    }
-    return count;
 }
 
 /* Pairs of levels that share a tap are interleaved: one multiplication weights and adds both. */
@@ -286,7 +252,6 @@ static void fill_patches(asj_ops *ops)
     ops->patch_levels = patch_levels_avx2;
     ops->patch_normalise = patch_normalise_avx2;
     ops->patch_products = patch_products_avx2;
-    ops->sketch_above = sketch_above_avx2;
     ops->pyramid_sample = pyramid_sample_avx2;
     ops->look_at = look_at_avx2;
 }

@@ -164,8 +164,8 @@ asj_status run_sketches(asj_context *context, const subject *s, uint16_t *scratc
     for (int32_t k = 0; k < ROOM * ASJ_SKETCH; k++)
         right[k] = (int16_t)synth_random_between(&random, -largest, largest);
     for (int32_t g = 0; g < ROOM; g++)
-        least[g] = g % 7 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : ASJ_NO_PARTNER;
-    const int32_t most = s->seed % 3 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : INT32_MAX;
+        least[g] = g % 7 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : ASJ_SKETCH_LEAST;
+    const int32_t most = s->seed % 3 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : -ASJ_SKETCH_LEAST;
     memset(output, 0, sketches_size(s));
     which[SPOTS] = context->ops->sketch_above(left, right, least, most, first, end, which);
     return ASJ_OK;

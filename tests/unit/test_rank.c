@@ -83,7 +83,8 @@ static void bounds_are_never_too_low(void **state)
                 const int32_t more = g % 2 ? ASJ_UNIT_ONE * (ASJ_UNIT_ONE / 4) : -1;
                 least[g] = g < count ? asj_patch_product(mine, p[1].units + g * (size_t)length, length) + more : 0;
             }
-            const int32_t found = asj_sketch_above(left + f * ASJ_SKETCH, right, least, INT32_MAX, 0, (int32_t)count, which);
+            const int16_t *one = left + f * ASJ_SKETCH;
+            const int32_t found = context->ops->sketch_above(one, right, least, -ASJ_SKETCH_LEAST, 0, (int32_t)count, which);
             for (int32_t k = 0, g = 0; g < (int32_t)count; g++) {
                 const int32_t is = k < found && which[k] == g;
                 assert_true(is || g % 2);
