@@ -140,14 +140,13 @@ void asj_locate_guess(const asj_context *context, const asj_frame *frame, const 
     const double opening = options->minimum_opening * (PI / 180), least = fmax(opening - 8 * (PI / 180), 0);
     asj_rough_line lines[ASJ_MAX_BRANCHES];
     meeting m;
-    if (options->refinement != ASJ_REFINE_LINE_FIT) {
-        if (!asj_draft_has_opening(draft, opening))
-            draft->branch_count = 0;
+    if (!asj_draft_has_opening(draft, opening)) /* of the edges that pass the isotropic test, most */
+        draft->branch_count = 0;
+    if (options->refinement != ASJ_REFINE_LINE_FIT || draft->branch_count == 0)
         return;
-    }
     get_lines(draft, lines);
     guess_lines(context, frame, 4, 10, draft, lines); /* px: enough to tell edges */
-    if (!have_opening(lines, draft->branch_count, least)) { /* most are edges, and seen to be by now */
+    if (!have_opening(lines, draft->branch_count, least)) { /* most of the others */
         draft->branch_count = 0;
         return;
     }
