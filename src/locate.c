@@ -15,6 +15,20 @@
 
 #define PI 3.141592653589793
 
+#define TURN 65536 /* of an isotropic junction's directions */
+
+int asj_locate_worthwhile(const asj_detect_options *options, const asj_isotropic_junction *junction)
+{
+    const double least = options->minimum_opening * (TURN / 360.0);
+    for (int32_t i = 0; i < junction->branch_count; i++)
+        for (int32_t j = i + 1; j < junction->branch_count; j++) {
+            const int32_t turn = abs(junction->angle[i] - junction->angle[j]), opening = turn > TURN / 2 ? TURN - turn : turn;
+            if (opening > 0 && opening < TURN / 2 && opening >= least && opening <= TURN / 2 - least)
+                return 1;
+        }
+    return 0;
+}
+
 void asj_locate_start(const asj_isotropic_junction *junction, asj_draft *draft)
 {
     memset(draft, 0, sizeof *draft);
@@ -24,7 +38,7 @@ void asj_locate_start(const asj_isotropic_junction *junction, asj_draft *draft)
     draft->log_nfa = junction->log_nfa;
     draft->branch_count = junction->branch_count;
     for (int32_t i = 0; i < junction->branch_count; i++) {
-        draft->branches[i].angle = junction->angle[i] * (2 * PI / 65536);
+        draft->branches[i].angle = junction->angle[i] * (2 * PI / TURN);
         draft->branches[i].strength = (double)junction->strength[i] / ASJ_STRENGTH_ONE;
     }
 }
@@ -137,12 +151,10 @@ static int guess_meeting(const asj_detect_options *options, const asj_rough_line
 
 void asj_locate_guess(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
 {
-    const double opening = options->minimum_opening * (PI / 180), least = fmax(opening - 8 * (PI / 180), 0);
+    const double least = fmax((options->minimum_opening - 8) * (PI / 180), 0);
     asj_rough_line lines[ASJ_MAX_BRANCHES];
     meeting m;
-    if (!asj_draft_has_opening(draft, opening)) /* of the edges that pass the isotropic test, most */
-        draft->branch_count = 0;
-    if (options->refinement != ASJ_REFINE_LINE_FIT || draft->branch_count == 0)
+    if (options->refinement != ASJ_REFINE_LINE_FIT)
         return;
     get_lines(draft, lines);
     guess_lines(context, frame, 4, 10, draft, lines); /* px: enough to tell edges */
@@ -222,7 +234,8 @@ static int suppressed(const asj_draft *drafts, const asj_draft *draft, int same,
         for (int dx = -1; dx <= 1; dx++)
             for (int32_t i = heads[cell + dy * columns + dx]; i >= 0; i = next[i]) {
                 const double radius = same ? 1.5 : fmax(3, 0.35 * drafts[i].radius);
-                if (hypot(drafts[i].x - draft->x, drafts[i].y - draft->y) < radius && (!same || same_junction(draft, &drafts[i])))
+                const double x = drafts[i].x - draft->x, y = drafts[i].y - draft->y;
+                if (x * x + y * y < radius * radius && (!same || same_junction(draft, &drafts[i])))
                     return 1;
             }
     return 0;

@@ -5,11 +5,14 @@
 
 #include "line_fit.h"
 
+/* Whether two of its directions open by minimum_opening: most edges that pass the isotropic test show here. */
+int asj_locate_worthwhile(const asj_detect_options *options, const asj_isotropic_junction *junction);
+
 /* Turns an isotropic junction into a draft at its pixel. */
 void asj_locate_start(const asj_isotropic_junction *junction, asj_draft *draft);
 
 /* Fits the branches' lines near the junction and moves it to where they meet; branch_count 0 when it is no junction. First a
- * guess where the isotropic directions open enough, with some slack in what is asked of its lines, then the fit that counts. */
+ * guess, with some slack in what is asked of its lines, then the fit that counts. */
 void asj_locate_guess(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft);
 void asj_locate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft);
 

@@ -275,21 +275,21 @@ static asj_status suppress(asj_detection_run *d, int same)
 /* Between 3 and 4: locations. */
 asj_status asj_stage_locate(asj_detection_run *d)
 {
-    const int64_t count = (int64_t)d->isotropic_count;
-    int32_t threads = asj_threads_for(d->context, count, 4 * LEAST_JUNCTIONS); /* a quick look each */
     d->drafts = asj_allocate_list(&d->context->memory, at_least(d->isotropic_count), sizeof *d->drafts);
     if (!d->drafts)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", d->isotropic_count);
+    for (size_t i = 0; i < d->isotropic_count; i++)
+        if (asj_locate_worthwhile(d->options, &d->isotropic[i]))
+            asj_locate_start(&d->isotropic[i], &d->drafts[d->draft_count++]);
+    const int64_t count = (int64_t)d->draft_count;
+    int32_t threads = asj_threads_for(d->context, count, 4 * LEAST_JUNCTIONS); /* a quick look each */
 #ifdef _OPENMP
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 16)
 #else
     (void)threads;
 #endif
-    for (int64_t i = 0; i < count; i++) {
-        asj_locate_start(&d->isotropic[i], &d->drafts[i]);
+    for (int64_t i = 0; i < count; i++)
         asj_locate_guess(d->context, &d->detector->frame, d->options, &d->drafts[i]);
-    }
-    d->draft_count = d->isotropic_count;
     asj_status status = suppress(d, 1);
     if (status != ASJ_OK)
         return status;

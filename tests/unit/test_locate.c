@@ -158,6 +158,28 @@ static void test_start(void **state)
     }
 }
 
+/* The same question as asj_draft_has_opening(), in whole numbers. */
+static void test_worthwhile(void **state)
+{
+    fixture *f = *state;
+    int worthwhile = 0;
+    synth_random random;
+    synth_random_seed(&random, 21);
+    for (int n = 0; n < 2000; n++) {
+        const double start = synth_random_between(&random, 0, 6), turn = synth_random_between(&random, 0, UNIT_PI);
+        const double angles[3] = {start, fmod(start + turn, 2 * UNIT_PI), fmod(start + UNIT_PI, 2 * UNIT_PI)};
+        const asj_isotropic_junction junction = isotropic_at(40, 40, 2 + n % 2, angles);
+        asj_draft draft;
+        f->options.minimum_opening = n % 80;
+        asj_locate_start(&junction, &draft);
+        const int opens = asj_draft_has_opening(&draft, f->options.minimum_opening * UNIT_PI / 180);
+        assert_int_equal(asj_locate_worthwhile(&f->options, &junction), opens);
+        worthwhile += opens;
+    }
+    assert_in_range(worthwhile, 500, 1500);
+    asj_detect_options_init(&f->options);
+}
+
 /* A corner of 90 degrees or more, seen from pixels up to a pixel away: its own place to half a pixel. (In sharper ones the two
  * edges bend each other's first fit; the fit over the length mends that.) */
 static void test_corners(void **state)
@@ -251,9 +273,7 @@ static void test_search_keeps_pixels(void **state)
     assert_int_equal(draft.branch_count, 2);
     assert_true(draft.x == 40 && draft.y == 41);
     junction = isotropic_at(40, 41, 2, straight);
-    asj_locate_start(&junction, &draft);
-    locate(f, &frame, &draft);
-    assert_int_equal(draft.branch_count, 0);
+    assert_false(asj_locate_worthwhile(&f->options, &junction));
     asj_frame_free(&f->context->memory, &frame);
     asj_detect_options_init(&f->options);
 }
@@ -320,9 +340,15 @@ static void test_suppress(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_meet),     cmocka_unit_test(test_parallel),            cmocka_unit_test(test_start),
-        cmocka_unit_test(test_corners),  cmocka_unit_test(test_edges_are_rejected),  cmocka_unit_test(test_max_move),
-        cmocka_unit_test(test_suppress), cmocka_unit_test(test_search_keeps_pixels),
+        cmocka_unit_test(test_meet),
+        cmocka_unit_test(test_parallel),
+        cmocka_unit_test(test_start),
+        cmocka_unit_test(test_worthwhile),
+        cmocka_unit_test(test_corners),
+        cmocka_unit_test(test_edges_are_rejected),
+        cmocka_unit_test(test_max_move),
+        cmocka_unit_test(test_suppress),
+        cmocka_unit_test(test_search_keeps_pixels),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
