@@ -27,7 +27,6 @@ typedef struct table {
     int32_t *scores;             /* MOST_ROWS x count2; ASJ_NO_PARTNER also where the pair cannot come on a list */
     int16_t *left, *right;       /* sketches; NULL: every pair is compared */
     int32_t *least;              /* of each frame of image 2: the threshold of its L-junction's list */
-    uint32_t *owner;             /* .. and that L-junction */
 } table;
 
 /* Inserts into a list that falls; the earlier of equals stays first. */
@@ -65,28 +64,33 @@ static int32_t find_frames(const table *t, uint32_t f, uint32_t first, uint32_t 
 static void multiply_tile(const table *t, uint32_t i, uint32_t first, uint32_t end, int32_t *scores)
 {
     const asj_corners *c1 = &t->view1->corners, *c2 = &t->view2->corners;
+    const uint32_t start = c2->first_frame[first], stop = c2->first_frame[end];
     asj_partner *list = t->rows + (size_t)i * (size_t)t->limit;
-    int32_t frames[MOST_FRAMES], products[MOST_FRAMES];
+    int32_t frames[MOST_FRAMES], products[MOST_FRAMES], best[MOST_FRAMES];
+    for (uint32_t g = start; g < stop; g++)
+        best[g - start] = ASJ_NO_PARTNER;
     for (uint32_t f = c1->first_frame[i]; f < c1->first_frame[i + 1]; f++) {
         if (!t->view1->usable[f])
             continue;
-        const int32_t count = find_frames(t, f, c2->first_frame[first], c2->first_frame[end], threshold(list, t->limit), frames);
+        const int32_t count = find_frames(t, f, start, stop, threshold(list, t->limit), frames);
         t->ops->patch_products(t->view1->patches + (size_t)f * (size_t)t->length, t->view2->patches, t->length, frames, count,
                                products);
         for (int32_t k = 0; k < count; k++) {
-            int32_t *score = &scores[t->owner[frames[k]]];
-            *score = products[k] > *score && t->view2->usable[frames[k]] ? products[k] : *score;
+            int32_t *most = &best[(uint32_t)frames[k] - start];
+            *most = products[k] > *most ? products[k] : *most;
         }
     }
-    for (uint32_t j = first; j < end; j++)
+    for (uint32_t j = first; j < end; j++) {
+        scores[j] = ASJ_NO_PARTNER;
+        for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++)
+            scores[j] = t->view2->usable[g] && best[g - start] > scores[j] ? best[g - start] : scores[j];
         offer(list, t->limit, scores[j], j);
+    }
 }
 
 static void multiply_row(const table *t, uint32_t i, int32_t *scores)
 {
     const asj_corners *c2 = &t->view2->corners;
-    for (uint32_t j = 0; j < c2->count; j++)
-        scores[j] = ASJ_NO_PARTNER;
     for (uint32_t first = 0, end; first < c2->count; first = end) {
         const uint32_t start = c2->first_frame[first], wanted = FIRST_FRAMES + start / 2;
         const uint32_t most = wanted < MOST_FRAMES ? wanted : MOST_FRAMES;
@@ -162,14 +166,10 @@ static asj_status prepare(asj_context *context, table *t)
     const size_t padded = (size_t)asj_sketch_blocks(c2->frame_count) * ASJ_SKETCH_LANES;
     t->scores = asj_allocate(memory, MOST_ROWS * (size_t)c2->count, sizeof *t->scores);
     t->least = asj_allocate_zero(memory, padded, sizeof *t->least);
-    t->owner = asj_allocate(memory, c2->frame_count, sizeof *t->owner);
-    if (!t->scores || !t->least || !t->owner)
+    if (!t->scores || !t->least)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the distances of %u L-junctions", (unsigned)c2->count);
-    for (uint32_t j = 0; j < c2->count; j++)
-        for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++) {
-            t->owner[g] = j;
-            t->least[g] = ASJ_SKETCH_LEAST;
-        }
+    for (uint32_t g = 0; g < c2->frame_count; g++)
+        t->least[g] = ASJ_SKETCH_LEAST;
     if (!products_do(t->options) || t->options->descriptor != ASJ_DESCRIPTOR_RAW)
         return ASJ_OK;
     const asj_status status = asj_sketch_left(context, t->options, t->view1, &t->left);
@@ -187,7 +187,6 @@ asj_status asj_rank_partners(asj_context *context, const asj_match_options *opti
         status = work(context, &t);
     asj_release(memory, t.scores);
     asj_release(memory, t.least);
-    asj_release(memory, t.owner);
     asj_release(memory, t.left);
     asj_release(memory, t.right);
     return status;
