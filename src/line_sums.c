@@ -77,10 +77,12 @@ static void column_rows(const asj_line_band *band, float dx, float *first, float
 static void add_column(const asj_frame *frame, const asj_line_band *band, int32_t column, lanes sides[2])
 {
     const int32_t lane = (column - band->left) % LANES;
+    int32_t top, bottom;
     const float dx = (float)column - band->middle_x;
     float first, last, w[2] = {0, 0}, y[2] = {0, 0}, yy[2] = {0, 0};
     column_rows(band, dx, &first, &last);
-    for (int32_t row = band->top; row <= band->bottom; row++) {
+    asj_line_band_rows(band, column, 1, &top, &bottom);
+    for (int32_t row = top; row <= bottom; row++) {
         const float dy = (float)row - band->middle_y;
         if (!(dy >= first && dy <= last))
             continue;

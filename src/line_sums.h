@@ -63,10 +63,10 @@ void asj_line_profile_part(const asj_frame *frame, const asj_line_profile *profi
 /* Whether all samples of these k have the pixels around them that interpolation wants. */
 int asj_line_profile_inside(const asj_frame *frame, const asj_line_profile *profile, int32_t from, int32_t to);
 
-/* The rows that ASJ_LINE_LANES columns from `column` on may have inside, from *first to *last. */
-static inline void asj_line_band_rows(const asj_line_band *band, int32_t column, int32_t *first, int32_t *last)
+/* The rows that so many columns from `column` on may have inside, from *first to *last. */
+static inline void asj_line_band_rows(const asj_line_band *band, int32_t column, int32_t columns, int32_t *first, int32_t *last)
 {
-    const float dx = (float)column - band->middle_x, end = dx + (ASJ_LINE_LANES - 1);
+    const float dx = (float)column - band->middle_x, end = dx + (float)(columns - 1);
     const float t = band->step_t * dx, end_t = band->step_t * end, s = band->step_s * dx, end_s = band->step_s * end;
     const float top_t = (t < end_t ? t : end_t) - band->reach_t, bottom_t = (t > end_t ? t : end_t) + band->reach_t;
     const float top_s = (s < end_s ? s : end_s) - band->reach_s, bottom_s = (s > end_s ? s : end_s) + band->reach_s;

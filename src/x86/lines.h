@@ -81,7 +81,7 @@ static inline void sum_columns(const asj_frame *frame, const asj_line_band *band
     const __m256 last = _mm256_min_ps(_mm256_add_ps(t, reach_t), _mm256_add_ps(s, reach_s));
     const ptrdiff_t stride = frame->stride;
     int32_t first_row, last_row;
-    asj_line_band_rows(band, column, &first_row, &last_row);
+    asj_line_band_rows(band, column, 8, &first_row, &last_row);
     const uint16_t *p = frame->gray + (band->y + first_row) * stride + band->x + column;
     column_sums up = {zero, zero, zero}, down = up;
     for (int32_t row = first_row; row <= last_row; row++, p += stride) {

@@ -92,7 +92,7 @@ static inline void sum_columns(const asj_frame *frame, const asj_line_band *band
     const ptrdiff_t stride = frame->stride;
     int32_t first_row = band->top, last_row = band->bottom;
     if (band->right - band->left >= ASJ_LINE_LANES)
-        asj_line_band_rows(band, column, &first_row, &last_row);
+        asj_line_band_rows(band, column, ASJ_LINE_LANES, &first_row, &last_row);
     const uint16_t *p = frame->gray + (band->y + first_row) * stride + band->x + column;
     column_sums up = {zero, zero, zero}, down = up;
     __m512 rows = _mm512_set1_ps((float)first_row);
