@@ -16,6 +16,7 @@
 #include <string.h>
 
 #define TERMS (ASJ_SKETCH - 2)
+#define FREQUENCIES 8 /* of those terms: 0 .. 7 */
 #define ROW 0.995 /* length of a row: rounding adds at most sqrt(TERMS ASJ_PATCH_SAMPLES) / 2 / ASJ_UNIT_ONE = 0.004 */
 /* Rounding B f and B g to whole numbers costs sqrt(TERMS) / 2 (|f| + |g|) + TERMS / 4 at most: 5.5 ASJ_UNIT_ONE. */
 #define SLACK_LEFT ASJ_UNIT_ONE
@@ -25,14 +26,18 @@
 static void fill_rows(int32_t size, int16_t *rows)
 {
     const double pi = 3.14159265358979323846;
+    double wave[FREQUENCIES][ASJ_PATCH_SIDE];
     int32_t term = 0;
+    for (int32_t u = 0; u < FREQUENCIES; u++)
+        for (int32_t x = 0; x < size; x++)
+            wave[u][x] = cos(pi * (x + 0.5) * u / size);
     for (int32_t sum = 1; term < TERMS; sum++)
         for (int32_t u = 0; u <= sum && term < TERMS; u++, term++) {
             const int32_t v = sum - u;
             const double scale = ROW * ASJ_UNIT_ONE / size * (u > 0 && v > 0 ? 2 : sqrt(2.0));
             for (int32_t y = 0; y < size; y++)
                 for (int32_t x = 0; x < size; x++)
-                    *rows++ = (int16_t)lrint(scale * cos(pi * (x + 0.5) * u / size) * cos(pi * (y + 0.5) * v / size));
+                    *rows++ = (int16_t)lrint(scale * wave[u][x] * wave[v][y]);
         }
 }
 
