@@ -12,7 +12,7 @@
  *     support = half the sum, over the nearest places in image 1 and in image 2, of the largest w x confidence of their candidates,
  *     score = a (0.2 + support),     confidence = score / max(score of the best competitor, needed support),
  *
- * so that a place speaks with one voice, and places where nothing is sure hardly speak. Support is needed in proportion to the
+ * so that a place counts once, and places where nothing is sure hardly count. Support is needed in proportion to the
  * number of neighbours that can be asked, because so grows what chance supplies: minimum_support when all `neighbours` are
  * there, less in an image with fewer corners. */
 #include "consensus.h"
@@ -53,20 +53,20 @@ static void half_free(asj_memory *memory, half *h)
 }
 
 /* Sum over the neighbour places of the largest weight x confidence. */
-static float ask(const asj_hearing *h, uint32_t number, const float *confidence)
+static float sum_up(const asj_supporters *h, uint32_t number, const float *confidence)
 {
-    const asj_voice *v = h->voices + h->offset[number - 1], *end = v + h->heard[number - 1];
+    const asj_supporter *v = h->list + h->offset[number - 1], *end = v + h->count[number - 1];
     float support = 0;
     while (v < end) {
         const uint16_t place = v->place;
         float largest = 0;
         for (; v < end && v->place == place; v++) {
-            float loud = (float)v->weight * confidence[v->number];
-            largest = loud > largest ? loud : largest;
+            float value = (float)v->weight * confidence[v->number];
+            largest = value > largest ? value : largest;
         }
         support += largest;
     }
-    return support * (1 / ASJ_VOICE_ONE);
+    return support * (1 / ASJ_SUPPORT_ONE);
 }
 
 /* best[place] = the largest (sign 1) or smallest (sign -1) value of the place's candidates. */
@@ -118,7 +118,7 @@ typedef struct ratings {
 } ratings;
 
 static void relax(asj_context *context, const asj_match_options *options, asj_candidates *candidates, half halves[2],
-                  const asj_voices *voices, const ratings *r)
+                  const asj_support *supporters, const ratings *r)
 {
     const int64_t count = (int64_t)candidates->count;
     const float needed = asj_needed_support(options, halves[0].corners, halves[1].corners), least = needed > 1e-6f ? needed : 1e-6f;
@@ -129,7 +129,9 @@ static void relax(asj_context *context, const asj_match_options *options, asj_ca
 #pragma omp parallel for num_threads(context->threads) schedule(static)
         for (int64_t k = 0; k < count; k++) {
             asj_candidate *c = &candidates->list[k];
-            c->support = (ask(&voices->side[0], c->number, r->confidence) + ask(&voices->side[1], c->number, r->confidence)) * 0.5f;
+            const float in1 = sum_up(&supporters->side[0], c->number, r->confidence);
+            const float in2 = sum_up(&supporters->side[1], c->number, r->confidence);
+            c->support = (in1 + in2) * 0.5f;
             c->score = r->score[k] = r->appearance[k] * (BASE + c->support);
         }
         best_of_places(&halves[0], r->score, 1);
@@ -144,7 +146,7 @@ static void relax(asj_context *context, const asj_match_options *options, asj_ca
 }
 
 static asj_status agree(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
-                        asj_candidates *candidates, const asj_voices *voices)
+                        asj_candidates *candidates, const asj_support *supporters)
 {
     asj_memory *memory = &context->memory;
     const size_t count = candidates->count;
@@ -157,7 +159,7 @@ static asj_status agree(asj_context *context, const asj_match_options *options, 
     if (status == ASJ_OK) {
         const ratings r = {block, block + count, block + 2 * count};
         rate(candidates, options->align_iterations > 0, halves, r.score, r.appearance);
-        relax(context, options, candidates, halves, voices, &r);
+        relax(context, options, candidates, halves, supporters, &r);
     }
     for (int s = 0; s < 2; s++)
         half_free(memory, &halves[s]);
@@ -166,7 +168,7 @@ static asj_status agree(asj_context *context, const asj_match_options *options, 
 }
 
 asj_status asj_consensus(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
-                         asj_candidates *candidates, asj_voices *voices)
+                         asj_candidates *candidates, asj_support *supporters)
 {
     if (options->neighbours == 0) {
         for (size_t k = 0; k < candidates->count; k++) {
@@ -176,6 +178,6 @@ asj_status asj_consensus(asj_context *context, const asj_match_options *options,
         }
         return ASJ_OK;
     }
-    const asj_status status = asj_voices_extend(context, options, view1, view2, candidates, voices);
-    return status == ASJ_OK ? agree(context, options, view1, view2, candidates, voices) : status;
+    const asj_status status = asj_support_extend(context, options, view1, view2, candidates, supporters);
+    return status == ASJ_OK ? agree(context, options, view1, view2, candidates, supporters) : status;
 }

@@ -15,7 +15,7 @@ typedef struct asj_candidate {
     asj_linear map;          /* linear part, image 1 -> image 2 */
     float support;
     float score;             /* what the choice goes by; the larger the better */
-    uint32_t number;         /* the voices (voices.h) know it by: 1, 2, ...; 0 = not yet */
+    uint32_t number;         /* support.h knows it by: 1, 2, ...; 0 = not yet */
 } asj_candidate;
 
 typedef struct asj_candidates {

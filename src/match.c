@@ -3,10 +3,11 @@
  *
  *   corners.c    junctions -> ordered L-junctions with frames
  *   patch.c      patches in those frames                       (paper: induced.c)
- *   distance.c   all pairs, short list
+ *   distance.c   all pairs, short lists
+ *   rank.c       .. of raw patches: those that a bound (sketch.c) does not rule out
  *   align.c      each candidate's map refined on the images    (paper: not done)
  *   consensus.c  support from neighbouring candidates          (paper: not done)
- *   voices.c     .. which of them agree
+ *   support.c    .. which of them agree
  *   agreement.c  .. what that means
  *   assign.c     ratio test, mutual check
  *   guided.c     matches propose matches near them; once more from align.c on
@@ -27,7 +28,7 @@ typedef struct match_run {
     const asj_match_options *options;
     asj_view view[2];
     asj_candidates candidates;
-    asj_voices voices;
+    asj_support support;
     asj_choice *choices;
     size_t choice_count;
     double stage_ms[16];
@@ -86,7 +87,7 @@ static asj_status find_candidates(match_run *m)
 
 static asj_status choose(match_run *m)
 {
-    asj_status status = asj_consensus(m->context, m->options, &m->view[0], &m->view[1], &m->candidates, &m->voices);
+    asj_status status = asj_consensus(m->context, m->options, &m->view[0], &m->view[1], &m->candidates, &m->support);
     if (status == ASJ_OK)
         status = asj_assign(m->context, m->options, &m->view[0], &m->view[1], &m->candidates, m->choices, &m->choice_count);
     stop_watch(m, ASJ_STAGE_ASSIGN);
@@ -151,7 +152,7 @@ static void clean(match_run *m)
     }
     asj_release(memory, m->candidates.list);
     asj_release(memory, m->choices);
-    asj_voices_free(memory, &m->voices);
+    asj_support_free(memory, &m->support);
 }
 
 /* Arguments of asj_match(). */
