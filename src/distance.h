@@ -27,7 +27,7 @@ typedef struct asj_candidates {
 typedef struct asj_view {
     asj_pyramid pyramid;
     asj_corners corners;
-    int16_t *patches;        /* canonical: unit vectors, `length` numbers for each frame */
+    int16_t *patches;        /* canonical: `length` numbers for each frame; unit vectors unless option normalise is no */
     uint8_t *usable;         /* of each frame: its patch lies in the image */
     uint64_t device_copy;    /* names what a device keeps of them; 0 = nothing */
 } asj_view;
@@ -64,7 +64,7 @@ int32_t asj_best_frames(const asj_match_options *options, const asj_view *view1,
  * map. */
 int32_t asj_compare(const asj_match_options *options, const asj_view *view1, const asj_view *view2, asj_candidate *candidate);
 
-/* Appends pairs (two numbers each), sorts by i, then j. */
+/* Sorts by i, then j; of equal pairs one stays. */
 asj_status asj_candidates_sort(asj_candidates *candidates);
 
 /* induced.c: fills view->patches and view->usable with the squares around the L-junctions, one for each. */

@@ -83,7 +83,7 @@ static moments moments_of(const samples *in, int32_t side)
 static int solve(const samples *in, const moments *m, line *out)
 {
     const double determinant = m->w * m->tt - m->t * m->t;
-    if (m->count < 3 || !(determinant > 1e-9 * m->w * m->tt))
+    if (m->count < 3 || !(determinant > 1e-5 * m->w * m->tt))
         return 0;
     *out = (line){in->a + (m->tt * m->r - m->t * m->tr) / determinant, in->b + (m->w * m->tr - m->t * m->r) / determinant, 0, 0};
     return 1;

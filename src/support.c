@@ -9,6 +9,7 @@
 
 #include <string.h>
 
+#define MOST 0x4000000 /* supporters of all candidates of one side: 512 MB; eight pairs of photographs need up to a few million */
 #define BLOCK 0x40000 /* supporters of a block of candidates, before it is known how many they are: 2 MB */
 
 /* --- candidates by place ---------------------------------------------------------------------------------------------------- */
@@ -212,6 +213,9 @@ static asj_status keep(asj_context *context, const search *in, size_t first, siz
     size_t total = *used + 1; /* never NULL */
     for (size_t k = first; k < end; k++)
         total += found->count[in->candidates->list[k].number - 1];
+    if (total > MOST)
+        return asj_fail(context, ASJ_ERROR_LIMIT, "more than %d pairs of candidates agree: images that repeat themselves, loose options",
+                        MOST);
     void *block = found->list;
     const asj_status status = asj_grow(&context->memory, &block, capacity, total, sizeof *found->list, *used);
     found->list = block;

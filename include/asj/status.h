@@ -27,7 +27,7 @@ enum {
     ASJ_ERROR_ARGUMENT = -1,    /* a null pointer, or arguments that contradict each other */
     ASJ_ERROR_OPTION = -2,      /* an option that does not exist, is out of range, or is not a number */
     ASJ_ERROR_IMAGE = -3,       /* an image view that cannot be: zero size, short stride, unknown format, NaN, infinity */
-    ASJ_ERROR_LIMIT = -4,       /* larger than a documented limit (image side, number of pixels, file size) */
+    ASJ_ERROR_LIMIT = -4,       /* larger than a documented limit (image side, number of pixels, file size, ..) */
     ASJ_ERROR_MEMORY = -5,      /* the allocator returned NULL */
     ASJ_ERROR_CANCELLED = -6,   /* the progress callback asked to stop */
     ASJ_ERROR_DEVICE = -7,      /* an explicitly requested back end or device is not there, or failed */
