@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-#define MOST 0x4000000 /* supporters of all candidates of one side: 512 MB; eight pairs of photographs need up to a few million */
+#define MOST 0x1000000 /* supporters of the candidates of one side: 128 MB; eight pairs of photographs need up to 40 000 */
 #define BLOCK 0x40000 /* supporters of a block of candidates, before it is known how many they are: 2 MB */
 
 /* --- candidates by place ---------------------------------------------------------------------------------------------------- */

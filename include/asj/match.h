@@ -125,8 +125,8 @@ typedef struct asj_match_result {
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that is not finite, lies more than ASJ_MAX_OUTSIDE px outside its image, has a
  *                      wrong branch count or a negative length
  * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED   as asj_detect()
- * ASJ_ERROR_LIMIT      also when so many candidate matches agree that their list would take more than half a gigabyte: options far
- *                      looser than the defaults, on images that repeat themselves */
+ * ASJ_ERROR_LIMIT      also when more than 2^24 pairs of candidate matches agree: images that repeat themselves, options far
+ *                      looser than the defaults */
 ASJ_API asj_status asj_match(asj_context *context,
                              const asj_image *image1, const asj_junction *junctions1, size_t count1,
                              const asj_image *image2, const asj_junction *junctions2, size_t count2,
