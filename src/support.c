@@ -214,7 +214,7 @@ static asj_status keep(asj_context *context, const search *in, size_t first, siz
     for (size_t k = first; k < end; k++)
         total += found->count[in->candidates->list[k].number - 1];
     if (total > MOST)
-        return asj_fail(context, ASJ_ERROR_LIMIT, "more than %d pairs of candidates agree: options too loose for these images", MOST);
+        return asj_fail(context, ASJ_ERROR_LIMIT, "more than %d pairs of candidates agree: options too loose", MOST);
     void *block = found->list;
     const asj_status status = asj_grow(&context->memory, &block, capacity, total, sizeof *found->list, *used);
     found->list = block;
