@@ -7,7 +7,8 @@
  *
  * bytes       what must come from and go to memory if caches were perfect: every sample of a plane that the stage looks at, once
  * operations  of the formulas as src/ evaluates them: additions, multiplications, comparisons, absolute values, one for each
- *             number, not for each vector; 16-bit whole numbers in the first stages, double precision in locate and refine.
+ *             number, not for each vector; 16-bit whole numbers in the first stages, in locate and refine compared with
+ *             the peak of double precision, though their sums over pixels are in single precision.
  *             Addresses, loops, tests and divisions are not counted, nor is what depends on the data in locate and refine (narrower
  *             fits, sorting): there it is the least that the stage does. */
 #include "profile.h"
