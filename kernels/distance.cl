@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 7 on a device: products of all pairs of unit vectors and the best partners, as in src/distance.c, for a block of rows: of
+/* Step 7 on a device: products of all pairs of unit vectors and the best partners, as in distance.c, for a block of rows: of
  * L-junctions of image 1. Lists are kept in order of score, of equals the smaller index first: one order, however the work is
  * divided. */
 

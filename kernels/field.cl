@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 2 on a device: candidates for junctions, as in src/field.c. Two forms with the same results: field_pixels, a work item for
+/* Step 2 on a device: candidates for junctions, as in field.c. Two forms with the same results: field_pixels, a work item for
  * each pixel of the rows that have candidates, for devices with thousands of them; field_tiles, a work item for a tile of the
- * image, for processors: there the planes of src/sector_plan.h, which neighbours share, save most of the work. Planes of the frame
+ * image, for processors: there the planes of sector_plan.h, which neighbours share, save most of the work. Planes of the frame
  * as in gradient.cl.
  *
  * The table, in ints (src/cl/field_ops.c): a, b of each family; OFFSET_INTS for each offset; where each plain slot ends; which
@@ -153,7 +153,7 @@ static ushort16 load(__local const ushort *from)
     return ((__local const struct anywhere *)from)->numbers;
 }
 
-/* The planes of src/sector_plan.h for one row of pixels, in vectors. */
+/* The planes of src/detect/sector_plan.h for one row of pixels, in vectors. */
 static void gamma_planes(__global const int *family, int families, __global const short *gx, __global const short *gy, int width,
                          int plane_stride, __local ushort16 *planes)
 {

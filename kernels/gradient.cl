@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 1 on a device: the normalised gradient of src/gradient.c, where the formulas are explained. A work item takes eight pixels
- * of a row. Planes are laid out as in src/image.h: sample (x, y) at [(y - base) * stride + x + MARGIN], row `base` being the first
+/* Step 1 on a device: the normalised gradient of gradient.c, where the formulas are explained. A work item takes eight pixels
+ * of a row. Planes are laid out as in image.h: sample (x, y) at [(y - base) * stride + x + MARGIN], row `base` being the first
  * that the buffer holds. Both kernels write the margin too, as zeros. */
 
 #define MARGIN 32

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 3 on a device: the strongest branches at candidates, for each radius, as in src/isotropic.c; the host judges them. Two forms
+/* Step 3 on a device: the strongest branches at candidates, for each radius, as in isotropic.c; the host judges them. Two forms
  * with the same results: isotropic_candidates, a work-group for each candidate, for devices with thousands of work items;
  * isotropic_batches, a work item for LANES candidates, for processors. Planes of the frame as in gradient.cl.
  *
@@ -169,7 +169,7 @@ static void batch_gammas(__global const short *gradient_x, __global const short 
     }
 }
 
-/* Slots of src/sector_plan.h. */
+/* Slots of src/detect/sector_plan.h. */
 static void batch_slots(__global const int *radius, __global const int *table, __local const ushort16 *gammas,
                         __local ushort16 *slots)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 7 on a device: canonical patches, as in src/patch.c. A work-group takes a patch; on processors it has one work item, whose
+/* Step 7 on a device: canonical patches, as in patch.c. A work-group takes a patch; on processors it has one work item, whose
  * loops over samples compilers turn into vectors. */
 
 #define LEVELS 6

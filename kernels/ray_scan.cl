@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 4 on a device: rays that follow branches, as in src/ray_walk.c, over local junctions, as in src/field.c.
+/* Step 4 on a device: rays that follow branches, as in src/detect/ray_walk.c, over local junctions, as in src/detect/field.c.
  *
  * Rays visit 5 to 10 % of the runs of LANES pixels. So both go in turns: a ray walks until it comes to a run whose local junctions
  * are not known, asks for all runs of its next steps, and stops (scan_walk); then those that were asked for are computed
@@ -22,7 +22,7 @@ typedef struct scan_sizes {
 } scan_sizes;
 
 /* The table, in ints (src/cl/scan_ops.c): OFFSET_INTS for each offset; where each plain slot ends; which plain slot each extra slot
- * adds to the total; SECTOR_INTS for each sector (src/sector_plan.h). */
+ * adds to the total; SECTOR_INTS for each sector (src/detect/sector_plan.h). */
 #define OFFSET_INTS 6
 enum { OFFSET_DX, OFFSET_DY, OFFSET_X, OFFSET_Y, OFFSET_CROSS_X, OFFSET_DOT_Y };
 #define SECTOR_INTS 5
@@ -220,7 +220,7 @@ __kernel void scan_pixels(__global const short *gradient_x, __global const short
 
 /* ---- rays ---- */
 
-#define REOPEN 3        /* as in src/scan.c */
+#define REOPEN 3        /* as in src/detect/scan.c */
 #define STRIDE 4
 #define PLAIN 4
 #define TABLE_RADIUS 256
@@ -378,7 +378,7 @@ static void pass_over(const scan_image *image, scan_ray *ray, __global const sho
     ray->radius = end - PLAIN;
 }
 
-/* One step or a stride, as in src/scan.c; returns 0 when a run that it needs is not known. */
+/* One step or a stride, as in src/detect/scan.c; returns 0 when a run that it needs is not known. */
 static int advance(const scan_image *image, const scan_angles *angles, scan_ray *ray, __global const short *gradient_x,
                    __global const short *gradient_y, __global const uint *known, __global const uint *branches)
 {

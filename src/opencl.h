@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_OPENCL_H
 #define ASJ_SRC_OPENCL_H
 
-#include "context.h"
+#include "core/context.h"
 
 #include <asj/device.h>
 

@@ -5,13 +5,13 @@
 #ifndef ASJ_SRC_OPS_H
 #define ASJ_SRC_OPS_H
 
-#include "agreement.h"
-#include "align.h"
-#include "distance.h"
-#include "isotropic.h"
-#include "line_sums.h"
-#include "scan.h"
-#include "strip.h"
+#include "match/agreement.h"
+#include "match/align.h"
+#include "match/distance.h"
+#include "detect/isotropic.h"
+#include "detect/line_sums.h"
+#include "detect/scan.h"
+#include "detect/strip.h"
 
 typedef struct asj_ops {
     const char *name;

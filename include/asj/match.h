@@ -24,7 +24,7 @@ enum {
 };
 
 /* Options of asj_match(). Fill with asj_match_options_init(), then change fields or call asj_match_options_set().
- * src/match_options.c holds the same table with ranges; the chapters on top of the files named here explain the steps. */
+ * src/match/match_options.c holds the same table with ranges; the chapters on top of the files named here explain the steps. */
 typedef struct asj_match_options {
     /* L-junctions: affine.c */
     double minimum_opening;      /* deg: branches that open by less, or by more than 180 minus this, give no frame. 0 .. 80; 20 */

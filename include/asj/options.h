@@ -34,7 +34,7 @@ typedef struct asj_option_info {
 } asj_option_info;
 
 /* Options of asj_detect(). Fill with asj_detect_options_init(), then change fields or call asj_detect_options_set().
- * Step numbers are those of the paper's pipeline as listed in README.md; src/options.c holds the same table with ranges.
+ * Step numbers are those of the paper's pipeline as listed in README.md; detect_options.c holds the same table with ranges.
  * "number of false alarms" (NFA) is the expected number of accidental detections per image of pure noise. */
 typedef struct asj_detect_options {
     /* step 1: normalised gradient */

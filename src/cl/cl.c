@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* A context's device, from the choice to the end. */
-#include "../device.h"
-#include "../opencl.h"
+#include "core/device.h"
+#include "opencl.h"
 #include "check.h"
 #include "enumerate.h"
 #include "error.h"

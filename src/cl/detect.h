@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_CL_DETECT_H
 #define ASJ_SRC_CL_DETECT_H
 
-#include "../isotropic.h"
+#include "detect/isotropic.h"
 #include "runtime.h"
 
 /* Numbers that a kernel looks up, kept on the device until they change. */

@@ -4,7 +4,7 @@
 #define ASJ_SRC_CL_ENUMERATE_H
 
 #include "loader.h"
-#include "../memory.h"
+#include "core/memory.h"
 
 #include <asj/device.h>
 

@@ -2,7 +2,7 @@
 /* Step 1 on the device (kernels/gradient.cl). The planes stay there for the steps that follow, when they fit; the host has them
  * too, for the steps that look at single junctions. */
 #include "detect.h"
-#include "../gradient.h"
+#include "detect/gradient.h"
 #include "state.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 3 on the device (kernels/isotropic.cl): it finds the strongest branches of each candidate, the host judges them. */
 #include "detect.h"
-#include "../threads.h"
+#include "core/threads.h"
 
 #include <asj/device.h>
 #include <string.h>

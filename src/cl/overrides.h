@@ -4,7 +4,7 @@
 #ifndef ASJ_SRC_CL_OVERRIDES_H
 #define ASJ_SRC_CL_OVERRIDES_H
 
-#include "../ops.h"
+#include "ops.h"
 
 /* detect_ops.c: gradient, field_rows, isotropic_rows; struct asj_cl_detect in context->cl->detect */
 void asj_cl_fill_detect(asj_ops *ops);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "cache.h"
-#include "../opencl.h"
+#include "opencl.h"
 #include "error.h"
 #include "state.h"
 

@@ -6,7 +6,7 @@
 #ifndef ASJ_SRC_CL_RUNTIME_H
 #define ASJ_SRC_CL_RUNTIME_H
 
-#include "../context.h"
+#include "core/context.h"
 
 #ifndef CL_TARGET_OPENCL_VERSION
 #define CL_TARGET_OPENCL_VERSION 120

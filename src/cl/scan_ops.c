@@ -4,7 +4,7 @@
  * CPU. */
 #include "detect.h"
 #include "overrides.h"
-#include "ray_walk.h"
+#include "detect/ray_walk.h"
 #include "state.h"
 
 #include <asj/device.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The vector form of the hot operations, written once. A file for an instruction set defines vec, V_LANES (16-bit lanes), V_NAME
  * and the v_ functions (see x86/avx2.c) and includes this one. Names as in the reference: sector.c, field.c. */
-#include "../field.h"
-#include "../gradient.h"
-#include "../sketch.h"
+#include "detect/field.h"
+#include "detect/gradient.h"
+#include "match/sketch.h"
 #include "variants.h"
 
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_SIMD_VARIANTS_H
 #define ASJ_SRC_SIMD_VARIANTS_H
 
-#include "../ops.h"
+#include "ops.h"
 
 void asj_ops_sse2(asj_ops *ops);
 void asj_ops_avx2(asj_ops *ops);

@@ -18,11 +18,11 @@
 #include "random.h"
 #include "render.h"
 
-#include "detect.h"
-#include "gradient.h"
-#include "options.h"
-#include "scan.h"
-#include "strip.h"
+#include "detect/detect.h"
+#include "detect/gradient.h"
+#include "detect/detect_options.h"
+#include "detect/scan.h"
+#include "detect/strip.h"
 
 #include <asj/asj.h>
 

@@ -2,7 +2,7 @@
 #include "machine.h"
 #include "measure.h"
 
-#include "context.h"
+#include "core/context.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,8 +3,8 @@
  * parts do in a second. Detection is not counted. */
 #define _POSIX_C_SOURCE 200809L
 
-#include "align.h"
-#include "match_options.h"
+#include "match/align.h"
+#include "match/match_options.h"
 #include "measure.h"
 #include "views.h"
 

@@ -16,7 +16,7 @@
 #include "measure.h"
 
 #include "ops.h"
-#include "stages.h"
+#include "detect/stages.h"
 
 #include <stdio.h>
 #include <string.h>

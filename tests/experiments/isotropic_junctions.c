@@ -8,9 +8,9 @@
  * asj-cli detect (asj-junctions-1). */
 #include "photograph.h"
 
-#include "detect.h"
-#include "result.h"
-#include "stages.h"
+#include "detect/detect.h"
+#include "detect/result.h"
+#include "detect/stages.h"
 
 #include <asj/io.h>
 

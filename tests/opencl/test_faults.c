@@ -7,7 +7,7 @@
  * usage: test_faults PATH-OF-STUB [STEP]. With a step (slow builds), only every so many calls. Exit code 77 = there is no device,
  * unless ASJ_REQUIRE_OPENCL is 1. */
 #define _POSIX_C_SOURCE 200809L
-#include "context.h"
+#include "core/context.h"
 #include "stub.h"
 
 #include "work.h"

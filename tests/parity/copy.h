@@ -3,7 +3,7 @@
 #ifndef ASJ_TESTS_PARITY_COPY_H
 #define ASJ_TESTS_PARITY_COPY_H
 
-#include "context.h"
+#include "core/context.h"
 
 /* GB/s by memcpy() in one thread; 0 when there is no memory for it. */
 double copy_rate_host(void);

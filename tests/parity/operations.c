@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "operations.h"
-#include "gradient.h"
+#include "detect/gradient.h"
 #include "more_operations.h"
 
 #include <math.h>

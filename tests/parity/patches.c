@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "more_operations.h"
-#include "sketch.h"
+#include "match/sketch.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "subject.h"
-#include "gradient.h"
+#include "detect/gradient.h"
 #include "render.h"
 #include "scenes.h"
 

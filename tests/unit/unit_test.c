@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "unit_test.h"
 
-#include "gradient.h"
+#include "detect/gradient.h"
 
 void unit_near(const char *what, double at, double also_at, double value, double expected, double tolerance)
 {

@@ -4,7 +4,7 @@
 #ifndef ASJ_TESTS_UNIT_TEST_H
 #define ASJ_TESTS_UNIT_TEST_H
 
-#include "image.h"
+#include "core/image.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 1: normalised gradient.
+ *
+ *     g  = ((I(x+1,y) - I(x-1,y)) / 2, (I(x,y+1) - I(x,y-1)) / 2)        grey levels per pixel
+ *     n5 = mean of |g| over the 5x5 window around the pixel, clipped at the border
+ *     g~ = g / (max(n5 + epsilon, |g| / (sigma_0 L)) sigma_0)             sigma_0 = 0.7825, L = 3.5
+ *
+ * Source: the paper takes the normalised gradient from the isotropic detector (ACJ): division by the local mean norm. Under white
+ * noise g~ then has independent components of unit variance, so that |g~| is the Rayleigh variable of the null model ("Null
+ * Hypothesis and Distribution"). sigma_0 is the measured standard deviation of g_x / n5 in white noise for these very differences.
+ *
+ * Departures:
+ *   - epsilon keeps flat surfaces flat: without it sensor and compression noise on a wall is blown up to unit strength.
+ *   - one fixed scale for both axes. The paper gives each axis zero mean and unit variance over the image (option `standardise`
+ *     restores it), which makes strengths depend on picture content and bends orientations.
+ *   - L: one pixel's norm is cut at L times the local mean. White noise exceeds it once in 500 pixels (Rayleigh tail) and clean
+ *     edges do not reach it; it bounds the sum over a sector, so that 16-bit arithmetic cannot overflow (sector.c).
+ *
+ * Everything is done in whole numbers, so that every back end gives the same bits. Gray levels come in 1/128, hence differences
+ * over two pixels in 1/256 grey level per pixel; |g| is the exact integer square root. With S the window's sum of |g| over c pixels
+ * and D = max(S + c round(256 epsilon), (|g| c T) >> 8), T = round(256 / (sigma_0 L)),
+ *     scale = floor(65536 C_c / D),  C_c = round(1024 c / sigma_0) < 32768,     g~ = (g scale + 32768) >> 16     in 1/1024.
+ * g scale < 2^31 because |g| c <= 256 D / T. At the image border neighbours outside are replaced by the border pixel itself, which
+ * the gray plane repeats there.
+ * The window's sum is that of five column sums, which slide down the image, in two halves of 16 bits: the sum of the low bytes of
+ * |g| and the sum of the high bytes.
+ * ">>" of a negative number is the arithmetic shift on every compiler that we know; asj_gradient() checks it at compile time. */
+#include "gradient.h"
+#include "ops.h"
+#include "core/threads.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SIGMA_0 0.7825
+#define LEAST_PIXELS 32768 /* for a thread: about 40 us */
+
+typedef char arithmetic_shift_is_needed[(-3 >> 1) == -2 ? 1 : -1];
+
+/* Floor of the square root, for 0 <= s < 2^31. sqrtf() of the rounded float is off by one at most; the comparisons mend that on
+ * any hardware. */
+static inline int32_t integer_sqrt(int32_t s)
+{
+    int32_t root = (int32_t)sqrtf((float)s);
+    root -= root * root > s;
+    root += (root + 1) * (root + 1) <= s;
+    return root;
+}
+
+/* floor(a / b) for whole numbers below 2^32: the quotient in double precision is within 2^-53 of itself of the true one, which is
+ * at least 2^-32 of itself away from the next whole number unless it is one. */
+static inline uint32_t quotient(uint32_t a, uint32_t b)
+{
+    return (uint32_t)((double)a / (double)b);
+}
+
+void asj_gradient_slide(const asj_gradient_row *row, uint16_t *norms, uint16_t *low, uint16_t *high)
+{
+    for (int32_t x = 0; x < row->width; x++) {
+        const int32_t dx = row->gray[x + 1] - row->gray[x - 1], dy = row->below[x] - row->above[x];
+        const uint16_t come = (uint16_t)integer_sqrt(dx * dx + dy * dy), leave = norms[x];
+        norms[x] = come;
+        low[x] = (uint16_t)(low[x] + (come & 255) - (leave & 255));
+        high[x] = (uint16_t)(high[x] + (come >> 8) - (leave >> 8));
+    }
+}
+
+asj_gradient_factors asj_gradient_set_factors(int32_t columns, int32_t rows, uint32_t epsilon)
+{
+    const uint32_t limit = (uint32_t)(256 / (SIGMA_0 * ASJ_GRADIENT_LIMIT) + 0.5), count = (uint32_t)(columns * rows);
+    return (asj_gradient_factors){(uint32_t)(ASJ_GRADIENT_ONE / SIGMA_0 * count + 0.5) << 16, count * epsilon, count * limit};
+}
+
+void asj_gradient_pixel(const asj_gradient_row *row, int32_t x, const uint16_t *norms, const uint16_t *low, const uint16_t *high,
+                        int16_t *gx, int16_t *gy)
+{
+    const int32_t columns = (x + 2 < row->width ? x + 2 : row->width - 1) - (x > 2 ? x - 2 : 0) + 1;
+    const asj_gradient_factors factors = asj_gradient_set_factors(columns, row->window_rows, row->epsilon);
+    const int32_t dx = row->gray[x + 1] - row->gray[x - 1], dy = row->below[x] - row->above[x];
+    uint32_t denominator = factors.epsilon;
+    for (int32_t i = x - 2; i <= x + 2; i++)
+        denominator += low[i] + 256u * high[i];
+    const uint32_t least = norms[x] * factors.limit >> 8;
+    const int32_t scale = (int32_t)quotient(factors.numerator, denominator > least ? denominator : least);
+    gx[x] = (int16_t)((dx * scale + 32768) >> 16);
+    gy[x] = (int16_t)((dy * scale + 32768) >> 16);
+}
+
+void asj_gradient_normalise(const asj_gradient_row *row, const uint16_t *norms, const uint16_t *low, const uint16_t *high,
+                            int16_t *gx, int16_t *gy)
+{
+    for (int32_t x = 0; x < row->width; x++)
+        asj_gradient_pixel(row, x, norms, low, high, gx, gy);
+}
+
+/* A row of the plane with its neighbours; those outside the image are the row itself. */
+static void find_row(const asj_frame *frame, int32_t y, asj_gradient_row *row)
+{
+    row->gray = frame->gray + (ptrdiff_t)y * frame->stride;
+    row->above = y > 0 ? row->gray - frame->stride : row->gray;
+    row->below = y + 1 < frame->height ? row->gray + frame->stride : row->gray;
+}
+
+/* Rows first .. last - 1. `scratch` holds gradient_scratch() zeros: the column sums in two halves, |g| of the last five rows, and a
+ * row of the plane that is constant. */
+static void gradient_band(const asj_ops *ops, const asj_frame *frame, uint32_t epsilon, int32_t first, int32_t last,
+                          uint16_t *scratch)
+{
+    const size_t length = asj_gradient_row_length(frame->width);
+    uint16_t *low = scratch + ASJ_GRADIENT_PAD, *high = low + length, *norms = high + length, *zeros = norms + 5 * length;
+    asj_gradient_row row = {zeros, zeros, zeros, frame->width, 0, epsilon};
+    for (int32_t y = first > 2 ? first - 2 : 0; y < last + 2; y++) {
+        uint16_t *ring = norms + (size_t)(y % 5) * length;
+        if (y < frame->height)
+            find_row(frame, y, &row);
+        else
+            row.above = row.gray = row.below = zeros;
+        ops->gradient_slide(&row, ring, low, high);
+        if (y < first + 2)
+            continue;
+        const int32_t centre = y - 2;
+        row.window_rows = (y < frame->height ? y : frame->height - 1) - (centre > 2 ? centre - 2 : 0) + 1;
+        find_row(frame, centre, &row);
+        ops->gradient_normalise(&row, norms + (size_t)(centre % 5) * length, low, high,
+                                frame->gradient_x + (ptrdiff_t)centre * frame->stride,
+                                frame->gradient_y + (ptrdiff_t)centre * frame->stride);
+    }
+}
+
+size_t asj_gradient_row_length(int32_t width)
+{
+    return ((size_t)width + 31) / 32 * 32 + 2 * ASJ_GRADIENT_PAD;
+}
+
+/* Elements. */
+static size_t gradient_scratch(int32_t width)
+{
+    return 8 * asj_gradient_row_length(width);
+}
+
+/* The paper's standardisation: each axis to zero mean and unit variance over the image, in whole numbers:
+ * g' = ((g - mean) factor + 2^11) >> 12, factor = round(4096 x 1024 / sd), cut to 16 bits. */
+static void standardise(const asj_frame *frame, int16_t *plane)
+{
+    int64_t sum = 0, squares = 0, count = (int64_t)frame->width * frame->height;
+    for (int32_t y = 0; y < frame->height; y++)
+        for (int32_t x = 0; x < frame->width; x++) {
+            int32_t g = plane[(ptrdiff_t)y * frame->stride + x];
+            sum += g;
+            squares += g * g;
+        }
+    double mean = (double)sum / (double)count;
+    double variance = (double)squares / (double)count - mean * mean;
+    if (!(variance > 0))
+        return;
+    const int32_t shift = (int32_t)lrint(mean);
+    const int64_t factor = llrint(4096 * ASJ_GRADIENT_ONE / sqrt(variance));
+    const int32_t limit = (int32_t)(ASJ_GRADIENT_LIMIT * ASJ_GRADIENT_ONE * 0.7); /* each axis: norm below the limit */
+    for (int32_t y = 0; y < frame->height; y++)
+        for (int32_t x = 0; x < frame->width; x++) {
+            int16_t *g = plane + (ptrdiff_t)y * frame->stride + x;
+            int64_t value = ((int64_t)(*g - shift) * factor + 2048) >> 12;
+            *g = (int16_t)(value > limit ? limit : value < -limit ? -limit : value);
+        }
+}
+
+asj_status asj_gradient(asj_context *context, asj_frame *frame, const asj_detect_options *options)
+{
+    const uint32_t epsilon = (uint32_t)lrint(256 * options->gradient_epsilon);
+    const int32_t bands = asj_threads_for(context, (int64_t)frame->width * frame->height, LEAST_PIXELS);
+    const size_t size = gradient_scratch(frame->width);
+    asj_status status = asj_grow(&context->memory, &frame->rows, &frame->row_capacity, (size_t)bands * size, sizeof(uint16_t), 0);
+    if (status != ASJ_OK)
+        return asj_fail(context, status, "no memory for the gradient's rows");
+    uint16_t *scratch = frame->rows;
+    memset(scratch, 0, (size_t)bands * size * sizeof *scratch);
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(bands) schedule(static)
+#endif
+    for (int32_t band = 0; band < bands; band++) {
+        const int32_t first = (int32_t)((int64_t)frame->height * band / bands);
+        const int32_t last = (int32_t)((int64_t)frame->height * (band + 1) / bands);
+        if (first < last)
+            gradient_band(context->ops, frame, epsilon, first, last, scratch + (size_t)band * size);
+    }
+    if (options->standardise) {
+        standardise(frame, frame->gradient_x);
+        standardise(frame, frame->gradient_y);
+    }
+    return ASJ_OK;
+}
+
+static inline int32_t clamp(int32_t value, int32_t last)
+{
+    return value < 0 ? 0 : value > last ? last : value;
+}
+
+/* At x0 + fx, y0 + fy, from the rows y0 - 1 .. y0 + 2 and the columns x0 - 1 .. x0 + 2: central differences at the four pixels
+ * around, bilinear, then from 1/128 to grey levels. */
+static inline void sample(const uint16_t *const row[4], const int32_t column[4], double fx, double fy, double *gx, double *gy)
+{
+#define I(i, j) row[i][column[j]]
+    double top = (I(1, 2) - I(1, 0)) * (1 - fx) + (I(1, 3) - I(1, 1)) * fx;
+    double low = (I(2, 2) - I(2, 0)) * (1 - fx) + (I(2, 3) - I(2, 1)) * fx;
+    *gx = (top * (1 - fy) + low * fy) * (1.0 / (2 * ASJ_GRAY_ONE));
+    top = (I(2, 1) - I(0, 1)) * (1 - fx) + (I(2, 2) - I(0, 2)) * fx;
+    low = (I(3, 1) - I(1, 1)) * (1 - fx) + (I(3, 2) - I(1, 2)) * fx;
+    *gy = (top * (1 - fy) + low * fy) * (1.0 / (2 * ASJ_GRAY_ONE));
+#undef I
+}
+
+static void sample_at_border(const asj_frame *frame, double x, double y, double *gx, double *gy)
+{
+    const int32_t right = frame->width - 1, bottom = frame->height - 1;
+    x = x < 0 ? 0 : x > right ? right : x;
+    y = y < 0 ? 0 : y > bottom ? bottom : y;
+    int32_t x0 = (int32_t)x, y0 = (int32_t)y;
+    const int32_t column[4] = {clamp(x0 - 1, right), x0, clamp(x0 + 1, right), clamp(x0 + 2, right)};
+    const uint16_t *row[4];
+    for (int i = 0; i < 4; i++)
+        row[i] = frame->gray + (ptrdiff_t)clamp(y0 - 1 + i, bottom) * frame->stride;
+    sample(row, column, x - x0, y - y0, gx, gy);
+}
+
+void asj_gradient_sample(const asj_frame *frame, double x, double y, double *gx, double *gy)
+{
+    static const int32_t column[4] = {-1, 0, 1, 2};
+    if (!(x >= 1 && y >= 1 && x < frame->width - 2 && y < frame->height - 2)) {
+        sample_at_border(frame, x, y, gx, gy);
+        return;
+    }
+    const int32_t x0 = (int32_t)x, y0 = (int32_t)y;
+    const uint16_t *middle = frame->gray + y0 * frame->stride + x0;
+    const uint16_t *const row[4] = {middle - frame->stride, middle, middle + frame->stride, middle + 2 * frame->stride};
+    sample(row, column, x - x0, y - y0, gx, gy);
+}

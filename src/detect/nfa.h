@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The a-contrario machinery: null distributions, tails of their n-fold sums, numbers of tests. See nfa.c for the formulas. */
+#ifndef ASJ_SRC_NFA_H
+#define ASJ_SRC_NFA_H
+
+#include "core/memory.h"
+
+/* Mean and standard deviation of one pairwise junction-ness gamma under the null model (closed forms in nfa.c). */
+#define ASJ_GAMMA_MEAN 0.330494606292647
+#define ASJ_GAMMA_SD 0.504136432767844
+
+/* Largest number of terms for which arc tails are tabulated: 2 w + 1 samples, w <= 3. */
+#define ASJ_NFA_MAX_ARC 7
+
+/* Tables for one context; built once, then only read (any number of threads). */
+typedef struct asj_nfa asj_nfa;
+
+asj_status asj_nfa_create(asj_memory *memory, asj_nfa **nfa);
+void asj_nfa_free(asj_memory *memory, asj_nfa **nfa);
+
+/* ln F(t; n): natural logarithm of P(gamma_1 + .. + gamma_n >= t) under the null model, n >= 1. 0 for t <= 0. */
+double asj_nfa_log_sector_tail(const asj_nfa *nfa, double t, int32_t n);
+
+/* Smallest t with ln F(t; n) <= log_p (bisection on the function above; log_p <= 0). */
+double asj_nfa_sector_threshold(const asj_nfa *nfa, double log_p, int32_t n);
+
+/* ln G(s; n): natural logarithm of P(gamma~_1 + .. + gamma~_n >= s), 1 <= n <= ASJ_NFA_MAX_ARC, s > 0. */
+double asj_nfa_log_arc_tail(const asj_nfa *nfa, double s, int32_t n);
+
+/* Smallest s > 0 with ln G(s; n) <= log_p. A result > 0 even when every s passes: an arc without any junction is no event. */
+double asj_nfa_arc_threshold(const asj_nfa *nfa, double log_p, int32_t n);
+
+/* ln #J(M): natural logarithm of the number of tests for isotropic junctions of `branches` branches: width x height pixels, the
+ * radii whose bits are set, sectors of half-width tau pixels. -HUGE_VAL when no such junction fits. */
+double asj_nfa_log_junction_tests(int32_t width, int32_t height, uint32_t radii, double tau, int32_t branches);
+
+#endif

@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 4 for all branches of an image: the tables that rays share (ray_walk.c has the test itself), and who follows which ray.
+ *
+ * Rays ask for local junctions at a few pixels here and there. Vector forms compute those of 32 pixels in little more than the time
+ * of one, so many rays take their steps together. */
+#include "scan.h"
+
+#include "ops.h"
+#include "ray_walk.h"
+#include "scan_cache.h"
+#include "core/threads.h"
+
+#include <math.h>
+#include <string.h>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#define TWO_PI 6.283185307179586
+
+void asj_scan_set_size(const asj_context *context, const asj_detect_options *options, int32_t width, int32_t height, asj_scan *scan)
+{
+    const double log_tests = 0.5 * log((double)width * height);
+    const double log_p = fmin(log(options->scan_epsilon) - log_tests, 0);
+    const double threshold = asj_nfa_arc_threshold(context->nfa, log_p, 2 * options->arc_half_width + 1);
+    scan->threshold = (int32_t)fmax(1, ceil(threshold * ASJ_STRENGTH_ONE));
+}
+
+void asj_scan_prepare(const asj_context *context, const asj_detect_options *options, const asj_field *field,
+                      int32_t width, int32_t height, asj_scan *scan)
+{
+    const double one = (double)(1 << 30);
+    scan->field = field;
+    scan->cache = NULL;
+    scan->half_width = options->arc_half_width;
+    scan->tolerance = options->scan_tolerance;
+    scan->axial = options->scan_axial;
+    for (int i = 0; i < 1024; i++) {
+        scan->unit[i][0] = (int16_t)lrint(16384 * cos(TWO_PI * i / 1024));
+        scan->unit[i][1] = (int16_t)lrint(16384 * sin(TWO_PI * i / 1024));
+    }
+    for (int32_t r = 0; r < ASJ_SCAN_TABLE_RADIUS; r++)
+        for (int32_t d = 0; d < ASJ_SCAN_TABLE_WIDTH; d++) {
+            scan->arc_cosine[r][d] = r ? (int32_t)lrint(one * cos((double)d / r)) : 0;
+            scan->arc_sine[r][d] = r ? (int32_t)lrint(one * sin((double)d / r)) : 0;
+        }
+    asj_scan_set_size(context, options, width, height, scan);
+}
+
+#define GROUP 64 /* rays: those that are still on their way ask for enough pixels to fill vectors */
+
+/* Rays that take their steps together, and what these ask for. */
+typedef struct group {
+    int32_t count;
+    asj_ray_walk walks[GROUP];
+    asj_arc_sample samples[GROUP][ASJ_MAX_ARC];
+    asj_field_branch branches[GROUP][ASJ_MAX_ARC][ASJ_FIELD_BRANCHES];
+    /* pixels that the cache does not hold, where their branches are wanted, and the branches */
+    int32_t missing;
+    asj_pixel pixels[GROUP * ASJ_MAX_ARC];
+    asj_field_branch *wanted[GROUP * ASJ_MAX_ARC];
+    asj_field_branch computed[GROUP * ASJ_MAX_ARC][ASJ_FIELD_BRANCHES];
+} group;
+
+/* What a thread follows rays with. */
+typedef struct follower {
+    const asj_ops *ops;
+    const asj_scan *scan;
+    const asj_frame *frame;
+    const asj_scan_cache *cache;
+    size_t thread;
+    uint16_t *scratch;
+    group *rays;
+} follower;
+
+/* The branches at a sample, now or when those that are missing are computed. */
+static void look_up(const follower *f, const asj_arc_sample *at, asj_field_branch *branches)
+{
+    group *g = f->rays;
+    if (at->x < 0 || at->y < 0 || at->x >= f->frame->width || at->y >= f->frame->height) {
+        memset(branches, 0, ASJ_FIELD_BRANCHES * sizeof *branches);
+        return;
+    }
+    const asj_pixel pixel = {(int32_t)at->x, (int32_t)at->y};
+    if (asj_scan_cache_get(f->cache, f->thread, pixel, branches))
+        return;
+    g->pixels[g->missing] = pixel;
+    g->wanted[g->missing++] = branches;
+}
+
+static void compute_missing(const follower *f)
+{
+    group *g = f->rays;
+    f->ops->field_pixels(f->scan->field, f->frame, g->pixels, g->missing, f->scratch, g->computed);
+    for (int32_t i = 0; i < g->missing; i++) {
+        memcpy(g->wanted[i], g->computed[i], sizeof g->computed[i]);
+        asj_scan_cache_put(f->cache, f->thread, g->pixels[i], g->computed[i]);
+    }
+    g->missing = 0;
+}
+
+/* One arc for each ray; those that end leave the group. */
+static void advance_group(const follower *f)
+{
+    const asj_scan *scan = f->scan;
+    group *g = f->rays;
+    int32_t left = 0;
+    for (int32_t i = 0; i < g->count; i++) {
+        asj_ray_walk_samples(scan, &g->walks[i], asj_ray_walk_next(scan, f->frame, &g->walks[i]), g->samples[i]);
+        for (int32_t d = 0; d <= 2 * scan->half_width; d++)
+            look_up(f, &g->samples[i][d], g->branches[i][d]);
+    }
+    compute_missing(f);
+    for (int32_t i = 0; i < g->count; i++) {
+        const asj_arc_sums sums = asj_ray_walk_sums(scan, &g->walks[i], g->samples[i], g->branches[i]);
+        if (asj_ray_walk_take(scan, &sums, &g->walks[i]))
+            g->walks[left++] = g->walks[i];
+    }
+    g->count = left;
+}
+
+/* The next ray of thread `own`: of its part of the list, then of what others have left. Neighbours in the list need the same local
+ * junctions, which each thread computes for itself. next[i]: first ray of part i that nobody has taken. Returns `count` at the
+ * end. */
+static size_t take_ray(size_t *next, size_t threads, size_t own, size_t count)
+{
+    for (size_t k = 0; k < threads; k++) {
+        const size_t part = (own + k) % threads, end = count * (part + 1) / threads;
+        size_t ray;
+#ifdef _OPENMP
+#pragma omp atomic capture
+#endif
+        ray = next[part]++;
+        if (ray < end)
+            return ray;
+    }
+    return count;
+}
+
+/* next[i]: see take_ray(). */
+static void follow_part(const follower *f, size_t *next, size_t threads, asj_ray *rays, size_t count)
+{
+    group *g = f->rays;
+    g->count = g->missing = 0;
+    for (int more = 1; more || g->count > 0;) {
+        while (more && g->count < GROUP) {
+            const size_t i = take_ray(next, threads, f->thread, count);
+            more = i < count;
+            if (more)
+                asj_ray_walk_start(&rays[i], &g->walks[g->count++]);
+        }
+        advance_group(f);
+    }
+}
+
+static void follow_rays(const asj_context *context, const asj_scan *scan, const asj_frame *frame, const asj_scan_cache *cache,
+                        uint16_t *scratch, group *groups, size_t *next, int32_t threads, asj_ray *rays, size_t count)
+{
+    for (int32_t i = 0; i < threads; i++)
+        next[i] = count * (size_t)i / (size_t)threads;
+#ifdef _OPENMP
+#pragma omp parallel num_threads(threads)
+#endif
+    {
+        size_t thread = 0;
+#ifdef _OPENMP
+        thread = (size_t)omp_get_thread_num();
+#endif
+        const follower f = {context->ops, scan, frame, cache, thread, scratch + thread * asj_field_scratch(scan->field),
+                            &groups[thread]};
+        follow_part(&f, next, (size_t)threads, rays, count);
+    }
+}
+
+asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count)
+{
+    const int32_t threads = asj_threads_for(context, (int64_t)count, 4); /* a ray takes about 5 us */
+    asj_status status = ASJ_OK;
+    asj_scan_cache own = {0};
+    const asj_scan_cache *cache = scan->cache;
+    if (!cache) {
+        status = asj_scan_cache_prepare(context, frame, threads, &own);
+        cache = &own;
+    }
+    uint16_t *scratch = asj_allocate(&context->memory, (size_t)threads * asj_field_scratch(scan->field), sizeof *scratch);
+    size_t *next = asj_allocate(&context->memory, (size_t)threads, sizeof *next);
+    group *groups = asj_allocate(&context->memory, (size_t)threads, sizeof *groups);
+    if (status == ASJ_OK && scratch && next && groups)
+        follow_rays(context, scan, frame, cache, scratch, groups, next, threads, rays, count);
+    else if (status == ASJ_OK)
+        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for following rays");
+    asj_release(&context->memory, groups);
+    asj_release(&context->memory, next);
+    asj_release(&context->memory, scratch);
+    asj_scan_cache_free(&context->memory, &own);
+    return status;
+}

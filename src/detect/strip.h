@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Validation of a branch: the a-contrario test of the strip of pixels along it. */
+#ifndef ASJ_SRC_STRIP_H
+#define ASJ_SRC_STRIP_H
+
+#include "core/image.h"
+
+typedef struct asj_strip {
+    double log_nfa;   /* natural logarithm of the number of false alarms */
+    double deviation; /* rad in [0, pi/2]: between the strip's dominant gradient direction and the normal of the branch */
+    double near_strength; /* standard deviations above the null model in the part next to the junction */
+} asj_strip;
+
+/* The strip from (x, y) in direction `angle` (rad), `length` px long. */
+asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                         double x, double y, double angle, double length);
+
+/* Whether the log_nfa of that strip, or of one only `shorter` px long, is at most `limit`. */
+int asj_strip_passes(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double x, double y,
+                     double angle, double length, double shorter, double limit);
+
+/* ---- what an instruction set replaces ---- */
+
+#define ASJ_STRIP_LANES 4
+
+/* A strip as it is walked along: by the axis (x or y) that it is longer on, and across over the few pixels that can be inside. */
+typedef struct asj_strip_walk {
+    double x, y, ux, uy;
+    double reach, half_width;
+    double near;             /* px: the part next to the junction */
+    double slope, spread;    /* across for one step along; half the width across */
+    int32_t along_x;
+    int32_t first, last;     /* steps along */
+} asj_strip_walk;
+
+/* Over the pixels of a strip: sums of gamma, of products of the gradient's components along and across, in 1/1024 and its square;
+ * gamma of the part next to the junction; numbers of pixels. */
+typedef struct asj_strip_sums {
+    double gamma, uu, un, nn, near_gamma;
+    int32_t pixels, near_pixels;
+} asj_strip_sums;
+
+void asj_strip_sums_of(const asj_frame *frame, const asj_strip_walk *walk, asj_strip_sums *sums);
+
+/* floor() for what is near the image, without a call. */
+static inline int32_t asj_strip_floor(double value)
+{
+    return (int32_t)(value + 131072) - 131072;
+}
+
+/* The pixels across that step i may have inside, from *first to *last. */
+static inline void asj_strip_step(const asj_frame *frame, const asj_strip_walk *walk, int32_t i, int32_t *first, int32_t *last)
+{
+    const double major = walk->along_x ? walk->x : walk->y, minor = walk->along_x ? walk->y : walk->x;
+    const double middle = minor + (i - major) * walk->slope;
+    const int32_t end = (walk->along_x ? frame->height : frame->width) - 1;
+    *first = asj_strip_floor(middle - walk->spread) + 1;
+    *last = asj_strip_floor(middle + walk->spread);
+    *first = *first > 0 ? *first : 0;
+    *last = *last < end ? *last : end;
+}
+
+#endif

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* As lines.h, for 16 lanes. Only avx512.c includes this. */
+#ifndef ASJ_SRC_X86_LINES512_H
+#define ASJ_SRC_X86_LINES512_H
+
+#include "ops.h"
+
+typedef struct lane_sums {
+    __m512 w, x, y, xx, xy, yy;
+} lane_sums;
+
+/* Of 16 columns while their rows are walked along: sums of w, w y, w y^2. */
+typedef struct column_sums {
+    __m512 w, y, yy;
+} column_sums;
+
+/* Neighbouring halves, quarters, .. of a and of b added up: of all lanes, as far apart as in total() of line_sums.c. */
+static inline __m512 halves(__m512 a, __m512 b)
+{
+    return _mm512_add_ps(_mm512_shuffle_f32x4(a, b, 0x44), _mm512_shuffle_f32x4(a, b, 0xee));
+}
+
+static inline __m512 quarters(__m512 a, __m512 b)
+{
+    return _mm512_add_ps(_mm512_shuffle_f32x4(a, b, 0x88), _mm512_shuffle_f32x4(a, b, 0xdd));
+}
+
+static inline __m512 eighths(__m512 a, __m512 b)
+{
+    const __m512d c = _mm512_castps_pd(a), d = _mm512_castps_pd(b);
+    return _mm512_add_ps(_mm512_castpd_ps(_mm512_unpacklo_pd(c, d)), _mm512_castpd_ps(_mm512_unpackhi_pd(c, d)));
+}
+
+static inline __m512 last_two(__m512 a, __m512 b)
+{
+    return _mm512_add_ps(_mm512_shuffle_ps(a, b, 0x88), _mm512_shuffle_ps(a, b, 0xdd));
+}
+
+/* All twelve at once: down and up in turns until they are single numbers. */
+static inline void total_sums(const lane_sums sides[2], asj_line_sums sums[2])
+{
+    const lane_sums *down = &sides[0], *up = &sides[1];
+    const __m512 first = quarters(halves(down->w, down->xx), halves(up->w, up->xx));
+    const __m512 second = quarters(halves(down->x, down->xy), halves(up->x, up->xy));
+    const __m512 third = quarters(halves(down->y, down->yy), halves(up->y, up->yy));
+    const __m512 all = last_two(eighths(first, second), eighths(third, third)); /* w x y - xx xy yy - w x y .. */
+    float list[16];
+    _mm512_storeu_ps(list, all);
+    for (int i = 0; i < 2; i++)
+        sums[i] = (asj_line_sums){list[8 * i],     list[8 * i + 1], list[8 * i + 2],
+                                  list[8 * i + 4], list[8 * i + 5], list[8 * i + 6]};
+}
+
+/* 16 grey values each of a minus those of b: none is above 32640 (image.h) */
+static inline __m512 difference(const uint16_t *a, const uint16_t *b)
+{
+    const __m256i p = _mm256_loadu_si256((const __m256i *)(const void *)a);
+    const __m256i q = _mm256_loadu_si256((const __m256i *)(const void *)b);
+    return _mm512_cvtepi32_ps(_mm512_cvtepi16_epi32(_mm256_sub_epi16(p, q)));
+}
+
+/* To the sums of the lanes in `on`. */
+static inline void add_lanes(column_sums *to, __mmask16 on, __m512 w, __m512 wy, __m512 wyy)
+{
+    to->w = _mm512_mask_add_ps(to->w, on, to->w, w);
+    to->y = _mm512_mask_add_ps(to->y, on, to->y, wy);
+    to->yy = _mm512_mask_add_ps(to->yy, on, to->yy, wyy);
+}
+
+static inline void add_columns(lane_sums *to, const column_sums *columns, __m512 dx)
+{
+    const __m512 x = _mm512_mul_ps(columns->w, dx);
+    to->w = _mm512_add_ps(to->w, columns->w);
+    to->x = _mm512_add_ps(to->x, x);
+    to->y = _mm512_add_ps(to->y, columns->y);
+    to->xx = _mm512_add_ps(to->xx, _mm512_mul_ps(x, dx));
+    to->xy = _mm512_add_ps(to->xy, _mm512_mul_ps(columns->y, dx));
+    to->yy = _mm512_add_ps(to->yy, columns->yy);
+}
+
+/* The 16 columns from `column` on. */
+static inline void sum_columns(const asj_frame *frame, const asj_line_band *band, int32_t column, lane_sums sides[2])
+{
+    const __m512 lane = _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15), zero = _mm512_setzero_ps();
+    const __m512 ux = _mm512_set1_ps(band->ux), uy = _mm512_set1_ps(band->uy), middle_y = _mm512_set1_ps(band->middle_y);
+    const __m512 at = _mm512_add_ps(_mm512_set1_ps((float)column), lane), dx = _mm512_sub_ps(at, _mm512_set1_ps(band->middle_x));
+    const __mmask16 valid = _mm512_cmp_ps_mask(at, _mm512_set1_ps((float)band->right), _CMP_LE_OQ);
+    const __m512 t = _mm512_mul_ps(_mm512_set1_ps(band->step_t), dx), s = _mm512_mul_ps(_mm512_set1_ps(band->step_s), dx);
+    const __m512 reach_t = _mm512_set1_ps(band->reach_t), reach_s = _mm512_set1_ps(band->reach_s);
+    const __m512 first = _mm512_max_ps(_mm512_sub_ps(t, reach_t), _mm512_sub_ps(s, reach_s));
+    const __m512 last = _mm512_min_ps(_mm512_add_ps(t, reach_t), _mm512_add_ps(s, reach_s));
+    const ptrdiff_t stride = frame->stride;
+    int32_t first_row = band->top, last_row = band->bottom;
+    if (band->right - band->left >= ASJ_LINE_LANES)
+        asj_line_band_rows(band, column, ASJ_LINE_LANES, &first_row, &last_row);
+    const uint16_t *p = frame->gray + (band->y + first_row) * stride + band->x + column;
+    column_sums up = {zero, zero, zero}, down = up;
+    __m512 rows = _mm512_set1_ps((float)first_row);
+    for (int32_t row = first_row; row <= last_row; row++, p += stride) {
+        const __m512 gx = difference(p + 1, p - 1), gy = difference(p + stride, p - stride);
+        const __m512 across = _mm512_sub_ps(_mm512_mul_ps(gy, ux), _mm512_mul_ps(gx, uy));
+        const __m512 along = _mm512_add_ps(_mm512_mul_ps(gx, ux), _mm512_mul_ps(gy, uy));
+        const __m512 w = _mm512_sub_ps(_mm512_abs_ps(across), _mm512_abs_ps(along)), dy = _mm512_sub_ps(rows, middle_y);
+        __mmask16 inside = _mm512_mask_cmp_ps_mask(valid, dy, first, _CMP_GE_OQ);
+        inside = _mm512_mask_cmp_ps_mask(inside, dy, last, _CMP_LE_OQ);
+        inside = _mm512_mask_cmp_ps_mask(inside, w, zero, _CMP_GT_OQ);
+        const __mmask16 is_up = _mm512_cmp_ps_mask(across, zero, _CMP_GT_OQ);
+        const __m512 wy = _mm512_mul_ps(w, dy), wyy = _mm512_mul_ps(wy, dy);
+        add_lanes(&up, inside & is_up, w, wy, wyy);
+        add_lanes(&down, (__mmask16)(inside & ~is_up), w, wy, wyy);
+        rows = _mm512_add_ps(rows, _mm512_set1_ps(1));
+    }
+    add_columns(&sides[0], &down, dx);
+    add_columns(&sides[1], &up, dx);
+}
+
+static void line_sums_avx512(const asj_frame *frame, const asj_line_band *band, asj_line_sums sums[2])
+{
+    const __m512 zero = _mm512_setzero_ps();
+    lane_sums sides[2] = {{zero, zero, zero, zero, zero, zero}, {zero, zero, zero, zero, zero, zero}};
+    for (int32_t column = band->left; column <= band->right; column += ASJ_LINE_LANES)
+        sum_columns(frame, band, column, sides);
+    total_sums(sides, sums);
+}
+
+/* Four neighbours each, from `offset` on: the first two and the last two. */
+static inline void four_each(const uint16_t *gray, __m512i at, int32_t offset, __m512i *first, __m512i *last)
+{
+    const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+    const __m512i place = _mm512_add_epi32(at, _mm512_set1_epi32(offset));
+    const __m512i low = _mm512_i32gather_epi64(_mm512_castsi512_si256(place), (const void *)gray, 2);
+    const __m512i high = _mm512_i32gather_epi64(_mm512_extracti64x4_epi64(place, 1), (const void *)gray, 2);
+    *first = _mm512_permutex2var_epi32(low, even, high);
+    *last = _mm512_permutex2var_epi32(low, _mm512_add_epi32(even, _mm512_set1_epi32(1)), high);
+}
+
+/* As in lines.h. */
+static inline void sample_sixteen(const uint16_t *gray, int32_t stride, __m512i at, __m512i right, __m512 low, __m512 *gx,
+                                  __m512 *gy)
+{
+#define PAIRS(offset) _mm512_i32gather_epi32(_mm512_add_epi32(at, _mm512_set1_epi32(offset)), (const void *)gray, 2)
+    const __m512i above = PAIRS(-stride), below = PAIRS(2 * stride);
+#undef PAIRS
+    __m512i left0, right0, left1, right1;
+    four_each(gray, at, -1, &left0, &right0);
+    four_each(gray, at, stride - 1, &left1, &right1);
+    const __m512i middle0 = _mm512_or_si512(_mm512_srli_epi32(left0, 16), _mm512_slli_epi32(right0, 16));
+    const __m512i middle1 = _mm512_or_si512(_mm512_srli_epi32(left1, 16), _mm512_slli_epi32(right1, 16));
+    const __m512i weights = _mm512_or_si512(_mm512_sub_epi32(_mm512_set1_epi32(4096), right), _mm512_slli_epi32(right, 16));
+    const __m512i x0 = _mm512_madd_epi16(_mm512_sub_epi16(right0, left0), weights);
+    const __m512i x1 = _mm512_madd_epi16(_mm512_sub_epi16(right1, left1), weights);
+    const __m512i y0 = _mm512_madd_epi16(_mm512_sub_epi16(middle1, above), weights);
+    const __m512i y1 = _mm512_madd_epi16(_mm512_sub_epi16(below, middle0), weights);
+    *gx = _mm512_add_ps(_mm512_cvtepi32_ps(x0), _mm512_mul_ps(low, _mm512_cvtepi32_ps(_mm512_sub_epi32(x1, x0))));
+    *gy = _mm512_add_ps(_mm512_cvtepi32_ps(y0), _mm512_mul_ps(low, _mm512_cvtepi32_ps(_mm512_sub_epi32(y1, y0))));
+}
+
+static inline __m512i whole_part(__m512 v)
+{
+    const __m512i whole = _mm512_cvttps_epi32(v);
+    const __mmask16 above = _mm512_cmp_ps_mask(_mm512_cvtepi32_ps(whole), v, _CMP_GT_OQ);
+    return _mm512_mask_sub_epi32(whole, above, whole, _mm512_set1_epi32(1));
+}
+
+/* Samples k .. k + 15 of a profile, those past its end like the last. */
+static inline void profile_sixteen(const asj_frame *frame, const asj_line_profile *profile, int32_t k, asj_profile_sums *sums)
+{
+    const __m512 zero = _mm512_setzero_ps(), ux = _mm512_set1_ps(profile->ux), uy = _mm512_set1_ps(profile->uy);
+    const __m512 lane = _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    const int32_t stride = (int32_t)frame->stride;
+    const uint16_t *gray = frame->gray + profile->y * frame->stride + profile->x;
+    const __m512 last = _mm512_set1_ps((float)(profile->count - 1));
+    const __m512 index = _mm512_min_ps(_mm512_add_ps(_mm512_set1_ps((float)k), lane), last);
+    const __m512 t = _mm512_add_ps(_mm512_set1_ps(profile->first), _mm512_mul_ps(index, _mm512_set1_ps(profile->step)));
+    const __m512 middle = _mm512_add_ps(_mm512_set1_ps(profile->a), _mm512_mul_ps(_mm512_set1_ps(profile->b), t));
+    const __m512 x0 = _mm512_add_ps(_mm512_set1_ps(profile->origin_x), _mm512_mul_ps(t, ux));
+    const __m512 y0 = _mm512_add_ps(_mm512_set1_ps(profile->origin_y), _mm512_mul_ps(t, uy));
+    __m512 up = zero, down = zero, up_moment = zero, down_moment = zero;
+    for (int32_t i = 0; i < profile->offsets; i++) {
+        const __m512 offset = _mm512_set1_ps(profile->offset[i]), s = _mm512_add_ps(middle, offset);
+        const __m512 x = _mm512_sub_ps(x0, _mm512_mul_ps(s, uy)), y = _mm512_add_ps(y0, _mm512_mul_ps(s, ux));
+        const __m512i ix = whole_part(x), iy = whole_part(y);
+        const __m512 part = _mm512_sub_ps(x, _mm512_cvtepi32_ps(ix)), low = _mm512_sub_ps(y, _mm512_cvtepi32_ps(iy));
+        const __m512i right = _mm512_cvttps_epi32(_mm512_mul_ps(part, _mm512_set1_ps(4096.0f)));
+        const __m512i at = _mm512_add_epi32(_mm512_mullo_epi32(iy, _mm512_set1_epi32(stride)), ix);
+        __m512 gx, gy;
+        sample_sixteen(gray, stride, at, right, low, &gx, &gy);
+        const __m512 across = _mm512_sub_ps(_mm512_mul_ps(gy, ux), _mm512_mul_ps(gx, uy));
+        const __m512 along = _mm512_add_ps(_mm512_mul_ps(gx, ux), _mm512_mul_ps(gy, uy));
+        const __m512 w = _mm512_max_ps(_mm512_sub_ps(_mm512_abs_ps(across), _mm512_abs_ps(along)), zero);
+        const __m512 moment = _mm512_mul_ps(w, offset);
+        const __mmask16 is_up = _mm512_cmp_ps_mask(across, zero, _CMP_GT_OQ), is_down = (__mmask16)~is_up;
+        up = _mm512_mask_add_ps(up, is_up, up, w);
+        down = _mm512_mask_add_ps(down, is_down, down, w);
+        up_moment = _mm512_mask_add_ps(up_moment, is_up, up_moment, moment);
+        down_moment = _mm512_mask_add_ps(down_moment, is_down, down_moment, moment);
+    }
+    _mm512_storeu_ps(sums->w[0] + k, down);
+    _mm512_storeu_ps(sums->w[1] + k, up);
+    _mm512_storeu_ps(sums->moment[0] + k, down_moment);
+    _mm512_storeu_ps(sums->moment[1] + k, up_moment);
+}
+
+/* As total_profile() of line_sums.c. */
+static inline void total_profile(int32_t count, asj_profile_sums *sums)
+{
+    const __m512 zero = _mm512_setzero_ps();
+    lane_sums sides[2] = {{zero, zero, zero, zero, zero, zero}, {zero, zero, zero, zero, zero, zero}};
+    asj_line_sums list[2];
+    sums->counts[0] = sums->counts[1] = 0;
+    __m512 at = _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    for (int32_t k = 0; k < count; k += ASJ_LINE_LANES) {
+        const __mmask16 valid = (__mmask16)(count - k < ASJ_LINE_LANES ? (1 << (count - k)) - 1 : 0xffff);
+        for (int i = 0; i < 2; i++) {
+            const __m512 w = _mm512_maskz_loadu_ps(valid, sums->w[i] + k), r = _mm512_maskz_loadu_ps(valid, sums->moment[i] + k);
+            const __m512 weighted = _mm512_mul_ps(w, at);
+            sums->counts[i] += __builtin_popcount(_mm512_cmp_ps_mask(w, zero, _CMP_GT_OQ));
+            sides[i].w = _mm512_add_ps(sides[i].w, w);
+            sides[i].x = _mm512_add_ps(sides[i].x, weighted);
+            sides[i].xx = _mm512_add_ps(sides[i].xx, _mm512_mul_ps(weighted, at));
+            sides[i].y = _mm512_add_ps(sides[i].y, r);
+            sides[i].xy = _mm512_add_ps(sides[i].xy, _mm512_mul_ps(r, at));
+        }
+        at = _mm512_add_ps(at, _mm512_set1_ps(ASJ_LINE_LANES));
+    }
+    total_sums(sides, list);
+    for (int i = 0; i < 2; i++)
+        sums->totals[i] = (struct asj_profile_totals){list[i].w, list[i].x, list[i].xx, list[i].y, list[i].xy};
+}
+
+static void line_profile_avx512(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums)
+{
+    const int32_t lanes = ASJ_LINE_LANES;
+    const int whole = asj_line_profile_inside(frame, profile, 0, profile->count);
+    for (int32_t k = 0; k < profile->count; k += lanes) {
+        const int32_t to = k + lanes < profile->count ? k + lanes : profile->count;
+        if (frame->stride > 30000 || (!whole && !asj_line_profile_inside(frame, profile, k, to))) /* indices stay below 2^31 */
+            asj_line_profile_part(frame, profile, k, to, sums);
+        else
+            profile_sixteen(frame, profile, k, sums);
+    }
+    total_profile(profile->count, sums);
+}
+
+static void fill_lines(asj_ops *ops)
+{
+    ops->line_sums = line_sums_avx512;
+    ops->line_profile = line_profile_avx512;
+}
+
+#endif

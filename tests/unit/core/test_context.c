@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Contexts: how they are made, what they say and what they hold. */
+#include "core/context.h"
+#include "unit_test.h"
+
+static asj_context_options with(unit_counter *counter)
+{
+    asj_context_options options;
+    asj_context_options_init(&options);
+    memset(counter, 0, sizeof *counter);
+    options.allocator = (asj_allocator){unit_allocate, unit_release, counter};
+    return options;
+}
+
+static void test_defaults(void **state)
+{
+    asj_context_options options;
+    asj_context *context = NULL;
+    (void)state;
+    asj_context_options_init(NULL);
+    memset(&options, 0xff, sizeof options);
+    asj_context_options_init(&options);
+    assert_int_equal(options.backend, ASJ_BACKEND_AUTO);
+    assert_int_equal(options.threads, 0);
+    assert_null(options.device);
+    assert_int_equal(options.log_level, ASJ_LOG_WARNING);
+    assert_true(!options.log && !options.progress && !options.dump);
+    for (size_t i = 0; i < UNIT_COUNT(options.reserved); i++)
+        assert_true(options.reserved[i] == 0);
+    assert_int_equal(asj_context_create(NULL, &context), ASJ_OK);
+    assert_string_equal(asj_context_message(context), "");
+    assert_true(asj_context_threads(context) >= 1);
+    asj_context_free(&context);
+    assert_null(context);
+    asj_context_free(&context);
+    asj_context_free(NULL);
+    /* a struct of zeros instead of the defaults: malloc and free */
+    memset(&options, 0, sizeof options);
+    assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+    asj_context_free(&context);
+}
+
+static void test_refused(void **state)
+{
+    unit_counter counter;
+    asj_context *context = (asj_context *)&counter;
+    asj_context_options options = with(&counter);
+    (void)state;
+    assert_int_equal(asj_context_create(&options, NULL), ASJ_ERROR_ARGUMENT);
+    options.allocator.release = NULL;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_ARGUMENT);
+    assert_null(context);
+    options = with(&counter);
+    options.allocator.allocate = NULL;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_ARGUMENT);
+    static const int32_t backends[] = {-1, 3, INT32_MAX}, threads[] = {-1, 257, INT32_MIN, INT32_MAX};
+    for (size_t i = 0; i < UNIT_COUNT(backends); i++) {
+        options = with(&counter);
+        options.backend = backends[i];
+        context = (asj_context *)&counter;
+        assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_OPTION);
+        assert_null(context);
+    }
+    for (size_t i = 0; i < UNIT_COUNT(threads); i++) {
+        options = with(&counter);
+        options.threads = threads[i];
+        context = (asj_context *)&counter;
+        assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_OPTION);
+        assert_null(context);
+    }
+    assert_int_equal(counter.live, 0);
+}
+
+static void test_threads(void **state)
+{
+    static const int32_t threads[] = {1, 2, 3, 256};
+    (void)state;
+    for (size_t i = 0; i < UNIT_COUNT(threads); i++) {
+        unit_counter counter;
+        asj_context_options options = with(&counter);
+        asj_context *context = NULL;
+        options.threads = threads[i];
+        assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+#ifdef _OPENMP
+        assert_int_equal(asj_context_threads(context), threads[i]);
+#else
+        assert_int_equal(asj_context_threads(context), 1);
+#endif
+        unit_context_free(&counter, &context);
+    }
+    assert_int_equal(asj_context_threads(NULL), 0);
+}
+
+/* What it holds is what it took from the allocator, to the byte, and all of it comes back. */
+static size_t taken;
+
+static void *sized_allocate(void *user, size_t size)
+{
+    size_t *block = malloc(size + 64);
+    (void)user;
+    if (!block)
+        return NULL;
+    *block = size;
+    taken += size;
+    return (char *)block + 64;
+}
+
+static void sized_release(void *user, void *memory)
+{
+    size_t *block = (size_t *)(void *)((char *)memory - 64);
+    (void)user;
+    taken -= *block;
+    free(block);
+}
+
+static void test_memory(void **state)
+{
+    asj_context_options options;
+    asj_context *context = NULL;
+    asj_detection *found = NULL;
+    uint64_t now, peak, first = 0;
+    uint8_t *pixels = synth_noise_image(90, 70, 100, 10, 1);
+    (void)state;
+    assert_non_null(pixels);
+    asj_context_options_init(&options);
+    options.allocator = (asj_allocator){sized_allocate, sized_release, NULL};
+    assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+    asj_context_memory(context, &now, &peak);
+    assert_true(now == taken && peak >= now);
+    assert_in_range(now, 1000, 2000000);
+    const asj_image image = unit_gray8(pixels, 90, 70);
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(asj_detect(context, &image, NULL, &found), ASJ_OK);
+        asj_detection_free(&found);
+        asj_context_memory(context, &now, NULL);
+        assert_true(now == taken); /* results do not count */
+        asj_context_memory(context, NULL, &peak);
+        assert_true(peak >= now);
+        first = i == 0 ? now : first;
+        assert_true(now == first); /* scratch of the call is kept */
+    }
+    asj_context_memory(NULL, &now, &peak);
+    assert_true(now == 0 && peak == 0);
+    asj_context_memory(context, NULL, NULL);
+    asj_context_free(&context);
+    assert_int_equal(taken, 0);
+    free(pixels);
+}
+
+/* ---- messages and log ---- */
+
+typedef struct log_record {
+    int lines, level;
+    char text[600];
+} log_record;
+
+static void record(void *user, int32_t level, const char *message)
+{
+    log_record *r = user;
+    r->lines++;
+    r->level = level;
+    snprintf(r->text, sizeof r->text, "%s", message);
+}
+
+static void test_messages(void **state)
+{
+    unit_counter counter;
+    log_record heard = {0, -1, ""};
+    asj_context_options options = with(&counter);
+    asj_context *context = NULL;
+    asj_detection *found = NULL;
+    (void)state;
+    options.log = record;
+    options.log_user = &heard;
+    options.log_level = ASJ_LOG_ERROR;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+    assert_int_equal(heard.lines, 0);
+    assert_int_equal(asj_detect(context, NULL, NULL, &found), ASJ_ERROR_ARGUMENT);
+    assert_true(strlen(asj_context_message(context)) > 0);
+    assert_int_equal(heard.lines, 1);
+    assert_int_equal(heard.level, ASJ_LOG_ERROR);
+    assert_string_equal(heard.text, asj_context_message(context));
+    assert_null(strchr(heard.text, '\n'));
+    assert_non_null(asj_context_message(NULL));
+    unit_context_free(&counter, &context);
+}
+
+/* Internal: levels, and lines longer than any buffer. */
+static void test_log(void **state)
+{
+    unit_counter counter;
+    log_record heard = {0, -1, ""};
+    asj_context_options options = with(&counter);
+    asj_context *context = NULL;
+    char longest[2000];
+    (void)state;
+    memset(longest, 'w', sizeof longest - 1);
+    longest[sizeof longest - 1] = '\0';
+    options.log = record;
+    options.log_user = &heard;
+    options.log_level = ASJ_LOG_INFO;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+    heard.lines = 0;
+    asj_log(context, ASJ_LOG_DEBUG, "not %s", "wanted");
+    assert_int_equal(heard.lines, 0);
+    asj_log(context, ASJ_LOG_INFO, "%d and %s", 12, "text");
+    assert_string_equal(heard.text, "12 and text");
+    asj_log(context, ASJ_LOG_WARNING, "%s", longest);
+    assert_int_equal(heard.lines, 2);
+    assert_in_range(strlen(heard.text), 100, 599);
+    assert_int_equal(asj_fail(context, ASJ_ERROR_IMAGE, "%s", longest), ASJ_ERROR_IMAGE);
+    assert_in_range(strlen(asj_context_message(context)), 100, 599);
+    unit_context_free(&counter, &context);
+}
+
+/* ---- progress ---- */
+
+typedef struct progress_record {
+    int calls, stop_at;
+    double last;
+    int32_t stage;
+} progress_record;
+
+static int32_t count_progress(void *user, int32_t stage, double done)
+{
+    progress_record *r = user;
+    r->calls++;
+    r->last = done;
+    r->stage = stage;
+    return r->calls == r->stop_at ? 17 : 0;
+}
+
+static void test_progress(void **state)
+{
+    unit_counter counter;
+    progress_record seen = {0, 3, -1, -1};
+    log_record heard = {0, -1, ""};
+    asj_context_options options = with(&counter);
+    asj_context *context = NULL;
+    (void)state;
+    options.progress = count_progress;
+    options.progress_user = &seen;
+    options.log = record;
+    options.log_user = &heard;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+    assert_int_equal(asj_progress(context, ASJ_STAGE_SCAN, 0.5), ASJ_OK);
+    assert_true(seen.last == 0.5 && seen.stage == ASJ_STAGE_SCAN);
+    assert_int_equal(asj_progress(context, ASJ_STAGE_REFINE, 0.25), ASJ_OK);
+    assert_true(seen.last == 0.5 && seen.stage == ASJ_STAGE_REFINE); /* never falls */
+    assert_int_equal(asj_progress(context, ASJ_STAGE_REFINE, 0.75), ASJ_ERROR_CANCELLED);
+    assert_non_null(strstr(asj_context_message(context), "refine"));
+    assert_int_equal(heard.lines, 0); /* what the caller asked for is no error to log */
+    unit_context_free(&counter, &context);
+}
+
+static void test_clock(void **state)
+{
+    (void)state;
+    const double start = asj_clock_ms();
+    double now = start;
+    for (int i = 0; i < 1000000 && now == start; i++) {
+        now = asj_clock_ms();
+        assert_true(now >= start);
+    }
+    assert_true(now > start);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_defaults), cmocka_unit_test(test_refused), cmocka_unit_test(test_threads),
+            cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_messages), cmocka_unit_test(test_log),     cmocka_unit_test(test_progress),
+            cmocka_unit_test(test_clock),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Ends of branches that snap to junctions, against the rule asked of every pair. */
+#include "detect/ends.h"
+#include "unit_test.h"
+
+enum { COUNT = 120 };
+
+/* Of the junctions ahead, at most 2 px off the line and less than `reach` px from the end, the one nearest to the end. */
+static double naive_length(const asj_draft *drafts, size_t count, size_t self, const asj_draft_branch *branch, double reach)
+{
+    double best = reach, length = branch->length;
+    for (size_t i = 0; i < count; i++) {
+        const double dx = drafts[i].x - drafts[self].x, dy = drafts[i].y - drafts[self].y;
+        const double t = dx * cos(branch->angle) + dy * sin(branch->angle), off = dy * cos(branch->angle) - dx * sin(branch->angle);
+        if (i != self && t > 0 && fabs(off) <= 2 && fabs(t - branch->length) < best) {
+            best = fabs(t - branch->length);
+            length = t;
+        }
+    }
+    return length;
+}
+
+static void test_random(void **state)
+{
+    static asj_draft drafts[COUNT], before[COUNT];
+    static const asj_draft *order[COUNT];
+    synth_random random;
+    int moved = 0;
+    (void)state;
+    synth_random_seed(&random, 14);
+    for (int round = 0; round < 40; round++) {
+        const size_t count = (size_t)(round * 3);
+        const double reach = round % 4 == 3 ? 30 : 2.0 + round % 10;
+        memset(drafts, 0, sizeof drafts);
+        for (size_t i = 0; i < count; i++) {
+            asj_draft *d = &drafts[i];
+            d->x = synth_random_between(&random, 0, 120);
+            d->y = floor(synth_random_between(&random, 0, 90)); /* rows with several */
+            d->branch_count = (int32_t)synth_random_between(&random, 2, 6);
+            for (int32_t b = 0; b < d->branch_count; b++) {
+                d->branches[b].angle = synth_random_between(&random, 0, 2 * UNIT_PI);
+                d->branches[b].length = synth_random_between(&random, 1, 80);
+            }
+        }
+        memcpy(before, drafts, sizeof before);
+        asj_ends_snap(drafts, count, reach, order);
+        for (size_t i = 0; i < count; i++)
+            for (int32_t b = 0; b < drafts[i].branch_count; b++) {
+                unit_near("length", (double)i, b, drafts[i].branches[b].length,
+                          naive_length(before, count, i, &before[i].branches[b], reach), 1e-9);
+                moved += drafts[i].branches[b].length != before[i].branches[b].length;
+                drafts[i].branches[b].length = before[i].branches[b].length;
+            }
+        assert_memory_equal(drafts, before, sizeof before); /* nothing else changes */
+    }
+    assert_true(moved > 500);
+}
+
+static void test_off(void **state)
+{
+    asj_draft drafts[2], before[2];
+    const asj_draft *order[2];
+    (void)state;
+    memset(drafts, 0, sizeof drafts);
+    drafts[0].branch_count = 1;
+    drafts[0].branches[0].length = 20;
+    drafts[1].x = 21;
+    memcpy(before, drafts, sizeof before);
+    asj_ends_snap(drafts, 2, 0, order);
+    assert_memory_equal(drafts, before, sizeof before);
+    asj_ends_snap(drafts, 0, 5, NULL);
+    asj_ends_snap(drafts, 2, 5, order);
+    assert_true(drafts[0].branches[0].length == 21);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_random), cmocka_unit_test(test_off)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

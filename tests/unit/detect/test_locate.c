@@ -1,0 +1,354 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Locations: meeting points, what is rejected, suppression. */
+#include "detect/locate.h"
+#include "unit_test.h"
+
+enum { SIZE = 81 };
+
+typedef struct fixture {
+    unit_counter counter;
+    asj_context *context;
+    asj_detect_options options;
+} fixture;
+
+static int set_up(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    *state = f;
+    if (!f)
+        return -1;
+    f->context = unit_context(&f->counter, 1);
+    asj_detect_options_init(&f->options);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+    asj_context_free(&f->context);
+    const int leaked = f->counter.live != 0;
+    free(f);
+    return leaked;
+}
+
+static void locate(const fixture *f, const asj_frame *frame, asj_draft *draft)
+{
+    asj_locate_guess(f->context, frame, &f->options, draft);
+    asj_locate(f->context, frame, &f->options, draft);
+}
+
+/* ---- meeting points ---- */
+
+static asj_draft draft_at(double x, double y, int32_t count, const double *angles, const double *offsets, const double *variances)
+{
+    asj_draft draft;
+    memset(&draft, 0, sizeof draft);
+    draft.x = draft.x0 = x;
+    draft.y = draft.y0 = y;
+    draft.branch_count = count;
+    for (int32_t i = 0; i < count; i++) {
+        draft.branches[i].angle = angles[i];
+        draft.branches[i].offset = offsets[i];
+        draft.branches[i].offset_variance = variances[i];
+    }
+    return draft;
+}
+
+/* sum of (distance to line i)^2 / v_i, for lines given at (x0, y0) */
+static double cost(const asj_draft *given, double x, double y)
+{
+    double sum = 0;
+    for (int32_t i = 0; i < given->branch_count; i++) {
+        const asj_draft_branch *b = &given->branches[i];
+        const double off = -sin(b->angle) * (x - given->x) + cos(b->angle) * (y - given->y) - b->offset;
+        sum += off * off / b->offset_variance;
+    }
+    return sum;
+}
+
+/* No place around has a smaller cost, the offsets are those from the new place, and the variance that of the cost's curvature. */
+static void test_meet(void **state)
+{
+    synth_random random;
+    int met = 0;
+    (void)state;
+    synth_random_seed(&random, 8);
+    for (int n = 0; n < 2000; n++) {
+        double angles[5], offsets[5], variances[5];
+        for (int i = 0; i < 5; i++) {
+            angles[i] = synth_random_between(&random, 0, 2 * UNIT_PI);
+            offsets[i] = synth_random_between(&random, -2, 2);
+            variances[i] = pow(10, synth_random_between(&random, -3, 0));
+        }
+        const asj_draft given = draft_at(40.5, 31.25, 2 + n % 4, angles, offsets, variances);
+        asj_draft draft = given;
+        if (!asj_locate_meet(&draft)) {
+            assert_memory_equal(&draft, &given, sizeof draft);
+            continue;
+        }
+        met++;
+        const double least = cost(&given, draft.x, draft.y), h = 1e-3;
+        for (int k = 0; k < 8; k++)
+            assert_true(cost(&given, draft.x + h * cos(k * UNIT_PI / 4), draft.y + h * sin(k * UNIT_PI / 4)) >= least);
+        for (int32_t i = 0; i < given.branch_count; i++) {
+            const asj_draft_branch *b = &given.branches[i];
+            unit_near("offset", n, i, draft.branches[i].offset,
+                      b->offset + sin(b->angle) * (draft.x - given.x) - cos(b->angle) * (draft.y - given.y), 1e-9);
+            assert_true(draft.branches[i].angle == b->angle);
+        }
+        const double xx = (cost(&given, draft.x + 1, draft.y) - 2 * least + cost(&given, draft.x - 1, draft.y)) / 2;
+        const double yy = (cost(&given, draft.x, draft.y + 1) - 2 * least + cost(&given, draft.x, draft.y - 1)) / 2;
+        const double xy = (cost(&given, draft.x + 1, draft.y + 1) - cost(&given, draft.x + 1, draft.y - 1) -
+                           cost(&given, draft.x - 1, draft.y + 1) + cost(&given, draft.x - 1, draft.y - 1)) / 8;
+        unit_near("variance", n, 0, draft.location_variance / ((xx + yy) / (2 * (xx * yy - xy * xy))), 1, 1e-6);
+    }
+    assert_in_range(met, 1000, 2000);
+}
+
+static void test_parallel(void **state)
+{
+    static const double offsets[2] = {1, -1}, variances[2] = {0.01, 0.01};
+    (void)state;
+    for (double turn = 0; turn < UNIT_PI; turn += 0.01) {
+        const double angles[2] = {0.4, 0.4 + turn};
+        asj_draft draft = draft_at(10, 10, 2, angles, offsets, variances);
+        const int meets = asj_locate_meet(&draft);
+        /* det > 0.02 total^2, equal weights: sin^2(turn) / 4 > 0.02 */
+        if (fabs(sin(turn) * sin(turn) / 4 - 0.02) > 1e-6)
+            assert_int_equal(meets, sin(turn) * sin(turn) / 4 > 0.02);
+    }
+    asj_draft one = draft_at(10, 10, 1, offsets, offsets, variances), none = draft_at(10, 10, 0, offsets, offsets, variances);
+    assert_false(asj_locate_meet(&one));
+    assert_false(asj_locate_meet(&none));
+}
+
+/* ---- from isotropic junctions ---- */
+
+static asj_isotropic_junction isotropic_at(int x, int y, int count, const double *angles)
+{
+    asj_isotropic_junction junction;
+    memset(&junction, 0, sizeof junction);
+    junction.x = (uint16_t)x;
+    junction.y = (uint16_t)y;
+    junction.radius = 7;
+    junction.branch_count = (uint16_t)count;
+    junction.log_nfa = -12.5;
+    for (int i = 0; i < count; i++) {
+        junction.angle[i] = (uint16_t)lrint(angles[i] * 32768 / UNIT_PI);
+        junction.strength[i] = (uint16_t)(1000 + i);
+    }
+    return junction;
+}
+
+static void test_start(void **state)
+{
+    static const double angles[3] = {0.5, 2.5, 6.2};
+    const asj_isotropic_junction junction = isotropic_at(12, 34, 3, angles);
+    asj_draft draft;
+    (void)state;
+    memset(&draft, 0xff, sizeof draft);
+    asj_locate_start(&junction, &draft);
+    assert_true(draft.x == 12 && draft.y == 34 && draft.x0 == 12 && draft.y0 == 34);
+    assert_true(draft.radius == 7 && draft.log_nfa == -12.5);
+    assert_int_equal(draft.branch_count, 3);
+    for (int i = 0; i < 3; i++) {
+        unit_near("angle", i, 0, draft.branches[i].angle, angles[i], 1e-4);
+        unit_near("strength", i, 0, draft.branches[i].strength, (1000 + i) / 256.0, 0);
+        assert_true(draft.branches[i].length == 0 && draft.branches[i].offset == 0);
+    }
+}
+
+/* The same question as asj_draft_has_opening(), in whole numbers. */
+static void test_worthwhile(void **state)
+{
+    fixture *f = *state;
+    int worthwhile = 0;
+    synth_random random;
+    synth_random_seed(&random, 21);
+    for (int n = 0; n < 2000; n++) {
+        const double start = synth_random_between(&random, 0, 6), turn = synth_random_between(&random, 0, UNIT_PI);
+        const double angles[3] = {start, fmod(start + turn, 2 * UNIT_PI), fmod(start + UNIT_PI, 2 * UNIT_PI)};
+        const asj_isotropic_junction junction = isotropic_at(40, 40, 2 + n % 2, angles);
+        asj_draft draft;
+        f->options.minimum_opening = n % 80;
+        asj_locate_start(&junction, &draft);
+        const int opens = asj_draft_has_opening(&draft, f->options.minimum_opening * UNIT_PI / 180);
+        assert_int_equal(asj_locate_worthwhile(&f->options, &junction), opens);
+        worthwhile += opens;
+    }
+    assert_in_range(worthwhile, 500, 1500);
+    asj_detect_options_init(&f->options);
+}
+
+/* A corner of 90 degrees or more, seen from pixels up to a pixel away: its own place to half a pixel. (In sharper ones the two
+ * edges bend each other's first fit; the fit over the length mends that.) */
+static void test_corners(void **state)
+{
+    const fixture *f = *state;
+    for (int n = 0; n < 40; n++) {
+        const double angle = 0.157 * n, opening = (90 + n % 4 * 10) * UNIT_PI / 180, px = 40.3 + 0.07 * (n % 7),
+            py = 40.6 - 0.09 * (n % 5);
+        const double angles[2] = {angle, angle + opening}, grays[2] = {170, -1};
+        synth_scene scene;
+        asj_frame frame;
+        synth_scene_init(&scene, SIZE, SIZE, 100);
+        synth_add_star(&scene, (synth_point){px, py}, angles, grays, 2, 35);
+        unit_frame_of(f->context, &scene, 1, 0, NULL, &frame);
+        const double seen[2] = {fmod(angle + 0.05, 2 * UNIT_PI), fmod(angle + opening - 0.05, 2 * UNIT_PI)};
+        for (int k = 0; k < 4; k++) {
+            asj_isotropic_junction junction = isotropic_at(40 + k % 2, 40 + k / 2, 2, seen);
+            asj_draft draft;
+            asj_locate_start(&junction, &draft);
+            locate(f, &frame, &draft);
+            assert_int_equal(draft.branch_count, 2);
+            unit_near("distance", n, k, hypot(draft.x - px, draft.y - py), 0, 0.5);
+            unit_near("angle", n, k, unit_turn(draft.branches[0].angle, angle), 0, 0.06);
+            unit_near("angle", n, k, unit_turn(draft.branches[1].angle, angle + opening), 0, 0.06);
+            assert_true(draft.location_variance > 0);
+        }
+        asj_frame_free(&f->context->memory, &frame);
+    }
+}
+
+/* What a thick or bent edge looks like to the isotropic test: two branches that both turn onto the one edge. */
+static void test_edges_are_rejected(void **state)
+{
+    const fixture *f = *state;
+    for (int n = 0; n < 24; n++) {
+        const double angle = n * UNIT_PI / 12 + 0.04, bend = 0.3 * (n % 2 ? 1 : -1);
+        const double seen[2] = {fmod(angle + bend, 2 * UNIT_PI), fmod(angle + UNIT_PI, 2 * UNIT_PI)};
+        synth_scene scene;
+        asj_frame frame;
+        unit_half_plane(&scene, SIZE, (synth_point){40, 40}, angle, 90, 160);
+        unit_frame_of(f->context, &scene, 1.5, 0, NULL, &frame);
+        asj_isotropic_junction junction = isotropic_at(40, 40, 2, seen);
+        asj_draft draft;
+        asj_locate_start(&junction, &draft);
+        locate(f, &frame, &draft);
+        assert_int_equal(draft.branch_count, 0);
+        asj_frame_free(&f->context->memory, &frame);
+    }
+}
+
+/* A corner farther away than max_move is another junction's business. */
+static void test_max_move(void **state)
+{
+    fixture *f = *state;
+    const double angles[2] = {0, UNIT_PI / 2}, grays[2] = {170, -1};
+    synth_scene scene;
+    asj_frame frame;
+    synth_scene_init(&scene, SIZE, SIZE, 100);
+    synth_add_star(&scene, (synth_point){40, 40}, angles, grays, 2, 35);
+    unit_frame_of(f->context, &scene, 1, 0, NULL, &frame);
+    for (int away = 0; away <= 3; away++)
+        for (double most = 0.5; most < 5; most += 0.5) {
+            asj_isotropic_junction junction = isotropic_at(40 + away, 40, 2, angles);
+            asj_draft draft;
+            f->options.max_move = most;
+            asj_locate_start(&junction, &draft);
+            locate(f, &frame, &draft);
+            if (away < most - 0.3)
+                assert_int_equal(draft.branch_count, 2);
+            if (away > most + 0.3)
+                assert_int_equal(draft.branch_count, 0);
+        }
+    asj_detect_options_init(&f->options);
+    asj_frame_free(&f->context->memory, &frame);
+}
+
+/* refinement = search: whole pixels and the branches as found, unless no two open. */
+static void test_search_keeps_pixels(void **state)
+{
+    fixture *f = *state;
+    static const double open[2] = {0.2, 1.7}, straight[2] = {0.2, 0.2 + UNIT_PI};
+    synth_scene scene;
+    asj_frame frame;
+    asj_draft draft;
+    f->options.refinement = ASJ_REFINE_SEARCH;
+    synth_scene_init(&scene, SIZE, SIZE, 100);
+    unit_frame_of(f->context, &scene, 1, 0, NULL, &frame);
+    asj_isotropic_junction junction = isotropic_at(40, 41, 2, open);
+    asj_locate_start(&junction, &draft);
+    locate(f, &frame, &draft);
+    assert_int_equal(draft.branch_count, 2);
+    assert_true(draft.x == 40 && draft.y == 41);
+    junction = isotropic_at(40, 41, 2, straight);
+    assert_false(asj_locate_worthwhile(&f->options, &junction));
+    asj_frame_free(&f->context->memory, &frame);
+    asj_detect_options_init(&f->options);
+}
+
+/* ---- suppression ---- */
+
+static int before(const asj_draft *p, const asj_draft *q)
+{
+    if (p->log_nfa != q->log_nfa)
+        return p->log_nfa < q->log_nfa;
+    return p->y != q->y ? p->y < q->y : p->x < q->x;
+}
+
+static size_t naive_suppress(asj_draft *drafts, size_t count, asj_draft *kept)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = i; k > 0 && before(&drafts[k], &drafts[k - 1]); k--) {
+            const asj_draft swap = drafts[k];
+            drafts[k] = drafts[k - 1];
+            drafts[k - 1] = swap;
+        }
+    for (size_t i = 0; i < count; i++) {
+        int near = drafts[i].branch_count < 2;
+        for (size_t k = 0; k < n; k++)
+            near |= hypot(kept[k].x - drafts[i].x, kept[k].y - drafts[i].y) < fmax(3, 0.35 * kept[k].radius);
+        if (!near)
+            kept[n++] = drafts[i];
+    }
+    return n;
+}
+
+/* Also just outside the image, where line fits may end. */
+static void test_suppress(void **state)
+{
+    enum { COUNT = 200 };
+    static const int32_t sizes[][2] = {{100, 80}, {1, 1}, {11, 200}, {22, 22}, {300, 7}};
+    static asj_draft drafts[COUNT], copy[COUNT], expected[COUNT];
+    synth_random random;
+    (void)state;
+    synth_random_seed(&random, 21);
+    for (int round = 0; round < 50; round++) {
+        const int32_t width = sizes[round % 5][0], height = sizes[round % 5][1];
+        const size_t count = (size_t)(round * 4);
+        memset(drafts, 0, sizeof drafts);
+        for (size_t i = 0; i < count; i++) {
+            drafts[i].x = synth_random_between(&random, -9, width + 9);
+            drafts[i].y = synth_random_between(&random, -9, height + 9);
+            drafts[i].radius = floor(synth_random_between(&random, 3, 31));
+            drafts[i].branch_count = (int32_t)synth_random_between(&random, 0, 6);
+            drafts[i].log_nfa = -floor(synth_random_between(&random, 0, 30));
+        }
+        memcpy(copy, drafts, sizeof copy);
+        int32_t *cells = malloc(asj_locate_cells(count, width, height) * sizeof *cells);
+        assert_non_null(cells);
+        const size_t kept = asj_locate_suppress(drafts, count, 0, width, height, cells);
+        assert_int_equal(kept, naive_suppress(copy, count, expected));
+        for (size_t i = 0; i < kept; i++)
+            assert_memory_equal(&drafts[i], &expected[i], sizeof drafts[i]);
+        free(cells);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_meet),
+        cmocka_unit_test(test_parallel),
+        cmocka_unit_test(test_start),
+        cmocka_unit_test(test_worthwhile),
+        cmocka_unit_test(test_corners),
+        cmocka_unit_test(test_edges_are_rejected),
+        cmocka_unit_test(test_max_move),
+        cmocka_unit_test(test_suppress),
+        cmocka_unit_test(test_search_keeps_pixels),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

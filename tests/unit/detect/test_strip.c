@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Strips: NFA over the unique pixels, and direction of the gradients, against their definitions. */
+#include "detect/strip.h"
+#include "core/context.h"
+#include "unit_test.h"
+
+typedef struct fixture {
+    unit_counter counter;
+    asj_context *context;
+    asj_detect_options options;
+    asj_frame frame;
+} fixture;
+
+static int set_up(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    synth_scene scene;
+    *state = f;
+    if (!f)
+        return -1;
+    f->context = unit_context(&f->counter, 1);
+    asj_detect_options_init(&f->options);
+    synth_scene_init(&scene, 90, 70, 110);
+    synth_add_rectangle(&scene, (synth_point){22.4, 14.2}, 41, 36, 0.35, 170);
+    unit_frame_of(f->context, &scene, 1, 5, NULL, &f->frame);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+    asj_frame_free(&f->context->memory, &f->frame);
+    asj_context_free(&f->context);
+    const int leaked = f->counter.live != 0;
+    free(f);
+    return leaked;
+}
+
+/* Every pixel of the image asked whether it is inside; the dominant gradient is the larger eigenvector of its second moments. */
+static asj_strip naive(const fixture *f, double x, double y, double angle, double length)
+{
+    double omega = 0, xx = 0, xy = 0, yy = 0;
+    int32_t pixels = 0;
+    asj_strip out;
+    memset(&out, 0, sizeof out);
+    for (int32_t v = 0; v < f->frame.height; v++)
+        for (int32_t u = 0; u < f->frame.width; u++) {
+            const double t = (u - x) * cos(angle) + (v - y) * sin(angle), s = (v - y) * cos(angle) - (u - x) * sin(angle);
+            if (!(t > 0.5 && t <= fmin(length, f->options.strip_length) && fabs(s) <= f->options.strip_half_width))
+                continue;
+            const double gx = unit_gx(&f->frame, u, v), gy = unit_gy(&f->frame, u, v);
+            omega += unit_gamma(gx, gy, angle);
+            xx += gx * gx;
+            xy += gx * gy;
+            yy += gy * gy;
+            pixels++;
+        }
+    out.log_nfa = HUGE_VAL;
+    if (pixels == 0)
+        return out;
+    out.log_nfa = 1.5 * log((double)f->frame.width * f->frame.height) + asj_nfa_log_sector_tail(f->context->nfa, omega, pixels);
+    const double dominant = 0.5 * atan2(2 * xy, xx - yy);
+    out.deviation = unit_turn(2 * (dominant - UNIT_PI / 2), 2 * angle) / 2;
+    return out;
+}
+
+static asj_strip test(const fixture *f, double x, double y, double angle, double length)
+{
+    return asj_strip_test(f->context, &f->frame, &f->options, x, y, angle, length);
+}
+
+/* Random strips, half of them reaching outside the image or standing there, of all widths and lengths. */
+static void test_random(void **state)
+{
+    fixture *f = *state;
+    synth_random random;
+    synth_random_seed(&random, 12);
+    for (int i = 0; i < 3000; i++) {
+        const double x = synth_random_between(&random, -15, 105), y = synth_random_between(&random, -15, 85);
+        const double angle = i % 3 ? synth_random_between(&random, 0, 2 * UNIT_PI) : i % 16 * UNIT_PI / 4;
+        const double length = synth_random_between(&random, 0, 100);
+        f->options.strip_half_width = synth_random_between(&random, 0.5, 4);
+        f->options.strip_length = synth_random_between(&random, 10, 80);
+        const asj_strip got = test(f, x, y, angle, length), expected = naive(f, x, y, angle, length);
+        if (expected.log_nfa == HUGE_VAL) {
+            assert_true(got.log_nfa == HUGE_VAL);
+            continue;
+        }
+        unit_near("ln NFA", x, y, got.log_nfa, expected.log_nfa, 1e-6);
+        unit_near("deviation", x, y, got.deviation, expected.deviation, 1e-6);
+    }
+    asj_detect_options_init(&f->options);
+}
+
+/* Either of the two lengths is enough. */
+static void test_passes(void **state)
+{
+    fixture *f = *state;
+    synth_random random;
+    int passed = 0;
+    synth_random_seed(&random, 13);
+    for (int i = 0; i < 1000; i++) {
+        const double x = synth_random_between(&random, -5, 95), y = synth_random_between(&random, -5, 75);
+        const double angle = synth_random_between(&random, 0, 2 * UNIT_PI), limit = synth_random_between(&random, -10, 30);
+        const double shorter = synth_random_between(&random, 2, 30), length = shorter + synth_random_between(&random, 0, 30);
+        const double least = fmin(naive(f, x, y, angle, length).log_nfa, naive(f, x, y, angle, shorter).log_nfa);
+        const int passes = asj_strip_passes(f->context, &f->frame, &f->options, x, y, angle, length, shorter, limit);
+        if (fabs(least - limit) > 1e-6)
+            assert_int_equal(passes, least <= limit);
+        passed += passes;
+    }
+    assert_in_range(passed, 100, 900);
+}
+
+/* Along the edge of the rectangle: meaningful and straight; across it, or turned away: not. */
+static void test_edge(void **state)
+{
+    const fixture *f = *state;
+    const asj_strip along = test(f, 22.4, 14.2, 0.35, 38), flat = test(f, 5, 60, 0, 20);
+    assert_true(along.log_nfa < -40);
+    assert_true(along.deviation < 0.03);
+    assert_true(flat.log_nfa > 0);
+}
+
+/* A strip laid askew over an edge says by how much. */
+static void test_askew(void **state)
+{
+    fixture *f = *state;
+    fixture clean = *f;
+    synth_scene scene;
+    unit_half_plane(&scene, 81, (synth_point){40, 40}, 0.35, 80, 160);
+    unit_frame_of(f->context, &scene, 1, 0, NULL, &clean.frame);
+    clean.options.strip_half_width = 3;
+    for (double askew = -0.3; askew < 0.3; askew += 0.03) {
+        const double angle = 0.35 + askew;
+        unit_near("askew", askew, 0, test(&clean, 40 - 6 * cos(angle), 40 - 6 * sin(angle), angle, 12).deviation, fabs(askew),
+                  0.03);
+    }
+    asj_frame_free(&f->context->memory, &clean.frame);
+}
+
+static void test_empty(void **state)
+{
+    const fixture *f = *state;
+    assert_true(test(f, 20, 20, 1, 0.4).log_nfa == HUGE_VAL);
+    assert_true(test(f, 20, 20, 1, 0).log_nfa == HUGE_VAL);
+    assert_true(test(f, -40, -40, 4, 30).log_nfa == HUGE_VAL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_random),
+        cmocka_unit_test(test_passes),
+        cmocka_unit_test(test_edge),
+        cmocka_unit_test(test_askew),
+        cmocka_unit_test(test_empty),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

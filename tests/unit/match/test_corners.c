@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* src/match/corners.c against the plain way to find the same: neighbours of places, lengths of branches. */
+#include "match/corners.h"
+#include "random.h"
+#include "unit_test.h"
+
+#include <math.h>
+
+#define SIDE 300
+#define COUNT 150
+
+/* Corners on a lattice of 5 px, so that many are equally far from each other, or lie on one line. */
+static void scatter(uint64_t seed, asj_junction *junctions)
+{
+    synth_random random;
+    synth_random_seed(&random, seed);
+    memset(junctions, 0, COUNT * sizeof *junctions);
+    for (int32_t k = 0; k < COUNT; k++) {
+        asj_junction *j = &junctions[k];
+        j->x = 5 * (float)floor(synth_random_between(&random, 0, SIDE / 5));
+        j->y = 5 * (float)floor(synth_random_between(&random, 0, SIDE / 5));
+        j->branch_count = 2;
+        j->branches[0].angle = (float)(floor(synth_random_between(&random, 0, 8)) * UNIT_PI / 4);
+        j->branches[1].angle = j->branches[0].angle + (float)synth_random_between(&random, 0.5, 2.5);
+        for (int32_t b = 0; b < 2; b++)
+            j->branches[b].length = (float)synth_random_between(&random, 4, 150);
+    }
+}
+
+static double square_between(const asj_corners *corners, uint32_t p, uint32_t q)
+{
+    const double dx = corners->place_x[p] - corners->place_x[q], dy = corners->place_y[p] - corners->place_y[q];
+    return dx * dx + dy * dy;
+}
+
+/* Neighbour n of place p comes before every later one and every other place, ties by number, and none is missing. */
+static void check_neighbours(const asj_corners *corners, uint32_t p, double separation)
+{
+    const uint32_t *neighbour = corners->neighbour + (size_t)p * corners->neighbour_limit;
+    uint32_t before = 0, far = 0;
+    for (uint32_t q = 0; q < corners->place_count; q++)
+        far += square_between(corners, p, q) > separation * separation;
+    assert_int_equal(corners->neighbour_count[p], far < corners->neighbour_limit ? far : corners->neighbour_limit);
+    for (uint32_t n = 0; n < corners->neighbour_count[p]; n++, before = 0) {
+        const double square = square_between(corners, p, neighbour[n]);
+        for (uint32_t q = 0; q < corners->place_count; q++) {
+            const double other = square_between(corners, p, q);
+            before += other > separation * separation && (other < square || (other == square && q < neighbour[n]));
+        }
+        assert_int_equal(before, n);
+    }
+}
+
+static void neighbours_are_the_nearest(void **state)
+{
+    (void)state;
+    asj_junction junctions[COUNT];
+    asj_match_options options;
+    asj_match_options_init(&options);
+    for (int32_t limit = 1; limit <= 64; limit += 21)
+        for (uint64_t seed = 1; seed <= 3; seed++) {
+            unit_counter counter = {0, 0, 0, 0};
+            asj_context *context = unit_context(&counter, 1);
+            asj_corners corners;
+            scatter(seed, junctions);
+            options.neighbours = limit;
+            options.separation = seed == 1 ? 0 : 5.0 * (double)seed;
+            assert_int_equal(asj_corners_create(context, junctions, seed == 3 ? 20 : COUNT, SIDE, SIDE, &options, 1, &corners),
+                             ASJ_OK);
+            for (uint32_t p = 0; p < corners.place_count; p++)
+                check_neighbours(&corners, p, options.separation);
+            asj_corners_free(&context->memory, &corners);
+            unit_context_free(&counter, &context);
+        }
+}
+
+/* The longest distance up to `most` of a place within 3 px of the branch; 0 = none. */
+static double longest(const asj_corners *corners, uint32_t l, const double *u, double most)
+{
+    double best = 0;
+    for (uint32_t q = 0; q < corners->place_count; q++) {
+        const double dx = corners->place_x[q] - (double)corners->l[l].x, dy = corners->place_y[q] - (double)corners->l[l].y;
+        const double along = dx * u[0] + dy * u[1];
+        if (along >= 10 && along <= most && fabs(dx * u[1] - dy * u[0]) < 3)
+            best = along > best ? along : best;
+    }
+    return best;
+}
+
+static void lengths_are_those_of_junctions_on_the_branch(void **state)
+{
+    (void)state;
+    asj_junction junctions[COUNT];
+    asj_match_options options;
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_corners corners;
+    int32_t found = 0;
+    asj_match_options_init(&options);
+    scatter(4, junctions);
+    assert_int_equal(asj_corners_create(context, junctions, COUNT, SIDE, SIDE, &options, 1, &corners), ASJ_OK);
+    for (uint32_t b = 0; b < 2 * corners.count; b++) {
+        const asj_lengths *lengths = &corners.lengths[b];
+        double before = (double)lengths->length[0] - 8;
+        for (int32_t n = 1; n < options.length_hypotheses && n <= lengths->count; n++, before -= 4) {
+            const double next = longest(&corners, b / 2, corners.direction + 2 * (size_t)b, before);
+            assert_true(n < lengths->count ? lengths->length[n] == (float)next : next <= 0);
+            found += n < lengths->count;
+            before = next;
+        }
+    }
+    assert_true(found > COUNT / 2);
+    asj_corners_free(&context->memory, &corners);
+    unit_context_free(&counter, &context);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(neighbours_are_the_nearest),
+        cmocka_unit_test(lengths_are_those_of_junctions_on_the_branch),
+    };
+    return cmocka_run_group_tests_name("corners", tests, NULL, NULL);
+}

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* verify.c: what the matches around contradict goes; a T needs more agreement than another corner; what stands alone stays. */
+#include "match/verify.h"
+#include "unit_test.h"
+
+#define SIDE 600
+#define MOST 32
+
+/* Corners with two branches (or three: a T) on a grid, the same in both images but for a shift of some in the second. */
+typedef struct stage {
+    asj_junction junctions[2][MOST];
+    size_t count;
+    asj_view view[2];
+    asj_candidate list[MOST];
+    asj_choice choices[MOST];
+    asj_match_options options;
+} stage;
+
+static void add(stage *s, double x, double y, double move_x, double move_y, int32_t branches)
+{
+    for (int v = 0; v < 2; v++) {
+        asj_junction *j = &s->junctions[v][s->count];
+        memset(j, 0, sizeof *j);
+        j->x = (float)(x + v * move_x);
+        j->y = (float)(y + v * move_y);
+        j->branch_count = branches;
+        for (int32_t b = 0; b < branches; b++) { /* 0, 90, 180 degrees */
+            j->branches[b].angle = (float)(b * UNIT_PI / 2);
+            j->branches[b].length = 20;
+        }
+    }
+    s->count++;
+}
+
+static size_t verify(asj_context *context, stage *s)
+{
+    size_t count = 0;
+    asj_candidates candidates = {s->list, s->count, MOST};
+    for (int v = 0; v < 2; v++) {
+        memset(&s->view[v], 0, sizeof s->view[v]);
+        assert_int_equal(asj_corners_create(context, s->junctions[v], s->count, SIDE, SIDE, &s->options, v + 1,
+                                            &s->view[v].corners), ASJ_OK);
+    }
+    for (uint32_t l = 0; l < s->view[0].corners.count; l++) { /* the first L-junction of each junction with its like */
+        if (l > 0 && s->view[0].corners.l[l].junction == s->view[0].corners.l[l - 1].junction)
+            continue;
+        memset(&s->list[count], 0, sizeof s->list[count]);
+        s->list[count].i = s->list[count].j = l;
+        s->list[count].map = (asj_linear){{1, 0, 0, 1}, {1, 0, 0, 1}};
+        s->choices[count] = (asj_choice){(uint32_t)count, 2};
+        count++;
+    }
+    assert_int_equal(count, s->count);
+    assert_int_equal(asj_verify(context, &s->options, &s->view[0], &s->view[1], &candidates, s->choices, &count), ASJ_OK);
+    for (int v = 0; v < 2; v++)
+        asj_corners_free(&context->memory, &s->view[v].corners);
+    return count;
+}
+
+static void grid(stage *s, int32_t corners)
+{
+    memset(s, 0, sizeof *s);
+    asj_match_options_init(&s->options);
+    for (int32_t k = 0; k < corners; k++)
+        add(s, 100 + 40 * (k % 4), 100 + 40 * (k / 4), 0, 0, 2);
+}
+
+static void what_is_contradicted_goes(void **state)
+{
+    (void)state;
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 2);
+    static stage s;
+    grid(&s, 12);
+    add(&s, 140, 160, 70, -50, 2);
+    assert_int_equal(verify(context, &s), 12);
+    for (size_t n = 0; n < 12; n++)
+        assert_int_equal(s.choices[n].candidate, n); /* in order */
+    s.options.witnesses = 0;
+    assert_int_equal(verify(context, &s), 13);
+    s.options.witnesses = 16;
+    s.options.minimum_agreement = 0;
+    assert_int_equal(verify(context, &s), 13);
+    unit_context_free(&counter, &context);
+}
+
+/* Three matches that agree with each other against twelve: enough for corners, not for Ts. */
+static void a_t_needs_more(void **state)
+{
+    (void)state;
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    static stage s;
+    for (int32_t branches = 2; branches <= 3; branches++) {
+        grid(&s, 12);
+        for (int32_t k = 0; k < 3; k++)
+            add(&s, 120 + 40 * k, 200, 60, 60, branches);
+        s.options.minimum_agreement = 0.25;
+        assert_int_equal(verify(context, &s), branches == 2 ? 15 : 12);
+    }
+    unit_context_free(&counter, &context);
+}
+
+static void far_witnesses_say_little(void **state)
+{
+    (void)state;
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    static stage s;
+    grid(&s, 12);
+    add(&s, 400, 400, -90, 30, 2);
+    s.options.witness_distance = 50;
+    assert_int_equal(verify(context, &s), 13);
+    s.options.witness_distance = 10000;
+    assert_int_equal(verify(context, &s), 12);
+    grid(&s, 1);
+    assert_int_equal(verify(context, &s), 1);
+    grid(&s, 0);
+    assert_int_equal(verify(context, &s), 0);
+    unit_context_free(&counter, &context);
+}
+
+static void without_memory_it_says_so(void **state)
+{
+    (void)state;
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_choice choice = {0, 1};
+    asj_candidates none = {NULL, 0, 0};
+    asj_match_options options;
+    size_t count = 1;
+    asj_match_options_init(&options);
+    counter.fail_at = counter.calls + 1;
+    assert_int_equal(asj_verify(context, &options, NULL, NULL, &none, &choice, &count), ASJ_ERROR_MEMORY);
+    counter.fail_at = 0;
+    unit_context_free(&counter, &context);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_contradicted_goes),
+        cmocka_unit_test(a_t_needs_more),
+        cmocka_unit_test(far_witnesses_say_little),
+        cmocka_unit_test(without_memory_it_says_so),
+    };
+    return cmocka_run_group_tests_name("verify", tests, NULL, NULL);
+}
