@@ -255,11 +255,7 @@ asj_status asj_cl_isotropic_rows(asj_context *context, const asj_isotropic *test
         if (status != ASJ_OK || b.count == 0)
             continue;
         const uint32_t *peaks = detect->host_peaks.memory;
-        const int32_t threads = asj_threads_for(context, (int64_t)b.count, LEAST_CANDIDATES);
-        (void)threads;
-#ifdef _OPENMP
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
-#endif
+#pragma omp parallel for num_threads(asj_threads_for(context, (int64_t)b.count, LEAST_CANDIDATES)) schedule(dynamic, 4)
         for (int32_t y = first; y < last; y++)
             judge_row(&b, y, peaks + (starts[y - top] - starts[first - top]) * numbers, junctions + starts[y - top]);
     }

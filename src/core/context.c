@@ -4,15 +4,12 @@
 #include "detect/detect.h"
 #include "opencl.h"
 #include "ops.h"
+#include "threads.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 void asj_context_options_init(asj_context_options *options)
 {
@@ -22,16 +19,6 @@ void asj_context_options_init(asj_context_options *options)
     options->backend = ASJ_BACKEND_AUTO;
     asj_memory_allocator(NULL, &options->allocator);
     options->log_level = ASJ_LOG_WARNING;
-}
-
-static int32_t thread_count(int32_t wanted)
-{
-#ifdef _OPENMP
-    return wanted > 0 ? wanted : omp_get_num_procs();
-#else
-    (void)wanted;
-    return 1;
-#endif
 }
 
 static asj_status fill(asj_context *context, const char *library)
@@ -64,7 +51,7 @@ asj_status asj_context_create_from(const char *library, const asj_context_option
         return ASJ_ERROR_MEMORY;
     context->memory = memory;
     context->options = *options;
-    context->threads = thread_count(options->threads);
+    context->threads = asj_thread_count(options->threads);
     asj_status status = fill(context, library);
     context->options.device = NULL; /* the caller's string need not live on */
     if (status != ASJ_OK) {

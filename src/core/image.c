@@ -198,20 +198,14 @@ asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_imag
 {
     const ptrdiff_t row_bytes = (ptrdiff_t)image->width * find_format(image->format)->bytes_per_pixel;
     const ptrdiff_t stride = image->stride ? image->stride : row_bytes;
-    const int32_t height = image->height, threads = asj_threads_for(context, (int64_t)image->width * height, LEAST_PIXELS);
+    const int32_t height = image->height;
     int32_t failed = 0; /* not a reduction, for which some compilers export a symbol of their own */
     conversion c;
     prepare_conversion(context, image, &c);
-#ifdef _OPENMP
-#pragma omp parallel for num_threads(threads) schedule(static)
-#else
-    (void)threads;
-#endif
+#pragma omp parallel for num_threads(asj_threads_for(context, (int64_t)image->width * height, LEAST_PIXELS)) schedule(static)
     for (int32_t y = 0; y < height; y++)
         if (!load_row(&c, frame->gray + (ptrdiff_t)y * frame->stride, (const char *)image->data + (ptrdiff_t)y * stride, image)) {
-#ifdef _OPENMP
 #pragma omp atomic write
-#endif
             failed = 1;
         }
     for (int32_t y = 0; failed && y < height; y++)
