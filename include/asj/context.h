@@ -17,6 +17,20 @@ enum {
     ASJ_BACKEND_OPENCL = 2 /* an OpenCL device of any type, or ASJ_ERROR_DEVICE; failures of the device are errors */
 };
 
+/* Vector instructions of the processor. The results are the same with all of them. */
+enum {
+    ASJ_SIMD_AUTO = 0,      /* the best that this processor and this build have */
+    ASJ_SIMD_REFERENCE = 1, /* none: the portable C of each step, which is its definition */
+    ASJ_SIMD_SSE2 = 2,      /* x86 */
+    ASJ_SIMD_AVX2 = 3,
+    ASJ_SIMD_AVX512 = 4,    /* F, BW and VL */
+    ASJ_SIMD_NEON = 5,      /* 64-bit ARM */
+    ASJ_SIMD_COUNT = 6
+};
+
+/* "auto", "reference", "sse2", ...; "unknown" outside the range. A static string. */
+ASJ_API const char *asj_simd_name(int32_t simd);
+
 enum { ASJ_LOG_ERROR = 0, ASJ_LOG_WARNING = 1, ASJ_LOG_INFO = 2, ASJ_LOG_DEBUG = 3 };
 
 /* Steps of the pipeline, in order: names for progress reports, stage times and dumps. */
@@ -98,7 +112,7 @@ typedef struct asj_context_options {
     asj_log_callback log;           /* default NULL = silence */
     void *log_user;
     int32_t log_level;              /* most detailed level wanted, default ASJ_LOG_WARNING */
-    int32_t reserved_1;
+    int32_t simd;                   /* ASJ_SIMD_...: forces the form of what the CPU does, for comparisons; default auto. */
     asj_progress_callback progress; /* default NULL */
     void *progress_user;
     asj_dump_callback dump;         /* default NULL; costs nothing when NULL */
@@ -118,9 +132,10 @@ typedef struct asj_context asj_context;
 
 /* Makes a context. `options` NULL = the defaults. On success the caller owns *context until asj_context_free().
  * ASJ_ERROR_ARGUMENT  context is NULL, or only one of the allocator's functions is given
- * ASJ_ERROR_OPTION    backend or threads out of range
+ * ASJ_ERROR_OPTION    backend, threads or simd out of range
  * ASJ_ERROR_MEMORY
- * ASJ_ERROR_DEVICE    ASJ_BACKEND_OPENCL, and there is no such device: the log has the reason of each, one line for each */
+ * ASJ_ERROR_DEVICE    ASJ_BACKEND_OPENCL, and there is no such device: the log has the reason of each, one line for each; or vector
+ *                     instructions (simd) that this processor or this build lacks: the log says which of both */
 ASJ_API asj_status asj_context_create(const asj_context_options *options, asj_context **context);
 
 /* Frees a context and sets the pointer to NULL. NULL and a pointer to NULL are fine. Results made with the context stay valid
@@ -133,6 +148,9 @@ ASJ_API const char *asj_context_message(const asj_context *context);
 
 /* Number of threads that the CPU path uses. 0 for a NULL context. */
 ASJ_API int32_t asj_context_threads(const asj_context *context);
+
+/* The vector instructions that the CPU path uses: ASJ_SIMD_..., never auto. ASJ_SIMD_AUTO for a NULL context. */
+ASJ_API int32_t asj_context_simd(const asj_context *context);
 
 /* Bytes that the context holds at the moment, and the most it has held since it was made; results, which are the caller's, and
  * what OpenCL holds apart. Either pointer may be NULL. */

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* A context's device, from the choice to the end. */
-#include "core/device.h"
-#include "opencl.h"
+#include "cl.h"
 #include "check.h"
+#include "core/device.h"
+#include "detect.h"
+#include "detect/gradient.h"
 #include "enumerate.h"
 #include "error.h"
 #include "overrides.h"
@@ -38,15 +40,12 @@ static cl_int get_limits(struct asj_cl *cl, const asj_device *record)
 {
     asj_cl_limits *limits = &cl->limits;
     size_t sizes[16] = {0};
-    cl_bool unified = CL_FALSE;
     cl_uint alignment = 0;
     cl_int error = cl->api.GetDeviceInfo(cl->device, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof(size_t), &limits->max_work_group, NULL);
     if (error == CL_SUCCESS)
         error = cl->api.GetDeviceInfo(cl->device, CL_DEVICE_MAX_WORK_ITEM_SIZES, sizeof sizes, sizes, NULL);
     if (error == CL_SUCCESS)
         error = cl->api.GetDeviceInfo(cl->device, CL_DEVICE_MEM_BASE_ADDR_ALIGN, sizeof alignment, &alignment, NULL);
-    if (error == CL_SUCCESS)
-        error = cl->api.GetDeviceInfo(cl->device, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
     memcpy(limits->max_work_item, sizes, sizeof limits->max_work_item);
     limits->local_memory = record->local_memory;
     limits->largest_buffer = record->largest_buffer;
@@ -54,7 +53,6 @@ static cl_int get_limits(struct asj_cl *cl, const asj_device *record)
     limits->compute_units = (uint32_t)record->compute_units;
     limits->base_alignment = alignment / 8;
     limits->type = record->type;
-    limits->host_unified = unified != CL_FALSE;
     return error;
 }
 
@@ -164,42 +162,9 @@ static asj_status make_tables(asj_context *context)
     return cl->programs && cl->kernels ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for kernels");
 }
 
-static void fill_ops(asj_ops *ops)
-{
-    asj_cl_fill_detect(ops);
-    asj_cl_fill_scan(ops);
-    asj_cl_fill_match(ops);
-    ops->name = "opencl";
-}
-
-asj_status asj_cl_create(asj_context *context, const char *library)
-{
-    context->cl = asj_allocate_zero(&context->memory, 1, sizeof *context->cl);
-    if (!context->cl)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for a device");
-    asj_status status = search(context, library);
-    if (status == ASJ_OK)
-        status = make_tables(context);
-    if (status == ASJ_OK)
-        status = asj_cl_check(context);
-    if (status == ASJ_OK) {
-        fill_ops(context->ops);
-        asj_log(context, ASJ_LOG_DEBUG, "OpenCL device: %s", context->cl->name);
-        return ASJ_OK;
-    }
-    asj_cl_free(context);
-    if (status != ASJ_ERROR_DEVICE || context->options.backend == ASJ_BACKEND_OPENCL)
-        return status;
-    asj_log(context, ASJ_LOG_INFO, "%s; the CPU does the work", context->message);
-    context->message[0] = '\0';
-    return ASJ_OK;
-}
-
-void asj_cl_free(asj_context *context)
+static void free_device(asj_context *context)
 {
     struct asj_cl *cl = context->cl;
-    if (!cl)
-        return;
     if (cl->queue)
         cl->api.Finish(cl->queue);
     asj_cl_free_detect(context);
@@ -213,12 +178,41 @@ void asj_cl_free(asj_context *context)
     context->cl = NULL;
 }
 
-const char *asj_cl_name(const asj_context *context)
+static const char *device_name(const asj_context *context)
 {
     return context->cl->name;
 }
 
-const asj_cl_limits *asj_cl_get_limits(const asj_context *context)
+asj_status asj_cl_create(asj_context *context, const char *library)
 {
-    return &context->cl->limits;
+    static const asj_device_calls calls = {device_name, asj_cl_build_all, free_device};
+    context->cl = asj_allocate_zero(&context->memory, 1, sizeof *context->cl);
+    if (!context->cl)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for a device");
+    context->device = &calls;
+    asj_status status = search(context, library);
+    if (status == ASJ_OK)
+        status = make_tables(context);
+    if (status == ASJ_OK)
+        status = asj_cl_check(context);
+    if (status == ASJ_OK) {
+        asj_log(context, ASJ_LOG_DEBUG, "OpenCL device: %s", context->cl->name);
+        return ASJ_OK;
+    }
+    free_device(context);
+    if (status != ASJ_ERROR_DEVICE || context->options.backend == ASJ_BACKEND_OPENCL)
+        return status;
+    asj_log(context, ASJ_LOG_INFO, "%s; the CPU does the work", context->message);
+    context->message[0] = '\0';
+    return ASJ_OK;
+}
+
+void asj_cl_fill(const asj_ops *ops)
+{
+    ops->gradient->planes = asj_cl_gradient;
+    ops->field->rows = asj_cl_field_rows;
+    ops->isotropic->rows = asj_cl_isotropic_rows;
+    ops->scan->rays = asj_cl_scan_rays;
+    ops->describe->frames = asj_cl_describe_frames;
+    ops->rank->partners = asj_cl_rank_partners;
 }

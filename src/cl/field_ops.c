@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 2 on the device (kernels/field.cl). */
 #include "detect.h"
+#include "overrides.h"
+#include "planes.h"
+#include "state.h"
 
 #include <asj/device.h>
 

@@ -3,6 +3,8 @@
  * too, for the steps that look at single junctions. */
 #include "detect.h"
 #include "detect/gradient.h"
+#include "overrides.h"
+#include "planes.h"
 #include "state.h"
 
 #include <math.h>

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 3 on the device (kernels/isotropic.cl): it finds the strongest branches of each candidate, the host judges them. */
 #include "detect.h"
+#include "overrides.h"
+#include "planes.h"
+#include "state.h"
 #include "core/threads.h"
 
 #include <asj/device.h>

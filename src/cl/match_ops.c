@@ -174,7 +174,7 @@ static device_view *free_view(struct asj_cl_match *match)
     return view;
 }
 
-static asj_status describe_frames(asj_context *context, const asj_match_options *options, asj_view *view)
+asj_status asj_cl_describe_frames(asj_context *context, const asj_match_options *options, asj_view *view)
 {
     const uint64_t count = view->corners.frame_count;
     const uint64_t pixels = ((uint64_t)view->pyramid.width[0] + 1) * ((uint64_t)view->pyramid.height[0] + 1);
@@ -343,7 +343,7 @@ static asj_status run_blocks(asj_context *context, struct asj_cl_match *match, b
     return status;
 }
 
-static asj_status rank_partners(asj_context *context, const asj_match_options *options, const asj_view *view1,
+asj_status asj_cl_rank_partners(asj_context *context, const asj_match_options *options, const asj_view *view1,
                                 const asj_view *view2, asj_partner *rows, asj_partner *columns)
 {
     const asj_corners *c1 = &view1->corners, *c2 = &view2->corners;
@@ -373,10 +373,4 @@ static asj_status rank_partners(asj_context *context, const asj_match_options *o
     if (status == ASJ_OK)
         status = asj_cl_read(context, &match->rows, 0, rows, bytes1);
     return status == ASJ_OK ? asj_cl_read(context, &match->columns, 0, columns, bytes2) : status;
-}
-
-void asj_cl_fill_match(asj_ops *ops)
-{
-    ops->describe_frames = describe_frames;
-    ops->rank_partners = rank_partners;
 }

@@ -1,21 +1,29 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The operations that a device takes over, by file. Each file keeps its buffers in a struct of its own, which it allocates at first
- * use, hangs into struct asj_cl (state.h) and frees here. */
+/* The operations that a device takes over, and what frees what their files keep. Each file keeps its buffers in a struct of its
+ * own, which it allocates at first use and hangs into struct asj_cl (state.h). */
 #ifndef ASJ_SRC_CL_OVERRIDES_H
 #define ASJ_SRC_CL_OVERRIDES_H
 
-#include "ops.h"
+#include "detect/isotropic.h"
+#include "detect/scan.h"
+#include "match/distance.h"
 
-/* detect_ops.c: gradient, field_rows, isotropic_rows; struct asj_cl_detect in context->cl->detect */
-void asj_cl_fill_detect(asj_ops *ops);
-void asj_cl_free_detect(asj_context *context);
+/* gradient_ops.c, field_ops.c, isotropic_ops.c; for what they keep see detect.h */
+asj_status asj_cl_gradient(asj_context *context, asj_frame *frame, const asj_detect_options *options);
+asj_status asj_cl_field_rows(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
+                             uint16_t *scratch, size_t scratch_size, uint16_t *masks);
+asj_status asj_cl_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top,
+                                 int32_t bottom, const uint16_t *masks, const size_t *starts, uint16_t *scratch,
+                                 size_t scratch_size, asj_isotropic_junction *junctions);
 
-/* scan_ops.c: scan_rays; struct asj_cl_scan in context->cl->scan */
-void asj_cl_fill_scan(asj_ops *ops);
+/* scan_ops.c; struct asj_cl_scan in context->cl->scan */
+asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);
 void asj_cl_free_scan(asj_context *context);
 
-/* match_ops.c: patches, distances; struct asj_cl_match in context->cl->match */
-void asj_cl_fill_match(asj_ops *ops);
+/* match_ops.c; struct asj_cl_match in context->cl->match */
+asj_status asj_cl_describe_frames(asj_context *context, const asj_match_options *options, asj_view *view);
+asj_status asj_cl_rank_partners(asj_context *context, const asj_match_options *options, const asj_view *view1,
+                                const asj_view *view2, asj_partner *rows, asj_partner *columns);
 void asj_cl_free_match(asj_context *context);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Planes of the frame on the device: the whole image where a buffer may be so large, else the rows that are worked on. */
+#include "planes.h"
 #include "detect.h"
 #include "state.h"
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "cache.h"
-#include "opencl.h"
 #include "error.h"
 #include "state.h"
 

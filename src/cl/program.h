@@ -32,6 +32,9 @@ extern const int32_t asj_cl_kernel_count;
 /* Number of the kernel with this name; its program is built, and context->cl->kernels[number] is there, when that succeeds. */
 asj_status asj_cl_find_kernel(asj_context *context, const char *name, int32_t *number);
 
+/* Builds all programs that have not been built yet. */
+asj_status asj_cl_build_all(asj_context *context);
+
 /* Releases all programs and kernels. */
 void asj_cl_free_programs(asj_context *context);
 

@@ -24,10 +24,7 @@ typedef struct asj_cl_limits {
     uint32_t compute_units;
     uint32_t base_alignment;    /* bytes: where a buffer's memory starts, at least */
     int32_t type;               /* ASJ_DEVICE_... (asj/device.h) */
-    int32_t host_unified;       /* 1 = shares its memory with the host */
 } asj_cl_limits;
-
-const asj_cl_limits *asj_cl_get_limits(const asj_context *context);
 
 /* ---- buffers: kept from image to image, grown when needed ---- */
 

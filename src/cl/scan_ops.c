@@ -4,6 +4,7 @@
  * CPU. */
 #include "detect.h"
 #include "overrides.h"
+#include "planes.h"
 #include "detect/ray_walk.h"
 #include "state.h"
 
@@ -262,7 +263,7 @@ static int fits(const asj_context *context, const asj_frame *frame)
            bytes <= limits->global_memory / 4;
 }
 
-static asj_status scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count)
+asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count)
 {
     struct asj_cl_scan *state;
     uint32_t counts[2] = {0, 1};
@@ -285,9 +286,4 @@ static asj_status scan_rays(asj_context *context, const asj_scan *scan, const as
     if (status != ASJ_OK && state)
         state->generation = 0; /* whatever there is may be half done */
     return status == ASJ_OK ? fetch_rays(context, scan, state, rays, count) : status;
-}
-
-void asj_cl_fill_scan(asj_ops *ops)
-{
-    ops->scan_rays = scan_rays;
 }

@@ -6,7 +6,7 @@
 #include "loader.h"
 #include "runtime.h"
 
-struct asj_cl_detect; /* detect_ops.c */
+struct asj_cl_detect; /* detect.h */
 struct asj_cl_scan;   /* scan_ops.c */
 struct asj_cl_match;  /* match_ops.c */
 
@@ -26,5 +26,10 @@ struct asj_cl {
     struct asj_cl_scan *scan;
     struct asj_cl_match *match;
 };
+
+static inline const asj_cl_limits *asj_cl_get_limits(const asj_context *context)
+{
+    return &context->cl->limits;
+}
 
 #endif

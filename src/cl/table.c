@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-#include "detect.h"
+#include "table.h"
 
 #include <string.h>
 

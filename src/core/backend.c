@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "backend.h"
-#include "opencl.h"
-#include "ops.h"
 
 int32_t asj_context_backend(const asj_context *context)
 {
@@ -10,7 +8,12 @@ int32_t asj_context_backend(const asj_context *context)
 
 const char *asj_context_device(const asj_context *context)
 {
-    return context && context->cl ? asj_cl_name(context) : NULL;
+    return context && context->cl ? context->device->name(context) : NULL;
+}
+
+asj_status asj_backend_prepare(asj_context *context)
+{
+    return context->cl ? context->device->prepare(context) : ASJ_OK;
 }
 
 static asj_status run(asj_context *context, asj_status (*call)(asj_context *context, void *arguments), void *arguments)
@@ -22,15 +25,15 @@ static asj_status run(asj_context *context, asj_status (*call)(asj_context *cont
     asj_log(context, ASJ_LOG_WARNING, "%s; done on the CPU%s", context->message, for_good ? ", as all that follows" : " instead");
     context->message[0] = '\0';
     if (for_good)
-        asj_cl_free(context);
+        context->device->free(context);
     struct asj_cl *device = context->cl;
-    const asj_ops ops = *context->ops;
+    const asj_ops *ops = context->ops;
     context->cl = NULL;
-    asj_ops_best(context->ops);
+    context->ops = context->cpu_ops;
     status = call(context, arguments);
     if (!for_good) {
         context->cl = device;
-        *context->ops = ops;
+        context->ops = ops;
     }
     return status;
 }

@@ -14,4 +14,7 @@
  * (ASJ_BACKEND_AUTO), it runs once more, without the device. Memory that the call releases is kept for the next one. */
 asj_status asj_backend_run(asj_context *context, asj_status (*call)(asj_context *context, void *arguments), void *arguments);
 
+/* Builds what the device runs, when there is one. Inside asj_backend_run(). */
+asj_status asj_backend_prepare(asj_context *context);
+
 #endif

@@ -1,70 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #define _POSIX_C_SOURCE 200809L
 #include "context.h"
-#include "detect/detect.h"
-#include "opencl.h"
-#include "ops.h"
-#include "threads.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
 
-void asj_context_options_init(asj_context_options *options)
+void asj_kept_free(asj_memory *memory, asj_kept *kept)
 {
-    if (!options)
-        return;
-    memset(options, 0, sizeof *options);
-    options->backend = ASJ_BACKEND_AUTO;
-    asj_memory_allocator(NULL, &options->allocator);
-    options->log_level = ASJ_LOG_WARNING;
-}
-
-static asj_status fill(asj_context *context, const char *library)
-{
-    context->ops = asj_allocate(&context->memory, 1, sizeof *context->ops);
-    asj_status status = context->ops ? asj_nfa_create(&context->memory, &context->nfa) : ASJ_ERROR_MEMORY;
-    if (status != ASJ_OK)
-        return status;
-    asj_ops_best(context->ops);
-    return context->options.backend == ASJ_BACKEND_CPU ? ASJ_OK : asj_cl_create(context, library);
-}
-
-asj_status asj_context_create_from(const char *library, const asj_context_options *options, asj_context **result)
-{
-    asj_context_options defaults;
-    asj_memory memory = {0};
-    if (!result)
-        return ASJ_ERROR_ARGUMENT;
-    *result = NULL;
-    asj_context_options_init(&defaults);
-    if (!options)
-        options = &defaults;
-    if (!asj_memory_allocator(options, &memory.allocator))
-        return ASJ_ERROR_ARGUMENT;
-    if (options->backend < ASJ_BACKEND_AUTO || options->backend > ASJ_BACKEND_OPENCL ||
-        options->threads < 0 || options->threads > 256)
-        return ASJ_ERROR_OPTION;
-    asj_context *context = asj_allocate_zero(&memory, 1, sizeof *context);
-    if (!context)
-        return ASJ_ERROR_MEMORY;
-    context->memory = memory;
-    context->options = *options;
-    context->threads = asj_thread_count(options->threads);
-    asj_status status = fill(context, library);
-    context->options.device = NULL; /* the caller's string need not live on */
-    if (status != ASJ_OK) {
-        asj_context_free(&context);
-        return status;
-    }
-    *result = context;
-    return ASJ_OK;
-}
-
-asj_status asj_context_create(const asj_context_options *options, asj_context **context)
-{
-    return asj_context_create_from(NULL, options, context);
+    if (kept->state)
+        kept->free(memory, kept->state);
+    kept->state = NULL;
 }
 
 void asj_context_free(asj_context **pointer)
@@ -72,10 +19,11 @@ void asj_context_free(asj_context **pointer)
     if (!pointer || !*pointer)
         return;
     asj_context *context = *pointer;
-    asj_cl_free(context);
-    asj_detector_free(&context->memory, &context->detector);
-    asj_nfa_free(&context->memory, &context->nfa);
-    asj_release(&context->memory, context->ops);
+    if (context->cl)
+        context->device->free(context);
+    asj_kept_free(&context->memory, &context->detector);
+    asj_kept_free(&context->memory, &context->null_model);
+    asj_kept_free(&context->memory, &context->tables);
     asj_memory_trim(&context->memory);
     asj_memory memory = context->memory;
     asj_release(&memory, context);
@@ -90,6 +38,11 @@ const char *asj_context_message(const asj_context *context)
 int32_t asj_context_threads(const asj_context *context)
 {
     return context ? context->threads : 0;
+}
+
+int32_t asj_context_simd(const asj_context *context)
+{
+    return context ? context->simd : ASJ_SIMD_AUTO;
 }
 
 void asj_context_memory(const asj_context *context, uint64_t *now, uint64_t *peak)

@@ -1,31 +1,45 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* What all calls with a context share. create.c, above everything, makes one and puts its parts into it. */
 #ifndef ASJ_SRC_CONTEXT_H
 #define ASJ_SRC_CONTEXT_H
 
 #include "memory.h"
-#include "detect/nfa.h"
+#include "ops.h"
 
 #include <asj/detect.h>
 
-struct asj_cl;       /* cl/state.h: an OpenCL device */
-struct asj_ops;      /* ops.h */
-struct asj_detector; /* detect.c: scratch of the detector, kept from image to image */
+/* What another part of the library keeps in a context from call to call. */
+typedef struct asj_kept {
+    void *state;                                    /* NULL = nothing yet */
+    void (*free)(asj_memory *memory, void *state);
+} asj_kept;
+
+/* What is asked of the device that works for a context. */
+typedef struct asj_device_calls {
+    const char *(*name)(const asj_context *context);
+    asj_status (*prepare)(asj_context *context); /* builds all programs that have not been built yet */
+    void (*free)(asj_context *context);          /* context->cl is NULL afterwards */
+} asj_device_calls;
 
 struct asj_context {
     asj_memory memory;
     asj_context_options options;
     int32_t threads;              /* >= 1 */
-    struct asj_ops *ops;          /* the operations in the best form that this machine has */
+    int32_t simd;                 /* ASJ_SIMD_...: the form that cpu_ops have */
+    const asj_ops *ops;           /* those in use: the device's, where there is one, or */
+    const asj_ops *cpu_ops;       /* the processor's */
     struct asj_cl *cl;            /* the device that works; NULL = none, the CPU does everything */
-    asj_nfa *nfa;
-    struct asj_detector *detector;
+    const asj_device_calls *device;
+    asj_kept tables;              /* tables.h: what the operations above point to */
+    asj_kept null_model;          /* detect/nfa.h */
+    asj_kept detector;            /* detect/detect.h: scratch and tables of the detector */
     double progress;              /* last value reported */
     int32_t device_failures;      /* backend.h */
     char message[512];
 };
 
-/* asj_context_create() with another libOpenCL than the system's, for tests; NULL = the system's. */
-asj_status asj_context_create_from(const char *library, const asj_context_options *options, asj_context **context);
+/* Frees what is kept, if anything. */
+void asj_kept_free(asj_memory *memory, asj_kept *kept);
 
 /* Stores the message of asj_context_message() and logs it as an error, unless the call may go on without the device; returns
  * `status`, so that a failing function can end with

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "device.h"
-#include "opencl.h"
 
+#include <stdio.h>
 #include <string.h>
 
 const char *asj_device_type_name(int32_t type)
@@ -96,33 +96,20 @@ typedef struct device_list {
     asj_device *devices;
 } device_list;
 
-asj_status asj_device_list_create_from(const char *library, const asj_context_options *options, asj_device_list **result)
+asj_status asj_device_list_make(asj_memory *memory, asj_device *devices, size_t count, const char *message,
+                                asj_device_list **result)
 {
-    asj_memory memory = {0};
-    if (!result)
-        return ASJ_ERROR_ARGUMENT;
-    *result = NULL;
-    if (!asj_memory_allocator(options, &memory.allocator))
-        return ASJ_ERROR_ARGUMENT;
-    device_list *made = asj_allocate_zero(&memory, 1, sizeof *made);
-    if (!made)
+    device_list *made = asj_allocate_zero(memory, 1, sizeof *made);
+    if (!made) {
+        asj_release(memory, devices);
         return ASJ_ERROR_MEMORY;
-    size_t count = 0;
-    asj_status status = asj_cl_list(&memory, library, &made->devices, &count, made->list.message, sizeof made->list.message);
-    if (status != ASJ_OK) {
-        asj_release(&memory, made);
-        return status;
     }
-    made->memory = memory;
-    made->list.devices = made->devices;
+    snprintf(made->list.message, sizeof made->list.message, "%s", message);
+    made->list.devices = made->devices = devices;
     made->list.count = (uint32_t)count;
+    made->memory = *memory;
     *result = &made->list;
     return ASJ_OK;
-}
-
-asj_status asj_device_list_create(const asj_context_options *options, asj_device_list **result)
-{
-    return asj_device_list_create_from(NULL, options, result);
 }
 
 void asj_device_list_free(asj_device_list **pointer)

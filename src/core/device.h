@@ -3,6 +3,8 @@
 #ifndef ASJ_SRC_DEVICE_H
 #define ASJ_SRC_DEVICE_H
 
+#include "memory.h"
+
 #include <asj/device.h>
 
 /* Whether a selector (asj_context_options.device) fits device number `index`. NULL and "" fit all. */
@@ -12,7 +14,8 @@ int asj_device_fits(const asj_device *device, size_t index, const char *selector
  * without a selector GPUs before accelerators before the others. ASJ_BACKEND_AUTO takes GPUs only. */
 size_t asj_device_choose(const asj_device *devices, size_t count, int32_t backend, const char *selector);
 
-/* asj_device_list_create() with another libOpenCL than the system's; NULL = the system's. */
-asj_status asj_device_list_create_from(const char *library, const asj_context_options *options, asj_device_list **list);
+/* The public list of these records, which it takes over: they come from `memory`, and are released when this fails. `message` is
+ * that of asj_device_list. */
+asj_status asj_device_list_make(asj_memory *memory, asj_device *devices, size_t count, const char *message, asj_device_list **list);
 
 #endif

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "image.h"
-#include "ops.h"
 #include "threads.h"
 
 #include <math.h>
@@ -148,10 +147,10 @@ static void load_bytes(uint16_t *gray, const uint8_t *bytes, int32_t width, cons
             gray[x] = (uint16_t)(bytes[x] * ASJ_GRAY_ONE);
 }
 
-static void load_colour(const asj_ops *ops, uint16_t *gray, const uint8_t *bytes, int32_t width, int32_t step, int32_t red,
+static void load_colour(const asj_image_ops *ops, uint16_t *gray, const uint8_t *bytes, int32_t width, int32_t step, int32_t red,
                         const uint16_t *levels)
 {
-    ops->image_luma(bytes, width, step, red, gray);
+    ops->luma(bytes, width, step, red, gray);
     if (levels)
         for (int32_t x = 0; x < width; x++)
             gray[x] = levels[gray[x] / ASJ_GRAY_ONE];
@@ -159,7 +158,7 @@ static void load_colour(const asj_ops *ops, uint16_t *gray, const uint8_t *bytes
 
 /* How samples become levels. */
 typedef struct conversion {
-    const asj_ops *ops;
+    const asj_image_ops *ops;
     float scale;
     const uint16_t *levels; /* of 8-bit samples; NULL = level 255 is white */
     uint16_t table[256];
@@ -187,7 +186,7 @@ static int load_row(const conversion *c, uint16_t *gray, const void *row, const 
 static void prepare_conversion(const asj_context *context, const asj_image *image, conversion *c)
 {
     const float standard = find_format(image->format)->white, white = image->white > 0 ? image->white : standard;
-    c->ops = context->ops;
+    c->ops = context->ops->image;
     c->scale = (float)ASJ_GRAY_MAX / white;
     for (int i = 0; i < 256; i++)
         c->table[i] = cut((float)i * c->scale);
@@ -213,3 +212,5 @@ asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_imag
             return asj_fail(context, ASJ_ERROR_IMAGE, "row %d of the image holds NaN or infinity", (int)y);
     return ASJ_OK;
 }
+
+const asj_image_ops asj_image_reference = {.luma = asj_image_luma};

@@ -44,6 +44,12 @@ void asj_frame_free(asj_memory *memory, asj_frame *frame);
  * red at byte 0 or 2, blue at the other, green between them. */
 void asj_image_luma(const uint8_t *pixels, int32_t width, int32_t step, int32_t red, uint16_t *gray);
 
+/* Operations (ops.h). */
+typedef struct asj_image_ops {
+    void (*luma)(const uint8_t *pixels, int32_t width, int32_t step, int32_t red, uint16_t *gray); /* asj_image_luma() */
+} asj_image_ops;
+extern const asj_image_ops asj_image_reference;
+
 /* Fills frame->gray from the view (asj_frame_prepare() first). Finds NaN and infinity. */
 asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image);
 

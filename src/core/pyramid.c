@@ -4,7 +4,6 @@
  * Why integers: planes and interpolation weights (8 bits) are exact, so every back end can give the same bits. The loss is below
  * 1/256 of a grey level. */
 #include "pyramid.h"
-#include "ops.h"
 
 #include <math.h>
 #include <string.h>
@@ -41,7 +40,8 @@ void asj_blur_row(const uint16_t *const *rows, const int32_t *taps, int32_t radi
 }
 
 /* Along a line that has `radius` copies of its border before and after it. */
-static void blur_line(const asj_ops *ops, const uint16_t *line, int32_t width, const int32_t *taps, int32_t radius, uint16_t *to)
+static void blur_line(const asj_pyramid_ops *ops, const uint16_t *line, int32_t width, const int32_t *taps, int32_t radius,
+                      uint16_t *to)
 {
     const uint16_t *rows[ASJ_BLUR_ROWS] = {line};
     for (int32_t i = 1; i <= radius; i++) {
@@ -52,8 +52,8 @@ static void blur_line(const asj_ops *ops, const uint16_t *line, int32_t width, c
 }
 
 /* Vertically: one row of output from the rows around it. */
-static void blur_column(const asj_ops *ops, const uint16_t *plane, ptrdiff_t stride, int32_t width, int32_t height, int32_t y,
-                        const int32_t *taps, int32_t radius, uint16_t *to)
+static void blur_column(const asj_pyramid_ops *ops, const uint16_t *plane, ptrdiff_t stride, int32_t width, int32_t height,
+                        int32_t y, const int32_t *taps, int32_t radius, uint16_t *to)
 {
     const uint16_t *rows[ASJ_BLUR_ROWS] = {plane + y * stride};
     for (int32_t i = 1; i <= radius; i++) {
@@ -99,11 +99,11 @@ static asj_status fill_base(asj_context *context, const asj_frame *frame, double
             line[-i] = line[0];
             line[width - 1 + i] = line[width - 1];
         }
-        blur_line(context->ops, line, width, taps, radius, across + y * stride);
+        blur_line(context->ops->pyramid, line, width, taps, radius, across + y * stride);
     }
 #pragma omp parallel for num_threads(context->threads) schedule(static)
     for (int32_t y = 0; y < height; y++)
-        blur_column(context->ops, across, stride, width, height, y, taps, radius, pyramid->plane[0] + y * stride);
+        blur_column(context->ops->pyramid, across, stride, width, height, y, taps, radius, pyramid->plane[0] + y * stride);
     asj_release(&context->memory, across);
     asj_release(&context->memory, scratch);
     return ASJ_OK;
@@ -182,7 +182,7 @@ int32_t asj_pyramid_level(const asj_pyramid *pyramid, double area)
 int32_t asj_pyramid_sample(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
                            uint16_t *grey)
 {
-    return pyramid->ops->pyramid_sample(pyramid, level, x, y, count, grey);
+    return pyramid->ops->pyramid->sample(pyramid, level, x, y, count, grey);
 }
 
 int32_t asj_pyramid_sample_reference(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
@@ -211,3 +211,5 @@ int32_t asj_pyramid_sample_reference(const asj_pyramid *pyramid, int32_t level, 
     }
     return inside;
 }
+
+const asj_pyramid_ops asj_pyramid_reference = {.blur_row = asj_blur_row, .sample = asj_pyramid_sample_reference};

@@ -15,7 +15,7 @@ typedef struct asj_pyramid {
     int32_t width[ASJ_PYRAMID_LEVELS];
     int32_t height[ASJ_PYRAMID_LEVELS];
     uint16_t *plane[ASJ_PYRAMID_LEVELS]; /* row y of level l at [y * (width[l] + 1)] */
-    const struct asj_ops *ops;           /* the context's */
+    const asj_ops *ops;                  /* the context's */
 } asj_pyramid;
 
 /* From an image view: blurred with a Gaussian of standard deviation `smoothing` px (0 = not), then halved. Statuses as
@@ -39,5 +39,14 @@ int32_t asj_pyramid_sample_reference(const asj_pyramid *pyramid, int32_t level, 
 #define ASJ_BLUR_RADIUS 6 /* 3 sigma of the largest blur */
 #define ASJ_BLUR_ROWS (2 * ASJ_BLUR_RADIUS + 1)
 void asj_blur_row(const uint16_t *const *rows, const int32_t *taps, int32_t radius, int32_t width, uint16_t *to);
+
+/* Operations (ops.h). */
+typedef struct asj_pyramid_ops {
+    /* asj_blur_row() */
+    void (*blur_row)(const uint16_t *const *rows, const int32_t *taps, int32_t radius, int32_t width, uint16_t *to);
+    /* asj_pyramid_sample_reference() */
+    int32_t (*sample)(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count, uint16_t *grey);
+} asj_pyramid_ops;
+extern const asj_pyramid_ops asj_pyramid_reference;
 
 #endif

@@ -31,6 +31,12 @@ const char *asj_stage_name(int32_t stage)
     return stage >= 0 && stage < ASJ_STAGE_COUNT ? names[stage] : "unknown";
 }
 
+const char *asj_simd_name(int32_t simd)
+{
+    static const char *const names[ASJ_SIMD_COUNT] = {"auto", "reference", "sse2", "avx2", "avx512", "neon"};
+    return simd >= 0 && simd < ASJ_SIMD_COUNT ? names[simd] : "unknown";
+}
+
 uint32_t asj_version(void)
 {
     return ASJ_VERSION;

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj_detect(): the paper's steps in order. */
 #include "core/backend.h"
-#include "detect.h"
-#include "opencl.h"
-#include "ops.h"
 #include "detect_options.h"
+#include "nfa.h"
 #include "result.h"
 #include "stages.h"
 
@@ -12,19 +10,6 @@
 #include <string.h>
 
 #define TWO_PI 6.283185307179586
-
-void asj_detector_free(asj_memory *memory, asj_detector **pointer)
-{
-    asj_detector *detector = *pointer;
-    if (!detector)
-        return;
-    asj_frame_free(memory, &detector->frame);
-    asj_field_free(memory, &detector->field);
-    asj_isotropic_free(memory, &detector->isotropic);
-    asj_scan_cache_free(memory, &detector->scan_cache);
-    asj_release(memory, detector);
-    *pointer = NULL;
-}
 
 /* The stage's time is what has passed since *start. */
 static void stop_watch(double *stage_ms, int32_t stage, double *start)
@@ -160,7 +145,7 @@ static asj_local_branch local_branch(const asj_detection_run *d, asj_field_branc
     const double sum = n * ASJ_GAMMA_MEAN + strength * ASJ_GAMMA_SD * sqrt(n);
     out.angle = (float)(branch.angle * (TWO_PI / 65536));
     out.strength = (float)strength;
-    out.log10_nfa = (float)((log(s->count) + asj_nfa_log_sector_tail(d->context->nfa, sum, n)) / log(10));
+    out.log10_nfa = (float)((log(s->count) + asj_nfa_log_sector_tail(asj_nfa_of(d->context), sum, n)) / log(10));
     return out;
 }
 
@@ -175,7 +160,7 @@ static void field_row(const asj_detection_run *d, int32_t y, asj_local_branch *o
         const int32_t count = frame->width - first < PART ? frame->width - first : PART;
         for (int32_t i = 0; i < count; i++)
             pixels[i] = (asj_pixel){first + i, y};
-        d->context->ops->field_pixels(&d->detector->field, frame, pixels, count, asj_stage_scratch(d), found);
+        d->context->ops->field->pixels(&d->detector->field, frame, pixels, count, asj_stage_scratch(d), found);
         for (int32_t i = 0; i < count; i++)
             for (int b = 0; b < ASJ_FIELD_BRANCHES; b++)
                 *out++ = local_branch(d, found[i][b]);
@@ -220,7 +205,7 @@ asj_status asj_local_field(asj_context *context, const asj_image *image, const a
 static asj_status build(asj_context *context, void *arguments)
 {
     (void)arguments;
-    return context->cl ? asj_cl_build_all(context) : ASJ_OK;
+    return asj_backend_prepare(context);
 }
 
 /* Dark with a bright rectangle: every step of the detector has something to do. */

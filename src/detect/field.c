@@ -17,7 +17,7 @@
  * for corners so weak that few of their pixels reach candidate_strength; a little less of that (2.4 instead of 3) brings most of
  * them back. */
 #include "field.h"
-#include "ops.h"
+#include "nfa.h"
 #include "core/threads.h"
 
 #include <math.h>
@@ -32,7 +32,7 @@
 
 static uint16_t strength_of_tail(const asj_context *context, const asj_sectors *s, int32_t k, double log_p)
 {
-    double sum = asj_nfa_sector_threshold(context->nfa, log_p, s->size[k]) * (1 << s->gamma_bits);
+    double sum = asj_nfa_sector_threshold(asj_nfa_of(context), log_p, s->size[k]) * (1 << s->gamma_bits);
     sum = ceil(sum);
     uint16_t strength = asj_sector_strength(s, k, (uint16_t)(sum < 65535 ? sum : 65535));
     return strength > 0 ? strength : 1;
@@ -294,7 +294,9 @@ asj_status asj_field_rows(asj_context *context, const asj_field *field, const as
 #ifdef _OPENMP
         thread = (size_t)omp_get_thread_num();
 #endif
-        context->ops->field_tile(field, frame, run, runs, top, bottom, scratch + thread * scratch_size, masks);
+        context->ops->field->tile(field, frame, run, runs, top, bottom, scratch + thread * scratch_size, masks);
     }
     return ASJ_OK;
 }
+
+const asj_field_ops asj_field_reference = {.rows = asj_field_rows, .tile = asj_field_tile, .pixels = asj_field_pixels};

@@ -103,4 +103,18 @@ void asj_field_thin(const asj_field *field, const asj_frame *frame, int32_t run,
 /* Elements of a plane of a tile's row (sector_plan.h) whose columns are candidate_step apart. */
 size_t asj_field_plane_stride(const asj_field *field);
 
+/* Operations (core/ops.h): step 2 of a band of rows, which a device replaces, and its parts for a tile and for single pixels. */
+typedef struct asj_field_ops {
+    /* asj_field_rows() */
+    asj_status (*rows)(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
+                       uint16_t *scratch, size_t scratch_size, uint16_t *masks);
+    /* asj_field_tile() */
+    void (*tile)(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
+                 uint16_t *scratch, uint16_t *masks);
+    /* asj_field_pixels() */
+    void (*pixels)(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,
+                   asj_field_branch (*branches)[ASJ_FIELD_BRANCHES]);
+} asj_field_ops;
+extern const asj_field_ops asj_field_reference;
+
 #endif

@@ -26,7 +26,6 @@
  * |g| and the sum of the high bytes.
  * ">>" of a negative number is the arithmetic shift on every compiler that we know; asj_gradient() checks it at compile time. */
 #include "gradient.h"
-#include "ops.h"
 #include "core/threads.h"
 
 #include <math.h>
@@ -103,7 +102,7 @@ static void find_row(const asj_frame *frame, int32_t y, asj_gradient_row *row)
 
 /* Rows first .. last - 1. `scratch` holds gradient_scratch() zeros: the column sums in two halves, |g| of the last five rows, and a
  * row of the plane that is constant. */
-static void gradient_band(const asj_ops *ops, const asj_frame *frame, uint32_t epsilon, int32_t first, int32_t last,
+static void gradient_band(const asj_gradient_ops *ops, const asj_frame *frame, uint32_t epsilon, int32_t first, int32_t last,
                           uint16_t *scratch)
 {
     const size_t length = asj_gradient_row_length(frame->width);
@@ -115,13 +114,13 @@ static void gradient_band(const asj_ops *ops, const asj_frame *frame, uint32_t e
             find_row(frame, y, &row);
         else
             row.above = row.gray = row.below = zeros;
-        ops->gradient_slide(&row, ring, low, high);
+        ops->slide(&row, ring, low, high);
         if (y < first + 2)
             continue;
         const int32_t centre = y - 2;
         row.window_rows = (y < frame->height ? y : frame->height - 1) - (centre > 2 ? centre - 2 : 0) + 1;
         find_row(frame, centre, &row);
-        ops->gradient_normalise(&row, norms + (size_t)(centre % 5) * length, low, high,
+        ops->normalise(&row, norms + (size_t)(centre % 5) * length, low, high,
                                 frame->gradient_x + (ptrdiff_t)centre * frame->stride,
                                 frame->gradient_y + (ptrdiff_t)centre * frame->stride);
     }
@@ -181,7 +180,7 @@ asj_status asj_gradient(asj_context *context, asj_frame *frame, const asj_detect
         const int32_t first = (int32_t)((int64_t)frame->height * band / bands);
         const int32_t last = (int32_t)((int64_t)frame->height * (band + 1) / bands);
         if (first < last)
-            gradient_band(context->ops, frame, epsilon, first, last, scratch + (size_t)band * size);
+            gradient_band(context->ops->gradient, frame, epsilon, first, last, scratch + (size_t)band * size);
     }
     if (options->standardise) {
         standardise(frame, frame->gradient_x);
@@ -234,3 +233,6 @@ void asj_gradient_sample(const asj_frame *frame, double x, double y, double *gx,
     const uint16_t *const row[4] = {middle - frame->stride, middle, middle + frame->stride, middle + 2 * frame->stride};
     sample(row, column, x - x0, y - y0, gx, gy);
 }
+
+const asj_gradient_ops asj_gradient_reference = {
+    .planes = asj_gradient, .slide = asj_gradient_slide, .normalise = asj_gradient_normalise};

@@ -12,7 +12,7 @@
 /* Fills frame->gradient_x and frame->gradient_y from frame->gray. */
 asj_status asj_gradient(asj_context *context, asj_frame *frame, const asj_detect_options *options);
 
-/* ---- parts of it, for one row: what vector forms replace (ops.h) ---- */
+/* ---- parts of it, for one row ---- */
 
 /* Elements on either side of the pixels in the rows of norms and sums, and how long those rows are with them. */
 #define ASJ_GRADIENT_PAD 32
@@ -50,5 +50,17 @@ asj_gradient_factors asj_gradient_set_factors(int32_t columns, int32_t rows, uin
 /* Gradient of the gray plane itself at a sub-pixel place, in grey levels per pixel: bilinear between the central differences of
  * the four pixels around; places outside are moved to the nearest inside. */
 void asj_gradient_sample(const asj_frame *frame, double x, double y, double *gx, double *gy);
+
+/* Operations (core/ops.h): step 1 as a whole, which a device replaces, and its parts for a row. */
+typedef struct asj_gradient_ops {
+    /* asj_gradient() */
+    asj_status (*planes)(asj_context *context, asj_frame *frame, const asj_detect_options *options);
+    /* asj_gradient_slide() */
+    void (*slide)(const asj_gradient_row *row, uint16_t *norms, uint16_t *low, uint16_t *high);
+    /* asj_gradient_normalise() */
+    void (*normalise)(const asj_gradient_row *row, const uint16_t *norms, const uint16_t *low, const uint16_t *high,
+                      int16_t *gx, int16_t *gy);
+} asj_gradient_ops;
+extern const asj_gradient_ops asj_gradient_reference;
 
 #endif

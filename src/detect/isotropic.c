@@ -11,7 +11,7 @@
  * junctions at less than half the cost (5 finds nothing that 7 does not, 10 hardly anything). Among overlapping junctions the more
  * meaningful one stays; `more_branches_win` restores the rule of ACJ that M + 1 branches within half a radius replace M. */
 #include "isotropic.h"
-#include "ops.h"
+#include "nfa.h"
 #include "core/threads.h"
 
 #include <math.h>
@@ -37,7 +37,7 @@ static asj_status make_tails(asj_context *context, asj_isotropic *test, int32_t 
     if (!table)
         return ASJ_ERROR_MEMORY;
     for (size_t i = 0; i < entries; i++)
-        table[i] = asj_nfa_log_sector_tail(context->nfa, (double)i / ASJ_TAIL_STEPS, pixels);
+        table[i] = asj_nfa_log_sector_tail(asj_nfa_of(context), (double)i / ASJ_TAIL_STEPS, pixels);
     test->tail_tables[pixels] = table;
     return ASJ_OK;
 }
@@ -338,7 +338,7 @@ asj_status asj_isotropic_rows(asj_context *context, const asj_isotropic *test, c
         thread = (size_t)omp_get_thread_num();
 #endif
         if (starts[last] > starts[first])
-            context->ops->isotropic_band(test, frame, top + first, top + last, masks, scratch + thread * scratch_size,
+            context->ops->isotropic->band(test, frame, top + first, top + last, masks, scratch + thread * scratch_size,
                                          junctions + starts[first]);
     }
     return ASJ_OK;
@@ -465,3 +465,5 @@ size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const
         qsort(junctions, kept, sizeof *junctions, in_rows);
     return kept;
 }
+
+const asj_isotropic_ops asj_isotropic_reference = {.rows = asj_isotropic_rows, .band = asj_isotropic_band};

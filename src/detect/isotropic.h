@@ -88,4 +88,16 @@ size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const
                           int32_t width, int32_t height, void *scratch);
 size_t asj_isotropic_thin_scratch(size_t count, int32_t width, int32_t height);
 
+/* Operations (core/ops.h): step 3 by all threads, which a device replaces, and for the rows of one. */
+typedef struct asj_isotropic_ops {
+    /* asj_isotropic_rows() */
+    asj_status (*rows)(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
+                       const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
+                       asj_isotropic_junction *junctions);
+    /* asj_isotropic_band() */
+    void (*band)(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
+                 uint16_t *scratch, asj_isotropic_junction *junctions);
+} asj_isotropic_ops;
+extern const asj_isotropic_ops asj_isotropic_reference;
+
 #endif

@@ -15,7 +15,6 @@
  * Neighbouring samples share pixels, so s^2 is multiplied by factors that make errors and stated uncertainties agree on synthetic
  * scenes (tests/accuracy). */
 #include "line_fit.h"
-#include "ops.h"
 
 #include <math.h>
 
@@ -44,7 +43,7 @@ typedef struct line {
 } line;
 
 /* Those whose gradient points along +n are of sign 1, along -n of sign 0. */
-static void collect(const asj_ops *ops, const asj_frame *frame, double x, double y, double ux, double uy,
+static void collect(const asj_line_ops *ops, const asj_frame *frame, double x, double y, double ux, double uy,
                     const asj_line_range *range, double half_width, const line *around, samples *out)
 {
     const int32_t reach = (int32_t)ceil(half_width);
@@ -67,7 +66,7 @@ static void collect(const asj_ops *ops, const asj_frame *frame, double x, double
     profile->y = (int32_t)floor(y);
     profile->origin_x = (float)(x - profile->x);
     profile->origin_y = (float)(y - profile->y);
-    ops->line_profile(frame, profile, &out->sums);
+    ops->profile(frame, profile, &out->sums);
 }
 
 /* From sums over k: t = first + k step. */
@@ -144,7 +143,7 @@ static int choose(const samples *in, const asj_line_range *range, int variances,
     return 1;
 }
 
-int asj_line_fit(const asj_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
+int asj_line_fit(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
                  asj_draft_branch *branch)
 {
     const double ux = cos(branch->angle), uy = sin(branch->angle);
@@ -194,7 +193,7 @@ static int solve_sums(const asj_line_sums *sums, const asj_rough_line *rough, do
     return 1;
 }
 
-int asj_line_guess(const asj_ops *ops, const asj_frame *frame, double x, double y, const double t[2], double half_width,
+int asj_line_guess(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const double t[2], double half_width,
                    asj_rough_line *rough)
 {
     const double wide = half_width + 0.5 * rough->apart, middle = 0.5 * (t[0] + t[1]), ux = rough->ux, uy = rough->uy;
@@ -203,7 +202,7 @@ int asj_line_guess(const asj_ops *ops, const asj_frame *frame, double x, double 
     line lines[2], found;
     asj_line_band_set(frame, x + middle * ux - rough->offset * uy, y + middle * uy + rough->offset * ux, ux, uy,
                       0.5 * (t[1] - t[0]), wide < 4.5 ? wide : 4.5, &band);
-    ops->line_sums(frame, &band, sums);
+    ops->sums(frame, &band, sums);
     const int strong = sums[1].w > sums[0].w;
     double apart = 0;
     if (!solve_sums(&sums[strong], rough, middle, &lines[strong]))

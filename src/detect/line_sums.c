@@ -222,3 +222,5 @@ int asj_line_profile_inside(const asj_frame *frame, const asj_line_profile *prof
     }
     return 1;
 }
+
+const asj_line_ops asj_line_reference = {.sums = asj_line_sums_of, .profile = asj_line_profile_of};

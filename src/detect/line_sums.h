@@ -79,4 +79,12 @@ static inline void asj_line_band_rows(const asj_line_band *band, int32_t column,
     *last = *last < band->bottom ? *last : band->bottom;
 }
 
+/* Operations (core/ops.h). */
+typedef struct asj_line_ops {
+    /* asj_line_sums_of(), asj_line_profile_of() */
+    void (*sums)(const asj_frame *frame, const asj_line_band *band, asj_line_sums sums[2]);
+    void (*profile)(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums);
+} asj_line_ops;
+extern const asj_line_ops asj_line_reference;
+
 #endif

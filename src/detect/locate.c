@@ -108,7 +108,7 @@ static void fit_branches(const asj_context *context, const asj_frame *frame, con
 {
     int keep[ASJ_MAX_BRANCHES];
     for (int32_t i = 0; i < draft->branch_count; i++)
-        keep[i] = asj_line_fit(context->ops, frame, draft->x, draft->y, range, &draft->branches[i]);
+        keep[i] = asj_line_fit(context->ops->line, frame, draft->x, draft->y, range, &draft->branches[i]);
     asj_draft_select(draft, keep);
 }
 
@@ -120,7 +120,7 @@ static void guess_lines(const asj_context *context, const asj_frame *frame, doub
     int keep[ASJ_MAX_BRANCHES], kept = 0;
     for (int32_t i = 0; i < draft->branch_count; i++) {
         lines[kept] = lines[i];
-        keep[i] = asj_line_guess(context->ops, frame, draft->x, draft->y, t, half_width, &lines[kept]);
+        keep[i] = asj_line_guess(context->ops->line, frame, draft->x, draft->y, t, half_width, &lines[kept]);
         kept += keep[i];
     }
     asj_draft_select(draft, keep);

@@ -445,6 +445,15 @@ asj_status asj_nfa_create(asj_memory *memory, asj_nfa **nfa)
     return *nfa ? ASJ_OK : ASJ_ERROR_MEMORY;
 }
 
+asj_status asj_nfa_open(asj_context *context)
+{
+    asj_nfa *nfa;
+    if (asj_nfa_create(&context->memory, &nfa) != ASJ_OK)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the tables of the null model");
+    context->null_model = (asj_kept){nfa, asj_release}; /* one block */
+    return ASJ_OK;
+}
+
 void asj_nfa_free(asj_memory *memory, asj_nfa **nfa)
 {
     if (!nfa)

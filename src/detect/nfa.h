@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_NFA_H
 #define ASJ_SRC_NFA_H
 
-#include "core/memory.h"
+#include "core/context.h"
 
 /* Mean and standard deviation of one pairwise junction-ness gamma under the null model (closed forms in nfa.c). */
 #define ASJ_GAMMA_MEAN 0.330494606292647
@@ -17,6 +17,15 @@ typedef struct asj_nfa asj_nfa;
 
 asj_status asj_nfa_create(asj_memory *memory, asj_nfa **nfa);
 void asj_nfa_free(asj_memory *memory, asj_nfa **nfa);
+
+/* Makes those of a context, which frees them. */
+asj_status asj_nfa_open(asj_context *context);
+
+/* Those of a context. */
+static inline const asj_nfa *asj_nfa_of(const asj_context *context)
+{
+    return context->null_model.state;
+}
 
 /* ln F(t; n): natural logarithm of P(gamma_1 + .. + gamma_n >= t) under the null model, n >= 1. 0 for t <= 0. */
 double asj_nfa_log_sector_tail(const asj_nfa *nfa, double t, int32_t n);

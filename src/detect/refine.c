@@ -11,6 +11,7 @@
 #include "refine.h"
 #include "line_fit.h"
 #include "locate.h"
+#include "nfa.h"
 #include "strip.h"
 
 #include <math.h>
@@ -102,10 +103,10 @@ static void follow_line(const asj_context *context, const asj_frame *frame, cons
         const double last = fmin(end, reach), t[2] = {first, last};
         const asj_line_range range = {first, last, {WIDE, HALF_WIDTH, 0}, 2};
         asj_rough_line line = asj_rough_line_of(&longer);
-        if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, &line))
+        if (!asj_line_guess(context->ops->line, frame, draft->x, draft->y, t, WIDE, &line))
             return;
         asj_rough_line_keep(&line, &longer);
-        if (!asj_line_fit(context->ops, frame, draft->x, draft->y, &range, &longer) ||
+        if (!asj_line_fit(context->ops->line, frame, draft->x, draft->y, &range, &longer) ||
             (reach > NEAR_PART && fabs(longer.offset - branch->offset) > BENT * sqrt(branch->offset_variance)))
             return;
         *branch = longer;
@@ -137,7 +138,7 @@ static void find_line(const asj_context *context, const asj_frame *frame, const 
     for (int32_t rounds = 0; rounds < 2; reach *= 2) {
         const double t[2] = {first_px(branch), fmin(end, reach)};
         const asj_rough_line before = line;
-        if (!asj_line_guess(context->ops, frame, draft->x, draft->y, t, WIDE, &line))
+        if (!asj_line_guess(context->ops->line, frame, draft->x, draft->y, t, WIDE, &line))
             break;
         const double turn = fabs(before.ux * line.uy - before.uy * line.ux); /* its sine */
         rounds += reach < end ? 0 : turn * end > SETTLED ? 1 : 2;

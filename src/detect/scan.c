@@ -4,8 +4,8 @@
  * Rays ask for local junctions at a few pixels here and there. Vector forms compute those of 32 pixels in little more than the time
  * of one, so many rays take their steps together. */
 #include "scan.h"
+#include "nfa.h"
 
-#include "ops.h"
 #include "ray_walk.h"
 #include "scan_cache.h"
 #include "core/threads.h"
@@ -23,7 +23,7 @@ void asj_scan_set_size(const asj_context *context, const asj_detect_options *opt
 {
     const double log_tests = 0.5 * log((double)width * height);
     const double log_p = fmin(log(options->scan_epsilon) - log_tests, 0);
-    const double threshold = asj_nfa_arc_threshold(context->nfa, log_p, 2 * options->arc_half_width + 1);
+    const double threshold = asj_nfa_arc_threshold(asj_nfa_of(context), log_p, 2 * options->arc_half_width + 1);
     scan->threshold = (int32_t)fmax(1, ceil(threshold * ASJ_STRENGTH_ONE));
 }
 
@@ -92,7 +92,7 @@ static void look_up(const follower *f, const asj_arc_sample *at, asj_field_branc
 static void compute_missing(const follower *f)
 {
     group *g = f->rays;
-    f->ops->field_pixels(f->scan->field, f->frame, g->pixels, g->missing, f->scratch, g->computed);
+    f->ops->field->pixels(f->scan->field, f->frame, g->pixels, g->missing, f->scratch, g->computed);
     for (int32_t i = 0; i < g->missing; i++) {
         memcpy(g->wanted[i], g->computed[i], sizeof g->computed[i]);
         asj_scan_cache_put(f->cache, f->thread, g->pixels[i], g->computed[i]);
@@ -196,3 +196,5 @@ asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_f
     asj_scan_cache_free(&context->memory, &own);
     return status;
 }
+
+const asj_scan_ops asj_scan_reference = {.rays = asj_scan_rays};

@@ -42,4 +42,11 @@ void asj_scan_set_size(const asj_context *context, const asj_detect_options *opt
 /* Follows `count` rays. */
 asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);
 
+/* Operations (core/ops.h). */
+typedef struct asj_scan_ops {
+    /* asj_scan_rays() */
+    asj_status (*rays)(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);
+} asj_scan_ops;
+extern const asj_scan_ops asj_scan_reference;
+
 #endif

@@ -23,6 +23,7 @@
  * Border: outside the image the gradient is zero. Sectors keep their full number of pixels there, so evidence is never invented and
  * the number of false alarms stays a bound; branches that point inwards lose nothing. */
 #include "sector.h"
+#include "nfa.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,6 @@
 #include "stages.h"
 #include "ends.h"
 #include "gradient.h"
-#include "ops.h"
 #include "refine.h"
 #include "core/threads.h"
 
@@ -17,14 +16,24 @@
 #define LEAST_JUNCTIONS 4 /* for a thread: about 40 us */
 #define LEAST_LIST 256    /* elements that there is room for, so that the next of a stream of pictures needs no more */
 
+static void free_detector(asj_memory *memory, void *state)
+{
+    struct asj_detector *detector = state;
+    asj_frame_free(memory, &detector->frame);
+    asj_field_free(memory, &detector->field);
+    asj_isotropic_free(memory, &detector->isotropic);
+    asj_scan_cache_free(memory, &detector->scan_cache);
+    asj_release(memory, detector);
+}
+
 static asj_status prepare_tables(asj_context *context, const asj_detect_options *options)
 {
-    struct asj_detector *detector = context->detector;
+    struct asj_detector *detector = context->detector.state;
     if (!detector) {
         detector = asj_allocate_zero(&context->memory, 1, sizeof *detector);
         if (!detector)
             return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the detector");
-        context->detector = detector;
+        context->detector = (asj_kept){detector, free_detector};
     }
     if (detector->ready && memcmp(&detector->options, options, sizeof *options) == 0)
         return ASJ_OK;
@@ -47,11 +56,12 @@ asj_status asj_stage_prepare(asj_detection_run *d, int32_t width, int32_t height
 {
     asj_context *context = d->context;
     asj_status status = prepare_tables(context, d->options);
-    if (status == ASJ_OK)
-        status = asj_frame_prepare(context, &context->detector->frame, width, height);
     if (status != ASJ_OK)
         return status;
-    struct asj_detector *detector = d->detector = context->detector;
+    struct asj_detector *detector = d->detector = context->detector.state;
+    status = asj_frame_prepare(context, &detector->frame, width, height);
+    if (status != ASJ_OK)
+        return status;
     if (width != detector->width || height != detector->height) {
         asj_isotropic_set_size(d->options, width, height, &detector->isotropic);
         asj_scan_set_size(context, d->options, width, height, &detector->scan);
@@ -138,7 +148,7 @@ asj_status asj_stage_gradient(asj_detection_run *d, const asj_image *image)
     asj_frame *frame = &d->detector->frame;
     asj_status status = asj_frame_load(d->context, frame, image);
     if (status == ASJ_OK)
-        status = d->context->ops->gradient(d->context, frame, d->options);
+        status = d->context->ops->gradient->planes(d->context, frame, d->options);
     if (status != ASJ_OK)
         return status;
     dump_plane(d, ASJ_DUMP_PLANE_U16, "gray", frame->gray, 1.0 / ASJ_GRAY_ONE);
@@ -187,7 +197,7 @@ asj_status asj_stage_candidates(asj_detection_run *d)
         return asj_fail(d->context, ASJ_ERROR_MEMORY, "no memory for the candidates");
     for (int32_t top = 0; top < height; top += ASJ_ROW_GROUP) {
         const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
-        asj_status status = d->context->ops->field_rows(d->context, &d->detector->field, frame, top, bottom, d->scratch,
+        asj_status status = d->context->ops->field->rows(d->context, &d->detector->field, frame, top, bottom, d->scratch,
                                                         d->scratch_size, d->candidates);
         if (status == ASJ_OK)
             status = asj_progress(d->context, ASJ_STAGE_CANDIDATES, 0.05 + 0.45 * bottom / height);
@@ -226,8 +236,8 @@ static asj_status test_candidates(asj_detection_run *d)
             break;
         }
         if (total > 0)
-            status = d->context->ops->isotropic_rows(d->context, &d->detector->isotropic, frame, top, bottom, d->candidates, starts,
-                                                     d->scratch, d->scratch_size, records);
+            status = d->context->ops->isotropic->rows(d->context, &d->detector->isotropic, frame, top, bottom, d->candidates,
+                                                      starts, d->scratch, d->scratch_size, records);
         if (status != ASJ_OK)
             break;
         const asj_isotropic_junction *tested = records;
@@ -361,7 +371,7 @@ static int by_strip(const void *a, const void *b)
 
 static asj_status scan_rays(asj_detection_run *d, asj_ray *rays, size_t count)
 {
-    return d->context->ops->scan_rays(d->context, &d->detector->scan, &d->detector->frame, rays, count);
+    return d->context->ops->scan->rays(d->context, &d->detector->scan, &d->detector->frame, rays, count);
 }
 
 static asj_status scan_branches(asj_detection_run *d, asj_ray *rays, asj_draft_branch **branches)

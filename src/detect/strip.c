@@ -18,7 +18,7 @@
  * pixels away, across a rim or a gap, has less there than noise would have. */
 #include "strip.h"
 #include "gradient.h"
-#include "ops.h"
+#include "nfa.h"
 
 #include <math.h>
 #include <string.h>
@@ -89,7 +89,7 @@ static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame,
     walk.first = (int32_t)fmax(floor(fmin(start, end) - walk.half_width), 0);
     walk.last = (int32_t)fmin(ceil(fmax(start, end) + walk.half_width), size - 1);
     asj_strip_sums sums;
-    context->ops->strip_sums(frame, &walk, &sums);
+    context->ops->strip->sums(frame, &walk, &sums);
     sums.gamma /= ASJ_GRADIENT_ONE;
     sums.near_gamma /= ASJ_GRADIENT_ONE;
     return sums;
@@ -98,7 +98,7 @@ static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame,
 static double log_nfa(const asj_context *context, const asj_frame *frame, double gamma, int32_t pixels)
 {
     const double log_tests = 1.5 * log((double)frame->width * frame->height);
-    return pixels ? log_tests + asj_nfa_log_sector_tail(context->nfa, gamma, pixels) : HUGE_VAL;
+    return pixels ? log_tests + asj_nfa_log_sector_tail(asj_nfa_of(context), gamma, pixels) : HUGE_VAL;
 }
 
 int asj_strip_passes(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double x, double y,
@@ -120,3 +120,5 @@ asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, con
         strip.near_strength = (s.near_gamma - s.near_pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(s.near_pixels));
     return strip;
 }
+
+const asj_strip_ops asj_strip_reference = {.sums = asj_strip_sums_of};

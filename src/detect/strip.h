@@ -19,7 +19,7 @@ asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, con
 int asj_strip_passes(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double x, double y,
                      double angle, double length, double shorter, double limit);
 
-/* ---- what an instruction set replaces ---- */
+/* ---- sums over it ---- */
 
 #define ASJ_STRIP_LANES 4
 
@@ -59,5 +59,11 @@ static inline void asj_strip_step(const asj_frame *frame, const asj_strip_walk *
     *first = *first > 0 ? *first : 0;
     *last = *last < end ? *last : end;
 }
+
+/* Operations (core/ops.h). */
+typedef struct asj_strip_ops {
+    void (*sums)(const asj_frame *frame, const asj_strip_walk *walk, asj_strip_sums *sums); /* asj_strip_sums_of() */
+} asj_strip_ops;
+extern const asj_strip_ops asj_strip_reference;
 
 #endif

@@ -175,3 +175,5 @@ uint32_t asj_edges_through(const asj_corners *corners, uint32_t l, uint32_t amon
     const uint32_t a = fabs(u[0] * ey - u[1] * ex) <= ASJ_LOOK_ACROSS, b = fabs(u[2] * ey - u[3] * ex) <= ASJ_LOOK_ACROSS;
     return among & (a | b << 1);
 }
+
+const asj_agreement_ops asj_agreement_reference = {.look_at = asj_look_at};

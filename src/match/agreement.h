@@ -54,4 +54,10 @@ uint64_t asj_look_at(const asj_look *look, const asj_spots *spots, uint32_t firs
  * one edge. Without a branch that does in both images asj_edge_agreement() is 0. */
 uint32_t asj_edges_through(const asj_corners *corners, uint32_t l, uint32_t among, double ex, double ey);
 
+/* Operations (core/ops.h). */
+typedef struct asj_agreement_ops {
+    uint64_t (*look_at)(const asj_look *look, const asj_spots *spots, uint32_t first, uint32_t count); /* asj_look_at() */
+} asj_agreement_ops;
+extern const asj_agreement_ops asj_agreement_reference;
+
 #endif

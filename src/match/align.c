@@ -17,7 +17,6 @@
  *
  * Sums run in ASJ_LANE lanes in a fixed order: the same bits on any machine, and compilers can use vectors. */
 #include "align.h"
-#include "ops.h"
 
 #include <math.h>
 #include <string.h>
@@ -248,7 +247,7 @@ void asj_align(const asj_disc *disc, const asj_template *t, const asj_pyramid *p
     for (int32_t n = 0; n <= iterations; n++) {
         const asj_disc_map map = map_of(disc, pyramid, &now);
         asj_disc_sums sums;
-        pyramid->ops->disc_compare(disc, t, pyramid, &map, &sums);
+        pyramid->ops->disc->compare(disc, t, pyramid, &map, &sums);
         if (n == 0 || sums.similarity > result->similarity) {
             float first = n == 0 ? sums.similarity : result->first;
             *result = now;
@@ -369,3 +368,5 @@ asj_status asj_align_candidates(asj_context *context, const asj_match_options *o
     drop_unlike(options, candidates, first);
     return ASJ_OK;
 }
+
+const asj_disc_ops asj_disc_reference = {.compare = asj_disc_compare};

@@ -66,4 +66,12 @@ void asj_align(const asj_disc *disc, const asj_template *t, const asj_pyramid *p
 asj_status asj_align_candidates(asj_context *context, const asj_match_options *options, const asj_view *view1,
                                 const asj_view *view2, asj_candidates *candidates, size_t first);
 
+/* Operations (core/ops.h). */
+typedef struct asj_disc_ops {
+    /* asj_disc_compare() */
+    void (*compare)(const asj_disc *disc, const asj_template *t, const asj_pyramid *pyramid, const asj_disc_map *map,
+                    asj_disc_sums *sums);
+} asj_disc_ops;
+extern const asj_disc_ops asj_disc_reference;
+
 #endif

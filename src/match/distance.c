@@ -9,7 +9,6 @@
  * units of 1/ASJ_UNIT_ONE^2; of the paper's patches (induced.c) minus the distance in 2^-16. */
 #include "distance.h"
 #include "descriptor.h"
-#include "ops.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -30,7 +29,7 @@ static void describe(const asj_match_options *options, const asj_pyramid *pyrami
     if (options->descriptor == ASJ_DESCRIPTOR_SIFT)
         asj_descriptor_sift(grey, options->patch_size, unit);
     else if (options->normalise)
-        pyramid->ops->patch_normalise(grey, options->patch_size, unit);
+        pyramid->ops->patch->normalise(grey, options->patch_size, unit);
     else
         asj_patch_scale(grey, options->patch_size, unit);
 }
@@ -58,7 +57,7 @@ asj_status asj_describe(asj_context *context, const asj_match_options *options, 
     view->usable = asj_allocate(&context->memory, count, sizeof *view->usable);
     if (!view->patches || !view->usable)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu patches", count);
-    return context->ops->describe_frames(context, options, view);
+    return context->ops->describe->frames(context, options, view);
 }
 
 static int32_t affinity(const asj_match_options *options, const int16_t *f, const int16_t *g, int32_t length)
@@ -182,7 +181,7 @@ asj_status asj_shortlist(asj_context *context, const asj_match_options *options,
     } else {
         clear(rows, count1 * limit);
         clear(columns, count2 * limit);
-        status = context->ops->rank_partners(context, options, view1, view2, rows, columns);
+        status = context->ops->rank->partners(context, options, view1, view2, rows, columns);
         if (status == ASJ_OK)
             status = collect(context, limit, rows, count1, columns, count2, candidates);
     }
@@ -190,3 +189,5 @@ asj_status asj_shortlist(asj_context *context, const asj_match_options *options,
     asj_release(memory, columns);
     return status;
 }
+
+const asj_describe_ops asj_describe_reference = {.frames = asj_describe_frames};

@@ -73,4 +73,16 @@ asj_status asj_induced_describe(asj_context *context, const asj_match_options *o
 /* induced.c: the paper's distance of a pair, whose views are described so; HUGE_VALF when its map leaves the image. */
 float asj_induced_distance(const asj_match_options *options, const asj_view *view1, const asj_view *view2, uint32_t i, uint32_t j);
 
+/* Operations (core/ops.h), both of which a device replaces. */
+typedef struct asj_describe_ops {
+    asj_status (*frames)(asj_context *context, const asj_match_options *options, asj_view *view); /* asj_describe_frames() */
+} asj_describe_ops;
+extern const asj_describe_ops asj_describe_reference;
+typedef struct asj_rank_ops {
+    /* asj_rank_partners() */
+    asj_status (*partners)(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
+                           asj_partner *rows, asj_partner *columns);
+} asj_rank_ops;
+extern const asj_rank_ops asj_rank_reference; /* rank.c */
+
 #endif

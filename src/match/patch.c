@@ -9,7 +9,6 @@
  * Why integers: positions (2^-13 px: the 23 steps of a patch are off by less than 0.003 px at its far corner), interpolation
  * weights (8 bits), unit vectors (14 bits) and products are whole numbers, so every back end can give the same bits. */
 #include "patch.h"
-#include "ops.h"
 
 #include <math.h>
 #include <string.h>
@@ -80,7 +79,7 @@ int32_t asj_patch_sample(const asj_pyramid *pyramid, const asj_affine_frame *fra
     asj_patch_grid grid;
     asj_patch_grid_set(pyramid, frame, size, start, end, &grid);
     if (grid.level >= 0)
-        return 4 * pyramid->ops->patch_levels(pyramid, &grid, size, grey) >= 3 * size * size;
+        return 4 * pyramid->ops->patch->levels(pyramid, &grid, size, grey) >= 3 * size * size;
     memset(grey, 0, (size_t)(size * size) * sizeof *grey);
     return 0;
 }
@@ -138,3 +137,6 @@ void asj_patch_products(const int16_t *left, const int16_t *rights, int32_t leng
     for (int32_t k = 0; k < count; k++)
         products[k] = asj_patch_product(left, rights + (ptrdiff_t)which[k] * length, length);
 }
+
+const asj_patch_ops asj_patch_reference = {
+    .levels = asj_patch_levels, .normalise = asj_patch_normalise, .products = asj_patch_products};

@@ -52,4 +52,16 @@ int32_t asj_patch_product(const int16_t *left, const int16_t *right, int32_t sam
 void asj_patch_products(const int16_t *left, const int16_t *rights, int32_t length, const int32_t *which, int32_t count,
                         int32_t *products);
 
+/* Operations (core/ops.h). */
+typedef struct asj_patch_ops {
+    /* asj_patch_levels() */
+    int32_t (*levels)(const asj_pyramid *pyramid, const asj_patch_grid *grid, int32_t size, uint16_t *grey);
+    /* asj_patch_normalise() */
+    void (*normalise)(const uint16_t *grey, int32_t size, int16_t *unit);
+    /* asj_patch_products() */
+    void (*products)(const int16_t *left, const int16_t *rights, int32_t length, const int32_t *which, int32_t count,
+                     int32_t *products);
+} asj_patch_ops;
+extern const asj_patch_ops asj_patch_reference;
+
 #endif

@@ -5,7 +5,6 @@
  * block, row after row, those of all columns: memory for the full matrix is never needed, and a pair that is on neither list cannot
  * come on one later. So only pairs are compared whose sketch says that they may be better than the last ones on the lists of
  * both (sketch.c); blocks and tiles start small, for lists to compare with. */
-#include "ops.h"
 #include "sketch.h"
 
 #include <math.h>
@@ -53,7 +52,7 @@ static int32_t threshold(const asj_partner *list, int32_t limit)
 static int32_t find_frames(const table *t, uint32_t f, uint32_t first, uint32_t end, int32_t most, int32_t *frames)
 {
     if (t->left)
-        return t->ops->sketch_above(t->left + (size_t)f * ASJ_SKETCH, t->right, t->least, most, (int32_t)first, (int32_t)end,
+        return t->ops->sketch->above(t->left + (size_t)f * ASJ_SKETCH, t->right, t->least, most, (int32_t)first, (int32_t)end,
                                     frames);
     for (uint32_t g = first; g < end; g++)
         frames[g - first] = (int32_t)g;
@@ -73,7 +72,7 @@ static void multiply_tile(const table *t, uint32_t i, uint32_t first, uint32_t e
         if (!t->view1->usable[f])
             continue;
         const int32_t count = find_frames(t, f, start, stop, threshold(list, t->limit), frames);
-        t->ops->patch_products(t->view1->patches + (size_t)f * (size_t)t->length, t->view2->patches, t->length, frames, count,
+        t->ops->patch->products(t->view1->patches + (size_t)f * (size_t)t->length, t->view2->patches, t->length, frames, count,
                                products);
         for (int32_t k = 0; k < count; k++) {
             int32_t *most = &best[(uint32_t)frames[k] - start];
@@ -191,3 +190,5 @@ asj_status asj_rank_partners(asj_context *context, const asj_match_options *opti
     asj_release(memory, t.right);
     return status;
 }
+
+const asj_rank_ops asj_rank_reference = {.partners = asj_rank_partners};

@@ -10,7 +10,6 @@
  *
  * which is one product of vectors with one more number. Another pair of numbers makes up for what rounding B f loses. */
 #include "sketch.h"
-#include "ops.h"
 
 #include <math.h>
 #include <string.h>
@@ -42,14 +41,14 @@ static void fill_rows(int32_t size, int16_t *rows)
 }
 
 /* All numbers but the slack. */
-static void sketch(const asj_ops *ops, const int16_t *patch, const int16_t *rows, int32_t length, int16_t *numbers)
+static void sketch(const asj_patch_ops *ops, const int16_t *patch, const int16_t *rows, int32_t length, int16_t *numbers)
 {
     const double one = (double)ASJ_UNIT_ONE * ASJ_UNIT_ONE;
     int32_t every[TERMS], product[TERMS];
     double rest = asj_patch_product(patch, patch, length);
     for (int32_t k = 0; k < TERMS; k++)
         every[k] = k;
-    ops->patch_products(patch, rows, length, every, TERMS, product);
+    ops->products(patch, rows, length, every, TERMS, product);
     for (int32_t k = 0; k < TERMS; k++) {
         numbers[k] = (int16_t)((product[k] + ASJ_UNIT_ONE / 2) >> 14);
         rest -= (double)product[k] * product[k] / one;
@@ -73,7 +72,7 @@ static asj_status sketch_all(asj_context *context, const asj_match_options *opti
     fill_rows(options->patch_size, rows);
 #pragma omp parallel for num_threads(context->threads) schedule(static)
     for (int64_t f = 0; f < count; f++) {
-        sketch(context->ops, view->patches + (size_t)f * (size_t)length, rows, length, all + f * ASJ_SKETCH);
+        sketch(context->ops->patch, view->patches + (size_t)f * (size_t)length, rows, length, all + f * ASJ_SKETCH);
         all[f * ASJ_SKETCH + ASJ_SKETCH - 1] = slack;
     }
     asj_release(&context->memory, rows);
@@ -126,3 +125,5 @@ int32_t asj_sketch_above(const int16_t *left, const int16_t *right, const int32_
     }
     return count;
 }
+
+const asj_sketch_ops asj_sketch_reference = {.above = asj_sketch_above};

@@ -22,4 +22,12 @@ int32_t asj_sketch_blocks(uint32_t frames);
 int32_t asj_sketch_above(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first, int32_t end,
                          int32_t *which);
 
+/* Operations (core/ops.h). */
+typedef struct asj_sketch_ops {
+    /* asj_sketch_above() */
+    int32_t (*above)(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first, int32_t end,
+                     int32_t *which);
+} asj_sketch_ops;
+extern const asj_sketch_ops asj_sketch_reference;
+
 #endif

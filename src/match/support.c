@@ -5,7 +5,6 @@
  * guided pass brings new candidates, those known before are only compared with the new ones. */
 #include "support.h"
 #include "agreement.h"
-#include "ops.h"
 
 #include <string.h>
 
@@ -143,7 +142,7 @@ static uint32_t supporters_at(const search *in, const pool *s, subject *n, uint3
     n->look.py = (float)(n->map[2] * x + n->map[3] * y);
     n->look.edges = asj_edges_through(in->corners, n->mine, in->others->stem[n->other] ? 0 : 3, x, y);
     for (uint32_t m = s->index.start[place]; m < end; m += ASJ_LOOK_COUNT) {
-        uint64_t seen = in->ops->look_at(&n->look, &s->spots, m, end - m < ASJ_LOOK_COUNT ? end - m : ASJ_LOOK_COUNT);
+        uint64_t seen = in->ops->agreement->look_at(&n->look, &s->spots, m, end - m < ASJ_LOOK_COUNT ? end - m : ASJ_LOOK_COUNT);
         for (uint32_t at = m; seen; at++, seen >>= 1) {
             if (!(seen & 1))
                 continue;

@@ -3,6 +3,11 @@
  *
  * Gammas are computed for 8 neighbouring offsets of one pixel at once, which are contiguous in the image, for V_LANES pixels from
  * anywhere; squares of 8 x 8 are then turned round, and from there on a vector holds V_LANES pixels. */
+#ifndef ASJ_SRC_SIMD_BATCH_KERNELS_H
+#define ASJ_SRC_SIMD_BATCH_KERNELS_H
+
+#include "detect/field.h"
+#include "strength_kernels.h"
 
 #define SQUARE ASJ_SECTOR_RUN
 #define SQUARES (V_LANES / SQUARE) /* side by side in a vector */
@@ -122,3 +127,5 @@ static inline void insert_peaks(ranking *ranked, int32_t most, vec value, vec se
         sector = v_xor(sector, change);
     }
 }
+
+#endif

@@ -1,5 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 2 in vectors: local junctions at some pixels, candidates of a tile. Part of kernels.h. */
+#ifndef ASJ_SRC_SIMD_FIELD_KERNELS_H
+#define ASJ_SRC_SIMD_FIELD_KERNELS_H
+
+#include "batch_kernels.h"
+#include "detect/field.h"
+#include "strength_kernels.h"
 
 #define GROUP (V_LANES > 16 ? 2 : 4) /* vectors worked on at once: as many running sums stay in registers */
 #define GROUP_PIXELS (GROUP * V_LANES)
@@ -308,3 +314,5 @@ static void field_tile(const asj_field *field, const asj_frame *frame, int32_t r
         asj_field_thin(field, frame, run, runs, found);
     }
 }
+
+#endif

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 1 in vectors. Part of kernels.h. Numbers of 32 bits come in pairs of vectors: the lower and the higher lanes of each 128
  * bits, as v_interleave_ leaves them; v_pack_ puts them back into one vector of 16 bits. */
+#ifndef ASJ_SRC_SIMD_GRADIENT_KERNELS_H
+#define ASJ_SRC_SIMD_GRADIENT_KERNELS_H
+
+#include "detect/gradient.h"
 
 /* Floor of the square root, for 0 <= s < 2^31 - 2^22: the sum in single precision is above the true root by less than 1/64. */
 static inline vec root32(vec s)
@@ -72,3 +76,5 @@ static void gradient_normalise(const asj_gradient_row *row, const uint16_t *norm
     for (int32_t x = 0; x < width; x += x == 1 && width > 4 ? width - 3 : 1) /* windows that the border cuts */
         asj_gradient_pixel(row, x, norms, low, high, gx, gy);
 }
+
+#endif

@@ -3,6 +3,12 @@
  *
  * Candidates come in clusters of two or three pixels, so vectors of neighbouring pixels would be mostly empty: see
  * batch_kernels.h. */
+#ifndef ASJ_SRC_SIMD_ISOTROPIC_KERNELS_H
+#define ASJ_SRC_SIMD_ISOTROPIC_KERNELS_H
+
+#include "batch_kernels.h"
+#include "detect/isotropic.h"
+#include "strength_kernels.h"
 
 /* The strongest peaks of each candidate by sum. Sums start at -2^15, so that they compare as signed numbers; one of 0 is none. */
 static void rank_by_sum(const asj_isotropic_radius *entry, int32_t most, const uint16_t *slots, const int16_t *z, ranking *ranked)
@@ -101,3 +107,5 @@ static void isotropic_band(const asj_isotropic *test, const asj_frame *frame, in
     if (b.count > 0)
         finish_batch(test, frame, &b, scratch, junctions - b.count);
 }
+
+#endif

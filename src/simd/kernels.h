@@ -1,52 +1,28 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The vector form of the hot operations, written once. A file for an instruction set defines vec, V_LANES (16-bit lanes), V_NAME
- * and the v_ functions (see x86/avx2.c) and includes this one. Names as in the reference: sector.c, field.c. */
-#include "detect/field.h"
-#include "detect/gradient.h"
-#include "match/sketch.h"
-#include "variants.h"
+/* The vector form of the hot operations, written once for any instruction set. A file for one includes its vectors first, which
+ * define vec, V_LANES (16-bit lanes) and the v_ functions (see x86/avx2_vectors.h), then this. Names as in the reference: sector.c,
+ * field.c. */
+#ifndef ASJ_SRC_SIMD_KERNELS_H
+#define ASJ_SRC_SIMD_KERNELS_H
 
-#include <string.h>
+#ifndef V_LANES
+#error "include the vectors of an instruction set first"
+#endif
 
-static inline vec v_strength(vec sum, uint16_t mean, uint16_t scale)
-{
-    return v_high_unsigned(v_sub_saturated(sum, v_set1((int16_t)mean)), v_set1((int16_t)scale));
-}
-
-/* Strengths with `pad` sectors repeated at either end, so that neighbours need no wrapping: sector k at row k + pad. */
-static void repeat_ends(int16_t *z, int32_t count, int32_t pad, size_t row)
-{
-    memcpy(z, z + (size_t)count * row, (size_t)pad * row * sizeof *z);
-    memcpy(z + (size_t)(count + pad) * row, z + (size_t)pad * row, (size_t)pad * row * sizeof *z);
-}
-
-/* -1 where the sector at `here` is a peak: above `below` and its `reach` neighbours before it, not below those after it. */
-static inline vec peak(const int16_t *here, ptrdiff_t row, int32_t reach, vec below)
-{
-    const vec z = v_load(here);
-    vec before = v_max(below, v_load(here - row)), after = v_load(here + row);
-    for (int32_t d = 2; d <= reach; d++) {
-        before = v_max(before, v_load(here - d * row));
-        after = v_max(after, v_load(here + d * row));
-    }
-    return v_greater_but(z, before, after, z);
-}
-
-#include "gradient_kernels.h"
-#include "batch_kernels.h"
+#include "core/ops.h"
 #include "field_kernels.h"
+#include "gradient_kernels.h"
 #include "isotropic_kernels.h"
 #include "sketch_kernels.h"
 
-void V_NAME(asj_ops)(asj_ops *ops)
+static void fill_kernels(const asj_ops *ops)
 {
-    ops->field_pixels = field_pixels;
-    ops->gradient_slide = gradient_slide;
-    ops->gradient_normalise = gradient_normalise;
-    ops->field_tile = field_tile;
-    ops->isotropic_band = isotropic_band;
-    ops->sketch_above = sketch_above;
-#ifdef V_MORE
-    V_MORE(ops); /* what is not in this file */
-#endif
+    ops->gradient->slide = gradient_slide;
+    ops->gradient->normalise = gradient_normalise;
+    ops->field->tile = field_tile;
+    ops->field->pixels = field_pixels;
+    ops->isotropic->band = isotropic_band;
+    ops->sketch->above = sketch_above;
 }
+
+#endif

@@ -1,5 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Bounds of products in vectors (sketch.c). Part of kernels.h. */
+#ifndef ASJ_SRC_SIMD_SKETCH_KERNELS_H
+#define ASJ_SRC_SIMD_SKETCH_KERNELS_H
+
+#include "match/sketch.h"
+
+#include <string.h>
 
 enum { SKETCH_VECTORS = 2 * ASJ_SKETCH_LANES / V_LANES }; /* for the bounds of a block */
 
@@ -38,3 +44,5 @@ static int32_t sketch_above(const int16_t *left, const int16_t *right, const int
     }
     return count;
 }
+
+#endif

@@ -18,7 +18,6 @@
 #include "random.h"
 #include "render.h"
 
-#include "detect/detect.h"
 #include "detect/gradient.h"
 #include "detect/detect_options.h"
 #include "detect/scan.h"

@@ -15,7 +15,8 @@
 #include "machine.h"
 #include "measure.h"
 
-#include "ops.h"
+#include "core/threads.h"
+#include "detect/isotropic.h"
 #include "detect/stages.h"
 
 #include <stdio.h>
@@ -39,13 +40,14 @@ typedef struct cost {
 
 /* The wrappers have no other place to count. */
 static work counted;
-static asj_ops wrapped;
+static struct {
+    asj_field_ops field;
+    asj_isotropic_ops isotropic;
+} wrapped;
 
 static void add(double *sum, double more)
 {
-#ifdef _OPENMP
 #pragma omp atomic
-#endif
     *sum += more;
 }
 
@@ -55,14 +57,14 @@ static void count_tile(const asj_field *field, const asj_frame *frame, int32_t r
     const int32_t around = 2 * field->sectors.radius;
     add(&counted.tile_pixels, (double)runs * ASJ_LANES * (bottom - top) / (field->step * field->step));
     add(&counted.plane_pixels, (double)(runs * ASJ_LANES + around) * (bottom - top + around));
-    wrapped.field_tile(field, frame, run, runs, top, bottom, scratch, masks);
+    wrapped.field.tile(field, frame, run, runs, top, bottom, scratch, masks);
 }
 
 static void count_pixels(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,
                          asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
 {
     add(&counted.visited, count);
-    wrapped.field_pixels(field, frame, pixels, count, scratch, branches);
+    wrapped.field.pixels(field, frame, pixels, count, scratch, branches);
 }
 
 static void count_band(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
@@ -74,7 +76,7 @@ static void count_band(const asj_isotropic *test, const asj_frame *frame, int32_
         for (uint32_t mask = masks[b]; mask; mask &= mask - 1)
             candidates++;
     }
-    wrapped.isotropic_band(test, frame, top, bottom, masks, scratch, junctions);
+    wrapped.isotropic.band(test, frame, top, bottom, masks, scratch, junctions);
     for (int32_t i = 0; i < candidates; i++)
         branches += junctions[i].branch_count;
     add(&counted.candidates, candidates);
@@ -189,7 +191,7 @@ static cost refine_cost(const asj_detection *found, const work *w, double pixels
 
 static void all_costs(const asj_context *context, const asj_detection *found, const work *w, cost costs[STAGES])
 {
-    const struct asj_detector *detector = context->detector;
+    const struct asj_detector *detector = context->detector.state;
     const double pixels = (double)found->width * found->height;
     costs[ASJ_STAGE_GRADIENT] = gradient_cost(pixels);
     costs[ASJ_STAGE_CANDIDATES] = candidates_cost(&detector->field, w, pixels);
@@ -206,14 +208,16 @@ static int count_work(asj_context *context, const asj_image *image, const asj_de
 {
     asj_detection *found = NULL;
     memset(&counted, 0, sizeof counted);
-    wrapped = *context->ops;
-    context->ops->field_tile = count_tile;
-    context->ops->field_pixels = count_pixels;
-    context->ops->isotropic_band = count_band;
+    wrapped.field = *context->ops->field;
+    wrapped.isotropic = *context->ops->isotropic;
+    context->ops->field->tile = count_tile;
+    context->ops->field->pixels = count_pixels;
+    context->ops->isotropic->band = count_band;
     context->options.dump = count_points;
     const asj_status status = asj_detect(context, image, options, &found);
     context->options.dump = NULL;
-    *context->ops = wrapped;
+    *context->ops->field = wrapped.field;
+    *context->ops->isotropic = wrapped.isotropic;
     if (status != ASJ_OK)
         return -1;
     all_costs(context, found, &counted, costs);

@@ -8,7 +8,6 @@
  * asj-cli detect (asj-junctions-1). */
 #include "photograph.h"
 
-#include "detect/detect.h"
 #include "detect/result.h"
 #include "detect/stages.h"
 

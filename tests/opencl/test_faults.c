@@ -8,6 +8,7 @@
  * unless ASJ_REQUIRE_OPENCL is 1. */
 #define _POSIX_C_SOURCE 200809L
 #include "core/context.h"
+#include "create.h"
 #include "stub.h"
 
 #include "work.h"

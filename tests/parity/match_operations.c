@@ -111,7 +111,7 @@ asj_status run_patches(asj_context *context, const subject *s, uint16_t *scratch
     if (status == ASJ_OK) {
         p.view.patches = output;
         p.view.usable = (uint8_t *)output + p.view.corners.frame_count * (size_t)asj_patch_length(&p.options) * sizeof(int16_t);
-        status = context->ops->describe_frames(context, &p.options, &p.view);
+        status = context->ops->describe->frames(context, &p.options, &p.view);
     }
     places_free(context, &p);
     return status;
@@ -138,13 +138,13 @@ asj_status run_partners(asj_context *context, const subject *s, uint16_t *scratc
         for (uint32_t f = 3; f < p[v].view.corners.frame_count && status[v] == ASJ_OK; f += 3)
             p[v].view.corners.frames[f] = p[v].view.corners.frames[f / 2];
         if (status[v] == ASJ_OK)
-            status[v] = context->ops->describe_frames(context, &p[v].options, &p[v].view);
+            status[v] = context->ops->describe->frames(context, &p[v].options, &p[v].view);
         if (s->seed % 3 == (uint64_t)v)
             p[v].view.device_copy = 0;
     }
     asj_status result = status[0] == ASJ_OK ? status[1] : status[0];
     if (result == ASJ_OK)
-        result = context->ops->rank_partners(context, &p[0].options, &p[0].view, &p[1].view, partners,
+        result = context->ops->rank->partners(context, &p[0].options, &p[0].view, &p[1].view, partners,
                                              partners + p[0].view.corners.count * (size_t)p[0].options.shortlist);
     places_free(context, &p[0]);
     places_free(context, &p[1]);

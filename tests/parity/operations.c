@@ -56,7 +56,7 @@ static asj_status run_band(asj_context *context, const subject *s, uint16_t *scr
     if (!masks)
         abort();
     choose_candidates(s, y, bottom, masks);
-    context->ops->isotropic_band(&s->isotropic, &s->frame, y, bottom, masks, scratch, output);
+    context->ops->isotropic->band(&s->isotropic, &s->frame, y, bottom, masks, scratch, output);
     free(masks);
     return ASJ_OK;
 }
@@ -94,7 +94,7 @@ static asj_status run_pixels(asj_context *context, const subject *s, uint16_t *s
         else if (i % 3 == 2)
             pixels[i] = (asj_pixel){pixels[i - 1].x < right ? pixels[i - 1].x + 1 : 0, pixels[i - 1].y};
     }
-    context->ops->field_pixels(&s->field, &s->frame, pixels, count, scratch, output);
+    context->ops->field->pixels(&s->field, &s->frame, pixels, count, scratch, output);
     return ASJ_OK;
 }
 
@@ -118,8 +118,8 @@ static asj_status run_tiles(asj_context *context, const subject *s, uint16_t *sc
     choose(s, &x, &top);
     top /= 2;
     for (int32_t run = 0; run < blocks; run += per_tile)
-        context->ops->field_tile(&s->field, &s->frame, run, blocks - run < per_tile ? blocks - run : per_tile, top, s->frame.height,
-                                 scratch, output);
+        context->ops->field->tile(&s->field, &s->frame, run, blocks - run < per_tile ? blocks - run : per_tile, top,
+                                  s->frame.height, scratch, output);
     return ASJ_OK;
 }
 
@@ -160,7 +160,7 @@ static asj_status run_gradient(asj_context *context, const subject *s, uint16_t 
             s->picture->gradient_x[y * s->picture->stride + x] = 12345;
             s->picture->gradient_y[y * s->picture->stride + x] = -12345;
         }
-    asj_status status = context->ops->gradient(context, s->picture, &s->options);
+    asj_status status = context->ops->gradient->planes(context, s->picture, &s->options);
     memcpy(output, s->picture->memory[1], count * sizeof(int16_t));
     memcpy((int16_t *)output + count, s->picture->memory[2], count * sizeof(int16_t));
     asj_release(&context->memory, s->picture->rows); /* this context's, which the frame would keep */
@@ -174,7 +174,7 @@ static asj_status run_field_rows(asj_context *context, const subject *s, uint16_
 {
     int32_t x, top;
     choose(s, &x, &top);
-    return context->ops->field_rows(context, &s->field, &s->frame, top / 2, s->frame.height, scratch, s->scratch_size, output);
+    return context->ops->field->rows(context, &s->field, &s->frame, top / 2, s->frame.height, scratch, s->scratch_size, output);
 }
 
 static size_t records_size(const subject *s)
@@ -196,7 +196,7 @@ static asj_status run_isotropic_rows(asj_context *context, const subject *s, uin
             for (uint32_t bits = masks[i]; bits; bits &= bits - 1)
                 starts[y + 1]++;
         }
-        status = context->ops->isotropic_rows(context, &s->isotropic, &s->frame, 0, s->frame.height, masks, starts, scratch,
+        status = context->ops->isotropic->rows(context, &s->isotropic, &s->frame, 0, s->frame.height, masks, starts, scratch,
                                               s->scratch_size, output);
     }
     free(starts);
@@ -219,7 +219,7 @@ static asj_status run_luma(asj_context *context, const subject *s, uint16_t *scr
 {
     (void)scratch;
     for (int32_t i = 0; i < 4; i++)
-        context->ops->image_luma(s->colours, s->frame.width, 3 + i / 2, i % 2 * 2, (uint16_t *)output + i * s->frame.width);
+        context->ops->image->luma(s->colours, s->frame.width, 3 + i / 2, i % 2 * 2, (uint16_t *)output + i * s->frame.width);
     return ASJ_OK;
 }
 
@@ -246,7 +246,7 @@ static asj_status run_line_sums(asj_context *context, const subject *s, uint16_t
     const double angle = choose_line(s, &random, &x, &y, &length), half_width = synth_random_between(&random, 0.5, 5);
     (void)scratch;
     asj_line_band_set(s->picture, x, y, cos(angle), sin(angle), 0.5 * length, half_width, &band);
-    context->ops->line_sums(s->picture, &band, output);
+    context->ops->line->sums(s->picture, &band, output);
     return ASJ_OK;
 }
 
@@ -278,7 +278,7 @@ static asj_status run_line_profile(asj_context *context, const subject *s, uint1
     profile.offsets = 5;
     for (int32_t i = 0; i < profile.offsets; i++)
         profile.offset[i] = 0.8f * (float)(i - 2);
-    context->ops->line_profile(s->picture, &profile, sums);
+    context->ops->line->profile(s->picture, &profile, sums);
     for (int32_t side = 0; side < 2; side++)
         for (int32_t k = profile.count; k < ASJ_PROFILE_SAMPLES; k++)
             sums->w[side][k] = sums->moment[side][k] = 0;

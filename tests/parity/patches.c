@@ -35,7 +35,7 @@ asj_status run_blur(asj_context *context, const subject *s, uint16_t *scratch, v
         rows[r] = grey[r];
     }
     memset(output, 0, blur_size(s));
-    context->ops->blur_row(rows, taps, radius, width, output);
+    context->ops->pyramid->blur_row(rows, taps, radius, width, output);
     return ASJ_OK;
 }
 
@@ -76,7 +76,7 @@ asj_status run_samples(asj_context *context, const subject *s, uint16_t *scratch
     }
     if (status == ASJ_OK) {
         const int32_t level = (int32_t)(s->seed % (uint64_t)pyramid.levels);
-        const int32_t inside = context->ops->pyramid_sample(&pyramid, level, x, y, SAMPLES, grey);
+        const int32_t inside = context->ops->pyramid->sample(&pyramid, level, x, y, SAMPLES, grey);
         memcpy(output, &inside, sizeof inside);
         memcpy((char *)output + sizeof inside, grey, sizeof grey);
     }
@@ -109,7 +109,7 @@ asj_status run_discs(asj_context *context, const subject *s, uint16_t *scratch, 
                             (float)synth_random_between(&random, -beyond, height + beyond), {0, 0, 0, 0}};
         for (int32_t k = 0; k < 4; k++)
             map.linear[k] = (float)synth_random_between(&random, -2, 2);
-        context->ops->disc_compare(&disc, &t, &pyramid, &map, (asj_disc_sums *)output + n);
+        context->ops->disc->compare(&disc, &t, &pyramid, &map, (asj_disc_sums *)output + n);
     }
     asj_pyramid_free(&context->memory, &pyramid);
     return status;
@@ -138,7 +138,7 @@ asj_status run_products(asj_context *context, const subject *s, uint16_t *scratc
         memcpy(right + k * length, vectors[k + 1], (size_t)length * sizeof *right);
     for (int32_t k = 0; k < PRODUCTS; k++)
         which[k] = (int32_t)(synth_random_bits(&random) % PRODUCTS);
-    context->ops->patch_products(vectors[0], right, length, which, PRODUCTS, output);
+    context->ops->patch->products(vectors[0], right, length, which, PRODUCTS, output);
     return ASJ_OK;
 }
 
@@ -167,7 +167,7 @@ asj_status run_sketches(asj_context *context, const subject *s, uint16_t *scratc
         least[g] = g % 7 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : ASJ_SKETCH_LEAST;
     const int32_t most = s->seed % 3 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : -ASJ_SKETCH_LEAST;
     memset(output, 0, sketches_size(s));
-    which[SPOTS] = context->ops->sketch_above(left, right, least, most, first, end, which);
+    which[SPOTS] = context->ops->sketch->above(left, right, least, most, first, end, which);
     return ASJ_OK;
 }
 
@@ -197,7 +197,7 @@ asj_status run_looks(asj_context *context, const subject *s, uint16_t *scratch, 
         look.py = look.way_y + (float)synth_random_between(&random, -20, 20);
         for (int32_t t = 0; t < 4; t++)
             look.branch[t / 2][t % 2] = (float)synth_random_between(&random, -1, 1);
-        seen[count - 1] = context->ops->look_at(&look, &spots, (uint32_t)(synth_random_bits(&random) % SPOTS), count);
+        seen[count - 1] = context->ops->agreement->look_at(&look, &spots, (uint32_t)(synth_random_bits(&random) % SPOTS), count);
     }
     return ASJ_OK;
 }

@@ -42,6 +42,6 @@ asj_status run_rays(asj_context *context, const subject *s, uint16_t *scratch, v
     if (s->seed % 4 > 0)
         scan.threshold = 1 + scan.threshold / (1 << s->seed % 4); /* longer ways in what is no picture */
     choose_rays(s, rays);
-    asj_status status = context->ops->scan_rays(context, &scan, &s->frame, rays, some);
-    return status == ASJ_OK ? context->ops->scan_rays(context, &scan, &s->frame, rays + some, count - some) : status;
+    asj_status status = context->ops->scan->rays(context, &scan, &s->frame, rays, some);
+    return status == ASJ_OK ? context->ops->scan->rays(context, &scan, &s->frame, rays + some, count - some) : status;
 }

@@ -90,10 +90,11 @@ static int fill_picture(subject *s)
     ok = ok && asj_frame_prepare(s->context, s->picture, width, height) == ASJ_OK &&
          asj_frame_load(s->context, s->picture, &image) == ASJ_OK;
     if (ok && s->content == CONTENT_SCENE) {
-        asj_ops *ops = s->context->ops, reference;
-        ok = asj_ops_fill(ASJ_VARIANT_REFERENCE, &reference);
-        s->context->ops = &reference;
-        ok = ok && asj_frame_load(s->context, &s->frame, &image) == ASJ_OK &&
+        const asj_ops *ops = s->context->ops;
+        asj_tables reference;
+        asj_tables_fill(ASJ_SIMD_REFERENCE, &reference);
+        s->context->ops = &reference.ops;
+        ok = asj_frame_load(s->context, &s->frame, &image) == ASJ_OK &&
              asj_gradient(s->context, &s->frame, &s->options) == ASJ_OK;
         s->context->ops = ops;
     }

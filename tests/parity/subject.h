@@ -3,7 +3,7 @@
 #ifndef ASJ_TESTS_PARITY_SUBJECT_H
 #define ASJ_TESTS_PARITY_SUBJECT_H
 
-#include "ops.h"
+#include "tables.h"
 #include "random.h"
 
 enum {

@@ -8,15 +8,16 @@
 #include <string.h>
 
 #ifdef ASJ_HAVE_OPENCL
-#include "cl/detect.h"
+#include "cl/planes.h"
 #include "cl/state.h"
 #endif
 
-static asj_status open_context(int32_t backend, const char *device, asj_context **context)
+static asj_status open_context(int32_t simd, int32_t backend, const char *device, asj_context **context)
 {
     asj_context_options options;
     asj_context_options_init(&options);
     options.threads = 1;
+    options.simd = simd;
     options.backend = backend;
     options.device = device;
     return asj_context_create(&options, context);
@@ -29,15 +30,12 @@ static target *add(target_list *list, const char *name)
     return t;
 }
 
-static int add_variant(target_list *list, int32_t variant)
+static int add_variant(target_list *list, int32_t simd)
 {
-    target *t = add(list, asj_ops_name(variant));
-    if (open_context(ASJ_BACKEND_CPU, NULL, &t->context) != ASJ_OK)
-        return -1;
-    if (asj_ops_fill(variant, t->context->ops))
-        return 1;
-    asj_context_free(&t->context);
-    return 0;
+    target *t = add(list, asj_simd_name(simd));
+    if (!asj_tables_runs(simd))
+        return 0;
+    return open_context(simd, ASJ_BACKEND_CPU, NULL, &t->context) == ASJ_OK ? 1 : -1;
 }
 
 /* Each form gets a context of its own. */
@@ -50,7 +48,7 @@ static int add_device(target_list *list, uint32_t number, const asj_device *devi
         target *t = add(list, "");
         snprintf(t->name, sizeof t->name, "%u %.32s%s", (unsigned)number, device->name, suffixes[form]);
         t->form = form;
-        if (open_context(ASJ_BACKEND_OPENCL, selector, &t->context) != ASJ_OK)
+        if (open_context(ASJ_SIMD_AUTO, ASJ_BACKEND_OPENCL, selector, &t->context) != ASJ_OK)
             return -1;
 #ifdef ASJ_HAVE_OPENCL
         asj_cl_limits *limits = &t->context->cl->limits;
@@ -85,10 +83,10 @@ int32_t targets_open(int devices, target_list *list)
     int32_t count = 0;
     memset(list, 0, sizeof *list);
     list->devices = devices;
-    int added = add_variant(list, ASJ_VARIANT_REFERENCE);
+    int added = add_variant(list, ASJ_SIMD_REFERENCE);
     if (devices && added > 0)
         count = add_devices(list);
-    for (int32_t v = 1; !devices && added >= 0 && v < ASJ_VARIANT_COUNT; v++) {
+    for (int32_t v = ASJ_SIMD_REFERENCE + 1; !devices && added >= 0 && v < ASJ_SIMD_COUNT; v++) {
         added = add_variant(list, v);
         count += added > 0;
     }

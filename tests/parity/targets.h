@@ -4,7 +4,7 @@
 #ifndef ASJ_TESTS_PARITY_TARGETS_H
 #define ASJ_TESTS_PARITY_TARGETS_H
 
-#include "ops.h"
+#include "tables.h"
 
 /* How a device is used. */
 enum {

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Colour to luma: 8 pixels at once, 32 bits each. Name as in the reference, image.c. Only avx2.c includes this. */
+/* Colour to luma: 8 pixels at once, 32 bits each. Name as in the reference, image.c. */
 #ifndef ASJ_SRC_X86_COLOUR_H
 #define ASJ_SRC_X86_COLOUR_H
 
-#include "ops.h"
+#include "core/image.h"
+#include "avx2_vectors.h"
 
 static void image_luma_avx2(const uint8_t *pixels, int32_t width, int32_t step, int32_t red, uint16_t *gray)
 {

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj_disc_compare() (align.c) in lanes of ASJ_LANE: the same sums in the same order, those that do not wait for each other in one
- * pass. After patches.h; only avx2.c includes this. */
+ * pass. */
 #ifndef ASJ_SRC_X86_DISCS_H
 #define ASJ_SRC_X86_DISCS_H
 
 #include "match/align.h"
+#include "patches.h"
+
+#include <immintrin.h>
 
 #include <math.h>
 
@@ -74,11 +77,6 @@ static void disc_compare_avx2(const asj_disc *disc, const asj_template *t, const
     sums->similarity = fold_lanes(similarity);
     for (int32_t k = 0; k < 6; k++)
         sums->descent[k] = fold_lanes(descent[k]);
-}
-
-static void fill_discs(asj_ops *ops)
-{
-    ops->disc_compare = disc_compare_avx2;
 }
 
 #endif

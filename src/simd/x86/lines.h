@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Sums over the pixels of a band: names as in the reference, line_sums.c. Only avx2.c includes this. */
+/* Sums over the pixels of a band: names as in the reference, line_sums.c. */
 #ifndef ASJ_SRC_X86_LINES_H
 #define ASJ_SRC_X86_LINES_H
 
-#include "ops.h"
+#include "detect/line_sums.h"
+
+#include <immintrin.h>
 
 typedef struct lane_sums {
     __m256 w, x, y, xx, xy, yy;
@@ -206,12 +208,6 @@ static void line_profile_avx2(const asj_frame *frame, const asj_line_profile *pr
     }
     for (int32_t side = 0; side < 2; side++)
         total_profile(profile->count, side, sums);
-}
-
-static void fill_lines(asj_ops *ops)
-{
-    ops->line_sums = line_sums_avx2;
-    ops->line_profile = line_profile_avx2;
 }
 
 #endif

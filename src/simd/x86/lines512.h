@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* As lines.h, for 16 lanes. Only avx512.c includes this. */
+/* As lines.h, for 16 lanes. */
 #ifndef ASJ_SRC_X86_LINES512_H
 #define ASJ_SRC_X86_LINES512_H
 
-#include "ops.h"
+#include "detect/line_sums.h"
+
+#include <immintrin.h>
 
 typedef struct lane_sums {
     __m512 w, x, y, xx, xy, yy;
@@ -240,12 +242,6 @@ static void line_profile_avx512(const asj_frame *frame, const asj_line_profile *
             profile_sixteen(frame, profile, k, sums);
     }
     total_profile(profile->count, sums);
-}
-
-static void fill_lines(asj_ops *ops)
-{
-    ops->line_sums = line_sums_avx512;
-    ops->line_profile = line_profile_avx512;
 }
 
 #endif

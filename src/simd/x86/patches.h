@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The matcher's operations with 32-bit lanes and gathers: names as in the files that define them. Only avx2.c includes this. */
+/* The matcher's operations with 32-bit lanes and gathers: names as in the files that define them. */
 #ifndef ASJ_SRC_X86_PATCHES_H
 #define ASJ_SRC_X86_PATCHES_H
 
-#include "ops.h"
+#include "match/agreement.h"
+#include "match/patch.h"
+
+#include <immintrin.h>
 
 static inline int32_t sum_lanes(__m256i v)
 {
@@ -244,16 +247,6 @@ static uint64_t look_at_avx2(const asj_look *look, const asj_spots *spots, uint3
     for (uint32_t n = 0; n < count; n += 8)
         seen |= (uint64_t)look_at_eight(look, spots, first + n) << n;
     return seen & ~(uint64_t)0 >> (64 - count);
-}
-
-static void fill_patches(asj_ops *ops)
-{
-    ops->blur_row = blur_row_avx2;
-    ops->patch_levels = patch_levels_avx2;
-    ops->patch_normalise = patch_normalise_avx2;
-    ops->patch_products = patch_products_avx2;
-    ops->pyramid_sample = pyramid_sample_avx2;
-    ops->look_at = look_at_avx2;
 }
 
 #endif

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Sums over the pixels of a strip: names as in the reference, strip.c. Only avx2.c includes this. */
+/* Sums over the pixels of a strip: names as in the reference, strip.c. */
 #ifndef ASJ_SRC_X86_STRIPS_H
 #define ASJ_SRC_X86_STRIPS_H
 
-#include "ops.h"
+#include "detect/strip.h"
+
+#include <immintrin.h>
 
 static inline double total_of_four(__m256d v)
 {
@@ -70,11 +72,6 @@ static void strip_sums_avx2(const asj_frame *frame, const asj_strip_walk *walk, 
         add_strip(frame, walk, 1, sums);
     else
         add_strip(frame, walk, 0, sums);
-}
-
-static void fill_strips(asj_ops *ops)
-{
-    ops->strip_sums = strip_sums_avx2;
 }
 
 #endif

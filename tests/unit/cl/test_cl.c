@@ -2,10 +2,10 @@
 /* The OpenCL runtime: entries of the kernel store, and on the first device that there is buffers, transfers, runs, times, limits
  * and failures. Without a device the test is skipped, or fails when ASJ_REQUIRE_OPENCL is set. */
 #include "cl/cache.h"
+#include "cl/program.h"
 #include "cl/runtime.h"
 #include "cl/state.h"
-#include "opencl.h"
-#include "ops.h"
+#include "detect/gradient.h"
 #include "unit_test.h"
 
 #include <asj/asj.h>
@@ -361,7 +361,7 @@ static void test_restart(void **state)
     asj_context_free(&context);
 
     context = open_device();
-    context->ops->gradient = fail_gradient;
+    context->ops->gradient->planes = fail_gradient;
     assert_int_equal(asj_detect(context, &image, NULL, &found), ASJ_ERROR_DEVICE); /* it was asked for */
     assert_string_equal(asj_context_message(context), "the device has gone");
     assert_int_equal(heard.lines[ASJ_LOG_ERROR], 1);

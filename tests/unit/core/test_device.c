@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Which OpenCL device a selector means, lists where there are no devices, and contexts without one. */
 #include "core/device.h"
-#include "core/context.h"
+#include "create.h"
 #include "unit_test.h"
 
 #include <asj/asj.h>

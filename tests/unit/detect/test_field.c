@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 2 against a naive evaluation: strengths by trigonometry on the definition of the sectors, suppression, threshold,
  * interpolation, candidates. */
+#include "detect/nfa.h"
 #include "detect/field.h"
 #include "unit_test.h"
 
@@ -71,7 +72,7 @@ static double log_local_nfa(const fixture *f, const asj_field *field, int32_t k,
 {
     const int32_t n = field->sectors.size[k];
     const double sum = n * ASJ_GAMMA_MEAN + strength / ASJ_STRENGTH_ONE * ASJ_GAMMA_SD * sqrt(n);
-    return log(field->sectors.count) + asj_nfa_log_sector_tail(f->context->nfa, sum, n);
+    return log(field->sectors.count) + asj_nfa_log_sector_tail(asj_nfa_of(f->context), sum, n);
 }
 
 static void make_field(fixture *f, asj_field *field)

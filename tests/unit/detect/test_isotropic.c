@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 3: the NFA of isotropic junctions and the thinning, against their definitions. */
+#include "detect/nfa.h"
 #include "detect/isotropic.h"
 #include "unit_test.h"
 
@@ -94,7 +95,7 @@ static double naive_nfa(const fixture *f, const asj_sectors *s, const peak *peak
     double log_nfa = asj_nfa_log_junction_tests(f->frame.width, f->frame.height, f->options.isotropic_radii,
                                                 f->options.sector_width, m);
     for (int32_t i = 0; i < m; i++)
-        log_nfa += asj_nfa_log_sector_tail(f->context->nfa, peaks[m - 1].omega, s->size[peaks[i].sector]);
+        log_nfa += asj_nfa_log_sector_tail(asj_nfa_of(f->context), peaks[m - 1].omega, s->size[peaks[i].sector]);
     return log_nfa;
 }
 

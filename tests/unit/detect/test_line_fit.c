@@ -67,11 +67,11 @@ static void test_clean_edges(void **state)
         asj_frame frame;
         picture(f, angle, offset, HUGE_VAL, 0, &frame);
         asj_draft_branch branch = branch_at(angle + start, 0);
-        assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &near_range, &branch));
+        assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &near_range, &branch));
         unit_near("angle", n, 1, unit_turn(branch.angle, angle), 0, UNIT_PI / 180);
         unit_near("offset", n, 1, branch.offset, offset, 0.1);
         assert_true(branch.angle >= 0 && branch.angle < 2 * UNIT_PI);
-        assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &long_range, &branch));
+        assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &long_range, &branch));
         unit_near("angle", n, 2, unit_turn(branch.angle, angle), 0, 0.2 * UNIT_PI / 180);
         unit_near("offset", n, 2, branch.offset, offset, 0.05);
         asj_frame_free(&f->context->memory, &frame);
@@ -91,15 +91,15 @@ static void test_guesses(void **state)
             picture(f, angle, isinf(widths[w]) ? offset : offset - 0.5 * widths[w], widths[w], 0, &frame);
             asj_draft_branch branch = branch_at(angle + start, 0);
             asj_rough_line line = asj_rough_line_of(&branch);
-            assert_true(asj_line_guess(f->context->ops, &frame, MIDDLE, MIDDLE, t, 4, &line));
-            assert_true(asj_line_guess(f->context->ops, &frame, MIDDLE, MIDDLE, t, 2.5, &line));
+            assert_true(asj_line_guess(f->context->ops->line, &frame, MIDDLE, MIDDLE, t, 4, &line));
+            assert_true(asj_line_guess(f->context->ops->line, &frame, MIDDLE, MIDDLE, t, 2.5, &line));
             asj_rough_line_keep(&line, &branch);
             assert_true(branch.angle >= 0 && branch.angle < 2 * UNIT_PI);
             unit_near("angle", widths[w], n, unit_turn(branch.angle, angle), 0, 0.5 / (t[1] - t[0]));
             unit_near("offset", widths[w], n, branch.offset, offset, 0.5);
             unit_near("apart", widths[w], n, branch.apart > 0, w == 1, 0);
             for (int i = 0; i < 3; i++)
-                assert_true(asj_line_guess(f->context->ops, &frame, MIDDLE, MIDDLE, far, 2, &line));
+                assert_true(asj_line_guess(f->context->ops->line, &frame, MIDDLE, MIDDLE, far, 2, &line));
             unit_near("direction", widths[w], n, hypot(line.ux, line.uy), 1, 1e-12);
             asj_rough_line_keep(&line, &branch);
             unit_near("angle", widths[w], n, unit_turn(branch.angle, angle), 0, 0.5 / (far[1] - far[0]));
@@ -125,7 +125,7 @@ static void test_noise(void **state)
         const asj_image image = unit_gray8(pixels, SIZE, SIZE);
         unit_frame(f->context, &image, NULL, &frame);
         asj_draft_branch branch = branch_at(angle, offset);
-        assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &long_range, &branch));
+        assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &long_range, &branch));
         angle_ratio += pow(unit_turn(branch.angle, angle), 2) / branch.angle_variance;
         offset_ratio += pow(branch.offset - offset, 2) / branch.offset_variance;
         assert_true(unit_turn(branch.angle, angle) < 0.05);
@@ -147,8 +147,8 @@ static void test_thin_lines(void **state)
             asj_frame frame;
             picture(f, angle, -0.5 * widths[w], widths[w], 0, &frame);
             asj_draft_branch branch = branch_at(angle + 0.04, 0.4);
-            assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &near_range, &branch));
-            assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &long_range, &branch));
+            assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &near_range, &branch));
+            assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &long_range, &branch));
             unit_near("angle", widths[w], n, unit_turn(branch.angle, angle), 0, 0.006);
             unit_near("middle", widths[w], n, branch.offset, 0, 0.1);
             asj_frame_free(&f->context->memory, &frame);
@@ -165,7 +165,7 @@ static void test_bands(void **state)
             asj_frame frame;
             picture(f, angle, 0, width, 0, &frame);
             asj_draft_branch branch = branch_at(angle + 0.03 * (n % 3 - 1), 0.5);
-            assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &near_range, &branch));
+            assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &near_range, &branch));
             unit_near("angle", width, n, unit_turn(branch.angle, angle), 0, 0.02);
             unit_near("offset", width, n, branch.offset, 0, 0.15);
             asj_frame_free(&f->context->memory, &frame);
@@ -191,7 +191,7 @@ static void test_stairs(void **state)
             }
             unit_frame_of(f->context, &scene, 1, 0, NULL, &frame);
             asj_draft_branch branch = branch_at(angle, 0);
-            assert_true(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &long_range, &branch));
+            assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &long_range, &branch));
             unit_near("angle", width, n, unit_turn(branch.angle, angle), 0, 0.01);
             unit_near("offset", width, n, branch.offset, 0, 0.1);
             asj_frame_free(&f->context->memory, &frame);
@@ -206,12 +206,12 @@ static void test_nothing_there(void **state)
     synth_scene_init(&scene, SIZE, SIZE, 100);
     unit_frame_of(f->context, &scene, 0, 0, NULL, &frame);
     asj_draft_branch branch = branch_at(1, 0.25), before = branch;
-    assert_false(asj_line_fit(f->context->ops, &frame, MIDDLE, MIDDLE, &near_range, &branch));
+    assert_false(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &near_range, &branch));
     assert_memory_equal(&branch, &before, sizeof branch);
     static const double t[2] = {2, 10};
     asj_rough_line line = asj_rough_line_of(&branch);
     const asj_rough_line same = line;
-    assert_false(asj_line_guess(f->context->ops, &frame, MIDDLE, MIDDLE, t, 4, &line));
+    assert_false(asj_line_guess(f->context->ops->line, &frame, MIDDLE, MIDDLE, t, 4, &line));
     assert_memory_equal(&line, &same, sizeof line);
     asj_frame_free(&f->context->memory, &frame);
 }
@@ -231,12 +231,12 @@ static void test_extremes(void **state)
         for (size_t r = 0; r < UNIT_COUNT(ranges); r++)
             for (int n = 0; n < 16; n++) {
                 asj_draft_branch branch = branch_at(n * UNIT_PI / 8, n - 8);
-                asj_line_fit(f->context->ops, &frame, n * 7 - 50, n * 3 - 20, &ranges[r], &branch);
+                asj_line_fit(f->context->ops->line, &frame, n * 7 - 50, n * 3 - 20, &ranges[r], &branch);
                 assert_true(isfinite(branch.angle) && isfinite(branch.offset));
                 assert_true(isfinite(branch.angle_variance) && isfinite(branch.offset_variance));
                 const double t[2] = {ranges[r].first, ranges[r].last};
                 asj_rough_line line = asj_rough_line_of(&branch);
-                asj_line_guess(f->context->ops, &frame, n * 7 - 50, n * 3 - 20, t, ranges[r].half_width[0], &line);
+                asj_line_guess(f->context->ops->line, &frame, n * 7 - 50, n * 3 - 20, t, ranges[r].half_width[0], &line);
                 assert_true(isfinite(line.ux) && isfinite(line.uy) && isfinite(line.offset) && isfinite(line.apart));
             }
         asj_frame_free(&f->context->memory, &frame);

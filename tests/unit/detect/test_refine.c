@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 5: the paper's search against brute force on the definition, line fits over whole branches, validation. */
 #include "detect/refine.h"
-#include "core/context.h"
+#include "detect/nfa.h"
 #include "detect/gradient.h"
 #include "detect/strip.h"
 #include "unit_test.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 4 against the same definition in floating point, and against edges whose ends are known. */
+#include "detect/nfa.h"
 #include "detect/scan.h"
 #include "unit_test.h"
 
@@ -184,7 +185,7 @@ static void naive_both(const fixture *f, const asj_ray *ray, double threshold, i
 static double threshold_of(const fixture *f)
 {
     const double log_p = log(f->options.scan_epsilon) - 0.5 * log((double)f->frame.width * f->frame.height);
-    return asj_nfa_arc_threshold(f->context->nfa, fmin(log_p, 0), 2 * f->options.arc_half_width + 1);
+    return asj_nfa_arc_threshold(asj_nfa_of(f->context), fmin(log_p, 0), 2 * f->options.arc_half_width + 1);
 }
 
 static void test_threshold(void **state)

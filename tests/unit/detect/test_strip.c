@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Strips: NFA over the unique pixels, and direction of the gradients, against their definitions. */
+#include "detect/nfa.h"
 #include "detect/strip.h"
 #include "core/context.h"
 #include "unit_test.h"
@@ -58,7 +59,8 @@ static asj_strip naive(const fixture *f, double x, double y, double angle, doubl
     out.log_nfa = HUGE_VAL;
     if (pixels == 0)
         return out;
-    out.log_nfa = 1.5 * log((double)f->frame.width * f->frame.height) + asj_nfa_log_sector_tail(f->context->nfa, omega, pixels);
+    out.log_nfa = 1.5 * log((double)f->frame.width * f->frame.height) +
+                  asj_nfa_log_sector_tail(asj_nfa_of(f->context), omega, pixels);
     const double dominant = 0.5 * atan2(2 * xy, xx - yy);
     out.deviation = unit_turn(2 * (dominant - UNIT_PI / 2), 2 * angle) / 2;
     return out;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* src/match/patch.c and src/match/descriptor.c: pyramids, sampling and distances against naive evaluations in floating point. */
 #include "match/descriptor.h"
-#include "ops.h"
+#include "tables.h"
 #include "match/patch.h"
 #include "unit_test.h"
 
@@ -270,9 +270,9 @@ static void variants_give_the_same_bits(void **state)
     assert_int_equal(asj_pyramid_create(context, &image, 0, &pyramid), ASJ_OK);
     for (int32_t n = 0; n < COUNT * LENGTH; n++) /* as large as unit vectors of this length can be */
         patches[n / LENGTH][n % LENGTH] = (int16_t)((int32_t)(shuffled(&seed) >> 16) % 2731 - 1365);
-    for (int32_t variant = 0; variant < ASJ_VARIANT_COUNT; variant++) {
-        asj_ops ops;
-        if (!asj_ops_fill(variant, &ops))
+    for (int32_t simd = ASJ_SIMD_REFERENCE; simd < ASJ_SIMD_COUNT; simd++) {
+        asj_tables tables;
+        if (!asj_tables_fill(simd, &tables))
             continue;
         for (int32_t radius = 0; radius <= ASJ_BLUR_RADIUS; radius++) {
             const int32_t taps[] = {16384 - 2 * (3000 + 40 * radius) * (radius > 0), 3000, 40, 40, 40, 40, 40};
@@ -281,7 +281,7 @@ static void variants_give_the_same_bits(void **state)
             for (int32_t r = 0; r < ASJ_BLUR_ROWS; r++)
                 rows[r] = pyramid.plane[0] + r * 62;
             asj_blur_row(rows, taps, radius, 61, expected);
-            ops.blur_row(rows, taps, radius, 61, blurred);
+            tables.pyramid.blur_row(rows, taps, radius, 61, blurred);
             assert_memory_equal(blurred, expected, sizeof expected);
         }
         for (int32_t count = 0; count < COUNT; count++) {
@@ -292,13 +292,13 @@ static void variants_give_the_same_bits(void **state)
             for (int32_t k = 0; k < count; k++)
                 which[k] = k * 7 % count;
             asj_patch_products(patches[count], patches[0], LENGTH, which, count, expected);
-            ops.patch_products(patches[count], patches[0], LENGTH, which, count, products);
+            tables.patch.products(patches[count], patches[0], LENGTH, which, count, products);
             assert_memory_equal(products, expected, (size_t)count * sizeof *products);
             for (int32_t i = 0; i < count; i++) {
                 x[i] = (float)shuffled(&seed) * (80.0f / 4294967296.0f) - 10;
                 y[i] = i % 31 == 0 ? 1e9f : (float)shuffled(&seed) * (66.0f / 4294967296.0f) - 10;
             }
-            assert_int_equal(ops.pyramid_sample(&pyramid, level, x, y, count, grey),
+            assert_int_equal(tables.pyramid.sample(&pyramid, level, x, y, count, grey),
                              asj_pyramid_sample_reference(&pyramid, level, x, y, count, expected_grey));
             assert_memory_equal(grey, expected_grey, (size_t)count * sizeof *grey);
         }
@@ -320,9 +320,9 @@ static void patch_variants_give_the_same_bits(void **state)
         pixels[i] = (uint8_t)(i % 7 ? shuffled(&seed) >> 24 : i % 3 ? 255 : 0);
     const asj_image image = unit_gray8(pixels, 161, 147);
     assert_int_equal(asj_pyramid_create(context, &image, 0, &pyramid), ASJ_OK);
-    for (int32_t variant = 0; variant < ASJ_VARIANT_COUNT; variant++) {
-        asj_ops ops;
-        if (!asj_ops_fill(variant, &ops))
+    for (int32_t simd = ASJ_SIMD_REFERENCE; simd < ASJ_SIMD_COUNT; simd++) {
+        asj_tables tables;
+        if (!asj_tables_fill(simd, &tables))
             continue;
         for (int32_t n = 0; n < 400; n++) {
             const int32_t size = 8 + 4 * (n % 5), scale = n % 20 == 19 ? 1 << 30 : 1 << (15 + n % 7);
@@ -335,12 +335,12 @@ static void patch_variants_give_the_same_bits(void **state)
             uint16_t expected[ASJ_PATCH_SAMPLES], grey[ASJ_PATCH_SAMPLES];
             int16_t expected_unit[ASJ_PATCH_SAMPLES], unit[ASJ_PATCH_SAMPLES];
             const size_t bytes = (size_t)(size * size) * sizeof *grey;
-            assert_int_equal(ops.patch_levels(&pyramid, &grid, size, grey), asj_patch_levels(&pyramid, &grid, size, expected));
+            assert_int_equal(tables.patch.levels(&pyramid, &grid, size, grey), asj_patch_levels(&pyramid, &grid, size, expected));
             assert_memory_equal(grey, expected, bytes);
             for (int32_t i = 0; i < size * size && n % 3 > 0; i++) /* more contrast than interpolation leaves */
                 grey[i] = n % 3 == 1 ? (uint16_t)(shuffled(&seed) % (ASJ_GRAY_MAX + 1)) : i % 2 ? ASJ_GRAY_MAX : 0;
             asj_patch_normalise(grey, size, expected_unit);
-            ops.patch_normalise(grey, size, unit);
+            tables.patch.normalise(grey, size, unit);
             assert_memory_equal(unit, expected_unit, bytes);
         }
     }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* src/match/rank.c and src/match/sketch.c: a bound is never too low, and the lists are those of all pairs. */
-#include "ops.h"
 #include "random.h"
 #include "match/sketch.h"
 #include "unit_test.h"
@@ -84,7 +83,7 @@ static void bounds_are_never_too_low(void **state)
                 least[g] = g < count ? asj_patch_product(mine, p[1].units + g * (size_t)length, length) + more : 0;
             }
             const int16_t *one = left + f * ASJ_SKETCH;
-            const int32_t found = context->ops->sketch_above(one, right, least, -ASJ_SKETCH_LEAST, 0, (int32_t)count, which);
+            const int32_t found = context->ops->sketch->above(one, right, least, -ASJ_SKETCH_LEAST, 0, (int32_t)count, which);
             for (int32_t k = 0, g = 0; g < (int32_t)count; g++) {
                 const int32_t is = k < found && which[k] == g;
                 assert_true(is || g % 2);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "detect.h"
-#include "overrides.h"
 #include "state.h"
 
 asj_status asj_cl_detect_get(asj_context *context, struct asj_cl_detect **detect)
@@ -9,13 +8,6 @@ asj_status asj_cl_detect_get(asj_context *context, struct asj_cl_detect **detect
         context->cl->detect = asj_allocate_zero(&context->memory, 1, sizeof *context->cl->detect);
     *detect = context->cl->detect;
     return *detect ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the detector's state on the device");
-}
-
-void asj_cl_fill_detect(asj_ops *ops)
-{
-    ops->gradient = asj_cl_gradient;
-    ops->field_rows = asj_cl_field_rows;
-    ops->isotropic_rows = asj_cl_isotropic_rows;
 }
 
 void asj_cl_free_detect(asj_context *context)
