@@ -16,32 +16,32 @@ asj_status asj_backend_prepare(asj_context *context)
     return context->cl ? context->device->prepare(context) : ASJ_OK;
 }
 
-static asj_status run(asj_context *context, asj_status (*call)(asj_context *context, void *arguments), void *arguments)
+void asj_backend_begin(asj_context *context)
 {
-    asj_status status = call(context, arguments);
-    if (status != ASJ_ERROR_DEVICE || !context->cl || context->options.backend != ASJ_BACKEND_AUTO)
-        return status;
-    const int for_good = ++context->device_failures >= ASJ_BACKEND_FAILURES;
-    asj_log(context, ASJ_LOG_WARNING, "%s; done on the CPU%s", context->message, for_good ? ", as all that follows" : " instead");
-    context->message[0] = '\0';
-    if (for_good)
-        context->device->free(context);
-    struct asj_cl *device = context->cl;
-    const asj_ops *ops = context->ops;
-    context->cl = NULL;
-    context->ops = context->cpu_ops;
-    status = call(context, arguments);
-    if (!for_good) {
-        context->cl = device;
-        context->ops = ops;
-    }
-    return status;
+    context->progress = 0;
+    asj_memory_open(&context->memory);
 }
 
-asj_status asj_backend_run(asj_context *context, asj_status (*call)(asj_context *context, void *arguments), void *arguments)
+int asj_backend_retry(asj_context *context, asj_status status)
 {
-    asj_memory_open(&context->memory);
-    const asj_status status = run(context, call, arguments);
+    if (status == ASJ_ERROR_DEVICE && context->cl && context->options.backend == ASJ_BACKEND_AUTO) {
+        const int for_good = ++context->device_failures >= ASJ_BACKEND_FAILURES;
+        asj_log(context, ASJ_LOG_WARNING, "%s; done on the CPU%s", context->message,
+                for_good ? ", as all that follows" : " instead");
+        context->message[0] = '\0';
+        if (for_good)
+            context->device->free(context);
+        context->cl_aside = context->cl;
+        context->ops_aside = context->ops;
+        context->cl = NULL;
+        context->ops = context->cpu_ops;
+        return 1;
+    }
+    if (context->cl_aside) {
+        context->cl = context->cl_aside;
+        context->ops = context->ops_aside;
+        context->cl_aside = NULL;
+    }
     asj_memory_close(&context->memory);
-    return status;
+    return 0;
 }

@@ -10,11 +10,21 @@
 /* Failures of the device after which a context that may choose stays on the CPU. */
 #define ASJ_BACKEND_FAILURES 3
 
-/* Runs a call, which must leave nothing behind when it fails. When it ends in ASJ_ERROR_DEVICE and the context may choose
- * (ASJ_BACKEND_AUTO), it runs once more, without the device. Memory that the call releases is kept for the next one. */
-asj_status asj_backend_run(asj_context *context, asj_status (*call)(asj_context *context, void *arguments), void *arguments);
+/* Every public call that computes runs its work in this loop:
+ *
+ *     asj_backend_begin(context);
+ *     do
+ *         status = work(..);
+ *     while (asj_backend_retry(context, status));
+ *
+ * The work leaves nothing behind when it fails. When it ends in ASJ_ERROR_DEVICE and the context may choose (ASJ_BACKEND_AUTO),
+ * asj_backend_retry() puts the device aside and asks for the work once more, on the CPU; at the end it takes the device back.
+ * After ASJ_BACKEND_FAILURES failures the context stays on the CPU. Memory that the work releases is kept for the next call. Such
+ * loops do not nest. */
+void asj_backend_begin(asj_context *context);
+int asj_backend_retry(asj_context *context, asj_status status);
 
-/* Builds what the device runs, when there is one. Inside asj_backend_run(). */
+/* Builds what the device runs, when there is one. Inside that loop. */
 asj_status asj_backend_prepare(asj_context *context);
 
 #endif

@@ -29,6 +29,8 @@ struct asj_context {
     const asj_ops *ops;           /* those in use: the device's, where there is one, or */
     const asj_ops *cpu_ops;       /* the processor's */
     struct asj_cl *cl;            /* the device that works; NULL = none, the CPU does everything */
+    struct asj_cl *cl_aside;      /* the device, and its operations, while a call does without it (backend.h) */
+    const asj_ops *ops_aside;
     const asj_device_calls *device;
     asj_kept tables;              /* tables.h: what the operations above point to */
     asj_kept null_model;          /* detect/nfa.h */

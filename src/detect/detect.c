@@ -85,30 +85,20 @@ static asj_status finish(asj_detection_run *d, const asj_image *image, const dou
     return ASJ_OK;
 }
 
-/* Arguments of the public functions. */
-typedef struct detect_call {
-    const asj_image *image;
-    const asj_detect_options *options;
-    asj_detection **result;
-    asj_local_branch *branches;
-    double start;
-} detect_call;
-
-static asj_status detect(asj_context *context, void *arguments)
+static asj_status detect(asj_context *context, const asj_image *image, const asj_detect_options *options, double start,
+                         asj_detection **result)
 {
-    const detect_call *call = arguments;
-    const asj_detect_options *options = call->options;
     asj_detect_options defaults;
     asj_detection_run d;
-    double stage_ms[16] = {0}, clock = call->start;
-    asj_status status = begin(context, call->image, &options, &defaults, call->result, &d);
+    double stage_ms[16] = {0}, clock = start;
+    asj_status status = begin(context, image, &options, &defaults, result, &d);
     if (status == ASJ_OK)
-        status = run_steps(&d, call->image, stage_ms, &clock);
+        status = run_steps(&d, image, stage_ms, &clock);
     if (status == ASJ_OK)
-        status = finish(&d, call->image, stage_ms, call->result);
+        status = finish(&d, image, stage_ms, result);
     if (status == ASJ_OK) {
-        stop_watch((*call->result)->stage_ms, ASJ_STAGE_DECOMPOSE, &clock);
-        (*call->result)->total_ms = clock - call->start;
+        stop_watch((*result)->stage_ms, ASJ_STAGE_DECOMPOSE, &clock);
+        (*result)->total_ms = clock - start;
     }
     asj_stage_release(&d);
     return status;
@@ -117,13 +107,17 @@ static asj_status detect(asj_context *context, void *arguments)
 asj_status asj_detect_into(asj_context *context, const asj_image *image, const asj_detect_options *options,
                            asj_detection **result)
 {
-    detect_call call = {image, options, result, NULL, asj_clock_ms()};
+    const double start = asj_clock_ms();
+    asj_status status;
     if (result && *result)
         asj_result_clear(*result);
     if (!context)
         return ASJ_ERROR_ARGUMENT;
-    context->progress = 0;
-    return asj_backend_run(context, detect, &call);
+    asj_backend_begin(context);
+    do
+        status = detect(context, image, options, start, result);
+    while (asj_backend_retry(context, status));
+    return status;
 }
 
 asj_status asj_detect(asj_context *context, const asj_image *image, const asj_detect_options *options,
@@ -167,14 +161,12 @@ static void field_row(const asj_detection_run *d, int32_t y, asj_local_branch *o
     }
 }
 
-static asj_status local_field(asj_context *context, void *arguments)
+static asj_status local_field(asj_context *context, const asj_image *image, const asj_detect_options *options,
+                              asj_local_branch *branches)
 {
-    const detect_call *call = arguments;
-    const asj_detect_options *options = call->options;
-    const asj_image *image = call->image;
     asj_detect_options defaults;
     asj_detection_run d;
-    asj_status status = begin(context, image, &options, &defaults, call->branches, &d);
+    asj_status status = begin(context, image, &options, &defaults, branches, &d);
     if (status == ASJ_OK)
         status = asj_stage_gradient(&d, image);
     for (int32_t top = 0; status == ASJ_OK && top < image->height; top += ASJ_ROW_GROUP) {
@@ -183,7 +175,7 @@ static asj_status local_field(asj_context *context, void *arguments)
 #pragma omp parallel for num_threads(d.threads) schedule(dynamic, 4)
 #endif
         for (int32_t y = top; y < bottom; y++)
-            field_row(&d, y, call->branches + (size_t)y * (size_t)image->width * ASJ_FIELD_BRANCHES);
+            field_row(&d, y, branches + (size_t)y * (size_t)image->width * ASJ_FIELD_BRANCHES);
         status = asj_progress(context, ASJ_STAGE_CANDIDATES, (double)bottom / image->height);
     }
     asj_stage_release(&d);
@@ -193,19 +185,27 @@ static asj_status local_field(asj_context *context, void *arguments)
 asj_status asj_local_field(asj_context *context, const asj_image *image, const asj_detect_options *options,
                            asj_local_branch *branches)
 {
-    detect_call call = {image, options, NULL, branches, 0};
+    asj_status status;
     if (!context)
         return ASJ_ERROR_ARGUMENT;
-    context->progress = 0;
-    return asj_backend_run(context, local_field, &call);
+    asj_backend_begin(context);
+    do
+        status = local_field(context, image, options, branches);
+    while (asj_backend_retry(context, status));
+    return status;
 }
 
 /* ---- preparation ---- */
 
-static asj_status build(asj_context *context, void *arguments)
+/* The kernels of the device, if there is one. */
+static asj_status build_kernels(asj_context *context)
 {
-    (void)arguments;
-    return asj_backend_prepare(context);
+    asj_status status;
+    asj_backend_begin(context);
+    do
+        status = asj_backend_prepare(context);
+    while (asj_backend_retry(context, status));
+    return status;
 }
 
 /* Dark with a bright rectangle: every step of the detector has something to do. */
@@ -226,7 +226,7 @@ asj_status asj_prepare(asj_context *context, const asj_detect_options *options, 
         return ASJ_ERROR_ARGUMENT;
     asj_status status = asj_image_check(context, &image);
     if (status == ASJ_OK)
-        status = asj_backend_run(context, build, NULL);
+        status = build_kernels(context);
     if (status != ASJ_OK)
         return status;
     uint8_t *pixels = asj_allocate(&context->memory, (size_t)width * (size_t)height, 1);

@@ -155,33 +155,24 @@ static void clean(match_run *m)
     asj_support_free(memory, &m->support);
 }
 
-/* Arguments of asj_match(). */
-typedef struct match_call {
-    const asj_image *images[2];
-    const asj_junction *junctions[2];
-    size_t counts[2];
-    const asj_match_options *options;
-    asj_match_result **result;
-} match_call;
-
-static asj_status match(asj_context *context, void *arguments)
+static asj_status match(asj_context *context, const asj_match_options *options, const asj_image *const images[2],
+                        const asj_junction *const junctions[2], const size_t counts[2], asj_match_result **result)
 {
-    const match_call *call = arguments;
     match_run m;
     memset(&m, 0, sizeof m);
     m.context = context;
-    m.options = call->options;
+    m.options = options;
     m.clock = asj_clock_ms();
-    asj_status status = prepare(&m, call->images, call->junctions, call->counts);
+    asj_status status = prepare(&m, images, junctions, counts);
     if (status == ASJ_OK)
         status = find_candidates(&m);
     if (status == ASJ_OK)
         status = refine(&m);
     if (status == ASJ_OK)
-        status = finish(&m, call->result);
+        status = finish(&m, result);
     clean(&m);
     if (status == ASJ_OK && asj_progress(context, ASJ_STAGE_ASSIGN, 1) != ASJ_OK) {
-        asj_match_result_free(call->result);
+        asj_match_result_free(result);
         status = ASJ_ERROR_CANCELLED;
     }
     return status;
@@ -205,7 +196,13 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
     }
     if (asj_match_options_check(options, message, sizeof message) != ASJ_OK)
         return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
-    match_call call = {{image1, image2}, {junctions1, junctions2}, {count1, count2}, options, result};
-    context->progress = 0;
-    return asj_backend_run(context, match, &call);
+    const asj_image *const images[2] = {image1, image2};
+    const asj_junction *const junctions[2] = {junctions1, junctions2};
+    const size_t counts[2] = {count1, count2};
+    asj_status status;
+    asj_backend_begin(context);
+    do
+        status = match(context, options, images, junctions, counts, result);
+    while (asj_backend_retry(context, status));
+    return status;
 }
