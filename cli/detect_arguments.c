@@ -24,10 +24,12 @@ static const char introduction[] =
 
 static const char conclusion[] =
     "\n"
+    "NFA: expected number of false alarms in an image of noise.\n"
+    "\n"
     "Exit status: 0 all images done, 1 some failed, 2 wrong usage, 130 interrupted.\n"
     "More, with the file formats: man asj-cli\n";
 
-enum { OUTPUT, OUT_DIR, FORMAT, WHOLE, PLOT, PLOT_COLOR, PLOT_BACKGROUND, PLOT_SCALE, PRESET };
+enum { OUTPUT, OUT_DIR, FORMAT, WHOLE, PLOT, PLOT_COLOR, PLOT_BACKGROUND, PLOT_SCALE, PRESET, FOR };
 
 static const cli_option output_options[] = {
     {OUTPUT, 'o', "output", "FILE",
@@ -49,8 +51,10 @@ static const cli_option plot_options[] = {
 };
 
 static const cli_option preset_options[] = {
-    {PRESET, 0, "preset", "default|paper",
-     "start from these values of the options below, wherever this stands: our recommendation, or the paper to the letter"},
+    {PRESET, 0, "preset", "default|paper|match",
+     "start from these values of the options below, wherever this stands: our recommendation, the paper to the letter, or what "
+     "'asj-cli match' detects: weaker junctions too"},
+    {FOR, 0, "for", "matching", "the same as --preset match"},
 };
 
 void cli_detect_arguments_free(cli_detect_arguments *arguments)
@@ -97,7 +101,12 @@ static int take_plot(void *target, int id, const char *text)
 static int take_preset(void *target, int id, const char *text)
 {
     cli_detect_arguments *arguments = target;
-    (void)id;
+    if (id == FOR) {
+        if (strcmp(text, "matching") != 0)
+            return cli_usage_error("detect", "--for: '%s' is not matching", text);
+        arguments->preset = ASJ_PRESET_MATCH;
+        return CLI_SUCCESS;
+    }
     return cli_take_preset("detect", "preset", text, &arguments->preset);
 }
 
@@ -151,21 +160,21 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
     const cli_group groups[] = {
         {"Results", output_options, sizeof output_options / sizeof output_options[0], take_output, arguments},
         {"Plot", plot_options, sizeof plot_options / sizeof plot_options[0], take_plot, arguments},
-        {"Detector", preset_options, 1, take_preset, arguments},
+        {"Preset", preset_options, sizeof preset_options / sizeof preset_options[0], take_preset, arguments},
         {"Running", cli_common_options, cli_common_option_count, cli_common_take, &arguments->common},
     };
-    const cli_table table = {"Detector, in detail (NFA: expected number of false alarms in an image of noise)", "",
-                             asj_detect_option_count, asj_detect_option, preset_value, cli_settings_take, &arguments->settings};
+    const cli_table table = {"Detector", "", asj_detect_option_count, asj_detect_option, preset_value, cli_settings_take,
+                             &arguments->settings};
     const cli_syntax syntax = {"detect", introduction, conclusion, groups, sizeof groups / sizeof groups[0], &table, 1};
     int result = cli_parse(&syntax, argc, argv, &first);
     if (result == CLI_HELP)
-        cli_help(&syntax);
+        cli_help(&syntax, argc, argv);
     if (result != CLI_SUCCESS)
         return result;
     arguments->images = argv + first;
     arguments->image_count = (size_t)(argc - first);
     asj_detect_options_preset(&arguments->options, arguments->preset);
-    result = cli_settings_apply(&arguments->settings, "detect", &arguments->options, set_option);
+    result = cli_settings_apply(&arguments->settings, "detect", arguments->common.quiet, &arguments->options, set_option);
     return result == CLI_SUCCESS ? check(arguments) : result;
 }
 

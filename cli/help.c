@@ -57,34 +57,57 @@ void cli_row_argument(const asj_option_info *row, char *text, size_t text_size)
 static void print_row(const cli_syntax *syntax, size_t t, const asj_option_info *row)
 {
     const cli_table *table = &syntax->tables[t];
-    char name[CLI_NAME_SIZE], argument[128], standard[64] = "", paper[64] = "", range[96] = "", text[1024];
-    cli_option_name(syntax, t, row, name);
+    static const char *const presets[] = {"default", "paper", "match"}; /* in the order of ASJ_PRESET_... */
+    char name[CLI_NAME_SIZE], argument[128], values[3][64] = {"", "", ""}, range[96] = "", text[1024];
+    cli_option_name(syntax, t, row->key, name);
     cli_row_argument(row, argument, sizeof argument);
-    table->value(ASJ_PRESET_DEFAULT, row->key, standard, sizeof standard);
-    table->value(ASJ_PRESET_PAPER, row->key, paper, sizeof paper);
+    for (int32_t preset = 0; preset < 3; preset++)
+        table->value(preset, row->key, values[preset], sizeof values[preset]);
     if (row->type != ASJ_OPTION_SWITCH && row->type != ASJ_OPTION_CHOICE)
         snprintf(range, sizeof range, "%g .. %g%s%s, ", row->minimum, row->maximum, *row->unit ? " " : "", row->unit);
-    if (strcmp(standard, paper) == 0)
-        snprintf(text, sizeof text, "%s\n(%sdefault %s)", row->help, range, standard);
-    else
-        snprintf(text, sizeof text, "%s\n(%sdefault %s, paper %s)", row->help, range, standard, paper);
+    size_t used = (size_t)snprintf(text, sizeof text, "%s\n(%s%s %s", row->help, range, presets[0], values[0]);
+    for (int32_t preset = 1; preset < 3 && used < sizeof text; preset++)
+        if (strcmp(values[preset], values[0]) != 0)
+            used += (size_t)snprintf(text + used, sizeof text - used, ", %s %s", presets[preset], values[preset]);
+    if (used < sizeof text)
+        snprintf(text + used, sizeof text - used, ")");
     print_column(printf("      --%s %s", name, argument), text);
 }
 
-void cli_help(const cli_syntax *syntax)
+/* The rows of a table, under a title for each group that shows any. */
+static void print_table(const cli_syntax *syntax, size_t t, int advanced)
 {
+    const cli_table *table = &syntax->tables[t];
+    const char *group = "";
+    size_t hidden = 0;
+    for (size_t i = 0; i < table->count(); i++) {
+        const asj_option_info *row = table->row(i);
+        hidden += row->advanced && !advanced;
+        if (row->advanced && !advanced)
+            continue;
+        if (strcmp(group, row->group) != 0)
+            printf("\n%s, %s\n", table->title, row->group);
+        group = row->group;
+        print_row(syntax, t, row);
+    }
+    if (hidden > 0)
+        printf("\n%s: %zu options more with --help --advanced\n", table->title, hidden);
+}
+
+void cli_help(const cli_syntax *syntax, int argc, char **argv)
+{
+    int advanced = 0;
+    for (int i = 1; i < argc; i++)
+        advanced |= strcmp(argv[i], "--advanced") == 0;
     fputs(syntax->introduction, stdout);
     for (size_t g = 0; g < syntax->group_count; g++) {
         printf("\n%s\n", syntax->groups[g].title);
         for (size_t i = 0; i < syntax->groups[g].count; i++)
             print_option(&syntax->groups[g].options[i]);
         if (g + 1 == syntax->group_count)
-            print_column(printf("  -h, --help"), "show this text");
+            print_column(printf("  -h, --help [--advanced]"), "show this text; with --advanced every option");
     }
-    for (size_t t = 0; t < syntax->table_count; t++) {
-        printf("\n%s\n", syntax->tables[t].title);
-        for (size_t i = 0; i < syntax->tables[t].count(); i++)
-            print_row(syntax, t, syntax->tables[t].row(i));
-    }
+    for (size_t t = 0; t < syntax->table_count; t++)
+        print_table(syntax, t, advanced);
     fputs(syntax->conclusion, stdout);
 }

@@ -25,7 +25,9 @@ static const char introduction[] =
 static const char conclusion[] =
     "\n"
     "Options of the detector have the names that they have in 'asj-cli detect'. An option of the matcher whose\n"
-    "name the detector has too begins with --match-.\n"
+    "name the detector has too begins with --match-. The detector starts from its preset match.\n"
+    "\n"
+    "NFA: expected number of false alarms in an image of noise.\n"
     "\n"
     "Exit status: 0 done (no match is a result too), 1 failed and nothing written, 2 wrong usage, 130 interrupted.\n"
     "More, with the file formats: man asj-cli\n";
@@ -58,10 +60,11 @@ static const cli_option plot_options[] = {
 };
 
 static const cli_option preset_options[] = {
-    {PRESET, 0, "preset", "default|paper",
-     "start from these values of the options below, wherever this stands: our recommendation, or the paper to the letter"},
-    {DETECT_PRESET, 0, "detect-preset", "default|paper", "the same for the detector alone"},
-    {MATCH_PRESET, 0, "match-preset", "default|paper", "the same for the matcher alone"},
+    {PRESET, 0, "preset", "match|paper",
+     "start from these values of the options below, wherever this stands: our recommendation for matching (the default), or the "
+     "paper to the letter"},
+    {DETECT_PRESET, 0, "detect-preset", "match|default|paper", "the same for the detector alone; default: as 'asj-cli detect'"},
+    {MATCH_PRESET, 0, "match-preset", "match|paper", "the same for the matcher alone"},
 };
 
 void cli_match_arguments_free(cli_match_arguments *arguments)
@@ -122,19 +125,10 @@ static int take_preset(void *target, int id, const char *text)
     }
 }
 
-/* The detector as the matcher wants it; the paper matches what the paper detects. */
-static asj_status fill_detect_options(asj_detect_options *options, int32_t preset)
-{
-    asj_status status = asj_detect_options_preset(options, preset);
-    if (status == ASJ_OK && preset == ASJ_PRESET_DEFAULT)
-        asj_match_detect_options(options);
-    return status;
-}
-
 static asj_status detect_value(int32_t preset, const char *key, char *text, size_t text_size)
 {
     asj_detect_options options;
-    asj_status status = fill_detect_options(&options, preset);
+    asj_status status = asj_detect_options_preset(&options, preset);
     return status == ASJ_OK ? asj_detect_options_get(&options, key, text, text_size) : status;
 }
 
@@ -157,11 +151,14 @@ static asj_status set_match_option(void *options, const char *key, const char *t
 
 static int apply_settings(cli_match_arguments *arguments)
 {
-    fill_detect_options(&arguments->detect_options, arguments->detect_preset < 0 ? arguments->preset : arguments->detect_preset);
+    const int quiet = arguments->common.quiet;
+    /* the detector's default is not what is recommended here: only --detect-preset asks for it */
+    const int32_t recommended = arguments->preset == ASJ_PRESET_DEFAULT ? ASJ_PRESET_MATCH : arguments->preset;
+    asj_detect_options_preset(&arguments->detect_options, arguments->detect_preset < 0 ? recommended : arguments->detect_preset);
     asj_match_options_preset(&arguments->options, arguments->match_preset < 0 ? arguments->preset : arguments->match_preset);
-    int result = cli_settings_apply(&arguments->detect_settings, "match", &arguments->detect_options, set_detect_option);
+    int result = cli_settings_apply(&arguments->detect_settings, "match", quiet, &arguments->detect_options, set_detect_option);
     if (result == CLI_SUCCESS)
-        result = cli_settings_apply(&arguments->match_settings, "match", &arguments->options, set_match_option);
+        result = cli_settings_apply(&arguments->match_settings, "match", quiet, &arguments->options, set_match_option);
     return result;
 }
 
@@ -229,6 +226,7 @@ static void start(cli_match_arguments *arguments)
     memset(arguments, 0, sizeof *arguments);
     cli_common_init(&arguments->common);
     arguments->detect_preset = arguments->match_preset = -1;
+    arguments->preset = ASJ_PRESET_MATCH;
     arguments->minimum_end = ASJ_END_INNER;
 }
 
@@ -246,15 +244,15 @@ int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *argumen
         {"Running", cli_common_options, cli_common_option_count, cli_common_take, &arguments->common},
     };
     const cli_table tables[] = {
-        {"Detector, in detail (NFA: expected number of false alarms in an image of noise)", "detect", asj_detect_option_count,
-         asj_detect_option, detect_value, cli_settings_take, &arguments->detect_settings},
-        {"Matcher, in detail", "match", asj_match_option_count, asj_match_option, match_value, cli_settings_take,
+        {"Detector", "detect", asj_detect_option_count, asj_detect_option, detect_value, cli_settings_take,
+         &arguments->detect_settings},
+        {"Matcher", "match", asj_match_option_count, asj_match_option, match_value, cli_settings_take,
          &arguments->match_settings},
     };
     const cli_syntax syntax = {"match", introduction, conclusion, groups, sizeof groups / sizeof groups[0], tables, 2};
     int result = cli_parse(&syntax, argc, argv, &first);
     if (result == CLI_HELP)
-        cli_help(&syntax);
+        cli_help(&syntax, argc, argv);
     if (result == CLI_SUCCESS)
         result = apply_settings(arguments);
     return result == CLI_SUCCESS ? check(arguments, argv + first, argc - first) : result;

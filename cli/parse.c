@@ -8,14 +8,17 @@
 #include <string.h>
 
 /* Values that getopt_long() hands back: above every character, in the order of its table. */
-enum { VALUE_HELP = 1000, VALUE_OPTION = 1001 /* + number of the option, in order of the groups, then of the tables */ };
+enum {
+    VALUE_HELP = 1000, VALUE_ADVANCED,
+    VALUE_OPTION /* + number of the option, in order of the groups, then of the tables, a former name after its row */
+};
 
 typedef struct getopt_tables {
-    struct option *long_options; /* help, the groups' options, the tables' rows, an end mark */
+    struct option *long_options; /* help, advanced, the groups' options, the tables' names, an end mark */
     char *short_options;
-    char (*names)[CLI_NAME_SIZE]; /* of the tables' rows */
+    char (*names)[CLI_NAME_SIZE]; /* of the tables' rows, former ones too */
     size_t option_count;          /* options of all groups */
-    size_t row_count;             /* of all tables */
+    size_t name_count;            /* of all tables */
 } getopt_tables;
 
 static int has_key(const cli_table *table, const char *key)
@@ -26,12 +29,12 @@ static int has_key(const cli_table *table, const char *key)
     return 0;
 }
 
-void cli_option_name(const cli_syntax *syntax, size_t table, const asj_option_info *row, char name[CLI_NAME_SIZE])
+void cli_option_name(const cli_syntax *syntax, size_t table, const char *key, char name[CLI_NAME_SIZE])
 {
     int taken = 0;
     for (size_t t = 0; t < table; t++)
-        taken |= has_key(&syntax->tables[t], row->key);
-    snprintf(name, CLI_NAME_SIZE, "%s%s%s", taken ? syntax->tables[table].prefix : "", taken ? "-" : "", row->key);
+        taken |= has_key(&syntax->tables[t], key);
+    snprintf(name, CLI_NAME_SIZE, "%s%s%s", taken ? syntax->tables[table].prefix : "", taken ? "-" : "", key);
     for (char *c = name; *c; c++)
         if (*c == '_')
             *c = '-';
@@ -66,15 +69,17 @@ static const cli_option *find_option(const cli_syntax *syntax, size_t number, co
     return NULL;
 }
 
-/* The table and the row of a number that counts the rows of all tables. */
-static const asj_option_info *find_row(const cli_syntax *syntax, size_t number, size_t *table)
+/* The table and the key of a number that counts the names of all tables; NULL after the last one. */
+static const char *find_key(const cli_syntax *syntax, size_t number, size_t *table)
 {
-    for (*table = 0; *table < syntax->table_count; ++*table) {
-        size_t count = syntax->tables[*table].count();
-        if (number < count)
-            return syntax->tables[*table].row(number);
-        number -= count;
-    }
+    for (*table = 0; *table < syntax->table_count; ++*table)
+        for (size_t i = 0; i < syntax->tables[*table].count(); i++) {
+            const asj_option_info *row = syntax->tables[*table].row(i);
+            if (number-- == 0)
+                return row->key;
+            if (row->former_key && number-- == 0)
+                return row->former_key;
+        }
     return NULL;
 }
 
@@ -95,9 +100,10 @@ static void fill_tables(const cli_syntax *syntax, getopt_tables *tables)
     *letters++ = ':'; /* a missing argument is told apart from an unknown option */
     *letters++ = 'h';
     tables->long_options[0] = long_option("help", 0, VALUE_HELP);
+    tables->long_options[1] = long_option("advanced", 0, VALUE_ADVANCED);
     for (size_t i = 0; i < tables->option_count; i++) {
         const cli_option *option = find_option(syntax, i, &group);
-        tables->long_options[1 + i] = long_option(option->name, option->argument != NULL, VALUE_OPTION + i);
+        tables->long_options[2 + i] = long_option(option->name, option->argument != NULL, VALUE_OPTION + i);
         if (option->letter) {
             *letters++ = option->letter;
             if (option->argument)
@@ -105,11 +111,11 @@ static void fill_tables(const cli_syntax *syntax, getopt_tables *tables)
         }
     }
     *letters = '\0';
-    for (size_t i = 0; i < tables->row_count; i++) {
+    for (size_t i = 0; i < tables->name_count; i++) {
         size_t number = tables->option_count + i, table;
-        const asj_option_info *row = find_row(syntax, i, &table);
-        cli_option_name(syntax, table, row, tables->names[i]);
-        tables->long_options[1 + number] = long_option(tables->names[i], 1, VALUE_OPTION + number);
+        const char *key = find_key(syntax, i, &table);
+        cli_option_name(syntax, table, key, tables->names[i]);
+        tables->long_options[2 + number] = long_option(tables->names[i], 1, VALUE_OPTION + number);
     }
 }
 
@@ -125,11 +131,11 @@ static int make_tables(const cli_syntax *syntax, getopt_tables *tables)
     memset(tables, 0, sizeof *tables);
     for (size_t g = 0; g < syntax->group_count; g++)
         tables->option_count += syntax->groups[g].count;
-    for (size_t t = 0; t < syntax->table_count; t++)
-        tables->row_count += syntax->tables[t].count();
-    tables->long_options = calloc(tables->option_count + tables->row_count + 2, sizeof *tables->long_options);
+    for (size_t table; find_key(syntax, tables->name_count, &table);)
+        tables->name_count++;
+    tables->long_options = calloc(tables->option_count + tables->name_count + 3, sizeof *tables->long_options);
     tables->short_options = calloc(2 * tables->option_count + 3, 1);
-    tables->names = calloc(tables->row_count + 1, sizeof *tables->names);
+    tables->names = calloc(tables->name_count + 1, sizeof *tables->names);
     if (!tables->long_options || !tables->short_options || !tables->names) {
         free_tables(tables);
         return 0;
@@ -158,8 +164,8 @@ static int take_option(const cli_syntax *syntax, const getopt_tables *tables, si
     const cli_group *group = NULL;
     if (number >= tables->option_count) {
         size_t t;
-        const asj_option_info *row = find_row(syntax, number - tables->option_count, &t);
-        return syntax->tables[t].take(syntax->tables[t].target, row, text);
+        const char *key = find_key(syntax, number - tables->option_count, &t);
+        return syntax->tables[t].take(syntax->tables[t].target, key, text);
     }
     const cli_option *option = find_option(syntax, number, &group);
     return group->take(group->target, option->id, text);
@@ -183,7 +189,7 @@ static int parse_with(const cli_syntax *syntax, const getopt_tables *tables, int
             result = cli_usage_error(syntax->command, "%s needs a value", argv[optind - 1]);
         else if (value == '?')
             result = say_unknown(syntax, tables, argv[optind - 1]);
-        else if (value == 'h' || value == VALUE_HELP)
+        else if (value == 'h' || value == VALUE_HELP || value == VALUE_ADVANCED)
             result = CLI_HELP;
         else if (value >= VALUE_OPTION)
             result = take_option(syntax, tables, (size_t)(value - VALUE_OPTION), optarg);

@@ -29,7 +29,7 @@ typedef struct cli_table {
     size_t (*count)(void);
     const asj_option_info *(*row)(size_t index);
     asj_status (*value)(int32_t preset, const char *key, char *text, size_t text_size); /* value of an option in a preset */
-    int (*take)(void *target, const asj_option_info *row, const char *text);
+    int (*take)(void *target, const char *key, const char *text); /* the key may be a former one */
     void *target;
 } cli_table;
 
@@ -46,12 +46,13 @@ typedef struct cli_syntax {
 /* Longest name of a table row on the command line, with its end. */
 #define CLI_NAME_SIZE 64
 
-/* What a row of tables[table] is called on the command line: "minimum_length" -> "minimum-length", after the prefix where a table
+/* What an option of tables[table] is called on the command line: "minimum_length" -> "minimum-length", after the prefix where a table
  * before has the same key. */
-void cli_option_name(const cli_syntax *syntax, size_t table, const asj_option_info *row, char name[CLI_NAME_SIZE]);
+void cli_option_name(const cli_syntax *syntax, size_t table, const char *key, char name[CLI_NAME_SIZE]);
 
 /* Calls `take` for every option of argv[1 .. argc-1], in order, and moves the operands to the end: *first_operand is the index of
- * the first. Returns CLI_SUCCESS, CLI_HELP (the rest is not looked at), CLI_USAGE or CLI_FAILED (no memory). May be called once. */
+ * the first. Returns CLI_SUCCESS, CLI_HELP (--help or --advanced was met; the rest is not looked at), CLI_USAGE or CLI_FAILED (no
+ * memory). May be called once. */
 int cli_parse(const cli_syntax *syntax, int argc, char **argv, int *first_operand);
 
 /* The words of a choice: index of `text` in the NULL-terminated `words`, or -1. */

@@ -21,31 +21,34 @@ void cli_settings_free(cli_settings *settings)
     settings->count = 0;
 }
 
-int cli_settings_take(void *target, const asj_option_info *row, const char *text)
+int cli_settings_take(void *target, const char *key, const char *text)
 {
     cli_settings *settings = target;
     cli_setting *setting = &settings->list[settings->count++];
-    setting->key = row->key;
+    setting->key = key;
     setting->text = text;
     return CLI_SUCCESS;
 }
 
 int cli_take_preset(const char *command, const char *option, const char *text, int32_t *preset)
 {
-    static const char *const presets[] = {"default", "paper", NULL}; /* in the order of ASJ_PRESET_... */
+    static const char *const presets[] = {"default", "paper", "match", NULL}; /* in the order of ASJ_PRESET_... */
     int word = cli_find_word(presets, text);
     if (word < 0)
-        return cli_usage_error(command, "--%s: '%s' is not default or paper", option, text);
+        return cli_usage_error(command, "--%s: '%s' is not default, paper or match", option, text);
     *preset = word;
     return CLI_SUCCESS;
 }
 
-int cli_settings_apply(const cli_settings *settings, const char *command, void *options,
+int cli_settings_apply(const cli_settings *settings, const char *command, int quiet, void *options,
                        asj_status (*set)(void *options, const char *key, const char *text, char *message, size_t message_size))
 {
     char message[256];
-    for (size_t i = 0; i < settings->count; i++)
+    for (size_t i = 0; i < settings->count; i++) {
         if (set(options, settings->list[i].key, settings->list[i].text, message, sizeof message) != ASJ_OK)
             return cli_usage_error(command, "%s", message);
+        if (*message && !quiet)
+            cli_note("asj-cli %s: warning: %s", command, message);
+    }
     return CLI_SUCCESS;
 }

@@ -20,13 +20,13 @@ int cli_settings_create(cli_settings *settings, int argc);
 void cli_settings_free(cli_settings *settings);
 
 /* The `take` of a cli_table. */
-int cli_settings_take(void *settings, const asj_option_info *row, const char *text);
+int cli_settings_take(void *settings, const char *key, const char *text);
 
-/* "default" or "paper" as ASJ_PRESET_...; CLI_SUCCESS, or CLI_USAGE after saying why, with the name of the option. */
+/* "default", "paper" or "match" as ASJ_PRESET_...; CLI_SUCCESS, or CLI_USAGE after saying why, with the name of the option. */
 int cli_take_preset(const char *command, const char *option, const char *text, int32_t *preset);
 
-/* Sets them all, in order. CLI_SUCCESS, or CLI_USAGE after saying why. */
-int cli_settings_apply(const cli_settings *settings, const char *command, void *options,
+/* Sets them all, in order. CLI_SUCCESS, or CLI_USAGE after saying why. Former names give a warning, unless `quiet`. */
+int cli_settings_apply(const cli_settings *settings, const char *command, int quiet, void *options,
                        asj_status (*set)(void *options, const char *key, const char *text, char *message, size_t message_size));
 
 #endif

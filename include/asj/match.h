@@ -23,42 +23,43 @@ enum {
     ASJ_DESCRIPTOR_SIFT = 1 /* 4 x 4 histograms of 8 gradient orientations, square-rooted (RootSIFT) */
 };
 
-/* Options of asj_match(). Fill with asj_match_options_init(), then change fields or call asj_match_options_set().
- * src/match/match_options.c holds the same table with ranges; the chapters on top of the files named here explain the steps. */
+/* Options of asj_match(). Fill with asj_match_options_init(), then change fields or call asj_match_options_set(). By step, as
+ * src/README.md lists them; src/match/match_options.c holds the same table with ranges. Comments as in options.h; preset match is
+ * default here. */
 typedef struct asj_match_options {
-    /* L-junctions: affine.c */
+    /* frames of L-junctions */
     double minimum_opening;      /* deg: branches that open by less, or by more than 180 minus this, give no frame. 0 .. 80; 20 */
     int32_t length_hypotheses;   /* lengths tried for a branch: its own, and junctions that lie on it. 1 .. 4; 3; paper 1 */
-    /* patches: patch.c, descriptor.c, distance.c */
+    /* description */
     int32_t patches;             /* ASJ_PATCHES_...; canonical; paper induced */
     int32_t descriptor;          /* ASJ_DESCRIPTOR_...; raw */
     int32_t normalise;           /* 1 = raw patches are brought to zero mean and unit norm. 1; paper 0 */
-    int32_t patch_size;          /* samples along a side of a patch: 8, 12, 16, 20 or 24. 16 */
+    int32_t patch_size;          /* samples along a side of a patch, a multiple of 4. 8 .. 24; 16 */
+    int32_t reserved_integer;    /* zero */
     double window_start;         /* a canonical patch reaches from here .. -1 .. 0; -0.25 */
     double window_end;           /* .. to here, in branch lengths. 0.25 .. 2; 1 */
     double patch_radius;         /* px: half a side of an induced patch. 4 .. 64; 16 */
     double smoothing;            /* px: standard deviation of the blur before anything is sampled. 0 .. 2; 0.8; paper 0 */
-    /* alignment of short-listed pairs: align.c */
+    /* short list, and alignment of its pairs */
     int32_t shortlist;           /* best candidates kept for each L-junction of either image. 1 .. 32; 4; paper 16 */
     int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map; 0 = none. 0 .. 30; 6; paper 0 */
     double align_radius;         /* px: radius of the disc around the junction that is aligned. 8 .. 64; 20 */
     double max_move;             /* px an alignment may move the junction. 0.5 .. 20; 8 */
-    double minimum_similarity;   /* correlation that the aligned discs of a match need. -1 .. 1; -1 */
-    /* agreement between neighbouring matches: consensus.c, guided.c */
+    /* support by neighbouring candidates */
     int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 40; paper 0 */
+    int32_t guided_rounds;       /* times that accepted matches propose matches near them. 0 .. 4; 1; paper 0 */
     double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1.5; paper 0 */
     double neighbour_tolerance;  /* error of a predicted neighbour, as a part of the distance. 0.01 .. 1; 0.08 */
     double map_tolerance;        /* relative difference allowed between the affine maps of neighbours. 0.05 .. 5; 0.5 */
-    int32_t guided_rounds;       /* times that accepted matches propose matches near them. 0 .. 4; 1; paper 0 */
-    /* a last look at the matches: verify.c */
-    int32_t witnesses;           /* nearest matches, in either image, asked about a match; 0 = none. 0 .. 64; 16; paper 0 */
-    double witness_distance;     /* px at which a witness counts by half. 10 .. 10000; 100 */
-    double minimum_agreement;    /* mean agreement with them that a match needs. 0 .. 1; 0.28; paper 0 */
-    /* choice: assign.c */
+    /* assignment */
     double ratio;                /* the second best at another place must be worse by this factor. 1 .. 10; 1.5 */
     double separation;           /* px: what is nearer is the same place; "another place" lies farther. 0 .. 100; 6; paper 0 */
     int32_t mutual;              /* 1 = each must be the other's best. 1; paper 0 */
-    /* line segments: segments.c */
+    /* verification by the matches around */
+    int32_t verify_neighbours;   /* nearest matches, in either image, asked about a match; 0 = none. 0 .. 64; 16; paper 0 */
+    double verify_distance;      /* px at which such a neighbour counts by half. 10 .. 10000; 100 */
+    double verify_agreement;     /* mean agreement with them that a match needs. 0 .. 1; 0.28; paper 0 */
+    /* line segments */
     double end_tolerance;        /* branch ends correspond when lengths agree within this part. 0.01 .. 1; 0.12 */
     double reserved[21];         /* zero */
 } asj_match_options;
@@ -113,9 +114,8 @@ typedef struct asj_match_result {
  *
  * image1, image2   views; only read, and only during the call
  * junctions1, 2    from asj_detect() or a file; may be NULL when the count is 0. Junctions with branches that differ in
- * sharpness or
- *                  certainty are all welcome: a false junction finds no partner, a missing one cannot be matched. So detect with
- *                  asj_match_detect_options()
+ *                  sharpness or certainty are all welcome: a false junction finds no partner, a missing one cannot be matched.
+ *                  So detect with ASJ_PRESET_MATCH
  * options          NULL = preset `default`
  * result           on success *result belongs to the caller until asj_match_result_free()
  *
@@ -134,11 +134,6 @@ ASJ_API asj_status asj_match(asj_context *context,
 
 /* Frees a result and sets the pointer to NULL. NULL and a pointer to NULL are fine. */
 ASJ_API void asj_match_result_free(asj_match_result **result);
-
-/* Changes detector options to what matching wants: weaker junctions too, since the matcher tells the false ones.
- * candidate_strength 2, candidate_step 1, epsilon 1e4, scan_start 0, scan_epsilon 10, minimum_opening 20, max_move 5, no strip
- * test, near_strength -10. NULL is ignored. */
-ASJ_API void asj_match_detect_options(asj_detect_options *options);
 
 /* A pair of line segments from image 1 and image 2: a matched branch. */
 typedef struct asj_segment_match {

@@ -9,8 +9,9 @@ extern "C" {
 #endif
 
 /* Presets. `default` is what we recommend; `paper` follows "Anisotropic-Scale Junction Detection and Matching for Indoor
- * Images" to the letter wherever the letter can work. Every difference between them is one field below. */
-enum { ASJ_PRESET_DEFAULT = 0, ASJ_PRESET_PAPER = 1 };
+ * Images" to the letter wherever the letter can work; `match` makes the detector find what the matcher wants: weaker junctions
+ * too, since the matcher tells the false ones. Every difference between them is one field below. */
+enum { ASJ_PRESET_DEFAULT = 0, ASJ_PRESET_PAPER = 1, ASJ_PRESET_MATCH = 2 };
 
 enum {
     ASJ_OPTION_NUMBER = 1, /* double */
@@ -20,7 +21,8 @@ enum {
     ASJ_OPTION_RADII = 5   /* uint32_t, bit r set = radius r is in the set; text: "5,7,10,14" or "3-12" */
 };
 
-/* One row of an option table. The command line, the bindings and the README's table are all made from these rows. */
+/* One row of an option table. The command line, the bindings and the manual are all made from these rows. A later version may add
+ * fields at the end: read rows through the pointers that asj_detect_option() and asj_match_option() return, do not copy them. */
 typedef struct asj_option_info {
     const char *key;          /* "minimum_length"; on the command line --minimum-length */
     const char *unit;         /* "px", "deg", "" */
@@ -31,50 +33,58 @@ typedef struct asj_option_info {
     double minimum, maximum;  /* inclusive; radii: the smallest and the largest radius */
     double default_value;     /* preset `default`; radii: the bits */
     double paper_value;       /* preset `paper` */
+    double match_value;       /* preset `match` */
+    double step;              /* only minimum + a multiple of this is allowed; 0 = everything in the range */
+    const char *group;        /* the step in which the option acts: "step 1, gradient". Rows of a group stand together */
+    const char *former_key;   /* name until the version before; still taken, with a warning. NULL = none */
+    int32_t advanced;         /* 1 = few users need it: --help shows it with --advanced only */
+    int32_t reserved;         /* zero */
 } asj_option_info;
 
 /* Options of asj_detect(). Fill with asj_detect_options_init(), then change fields or call asj_detect_options_set().
- * Step numbers are those of the paper's pipeline as listed in README.md; detect_options.c holds the same table with ranges.
- * "number of false alarms" (NFA) is the expected number of accidental detections per image of pure noise. */
+ * Steps are those of the paper's pipeline as src/README.md lists them; detect_options.c holds the same table with ranges.
+ * "number of false alarms" (NFA) is the expected number of accidental detections per image of pure noise.
+ * In the comments: range; preset default; presets paper and match where they differ from default. */
 typedef struct asj_detect_options {
     /* step 1: normalised gradient */
     double gradient_epsilon;      /* grey levels (0..255) per pixel added to the local mean of the gradient norm; what is much
                                    * weaker than this is flat. 0.05 .. 16; default 0.4; paper 0.05 */
-    /* step 2: local junction field */
-    double sector_width;          /* tau: half-width of a sector's outer arc in pixels. 1 .. 3; 2 */
-    double field_epsilon;         /* a local branch is kept when (sectors of its pixel) x tail <= this. 1e-6 .. 100; 1 */
-    int32_t field_radius;         /* px: 3, 5, 7 or 9; 7 */
     int32_t standardise;          /* 1 = give each gradient axis zero mean and unit variance over the image, as the paper does;
                                    * 0 = one fixed scale. default 0; paper 1 */
+    /* step 2: local junction field, candidates */
+    int32_t field_radius;         /* px: 3, 5, 7 or 9; 7 */
+    double sector_width;          /* tau: half-width of a sector's outer arc in pixels. 1 .. 3; 2 */
+    double field_epsilon;         /* a local branch is kept when (sectors of its pixel) x tail <= this. 1e-6 .. 100; 1 */
+    double candidate_strength;    /* standard deviations that two local branches of a candidate need. 0 .. 12; 2.4;
+                                   * paper 5.15; match 2 */
+    int32_t candidate_step;       /* px from one pixel that may be a candidate to the next, along x and along y. 1 .. 2;
+                                   * 2; paper 1; match 1 */
     /* step 3: isotropic junctions */
-    double candidate_strength;    /* standard deviations that two local branches of a candidate need. 0 .. 12; 2.4; paper 5.15 */
-    double epsilon;               /* NFA allowed for a junction, and for a branch. 1e-30 .. 1e6; 1 */
     uint32_t isotropic_radii;     /* bit r set = radius r is tested, 3 .. 30; 7,14; paper 3-12 */
+    double epsilon;               /* NFA allowed for a junction, and for a branch (steps 3 and 5). 1e-30 .. 1e6; 1; match 1e4 */
     int32_t max_branches;         /* branches tested together. 2 .. 5; 5 */
     int32_t more_branches_win;    /* 1 = among junctions closer than half a radius the one with more branches stays. 0; paper 1 */
     /* step 4: branch lengths */
-    double scan_epsilon;          /* NFA at which a step along a ray still belongs to the branch. 1e-6 .. 1e3; 1 */
-    int32_t scan_start;           /* px: first radius looked at; 0 = the junction's isotropic scale. 0 .. 30; 3; paper 0 */
+    double scan_epsilon;          /* NFA at which a step along a ray still belongs to the branch. 1e-6 .. 1e3; 1; match 10 */
+    int32_t scan_start;           /* px: first radius looked at; 0 = the junction's isotropic scale. 0 .. 30; 3; paper 0; match 0 */
     int32_t scan_tolerance;       /* failing steps in a row that a branch survives. 0 .. 8; 1; paper 0 */
     int32_t arc_half_width;       /* px: 2 w + 1 samples across the ray. 1 .. 3; 2 */
     int32_t scan_axial;           /* 1 = scan twice, by direction and by axis, and take the mean length. 1; paper 0 */
-    /* step 5: location and orientation */
-    int32_t refinement;           /* ASJ_REFINE_...: line fits, or the paper's search; line_fit; paper search */
+    /* step 5: location, orientation and validation */
     double minimum_opening;       /* deg: at least two branches of a junction open by this much, and by at most 180 minus this.
-                                   * 0 .. 80; 25; paper 0 */
-    double max_move;              /* px a junction may move while it is located by line fits. 0.5 .. 10; 2.5 */
-    /* validation */
+                                   * 0 .. 80; 25; paper 0; match 20 */
     double minimum_length;        /* px: shorter branches are dropped. 0 .. 1000; 0 */
+    int32_t refinement;           /* ASJ_REFINE_...: line fits, or the paper's search; line_fit; paper search */
+    int32_t ignore_frame;         /* 1 = drop branches that run along the border of the image, within 2.5 px. 1; paper 0 */
+    double max_move;              /* px a junction may move while it is located by line fits. 0.5 .. 10; 2.5; match 5 */
     double merge_angle;           /* deg: of two branches closer than this one stays. 0 .. 60; 15; paper 0 */
-    int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`. 1; paper 0 */
     double strip_half_width;      /* px. 0.5 .. 4; 1.5 */
     double strip_length;          /* px from the junction that the strip test looks at. 10 .. 1000; 60 */
-    double max_deviation;         /* deg between a branch and the dominant direction of the edges under it. 1 .. 90; 90 */
-    int32_t ignore_frame;         /* 1 = drop branches that run along the border of the image, within 2.5 px. 1; paper 0 */
-    int32_t candidate_step;       /* px from one pixel that may be a candidate to the next, along x and along y (step 3).
-                                   * 1 .. 2; 2; paper 1 */
+    double near_strength;         /* standard deviations that a branch needs in its first 6 px. -10 .. 10; 0; paper -10; match -10 */
     double snap_distance;         /* px: a branch that ends this close to a junction on its line ends there. 0 .. 30; 8; paper 0 */
-    double near_strength;         /* standard deviations that a branch needs in its first 6 px. -10 .. 10; 0; paper -10 */
+    int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`.
+                                   * 1; paper 0; match 0 */
+    int32_t reserved_integer;     /* zero */
     double reserved[20];          /* zero */
 } asj_detect_options;
 
@@ -91,14 +101,15 @@ ASJ_API size_t asj_detect_option_count(void);
 ASJ_API const asj_option_info *asj_detect_option(size_t index);
 
 /* Sets one option by its key ('-' and '_' are the same) from text. The number must be the whole text, in the C locale's
- * form whatever the locale, and in range.
- * ASJ_ERROR_ARGUMENT  a NULL pointer
- * ASJ_ERROR_OPTION    unknown key, not a number, out of range; if message is not NULL, message_size bytes there receive a
- *                     sentence that names key, text and range */
+ * form whatever the locale, and in range. A former key (asj_option_info.former_key) is taken too.
+ * If message is not NULL, message_size bytes there receive a sentence:
+ * ASJ_OK              a warning when the key is a former one, which the next version refuses; else empty
+ * ASJ_ERROR_ARGUMENT  a NULL pointer; empty
+ * ASJ_ERROR_OPTION    unknown key, not a number, out of range: names key, text and range */
 ASJ_API asj_status asj_detect_options_set(asj_detect_options *options, const char *key, const char *text,
                                           char *message, size_t message_size);
 
-/* Writes the value of one option as text that asj_detect_options_set() reads back to the same value.
+/* Writes the value of one option as text that asj_detect_options_set() reads back to the same value. Takes former keys too.
  * ASJ_ERROR_ARGUMENT: a NULL pointer or too little room (64 bytes always do); ASJ_ERROR_OPTION: unknown key. */
 ASJ_API asj_status asj_detect_options_get(const asj_detect_options *options, const char *key, char *text, size_t text_size);
 

@@ -46,16 +46,40 @@ static void store(const asj_option_info *row, void *options, double value)
 static int in_range(const asj_option_info *row, double value)
 {
     if (row->type != ASJ_OPTION_RADII)
-        return value >= row->minimum && value <= row->maximum; /* false for NaN */
+        return value >= row->minimum && value <= row->maximum && /* false for NaN */
+               (row->step <= 0 || fmod(value - row->minimum, row->step) == 0);
     uint32_t allowed = (uint32_t)(((uint64_t)2 << (int)row->maximum) - ((uint64_t)1 << (int)row->minimum));
     uint32_t bits = (uint32_t)value;
     return bits != 0 && (bits & ~allowed) == 0;
 }
 
-void asj_option_table_fill(const asj_option_table *table, void *options, int32_t preset)
+static void say_range(const asj_option_info *row, const char *value, char *message, size_t message_size)
 {
-    for (size_t i = 0; i < table->count; i++)
-        store(&table->rows[i], options, preset == ASJ_PRESET_PAPER ? table->rows[i].paper_value : table->rows[i].default_value);
+    if (row->step > 1)
+        say(message, message_size, "%s: %s is not one of %.9g, %.9g .. %.9g", row->key, value, row->minimum,
+            row->minimum + row->step, row->maximum);
+    else
+        say(message, message_size, "%s: %s is outside %.9g .. %.9g", row->key, value, row->minimum, row->maximum);
+}
+
+asj_status asj_option_table_preset(const asj_option_table *table, void *options, int32_t preset)
+{
+    if (!options)
+        return ASJ_ERROR_ARGUMENT;
+    if (preset != ASJ_PRESET_DEFAULT && preset != ASJ_PRESET_PAPER && preset != ASJ_PRESET_MATCH)
+        return ASJ_ERROR_OPTION;
+    memset(options, 0, table->size);
+    for (size_t i = 0; i < table->count; i++) {
+        const asj_option_info *row = &table->rows[i];
+        const double values[] = {row->default_value, row->paper_value, row->match_value}; /* in the order of ASJ_PRESET_... */
+        store(row, options, values[preset]);
+    }
+    return ASJ_OK;
+}
+
+const asj_option_info *asj_option_table_row(const asj_option_table *table, size_t index)
+{
+    return index < table->count ? &table->rows[index] : NULL;
 }
 
 asj_status asj_option_table_check(const asj_option_table *table, const void *options, char *message, size_t message_size)
@@ -64,22 +88,28 @@ asj_status asj_option_table_check(const asj_option_table *table, const void *opt
         const asj_option_info *row = &table->rows[i];
         double value = load(row, options);
         if (!in_range(row, value)) {
-            say(message, message_size, "%s: %.9g is outside %.9g .. %.9g", row->key, value, row->minimum, row->maximum);
+            char number[32];
+            snprintf(number, sizeof number, "%.9g", value);
+            say_range(row, number, message, message_size);
             return ASJ_ERROR_OPTION;
         }
     }
     return ASJ_OK;
 }
 
+/* '-' in the wanted key stands for '_'. */
+static int is_key(const char *key, const char *wanted)
+{
+    while (*key && (*key == *wanted || (*key == '_' && *wanted == '-')))
+        key++, wanted++;
+    return *key == *wanted;
+}
+
 static const asj_option_info *find(const asj_option_table *table, const char *key)
 {
-    for (size_t i = 0; i < table->count; i++) {
-        const char *a = table->rows[i].key, *b = key;
-        while (*a && (*a == *b || (*a == '_' && *b == '-')))
-            a++, b++;
-        if (*a == *b)
+    for (size_t i = 0; i < table->count; i++)
+        if (is_key(table->rows[i].key, key) || (table->rows[i].former_key && is_key(table->rows[i].former_key, key)))
             return &table->rows[i];
-    }
     return NULL;
 }
 
@@ -201,6 +231,7 @@ asj_status asj_option_table_set(const asj_option_table *table, void *options, co
 {
     static const char *const kinds[] = {"", "a number", "a whole number", "yes or no", "one of its words",
                                         "a set of radii such as 5,7,10 or 3-12"};
+    say(message, message_size, "%s", "");
     if (!options || !key || !text)
         return ASJ_ERROR_ARGUMENT;
     const asj_option_info *row = find(table, key);
@@ -214,10 +245,12 @@ asj_status asj_option_table_set(const asj_option_table *table, void *options, co
         return ASJ_ERROR_OPTION;
     }
     if (!in_range(row, value)) {
-        say(message, message_size, "%s: %s is outside %.9g .. %.9g", row->key, text, row->minimum, row->maximum);
+        say_range(row, text, message, message_size);
         return ASJ_ERROR_OPTION;
     }
     store(row, options, value);
+    if (!is_key(row->key, key))
+        say(message, message_size, "%s is called %s now; the next version does not know the former name", row->former_key, row->key);
     return ASJ_OK;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-#ifndef ASJ_SRC_OPTIONS_H
-#define ASJ_SRC_OPTIONS_H
+#ifndef ASJ_SRC_DETECT_OPTIONS_H
+#define ASJ_SRC_DETECT_OPTIONS_H
 
 #include "core/option_table.h"
 

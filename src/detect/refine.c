@@ -222,7 +222,7 @@ void asj_foresee(const asj_context *context, const asj_frame *frame, const asj_d
  * to another edge. */
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
 {
-    const double log_epsilon = log(options->epsilon), askew = options->max_deviation * (PI / 180);
+    const double log_epsilon = log(options->epsilon);
     int keep[ASJ_MAX_BRANCHES];
     if (hypot(draft->x - draft->x0, draft->y - draft->y0) > 2 * options->max_move) {
         draft->branch_count = 0;
@@ -233,7 +233,7 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
         const asj_strip strip = asj_strip_test(context, frame, options, draft->x, draft->y, branch->angle, branch->length);
         branch->log_nfa = strip.log_nfa;
         keep[i] = branch->length >= options->minimum_length && branch->length > 0 && fabs(branch->offset) <= LARGEST_OFFSET &&
-                  (!options->strip_test || strip.log_nfa <= log_epsilon) && strip.deviation <= askew &&
+                  (!options->strip_test || strip.log_nfa <= log_epsilon) &&
                   strip.near_strength >= options->near_strength &&
                   !(options->ignore_frame && on_frame(frame, draft, branch));
     }

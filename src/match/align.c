@@ -311,10 +311,10 @@ static void align_one(const asj_disc *disc, const asj_match_options *options, co
     c->distance2 = combine(c->distance2, c->similarity);
 }
 
-/* Pairs whose discs are not even half as alike as a match has to be would only slow the consensus down. */
-static void drop_unlike(const asj_match_options *options, asj_candidates *candidates, size_t first)
+/* Pairs without a usable disc (similarity -1), or whose discs are each other's negatives, would only slow the consensus down. */
+static void drop_unlike(asj_candidates *candidates, size_t first)
 {
-    const float least = 0.5f * (float)options->minimum_similarity;
+    const float least = -0.5f;
     size_t kept = first;
     for (size_t k = first; k < candidates->count; k++)
         if (candidates->list[k].similarity >= least)
@@ -365,7 +365,7 @@ asj_status asj_align_candidates(asj_context *context, const asj_match_options *o
     asj_release(memory, order);
     asj_release(memory, group);
     asj_release(memory, disc);
-    drop_unlike(options, candidates, first);
+    drop_unlike(candidates, first);
     return ASJ_OK;
 }
 

@@ -75,8 +75,7 @@ static int accept(const asj_match_options *options, const asj_candidate *c, cons
         second = theirs->second > second ? theirs->second : second;
     }
     *ratio = second > 0 ? c->score / second : HUGE_VALF;
-    return c->score > 0 && *ratio >= (float)options->ratio && c->support >= needed &&
-           (options->align_iterations == 0 || c->similarity >= (float)options->minimum_similarity);
+    return c->score > 0 && *ratio >= (float)options->ratio && c->support >= needed;
 }
 
 /* keeper[place of image 2]: index + 1 of the choice that has it. */

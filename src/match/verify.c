@@ -4,10 +4,10 @@
  * The consensus asks for neighbours that agree, and where matches are many a false one finds some. What tells it then are the
  * many that do not. A true match lies on a surface whose other matches agree with it (asj_surface_agreement(); edges do not count
  * here, for what slides along them is what is looked for); where surfaces meet, its own side does. With a_k the agreement of the
- * k-th of the `witnesses` nearest matches of image 1, and as many of image 2, at distance d_k there, and
- * w_k = 1 / (1 + d_k^2 / witness_distance^2),
+ * k-th of the `verify_neighbours` nearest matches of image 1, and as many of image 2, at distance d_k there, and
+ * w_k = 1 / (1 + d_k^2 / verify_distance^2),
  *
- *     (DOUBT / 2 + sum of w_k a_k) / (DOUBT + sum of w_k) >= minimum_agreement
+ *     (DOUBT / 2 + sum of w_k a_k) / (DOUBT + sum of w_k) >= verify_agreement
  *
  * has to hold: far witnesses stand on other surfaces, or perspective is no longer affine between them, so they say little, and
  * where nobody is near the match stays, as if DOUBT witnesses agreed by half. Witnesses are accepted matches, not candidates:
@@ -23,7 +23,7 @@
 
 #define ROUNDS 2          /* a third one changes nothing */
 #define MOST_WITNESSES 64 /* the option's maximum */
-#define DOUBT 6.0         /* what a thing of its own has in corners; 3 or 10 trade right for wrong ones as minimum_agreement does */
+#define DOUBT 6.0         /* what a thing of its own has in corners; 3 or 10 trade right for wrong ones as verify_agreement does */
 #define STEM 1.5          /* in rendered rooms 1.25 brings 55 right and 26 wrong ones, 2 costs 161 right and 38 wrong ones */
 
 /* A choice as the witnesses see it. */
@@ -49,14 +49,14 @@ static void set_spot(const trial *t, size_t n)
     const asj_l_junction *l1 = &corners1->l[c->i], *l2 = &corners2->l[c->j];
     const int stem = corners1->stem[c->i] || corners2->stem[c->j];
     t->spots[n] = (spot){{(double)l1->x, (double)l2->x}, {(double)l1->y, (double)l2->y},
-                         t->options->minimum_agreement * (stem ? STEM : 1), 1};
+                         t->options->verify_agreement * (stem ? STEM : 1), 1};
 }
 
 /* The nearest choices farther than `separation` in one image, ties by number, and the squares of their distances. */
 static uint32_t nearest(const trial *t, size_t self, int32_t side, uint32_t *witness, double *square)
 {
     const double least = t->options->separation * t->options->separation;
-    const uint32_t limit = (uint32_t)t->options->witnesses;
+    const uint32_t limit = (uint32_t)t->options->verify_neighbours;
     uint32_t found = 0;
     for (size_t n = 0; n < t->count; n++) {
         const double dx = t->spots[n].x[side] - t->spots[self].x[side], dy = t->spots[n].y[side] - t->spots[self].y[side];
@@ -76,7 +76,7 @@ static uint32_t nearest(const trial *t, size_t self, int32_t side, uint32_t *wit
 
 static double agreement(const trial *t, size_t self)
 {
-    const double reach = t->options->witness_distance * t->options->witness_distance;
+    const double reach = t->options->verify_distance * t->options->verify_distance;
     const asj_candidate *c = &t->candidates->list[t->choices[self].candidate];
     double sum = DOUBT / 2, asked = DOUBT;
     for (int32_t side = 0; side < 2; side++) {
@@ -97,7 +97,7 @@ static double agreement(const trial *t, size_t self)
 asj_status asj_verify(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
                       const asj_candidates *candidates, asj_choice *choices, size_t *count)
 {
-    if (options->witnesses == 0 || *count == 0)
+    if (options->verify_neighbours == 0 || *count == 0)
         return ASJ_OK;
     trial t = {options, view1, view2, candidates, choices, NULL, *count};
     t.spots = asj_allocate(&context->memory, *count, sizeof *t.spots);

@@ -10,7 +10,7 @@
  *     --preset paper         both presets of the library: detection and matching
  *     --detect KEY=VALUE     a detector option          --match KEY=VALUE    a matcher option
  *     --junctions SUFFIX     PAIRS/<name>/1<SUFFIX> and 2<SUFFIX> are read instead of detecting (".authors.asj")
- *     --plain                the detector's defaults instead of asj_match_detect_options()
+ *     --plain                the detector's preset default instead of match
  *     --threads N            default: as many as processors */
 #define _POSIX_C_SOURCE 200809L
 #include "photograph.h"
@@ -158,18 +158,17 @@ static int set_match(asj_match_options *options, const char *text)
     }
     memcpy(key, text, (size_t)(equals - text));
     key[equals - text] = '\0';
-    if (asj_match_options_set(options, key, equals + 1, message, sizeof message) == ASJ_OK)
-        return 0;
-    fprintf(stderr, "match_pairs: %s\n", message);
-    return -1;
+    const asj_status status = asj_match_options_set(options, key, equals + 1, message, sizeof message);
+    if (*message)
+        fprintf(stderr, "match_pairs: %s\n", message);
+    return status == ASJ_OK ? 0 : -1;
 }
 
 /* Returns the index of the first argument that is no option, or -1. */
 static int parse(int count, char **arguments, job *j, asj_context_options *context)
 {
     int n = 1;
-    asj_detect_options_init(&j->detect);
-    asj_match_detect_options(&j->detect);
+    asj_detect_options_preset(&j->detect, ASJ_PRESET_MATCH);
     asj_match_options_init(&j->match);
     for (; n < count && strncmp(arguments[n], "--", 2) == 0; n++) {
         const char *name = arguments[n], *value = n + 1 < count ? arguments[n + 1] : "";

@@ -29,8 +29,7 @@ int room_view_make(asj_context *context, const synth_room *room, synth_camera ca
     if (!view->pixels)
         return fail("cannot render a view");
     view->image = (asj_image){view->pixels, ASJ_FORMAT_GRAY8, camera.width, camera.height, 0, 0};
-    asj_detect_options_init(&options);
-    asj_match_detect_options(&options);
+    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
     return asj_detect(context, &view->image, &options, &view->found) == ASJ_OK ? 0 : fail(asj_context_message(context));
 }
 

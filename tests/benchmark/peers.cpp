@@ -38,7 +38,7 @@ const char help[] =
     "\n"
     "ms        median of wall time; least; cpu: median of the processor time of all threads, which other programs disturb less\n"
     "libasj /  its time divided by that one's, each of the three ways\n"
-    "match     libasj: all junctions of asj_match_detect_options(), and 500 L-junctions of either image\n";
+    "match     libasj: all junctions of the preset match, and 500 L-junctions of either image\n";
 
 const int WIDTH = 1052, HEIGHT = 780;
 

@@ -37,8 +37,7 @@ int benchmark_view_make(asj_context *context, const asj_image *image, size_t mor
     asj_detection *found = NULL;
     memset(view, 0, sizeof *view);
     view->image = *image;
-    asj_detect_options_init(&options);
-    asj_match_detect_options(&options);
+    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
     if (asj_detect(context, image, &options, &found) != ASJ_OK)
         return -1;
     view->all_count = found->junction_count + more;

@@ -17,7 +17,7 @@ typedef struct benchmark_view {
     size_t count;
 } benchmark_view;
 
-/* Detects with asj_match_detect_options(), and adds `more` corners at random places, for more than the image has. 0, or -1. */
+/* Detects with the preset match, and adds `more` corners at random places, for more than the image has. 0, or -1. */
 int benchmark_view_make(asj_context *context, const asj_image *image, size_t more, uint64_t seed, benchmark_view *view);
 void benchmark_view_free(benchmark_view *view);
 

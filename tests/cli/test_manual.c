@@ -74,45 +74,60 @@ static void add_head(page *p, const char *prefix, const asj_option_info *row)
         add(p, " Ar %s\n", row->type == ASJ_OPTION_RADII ? "list" : "n");
 }
 
-/* match: what the command match starts from where that differs, else "". */
-static void add_values(page *p, const asj_option_info *row, const char *standard, const char *paper, const char *match)
+/* values[preset]: those that differ from the default are told. */
+static void add_values(page *p, const asj_option_info *row, char values[3][64])
 {
-    char values[256] = "";
+    static const char *const presets[] = {"default", "paper", "match"};
+    char text[256] = "";
+    int used;
     if (row->type != ASJ_OPTION_SWITCH && row->type != ASJ_OPTION_CHOICE) {
-        snprintf(values, sizeof values, "from %g to %g%s%s", row->minimum, row->maximum, *row->unit ? " " : "", row->unit);
-        add_sentence(p, values);
+        snprintf(text, sizeof text, "from %g to %g%s%s", row->minimum, row->maximum, *row->unit ? " " : "", row->unit);
+        add_sentence(p, text);
     }
-    snprintf(values, sizeof values, "default: %s%s%s%s%s", standard, *match ? ", for match " : "", match,
-             strcmp(standard, paper) == 0 && !*match ? "" : "; paper: ", strcmp(standard, paper) == 0 && !*match ? "" : paper);
-    add_sentence(p, values);
+    used = snprintf(text, sizeof text, "%s: %s", presets[0], values[0]);
+    for (int preset = 1; preset < 3; preset++)
+        if (strcmp(values[preset], values[0]) != 0)
+            used += snprintf(text + used, sizeof text - (size_t)used, "; %s: %s", presets[preset], values[preset]);
+    add_sentence(p, text);
+}
+
+/* A heading for each group of options: a list of its own. */
+static void add_group(page *p, const asj_option_info *row, const asj_option_info *before)
+{
+    if (before && strcmp(before->group, row->group) == 0)
+        return;
+    add(p, "%s.Pp\n", before ? ".El\n" : "");
+    snprintf(p->text + p->used, sizeof p->text - p->used, "%s:\n", row->group);
+    if (p->text[p->used] >= 'a' && p->text[p->used] <= 'z')
+        p->text[p->used] = (char)(p->text[p->used] - 'a' + 'A');
+    p->used += strlen(p->text + p->used);
+    add(p, ".Bl -tag -width Ds\n");
 }
 
 static void add_detect_row(page *p, const asj_option_info *row)
 {
-    asj_detect_options options;
-    char standard[64] = "", paper[64] = "", match[64] = "";
-    asj_detect_options_preset(&options, ASJ_PRESET_PAPER);
-    asj_detect_options_get(&options, row->key, paper, sizeof paper);
-    asj_detect_options_preset(&options, ASJ_PRESET_DEFAULT);
-    asj_detect_options_get(&options, row->key, standard, sizeof standard);
-    asj_match_detect_options(&options);
-    asj_detect_options_get(&options, row->key, match, sizeof match);
+    char values[3][64] = {"", "", ""};
+    for (int32_t preset = 0; preset < 3; preset++) {
+        asj_detect_options options;
+        asj_detect_options_preset(&options, preset);
+        asj_detect_options_get(&options, row->key, values[preset], sizeof values[preset]);
+    }
     add_head(p, "", row);
     add_sentence(p, row->help);
-    add_values(p, row, standard, paper, strcmp(match, standard) == 0 ? "" : match);
+    add_values(p, row, values);
 }
 
 static void add_match_row(page *p, const asj_option_info *row)
 {
-    asj_match_options options;
-    char standard[64] = "", paper[64] = "";
-    asj_match_options_preset(&options, ASJ_PRESET_DEFAULT);
-    asj_match_options_get(&options, row->key, standard, sizeof standard);
-    asj_match_options_preset(&options, ASJ_PRESET_PAPER);
-    asj_match_options_get(&options, row->key, paper, sizeof paper);
+    char values[3][64] = {"", "", ""};
+    for (int32_t preset = 0; preset < 3; preset++) {
+        asj_match_options options;
+        asj_match_options_preset(&options, preset);
+        asj_match_options_get(&options, row->key, values[preset], sizeof values[preset]);
+    }
     add_head(p, is_detector_key(row->key) ? "match-" : "", row);
     add_sentence(p, row->help);
-    add_values(p, row, standard, paper, "");
+    add_values(p, row, values);
 }
 
 /* The tables, each between two comments of the page. */
@@ -131,8 +146,11 @@ enum { TABLES = sizeof tables / sizeof tables[0] };
 
 static void add_table(page *p, const struct table *table)
 {
-    for (size_t i = 0; i < table->count(); i++)
+    for (size_t i = 0; i < table->count(); i++) {
+        add_group(p, table->row(i), i > 0 ? table->row(i - 1) : NULL);
         table->add(p, table->row(i));
+    }
+    add(p, ".El\n");
 }
 
 static void read_manual(page *p)

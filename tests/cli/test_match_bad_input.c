@@ -25,7 +25,7 @@ static int count_lines(const char *text)
 static void help_names_every_option_of_the_library(void **state)
 {
     (void)state;
-    const outcome *result = run_cli("match", "--help", NULL);
+    const outcome *result = run_cli("match", "--help", "--advanced", NULL);
     expect_code(result, 0);
     expect_empty(result, "standard error", result->err);
     assert_true(asj_match_option_count() > 0);

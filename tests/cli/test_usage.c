@@ -26,21 +26,37 @@ static void general_help_and_version(void **state)
     expect_in(result, result->out, asj_version_string());
 }
 
-static void help_names_every_option_of_the_library(void **state)
+/* The advanced options are shown or not. */
+static void expect_help(const outcome *result, int advanced)
 {
-    (void)state;
-    const outcome *result = run_cli("detect", "--help", NULL);
+    size_t shown = 0;
     expect_code(result, 0);
     expect_empty(result, "standard error", result->err);
     assert_true(asj_detect_option_count() > 0);
     for (size_t i = 0; i < asj_detect_option_count(); i++) {
+        const asj_option_info *row = asj_detect_option(i);
         char name[80];
-        snprintf(name, sizeof name, "--%s ", asj_detect_option(i)->key);
+        snprintf(name, sizeof name, "--%s ", row->key);
         for (char *c = name; *c; c++)
             if (*c == '_')
                 *c = '-';
-        expect_in(result, result->out, name);
+        if (advanced || !row->advanced)
+            expect_in(result, result->out, name);
+        else
+            assert_null(strstr(result->out, name));
+        shown += advanced || !row->advanced;
     }
+    assert_true(advanced ? shown == asj_detect_option_count() : shown >= 5 && shown <= 12);
+}
+
+static void help_names_the_options_of_the_library(void **state)
+{
+    (void)state;
+    expect_help(run_cli("detect", "--help", NULL), 0);
+    const outcome *result = run_cli("detect", "--help", NULL);
+    expect_in(result, result->out, "options more with --help --advanced");
+    expect_help(run_cli("detect", "--help", "--advanced", NULL), 1);
+    expect_help(run_cli("detect", "--advanced", "-h", NULL), 1);
 }
 
 static void help_of_detect_wins_over_what_follows(void **state)
@@ -76,7 +92,9 @@ static const struct {
     {{"detect", "--max-branches", "6", "scene.png"}, "max_branches: 6 is outside"},
     {{"detect", "--max-branches", "2.5", "scene.png"}, "max_branches: '2.5' is not a whole number"},
     {{"detect", "--field-radius", "4", "scene.png"}, "field_radius"},
+    {{"detect", "--field-radius", "6", "scene.png"}, "field_radius: 6 is not one of 3, 5 .. 9"},
     {{"detect", "--preset", "best", "scene.png"}, "--preset: 'best'"},
+    {{"detect", "--for", "fun", "scene.png"}, "--for: 'fun'"},
     {{"detect", "--format", "xml", "scene.png"}, "--format: 'xml'"},
     {{"detect", "--backend", "cuda", "scene.png"}, "--backend: 'cuda'"},
     {{"detect", "--threads", "-1", "scene.png"}, "--threads: '-1'"},
@@ -123,7 +141,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(general_help_and_version),
-        cmocka_unit_test(help_names_every_option_of_the_library),
+        cmocka_unit_test(help_names_the_options_of_the_library),
         cmocka_unit_test(help_of_detect_wins_over_what_follows),
         cmocka_unit_test(wrong_usage_ends_with_2_and_says_why),
     };

@@ -55,8 +55,7 @@ static asj_status detect(asj_context *context, const work_images *images, int v,
 {
     asj_detect_options options;
     asj_detection *found = NULL;
-    asj_detect_options_init(&options);
-    asj_match_detect_options(&options);
+    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
     asj_status status = asj_detect(context, &images->of[v], &options, &found);
     if (status == ASJ_OK) {
         a->counts[v] = found->junction_count;

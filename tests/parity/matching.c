@@ -76,8 +76,7 @@ static void compare(run_state *state, const char *name, const pair *p)
 static int detect(run_state *state, pair *p)
 {
     asj_detect_options options;
-    asj_detect_options_init(&options);
-    asj_match_detect_options(&options);
+    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
     asj_context *context = NULL;
     int good = asj_context_create(NULL, &context) == ASJ_OK;
     for (int v = 0; v < 2 && good; v++)

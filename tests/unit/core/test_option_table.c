@@ -10,25 +10,26 @@
 
 typedef struct set {
     double number;
-    int32_t integer, on, word;
+    int32_t integer, on, word, stepped;
     uint32_t radii;
 } set;
 
 static const char *const words[] = {"one", "two", "three_four", NULL};
 static const asj_option_info rows[] = {
-    {"a_number", "px", "help", NULL, ASJ_OPTION_NUMBER, offsetof(set, number), -1e30, 1e30, 0.25, 7},
-    {"an_integer", "", "help", NULL, ASJ_OPTION_INTEGER, offsetof(set, integer), INT32_MIN, INT32_MAX, 3, -4},
-    {"a_switch", "", "help", NULL, ASJ_OPTION_SWITCH, offsetof(set, on), 0, 1, 1, 0},
-    {"a_word", "", "help", words, ASJ_OPTION_CHOICE, offsetof(set, word), 0, 2, 1, 2},
-    {"radii", "px", "help", NULL, ASJ_OPTION_RADII, offsetof(set, radii), 3, 30, 1u << 5 | 1u << 7, 0x1ff8},
+    {"a_number", "px", "help", NULL, ASJ_OPTION_NUMBER, offsetof(set, number), -1e30, 1e30, 0.25, 7, 8, 0, "one", NULL, 0, 0},
+    {"an_integer", "", "help", NULL, ASJ_OPTION_INTEGER, offsetof(set, integer), INT32_MIN, INT32_MAX, 3, -4, 5, 1, "one", NULL, 1, 0},
+    {"a_switch", "", "help", NULL, ASJ_OPTION_SWITCH, offsetof(set, on), 0, 1, 1, 0, 1, 1, "one", NULL, 0, 0},
+    {"a_word", "", "help", words, ASJ_OPTION_CHOICE, offsetof(set, word), 0, 2, 1, 2, 0, 1, "two", NULL, 0, 0},
+    {"radii", "px", "help", NULL, ASJ_OPTION_RADII, offsetof(set, radii), 3, 30, 1u << 5 | 1u << 7, 0x1ff8, 8, 0, "two", NULL, 0, 0},
+    {"stepped", "px", "help", NULL, ASJ_OPTION_INTEGER, offsetof(set, stepped), 3, 11, 5, 7, 11, 2, "two", "old_name", 0, 0},
 };
-static const asj_option_table table = {rows, UNIT_COUNT(rows)};
+static const asj_option_table table = {rows, UNIT_COUNT(rows), sizeof(set)};
 
 static set filled(int32_t preset)
 {
     set s;
-    memset(&s, 0, sizeof s);
-    asj_option_table_fill(&table, &s, preset);
+    memset(&s, 0xff, sizeof s);
+    assert_int_equal(asj_option_table_preset(&table, &s, preset), ASJ_OK);
     return s;
 }
 
@@ -41,6 +42,18 @@ static void test_fill(void **state)
     assert_true(standard.on == 1 && paper.on == 0);
     assert_true(standard.word == 1 && paper.word == 2);
     assert_true(standard.radii == 0xa0 && paper.radii == 0x1ff8);
+    const set match = filled(ASJ_PRESET_MATCH);
+    assert_true(match.number == 8 && match.integer == 5 && match.on == 1 && match.word == 0 && match.radii == 8);
+    assert_true(standard.stepped == 5 && paper.stepped == 7 && match.stepped == 11);
+    set s = standard;
+    assert_int_equal(asj_option_table_preset(&table, NULL, 0), ASJ_ERROR_ARGUMENT);
+    static const int32_t unknown[] = {-1, 3, INT32_MAX, INT32_MIN};
+    for (size_t i = 0; i < UNIT_COUNT(unknown); i++) {
+        assert_int_equal(asj_option_table_preset(&table, &s, unknown[i]), ASJ_ERROR_OPTION);
+        assert_memory_equal(&s, &standard, sizeof s); /* left as it was */
+    }
+    assert_ptr_equal(asj_option_table_row(&table, 1), &rows[1]);
+    assert_null(asj_option_table_row(&table, UNIT_COUNT(rows)));
 }
 
 static asj_status put(set *s, const char *key, const char *text)
@@ -280,6 +293,50 @@ static void test_keys(void **state)
     assert_int_equal(asj_option_table_get(&table, &s, "a_number", NULL, 64), ASJ_ERROR_ARGUMENT);
 }
 
+/* Only minimum + a multiple of the step. */
+static void test_steps(void **state)
+{
+    char message[128];
+    (void)state;
+    for (int32_t value = 1; value <= 13; value++) {
+        const int good = value >= 3 && value <= 11 && value % 2 == 1;
+        set s = filled(0);
+        char text[16];
+        snprintf(text, sizeof text, "%d", (int)value);
+        assert_int_equal(asj_option_table_set(&table, &s, "stepped", text, message, sizeof message), good ? ASJ_OK : ASJ_ERROR_OPTION);
+        assert_int_equal(s.stepped, good ? value : 5);
+        if (!good)
+            assert_non_null(strstr(message, "not one of 3, 5 .. 11"));
+        s.stepped = value;
+        assert_int_equal(asj_option_table_check(&table, &s, message, sizeof message), good ? ASJ_OK : ASJ_ERROR_OPTION);
+    }
+}
+
+/* A former key sets and gets the same field, and says so; every other success leaves the message empty. */
+static void test_former_keys(void **state)
+{
+    static const char *const former[] = {"old_name", "old-name"};
+    char message[128], text[64];
+    (void)state;
+    for (size_t i = 0; i < UNIT_COUNT(former); i++) {
+        set s = filled(0);
+        strcpy(message, "before");
+        assert_int_equal(asj_option_table_set(&table, &s, former[i], "9", message, sizeof message), ASJ_OK);
+        assert_int_equal(s.stepped, 9);
+        assert_non_null(strstr(message, "old_name is called stepped now"));
+        assert_int_equal(asj_option_table_get(&table, &s, former[i], text, sizeof text), ASJ_OK);
+        assert_string_equal(text, "9");
+        assert_int_equal(asj_option_table_set(&table, &s, former[i], "9", NULL, 0), ASJ_OK);
+        assert_int_equal(asj_option_table_set(&table, &s, "stepped", "7", message, sizeof message), ASJ_OK);
+        assert_string_equal(message, "");
+        assert_int_equal(asj_option_table_set(&table, &s, former[i], "8", message, sizeof message), ASJ_ERROR_OPTION);
+        assert_non_null(strstr(message, "stepped: 8"));
+        strcpy(message, "before");
+        assert_int_equal(asj_option_table_set(&table, &s, NULL, "8", message, sizeof message), ASJ_ERROR_ARGUMENT);
+        assert_string_equal(message, "");
+    }
+}
+
 /* Messages and values in buffers of any size: whole, or cut and ended. */
 static void test_short_buffers(void **state)
 {
@@ -373,7 +430,8 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(test_fill),     cmocka_unit_test(test_numbers), cmocka_unit_test(test_number_round_trip),
         cmocka_unit_test(test_integers), cmocka_unit_test(test_switches), cmocka_unit_test(test_words),
         cmocka_unit_test(test_radii),    cmocka_unit_test(test_refused), cmocka_unit_test(test_keys),
-        cmocka_unit_test(test_short_buffers), cmocka_unit_test(test_check),
+        cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_former_keys), cmocka_unit_test(test_short_buffers), cmocka_unit_test(test_check),
     };
     if (argument_count > 1 && !strcmp(arguments[1], "comma") && !set_comma_locale()) {
         puts("SKIPPED: no locale with a decimal comma is installed, and localedef cannot make one");

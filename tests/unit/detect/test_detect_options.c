@@ -75,11 +75,19 @@ static void test_rows_match_fields(void **state)
     }
 }
 
-static void test_rows_are_sound(void **state)
+/* The rows of one table: sound, those of a group beside each other, a dozen common ones at most. */
+static void check_rows(size_t count, const asj_option_info *(*row_at)(size_t index))
 {
-    (void)state;
-    for (size_t k = 0; k < asj_detect_option_count(); k++) {
-        const asj_option_info *row = asj_detect_option(k);
+    size_t common = 0;
+    for (size_t k = 0; k < count; k++) {
+        const asj_option_info *row = row_at(k);
+        common += !row->advanced;
+        assert_true(row->advanced == 0 || row->advanced == 1);
+        assert_true(row->reserved == 0 && row->step >= 0 && strlen(row->group) > 4);
+        for (size_t i = 0; i + 1 < k; i++)
+            assert_true(strcmp(row_at(i)->group, row->group) != 0 || strcmp(row_at(k - 1)->group, row->group) == 0);
+        for (size_t i = 0; i < count; i++)
+            assert_true(!row->former_key || strcmp(row->former_key, row_at(i)->key) != 0);
         assert_non_null(row->unit);
         assert_true(strlen(row->help) > 10);
         assert_true(row->help[strlen(row->help) - 1] != '.');
@@ -93,6 +101,14 @@ static void test_rows_are_sound(void **state)
         for (const char *c = row->key; *c; c++)
             assert_true((*c >= 'a' && *c <= 'z') || *c == '_');
     }
+    assert_in_range(common, 4, 12);
+}
+
+static void test_rows_are_sound(void **state)
+{
+    (void)state;
+    check_rows(asj_detect_option_count(), asj_detect_option);
+    check_rows(asj_match_option_count(), asj_match_option);
 }
 
 /* ---- the header's comments ---- */
@@ -130,16 +146,18 @@ static int has_text(const char *text, size_t length, const char *wanted)
     return found && found + strlen(wanted) <= text + length;
 }
 
-/* Range, default and, where it differs, the paper's value stand in the field's comment. */
+/* Range, default and, where they differ, the values of the other presets stand in the field's comment. */
 static void check_comment(const char *text, const asj_option_info *row, const char *standard, const char *paper)
 {
     size_t length;
     const char *comment = comment_of(text, row->key, &length);
-    int right = row->default_value == row->paper_value || has_text(comment, length, "paper");
+    int right = (row->default_value == row->paper_value) != has_text(comment, length, " paper ") &&
+                (row->default_value == row->match_value) != has_text(comment, length, "; match ");
     if (row->type == ASJ_OPTION_CHOICE || row->type == ASJ_OPTION_RADII) {
         right &= has_text(comment, length, standard) && has_text(comment, length, paper);
     } else {
-        right &= has_number(comment, length, row->default_value) && has_number(comment, length, row->paper_value);
+        right &= has_number(comment, length, row->default_value) && has_number(comment, length, row->paper_value) &&
+                 has_number(comment, length, row->match_value);
         if (row->type != ASJ_OPTION_SWITCH)
             right &= has_number(comment, length, row->minimum) && has_number(comment, length, row->maximum);
     }
@@ -192,12 +210,12 @@ static void test_presets(void **state)
     for (size_t i = 0; i < UNIT_COUNT(options.reserved); i++)
         assert_true(options.reserved[i] == 0);
     assert_int_equal(asj_detect_options_preset(NULL, ASJ_PRESET_PAPER), ASJ_ERROR_ARGUMENT);
-    static const int32_t unknown[] = {-1, 2, INT32_MAX};
+    static const int32_t unknown[] = {-1, 3, INT32_MAX};
     for (size_t i = 0; i < UNIT_COUNT(unknown); i++) {
         assert_int_equal(asj_detect_options_preset(&options, unknown[i]), ASJ_ERROR_OPTION);
         assert_memory_equal(&options, &standard, sizeof options); /* left as it was */
     }
-    for (int32_t preset = 0; preset <= 1; preset++) {
+    for (int32_t preset = 0; preset <= 2; preset++) {
         asj_detect_options_preset(&options, preset);
         assert_int_equal(asj_detect_options_check(&options, NULL, 0), ASJ_OK);
     }
@@ -234,13 +252,12 @@ static void test_round_trips(void **state)
                 value = synth_random_between(&random, row->minimum, row->maximum);
             if (row->type == ASJ_OPTION_RADII && i != 2 && i != 3)
                 value = i < 2 ? (double)(1u << (int)value) : (double)(1u << (int)value | 1u << 9);
-            else if (row->type != ASJ_OPTION_NUMBER)
-                value = floor(value);
+            else if (row->step > 0)
+                value = row->minimum + floor((value - row->minimum) / row->step) * row->step;
             asj_detect_options_init(&options);
             asj_detect_options_init(&back);
             write_field(&options, row, value);
-            if (strcmp(row->key, "field_radius") != 0)
-                assert_int_equal(asj_detect_options_check(&options, NULL, 0), ASJ_OK);
+            assert_int_equal(asj_detect_options_check(&options, NULL, 0), ASJ_OK);
             assert_int_equal(asj_detect_options_get(&options, row->key, text, sizeof text), ASJ_OK);
             assert_int_equal(asj_detect_options_set(&back, row->key, text, NULL, 0), ASJ_OK);
             if (memcmp(&options, &back, sizeof options) != 0)

@@ -395,6 +395,16 @@ static void options_are_read_and_written(void **state)
     assert_memory_equal(&again, &options, sizeof again);
     assert_int_equal(asj_match_options_set(&options, "descriptor", "sift", message, sizeof message), ASJ_OK);
     assert_int_equal(options.descriptor, ASJ_DESCRIPTOR_SIFT);
+    static const char *const former[][2] = {{"witnesses", "3"}, {"witness-distance", "50"}, {"minimum_agreement", "0.5"}};
+    for (size_t n = 0; n < UNIT_COUNT(former); n++) {
+        assert_int_equal(asj_match_options_set(&options, former[n][0], former[n][1], message, sizeof message), ASJ_OK);
+        assert_non_null(strstr(message, "is called verify_"));
+    }
+    assert_true(options.verify_neighbours == 3 && options.verify_distance == 50 && options.verify_agreement == 0.5);
+    assert_int_equal(asj_match_options_set(&options, "verify_agreement", "0.25", message, sizeof message), ASJ_OK);
+    assert_string_equal(message, "");
+    assert_int_equal(asj_match_options_preset(&options, ASJ_PRESET_MATCH), ASJ_OK);
+    assert_memory_equal(&again, &options, sizeof again);
     assert_int_equal(asj_match_options_set(&options, "nonsense", "1", message, sizeof message), ASJ_ERROR_OPTION);
     assert_int_equal(asj_match_options_preset(&options, ASJ_PRESET_PAPER), ASJ_OK);
     assert_int_equal(options.patches, ASJ_PATCHES_INDUCED);

@@ -76,10 +76,10 @@ static void what_is_contradicted_goes(void **state)
     assert_int_equal(verify(context, &s), 12);
     for (size_t n = 0; n < 12; n++)
         assert_int_equal(s.choices[n].candidate, n); /* in order */
-    s.options.witnesses = 0;
+    s.options.verify_neighbours = 0;
     assert_int_equal(verify(context, &s), 13);
-    s.options.witnesses = 16;
-    s.options.minimum_agreement = 0;
+    s.options.verify_neighbours = 16;
+    s.options.verify_agreement = 0;
     assert_int_equal(verify(context, &s), 13);
     unit_context_free(&counter, &context);
 }
@@ -95,7 +95,7 @@ static void a_t_needs_more(void **state)
         grid(&s, 12);
         for (int32_t k = 0; k < 3; k++)
             add(&s, 120 + 40 * k, 200, 60, 60, branches);
-        s.options.minimum_agreement = 0.25;
+        s.options.verify_agreement = 0.25;
         assert_int_equal(verify(context, &s), branches == 2 ? 15 : 12);
     }
     unit_context_free(&counter, &context);
@@ -109,9 +109,9 @@ static void far_witnesses_say_little(void **state)
     static stage s;
     grid(&s, 12);
     add(&s, 400, 400, -90, 30, 2);
-    s.options.witness_distance = 50;
+    s.options.verify_distance = 50;
     assert_int_equal(verify(context, &s), 13);
-    s.options.witness_distance = 10000;
+    s.options.verify_distance = 10000;
     assert_int_equal(verify(context, &s), 12);
     grid(&s, 1);
     assert_int_equal(verify(context, &s), 1);
