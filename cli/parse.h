@@ -46,8 +46,8 @@ typedef struct cli_syntax {
 /* Longest name of a table row on the command line, with its end. */
 #define CLI_NAME_SIZE 64
 
-/* What an option of tables[table] is called on the command line: "minimum_length" -> "minimum-length", after the prefix where a table
- * before has the same key. */
+/* What an option of tables[table] is called on the command line: "minimum_length" -> "minimum-length", after the prefix where a
+ * table before has the same key. */
 void cli_option_name(const cli_syntax *syntax, size_t table, const char *key, char name[CLI_NAME_SIZE]);
 
 /* Calls `take` for every option of argv[1 .. argc-1], in order, and moves the operands to the end: *first_operand is the index of

@@ -80,7 +80,8 @@ typedef struct asj_detect_options {
     double merge_angle;           /* deg: of two branches closer than this one stays. 0 .. 60; 15; paper 0 */
     double strip_half_width;      /* px. 0.5 .. 4; 1.5 */
     double strip_length;          /* px from the junction that the strip test looks at. 10 .. 1000; 60 */
-    double near_strength;         /* standard deviations that a branch needs in its first 6 px. -10 .. 10; 0; paper -10; match -10 */
+    double near_strength;         /* standard deviations that a branch needs in its first 6 px. -10 .. 10; 0;
+                                   * paper -10; match -10 */
     double snap_distance;         /* px: a branch that ends this close to a junction on its line ends there. 0 .. 30; 8; paper 0 */
     int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`.
                                    * 1; paper 0; match 0 */

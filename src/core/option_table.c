@@ -250,7 +250,8 @@ asj_status asj_option_table_set(const asj_option_table *table, void *options, co
     }
     store(row, options, value);
     if (!is_key(row->key, key))
-        say(message, message_size, "%s is called %s now; the next version does not know the former name", row->former_key, row->key);
+        say(message, message_size, "%s is called %s now; the next version does not know the former name", row->former_key,
+            row->key);
     return ASJ_OK;
 }
 

@@ -27,7 +27,8 @@ static const asj_option_info rows[] = {
 
     INTEGER_STEPS(CANDIDATES, ADVANCED, field_radius, "px", 3, 9, 2, 7, 7, 7, "radius of the local junctions: 3, 5, 7 or 9"),
     NUMBER(CANDIDATES, ADVANCED, sector_width, "px", 1, 3, 2, 2, 2, "half-width of a sector at its outer end (tau)"),
-    NUMBER(CANDIDATES, ADVANCED, field_epsilon, "NFA", 1e-6, 100, 1, 1, 1, "false alarms allowed for the local branches of one pixel"),
+    NUMBER(CANDIDATES, ADVANCED, field_epsilon, "NFA", 1e-6, 100, 1, 1, 1,
+           "false alarms allowed for the local branches of one pixel"),
     NUMBER(CANDIDATES, COMMON, candidate_strength, "sd", 0, 12, 2.4, 5.15, 2,
            "strength that two local branches need at a candidate pixel; lower finds weaker corners"),
     INTEGER(CANDIDATES, ADVANCED, candidate_step, "px", 1, 2, 2, 1, 1,
@@ -61,7 +62,8 @@ static const asj_option_info rows[] = {
     NUMBER(REFINE, ADVANCED, strip_length, "px", 10, 1000, 60, 60, 60, "length of that strip at most"),
     NUMBER(REFINE, ADVANCED, near_strength, "sd", -10, 10, 0, -10, -10,
            "strength that a branch needs in its first 6 px: it must reach the junction"),
-    NUMBER(REFINE, ADVANCED, snap_distance, "px", 0, 30, 8, 0, 8, "a branch that ends this close to a junction on its line ends at it"),
+    NUMBER(REFINE, ADVANCED, snap_distance, "px", 0, 30, 8, 0, 8,
+           "a branch that ends this close to a junction on its line ends at it"),
 };
 static const asj_option_table table = {rows, sizeof rows / sizeof *rows, sizeof(asj_detect_options)};
 

@@ -46,9 +46,11 @@ static const asj_option_info rows[] = {
            "neighbouring matches that must agree with a match, each counted 0 to 1"),
     NUMBER(SUPPORT, ADVANCED, neighbour_tolerance, "", 0.01, 1, 0.08, 0.08, 0.08,
            "error with which a match predicts its neighbour, as a part of the distance"),
-    NUMBER(SUPPORT, ADVANCED, map_tolerance, "", 0.05, 5, 0.5, 0.5, 0.5, "relative difference between the affine maps of neighbours"),
+    NUMBER(SUPPORT, ADVANCED, map_tolerance, "", 0.05, 5, 0.5, 0.5, 0.5,
+           "relative difference between the affine maps of neighbours"),
 
-    NUMBER(ASSIGNMENT, COMMON, ratio, "", 1, 10, 1.5, 1.5, 1.5, "the second best match at another place must be worse by this factor"),
+    NUMBER(ASSIGNMENT, COMMON, ratio, "", 1, 10, 1.5, 1.5, 1.5,
+           "the second best match at another place must be worse by this factor"),
     NUMBER(ASSIGNMENT, ADVANCED, separation, "px", 0, 100, 6, 0, 6, "what is nearer than this is the same place"),
     SWITCH(ASSIGNMENT, COMMON, mutual, 1, 0, 1, "two junctions match only if each is the other's best"),
 

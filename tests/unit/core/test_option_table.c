@@ -17,10 +17,12 @@ typedef struct set {
 static const char *const words[] = {"one", "two", "three_four", NULL};
 static const asj_option_info rows[] = {
     {"a_number", "px", "help", NULL, ASJ_OPTION_NUMBER, offsetof(set, number), -1e30, 1e30, 0.25, 7, 8, 0, "one", NULL, 0, 0},
-    {"an_integer", "", "help", NULL, ASJ_OPTION_INTEGER, offsetof(set, integer), INT32_MIN, INT32_MAX, 3, -4, 5, 1, "one", NULL, 1, 0},
+    {"an_integer", "", "help", NULL, ASJ_OPTION_INTEGER, offsetof(set, integer), INT32_MIN, INT32_MAX, 3, -4, 5, 1,
+     "one", NULL, 1, 0},
     {"a_switch", "", "help", NULL, ASJ_OPTION_SWITCH, offsetof(set, on), 0, 1, 1, 0, 1, 1, "one", NULL, 0, 0},
     {"a_word", "", "help", words, ASJ_OPTION_CHOICE, offsetof(set, word), 0, 2, 1, 2, 0, 1, "two", NULL, 0, 0},
-    {"radii", "px", "help", NULL, ASJ_OPTION_RADII, offsetof(set, radii), 3, 30, 1u << 5 | 1u << 7, 0x1ff8, 8, 0, "two", NULL, 0, 0},
+    {"radii", "px", "help", NULL, ASJ_OPTION_RADII, offsetof(set, radii), 3, 30, 1u << 5 | 1u << 7, 0x1ff8, 8, 0,
+     "two", NULL, 0, 0},
     {"stepped", "px", "help", NULL, ASJ_OPTION_INTEGER, offsetof(set, stepped), 3, 11, 5, 7, 11, 2, "two", "old_name", 0, 0},
 };
 static const asj_option_table table = {rows, UNIT_COUNT(rows), sizeof(set)};
@@ -303,7 +305,8 @@ static void test_steps(void **state)
         set s = filled(0);
         char text[16];
         snprintf(text, sizeof text, "%d", (int)value);
-        assert_int_equal(asj_option_table_set(&table, &s, "stepped", text, message, sizeof message), good ? ASJ_OK : ASJ_ERROR_OPTION);
+        const asj_status status = asj_option_table_set(&table, &s, "stepped", text, message, sizeof message);
+        assert_int_equal(status, good ? ASJ_OK : ASJ_ERROR_OPTION);
         assert_int_equal(s.stepped, good ? value : 5);
         if (!good)
             assert_non_null(strstr(message, "not one of 3, 5 .. 11"));
