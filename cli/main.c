@@ -46,7 +46,7 @@ static void print_version(void)
 {
     printf("asj-cli %d.%d.%d\n", ASJ_VERSION_MAJOR, ASJ_VERSION_MINOR, ASJ_VERSION_PATCH);
     printf("libasj %s\n", asj_version_string());
-    printf("images: PNG%s\n", asj_io_has_opencv() ? " and what OpenCV reads" : " only (built without OpenCV)");
+    printf("images: %s\n", asj_io_image_formats());
     printf("plots: %s\n", cli_plot_available() ? "PNG, SVG, PDF" : "none (built without cairo)");
 }
 

@@ -22,26 +22,26 @@ extern "C" {
 
 /* An image read from a file; it owns its pixels. */
 typedef struct asj_image_file {
-    asj_image image;     /* view of the pixels: GRAY8, GRAY16 or RGB8; BGR8 or GRAY_FLOAT from OpenCV */
+    asj_image image;     /* view of the pixels: GRAY8, GRAY16, RGB8, BGR8 or GRAY_FLOAT */
     int32_t orientation; /* the EXIF orientation (1 .. 8) that was applied: the view is upright. 1 = none */
     int32_t reserved[3];
 } asj_image_file;
 
-/* Reads an image. PNG through libpng (1 to 16 bits, palette, alpha, interlaced); JPEG, TIFF, BMP, WebP, PNM, JPEG 2000, Sun
- * raster, Radiance HDR, and where OpenCV reads them GIF, HEIF, AVIF and OpenEXR, through OpenCV's imgcodecs when the library was
- * built with it (asj_io_has_opencv()). The content decides, not the name. max_pixels 0 = ASJ_IO_DEFAULT_MAX_PIXELS.
+/* Reads an image: PNG (1 to 16 bits, palette, alpha, interlaced) and PNM (PBM, PGM, PPM, PAM, PFM) always; JPEG, TIFF, WebP, JPEG
+ * 2000, BMP, Sun raster and Radiance HDR where the library was built with their readers (asj_io_image_formats()). The content of
+ * the file decides which reader it gets, not its name. max_pixels 0 = ASJ_IO_DEFAULT_MAX_PIXELS.
  *
  * Upright: the EXIF orientation of PNG, JPEG, TIFF and WebP is applied, so that coordinates are those of the picture as viewers
  * show it. Transparency is ignored: the stored colours count. 16-bit colour becomes GRAY16 and colour in floats GRAY_FLOAT, by
  * the luma weights of image.h; floats are as stored, with 1.0 as white.
  *
- * Damage: PNG is checked to the last checksum. A JPEG without its end marker is refused, and so is one whose decoder complains
- * about its compressed data, unless all that it found are surplus bytes at the end. For other formats what OpenCV accepts is taken.
- * Size: a PNG, JPEG, TIFF, BMP, WebP, PNM, JPEG 2000 or Sun raster file that declares more than max_pixels, or a side longer
- * than ASJ_MAX_SIDE, is refused before memory for its pixels is taken. Other formats are only held by OpenCV's own limit (2^30
- * pixels) while they are decoded, and refused then.
- * Standard error: OpenCV and its decoders write complaints there and offer no other way to hear them. While OpenCV decodes,
- * standard error of the process is therefore diverted, and what is written to it meanwhile is lost. PNG does without.
+ * Damage: PNG is checked to the last checksum. A JPEG without its end marker is refused, and so is one whose compressed data the
+ * decoder finds damaged, unless all that it found are surplus bytes at the end. Other formats are refused when they are truncated
+ * or their decoder reports an error.
+ * Size: a file that declares more than max_pixels, or a side longer than ASJ_MAX_SIDE, is refused before memory for its pixels is
+ * taken. What is no image is known by its first 64 KiB, and read no further.
+ * Processes: BMP, Sun raster and Radiance HDR are decoded by the program asj-io-opencv, which is started for the one file and has
+ * ended when the call returns. Nothing else starts a process, and nothing is ever written to standard error.
  *
  * On success the caller owns *file until asj_image_file_free().
  * ASJ_ERROR_ARGUMENT     path or file is NULL
@@ -58,8 +58,8 @@ ASJ_API void asj_image_file_free(asj_image_file **file);
  * ASJ_ERROR_ARGUMENT, ASJ_ERROR_IMAGE (floats, bad view), ASJ_ERROR_FILE, ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_png_write(const char *path, const asj_image *image, char *message, size_t message_size);
 
-/* 1 when formats other than PNG can be read. */
-ASJ_API int32_t asj_io_has_opencv(void);
+/* The formats that this build reads: "PNG, PNM, JPEG, ...". */
+ASJ_API const char *asj_io_image_formats(void);
 
 /* An output file that appears whole or not at all: it is written beside its place under another name and renamed by
  * asj_output_commit(). So a file that was there before stays until then, and stays for good when anything fails. "-" and

@@ -7,12 +7,13 @@
 #define TAG_ORIENTATION 0x0112u
 #define TYPE_SHORT 3u
 #define TYPE_LONG 4u
-#define ENTRY_SIZE 12u
+#define TYPE_LONG8 16u
 
 typedef struct tiff_bytes {
     const unsigned char *bytes;
     size_t size;
     int big_endian;
+    int is_big; /* BigTIFF: offsets and counts of 64 bits */
 } tiff_bytes;
 
 static uint32_t get16(const tiff_bytes *tiff, size_t at)
@@ -26,60 +27,77 @@ static uint32_t get32(const tiff_bytes *tiff, size_t at)
     return tiff->big_endian ? get16(tiff, at) << 16 | get16(tiff, at + 2) : get16(tiff, at + 2) << 16 | get16(tiff, at);
 }
 
-/* Where the value of a tag stands in the first directory, if it is one number that fits there; 0 when it is not there. */
-static size_t find_value(const tiff_bytes *tiff, unsigned tag, uint32_t *type)
+static uint64_t get64(const tiff_bytes *tiff, size_t at)
 {
-    size_t directory, count, i;
+    uint64_t first = get32(tiff, at), second = get32(tiff, at + 4);
+    return tiff->big_endian ? first << 32 | second : second << 32 | first;
+}
 
-    if (tiff->size < 8 || get16(tiff, 2) != 42)
+/* An offset or a count as wide as the kind of file has it. */
+static uint64_t get_word(const tiff_bytes *tiff, size_t at)
+{
+    return tiff->is_big ? get64(tiff, at) : get32(tiff, at);
+}
+
+/* A value that is one number and stands in the entry; 0 when it is of another type, or too large. */
+static int32_t read_entry(const tiff_bytes *tiff, size_t entry, uint32_t *value)
+{
+    size_t word = tiff->is_big ? 8 : 4, at = entry + 4 + word;
+    uint32_t type = get16(tiff, entry + 2);
+
+    if (get_word(tiff, entry + 4) != 1)
         return 0;
-    directory = get32(tiff, 4);
-    if (directory > tiff->size - 2)
-        return 0;
-    count = get16(tiff, directory);
-    for (i = 0; i < count; i++) {
-        size_t entry = directory + 2 + i * ENTRY_SIZE;
-        if (entry + ENTRY_SIZE > tiff->size)
-            return 0;
-        *type = get16(tiff, entry + 2);
-        if (get16(tiff, entry) == tag && get32(tiff, entry + 4) == 1 && (*type == TYPE_SHORT || *type == TYPE_LONG))
-            return entry + 8;
+    if (type == TYPE_SHORT) {
+        *value = get16(tiff, at);
+        return 1;
     }
+    if (type == TYPE_LONG) {
+        *value = get32(tiff, at);
+        return 1;
+    }
+    if (type == TYPE_LONG8 && tiff->is_big && get64(tiff, at) <= UINT32_MAX) {
+        *value = (uint32_t)get64(tiff, at);
+        return 1;
+    }
+    return 0;
+}
+
+/* A tag's first entry in the first directory, if it is one number that fits there. */
+static int32_t find_value(const tiff_bytes *tiff, unsigned tag, uint32_t *value)
+{
+    size_t word = tiff->is_big ? 8 : 4, head = tiff->is_big ? 8 : 2, entry_size = 4 + 2 * word, entry;
+    uint64_t directory, count, i;
+
+    if (!tiff->size)
+        return 0;
+    directory = get_word(tiff, tiff->is_big ? 8 : 4);
+    if (directory > tiff->size - head)
+        return 0;
+    count = tiff->is_big ? get64(tiff, (size_t)directory) : get16(tiff, (size_t)directory);
+    for (i = 0, entry = (size_t)directory + head; i < count && entry_size <= tiff->size - entry; i++, entry += entry_size)
+        if (get16(tiff, entry) == tag)
+            return read_entry(tiff, entry, value);
     return 0;
 }
 
 static tiff_bytes open_tiff(const unsigned char *block, size_t size)
 {
-    tiff_bytes tiff = {block, size, 0};
+    tiff_bytes tiff = {block, size, 0, 0};
     if (size >= 2 && !memcmp(block, "MM", 2))
         tiff.big_endian = 1;
     else if (size < 2 || memcmp(block, "II", 2))
         tiff.size = 0;
+    if (tiff.size < 16 || (get16(&tiff, 2) != 42 && get16(&tiff, 2) != 43))
+        tiff.size = 0;
+    else
+        tiff.is_big = get16(&tiff, 2) == 43;
     return tiff;
 }
 
 int32_t asj_tiff_value(const unsigned char *block, size_t size, unsigned tag, uint32_t *value)
 {
     tiff_bytes tiff = open_tiff(block, size);
-    uint32_t type;
-    size_t at = find_value(&tiff, tag, &type);
-
-    if (at)
-        *value = type == TYPE_SHORT ? get16(&tiff, at) : get32(&tiff, at);
-    return at > 0;
-}
-
-void asj_tiff_set_upright(unsigned char *block, size_t size)
-{
-    tiff_bytes tiff = open_tiff(block, size);
-    uint32_t type;
-    size_t at = find_value(&tiff, TAG_ORIENTATION, &type), width;
-
-    if (!at)
-        return;
-    width = type == TYPE_SHORT ? 2 : 4;
-    memset(block + at, 0, width);
-    block[tiff.big_endian ? at + width - 1 : at] = 1;
+    return find_value(&tiff, tag, value);
 }
 
 int32_t asj_exif_orientation(const unsigned char *block, size_t size)

@@ -9,12 +9,8 @@
  * the block has none or is damaged: EXIF describes the picture, and a picture with a bad description is still a picture. */
 int32_t asj_exif_orientation(const unsigned char *block, size_t size);
 
-/* A value of a TIFF directory that stands in the entry itself; 0 when it is not there. */
+/* A value of the first directory of a TIFF or BigTIFF file that is one number; 0 when it is not there. */
 int32_t asj_tiff_value(const unsigned char *block, size_t size, unsigned tag, uint32_t *value);
-
-/* Overwrites the orientation of a TIFF file by "upright as stored", if it has one: decoders of TIFF turn the pixels or do not,
- * according to version and depth, and the caller wants to turn them once. */
-void asj_tiff_set_upright(unsigned char *block, size_t size);
 
 /* Copies width x height pixels of `pixel_size` bytes, rows `stride` bytes apart, so that the copy is upright. The copy has no gaps
  * between rows; for orientations 5 to 8 it is height pixels wide and width pixels high. */

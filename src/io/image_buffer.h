@@ -5,6 +5,7 @@
 
 #include <asj/image.h>
 
+#include "image_probe.h"
 #include "input.h"
 
 typedef struct asj_image_buffer {
@@ -20,15 +21,24 @@ size_t asj_pixel_size(int32_t format);
 /* ASJ_OK, or ASJ_ERROR_FORMAT for a side of 0, or ASJ_ERROR_LIMIT, for the size that a file declares. */
 asj_status asj_check_declared_size(uint64_t width, uint64_t height, uint64_t max_pixels, const asj_message *message);
 
+/* Memory for an image whose size is checked as above. ASJ_ERROR_MEMORY too. */
+asj_status asj_image_allocate(asj_image_buffer *buffer, uint64_t width, uint64_t height, int32_t format, uint64_t max_pixels,
+                              const asj_message *message);
+
 /* Luma of 16-bit colour, with the weights that the core uses for 8 bits (image.h), so that depth is not thrown away. */
 uint16_t asj_luma16(uint32_t red, uint32_t green, uint32_t blue);
 
-/* 1 when the bytes begin like a PNG file. */
-int asj_png_recognise(const asj_input *input);
+/* The same of floats. */
+float asj_luma_float(float red, float green, float blue);
 
-/* Decode a file's bytes. On success the caller frees buffer->pixels. asj_other_decode() may change the bytes.
+/* Decodes a file's bytes. What is in buffer->pixels belongs to the caller, whatever happened.
  * ASJ_ERROR_FORMAT, ASJ_ERROR_LIMIT, ASJ_ERROR_UNSUPPORTED, ASJ_ERROR_MEMORY */
-asj_status asj_png_decode(const asj_input *input, uint64_t max_pixels, asj_image_buffer *buffer, const asj_message *message);
-asj_status asj_other_decode(const asj_input *input, uint64_t max_pixels, asj_image_buffer *buffer, const asj_message *message);
+typedef asj_status asj_image_decoder(const asj_input *input, const asj_image_probe *probe, uint64_t max_pixels,
+                                     asj_image_buffer *buffer, const asj_message *message);
+asj_image_decoder asj_png_decode, asj_jpeg_decode, asj_webp_decode, asj_tiff_decode, asj_jpeg2000_decode, asj_pnm_decode;
+asj_image_decoder asj_opencv_decode; /* in a process of its own: opencv_read.c */
+
+/* The decoder that the kind of file has in this build, or NULL. */
+asj_image_decoder *asj_decoder_of(asj_image_kind kind);
 
 #endif

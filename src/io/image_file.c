@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Image files: reads the bytes, chooses the decoder by content, turns the pixels upright. */
+/* Image files: reads the bytes, has the decoder of their kind decode them, turns the pixels upright. */
 #include <asj/io.h>
 
 #include "exif.h"
@@ -32,6 +32,11 @@ uint16_t asj_luma16(uint32_t red, uint32_t green, uint32_t blue)
     return (uint16_t)((77 * red + 150 * green + 29 * blue + 128) >> 8);
 }
 
+float asj_luma_float(float red, float green, float blue)
+{
+    return (77.0f * red + 150.0f * green + 29.0f * blue) / 256.0f;
+}
+
 asj_status asj_check_declared_size(uint64_t width, uint64_t height, uint64_t max_pixels, const asj_message *message)
 {
     unsigned long long w = width, h = height, limit = max_pixels;
@@ -42,6 +47,21 @@ asj_status asj_check_declared_size(uint64_t width, uint64_t height, uint64_t max
     if (width * height > max_pixels)
         return asj_message_fail(message, ASJ_ERROR_LIMIT, "%llu x %llu pixels are more than the limit of %llu", w, h, limit);
     return ASJ_OK;
+}
+
+asj_status asj_image_allocate(asj_image_buffer *buffer, uint64_t width, uint64_t height, int32_t format, uint64_t max_pixels,
+                              const asj_message *message)
+{
+    asj_status status = asj_check_declared_size(width, height, max_pixels, message);
+
+    if (status != ASJ_OK)
+        return status;
+    buffer->width = (int32_t)width;
+    buffer->height = (int32_t)height;
+    buffer->format = format;
+    buffer->pixels = height > SIZE_MAX / (width * asj_pixel_size(format)) ? NULL
+                     : malloc((size_t)height * ((size_t)width * asj_pixel_size(format)));
+    return buffer->pixels ? ASJ_OK : asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for the pixels");
 }
 
 /* Exchanges the pixels for an upright copy. */
@@ -66,6 +86,33 @@ static asj_status turn_upright(asj_image_buffer *buffer, const asj_message *mess
     return ASJ_OK;
 }
 
+/* What the file's structure says comes first; then the decoder of its kind. */
+static asj_status decode(const asj_input *input, uint64_t max_pixels, asj_image_buffer *buffer, const asj_message *message)
+{
+    asj_image_decoder *decoder;
+    asj_image_probe probe;
+    asj_status status;
+
+    asj_probe_image(input, &probe);
+    decoder = asj_decoder_of(probe.kind);
+    if (probe.has_size) {
+        status = asj_check_declared_size(probe.width, probe.height, max_pixels, message);
+        if (status != ASJ_OK)
+            return status;
+    }
+    if (probe.is_truncated)
+        return asj_message_fail(message, ASJ_ERROR_FORMAT, "truncated %s: the file ends before the image does", probe.name);
+    if (probe.fault)
+        return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged or unusual %s: %s", probe.name, probe.fault);
+    if (!decoder)
+        return asj_message_fail(message, ASJ_ERROR_UNSUPPORTED, "%s is not read by this build, which reads %s", probe.name,
+                                asj_io_image_formats());
+    if (!probe.has_size && probe.kind != ASJ_KIND_PNG)
+        return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged or unusual %s: its header does not tell its size", probe.name);
+    buffer->orientation = probe.orientation;
+    return decoder(input, &probe, max_pixels, buffer, message);
+}
+
 static asj_status wrap(const asj_image_buffer *buffer, asj_image_file **file, const asj_message *message)
 {
     owned_image *owned = calloc(1, sizeof *owned);
@@ -81,6 +128,11 @@ static asj_status wrap(const asj_image_buffer *buffer, asj_image_file **file, co
     return ASJ_OK;
 }
 
+static const char *is_no_image(const asj_input *head)
+{
+    return asj_probe_kind(head) == ASJ_KIND_UNKNOWN ? "not an image: its content is of no known image format" : NULL;
+}
+
 asj_status asj_image_file_read(const char *path, uint64_t max_pixels, asj_image_file **file, char *text, size_t text_size)
 {
     asj_message message = asj_message_start(text, text_size, path);
@@ -93,13 +145,10 @@ asj_status asj_image_file_read(const char *path, uint64_t max_pixels, asj_image_
     *file = NULL;
     if (!max_pixels)
         max_pixels = ASJ_IO_DEFAULT_MAX_PIXELS;
-    status = asj_input_read(&input, &message);
+    status = asj_input_read(&input, is_no_image, &message);
     if (status != ASJ_OK)
         return status;
-    if (asj_png_recognise(&input))
-        status = asj_png_decode(&input, max_pixels, &buffer, &message);
-    else
-        status = asj_other_decode(&input, max_pixels, &buffer, &message);
+    status = decode(&input, max_pixels, &buffer, &message);
     free(input.bytes);
     if (status == ASJ_OK)
         status = turn_upright(&buffer, &message);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Signatures and headers of the formats that OpenCV's imgcodecs reads. The size is wanted before decoding, so that a small file
- * cannot ask for a huge image. */
+/* Signatures and headers of image formats. The size is wanted before decoding, so that a small file cannot ask for a huge image. */
 #include "image_probe.h"
 
 #include "exif.h"
@@ -42,15 +41,6 @@ static void probe_bmp(const asj_input *input, asj_image_probe *probe)
     set_size(probe, little(b + 18, 4), height > 0x7fffffffu ? 0u - height : height); /* negative: rows from the top */
 }
 
-static void probe_tiff(const asj_input *input, asj_image_probe *probe)
-{
-    uint32_t width, height;
-    if (asj_tiff_value(input->bytes, input->size, 256, &width) && asj_tiff_value(input->bytes, input->size, 257, &height))
-        set_size(probe, width, height);
-    probe->orientation = asj_exif_orientation(input->bytes, input->size);
-    probe->is_tiff = 1;
-}
-
 /* RIFF chunks: name, length, content, padded to even length. The orientation stands in a chunk of the extended format. */
 static void probe_webp(const asj_input *input, asj_image_probe *probe)
 {
@@ -77,119 +67,101 @@ static void probe_webp(const asj_input *input, asj_image_probe *probe)
     }
 }
 
-/* The next number of a PNM header, past white space and comments; 0 when there is none. */
-static int next_number(const asj_input *input, size_t *at, uint64_t *number)
-{
-    const unsigned char *b = input->bytes;
-    size_t i = *at, first;
-
-    while (i < input->size && (b[i] == '#' || b[i] == ' ' || (b[i] >= '\t' && b[i] <= '\r'))) {
-        if (b[i] == '#')
-            while (i < input->size && b[i] != '\n')
-                i++;
-        else
-            i++;
-    }
-    first = i;
-    for (*number = 0; i < input->size && b[i] >= '0' && b[i] <= '9' && i - first < 18; i++)
-        *number = 10 * *number + (uint64_t)(b[i] - '0');
-    *at = i;
-    return i > first;
-}
-
-/* P7 has lines "WIDTH 60" in any order. */
-static int pam_value(const asj_input *input, const char *key, uint64_t *value)
-{
-    size_t length = strlen(key), end = input->size < 1024 ? input->size : 1024, i;
-    for (i = 0; i + length < end; i++)
-        if (input->bytes[i] == '\n' && !memcmp(input->bytes + i + 1, key, i + 1 + length < end ? length : end - i - 1)) {
-            i += 1 + length;
-            return next_number(input, &i, value);
-        }
-    return 0;
-}
-
-static void probe_pnm(const asj_input *input, asj_image_probe *probe)
-{
-    uint64_t width, height;
-    size_t at = 2;
-
-    if (input->bytes[1] == '7') {
-        if (pam_value(input, "WIDTH", &width) && pam_value(input, "HEIGHT", &height))
-            set_size(probe, width, height);
-    } else if (next_number(input, &at, &width) && next_number(input, &at, &height)) {
-        set_size(probe, width, height);
-    }
-}
-
-/* The SIZ segment of the first codestream, bare or in a JP2 file: ISO 15444-1 A.5.1. */
-static void probe_jpeg2000(const asj_input *input, asj_image_probe *probe)
-{
-    const unsigned char *b = input->bytes;
-    size_t i;
-    for (i = 0; i + 24 <= input->size; i++)
-        if (b[i] == 0xff && !memcmp(b + i, "\xff\x4f\xff\x51", 4)) {
-            uint64_t right = big32(b + i + 8), bottom = big32(b + i + 12), left = big32(b + i + 16), top = big32(b + i + 20);
-            set_size(probe, right > left ? right - left : 0, bottom > top ? bottom - top : 0);
-            return;
-        }
-}
-
 static void probe_sun_raster(const asj_input *input, asj_image_probe *probe)
 {
     if (input->size >= 12)
         set_size(probe, big32(input->bytes + 4), big32(input->bytes + 8));
 }
 
+static int read_number(const asj_input *input, size_t *at, uint64_t *number)
+{
+    size_t first = *at;
+    for (*number = 0; *at < input->size && *at - first < 9 && input->bytes[*at] >= '0' && input->bytes[*at] <= '9'; ++*at)
+        *number = 10 * *number + (uint64_t)(input->bytes[*at] - '0');
+    return *at > first;
+}
+
+/* The header ends at an empty line; then comes the resolution, of which only the usual order is read: "-Y height +X width". */
+static void probe_radiance(const asj_input *input, asj_image_probe *probe)
+{
+    uint64_t width, height;
+    size_t at = 0;
+
+    while (at + 1 < input->size && (input->bytes[at] != '\n' || input->bytes[at + 1] != '\n'))
+        at++;
+    at += 2;
+    if (at >= input->size || input->size - at < 8 || memcmp(input->bytes + at, "-Y ", 3))
+        return;
+    at += 3;
+    if (!read_number(input, &at, &height) || input->size - at < 5 || memcmp(input->bytes + at, " +X ", 4))
+        return;
+    at += 4;
+    if (read_number(input, &at, &width))
+        set_size(probe, width, height);
+}
+
 typedef struct signature {
+    asj_image_kind kind;
     const char *name;
     size_t at, length;
     const char *bytes;
     void (*probe)(const asj_input *, asj_image_probe *);
-    int32_t is_uncommon, needs_path;
 } signature;
+
+static const signature *find_signature(const asj_input *input)
+{
+    static const signature pnm = {ASJ_KIND_PNM, "PNM", 0, 3, "", asj_probe_pnm};
+    static const signature signatures[] = {
+        {ASJ_KIND_PNG, "PNG", 0, 4, "\x89PNG", NULL},
+        {ASJ_KIND_JPEG, "JPEG", 0, 3, "\xff\xd8\xff", asj_probe_jpeg},
+        {ASJ_KIND_TIFF, "TIFF", 0, 4, "II*\0", asj_probe_tiff},
+        {ASJ_KIND_TIFF, "TIFF", 0, 4, "MM\0*", asj_probe_tiff},
+        {ASJ_KIND_TIFF, "BigTIFF", 0, 4, "II+\0", asj_probe_tiff},
+        {ASJ_KIND_TIFF, "BigTIFF", 0, 4, "MM\0+", asj_probe_tiff},
+        {ASJ_KIND_BMP, "BMP", 0, 2, "BM", probe_bmp},
+        {ASJ_KIND_WEBP, "WebP", 8, 4, "WEBP", probe_webp},
+        {ASJ_KIND_JPEG2000, "JPEG 2000", 0, 4, "\xff\x4f\xff\x51", asj_probe_jpeg2000},
+        {ASJ_KIND_JPEG2000, "JPEG 2000", 0, 12, "\0\0\0\x0cjP  \r\n\x87\n", asj_probe_jpeg2000},
+        {ASJ_KIND_SUN_RASTER, "Sun raster", 0, 4, "\x59\xa6\x6a\x95", probe_sun_raster},
+        {ASJ_KIND_RADIANCE, "Radiance HDR", 0, 7, "#?RGBE\n", probe_radiance},
+        {ASJ_KIND_RADIANCE, "Radiance HDR", 0, 11, "#?RADIANCE\n", probe_radiance},
+        {ASJ_KIND_OTHER, "OpenEXR", 0, 4, "\x76\x2f\x31\x01", NULL},
+        {ASJ_KIND_OTHER, "GIF", 0, 4, "GIF8", NULL},
+        {ASJ_KIND_HEIF, "HEIF or AVIF", 4, 4, "ftyp", NULL},
+        {ASJ_KIND_OTHER, "JPEG XL", 0, 12, "\0\0\0\x0cJXL \r\n\x87\n", NULL},
+        {ASJ_KIND_OTHER, "JPEG XL", 0, 2, "\xff\x0a", NULL},
+        {ASJ_KIND_OTHER, "PDF", 0, 5, "%PDF-", NULL},
+    };
+    size_t i;
+
+    if (input->size >= 3 && input->bytes[0] == 'P' && input->bytes[1] && strchr("1234567fF", input->bytes[1]) &&
+        input->bytes[2] && strchr(" \t\r\n#", input->bytes[2]))
+        return &pnm;
+    for (i = 0; i < sizeof signatures / sizeof signatures[0]; i++) {
+        const signature *s = &signatures[i];
+        if (input->size >= s->at + s->length && !memcmp(input->bytes + s->at, s->bytes, s->length))
+            return s;
+    }
+    return NULL;
+}
+
+asj_image_kind asj_probe_kind(const asj_input *input)
+{
+    const signature *found = find_signature(input);
+    return found ? found->kind : ASJ_KIND_UNKNOWN;
+}
 
 void asj_probe_image(const asj_input *input, asj_image_probe *probe)
 {
-    static const signature signatures[] = {
-        {"JPEG", 0, 3, "\xff\xd8\xff", asj_probe_jpeg, 0, 0},
-        {"TIFF", 0, 4, "II*\0", probe_tiff, 0, 0},
-        {"TIFF", 0, 4, "MM\0*", probe_tiff, 0, 0},
-        {"BigTIFF", 0, 4, "II+\0", NULL, 0, 0},
-        {"BigTIFF", 0, 4, "MM\0+", NULL, 0, 0},
-        {"BMP", 0, 2, "BM", probe_bmp, 0, 0},
-        {"WebP", 8, 4, "WEBP", probe_webp, 0, 0},
-        {"JPEG 2000", 0, 4, "\xff\x4f\xff\x51", probe_jpeg2000, 0, 0},
-        {"JPEG 2000", 0, 12, "\0\0\0\x0cjP  \r\n\x87\n", probe_jpeg2000, 0, 0},
-        {"Sun raster", 0, 4, "\x59\xa6\x6a\x95", probe_sun_raster, 0, 1},
-        {"Radiance HDR", 0, 3, "#?R", NULL, 0, 1},
-        {"OpenEXR", 0, 4, "\x76\x2f\x31\x01", NULL, 1, 1},
-        {"GIF", 0, 4, "GIF8", NULL, 1, 0},
-        {"HEIF or AVIF", 4, 4, "ftyp", NULL, 1, 0},
-        {"JPEG XL", 0, 12, "\0\0\0\x0cJXL \r\n\x87\n", NULL, 1, 0},
-        {"JPEG XL", 0, 2, "\xff\x0a", NULL, 1, 0},
-        {"PDF", 0, 5, "%PDF-", NULL, 1, 0},
-    };
     static const asj_image_probe none = {0};
-    size_t i;
+    const signature *found = find_signature(input);
 
     *probe = none;
     probe->orientation = 1;
-    if (input->size >= 3 && input->bytes[0] == 'P' && strchr("1234567fF", input->bytes[1] ? input->bytes[1] : ' ') &&
-        strchr(" \t\r\n#", input->bytes[2] ? input->bytes[2] : 'x')) {
-        probe->name = "PNM";
-        probe_pnm(input, probe);
+    if (!found)
         return;
-    }
-    for (i = 0; i < sizeof signatures / sizeof signatures[0]; i++) {
-        const signature *s = &signatures[i];
-        if (input->size < s->at + s->length || memcmp(input->bytes + s->at, s->bytes, s->length))
-            continue;
-        probe->name = s->name;
-        probe->is_uncommon = s->is_uncommon;
-        probe->needs_path = s->needs_path;
-        if (s->probe)
-            s->probe(input, probe);
-        return;
-    }
+    probe->kind = found->kind;
+    probe->name = found->name;
+    if (found->probe)
+        found->probe(input, probe);
 }

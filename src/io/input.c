@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+enum { HEAD_BYTES = 65536 }; /* what the check sees */
+
 /* Makes room for more bytes than the input holds. */
 static asj_status grow(asj_input *input, size_t *capacity, const asj_message *message)
 {
@@ -24,31 +26,45 @@ static asj_status grow(asj_input *input, size_t *capacity, const asj_message *me
     return ASJ_OK;
 }
 
-static asj_status read_all(int file, size_t capacity, asj_input *input, const asj_message *message)
+/* Fills the buffer from where it ends. *ended: the file has no more. */
+static asj_status read_some(int file, size_t capacity, asj_input *input, int *ended, const asj_message *message)
 {
+    ssize_t got;
+    do
+        got = read(file, input->bytes + input->size, capacity - input->size);
+    while (got < 0 && errno == EINTR);
+    if (got < 0)
+        return asj_message_errno(message, errno, "cannot read");
+    input->size += (size_t)got;
+    *ended = got == 0;
+    return ASJ_OK;
+}
+
+static asj_status read_all(int file, size_t capacity, asj_input *input, asj_input_check *check, const asj_message *message)
+{
+    int ended = 0, checked = 0;
     asj_status status = ASJ_OK;
 
     input->bytes = malloc(capacity);
     if (!input->bytes)
         return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for %zu bytes of the file", capacity);
-    for (;;) {
-        ssize_t got = read(file, input->bytes + input->size, capacity - input->size);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got < 0)
-            return asj_message_errno(message, errno, "cannot read");
-        if (got == 0)
-            break;
-        input->size += (size_t)got;
-        if (input->size == capacity)
+    while (!ended && status == ASJ_OK) {
+        status = read_some(file, capacity, input, &ended, message);
+        if (status == ASJ_OK && input->size && !checked && (ended || input->size >= HEAD_BYTES)) {
+            const char *fault = check(input);
+            if (fault)
+                status = asj_message_fail(message, ASJ_ERROR_FORMAT, "%s", fault);
+            checked = 1;
+        }
+        if (status == ASJ_OK && input->size == capacity)
             status = grow(input, &capacity, message);
-        if (status != ASJ_OK)
-            return status;
     }
-    return input->size ? ASJ_OK : asj_message_fail(message, ASJ_ERROR_FORMAT, "the file is empty");
+    if (status == ASJ_OK && !input->size)
+        status = asj_message_fail(message, ASJ_ERROR_FORMAT, "the file is empty");
+    return status;
 }
 
-asj_status asj_input_read(asj_input *input, const asj_message *message)
+asj_status asj_input_read(asj_input *input, asj_input_check *check, const asj_message *message)
 {
     static const asj_input none = {0};
     struct stat info;
@@ -65,9 +81,8 @@ asj_status asj_input_read(asj_input *input, const asj_message *message)
     } else if (S_ISREG(info.st_mode) && info.st_size > (off_t)ASJ_INPUT_MAX_BYTES) {
         status = asj_message_fail(message, ASJ_ERROR_LIMIT, "longer than %u bytes", ASJ_INPUT_MAX_BYTES);
     } else {
-        input->is_regular = S_ISREG(info.st_mode);
         /* one byte more than the file has, so that its end is seen without growing */
-        status = read_all(file, S_ISREG(info.st_mode) && info.st_size ? (size_t)info.st_size + 1 : 65536, input, message);
+        status = read_all(file, S_ISREG(info.st_mode) && info.st_size ? (size_t)info.st_size + 1 : HEAD_BYTES, input, check, message);
     }
     close(file);
     if (status != ASJ_OK) {

@@ -5,20 +5,22 @@
 
 #include "message.h"
 
-/* Longest file that is read: what OpenCV's decoder takes. */
+/* Longest file that is read. */
 #define ASJ_INPUT_MAX_BYTES 2147483647u
 
 typedef struct asj_input {
     unsigned char *bytes;
     size_t size;
-    int is_regular; /* 0: a pipe or a device, which cannot be opened a second time */
 } asj_input;
 
-/* Reads message->path. On success the caller frees input->bytes.
+/* What is wrong with a file that begins so (64 KiB, or all of a shorter one), or NULL. The text has no arguments. */
+typedef const char *asj_input_check(const asj_input *head);
+
+/* Reads message->path. What does not pass the check is read no further, however long it is. On success the caller frees input->bytes.
  * ASJ_ERROR_FILE    missing, a directory, unreadable
- * ASJ_ERROR_FORMAT  empty
+ * ASJ_ERROR_FORMAT  empty, or refused by the check
  * ASJ_ERROR_LIMIT   longer than ASJ_INPUT_MAX_BYTES
  * ASJ_ERROR_MEMORY */
-asj_status asj_input_read(asj_input *input, const asj_message *message);
+asj_status asj_input_read(asj_input *input, asj_input_check *check, const asj_message *message);
 
 #endif

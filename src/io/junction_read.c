@@ -98,6 +98,11 @@ static int looks_like_json(const asj_input *input)
     return i < input->size && input->bytes[i] == '{';
 }
 
+static const char *is_no_text(const asj_input *head)
+{
+    return memchr(head->bytes, 0, head->size) ? "not text: it has a byte of value 0" : NULL;
+}
+
 static void publish(owned_junctions *owned)
 {
     owned->file.junctions = owned->list.junctions;
@@ -118,7 +123,7 @@ asj_status asj_junctions_read(const char *path, asj_junction_file **file, char *
     if (!path || !file)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no path or no place for the junctions");
     *file = NULL;
-    status = asj_input_read(&input, &message);
+    status = asj_input_read(&input, is_no_text, &message);
     if (status != ASJ_OK)
         return status;
     owned = calloc(1, sizeof *owned);

@@ -74,6 +74,15 @@ static unsigned char *allocate_rows(png_reader *reader, size_t rows, size_t row)
     return memory;
 }
 
+/* Chunks that say nothing about the pixels are not kept: compressed text and profiles can unpack to a thousand times their size.
+ * Their checksums are looked at all the same. */
+static void skip_descriptions(png_structp png)
+{
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_AS_DEFAULT, (png_const_bytep)"eXIf", 1);
+    png_set_chunk_malloc_max(png, 1 << 20);
+}
+
 static void open_png(png_reader *reader)
 {
     reader->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, reader, on_error, on_warning);
@@ -81,6 +90,7 @@ static void open_png(png_reader *reader)
     if (!reader->info)
         leave(reader, asj_message_fail(reader->message, ASJ_ERROR_MEMORY, "out of memory"));
     png_set_read_fn(reader->png, reader, on_read);
+    skip_descriptions(reader->png);
     png_set_crc_action(reader->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_user_limits(reader->png, 0x7fffffff, 0x7fffffff); /* the declared size is checked below, with a better message */
 }
@@ -174,18 +184,13 @@ static asj_status decode(png_reader *reader)
     return ASJ_OK;
 }
 
-int asj_png_recognise(const asj_input *input)
+asj_status asj_png_decode(const asj_input *input, const asj_image_probe *probe, uint64_t max_pixels, asj_image_buffer *buffer,
+                          const asj_message *message)
 {
-    return input->size >= 4 && !memcmp(input->bytes, "\x89PNG", 4);
-}
-
-asj_status asj_png_decode(const asj_input *input, uint64_t max_pixels, asj_image_buffer *buffer, const asj_message *message)
-{
-    static const asj_image_buffer none = {0};
     png_reader *reader = calloc(1, sizeof *reader);
     asj_status status;
 
-    *buffer = none;
+    (void)probe;
     if (!reader)
         return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory");
     reader->message = message;
@@ -198,9 +203,5 @@ asj_status asj_png_decode(const asj_input *input, uint64_t max_pixels, asj_image
         png_destroy_read_struct(&reader->png, &reader->info, NULL);
     free(reader->raw);
     free(reader);
-    if (status != ASJ_OK) {
-        free(buffer->pixels);
-        *buffer = none;
-    }
     return status;
 }

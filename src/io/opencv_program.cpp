@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* asj-io-opencv PIXELS: decodes the image file on standard input with OpenCV and writes the pixels to standard output, for
+ * libasj-io (opencv_read.c) and nobody else. The only C++ of the project. What is wrong with a file is told by an answer that does
+ * not come. It limits its own memory to what an image of PIXELS needs, and its own time. */
+#include "opencv_answer.h"
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <sys/resource.h>
+#include <vector>
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__)
+const bool limits_memory = false; /* its shadow memory would not fit */
+#else
+const bool limits_memory = true;
+#endif
+
+void limit(int resource, rlim_t most)
+{
+    const struct rlimit both = {most, most};
+    setrlimit(static_cast<decltype(RLIMIT_CPU)>(resource), &both);
+}
+
+/* OpenCV decodes BMP from memory, the others from a named file only: here one that has no name but this. */
+cv::Mat decode(const std::vector<unsigned char> &bytes)
+{
+    const int flags = cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION;
+    if (bytes.size() > 2 && bytes[0] == 'B')
+        return cv::imdecode(bytes, flags);
+    std::FILE *file = std::tmpfile();
+    if (!file || std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size() || std::fflush(file) != 0)
+        return cv::Mat();
+    return cv::imread("/dev/fd/" + std::to_string(fileno(file)), flags);
+}
+
+std::vector<unsigned char> read_input()
+{
+    std::vector<unsigned char> bytes;
+    unsigned char block[65536];
+    for (size_t got; (got = std::fread(block, 1, sizeof block, stdin)) > 0;)
+        bytes.insert(bytes.end(), block, block + got);
+    return bytes;
+}
+
+/* Colour in floats becomes luma, as image_buffer.h has it. */
+cv::Mat luma_of(const cv::Mat &matrix)
+{
+    cv::Mat gray(matrix.rows, matrix.cols, CV_32FC1);
+    for (int y = 0; y < matrix.rows; y++)
+        for (int x = 0; x < matrix.cols; x++) {
+            const cv::Vec3f bgr = matrix.at<cv::Vec3f>(y, x);
+            gray.at<float>(y, x) = (77.0f * bgr[2] + 150.0f * bgr[1] + 29.0f * bgr[0]) / 256.0f;
+        }
+    return gray;
+}
+
+bool write_answer(const cv::Mat &decoded)
+{
+    const cv::Mat matrix = decoded.type() == CV_32FC3 ? luma_of(decoded) : decoded;
+    asj_opencv_answer answer = {ASJ_OPENCV_MAGIC, 0, static_cast<uint64_t>(matrix.cols), static_cast<uint64_t>(matrix.rows)};
+    switch (matrix.type()) {
+    case CV_8UC1: answer.samples = ASJ_OPENCV_GRAY8; break;
+    case CV_8UC3: answer.samples = ASJ_OPENCV_BGR8; break;
+    case CV_32FC1: answer.samples = ASJ_OPENCV_GRAY_FLOAT; break;
+    default: return false;
+    }
+    bool good = std::fwrite(&answer, sizeof answer, 1, stdout) == 1;
+    for (int y = 0; y < matrix.rows && good; y++)
+        good = std::fwrite(matrix.ptr(y), matrix.elemSize(), static_cast<size_t>(matrix.cols), stdout) ==
+               static_cast<size_t>(matrix.cols);
+    return good && std::fflush(stdout) == 0;
+}
+
+} // namespace
+
+int main(int count, char **arguments)
+{
+    const unsigned long long pixels = count > 1 ? std::strtoull(arguments[1], nullptr, 10) : 0;
+    limit(RLIMIT_CORE, 0);
+    limit(RLIMIT_CPU, 10 + static_cast<rlim_t>(pixels / 10000000));
+    try {
+        const std::vector<unsigned char> bytes = read_input();
+        if (limits_memory)
+            limit(RLIMIT_DATA, (static_cast<rlim_t>(256) << 20) + 4 * bytes.size() + 48 * pixels);
+        const cv::Mat matrix = decode(bytes);
+        return !matrix.empty() && write_answer(matrix) ? 0 : 1;
+    } catch (const std::exception &) {
+        return 1;
+    }
+}
