@@ -82,7 +82,8 @@ asj_status asj_input_read(asj_input *input, asj_input_check *check, const asj_me
         status = asj_message_fail(message, ASJ_ERROR_LIMIT, "longer than %u bytes", ASJ_INPUT_MAX_BYTES);
     } else {
         /* one byte more than the file has, so that its end is seen without growing */
-        status = read_all(file, S_ISREG(info.st_mode) && info.st_size ? (size_t)info.st_size + 1 : HEAD_BYTES, input, check, message);
+        size_t capacity = S_ISREG(info.st_mode) && info.st_size ? (size_t)info.st_size + 1 : HEAD_BYTES;
+        status = read_all(file, capacity, input, check, message);
     }
     close(file);
     if (status != ASJ_OK) {

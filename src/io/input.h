@@ -16,7 +16,8 @@ typedef struct asj_input {
 /* What is wrong with a file that begins so (64 KiB, or all of a shorter one), or NULL. The text has no arguments. */
 typedef const char *asj_input_check(const asj_input *head);
 
-/* Reads message->path. What does not pass the check is read no further, however long it is. On success the caller frees input->bytes.
+/* Reads message->path. What does not pass the check is read no further, however long it is.
+ * On success the caller frees input->bytes.
  * ASJ_ERROR_FILE    missing, a directory, unreadable
  * ASJ_ERROR_FORMAT  empty, or refused by the check
  * ASJ_ERROR_LIMIT   longer than ASJ_INPUT_MAX_BYTES

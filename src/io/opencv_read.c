@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* BMP, Sun raster and Radiance HDR through OpenCV's imgcodecs, in a process of its own: opencv_program.cpp. OpenCV chooses among its
- * decoders by itself, and what it and the libraries below it do to a process (abort, take memory, write to standard error) cannot
- * be told. So only signatures that belong to one of its own decoders get there, and whatever happens there is one refused file.
+/* BMP, Sun raster and Radiance HDR through OpenCV's imgcodecs, in a process of its own: opencv_program.cpp. OpenCV chooses among
+ * its decoders by itself, and what it and the libraries below it do to a process (abort, take memory, write to standard error)
+ * cannot be told. So only signatures that belong to one of its own decoders get there, and what happens there is one refused file.
  *
  * The bytes of the file go to the program over a socket, then its answer (opencv_answer.h) comes back. No file of this process but
  * that socket is open there, and standard error is not. */

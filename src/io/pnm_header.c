@@ -60,7 +60,8 @@ static int read_pam(const asj_input *input, size_t at, asj_pnm_header *header)
             while (at < input->size && input->bytes[at] != '\n')
                 at++;
         } else {
-            uint64_t *value = length == 5 && !memcmp(word, "WIDTH", 5) ? &width : length == 6 && !memcmp(word, "HEIGHT", 6) ? &height
+            uint64_t *value = length == 5 && !memcmp(word, "WIDTH", 5) ? &width
+                              : length == 6 && !memcmp(word, "HEIGHT", 6) ? &height
                               : length == 5 && !memcmp(word, "DEPTH", 5) ? &samples
                               : length == 6 && !memcmp(word, "MAXVAL", 6) ? &most : NULL;
             if (!value || *value || !asj_pnm_number(input, &at, value))

@@ -130,8 +130,10 @@ static void too_large_in_other_formats(void **state)
     static const unsigned char tiff[] = {'M', 'M', 0, 42, 0, 0, 0, 8, 0, 2, 1, 0, 0, 4, 0, 0, 0, 1, 0, 0, 0xea, 0x60, 1, 1, 0, 3,
                                          0, 0, 0, 1, 0xea, 0x60, 0, 0, 0, 0, 0, 0};
     static const char webp[] = "RIFF\x20\0\0\0WEBPVP8X\x0a\0\0\0\0\0\0\0\x5f\xea\0\x5f\xea\0";
-    static const char pnm[] = "P5\n# comment 1 2\n60000 60000\n255\n", pam[] = "P7\nHEIGHT 60000\nWIDTH 60000\nDEPTH 1\nENDHDR\n";
-    static const char jp2[] = "\xff\x4f\xff\x51\0\x29\0\0\0\0\xea\x60\0\0\xea\x60\0\0\0\0\0\0\0\0\0";
+    static const char pnm[] = "P5\n# comment 1 2\n60000 60000\n255\n";
+    static const char pam[] = "P7\nHEIGHT 60000\nWIDTH 60000\nDEPTH 1\nMAXVAL 255\nENDHDR\n";
+    static const char jp2[] = "\xff\x4f\xff\x51\0\x29\0\0\0\0\xea\x60\0\0\xea\x60\0\0\0\0\0\0\0\0"
+                              "\0\0\xea\x60\0\0\xea\x60\0\0\0\0\0\0\0\0\0\1\7\1\1";
     (void)state;
     assert_image_refused(write_bytes("bomb.bmp", bmp, sizeof bmp), 0, ASJ_ERROR_LIMIT, "60000 x 60000");
     assert_image_refused(write_bytes("bomb.jpg", jpeg, sizeof jpeg), 0, ASJ_ERROR_LIMIT, "60000 x 60000");
