@@ -4,11 +4,11 @@
  * Every pair of branches that are not parallel gives an L-junction. The order (the paper's partial order, whose two lines both read
  * "<"): a comes before b when (theta_b - theta_a) mod 2 pi < pi. With y down that is clockwise on the screen. Exactly one order of
  * a pair satisfies it, and an affine map that does not mirror preserves it. */
+#include "core/angle.h"
+
 #include <asj/detect.h>
 
 #include <math.h>
-
-#define PI 3.141592653589793
 
 static asj_l_junction make(const asj_junction *junction, uint32_t index, int32_t a, int32_t b)
 {
@@ -29,7 +29,7 @@ static asj_l_junction make(const asj_junction *junction, uint32_t index, int32_t
 size_t asj_decompose(const asj_junction *junctions, size_t junction_count, double minimum_opening,
                      asj_l_junction *l_junctions, size_t capacity)
 {
-    const double least = minimum_opening * (PI / 180);
+    const double least = minimum_opening * ASJ_DEGREE;
     size_t count = 0;
     for (size_t n = 0; junctions && n < junction_count; n++) {
         const asj_junction *junction = &junctions[n];
@@ -37,13 +37,13 @@ size_t asj_decompose(const asj_junction *junctions, size_t junction_count, doubl
             continue;
         for (int32_t i = 0; i < junction->branch_count; i++)
             for (int32_t j = i + 1; j < junction->branch_count; j++) {
-                double turn = fmod((double)junction->branches[j].angle - (double)junction->branches[i].angle, 2 * PI);
-                turn = turn < 0 ? turn + 2 * PI : turn;
-                double opening = turn < PI ? turn : 2 * PI - turn;
-                if (!(opening > 0 && opening < PI && opening >= least && opening <= PI - least))
+                double turn = fmod((double)junction->branches[j].angle - (double)junction->branches[i].angle, ASJ_TWO_PI);
+                turn = turn < 0 ? turn + ASJ_TWO_PI : turn;
+                double opening = turn < ASJ_PI ? turn : ASJ_TWO_PI - turn;
+                if (!(opening > 0 && opening < ASJ_PI && opening >= least && opening <= ASJ_PI - least))
                     continue;
                 if (l_junctions && count < capacity)
-                    l_junctions[count] = turn < PI ? make(junction, (uint32_t)n, i, j) : make(junction, (uint32_t)n, j, i);
+                    l_junctions[count] = turn < ASJ_PI ? make(junction, (uint32_t)n, i, j) : make(junction, (uint32_t)n, j, i);
                 count++;
             }
     }

@@ -12,14 +12,14 @@
 
 static int by_row(const void *a, const void *b)
 {
-    const asj_draft *p = *(const asj_draft *const *)a, *q = *(const asj_draft *const *)b;
+    const asj_hypothesis *p = *(const asj_hypothesis *const *)a, *q = *(const asj_hypothesis *const *)b;
     if (p->y != q->y)
         return p->y < q->y ? -1 : 1;
     return p->x < q->x ? -1 : p->x > q->x;
 }
 
-/* First draft in `order` with y >= least. */
-static size_t lower_bound(const asj_draft *const *order, size_t count, double least)
+/* First hypothesis in `order` with y >= least. */
+static size_t lower_bound(const asj_hypothesis *const *order, size_t count, double least)
 {
     size_t low = 0, high = count;
     while (low < high) {
@@ -32,16 +32,16 @@ static size_t lower_bound(const asj_draft *const *order, size_t count, double le
     return low;
 }
 
-static double snapped_length(const asj_draft *draft, const asj_draft_branch *branch, double reach,
-                             const asj_draft *const *order, size_t count)
+static double snapped_length(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, double reach,
+                             const asj_hypothesis *const *order, size_t count)
 {
-    const double ux = cos(branch->angle), uy = sin(branch->angle), end_y = draft->y + branch->length * uy;
+    const double ux = cos(branch->angle), uy = sin(branch->angle), end_y = hypothesis->y + branch->length * uy;
     const double around = reach + OFF_LINE;
     double best = reach, length = branch->length;
     for (size_t i = lower_bound(order, count, end_y - around); i < count && order[i]->y <= end_y + around; i++) {
-        const double dx = order[i]->x - draft->x, dy = order[i]->y - draft->y;
+        const double dx = order[i]->x - hypothesis->x, dy = order[i]->y - hypothesis->y;
         const double t = dx * ux + dy * uy, off = fabs(dy * ux - dx * uy);
-        if (order[i] != draft && t > 0 && off <= OFF_LINE && fabs(t - branch->length) < best) {
+        if (order[i] != hypothesis && t > 0 && off <= OFF_LINE && fabs(t - branch->length) < best) {
             best = fabs(t - branch->length);
             length = t;
         }
@@ -49,14 +49,14 @@ static double snapped_length(const asj_draft *draft, const asj_draft_branch *bra
     return length;
 }
 
-void asj_ends_snap(asj_draft *drafts, size_t count, double reach, const asj_draft **order)
+void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order)
 {
     if (count == 0 || reach <= 0)
         return;
     for (size_t i = 0; i < count; i++)
-        order[i] = &drafts[i];
+        order[i] = &hypotheses[i];
     qsort(order, count, sizeof *order, by_row);
     for (size_t i = 0; i < count; i++)
-        for (int32_t b = 0; b < drafts[i].branch_count; b++)
-            drafts[i].branches[b].length = snapped_length(&drafts[i], &drafts[i].branches[b], reach, order, count);
+        for (int32_t b = 0; b < hypotheses[i].branch_count; b++)
+            hypotheses[i].branches[b].length = snapped_length(&hypotheses[i], &hypotheses[i].branches[b], reach, order, count);
 }

@@ -3,10 +3,10 @@
 #ifndef ASJ_SRC_ENDS_H
 #define ASJ_SRC_ENDS_H
 
-#include "draft.h"
+#include "hypothesis.h"
 
 /* Moves the ends of branches onto junctions that lie on their line within `reach` px of the end. `order` is scratch for `count`
  * elements. */
-void asj_ends_snap(asj_draft *drafts, size_t count, double reach, const asj_draft **order);
+void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order);
 
 #endif

@@ -18,16 +18,12 @@
  * them back. */
 #include "field.h"
 #include "nfa.h"
+#include "core/angle.h"
 #include "core/threads.h"
 
 #include <math.h>
 #include <string.h>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
-#define TWO_PI 6.283185307179586
 #define LEAST_RUNS 128 /* for a thread: about 25 us */
 
 static uint16_t strength_of_tail(const asj_context *context, const asj_sectors *s, int32_t k, double log_p)
@@ -71,7 +67,7 @@ asj_status asj_field_create(asj_context *context, const asj_detect_options *opti
         field->keep[k] = strength_of_tail(context, s, k, log_p < 0 ? log_p : 0);
         field->candidate[k] = field->keep[k] > wanted ? field->keep[k] : wanted;
     }
-    const double per_radian = s->count / TWO_PI;
+    const double per_radian = s->count / ASJ_TWO_PI;
     field->suppress = (int32_t)lrint(options->sector_width / options->field_radius * per_radian);
     field->apart = (int32_t)ceil(0.35 * per_radian);
     field->step = options->candidate_step;
@@ -285,15 +281,10 @@ asj_status asj_field_rows(asj_context *context, const asj_field *field, const as
     /* tiles are half as wide where there are so few that threads would wait for the last one */
     const int32_t largest = field->step * ASJ_FIELD_TILE / ASJ_LANES, many = 8 * threads * largest;
     const int32_t per_tile = threads == 1 || frame->blocks >= many ? largest : largest / 2;
-#ifdef _OPENMP
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-#endif
     for (int32_t run = 0; run < frame->blocks; run += per_tile) {
         const int32_t runs = frame->blocks - run < per_tile ? frame->blocks - run : per_tile;
-        size_t thread = 0;
-#ifdef _OPENMP
-        thread = (size_t)omp_get_thread_num();
-#endif
+        const size_t thread = (size_t)asj_thread_number();
         context->ops->field->tile(field, frame, run, runs, top, bottom, scratch + thread * scratch_size, masks);
     }
     return ASJ_OK;

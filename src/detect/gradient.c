@@ -173,9 +173,7 @@ asj_status asj_gradient(asj_context *context, asj_frame *frame, const asj_detect
         return asj_fail(context, status, "no memory for the gradient's rows");
     uint16_t *scratch = frame->rows;
     memset(scratch, 0, (size_t)bands * size * sizeof *scratch);
-#ifdef _OPENMP
 #pragma omp parallel for num_threads(bands) schedule(static)
-#endif
     for (int32_t band = 0; band < bands; band++) {
         const int32_t first = (int32_t)((int64_t)frame->height * band / bands);
         const int32_t last = (int32_t)((int64_t)frame->height * (band + 1) / bands);
@@ -187,51 +185,6 @@ asj_status asj_gradient(asj_context *context, asj_frame *frame, const asj_detect
         standardise(frame, frame->gradient_y);
     }
     return ASJ_OK;
-}
-
-static inline int32_t clamp(int32_t value, int32_t last)
-{
-    return value < 0 ? 0 : value > last ? last : value;
-}
-
-/* At x0 + fx, y0 + fy, from the rows y0 - 1 .. y0 + 2 and the columns x0 - 1 .. x0 + 2: central differences at the four pixels
- * around, bilinear, then from 1/128 to grey levels. */
-static inline void sample(const uint16_t *const row[4], const int32_t column[4], double fx, double fy, double *gx, double *gy)
-{
-#define I(i, j) row[i][column[j]]
-    double top = (I(1, 2) - I(1, 0)) * (1 - fx) + (I(1, 3) - I(1, 1)) * fx;
-    double low = (I(2, 2) - I(2, 0)) * (1 - fx) + (I(2, 3) - I(2, 1)) * fx;
-    *gx = (top * (1 - fy) + low * fy) * (1.0 / (2 * ASJ_GRAY_ONE));
-    top = (I(2, 1) - I(0, 1)) * (1 - fx) + (I(2, 2) - I(0, 2)) * fx;
-    low = (I(3, 1) - I(1, 1)) * (1 - fx) + (I(3, 2) - I(1, 2)) * fx;
-    *gy = (top * (1 - fy) + low * fy) * (1.0 / (2 * ASJ_GRAY_ONE));
-#undef I
-}
-
-static void sample_at_border(const asj_frame *frame, double x, double y, double *gx, double *gy)
-{
-    const int32_t right = frame->width - 1, bottom = frame->height - 1;
-    x = x < 0 ? 0 : x > right ? right : x;
-    y = y < 0 ? 0 : y > bottom ? bottom : y;
-    int32_t x0 = (int32_t)x, y0 = (int32_t)y;
-    const int32_t column[4] = {clamp(x0 - 1, right), x0, clamp(x0 + 1, right), clamp(x0 + 2, right)};
-    const uint16_t *row[4];
-    for (int i = 0; i < 4; i++)
-        row[i] = frame->gray + (ptrdiff_t)clamp(y0 - 1 + i, bottom) * frame->stride;
-    sample(row, column, x - x0, y - y0, gx, gy);
-}
-
-void asj_gradient_sample(const asj_frame *frame, double x, double y, double *gx, double *gy)
-{
-    static const int32_t column[4] = {-1, 0, 1, 2};
-    if (!(x >= 1 && y >= 1 && x < frame->width - 2 && y < frame->height - 2)) {
-        sample_at_border(frame, x, y, gx, gy);
-        return;
-    }
-    const int32_t x0 = (int32_t)x, y0 = (int32_t)y;
-    const uint16_t *middle = frame->gray + y0 * frame->stride + x0;
-    const uint16_t *const row[4] = {middle - frame->stride, middle, middle + frame->stride, middle + 2 * frame->stride};
-    sample(row, column, x - x0, y - y0, gx, gy);
 }
 
 const asj_gradient_ops asj_gradient_reference = {

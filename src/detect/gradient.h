@@ -47,10 +47,6 @@ typedef struct asj_gradient_factors {
 } asj_gradient_factors;
 asj_gradient_factors asj_gradient_set_factors(int32_t columns, int32_t rows, uint32_t epsilon);
 
-/* Gradient of the gray plane itself at a sub-pixel place, in grey levels per pixel: bilinear between the central differences of
- * the four pixels around; places outside are moved to the nearest inside. */
-void asj_gradient_sample(const asj_frame *frame, double x, double y, double *gx, double *gy);
-
 /* Operations (core/ops.h): step 1 as a whole, which a device replaces, and its parts for a row. */
 typedef struct asj_gradient_ops {
     /* asj_gradient() */

@@ -26,7 +26,7 @@ typedef struct asj_isotropic_radius {
     asj_sector_runs runs; /* of a radius that is a source */
     int32_t suppress;     /* sectors to either side over which a branch must be the largest */
     int32_t straight;     /* two branches that are more sectors apart are an edge: by more than pi - 2 Delta */
-    const double **tails; /* for each sector: ln F(i / ASJ_TAIL_STEPS; J_k), i = 0, 1, .. */
+    const double **tails; /* for each sector: ln F(i / ASJ_ISOTROPIC_TAIL_STEPS; J_k), i = 0, 1, .. */
     const double *lowest_tail; /* the lowest of them: that of the sector with the fewest pixels */
     double lowest_end;    /* and the largest sum that such a sector may have: its table ends there */
     int32_t least_sum[ASJ_MAX_BRANCHES + 1]; /* of M branches the weakest has at least this sum, or they are not meaningful */
@@ -76,17 +76,22 @@ typedef struct asj_isotropic_peak {
     uint16_t sum, strength;
 } asj_isotropic_peak;
 
+/* Table entries for a junction-ness of 1; linear interpolation is then good to 0.01 in ln F. */
+#define ASJ_ISOTROPIC_TAIL_STEPS 4
+
+/* ln F at junction-ness t >= 0 from one of the tables. */
+static inline double asj_isotropic_log_tail(const double *table, double t)
+{
+    const double position = t * ASJ_ISOTROPIC_TAIL_STEPS;
+    const int32_t i = (int32_t)position;
+    const double rest = position - i;
+    return table[i] * (1 - rest) + table[i + 1] * rest;
+}
+
 /* Makes *best the junction of these branches, strongest first, if that one is meaningful, and more so than *best. Branches are
  * ordered by sum; of equals the one with the lower sector comes first. */
 void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *entry, const asj_isotropic_peak *peaks,
                          int32_t count, asj_isotropic_junction *best);
-
-/* Of junctions in order of y, then x, drops those that lie close to something better (see isotropic.c). Returns how many stay, at
- * the front, in the same order: what comes next then finds most of the image in the cache.
- * `scratch`: asj_isotropic_thin_scratch() bytes, aligned as by malloc(). */
-size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const asj_detect_options *options,
-                          int32_t width, int32_t height, void *scratch);
-size_t asj_isotropic_thin_scratch(size_t count, int32_t width, int32_t height);
 
 /* Operations (core/ops.h): step 3 by all threads, which a device replaces, and for the rows of one. */
 typedef struct asj_isotropic_ops {

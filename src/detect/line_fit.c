@@ -144,7 +144,7 @@ static int choose(const samples *in, const asj_line_range *range, int variances,
 }
 
 int asj_line_fit(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
-                 asj_draft_branch *branch)
+                 asj_hypothesis_branch *branch)
 {
     const double ux = cos(branch->angle), uy = sin(branch->angle);
     line found = {branch->offset, 0, 0, 0};
@@ -166,12 +166,12 @@ int asj_line_fit(const asj_line_ops *ops, const asj_frame *frame, double x, doub
     return 1;
 }
 
-asj_rough_line asj_rough_line_of(const asj_draft_branch *branch)
+asj_rough_line asj_rough_line_of(const asj_hypothesis_branch *branch)
 {
     return (asj_rough_line){cos(branch->angle), sin(branch->angle), branch->offset, branch->apart};
 }
 
-void asj_rough_line_keep(const asj_rough_line *rough, asj_draft_branch *branch)
+void asj_rough_line_keep(const asj_rough_line *rough, asj_hypothesis_branch *branch)
 {
     branch->angle = asj_angle_wrap(atan2(rough->uy, rough->ux));
     branch->offset = rough->offset;

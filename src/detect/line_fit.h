@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_LINE_FIT_H
 #define ASJ_SRC_LINE_FIT_H
 
-#include "draft.h"
+#include "hypothesis.h"
 #include "line_sums.h"
 
 typedef struct asj_line_range {
@@ -15,16 +15,16 @@ typedef struct asj_line_range {
 /* Moves branch->angle and branch->offset to the line under the branch of a junction at (x, y); sets their variances. branch->offset
  * is where the search starts. Returns 0, and leaves the branch alone, when there is too little edge. */
 int asj_line_fit(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
-                 asj_draft_branch *branch);
+                 asj_hypothesis_branch *branch);
 
 /* The line under a branch as guesses move it: by its direction, since angles take longer. */
 typedef struct asj_rough_line {
     double ux, uy;
-    double offset, apart; /* as in asj_draft_branch */
+    double offset, apart; /* as in asj_hypothesis_branch */
 } asj_rough_line;
 
-asj_rough_line asj_rough_line_of(const asj_draft_branch *branch);
-void asj_rough_line_keep(const asj_rough_line *rough, asj_draft_branch *branch);
+asj_rough_line asj_rough_line_of(const asj_hypothesis_branch *branch);
+void asj_rough_line_keep(const asj_rough_line *rough, asj_hypothesis_branch *branch);
 
 /* One iteration of the same on whole pixels, t[0] .. t[1] px along the line: a tenth of the time, no variances. */
 int asj_line_guess(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const double t[2], double half_width,

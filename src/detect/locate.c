@@ -8,54 +8,44 @@
  *   - the smallest singular direction of the lines is not determined (determinant of the weighted normal matrix), or
  *   - it moves farther than max_move. */
 #include "locate.h"
+#include "core/angle.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-#define PI 3.141592653589793
+/* Least determinant of the normal matrix, relative to the square of the sum of weights. Two lines of weight w that open by phi have
+ * (w sin phi)^2, so 0.02 is an opening of asin(sqrt(4 x 0.02)) = 16.4 degrees. Chosen below minimum_opening (25), so that it
+ * decides only where weights differ much or that option is lowered; less lets noise in nearly parallel lines move their meeting
+ * point far along them. */
+#define LEAST_DETERMINANT 0.02
 
-#define TURN 65536 /* of an isotropic junction's directions */
+/* Where lines are fitted: px along the branch from the junction, and px to either side of it. Chosen: 2 leaves out what blur bends
+ * at a corner; over 10 px a line has an angle, which over the isotropic scale of most junctions (7) it hardly has. The first guess
+ * starts from a whole pixel and a sector's direction and needs a wide band; each later one may be narrower, which keeps
+ * neighbouring edges out. */
+#define FIRST 2.0        /* px along: where fits begin */
+#define LEAST_END 10.0   /* px along: where they end, or at the isotropic scale if that is larger */
+#define GUESS_WIDTH 4.0  /* px across: of the first guess, */
+#define SECOND_WIDTH 2.5 /* of the second guess and the first fit, */
+#define FIT_WIDTH 2.0    /* of the last fit */
 
-int asj_locate_worthwhile(const asj_detect_options *options, const asj_isotropic_junction *junction)
+/* Slack of what is asked of a guess: degrees of minimum_opening, px of max_move. Chosen: more passes more edges on to the fits,
+ * which costs time; less begins to reject what the fits would accept. */
+#define GUESS_TURN 8.0
+#define GUESS_MOVE 1.0
+
+static void get_lines(const asj_hypothesis *hypothesis, asj_rough_line *lines)
 {
-    const double least = options->minimum_opening * (TURN / 360.0);
-    for (int32_t i = 0; i < junction->branch_count; i++)
-        for (int32_t j = i + 1; j < junction->branch_count; j++) {
-            const int32_t turn = abs(junction->angle[i] - junction->angle[j]), opening = turn > TURN / 2 ? TURN - turn : turn;
-            if (opening > 0 && opening < TURN / 2 && opening >= least && opening <= TURN / 2 - least)
-                return 1;
-        }
-    return 0;
-}
-
-void asj_locate_start(const asj_isotropic_junction *junction, asj_draft *draft)
-{
-    memset(draft, 0, sizeof *draft);
-    draft->x = draft->x0 = junction->x;
-    draft->y = draft->y0 = junction->y;
-    draft->radius = junction->radius;
-    draft->log_nfa = junction->log_nfa;
-    draft->branch_count = junction->branch_count;
-    for (int32_t i = 0; i < junction->branch_count; i++) {
-        draft->branches[i].angle = junction->angle[i] * (2 * PI / TURN);
-        draft->branches[i].strength = (double)junction->strength[i] / ASJ_STRENGTH_ONE;
-    }
-}
-
-static void get_lines(const asj_draft *draft, asj_rough_line *lines)
-{
-    for (int32_t i = 0; i < draft->branch_count; i++)
-        lines[i] = asj_rough_line_of(&draft->branches[i]);
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        lines[i] = asj_rough_line_of(&hypothesis->branches[i]);
 }
 
 /* Moves the junction; its lines, whose directions these are, stay where they are. */
-static void move(asj_draft *draft, const asj_rough_line *lines, double dx, double dy)
+static void move(asj_hypothesis *hypothesis, const asj_rough_line *lines, double dx, double dy)
 {
-    draft->x += dx;
-    draft->y += dy;
-    for (int32_t i = 0; i < draft->branch_count; i++)
-        draft->branches[i].offset -= -lines[i].uy * dx + lines[i].ux * dy;
+    hypothesis->x += dx;
+    hypothesis->y += dy;
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        hypothesis->branches[i].offset -= -lines[i].uy * dx + lines[i].ux * dy;
 }
 
 typedef struct meeting {
@@ -76,57 +66,56 @@ static int meet_lines(const asj_rough_line *lines, const double *weights, int32_
         total += weight;
     }
     const double determinant = xx * yy - xy * xy;
-    if (!(determinant > 0.02 * total * total))
+    if (!(determinant > LEAST_DETERMINANT * total * total))
         return 0;
     *m = (meeting){(yy * bx - xy * by) / determinant, (xx * by - xy * bx) / determinant, (xx + yy) / (2 * determinant)};
     return 1;
 }
 
-int asj_locate_meet(asj_draft *draft)
+int asj_locate_meet(asj_hypothesis *hypothesis)
 {
     asj_rough_line lines[ASJ_MAX_BRANCHES];
     double weights[ASJ_MAX_BRANCHES];
     meeting m;
-    get_lines(draft, lines);
-    for (int32_t i = 0; i < draft->branch_count; i++)
-        weights[i] = 1 / draft->branches[i].offset_variance;
-    if (!meet_lines(lines, weights, draft->branch_count, &m))
+    get_lines(hypothesis, lines);
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        weights[i] = 1 / hypothesis->branches[i].offset_variance;
+    if (!meet_lines(lines, weights, hypothesis->branch_count, &m))
         return 0;
-    move(draft, lines, m.dx, m.dy);
-    draft->location_variance = m.variance;
+    move(hypothesis, lines, m.dx, m.dy);
+    hypothesis->location_variance = m.variance;
     return 1;
 }
 
-#define NEAR 2 /* px: where the fits begin */
-
-static double fit_end(const asj_draft *draft)
+static double fit_end(const asj_hypothesis *hypothesis)
 {
-    return draft->radius > 10 ? draft->radius : 10;
+    return hypothesis->radius > LEAST_END ? hypothesis->radius : LEAST_END;
 }
 
-static void fit_branches(const asj_context *context, const asj_frame *frame, const asj_line_range *range, asj_draft *draft)
+static void fit_branches(const asj_context *context, const asj_frame *frame, const asj_line_range *range,
+                         asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];
-    for (int32_t i = 0; i < draft->branch_count; i++)
-        keep[i] = asj_line_fit(context->ops->line, frame, draft->x, draft->y, range, &draft->branches[i]);
-    asj_draft_select(draft, keep);
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        keep[i] = asj_line_fit(context->ops->line, frame, hypothesis->x, hypothesis->y, range, &hypothesis->branches[i]);
+    asj_hypothesis_select(hypothesis, keep);
 }
 
 /* Moves the lines; those that there are stay, with their branches. */
-static void guess_lines(const asj_context *context, const asj_frame *frame, double half_width, double end, asj_draft *draft,
-                        asj_rough_line *lines)
+static void guess_lines(const asj_context *context, const asj_frame *frame, double half_width, double end,
+                        asj_hypothesis *hypothesis, asj_rough_line *lines)
 {
-    const double t[2] = {NEAR, end};
+    const double t[2] = {FIRST, end};
     int keep[ASJ_MAX_BRANCHES], kept = 0;
-    for (int32_t i = 0; i < draft->branch_count; i++) {
+    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
         lines[kept] = lines[i];
-        keep[i] = asj_line_guess(context->ops->line, frame, draft->x, draft->y, t, half_width, &lines[kept]);
+        keep[i] = asj_line_guess(context->ops->line, frame, hypothesis->x, hypothesis->y, t, half_width, &lines[kept]);
         kept += keep[i];
     }
-    asj_draft_select(draft, keep);
+    asj_hypothesis_select(hypothesis, keep);
 }
 
-/* As asj_draft_has_opening(). */
+/* As asj_hypothesis_has_opening(). */
 static int have_opening(const asj_rough_line *lines, int32_t count, double least)
 {
     const double sine = sin(least);
@@ -146,122 +135,44 @@ static int guess_meeting(const asj_detect_options *options, const asj_rough_line
     for (int32_t i = 0; i < count; i++)
         weights[i] = 1;
     return have_opening(lines, count, least) && meet_lines(lines, weights, count, m) &&
-           hypot(m->dx, m->dy) <= options->max_move + 1;
+           hypot(m->dx, m->dy) <= options->max_move + GUESS_MOVE;
 }
 
-void asj_locate_guess(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
+void asj_locate_guess(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                      asj_hypothesis *hypothesis)
 {
-    const double least = fmax((options->minimum_opening - 8) * (PI / 180), 0);
+    const double least = fmax((options->minimum_opening - GUESS_TURN) * ASJ_DEGREE, 0);
     asj_rough_line lines[ASJ_MAX_BRANCHES];
     meeting m;
     if (options->refinement != ASJ_REFINE_LINE_FIT)
         return;
-    get_lines(draft, lines);
-    guess_lines(context, frame, 4, 10, draft, lines); /* px: enough to tell edges */
-    if (!have_opening(lines, draft->branch_count, least)) { /* most of the others */
-        draft->branch_count = 0;
+    get_lines(hypothesis, lines);
+    guess_lines(context, frame, GUESS_WIDTH, LEAST_END, hypothesis, lines); /* enough to tell edges */
+    if (!have_opening(lines, hypothesis->branch_count, least)) { /* most of the others */
+        hypothesis->branch_count = 0;
         return;
     }
-    guess_lines(context, frame, 2.5, fit_end(draft), draft, lines);
-    if (!guess_meeting(options, lines, draft->branch_count, least, &m)) {
-        draft->branch_count = 0;
+    guess_lines(context, frame, SECOND_WIDTH, fit_end(hypothesis), hypothesis, lines);
+    if (!guess_meeting(options, lines, hypothesis->branch_count, least, &m)) {
+        hypothesis->branch_count = 0;
         return;
     }
-    for (int32_t i = 0; i < draft->branch_count; i++)
-        asj_rough_line_keep(&lines[i], &draft->branches[i]);
-    move(draft, lines, m.dx, m.dy);
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        asj_rough_line_keep(&lines[i], &hypothesis->branches[i]);
+    move(hypothesis, lines, m.dx, m.dy);
 }
 
-void asj_locate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_draft *draft)
+void asj_locate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
-    const asj_line_range fine = {NEAR, fit_end(draft), {2.5, 2, 0}, 2};
+    const asj_line_range fine = {FIRST, fit_end(hypothesis), {SECOND_WIDTH, FIT_WIDTH, 0}, 2};
     asj_rough_line lines[ASJ_MAX_BRANCHES];
     if (options->refinement != ASJ_REFINE_LINE_FIT)
         return;
-    get_lines(draft, lines);
-    move(draft, lines, draft->x0 - draft->x, draft->y0 - draft->y); /* the guess is good enough to tell twins */
-    fit_branches(context, frame, &fine, draft);
-    if (!asj_draft_has_opening(draft, options->minimum_opening * (PI / 180)) || !asj_locate_meet(draft) ||
-        hypot(draft->x - draft->x0, draft->y - draft->y0) > options->max_move)
-        draft->branch_count = 0;
-}
-
-static int by_meaning(const void *a, const void *b)
-{
-    const asj_draft *p = a, *q = b;
-    if (p->log_nfa != q->log_nfa)
-        return p->log_nfa < q->log_nfa ? -1 : 1;
-    if (p->y != q->y)
-        return p->y < q->y ? -1 : 1;
-    return p->x < q->x ? -1 : p->x > q->x;
-}
-
-/* Kept drafts are linked into a grid of cells as wide as the largest suppression radius, so that only the cells around need a
- * look. */
-#define CELL 11 /* px: max(3, 0.35 * 30) rounded up */
-
-static int32_t cell_columns(int32_t width)
-{
-    return width / CELL + 3; /* a border of cells for junctions just outside the image, and for the neighbours */
-}
-
-size_t asj_locate_cells(size_t count, int32_t width, int32_t height)
-{
-    return (size_t)cell_columns(width) * (size_t)cell_columns(height) + count;
-}
-
-/* Whether each branch of a draft is one of the other's too, and the other one is not likely to be rejected yet because it moves too
- * far. */
-static int same_junction(const asj_draft *draft, const asj_draft *other)
-{
-    const double turn = 10 * (PI / 180), surely_near = 1.5;
-    if (draft->branch_count != other->branch_count || hypot(other->x - other->x0, other->y - other->y0) > surely_near)
-        return 0;
-    for (int32_t i = 0; i < draft->branch_count; i++) {
-        int found = 0;
-        for (int32_t j = 0; j < other->branch_count; j++)
-            found |= asj_angle_distance(draft->branches[i].angle, other->branches[j].angle) < turn;
-        if (!found)
-            return 0;
-    }
-    return 1;
-}
-
-static int suppressed(const asj_draft *drafts, const asj_draft *draft, int same, int32_t columns, int64_t cell,
-                      const int32_t *heads, const int32_t *next)
-{
-    for (int dy = -1; dy <= 1; dy++)
-        for (int dx = -1; dx <= 1; dx++)
-            for (int32_t i = heads[cell + dy * columns + dx]; i >= 0; i = next[i]) {
-                const double radius = same ? 1.5 : fmax(3, 0.35 * drafts[i].radius);
-                const double x = drafts[i].x - draft->x, y = drafts[i].y - draft->y;
-                if (x * x + y * y < radius * radius && (!same || same_junction(draft, &drafts[i])))
-                    return 1;
-            }
-    return 0;
-}
-
-size_t asj_locate_suppress(asj_draft *drafts, size_t count, int same, int32_t width, int32_t height, int32_t *cells)
-{
-    const int32_t columns = cell_columns(width), rows = cell_columns(height);
-    int32_t *heads = cells, *next = cells + (size_t)columns * (size_t)rows;
-    size_t valid = 0, kept = 0;
-    for (size_t i = 0; i < count; i++)
-        if (drafts[i].branch_count >= 2)
-            drafts[valid++] = drafts[i];
-    qsort(drafts, valid, sizeof *drafts, by_meaning);
-    memset(heads, 0xff, (size_t)columns * (size_t)rows * sizeof *heads);
-    for (size_t i = 0; i < valid; i++) {
-        const asj_draft draft = drafts[i];
-        int32_t cx = (int32_t)floor(draft.x / CELL) + 1, cy = (int32_t)floor(draft.y / CELL) + 1;
-        cx = cx < 1 ? 1 : cx > columns - 2 ? columns - 2 : cx;
-        cy = cy < 1 ? 1 : cy > rows - 2 ? rows - 2 : cy;
-        int64_t cell = (int64_t)cy * columns + cx;
-        if (suppressed(drafts, &draft, same, columns, cell, heads, next))
-            continue;
-        drafts[kept] = draft;
-        next[kept] = heads[cell];
-        heads[cell] = (int32_t)kept++;
-    }
-    return kept;
+    get_lines(hypothesis, lines);
+    /* back to the pixel: a guess is good enough to tell twins, not to start from */
+    move(hypothesis, lines, hypothesis->x0 - hypothesis->x, hypothesis->y0 - hypothesis->y);
+    fit_branches(context, frame, &fine, hypothesis);
+    if (!asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE) || !asj_locate_meet(hypothesis) ||
+        hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0) > options->max_move)
+        hypothesis->branch_count = 0;
 }

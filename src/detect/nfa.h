@@ -9,8 +9,8 @@
 #define ASJ_GAMMA_MEAN 0.330494606292647
 #define ASJ_GAMMA_SD 0.504136432767844
 
-/* Largest number of terms for which arc tails are tabulated: 2 w + 1 samples, w <= 3. */
-#define ASJ_NFA_MAX_ARC 7
+/* Most samples of an arc: 2 w + 1, w = arc_half_width <= 3. Tails are tabulated for up to as many terms. */
+#define ASJ_MAX_ARC 7
 
 /* Tables for one context; built once, then only read (any number of threads). */
 typedef struct asj_nfa asj_nfa;
@@ -33,7 +33,7 @@ double asj_nfa_log_sector_tail(const asj_nfa *nfa, double t, int32_t n);
 /* Smallest t with ln F(t; n) <= log_p (bisection on the function above; log_p <= 0). */
 double asj_nfa_sector_threshold(const asj_nfa *nfa, double log_p, int32_t n);
 
-/* ln G(s; n): natural logarithm of P(gamma~_1 + .. + gamma~_n >= s), 1 <= n <= ASJ_NFA_MAX_ARC, s > 0. */
+/* ln G(s; n): natural logarithm of P(gamma~_1 + .. + gamma~_n >= s), 1 <= n <= ASJ_MAX_ARC, s > 0. */
 double asj_nfa_log_arc_tail(const asj_nfa *nfa, double s, int32_t n);
 
 /* Smallest s > 0 with ln G(s; n) <= log_p. A result > 0 even when every s passes: an arc without any junction is no event. */

@@ -28,12 +28,11 @@
  * Whole numbers throughout, so that every back end takes the same decisions: positions in 1/65536 px, unit vectors in 2^-30 for
  * positions and 2^-14 for angles, angles in 1/65536 of a turn. */
 #include "ray_walk.h"
+#include "core/angle.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define TWO_PI 6.283185307179586
 
 /* d / r turned into a rotation: cos and sin in 2^-30. One table of them for all rays, since r is a whole number; beyond the table
  * the arc is straight to within 0.01 px. */
@@ -137,7 +136,7 @@ asj_ray_direction asj_ray_walk_direction(const asj_ray *ray)
 {
     const double one = (double)((int64_t)1 << 30);
     return (asj_ray_direction){llrint(ray->x * 65536), llrint(ray->y * 65536), llrint(cos(ray->angle) * one),
-                               llrint(sin(ray->angle) * one), (uint16_t)llrint(ray->angle * (65536 / TWO_PI))};
+                               llrint(sin(ray->angle) * one), (uint16_t)llrint(ray->angle * (65536 / ASJ_TWO_PI))};
 }
 
 void asj_ray_walk_finish(const asj_scan *scan, asj_ray *ray)

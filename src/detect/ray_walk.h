@@ -3,9 +3,8 @@
 #ifndef ASJ_SRC_RAY_WALK_H
 #define ASJ_SRC_RAY_WALK_H
 
+#include "nfa.h"
 #include "scan.h"
-
-#define ASJ_MAX_ARC 7 /* 2 arc_half_width + 1 */
 
 /* A ray in whole numbers, as it is walked along. */
 typedef struct asj_ray_direction {

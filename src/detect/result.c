@@ -14,17 +14,17 @@ typedef struct result {
     size_t capacity, l_capacity;
 } result;
 
-static void convert(const asj_draft *draft, asj_junction *out)
+static void convert(const asj_hypothesis *hypothesis, asj_junction *out)
 {
     memset(out, 0, sizeof *out);
-    out->x = (float)draft->x;
-    out->y = (float)draft->y;
-    out->scale = (float)draft->radius;
-    out->log10_nfa = (float)(draft->log_nfa / LN_10);
-    out->location_sd = (float)sqrt(draft->location_variance);
-    out->branch_count = draft->branch_count;
-    for (int32_t i = 0; i < draft->branch_count; i++) {
-        const asj_draft_branch *branch = &draft->branches[i];
+    out->x = (float)hypothesis->x;
+    out->y = (float)hypothesis->y;
+    out->scale = (float)hypothesis->radius;
+    out->log10_nfa = (float)(hypothesis->log_nfa / LN_10);
+    out->location_sd = (float)sqrt(hypothesis->location_variance);
+    out->branch_count = hypothesis->branch_count;
+    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
+        const asj_hypothesis_branch *branch = &hypothesis->branches[i];
         float angle = (float)branch->angle;
         out->branches[i].angle = angle < 6.2831853f ? angle : 0; /* rounding to float may reach 2 pi */
         out->branches[i].length = (float)branch->length;
@@ -45,14 +45,14 @@ static asj_status reserve(asj_memory *memory, void **list, size_t *capacity, siz
     return count > *capacity ? asj_grow(memory, list, capacity, count + count / 2, size, 0) : ASJ_OK;
 }
 
-static asj_status fill(result *r, const asj_draft *drafts, size_t count, double minimum_opening)
+static asj_status fill(result *r, const asj_hypothesis *hypotheses, size_t count, double minimum_opening)
 {
     asj_status status = reserve(&r->memory, &r->junctions, &r->capacity, count, sizeof(asj_junction));
     if (status != ASJ_OK || count == 0)
         return status;
     asj_junction *junctions = r->junctions;
     for (size_t i = 0; i < count; i++)
-        convert(&drafts[i], &junctions[i]);
+        convert(&hypotheses[i], &junctions[i]);
     const size_t l_count = asj_decompose(junctions, count, minimum_opening, NULL, 0);
     status = reserve(&r->memory, &r->l_junctions, &r->l_capacity, l_count, sizeof(asj_l_junction));
     if (status != ASJ_OK)
@@ -66,13 +66,13 @@ static asj_status fill(result *r, const asj_draft *drafts, size_t count, double 
     return ASJ_OK;
 }
 
-asj_status asj_result_fill(const asj_context *context, const asj_draft *drafts, size_t count, double minimum_opening,
+asj_status asj_result_fill(const asj_context *context, const asj_hypothesis *hypotheses, size_t count, double minimum_opening,
                            asj_detection **detection)
 {
     result *r = (result *)*detection;
     if (r) {
         asj_result_clear(&r->detection);
-        return fill(r, drafts, count, minimum_opening);
+        return fill(r, hypotheses, count, minimum_opening);
     }
     asj_memory memory = {.allocator = context->memory.allocator};
     r = asj_allocate_zero(&memory, 1, sizeof *r);
@@ -80,7 +80,7 @@ asj_status asj_result_fill(const asj_context *context, const asj_draft *drafts, 
         return ASJ_ERROR_MEMORY;
     r->memory = memory;
     *detection = &r->detection;
-    const asj_status status = fill(r, drafts, count, minimum_opening);
+    const asj_status status = fill(r, hypotheses, count, minimum_opening);
     if (status != ASJ_OK)
         asj_detection_free(detection);
     return status;

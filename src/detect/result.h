@@ -2,12 +2,12 @@
 #ifndef ASJ_SRC_RESULT_H
 #define ASJ_SRC_RESULT_H
 
-#include "draft.h"
+#include "hypothesis.h"
 
-/* Turns drafts (most meaningful first) into a result with its L-junctions: into *detection, whose memory is used again, or into a
- * new one when that is NULL. The result does not depend on the context afterwards. ASJ_ERROR_MEMORY leaves an empty result, or NULL
- * as it was. */
-asj_status asj_result_fill(const asj_context *context, const asj_draft *drafts, size_t count, double minimum_opening,
+/* Turns hypotheses (most meaningful first) into a result with its L-junctions: into *detection, whose memory is used again, or into
+ * a new one when that is NULL. The result does not depend on the context afterwards. ASJ_ERROR_MEMORY leaves an empty result, or
+ * NULL as it was. */
+asj_status asj_result_fill(const asj_context *context, const asj_hypothesis *hypotheses, size_t count, double minimum_opening,
                            asj_detection **detection);
 
 /* Makes it the result of nothing. */

@@ -8,16 +8,11 @@
 
 #include "ray_walk.h"
 #include "scan_cache.h"
+#include "core/angle.h"
 #include "core/threads.h"
 
 #include <math.h>
 #include <string.h>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
-#define TWO_PI 6.283185307179586
 
 void asj_scan_set_size(const asj_context *context, const asj_detect_options *options, int32_t width, int32_t height, asj_scan *scan)
 {
@@ -27,28 +22,28 @@ void asj_scan_set_size(const asj_context *context, const asj_detect_options *opt
     scan->threshold = (int32_t)fmax(1, ceil(threshold * ASJ_STRENGTH_ONE));
 }
 
-void asj_scan_prepare(const asj_context *context, const asj_detect_options *options, const asj_field *field,
-                      int32_t width, int32_t height, asj_scan *scan)
+void asj_scan_prepare(const asj_detect_options *options, const asj_field *field, const asj_scan_cache *cache, asj_scan *scan)
 {
     const double one = (double)(1 << 30);
     scan->field = field;
-    scan->cache = NULL;
+    scan->cache = cache;
+    scan->threshold = 1;
     scan->half_width = options->arc_half_width;
     scan->tolerance = options->scan_tolerance;
     scan->axial = options->scan_axial;
     for (int i = 0; i < 1024; i++) {
-        scan->unit[i][0] = (int16_t)lrint(16384 * cos(TWO_PI * i / 1024));
-        scan->unit[i][1] = (int16_t)lrint(16384 * sin(TWO_PI * i / 1024));
+        scan->unit[i][0] = (int16_t)lrint(16384 * cos(ASJ_TWO_PI * i / 1024));
+        scan->unit[i][1] = (int16_t)lrint(16384 * sin(ASJ_TWO_PI * i / 1024));
     }
     for (int32_t r = 0; r < ASJ_SCAN_TABLE_RADIUS; r++)
         for (int32_t d = 0; d < ASJ_SCAN_TABLE_WIDTH; d++) {
             scan->arc_cosine[r][d] = r ? (int32_t)lrint(one * cos((double)d / r)) : 0;
             scan->arc_sine[r][d] = r ? (int32_t)lrint(one * sin((double)d / r)) : 0;
         }
-    asj_scan_set_size(context, options, width, height, scan);
 }
 
-#define GROUP 64 /* rays: those that are still on their way ask for enough pixels to fill vectors */
+#define LEAST_RAYS 4 /* for a thread: a ray takes about 5 us */
+#define GROUP 64     /* rays: those that are still on their way ask for enough pixels to fill vectors */
 
 /* Rays that take their steps together, and what these ask for. */
 typedef struct group {
@@ -65,10 +60,9 @@ typedef struct group {
 
 /* What a thread follows rays with. */
 typedef struct follower {
-    const asj_ops *ops;
+    const asj_field_ops *ops;
     const asj_scan *scan;
     const asj_frame *frame;
-    const asj_scan_cache *cache;
     size_t thread;
     uint16_t *scratch;
     group *rays;
@@ -83,7 +77,7 @@ static void look_up(const follower *f, const asj_arc_sample *at, asj_field_branc
         return;
     }
     const asj_pixel pixel = {(int32_t)at->x, (int32_t)at->y};
-    if (asj_scan_cache_get(f->cache, f->thread, pixel, branches))
+    if (asj_scan_cache_get(f->scan->cache, f->thread, pixel, branches))
         return;
     g->pixels[g->missing] = pixel;
     g->wanted[g->missing++] = branches;
@@ -92,10 +86,10 @@ static void look_up(const follower *f, const asj_arc_sample *at, asj_field_branc
 static void compute_missing(const follower *f)
 {
     group *g = f->rays;
-    f->ops->field->pixels(f->scan->field, f->frame, g->pixels, g->missing, f->scratch, g->computed);
+    f->ops->pixels(f->scan->field, f->frame, g->pixels, g->missing, f->scratch, g->computed);
     for (int32_t i = 0; i < g->missing; i++) {
         memcpy(g->wanted[i], g->computed[i], sizeof g->computed[i]);
-        asj_scan_cache_put(f->cache, f->thread, g->pixels[i], g->computed[i]);
+        asj_scan_cache_put(f->scan->cache, f->thread, g->pixels[i], g->computed[i]);
     }
     g->missing = 0;
 }
@@ -128,9 +122,7 @@ static size_t take_ray(size_t *next, size_t threads, size_t own, size_t count)
     for (size_t k = 0; k < threads; k++) {
         const size_t part = (own + k) % threads, end = count * (part + 1) / threads;
         size_t ray;
-#ifdef _OPENMP
 #pragma omp atomic capture
-#endif
         ray = next[part]++;
         if (ray < end)
             return ray;
@@ -154,46 +146,42 @@ static void follow_part(const follower *f, size_t *next, size_t threads, asj_ray
     }
 }
 
-static void follow_rays(const asj_context *context, const asj_scan *scan, const asj_frame *frame, const asj_scan_cache *cache,
-                        uint16_t *scratch, group *groups, size_t *next, int32_t threads, asj_ray *rays, size_t count)
+/* Memory of all threads. */
+typedef struct workplaces {
+    uint16_t *scratch;
+    size_t *next; /* see take_ray() */
+    group *groups;
+} workplaces;
+
+static void follow_rays(const asj_context *context, const asj_scan *scan, const asj_frame *frame, const workplaces *w,
+                        int32_t threads, asj_ray *rays, size_t count)
 {
     for (int32_t i = 0; i < threads; i++)
-        next[i] = count * (size_t)i / (size_t)threads;
-#ifdef _OPENMP
+        w->next[i] = count * (size_t)i / (size_t)threads;
 #pragma omp parallel num_threads(threads)
-#endif
     {
-        size_t thread = 0;
-#ifdef _OPENMP
-        thread = (size_t)omp_get_thread_num();
-#endif
-        const follower f = {context->ops, scan, frame, cache, thread, scratch + thread * asj_field_scratch(scan->field),
-                            &groups[thread]};
-        follow_part(&f, next, (size_t)threads, rays, count);
+        const size_t thread = (size_t)asj_thread_number();
+        const follower f = {context->ops->field, scan, frame, thread, w->scratch + thread * asj_field_scratch(scan->field),
+                            &w->groups[thread]};
+        follow_part(&f, w->next, (size_t)threads, rays, count);
     }
 }
 
 asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count)
 {
-    const int32_t threads = asj_threads_for(context, (int64_t)count, 4); /* a ray takes about 5 us */
+    const int32_t threads = asj_threads_for(context, (int64_t)count, LEAST_RAYS);
+    asj_memory *memory = &context->memory;
     asj_status status = ASJ_OK;
-    asj_scan_cache own = {0};
-    const asj_scan_cache *cache = scan->cache;
-    if (!cache) {
-        status = asj_scan_cache_prepare(context, frame, threads, &own);
-        cache = &own;
-    }
-    uint16_t *scratch = asj_allocate(&context->memory, (size_t)threads * asj_field_scratch(scan->field), sizeof *scratch);
-    size_t *next = asj_allocate(&context->memory, (size_t)threads, sizeof *next);
-    group *groups = asj_allocate(&context->memory, (size_t)threads, sizeof *groups);
-    if (status == ASJ_OK && scratch && next && groups)
-        follow_rays(context, scan, frame, cache, scratch, groups, next, threads, rays, count);
-    else if (status == ASJ_OK)
+    const workplaces w = {asj_allocate(memory, (size_t)threads * asj_field_scratch(scan->field), sizeof *w.scratch),
+                          asj_allocate(memory, (size_t)threads, sizeof *w.next),
+                          asj_allocate(memory, (size_t)threads, sizeof *w.groups)};
+    if (w.scratch && w.next && w.groups)
+        follow_rays(context, scan, frame, &w, threads, rays, count);
+    else
         status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for following rays");
-    asj_release(&context->memory, groups);
-    asj_release(&context->memory, next);
-    asj_release(&context->memory, scratch);
-    asj_scan_cache_free(&context->memory, &own);
+    asj_release(memory, w.groups);
+    asj_release(memory, w.next);
+    asj_release(memory, w.scratch);
     return status;
 }
 

@@ -19,10 +19,10 @@ typedef struct asj_ray {
 /* Least sum of gamma of three pixels across a ray under which there is an edge: 1.2 in 2^-24 (of gradient and direction). */
 #define ASJ_SCAN_EDGE (ASJ_GRADIENT_ONE * 16384 / 5 * 6)
 
-/* What is the same for all rays of an image; made once for a set of options and an image size. */
+/* What is the same for all rays; made once for a set of options and an image size. */
 typedef struct asj_scan {
     const asj_field *field;
-    const struct asj_scan_cache *cache; /* of this image, for as many threads as the context has; NULL = one for each call */
+    const struct asj_scan_cache *cache; /* of the image at hand, for as many threads as the context has */
     int32_t half_width;  /* 2 w + 1 samples in an arc */
     int32_t tolerance;   /* failing steps in a row that a ray survives */
     int32_t axial;       /* scan by axis as well */
@@ -32,10 +32,11 @@ typedef struct asj_scan {
     int32_t arc_sine[ASJ_SCAN_TABLE_RADIUS][ASJ_SCAN_TABLE_WIDTH];
 } asj_scan;
 
-void asj_scan_prepare(const asj_context *context, const asj_detect_options *options, const asj_field *field,
-                      int32_t width, int32_t height, asj_scan *scan);
+/* All but the numbers of tests. */
+void asj_scan_prepare(const asj_detect_options *options, const asj_field *field, const struct asj_scan_cache *cache,
+                      asj_scan *scan);
 
-/* The same for another size of the image. */
+/* Sets the number of tests for an image of this size, and the threshold that follows from it. */
 void asj_scan_set_size(const asj_context *context, const asj_detect_options *options, int32_t width, int32_t height,
                        asj_scan *scan);
 

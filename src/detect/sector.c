@@ -24,12 +24,11 @@
  * the number of false alarms stays a bound; branches that point inwards lose nothing. */
 #include "sector.h"
 #include "nfa.h"
+#include "core/angle.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define TWO_PI 6.283185307179586
 
 typedef struct offset {
     double angle;
@@ -54,7 +53,7 @@ static int32_t list_offsets(int32_t radius, offset *list)
                 continue;
             if (list) {
                 double angle = atan2(dy, dx);
-                list[count] = (offset){angle < 0 ? angle + TWO_PI : angle, squared, dx, dy};
+                list[count] = (offset){angle < 0 ? angle + ASJ_TWO_PI : angle, squared, dx, dy};
             }
             count++;
         }
@@ -86,7 +85,7 @@ static asj_status make_room(asj_memory *memory, asj_sectors *s)
 static int in_sector(double alpha, double theta, double half_width)
 {
     double distance = fabs(alpha - theta);
-    distance = distance > TWO_PI / 2 ? TWO_PI - distance : distance;
+    distance = distance > ASJ_TWO_PI / 2 ? ASJ_TWO_PI - distance : distance;
     return distance <= half_width + 1e-5; /* ties are in, whatever the rounding */
 }
 
@@ -126,7 +125,7 @@ static void set_factors(asj_sectors *s, int32_t i)
 /* The members of sector k are a circular run; finds where it starts. */
 static void find_run(asj_sectors *s, const offset *list, double half_width, int32_t k)
 {
-    const double theta = TWO_PI * k / s->count;
+    const double theta = ASJ_TWO_PI * k / s->count;
     s->size[k] = 0;
     s->first[k] = 0;
     for (int32_t i = 0; i < s->offset_count; i++) {
@@ -167,7 +166,7 @@ asj_status asj_sectors_create(asj_memory *memory, int32_t radius, double tau, as
 {
     memset(s, 0, sizeof *s);
     s->radius = radius;
-    s->count = (int32_t)(TWO_PI * radius);
+    s->count = (int32_t)(ASJ_TWO_PI * radius);
     s->offset_count = list_offsets(radius, NULL);
     offset *list = asj_allocate(memory, (size_t)s->offset_count, sizeof *list);
     asj_status status = list ? make_room(memory, s) : ASJ_ERROR_MEMORY;

@@ -76,11 +76,12 @@ void asj_strip_sums_of(const asj_frame *frame, const asj_strip_walk *walk, asj_s
     sums->near_gamma = total(list.near_gamma);
 }
 
-static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double x,
-                             double y, double angle, double length, double near)
+static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                             const asj_strip_line *line, double near)
 {
-    asj_strip_walk walk = {x, y, cos(angle), sin(angle), fmin(length, options->strip_length), options->strip_half_width,
-                           near, 0, 0, 0, 0, 0};
+    const double x = line->x, y = line->y;
+    asj_strip_walk walk = {x, y, cos(line->angle), sin(line->angle), fmin(line->length, options->strip_length),
+                           options->strip_half_width, near, 0, 0, 0, 0, 0};
     walk.along_x = fabs(walk.ux) >= fabs(walk.uy);
     const double start = walk.along_x ? x : y, step = walk.along_x ? walk.ux : walk.uy, end = start + walk.reach * step;
     const int32_t size = walk.along_x ? frame->width : frame->height;
@@ -101,17 +102,17 @@ static double log_nfa(const asj_context *context, const asj_frame *frame, double
     return pixels ? log_tests + asj_nfa_log_sector_tail(asj_nfa_of(context), gamma, pixels) : HUGE_VAL;
 }
 
-int asj_strip_passes(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double x, double y,
-                     double angle, double length, double shorter, double limit)
+int asj_strip_passes(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                     const asj_strip_line *line, double shorter, double limit)
 {
-    const asj_strip_sums s = add_up(context, frame, options, x, y, angle, length, shorter);
+    const asj_strip_sums s = add_up(context, frame, options, line, shorter);
     return log_nfa(context, frame, s.gamma, s.pixels) <= limit || log_nfa(context, frame, s.near_gamma, s.near_pixels) <= limit;
 }
 
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                         double x, double y, double angle, double length)
+                         const asj_strip_line *line)
 {
-    const asj_strip_sums s = add_up(context, frame, options, x, y, angle, length, NEAR);
+    const asj_strip_sums s = add_up(context, frame, options, line, NEAR);
     asj_strip strip = {log_nfa(context, frame, s.gamma, s.pixels), 0, 0};
     if (s.pixels == 0)
         return strip;

@@ -11,13 +11,19 @@ typedef struct asj_strip {
     double near_strength; /* standard deviations above the null model in the part next to the junction */
 } asj_strip;
 
-/* The strip from (x, y) in direction `angle` (rad), `length` px long. */
+/* Where a strip lies. */
+typedef struct asj_strip_line {
+    double x, y;   /* px: its start */
+    double angle;  /* rad */
+    double length; /* px; no more than strip_length counts */
+} asj_strip_line;
+
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                         double x, double y, double angle, double length);
+                         const asj_strip_line *line);
 
 /* Whether the log_nfa of that strip, or of one only `shorter` px long, is at most `limit`. */
-int asj_strip_passes(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double x, double y,
-                     double angle, double length, double shorter, double limit);
+int asj_strip_passes(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                     const asj_strip_line *line, double shorter, double limit);
 
 /* ---- sums over it ---- */
 

@@ -21,6 +21,7 @@
 #include "detect/gradient.h"
 #include "detect/detect_options.h"
 #include "detect/scan.h"
+#include "detect/scan_cache.h"
 #include "detect/strip.h"
 
 #include <asj/asj.h>
@@ -46,6 +47,7 @@ typedef struct experiment {
     asj_frame frame;
     asj_field field;
     asj_scan scan;
+    asj_scan_cache cache;
     asj_ray *rays;
     double *log_nfa[STEPS]; /* one a ray */
     double count[WAYS][EPSILONS];
@@ -70,7 +72,8 @@ static int prepare(experiment *e)
     if (asj_frame_prepare(e->context, &e->frame, SIDE, SIDE) != ASJ_OK ||
         asj_field_create(e->context, &e->options, &e->field) != ASJ_OK)
         return fail(asj_context_message(e->context));
-    asj_scan_prepare(e->context, &e->options, &e->field, SIDE, SIDE, &e->scan);
+    asj_scan_prepare(&e->options, &e->field, &e->cache, &e->scan);
+    asj_scan_set_size(e->context, &e->options, SIDE, SIDE, &e->scan);
     return 0;
 }
 
@@ -81,6 +84,8 @@ static int load(experiment *e, uint64_t seed)
         return fail("out of memory");
     const asj_image image = {pixels, ASJ_FORMAT_GRAY8, SIDE, SIDE, 0, 0};
     asj_status status = asj_frame_load(e->context, &e->frame, &image);
+    if (status == ASJ_OK)
+        status = asj_scan_cache_prepare(e->context, &e->frame, asj_context_threads(e->context), &e->cache);
     if (status == ASJ_OK)
         status = asj_gradient(e->context, &e->frame, &e->options);
     free(pixels);
@@ -97,7 +102,8 @@ static int load(experiment *e, uint64_t seed)
 
 static double log_nfa(const experiment *e, const asj_ray *ray, double length)
 {
-    return asj_strip_test(e->context, &e->frame, &e->options, ray->x, ray->y, ray->angle, length).log_nfa;
+    const asj_strip_line line = {ray->x, ray->y, ray->angle, length};
+    return asj_strip_test(e->context, &e->frame, &e->options, &line).log_nfa;
 }
 
 static void test_any_length(experiment *e)
@@ -132,7 +138,8 @@ static int count_steps(experiment *e)
         asj_detect_options options = e->options;
         asj_scan scan;
         options.scan_epsilon = epsilons[k];
-        asj_scan_prepare(e->context, &options, &e->field, SIDE, SIDE, &scan);
+        asj_scan_prepare(&options, &e->field, &e->cache, &scan);
+        asj_scan_set_size(e->context, &options, SIDE, SIDE, &scan);
         for (int32_t i = 0; i < RAYS; i++)
             e->rays[i].start = options.scan_start > 0 ? options.scan_start : 3;
         if (asj_scan_rays(e->context, &scan, &e->frame, e->rays, RAYS) != ASJ_OK)
@@ -279,6 +286,7 @@ int main(int argc, char **argv)
     int result = run(&e) == 0 ? report(&e) : 2;
     asj_frame_free(&e.context->memory, &e.frame);
     asj_field_free(&e.context->memory, &e.field);
+    asj_scan_cache_free(&e.context->memory, &e.cache);
     asj_context_free(&e.context);
     free(e.rays);
     free(e.log_nfa[ANY]);

@@ -17,7 +17,7 @@
 
 #include "core/threads.h"
 #include "detect/isotropic.h"
-#include "detect/stages.h"
+#include "detect/detection_run.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -191,7 +191,7 @@ static cost refine_cost(const asj_detection *found, const work *w, double pixels
 
 static void all_costs(const asj_context *context, const asj_detection *found, const work *w, cost costs[STAGES])
 {
-    const struct asj_detector *detector = context->detector.state;
+    const asj_detector *detector = context->detector.state;
     const double pixels = (double)found->width * found->height;
     costs[ASJ_STAGE_GRADIENT] = gradient_cost(pixels);
     costs[ASJ_STAGE_CANDIDATES] = candidates_cost(&detector->field, w, pixels);

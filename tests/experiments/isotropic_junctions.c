@@ -9,7 +9,7 @@
 #include "photograph.h"
 
 #include "detect/result.h"
-#include "detect/stages.h"
+#include "detect/steps.h"
 
 #include <asj/io.h>
 
@@ -22,45 +22,49 @@ static int fail(const char *what)
     return -1;
 }
 
-static asj_status run_steps(asj_detection_run *d, const asj_image *image)
+static asj_status run_steps(asj_detection_run *run)
 {
-    asj_status status = asj_stage_prepare(d, image->width, image->height);
+    asj_status status = asj_step_gradient(run);
     if (status == ASJ_OK)
-        status = asj_stage_gradient(d, image);
+        status = asj_step_candidates(run);
     if (status == ASJ_OK)
-        status = asj_stage_candidates(d);
-    if (status == ASJ_OK)
-        status = asj_stage_isotropic(d);
-    return status == ASJ_OK ? asj_stage_locate(d) : status;
+        status = asj_step_isotropic(run);
+    return status == ASJ_OK ? asj_step_locate(run) : status;
 }
 
-/* The drafts as they are after step 3, or NULL. */
+static asj_status fill(const asj_detection_run *run, asj_detection **found)
+{
+    for (size_t i = 0; i < run->hypothesis_count; i++) {
+        asj_hypothesis *hypothesis = &run->hypotheses[i];
+        for (int32_t b = 0; b < hypothesis->branch_count; b++) {
+            hypothesis->branches[b].length = hypothesis->radius;
+            hypothesis->branches[b].log_nfa = hypothesis->log_nfa;
+        }
+    }
+    asj_status status = asj_result_fill(run->context, run->hypotheses, run->hypothesis_count, run->options->minimum_opening, found);
+    if (status != ASJ_OK)
+        return status;
+    (*found)->width = run->image->width;
+    (*found)->height = run->image->height;
+    (*found)->backend = ASJ_BACKEND_CPU;
+    (*found)->candidates = run->candidate_count;
+    (*found)->isotropic = run->isotropic_count;
+    return ASJ_OK;
+}
+
+/* The hypotheses as they are after step 3, or NULL. */
 static asj_detection *find(asj_context *context, const asj_detect_options *options, const asj_image *image)
 {
-    asj_detection_run d;
+    asj_detection_run run;
     asj_detection *found = NULL;
-    memset(&d, 0, sizeof d);
-    d.context = context;
-    d.options = options;
-    d.threads = asj_context_threads(context);
-    if (run_steps(&d, image) == ASJ_OK) {
-        for (size_t i = 0; i < d.draft_count; i++)
-            for (int32_t b = 0; b < d.drafts[i].branch_count; b++) {
-                d.drafts[i].branches[b].length = d.drafts[i].radius;
-                d.drafts[i].branches[b].log_nfa = d.drafts[i].log_nfa;
-            }
-        asj_result_fill(context, d.drafts, d.draft_count, options->minimum_opening, &found);
-    }
-    asj_stage_release(&d);
-    if (!found) {
+    asj_status status = asj_detection_run_begin(&run, context, image, options, &found);
+    if (status == ASJ_OK)
+        status = run_steps(&run);
+    if (status == ASJ_OK)
+        status = fill(&run, &found);
+    asj_detection_run_end(&run);
+    if (status != ASJ_OK)
         fail(asj_context_message(context));
-        return NULL;
-    }
-    found->width = image->width;
-    found->height = image->height;
-    found->backend = ASJ_BACKEND_CPU;
-    found->candidates = d.candidate_total;
-    found->isotropic = d.isotropic_count;
     return found;
 }
 

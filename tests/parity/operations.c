@@ -300,7 +300,8 @@ static asj_status run_strip(asj_context *context, const subject *s, uint16_t *sc
     const double angle = choose_line(s, &random, &x, &y, &length);
     (void)scratch;
     options.strip_half_width = synth_random_between(&random, 0.5, 4);
-    const asj_strip strip = asj_strip_test(context, &s->frame, &options, x, y, angle, length);
+    const asj_strip_line line = {x, y, angle, length};
+    const asj_strip strip = asj_strip_test(context, &s->frame, &options, &line);
     memcpy(output, &strip, sizeof strip);
     return ASJ_OK;
 }

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "more_operations.h"
 
+#include "detect/scan_cache.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -31,6 +33,7 @@ static void choose_rays(const subject *s, asj_ray *rays)
 asj_status run_rays(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
     asj_detect_options options = s->options;
+    asj_scan_cache cache = {0};
     asj_scan scan;
     asj_ray *rays = output;
     const size_t count = ray_count(s), some = count / 3;
@@ -38,10 +41,16 @@ asj_status run_rays(asj_context *context, const subject *s, uint16_t *scratch, v
     options.arc_half_width = 1 + (int32_t)(s->seed % 3);
     options.scan_tolerance = (int32_t)(s->seed / 3 % 3);
     options.scan_axial = s->seed % 5 > 0;
-    asj_scan_prepare(context, &options, &s->field, s->frame.width, s->frame.height, &scan);
+    asj_scan_prepare(&options, &s->field, &cache, &scan);
+    asj_scan_set_size(context, &options, s->frame.width, s->frame.height, &scan);
     if (s->seed % 4 > 0)
         scan.threshold = 1 + scan.threshold / (1 << s->seed % 4); /* longer ways in what is no picture */
     choose_rays(s, rays);
-    asj_status status = context->ops->scan->rays(context, &scan, &s->frame, rays, some);
-    return status == ASJ_OK ? context->ops->scan->rays(context, &scan, &s->frame, rays + some, count - some) : status;
+    asj_status status = asj_scan_cache_prepare(context, &s->frame, context->threads, &cache);
+    if (status == ASJ_OK)
+        status = context->ops->scan->rays(context, &scan, &s->frame, rays, some);
+    if (status == ASJ_OK)
+        status = context->ops->scan->rays(context, &scan, &s->frame, rays + some, count - some);
+    asj_scan_cache_free(&context->memory, &cache);
+    return status;
 }

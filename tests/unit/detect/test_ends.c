@@ -6,11 +6,12 @@
 enum { COUNT = 120 };
 
 /* Of the junctions ahead, at most 2 px off the line and less than `reach` px from the end, the one nearest to the end. */
-static double naive_length(const asj_draft *drafts, size_t count, size_t self, const asj_draft_branch *branch, double reach)
+static double naive_length(const asj_hypothesis *hypotheses, size_t count, size_t self, const asj_hypothesis_branch *branch,
+                           double reach)
 {
     double best = reach, length = branch->length;
     for (size_t i = 0; i < count; i++) {
-        const double dx = drafts[i].x - drafts[self].x, dy = drafts[i].y - drafts[self].y;
+        const double dx = hypotheses[i].x - hypotheses[self].x, dy = hypotheses[i].y - hypotheses[self].y;
         const double t = dx * cos(branch->angle) + dy * sin(branch->angle), off = dy * cos(branch->angle) - dx * sin(branch->angle);
         if (i != self && t > 0 && fabs(off) <= 2 && fabs(t - branch->length) < best) {
             best = fabs(t - branch->length);
@@ -22,8 +23,8 @@ static double naive_length(const asj_draft *drafts, size_t count, size_t self, c
 
 static void test_random(void **state)
 {
-    static asj_draft drafts[COUNT], before[COUNT];
-    static const asj_draft *order[COUNT];
+    static asj_hypothesis hypotheses[COUNT], before[COUNT];
+    static const asj_hypothesis *order[COUNT];
     synth_random random;
     int moved = 0;
     (void)state;
@@ -31,9 +32,9 @@ static void test_random(void **state)
     for (int round = 0; round < 40; round++) {
         const size_t count = (size_t)(round * 3);
         const double reach = round % 4 == 3 ? 30 : 2.0 + round % 10;
-        memset(drafts, 0, sizeof drafts);
+        memset(hypotheses, 0, sizeof hypotheses);
         for (size_t i = 0; i < count; i++) {
-            asj_draft *d = &drafts[i];
+            asj_hypothesis *d = &hypotheses[i];
             d->x = synth_random_between(&random, 0, 120);
             d->y = floor(synth_random_between(&random, 0, 90)); /* rows with several */
             d->branch_count = (int32_t)synth_random_between(&random, 2, 6);
@@ -42,35 +43,35 @@ static void test_random(void **state)
                 d->branches[b].length = synth_random_between(&random, 1, 80);
             }
         }
-        memcpy(before, drafts, sizeof before);
-        asj_ends_snap(drafts, count, reach, order);
+        memcpy(before, hypotheses, sizeof before);
+        asj_ends_snap(hypotheses, count, reach, order);
         for (size_t i = 0; i < count; i++)
-            for (int32_t b = 0; b < drafts[i].branch_count; b++) {
-                unit_near("length", (double)i, b, drafts[i].branches[b].length,
+            for (int32_t b = 0; b < hypotheses[i].branch_count; b++) {
+                unit_near("length", (double)i, b, hypotheses[i].branches[b].length,
                           naive_length(before, count, i, &before[i].branches[b], reach), 1e-9);
-                moved += drafts[i].branches[b].length != before[i].branches[b].length;
-                drafts[i].branches[b].length = before[i].branches[b].length;
+                moved += hypotheses[i].branches[b].length != before[i].branches[b].length;
+                hypotheses[i].branches[b].length = before[i].branches[b].length;
             }
-        assert_memory_equal(drafts, before, sizeof before); /* nothing else changes */
+        assert_memory_equal(hypotheses, before, sizeof before); /* nothing else changes */
     }
     assert_true(moved > 500);
 }
 
 static void test_off(void **state)
 {
-    asj_draft drafts[2], before[2];
-    const asj_draft *order[2];
+    asj_hypothesis hypotheses[2], before[2];
+    const asj_hypothesis *order[2];
     (void)state;
-    memset(drafts, 0, sizeof drafts);
-    drafts[0].branch_count = 1;
-    drafts[0].branches[0].length = 20;
-    drafts[1].x = 21;
-    memcpy(before, drafts, sizeof before);
-    asj_ends_snap(drafts, 2, 0, order);
-    assert_memory_equal(drafts, before, sizeof before);
-    asj_ends_snap(drafts, 0, 5, NULL);
-    asj_ends_snap(drafts, 2, 5, order);
-    assert_true(drafts[0].branches[0].length == 21);
+    memset(hypotheses, 0, sizeof hypotheses);
+    hypotheses[0].branch_count = 1;
+    hypotheses[0].branches[0].length = 20;
+    hypotheses[1].x = 21;
+    memcpy(before, hypotheses, sizeof before);
+    asj_ends_snap(hypotheses, 2, 0, order);
+    assert_memory_equal(hypotheses, before, sizeof before);
+    asj_ends_snap(hypotheses, 0, 5, NULL);
+    asj_ends_snap(hypotheses, 2, 5, order);
+    assert_true(hypotheses[0].branches[0].length == 21);
 }
 
 int main(void)

@@ -276,27 +276,6 @@ static void test_threads(void **state)
     check_threads(*state, 60001, 3);
 }
 
-/* Bilinear between the central differences of the four pixels around; outside, the nearest place inside. */
-static void test_sample(void **state)
-{
-    fixture *f = *state;
-    asj_frame frame;
-    noise_frame(f, 13, 9, 60, 8, &frame);
-    for (double y = -2.3; y < 12; y += 0.37)
-        for (double x = -3.1; x < 16; x += 0.41) {
-            const double cx = fmin(fmax(x, 0), 12), cy = fmin(fmax(y, 0), 8), fx = cx - floor(cx), fy = cy - floor(cy);
-            const int32_t x0 = (int32_t)cx, y0 = (int32_t)cy;
-            /* the pixels right and below do not exist for the last ones, and then weigh nothing */
-            const vector a = difference(&frame, x0, y0), b = difference(&frame, x0 + (fx > 0), y0);
-            const vector c = difference(&frame, x0, y0 + (fy > 0)), d = difference(&frame, x0 + (fx > 0), y0 + (fy > 0));
-            double gx, gy;
-            asj_gradient_sample(&frame, x, y, &gx, &gy);
-            unit_near("gx", x, y, gx, (1 - fy) * ((1 - fx) * a.x + fx * b.x) + fy * ((1 - fx) * c.x + fx * d.x), 1e-10);
-            unit_near("gy", x, y, gy, (1 - fy) * ((1 - fx) * a.y + fx * b.y) + fy * ((1 - fx) * c.y + fx * d.y), 1e-10);
-        }
-    asj_frame_free(&f->context->memory, &frame);
-}
-
 static void test_out_of_memory(void **state)
 {
     fixture *f = *state;
@@ -324,8 +303,7 @@ int main(void)
         cmocka_unit_test(test_cut),         cmocka_unit_test(test_flat_and_margin),
         cmocka_unit_test(test_loss),        cmocka_unit_test(test_noise_has_unit_variance),
         cmocka_unit_test(test_standardise), cmocka_unit_test(test_standardise_flat),
-        cmocka_unit_test(test_threads),     cmocka_unit_test(test_sample),
-        cmocka_unit_test(test_out_of_memory),
+        cmocka_unit_test(test_threads),     cmocka_unit_test(test_out_of_memory),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 3: the NFA of isotropic junctions and the thinning, against their definitions. */
 #include "detect/nfa.h"
-#include "detect/isotropic.h"
+#include "detect/isotropic_thin.h"
 #include "unit_test.h"
 
 typedef struct fixture {

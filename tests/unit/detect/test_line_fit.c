@@ -48,9 +48,9 @@ static void picture(const fixture *f, double angle, double offset, double width,
     unit_frame_of(f->context, &scene, 1, noise, NULL, frame);
 }
 
-static asj_draft_branch branch_at(double angle, double offset)
+static asj_hypothesis_branch branch_at(double angle, double offset)
 {
-    asj_draft_branch branch;
+    asj_hypothesis_branch branch;
     memset(&branch, 0, sizeof branch);
     branch.angle = angle < 0 ? angle + 2 * UNIT_PI : angle;
     branch.offset = offset;
@@ -66,7 +66,7 @@ static void test_clean_edges(void **state)
         const double angle = n * UNIT_PI / 36 + 0.01, offset = 0.3 * (n % 7 - 3), start = 0.09 * (n % 3 - 1);
         asj_frame frame;
         picture(f, angle, offset, HUGE_VAL, 0, &frame);
-        asj_draft_branch branch = branch_at(angle + start, 0);
+        asj_hypothesis_branch branch = branch_at(angle + start, 0);
         assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &near_range, &branch));
         unit_near("angle", n, 1, unit_turn(branch.angle, angle), 0, UNIT_PI / 180);
         unit_near("offset", n, 1, branch.offset, offset, 0.1);
@@ -89,7 +89,7 @@ static void test_guesses(void **state)
             const double angle = n * UNIT_PI / 36 + 0.01, offset = 0.3 * (n % 5 - 2), start = 0.09 * (n % 3 - 1);
             asj_frame frame;
             picture(f, angle, isinf(widths[w]) ? offset : offset - 0.5 * widths[w], widths[w], 0, &frame);
-            asj_draft_branch branch = branch_at(angle + start, 0);
+            asj_hypothesis_branch branch = branch_at(angle + start, 0);
             asj_rough_line line = asj_rough_line_of(&branch);
             assert_true(asj_line_guess(f->context->ops->line, &frame, MIDDLE, MIDDLE, t, 4, &line));
             assert_true(asj_line_guess(f->context->ops->line, &frame, MIDDLE, MIDDLE, t, 2.5, &line));
@@ -124,7 +124,7 @@ static void test_noise(void **state)
         uint8_t *pixels = unit_picture(&scene, 1, 5, 1000 + (uint64_t)n);
         const asj_image image = unit_gray8(pixels, SIZE, SIZE);
         unit_frame(f->context, &image, NULL, &frame);
-        asj_draft_branch branch = branch_at(angle, offset);
+        asj_hypothesis_branch branch = branch_at(angle, offset);
         assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &long_range, &branch));
         angle_ratio += pow(unit_turn(branch.angle, angle), 2) / branch.angle_variance;
         offset_ratio += pow(branch.offset - offset, 2) / branch.offset_variance;
@@ -146,7 +146,7 @@ static void test_thin_lines(void **state)
             const double angle = n * UNIT_PI / 12 + 0.03;
             asj_frame frame;
             picture(f, angle, -0.5 * widths[w], widths[w], 0, &frame);
-            asj_draft_branch branch = branch_at(angle + 0.04, 0.4);
+            asj_hypothesis_branch branch = branch_at(angle + 0.04, 0.4);
             assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &near_range, &branch));
             assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &long_range, &branch));
             unit_near("angle", widths[w], n, unit_turn(branch.angle, angle), 0, 0.006);
@@ -164,7 +164,7 @@ static void test_bands(void **state)
             const double angle = n * UNIT_PI / 12 + 0.03;
             asj_frame frame;
             picture(f, angle, 0, width, 0, &frame);
-            asj_draft_branch branch = branch_at(angle + 0.03 * (n % 3 - 1), 0.5);
+            asj_hypothesis_branch branch = branch_at(angle + 0.03 * (n % 3 - 1), 0.5);
             assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &near_range, &branch));
             unit_near("angle", width, n, unit_turn(branch.angle, angle), 0, 0.02);
             unit_near("offset", width, n, branch.offset, 0, 0.15);
@@ -190,7 +190,7 @@ static void test_stairs(void **state)
                 synth_scene_add(&scene, corners, 4, synth_flat(110 + 50 * i), i);
             }
             unit_frame_of(f->context, &scene, 1, 0, NULL, &frame);
-            asj_draft_branch branch = branch_at(angle, 0);
+            asj_hypothesis_branch branch = branch_at(angle, 0);
             assert_true(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &long_range, &branch));
             unit_near("angle", width, n, unit_turn(branch.angle, angle), 0, 0.01);
             unit_near("offset", width, n, branch.offset, 0, 0.1);
@@ -205,7 +205,7 @@ static void test_nothing_there(void **state)
     synth_scene scene;
     synth_scene_init(&scene, SIZE, SIZE, 100);
     unit_frame_of(f->context, &scene, 0, 0, NULL, &frame);
-    asj_draft_branch branch = branch_at(1, 0.25), before = branch;
+    asj_hypothesis_branch branch = branch_at(1, 0.25), before = branch;
     assert_false(asj_line_fit(f->context->ops->line, &frame, MIDDLE, MIDDLE, &near_range, &branch));
     assert_memory_equal(&branch, &before, sizeof branch);
     static const double t[2] = {2, 10};
@@ -230,7 +230,7 @@ static void test_extremes(void **state)
         unit_frame(f->context, &image, NULL, &frame);
         for (size_t r = 0; r < UNIT_COUNT(ranges); r++)
             for (int n = 0; n < 16; n++) {
-                asj_draft_branch branch = branch_at(n * UNIT_PI / 8, n - 8);
+                asj_hypothesis_branch branch = branch_at(n * UNIT_PI / 8, n - 8);
                 asj_line_fit(f->context->ops->line, &frame, n * 7 - 50, n * 3 - 20, &ranges[r], &branch);
                 assert_true(isfinite(branch.angle) && isfinite(branch.offset));
                 assert_true(isfinite(branch.angle_variance) && isfinite(branch.offset_variance));

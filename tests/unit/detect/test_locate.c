@@ -31,35 +31,36 @@ static int tear_down(void **state)
     return leaked;
 }
 
-static void locate(const fixture *f, const asj_frame *frame, asj_draft *draft)
+static void locate(const fixture *f, const asj_frame *frame, asj_hypothesis *hypothesis)
 {
-    asj_locate_guess(f->context, frame, &f->options, draft);
-    asj_locate(f->context, frame, &f->options, draft);
+    asj_locate_guess(f->context, frame, &f->options, hypothesis);
+    asj_locate(f->context, frame, &f->options, hypothesis);
 }
 
 /* ---- meeting points ---- */
 
-static asj_draft draft_at(double x, double y, int32_t count, const double *angles, const double *offsets, const double *variances)
+static asj_hypothesis hypothesis_at(double x, double y, int32_t count, const double *angles, const double *offsets,
+                                    const double *variances)
 {
-    asj_draft draft;
-    memset(&draft, 0, sizeof draft);
-    draft.x = draft.x0 = x;
-    draft.y = draft.y0 = y;
-    draft.branch_count = count;
+    asj_hypothesis hypothesis;
+    memset(&hypothesis, 0, sizeof hypothesis);
+    hypothesis.x = hypothesis.x0 = x;
+    hypothesis.y = hypothesis.y0 = y;
+    hypothesis.branch_count = count;
     for (int32_t i = 0; i < count; i++) {
-        draft.branches[i].angle = angles[i];
-        draft.branches[i].offset = offsets[i];
-        draft.branches[i].offset_variance = variances[i];
+        hypothesis.branches[i].angle = angles[i];
+        hypothesis.branches[i].offset = offsets[i];
+        hypothesis.branches[i].offset_variance = variances[i];
     }
-    return draft;
+    return hypothesis;
 }
 
 /* sum of (distance to line i)^2 / v_i, for lines given at (x0, y0) */
-static double cost(const asj_draft *given, double x, double y)
+static double cost(const asj_hypothesis *given, double x, double y)
 {
     double sum = 0;
     for (int32_t i = 0; i < given->branch_count; i++) {
-        const asj_draft_branch *b = &given->branches[i];
+        const asj_hypothesis_branch *b = &given->branches[i];
         const double off = -sin(b->angle) * (x - given->x) + cos(b->angle) * (y - given->y) - b->offset;
         sum += off * off / b->offset_variance;
     }
@@ -80,27 +81,28 @@ static void test_meet(void **state)
             offsets[i] = synth_random_between(&random, -2, 2);
             variances[i] = pow(10, synth_random_between(&random, -3, 0));
         }
-        const asj_draft given = draft_at(40.5, 31.25, 2 + n % 4, angles, offsets, variances);
-        asj_draft draft = given;
-        if (!asj_locate_meet(&draft)) {
-            assert_memory_equal(&draft, &given, sizeof draft);
+        const asj_hypothesis given = hypothesis_at(40.5, 31.25, 2 + n % 4, angles, offsets, variances);
+        asj_hypothesis hypothesis = given;
+        if (!asj_locate_meet(&hypothesis)) {
+            assert_memory_equal(&hypothesis, &given, sizeof hypothesis);
             continue;
         }
         met++;
-        const double least = cost(&given, draft.x, draft.y), h = 1e-3;
+        const double least = cost(&given, hypothesis.x, hypothesis.y), h = 1e-3;
         for (int k = 0; k < 8; k++)
-            assert_true(cost(&given, draft.x + h * cos(k * UNIT_PI / 4), draft.y + h * sin(k * UNIT_PI / 4)) >= least);
+            assert_true(cost(&given, hypothesis.x + h * cos(k * UNIT_PI / 4), hypothesis.y + h * sin(k * UNIT_PI / 4)) >= least);
         for (int32_t i = 0; i < given.branch_count; i++) {
-            const asj_draft_branch *b = &given.branches[i];
-            unit_near("offset", n, i, draft.branches[i].offset,
-                      b->offset + sin(b->angle) * (draft.x - given.x) - cos(b->angle) * (draft.y - given.y), 1e-9);
-            assert_true(draft.branches[i].angle == b->angle);
+            const asj_hypothesis_branch *b = &given.branches[i];
+            unit_near("offset", n, i, hypothesis.branches[i].offset,
+                      b->offset + sin(b->angle) * (hypothesis.x - given.x) - cos(b->angle) * (hypothesis.y - given.y), 1e-9);
+            assert_true(hypothesis.branches[i].angle == b->angle);
         }
-        const double xx = (cost(&given, draft.x + 1, draft.y) - 2 * least + cost(&given, draft.x - 1, draft.y)) / 2;
-        const double yy = (cost(&given, draft.x, draft.y + 1) - 2 * least + cost(&given, draft.x, draft.y - 1)) / 2;
-        const double xy = (cost(&given, draft.x + 1, draft.y + 1) - cost(&given, draft.x + 1, draft.y - 1) -
-                           cost(&given, draft.x - 1, draft.y + 1) + cost(&given, draft.x - 1, draft.y - 1)) / 8;
-        unit_near("variance", n, 0, draft.location_variance / ((xx + yy) / (2 * (xx * yy - xy * xy))), 1, 1e-6);
+        const double x = hypothesis.x, y = hypothesis.y;
+        const double xx = (cost(&given, x + 1, y) - 2 * least + cost(&given, x - 1, y)) / 2;
+        const double yy = (cost(&given, x, y + 1) - 2 * least + cost(&given, x, y - 1)) / 2;
+        const double xy = (cost(&given, hypothesis.x + 1, hypothesis.y + 1) - cost(&given, hypothesis.x + 1, hypothesis.y - 1) -
+                           cost(&given, hypothesis.x - 1, hypothesis.y + 1) + cost(&given, hypothesis.x - 1, hypothesis.y - 1)) / 8;
+        unit_near("variance", n, 0, hypothesis.location_variance / ((xx + yy) / (2 * (xx * yy - xy * xy))), 1, 1e-6);
     }
     assert_in_range(met, 1000, 2000);
 }
@@ -111,13 +113,14 @@ static void test_parallel(void **state)
     (void)state;
     for (double turn = 0; turn < UNIT_PI; turn += 0.01) {
         const double angles[2] = {0.4, 0.4 + turn};
-        asj_draft draft = draft_at(10, 10, 2, angles, offsets, variances);
-        const int meets = asj_locate_meet(&draft);
+        asj_hypothesis hypothesis = hypothesis_at(10, 10, 2, angles, offsets, variances);
+        const int meets = asj_locate_meet(&hypothesis);
         /* det > 0.02 total^2, equal weights: sin^2(turn) / 4 > 0.02 */
         if (fabs(sin(turn) * sin(turn) / 4 - 0.02) > 1e-6)
             assert_int_equal(meets, sin(turn) * sin(turn) / 4 > 0.02);
     }
-    asj_draft one = draft_at(10, 10, 1, offsets, offsets, variances), none = draft_at(10, 10, 0, offsets, offsets, variances);
+    asj_hypothesis one = hypothesis_at(10, 10, 1, offsets, offsets, variances);
+    asj_hypothesis none = hypothesis_at(10, 10, 0, offsets, offsets, variances);
     assert_false(asj_locate_meet(&one));
     assert_false(asj_locate_meet(&none));
 }
@@ -144,39 +147,39 @@ static void test_start(void **state)
 {
     static const double angles[3] = {0.5, 2.5, 6.2};
     const asj_isotropic_junction junction = isotropic_at(12, 34, 3, angles);
-    asj_draft draft;
+    asj_hypothesis hypothesis;
     (void)state;
-    memset(&draft, 0xff, sizeof draft);
-    asj_locate_start(&junction, &draft);
-    assert_true(draft.x == 12 && draft.y == 34 && draft.x0 == 12 && draft.y0 == 34);
-    assert_true(draft.radius == 7 && draft.log_nfa == -12.5);
-    assert_int_equal(draft.branch_count, 3);
+    memset(&hypothesis, 0xff, sizeof hypothesis);
+    asj_hypothesis_start(&junction, &hypothesis);
+    assert_true(hypothesis.x == 12 && hypothesis.y == 34 && hypothesis.x0 == 12 && hypothesis.y0 == 34);
+    assert_true(hypothesis.radius == 7 && hypothesis.log_nfa == -12.5);
+    assert_int_equal(hypothesis.branch_count, 3);
     for (int i = 0; i < 3; i++) {
-        unit_near("angle", i, 0, draft.branches[i].angle, angles[i], 1e-4);
-        unit_near("strength", i, 0, draft.branches[i].strength, (1000 + i) / 256.0, 0);
-        assert_true(draft.branches[i].length == 0 && draft.branches[i].offset == 0);
+        unit_near("angle", i, 0, hypothesis.branches[i].angle, angles[i], 1e-4);
+        unit_near("strength", i, 0, hypothesis.branches[i].strength, (1000 + i) / 256.0, 0);
+        assert_true(hypothesis.branches[i].length == 0 && hypothesis.branches[i].offset == 0);
     }
 }
 
-/* The same question as asj_draft_has_opening(), in whole numbers. */
-static void test_worthwhile(void **state)
+/* The same question as asj_hypothesis_has_opening(), in whole numbers. */
+static void test_isotropic_opening(void **state)
 {
     fixture *f = *state;
-    int worthwhile = 0;
+    int open = 0;
     synth_random random;
     synth_random_seed(&random, 21);
     for (int n = 0; n < 2000; n++) {
         const double start = synth_random_between(&random, 0, 6), turn = synth_random_between(&random, 0, UNIT_PI);
         const double angles[3] = {start, fmod(start + turn, 2 * UNIT_PI), fmod(start + UNIT_PI, 2 * UNIT_PI)};
         const asj_isotropic_junction junction = isotropic_at(40, 40, 2 + n % 2, angles);
-        asj_draft draft;
+        asj_hypothesis hypothesis;
         f->options.minimum_opening = n % 80;
-        asj_locate_start(&junction, &draft);
-        const int opens = asj_draft_has_opening(&draft, f->options.minimum_opening * UNIT_PI / 180);
-        assert_int_equal(asj_locate_worthwhile(&f->options, &junction), opens);
-        worthwhile += opens;
+        asj_hypothesis_start(&junction, &hypothesis);
+        const int opens = asj_hypothesis_has_opening(&hypothesis, f->options.minimum_opening * UNIT_PI / 180);
+        assert_int_equal(asj_isotropic_has_opening(&f->options, &junction), opens);
+        open += opens;
     }
-    assert_in_range(worthwhile, 500, 1500);
+    assert_in_range(open, 500, 1500);
     asj_detect_options_init(&f->options);
 }
 
@@ -197,14 +200,14 @@ static void test_corners(void **state)
         const double seen[2] = {fmod(angle + 0.05, 2 * UNIT_PI), fmod(angle + opening - 0.05, 2 * UNIT_PI)};
         for (int k = 0; k < 4; k++) {
             asj_isotropic_junction junction = isotropic_at(40 + k % 2, 40 + k / 2, 2, seen);
-            asj_draft draft;
-            asj_locate_start(&junction, &draft);
-            locate(f, &frame, &draft);
-            assert_int_equal(draft.branch_count, 2);
-            unit_near("distance", n, k, hypot(draft.x - px, draft.y - py), 0, 0.5);
-            unit_near("angle", n, k, unit_turn(draft.branches[0].angle, angle), 0, 0.06);
-            unit_near("angle", n, k, unit_turn(draft.branches[1].angle, angle + opening), 0, 0.06);
-            assert_true(draft.location_variance > 0);
+            asj_hypothesis hypothesis;
+            asj_hypothesis_start(&junction, &hypothesis);
+            locate(f, &frame, &hypothesis);
+            assert_int_equal(hypothesis.branch_count, 2);
+            unit_near("distance", n, k, hypot(hypothesis.x - px, hypothesis.y - py), 0, 0.5);
+            unit_near("angle", n, k, unit_turn(hypothesis.branches[0].angle, angle), 0, 0.06);
+            unit_near("angle", n, k, unit_turn(hypothesis.branches[1].angle, angle + opening), 0, 0.06);
+            assert_true(hypothesis.location_variance > 0);
         }
         asj_frame_free(&f->context->memory, &frame);
     }
@@ -222,10 +225,10 @@ static void test_edges_are_rejected(void **state)
         unit_half_plane(&scene, SIZE, (synth_point){40, 40}, angle, 90, 160);
         unit_frame_of(f->context, &scene, 1.5, 0, NULL, &frame);
         asj_isotropic_junction junction = isotropic_at(40, 40, 2, seen);
-        asj_draft draft;
-        asj_locate_start(&junction, &draft);
-        locate(f, &frame, &draft);
-        assert_int_equal(draft.branch_count, 0);
+        asj_hypothesis hypothesis;
+        asj_hypothesis_start(&junction, &hypothesis);
+        locate(f, &frame, &hypothesis);
+        assert_int_equal(hypothesis.branch_count, 0);
         asj_frame_free(&f->context->memory, &frame);
     }
 }
@@ -243,14 +246,14 @@ static void test_max_move(void **state)
     for (int away = 0; away <= 3; away++)
         for (double most = 0.5; most < 5; most += 0.5) {
             asj_isotropic_junction junction = isotropic_at(40 + away, 40, 2, angles);
-            asj_draft draft;
+            asj_hypothesis hypothesis;
             f->options.max_move = most;
-            asj_locate_start(&junction, &draft);
-            locate(f, &frame, &draft);
+            asj_hypothesis_start(&junction, &hypothesis);
+            locate(f, &frame, &hypothesis);
             if (away < most - 0.3)
-                assert_int_equal(draft.branch_count, 2);
+                assert_int_equal(hypothesis.branch_count, 2);
             if (away > most + 0.3)
-                assert_int_equal(draft.branch_count, 0);
+                assert_int_equal(hypothesis.branch_count, 0);
         }
     asj_detect_options_init(&f->options);
     asj_frame_free(&f->context->memory, &frame);
@@ -263,78 +266,19 @@ static void test_search_keeps_pixels(void **state)
     static const double open[2] = {0.2, 1.7}, straight[2] = {0.2, 0.2 + UNIT_PI};
     synth_scene scene;
     asj_frame frame;
-    asj_draft draft;
+    asj_hypothesis hypothesis;
     f->options.refinement = ASJ_REFINE_SEARCH;
     synth_scene_init(&scene, SIZE, SIZE, 100);
     unit_frame_of(f->context, &scene, 1, 0, NULL, &frame);
     asj_isotropic_junction junction = isotropic_at(40, 41, 2, open);
-    asj_locate_start(&junction, &draft);
-    locate(f, &frame, &draft);
-    assert_int_equal(draft.branch_count, 2);
-    assert_true(draft.x == 40 && draft.y == 41);
+    asj_hypothesis_start(&junction, &hypothesis);
+    locate(f, &frame, &hypothesis);
+    assert_int_equal(hypothesis.branch_count, 2);
+    assert_true(hypothesis.x == 40 && hypothesis.y == 41);
     junction = isotropic_at(40, 41, 2, straight);
-    assert_false(asj_locate_worthwhile(&f->options, &junction));
+    assert_false(asj_isotropic_has_opening(&f->options, &junction));
     asj_frame_free(&f->context->memory, &frame);
     asj_detect_options_init(&f->options);
-}
-
-/* ---- suppression ---- */
-
-static int before(const asj_draft *p, const asj_draft *q)
-{
-    if (p->log_nfa != q->log_nfa)
-        return p->log_nfa < q->log_nfa;
-    return p->y != q->y ? p->y < q->y : p->x < q->x;
-}
-
-static size_t naive_suppress(asj_draft *drafts, size_t count, asj_draft *kept)
-{
-    size_t n = 0;
-    for (size_t i = 0; i < count; i++)
-        for (size_t k = i; k > 0 && before(&drafts[k], &drafts[k - 1]); k--) {
-            const asj_draft swap = drafts[k];
-            drafts[k] = drafts[k - 1];
-            drafts[k - 1] = swap;
-        }
-    for (size_t i = 0; i < count; i++) {
-        int near = drafts[i].branch_count < 2;
-        for (size_t k = 0; k < n; k++)
-            near |= hypot(kept[k].x - drafts[i].x, kept[k].y - drafts[i].y) < fmax(3, 0.35 * kept[k].radius);
-        if (!near)
-            kept[n++] = drafts[i];
-    }
-    return n;
-}
-
-/* Also just outside the image, where line fits may end. */
-static void test_suppress(void **state)
-{
-    enum { COUNT = 200 };
-    static const int32_t sizes[][2] = {{100, 80}, {1, 1}, {11, 200}, {22, 22}, {300, 7}};
-    static asj_draft drafts[COUNT], copy[COUNT], expected[COUNT];
-    synth_random random;
-    (void)state;
-    synth_random_seed(&random, 21);
-    for (int round = 0; round < 50; round++) {
-        const int32_t width = sizes[round % 5][0], height = sizes[round % 5][1];
-        const size_t count = (size_t)(round * 4);
-        memset(drafts, 0, sizeof drafts);
-        for (size_t i = 0; i < count; i++) {
-            drafts[i].x = synth_random_between(&random, -9, width + 9);
-            drafts[i].y = synth_random_between(&random, -9, height + 9);
-            drafts[i].radius = floor(synth_random_between(&random, 3, 31));
-            drafts[i].branch_count = (int32_t)synth_random_between(&random, 0, 6);
-            drafts[i].log_nfa = -floor(synth_random_between(&random, 0, 30));
-        }
-        memcpy(copy, drafts, sizeof copy);
-        int32_t *cells = malloc(asj_locate_cells(count, width, height) * sizeof *cells);
-        assert_non_null(cells);
-        const size_t kept = asj_locate_suppress(drafts, count, 0, width, height, cells);
-        assert_int_equal(kept, naive_suppress(copy, count, expected));
-        for (size_t i = 0; i < kept; i++)
-            assert_memory_equal(&drafts[i], &expected[i], sizeof drafts[i]);
-        free(cells);
-    }
 }
 
 int main(void)
@@ -343,11 +287,10 @@ int main(void)
         cmocka_unit_test(test_meet),
         cmocka_unit_test(test_parallel),
         cmocka_unit_test(test_start),
-        cmocka_unit_test(test_worthwhile),
+        cmocka_unit_test(test_isotropic_opening),
         cmocka_unit_test(test_corners),
         cmocka_unit_test(test_edges_are_rejected),
         cmocka_unit_test(test_max_move),
-        cmocka_unit_test(test_suppress),
         cmocka_unit_test(test_search_keeps_pixels),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

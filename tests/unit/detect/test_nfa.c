@@ -338,7 +338,7 @@ static void test_monotone(void **state)
     }
     for (size_t i = 0; i < sizeof some / sizeof *some; i++)
         check_falling("F", asj_nfa_log_sector_tail, nfa, some[i], 1e-4 * some[i], 20.0 * some[i]);
-    for (int32_t n = 1; n <= ASJ_NFA_MAX_ARC; n++)
+    for (int32_t n = 1; n <= ASJ_MAX_ARC; n++)
         check_falling("G", asj_nfa_log_arc_tail, nfa, n, 1e-3, 30);
 }
 
@@ -391,7 +391,7 @@ static void test_thresholds_invert(void **state)
             assert_true(asj_nfa_log_sector_tail(nfa, t, terms[i]) <= logs[k]);
             assert_true(asj_nfa_log_sector_tail(nfa, t * (1 - 1e-9) - 1e-9, terms[i]) > logs[k]);
         }
-        for (int32_t n = 1; n <= ASJ_NFA_MAX_ARC; n++) {
+        for (int32_t n = 1; n <= ASJ_MAX_ARC; n++) {
             double s = asj_nfa_arc_threshold(nfa, logs[k], n);
             assert_true(s > 0);
             assert_true(asj_nfa_log_arc_tail(nfa, s, n) <= logs[k]);
@@ -416,11 +416,11 @@ static void test_extremes(void **state)
             assert_true(isfinite(value));
             assert_true(value <= 0);
         }
-        for (int32_t n = 1; n <= ASJ_NFA_MAX_ARC; n++)
+        for (int32_t n = 1; n <= ASJ_MAX_ARC; n++)
             assert_true(isfinite(asj_nfa_log_arc_tail(nfa, absurd[k], n)) && asj_nfa_log_arc_tail(nfa, absurd[k], n) < -100);
     }
     /* ln F and ln G are -x^2/(2n) to leading order. */
-    for (int32_t n = 1; n <= ASJ_NFA_MAX_ARC; n++)
+    for (int32_t n = 1; n <= ASJ_MAX_ARC; n++)
         check_near("asymptote", n, 1e50, asj_nfa_log_arc_tail(nfa, 1e50, n) / (-1e100 / (2.0 * n)), 1, 0.02);
     for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
         double leading = -1e100 / (2.0 * terms[i]);
@@ -431,7 +431,7 @@ static void test_extremes(void **state)
     assert_true(asj_nfa_log_sector_tail(nfa, 1, 0) == 0);
     assert_true(asj_nfa_log_arc_tail(nfa, 0, 5) == 0);
     assert_true(asj_nfa_log_arc_tail(nfa, (double)NAN, 5) == 0);
-    assert_true(asj_nfa_log_arc_tail(nfa, 1, ASJ_NFA_MAX_ARC + 1) == 0);
+    assert_true(asj_nfa_log_arc_tail(nfa, 1, ASJ_MAX_ARC + 1) == 0);
     assert_true(asj_nfa_log_sector_tail(nfa, 5000 * ASJ_GAMMA_MEAN, 5000) > log(0.49));
 }
 

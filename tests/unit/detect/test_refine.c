@@ -4,6 +4,7 @@
 #include "detect/nfa.h"
 #include "detect/gradient.h"
 #include "detect/strip.h"
+#include "detect/validate.h"
 #include "unit_test.h"
 
 enum { SIZE = 121 };
@@ -52,21 +53,21 @@ static int reset(void **state)
     return 0;
 }
 
-static asj_draft corner_draft(double x, double y, double turn)
+static asj_hypothesis corner_hypothesis(double x, double y, double turn)
 {
-    asj_draft draft;
-    memset(&draft, 0, sizeof draft);
-    draft.x = draft.x0 = x;
-    draft.y = draft.y0 = y;
-    draft.radius = 10;
-    draft.branch_count = 2;
+    asj_hypothesis hypothesis;
+    memset(&hypothesis, 0, sizeof hypothesis);
+    hypothesis.x = hypothesis.x0 = x;
+    hypothesis.y = hypothesis.y0 = y;
+    hypothesis.radius = 10;
+    hypothesis.branch_count = 2;
     for (int i = 0; i < 2; i++) {
-        draft.branches[i].angle = angles[i] + turn;
-        draft.branches[i].length = sides[i];
-        draft.branches[i].offset_variance = draft.branches[i].angle_variance = 0.01;
-        draft.branches[i].strength = 5;
+        hypothesis.branches[i].angle = angles[i] + turn;
+        hypothesis.branches[i].length = sides[i];
+        hypothesis.branches[i].offset_variance = hypothesis.branches[i].angle_variance = 0.01;
+        hypothesis.branches[i].strength = 5;
     }
-    return draft;
+    return hypothesis;
 }
 
 /* ---- search ---- */
@@ -95,19 +96,19 @@ static void test_search(void **state)
     for (size_t n = 0; n < UNIT_COUNT(lengths); n++)
         for (int k = 0; k < 6; k++) {
             static const double turns[6] = {0.05, -0.08, 0, UNIT_PI / 2, UNIT_PI, 3.9};
-            asj_draft draft = corner_draft(60, 60, turns[k]), before = draft;
-            draft.branches[0].length = draft.branches[1].length = lengths[n];
+            asj_hypothesis hypothesis = corner_hypothesis(60, 60, turns[k]), before = hypothesis;
+            hypothesis.branches[0].length = hypothesis.branches[1].length = lengths[n];
             f->options.sector_width = 1 + k % 3;
-            asj_refine(f->context, &f->frame, &f->options, &draft);
-            assert_true(draft.x == 60 && draft.y == 60);
+            asj_refine(f->context, &f->frame, &f->options, &hypothesis);
+            assert_true(hypothesis.x == 60 && hypothesis.y == 60);
             for (int b = 0; b < 2; b++) {
                 const double start = before.branches[b].angle, tau = f->options.sector_width;
                 double best = -HUGE_VAL;
                 for (int step = -20; step <= 20; step++)
                     best = fmax(best, naive_strength(&f->frame, 60, 60, start + 0.005 * step, lengths[n], tau));
-                assert_true(unit_turn(draft.branches[b].angle, start) <= 0.1 + 1e-9);
-                unit_near("strength", lengths[n], k, naive_strength(&f->frame, 60, 60, draft.branches[b].angle, lengths[n], tau),
-                          best, 0.02);
+                assert_true(unit_turn(hypothesis.branches[b].angle, start) <= 0.1 + 1e-9);
+                const double found = hypothesis.branches[b].angle;
+                unit_near("strength", lengths[n], k, naive_strength(&f->frame, 60, 60, found, lengths[n], tau), best, 0.02);
             }
         }
 }
@@ -119,12 +120,12 @@ static void test_line_fit(void **state)
 {
     const fixture *f = *state;
     for (int n = 0; n < 16; n++) {
-        asj_draft draft = corner_draft(corner_x + 0.5 * cos(n), corner_y + 0.5 * sin(n), n % 2 ? 0.035 : -0.035);
-        asj_refine(f->context, &f->frame, &f->options, &draft);
-        asj_refine(f->context, &f->frame, &f->options, &draft); /* as the pipeline does */
-        unit_near("distance", n, 0, hypot(draft.x - corner_x, draft.y - corner_y), 0, 0.15);
+        asj_hypothesis hypothesis = corner_hypothesis(corner_x + 0.5 * cos(n), corner_y + 0.5 * sin(n), n % 2 ? 0.035 : -0.035);
+        asj_refine(f->context, &f->frame, &f->options, &hypothesis);
+        asj_refine(f->context, &f->frame, &f->options, &hypothesis); /* as the pipeline does */
+        unit_near("distance", n, 0, hypot(hypothesis.x - corner_x, hypothesis.y - corner_y), 0, 0.15);
         for (int b = 0; b < 2; b++)
-            unit_near("angle", n, b, unit_turn(draft.branches[b].angle, angles[b]), 0, 0.25 * UNIT_PI / 180);
+            unit_near("angle", n, b, unit_turn(hypothesis.branches[b].angle, angles[b]), 0, 0.25 * UNIT_PI / 180);
     }
 }
 
@@ -133,12 +134,12 @@ static void test_orient(void **state)
 {
     const fixture *f = *state;
     for (int n = 0; n < 16; n++) {
-        asj_draft draft = corner_draft(corner_x + 0.5 * cos(n), corner_y + 0.5 * sin(n), n % 2 ? 0.035 : -0.035);
-        asj_orient(f->context, &f->frame, &f->options, &draft);
-        unit_near("distance", n, 0, hypot(draft.x - corner_x, draft.y - corner_y), 0, 0.3);
+        asj_hypothesis hypothesis = corner_hypothesis(corner_x + 0.5 * cos(n), corner_y + 0.5 * sin(n), n % 2 ? 0.035 : -0.035);
+        asj_orient(f->context, &f->frame, &f->options, &hypothesis);
+        unit_near("distance", n, 0, hypot(hypothesis.x - corner_x, hypothesis.y - corner_y), 0, 0.3);
         for (int b = 0; b < 2; b++) {
-            unit_near("angle", n, b, unit_turn(draft.branches[b].angle, angles[b]), 0, 0.5 * UNIT_PI / 180);
-            assert_true(draft.branches[b].length == sides[b]);
+            unit_near("angle", n, b, unit_turn(hypothesis.branches[b].angle, angles[b]), 0, 0.5 * UNIT_PI / 180);
+            assert_true(hypothesis.branches[b].length == sides[b]);
         }
     }
 }
@@ -146,41 +147,42 @@ static void test_orient(void **state)
 /* ---- validation ---- */
 
 /* Before the scan: what no length makes meaningful goes, and with it a junction that has no other opening. */
-static void test_foresee(void **state)
+static void test_reject_early(void **state)
 {
     fixture *f = *state;
-    asj_draft draft = corner_draft(corner_x, corner_y, 0);
-    asj_foresee(f->context, &f->frame, &f->options, &draft);
-    assert_int_equal(draft.branch_count, 2);
-    draft.branches[2] = draft.branches[0];
-    draft.branches[2].angle += UNIT_PI; /* into the flat part */
-    draft.branch_count = 3;
-    asj_foresee(f->context, &f->frame, &f->options, &draft);
-    assert_int_equal(draft.branch_count, 2);
-    draft.branches[0].angle += UNIT_PI;
-    asj_foresee(f->context, &f->frame, &f->options, &draft);
-    assert_int_equal(draft.branch_count, 0);
-    draft = corner_draft(corner_x, corner_y, UNIT_PI);
+    asj_hypothesis hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+    asj_reject_early(f->context, &f->frame, &f->options, &hypothesis);
+    assert_int_equal(hypothesis.branch_count, 2);
+    hypothesis.branches[2] = hypothesis.branches[0];
+    hypothesis.branches[2].angle += UNIT_PI; /* into the flat part */
+    hypothesis.branch_count = 3;
+    asj_reject_early(f->context, &f->frame, &f->options, &hypothesis);
+    assert_int_equal(hypothesis.branch_count, 2);
+    hypothesis.branches[0].angle += UNIT_PI;
+    asj_reject_early(f->context, &f->frame, &f->options, &hypothesis);
+    assert_int_equal(hypothesis.branch_count, 0);
+    hypothesis = corner_hypothesis(corner_x, corner_y, UNIT_PI);
     f->options.strip_test = 0; /* nothing is asked of strips */
-    asj_foresee(f->context, &f->frame, &f->options, &draft);
-    assert_int_equal(draft.branch_count, 2);
+    asj_reject_early(f->context, &f->frame, &f->options, &hypothesis);
+    assert_int_equal(hypothesis.branch_count, 2);
     asj_detect_options_init(&f->options);
 }
 
-static int32_t validated(const fixture *f, asj_draft *draft)
+static int32_t validated(const fixture *f, asj_hypothesis *hypothesis)
 {
-    asj_validate(f->context, &f->frame, &f->options, draft);
-    return draft->branch_count;
+    asj_validate(f->context, &f->frame, &f->options, hypothesis);
+    return hypothesis->branch_count;
 }
 
 static void test_good_corner(void **state)
 {
     const fixture *f = *state;
-    asj_draft draft = corner_draft(corner_x, corner_y, 0);
-    assert_int_equal(validated(f, &draft), 2);
+    asj_hypothesis hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+    assert_int_equal(validated(f, &hypothesis), 2);
     for (int b = 0; b < 2; b++) {
-        const asj_strip strip = asj_strip_test(f->context, &f->frame, &f->options, corner_x, corner_y, angles[b], sides[b]);
-        assert_true(draft.branches[b].log_nfa == strip.log_nfa && strip.log_nfa < -50);
+        const asj_strip_line line = {corner_x, corner_y, angles[b], sides[b]};
+        const asj_strip strip = asj_strip_test(f->context, &f->frame, &f->options, &line);
+        assert_true(hypothesis.branches[b].log_nfa == strip.log_nfa && strip.log_nfa < -50);
     }
 }
 
@@ -188,39 +190,39 @@ static void test_dropped_branches(void **state)
 {
     fixture *f = *state;
     f->options.minimum_length = 7;
-    asj_draft draft = corner_draft(corner_x, corner_y, 0);
-    draft.branches[1].length = f->options.minimum_length - 0.1; /* short: no second branch left */
-    assert_int_equal(validated(f, &draft), 0);
-    draft = corner_draft(corner_x, corner_y, 0);
-    draft.branches[0].length = f->options.minimum_length + 0.1;
-    assert_int_equal(validated(f, &draft), 2);
+    asj_hypothesis hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+    hypothesis.branches[1].length = f->options.minimum_length - 0.1; /* short: no second branch left */
+    assert_int_equal(validated(f, &hypothesis), 0);
+    hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+    hypothesis.branches[0].length = f->options.minimum_length + 0.1;
+    assert_int_equal(validated(f, &hypothesis), 2);
     f->options.minimum_length = 0;
-    draft = corner_draft(corner_x, corner_y, 0);
-    draft.branches[0].offset = 2.1; /* belongs to something else */
-    assert_int_equal(validated(f, &draft), 0);
-    draft.branches[0].offset = -2.1;
-    draft.branch_count = 2;
-    assert_int_equal(validated(f, &draft), 0);
-    draft = corner_draft(corner_x, corner_y, 0);
-    draft.x0 += 2 * f->options.max_move + 0.1; /* seen somewhere else */
-    assert_int_equal(validated(f, &draft), 0);
-    draft = corner_draft(corner_x, corner_y, 0);
-    draft.x0 += 2 * f->options.max_move - 0.1;
-    assert_int_equal(validated(f, &draft), 2);
-    draft = corner_draft(corner_x, corner_y, UNIT_PI); /* into the flat part: not meaningful */
-    assert_int_equal(validated(f, &draft), 0);
-    draft = corner_draft(corner_x, corner_y, 0);
+    hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+    hypothesis.branches[0].offset = 2.1; /* belongs to something else */
+    assert_int_equal(validated(f, &hypothesis), 0);
+    hypothesis.branches[0].offset = -2.1;
+    hypothesis.branch_count = 2;
+    assert_int_equal(validated(f, &hypothesis), 0);
+    hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+    hypothesis.x0 += 2 * f->options.max_move + 0.1; /* seen somewhere else */
+    assert_int_equal(validated(f, &hypothesis), 0);
+    hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+    hypothesis.x0 += 2 * f->options.max_move - 0.1;
+    assert_int_equal(validated(f, &hypothesis), 2);
+    hypothesis = corner_hypothesis(corner_x, corner_y, UNIT_PI); /* into the flat part: not meaningful */
+    assert_int_equal(validated(f, &hypothesis), 0);
+    hypothesis = corner_hypothesis(corner_x, corner_y, 0);
     f->options.epsilon = 1e-30;
-    draft.branches[0].length = 9; /* too short to be so meaningful */
-    assert_int_equal(validated(f, &draft), 0);
+    hypothesis.branches[0].length = 9; /* too short to be so meaningful */
+    assert_int_equal(validated(f, &hypothesis), 0);
     f->options.strip_test = 0;
-    draft = corner_draft(corner_x, corner_y, 0);
-    draft.branches[0].length = 9;
-    assert_int_equal(validated(f, &draft), 2);
-    draft = corner_draft(corner_x, corner_y, 0);
-    draft.branches[0].length = 0; /* never scanned */
+    hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+    hypothesis.branches[0].length = 9;
+    assert_int_equal(validated(f, &hypothesis), 2);
+    hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+    hypothesis.branches[0].length = 0; /* never scanned */
     f->options.minimum_length = 0;
-    assert_int_equal(validated(f, &draft), 0);
+    assert_int_equal(validated(f, &hypothesis), 0);
 }
 
 /* Of two branches closer than merge_angle the more meaningful stays, whichever comes first. */
@@ -228,40 +230,40 @@ static void test_merge(void **state)
 {
     const fixture *f = *state;
     for (int twin_first = 0; twin_first < 2; twin_first++) {
-        asj_draft draft = corner_draft(corner_x, corner_y, 0);
-        asj_draft_branch twin = draft.branches[0];
+        asj_hypothesis hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+        asj_hypothesis_branch twin = hypothesis.branches[0];
         twin.angle += 0.12;
-        draft.branch_count = 3;
-        draft.branches[2] = twin_first ? draft.branches[0] : twin;
+        hypothesis.branch_count = 3;
+        hypothesis.branches[2] = twin_first ? hypothesis.branches[0] : twin;
         if (twin_first)
-            draft.branches[0] = twin;
-        assert_int_equal(validated(f, &draft), 2);
-        assert_true(draft.branches[0].angle == angles[0] && draft.branches[1].angle == angles[1]);
+            hypothesis.branches[0] = twin;
+        assert_int_equal(validated(f, &hypothesis), 2);
+        assert_true(hypothesis.branches[0].angle == angles[0] && hypothesis.branches[1].angle == angles[1]);
     }
 }
 
 static void test_order_and_opening(void **state)
 {
     fixture *f = *state;
-    asj_draft draft = corner_draft(corner_x, corner_y, 0);
-    const asj_draft_branch first = draft.branches[0];
-    draft.branches[0] = draft.branches[1];
-    draft.branches[1] = first;
-    assert_int_equal(validated(f, &draft), 2);
-    assert_true(draft.branches[0].angle < draft.branches[1].angle);
-    draft = corner_draft(corner_x, corner_y, 0);
+    asj_hypothesis hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+    const asj_hypothesis_branch first = hypothesis.branches[0];
+    hypothesis.branches[0] = hypothesis.branches[1];
+    hypothesis.branches[1] = first;
+    assert_int_equal(validated(f, &hypothesis), 2);
+    assert_true(hypothesis.branches[0].angle < hypothesis.branches[1].angle);
+    hypothesis = corner_hypothesis(corner_x, corner_y, 0);
     f->options.minimum_opening = 80; /* they open by 80.2 degrees */
-    assert_int_equal(validated(f, &draft), 2);
-    draft = corner_draft(corner_x, corner_y, 0);
-    draft.branches[1].angle -= 0.02;
-    assert_int_equal(validated(f, &draft), 0);
+    assert_int_equal(validated(f, &hypothesis), 2);
+    hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+    hypothesis.branches[1].angle -= 0.02;
+    assert_int_equal(validated(f, &hypothesis), 0);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_search, reset),           cmocka_unit_test_setup(test_line_fit, reset),
-        cmocka_unit_test_setup(test_orient, reset),           cmocka_unit_test_setup(test_foresee, reset),
+        cmocka_unit_test_setup(test_orient, reset),           cmocka_unit_test_setup(test_reject_early, reset),
         cmocka_unit_test_setup(test_good_corner, reset),      cmocka_unit_test_setup(test_dropped_branches, reset),
         cmocka_unit_test_setup(test_merge, reset),            cmocka_unit_test_setup(test_order_and_opening, reset),
     };

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* From drafts to the public result. */
+/* From hypotheses to the public result. */
 #include "detect/result.h"
 #include "core/context.h"
 #include "unit_test.h"
 
-static void fill(asj_draft *drafts, size_t count)
+static void fill(asj_hypothesis *hypotheses, size_t count)
 {
     synth_random random;
     synth_random_seed(&random, 5);
-    memset(drafts, 0, count * sizeof *drafts);
+    memset(hypotheses, 0, count * sizeof *hypotheses);
     for (size_t i = 0; i < count; i++) {
-        asj_draft *d = &drafts[i];
+        asj_hypothesis *d = &hypotheses[i];
         d->x = synth_random_between(&random, 0, 100);
         d->y = synth_random_between(&random, 0, 100);
         d->radius = 3 + (double)i;
@@ -18,7 +18,7 @@ static void fill(asj_draft *drafts, size_t count)
         d->location_variance = 0.04;
         d->branch_count = 2 + (int32_t)(i % 4);
         for (int32_t b = 0; b < d->branch_count; b++) {
-            asj_draft_branch *branch = &d->branches[b];
+            asj_hypothesis_branch *branch = &d->branches[b];
             branch->angle = 0.1 + b * 1.2 + synth_random_unit(&random) * 0.1;
             branch->length = 10 + b;
             branch->strength = 4.5;
@@ -31,27 +31,27 @@ static void fill(asj_draft *drafts, size_t count)
 static void test_conversion(void **state)
 {
     enum { COUNT = 12 };
-    asj_draft drafts[COUNT];
+    asj_hypothesis hypotheses[COUNT];
     unit_counter counter;
     asj_context *context = unit_context(&counter, 1);
     (void)state;
-    fill(drafts, COUNT);
-    drafts[0].branches[1].angle = nextafter(2 * UNIT_PI, 0); /* rounds to 2 pi, which is not in [0, 2 pi) */
+    fill(hypotheses, COUNT);
+    hypotheses[0].branches[1].angle = nextafter(2 * UNIT_PI, 0); /* rounds to 2 pi, which is not in [0, 2 pi) */
     asj_detection *made = NULL;
-    assert_int_equal(asj_result_fill(context, drafts, COUNT, 15, &made), ASJ_OK);
+    assert_int_equal(asj_result_fill(context, hypotheses, COUNT, 15, &made), ASJ_OK);
     assert_non_null(made);
     asj_context_free(&context); /* the result lives on */
     assert_int_equal(made->junction_count, COUNT);
     for (uint32_t i = 0; i < COUNT; i++) {
         const asj_junction *j = &made->junctions[i];
-        unit_near("x", i, 0, j->x, drafts[i].x, 1e-5);
-        unit_near("y", i, 0, j->y, drafts[i].y, 1e-5);
-        unit_near("scale", i, 0, j->scale, drafts[i].radius, 0);
-        unit_near("log10 NFA", i, 0, j->log10_nfa, drafts[i].log_nfa / log(10), 1e-6);
+        unit_near("x", i, 0, j->x, hypotheses[i].x, 1e-5);
+        unit_near("y", i, 0, j->y, hypotheses[i].y, 1e-5);
+        unit_near("scale", i, 0, j->scale, hypotheses[i].radius, 0);
+        unit_near("log10 NFA", i, 0, j->log10_nfa, hypotheses[i].log_nfa / log(10), 1e-6);
         unit_near("location sd", i, 0, j->location_sd, 0.2, 1e-6);
-        assert_int_equal(j->branch_count, drafts[i].branch_count);
+        assert_int_equal(j->branch_count, hypotheses[i].branch_count);
         for (int32_t b = 0; b < j->branch_count; b++) {
-            unit_near("angle", i, b, unit_turn(j->branches[b].angle, drafts[i].branches[b].angle), 0, 1e-6);
+            unit_near("angle", i, b, unit_turn(j->branches[b].angle, hypotheses[i].branches[b].angle), 0, 1e-6);
             assert_true(j->branches[b].angle >= 0 && (double)j->branches[b].angle < 2 * UNIT_PI);
             unit_near("length", i, b, j->branches[b].length, 10 + b, 0);
             unit_near("strength", i, b, j->branches[b].strength, 4.5, 0);
@@ -72,7 +72,7 @@ static void test_conversion(void **state)
 
 static void test_empty_and_without_l(void **state)
 {
-    asj_draft drafts[3];
+    asj_hypothesis hypotheses[3];
     unit_counter counter;
     asj_context *context = unit_context(&counter, 1);
     (void)state;
@@ -81,19 +81,19 @@ static void test_empty_and_without_l(void **state)
     assert_non_null(made);
     assert_true(!made->junctions && !made->l_junctions && made->junction_count == 0 && made->l_junction_count == 0);
     asj_detection_free(&made);
-    fill(drafts, 3);
+    fill(hypotheses, 3);
     for (int i = 0; i < 3; i++) {
-        drafts[i].branch_count = 2;
-        drafts[i].branches[1].angle = drafts[i].branches[0].angle + 0.1; /* too narrow */
+        hypotheses[i].branch_count = 2;
+        hypotheses[i].branches[1].angle = hypotheses[i].branches[0].angle + 0.1; /* too narrow */
     }
-    assert_int_equal(asj_result_fill(context, drafts, 3, 25, &made), ASJ_OK);
+    assert_int_equal(asj_result_fill(context, hypotheses, 3, 25, &made), ASJ_OK);
     assert_true(made && made->junction_count == 3 && !made->l_junctions && made->l_junction_count == 0);
     asj_detection_free(&made);
     for (long n = 1; n <= 3; n++) { /* the struct, the junctions, the L-junctions */
         const long live = counter.live;
         counter.fail_at = counter.calls + n;
-        fill(drafts, 3);
-        assert_int_equal(asj_result_fill(context, drafts, 3, 25, &made), ASJ_ERROR_MEMORY);
+        fill(hypotheses, 3);
+        assert_int_equal(asj_result_fill(context, hypotheses, 3, 25, &made), ASJ_ERROR_MEMORY);
         assert_null(made);
         assert_int_equal(counter.live, live);
     }

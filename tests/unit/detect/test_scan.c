@@ -2,6 +2,7 @@
 /* Step 4 against the same definition in floating point, and against edges whose ends are known. */
 #include "detect/nfa.h"
 #include "detect/scan.h"
+#include "detect/scan_cache.h"
 #include "unit_test.h"
 
 enum { SIZE = 140 };
@@ -13,6 +14,7 @@ typedef struct fixture {
     asj_frame frame;
     asj_field field;
     asj_scan scan;
+    asj_scan_cache cache;
     asj_field_branch (*all)[ASJ_FIELD_BRANCHES]; /* local junctions of every pixel */
 } fixture;
 
@@ -37,6 +39,7 @@ static void drop_picture(fixture *f)
 {
     asj_frame_free(&f->context->memory, &f->frame);
     asj_field_free(&f->context->memory, &f->field);
+    asj_scan_cache_free(&f->context->memory, &f->cache);
     free(f->all);
     f->all = NULL;
 }
@@ -56,7 +59,8 @@ static void take_picture(fixture *f, synth_scene *scene, double noise)
     drop_picture(f);
     unit_frame_of(f->context, scene, 1, noise, &f->options, &f->frame);
     assert_int_equal(asj_field_create(f->context, &f->options, &f->field), ASJ_OK);
-    asj_scan_prepare(f->context, &f->options, &f->field, f->frame.width, f->frame.height, &f->scan);
+    asj_scan_prepare(&f->options, &f->field, &f->cache, &f->scan);
+    asj_scan_set_size(f->context, &f->options, f->frame.width, f->frame.height, &f->scan);
     uint16_t *scratch = malloc(asj_field_scratch(&f->field) * sizeof *scratch);
     const int32_t stride = f->frame.blocks * ASJ_LANES;
     f->all = malloc((size_t)(stride * f->frame.height) * sizeof *f->all);
@@ -66,6 +70,13 @@ static void take_picture(fixture *f, synth_scene *scene, double noise)
         for (int32_t x = 0; x < f->frame.width; x += ASJ_LANES)
             asj_field_block(&f->field, &f->frame, x, y, scratch, &f->all[y * stride + x]);
     free(scratch);
+}
+
+/* With an empty cache. */
+static asj_status follow(fixture *f, asj_ray *rays, size_t count)
+{
+    const asj_status status = asj_scan_cache_prepare(f->context, &f->frame, f->context->threads, &f->cache);
+    return status == ASJ_OK ? asj_scan_rays(f->context, &f->scan, &f->frame, rays, count) : status;
 }
 
 /* ---- the definition in double precision ---- */
@@ -262,7 +273,7 @@ static void test_forward(void **state)
             scene_of(kind, &scene);
             take_picture(f, &scene, 2);
             random_rays(f, rays, RAYS, 9);
-            assert_int_equal(asj_scan_rays(f->context, &f->scan, &f->frame, rays, RAYS), ASJ_OK);
+            assert_int_equal(follow(f, rays, RAYS), ASJ_OK);
             long total = 0;
             for (size_t i = 0; i < RAYS; i++) {
                 assert_int_equal(rays[i].axial, 0); /* not asked for */
@@ -286,7 +297,7 @@ static void test_both(void **state)
         scene_of(kind, &scene);
         take_picture(f, &scene, 2);
         random_rays(f, rays, RAYS, 10);
-        assert_int_equal(asj_scan_rays(f->context, &f->scan, &f->frame, rays, RAYS), ASJ_OK);
+        assert_int_equal(follow(f, rays, RAYS), ASJ_OK);
         for (size_t i = 0; i < RAYS; i++) {
             int32_t forward, axial;
             naive_both(f, &rays[i], threshold_of(f), &forward, &axial);
@@ -316,7 +327,7 @@ static void test_sides(void **state)
         take_picture(f, &scene, 2);
         asj_ray rays[2] = {{corner.x, corner.y, angle, 3, 0, 0}, {corner.x, corner.y, fmod(angle + UNIT_PI / 2, 2 * UNIT_PI), 3,
                                                                   0, 0}};
-        assert_int_equal(asj_scan_rays(f->context, &f->scan, &f->frame, rays, 2), ASJ_OK);
+        assert_int_equal(follow(f, rays, 2), ASJ_OK);
         for (int i = 0; i < 2; i++) {
             const double length = 0.5 * (rays[i].forward + rays[i].axial), truth = i ? height : width;
             unit_near("side", n, i, length, truth, 3);
@@ -339,10 +350,10 @@ static void test_nothing(void **state)
     for (size_t i = 0; i < UNIT_COUNT(rays); i++)
         rays[i] = (asj_ray){places[i / 16][0], places[i / 16][1], (double)(i % 16) * 2 * UNIT_PI / 16, (int32_t)(i % 5), -7, -7};
     rays[3].angle = nextafter(2 * UNIT_PI, 0);
-    assert_int_equal(asj_scan_rays(f->context, &f->scan, &f->frame, rays, UNIT_COUNT(rays)), ASJ_OK);
+    assert_int_equal(follow(f, rays, UNIT_COUNT(rays)), ASJ_OK);
     for (size_t i = 0; i < UNIT_COUNT(rays); i++)
         assert_true(rays[i].forward == 0 && rays[i].axial == 0);
-    assert_int_equal(asj_scan_rays(f->context, &f->scan, &f->frame, rays, 0), ASJ_OK);
+    assert_int_equal(follow(f, rays, 0), ASJ_OK);
 }
 
 /* Longer than the table of rotations: an edge over 700 px is followed to its end. */
@@ -357,7 +368,7 @@ static void test_long_ray(void **state)
         synth_scene_add(&scene, corners, 4, synth_flat(160), 0);
         take_picture(f, &scene, 1);
         asj_ray rays[2] = {{20, 30, angle, 3, 0, 0}, {760, 30 + 740 * slope, angle + UNIT_PI, 3, 0, 0}};
-        assert_int_equal(asj_scan_rays(f->context, &f->scan, &f->frame, rays, 2), ASJ_OK);
+        assert_int_equal(follow(f, rays, 2), ASJ_OK);
         for (int i = 0; i < 2; i++)
             unit_near("long ray", n, i, 0.5 * (rays[i].forward + rays[i].axial), 740 / cos(angle), 5);
     }
@@ -372,16 +383,16 @@ static void test_threads_and_memory(void **state)
     take_picture(f, &scene, 4);
     random_rays(f, one, RAYS, 3);
     memcpy(many, one, sizeof many);
-    assert_int_equal(asj_scan_rays(f->context, &f->scan, &f->frame, one, RAYS), ASJ_OK);
+    assert_int_equal(follow(f, one, RAYS), ASJ_OK);
     f->context->threads = 5;
-    assert_int_equal(asj_scan_rays(f->context, &f->scan, &f->frame, many, RAYS), ASJ_OK);
+    assert_int_equal(follow(f, many, RAYS), ASJ_OK);
     for (size_t i = 0; i < RAYS; i++)
         assert_true(one[i].forward == many[i].forward && one[i].axial == many[i].axial);
     f->context->threads = 1;
     const long live = f->counter.live;
     for (long n = 1; n <= 3; n++) {
         f->counter.fail_at = f->counter.calls + n;
-        assert_int_equal(asj_scan_rays(f->context, &f->scan, &f->frame, many, RAYS), ASJ_ERROR_MEMORY);
+        assert_int_equal(follow(f, many, RAYS), ASJ_ERROR_MEMORY);
         assert_int_equal(f->counter.live, live);
     }
     f->counter.fail_at = 0;

@@ -68,7 +68,8 @@ static asj_strip naive(const fixture *f, double x, double y, double angle, doubl
 
 static asj_strip test(const fixture *f, double x, double y, double angle, double length)
 {
-    return asj_strip_test(f->context, &f->frame, &f->options, x, y, angle, length);
+    const asj_strip_line line = {x, y, angle, length};
+    return asj_strip_test(f->context, &f->frame, &f->options, &line);
 }
 
 /* Random strips, half of them reaching outside the image or standing there, of all widths and lengths. */
@@ -106,7 +107,8 @@ static void test_passes(void **state)
         const double angle = synth_random_between(&random, 0, 2 * UNIT_PI), limit = synth_random_between(&random, -10, 30);
         const double shorter = synth_random_between(&random, 2, 30), length = shorter + synth_random_between(&random, 0, 30);
         const double least = fmin(naive(f, x, y, angle, length).log_nfa, naive(f, x, y, angle, shorter).log_nfa);
-        const int passes = asj_strip_passes(f->context, &f->frame, &f->options, x, y, angle, length, shorter, limit);
+        const asj_strip_line line = {x, y, angle, length};
+        const int passes = asj_strip_passes(f->context, &f->frame, &f->options, &line, shorter, limit);
         if (fabs(least - limit) > 1e-6)
             assert_int_equal(passes, least <= limit);
         passed += passes;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-#include "detect/draft.h"
+#include "detect/hypothesis.h"
 #include "unit_test.h"
 
 static void test_angles(void **state)
@@ -20,32 +20,32 @@ static void test_select(void **state)
 {
     (void)state;
     for (int mask = 0; mask < 1 << ASJ_MAX_BRANCHES; mask++) {
-        asj_draft draft;
+        asj_hypothesis hypothesis;
         int keep[ASJ_MAX_BRANCHES];
         int32_t kept = 0;
-        memset(&draft, 0, sizeof draft);
-        draft.branch_count = ASJ_MAX_BRANCHES;
+        memset(&hypothesis, 0, sizeof hypothesis);
+        hypothesis.branch_count = ASJ_MAX_BRANCHES;
         for (int i = 0; i < ASJ_MAX_BRANCHES; i++) {
-            draft.branches[i].angle = i + 1;
+            hypothesis.branches[i].angle = i + 1;
             keep[i] = mask >> i & 1;
         }
-        asj_draft_select(&draft, keep);
+        asj_hypothesis_select(&hypothesis, keep);
         for (int i = 0; i < ASJ_MAX_BRANCHES; i++)
             if (keep[i])
-                assert_true(draft.branches[kept++].angle == i + 1);
-        assert_int_equal(draft.branch_count, kept);
+                assert_true(hypothesis.branches[kept++].angle == i + 1);
+        assert_int_equal(hypothesis.branch_count, kept);
     }
 }
 
 static int has_opening(double a, double b, double c, int32_t count, double least)
 {
-    asj_draft draft;
-    memset(&draft, 0, sizeof draft);
-    draft.branch_count = count;
-    draft.branches[0].angle = a;
-    draft.branches[1].angle = b;
-    draft.branches[2].angle = c;
-    return asj_draft_has_opening(&draft, least);
+    asj_hypothesis hypothesis;
+    memset(&hypothesis, 0, sizeof hypothesis);
+    hypothesis.branch_count = count;
+    hypothesis.branches[0].angle = a;
+    hypothesis.branches[1].angle = b;
+    hypothesis.branches[2].angle = c;
+    return asj_hypothesis_has_opening(&hypothesis, least);
 }
 
 static void test_opening(void **state)

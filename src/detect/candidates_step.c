@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 2 over an image: one bit for each pixel that may be a junction. Another source of candidates sets bits of its own in the
+ * same plane, after those of the field. */
+#include "steps.h"
+
+static size_t count_bits(const uint16_t *masks, size_t count)
+{
+    size_t bits = 0;
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t mask = masks[i]; mask; mask &= mask - 1)
+            bits++;
+    return bits;
+}
+
+static asj_status dump(const asj_detection_run *run)
+{
+    const size_t blocks = (size_t)run->frame->blocks, runs = blocks * (size_t)run->frame->height;
+    int32_t *points = asj_allocate_list(&run->context->memory, run->candidate_count, 2 * sizeof *points), *next = points;
+    if (!points)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to dump %zu points", run->candidate_count);
+    for (size_t i = 0; i < runs; i++)
+        for (int32_t bit = 0; bit < ASJ_LANES; bit++)
+            if (run->candidates[i] >> bit & 1) {
+                *next++ = (int32_t)(i % blocks) * ASJ_LANES + bit;
+                *next++ = (int32_t)(i / blocks);
+            }
+    asj_detection_run_dump_points(run, ASJ_STAGE_CANDIDATES, "candidates", run->candidate_count, points);
+    asj_release(&run->context->memory, points);
+    return ASJ_OK;
+}
+
+asj_status asj_step_candidates(asj_detection_run *run)
+{
+    asj_context *context = run->context;
+    const asj_frame *frame = run->frame;
+    const int32_t blocks = frame->blocks, height = frame->height;
+    run->candidates = asj_allocate(&context->memory, (size_t)blocks * (size_t)height, sizeof *run->candidates);
+    if (!run->candidates)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the candidates");
+    for (int32_t top = 0; top < height; top += ASJ_ROW_GROUP) {
+        const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
+        asj_status status = context->ops->field->rows(context, run->field, frame, top, bottom, run->scratch, run->scratch_size,
+                                                      run->candidates);
+        if (status == ASJ_OK)
+            status = asj_detection_run_progress(run, ASJ_STAGE_CANDIDATES, 0.05 + 0.45 * bottom / height);
+        if (status != ASJ_OK)
+            return status;
+    }
+    run->candidate_count = count_bits(run->candidates, (size_t)blocks * (size_t)height);
+    return context->options.dump ? dump(run) : ASJ_OK;
+}

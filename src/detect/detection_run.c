@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Tables, planes and scratch of a pass; what it tells the caller while it works. */
+#include "detection_run.h"
+#include "detect_options.h"
+#include "core/threads.h"
+
+#include <math.h>
+#include <string.h>
+
+#define LEAST_LIST 256 /* elements */
+
+static void free_detector(asj_memory *memory, void *state)
+{
+    asj_detector *detector = state;
+    asj_frame_free(memory, &detector->frame);
+    asj_field_free(memory, &detector->field);
+    asj_isotropic_free(memory, &detector->isotropic);
+    asj_scan_cache_free(memory, &detector->scan_cache);
+    asj_release(memory, detector);
+}
+
+/* The context's detector, with tables for these options. */
+static asj_status make_tables(asj_context *context, const asj_detect_options *options, asj_detector **result)
+{
+    asj_detector *detector = *result = context->detector.state;
+    if (!detector) {
+        detector = *result = asj_allocate_zero(&context->memory, 1, sizeof *detector);
+        if (!detector)
+            return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the detector");
+        context->detector = (asj_kept){detector, free_detector};
+    }
+    if (detector->ready && memcmp(&detector->options, options, sizeof *options) == 0)
+        return ASJ_OK;
+    detector->ready = 0;
+    detector->width = detector->height = 0;
+    asj_field_free(&context->memory, &detector->field);
+    asj_isotropic_free(&context->memory, &detector->isotropic);
+    asj_status status = asj_field_create(context, options, &detector->field);
+    if (status == ASJ_OK)
+        status = asj_isotropic_create(context, options, &detector->isotropic);
+    if (status != ASJ_OK)
+        return status;
+    asj_scan_prepare(options, &detector->field, &detector->scan_cache, &detector->scan);
+    detector->options = *options;
+    detector->ready = 1;
+    return ASJ_OK;
+}
+
+/* Planes, numbers of tests and an empty cache for an image of this size. */
+static asj_status set_size(asj_detection_run *run, asj_detector *detector, int32_t width, int32_t height)
+{
+    asj_context *context = run->context;
+    asj_status status = asj_frame_prepare(context, run->frame, width, height);
+    if (status != ASJ_OK)
+        return status;
+    if (width != detector->width || height != detector->height) {
+        asj_isotropic_set_size(run->options, width, height, &detector->isotropic);
+        asj_scan_set_size(context, run->options, width, height, &detector->scan);
+        detector->width = width;
+        detector->height = height;
+    }
+    return asj_scan_cache_prepare(context, run->frame, context->threads, &detector->scan_cache);
+}
+
+static asj_status make_scratch(asj_detection_run *run)
+{
+    const size_t threads = (size_t)run->context->threads;
+    run->scratch_size = asj_field_scratch(run->field);
+    if (run->test->scratch > run->scratch_size)
+        run->scratch_size = run->test->scratch;
+    run->scratch = asj_allocate(&run->context->memory, threads * run->scratch_size, sizeof *run->scratch);
+    return run->scratch ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu threads", threads);
+}
+
+static asj_status prepare(asj_detection_run *run)
+{
+    asj_detector *detector;
+    asj_status status = make_tables(run->context, run->options, &detector);
+    if (status != ASJ_OK)
+        return status;
+    run->frame = &detector->frame;
+    run->field = &detector->field;
+    run->test = &detector->isotropic;
+    run->scan = &detector->scan;
+    status = set_size(run, detector, run->image->width, run->image->height);
+    return status == ASJ_OK ? make_scratch(run) : status;
+}
+
+asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context, const asj_image *image,
+                                   const asj_detect_options *options, const void *output)
+{
+    char message[256];
+    memset(run, 0, sizeof *run);
+    run->clock = asj_clock_ms();
+    run->context = context;
+    run->image = image;
+    if (!image || !output)
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "%s is NULL", image ? "the place for the result" : "the image");
+    if (!options)
+        asj_detect_options_init(&run->defaults);
+    run->options = options ? options : &run->defaults;
+    if (asj_detect_options_check(run->options, message, sizeof message) != ASJ_OK)
+        return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
+    asj_status status = asj_image_check(context, image);
+    return status == ASJ_OK ? prepare(run) : status;
+}
+
+void asj_detection_run_end(asj_detection_run *run)
+{
+    asj_memory *memory = &run->context->memory;
+    asj_release(memory, run->scratch);
+    asj_release(memory, run->candidates);
+    asj_release(memory, run->isotropic);
+    asj_release(memory, run->hypotheses);
+}
+
+uint16_t *asj_detection_run_scratch(const asj_detection_run *run)
+{
+    return run->scratch + (size_t)asj_thread_number() * run->scratch_size;
+}
+
+size_t asj_detection_run_room(size_t count)
+{
+    return count > LEAST_LIST ? count : LEAST_LIST;
+}
+
+asj_status asj_detection_run_progress(const asj_detection_run *run, int32_t stage, double done)
+{
+    return asj_progress(run->context, stage, done);
+}
+
+void asj_detection_run_time(asj_detection_run *run, int32_t stage)
+{
+    const double now = asj_clock_ms();
+    run->stage_ms[stage] += now - run->clock;
+    run->clock = now;
+}
+
+void asj_detection_run_dump_plane(const asj_detection_run *run, int32_t kind, const char *name, const void *data, double unit)
+{
+    const asj_frame *frame = run->frame;
+    const asj_context_options *options = &run->context->options;
+    const asj_dump dump = {ASJ_STAGE_GRADIENT, kind, name, data, frame->width, frame->height, frame->stride, 0, unit};
+    if (options->dump)
+        options->dump(options->dump_user, &dump);
+}
+
+void asj_detection_run_dump_points(const asj_detection_run *run, int32_t stage, const char *name, size_t count,
+                                   const int32_t *points)
+{
+    const asj_frame *frame = run->frame;
+    const asj_context_options *options = &run->context->options;
+    const asj_dump dump = {stage, ASJ_DUMP_POINTS, name, points, frame->width, frame->height, 0, count, 1};
+    if (options->dump)
+        options->dump(options->dump_user, &dump);
+}
+
+asj_status asj_detection_run_dump_hypotheses(const asj_detection_run *run, int32_t stage, const char *name)
+{
+    const size_t count = run->hypothesis_count;
+    asj_memory *memory = &run->context->memory;
+    if (!run->context->options.dump)
+        return ASJ_OK;
+    int32_t *points = asj_allocate_list(memory, count, 2 * sizeof *points);
+    if (!points)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to dump %zu points", count);
+    for (size_t i = 0; i < count; i++) {
+        points[2 * i] = (int32_t)lrint(run->hypotheses[i].x);
+        points[2 * i + 1] = (int32_t)lrint(run->hypotheses[i].y);
+    }
+    asj_detection_run_dump_points(run, stage, name, count, points);
+    asj_release(memory, points);
+    return ASJ_OK;
+}

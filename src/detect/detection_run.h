@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* One pass of the detector over one image: what its steps share (steps.h lists them, detect.c runs them). */
+#ifndef ASJ_SRC_DETECTION_RUN_H
+#define ASJ_SRC_DETECTION_RUN_H
+
+#include "hypothesis.h"
+#include "scan.h"
+#include "scan_cache.h"
+
+/* What a context keeps from image to image. The tables hold for a set of options; only their numbers of tests depend on the size
+ * of the image, and asj_isotropic_set_size() and asj_scan_set_size() change those. */
+typedef struct asj_detector {
+    asj_detect_options options; /* that the tables were made for */
+    int ready;                  /* 0 = there are none yet */
+    asj_field field;
+    asj_isotropic isotropic;
+    asj_scan scan;
+    int32_t width, height;      /* that the numbers of tests were set for */
+    asj_frame frame;            /* planes, for images of any size */
+    asj_scan_cache scan_cache;
+} asj_detector;
+
+/* Steps read tables and planes through these pointers and nowhere else. So a pass may run on any frame, for example that of a level
+ * of a pyramid: the numbers of tests are those of its own size, coordinates are its own, and whoever runs several passes merges
+ * their hypotheses. */
+typedef struct asj_detection_run {
+    asj_context *context;
+    const asj_detect_options *options;
+    asj_detect_options defaults;     /* what `options` points to when the caller gives none */
+    const asj_image *image;
+    asj_frame *frame;                /* its planes: step 1 fills them */
+    const asj_field *field;          /* tables of steps 2, .. */
+    const asj_isotropic *test;       /* .. 3 .. */
+    const asj_scan *scan;            /* .. and 4 */
+    uint16_t *scratch;               /* `scratch_size` elements for each thread of the context */
+    size_t scratch_size;
+
+    uint16_t *candidates;            /* step 2: one bit for each pixel; run b of row y at [y * blocks + b] */
+    size_t candidate_count;
+    asj_isotropic_junction *isotropic; /* step 3 */
+    size_t isotropic_count;
+    asj_hypothesis *hypotheses;      /* from the location on */
+    size_t hypothesis_count;
+
+    double stage_ms[16];             /* time spent in each stage (ASJ_STAGE_...) up to `clock`, in milliseconds */
+    double clock;
+} asj_detection_run;
+
+/* Rows are worked on in groups, between which progress is reported. */
+#define ASJ_ROW_GROUP 128
+
+/* Junctions that make a thread worth its while in steps that fit lines: about 40 us. */
+#define ASJ_LEAST_JUNCTIONS 4
+
+/* Checks the arguments of a public function that writes to `output`, makes the tables for the options (NULL = default) and the
+ * planes for the image. Whatever the result, asj_detection_run_end() releases what the run holds. */
+asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context, const asj_image *image,
+                                   const asj_detect_options *options, const void *output);
+void asj_detection_run_end(asj_detection_run *run);
+
+/* The scratch of the calling thread, inside a parallel region. */
+uint16_t *asj_detection_run_scratch(const asj_detection_run *run);
+
+/* Length of a list that is allocated for `count` elements: room for a few when there are hardly any, so that the next of a stream
+ * of pictures needs no more. */
+size_t asj_detection_run_room(size_t count);
+
+/* Reports that the stage is done up to here, as a part of the whole run; ASJ_ERROR_CANCELLED when the caller wants to stop. */
+asj_status asj_detection_run_progress(const asj_detection_run *run, int32_t stage, double done);
+
+/* Adds the time since the last call to the stage. */
+void asj_detection_run_time(asj_detection_run *run, int32_t stage);
+
+/* ---- what the caller sees of the steps (asj_context_options.dump) ---- */
+
+/* `kind`: ASJ_DUMP_PLANE_...; a value of 1 in the plane means `unit`. */
+void asj_detection_run_dump_plane(const asj_detection_run *run, int32_t kind, const char *name, const void *data, double unit);
+
+/* Hands out `count` points as x, y, x, y, .. */
+void asj_detection_run_dump_points(const asj_detection_run *run, int32_t stage, const char *name, size_t count,
+                                   const int32_t *points);
+
+/* The same from the places of the hypotheses. Memory that cannot be had is an error like any other. */
+asj_status asj_detection_run_dump_hypotheses(const asj_detection_run *run, int32_t stage, const char *name);
+
+#endif

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 1 over an image: grey plane, then its normalised gradient. */
+#include "steps.h"
+
+asj_status asj_step_gradient(asj_detection_run *run)
+{
+    asj_frame *frame = run->frame;
+    asj_status status = asj_frame_load(run->context, frame, run->image);
+    if (status == ASJ_OK)
+        status = run->context->ops->gradient->planes(run->context, frame, run->options);
+    if (status != ASJ_OK)
+        return status;
+    asj_detection_run_dump_plane(run, ASJ_DUMP_PLANE_U16, "gray", frame->gray, 1.0 / ASJ_GRAY_ONE);
+    asj_detection_run_dump_plane(run, ASJ_DUMP_PLANE_I16, "gradient_x", frame->gradient_x, 1.0 / ASJ_GRADIENT_ONE);
+    asj_detection_run_dump_plane(run, ASJ_DUMP_PLANE_I16, "gradient_y", frame->gradient_y, 1.0 / ASJ_GRADIENT_ONE);
+    return ASJ_OK;
+}

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* A junction that is not yet certain: what the location and steps 4 and 5 pass on to each other and improve or reject. */
+#ifndef ASJ_SRC_HYPOTHESIS_H
+#define ASJ_SRC_HYPOTHESIS_H
+
+#include "isotropic.h"
+
+/* A ray that has been followed along a branch (step 4). */
+typedef struct asj_scanned_ray {
+    double x, y;  /* px: where it started */
+    double angle; /* rad */
+} asj_scanned_ray;
+
+typedef struct asj_hypothesis_branch {
+    double angle;            /* rad, outwards */
+    double length;           /* px; 0 before the scan */
+    asj_scanned_ray scanned; /* that gave the length */
+    double strength;         /* standard deviations */
+    double log_nfa;          /* natural logarithm */
+    double offset;           /* px: the fitted line passes this far from the junction, along (-sin, cos) of the angle */
+    double angle_variance;   /* rad^2 of the fit */
+    double offset_variance;  /* px^2 of the fit at the junction */
+    double apart;            /* px between the two edges of a thin line, 0 = one edge */
+} asj_hypothesis_branch;
+
+typedef struct asj_hypothesis {
+    double x, y;               /* px */
+    double x0, y0;             /* where the isotropic test found it */
+    double radius;             /* px: of that test */
+    double log_nfa;            /* natural logarithm, of that test */
+    double location_variance;  /* px^2, mean of both axes */
+    int32_t branch_count;      /* 0 = rejected */
+    asj_hypothesis_branch branches[ASJ_MAX_BRANCHES];
+} asj_hypothesis;
+
+/* Whether two directions of an isotropic junction open by minimum_opening: most edges that pass the isotropic test fail here. */
+int asj_isotropic_has_opening(const asj_detect_options *options, const asj_isotropic_junction *junction);
+
+/* Turns an isotropic junction into a hypothesis at its pixel. */
+void asj_hypothesis_start(const asj_isotropic_junction *junction, asj_hypothesis *hypothesis);
+
+/* Absolute difference of two angles in [0, pi]. */
+double asj_angle_distance(double a, double b);
+
+/* An angle brought into [0, 2 pi). */
+double asj_angle_wrap(double angle);
+
+/* Removes branches whose flag is 0, keeping the order. */
+void asj_hypothesis_select(asj_hypothesis *hypothesis, const int *keep);
+
+/* 1 when two branches open by at least `least` radians and at most pi - least. */
+int asj_hypothesis_has_opening(const asj_hypothesis *hypothesis, double least);
+
+#endif

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 3 over an image: every candidate is tested, and of those that pass the ones close to something better go. */
+#include "isotropic_thin.h"
+#include "steps.h"
+
+/* What is found while groups of rows are tested. */
+typedef struct lists {
+    void *records; /* asj_isotropic_junction: one for each candidate of a group */
+    void *found;   /* asj_isotropic_junction: those that passed, of all groups */
+    size_t record_capacity, found_capacity;
+} lists;
+
+/* starts[y - top]: candidates of the group before row y. */
+static void count_candidates(const asj_detection_run *run, int32_t top, int32_t bottom, size_t *starts)
+{
+    const int32_t blocks = run->frame->blocks;
+    starts[0] = 0;
+    for (int32_t y = top; y < bottom; y++) {
+        size_t bits = 0;
+        for (int32_t b = 0; b < blocks; b++)
+            for (uint32_t mask = run->candidates[(ptrdiff_t)y * blocks + b]; mask; mask &= mask - 1)
+                bits++;
+        starts[y - top + 1] = starts[y - top] + bits;
+    }
+}
+
+static asj_status test_group(asj_detection_run *run, int32_t top, int32_t bottom, lists *l)
+{
+    asj_context *context = run->context;
+    size_t starts[ASJ_ROW_GROUP + 1];
+    count_candidates(run, top, bottom, starts);
+    const size_t total = starts[bottom - top], most = run->isotropic_count + total, size = sizeof(asj_isotropic_junction);
+    asj_status status = asj_grow(&context->memory, &l->records, &l->record_capacity, asj_detection_run_room(total), size, 0);
+    if (status == ASJ_OK)
+        status = asj_grow(&context->memory, &l->found, &l->found_capacity, asj_detection_run_room(most), size,
+                          run->isotropic_count);
+    if (status != ASJ_OK)
+        return asj_fail(context, status, "no memory for %zu candidates", most);
+    if (total > 0)
+        status = context->ops->isotropic->rows(context, run->test, run->frame, top, bottom, run->candidates, starts, run->scratch,
+                                               run->scratch_size, l->records);
+    if (status != ASJ_OK)
+        return status;
+    const asj_isotropic_junction *tested = l->records;
+    asj_isotropic_junction *found = l->found;
+    for (size_t i = 0; i < total; i++)
+        if (tested[i].branch_count)
+            found[run->isotropic_count++] = tested[i];
+    return ASJ_OK;
+}
+
+static asj_status test_candidates(asj_detection_run *run)
+{
+    const int32_t height = run->frame->height;
+    asj_status status = ASJ_OK;
+    lists l = {0};
+    for (int32_t top = 0; top < height && status == ASJ_OK; top += ASJ_ROW_GROUP) {
+        const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
+        status = test_group(run, top, bottom, &l);
+        if (status == ASJ_OK)
+            status = asj_detection_run_progress(run, ASJ_STAGE_ISOTROPIC, 0.5 + 0.2 * bottom / height);
+    }
+    asj_release(&run->context->memory, l.records);
+    run->isotropic = l.found;
+    return status;
+}
+
+static asj_status thin(asj_detection_run *run)
+{
+    const asj_frame *frame = run->frame;
+    const size_t bytes = asj_isotropic_thin_scratch(run->isotropic_count, frame->width, frame->height);
+    void *scratch = asj_allocate(&run->context->memory, bytes, 1);
+    if (!scratch)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to order %zu junctions", run->isotropic_count);
+    run->isotropic_count = asj_isotropic_thin(run->isotropic, run->isotropic_count, run->options, frame->width, frame->height,
+                                              scratch);
+    asj_release(&run->context->memory, scratch);
+    return ASJ_OK;
+}
+
+static asj_status dump(const asj_detection_run *run)
+{
+    int32_t *points = asj_allocate_list(&run->context->memory, run->isotropic_count, 2 * sizeof *points);
+    if (!points)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to dump %zu points", run->isotropic_count);
+    for (size_t i = 0; i < run->isotropic_count; i++) {
+        points[2 * i] = run->isotropic[i].x;
+        points[2 * i + 1] = run->isotropic[i].y;
+    }
+    asj_detection_run_dump_points(run, ASJ_STAGE_ISOTROPIC, "isotropic", run->isotropic_count, points);
+    asj_release(&run->context->memory, points);
+    return ASJ_OK;
+}
+
+asj_status asj_step_isotropic(asj_detection_run *run)
+{
+    asj_status status = test_candidates(run);
+    if (status == ASJ_OK)
+        status = thin(run);
+    return status == ASJ_OK && run->context->options.dump ? dump(run) : status;
+}

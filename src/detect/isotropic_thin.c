@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Thinning of step 3: of isotropic junctions that lie close together the most meaningful one stays; with more_branches_win the one
+ * with the most branches, as in ACJ. */
+#include "isotropic_thin.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define TWIN 2.0 /* px: of junctions nearer than this the most meaningful one stays */
+
+/* Ties are broken by place, so that the order never depends on anything else. */
+static int by_place(const asj_isotropic_junction *p, const asj_isotropic_junction *q)
+{
+    return p->y != q->y ? p->y - q->y : p->x - q->x;
+}
+
+static int in_rows(const void *a, const void *b)
+{
+    return by_place(a, b);
+}
+
+static int by_meaning(const void *a, const void *b)
+{
+    const asj_isotropic_junction *p = a, *q = b;
+    if (p->log_nfa != q->log_nfa)
+        return p->log_nfa < q->log_nfa ? -1 : 1;
+    return by_place(p, q);
+}
+
+static int by_branches(const void *a, const void *b)
+{
+    const asj_isotropic_junction *p = a, *q = b;
+    if (p->branch_count != q->branch_count)
+        return q->branch_count - p->branch_count;
+    return by_meaning(a, b);
+}
+
+/* Marks the disc around a junction in the bit map. */
+static void take(uint8_t *taken, int32_t width, int32_t height, int32_t x, int32_t y, double radius)
+{
+    const size_t row_bytes = ((size_t)width + 7) / 8;
+    const int32_t reach = (int32_t)radius, top = y > reach ? y - reach : 0, bottom = y + reach < height ? y + reach : height - 1;
+    for (int32_t row = top; row <= bottom; row++) {
+        int32_t half = 0;
+        while ((half + 1) * (half + 1) + (row - y) * (row - y) <= radius * radius)
+            half++;
+        const int32_t right = x + half < width ? x + half : width - 1;
+        for (int32_t column = x > half ? x - half : 0; column <= right; column++)
+            taken[(size_t)row * row_bytes + (size_t)(column / 8)] |= (uint8_t)(1 << column % 8);
+    }
+}
+
+/* A junction's place in the list and its log_nfa as a float, turned into a whole number in the same order. */
+typedef struct rank {
+    uint32_t key, index;
+} rank;
+
+static uint32_t key_of(double log_nfa)
+{
+    const float rounded = (float)log_nfa + 0.0f; /* no negative zero */
+    uint32_t bits;
+    memcpy(&bits, &rounded, sizeof bits);
+    return bits >> 31 ? ~bits : bits | 0x80000000u;
+}
+
+/* Ranks by meaningfulness: three passes over 11 bits of the keys each, then what the floats do not tell. `spare` is as long as
+ * `ranks`; returns the one of both that holds the result. */
+static rank *sort_ranks(const asj_isotropic_junction *junctions, rank *ranks, rank *spare, size_t count)
+{
+    for (int shift = 0; shift < 32; shift += 11) {
+        size_t starts[2048] = {0}, next = 0;
+        for (size_t i = 0; i < count; i++)
+            starts[ranks[i].key >> shift & 2047]++;
+        for (size_t b = 0; b < 2048; b++) {
+            const size_t here = starts[b];
+            starts[b] = next;
+            next += here;
+        }
+        for (size_t i = 0; i < count; i++)
+            spare[starts[ranks[i].key >> shift & 2047]++] = ranks[i];
+        rank *swap = ranks;
+        ranks = spare;
+        spare = swap;
+    }
+    for (size_t i = 1; i < count; i++) {
+        const rank moved = ranks[i];
+        size_t j = i;
+        for (; j > 0 && ranks[j - 1].key == moved.key; j--) {
+            if (by_meaning(&junctions[ranks[j - 1].index], &junctions[moved.index]) <= 0)
+                break;
+            ranks[j] = ranks[j - 1];
+        }
+        ranks[j] = moved;
+    }
+    return ranks;
+}
+
+size_t asj_isotropic_thin_scratch(size_t count, int32_t width, int32_t height)
+{
+    return count * (2 * sizeof(rank) + 1) + ((size_t)width + 7) / 8 * (size_t)height;
+}
+
+size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const asj_detect_options *options,
+                          int32_t width, int32_t height, void *scratch)
+{
+    const size_t row_bytes = ((size_t)width + 7) / 8;
+    rank *ranks = scratch, *spare = ranks + count;
+    uint8_t *stays = (uint8_t *)(void *)(spare + count), *taken = stays + count;
+    size_t kept = 0;
+    if (count == 0)
+        return 0;
+    if (options->more_branches_win)
+        qsort(junctions, count, sizeof *junctions, by_branches);
+    for (size_t i = 0; i < count; i++)
+        ranks[i] = (rank){key_of(junctions[i].log_nfa), (uint32_t)i};
+    const rank *order = options->more_branches_win ? ranks : sort_ranks(junctions, ranks, spare, count);
+    memset(stays, 0, count + row_bytes * (size_t)height);
+    for (size_t i = 0; i < count; i++) {
+        const asj_isotropic_junction *junction = &junctions[order[i].index];
+        if (taken[junction->y * row_bytes + junction->x / 8] >> junction->x % 8 & 1)
+            continue;
+        take(taken, width, height, junction->x, junction->y, options->more_branches_win ? 0.5 * junction->radius : TWIN);
+        stays[order[i].index] = 1;
+    }
+    for (size_t i = 0; i < count; i++)
+        if (stays[i])
+            junctions[kept++] = junctions[i];
+    if (options->more_branches_win)
+        qsort(junctions, kept, sizeof *junctions, in_rows);
+    return kept;
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* What stands behind asj_nfa: tables of ln tails, filled by nfa_sector.c and nfa_arc.c, and what both fill them with. */
+#ifndef ASJ_SRC_NFA_TABLES_H
+#define ASJ_SRC_NFA_TABLES_H
+
+#include "nfa.h"
+
+enum {
+    ASJ_NFA_PER_UNIT = 32,                      /* nodes per unit of every table: a power of two, so that finding a cell is exact */
+    ASJ_NFA_DIRECT = 6,                         /* sums of up to this many gamma have a table; longer ones use the saddlepoint */
+    ASJ_NFA_SECTOR_CELLS = 16 * ASJ_NFA_PER_UNIT,
+    ASJ_NFA_RATE_CELLS = 4 * ASJ_NFA_PER_UNIT,  /* saddlepoint: in u = sqrt(t / n) */
+    ASJ_NFA_ARC_CELLS = 12 * ASJ_NFA_PER_UNIT   /* sums of gamma~ */
+};
+#define ASJ_NFA_STEP (1.0 / ASJ_NFA_PER_UNIT)
+
+/* A node of the saddlepoint table and its derivatives with respect to u (nfa_sector.c). */
+typedef struct asj_nfa_rate {
+    double root, root_slope, correction, correction_slope;
+} asj_nfa_rate;
+
+struct asj_nfa {
+    asj_nfa_rate rate[ASJ_NFA_RATE_CELLS + 1];
+    /* ln F(i step; n) and ln G(i step; n); first entries are the limits from above */
+    double sector[ASJ_NFA_DIRECT + 1][ASJ_NFA_SECTOR_CELLS + 1];
+    double arc[ASJ_MAX_ARC + 1][ASJ_NFA_ARC_CELLS + 1];
+};
+
+/* Fill the tables of sums of gamma and of gamma~. */
+asj_status asj_nfa_fill_sector(asj_memory *memory, asj_nfa *nfa);
+asj_status asj_nfa_fill_arc(asj_memory *memory, asj_nfa *nfa);
+
+/* Gauss-Legendre, 16 points: positive half of the nodes on [-1, 1], weights (Abramowitz and Stegun, table 25.4). */
+#define ASJ_NFA_GAUSS 8
+extern const double asj_nfa_gauss_node[ASJ_NFA_GAUSS], asj_nfa_gauss_weight[ASJ_NFA_GAUSS];
+
+/* Linear in a table of ln P against i * step, so that it falls wherever the table falls. The error, step^2/8 |(ln P)''| at most, is
+ * below 6e-5 decades, save next to the infinite density of gamma~ at 0: there 3e-3 decades in the first cell of G, 6e-4 in the
+ * second, 6e-5 from s = 0.25 on. */
+static inline double asj_nfa_interpolate(const double *table, double x)
+{
+    const double place = x * ASJ_NFA_PER_UNIT;
+    const int cell = (int)place;
+    return table[cell] + (table[cell + 1] - table[cell]) * (place - cell);
+}
+
+#endif

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* asj_prepare(): what a first call takes longer for is done ahead: kernels are built, tables and planes made. */
+#include "core/backend.h"
+#include "core/image.h"
+
+#include <string.h>
+
+/* The kernels of the device, if there is one. */
+static asj_status build_kernels(asj_context *context)
+{
+    asj_status status;
+    asj_backend_begin(context);
+    do
+        status = asj_backend_prepare(context);
+    while (asj_backend_retry(context, status));
+    return status;
+}
+
+/* Dark with a bright rectangle: every step of the detector has something to do. */
+static void draw_test_picture(uint8_t *pixels, int32_t width, int32_t height)
+{
+    const size_t row = (size_t)width, left = row / 4;
+    memset(pixels, 60, row * (size_t)height);
+    for (int32_t y = height / 4; y < height / 2; y++)
+        memset(pixels + (size_t)y * row + left, 200, row / 2 - left);
+}
+
+/* Junctions of the test picture, which nobody wants to hear of. */
+static asj_status detect_quietly(asj_context *context, const asj_detect_options *options, const asj_image *image)
+{
+    const asj_progress_callback progress = context->options.progress;
+    const asj_dump_callback dump = context->options.dump;
+    asj_detection *found = NULL;
+    context->options.progress = NULL;
+    context->options.dump = NULL;
+    const asj_status status = asj_detect(context, image, options, &found);
+    context->options.progress = progress;
+    context->options.dump = dump;
+    asj_detection_free(&found);
+    return status;
+}
+
+asj_status asj_prepare(asj_context *context, const asj_detect_options *options, int32_t width, int32_t height)
+{
+    const uint8_t pixel = 0;
+    asj_image image = {&pixel, ASJ_FORMAT_GRAY8, width, height, 0, 0};
+    if (!context)
+        return ASJ_ERROR_ARGUMENT;
+    asj_status status = asj_image_check(context, &image);
+    if (status == ASJ_OK)
+        status = build_kernels(context);
+    if (status != ASJ_OK)
+        return status;
+    uint8_t *pixels = asj_allocate(&context->memory, (size_t)width * (size_t)height, 1);
+    if (!pixels)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for a test picture of %d x %d", (int)width, (int)height);
+    draw_test_picture(pixels, width, height);
+    image.data = pixels;
+    status = detect_quietly(context, options, &image);
+    asj_release(&context->memory, pixels);
+    return status;
+}

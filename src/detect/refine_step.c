@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 5 over an image: orientations to scan along again, and at the end orientations, locations and validation. */
+#include "refine.h"
+#include "ends.h"
+#include "steps.h"
+#include "suppress.h"
+#include "validate.h"
+#include "core/threads.h"
+
+asj_status asj_step_orient(asj_detection_run *run)
+{
+    const int64_t count = (int64_t)run->hypothesis_count;
+    const int32_t threads = asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS);
+    (void)threads;
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
+    for (int64_t i = 0; i < count; i++)
+        asj_orient(run->context, run->frame, run->options, &run->hypotheses[i]);
+    return ASJ_OK;
+}
+
+static void refine_all(asj_detection_run *run)
+{
+    const int64_t count = (int64_t)run->hypothesis_count;
+    const int32_t threads = asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS);
+    (void)threads;
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
+    for (int64_t i = 0; i < count; i++) {
+        asj_refine(run->context, run->frame, run->options, &run->hypotheses[i]);
+        asj_validate(run->context, run->frame, run->options, &run->hypotheses[i]);
+    }
+}
+
+static asj_status snap_ends(asj_detection_run *run)
+{
+    const size_t count = run->hypothesis_count;
+    const asj_hypothesis **order = asj_allocate_list(&run->context->memory, asj_detection_run_room(count), sizeof *order);
+    if (!order)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", count);
+    asj_ends_snap(run->hypotheses, count, run->options->snap_distance, order);
+    asj_release(&run->context->memory, order);
+    return ASJ_OK;
+}
+
+asj_status asj_step_refine(asj_detection_run *run)
+{
+    refine_all(run);
+    asj_status status = asj_suppress_all(run, ASJ_SUPPRESS_CLOSE);
+    if (status == ASJ_OK)
+        status = snap_ends(run);
+    return status == ASJ_OK ? asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "junctions") : status;
+}

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 4 over an image: which rays are followed, and what their ends say about the branches.
+ *
+ * A branch is scanned when it has no length yet, and again when it has turned or moved away from the ray that gave it. Where a
+ * length is known only the last SCANNED_AGAIN px are scanned again, since a better angle mostly changes the end; a branch that
+ * ends before that part is scanned once more from its beginning. */
+#include "steps.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define STRIP 64 /* px: see by_strip() */
+
+/* px. Chosen: turns of less than the pixel that needs_scan() tolerates change an end by a few pixels, and twice the diameter of the
+ * local junctions is beyond what they make of it; less finds more branches too short and scans these twice, more scans pixels
+ * again to the same result. */
+#define SCANNED_AGAIN 16
+
+/* px: no pixel of a ray that is nearer than this to the branch's line is another pixel. */
+#define SAME_RAY 1
+
+/* Whether a branch has no length yet, or is somewhere along it more than SAME_RAY away from the ray that gave it. */
+static int needs_scan(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+{
+    const asj_scanned_ray *ray = &branch->scanned;
+    const double turned = asj_angle_distance(branch->angle, ray->angle) * branch->length;
+    return branch->length <= 0 || turned + hypot(hypothesis->x - ray->x, hypothesis->y - ray->y) > SAME_RAY;
+}
+
+static void set_length(const asj_detection_run *run, const asj_ray *ray, asj_hypothesis_branch *branch)
+{
+    const double length = run->options->scan_axial ? 0.5 * (ray->forward + ray->axial) : ray->forward;
+    /* a ray that starts at the isotropic scale is as long as that already */
+    branch->length = run->options->scan_start == 0 && length < ray->start ? ray->start : length;
+    branch->scanned = (asj_scanned_ray){ray->x, ray->y, ray->angle};
+}
+
+/* The first radius of the ray: the option's, the isotropic scale when it is 0, or the last part of a branch whose length is
+ * known. */
+static int32_t first_radius(const asj_detection_run *run, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+{
+    const int32_t start = run->options->scan_start, again = (int32_t)branch->length - SCANNED_AGAIN;
+    if (start <= 0)
+        return (int32_t)hypothesis->radius;
+    return again > start ? again : start;
+}
+
+/* One ray for each branch that needs it. */
+static size_t list_rays(const asj_detection_run *run, asj_ray *rays, asj_hypothesis_branch **branches)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < run->hypothesis_count; i++) {
+        asj_hypothesis *hypothesis = &run->hypotheses[i];
+        for (int32_t b = 0; b < hypothesis->branch_count; b++) {
+            asj_hypothesis_branch *branch = &hypothesis->branches[b];
+            if (!needs_scan(hypothesis, branch))
+                continue;
+            branches[count] = branch;
+            rays[count++] = (asj_ray){hypothesis->x, hypothesis->y, branch->angle, first_radius(run, hypothesis, branch), 0, 0};
+        }
+    }
+    return count;
+}
+
+/* From top to bottom in strips, in a strip from left to right: rays that follow each other then need the same local junctions. */
+static int by_strip(const void *a, const void *b)
+{
+    const asj_hypothesis *p = a, *q = b;
+    const int32_t row = (int32_t)p->y / STRIP, other = (int32_t)q->y / STRIP;
+    if (row != other)
+        return row < other ? -1 : 1;
+    return p->x != q->x ? p->x < q->x ? -1 : 1 : (p->y > q->y) - (p->y < q->y);
+}
+
+/* Whether a ray that started in the last part of a branch ended before it began. */
+static int ends_before(const asj_detection_run *run, const asj_ray *ray)
+{
+    const asj_detect_options *options = run->options;
+    return options->scan_start > 0 && ray->start != options->scan_start &&
+           (ray->forward <= 0 || (options->scan_axial && ray->axial <= 0));
+}
+
+static asj_status follow(const asj_detection_run *run, asj_ray *rays, size_t count)
+{
+    return run->context->ops->scan->rays(run->context, run->scan, run->frame, rays, count);
+}
+
+static asj_status scan_branches(asj_detection_run *run, asj_ray *rays, asj_hypothesis_branch **branches)
+{
+    if (run->hypothesis_count > 1)
+        qsort(run->hypotheses, run->hypothesis_count, sizeof *run->hypotheses, by_strip);
+    const size_t count = list_rays(run, rays, branches);
+    size_t left = 0;
+    asj_status status = follow(run, rays, count);
+    for (size_t i = 0; i < count && status == ASJ_OK; i++) {
+        if (!ends_before(run, &rays[i])) {
+            set_length(run, &rays[i], branches[i]);
+            continue;
+        }
+        branches[left] = branches[i];
+        rays[left] = rays[i];
+        rays[left++].start = run->options->scan_start;
+    }
+    if (left > 0 && status == ASJ_OK)
+        status = follow(run, rays, left);
+    for (size_t i = 0; i < left && status == ASJ_OK; i++)
+        set_length(run, &rays[i], branches[i]);
+    return status;
+}
+
+asj_status asj_step_scan(asj_detection_run *run)
+{
+    asj_memory *memory = &run->context->memory;
+    size_t total = 0;
+    for (size_t i = 0; i < run->hypothesis_count; i++)
+        total += (size_t)run->hypotheses[i].branch_count;
+    asj_ray *rays = asj_allocate_list(memory, asj_detection_run_room(total), sizeof *rays);
+    asj_hypothesis_branch **branches = asj_allocate_list(memory, asj_detection_run_room(total), sizeof *branches);
+    asj_status status = ASJ_OK;
+    if (rays && branches)
+        status = scan_branches(run, rays, branches);
+    else
+        status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu rays", total);
+    asj_release(memory, branches);
+    asj_release(memory, rays);
+    return status;
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The steps of the detector over a whole image, in the order in which detect.c runs them: threads, memory, progress and dumps
+ * around what a step does to one place, which stands in the file of the step's name. */
+#ifndef ASJ_SRC_STEPS_H
+#define ASJ_SRC_STEPS_H
+
+#include "detection_run.h"
+
+asj_status asj_step_gradient(asj_detection_run *run);   /* step 1 (gradient_step.c): image -> planes of the frame */
+asj_status asj_step_candidates(asj_detection_run *run); /* step 2 (candidates_step.c): planes -> candidates */
+asj_status asj_step_isotropic(asj_detection_run *run);  /* step 3 (isotropic_step.c): candidates -> isotropic junctions */
+asj_status asj_step_locate(asj_detection_run *run);     /* locate_step.c: isotropic junctions -> hypotheses */
+asj_status asj_step_scan(asj_detection_run *run);       /* step 4 (scan_step.c): lengths where they are not known */
+asj_status asj_step_orient(asj_detection_run *run);     /* step 5 (refine_step.c): orientations, to scan along again */
+asj_status asj_step_refine(asj_detection_run *run);     /* step 5 (refine_step.c): orientations, location, validation */
+
+#endif

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Validation. A branch is reported when it is long enough, its line passes the junction, the strip along it is meaningful (strip.c)
+ * and reaches the junction, and no better branch points the same way; a junction, when two of its branches open. */
+#include "validate.h"
+#include "core/angle.h"
+#include "strip.h"
+
+#include <math.h>
+
+/* asj_reject_early(): strips that are tried, px, each with the shorter one that comes for nothing. Most branches that are
+ * meaningful at all are so at 20 px. */
+#define EARLY_LENGTH 20.0
+#define EARLY_SHORTER 12.0
+#define EARLY_LONGER 50.0
+#define EARLY_SHORTEST 8.0
+
+/* And its slack, since angles become better later: natural logarithm of a number of false alarms, and degrees. Chosen: more
+ * passes noise on to the scan, which costs time; less begins to reject what would become meaningful. */
+#define EARLY_LOG_NFA 6.0
+#define EARLY_OPENING 5.0
+
+#define LARGEST_OFFSET 2.0 /* px: a line that misses the junction by more belongs to something else */
+
+/* px: two pixels of a gradient's differences, and half a pixel */
+#define FRAME_REACH 2.5
+
+/* A branch that runs along the border of the image, no farther from it than a gradient reaches, is the frame of the picture (a
+ * scan's margin, a resampling filter's ringing), not an edge of the scene. */
+static int on_frame(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+{
+    const double x = hypothesis->x + branch->length * cos(branch->angle), y = hypothesis->y + branch->length * sin(branch->angle);
+    return fmax(hypothesis->x, x) <= FRAME_REACH || fmax(hypothesis->y, y) <= FRAME_REACH ||
+           fmin(hypothesis->x, x) >= frame->width - 1 - FRAME_REACH || fmin(hypothesis->y, y) >= frame->height - 1 - FRAME_REACH;
+}
+
+/* Of two branches closer than merge_angle the more meaningful one stays; of those that lie on one line, the stronger one. */
+static int less_meaningful(const asj_hypothesis_branch *a, const asj_hypothesis_branch *b)
+{
+    const double same = 1e-3; /* decades of what rounding makes of one line */
+    return fabs(a->log_nfa - b->log_nfa) > same ? a->log_nfa > b->log_nfa : a->strength < b->strength;
+}
+
+static void merge(const asj_detect_options *options, const asj_hypothesis *hypothesis, int *keep)
+{
+    const double least = options->merge_angle * ASJ_DEGREE;
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        for (int32_t j = i + 1; j < hypothesis->branch_count; j++) {
+            const asj_hypothesis_branch *a = &hypothesis->branches[i], *b = &hypothesis->branches[j];
+            if (keep[i] && keep[j] && asj_angle_distance(a->angle, b->angle) < least)
+                keep[less_meaningful(a, b) ? i : j] = 0;
+        }
+}
+
+/* Whether a strip of some length is meaningful, or nearly so: the angle will still become better. */
+static int may_be_meaningful(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                             const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+{
+    const double limit = log(options->epsilon) + EARLY_LOG_NFA;
+    const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, EARLY_LENGTH};
+    const asj_strip_line longer = {hypothesis->x, hypothesis->y, branch->angle, EARLY_LONGER};
+    return asj_strip_passes(context, frame, options, &line, EARLY_SHORTER, limit) ||
+           asj_strip_passes(context, frame, options, &longer, EARLY_SHORTEST, limit);
+}
+
+static int has_opening(const asj_detect_options *options, const asj_hypothesis *hypothesis, const int *keep)
+{
+    asj_hypothesis rest = *hypothesis;
+    asj_hypothesis_select(&rest, keep);
+    return asj_hypothesis_has_opening(&rest, fmax(options->minimum_opening - EARLY_OPENING, 0) * ASJ_DEGREE);
+}
+
+/* The hypothesis is rejected as soon as no two of the branches that may be left open. */
+void asj_reject_early(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                      asj_hypothesis *hypothesis)
+{
+    int keep[ASJ_MAX_BRANCHES];
+    if (!options->strip_test)
+        return;
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        keep[i] = 1;
+    int opens = has_opening(options, hypothesis, keep);
+    for (int32_t i = 0; i < hypothesis->branch_count && opens; i++) {
+        keep[i] = may_be_meaningful(context, frame, options, hypothesis, &hypothesis->branches[i]);
+        opens = keep[i] || has_opening(options, hypothesis, keep);
+    }
+    asj_hypothesis_select(hypothesis, keep);
+    hypothesis->branch_count = opens ? hypothesis->branch_count : 0;
+}
+
+/* Lines over whole branches may move the junction as far again as those of the first fit (locate.c); what moves farther has drifted
+ * to another edge. */
+void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
+{
+    const double log_epsilon = log(options->epsilon);
+    int keep[ASJ_MAX_BRANCHES];
+    if (hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0) > 2 * options->max_move) {
+        hypothesis->branch_count = 0;
+        return;
+    }
+    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
+        asj_hypothesis_branch *branch = &hypothesis->branches[i];
+        const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
+        const asj_strip strip = asj_strip_test(context, frame, options, &line);
+        branch->log_nfa = strip.log_nfa;
+        keep[i] = branch->length >= options->minimum_length && branch->length > 0 && fabs(branch->offset) <= LARGEST_OFFSET &&
+                  (!options->strip_test || strip.log_nfa <= log_epsilon) &&
+                  strip.near_strength >= options->near_strength &&
+                  !(options->ignore_frame && on_frame(frame, hypothesis, branch));
+    }
+    merge(options, hypothesis, keep);
+    asj_hypothesis_select(hypothesis, keep);
+    if (!asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE)) {
+        hypothesis->branch_count = 0;
+        return;
+    }
+    for (int32_t i = 1; i < hypothesis->branch_count; i++) {
+        asj_hypothesis_branch moved = hypothesis->branches[i];
+        int32_t j = i;
+        for (; j > 0 && hypothesis->branches[j - 1].angle > moved.angle; j--)
+            hypothesis->branches[j] = hypothesis->branches[j - 1];
+        hypothesis->branches[j] = moved;
+    }
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* After step 5: which branches, and which junctions, are reported; and which cannot be, long before. */
+#ifndef ASJ_SRC_VALIDATE_H
+#define ASJ_SRC_VALIDATE_H
+
+#include "hypothesis.h"
+
+/* Drops branches that asj_validate() would drop whatever their length, before they are scanned; branch_count becomes 0 when no two
+ * that open enough are left. */
+void asj_reject_early(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                      asj_hypothesis *hypothesis);
+
+/* Drops branches that are too short, off the junction, not meaningful, or twins of a better one; branch_count becomes 0 when no two
+ * branches open enough. Sorts the branches by angle. */
+void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                  asj_hypothesis *hypothesis);
+
+#endif

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "detect/suppress.h"
+#include "unit_test.h"
+
+static int before(const asj_hypothesis *p, const asj_hypothesis *q)
+{
+    if (p->log_nfa != q->log_nfa)
+        return p->log_nfa < q->log_nfa;
+    return p->y != q->y ? p->y < q->y : p->x < q->x;
+}
+
+static size_t naive_suppress(asj_hypothesis *hypotheses, size_t count, asj_hypothesis *kept)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = i; k > 0 && before(&hypotheses[k], &hypotheses[k - 1]); k--) {
+            const asj_hypothesis swap = hypotheses[k];
+            hypotheses[k] = hypotheses[k - 1];
+            hypotheses[k - 1] = swap;
+        }
+    for (size_t i = 0; i < count; i++) {
+        int near = hypotheses[i].branch_count < 2;
+        for (size_t k = 0; k < n; k++)
+            near |= hypot(kept[k].x - hypotheses[i].x, kept[k].y - hypotheses[i].y) < fmax(3, 0.35 * kept[k].radius);
+        if (!near)
+            kept[n++] = hypotheses[i];
+    }
+    return n;
+}
+
+/* Also just outside the image, where line fits may end. */
+static void test_close(void **state)
+{
+    enum { COUNT = 200 };
+    static const int32_t sizes[][2] = {{100, 80}, {1, 1}, {11, 200}, {22, 22}, {300, 7}};
+    static asj_hypothesis hypotheses[COUNT], copy[COUNT], expected[COUNT];
+    synth_random random;
+    (void)state;
+    synth_random_seed(&random, 21);
+    for (int round = 0; round < 50; round++) {
+        const int32_t width = sizes[round % 5][0], height = sizes[round % 5][1];
+        const size_t count = (size_t)(round * 4);
+        memset(hypotheses, 0, sizeof hypotheses);
+        for (size_t i = 0; i < count; i++) {
+            hypotheses[i].x = synth_random_between(&random, -9, width + 9);
+            hypotheses[i].y = synth_random_between(&random, -9, height + 9);
+            hypotheses[i].radius = floor(synth_random_between(&random, 3, 31));
+            hypotheses[i].branch_count = (int32_t)synth_random_between(&random, 0, 6);
+            hypotheses[i].log_nfa = -floor(synth_random_between(&random, 0, 30));
+        }
+        memcpy(copy, hypotheses, sizeof copy);
+        int32_t *cells = malloc(asj_suppress_cells(count, width, height) * sizeof *cells);
+        assert_non_null(cells);
+        const size_t kept = asj_suppress(hypotheses, count, ASJ_SUPPRESS_CLOSE, width, height, cells);
+        assert_int_equal(kept, naive_suppress(copy, count, expected));
+        for (size_t i = 0; i < kept; i++)
+            assert_memory_equal(&hypotheses[i], &expected[i], sizeof hypotheses[i]);
+        free(cells);
+    }
+}
+
+/* Guesses of one corner: each branch is one of the other's too. */
+static void test_twins(void **state)
+{
+    asj_hypothesis pair[2];
+    int32_t cells[400];
+    (void)state;
+    assert_true(asj_suppress_cells(2, 60, 60) <= 400);
+    for (int n = 0; n < 64; n++) {
+        const double distance = n & 1 ? 1.4 : 1.6, turn = (n & 2 ? 9 : 11) * UNIT_PI / 180, moved = n & 4 ? 1.4 : 1.6;
+        const int fewer = n >> 3 & 1, order = n >> 4 & 1, seam = n >> 5;
+        memset(pair, 0, sizeof pair);
+        for (int i = 0; i < 2; i++) {
+            asj_hypothesis *h = &pair[i];
+            h->x = h->x0 = 30 + i * distance;
+            h->y = h->y0 = 30;
+            h->radius = 7;
+            h->log_nfa = i == order ? -20 : -10;
+            h->branch_count = 3 - i * fewer;
+            for (int b = 0; b < h->branch_count; b++)
+                h->branches[(b + i) % h->branch_count].angle = fmod((seam ? 6.2 : 1) + 2 * b + i * turn, 2 * UNIT_PI);
+        }
+        pair[order].x0 += moved;
+        const int twins = distance < 1.5 && turn < 10 * UNIT_PI / 180 && moved < 1.5 && !fewer;
+        assert_int_equal(asj_suppress(pair, 2, ASJ_SUPPRESS_TWINS, 60, 60, cells), twins ? 1 : 2);
+        assert_true(pair[0].log_nfa == -20);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_close),
+        cmocka_unit_test(test_twins),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
