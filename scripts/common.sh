@@ -49,6 +49,11 @@ has_opencl_driver() {
     [ -e /etc/OpenCL/vendors/pocl.icd ] && /sbin/ldconfig -p | grep -q 'libOpenCL\.so\.1'
 }
 
+# A locale with a decimal comma, or the sources that one can be made from.
+has_comma_locale() {
+    [ -e /usr/share/i18n/locales/de_DE ] || locale -a | grep -qE '^(de_DE|fr_FR)'
+}
+
 # want "PACKAGE..." COMMAND...: the packages are missing unless the command works. What counts is what is there, not how it came.
 want() {
     packages=$1
@@ -79,6 +84,7 @@ look_for() {
         venv) want python3-venv python3 -c 'import venv, ensurepip' ;;
         opencl) want opencl-headers has_opencl_headers ;;
         pocl) want 'pocl-opencl-icd ocl-icd-libopencl1' has_opencl_driver ;;
+        locale) want locales has_comma_locale ;;
         oclgrind) want oclgrind oclgrind --version ;;
         mandoc) want mandoc eval 'printf ".Dd 1 January 2026\n" | mandoc -T lint -W fatal' ;;
         esac
@@ -112,7 +118,8 @@ apt() {
         apt-get -q -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# need [cmocka] [clang] [libomp] [mandoc] [venv] [opencl] [pocl] [oclgrind]: installs what is missing for the build, and for these.
+# need [cmocka] [clang] [libomp] [mandoc] [venv] [opencl] [pocl] [oclgrind] [locale]: installs what is missing for the build, and
+# for these.
 need() {
     mkdir -p "$logs" && [ -w "$logs" ] || fail "cannot write into $logs"
     look_for "$@"

@@ -12,6 +12,7 @@ usage: sh scripts/demo.sh [IMAGE...]
 Installs what is missing (apt-get), builds asj-cli in build/, and finds the junctions of the photographs given, or of a room that
 it renders itself. Writes to out/: NAME.csv with the junctions and NAME.plot.png with the junctions drawn over the picture.
 Of the room it renders two views, and finds the corners that they have in common: room-matches.csv, room-matches.png.
+"Right" counts what is where the room's own geometry puts it, within 3 px.
 Exit code: 0 done, 1 something failed, 2 wrong usage, 3 packages are missing and cannot be installed here.
 END
 }
@@ -40,6 +41,7 @@ result_of() {
     result=$out/${result%.*}
 }
 
+# A photograph has no truth; out/room-N.png is judged by out/room/N.csv.
 report() {
     result_of "$1"
     if [ ! -s "$result.csv" ] || [ ! -s "$result.plot.png" ]; then
@@ -47,18 +49,16 @@ report() {
         return 1
     fi
     count=$(awk -F, 'FNR > 1 && !($1 in seen) { seen[$1]; n++ } END { print n + 0 }' "$result.csv")
-    say "$1: $count junctions"
+    right=
+    if [ "$photographs" = 0 ]; then
+        right=$(LC_ALL=C awk -F, -f scripts/corners.awk "out/room/${result##*-}.csv" "$result.csv")
+        [ "${right% *}" = "$count" ] || fail 'cannot compare with the true junctions'
+        right=${right#* }
+    fi
+    say "$1: $count junctions${right:+, $right of them right}"
     say "    look at  $result.plot.png"
     say "    numbers  $result.csv"
-}
-
-# The sample room's out/room-N.png against its truth, out/room/N.csv.
-report_corners() {
-    result_of "$1"
-    set -- $(LC_ALL=C awk -F, -f scripts/corners.awk "out/room/${result##*-}.csv" "$result.csv")
-    [ $# = 5 ] || fail 'cannot compare with the true corners'
-    say "    found $2 of the room's $1 corners in view (median error $5 px); $4 junctions are at no true one"
-    [ "$2" -gt 0 ]
+    [ "$right" != 0 ]
 }
 
 # Matches the two views of the sample room, and checks them against out/room/.
@@ -66,15 +66,13 @@ match_rooms() {
     rm -f out/room-matches.csv out/room-matches.png
     say 'Running build/cli/asj-cli match -o out/room-matches.csv --plot out/room-matches.png out/room-1.png out/room-2.png'
     build/cli/asj-cli match --quiet -o out/room-matches.csv --plot out/room-matches.png out/room-1.png out/room-2.png || return 1
-    set -- $(LC_ALL=C awk -F, -f scripts/matches.awk out/room/1.csv out/room/2.csv out/room/correspondences.csv \
-        out/room-matches.csv)
-    [ $# = 3 ] || fail 'cannot compare with the true correspondences'
+    set -- $(LC_ALL=C awk -F, -f scripts/matches.awk out/room/truth.json out/room-matches.csv)
+    [ $# = 2 ] || fail 'cannot compare with the true geometry'
     say
-    say "out/room-1.png and out/room-2.png: $2 matches"
+    say "out/room-1.png and out/room-2.png: $1 matches, $2 of them right"
     say "    look at  $out/room-matches.png"
     say "    numbers  $out/room-matches.csv"
-    say "    $3 of the matches join the same corner of the room within 3 px (both views show $1 corners)"
-    [ "$3" -gt 0 ]
+    [ "$2" -gt 0 ]
 }
 
 need
@@ -104,14 +102,12 @@ status=$?
 [ "$status" -le 1 ] || fail "asj-cli ended with exit code $status"
 say
 for image in "$@"; do
-    if ! report "$image"; then
-        status=1
-    elif [ "$photographs" = 0 ]; then
-        report_corners "$image" || status=1
-    fi
+    report "$image" || status=1
 done
 if [ "$photographs" = 0 ]; then
     say
     match_rooms || status=1
 fi
 [ "$status" = 0 ] || fail 'something failed: see the messages above'
+say
+say "The program is ${out%out}build/cli/asj-cli; README.md goes on from here with \"The first minute\"."

@@ -85,7 +85,7 @@ fi
     install_into static -Ddefault_library=static
 } > "$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
 for file in bin/asj-cli lib/libasj.so lib/libasj-io.so lib/pkgconfig/asj.pc lib/pkgconfig/asj-io.pc \
-    share/man/man1/asj-cli.1 $(cd "$root/include" && printf 'include/%s ' asj/*.h); do
+    share/man/man1/asj-cli.1 share/man/man5/asj-formats.5 $(cd "$root/include" && printf 'include/%s ' asj/*.h); do
     [ -s "$work/shared/$file" ] || { echo "not installed: $file"; exit 1; }
 done
 for file in lib/libasj.a lib/libasj-io.a; do

@@ -55,7 +55,9 @@ run_tests() {
     passed=$((passed + good))
     skipped=$((skipped + left_out))
     failed=$((failed + all - good - left_out))
-    sed -n 's/^{"name": "\([^"]*\)".*"result": "SKIP".*/skipped: \1/p' "$record"
+    # and the reason that the test has printed
+    sed -n 's/^{"name": "\([^"]*\)".*"result": "SKIP".*/skipped: \1&/p' "$record" |
+        sed 's/{"name".*SKIPPED: \([^"\\]*\).*/: \1/; s/{"name".*//'
     [ "$state" = 0 ] && [ "$good" -gt 0 ] && [ "$all" = "$((good + left_out))" ]
 }
 
@@ -102,7 +104,8 @@ fewer_parts() {
     whole=$root
     root=$whole/out/without-opencl
     rm -rf "$root/src" "$root/kernels" && mkdir -p "$root" &&
-        (cd "$whole" && cp -R -p README.md LICENSE cli include meson.build meson_options.txt scripts src tests "$root") &&
+        (cd "$whole" &&
+            cp -R -p README.md CHANGELOG.md LICENSE cli include meson.build meson_options.txt scripts src tests "$root") &&
         rm -rf "$root/src/cl" && build_and_test build-fewer '--no-suite accuracy --no-suite experiments' \
         -Djpeg=disabled -Dtiff=disabled -Dwebp=disabled -Djpeg2000=disabled -Dopencv=disabled -Dcairo=disabled \
         -Dopenmp=disabled -Dio=enabled -Dcli=enabled -Dtests=enabled --werror
@@ -138,14 +141,14 @@ for argument in "$@"; do
 done
 
 start_of_all=$(date +%s)
+ASJ_REQUIRE_OPENCL=1 # a test that finds no device fails: PoCL is there
+export ASJ_REQUIRE_OPENCL
 if [ "$everything" = true ]; then
-    need cmocka clang libomp mandoc venv opencl pocl oclgrind
-    ASJ_REQUIRE_OPENCL=1 # a test that finds no device fails
-    export ASJ_REQUIRE_OPENCL
+    need cmocka clang libomp mandoc venv opencl pocl oclgrind locale
     step tests build_and_test build-test '' -Dauto_features=enabled --werror
     more_checks
 else
-    need cmocka opencl
+    need cmocka mandoc venv opencl pocl locale
     step tests build_and_test build-test '' -Dauto_features=enabled
 fi
 

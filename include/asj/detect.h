@@ -34,7 +34,8 @@ typedef struct asj_detection {
  * result   on success *result belongs to the caller until asj_detection_free()
  *
  * Constant images, images of noise and images smaller than any sector are valid and give no junctions. The same image and options
- * give the same result with any number of threads and on every back end. Memory: about 7 bytes per pixel plus 20 MB (README.md).
+ * give the same result with any number of threads and on every back end.
+ * Memory: about 7 bytes per pixel plus 20 MB (tests/benchmark/README.md).
  *
  * ASJ_ERROR_ARGUMENT   context, image or result is NULL
  * ASJ_ERROR_IMAGE      data NULL, unknown format, side < 1, stride shorter than a row, NaN or infinity

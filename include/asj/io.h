@@ -88,10 +88,10 @@ ASJ_API asj_status asj_output_commit(asj_output **output, char *message, size_t 
 /* Ends the output and leaves no file. NULL and a pointer to NULL are fine. */
 ASJ_API void asj_output_abort(asj_output **output);
 
-/* Formats of junction files: README.md, "File formats". Numbers have a decimal point whatever the locale. In JSON and CSV they
+/* Formats of junction files: asj-formats(5). Numbers have a decimal point whatever the locale. In JSON and CSV they
  * read back to the same float; .asj has six decimals, as the paper's authors' program writes them. */
 enum {
-    ASJ_FILE_ASJ = 0,       /* .asj text, decomposed: one record of two branches for each L-junction (README.md, "File formats") */
+    ASJ_FILE_ASJ = 0,       /* .asj text, decomposed: one record of two branches for each L-junction (asj-formats(5)) */
     ASJ_FILE_ASJ_WHOLE = 1, /* .asj text with whole junctions of two to five branches */
     ASJ_FILE_JSON = 2,      /* schema "asj-junctions-1": everything, with options, version, back end and times */
     ASJ_FILE_CSV = 3        /* a header, then one line a branch: junction,x,y,scale,log10_nfa,location_sd,branch,angle,length,

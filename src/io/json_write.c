@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* JSON, schema "asj-junctions-1": README.md, "File formats". */
+/* JSON, schema "asj-junctions-1": asj-formats(5). */
 #include "junction_output.h"
 
 #include "json_options.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* JSON, schema "asj-matches-1": README.md, "File formats". */
+/* JSON, schema "asj-matches-1": asj-formats(5). */
 #include "match_output.h"
 
 #include "json_options.h"

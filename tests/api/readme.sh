@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
 # The README keeps its word: its first C program builds, runs and prints the corners of the square, the lines that match fit the
-# interface, and every knob that it names is an option.
+# interface, what it links to is there, and every knob that it names is an option.
 # readme.sh README INCLUDE_DIRECTORY STATIC_LIBRARY C COMPILER...
 set -u
 readme=$1 include=$2 library=$3
@@ -31,6 +31,14 @@ awk 'function near(v, w) { return v > w - 0.3 && v < w + 0.3 }
      near($1, 59.5) && near($2, 59.5) { a++ } near($1, 139.5) && near($2, 59.5) { b++ }
      near($1, 59.5) && near($2, 139.5) { c++ } near($1, 139.5) && near($2, 139.5) { d++ }
      END { exit !(NR == 4 && a * b * c * d == 1) }' "$work/corners" || { echo 'those are not the four corners'; exit 1; }
+
+# it is short, and everything that it links to is there
+[ "$(wc -c < "$readme")" -le 12288 ] || { echo 'over 12 kB'; exit 1; }
+grep -oE '\]\([^)#]+\)' "$readme" | tr -d '])(' > "$work/links"
+[ -s "$work/links" ] || exit 1
+while IFS= read -r link; do
+    [ -e "$(dirname "$readme")/$link" ] || { echo "no $link"; exit 1; }
+done < "$work/links"
 
 # every knob of the README's table is an option
 cat > "$work/options.c" << 'END'

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Time of every stage of the detector, and its memory, on the sample room at several sizes: README.md, "What is measured". */
+/* Time of every stage of the detector, and its memory, on the sample room at several sizes: README.md here. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "measure.h"

@@ -71,7 +71,7 @@ def read_json(path):
 
 
 def read_asj(path):
-    """.asj text (the README's "File formats"); a location that several records share stays several junctions."""
+    """.asj text (asj-formats(5)); a location that several records share stays several junctions."""
     with open(path) as file:
         words = iter(file.read().split())
     records = []
