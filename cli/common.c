@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Options of both commands, the context that they ask for, and its log. */
 #include "common.h"
 #include "message.h"
 

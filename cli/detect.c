@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* asj-cli detect: image by image, read, detect, write; one that fails does not stop the others. */
 #include "detect.h"
 #include "detect_arguments.h"
 #include "interrupt.h"

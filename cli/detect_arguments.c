@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* The help, the options and the checks of `asj-cli detect`. */
 #include "detect_arguments.h"
 #include "help.h"
 #include "message.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* asj-cli devices: the list of OpenCL devices as a table. */
 #include "devices.h"
 #include "message.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* The text of --help from the tables of options, in two columns. */
 #include "help.h"
 
 #include <stdio.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Signals set a flag that progress callbacks look at: results are whole or absent. */
 #define _POSIX_C_SOURCE 200809L
 #include "interrupt.h"
 

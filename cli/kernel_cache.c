@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Compiled OpenCL kernels as files, written under another name first. */
 #define _POSIX_C_SOURCE 200809L
 #include "kernel_cache.h"
 

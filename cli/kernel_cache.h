@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Compiled OpenCL kernels, kept in the user's cache folder from one start to the next. A folder that cannot be had is no error:
+/* Compiled OpenCL kernels, kept in the user's cache folder from one start to the next. A folder that cannot be made is no error:
  * kernels are compiled anew then. */
 #ifndef ASJ_CLI_KERNEL_CACHE_H
 #define ASJ_CLI_KERNEL_CACHE_H

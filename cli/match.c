@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* asj-cli match: two images, their junctions from the detector or from files, the matches. */
 #include "match.h"
 #include "interrupt.h"
 #include "match_arguments.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* The help, the options and the checks of `asj-cli match`. */
 #include "match_arguments.h"
 #include "help.h"
 #include "message.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* An image and its junctions for match. */
 #include "match_input.h"
 #include "message.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Lines on standard error, with the name of the program. */
 #include "message.h"
 
 #include <errno.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Names of result files, and which of them would collide. */
 #define _POSIX_C_SOURCE 200809L
 #include "outputs.h"
 #include "message.h"

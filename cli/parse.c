@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* getopt_long() over the options written by hand and those of the library's tables. */
 #include "parse.h"
 #include "message.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* The plot of detect: branches over the photograph, then the junctions as dots. */
 #include "plot.h"
 #include "plot_color.h"
 #include "plot_photo.h"

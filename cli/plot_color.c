@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Colours of branches and matches. */
 #include "plot_color.h"
 
 static cli_color from_bytes(const double bytes[3])

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Formats of plots by name. */
 #include "plot_format.h"
 #include "message.h"
 #include "parse.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* A photograph as the pale background of a plot, scaled. */
 #include "plot_photo.h"
 
 #include <math.h>

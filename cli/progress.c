@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* A line of progress, on terminals only. */
 #define _POSIX_C_SOURCE 200809L
 #include "progress.h"
 #include "interrupt.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Options kept in order until the preset is known, then set. */
 #include "settings.h"
 #include "message.h"
 #include "parse.h"

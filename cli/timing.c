@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Times of the stages on standard error. */
 #include "timing.h"
 #include "message.h"
 

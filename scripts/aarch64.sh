@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-# The core on 64-bit ARM: built by a cross compiler, its tests run under qemu-user. Sourced by test.sh. What cannot be had here is
+# The core on 64-bit ARM: built by a cross compiler, its tests run under qemu-user. Sourced by test.sh. What is missing here is
 # left out with a line that says so; nothing is installed but two packages of tools, and CMocka for ARM is only unpacked.
 
 arm=$root/out/arm64

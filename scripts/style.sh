@@ -6,7 +6,8 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 export LC_ALL=C
 files=$(find include src kernels cli tests scripts meson.build meson_options.txt -type f \( -name '*.[ch]' -o -name '*.cpp' \
-    -o -name '*.cl' -o -name '*.clh' -o -name '*.py' -o -name '*.sh' -o -name '*.awk' -o -name 'meson*' \) 2> /dev/null)
+    -o -name '*.cl' -o -name '*.clh' -o -name '*.py' -o -name '*.sh' -o -name '*.awk' -o -name 'meson*' \
+    -o -name '*.[15]' \) 2> /dev/null)
 [ -n "$files" ] || exit 1
 {
     tab=$(printf '\t')

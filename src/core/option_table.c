@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Options as rows of a table: values of presets, ranges, numbers as text in any locale. */
 #include "option_table.h"
 
 #include <math.h>

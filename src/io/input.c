@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Whole files into memory, with a limit. */
 #define _POSIX_C_SOURCE 200809L
 #include "input.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Rows of an option table as JSON values. */
 #include "json_options.h"
 
 #include <stdio.h>

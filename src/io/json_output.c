@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* JSON written piece by piece. */
 #include "json_output.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Messages of failures, with the name of the file. */
 #define _POSIX_C_SOURCE 200809L
 #include "message.h"
 

@@ -313,7 +313,7 @@ static void progress_is_shown_on_a_terminal(void **state)
     const char *arguments[IMAGES + 4];
     int terminal, end = -1;
     if (!open_terminal(&end, &terminal)) {
-        print_message("[  NOTE    ] no terminal to be had: not tested\n");
+        print_message("[  NOTE    ] there is no terminal: not tested\n");
         skip();
     }
     list_many_images("watched", arguments);
@@ -334,7 +334,7 @@ static void an_interrupt_stops_a_detection_in_the_middle(void **state)
     static const char *const arguments[] = {"detect", "--threads", "1", "-o", "middle/large.asj", "large.png", NULL};
     int terminal, end = -1;
     if (!open_terminal(&end, &terminal)) {
-        print_message("[  NOTE    ] no terminal to be had: not tested\n");
+        print_message("[  NOTE    ] there is no terminal: not tested\n");
         skip();
     }
     assert_int_equal(mkdir("middle", 0777), 0);

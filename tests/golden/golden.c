@@ -8,8 +8,8 @@
  *     golden KIND generate FOLDER      writes the files anew: look at the difference before committing it
  *     golden KIND meta FOLDER          the comparison itself: an empty result and one moved by a pixel must be told apart
  *
- * KIND is junctions or matches. In a build folder, `meson compile update-golden` and `update-golden-matches` generate with the right
- * folder. */
+ * KIND is junctions or matches. In a build folder, `meson compile update-golden` and `update-golden-matches` generate with the
+ * right folder. */
 #include "golden.h"
 
 #include <math.h>

@@ -54,7 +54,7 @@ void stored_place(int orientation, int32_t width, int32_t height, int32_t x, int
 void assert_image_refused(const char *path, uint64_t max_pixels, asj_status status, const char *cause);
 
 /* Sets a locale with a decimal comma, and makes sure that printf() follows it; one is made in a folder of its own where none is
- * installed but its sources are. 0 = none to be had. */
+ * installed but its sources are. 0 = none is available. */
 int set_comma_locale(void);
 
 /* Becomes an ordinary user, for whom permissions count; 0 when that cannot be. become_root() undoes it. */

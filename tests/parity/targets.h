@@ -16,7 +16,7 @@ enum {
 
 typedef struct target {
     char name[64];
-    asj_context *context; /* NULL = cannot be had here */
+    asj_context *context; /* NULL = not available here */
     int32_t form;
     long compared;
 } target;

@@ -10,7 +10,7 @@ PROGRAMS = ("asj-cli", "accuracy", "match_room", "noise", "repeatability", "samp
 
 
 class Unavailable(Exception):
-    """Something that the experiments need cannot be had here."""
+    """Something that the experiments need is not available here."""
 
 
 def _has_packages():

@@ -302,7 +302,7 @@ static void test_failures(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* Memory that cannot be had, while a context is made and a picture worked on. */
+/* Memory that runs out while a context is made and a picture worked on. */
 static void test_memory(void **state)
 {
     asj_status status = ASJ_ERROR_MEMORY;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Memory that cannot be had: the n-th allocation fails, for every n. No crash, no leak, the right status, and the context works
+/* Memory that runs out: the n-th allocation fails, for every n. No crash, no leak, the right status, and the context works
  * on. */
 #include "unit_test.h"
 
