@@ -28,7 +28,7 @@ static const char conclusion[] =
     "NFA: expected number of false alarms in an image of noise.\n"
     "\n"
     "Exit status: 0 all images done, 1 some failed, 2 wrong usage, 130 interrupted.\n"
-    "More, with the file formats: man asj-cli\n";
+    "More: man asj-cli; file formats: man asj-formats\n";
 
 enum { OUTPUT, OUT_DIR, FORMAT, WHOLE, PLOT, PLOT_COLOR, PLOT_BACKGROUND, PLOT_SCALE, PRESET, FOR };
 

@@ -31,7 +31,7 @@ static const char conclusion[] =
     "NFA: expected number of false alarms in an image of noise.\n"
     "\n"
     "Exit status: 0 done (no match is a result too), 1 failed and nothing written, 2 wrong usage, 130 interrupted.\n"
-    "More, with the file formats: man asj-cli\n";
+    "More: man asj-cli; file formats: man asj-formats\n";
 
 enum {
     OUTPUT, FORMAT, LINES, LINE_ENDS, JUNCTIONS_1, JUNCTIONS_2, PLOT, PLOT_BACKGROUND, PLOT_LAYOUT, PLOT_SCALE, PRESET,
