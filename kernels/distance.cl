@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 7 on a device: products of all pairs of unit vectors and the best partners, as in distance.c, for a block of rows: of
- * L-junctions of image 1. Lists are kept in order of score, of equals the smaller index first: one order, however the work is
- * divided. */
+/* Step 7 on a device: products of all pairs of unit vectors and the best partners, as in compare.c and rank.c, for a block of
+ * rows: of L-junctions of image 1. Lists are kept in order of score, of equals the smaller index first: one order, however the
+ * work is divided. */
 
 #define NO_PARTNER INT_MIN
 #define ROWS 4    /* frames of image 1 and 2 of a work item */

@@ -16,14 +16,14 @@ static void fill_reference(asj_tables *t)
     t->strip = asj_strip_reference;
     t->patch = asj_patch_reference;
     t->describe = asj_describe_reference;
-    t->sketch = asj_sketch_reference;
+    t->bound = asj_bound_reference;
     t->rank = asj_rank_reference;
     t->disc = asj_disc_reference;
-    t->agreement = asj_agreement_reference;
+    t->gate = asj_gate_reference;
     t->ops = (asj_ops){
         .image = &t->image, .pyramid = &t->pyramid, .gradient = &t->gradient, .field = &t->field, .isotropic = &t->isotropic,
         .line = &t->line, .scan = &t->scan, .strip = &t->strip, .patch = &t->patch, .describe = &t->describe,
-        .sketch = &t->sketch, .rank = &t->rank, .disc = &t->disc, .agreement = &t->agreement};
+        .bound = &t->bound, .rank = &t->rank, .disc = &t->disc, .gate = &t->gate};
 }
 
 int asj_tables_has(int32_t simd)

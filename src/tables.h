@@ -10,10 +10,11 @@
 #include "detect/line_sums.h"
 #include "detect/scan.h"
 #include "detect/strip.h"
-#include "match/agreement.h"
 #include "match/align.h"
-#include "match/distance.h"
-#include "match/sketch.h"
+#include "match/describe.h"
+#include "match/product_bound.h"
+#include "match/shortlist.h"
+#include "match/support_gate.h"
 
 typedef struct asj_tables {
     asj_ops ops; /* points to those below */
@@ -27,10 +28,10 @@ typedef struct asj_tables {
     asj_strip_ops strip;
     asj_patch_ops patch;
     asj_describe_ops describe;
-    asj_sketch_ops sketch;
+    asj_bound_ops bound;
     asj_rank_ops rank;
     asj_disc_ops disc;
-    asj_agreement_ops agreement;
+    asj_gate_ops gate;
 } asj_tables;
 
 /* Whether this build has a form (ASJ_SIMD_..., not auto). */

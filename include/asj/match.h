@@ -90,7 +90,7 @@ typedef struct asj_junction_match {
     float ax1, ay1, bx1, by1; /* ends of the parts of both branches that correspond, image 1 */
     float ax2, ay2, bx2, by2; /* image 2, moved along with x2, y2 */
     int32_t end_a, end_b;   /* ASJ_END_... */
-    float distance;         /* of the patches; see distance.c. The smaller the better */
+    float distance;         /* of the patches; see compare.c. The smaller the better */
     float ratio;            /* how much worse the second best at another place is; HUGE_VAL when there is none */
     float similarity;       /* correlation of the aligned discs, -1 .. 1; 0 when not aligned */
     float support;          /* neighbouring matches that agree, each counted 0 to 1 */

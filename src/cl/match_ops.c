@@ -3,6 +3,7 @@
  * planes of the pyramid come from the host, which needs them as well; patches stay on the device between the two steps. SIFT
  * descriptors, patches that keep their mean when they are compared, and the paper's induced patches are left to the CPU. */
 #include "detect.h"
+#include "match/describe.h"
 #include "overrides.h"
 #include "state.h"
 
@@ -12,7 +13,7 @@
 
 /* Sizes of work-groups are fixed, as some drivers compile a kernel anew for each, and at most 64: every device has those. */
 
-#define VIEWS 2
+#define IMAGES 2
 #define MOST_FRAMES (ASJ_MAX_HYPOTHESES * ASJ_MAX_HYPOTHESES) /* of an L-junction */
 
 /* As in the kernels. */
@@ -24,15 +25,15 @@ typedef struct patch_pyramid {
 #define ROWS 4
 #define COLUMNS 2
 
-/* A view's patches as the device has them. */
-typedef struct device_view {
-    uint64_t number; /* asj_view.device_copy; 0 = empty */
+/* An image's patches as the device has them. */
+typedef struct device_features {
+    uint64_t number; /* asj_image_features.device_copy; 0 = empty */
     asj_cl_buffer patches, usable, frames;
-} device_view;
+} device_features;
 
 struct asj_cl_match {
     uint64_t last_number;
-    device_view views[VIEWS];
+    device_features images[IMAGES];
     asj_cl_buffer planes, grids, inside;
     asj_cl_buffer products, scores, lists, rows, columns;
     asj_cl_host_buffer host_grids;
@@ -55,10 +56,10 @@ void asj_cl_free_match(asj_context *context)
                                       &match->scores, &match->lists, &match->rows,   &match->columns};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         asj_cl_release(context, buffers[i]);
-    for (int v = 0; v < VIEWS; v++) {
-        asj_cl_release(context, &match->views[v].patches);
-        asj_cl_release(context, &match->views[v].usable);
-        asj_cl_release(context, &match->views[v].frames);
+    for (int v = 0; v < IMAGES; v++) {
+        asj_cl_release(context, &match->images[v].patches);
+        asj_cl_release(context, &match->images[v].usable);
+        asj_cl_release(context, &match->images[v].frames);
     }
     asj_release(&context->memory, match->host_grids.memory);
     asj_release(&context->memory, match);
@@ -82,9 +83,9 @@ static int fits(const asj_context *context, uint64_t bytes)
     return bytes <= limits->largest_buffer && bytes <= limits->global_memory / 4;
 }
 
-static int patches_fit(const asj_context *context, const asj_match_options *options, const asj_view *view)
+static int patches_fit(const asj_context *context, const asj_match_options *options, const asj_image_features *features)
 {
-    return fits(context, (uint64_t)view->corners.frame_count * (uint64_t)asj_patch_length(options) * sizeof(int16_t));
+    return fits(context, (uint64_t)features->l_junctions.frame_count * (uint64_t)asj_patch_length(options) * sizeof(int16_t));
 }
 
 /* ---- patches ---- */
@@ -108,9 +109,9 @@ static asj_status send_planes(asj_context *context, struct asj_cl_match *match, 
 }
 
 static asj_status send_grids(asj_context *context, struct asj_cl_match *match, const asj_match_options *options,
-                             const asj_view *view)
+                             const asj_image_features *features)
 {
-    const int64_t count = view->corners.frame_count;
+    const int64_t count = features->l_junctions.frame_count;
     const size_t bytes = (size_t)count * sizeof(asj_patch_grid);
     asj_status status = asj_cl_host_reserve(context, &match->host_grids, bytes);
     if (status == ASJ_OK)
@@ -120,13 +121,13 @@ static asj_status send_grids(asj_context *context, struct asj_cl_match *match, c
     asj_patch_grid *grids = match->host_grids.memory;
 #pragma omp parallel for num_threads(context->threads) schedule(static)
     for (int64_t f = 0; f < count; f++)
-        asj_patch_grid_set(&view->pyramid, &view->corners.frames[f], options->patch_size, options->window_start,
+        asj_patch_grid_set(&features->pyramid, &features->l_junctions.frames[f], options->patch_size, options->window_start,
                            options->window_end, &grids[f]);
     return asj_cl_write(context, &match->grids, 0, grids, bytes);
 }
 
 static asj_status run_describe(asj_context *context, struct asj_cl_match *match, const asj_match_options *options,
-                               const patch_pyramid *sizes, device_view *to, size_t count)
+                               const patch_pyramid *sizes, device_features *to, size_t count)
 {
     const size_t samples = (size_t)(options->patch_size * options->patch_size);
     const size_t local[2] = {processor(context) ? 1 : 16, processor(context) ? 1 : 4}, global[2] = {count * local[0], local[1]};
@@ -142,89 +143,89 @@ static asj_status run_describe(asj_context *context, struct asj_cl_match *match,
 }
 
 /* What is written where an L-junction's frames begin, and which frames can be used. */
-static asj_status send_frames(asj_context *context, device_view *to, const asj_view *view)
+static asj_status send_frames(asj_context *context, device_features *to, const asj_image_features *features)
 {
-    const size_t starts = ((size_t)view->corners.count + 1) * sizeof(uint32_t), count = view->corners.frame_count;
+    const size_t starts = ((size_t)features->l_junctions.count + 1) * sizeof(uint32_t), count = features->l_junctions.frame_count;
     asj_status status = asj_cl_reserve(context, &to->usable, count);
     if (status == ASJ_OK)
-        status = asj_cl_write(context, &to->usable, 0, view->usable, count);
+        status = asj_cl_write(context, &to->usable, 0, features->usable, count);
     if (status == ASJ_OK)
         status = asj_cl_reserve(context, &to->frames, starts);
-    return status == ASJ_OK ? asj_cl_write(context, &to->frames, 0, view->corners.first_frame, starts) : status;
+    return status == ASJ_OK ? asj_cl_write(context, &to->frames, 0, features->l_junctions.first_frame, starts) : status;
 }
 
 static asj_status fetch_patches(asj_context *context, struct asj_cl_match *match, const asj_match_options *options,
-                                const device_view *from, asj_view *view)
+                                const device_features *from, asj_image_features *features)
 {
-    const size_t samples = (size_t)(options->patch_size * options->patch_size), count = view->corners.frame_count;
-    asj_status status = asj_cl_read(context, &from->patches, 0, view->patches, count * samples * sizeof(int16_t));
+    const size_t samples = (size_t)(options->patch_size * options->patch_size), count = features->l_junctions.frame_count;
+    asj_status status = asj_cl_read(context, &from->patches, 0, features->patches, count * samples * sizeof(int16_t));
     int32_t *inside = match->host_grids.memory; /* the grids are there by now; a grid is larger than a number */
     if (status == ASJ_OK)
         status = asj_cl_read(context, &match->inside, 0, inside, count * sizeof *inside);
     for (size_t f = 0; f < count && status == ASJ_OK; f++)
-        view->usable[f] = (size_t)inside[f] * 4 >= 3 * samples;
+        features->usable[f] = (size_t)inside[f] * 4 >= 3 * samples;
     return status;
 }
 
 /* The older of the two; its contents are lost. */
-static device_view *free_view(struct asj_cl_match *match)
+static device_features *free_features(struct asj_cl_match *match)
 {
-    device_view *view = &match->views[match->views[0].number > match->views[1].number];
-    view->number = 0;
-    return view;
+    device_features *features = &match->images[match->images[0].number > match->images[1].number];
+    features->number = 0;
+    return features;
 }
 
-asj_status asj_cl_describe_frames(asj_context *context, const asj_match_options *options, asj_view *view)
+asj_status asj_cl_describe_frames(asj_context *context, const asj_match_options *options, asj_image_features *features)
 {
-    const uint64_t count = view->corners.frame_count;
-    const uint64_t pixels = ((uint64_t)view->pyramid.width[0] + 1) * ((uint64_t)view->pyramid.height[0] + 1);
+    const uint64_t count = features->l_junctions.frame_count;
+    const uint64_t pixels = ((uint64_t)features->pyramid.width[0] + 1) * ((uint64_t)features->pyramid.height[0] + 1);
     patch_pyramid sizes;
     struct asj_cl_match *match;
     if (options->descriptor == ASJ_DESCRIPTOR_SIFT || count == 0 || count > INT32_MAX / 64 ||
-        !fits(context, 2 * pixels * sizeof(uint16_t)) || !patches_fit(context, options, view))
-        return asj_describe_frames(context, options, view);
+        !fits(context, 2 * pixels * sizeof(uint16_t)) || !patches_fit(context, options, features))
+        return asj_describe_frames(context, options, features);
     asj_status status = get(context, &match);
     if (status != ASJ_OK)
         return status;
-    device_view *to = free_view(match);
-    status = send_planes(context, match, &view->pyramid, &sizes);
+    device_features *to = free_features(match);
+    status = send_planes(context, match, &features->pyramid, &sizes);
     if (status == ASJ_OK)
-        status = send_grids(context, match, options, view);
+        status = send_grids(context, match, options, features);
     if (status == ASJ_OK)
         status = run_describe(context, match, options, &sizes, to, (size_t)count);
     if (status == ASJ_OK)
-        status = fetch_patches(context, match, options, to, view);
+        status = fetch_patches(context, match, options, to, features);
     if (status == ASJ_OK)
-        status = send_frames(context, to, view);
+        status = send_frames(context, to, features);
     if (status == ASJ_OK)
-        view->device_copy = to->number = ++match->last_number;
+        features->device_copy = to->number = ++match->last_number;
     return status;
 }
 
 /* ---- partners ---- */
 
-/* The device's copy of a view; one that was described elsewhere is brought there. `other` stays. */
-static asj_status find_view(asj_context *context, struct asj_cl_match *match, const asj_match_options *options,
-                            const asj_view *view, const device_view *other, device_view **found)
+/* The device's copy of an image's features; those that were described elsewhere are brought there. `other` stays. */
+static asj_status find_features(asj_context *context, struct asj_cl_match *match, const asj_match_options *options,
+                                const asj_image_features *features, const device_features *other, device_features **found)
 {
-    for (int v = 0; v < VIEWS; v++)
-        if (view->device_copy > 0 && match->views[v].number == view->device_copy) {
-            *found = &match->views[v];
+    for (int v = 0; v < IMAGES; v++)
+        if (features->device_copy > 0 && match->images[v].number == features->device_copy) {
+            *found = &match->images[v];
             return ASJ_OK;
         }
-    const size_t bytes = (size_t)view->corners.frame_count * (size_t)asj_patch_length(options) * sizeof(int16_t);
-    device_view *to = other ? &match->views[other == &match->views[0]] : free_view(match);
+    const size_t bytes = (size_t)features->l_junctions.frame_count * (size_t)asj_patch_length(options) * sizeof(int16_t);
+    device_features *to = other ? &match->images[other == &match->images[0]] : free_features(match);
     to->number = 0;
     asj_status status = asj_cl_reserve(context, &to->patches, bytes);
     if (status == ASJ_OK)
-        status = asj_cl_write(context, &to->patches, 0, view->patches, bytes);
+        status = asj_cl_write(context, &to->patches, 0, features->patches, bytes);
     *found = to;
-    return status == ASJ_OK ? send_frames(context, to, view) : status;
+    return status == ASJ_OK ? send_frames(context, to, features) : status;
 }
 
 /* A block of L-junctions of image 1, and how the work is divided. */
 typedef struct block {
-    const device_view *views[2];
+    const device_features *images[2];
     uint32_t count2, frames2; /* L-junctions and frames of image 2 */
     int32_t length, limit, parts;
     uint32_t first, count;    /* L-junctions of the block */
@@ -237,7 +238,7 @@ static asj_status run_products(asj_context *context, struct asj_cl_match *match,
     const size_t global[2] = {round_up((b->frames + ROWS - 1) / ROWS, local[0]),
                               round_up((b->frames2 + COLUMNS - 1) / COLUMNS, local[1])};
     const asj_cl_argument arguments[] = {
-        ASJ_CL_BUFFER(&b->views[0]->patches), ASJ_CL_BUFFER(&b->views[1]->patches), ASJ_CL_INT(b->length), ASJ_CL_INT(b->frame),
+        ASJ_CL_BUFFER(&b->images[0]->patches), ASJ_CL_BUFFER(&b->images[1]->patches), ASJ_CL_INT(b->length), ASJ_CL_INT(b->frame),
         ASJ_CL_INT(b->frames), ASJ_CL_INT(b->frames2), ASJ_CL_INT(b->frames2), ASJ_CL_BUFFER(&match->products), ASJ_CL_INT(-1)};
     if (processor(context))
         return asj_cl_run(context, "distance_products_paired", 2, global, local, arguments, 9);
@@ -249,8 +250,8 @@ static asj_status run_scores(asj_context *context, struct asj_cl_match *match, c
     const size_t local[2] = {64, 1};
     const size_t global[2] = {round_up(b->count2, local[0]), b->count};
     const asj_cl_argument arguments[] = {
-        ASJ_CL_BUFFER(&match->products), ASJ_CL_INT(b->frames2), ASJ_CL_BUFFER(&b->views[0]->frames),
-        ASJ_CL_BUFFER(&b->views[0]->usable), ASJ_CL_BUFFER(&b->views[1]->frames), ASJ_CL_BUFFER(&b->views[1]->usable),
+        ASJ_CL_BUFFER(&match->products), ASJ_CL_INT(b->frames2), ASJ_CL_BUFFER(&b->images[0]->frames),
+        ASJ_CL_BUFFER(&b->images[0]->usable), ASJ_CL_BUFFER(&b->images[1]->frames), ASJ_CL_BUFFER(&b->images[1]->usable),
         ASJ_CL_INT(b->first), ASJ_CL_INT(b->count), ASJ_CL_INT(b->count2), ASJ_CL_BUFFER(&match->scores)};
     return asj_cl_run(context, "distance_scores", 2, global, local, arguments, 10);
 }
@@ -318,58 +319,68 @@ static asj_status run_block(asj_context *context, struct asj_cl_match *match, co
 }
 
 /* Where the block that begins with L-junction `first` ends. */
-static uint32_t block_end(const asj_corners *corners, uint32_t first, uint32_t most)
+static uint32_t block_end(const asj_l_junctions *l_junctions, uint32_t first, uint32_t most)
 {
-    const uint32_t *start = corners->first_frame;
+    const uint32_t *start = l_junctions->first_frame;
     uint32_t end = first + 1;
-    while (end < corners->count && end - first < most && start[end + 1] - start[first] <= most)
+    while (end < l_junctions->count && end - first < most && start[end + 1] - start[first] <= most)
         end++;
     return end;
 }
 
-static asj_status run_blocks(asj_context *context, struct asj_cl_match *match, block *b, const asj_corners *corners)
+static asj_status run_blocks(asj_context *context, struct asj_cl_match *match, block *b, const asj_l_junctions *l_junctions)
 {
     const uint32_t most = block_frames(context, b->frames2);
-    asj_status status = reserve_block(context, match, b, most, corners->count);
-    for (uint32_t end; status == ASJ_OK && b->first < corners->count; b->first = end) {
-        end = block_end(corners, b->first, most);
+    asj_status status = reserve_block(context, match, b, most, l_junctions->count);
+    for (uint32_t end; status == ASJ_OK && b->first < l_junctions->count; b->first = end) {
+        end = block_end(l_junctions, b->first, most);
         b->count = end - b->first;
-        b->frame = corners->first_frame[b->first];
-        b->frames = corners->first_frame[end] - b->frame;
+        b->frame = l_junctions->first_frame[b->first];
+        b->frames = l_junctions->first_frame[end] - b->frame;
         status = run_block(context, match, b);
         if (status == ASJ_OK)
-            status = asj_progress(context, ASJ_STAGE_DISTANCES, 0.2 + 0.4 * (double)end / (double)corners->count);
+            status = asj_progress(context, ASJ_STAGE_DISTANCES, 0.2 + 0.4 * (double)end / (double)l_junctions->count);
     }
     return status;
 }
 
-asj_status asj_cl_rank_partners(asj_context *context, const asj_match_options *options, const asj_view *view1,
-                                const asj_view *view2, asj_partner *rows, asj_partner *columns)
+static int32_t left_to_the_cpu(const asj_match_run *run)
 {
-    const asj_corners *c1 = &view1->corners, *c2 = &view2->corners;
-    const size_t limit = (size_t)options->shortlist, bytes1 = c1->count * limit * sizeof *rows;
-    const size_t bytes2 = c2->count * limit * sizeof *columns;
-    device_view *views[2] = {NULL, NULL};
+    const asj_match_options *options = run->options;
+    if (options->patches != ASJ_PATCHES_CANONICAL || (options->descriptor != ASJ_DESCRIPTOR_SIFT && !options->normalise))
+        return 1;
+    for (int side = 0; side < 2; side++) {
+        const uint32_t frames = run->image[side]->l_junctions.frame_count;
+        if (frames == 0 || frames > INT32_MAX / 64 || !patches_fit(run->context, options, run->image[side]))
+            return 1;
+    }
+    return !fits(run->context, (uint64_t)run->image[1]->l_junctions.frame_count * MOST_FRAMES * sizeof(int32_t));
+}
+
+asj_status asj_cl_rank_partners(const asj_match_run *run, asj_partner *rows, asj_partner *columns)
+{
+    asj_context *context = run->context;
+    const asj_l_junctions *in1 = &run->image[0]->l_junctions, *in2 = &run->image[1]->l_junctions;
+    const size_t limit = (size_t)run->options->shortlist, bytes1 = in1->count * limit * sizeof *rows;
+    const size_t bytes2 = in2->count * limit * sizeof *columns;
+    device_features *images[2] = {NULL, NULL};
     struct asj_cl_match *match;
-    if (options->patches != ASJ_PATCHES_CANONICAL || (options->descriptor != ASJ_DESCRIPTOR_SIFT && !options->normalise) ||
-        c1->frame_count == 0 || c2->frame_count == 0 || c1->frame_count > INT32_MAX / 64 || c2->frame_count > INT32_MAX / 64 ||
-        !patches_fit(context, options, view1) || !patches_fit(context, options, view2) ||
-        !fits(context, (uint64_t)c2->frame_count * MOST_FRAMES * sizeof(int32_t)))
-        return asj_rank_partners(context, options, view1, view2, rows, columns);
+    if (left_to_the_cpu(run))
+        return asj_rank_partners(run, rows, columns);
     asj_status status = get(context, &match);
     if (status == ASJ_OK)
-        status = find_view(context, match, options, view1, NULL, &views[0]);
+        status = find_features(context, match, run->options, run->image[0], NULL, &images[0]);
     if (status == ASJ_OK)
-        status = find_view(context, match, options, view2, views[0], &views[1]);
+        status = find_features(context, match, run->options, run->image[1], images[0], &images[1]);
     if (status != ASJ_OK)
         return status;
-    block b = {{views[0], views[1]}, c2->count, c2->frame_count, asj_patch_length(options), options->shortlist,
+    block b = {{images[0], images[1]}, in2->count, in2->frame_count, asj_patch_length(run->options), run->options->shortlist,
                processor(context) ? 1 : 16, 0, 0, 0, 0};
     status = asj_cl_reserve(context, &match->columns, bytes2);
     if (status == ASJ_OK)
         status = asj_cl_write(context, &match->columns, 0, columns, bytes2);
     if (status == ASJ_OK)
-        status = run_blocks(context, match, &b, c1);
+        status = run_blocks(context, match, &b, in1);
     if (status == ASJ_OK)
         status = asj_cl_read(context, &match->rows, 0, rows, bytes1);
     return status == ASJ_OK ? asj_cl_read(context, &match->columns, 0, columns, bytes2) : status;

@@ -6,7 +6,8 @@
 
 #include "detect/isotropic.h"
 #include "detect/scan.h"
-#include "match/distance.h"
+#include "match/describe.h"
+#include "match/shortlist.h"
 
 /* gradient_ops.c, field_ops.c, isotropic_ops.c; for what they keep see detect.h */
 asj_status asj_cl_gradient(asj_context *context, asj_frame *frame, const asj_detect_options *options);
@@ -21,9 +22,8 @@ asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const as
 void asj_cl_free_scan(asj_context *context);
 
 /* match_ops.c; struct asj_cl_match in context->cl->match */
-asj_status asj_cl_describe_frames(asj_context *context, const asj_match_options *options, asj_view *view);
-asj_status asj_cl_rank_partners(asj_context *context, const asj_match_options *options, const asj_view *view1,
-                                const asj_view *view2, asj_partner *rows, asj_partner *columns);
+asj_status asj_cl_describe_frames(asj_context *context, const asj_match_options *options, asj_image_features *features);
+asj_status asj_cl_rank_partners(const asj_match_run *run, asj_partner *rows, asj_partner *columns);
 void asj_cl_free_match(asj_context *context);
 
 #endif

@@ -17,11 +17,11 @@ typedef struct asj_ops {
     struct asj_scan_ops *scan;           /* detect/scan.h */
     struct asj_strip_ops *strip;         /* detect/strip.h */
     struct asj_patch_ops *patch;         /* match/patch.h */
-    struct asj_describe_ops *describe;   /* match/distance.h */
-    struct asj_sketch_ops *sketch;       /* match/sketch.h */
-    struct asj_rank_ops *rank;           /* match/distance.h */
+    struct asj_describe_ops *describe;   /* match/describe.h */
+    struct asj_bound_ops *bound;         /* match/product_bound.h */
+    struct asj_rank_ops *rank;           /* match/shortlist.h */
     struct asj_disc_ops *disc;           /* match/align.h */
-    struct asj_agreement_ops *agreement; /* match/agreement.h */
+    struct asj_gate_ops *gate;           /* match/support_gate.h */
 } asj_ops;
 
 #endif

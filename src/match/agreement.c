@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 7, agreement of two candidates: two points of one scene, as far as their places and affine maps tell.
+/* Step 7, agreement of two candidates: two points of one scene, as far as their locations and affine maps tell.
  *
  * On one surface (asj_surface_agreement). A homography takes the line through both points to a line, by x -> a x / (1 + b x). Its
  * derivatives at the points are a and a / (1 + b x)^2, and the distance of the points is magnified by a / (1 + b x): by the
@@ -24,7 +24,7 @@
 
 #include <math.h>
 
-#define LEAST_WAY 10.0 /* px: nearer corners say nothing of an edge's direction; as LEAST_START of corners.c */
+#define LEAST_WAY 10.0 /* px: nearer corners say nothing of an edge's direction; as LEAST_START of l_junctions.c */
 
 static float biweight(double r2)
 {
@@ -32,10 +32,10 @@ static float biweight(double r2)
     return (float)(w * w);
 }
 
-asj_way asj_way_between(const asj_view *view1, const asj_view *view2, const asj_candidate *c, const asj_candidate *d)
+asj_way asj_way_between(const asj_match_run *run, const asj_candidate *c, const asj_candidate *d)
 {
-    const asj_l_junction *c1 = &view1->corners.l[c->i], *d1 = &view1->corners.l[d->i];
-    const asj_l_junction *c2 = &view2->corners.l[c->j], *d2 = &view2->corners.l[d->j];
+    const asj_l_junction *c1 = asj_match_run_l(run, c, 0), *d1 = asj_match_run_l(run, d, 0);
+    const asj_l_junction *c2 = asj_match_run_l(run, c, 1), *d2 = asj_match_run_l(run, d, 1);
     return (asj_way){(double)d1->x - (double)c1->x, (double)d1->y - (double)c1->y,
                      (double)d2->x - (double)c2->x, (double)d2->y - (double)c2->y};
 }
@@ -76,7 +76,7 @@ static double unlikeness(const double *a, const double *b)
     return difference / sqrt(size_a * size_b);
 }
 
-/* Two corners of one image on one place of the other. */
+/* Two corners of one image on one location of the other. */
 static int32_t together(const asj_way *way)
 {
     return way->x1 * way->x1 + way->y1 * way->y1 < 1 || way->x2 * way->x2 + way->y2 * way->y2 < 1;
@@ -104,37 +104,54 @@ static double off_line(const double u[2], double ex, double ey, int32_t *ahead)
     return across * across;
 }
 
-/* r^2 of the two branches in one image, as much as ends agreement when they do not share an edge: s of `from` and t of `to`, which
- * lies (ex, ey) away. *sides tells which way they lead. */
-static double shared(const asj_corners *corners, uint32_t from, uint32_t s, uint32_t to, uint32_t t, double ex, double ey,
-                     double tolerance, int32_t *sides)
+/* A branch of an L-junction: 0 = a, 1 = b. */
+typedef struct branch {
+    const double *u; /* unit vector */
+    double length;
+} branch;
+
+static branch branch_of(const asj_l_junctions *l_junctions, uint32_t l, uint32_t which)
+{
+    return (branch){l_junctions->direction + 4 * (size_t)l + 2 * which,
+                    (double)l_junctions->lengths[2 * (size_t)l + which].length[0]};
+}
+
+/* r^2 of two branches in one image, as much as ends agreement when they do not share an edge: s, and t of a location that lies
+ * (ex, ey) away. *sides tells which way they lead. */
+static double shared(branch s, branch t, double ex, double ey, double tolerance, int32_t *sides)
 {
     int32_t ahead, onwards;
-    const double off_s = off_line(corners->direction + 4 * (size_t)from + 2 * s, ex, ey, &ahead);
-    const double off_t = off_line(corners->direction + 4 * (size_t)to + 2 * t, ex, ey, &onwards);
-    const double covered = (ahead ? (double)corners->lengths[2 * (size_t)from + s].length[0] : 0) +
-                           (onwards ? 0 : (double)corners->lengths[2 * (size_t)to + t].length[0]);
+    const double off_s = off_line(s.u, ex, ey, &ahead), off_t = off_line(t.u, ex, ey, &onwards);
+    const double covered = (ahead ? s.length : 0) + (onwards ? 0 : t.length);
     *sides = 2 * ahead + onwards;
     return covered >= (1 - tolerance) * sqrt(ex * ex + ey * ey) ? 0.5 * (off_s + off_t) : ASJ_AGREEMENT_REACH;
 }
 
-float asj_edge_agreement(const asj_match_options *options, const asj_corners *k1, const asj_corners *k2, const asj_candidate *c,
-                         const asj_candidate *d, const asj_way *e)
+/* The least r^2 of branches that the corners may share in both images; both lead the same way in either. */
+static double least_off_edge(const asj_match_run *run, const asj_candidate *c, const asj_candidate *d, const asj_way *e)
 {
-    const double square1 = e->x1 * e->x1 + e->y1 * e->y1, square2 = e->x2 * e->x2 + e->y2 * e->y2;
+    const asj_l_junctions *in1 = &run->image[0]->l_junctions, *in2 = &run->image[1]->l_junctions;
+    const double tolerance = run->options->end_tolerance;
     double least = ASJ_AGREEMENT_REACH;
-    if (square1 < LEAST_WAY * LEAST_WAY || square2 < LEAST_WAY * LEAST_WAY || k1->stem[c->i] || k1->stem[d->i] || k2->stem[c->j] ||
-        k2->stem[d->j])
-        return 0;
     for (uint32_t s = 0; s < 2; s++)
         for (uint32_t t = 0; t < 2; t++) {
             int32_t sides1, sides2 = -1;
-            const double r1 = shared(k1, c->i, s, d->i, t, e->x1, e->y1, options->end_tolerance, &sides1);
-            const double r2 = r1 < least ? shared(k2, c->j, s, d->j, t, e->x2, e->y2, options->end_tolerance, &sides2)
-                                         : ASJ_AGREEMENT_REACH;
+            const double r1 = shared(branch_of(in1, c->i, s), branch_of(in1, d->i, t), e->x1, e->y1, tolerance, &sides1);
+            const double r2 = r1 >= least ? ASJ_AGREEMENT_REACH
+                : shared(branch_of(in2, c->j, s), branch_of(in2, d->j, t), e->x2, e->y2, tolerance, &sides2);
             const double larger = r1 > r2 ? r1 : r2;
             least = larger < least && sides1 == sides2 ? larger : least;
         }
+    return least;
+}
+
+float asj_edge_agreement(const asj_match_run *run, const asj_candidate *c, const asj_candidate *d, const asj_way *e)
+{
+    const uint8_t *t1 = run->image[0]->l_junctions.t_junction, *t2 = run->image[1]->l_junctions.t_junction;
+    const double square1 = e->x1 * e->x1 + e->y1 * e->y1, square2 = e->x2 * e->x2 + e->y2 * e->y2;
+    if (square1 < LEAST_WAY * LEAST_WAY || square2 < LEAST_WAY * LEAST_WAY || t1[c->i] || t1[d->i] || t2[c->j] || t2[d->j])
+        return 0;
+    const double least = least_off_edge(run, c, d, e);
     if (least >= ASJ_AGREEMENT_REACH)
         return 0;
     const double cx = c->map.to[0] * e->x1 + c->map.to[1] * e->y1, cy = c->map.to[2] * e->x1 + c->map.to[3] * e->y1;
@@ -142,38 +159,6 @@ float asj_edge_agreement(const asj_match_options *options, const asj_corners *k1
     const double power = (cx * cx + cy * cy) * (dx * dx + dy * dy) / (square2 * square2); /* (|p| / |e2|)^4 */
     if (!(power > 0))
         return 0;
-    const double unequal = 0.25 * log(power) / options->map_tolerance;
+    const double unequal = 0.25 * log(power) / run->options->map_tolerance;
     return biweight(least + unequal * unequal);
 }
-
-/* --- first looks at many ---------------------------------------------------------------------------------------------------- */
-
-uint64_t asj_look_at(const asj_look *look, const asj_spots *spots, uint32_t first, uint32_t count)
-{
-    uint64_t seen = 0;
-    for (uint32_t n = 0; n < count; n++) {
-        const uint32_t m = first + n;
-        const float ex = spots->x[m] - look->x, ey = spots->y[m] - look->y;
-        const float most = (float)ASJ_LOOK_MOST + look->slope * (ex * ex + ey * ey);
-        const float cx = look->px - ex, cy = look->py - ey;
-        const float dx = spots->map[0][m] * look->way_x + spots->map[1][m] * look->way_y - ex;
-        const float dy = spots->map[2][m] * look->way_x + spots->map[3][m] * look->way_y - ey;
-        int32_t may = cx * cx + cy * cy <= most && dx * dx + dy * dy <= most;
-        for (uint32_t t = 0; t < 2; t++)
-            if (look->edges >> t & 1)
-                may |= fabsf(look->branch[t][0] * ey - look->branch[t][1] * ex) <= (float)ASJ_LOOK_ACROSS;
-        seen |= (uint64_t)may << n;
-    }
-    return seen;
-}
-
-uint32_t asj_edges_through(const asj_corners *corners, uint32_t l, uint32_t among, double ex, double ey)
-{
-    const double *u = corners->direction + 4 * (size_t)l;
-    if (among == 0 || corners->stem[l])
-        return 0;
-    const uint32_t a = fabs(u[0] * ey - u[1] * ex) <= ASJ_LOOK_ACROSS, b = fabs(u[2] * ey - u[3] * ex) <= ASJ_LOOK_ACROSS;
-    return among & (a | b << 1);
-}
-
-const asj_agreement_ops asj_agreement_reference = {.look_at = asj_look_at};

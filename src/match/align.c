@@ -6,7 +6,7 @@
  * found. Afterwards the correlation tells them apart far better than before, the map predicts where neighbours must be
  * (consensus.c), and the location in the other image is good to a fraction of a pixel.
  *
- * Inverse compositional form (Baker and Matthews 2004): derivatives belong to the template and are computed once for each place,
+ * Inverse compositional form (Baker and Matthews 2004): derivatives belong to the template and are computed once for each location,
  * and a step costs one sampling and eight products. Gain and offset: template and source are both brought to zero mean and unit
  * norm, and the derivatives are made orthogonal to the template and the constant, which is the Gauss-Newton step of correlation.
  * Levenberg damping: 1 % of the mean curvature in t_x and t_y; the linear part is scaled by the radius, so that the same number
@@ -21,10 +21,38 @@
 #include <math.h>
 #include <string.h>
 
-#define DAMPING 0.01
-#define GRID_SIDE (2 * ASJ_DISC_RADIUS + 3)
+#define GRID_SIDE (2 * ASJ_DISC_RADIUS + 3) /* one sample more each way, for differences */
+
+/* The normal equations. Their sums are of a template of unit norm: curvatures are in 1/px^2, about (1/20)^2 to 1 for texture. */
+#define DAMPING 0.01          /* Levenberg: part of the mean curvature in t_x and t_y */
+#define DAMPING_FLOOR 1e-6    /* 1/px^2: keeps the equations of a flat disc regular */
+#define LEAST_PIVOT 1e-12     /* a millionth of that floor: below it only rounding is left */
+#define LEAST_ENERGY 1e-12f   /* of a template of unit norm; a flat one has less */
+
+/* One step. */
+#define CONVERGED 0.02        /* px at the centre, and px at the disc's border for the linear part: an order below what locations
+                               * are good to */
+#define MOST_STEPS 2.0        /* samples: the farthest that one step moves the centre; farther out the linearisation says nothing */
+#define LEAST_INCREMENT 0.3   /* determinant of a step's linear part: a step that changes the area threefold is no small one */
+#define MOST_INCREMENT 3.0
+
+/* The result. A frame whose two lengths are wrong by a factor of 1.58 each, far beyond any true pair, is 2.5 in area. */
 #define LEAST_AREA_CHANGE 0.4 /* of the map's area, against the start */
 #define MOST_AREA_CHANGE 2.5
+
+/* Floors of 1 - similarity and of the squared canonical distance 2 (1 - similarity): 0.01 in either distance, which is what grey
+ * levels of 8 bits leave of identical patches. */
+#define LEAST_UNLIKENESS 1e-4f
+#define LEAST_DISTANCE2 2e-4f
+
+/* Pairs without a usable disc (similarity -1), or whose discs are each other's negatives, would only slow the consensus down. */
+#define LEAST_SIMILARITY (-0.5f)
+
+/* Three quarters of a disc must lie in the image: as for patches (patch.h). */
+static int32_t inside_enough(int32_t inside, int32_t all)
+{
+    return 4 * inside >= 3 * all;
+}
 
 void asj_disc_create(double radius, asj_disc *disc)
 {
@@ -95,7 +123,7 @@ static int32_t factorise(double a[36])
                 s -= a[6 * i + k] * a[6 * j + k];
             if (i != j)
                 a[6 * i + j] = s / a[6 * j + j];
-            else if (s > 1e-12)
+            else if (s > LEAST_PIVOT)
                 a[6 * i + i] = sqrt(s);
             else
                 return 0;
@@ -137,7 +165,7 @@ static void project(const asj_disc *disc, const float *value, float energy, floa
     float mean = sum(descent) / (float)disc->count;
     for (int32_t i = 0; i < ASJ_DISC_SAMPLES; i++)
         descent[i] = (descent[i] - mean) * disc->mask[i];
-    float along = product(descent, value) / (energy + 1e-12f);
+    float along = product(descent, value) / (energy + LEAST_ENERGY);
     for (int32_t i = 0; i < ASJ_DISC_SAMPLES; i++)
         descent[i] = (descent[i] - along * value[i]) * scale;
 }
@@ -147,7 +175,7 @@ void asj_template_create(const asj_disc *disc, const asj_pyramid *pyramid, doubl
     uint16_t grid[GRID_SIDE * GRID_SIDE];
     t->x = x;
     t->y = y;
-    t->usable = 4 * sample_grid(disc, pyramid, x, y, grid) >= 3 * GRID_SIDE * GRID_SIDE;
+    t->usable = inside_enough(sample_grid(disc, pyramid, x, y, grid), GRID_SIDE * GRID_SIDE);
     const float half = 0.5f / disc->step, inverse = 1 / disc->radius;
     for (int32_t i = 0; i < ASJ_DISC_SAMPLES; i++) {
         const uint16_t *p = grid + disc->row[i] * GRID_SIDE + disc->column[i];
@@ -167,7 +195,7 @@ void asj_template_create(const asj_disc *disc, const asj_pyramid *pyramid, doubl
     for (int32_t i = 0; i < 6; i++)
         for (int32_t j = 0; j <= i; j++)
             t->factor[6 * i + j] = (double)product(t->descent[i], t->descent[j]);
-    double damping = DAMPING * 0.5 * (t->factor[0] + t->factor[7]) + 1e-6;
+    double damping = DAMPING * 0.5 * (t->factor[0] + t->factor[7]) + DAMPING_FLOOR;
     for (int32_t i = 0; i < 6; i++)
         t->factor[7 * i] += damping;
     t->solvable = factorise(t->factor);
@@ -204,169 +232,189 @@ void asj_disc_compare(const asj_disc *disc, const asj_template *t, const asj_pyr
         sums->descent[k] = product(t->descent[k], value);
 }
 
-static asj_disc_map map_of(const asj_disc *disc, const asj_pyramid *pyramid, const asj_alignment *now)
+static double determinant(const double m[4])
 {
-    const double *l = now->linear, area = fabs(l[0] * l[3] - l[1] * l[2]);
-    return (asj_disc_map){asj_pyramid_level(pyramid, area * (double)disc->step * (double)disc->step), (float)now->x, (float)now->y,
-                          {(float)l[0], (float)l[1], (float)l[2], (float)l[3]}};
+    return m[0] * m[3] - m[1] * m[2];
+}
+
+static asj_disc_map map_of(const asj_disc *disc, const asj_pyramid *source, const asj_disc_pose *pose)
+{
+    const double *l = pose->linear, area = fabs(determinant(l));
+    return (asj_disc_map){asj_pyramid_level(source, area * (double)disc->step * (double)disc->step), (float)pose->x,
+                          (float)pose->y, {(float)l[0], (float)l[1], (float)l[2], (float)l[3]}};
 }
 
 /* One step: the map followed by the inverse of the increment. Returns 0 when nothing is left to gain or the increment is wild. */
-static int32_t step(const asj_disc *disc, const asj_template *t, const float descent[6], asj_alignment *now)
+static int32_t step(const asj_disc *disc, const asj_template *t, const float descent[6], asj_disc_pose *pose)
 {
     double b[6];
     for (int32_t k = 0; k < 6; k++)
         b[k] = (double)descent[k];
     solve(t->factor, b);
-    const double radius = (double)disc->radius, limit = 2 * (double)disc->step;
-    double length = sqrt(b[0] * b[0] + b[1] * b[1]), change = fabs(b[2]) + fabs(b[3]) + fabs(b[4]) + fabs(b[5]);
-    if (length < 0.02 && change < 0.02)
+    const double radius = (double)disc->radius, limit = MOST_STEPS * (double)disc->step;
+    const double length = sqrt(b[0] * b[0] + b[1] * b[1]), change = fabs(b[2]) + fabs(b[3]) + fabs(b[4]) + fabs(b[5]);
+    if (length < CONVERGED && change < CONVERGED)
         return 0;
-    double shorten = length > limit ? limit / length : 1;
+    const double shorten = length > limit ? limit / length : 1;
     const double increment[4] = {1 + b[2] / radius, b[3] / radius, b[4] / radius, 1 + b[5] / radius};
-    double determinant = increment[0] * increment[3] - increment[1] * increment[2], inverse[4];
-    if (!(determinant > 0.3 && determinant < 3) || !asj_affine_invert(increment, inverse))
+    const double area = determinant(increment);
+    double inverse[4];
+    if (!(area > LEAST_INCREMENT && area < MOST_INCREMENT) || !asj_affine_invert(increment, inverse))
         return 0;
-    double tx = -(inverse[0] * b[0] + inverse[1] * b[1]) * shorten, ty = -(inverse[2] * b[0] + inverse[3] * b[1]) * shorten;
-    double *l = now->linear;
-    now->x += l[0] * tx + l[1] * ty;
-    now->y += l[2] * tx + l[3] * ty;
-    double next[4] = {l[0] * inverse[0] + l[1] * inverse[2], l[0] * inverse[1] + l[1] * inverse[3],
-                      l[2] * inverse[0] + l[3] * inverse[2], l[2] * inverse[1] + l[3] * inverse[3]};
+    const double tx = -(inverse[0] * b[0] + inverse[1] * b[1]) * shorten, ty = -(inverse[2] * b[0] + inverse[3] * b[1]) * shorten;
+    double *l = pose->linear;
+    pose->x += l[0] * tx + l[1] * ty;
+    pose->y += l[2] * tx + l[3] * ty;
+    const double next[4] = {l[0] * inverse[0] + l[1] * inverse[2], l[0] * inverse[1] + l[1] * inverse[3],
+                            l[2] * inverse[0] + l[3] * inverse[2], l[2] * inverse[1] + l[3] * inverse[3]};
     memcpy(l, next, sizeof next);
     return 1;
 }
 
-void asj_align(const asj_disc *disc, const asj_template *t, const asj_pyramid *pyramid, const double linear[4], double x, double y,
-               int32_t iterations, double max_move, asj_alignment *result)
+/* Did the alignment stay where it may? */
+static int32_t within_limits(const asj_disc_pose *start, const asj_disc_pose *end, double max_move)
 {
-    const asj_alignment start = {x, y, {linear[0], linear[1], linear[2], linear[3]}, 0, 0, 0};
-    asj_alignment now = start;
+    const double area = determinant(end->linear) / determinant(start->linear), dx = end->x - start->x, dy = end->y - start->y;
+    return area >= LEAST_AREA_CHANGE && area <= MOST_AREA_CHANGE && dx * dx + dy * dy <= max_move * max_move;
+}
+
+asj_alignment asj_align(const asj_aligner *aligner, const asj_template *t, const asj_pyramid *source, const asj_disc_pose *start)
+{
+    const asj_disc *disc = aligner->disc;
+    asj_disc_pose now = *start;
+    asj_alignment best = {*start, 0, 0, 0};
     int32_t best_inside = 0;
-    *result = start;
-    for (int32_t n = 0; n <= iterations; n++) {
-        const asj_disc_map map = map_of(disc, pyramid, &now);
+    for (int32_t n = 0; n <= aligner->iterations; n++) {
+        const asj_disc_map map = map_of(disc, source, &now);
         asj_disc_sums sums;
-        pyramid->ops->disc->compare(disc, t, pyramid, &map, &sums);
-        if (n == 0 || sums.similarity > result->similarity) {
-            float first = n == 0 ? sums.similarity : result->first;
-            *result = now;
-            result->first = first;
-            result->similarity = sums.similarity;
-            result->moved = n > 0;
+        source->ops->disc->compare(disc, t, source, &map, &sums);
+        if (n == 0 || sums.similarity > best.similarity) {
+            best = (asj_alignment){now, n == 0 ? sums.similarity : best.first, sums.similarity, n > 0};
             best_inside = sums.inside;
         }
-        if (n == iterations || !t->solvable || !step(disc, t, sums.descent, &now))
+        if (n == aligner->iterations || !t->solvable || !step(disc, t, sums.descent, &now))
             break;
     }
-    const double *l = result->linear;
-    double area = (l[0] * l[3] - l[1] * l[2]) / (linear[0] * linear[3] - linear[1] * linear[2]);
-    double dx = result->x - x, dy = result->y - y;
-    if (!(area >= LEAST_AREA_CHANGE && area <= MOST_AREA_CHANGE && dx * dx + dy * dy <= max_move * max_move) ||
-        4 * best_inside < 3 * disc->count) { /* the start is what remains */
-        float first = result->first;
-        *result = start;
-        result->first = result->similarity = first;
-    }
+    if (!within_limits(start, &best.pose, aligner->max_move) || !inside_enough(best_inside, disc->count))
+        best = (asj_alignment){*start, best.first, best.first, 0};
+    return best;
 }
 
 /* --- all candidates --------------------------------------------------------------------------------------------------------- */
 
-static int32_t template_is_first(const asj_candidate *c)
+/* The image whose corner is smaller: 0 or 1. */
+static int32_t template_side(const asj_candidate *c)
 {
-    const double *to = c->map.to, *from = c->map.from;
-    return to[0] * to[3] - to[1] * to[2] >= from[0] * from[3] - from[1] * from[2];
+    return determinant(c->map.to) >= determinant(c->map.from) ? 0 : 1;
 }
 
 /* sqrt(d_c d_r): the geometric mean of the canonical distance and of the aligned one, floored; squared. */
 static float combine(float canonical2, float similarity)
 {
-    float rest = 1 - similarity > 1e-4f ? 1 - similarity : 1e-4f;
-    float canonical = canonical2 > 2e-4f ? canonical2 : 2e-4f;
+    const float rest = 1 - similarity > LEAST_UNLIKENESS ? 1 - similarity : LEAST_UNLIKENESS;
+    const float canonical = canonical2 > LEAST_DISTANCE2 ? canonical2 : LEAST_DISTANCE2;
     return sqrtf(canonical * 2 * rest);
 }
 
-static void align_one(const asj_disc *disc, const asj_match_options *options, const asj_template *t, int32_t first,
-                      const asj_view *view1, const asj_view *view2, asj_candidate *c)
+/* `side` is the image of the template. */
+static void align_one(const asj_match_run *run, const asj_aligner *aligner, const asj_template *t, int32_t side, asj_candidate *c)
 {
-    const asj_view *source = first ? view2 : view1;
-    const asj_l_junction *l = first ? &view2->corners.l[c->j] : &view1->corners.l[c->i];
-    asj_alignment result;
     if (!t->usable) {
         c->similarity = -1;
     } else {
-        asj_align(disc, t, &source->pyramid, first ? c->map.to : c->map.from, (double)l->x, (double)l->y,
-                  options->align_iterations, options->max_move, &result);
-        c->similarity = result.similarity;
-        asj_linear map;
-        if (result.moved && asj_affine_invert(result.linear, map.from)) {
-            double *move = first ? c->move2 : c->move1;
-            memcpy(map.to, result.linear, sizeof map.to);
-            memcpy(c->map.to, first ? map.to : map.from, sizeof map.to);
-            memcpy(c->map.from, first ? map.from : map.to, sizeof map.to);
-            move[0] = result.x - (double)l->x;
-            move[1] = result.y - (double)l->y;
+        const asj_l_junction *l = asj_match_run_l(run, c, 1 - side);
+        const double *map = asj_candidate_map(c, side);
+        const asj_disc_pose start = {(double)l->x, (double)l->y, {map[0], map[1], map[2], map[3]}};
+        const asj_alignment found = asj_align(aligner, t, &run->image[1 - side]->pyramid, &start);
+        asj_linear forth;
+        c->similarity = found.similarity;
+        if (found.moved && asj_affine_invert(found.pose.linear, forth.from)) {
+            double *move = side == 0 ? c->move2 : c->move1;
+            memcpy(forth.to, found.pose.linear, sizeof forth.to);
+            memcpy(c->map.to, side == 0 ? forth.to : forth.from, sizeof forth.to);
+            memcpy(c->map.from, side == 0 ? forth.from : forth.to, sizeof forth.to);
+            move[0] = found.pose.x - start.x;
+            move[1] = found.pose.y - start.y;
         }
     }
     c->distance2 = combine(c->distance2, c->similarity);
 }
 
-/* Pairs without a usable disc (similarity -1), or whose discs are each other's negatives, would only slow the consensus down. */
-static void drop_unlike(asj_candidates *candidates, size_t first)
+static void drop_unlike(asj_match_run *run, size_t first)
 {
-    const float least = -0.5f;
+    asj_candidates *candidates = &run->candidates;
     size_t kept = first;
     for (size_t k = first; k < candidates->count; k++)
-        if (candidates->list[k].similarity >= least)
+        if (candidates->list[k].similarity >= LEAST_SIMILARITY)
             candidates->list[kept++] = candidates->list[k];
     candidates->count = kept;
 }
 
-/* Candidates whose template stands at the same place are worked on together: `order` lists them place by place. */
-asj_status asj_align_candidates(asj_context *context, const asj_match_options *options, const asj_view *view1,
-                                const asj_view *view2, asj_candidates *candidates, size_t first)
+/* Candidates by the location of their template, those of image 1 before those of image 2: order[start[p]] .. are those of
+ * location p, as numbers from `first` on. They are worked on together, so that each template is made once. */
+typedef struct grouping {
+    uint32_t *start, *order, *group;
+} grouping;
+
+static void group_by_template(const asj_match_run *run, size_t first, const grouping *g)
 {
-    const uint32_t places1 = view1->corners.place_count, places = places1 + view2->corners.place_count;
-    asj_memory *memory = &context->memory;
-    const size_t count = candidates->count - first;
-    uint32_t *start = asj_allocate_zero(memory, (size_t)places + 2, sizeof *start);
-    uint32_t *order = asj_allocate(memory, count, sizeof *order), *group = asj_allocate(memory, count, sizeof *group);
-    asj_disc *disc = asj_allocate(memory, 1, sizeof *disc);
-    if (!start || !order || !group || !disc) {
-        asj_release(memory, start);
-        asj_release(memory, order);
-        asj_release(memory, group);
-        asj_release(memory, disc);
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory to align %zu candidates", count);
-    }
-    asj_disc_create(options->align_radius, disc);
+    const size_t count = run->candidates.count - first;
+    const uint32_t count1 = run->image[0]->l_junctions.location_count;
+    const uint32_t locations = count1 + run->image[1]->l_junctions.location_count;
     for (size_t k = 0; k < count; k++) {
-        const asj_candidate *c = &candidates->list[first + k];
-        group[k] = template_is_first(c) ? view1->corners.place[c->i] : places1 + view2->corners.place[c->j];
-        start[group[k] + 2]++;
+        const asj_candidate *c = &run->candidates.list[first + k];
+        const int32_t side = template_side(c);
+        g->group[k] = (side ? count1 : 0) + run->image[side]->l_junctions.location[asj_candidate_l(c, side)];
+        g->start[g->group[k] + 2]++;
     }
-    for (uint32_t p = 2; p < places + 2; p++)
-        start[p] += start[p - 1];
+    for (uint32_t p = 2; p < locations + 2; p++)
+        g->start[p] += g->start[p - 1];
     for (size_t k = 0; k < count; k++)
-        order[start[group[k] + 1]++] = (uint32_t)k;
-#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 4)
-    for (int64_t p = 0; p < (int64_t)places; p++) {
+        g->order[g->start[g->group[k] + 1]++] = (uint32_t)k;
+}
+
+static void align_groups(asj_match_run *run, size_t first, const grouping *g, const asj_aligner *aligner)
+{
+    const int64_t count1 = run->image[0]->l_junctions.location_count;
+    const int64_t locations = count1 + run->image[1]->l_junctions.location_count;
+#pragma omp parallel for num_threads(run->context->threads) schedule(dynamic, 4)
+    for (int64_t p = 0; p < locations; p++) {
         asj_template t;
-        const int32_t in_first = p < (int64_t)places1;
-        const asj_view *view = in_first ? view1 : view2;
-        const size_t place = in_first ? (size_t)p : (size_t)p - places1;
-        if (start[p] == start[p + 1])
+        const int32_t side = p >= count1;
+        const asj_image_features *features = run->image[side];
+        const int64_t at = side ? p - count1 : p;
+        if (g->start[p] == g->start[p + 1])
             continue;
-        asj_template_create(disc, &view->pyramid, view->corners.place_x[place], view->corners.place_y[place], &t);
-        for (uint32_t k = start[p]; k < start[p + 1]; k++)
-            align_one(disc, options, &t, in_first, view1, view2, &candidates->list[first + order[k]]);
+        asj_template_create(aligner->disc, &features->pyramid, features->l_junctions.location_x[at],
+                            features->l_junctions.location_y[at], &t);
+        for (uint32_t k = g->start[p]; k < g->start[p + 1]; k++)
+            align_one(run, aligner, &t, side, &run->candidates.list[first + g->order[k]]);
     }
-    asj_release(memory, start);
-    asj_release(memory, order);
-    asj_release(memory, group);
+}
+
+asj_status asj_align_candidates(asj_match_run *run, size_t first)
+{
+    asj_memory *memory = &run->context->memory;
+    const size_t count = run->candidates.count - first;
+    const size_t locations = (size_t)run->image[0]->l_junctions.location_count + run->image[1]->l_junctions.location_count;
+    const grouping g = {asj_allocate_zero(memory, locations + 2, sizeof *g.start), asj_allocate(memory, count, sizeof *g.order),
+                        asj_allocate(memory, count, sizeof *g.group)};
+    asj_disc *disc = asj_allocate(memory, 1, sizeof *disc);
+    asj_status status = ASJ_OK;
+    if (!g.start || !g.order || !g.group || !disc) {
+        status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to align %zu candidates", count);
+    } else {
+        const asj_aligner aligner = {disc, run->options->align_iterations, run->options->max_move};
+        asj_disc_create(run->options->align_radius, disc);
+        group_by_template(run, first, &g);
+        align_groups(run, first, &g, &aligner);
+        drop_unlike(run, first);
+    }
+    asj_release(memory, g.start);
+    asj_release(memory, g.order);
+    asj_release(memory, g.group);
     asj_release(memory, disc);
-    drop_unlike(candidates, first);
-    return ASJ_OK;
+    return status;
 }
 
 const asj_disc_ops asj_disc_reference = {.compare = asj_disc_compare};

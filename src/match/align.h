@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_ALIGN_H
 #define ASJ_SRC_ALIGN_H
 
-#include "distance.h"
+#include "match_run.h"
 
 /* Samples of a disc: a grid of ASJ_DISC_RADIUS steps each way, in lanes. */
 #define ASJ_DISC_RADIUS 10
@@ -15,12 +15,12 @@ typedef struct asj_disc {
     float x[ASJ_DISC_SAMPLES];       /* px from the centre */
     float y[ASJ_DISC_SAMPLES];
     float mask[ASJ_DISC_SAMPLES];    /* 1, and 0 in the filling */
-    int16_t column[ASJ_DISC_SAMPLES];/* place in the grid */
+    int16_t column[ASJ_DISC_SAMPLES];/* of the grid */
     int16_t row[ASJ_DISC_SAMPLES];
     float step, radius;              /* px */
 } asj_disc;
 
-/* What is known about the disc around one place, once for all its candidates. */
+/* What is known about the disc around one location, once for all its candidates. */
 typedef struct asj_template {
     double x, y;
     float value[ASJ_DISC_SAMPLES];      /* zero mean, unit norm */
@@ -50,21 +50,32 @@ typedef struct asj_disc_sums {
 void asj_disc_compare(const asj_disc *disc, const asj_template *t, const asj_pyramid *pyramid, const asj_disc_map *map,
                       asj_disc_sums *sums);
 
-/* Result of an alignment: source = (x, y) + linear (template - its centre). */
-typedef struct asj_alignment {
+/* A map of the template's disc into the source: source = (x, y) + linear (template - its centre). */
+typedef struct asj_disc_pose {
     double x, y;
     double linear[4];
+} asj_disc_pose;
+
+/* Result of an alignment. */
+typedef struct asj_alignment {
+    asj_disc_pose pose;
     float first, similarity; /* correlation before and after */
     int32_t moved;           /* the start was improved upon, within the limits */
 } asj_alignment;
 
-/* Aligns `pyramid` with the template, starting from the linear map and the location given. */
-void asj_align(const asj_disc *disc, const asj_template *t, const asj_pyramid *pyramid, const double linear[4], double x, double y,
-               int32_t iterations, double max_move, asj_alignment *result);
+/* How discs are aligned. */
+typedef struct asj_aligner {
+    const asj_disc *disc;
+    int32_t iterations;
+    double max_move;         /* px: farthest that the location may go */
+} asj_aligner;
 
-/* Aligns every candidate of the list from `first` on (sorted or not): map, move1, move2, similarity and distance2 are updated. */
-asj_status asj_align_candidates(asj_context *context, const asj_match_options *options, const asj_view *view1,
-                                const asj_view *view2, asj_candidates *candidates, size_t first);
+/* Aligns `source` with the template, starting from the pose given. */
+asj_alignment asj_align(const asj_aligner *aligner, const asj_template *t, const asj_pyramid *source, const asj_disc_pose *start);
+
+/* Aligns every candidate from `first` on (sorted or not): updates map, move1, move2, similarity and distance2, and drops those
+ * whose discs do not look alike. */
+asj_status asj_align_candidates(asj_match_run *run, size_t first);
 
 /* Operations (core/ops.h). */
 typedef struct asj_disc_ops {

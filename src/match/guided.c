@@ -2,56 +2,55 @@
 /* Step 7, guided pass: matches propose matches near them.
  *
  * The short list misses true partners where corners are many and alike, or where a branch's length is wrong. An accepted match says
- * where its neighbours must be, so the partners near that place are looked at as well, however they ranked: an L-junction is
+ * where its neighbours must be, so the partners near that location are candidates as well, however they ranked: an L-junction is
  * paired with those that one of the matches nearest to it predicts within the tolerance of agreement.c, with both branches about
- * where the map turns them. What is proposed is then compared, aligned and judged like every other candidate. Done from both
- * images, so that swapping them changes nothing. */
+ * where the map turns them. What is proposed is then compared, aligned and judged like every other candidate. Both images
+ * propose, so that swapping them changes nothing. */
 #include "guided.h"
 #include "agreement.h"
 #include "align.h"
+#include "compare.h"
+#include "nearest.h"
 
 #include <math.h>
 #include <string.h>
 
-#define NEAREST 8                /* matches asked: two or three surfaces meet at a corner; 4 or 16 find as much within 1 % */
-#define LEAST_COSINE 0.906307787 /* 25 degrees: what map_tolerance lets two maps differ by, 0.5 in norm, is about that */
-#define MOST_PROPOSALS 32        /* for one L-junction; where more are possible, none is likely */
+#define GUIDES_ASKED 8            /* nearest matches: two or three surfaces meet at a corner; 4 or 16 find as much within 1 % */
+#define LEAST_TURN_COSINE 0.906307787 /* 25 degrees: what map_tolerance lets two maps differ by, 0.5 in norm, is about that */
+#define MOST_PROPOSALS 32         /* for one L-junction; where more are possible, none is likely */
 
-/* Accepted matches as seen from one image. */
+/* A chosen match as seen from one image. */
 typedef struct guide {
-    double x1, y1, x2, y2; /* place in the image asked, place in the other */
-    double map[4];         /* from the one to the other */
+    double x, y;           /* px: where it stands in the image asked, */
+    double to_x, to_y;     /* .. and in the other */
+    const double *map;     /* from the one to the other */
 } guide;
+
+typedef struct guides {
+    guide *list;
+    size_t count;
+} guides;
 
 typedef struct proposals {
     uint32_t count;
     uint32_t partner[MOST_PROPOSALS];
 } proposals;
 
-static uint32_t nearest_guides(const guide *guides, size_t count, double x, double y, uint32_t *out)
+static uint32_t nearest_guides(const guides *all, double x, double y, uint32_t *out)
 {
-    double far[NEAREST];
-    uint32_t n = 0;
-    for (size_t g = 0; g < count; g++) {
-        double dx = guides[g].x1 - x, dy = guides[g].y1 - y, d = dx * dx + dy * dy;
-        if (n == NEAREST && d >= far[n - 1])
-            continue;
-        uint32_t k = n < NEAREST ? n++ : NEAREST - 1;
-        for (; k > 0 && far[k - 1] > d; k--) {
-            far[k] = far[k - 1];
-            out[k] = out[k - 1];
-        }
-        far[k] = d;
-        out[k] = (uint32_t)g;
+    asj_nearest nearest = {.limit = GUIDES_ASKED, .index = out};
+    for (size_t g = 0; g < all->count; g++) {
+        const double dx = all->list[g].x - x, dy = all->list[g].y - y;
+        asj_nearest_offer(&nearest, (uint32_t)g, dx * dx + dy * dy);
     }
-    return n;
+    return nearest.count;
 }
 
 /* Does the map turn direction u within 25 degrees of v? */
 static int turns(const double map[4], const double u[2], const double v[2])
 {
     double x = map[0] * u[0] + map[1] * u[1], y = map[2] * u[0] + map[3] * u[1];
-    return x * v[0] + y * v[1] >= LEAST_COSINE * sqrt(x * x + y * y);
+    return x * v[0] + y * v[1] >= LEAST_TURN_COSINE * sqrt(x * x + y * y);
 }
 
 static void propose(proposals *p, uint32_t partner)
@@ -63,23 +62,24 @@ static void propose(proposals *p, uint32_t partner)
         p->partner[p->count++] = partner;
 }
 
-static void ask(const asj_match_options *options, const asj_corners *mine, uint32_t i, const guide *g, const asj_corners *others,
-                proposals *p)
+/* What guide g proposes for L-junction l of image `side`. */
+static void ask(const asj_match_run *run, int32_t side, uint32_t l, const guide *g, proposals *p)
 {
-    const double *u = mine->direction + 4 * (size_t)i;
-    double dx = (double)mine->l[i].x - g->x1, dy = (double)mine->l[i].y - g->y1;
+    const asj_l_junctions *mine = &run->image[side]->l_junctions, *others = &run->image[1 - side]->l_junctions;
+    const double *u = mine->direction + 4 * (size_t)l;
+    double dx = (double)mine->l[l].x - g->x, dy = (double)mine->l[l].y - g->y;
     double px = g->map[0] * dx + g->map[1] * dy, py = g->map[2] * dx + g->map[3] * dy;
-    double radius = ASJ_AGREEMENT_PIXELS + options->neighbour_tolerance * sqrt(px * px + py * py);
-    px += g->x2;
-    py += g->y2;
-    for (uint32_t q = asj_first_place(others, px - radius); q < others->place_count; q++) {
-        double ex = others->place_x[q] - px, ey = others->place_y[q] - py;
+    double radius = ASJ_AGREEMENT_PIXELS + run->options->neighbour_tolerance * sqrt(px * px + py * py);
+    px += g->to_x;
+    py += g->to_y;
+    for (uint32_t q = asj_first_location(others, px - radius); q < others->location_count; q++) {
+        double ex = others->location_x[q] - px, ey = others->location_y[q] - py;
         if (ex > radius)
             break;
         if (ex * ex + ey * ey > radius * radius)
             continue;
-        for (uint32_t m = others->first_of_place[q]; m < others->first_of_place[q + 1]; m++) {
-            const uint32_t k = others->l_of_place[m];
+        for (uint32_t m = others->first_of_location[q]; m < others->first_of_location[q + 1]; m++) {
+            const uint32_t k = others->l_of_location[m];
             const double *v = others->direction + 4 * (size_t)k;
             if (turns(g->map, u, v) && turns(g->map, u + 2, v + 2))
                 propose(p, k);
@@ -89,9 +89,11 @@ static void ask(const asj_match_options *options, const asj_corners *mine, uint3
 
 /* --- both directions -------------------------------------------------------------------------------------------------------- */
 
-static int32_t known(const asj_candidate *list, size_t count, uint32_t i, uint32_t j)
+/* Is the pair in the list, which is in order? */
+static int32_t known(const asj_candidates *candidates, uint32_t i, uint32_t j)
 {
-    size_t low = 0, high = count;
+    const asj_candidate *list = candidates->list;
+    size_t low = 0, high = candidates->count;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
         if (list[middle].i < i || (list[middle].i == i && list[middle].j < j))
@@ -99,117 +101,94 @@ static int32_t known(const asj_candidate *list, size_t count, uint32_t i, uint32
         else
             high = middle;
     }
-    return low < count && list[low].i == i && list[low].j == j;
+    return low < candidates->count && list[low].i == i && list[low].j == j;
 }
 
-/* Appends what `side` proposes to `fresh`. */
-static asj_status collect(asj_context *context, const proposals *all, uint32_t count, int32_t side,
-                          const asj_candidates *candidates, asj_candidates *fresh)
+/* Appends what image `side` proposes to `fresh`. */
+static asj_status collect(const asj_match_run *run, int32_t side, const proposals *all, asj_candidates *fresh)
 {
-    for (uint32_t i = 0; i < count; i++)
-        for (uint32_t k = 0; k < all[i].count; k++) {
-            uint32_t first = side == 1 ? i : all[i].partner[k], second = side == 1 ? all[i].partner[k] : i;
-            if (known(candidates->list, candidates->count, first, second))
+    for (uint32_t l = 0; l < run->image[side]->l_junctions.count; l++)
+        for (uint32_t k = 0; k < all[l].count; k++) {
+            const uint32_t i = side == 0 ? l : all[l].partner[k], j = side == 0 ? all[l].partner[k] : l;
+            if (known(&run->candidates, i, j))
                 continue;
             void *list = fresh->list;
-            asj_status status = asj_grow(&context->memory, &list, &fresh->capacity, fresh->count + 1, sizeof *fresh->list,
+            asj_status status = asj_grow(&run->context->memory, &list, &fresh->capacity, fresh->count + 1, sizeof *fresh->list,
                                          fresh->count);
             if (status != ASJ_OK)
-                return asj_fail(context, status, "no memory for the guided pass");
+                return asj_fail(run->context, status, "no memory for the guided pass");
             fresh->list = list;
             memset(&fresh->list[fresh->count], 0, sizeof *fresh->list);
-            fresh->list[fresh->count].i = first;
-            fresh->list[fresh->count++].j = second;
+            fresh->list[fresh->count].i = i;
+            fresh->list[fresh->count++].j = j;
         }
     return ASJ_OK;
 }
 
-static asj_status one_side(asj_context *context, const asj_match_options *options, const asj_corners *mine,
-                           const asj_corners *theirs, int32_t side, const guide *guides, size_t guide_count,
-                           const asj_candidates *candidates, asj_candidates *fresh)
+static asj_status one_side(const asj_match_run *run, int32_t side, const guides *asked, asj_candidates *fresh)
 {
-    proposals *all = asj_allocate_zero(&context->memory, mine->count, sizeof *all);
-    asj_status status = all ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
+    const asj_l_junctions *mine = &run->image[side]->l_junctions;
+    proposals *all = asj_allocate_zero(&run->context->memory, mine->count, sizeof *all);
+    asj_status status = all ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
     if (status == ASJ_OK) {
         const int64_t count = mine->count;
-#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 16)
-        for (int64_t i = 0; i < count; i++) {
-            uint32_t near[NEAREST];
-            uint32_t n = nearest_guides(guides, guide_count, (double)mine->l[i].x, (double)mine->l[i].y, near);
+#pragma omp parallel for num_threads(run->context->threads) schedule(dynamic, 16)
+        for (int64_t l = 0; l < count; l++) {
+            uint32_t near[GUIDES_ASKED];
+            const uint32_t n = nearest_guides(asked, (double)mine->l[l].x, (double)mine->l[l].y, near);
             for (uint32_t k = 0; k < n; k++)
-                ask(options, mine, (uint32_t)i, &guides[near[k]], theirs, &all[i]);
+                ask(run, side, (uint32_t)l, &asked->list[near[k]], &all[l]);
         }
-        status = collect(context, all, mine->count, side, candidates, fresh);
+        status = collect(run, side, all, fresh);
     }
-    asj_release(&context->memory, all);
+    asj_release(&run->context->memory, all);
     return status;
 }
 
-static void set_guides(const asj_view *view1, const asj_view *view2, const asj_candidates *candidates, const asj_choice *choices,
-                       size_t count, int32_t side, guide *guides)
+static void set_guides(const asj_match_run *run, int32_t side, guides *all)
 {
-    for (size_t n = 0; n < count; n++) {
-        const asj_candidate *c = &candidates->list[choices[n].candidate];
-        const asj_l_junction *l1 = &view1->corners.l[c->i], *l2 = &view2->corners.l[c->j];
-        const asj_l_junction *from = side == 1 ? l1 : l2, *to = side == 1 ? l2 : l1;
-        guides[n] = (guide){(double)from->x, (double)from->y, (double)to->x, (double)to->y, {0, 0, 0, 0}};
-        memcpy(guides[n].map, side == 1 ? c->map.to : c->map.from, sizeof guides[n].map);
+    all->count = run->choices.count;
+    for (size_t n = 0; n < all->count; n++) {
+        const asj_candidate *c = &run->candidates.list[run->choices.list[n].candidate];
+        const asj_l_junction *from = asj_match_run_l(run, c, side), *to = asj_match_run_l(run, c, 1 - side);
+        all->list[n] = (guide){(double)from->x, (double)from->y, (double)to->x, (double)to->y, asj_candidate_map(c, side)};
     }
 }
 
-/* Compares the fresh pairs and keeps those with a map. */
-static void compare_all(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
-                        asj_candidates *fresh)
+static asj_status append(asj_match_run *run, asj_candidates *fresh)
 {
-    const int64_t count = (int64_t)fresh->count;
-    size_t kept = 0;
-    (void)context; /* without OpenMP */
-#pragma omp parallel for num_threads(context->threads) schedule(static)
-    for (int64_t k = 0; k < count; k++)
-        if (!asj_compare(options, view1, view2, &fresh->list[k]))
-            fresh->list[k].distance2 = -1;
-    for (size_t k = 0; k < fresh->count; k++)
-        if (fresh->list[k].distance2 >= 0)
-            fresh->list[kept++] = fresh->list[k];
-    fresh->count = kept;
-}
-
-static asj_status append(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
-                         asj_candidates *candidates, asj_candidates *fresh)
-{
+    asj_candidates *candidates = &run->candidates;
     void *list = candidates->list;
     const size_t before = candidates->count;
     asj_candidates_sort(fresh);
-    compare_all(context, options, view1, view2, fresh);
-    asj_status status = asj_grow(&context->memory, &list, &candidates->capacity, before + fresh->count, sizeof *candidates->list,
-                                 before);
+    asj_compare_and_drop(run, fresh);
+    asj_status status = asj_grow(&run->context->memory, &list, &candidates->capacity, before + fresh->count,
+                                 sizeof *candidates->list, before);
     if (status != ASJ_OK)
-        return asj_fail(context, status, "no memory for %zu candidates", before + fresh->count);
+        return asj_fail(run->context, status, "no memory for %zu candidates", before + fresh->count);
     candidates->list = list;
     if (fresh->count)
         memcpy(candidates->list + before, fresh->list, fresh->count * sizeof *fresh->list);
     candidates->count = before + fresh->count;
-    if (options->align_iterations > 0)
-        status = asj_align_candidates(context, options, view1, view2, candidates, before);
-    return status == ASJ_OK ? asj_candidates_sort(candidates) : status;
+    if (run->options->align_iterations > 0)
+        status = asj_align_candidates(run, before);
+    if (status == ASJ_OK)
+        asj_candidates_sort(candidates);
+    return status;
 }
 
-asj_status asj_guided(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
-                      asj_candidates *candidates, const asj_choice *choices, size_t choice_count, size_t *added)
+asj_status asj_guided(asj_match_run *run)
 {
     asj_candidates fresh = {NULL, 0, 0};
-    guide *guides = asj_allocate(&context->memory, choice_count, sizeof *guides);
-    asj_status status = guides ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
-    for (int32_t side = 1; side <= 2 && status == ASJ_OK; side++) {
-        set_guides(view1, view2, candidates, choices, choice_count, side, guides);
-        const asj_corners *mine = side == 1 ? &view1->corners : &view2->corners;
-        const asj_corners *theirs = side == 1 ? &view2->corners : &view1->corners;
-        status = one_side(context, options, mine, theirs, side, guides, choice_count, candidates, &fresh);
+    guides all = {asj_allocate(&run->context->memory, run->choices.count, sizeof *all.list), 0};
+    asj_status status = all.list ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
+    for (int32_t side = 0; side < 2 && status == ASJ_OK; side++) {
+        set_guides(run, side, &all);
+        status = one_side(run, side, &all, &fresh);
     }
     if (status == ASJ_OK)
-        status = append(context, options, view1, view2, candidates, &fresh);
-    *added = fresh.count;
-    asj_release(&context->memory, fresh.list);
-    asj_release(&context->memory, guides);
+        status = append(run, &fresh);
+    asj_release(&run->context->memory, fresh.list);
+    asj_release(&run->context->memory, all.list);
     return status;
 }

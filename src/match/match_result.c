@@ -22,16 +22,14 @@ static void refined_location(const asj_candidate *c, const asj_l_junction *l2, d
     *y = (double)l2->y + c->move2[1] - (c->map.to[2] * c->move1[0] + c->map.to[3] * c->move1[1]);
 }
 
-static void fill(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c,
-                 float ratio, asj_junction_match *m)
+static void fill(const asj_match_run *run, const asj_choice *choice, asj_junction_match *m)
 {
-    const asj_l_junction *l1 = &view1->corners.l[c->i], *l2 = &view2->corners.l[c->j];
-    const double *u1 = view1->corners.direction + 4 * (size_t)c->i, *u2 = view2->corners.direction + 4 * (size_t)c->j;
-    const double *t = c->map.to;
-    asj_common_end a, b;
+    const asj_candidate *c = &run->candidates.list[choice->candidate];
+    const asj_l_junction *l1 = asj_match_run_l(run, c, 0), *l2 = asj_match_run_l(run, c, 1);
+    const double *u1 = run->image[0]->l_junctions.direction + 4 * (size_t)c->i;
+    const double *u2 = run->image[1]->l_junctions.direction + 4 * (size_t)c->j, *t = c->map.to;
+    const asj_common_end a = asj_find_common_end(run, c, 0), b = asj_find_common_end(run, c, 1);
     double x, y;
-    asj_find_common_end(options, view1, view2, c, 0, &a);
-    asj_find_common_end(options, view1, view2, c, 1, &b);
     refined_location(c, l2, &x, &y);
     memset(m, 0, sizeof *m);
     m->l1 = c->i;
@@ -56,7 +54,7 @@ static void fill(const asj_match_options *options, const asj_view *view1, const 
     m->end_a = a.kind;
     m->end_b = b.kind;
     m->distance = sqrtf(c->distance2);
-    m->ratio = ratio;
+    m->ratio = choice->ratio;
     m->similarity = c->similarity;
     m->support = c->support;
 }
@@ -71,41 +69,41 @@ static int by_distance(const void *left, const void *right)
     return p->l2 < q->l2 ? -1 : p->l2 > q->l2;
 }
 
-static asj_l_junction *copy(asj_memory *memory, const asj_corners *corners)
+static asj_l_junction *copy(asj_memory *memory, const asj_l_junctions *l_junctions)
 {
-    asj_l_junction *l = asj_allocate(memory, corners->count, sizeof *l);
-    if (l && corners->count)
-        memcpy(l, corners->l, corners->count * sizeof *l);
+    asj_l_junction *l = asj_allocate(memory, l_junctions->count, sizeof *l);
+    if (l && l_junctions->count)
+        memcpy(l, l_junctions->l, l_junctions->count * sizeof *l);
     return l;
 }
 
-asj_match_result *asj_match_result_create(const asj_context *context, const asj_match_options *options, const asj_view *view1,
-                                          const asj_view *view2, const asj_candidates *candidates, const asj_choice *choices,
-                                          size_t count)
+asj_match_result *asj_match_result_create(const asj_match_run *run)
 {
-    asj_memory memory = {.allocator = context->memory.allocator};
+    asj_memory memory = {.allocator = run->context->memory.allocator};
+    const asj_l_junctions *in1 = &run->image[0]->l_junctions, *in2 = &run->image[1]->l_junctions;
+    const size_t count = run->choices.count;
     result *r = asj_allocate_zero(&memory, 1, sizeof *r);
     if (!r)
         return NULL;
     r->memory = memory;
     r->matches = asj_allocate(&memory, count, sizeof *r->matches);
-    r->l1 = copy(&memory, &view1->corners);
-    r->l2 = copy(&memory, &view2->corners);
+    r->l1 = copy(&memory, in1);
+    r->l2 = copy(&memory, in2);
     asj_match_result *shown = &r->shown;
     if (!r->matches || !r->l1 || !r->l2) {
         asj_match_result_free(&shown);
         return NULL;
     }
     for (size_t n = 0; n < count; n++)
-        fill(options, view1, view2, &candidates->list[choices[n].candidate], choices[n].ratio, &r->matches[n]);
+        fill(run, &run->choices.list[n], &r->matches[n]);
     if (count > 1)
         qsort(r->matches, count, sizeof *r->matches, by_distance);
     shown->matches = count ? r->matches : NULL;
     shown->match_count = (uint32_t)count;
-    shown->l_junctions1 = view1->corners.count ? r->l1 : NULL;
-    shown->l_junctions2 = view2->corners.count ? r->l2 : NULL;
-    shown->l_junction_count1 = view1->corners.count;
-    shown->l_junction_count2 = view2->corners.count;
+    shown->l_junctions1 = in1->count ? r->l1 : NULL;
+    shown->l_junctions2 = in2->count ? r->l2 : NULL;
+    shown->l_junction_count1 = in1->count;
+    shown->l_junction_count2 = in2->count;
     return shown;
 }
 

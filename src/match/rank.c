@@ -3,28 +3,26 @@
  *
  * Rows are worked through in blocks, the columns of a row in tiles. From each tile the best partners of its row are kept, from each
  * block, row after row, those of all columns: memory for the full matrix is never needed, and a pair that is on neither list cannot
- * come on one later. So only pairs are compared whose sketch says that they may be better than the last ones on the lists of
- * both (sketch.c); blocks and tiles start small, for lists to compare with. */
-#include "sketch.h"
-
-#include <math.h>
-#include <string.h>
+ * come on one later. So only pairs are compared whose bound says that they may be better than the last ones on the lists of
+ * both (product_bound.c); blocks and tiles start small, for lists to compare with. */
+#include "describe.h"
+#include "product_bound.h"
+#include "shortlist.h"
 
 #define FIRST_ROWS 8
 #define MOST_ROWS 64
 #define FIRST_FRAMES 16 /* the frames of one L-junction at least */
 #define MOST_FRAMES 256
-#define DISTANCE_ONE 65536 /* distances of raw patches are below 2^14 */
 
 /* All that the two passes over a block share. */
 typedef struct table {
-    const asj_match_options *options;
+    const asj_match_run *run;
     const asj_ops *ops;
-    const asj_view *view1, *view2;
+    const asj_image_features *image1, *image2;
     int32_t limit, length;       /* of a list, of a patch */
     asj_partner *rows, *columns; /* `limit` for each L-junction of image 1 and of image 2 */
     int32_t *scores;             /* MOST_ROWS x count2; ASJ_NO_PARTNER also where the pair cannot come on a list */
-    int16_t *left, *right;       /* sketches; NULL: every pair is compared */
+    int16_t *left, *right;       /* bound vectors; NULL: every pair is compared */
     int32_t *least;              /* of each frame of image 2: the threshold of its L-junction's list */
 } table;
 
@@ -43,7 +41,7 @@ static void offer(asj_partner *list, int32_t limit, int32_t score, uint32_t inde
 static int32_t threshold(const asj_partner *list, int32_t limit)
 {
     const int32_t score = list[limit - 1].score;
-    return score > ASJ_SKETCH_LEAST ? score : ASJ_SKETCH_LEAST;
+    return score > ASJ_BOUND_LEAST ? score : ASJ_BOUND_LEAST;
 }
 
 /* --- unit vectors: the pair of frames with the largest product is the best -------------------------------------------------- */
@@ -52,7 +50,7 @@ static int32_t threshold(const asj_partner *list, int32_t limit)
 static int32_t find_frames(const table *t, uint32_t f, uint32_t first, uint32_t end, int32_t most, int32_t *frames)
 {
     if (t->left)
-        return t->ops->sketch->above(t->left + (size_t)f * ASJ_SKETCH, t->right, t->least, most, (int32_t)first, (int32_t)end,
+        return t->ops->bound->above(t->left + (size_t)f * ASJ_BOUND_LENGTH, t->right, t->least, most, (int32_t)first, (int32_t)end,
                                     frames);
     for (uint32_t g = first; g < end; g++)
         frames[g - first] = (int32_t)g;
@@ -62,17 +60,17 @@ static int32_t find_frames(const table *t, uint32_t f, uint32_t first, uint32_t 
 /* L-junctions first .. end - 1 of image 2 against L-junction i. */
 static void multiply_tile(const table *t, uint32_t i, uint32_t first, uint32_t end, int32_t *scores)
 {
-    const asj_corners *c1 = &t->view1->corners, *c2 = &t->view2->corners;
+    const asj_l_junctions *c1 = &t->image1->l_junctions, *c2 = &t->image2->l_junctions;
     const uint32_t start = c2->first_frame[first], stop = c2->first_frame[end];
     asj_partner *list = t->rows + (size_t)i * (size_t)t->limit;
     int32_t frames[MOST_FRAMES], products[MOST_FRAMES], best[MOST_FRAMES];
     for (uint32_t g = start; g < stop; g++)
         best[g - start] = ASJ_NO_PARTNER;
     for (uint32_t f = c1->first_frame[i]; f < c1->first_frame[i + 1]; f++) {
-        if (!t->view1->usable[f])
+        if (!t->image1->usable[f])
             continue;
         const int32_t count = find_frames(t, f, start, stop, threshold(list, t->limit), frames);
-        t->ops->patch->products(t->view1->patches + (size_t)f * (size_t)t->length, t->view2->patches, t->length, frames, count,
+        t->ops->patch->products(t->image1->patches + (size_t)f * (size_t)t->length, t->image2->patches, t->length, frames, count,
                                products);
         for (int32_t k = 0; k < count; k++) {
             int32_t *most = &best[(uint32_t)frames[k] - start];
@@ -82,14 +80,14 @@ static void multiply_tile(const table *t, uint32_t i, uint32_t first, uint32_t e
     for (uint32_t j = first; j < end; j++) {
         scores[j] = ASJ_NO_PARTNER;
         for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++)
-            scores[j] = t->view2->usable[g] && best[g - start] > scores[j] ? best[g - start] : scores[j];
+            scores[j] = t->image2->usable[g] && best[g - start] > scores[j] ? best[g - start] : scores[j];
         offer(list, t->limit, scores[j], j);
     }
 }
 
 static void multiply_row(const table *t, uint32_t i, int32_t *scores)
 {
-    const asj_corners *c2 = &t->view2->corners;
+    const asj_l_junctions *c2 = &t->image2->l_junctions;
     for (uint32_t first = 0, end; first < c2->count; first = end) {
         const uint32_t start = c2->first_frame[first], wanted = FIRST_FRAMES + start / 2;
         const uint32_t most = wanted < MOST_FRAMES ? wanted : MOST_FRAMES;
@@ -101,21 +99,11 @@ static void multiply_row(const table *t, uint32_t i, int32_t *scores)
 
 /* --- others ----------------------------------------------------------------------------------------------------------------- */
 
-/* The paper's distance as a score. */
-static int32_t induced_score(const table *t, uint32_t i, uint32_t j)
-{
-    const float distance = asj_induced_distance(t->options, t->view1, t->view2, i, j);
-    return distance < HUGE_VALF ? -(int32_t)lrintf(distance * DISTANCE_ONE) : ASJ_NO_PARTNER;
-}
-
 static void score_row(const table *t, uint32_t i, int32_t *scores)
 {
-    const uint32_t count = t->view2->corners.count;
-    uint32_t f, g;
+    const uint32_t count = t->image2->l_junctions.count;
     for (uint32_t j = 0; j < count; j++) {
-        scores[j] = t->options->patches == ASJ_PATCHES_CANONICAL
-            ? asj_best_frames(t->options, t->view1, t->view2, i, j, &f, &g)
-            : induced_score(t, i, j);
+        scores[j] = asj_score_pair(t->run, i, j).score;
         offer(t->rows + (size_t)i * (size_t)t->limit, t->limit, scores[j], j);
     }
 }
@@ -130,7 +118,7 @@ static int32_t products_do(const asj_match_options *options)
 /* Rows first .. end - 1 offer themselves to column j. */
 static void offer_rows(const table *t, int64_t first, int64_t end, uint32_t j)
 {
-    const asj_corners *c2 = &t->view2->corners;
+    const asj_l_junctions *c2 = &t->image2->l_junctions;
     asj_partner *list = t->columns + (size_t)j * (size_t)t->limit;
     for (int64_t i = first; i < end; i++)
         offer(list, t->limit, t->scores[(size_t)(i - first) * c2->count + j], (uint32_t)i);
@@ -138,16 +126,17 @@ static void offer_rows(const table *t, int64_t first, int64_t end, uint32_t j)
         t->least[g] = threshold(list, t->limit);
 }
 
-static asj_status work(asj_context *context, const table *t)
+static asj_status work(const table *t)
 {
-    const int64_t count1 = t->view1->corners.count, count2 = t->view2->corners.count;
+    asj_context *context = t->run->context;
+    const int64_t count1 = t->image1->l_junctions.count, count2 = t->image2->l_junctions.count;
     for (int64_t first = 0, end; first < count1; first = end) {
         const int64_t wanted = FIRST_ROWS + first / 4;
         end = first + (wanted < MOST_ROWS ? wanted : MOST_ROWS);
         end = end < count1 ? end : count1;
 #pragma omp parallel for num_threads(context->threads) schedule(dynamic, 2)
         for (int64_t i = first; i < end; i++)
-            (products_do(t->options) ? multiply_row : score_row)(t, (uint32_t)i, t->scores + (i - first) * count2);
+            (products_do(t->run->options) ? multiply_row : score_row)(t, (uint32_t)i, t->scores + (i - first) * count2);
 #pragma omp parallel for num_threads(context->threads) schedule(static)
         for (int64_t j = 0; j < count2; j++)
             offer_rows(t, first, end, (uint32_t)j);
@@ -158,32 +147,32 @@ static asj_status work(asj_context *context, const table *t)
     return ASJ_OK;
 }
 
-static asj_status prepare(asj_context *context, table *t)
+static asj_status prepare(table *t)
 {
+    asj_context *context = t->run->context;
     asj_memory *memory = &context->memory;
-    const asj_corners *c2 = &t->view2->corners;
-    const size_t padded = (size_t)asj_sketch_blocks(c2->frame_count) * ASJ_SKETCH_LANES;
+    const asj_l_junctions *c2 = &t->image2->l_junctions;
+    const size_t padded = (size_t)asj_bound_blocks(c2->frame_count) * ASJ_BOUND_LANES;
     t->scores = asj_allocate(memory, MOST_ROWS * (size_t)c2->count, sizeof *t->scores);
     t->least = asj_allocate_zero(memory, padded, sizeof *t->least);
     if (!t->scores || !t->least)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the distances of %u L-junctions", (unsigned)c2->count);
     for (uint32_t g = 0; g < c2->frame_count; g++)
-        t->least[g] = ASJ_SKETCH_LEAST;
-    if (!products_do(t->options) || t->options->descriptor != ASJ_DESCRIPTOR_RAW)
+        t->least[g] = ASJ_BOUND_LEAST;
+    if (!products_do(t->run->options) || t->run->options->descriptor != ASJ_DESCRIPTOR_RAW)
         return ASJ_OK;
-    const asj_status status = asj_sketch_left(context, t->options, t->view1, &t->left);
-    return status == ASJ_OK ? asj_sketch_right(context, t->options, t->view2, &t->right) : status;
+    const asj_status status = asj_bound_left(context, t->run->options, t->image1, &t->left);
+    return status == ASJ_OK ? asj_bound_right(context, t->run->options, t->image2, &t->right) : status;
 }
 
-asj_status asj_rank_partners(asj_context *context, const asj_match_options *options, const asj_view *view1, const asj_view *view2,
-                             asj_partner *rows, asj_partner *columns)
+asj_status asj_rank_partners(const asj_match_run *run, asj_partner *rows, asj_partner *columns)
 {
-    asj_memory *memory = &context->memory;
-    table t = {.options = options, .ops = context->ops, .view1 = view1, .view2 = view2, .limit = options->shortlist,
-               .length = asj_patch_length(options), .rows = rows, .columns = columns};
-    asj_status status = prepare(context, &t);
+    asj_memory *memory = &run->context->memory;
+    table t = {.run = run, .ops = run->context->ops, .image1 = run->image[0], .image2 = run->image[1],
+               .limit = run->options->shortlist, .length = asj_patch_length(run->options), .rows = rows, .columns = columns};
+    asj_status status = prepare(&t);
     if (status == ASJ_OK)
-        status = work(context, &t);
+        status = work(&t);
     asj_release(memory, t.scores);
     asj_release(memory, t.least);
     asj_release(memory, t.left);

@@ -10,28 +10,29 @@
 
 #include <math.h>
 
-void asj_find_common_end(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c,
-                         int32_t branch, asj_common_end *end)
+asj_common_end asj_find_common_end(const asj_match_run *run, const asj_candidate *c, int32_t branch)
 {
-    const asj_lengths *h1 = &view1->corners.lengths[2 * (size_t)c->i + (size_t)branch];
-    const asj_lengths *h2 = &view2->corners.lengths[2 * (size_t)c->j + (size_t)branch];
-    const double *u = view1->corners.direction + 4 * (size_t)c->i + 2 * branch;
-    double x = c->map.to[0] * u[0] + c->map.to[1] * u[1], y = c->map.to[2] * u[0] + c->map.to[3] * u[1];
-    const double scale = sqrt(x * x + y * y), most = 1 + options->end_tolerance;
+    const asj_l_junctions *in1 = &run->image[0]->l_junctions, *in2 = &run->image[1]->l_junctions;
+    const asj_lengths *h1 = &in1->lengths[2 * (size_t)c->i + (size_t)branch];
+    const asj_lengths *h2 = &in2->lengths[2 * (size_t)c->j + (size_t)branch];
+    const double *u = in1->direction + 4 * (size_t)c->i + 2 * branch;
+    const double x = c->map.to[0] * u[0] + c->map.to[1] * u[1], y = c->map.to[2] * u[0] + c->map.to[3] * u[1];
+    const double scale = sqrt(x * x + y * y), most = 1 + run->options->end_tolerance;
+    asj_common_end end = {0, 0, ASJ_END_CUT};
     double longest = 0;
     for (int32_t m = 0; m < h1->count; m++)
         for (int32_t n = 0; n < h2->count; n++) {
-            double l1 = (double)h1->length[m], l2 = (double)h2->length[n], mapped = scale * l1;
-            double shorter = mapped < l2 ? mapped : l2, longer = mapped < l2 ? l2 : mapped;
+            const double l1 = (double)h1->length[m], l2 = (double)h2->length[n], mapped = scale * l1;
+            const double shorter = mapped < l2 ? mapped : l2, longer = mapped < l2 ? l2 : mapped;
             if (longer > shorter * most || shorter <= longest)
                 continue;
             longest = shorter;
-            *end = (asj_common_end){l1, l2, m == 0 && n == 0 ? ASJ_END_BOTH : ASJ_END_INNER};
+            end = (asj_common_end){l1, l2, m == 0 && n == 0 ? ASJ_END_BOTH : ASJ_END_INNER};
         }
     if (longest > 0)
-        return;
-    double l1 = (double)h1->length[0], l2 = (double)h2->length[0];
-    *end = scale * l1 > l2 ? (asj_common_end){l2 / scale, l2, ASJ_END_CUT} : (asj_common_end){l1, scale * l1, ASJ_END_CUT};
+        return end;
+    const double l1 = (double)h1->length[0], l2 = (double)h2->length[0];
+    return scale * l1 > l2 ? (asj_common_end){l2 / scale, l2, ASJ_END_CUT} : (asj_common_end){l1, scale * l1, ASJ_END_CUT};
 }
 
 /* --- matches as segment matches ------------------------------------------------------------------------------------------------
@@ -43,10 +44,10 @@ void asj_find_common_end(const asj_match_options *options, const asj_view *view1
  * images; the one with the better known end stays, of equals the first. A pair that is a part of another is no duplicate: it
  * ends elsewhere, and so is another segment. */
 
-#define TURN 0.978147601       /* cosine of 12 degrees: half the least opening of branches of the detector, and less */
+#define LEAST_TURN_COSINE 0.978147601       /* cosine of 12 degrees: half the least opening of branches of the detector, and less */
 #define END_TOLERANCE 0.12     /* as the option's default */
-#define TOGETHER 4.0           /* px, or .. */
-#define TOGETHER_SHARE 0.05    /* .. this part of the length */
+#define SAME_END 4.0           /* px, or .. */
+#define SAME_END_SHARE 0.05    /* .. this part of the length */
 #define SLOTS ASJ_MAX_BRANCHES /* segment pairs of one match: its branches a and b, then others */
 
 /* Branches of one junction, as its L-junctions name them: ends relative to the location. */
@@ -85,7 +86,7 @@ static void collect(const asj_l_junction *list, uint32_t count, uint32_t l, bund
 static int32_t along(const bundle *b, double x, double y)
 {
     const double length = sqrt(x * x + y * y);
-    double best = TURN;
+    double best = LEAST_TURN_COSINE;
     int32_t found = -1;
     for (int32_t k = 0; k < ASJ_MAX_BRANCHES; k++) {
         const double own = sqrt(b->x[k] * b->x[k] + b->y[k] * b->y[k]);
@@ -148,7 +149,7 @@ static double distance2(float x1, float y1, float x2, float y2)
 static int same(const asj_segment_match *s, const asj_segment_match *t)
 {
     const double l1 = distance2(s->x1, s->y1, s->ex1, s->ey1), l2 = distance2(s->x2, s->y2, s->ex2, s->ey2);
-    const double least = TOGETHER * TOGETHER, share = TOGETHER_SHARE * TOGETHER_SHARE;
+    const double least = SAME_END * SAME_END, share = SAME_END_SHARE * SAME_END_SHARE;
     const double near1 = share * l1 > least ? share * l1 : least, near2 = share * l2 > least ? share * l2 : least;
     return (distance2(s->x1, s->y1, t->x1, t->y1) <= near1 && distance2(s->ex1, s->ey1, t->ex1, t->ey1) <= near1 &&
             distance2(s->x2, s->y2, t->x2, t->y2) <= near2 && distance2(s->ex2, s->ey2, t->ex2, t->ey2) <= near2) ||

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Line segments of matches: which ends of two matched branches correspond. */
 #ifndef ASJ_SRC_SEGMENTS_H
 #define ASJ_SRC_SEGMENTS_H
 
-#include "distance.h"
+#include "match_run.h"
 
 /* Lengths of a matched branch in both images that show the same part of it. */
 typedef struct asj_common_end {
@@ -11,7 +12,6 @@ typedef struct asj_common_end {
 } asj_common_end;
 
 /* branch: 0 = a, 1 = b. */
-void asj_find_common_end(const asj_match_options *options, const asj_view *view1, const asj_view *view2, const asj_candidate *c,
-                         int32_t branch, asj_common_end *end);
+asj_common_end asj_find_common_end(const asj_match_run *run, const asj_candidate *c, int32_t branch);
 
 #endif

@@ -1,43 +1,45 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 7, who agrees with whom: the supporters of every candidate, among those at the nearest places of image 1 and of image 2.
+/* Step 7, who agrees with whom: the supporters of every candidate, among those at the nearest locations of image 1 and of image 2.
  *
- * Millions of pairs are looked at, a few in a hundred may agree (asj_look_at()), fewer do, and only these are stored. When the
+ * Of millions of pairs a few in a hundred may agree (support_gate.c), fewer do (agreement.c), and only these are stored. When the
  * guided pass brings new candidates, those known before are only compared with the new ones. */
 #include "support.h"
-#include "agreement.h"
+#include "support_gate.h"
 
 #include <string.h>
 
-#define MOST 0x1000000 /* supporters of the candidates of one side: 128 MB; eight pairs of photographs need up to 40 000 */
-#define BLOCK 0x40000 /* supporters of a block of candidates, before it is known how many they are: 2 MB */
+#define MOST_SUPPORTERS 0x1000000 /* of the candidates of one side: 128 MB; eight pairs of photographs need up to 40 000 */
+#define BLOCK_SUPPORTERS 0x40000  /* of a block of candidates, before it is known how many they are: 2 MB */
 
-/* --- candidates by place ---------------------------------------------------------------------------------------------------- */
+/* --- candidates by location ------------------------------------------------------------------------------------------------- */
 
-static uint32_t place_of(const asj_corners *corners, const asj_candidate *c, int32_t side)
+static uint32_t location_of(const asj_match_run *run, const asj_candidate *c, int32_t side)
 {
-    return corners->place[side == 1 ? c->i : c->j];
+    return run->image[side]->l_junctions.location[asj_candidate_l(c, side)];
 }
 
-asj_status asj_place_index_create(asj_context *context, const asj_corners *corners, const asj_candidates *candidates, int32_t side,
-                                  uint32_t least_number, asj_place_index *index)
+asj_status asj_location_index_create(const asj_match_run *run, int32_t side, uint32_t least_number, asj_location_index *index)
 {
-    const asj_candidate *list = candidates->list;
-    index->start = asj_allocate_zero(&context->memory, (size_t)corners->place_count + 2, sizeof *index->start);
-    index->order = asj_allocate(&context->memory, candidates->count, sizeof *index->order);
+    asj_memory *memory = &run->context->memory;
+    const asj_candidate *list = run->candidates.list;
+    const size_t count = run->candidates.count;
+    const uint32_t locations = run->image[side]->l_junctions.location_count;
+    index->start = asj_allocate_zero(memory, (size_t)locations + 2, sizeof *index->start);
+    index->order = asj_allocate(memory, count, sizeof *index->order);
     if (!index->start || !index->order)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for an index of %zu candidates", candidates->count);
-    for (size_t k = 0; k < candidates->count; k++)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for an index of %zu candidates", count);
+    for (size_t k = 0; k < count; k++)
         if (list[k].number >= least_number)
-            index->start[place_of(corners, &list[k], side) + 2]++;
-    for (uint32_t p = 2; p < corners->place_count + 2; p++)
+            index->start[location_of(run, &list[k], side) + 2]++;
+    for (uint32_t p = 2; p < locations + 2; p++)
         index->start[p] += index->start[p - 1];
-    for (size_t k = 0; k < candidates->count; k++)
+    for (size_t k = 0; k < count; k++)
         if (list[k].number >= least_number)
-            index->order[index->start[place_of(corners, &list[k], side) + 1]++] = (uint32_t)k;
+            index->order[index->start[location_of(run, &list[k], side) + 1]++] = (uint32_t)k;
     return ASJ_OK;
 }
 
-void asj_place_index_free(asj_memory *memory, asj_place_index *index)
+void asj_location_index_free(asj_memory *memory, asj_location_index *index)
 {
     asj_release(memory, index->start);
     asj_release(memory, index->order);
@@ -46,41 +48,40 @@ void asj_place_index_free(asj_memory *memory, asj_place_index *index)
 
 /* --- who may support --------------------------------------------------------------------------------------------------------- */
 
-/* Candidates in order of place, with what asj_look_at() wants to know of them. */
+/* Candidates in order of location, with what asj_support_gate() wants to know of them. */
 typedef struct pool {
-    asj_place_index index;
-    asj_spots spots; /* in its order */
+    asj_location_index index;
+    asj_gate_candidates gate; /* in its order */
     float *block;
 } pool;
 
-static asj_status pool_create(asj_context *context, const asj_corners *corners, const asj_corners *others,
-                              const asj_candidates *candidates, int32_t side, uint32_t least_number, pool *s)
+static asj_status pool_create(const asj_match_run *run, int32_t side, uint32_t least_number, pool *s)
 {
-    asj_status status = asj_place_index_create(context, corners, candidates, side, least_number, &s->index);
+    asj_status status = asj_location_index_create(run, side, least_number, &s->index);
     if (status != ASJ_OK)
         return status;
-    const size_t count = s->index.start[corners->place_count], room = count + ASJ_LOOK_MORE;
-    s->block = asj_allocate_zero(&context->memory, room, 6 * sizeof *s->block);
+    const size_t count = s->index.start[run->image[side]->l_junctions.location_count], room = count + ASJ_GATE_PADDING;
+    s->block = asj_allocate_zero(&run->context->memory, room, 6 * sizeof *s->block);
     if (!s->block)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
-    s->spots.x = s->block;
-    s->spots.y = s->block + room;
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
+    s->gate.x = s->block;
+    s->gate.y = s->block + room;
     for (size_t k = 0; k < 4; k++)
-        s->spots.map[k] = s->block + (2 + k) * room;
+        s->gate.map[k] = s->block + (2 + k) * room;
     for (size_t m = 0; m < count; m++) {
-        const asj_candidate *c = &candidates->list[s->index.order[m]];
-        const asj_l_junction *l = &others->l[side == 1 ? c->j : c->i];
-        s->spots.x[m] = l->x;
-        s->spots.y[m] = l->y;
+        const asj_candidate *c = &run->candidates.list[s->index.order[m]];
+        const asj_l_junction *l = asj_match_run_l(run, c, 1 - side);
+        s->gate.x[m] = l->x;
+        s->gate.y[m] = l->y;
         for (int k = 0; k < 4; k++)
-            s->spots.map[k][m] = (float)(side == 1 ? c->map.to : c->map.from)[k];
+            s->gate.map[k][m] = (float)asj_candidate_map(c, side)[k];
     }
     return ASJ_OK;
 }
 
 static void pool_free(asj_memory *memory, pool *s)
 {
-    asj_place_index_free(memory, &s->index);
+    asj_location_index_free(memory, &s->index);
     asj_release(memory, s->block);
 }
 
@@ -88,11 +89,9 @@ static void pool_free(asj_memory *memory, pool *s)
 
 /* All that the candidates of one side share. */
 typedef struct search {
-    const asj_match_options *options;
-    const asj_ops *ops;
-    const asj_corners *corners1, *corners2, *corners, *others; /* the image whose neighbour places are asked, the other one */
-    const asj_candidates *candidates;
+    const asj_match_run *run;
     int32_t side;
+    const asj_l_junctions *asked, *others; /* of the image whose neighbour locations are asked, and of the other one */
     uint32_t before;           /* candidates that were known before have such a number at most, */
     const asj_supporters *old; /* and these supporters among each other */
     pool all, fresh;
@@ -104,50 +103,52 @@ typedef struct subject {
     uint32_t mine, other;   /* its L-junction in the image asked, and in the other */
     double x, y;            /* px: where it stands in the image asked */
     const double *map;      /* from there to the other */
-    asj_look look;          /* without what depends on the place */
+    asj_gate_query query;   /* without what depends on the location */
 } subject;
 
 static subject subject_of(const search *in, const asj_candidate *c)
 {
-    subject n = {.c = c, .mine = in->side == 1 ? c->i : c->j, .other = in->side == 1 ? c->j : c->i};
-    const double *u = in->others->direction + 4 * (size_t)n.other, tolerance = in->options->neighbour_tolerance;
-    n.x = (double)in->corners->l[n.mine].x;
-    n.y = (double)in->corners->l[n.mine].y;
-    n.map = in->side == 1 ? c->map.to : c->map.from;
-    n.look = (asj_look){.x = in->others->l[n.other].x, .y = in->others->l[n.other].y,
-                        .slope = (float)(ASJ_LOOK_SLOPE * tolerance * tolerance),
-                        .branch = {{(float)u[0], (float)u[1]}, {(float)u[2], (float)u[3]}}};
+    subject n = {.c = c, .mine = asj_candidate_l(c, in->side), .other = asj_candidate_l(c, 1 - in->side)};
+    const double *u = in->others->direction + 4 * (size_t)n.other, tolerance = in->run->options->neighbour_tolerance;
+    n.x = (double)in->asked->l[n.mine].x;
+    n.y = (double)in->asked->l[n.mine].y;
+    n.map = asj_candidate_map(c, in->side);
+    n.query = (asj_gate_query){.x = in->others->l[n.other].x, .y = in->others->l[n.other].y,
+                               .slope = (float)(ASJ_GATE_SLOPE * tolerance * tolerance),
+                               .branch = {{(float)u[0], (float)u[1]}, {(float)u[2], (float)u[3]}}};
     return n;
 }
 
 /* Agreement in 1/ASJ_SUPPORT_ONE. (x, y) is the way in the image asked, (ex, ey) in the other. */
 static uint16_t weigh(const search *in, const subject *n, const asj_candidate *d, double x, double y, double ex, double ey)
 {
-    const asj_way way = in->side == 1 ? (asj_way){x, y, ex, ey} : (asj_way){ex, ey, x, y};
-    const float w = asj_surface_agreement(in->options, n->c, d, &way);
-    const float v = asj_edges_through(in->others, n->other, n->look.edges, ex, ey)
-        ? asj_edge_agreement(in->options, in->corners1, in->corners2, n->c, d, &way) : 0;
+    const asj_way way = in->side == 0 ? (asj_way){x, y, ex, ey} : (asj_way){ex, ey, x, y};
+    const float w = asj_surface_agreement(in->run->options, n->c, d, &way);
+    const float v = asj_edges_through(in->others, n->other, n->query.edges, ex, ey)
+        ? asj_edge_agreement(in->run, n->c, d, &way) : 0;
     return (uint16_t)((v > w ? v : w) * ASJ_SUPPORT_ONE);
 }
 
-/* The supporters at a place, the subject's neighbour of this number. */
-static uint32_t supporters_at(const search *in, const pool *s, subject *n, uint32_t place, uint32_t neighbour, asj_supporter *list)
+/* The supporters at a location, the subject's neighbour of this number. */
+static uint32_t supporters_at(const search *in, const pool *s, subject *n, uint32_t location, uint32_t neighbour,
+                              asj_supporter *list)
 {
-    const double x = in->corners->place_x[place] - n->x, y = in->corners->place_y[place] - n->y;
-    const uint32_t end = s->index.start[place + 1];
+    const double x = in->asked->location_x[location] - n->x, y = in->asked->location_y[location] - n->y;
+    const uint32_t end = s->index.start[location + 1];
     uint32_t count = 0;
-    n->look.way_x = (float)x;
-    n->look.way_y = (float)y;
-    n->look.px = (float)(n->map[0] * x + n->map[1] * y);
-    n->look.py = (float)(n->map[2] * x + n->map[3] * y);
-    n->look.edges = asj_edges_through(in->corners, n->mine, in->others->stem[n->other] ? 0 : 3, x, y);
-    for (uint32_t m = s->index.start[place]; m < end; m += ASJ_LOOK_COUNT) {
-        uint64_t seen = in->ops->agreement->look_at(&n->look, &s->spots, m, end - m < ASJ_LOOK_COUNT ? end - m : ASJ_LOOK_COUNT);
-        for (uint32_t at = m; seen; at++, seen >>= 1) {
-            if (!(seen & 1))
+    n->query.way_x = (float)x;
+    n->query.way_y = (float)y;
+    n->query.px = (float)(n->map[0] * x + n->map[1] * y);
+    n->query.py = (float)(n->map[2] * x + n->map[3] * y);
+    n->query.edges = asj_edges_through(in->asked, n->mine, in->others->t_junction[n->other] ? 0 : 3, x, y);
+    for (uint32_t m = s->index.start[location]; m < end; m += ASJ_GATE_COUNT) {
+        const uint32_t some = end - m < ASJ_GATE_COUNT ? end - m : ASJ_GATE_COUNT;
+        uint64_t passed = in->run->context->ops->gate->pass(&n->query, &s->gate, m, some);
+        for (uint32_t at = m; passed; at++, passed >>= 1) {
+            if (!(passed & 1))
                 continue;
-            const asj_candidate *d = &in->candidates->list[s->index.order[at]];
-            const double ex = (double)s->spots.x[at] - (double)n->look.x, ey = (double)s->spots.y[at] - (double)n->look.y;
+            const asj_candidate *d = &in->run->candidates.list[s->index.order[at]];
+            const double ex = (double)s->gate.x[at] - (double)n->query.x, ey = (double)s->gate.y[at] - (double)n->query.y;
             const uint16_t weight = weigh(in, n, d, x, y, ex, ey);
             if (weight)
                 list[count++] = (asj_supporter){d->number - 1, weight, (uint16_t)neighbour};
@@ -159,16 +160,16 @@ static uint32_t supporters_at(const search *in, const pool *s, subject *n, uint3
 /* All supporters of c; returns how many they are. */
 static uint32_t find_supporters(const search *in, const asj_candidate *c, asj_supporter *list)
 {
-    const uint32_t place = place_of(in->corners, c, in->side);
-    const uint32_t *neighbour = in->corners->neighbour + (size_t)place * in->corners->neighbour_limit;
+    const uint32_t location = location_of(in->run, c, in->side);
+    const uint32_t *neighbour = in->asked->neighbour + (size_t)location * in->asked->neighbour_limit;
     const int32_t known = c->number <= in->before;
     const pool *s = known ? &in->fresh : &in->all;
     const asj_supporter *old = known ? in->old->list + in->old->offset[c->number - 1] : NULL;
     const asj_supporter *end = known ? old + in->old->count[c->number - 1] : NULL;
     subject self = subject_of(in, c);
     uint32_t count = 0;
-    for (uint32_t n = 0; n < in->corners->neighbour_count[place]; n++) {
-        while (old < end && old->place == n)
+    for (uint32_t n = 0; n < in->asked->neighbour_count[location]; n++) {
+        while (old < end && old->neighbour == n)
             list[count++] = *old++;
         if (s->index.start[neighbour[n]] < s->index.start[neighbour[n] + 1])
             count += supporters_at(in, s, &self, neighbour[n], n, list + count);
@@ -178,95 +179,107 @@ static uint32_t find_supporters(const search *in, const asj_candidate *c, asj_su
 
 /* --- blocks of candidates --------------------------------------------------------------------------------------------------- */
 
-/* How many supporters candidates of each place can have. */
-static void find_limits(const search *in, uint32_t *limits, size_t *largest)
+/* Room for the supporters of a block of candidates, before it is known how many they are. */
+typedef struct block {
+    uint32_t *limits;  /* of each location: how many supporters a candidate there can have */
+    size_t *starts;    /* of each candidate: where its supporters begin in `list` */
+    asj_supporter *list;
+    size_t capacity;   /* of the list */
+    size_t used, kept; /* supporters of all blocks up to now, and the room for them */
+} block;
+
+static void find_limits(const search *in, block *b)
 {
-    const asj_corners *corners = in->corners;
-    for (uint32_t p = 0; p < corners->place_count; p++) {
-        const uint32_t *neighbour = corners->neighbour + (size_t)p * corners->neighbour_limit;
-        limits[p] = 0;
-        for (uint32_t n = 0; n < corners->neighbour_count[p]; n++)
-            limits[p] += in->all.index.start[neighbour[n] + 1] - in->all.index.start[neighbour[n]];
-        *largest = limits[p] > *largest ? limits[p] : *largest;
+    const asj_l_junctions *asked = in->asked;
+    b->capacity = BLOCK_SUPPORTERS;
+    for (uint32_t p = 0; p < asked->location_count; p++) {
+        const uint32_t *neighbour = asked->neighbour + (size_t)p * asked->neighbour_limit;
+        b->limits[p] = 0;
+        for (uint32_t n = 0; n < asked->neighbour_count[p]; n++)
+            b->limits[p] += in->all.index.start[neighbour[n] + 1] - in->all.index.start[neighbour[n]];
+        b->capacity = b->limits[p] > b->capacity ? b->limits[p] : b->capacity;
     }
 }
 
 /* As many candidates, from `first` on, as there is room for the supporters of. Returns the end. */
-static size_t take_block(const search *in, const uint32_t *limits, size_t first, size_t capacity, size_t *starts)
+static size_t take_block(const search *in, size_t first, block *b)
 {
     size_t end = first;
-    for (size_t used = 0; end < in->candidates->count; end++) {
-        const size_t room = limits[place_of(in->corners, &in->candidates->list[end], in->side)];
-        if (used + room > capacity)
+    for (size_t used = 0; end < in->run->candidates.count; end++) {
+        const size_t room = b->limits[location_of(in->run, &in->run->candidates.list[end], in->side)];
+        if (used + room > b->capacity)
             break;
-        starts[end] = used;
+        b->starts[end] = used;
         used += room;
     }
     return end;
 }
 
 /* Appends the supporters of candidates first .. end - 1. */
-static asj_status keep(asj_context *context, const search *in, size_t first, size_t end, const asj_supporter *scratch,
-                       const size_t *starts, asj_supporters *found, size_t *used, size_t *capacity)
+static asj_status keep(const search *in, size_t first, size_t end, block *b, asj_supporters *found)
 {
-    size_t total = *used + 1; /* never NULL */
+    const asj_candidate *list = in->run->candidates.list;
+    size_t total = b->used + 1; /* never NULL */
     for (size_t k = first; k < end; k++)
-        total += found->count[in->candidates->list[k].number - 1];
-    if (total > MOST)
-        return asj_fail(context, ASJ_ERROR_LIMIT, "more than %d pairs of candidates agree: options too loose", MOST);
-    void *block = found->list;
-    const asj_status status = asj_grow(&context->memory, &block, capacity, total, sizeof *found->list, *used);
-    found->list = block;
+        total += found->count[list[k].number - 1];
+    if (total > MOST_SUPPORTERS)
+        return asj_fail(in->run->context, ASJ_ERROR_LIMIT, "more than %d pairs of candidates agree: options too loose",
+                        MOST_SUPPORTERS);
+    void *memory = found->list;
+    const asj_status status = asj_grow(&in->run->context->memory, &memory, &b->kept, total, sizeof *found->list, b->used);
+    found->list = memory;
     if (status != ASJ_OK)
-        return asj_fail(context, status, "no memory for %zu pairs of candidates", total);
+        return asj_fail(in->run->context, status, "no memory for %zu pairs of candidates", total);
     for (size_t k = first; k < end; k++) {
-        const uint32_t n = in->candidates->list[k].number - 1;
-        memcpy(found->list + *used, scratch + starts[k], found->count[n] * sizeof *scratch);
-        found->offset[n] = *used;
-        *used += found->count[n];
+        const uint32_t n = list[k].number - 1;
+        memcpy(found->list + b->used, b->list + b->starts[k], found->count[n] * sizeof *b->list);
+        found->offset[n] = b->used;
+        b->used += found->count[n];
     }
     return ASJ_OK;
 }
 
-static asj_status find_all(asj_context *context, const search *in, uint32_t *limits, size_t *starts, asj_supporters *found)
+static asj_status find_all(const search *in, block *b, asj_supporters *found)
 {
-    size_t capacity = BLOCK, used = 0, kept = 0;
-    find_limits(in, limits, &capacity);
-    asj_supporter *scratch = asj_allocate(&context->memory, capacity, sizeof *scratch);
-    asj_status status = scratch ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu pairs of candidates", capacity);
-    for (size_t first = 0, end; first < in->candidates->count && status == ASJ_OK; first = end) {
-        end = take_block(in, limits, first, capacity, starts);
-#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 16)
+    find_limits(in, b);
+    b->list = asj_allocate(&in->run->context->memory, b->capacity, sizeof *b->list);
+    if (!b->list)
+        return asj_fail(in->run->context, ASJ_ERROR_MEMORY, "no memory for %zu pairs of candidates", b->capacity);
+    asj_status status = ASJ_OK;
+    for (size_t first = 0, end; first < in->run->candidates.count && status == ASJ_OK; first = end) {
+        end = take_block(in, first, b);
+#pragma omp parallel for num_threads(in->run->context->threads) schedule(dynamic, 16)
         for (int64_t k = (int64_t)first; k < (int64_t)end; k++) {
-            const asj_candidate *c = &in->candidates->list[k];
-            found->count[c->number - 1] = find_supporters(in, c, scratch + starts[k]);
+            const asj_candidate *c = &in->run->candidates.list[k];
+            found->count[c->number - 1] = find_supporters(in, c, b->list + b->starts[k]);
         }
-        status = keep(context, in, first, end, scratch, starts, found, &used, &kept);
+        status = keep(in, first, end, b, found);
     }
-    asj_release(&context->memory, scratch);
     return status;
 }
 
-static asj_status one_side(asj_context *context, search *in, asj_supporters *found)
+static asj_status one_side(search *in, asj_supporters *found)
 {
-    asj_memory *memory = &context->memory;
-    const size_t count = in->candidates->count;
-    uint32_t *limits = asj_allocate(memory, in->corners->place_count, sizeof *limits);
-    size_t *starts = asj_allocate(memory, count, sizeof *starts);
+    const asj_match_run *run = in->run;
+    asj_memory *memory = &run->context->memory;
+    const size_t count = run->candidates.count;
+    block b = {.limits = asj_allocate(memory, in->asked->location_count, sizeof *b.limits),
+               .starts = asj_allocate(memory, count, sizeof *b.starts)};
     found->offset = asj_allocate(memory, count, sizeof *found->offset);
     found->count = asj_allocate(memory, count, sizeof *found->count);
-    asj_status status = limits && starts && found->offset && found->count
-        ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
+    asj_status status = b.limits && b.starts && found->offset && found->count
+        ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
     if (status == ASJ_OK)
-        status = pool_create(context, in->corners, in->others, in->candidates, in->side, 0, &in->all);
+        status = pool_create(run, in->side, 0, &in->all);
     if (status == ASJ_OK)
-        status = pool_create(context, in->corners, in->others, in->candidates, in->side, in->before + 1, &in->fresh);
+        status = pool_create(run, in->side, in->before + 1, &in->fresh);
     if (status == ASJ_OK)
-        status = find_all(context, in, limits, starts, found);
+        status = find_all(in, &b, found);
     pool_free(memory, &in->all);
     pool_free(memory, &in->fresh);
-    asj_release(memory, limits);
-    asj_release(memory, starts);
+    asj_release(memory, b.limits);
+    asj_release(memory, b.starts);
+    asj_release(memory, b.list);
     return status;
 }
 
@@ -278,30 +291,30 @@ static void supporters_free(asj_memory *memory, asj_supporters *found)
     *found = (asj_supporters){NULL, NULL, NULL};
 }
 
-asj_status asj_support_extend(asj_context *context, const asj_match_options *options, const asj_view *view1,
-                              const asj_view *view2, asj_candidates *candidates, asj_support *support)
+asj_status asj_support_find(asj_match_run *run)
 {
-    const asj_corners *corners[2] = {&view1->corners, &view2->corners};
+    asj_support *support = &run->support;
     const uint32_t before = support->count;
     asj_status status = ASJ_OK;
-    for (size_t k = 0; k < candidates->count; k++)
-        if (candidates->list[k].number == 0)
-            candidates->list[k].number = ++support->count;
-    for (int32_t s = 0; s < 2 && status == ASJ_OK; s++) {
-        asj_supporters old = support->side[s];
-        search in = {.options = options, .ops = context->ops, .corners1 = corners[0], .corners2 = corners[1],
-                     .corners = corners[s], .others = corners[1 - s], .candidates = candidates, .side = s + 1, .before = before,
-                     .old = &old};
-        support->side[s] = (asj_supporters){NULL, NULL, NULL};
-        status = one_side(context, &in, &support->side[s]);
-        supporters_free(&context->memory, &old);
+    if (run->options->neighbours == 0)
+        return ASJ_OK;
+    for (size_t k = 0; k < run->candidates.count; k++)
+        if (run->candidates.list[k].number == 0)
+            run->candidates.list[k].number = ++support->count;
+    for (int32_t side = 0; side < 2 && status == ASJ_OK; side++) {
+        asj_supporters old = support->side[side];
+        search in = {.run = run, .side = side, .asked = &run->image[side]->l_junctions,
+                     .others = &run->image[1 - side]->l_junctions, .before = before, .old = &old};
+        support->side[side] = (asj_supporters){NULL, NULL, NULL};
+        status = one_side(&in, &support->side[side]);
+        supporters_free(&run->context->memory, &old);
     }
     return status;
 }
 
 void asj_support_free(asj_memory *memory, asj_support *support)
 {
-    for (int32_t s = 0; s < 2; s++)
-        supporters_free(memory, &support->side[s]);
+    for (int32_t side = 0; side < 2; side++)
+        supporters_free(memory, &support->side[side]);
     support->count = 0;
 }

@@ -13,7 +13,7 @@
 #include "field_kernels.h"
 #include "gradient_kernels.h"
 #include "isotropic_kernels.h"
-#include "sketch_kernels.h"
+#include "product_bound_kernels.h"
 
 static void fill_kernels(const asj_ops *ops)
 {
@@ -22,7 +22,7 @@ static void fill_kernels(const asj_ops *ops)
     ops->field->tile = field_tile;
     ops->field->pixels = field_pixels;
     ops->isotropic->band = isotropic_band;
-    ops->sketch->above = sketch_above;
+    ops->bound->above = bound_above;
 }
 
 #endif

@@ -4,7 +4,9 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "match/align.h"
+#include "match/describe.h"
 #include "match/match_options.h"
+#include "match/shortlist.h"
 #include "measure.h"
 #include "views.h"
 
@@ -88,65 +90,60 @@ static void least(double *value, double since)
         *value = now;
 }
 
-static asj_status prepare(asj_context *context, const benchmark_view *s, const settings *set, int32_t which, asj_view *view)
+static asj_status prepare(asj_context *context, const benchmark_view *s, const settings *set, int32_t which,
+                          asj_image_features *features)
 {
-    asj_status status = asj_corners_create(context, s->list, s->count, WIDTH, HEIGHT, &set->options, which, &view->corners);
-    return status == ASJ_OK ? asj_pyramid_create(context, &s->image, set->options.smoothing, &view->pyramid) : status;
+    const asj_junction_list input = {s->list, s->count, WIDTH, HEIGHT, which};
+    asj_status status = asj_l_junctions_create(context, &set->options, &input, &features->l_junctions);
+    return status == ASJ_OK ? asj_pyramid_create(context, &s->image, set->options.smoothing, &features->pyramid) : status;
 }
 
-static asj_status one_round(asj_context *context, const settings *set, asj_view views[2], rates *r)
+static asj_status one_round(asj_context *context, const settings *set, asj_image_features features[2], rates *r)
 {
-    asj_candidates candidates = {NULL, 0, 0};
+    asj_match_run run = {.context = context, .options = &set->options, .image = {&features[0], &features[1]}};
     asj_status status = ASJ_OK;
     double start = asj_clock_ms();
     for (int v = 0; v < 2 && status == ASJ_OK; v++) {
-        asj_release(&context->memory, views[v].patches);
-        asj_release(&context->memory, views[v].usable);
-        views[v].patches = NULL;
-        views[v].usable = NULL;
-        status = asj_describe(context, &set->options, &views[v]);
+        asj_release(&context->memory, features[v].patches);
+        asj_release(&context->memory, features[v].usable);
+        features[v].patches = NULL;
+        features[v].usable = NULL;
+        status = asj_describe(context, &set->options, &features[v]);
     }
     least(&r->patches, start);
     start = asj_clock_ms();
     if (status == ASJ_OK)
-        status = asj_shortlist(context, &set->options, &views[0], &views[1], &candidates);
+        status = asj_shortlist(&run);
     least(&r->pairs, start);
-    size_t kept = 0;
-    for (size_t k = 0; status == ASJ_OK && k < candidates.count; k++)
-        if (asj_compare(&set->options, &views[0], &views[1], &candidates.list[k]))
-            candidates.list[kept++] = candidates.list[k];
-    candidates.count = r->refined = kept;
+    r->refined = run.candidates.count;
     start = asj_clock_ms();
     if (status == ASJ_OK)
-        status = asj_align_candidates(context, &set->options, &views[0], &views[1], &candidates, 0);
+        status = asj_align_candidates(&run, 0);
     least(&r->refinements, start);
-    asj_release(&context->memory, candidates.list);
+    asj_release(&context->memory, run.candidates.list);
     return status;
 }
 
 static int parts(asj_context *context, const benchmark_view sides[2], const settings *set)
 {
-    asj_view views[2];
+    asj_image_features features[2];
+    const asj_l_junctions *in1 = &features[0].l_junctions, *in2 = &features[1].l_junctions;
     rates r;
     asj_status status = ASJ_OK;
-    memset(views, 0, sizeof views);
+    memset(features, 0, sizeof features);
     memset(&r, 0, sizeof r);
     for (int32_t v = 0; v < 2 && status == ASJ_OK; v++)
-        status = prepare(context, &sides[v], set, v + 1, &views[v]);
+        status = prepare(context, &sides[v], set, v + 1, &features[v]);
     for (int32_t run = 0; run < set->runs && status == ASJ_OK; run++)
-        status = one_round(context, set, views, &r);
-    r.frames = (size_t)views[0].corners.frame_count + views[1].corners.frame_count;
-    r.compared = (size_t)views[0].corners.count * views[1].corners.count;
+        status = one_round(context, set, features, &r);
+    r.frames = (size_t)in1->frame_count + in2->frame_count;
+    r.compared = (size_t)in1->count * in2->count;
     if (status == ASJ_OK)
-        printf("%6u %6u  %9.0f %9.0f %12.0f   (%zu frames, %zu pairs, %zu refinements)\n", (unsigned)views[0].corners.count,
-               (unsigned)views[1].corners.count, (double)r.frames / r.patches * 1e3, (double)r.compared / r.pairs * 1e3,
+        printf("%6u %6u  %9.0f %9.0f %12.0f   (%zu frames, %zu pairs, %zu refinements)\n", (unsigned)in1->count,
+               (unsigned)in2->count, (double)r.frames / r.patches * 1e3, (double)r.compared / r.pairs * 1e3,
                (double)r.refined / r.refinements * 1e3, r.frames, r.compared, r.refined);
-    for (int v = 0; v < 2; v++) {
-        asj_corners_free(&context->memory, &views[v].corners);
-        asj_pyramid_free(&context->memory, &views[v].pyramid);
-        asj_release(&context->memory, views[v].patches);
-        asj_release(&context->memory, views[v].usable);
-    }
+    for (int v = 0; v < 2; v++)
+        asj_image_features_free(&context->memory, &features[v]);
     return status == ASJ_OK ? 0 : fail(asj_context_message(context));
 }
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+#include "match/describe.h"
 #include "more_operations.h"
 
 #include <math.h>
@@ -6,12 +7,12 @@
 #include <string.h>
 
 /* L-junctions of an image and room for their patches. */
-typedef struct places {
+typedef struct described {
     asj_match_options options;
-    asj_view view;
+    asj_image_features features;
     int16_t *patches;
     uint8_t *usable;
-} places;
+} described;
 
 static uint32_t corner_count(const subject *s, int32_t which)
 {
@@ -29,7 +30,7 @@ static void choose_options(const subject *s, asj_match_options *options)
 }
 
 /* Of all sizes; some reach out of the image, some far, some fold. */
-static void choose_frames(synth_random *random, const subject *s, asj_corners *c)
+static void choose_frames(synth_random *random, const subject *s, asj_l_junctions *c)
 {
     uint32_t next = 0;
     for (uint32_t i = 0; i < c->count; i++) {
@@ -61,19 +62,19 @@ static asj_status make_pyramid(asj_context *context, const subject *s, asj_pyram
     return status;
 }
 
-static void places_free(asj_context *context, places *p)
+static void described_free(asj_context *context, described *p)
 {
-    asj_pyramid_free(&context->memory, &p->view.pyramid);
-    free(p->view.corners.first_frame);
-    free(p->view.corners.frames);
+    asj_pyramid_free(&context->memory, &p->features.pyramid);
+    free(p->features.l_junctions.first_frame);
+    free(p->features.l_junctions.frames);
     free(p->patches);
     free(p->usable);
 }
 
-static asj_status places_create(asj_context *context, const subject *s, int32_t which, places *p)
+static asj_status described_create(asj_context *context, const subject *s, int32_t which, described *p)
 {
     synth_random random = s->random;
-    asj_corners *c = &p->view.corners;
+    asj_l_junctions *c = &p->features.l_junctions;
     memset(p, 0, sizeof *p);
     choose_options(s, &p->options);
     c->count = corner_count(s, which);
@@ -86,9 +87,9 @@ static asj_status places_create(asj_context *context, const subject *s, int32_t 
     if (!c->first_frame || !c->frames || !p->patches || !p->usable)
         return ASJ_ERROR_MEMORY;
     choose_frames(&random, s, c);
-    p->view.patches = p->patches;
-    p->view.usable = p->usable;
-    return make_pyramid(context, s, &p->view.pyramid);
+    p->features.patches = p->patches;
+    p->features.usable = p->usable;
+    return make_pyramid(context, s, &p->features.pyramid);
 }
 
 size_t patches_size(const subject *s)
@@ -105,15 +106,16 @@ double patches_bytes(const subject *s)
 
 asj_status run_patches(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
-    places p;
+    described p;
     (void)scratch;
-    asj_status status = places_create(context, s, 1, &p);
+    asj_status status = described_create(context, s, 1, &p);
     if (status == ASJ_OK) {
-        p.view.patches = output;
-        p.view.usable = (uint8_t *)output + p.view.corners.frame_count * (size_t)asj_patch_length(&p.options) * sizeof(int16_t);
-        status = context->ops->describe->frames(context, &p.options, &p.view);
+        p.features.patches = output;
+        const size_t samples = p.features.l_junctions.frame_count * (size_t)asj_patch_length(&p.options);
+        p.features.usable = (uint8_t *)output + samples * sizeof(int16_t);
+        status = context->ops->describe->frames(context, &p.options, &p.features);
     }
-    places_free(context, &p);
+    described_free(context, &p);
     return status;
 }
 
@@ -127,26 +129,27 @@ size_t partners_size(const subject *s)
 /* Patches that a device has made itself or, every third time, does not know. Several of them are the same, for ties. */
 asj_status run_partners(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
-    places p[2];
+    described p[2];
     asj_partner *partners = output;
     asj_status status[2];
     (void)scratch;
     for (size_t i = 0; i < partners_size(s) / sizeof *partners; i++)
         partners[i] = (asj_partner){ASJ_NO_PARTNER, 0};
     for (int32_t v = 0; v < 2; v++) {
-        status[v] = places_create(context, s, v + 1, &p[v]);
-        for (uint32_t f = 3; f < p[v].view.corners.frame_count && status[v] == ASJ_OK; f += 3)
-            p[v].view.corners.frames[f] = p[v].view.corners.frames[f / 2];
+        status[v] = described_create(context, s, v + 1, &p[v]);
+        for (uint32_t f = 3; f < p[v].features.l_junctions.frame_count && status[v] == ASJ_OK; f += 3)
+            p[v].features.l_junctions.frames[f] = p[v].features.l_junctions.frames[f / 2];
         if (status[v] == ASJ_OK)
-            status[v] = context->ops->describe->frames(context, &p[v].options, &p[v].view);
+            status[v] = context->ops->describe->frames(context, &p[v].options, &p[v].features);
         if (s->seed % 3 == (uint64_t)v)
-            p[v].view.device_copy = 0;
+            p[v].features.device_copy = 0;
     }
     asj_status result = status[0] == ASJ_OK ? status[1] : status[0];
+    const asj_match_run run = {.context = context, .options = &p[0].options, .image = {&p[0].features, &p[1].features}};
     if (result == ASJ_OK)
-        result = context->ops->rank->partners(context, &p[0].options, &p[0].view, &p[1].view, partners,
-                                             partners + p[0].view.corners.count * (size_t)p[0].options.shortlist);
-    places_free(context, &p[0]);
-    places_free(context, &p[1]);
+        result = context->ops->rank->partners(&run, partners,
+                                             partners + p[0].features.l_junctions.count * (size_t)p[0].options.shortlist);
+    described_free(context, &p[0]);
+    described_free(context, &p[1]);
     return result;
 }

@@ -18,7 +18,7 @@ size_t partners_size(const subject *s);
 asj_status run_partners(asj_context *context, const subject *s, uint16_t *scratch, void *output);
 
 /* Parts of the matcher that instruction sets replace (patches.c): a blurred row, samples of a pyramid, discs, products of patches,
- * bounds of them, looks at candidates. */
+ * bounds of them, the support gate. */
 size_t blur_size(const subject *s);
 asj_status run_blur(asj_context *context, const subject *s, uint16_t *scratch, void *output);
 size_t samples_size(const subject *s);
@@ -27,9 +27,9 @@ size_t discs_size(const subject *s);
 asj_status run_discs(asj_context *context, const subject *s, uint16_t *scratch, void *output);
 size_t products_size(const subject *s);
 asj_status run_products(asj_context *context, const subject *s, uint16_t *scratch, void *output);
-size_t sketches_size(const subject *s);
-asj_status run_sketches(asj_context *context, const subject *s, uint16_t *scratch, void *output);
-size_t looks_size(const subject *s);
-asj_status run_looks(asj_context *context, const subject *s, uint16_t *scratch, void *output);
+size_t bounds_size(const subject *s);
+asj_status run_bounds(asj_context *context, const subject *s, uint16_t *scratch, void *output);
+size_t gate_size(const subject *s);
+asj_status run_gate(asj_context *context, const subject *s, uint16_t *scratch, void *output);
 
 #endif

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "more_operations.h"
-#include "match/sketch.h"
+#include "match/product_bound.h"
 
 #include <math.h>
 #include <string.h>
 
 #define SAMPLES 333 /* no multiple of any vector */
 #define PRODUCTS 37
-#define SPOTS 61
+#define CANDIDATES 61
 #define DISCS 11
 
 size_t blur_size(const subject *s)
@@ -60,7 +60,7 @@ static asj_status make_pyramid(asj_context *context, const subject *s, synth_ran
     return status;
 }
 
-/* Random places of every level, some outside, some far outside. */
+/* Random locations of every level, some outside, some far outside. */
 asj_status run_samples(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
     asj_pyramid pyramid = {0};
@@ -142,62 +142,62 @@ asj_status run_products(asj_context *context, const subject *s, uint16_t *scratc
     return ASJ_OK;
 }
 
-size_t sketches_size(const subject *s)
+size_t bounds_size(const subject *s)
 {
     (void)s;
-    return (SPOTS + 1) * sizeof(int32_t);
+    return (CANDIDATES + 1) * sizeof(int32_t);
 }
 
-/* Sketches as large as they get, ranges that start and end anywhere, thresholds of all kinds. */
-asj_status run_sketches(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+/* Bound vectors as large as they get, ranges that start and end anywhere, thresholds of all kinds. */
+asj_status run_bounds(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
-    enum { ROOM = (SPOTS + ASJ_SKETCH_LANES) / ASJ_SKETCH_LANES * ASJ_SKETCH_LANES };
-    static int16_t right[ROOM * ASJ_SKETCH];
+    enum { ROOM = (CANDIDATES + ASJ_BOUND_LANES) / ASJ_BOUND_LANES * ASJ_BOUND_LANES };
+    static int16_t right[ROOM * ASJ_BOUND_LENGTH];
     synth_random random = s->random;
-    const double largest = ASJ_UNIT_ONE / sqrt(ASJ_SKETCH);
-    int16_t left[ASJ_SKETCH];
+    const double largest = ASJ_UNIT_ONE / sqrt(ASJ_BOUND_LENGTH);
+    int16_t left[ASJ_BOUND_LENGTH];
     int32_t least[ROOM], *which = output;
-    const int32_t first = (int32_t)(s->seed % 20), end = SPOTS - (int32_t)(s->seed % 17);
+    const int32_t first = (int32_t)(s->seed % 20), end = CANDIDATES - (int32_t)(s->seed % 17);
     (void)scratch;
-    for (int32_t k = 0; k < ASJ_SKETCH; k++)
+    for (int32_t k = 0; k < ASJ_BOUND_LENGTH; k++)
         left[k] = (int16_t)synth_random_between(&random, -largest, largest);
-    for (int32_t k = 0; k < ROOM * ASJ_SKETCH; k++)
+    for (int32_t k = 0; k < ROOM * ASJ_BOUND_LENGTH; k++)
         right[k] = (int16_t)synth_random_between(&random, -largest, largest);
     for (int32_t g = 0; g < ROOM; g++)
-        least[g] = g % 7 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : ASJ_SKETCH_LEAST;
-    const int32_t most = s->seed % 3 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : -ASJ_SKETCH_LEAST;
-    memset(output, 0, sketches_size(s));
-    which[SPOTS] = context->ops->sketch->above(left, right, least, most, first, end, which);
+        least[g] = g % 7 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : ASJ_BOUND_LEAST;
+    const int32_t most = s->seed % 3 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : -ASJ_BOUND_LEAST;
+    memset(output, 0, bounds_size(s));
+    which[CANDIDATES] = context->ops->bound->above(left, right, least, most, first, end, which);
     return ASJ_OK;
 }
 
-size_t looks_size(const subject *s)
+size_t gate_size(const subject *s)
 {
     (void)s;
-    return ASJ_LOOK_COUNT * sizeof(uint64_t);
+    return ASJ_GATE_COUNT * sizeof(uint64_t);
 }
 
-/* Looks of all counts and at all kinds of edges, at spots of which about half are near. */
-asj_status run_looks(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+/* Queries of all counts and with all kinds of edges, on candidates of which about half are near. */
+asj_status run_gate(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
-    static float numbers[6][SPOTS + ASJ_LOOK_COUNT + ASJ_LOOK_MORE];
-    const asj_spots spots = {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4], numbers[5]}};
+    static float numbers[6][CANDIDATES + ASJ_GATE_COUNT + ASJ_GATE_PADDING];
+    const asj_gate_candidates list = {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4], numbers[5]}};
     synth_random random = s->random;
-    uint64_t *seen = output;
+    uint64_t *passed = output;
     (void)scratch;
     for (int32_t k = 0; k < 6; k++)
-        for (int32_t m = 0; m < SPOTS + ASJ_LOOK_COUNT; m++)
+        for (int32_t m = 0; m < CANDIDATES + ASJ_GATE_COUNT; m++)
             numbers[k][m] = (float)(k < 2 ? synth_random_between(&random, 0, 200)
                                           : synth_random_between(&random, -0.3, 0.3) + (k == 2 || k == 5));
-    for (uint32_t count = 1; count <= ASJ_LOOK_COUNT; count++) {
-        asj_look look = {.x = 100, .y = 90, .slope = (float)synth_random_between(&random, 0, 0.5), .edges = count % 4};
-        look.way_x = (float)synth_random_between(&random, -90, 90);
-        look.way_y = (float)synth_random_between(&random, -90, 90);
-        look.px = look.way_x + (float)synth_random_between(&random, -20, 20);
-        look.py = look.way_y + (float)synth_random_between(&random, -20, 20);
+    for (uint32_t count = 1; count <= ASJ_GATE_COUNT; count++) {
+        asj_gate_query query = {.x = 100, .y = 90, .slope = (float)synth_random_between(&random, 0, 0.5), .edges = count % 4};
+        query.way_x = (float)synth_random_between(&random, -90, 90);
+        query.way_y = (float)synth_random_between(&random, -90, 90);
+        query.px = query.way_x + (float)synth_random_between(&random, -20, 20);
+        query.py = query.way_y + (float)synth_random_between(&random, -20, 20);
         for (int32_t t = 0; t < 4; t++)
-            look.branch[t / 2][t % 2] = (float)synth_random_between(&random, -1, 1);
-        seen[count - 1] = context->ops->agreement->look_at(&look, &spots, (uint32_t)(synth_random_bits(&random) % SPOTS), count);
+            query.branch[t / 2][t % 2] = (float)synth_random_between(&random, -1, 1);
+        passed[count - 1] = context->ops->gate->pass(&query, &list, (uint32_t)(synth_random_bits(&random) % CANDIDATES), count);
     }
     return ASJ_OK;
 }

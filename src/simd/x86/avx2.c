@@ -22,5 +22,5 @@ void asj_fill_avx2(const asj_ops *ops)
     ops->patch->normalise = patch_normalise_avx2;
     ops->patch->products = patch_products_avx2;
     ops->disc->compare = disc_compare_avx2;
-    ops->agreement->look_at = look_at_avx2;
+    ops->gate->pass = support_gate_avx2;
 }

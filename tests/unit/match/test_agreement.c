@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* agreement.c: exact under perspective; corners of one edge agree across surfaces, Ts and what lies off the edge do not. */
-#include "match/agreement.h"
+/* agreement.c and support_gate.c: exact under perspective; corners of one edge agree across surfaces, Ts and what lies off the edge
+ * do not; the gate loses nothing. */
+#include "match/support_gate.h"
 #include "random.h"
 #include "unit_test.h"
 
@@ -9,7 +10,7 @@
 /* Two junctions of two branches in either image (a third one, opposite to the first, makes a T), and a candidate for each. */
 typedef struct stage {
     asj_junction junctions[2][2];
-    asj_view view[2];
+    asj_image_features image[2];
     asj_candidate c, d;
     asj_match_options options;
 } stage;
@@ -42,11 +43,16 @@ static void map(asj_candidate *c, uint32_t l, double a, double b, double p, doub
     assert_true(asj_affine_invert(to, c->map.from));
 }
 
+static asj_match_run run_of(const stage *s)
+{
+    return (asj_match_run){.options = &s->options, .image = {&s->image[0], &s->image[1]}};
+}
+
 static float measure(const stage *s, const asj_candidate *c, const asj_candidate *d, int on_surface)
 {
-    const asj_way way = asj_way_between(&s->view[0], &s->view[1], c, d);
-    return on_surface ? asj_surface_agreement(&s->options, c, d, &way)
-                      : asj_edge_agreement(&s->options, &s->view[0].corners, &s->view[1].corners, c, d, &way);
+    const asj_match_run run = run_of(s);
+    const asj_way way = asj_way_between(&run, c, d);
+    return on_surface ? asj_surface_agreement(&s->options, c, d, &way) : asj_edge_agreement(&run, c, d, &way);
 }
 
 /* Of the surface, or of the edge. */
@@ -55,17 +61,17 @@ static float agree(stage *s, int on_surface)
     unit_counter counter = {0, 0, 0, 0};
     asj_context *context = unit_context(&counter, 1);
     for (int v = 0; v < 2; v++) {
-        memset(&s->view[v], 0, sizeof s->view[v]);
-        assert_int_equal(asj_corners_create(context, s->junctions[v], 2, SIDE, SIDE, &s->options, v + 1, &s->view[v].corners),
-                         ASJ_OK);
+        const asj_junction_list input = {s->junctions[v], 2, SIDE, SIDE, v + 1};
+        memset(&s->image[v], 0, sizeof s->image[v]);
+        assert_int_equal(asj_l_junctions_create(context, &s->options, &input, &s->image[v].l_junctions), ASJ_OK);
     }
-    const asj_corners *k = &s->view[0].corners;
+    const asj_l_junctions *k = &s->image[0].l_junctions;
     s->c.i = s->c.j = 0;
     s->d.i = s->d.j = k->count - 1;
     const float there = measure(s, &s->c, &s->d, on_surface), back = measure(s, &s->d, &s->c, on_surface);
     assert_true(there - back < 1e-5f && back - there < 1e-5f);
     for (int v = 0; v < 2; v++)
-        asj_corners_free(&context->memory, &s->view[v].corners);
+        asj_l_junctions_free(&context->memory, &s->image[v].l_junctions);
     unit_context_free(&counter, &context);
     return there;
 }
@@ -148,14 +154,14 @@ static void ts_say_nothing_of_edges(void **state)
     assert_true(agree(&s, 0) == 0);
 }
 
-/* --- first looks ------------------------------------------------------------------------------------------------------------ */
+/* --- the gate ------------------------------------------------------------------------------------------------------------- */
 
-enum { PLACES = 60 };
+enum { LOCATIONS = 60 };
 
-/* Two views of places; in one of five they hardly move and branches lie along the ways between these. */
-static void scatter(synth_random *random, asj_junction junctions[2][PLACES], asj_candidate *candidates)
+/* Two images of locations; in one of five they hardly move and branches lie along the ways between these. */
+static void scatter(synth_random *random, asj_junction junctions[2][LOCATIONS], asj_candidate *candidates)
 {
-    for (uint32_t k = 0; k < PLACES; k++) {
+    for (uint32_t k = 0; k < LOCATIONS; k++) {
         const double a = synth_random_between(random, 0.5, 2), b = synth_random_between(random, -0.5, 0.5);
         const double off = k % 5 == 0 ? 4 : 60;
         const double x = 60 + 8 * k, y = 100 + (k % 5 == 0 ? 0 : synth_random_between(random, 0, 100));
@@ -166,58 +172,64 @@ static void scatter(synth_random *random, asj_junction junctions[2][PLACES], asj
     }
 }
 
-/* What c sees of d, as the matcher asks it; side 0 or 1. */
-static int sees(const stage *s, const asj_candidate *c, const asj_candidate *d, int side)
+/* Does d pass the gate of c, as the matcher asks it? Side 0 or 1. */
+static int passes(const stage *s, const asj_candidate *c, const asj_candidate *d, int side)
 {
-    const asj_way way = asj_way_between(&s->view[0], &s->view[1], c, d);
-    const asj_corners *others = &s->view[1 - side].corners;
+    const asj_match_run run = run_of(s);
+    const asj_way way = asj_way_between(&run, c, d);
+    const asj_l_junctions *others = &s->image[1 - side].l_junctions;
     const uint32_t here = side == 0 ? c->j : c->i, there = side == 0 ? d->j : d->i;
     const double *u = others->direction + 4 * (size_t)here, *map = side == 0 ? c->map.to : c->map.from;
     const double *their = side == 0 ? d->map.to : d->map.from, tolerance = s->options.neighbour_tolerance;
     const double x = side == 0 ? way.x1 : way.x2, y = side == 0 ? way.y1 : way.y2;
-    float numbers[6][1 + ASJ_LOOK_MORE] = {{others->l[there].x}, {others->l[there].y}};
+    float numbers[6][1 + ASJ_GATE_PADDING] = {{others->l[there].x}, {others->l[there].y}};
     for (int k = 0; k < 4; k++)
         numbers[2 + k][0] = (float)their[k];
-    const asj_spots spots = {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4], numbers[5]}};
-    const asj_look look = {others->l[here].x, others->l[here].y, (float)x, (float)y, (float)(map[0] * x + map[1] * y),
-                           (float)(map[2] * x + map[3] * y), (float)(ASJ_LOOK_SLOPE * tolerance * tolerance),
-                           asj_edges_through(&s->view[side].corners, side == 0 ? c->i : c->j, 3, x, y),
+    const asj_gate_candidates list = {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4], numbers[5]}};
+    const asj_gate_query query = {others->l[here].x, others->l[here].y, (float)x, (float)y, (float)(map[0] * x + map[1] * y),
+                           (float)(map[2] * x + map[3] * y), (float)(ASJ_GATE_SLOPE * tolerance * tolerance),
+                           asj_edges_through(&s->image[side].l_junctions, side == 0 ? c->i : c->j, 3, x, y),
                            {{(float)u[0], (float)u[1]}, {(float)u[2], (float)u[3]}}};
-    return (int)asj_look_at(&look, &spots, 0, 1);
+    return (int)asj_support_gate(&query, &list, 0, 1);
 }
 
-/* Whatever agrees is seen, and much of what does not is not. */
-static void looks_lose_nothing(void **state)
+static asj_status create(asj_context *context, stage *s, const asj_junction *junctions, int v)
+{
+    const asj_junction_list input = {junctions, LOCATIONS, SIDE, SIDE, v + 1};
+    return asj_l_junctions_create(context, &s->options, &input, &s->image[v].l_junctions);
+}
+
+/* Whatever agrees passes, and much of what does not is not. */
+static void the_gate_loses_nothing(void **state)
 {
     (void)state;
-    static asj_junction junctions[2][PLACES];
-    asj_candidate candidates[PLACES];
+    static asj_junction junctions[2][LOCATIONS];
+    asj_candidate candidates[LOCATIONS];
     unit_counter counter = {0, 0, 0, 0};
     asj_context *context = unit_context(&counter, 1);
     synth_random random;
     stage s;
-    int agreed[2] = {0, 0}, unseen = 0;
+    int agreed[2] = {0, 0}, stopped = 0;
     synth_random_seed(&random, 7);
     memset(&s, 0, sizeof s);
     asj_match_options_init(&s.options);
     scatter(&random, junctions, candidates);
     for (int v = 0; v < 2; v++)
-        assert_int_equal(asj_corners_create(context, junctions[v], PLACES, SIDE, SIDE, &s.options, v + 1, &s.view[v].corners),
-                         ASJ_OK);
-    for (uint32_t k = 0; k < PLACES * PLACES; k++) {
-        const asj_candidate *c = &candidates[k / PLACES], *d = &candidates[k % PLACES];
+        assert_int_equal(create(context, &s, junctions[v], v), ASJ_OK);
+    for (uint32_t k = 0; k < LOCATIONS * LOCATIONS; k++) {
+        const asj_candidate *c = &candidates[k / LOCATIONS], *d = &candidates[k % LOCATIONS];
         const int surface = measure(&s, c, d, 1) > 0, edge = measure(&s, c, d, 0) > 0;
         agreed[0] += surface;
         agreed[1] += edge && !surface;
         for (int side = 0; side < 2; side++) {
-            const int seen = sees(&s, c, d, side);
-            assert_true(seen || !(surface || edge));
-            unseen += !seen;
+            const int passed = passes(&s, c, d, side);
+            assert_true(passed || !(surface || edge));
+            stopped += !passed;
         }
     }
-    assert_true(agreed[0] > 100 && agreed[1] > 20 && unseen > PLACES * PLACES / 2);
+    assert_true(agreed[0] > 100 && agreed[1] > 20 && stopped > LOCATIONS * LOCATIONS / 2);
     for (int v = 0; v < 2; v++)
-        asj_corners_free(&context->memory, &s.view[v].corners);
+        asj_l_junctions_free(&context->memory, &s.image[v].l_junctions);
     unit_context_free(&counter, &context);
 }
 
@@ -227,7 +239,7 @@ int main(void)
         cmocka_unit_test(perspective_is_no_error),
         cmocka_unit_test(corners_of_one_edge_agree),
         cmocka_unit_test(ts_say_nothing_of_edges),
-        cmocka_unit_test(looks_lose_nothing),
+        cmocka_unit_test(the_gate_loses_nothing),
     };
     return cmocka_run_group_tests_name("agreement", tests, NULL, NULL);
 }

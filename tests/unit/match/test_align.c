@@ -31,6 +31,15 @@ static void make(asj_context *context, const double m[4], double shift_x, double
 
 static const double identity[4] = {1, 0, 0, 1};
 
+/* Starts with a linear map and a location in the source. */
+static asj_alignment align(const asj_disc *disc, const asj_template *t, const asj_pyramid *source, const double linear[4], double x,
+                           double y, int32_t iterations, double max_move)
+{
+    const asj_aligner aligner = {disc, iterations, max_move};
+    const asj_disc_pose start = {x, y, {linear[0], linear[1], linear[2], linear[3]}};
+    return asj_align(&aligner, t, source, &start);
+}
+
 static void finds_a_known_map(void **state)
 {
     (void)state;
@@ -54,15 +63,15 @@ static void finds_a_known_map(void **state)
             /* start: 8 % wrong in one length, 3 degrees in the direction of the other, location 1.7 px off */
             const double start[4] = {inverse[0] * 1.08, inverse[1] + 0.05 * inverse[0],
                                      inverse[2] * 1.08, inverse[3] + 0.05 * inverse[2]};
-            asj_align(&disc, &t, &second, start, 120, 120, 10, 5, &found);
+            found = align(&disc, &t, &second, start, 120, 120, 10, 5);
             assert_true(found.moved);
             assert_true((double)found.similarity > (double)found.first);
             /* the floors of one grey level cost 3 % each at a contrast of 35, 6 % at half of it */
             assert_true((double)found.similarity > 0.9);
-            unit_near("x", (double)n, gain, found.x, 121.4, 0.1);
-            unit_near("y", (double)n, gain, found.y, 119.1, 0.1);
+            unit_near("x", (double)n, gain, found.pose.x, 121.4, 0.1);
+            unit_near("y", (double)n, gain, found.pose.y, 119.1, 0.1);
             for (int k = 0; k < 4; k++)
-                unit_near("map", (double)n, k, found.linear[k], inverse[k], 0.02);
+                unit_near("map", (double)n, k, found.pose.linear[k], inverse[k], 0.02);
             asj_pyramid_free(&context->memory, &first);
             asj_pyramid_free(&context->memory, &second);
         }
@@ -81,11 +90,11 @@ static void another_place_stays_unlike(void **state)
     asj_disc_create(20, &disc);
     make(context, identity, 0, 0, 1, 0, &pyramid);
     asj_template_create(&disc, &pyramid, 120, 120, &t);
-    asj_align(&disc, &t, &pyramid, identity, 70, 170, 6, 5, &found);
+    found = align(&disc, &t, &pyramid, identity, 70, 170, 6, 5);
     assert_true((double)found.similarity < 0.8);
-    asj_align(&disc, &t, &pyramid, identity, 120, 120, 6, 5, &found);
+    found = align(&disc, &t, &pyramid, identity, 120, 120, 6, 5);
     assert_true((double)found.similarity > 0.9);
-    unit_near("x", 0, 0, found.x, 120, 0.05);
+    unit_near("x", 0, 0, found.pose.x, 120, 0.05);
     asj_pyramid_free(&context->memory, &pyramid);
     unit_context_free(&counter, &context);
 }
@@ -103,14 +112,14 @@ static void limits_put_the_start_back(void **state)
     make(context, identity, 0, 0, 1, 0, &first);
     make(context, identity, 3, 0, 1, 0, &second);
     asj_template_create(&disc, &first, 120, 120, &t);
-    asj_align(&disc, &t, &second, identity, 120, 120, 10, 5, &found);
-    unit_near("moved", 0, 0, found.x, 123, 0.1);
-    asj_align(&disc, &t, &second, identity, 120, 120, 10, 1, &found); /* 3 px are more than 1 */
+    found = align(&disc, &t, &second, identity, 120, 120, 10, 5);
+    unit_near("moved", 0, 0, found.pose.x, 123, 0.1);
+    found = align(&disc, &t, &second, identity, 120, 120, 10, 1); /* 3 px are more than 1 */
     assert_false(found.moved);
-    unit_near("stayed", 0, 0, found.x, 120, 0);
-    assert_memory_equal(found.linear, identity, sizeof identity);
+    unit_near("stayed", 0, 0, found.pose.x, 120, 0);
+    assert_memory_equal(found.pose.linear, identity, sizeof identity);
     unit_near("first", 0, 0, (double)found.similarity, (double)found.first, 0);
-    asj_align(&disc, &t, &second, identity, 120, 120, 0, 5, &found); /* no steps at all */
+    found = align(&disc, &t, &second, identity, 120, 120, 0, 5); /* no steps at all */
     assert_false(found.moved);
     asj_pyramid_free(&context->memory, &first);
     asj_pyramid_free(&context->memory, &second);
@@ -130,10 +139,10 @@ static void flat_discs_are_like_nothing(void **state)
     make(context, identity, 0, 0, 0, 90, &flat);
     make(context, identity, 0, 0, 1, 0, &textured);
     asj_template_create(&disc, &flat, 120, 120, &t);
-    asj_align(&disc, &t, &textured, identity, 120, 120, 6, 5, &found);
+    found = align(&disc, &t, &textured, identity, 120, 120, 6, 5);
     unit_near("flat template", 0, 0, (double)found.similarity, 0, 1e-3);
     asj_template_create(&disc, &textured, 120, 120, &t);
-    asj_align(&disc, &t, &flat, identity, 120, 120, 6, 5, &found);
+    found = align(&disc, &t, &flat, identity, 120, 120, 6, 5);
     unit_near("flat source", 0, 0, (double)found.similarity, 0, 1e-3);
     asj_template_create(&disc, &textured, -15, -15, &t);
     assert_false(t.usable);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* src/match/patch.c and src/match/descriptor.c: pyramids, sampling and distances against naive evaluations in floating point. */
-#include "match/descriptor.h"
-#include "tables.h"
+/* src/match/patch.c and src/match/sift.c: pyramids, sampling and distances against naive evaluations in floating point. */
 #include "match/patch.h"
+#include "match/sift.h"
+#include "tables.h"
 #include "unit_test.h"
 
 #define SIDE 64
@@ -119,7 +119,7 @@ static void tiny_and_flat_images(void **state)
     assert_int_equal(grey[255], 77 * ASJ_GRAY_ONE);
     asj_patch_normalise(grey, 16, unit);
     assert_int_equal(asj_patch_product(unit, unit, 256), 0); /* flat: no direction at all */
-    asj_descriptor_sift(grey, 16, unit);
+    asj_sift_describe(grey, 16, unit);
     assert_int_equal(asj_patch_product(unit, unit, ASJ_SIFT_LENGTH), 0);
     asj_pyramid_free(&context->memory, &pyramid);
     unit_context_free(&counter, &context);
@@ -160,7 +160,7 @@ static void the_product_is_the_correlation(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* An affinely warped picture looks the same in the warped frame; another place does not. */
+/* An affinely warped picture looks the same in the warped frame; another location does not. */
 static void patches_do_not_depend_on_the_viewpoint(void **state)
 {
     (void)state;
@@ -186,7 +186,7 @@ static void patches_do_not_depend_on_the_viewpoint(void **state)
     assert_int_equal(asj_patch_sample(&there, &other, 16, -0.25, 1, grey[2]), 1);
     for (int k = 0; k < 3; k++) {
         asj_patch_normalise(grey[k], 16, unit[k]);
-        asj_descriptor_sift(grey[k], 16, sift[k]);
+        asj_sift_describe(grey[k], 16, sift[k]);
     }
     const double one = (double)ASJ_UNIT_ONE * ASJ_UNIT_ONE;
     const double raw = asj_patch_product(unit[0], unit[1], 256) / one, raw_other = asj_patch_product(unit[0], unit[2], 256) / one;
@@ -209,7 +209,7 @@ static void sift_votes_for_the_direction(void **state)
         int16_t unit[ASJ_SIFT_LENGTH];
         for (int32_t i = 0; i < 256; i++)
             grey[i] = (uint16_t)(16000 + floor(400 * ((i % 16) * cos(phi) + (i / 16) * sin(phi)) + 0.5));
-        asj_descriptor_sift(grey, 16, unit);
+        asj_sift_describe(grey, 16, unit);
         const int32_t low = degrees / 45, high = (low + 1) % 8;
         const double t = phi - low * UNIT_PI / 4;                      /* oblique coordinates of a unit vector at angle t */
         const double alpha = sin(UNIT_PI / 4 - t), beta = sin(t);

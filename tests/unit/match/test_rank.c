@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* src/match/rank.c and src/match/sketch.c: a bound is never too low, and the lists are those of all pairs. */
+/* src/match/rank.c and src/match/product_bound.c: a bound is never too low, and the lists are those of all pairs. */
 #include "random.h"
-#include "match/sketch.h"
+#include "match/describe.h"
+#include "match/product_bound.h"
+#include "match/shortlist.h"
 #include "unit_test.h"
 
 #include <math.h>
@@ -11,7 +13,7 @@
 
 /* An image's patches, without an image. */
 typedef struct patches {
-    asj_view view;
+    asj_image_features features;
     uint32_t first_frame[CORNERS + 1];
     uint8_t usable[MOST_FRAMES];
     int16_t units[MOST_FRAMES * ASJ_PATCH_SAMPLES];
@@ -32,14 +34,14 @@ static void draw(synth_random *random, int32_t size, uint16_t *grey)
 /* Some patches are the same, for ties. */
 static void make(synth_random *random, int32_t size, patches *p)
 {
-    asj_corners *c = &p->view.corners;
+    asj_l_junctions *c = &p->features.l_junctions;
     const size_t length = (size_t)(size * size);
     uint16_t grey[ASJ_PATCH_SAMPLES];
     c->count = CORNERS;
     c->first_frame = p->first_frame;
     c->frame_count = 0;
-    p->view.patches = p->units;
-    p->view.usable = p->usable;
+    p->features.patches = p->units;
+    p->features.usable = p->usable;
     for (uint32_t i = 0; i < CORNERS; i++) {
         c->first_frame[i] = c->frame_count;
         c->frame_count += (uint32_t)synth_random_between(random, 0, i % 10 ? 5 : 16.99);
@@ -73,17 +75,17 @@ static void bounds_are_never_too_low(void **state)
         uint32_t above = 0, below = 0;
         make(&random, options.patch_size, &p[0]);
         make(&random, options.patch_size, &p[1]);
-        assert_int_equal(asj_sketch_left(context, &options, &p[0].view, &left), ASJ_OK);
-        assert_int_equal(asj_sketch_right(context, &options, &p[1].view, &right), ASJ_OK);
-        const uint32_t count = p[1].view.corners.frame_count;
-        for (uint32_t f = 0; f < p[0].view.corners.frame_count; f++) {
+        assert_int_equal(asj_bound_left(context, &options, &p[0].features, &left), ASJ_OK);
+        assert_int_equal(asj_bound_right(context, &options, &p[1].features, &right), ASJ_OK);
+        const uint32_t count = p[1].features.l_junctions.frame_count;
+        for (uint32_t f = 0; f < p[0].features.l_junctions.frame_count; f++) {
             const int16_t *mine = p[0].units + f * (size_t)length;
             for (uint32_t g = 0; g < MOST_FRAMES; g++) { /* just below the product; 1/4 above it for every other one */
                 const int32_t more = g % 2 ? ASJ_UNIT_ONE * (ASJ_UNIT_ONE / 4) : -1;
                 least[g] = g < count ? asj_patch_product(mine, p[1].units + g * (size_t)length, length) + more : 0;
             }
-            const int16_t *one = left + f * ASJ_SKETCH;
-            const int32_t found = context->ops->sketch->above(one, right, least, -ASJ_SKETCH_LEAST, 0, (int32_t)count, which);
+            const int16_t *one = left + f * ASJ_BOUND_LENGTH;
+            const int32_t found = context->ops->bound->above(one, right, least, -ASJ_BOUND_LEAST, 0, (int32_t)count, which);
             for (int32_t k = 0, g = 0; g < (int32_t)count; g++) {
                 const int32_t is = k < found && which[k] == g;
                 assert_true(is || g % 2);
@@ -102,12 +104,11 @@ static void bounds_are_never_too_low(void **state)
 /* --- lists ------------------------------------------------------------------------------------------------------------------ */
 
 /* How many partners of L-junction i (of image `side`) are better than the one of this score and number. */
-static int32_t rank(const asj_match_options *options, const patches p[2], int side, uint32_t i, int32_t score, uint32_t index)
+static int32_t rank(const asj_match_run *run, int side, uint32_t i, int32_t score, uint32_t index)
 {
     int32_t better = 0;
-    uint32_t f, g;
     for (uint32_t j = 0; j < CORNERS; j++) {
-        const int32_t other = asj_best_frames(options, &p[0].view, &p[1].view, side ? j : i, side ? i : j, &f, &g);
+        const int32_t other = asj_score_pair(run, side ? j : i, side ? i : j).score;
         better += other > score || (other == score && j < index);
     }
     return better;
@@ -125,20 +126,21 @@ static void lists_are_those_of_all_pairs(void **state)
     for (options.shortlist = 1; options.shortlist <= 32; options.shortlist += 7) {
         unit_counter counter = {0, 0, 0, 0};
         asj_context *context = unit_context(&counter, 1);
+        const asj_match_run run = {.context = context, .options = &options, .image = {&p[0].features, &p[1].features}};
         for (int v = 0; v < 2; v++)
             make(&random, options.patch_size, &p[v]);
         for (int32_t k = 0; k < 2 * CORNERS * 32; k++)
             lists[k / (CORNERS * 32)][k % (CORNERS * 32)] = (asj_partner){ASJ_NO_PARTNER, 0};
-        assert_int_equal(asj_rank_partners(context, &options, &p[0].view, &p[1].view, lists[0], lists[1]), ASJ_OK);
+        assert_int_equal(asj_rank_partners(&run, lists[0], lists[1]), ASJ_OK);
         for (int32_t k = 0; k < 2 * CORNERS * options.shortlist; k++) {
             const int side = k >= CORNERS * options.shortlist;
-            const int32_t place = k - side * CORNERS * options.shortlist;
-            const asj_partner *partner = &lists[side][place];
-            const uint32_t i = (uint32_t)(place / options.shortlist);
+            const int32_t at = k - side * CORNERS * options.shortlist;
+            const asj_partner *partner = &lists[side][at];
+            const uint32_t i = (uint32_t)(at / options.shortlist);
             if (partner->score > ASJ_NO_PARTNER)
-                assert_int_equal(rank(&options, p, side, i, partner->score, partner->index), place % options.shortlist);
+                assert_int_equal(rank(&run, side, i, partner->score, partner->index), at % options.shortlist);
             else
-                assert_true(rank(&options, p, side, i, ASJ_NO_PARTNER, 0) <= place % options.shortlist);
+                assert_true(rank(&run, side, i, ASJ_NO_PARTNER, 0) <= at % options.shortlist);
         }
         unit_context_free(&counter, &context);
     }

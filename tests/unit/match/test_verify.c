@@ -10,7 +10,7 @@
 typedef struct stage {
     asj_junction junctions[2][MOST];
     size_t count;
-    asj_view view[2];
+    asj_image_features image[2];
     asj_candidate list[MOST];
     asj_choice choices[MOST];
     asj_match_options options;
@@ -35,14 +35,13 @@ static void add(stage *s, double x, double y, double move_x, double move_y, int3
 static size_t verify(asj_context *context, stage *s)
 {
     size_t count = 0;
-    asj_candidates candidates = {s->list, s->count, MOST};
     for (int v = 0; v < 2; v++) {
-        memset(&s->view[v], 0, sizeof s->view[v]);
-        assert_int_equal(asj_corners_create(context, s->junctions[v], s->count, SIDE, SIDE, &s->options, v + 1,
-                                            &s->view[v].corners), ASJ_OK);
+        const asj_junction_list input = {s->junctions[v], s->count, SIDE, SIDE, v + 1};
+        memset(&s->image[v], 0, sizeof s->image[v]);
+        assert_int_equal(asj_l_junctions_create(context, &s->options, &input, &s->image[v].l_junctions), ASJ_OK);
     }
-    for (uint32_t l = 0; l < s->view[0].corners.count; l++) { /* the first L-junction of each junction with its like */
-        if (l > 0 && s->view[0].corners.l[l].junction == s->view[0].corners.l[l - 1].junction)
+    for (uint32_t l = 0; l < s->image[0].l_junctions.count; l++) { /* the first L-junction of each junction with its like */
+        if (l > 0 && s->image[0].l_junctions.l[l].junction == s->image[0].l_junctions.l[l - 1].junction)
             continue;
         memset(&s->list[count], 0, sizeof s->list[count]);
         s->list[count].i = s->list[count].j = l;
@@ -51,17 +50,19 @@ static size_t verify(asj_context *context, stage *s)
         count++;
     }
     assert_int_equal(count, s->count);
-    assert_int_equal(asj_verify(context, &s->options, &s->view[0], &s->view[1], &candidates, s->choices, &count), ASJ_OK);
+    asj_match_run run = {.context = context, .options = &s->options, .image = {&s->image[0], &s->image[1]},
+                         .candidates = {s->list, s->count, MOST}, .choices = {s->choices, count}};
+    assert_int_equal(asj_verify(&run), ASJ_OK);
     for (int v = 0; v < 2; v++)
-        asj_corners_free(&context->memory, &s->view[v].corners);
-    return count;
+        asj_l_junctions_free(&context->memory, &s->image[v].l_junctions);
+    return run.choices.count;
 }
 
-static void grid(stage *s, int32_t corners)
+static void grid(stage *s, int32_t l_junctions)
 {
     memset(s, 0, sizeof *s);
     asj_match_options_init(&s->options);
-    for (int32_t k = 0; k < corners; k++)
+    for (int32_t k = 0; k < l_junctions; k++)
         add(s, 100 + 40 * (k % 4), 100 + 40 * (k / 4), 0, 0, 2);
 }
 
@@ -126,12 +127,11 @@ static void without_memory_it_says_so(void **state)
     unit_counter counter = {0, 0, 0, 0};
     asj_context *context = unit_context(&counter, 1);
     asj_choice choice = {0, 1};
-    asj_candidates none = {NULL, 0, 0};
     asj_match_options options;
-    size_t count = 1;
     asj_match_options_init(&options);
+    asj_match_run run = {.context = context, .options = &options, .choices = {&choice, 1}};
     counter.fail_at = counter.calls + 1;
-    assert_int_equal(asj_verify(context, &options, NULL, NULL, &none, &choice, &count), ASJ_ERROR_MEMORY);
+    assert_int_equal(asj_verify(&run), ASJ_ERROR_MEMORY);
     counter.fail_at = 0;
     unit_context_free(&counter, &context);
 }

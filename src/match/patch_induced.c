@@ -5,8 +5,9 @@
  *
  * Kept for comparison; canonical patches (patch.c) cost a hundredth. Departure: a pair is dropped when more than a quarter of a
  * warped square lies outside its image (the paper does not say what happens there). */
-#include "descriptor.h"
-#include "distance.h"
+#include "patch_induced.h"
+#include "describe.h"
+#include "sift.h"
 
 #include <math.h>
 
@@ -14,7 +15,7 @@
 static void describe(const asj_match_options *options, const uint16_t *grey, int16_t *description)
 {
     if (options->descriptor == ASJ_DESCRIPTOR_SIFT)
-        asj_descriptor_sift(grey, options->patch_size, description);
+        asj_sift_describe(grey, options->patch_size, description);
     else if (options->normalise)
         asj_patch_normalise(grey, options->patch_size, description);
     else
@@ -39,47 +40,50 @@ static float difference(const asj_match_options *options, const int16_t *left, c
 }
 
 /* The square of an L-junction does not depend on its partner: it is described once. */
-asj_status asj_induced_describe(asj_context *context, const asj_match_options *options, asj_view *view)
+asj_status asj_patch_induced_describe(asj_context *context, const asj_match_options *options, asj_image_features *features)
 {
     const size_t length = (size_t)asj_patch_length(options);
-    const int64_t count = view->corners.count;
+    const int64_t count = features->l_junctions.count;
     const double side = 2 * options->patch_radius;
-    view->patches = asj_allocate(&context->memory, (size_t)count * length, sizeof *view->patches);
-    view->usable = asj_allocate(&context->memory, (size_t)count, sizeof *view->usable);
-    if (!view->patches || !view->usable)
+    features->patches = asj_allocate(&context->memory, (size_t)count * length, sizeof *features->patches);
+    features->usable = asj_allocate(&context->memory, (size_t)count, sizeof *features->usable);
+    if (!features->patches || !features->usable)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lld patches", (long long)count);
 #pragma omp parallel for num_threads(context->threads) schedule(static)
     for (int64_t l = 0; l < count; l++) {
         uint16_t grey[ASJ_PATCH_SAMPLES];
-        const asj_affine_frame square = {(double)view->corners.l[l].x, (double)view->corners.l[l].y, side, 0, 0, side};
-        view->usable[l] = (uint8_t)asj_patch_sample(&view->pyramid, &square, options->patch_size, -0.5, 0.5, grey);
-        describe(options, grey, view->patches + (size_t)l * length);
+        const asj_l_junction *at = &features->l_junctions.l[l];
+        const asj_affine_frame square = {(double)at->x, (double)at->y, side, 0, 0, side};
+        features->usable[l] = (uint8_t)asj_patch_sample(&features->pyramid, &square, options->patch_size, -0.5, 0.5, grey);
+        describe(options, grey, features->patches + (size_t)l * length);
     }
     return ASJ_OK;
 }
 
-/* D~ of the square around L-junction `from` of one view and its image around `to` of the other. */
-static float one_way(const asj_match_options *options, const asj_view *view1, uint32_t from, const asj_view *view2, uint32_t to,
-                     const double map[4])
+/* D~ of the square around L-junction `from` of image `side` (0 or 1) and its image around `to` of the other. */
+static float one_way(const asj_match_run *run, int32_t side, uint32_t from, uint32_t to, const double map[4])
 {
     uint16_t grey[ASJ_PATCH_SAMPLES];
     int16_t description[ASJ_PATCH_SAMPLES];
-    const double side = 2 * options->patch_radius;
-    const asj_l_junction *l = &view2->corners.l[to];
-    const asj_affine_frame warped = {(double)l->x, (double)l->y, side * map[0], side * map[2], side * map[1], side * map[3]};
-    if (!view1->usable[from] || !asj_patch_sample(&view2->pyramid, &warped, options->patch_size, -0.5, 0.5, grey))
+    const asj_match_options *options = run->options;
+    const asj_image_features *mine = run->image[side], *other = run->image[1 - side];
+    const double size = 2 * options->patch_radius;
+    const asj_l_junction *l = &other->l_junctions.l[to];
+    const asj_affine_frame warped = {(double)l->x, (double)l->y, size * map[0], size * map[2], size * map[1], size * map[3]};
+    if (!mine->usable[from] || !asj_patch_sample(&other->pyramid, &warped, options->patch_size, -0.5, 0.5, grey))
         return HUGE_VALF;
     describe(options, grey, description);
-    return difference(options, view1->patches + (size_t)from * (size_t)asj_patch_length(options), description);
+    return difference(options, mine->patches + (size_t)from * (size_t)asj_patch_length(options), description);
 }
 
-float asj_induced_distance(const asj_match_options *options, const asj_view *view1, const asj_view *view2, uint32_t i, uint32_t j)
+float asj_patch_induced_distance(const asj_match_run *run, uint32_t i, uint32_t j)
 {
-    const asj_corners *c1 = &view1->corners, *c2 = &view2->corners;
+    const asj_l_junctions *l_junctions1 = &run->image[0]->l_junctions, *l_junctions2 = &run->image[1]->l_junctions;
+    const uint32_t f = l_junctions1->first_frame[i], g = l_junctions2->first_frame[j];
     asj_linear map;
-    if (c1->first_frame[i] == c1->first_frame[i + 1] || c2->first_frame[j] == c2->first_frame[j + 1] || !view1->usable[i] ||
-        !view2->usable[j] || !asj_affine_between(&c1->frames[c1->first_frame[i]], &c2->frames[c2->first_frame[j]], &map))
+    if (f == l_junctions1->first_frame[i + 1] || g == l_junctions2->first_frame[j + 1] || !run->image[0]->usable[i] ||
+        !run->image[1]->usable[j] || !asj_affine_between(&l_junctions1->frames[f], &l_junctions2->frames[g], &map))
         return HUGE_VALF;
-    const float there = one_way(options, view1, i, view2, j, map.to);
-    return there < HUGE_VALF ? there + one_way(options, view2, j, view1, i, map.from) : HUGE_VALF;
+    const float there = one_way(run, 0, i, j, map.to);
+    return there < HUGE_VALF ? there + one_way(run, 1, j, i, map.from) : HUGE_VALF;
 }

@@ -6,7 +6,7 @@
  * g = alpha d_k + beta d_k+1 with alpha, beta >= 0, which are its votes: an axis gets what is left of its component after the
  * other one, a diagonal sqrt(2) times the smaller of its two. That is smooth across directions and needs no branch. Samples vote
  * into the four nearest cells, bilinearly: first rows into rows of cells, then columns. */
-#include "descriptor.h"
+#include "sift.h"
 
 #include <math.h>
 #include <string.h>
@@ -64,7 +64,7 @@ static void differentiate(const uint16_t *grey, int32_t size, int32_t y, float *
     gx[size - 1] = (float)((int32_t)row[size - 1] - (int32_t)row[size - 2]);
 }
 
-void asj_descriptor_sift(const uint16_t *grey, int32_t size, int16_t *unit)
+void asj_sift_describe(const uint16_t *grey, int32_t size, int16_t *unit)
 {
     float weights[CELLS][ASJ_PATCH_SIDE], rows[CELLS][DIRECTIONS][ASJ_PATCH_SIDE], entry[ASJ_SIFT_LENGTH], sum = 0;
     memset(rows, 0, sizeof rows);

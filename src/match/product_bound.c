@@ -9,12 +9,13 @@
  *     <f, g> <= <B f, B g> + r_f r_g,     r_f = sqrt(|f|^2 - |B f|^2),
  *
  * which is one product of vectors with one more number. Another pair of numbers makes up for what rounding B f loses. */
-#include "sketch.h"
+#include "product_bound.h"
+#include "describe.h"
 
 #include <math.h>
 #include <string.h>
 
-#define TERMS (ASJ_SKETCH - 2)
+#define TERMS (ASJ_BOUND_LENGTH - 2)
 #define FREQUENCIES 8 /* of those terms: 0 .. 7 */
 #define ROW 0.995 /* length of a row: rounding adds at most sqrt(TERMS ASJ_PATCH_SAMPLES) / 2 / ASJ_UNIT_ONE = 0.004 */
 /* Rounding B f and B g to whole numbers costs sqrt(TERMS) / 2 (|f| + |g|) + TERMS / 4 at most: 5.5 ASJ_UNIT_ONE. */
@@ -41,7 +42,7 @@ static void fill_rows(int32_t size, int16_t *rows)
 }
 
 /* All numbers but the slack. */
-static void sketch(const asj_patch_ops *ops, const int16_t *patch, const int16_t *rows, int32_t length, int16_t *numbers)
+static void fill_vector(const asj_patch_ops *ops, const int16_t *patch, const int16_t *rows, int32_t length, int16_t *numbers)
 {
     const double one = (double)ASJ_UNIT_ONE * ASJ_UNIT_ONE;
     int32_t every[TERMS], product[TERMS];
@@ -56,68 +57,70 @@ static void sketch(const asj_patch_ops *ops, const int16_t *patch, const int16_t
     numbers[TERMS] = (int16_t)ceil(sqrt(rest > 0 ? rest : 0));
 }
 
-/* Sketches of a view, one after the other; the slack of either side. */
-static asj_status sketch_all(asj_context *context, const asj_match_options *options, const asj_view *view, int16_t slack,
-                             int16_t **sketches)
+/* Bound vectors of all frames, one after the other; the slack of either side. */
+static asj_status fill_all(asj_context *context, const asj_match_options *options, const asj_image_features *features,
+                           int16_t slack, int16_t **vectors)
 {
     const int32_t length = asj_patch_length(options);
-    const int64_t count = view->corners.frame_count;
+    const int64_t count = features->l_junctions.frame_count;
     int16_t *rows = asj_allocate(&context->memory, TERMS * (size_t)length, sizeof *rows);
-    int16_t *all = asj_allocate(&context->memory, (size_t)count, ASJ_SKETCH * sizeof *all);
-    *sketches = all;
+    int16_t *all = asj_allocate(&context->memory, (size_t)count, ASJ_BOUND_LENGTH * sizeof *all);
+    *vectors = all;
     if (!rows || !all) {
         asj_release(&context->memory, rows);
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for sketches of %lld patches", (long long)count);
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the bound vectors of %lld patches", (long long)count);
     }
     fill_rows(options->patch_size, rows);
 #pragma omp parallel for num_threads(context->threads) schedule(static)
     for (int64_t f = 0; f < count; f++) {
-        sketch(context->ops->patch, view->patches + (size_t)f * (size_t)length, rows, length, all + f * ASJ_SKETCH);
-        all[f * ASJ_SKETCH + ASJ_SKETCH - 1] = slack;
+        fill_vector(context->ops->patch, features->patches + (size_t)f * (size_t)length, rows, length, all + f * ASJ_BOUND_LENGTH);
+        all[f * ASJ_BOUND_LENGTH + ASJ_BOUND_LENGTH - 1] = slack;
     }
     asj_release(&context->memory, rows);
     return ASJ_OK;
 }
 
-asj_status asj_sketch_left(asj_context *context, const asj_match_options *options, const asj_view *view, int16_t **sketches)
+asj_status asj_bound_left(asj_context *context, const asj_match_options *options, const asj_image_features *features,
+                          int16_t **vectors)
 {
-    return sketch_all(context, options, view, SLACK_LEFT, sketches);
+    return fill_all(context, options, features, SLACK_LEFT, vectors);
 }
 
-int32_t asj_sketch_blocks(uint32_t frames)
+int32_t asj_bound_blocks(uint32_t frames)
 {
-    return (int32_t)((frames + ASJ_SKETCH_LANES - 1) / ASJ_SKETCH_LANES);
+    return (int32_t)((frames + ASJ_BOUND_LANES - 1) / ASJ_BOUND_LANES);
 }
 
-asj_status asj_sketch_right(asj_context *context, const asj_match_options *options, const asj_view *view, int16_t **sketches)
+asj_status asj_bound_right(asj_context *context, const asj_match_options *options, const asj_image_features *features,
+                           int16_t **vectors)
 {
-    const uint32_t count = view->corners.frame_count;
-    int16_t *plain, *laned = asj_allocate_zero(&context->memory, (size_t)asj_sketch_blocks(count),
-                                               ASJ_SKETCH * ASJ_SKETCH_LANES * sizeof *laned);
-    *sketches = laned;
+    const uint32_t count = features->l_junctions.frame_count;
+    int16_t *plain, *laned = asj_allocate_zero(&context->memory, (size_t)asj_bound_blocks(count),
+                                               ASJ_BOUND_LENGTH * ASJ_BOUND_LANES * sizeof *laned);
+    *vectors = laned;
     if (!laned)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for sketches of %u patches", (unsigned)count);
-    const asj_status status = sketch_all(context, options, view, SLACK_RIGHT, &plain);
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the bound vectors of %u patches", (unsigned)count);
+    const asj_status status = fill_all(context, options, features, SLACK_RIGHT, &plain);
     for (uint32_t f = 0; f < count && status == ASJ_OK; f++) {
-        int16_t *block = laned + (size_t)(f / ASJ_SKETCH_LANES) * ASJ_SKETCH * ASJ_SKETCH_LANES + f % ASJ_SKETCH_LANES * 2;
-        for (uint32_t k = 0; k < ASJ_SKETCH; k++)
-            block[k / 2 * 2 * ASJ_SKETCH_LANES + k % 2] = plain[(size_t)f * ASJ_SKETCH + k];
+        int16_t *block = laned + (size_t)(f / ASJ_BOUND_LANES) * ASJ_BOUND_LENGTH * ASJ_BOUND_LANES + f % ASJ_BOUND_LANES * 2;
+        for (uint32_t k = 0; k < ASJ_BOUND_LENGTH; k++)
+            block[k / 2 * 2 * ASJ_BOUND_LANES + k % 2] = plain[(size_t)f * ASJ_BOUND_LENGTH + k];
     }
     asj_release(&context->memory, plain);
     return status;
 }
 
-int32_t asj_sketch_above(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first, int32_t end,
+int32_t asj_bound_above(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first, int32_t end,
                          int32_t *which)
 {
     int32_t count = 0;
-    for (int32_t start = first - first % ASJ_SKETCH_LANES; start < end; start += ASJ_SKETCH_LANES) {
-        const int16_t *r = right + (ptrdiff_t)start * ASJ_SKETCH;
-        int32_t bound[ASJ_SKETCH_LANES] = {0};
-        for (int32_t k = 0; k < ASJ_SKETCH; k += 2, r += 2 * ASJ_SKETCH_LANES)
-            for (int32_t n = 0; n < ASJ_SKETCH_LANES; n++)
+    for (int32_t start = first - first % ASJ_BOUND_LANES; start < end; start += ASJ_BOUND_LANES) {
+        const int16_t *r = right + (ptrdiff_t)start * ASJ_BOUND_LENGTH;
+        int32_t bound[ASJ_BOUND_LANES] = {0};
+        for (int32_t k = 0; k < ASJ_BOUND_LENGTH; k += 2, r += 2 * ASJ_BOUND_LANES)
+            for (int32_t n = 0; n < ASJ_BOUND_LANES; n++)
                 bound[n] += left[k] * r[2 * n] + left[k + 1] * r[2 * n + 1];
-        for (int32_t n = 0; n < ASJ_SKETCH_LANES; n++) {
+        for (int32_t n = 0; n < ASJ_BOUND_LANES; n++) {
             const int32_t g = start + n;
             if (bound[n] > (least[g] < most ? least[g] : most) && g >= first && g < end)
                 which[count++] = g;
@@ -126,4 +129,4 @@ int32_t asj_sketch_above(const int16_t *left, const int16_t *right, const int32_
     return count;
 }
 
-const asj_sketch_ops asj_sketch_reference = {.above = asj_sketch_above};
+const asj_bound_ops asj_bound_reference = {.above = asj_bound_above};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-#ifndef ASJ_SRC_DESCRIPTOR_H
-#define ASJ_SRC_DESCRIPTOR_H
+#ifndef ASJ_SRC_SIFT_H
+#define ASJ_SRC_SIFT_H
 
 #include "patch.h"
 
@@ -8,6 +8,6 @@
 
 /* The gradient histogram of a size x size patch (size a multiple of 4) as a unit vector of ASJ_SIFT_LENGTH numbers in
  * 1/ASJ_UNIT_ONE. A flat patch gives zeros. */
-void asj_descriptor_sift(const uint16_t *grey, int32_t size, int16_t *unit);
+void asj_sift_describe(const uint16_t *grey, int32_t size, int16_t *unit);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* src/match/corners.c against the plain way to find the same: neighbours of places, lengths of branches. */
-#include "match/corners.h"
+/* src/match/l_junctions.c against the plain way to find the same: neighbours of locations, lengths of branches. */
+#include "match/l_junctions.h"
 #include "random.h"
 #include "unit_test.h"
 
@@ -27,24 +27,24 @@ static void scatter(uint64_t seed, asj_junction *junctions)
     }
 }
 
-static double square_between(const asj_corners *corners, uint32_t p, uint32_t q)
+static double square_between(const asj_l_junctions *all, uint32_t p, uint32_t q)
 {
-    const double dx = corners->place_x[p] - corners->place_x[q], dy = corners->place_y[p] - corners->place_y[q];
+    const double dx = all->location_x[p] - all->location_x[q], dy = all->location_y[p] - all->location_y[q];
     return dx * dx + dy * dy;
 }
 
-/* Neighbour n of place p comes before every later one and every other place, ties by number, and none is missing. */
-static void check_neighbours(const asj_corners *corners, uint32_t p, double separation)
+/* Neighbour n of location p comes before every later one and every other location, ties by number, and none is missing. */
+static void check_neighbours(const asj_l_junctions *all, uint32_t p, double separation)
 {
-    const uint32_t *neighbour = corners->neighbour + (size_t)p * corners->neighbour_limit;
+    const uint32_t *neighbour = all->neighbour + (size_t)p * all->neighbour_limit;
     uint32_t before = 0, far = 0;
-    for (uint32_t q = 0; q < corners->place_count; q++)
-        far += square_between(corners, p, q) > separation * separation;
-    assert_int_equal(corners->neighbour_count[p], far < corners->neighbour_limit ? far : corners->neighbour_limit);
-    for (uint32_t n = 0; n < corners->neighbour_count[p]; n++, before = 0) {
-        const double square = square_between(corners, p, neighbour[n]);
-        for (uint32_t q = 0; q < corners->place_count; q++) {
-            const double other = square_between(corners, p, q);
+    for (uint32_t q = 0; q < all->location_count; q++)
+        far += square_between(all, p, q) > separation * separation;
+    assert_int_equal(all->neighbour_count[p], far < all->neighbour_limit ? far : all->neighbour_limit);
+    for (uint32_t n = 0; n < all->neighbour_count[p]; n++, before = 0) {
+        const double square = square_between(all, p, neighbour[n]);
+        for (uint32_t q = 0; q < all->location_count; q++) {
+            const double other = square_between(all, p, q);
             before += other > separation * separation && (other < square || (other == square && q < neighbour[n]));
         }
         assert_int_equal(before, n);
@@ -61,25 +61,25 @@ static void neighbours_are_the_nearest(void **state)
         for (uint64_t seed = 1; seed <= 3; seed++) {
             unit_counter counter = {0, 0, 0, 0};
             asj_context *context = unit_context(&counter, 1);
-            asj_corners corners;
+            asj_l_junctions all;
             scatter(seed, junctions);
+            const asj_junction_list input = {junctions, seed == 3 ? 20 : COUNT, SIDE, SIDE, 1};
             options.neighbours = limit;
             options.separation = seed == 1 ? 0 : 5.0 * (double)seed;
-            assert_int_equal(asj_corners_create(context, junctions, seed == 3 ? 20 : COUNT, SIDE, SIDE, &options, 1, &corners),
-                             ASJ_OK);
-            for (uint32_t p = 0; p < corners.place_count; p++)
-                check_neighbours(&corners, p, options.separation);
-            asj_corners_free(&context->memory, &corners);
+            assert_int_equal(asj_l_junctions_create(context, &options, &input, &all), ASJ_OK);
+            for (uint32_t p = 0; p < all.location_count; p++)
+                check_neighbours(&all, p, options.separation);
+            asj_l_junctions_free(&context->memory, &all);
             unit_context_free(&counter, &context);
         }
 }
 
-/* The longest distance up to `most` of a place within 3 px of the branch; 0 = none. */
-static double longest(const asj_corners *corners, uint32_t l, const double *u, double most)
+/* The longest distance up to `most` of a location within 3 px of the branch; 0 = none. */
+static double longest(const asj_l_junctions *all, uint32_t l, const double *u, double most)
 {
     double best = 0;
-    for (uint32_t q = 0; q < corners->place_count; q++) {
-        const double dx = corners->place_x[q] - (double)corners->l[l].x, dy = corners->place_y[q] - (double)corners->l[l].y;
+    for (uint32_t q = 0; q < all->location_count; q++) {
+        const double dx = all->location_x[q] - (double)all->l[l].x, dy = all->location_y[q] - (double)all->l[l].y;
         const double along = dx * u[0] + dy * u[1];
         if (along >= 10 && along <= most && fabs(dx * u[1] - dy * u[0]) < 3)
             best = along > best ? along : best;
@@ -94,23 +94,24 @@ static void lengths_are_those_of_junctions_on_the_branch(void **state)
     asj_match_options options;
     unit_counter counter = {0, 0, 0, 0};
     asj_context *context = unit_context(&counter, 1);
-    asj_corners corners;
+    asj_l_junctions all;
+    const asj_junction_list input = {junctions, COUNT, SIDE, SIDE, 1};
     int32_t found = 0;
     asj_match_options_init(&options);
     scatter(4, junctions);
-    assert_int_equal(asj_corners_create(context, junctions, COUNT, SIDE, SIDE, &options, 1, &corners), ASJ_OK);
-    for (uint32_t b = 0; b < 2 * corners.count; b++) {
-        const asj_lengths *lengths = &corners.lengths[b];
+    assert_int_equal(asj_l_junctions_create(context, &options, &input, &all), ASJ_OK);
+    for (uint32_t b = 0; b < 2 * all.count; b++) {
+        const asj_lengths *lengths = &all.lengths[b];
         double before = (double)lengths->length[0] - 8;
         for (int32_t n = 1; n < options.length_hypotheses && n <= lengths->count; n++, before -= 4) {
-            const double next = longest(&corners, b / 2, corners.direction + 2 * (size_t)b, before);
+            const double next = longest(&all, b / 2, all.direction + 2 * (size_t)b, before);
             assert_true(n < lengths->count ? lengths->length[n] == (float)next : next <= 0);
             found += n < lengths->count;
             before = next;
         }
     }
     assert_true(found > COUNT / 2);
-    asj_corners_free(&context->memory, &corners);
+    asj_l_junctions_free(&context->memory, &all);
     unit_context_free(&counter, &context);
 }
 
@@ -120,5 +121,5 @@ int main(void)
         cmocka_unit_test(neighbours_are_the_nearest),
         cmocka_unit_test(lengths_are_those_of_junctions_on_the_branch),
     };
-    return cmocka_run_group_tests_name("corners", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("l_junctions", tests, NULL, NULL);
 }

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Lists of candidates in order: by L-junction of image 1, then of image 2. */
+#include "candidate.h"
+
+#include <stdlib.h>
+
+static int by_pair(const void *left, const void *right)
+{
+    const asj_candidate *p = left, *q = right;
+    if (p->i != q->i)
+        return p->i < q->i ? -1 : 1;
+    return p->j < q->j ? -1 : p->j > q->j;
+}
+
+void asj_candidates_sort(asj_candidates *candidates)
+{
+    if (candidates->count > 1)
+        qsort(candidates->list, candidates->count, sizeof *candidates->list, by_pair);
+    size_t kept = 0;
+    for (size_t k = 0; k < candidates->count; k++)
+        if (kept == 0 || by_pair(&candidates->list[k], &candidates->list[kept - 1]) != 0)
+            candidates->list[kept++] = candidates->list[k];
+    candidates->count = kept;
+}

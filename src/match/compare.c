@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 7, the distance of a pair.
+ *
+ * Canonical patches: f and g are unit vectors, so |f - g|^2 = 2 - 2 <f, g>. Of an L-junction with several length hypotheses the
+ * best pair of frames counts.
+ *
+ * Scores are whole numbers, so that any device ranks alike: <f, g> of unit vectors; 2 <f, g> - <f, f> - <g, g> of others, both in
+ * units of 1/ASJ_UNIT_ONE^2; of the paper's patches (patch_induced.c) minus the distance in 1/DISTANCE_ONE. */
+#include "compare.h"
+#include "describe.h"
+#include "patch_induced.h"
+
+#include <math.h>
+
+#define DISTANCE_ONE 65536 /* distances of raw patches are below 2^14, so that a score has at most 30 bits */
+
+static int32_t score_patches(const asj_match_options *options, const int16_t *f, const int16_t *g, int32_t length)
+{
+    const int32_t product = asj_patch_product(f, g, length);
+    return asj_patch_units(options) ? product : 2 * product - asj_patch_product(f, f, length) - asj_patch_product(g, g, length);
+}
+
+/* |f - g|^2 of a score. */
+static float squared_distance(const asj_match_options *options, int32_t score)
+{
+    const float one = 1.0f / ((float)ASJ_UNIT_ONE * (float)ASJ_UNIT_ONE);
+    const float distance2 = asj_patch_units(options) ? 2 - 2 * ((float)score * one) : -(float)score * one;
+    return distance2 > 0 ? distance2 : 0;
+}
+
+static asj_pair_score score_frames(const asj_match_run *run, uint32_t i, uint32_t j)
+{
+    const int32_t length = asj_patch_length(run->options);
+    const asj_image_features *features1 = run->image[0], *features2 = run->image[1];
+    const uint32_t *first1 = features1->l_junctions.first_frame, *first2 = features2->l_junctions.first_frame;
+    asj_pair_score best = {ASJ_NO_PARTNER, first1[i], first2[j]};
+    for (uint32_t f = first1[i]; f < first1[i + 1]; f++) {
+        if (!features1->usable[f])
+            continue;
+        const int16_t *patch = features1->patches + (size_t)f * (size_t)length;
+        for (uint32_t g = first2[j]; g < first2[j + 1]; g++) {
+            if (!features2->usable[g])
+                continue;
+            const int32_t score = score_patches(run->options, patch, features2->patches + (size_t)g * (size_t)length, length);
+            if (score > best.score)
+                best = (asj_pair_score){score, f, g};
+        }
+    }
+    return best;
+}
+
+asj_pair_score asj_score_pair(const asj_match_run *run, uint32_t i, uint32_t j)
+{
+    if (run->options->patches == ASJ_PATCHES_CANONICAL)
+        return score_frames(run, i, j);
+    const float distance = asj_patch_induced_distance(run, i, j);
+    return (asj_pair_score){distance < HUGE_VALF ? -(int32_t)lrintf(distance * DISTANCE_ONE) : ASJ_NO_PARTNER,
+                            run->image[0]->l_junctions.first_frame[i], run->image[1]->l_junctions.first_frame[j]};
+}
+
+/* Fills distance2 and map; 0 when the pair gives no map. */
+static int32_t compare(const asj_match_run *run, asj_candidate *c)
+{
+    const asj_l_junctions *l_junctions1 = &run->image[0]->l_junctions, *l_junctions2 = &run->image[1]->l_junctions;
+    uint32_t f = l_junctions1->first_frame[c->i], g = l_junctions2->first_frame[c->j];
+    if (run->options->patches == ASJ_PATCHES_CANONICAL) {
+        const asj_pair_score best = score_frames(run, c->i, c->j);
+        if (best.score == ASJ_NO_PARTNER)
+            return 0;
+        f = best.frame1;
+        g = best.frame2;
+        c->distance2 = squared_distance(run->options, best.score);
+    } else {
+        const float distance = asj_patch_induced_distance(run, c->i, c->j);
+        if (!(distance < HUGE_VALF))
+            return 0;
+        c->distance2 = distance * distance;
+    }
+    return asj_affine_between(&l_junctions1->frames[f], &l_junctions2->frames[g], &c->map);
+}
+
+void asj_compare_and_drop(const asj_match_run *run, asj_candidates *candidates)
+{
+    asj_candidate *list = candidates->list;
+    const int64_t count = (int64_t)candidates->count;
+    size_t kept = 0;
+#pragma omp parallel for num_threads(run->context->threads) schedule(static)
+    for (int64_t k = 0; k < count; k++)
+        if (!compare(run, &list[k]))
+            list[k].distance2 = -1;
+    for (int64_t k = 0; k < count; k++)
+        if (list[k].distance2 >= 0)
+            list[kept++] = list[k];
+    candidates->count = kept;
+}

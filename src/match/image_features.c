@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 7, one image: its L-junctions with their frames (l_junctions.c), its pyramid (core/pyramid.c), and what the
+ * neighbourhoods of the L-junctions look like (describe.c; patch_induced.c for the paper's). */
+#include "image_features.h"
+#include "core/image.h"
+#include "describe.h"
+#include "patch_induced.h"
+
+#include <string.h>
+
+static asj_status create(asj_context *context, const asj_match_options *options, const asj_image *image,
+                         const asj_junction_list *junctions, asj_image_features *features)
+{
+    asj_status status = asj_l_junctions_create(context, options, junctions, &features->l_junctions);
+    if (status == ASJ_OK)
+        status = asj_pyramid_create(context, image, options->smoothing, &features->pyramid);
+    if (status == ASJ_OK)
+        status = options->patches == ASJ_PATCHES_CANONICAL ? asj_describe(context, options, features)
+                                                           : asj_patch_induced_describe(context, options, features);
+    return status;
+}
+
+asj_status asj_image_features_create(asj_context *context, const asj_match_options *options, const asj_image *image,
+                                     const asj_junction *junctions, size_t count, int32_t which, asj_image_features *features)
+{
+    memset(features, 0, sizeof *features);
+    asj_status status = asj_image_check(context, image);
+    if (status != ASJ_OK)
+        return status;
+    const asj_junction_list list = {junctions, count, image->width, image->height, which};
+    status = create(context, options, image, &list, features);
+    if (status != ASJ_OK)
+        asj_image_features_free(&context->memory, features);
+    return status;
+}
+
+void asj_image_features_free(asj_memory *memory, asj_image_features *features)
+{
+    asj_l_junctions_free(memory, &features->l_junctions);
+    asj_pyramid_free(memory, &features->pyramid);
+    asj_release(memory, features->patches);
+    asj_release(memory, features->usable);
+    memset(features, 0, sizeof *features);
+}

@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 7, preparation: from junctions to L-junctions with frames, length hypotheses, locations and neighbours.
+ *
+ * Length hypotheses. A branch that passes other junctions may end at one of them in the other image: occlusion, weak contrast and
+ * crossing lines all cut or prolong the scan. So besides its own length a branch is given, longest first, the distances of other
+ * junctions that lie within 3 px of it, at least 10 px from its start and 8 px before its end, and 4 px apart. Every
+ * combination of both branches' lengths is one frame.
+ *
+ * Matches are unique by location, and "another location" in the ratio test means farther than `separation`.
+ * Neighbours of a location are the nearest others farther than `separation`, so that a cluster of duplicates is no neighbour of
+ * itself. */
+#include "l_junctions.h"
+#include "nearest.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_L_JUNCTIONS 0x1000000 /* frames, up to sixteen for each, are numbered in 32 bits */
+#define MOST_OUTSIDE ((float)ASJ_MAX_OUTSIDE) /* px: where branches meet may lie a little outside the image */
+#define LEAST_LENGTH 3.0     /* px: a shorter branch has no direction worth a frame */
+#define RAY_DISTANCE 3.0     /* px */
+#define LEAST_START 10.0     /* px */
+#define LEAST_BEFORE_END 8.0 /* px */
+#define LEAST_APART 4.0      /* px */
+#define OPPOSITE (-0.978147601) /* cosine of 180 - 12 degrees: half the least opening of branches, and less */
+
+static asj_status check(asj_context *context, const asj_junction_list *input)
+{
+    const int which = (int)input->which;
+    for (size_t n = 0; n < input->count; n++) {
+        const asj_junction *j = &input->list[n];
+        if (!(j->x >= -MOST_OUTSIDE && j->y >= -MOST_OUTSIDE && j->x <= (float)(input->width - 1) + MOST_OUTSIDE &&
+              j->y <= (float)(input->height - 1) + MOST_OUTSIDE))
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d at (%g, %g) lies outside its %d x %d pixels",
+                            n, which, (double)j->x, (double)j->y, (int)input->width, (int)input->height);
+        if (j->branch_count < 0 || j->branch_count > ASJ_MAX_BRANCHES)
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d has %d branches", n, which,
+                            (int)j->branch_count);
+        for (int32_t b = 0; b < j->branch_count; b++) {
+            const asj_branch *branch = &j->branches[b];
+            if (!(branch->length >= 0 && branch->length <= 4 * (float)ASJ_MAX_SIDE && fabsf(branch->angle) <= 1e6f))
+                return asj_fail(context, ASJ_ERROR_ARGUMENT, "branch %d of junction %zu of image %d has angle %g, length %g",
+                                (int)b, n, which, (double)branch->angle, (double)branch->length);
+        }
+    }
+    return ASJ_OK;
+}
+
+static asj_status no_memory(asj_context *context)
+{
+    return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the L-junctions of an image");
+}
+
+/* --- locations -------------------------------------------------------------------------------------------------------------- */
+
+typedef struct position {
+    float x, y;
+    uint32_t l;
+} position;
+
+static int by_position(const void *left, const void *right)
+{
+    const position *p = left, *q = right;
+    if (p->x != q->x)
+        return p->x < q->x ? -1 : 1;
+    if (p->y != q->y)
+        return p->y < q->y ? -1 : 1;
+    return p->l < q->l ? -1 : p->l > q->l;
+}
+
+static asj_status find_locations(asj_context *context, asj_l_junctions *all)
+{
+    asj_memory *memory = &context->memory;
+    position *positions = asj_allocate(memory, all->count, sizeof *positions);
+    all->location = asj_allocate(memory, all->count, sizeof *all->location);
+    all->location_x = asj_allocate(memory, all->count, sizeof *all->location_x);
+    all->location_y = asj_allocate(memory, all->count, sizeof *all->location_y);
+    all->first_of_location = asj_allocate(memory, (size_t)all->count + 1, sizeof *all->first_of_location);
+    all->l_of_location = asj_allocate(memory, all->count, sizeof *all->l_of_location);
+    if (!positions || !all->location || !all->location_x || !all->location_y || !all->first_of_location || !all->l_of_location) {
+        asj_release(memory, positions);
+        return no_memory(context);
+    }
+    for (uint32_t i = 0; i < all->count; i++)
+        positions[i] = (position){all->l[i].x, all->l[i].y, i};
+    qsort(positions, all->count, sizeof *positions, by_position);
+    uint32_t locations = 0;
+    for (uint32_t i = 0; i < all->count; i++) {
+        if (i == 0 || positions[i].x != positions[i - 1].x || positions[i].y != positions[i - 1].y) {
+            all->location_x[locations] = (double)positions[i].x;
+            all->location_y[locations] = (double)positions[i].y;
+            all->first_of_location[locations++] = i;
+        }
+        all->location[positions[i].l] = locations - 1;
+        all->l_of_location[i] = positions[i].l;
+    }
+    all->location_count = locations;
+    all->first_of_location[locations] = all->count;
+    asj_release(memory, positions);
+    return ASJ_OK;
+}
+
+uint32_t asj_first_location(const asj_l_junctions *all, double x)
+{
+    uint32_t low = 0, high = all->location_count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (all->location_x[middle] < x)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The nearest locations farther than `separation`: from the location itself outwards in x, until x alone is too far away. */
+static uint32_t find_nearest(const asj_l_junctions *all, uint32_t location, double separation, uint32_t limit, uint32_t *out)
+{
+    const double x = all->location_x[location], y = all->location_y[location], least = separation * separation;
+    asj_nearest list = {.limit = limit, .index = out};
+    for (uint32_t left = location, right = location + 1; left > 0 || right < all->location_count;) {
+        const int32_t back = right == all->location_count ||
+                             (left > 0 && x - all->location_x[left - 1] <= all->location_x[right] - x);
+        const uint32_t q = back ? --left : right++;
+        const double dx = all->location_x[q] - x, dy = all->location_y[q] - y, square = dx * dx + dy * dy;
+        if (asj_nearest_beyond(&list, dx * dx))
+            break;
+        if (square > least)
+            asj_nearest_offer(&list, q, square);
+    }
+    return list.count;
+}
+
+static asj_status find_neighbours(asj_context *context, const asj_match_options *options, asj_l_junctions *all)
+{
+    all->neighbour_limit = (uint32_t)options->neighbours;
+    if (options->neighbours == 0)
+        return ASJ_OK;
+    all->neighbour = asj_allocate(&context->memory, (size_t)all->location_count * all->neighbour_limit, sizeof(uint32_t));
+    all->neighbour_count = asj_allocate(&context->memory, all->location_count, sizeof(uint32_t));
+    if (!all->neighbour || !all->neighbour_count)
+        return no_memory(context);
+    const int64_t count = all->location_count;
+#pragma omp parallel for num_threads(context->threads) schedule(static)
+    for (int64_t p = 0; p < count; p++)
+        all->neighbour_count[p] = find_nearest(all, (uint32_t)p, options->separation, all->neighbour_limit,
+                                               all->neighbour + (size_t)p * all->neighbour_limit);
+    return ASJ_OK;
+}
+
+/* --- lengths and frames ----------------------------------------------------------------------------------------------------- */
+
+/* Appends extra lengths, falling, LEAST_APART from each other. Only locations with an x that the branch passes are looked at. */
+static void find_lengths(const asj_l_junctions *all, double x, double y, const double u[2], double own, int32_t limit,
+                         asj_lengths *lengths)
+{
+    lengths->count = 1;
+    lengths->length[0] = (float)own;
+    double before = own - LEAST_BEFORE_END;
+    const double most = x + (u[0] > 0 ? before * u[0] : 0) + RAY_DISTANCE + 1;
+    const uint32_t first = asj_first_location(all, x + (u[0] < 0 ? before * u[0] : 0) - RAY_DISTANCE - 1);
+    while (lengths->count < limit) { /* the longest one not longer than `before` */
+        double best = 0;
+        for (uint32_t q = first; q < all->location_count && all->location_x[q] <= most; q++) {
+            double dx = all->location_x[q] - x, dy = all->location_y[q] - y;
+            double along = dx * u[0] + dy * u[1];
+            if (along >= LEAST_START && along <= before && along > best && fabs(dx * u[1] - dy * u[0]) < RAY_DISTANCE)
+                best = along;
+        }
+        if (best <= 0)
+            return;
+        lengths->length[lengths->count++] = (float)best;
+        before = best - LEAST_APART;
+    }
+}
+
+/* Unit vector and length of the branch that ends at (ex, ey). */
+static double direct(const asj_l_junction *l, float ex, float ey, double u[2])
+{
+    double dx = (double)ex - (double)l->x, dy = (double)ey - (double)l->y, length = sqrt(dx * dx + dy * dy);
+    u[0] = length > 0 ? dx / length : 1;
+    u[1] = length > 0 ? dy / length : 0;
+    return length;
+}
+
+static void prepare(asj_l_junctions *all, uint32_t i, int32_t limit)
+{
+    const asj_l_junction *l = &all->l[i];
+    double *u = all->direction + 4 * (size_t)i;
+    double a = direct(l, l->ax, l->ay, u), b = direct(l, l->bx, l->by, u + 2);
+    if (a < LEAST_LENGTH || b < LEAST_LENGTH) {
+        all->lengths[2 * i] = (asj_lengths){0, {(float)a}};
+        all->lengths[2 * i + 1] = (asj_lengths){0, {(float)b}};
+        return;
+    }
+    find_lengths(all, (double)l->x, (double)l->y, u, a, limit, &all->lengths[2 * i]);
+    find_lengths(all, (double)l->x, (double)l->y, u + 2, b, limit, &all->lengths[2 * i + 1]);
+}
+
+static void fill_frames(asj_l_junctions *all)
+{
+    for (uint32_t i = 0; i < all->count; i++) {
+        const double *u = all->direction + 4 * (size_t)i;
+        const asj_lengths *a = &all->lengths[2 * i], *b = &all->lengths[2 * i + 1];
+        asj_affine_frame *frame = all->frames + all->first_frame[i];
+        for (int32_t m = 0; m < a->count; m++)
+            for (int32_t n = 0; n < b->count; n++) {
+                double p = (double)a->length[m], q = (double)b->length[n];
+                *frame++ = (asj_affine_frame){(double)all->l[i].x, (double)all->l[i].y,
+                                              p * u[0], p * u[1], q * u[2], q * u[3]};
+            }
+    }
+}
+
+static asj_status make_frames(asj_context *context, const asj_match_options *options, asj_l_junctions *all)
+{
+    asj_memory *memory = &context->memory;
+    all->lengths = asj_allocate(memory, 2 * (size_t)all->count, sizeof *all->lengths);
+    all->direction = asj_allocate(memory, 4 * (size_t)all->count, sizeof *all->direction);
+    all->first_frame = asj_allocate(memory, (size_t)all->count + 1, sizeof *all->first_frame);
+    if (!all->lengths || !all->direction || !all->first_frame)
+        return no_memory(context);
+    const int64_t count = all->count;
+#pragma omp parallel for num_threads(context->threads) schedule(static)
+    for (int64_t i = 0; i < count; i++)
+        prepare(all, (uint32_t)i, options->length_hypotheses);
+    uint32_t total = 0;
+    for (uint32_t i = 0; i < all->count; i++) {
+        all->first_frame[i] = total;
+        total += (uint32_t)(all->lengths[2 * i].count * all->lengths[2 * i + 1].count);
+    }
+    all->first_frame[all->count] = all->frame_count = total;
+    all->frames = asj_allocate(memory, total, sizeof *all->frames);
+    if (!all->frames)
+        return no_memory(context);
+    fill_frames(all);
+    return ASJ_OK;
+}
+
+/* Does another L-junction of the location have a branch opposite to u? */
+static int continues(const asj_l_junctions *all, uint32_t l, const double u[2])
+{
+    const uint32_t location = all->location[l];
+    for (uint32_t m = all->first_of_location[location]; m < all->first_of_location[location + 1]; m++) {
+        const double *v = all->direction + 4 * (size_t)all->l_of_location[m];
+        if (all->l_of_location[m] != l &&
+            (u[0] * v[0] + u[1] * v[1] < OPPOSITE || u[0] * v[2] + u[1] * v[3] < OPPOSITE))
+            return 1;
+    }
+    return 0;
+}
+
+static asj_status find_t_junctions(asj_context *context, asj_l_junctions *all)
+{
+    all->t_junction = asj_allocate(&context->memory, all->count, sizeof *all->t_junction);
+    if (!all->t_junction)
+        return no_memory(context);
+    for (uint32_t l = 0; l < all->count; l++) {
+        const double *u = all->direction + 4 * (size_t)l;
+        all->t_junction[l] = continues(all, l, u) != continues(all, l, u + 2);
+    }
+    return ASJ_OK;
+}
+
+asj_status asj_l_junctions_create(asj_context *context, const asj_match_options *options, const asj_junction_list *input,
+                                  asj_l_junctions *all)
+{
+    memset(all, 0, sizeof *all);
+    asj_status status = check(context, input);
+    if (status != ASJ_OK)
+        return status;
+    const size_t total = asj_decompose(input->list, input->count, options->minimum_opening, NULL, 0);
+    if (total > MOST_L_JUNCTIONS)
+        return asj_fail(context, ASJ_ERROR_LIMIT, "%zu L-junctions in image %d are more than the matcher takes", total,
+                        (int)input->which);
+    all->l = asj_allocate(&context->memory, total, sizeof *all->l);
+    if (!all->l)
+        return no_memory(context);
+    all->count = (uint32_t)asj_decompose(input->list, input->count, options->minimum_opening, all->l, total);
+    status = find_locations(context, all);
+    if (status == ASJ_OK)
+        status = find_neighbours(context, options, all);
+    if (status == ASJ_OK)
+        status = make_frames(context, options, all);
+    if (status == ASJ_OK)
+        status = find_t_junctions(context, all);
+    return status;
+}
+
+void asj_l_junctions_free(asj_memory *memory, asj_l_junctions *all)
+{
+    void *blocks[] = {all->l, all->lengths, all->direction, all->first_frame, all->frames, all->location,
+                      all->location_x, all->location_y, all->neighbour, all->neighbour_count,
+                      all->first_of_location, all->l_of_location, all->t_junction};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+        asj_release(memory, blocks[i]);
+    memset(all, 0, sizeof *all);
+}

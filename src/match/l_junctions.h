@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The L-junctions of one image as the matcher works on them: frames, length hypotheses, locations. */
+#ifndef ASJ_SRC_L_JUNCTIONS_H
+#define ASJ_SRC_L_JUNCTIONS_H
+
+#include "affine.h"
+#include "core/context.h"
+
+#include <asj/match.h>
+
+#define ASJ_MAX_HYPOTHESES 4
+
+/* Lengths that a branch may have, its own first, then falling. */
+typedef struct asj_lengths {
+    int32_t count;
+    float length[ASJ_MAX_HYPOTHESES];
+} asj_lengths;
+
+typedef struct asj_l_junctions {
+    asj_l_junction *l;           /* as asj_decompose() gives them */
+    uint32_t count;
+    asj_lengths *lengths;        /* [2 * i] of branch a, [2 * i + 1] of branch b */
+    double *direction;           /* [4 * i]: unit vectors of branch a and of branch b */
+    uint32_t *first_frame;       /* frames of L-junction i: first_frame[i] .. first_frame[i + 1] - 1; own lengths come first */
+    asj_affine_frame *frames;
+    uint32_t frame_count;
+
+    /* Distinct locations, in order of x. L-junctions of one junction share theirs; so do records of a file with the same
+     * coordinates. Location p has l_of_location[first_of_location[p]] .. l_of_location[first_of_location[p + 1] - 1]. */
+    uint32_t *location;          /* of each L-junction */
+    uint32_t location_count;
+    uint32_t *first_of_location;
+    uint32_t *l_of_location;
+    double *location_x, *location_y;
+    uint8_t *t_junction;         /* of each L-junction: is it part of a T? One of its branches goes on beyond the location */
+    uint32_t *neighbour;         /* [k * location .. + neighbour_count[location]]: nearest other locations, nearest first */
+    uint32_t *neighbour_count;
+    uint32_t neighbour_limit;    /* k */
+} asj_l_junctions;
+
+/* The junctions of one image, as the caller gives them. */
+typedef struct asj_junction_list {
+    const asj_junction *list;
+    size_t count;
+    int32_t width, height;       /* px: of the image */
+    int32_t which;               /* 1 or 2, for messages */
+} asj_junction_list;
+
+/* Makes everything from junctions. ASJ_ERROR_ARGUMENT (see asj_match()), ASJ_ERROR_LIMIT, ASJ_ERROR_MEMORY. On failure the caller
+ * still frees. */
+asj_status asj_l_junctions_create(asj_context *context, const asj_match_options *options, const asj_junction_list *input,
+                                  asj_l_junctions *l_junctions);
+void asj_l_junctions_free(asj_memory *memory, asj_l_junctions *l_junctions);
+
+/* The first location that is not left of x. */
+uint32_t asj_first_location(const asj_l_junctions *l_junctions, double x);
+
+#endif

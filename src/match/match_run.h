@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* One call of asj_match(), which its steps hand on (match.c lists them). */
+#ifndef ASJ_SRC_MATCH_RUN_H
+#define ASJ_SRC_MATCH_RUN_H
+
+#include "candidate.h"
+#include "image_features.h"
+
+typedef struct asj_match_run {
+    asj_context *context;
+    const asj_match_options *options;
+    const asj_image_features *image[2];
+    asj_candidates candidates; /* shortlist.c fills them, align.c their maps, consensus.c their scores */
+    asj_support support;       /* support.c: who agrees with whom */
+    asj_choices choices;       /* assign.c; room for every location of image 1 */
+} asj_match_run;
+
+/* L-junction of a candidate in image `side` (0 or 1). */
+static inline const asj_l_junction *asj_match_run_l(const asj_match_run *run, const asj_candidate *c, int32_t side)
+{
+    return &run->image[side]->l_junctions.l[asj_candidate_l(c, side)];
+}
+
+#endif

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The paper's patches: squares of fixed size, carried into the other image by each pair's own map. */
+#ifndef ASJ_SRC_PATCH_INDUCED_H
+#define ASJ_SRC_PATCH_INDUCED_H
+
+#include "match_run.h"
+
+/* Fills features->patches and usable with the squares around the L-junctions, one for each. */
+asj_status asj_patch_induced_describe(asj_context *context, const asj_match_options *options, asj_image_features *features);
+
+/* The paper's distance of L-junction i of image 1 and j of image 2; HUGE_VALF when the map of the pair leaves the image. */
+float asj_patch_induced_distance(const asj_match_run *run, uint32_t i, uint32_t j);
+
+#endif

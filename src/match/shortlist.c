@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 7, short lists: the candidates are the union of the best partners of every L-junction of either image (rank.c). Ties go to
+ * the smaller index, so the list depends on nothing but the input. */
+#include "shortlist.h"
+
+#include <string.h>
+
+static void clear(asj_partner *list, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        list[i] = (asj_partner){ASJ_NO_PARTNER, 0};
+}
+
+/* The union of both lists as candidates. */
+static asj_status collect(asj_match_run *run, const asj_partner *rows, const asj_partner *columns)
+{
+    const uint32_t count1 = run->image[0]->l_junctions.count, count2 = run->image[1]->l_junctions.count;
+    const size_t limit = (size_t)run->options->shortlist, most = ((size_t)count1 + count2) * limit;
+    asj_candidates *candidates = &run->candidates;
+    candidates->list = asj_allocate(&run->context->memory, most, sizeof *candidates->list);
+    if (!candidates->list)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", most);
+    candidates->capacity = most;
+    candidates->count = 0;
+    for (uint32_t n = 0; n < count1 + count2; n++) {
+        const asj_partner *list = n < count1 ? rows + n * limit : columns + (n - count1) * limit;
+        for (size_t k = 0; k < limit && list[k].score > ASJ_NO_PARTNER; k++) {
+            asj_candidate *c = &candidates->list[candidates->count++];
+            memset(c, 0, sizeof *c);
+            c->i = n < count1 ? n : list[k].index;
+            c->j = n < count1 ? list[k].index : n - count1;
+        }
+    }
+    asj_candidates_sort(candidates);
+    return ASJ_OK;
+}
+
+asj_status asj_shortlist(asj_match_run *run)
+{
+    asj_memory *memory = &run->context->memory;
+    const uint32_t count1 = run->image[0]->l_junctions.count, count2 = run->image[1]->l_junctions.count;
+    const size_t limit = (size_t)run->options->shortlist;
+    asj_partner *rows = asj_allocate(memory, count1 * limit, sizeof *rows);
+    asj_partner *columns = asj_allocate(memory, count2 * limit, sizeof *columns);
+    asj_status status;
+    if (!rows || !columns) {
+        status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the partners of %u and %u L-junctions",
+                          (unsigned)count1, (unsigned)count2);
+    } else {
+        clear(rows, count1 * limit);
+        clear(columns, count2 * limit);
+        status = run->context->ops->rank->partners(run, rows, columns);
+        if (status == ASJ_OK)
+            status = collect(run, rows, columns);
+        if (status == ASJ_OK)
+            asj_compare_and_drop(run, &run->candidates);
+    }
+    asj_release(memory, rows);
+    asj_release(memory, columns);
+    return status;
+}
