@@ -10,7 +10,7 @@
 #include "detect/line_sums.h"
 #include "detect/scan.h"
 #include "detect/strip.h"
-#include "match/align.h"
+#include "match/disc.h"
 #include "match/describe.h"
 #include "match/product_bound.h"
 #include "match/shortlist.h"

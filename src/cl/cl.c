@@ -40,18 +40,14 @@ static cl_int get_limits(struct asj_cl *cl, const asj_device *record)
 {
     asj_cl_limits *limits = &cl->limits;
     size_t sizes[16] = {0};
-    cl_uint alignment = 0;
     cl_int error = cl->api.GetDeviceInfo(cl->device, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof(size_t), &limits->max_work_group, NULL);
     if (error == CL_SUCCESS)
         error = cl->api.GetDeviceInfo(cl->device, CL_DEVICE_MAX_WORK_ITEM_SIZES, sizeof sizes, sizes, NULL);
-    if (error == CL_SUCCESS)
-        error = cl->api.GetDeviceInfo(cl->device, CL_DEVICE_MEM_BASE_ADDR_ALIGN, sizeof alignment, &alignment, NULL);
     memcpy(limits->max_work_item, sizes, sizeof limits->max_work_item);
     limits->local_memory = record->local_memory;
     limits->largest_buffer = record->largest_buffer;
     limits->global_memory = record->global_memory;
     limits->compute_units = (uint32_t)record->compute_units;
-    limits->base_alignment = alignment / 8;
     limits->type = record->type;
     return error;
 }

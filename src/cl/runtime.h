@@ -22,7 +22,6 @@ typedef struct asj_cl_limits {
     uint64_t largest_buffer;    /* bytes */
     uint64_t global_memory;     /* bytes */
     uint32_t compute_units;
-    uint32_t base_alignment;    /* bytes: where a buffer's memory starts, at least */
     int32_t type;               /* ASJ_DEVICE_... (asj/device.h) */
 } asj_cl_limits;
 

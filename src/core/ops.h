@@ -20,7 +20,7 @@ typedef struct asj_ops {
     struct asj_describe_ops *describe;   /* match/describe.h */
     struct asj_bound_ops *bound;         /* match/product_bound.h */
     struct asj_rank_ops *rank;           /* match/shortlist.h */
-    struct asj_disc_ops *disc;           /* match/align.h */
+    struct asj_disc_ops *disc;           /* match/disc.h */
     struct asj_gate_ops *gate;           /* match/support_gate.h */
 } asj_ops;
 

@@ -7,7 +7,7 @@
  *
  * Of the pair, the list below:
  *   shortlist.c      best partners among all pairs               (rank.c; product_bound.c rules most pairs out)
- *   align.c          each candidate's map refined on the images  (paper: not done)
+ *   align.c          each candidate's map refined on the images  (disc.c; paper: not done)
  *   support.c        neighbouring candidates that agree          (agreement.c; support_gate.c; paper: not done)
  *   consensus.c      scores by support and appearance
  *   assign.c         ratio test, mutual check: matches

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* The options of asj_match(). */
 #ifndef ASJ_SRC_MATCH_OPTIONS_H
 #define ASJ_SRC_MATCH_OPTIONS_H
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* A SIFT-like descriptor of a patch. */
 #ifndef ASJ_SRC_SIFT_H
 #define ASJ_SRC_SIFT_H
 

@@ -4,7 +4,7 @@
 #ifndef ASJ_SRC_X86_DISCS_H
 #define ASJ_SRC_X86_DISCS_H
 
-#include "match/align.h"
+#include "match/disc.h"
 #include "patches.h"
 
 #include <immintrin.h>
