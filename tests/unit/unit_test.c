@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "unit_test.h"
 
+#include "core/context.h"
 #include "detect/gradient.h"
 
 void unit_near(const char *what, double at, double also_at, double value, double expected, double tolerance)
@@ -89,6 +90,43 @@ void unit_frame_of(asj_context *context, synth_scene *scene, double blur, double
     const asj_image image = unit_gray8(pixels, width, height);
     unit_frame(context, &image, options, frame);
     free(pixels);
+}
+
+int unit_set_up_threads(void **state, int32_t threads)
+{
+    unit_fixture *f = calloc(1, sizeof *f);
+    *state = f;
+    if (!f)
+        return -1;
+    f->context = unit_context(&f->counter, threads);
+    asj_detect_options_init(&f->options);
+    return 0;
+}
+
+int unit_set_up(void **state)
+{
+    return unit_set_up_threads(state, 1);
+}
+
+int unit_set_up_scene(void **state, synth_scene *scene, double blur, double noise)
+{
+    const int failed = unit_set_up(state);
+    unit_fixture *f = *state;
+    if (failed)
+        synth_scene_free(scene);
+    else
+        unit_frame_of(f->context, scene, blur, noise, NULL, &f->frame);
+    return failed;
+}
+
+int unit_tear_down(void **state)
+{
+    unit_fixture *f = *state;
+    asj_frame_free(&f->context->memory, &f->frame);
+    asj_context_free(&f->context);
+    const int leaked = f->counter.live != 0;
+    free(f);
+    return leaked;
 }
 
 void unit_half_plane(synth_scene *scene, int32_t size, synth_point through, double angle, double low, double high)

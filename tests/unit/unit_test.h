@@ -52,6 +52,20 @@ void unit_frame(asj_context *context, const asj_image *image, const asj_detect_o
 void unit_frame_of(asj_context *context, synth_scene *scene, double blur, double noise, const asj_detect_options *options,
                    asj_frame *frame);
 
+/* What most tests share: a context of one thread on the counting allocator, the default options, and the planes of a picture where
+ * the test works on one. The functions are CMocka's set-up and tear-down of a group; the latter fails when anything leaks. */
+typedef struct unit_fixture {
+    unit_counter counter;
+    asj_context *context;
+    asj_detect_options options;
+    asj_frame frame;
+} unit_fixture;
+int unit_set_up(void **state);
+int unit_set_up_threads(void **state, int32_t threads);
+int unit_tear_down(void **state);
+/* unit_set_up(), and the planes of a scene, which is freed. */
+int unit_set_up_scene(void **state, synth_scene *scene, double blur, double noise);
+
 /* A half plane: bright (`high`) where (x - x0) sin(angle) - (y - y0) cos(angle) < 0, so that the edge runs along `angle` and its
  * gradient points along the branch turned by +90 degrees when high < low. */
 void unit_half_plane(synth_scene *scene, int32_t size, synth_point through, double angle, double low, double high);

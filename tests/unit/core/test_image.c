@@ -2,31 +2,7 @@
 /* From views to gray planes: formats, white levels, strides, what is refused. */
 #include "unit_test.h"
 
-typedef struct fixture {
-    unit_counter counter;
-    asj_context *context;
-    asj_frame frame;
-} fixture;
-
-static int set_up(void **state)
-{
-    fixture *f = calloc(1, sizeof *f);
-    *state = f;
-    if (!f)
-        return -1;
-    f->context = unit_context(&f->counter, 1);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    fixture *f = *state;
-    asj_frame_free(&f->context->memory, &f->frame);
-    asj_context_free(&f->context);
-    const int leaked = f->counter.live != 0;
-    free(f);
-    return leaked;
-}
+typedef unit_fixture fixture;
 
 static asj_status load(fixture *f, const asj_image *image)
 {
@@ -296,5 +272,5 @@ int main(void)
         cmocka_unit_test(test_refused),       cmocka_unit_test(test_short_strides), cmocka_unit_test(test_not_finite),
         cmocka_unit_test(test_prepare),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }

@@ -5,28 +5,11 @@
 
 #include <asj/asj.h>
 
-typedef struct fixture {
-    unit_counter counter;
-    asj_context *context;
-} fixture;
+typedef unit_fixture fixture;
 
 static int set_up(void **state)
 {
-    fixture *f = calloc(1, sizeof *f);
-    *state = f;
-    if (!f)
-        return -1;
-    f->context = unit_context(&f->counter, 2);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    fixture *f = *state;
-    asj_context_free(&f->context);
-    const int leaked = f->counter.live != 0;
-    free(f);
-    return leaked;
+    return unit_set_up_threads(state, 2);
 }
 
 static asj_detection *detect(asj_context *context, const uint8_t *pixels, int32_t width, int32_t height)
@@ -570,5 +553,5 @@ int main(void)
         cmocka_unit_test(test_radii),
         cmocka_unit_test(test_arguments), cmocka_unit_test(test_bad_options), cmocka_unit_test(test_extreme_options),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up, unit_tear_down);
 }

@@ -63,31 +63,7 @@ static void check_frame(const asj_frame *frame, double epsilon)
 
 /* ---- tests ---- */
 
-typedef struct fixture {
-    unit_counter counter;
-    asj_context *context;
-    asj_detect_options options;
-} fixture;
-
-static int set_up(void **state)
-{
-    fixture *f = calloc(1, sizeof *f);
-    *state = f;
-    if (!f)
-        return -1;
-    f->context = unit_context(&f->counter, 1);
-    asj_detect_options_init(&f->options);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    fixture *f = *state;
-    asj_context_free(&f->context);
-    const int leaked = f->counter.live != 0;
-    free(f);
-    return leaked;
-}
+typedef unit_fixture fixture;
 
 static void noise_frame(fixture *f, int32_t width, int32_t height, double sd, uint64_t seed, asj_frame *frame)
 {
@@ -305,5 +281,5 @@ int main(void)
         cmocka_unit_test(test_standardise), cmocka_unit_test(test_standardise_flat),
         cmocka_unit_test(test_threads),     cmocka_unit_test(test_out_of_memory),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }

@@ -4,48 +4,33 @@
 #include "detect/isotropic_thin.h"
 #include "unit_test.h"
 
-typedef struct fixture {
-    unit_counter counter;
-    asj_context *context;
-    asj_detect_options options;
-    asj_frame frame;
-    asj_isotropic test;
-} fixture;
+typedef unit_fixture fixture;
+
+static asj_isotropic tested;
 
 static int set_up(void **state)
 {
-    fixture *f = calloc(1, sizeof *f);
     synth_scene scene;
-    *state = f;
-    if (!f)
-        return -1;
-    f->context = unit_context(&f->counter, 1);
-    asj_detect_options_init(&f->options);
     synth_scene_init(&scene, 90, 80, 110);
     synth_add_rectangle(&scene, (synth_point){22.4, 14.2}, 41, 36, 0.35, 170);
     synth_add_rectangle(&scene, (synth_point){44.4, 34.2}, 60, 60, 0.1, 60);
-    unit_frame_of(f->context, &scene, 1, 3, NULL, &f->frame);
-    return 0;
+    return unit_set_up_scene(state, &scene, 1, 3);
 }
 
 static int tear_down(void **state)
 {
-    fixture *f = *state;
-    asj_isotropic_free(&f->context->memory, &f->test);
-    asj_frame_free(&f->context->memory, &f->frame);
-    asj_context_free(&f->context);
-    const int leaked = f->counter.live != 0;
-    free(f);
-    return leaked;
+    const fixture *f = *state;
+    asj_isotropic_free(&f->context->memory, &tested);
+    return unit_tear_down(state);
 }
 
 static void make(fixture *f, uint32_t radii, int32_t max_branches)
 {
-    asj_isotropic_free(&f->context->memory, &f->test);
+    asj_isotropic_free(&f->context->memory, &tested);
     f->options.isotropic_radii = radii;
     f->options.max_branches = max_branches;
-    assert_int_equal(asj_isotropic_create(f->context, &f->options, &f->test), ASJ_OK);
-    asj_isotropic_set_size(&f->options, f->frame.width, f->frame.height, &f->test);
+    assert_int_equal(asj_isotropic_create(f->context, &f->options, &tested), ASJ_OK);
+    asj_isotropic_set_size(&f->options, f->frame.width, f->frame.height, &tested);
 }
 
 /* ---- the definition ---- */
@@ -112,8 +97,8 @@ typedef struct best {
 static best naive_best(const fixture *f, int32_t x, int32_t y)
 {
     best found = {HUGE_VAL, 0, 0};
-    for (int32_t r = 0; r < f->test.radius_count; r++) {
-        const asj_sectors *s = &f->test.radii[r].sectors;
+    for (int32_t r = 0; r < tested.radius_count; r++) {
+        const asj_sectors *s = &tested.radii[r].sectors;
         peak peaks[MOST];
         const int32_t count = naive_peaks(&f->frame, s, f->options.sector_width, x, y, peaks);
         for (int32_t m = 2; m <= count && m <= f->options.max_branches; m++) {
@@ -139,8 +124,8 @@ static void check_junction(const fixture *f, const asj_isotropic_junction *got, 
     }
     unit_near("ln NFA", x, y, got->log_nfa, expected.log_nfa, 0.01 * fmax(got->branch_count, expected.branches));
     assert_true(got->log_nfa <= log(f->options.epsilon));
-    for (int32_t r = 0; r < f->test.radius_count; r++) {
-        const asj_sectors *s = &f->test.radii[r].sectors;
+    for (int32_t r = 0; r < tested.radius_count; r++) {
+        const asj_sectors *s = &tested.radii[r].sectors;
         peak peaks[MOST];
         if (s->radius != got->radius)
             continue;
@@ -161,7 +146,7 @@ static void check_junction(const fixture *f, const asj_isotropic_junction *got, 
 
 static void check_image(fixture *f, uint32_t (*candidates)(int32_t x, int32_t y), int *meaningful, int *rejected)
 {
-    uint16_t *scratch = malloc(f->test.scratch * sizeof *scratch);
+    uint16_t *scratch = malloc(tested.scratch * sizeof *scratch);
     asj_isotropic_junction found[ASJ_LANES + 1];
     assert_non_null(scratch);
     for (int32_t y = 1; y < f->frame.height; y += 3)
@@ -169,7 +154,7 @@ static void check_image(fixture *f, uint32_t (*candidates)(int32_t x, int32_t y)
             const uint32_t mask = candidates(x, y);
             int32_t slot = 0;
             memset(found, 0x77, sizeof found);
-            asj_isotropic_block(&f->test, &f->frame, x, y, mask, scratch, found);
+            asj_isotropic_block(&tested, &f->frame, x, y, mask, scratch, found);
             for (int32_t i = 0; i < ASJ_LANES; i++)
                 if (mask >> i & 1) {
                     check_junction(f, &found[slot], x + i, y);
@@ -224,7 +209,7 @@ static void test_band(void **state)
     const int32_t blocks = f->frame.blocks, last = f->frame.width - (blocks - 1) * ASJ_LANES;
     asj_isotropic_junction block[ASJ_LANES], *band = malloc((ROWS * (size_t)f->frame.width + 1) * sizeof *band);
     uint16_t *masks = malloc((size_t)blocks * (size_t)f->frame.height * sizeof *masks);
-    uint16_t *scratch = malloc(f->test.scratch * sizeof *scratch);
+    uint16_t *scratch = malloc(tested.scratch * sizeof *scratch);
     assert_true(band && masks && scratch);
     for (int32_t y = 0; y < f->frame.height; y++)
         for (int32_t b = 0; b < blocks; b++) { /* full, empty and sparse runs; none beyond the image */
@@ -235,10 +220,10 @@ static void test_band(void **state)
     for (int32_t top = 0; top + ROWS <= f->frame.height; top += 7) {
         int32_t at = 0;
         memset(band, 0x77, (ROWS * (size_t)f->frame.width + 1) * sizeof *band);
-        asj_isotropic_band(&f->test, &f->frame, top, top + ROWS, masks, scratch, band);
+        asj_isotropic_band(&tested, &f->frame, top, top + ROWS, masks, scratch, band);
         for (int32_t i = top * blocks; i < (top + ROWS) * blocks; i++) {
             int32_t count = 0;
-            asj_isotropic_block(&f->test, &f->frame, i % blocks * ASJ_LANES, i / blocks, masks[i], scratch, block);
+            asj_isotropic_block(&tested, &f->frame, i % blocks * ASJ_LANES, i / blocks, masks[i], scratch, block);
             for (int32_t bit = 0; bit < ASJ_LANES; bit++)
                 count += masks[i] >> bit & 1;
             assert_memory_equal(&band[at], block, (size_t)count * sizeof *block);
@@ -259,11 +244,11 @@ static void test_tables(void **state)
     for (size_t w = 0; w < UNIT_COUNT(widths); w++) {
         f->options.sector_width = widths[w];
         make(f, 0x7ffffff8u, 5);
-        assert_int_equal(f->test.radius_count, 28);
+        assert_int_equal(tested.radius_count, 28);
         for (int32_t r = 0; r < 28; r++)
-            assert_int_equal(f->test.radii[r].sectors.radius, r + 3);
+            assert_int_equal(tested.radii[r].sectors.radius, r + 3);
         for (int32_t m = 2; m <= 5; m++)
-            assert_true(f->test.log_tests[m] == asj_nfa_log_junction_tests(90, 80, 0x7ffffff8u, widths[w], m));
+            assert_true(tested.log_tests[m] == asj_nfa_log_junction_tests(90, 80, 0x7ffffff8u, widths[w], m));
     }
     asj_detect_options_init(&f->options);
 }
@@ -272,15 +257,15 @@ static void test_out_of_memory(void **state)
 {
     fixture *f = *state;
     long fail_at = 1;
-    asj_isotropic_free(&f->context->memory, &f->test);
+    asj_isotropic_free(&f->context->memory, &tested);
     const long live = f->counter.live, calls = f->counter.calls;
     asj_status status = ASJ_ERROR_MEMORY;
     for (; status != ASJ_OK && fail_at < 500; fail_at++) {
         f->counter.calls = calls;
         f->counter.fail_at = calls + fail_at;
-        status = asj_isotropic_create(f->context, &f->options, &f->test);
+        status = asj_isotropic_create(f->context, &f->options, &tested);
         assert_true(status == ASJ_OK || status == ASJ_ERROR_MEMORY);
-        asj_isotropic_free(&f->context->memory, &f->test);
+        asj_isotropic_free(&f->context->memory, &tested);
         assert_int_equal(f->counter.live, live);
     }
     f->counter.fail_at = 0;

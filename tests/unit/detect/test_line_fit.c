@@ -8,29 +8,7 @@ enum { SIZE = 101, MIDDLE = 50 };
 static const asj_line_range near_range = {2, 12, {4, 2.5, 2}, 3};     /* as for the location */
 static const asj_line_range long_range = {5, 38, {1.6, 1.6, 0}, 2};   /* as for the orientation */
 
-typedef struct fixture {
-    unit_counter counter;
-    asj_context *context;
-} fixture;
-
-static int set_up(void **state)
-{
-    fixture *f = calloc(1, sizeof *f);
-    *state = f;
-    if (!f)
-        return -1;
-    f->context = unit_context(&f->counter, 1);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    fixture *f = *state;
-    asj_context_free(&f->context);
-    const int leaked = f->counter.live != 0;
-    free(f);
-    return leaked;
-}
+typedef unit_fixture fixture;
 
 /* A bar of parallel edges: `width` px across, its first edge `offset` px from the middle of the picture along the normal.
  * HUGE_VAL: a half plane. */
@@ -256,5 +234,5 @@ int main(void)
         cmocka_unit_test(test_nothing_there),
         cmocka_unit_test(test_extremes),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }

@@ -5,31 +5,7 @@
 
 enum { SIZE = 81 };
 
-typedef struct fixture {
-    unit_counter counter;
-    asj_context *context;
-    asj_detect_options options;
-} fixture;
-
-static int set_up(void **state)
-{
-    fixture *f = calloc(1, sizeof *f);
-    *state = f;
-    if (!f)
-        return -1;
-    f->context = unit_context(&f->counter, 1);
-    asj_detect_options_init(&f->options);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    fixture *f = *state;
-    asj_context_free(&f->context);
-    const int leaked = f->counter.live != 0;
-    free(f);
-    return leaked;
-}
+typedef unit_fixture fixture;
 
 static void locate(const fixture *f, const asj_frame *frame, asj_hypothesis *hypothesis)
 {
@@ -293,5 +269,5 @@ int main(void)
         cmocka_unit_test(test_max_move),
         cmocka_unit_test(test_search_keeps_pixels),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }

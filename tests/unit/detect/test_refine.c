@@ -9,42 +9,20 @@
 
 enum { SIZE = 121 };
 
-typedef struct fixture {
-    unit_counter counter;
-    asj_context *context;
-    asj_detect_options options;
-    asj_frame frame; /* a corner at (60.3, 59.6), sides of 45 and 38 px, at 0.3 and 1.7 rad */
-} fixture;
+typedef unit_fixture fixture;
 
 static const double corner_x = 60.3, corner_y = 59.6, sides[2] = {45, 38}, angles[2] = {0.3, 1.7};
 
 static int set_up(void **state)
 {
-    fixture *f = calloc(1, sizeof *f);
     synth_scene scene;
-    *state = f;
-    if (!f)
-        return -1;
-    f->context = unit_context(&f->counter, 1);
-    asj_detect_options_init(&f->options);
     synth_scene_init(&scene, SIZE, SIZE, 90);
     const double ax = sides[0] * cos(angles[0]), ay = sides[0] * sin(angles[0]);
     const double bx = sides[1] * cos(angles[1]), by = sides[1] * sin(angles[1]);
     const synth_point corners[4] = {{corner_x, corner_y}, {corner_x + ax, corner_y + ay}, {corner_x + ax + bx, corner_y + ay + by},
                                     {corner_x + bx, corner_y + by}};
     synth_scene_add(&scene, corners, 4, synth_flat(160), 0);
-    unit_frame_of(f->context, &scene, 1, 2, NULL, &f->frame);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    fixture *f = *state;
-    asj_frame_free(&f->context->memory, &f->frame);
-    asj_context_free(&f->context);
-    const int leaked = f->counter.live != 0;
-    free(f);
-    return leaked;
+    return unit_set_up_scene(state, &scene, 1, 2);
 }
 
 static int reset(void **state)
@@ -267,5 +245,5 @@ int main(void)
         cmocka_unit_test_setup(test_good_corner, reset),      cmocka_unit_test_setup(test_dropped_branches, reset),
         cmocka_unit_test_setup(test_merge, reset),            cmocka_unit_test_setup(test_order_and_opening, reset),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up, unit_tear_down);
 }

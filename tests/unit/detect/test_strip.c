@@ -5,36 +5,14 @@
 #include "core/context.h"
 #include "unit_test.h"
 
-typedef struct fixture {
-    unit_counter counter;
-    asj_context *context;
-    asj_detect_options options;
-    asj_frame frame;
-} fixture;
+typedef unit_fixture fixture;
 
 static int set_up(void **state)
 {
-    fixture *f = calloc(1, sizeof *f);
     synth_scene scene;
-    *state = f;
-    if (!f)
-        return -1;
-    f->context = unit_context(&f->counter, 1);
-    asj_detect_options_init(&f->options);
     synth_scene_init(&scene, 90, 70, 110);
     synth_add_rectangle(&scene, (synth_point){22.4, 14.2}, 41, 36, 0.35, 170);
-    unit_frame_of(f->context, &scene, 1, 5, NULL, &f->frame);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    fixture *f = *state;
-    asj_frame_free(&f->context->memory, &f->frame);
-    asj_context_free(&f->context);
-    const int leaked = f->counter.live != 0;
-    free(f);
-    return leaked;
+    return unit_set_up_scene(state, &scene, 1, 5);
 }
 
 /* Every pixel of the image asked whether it is inside; the dominant gradient is the larger eigenvector of its second moments. */
@@ -160,5 +138,5 @@ int main(void)
         cmocka_unit_test(test_askew),
         cmocka_unit_test(test_empty),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up, unit_tear_down);
 }

@@ -91,9 +91,8 @@ static asj_match_result *match(asj_context *context, const scene *a, const scene
 
 static void finds_the_corners_of_an_oblique_copy(void **state)
 {
-    (void)state;
-    unit_counter counter = {0, 0, 0, 0};
-    asj_context *context = unit_context(&counter, 1);
+    const unit_fixture *fixture = *state;
+    asj_context *context = fixture->context;
     scene a, b;
     scene_make(identity, 1, &a);
     scene_make(oblique, 1.05, &b);
@@ -118,14 +117,12 @@ static void finds_the_corners_of_an_oblique_copy(void **state)
     assert_null(r);
     free(a.pixels);
     free(b.pixels);
-    unit_context_free(&counter, &context);
 }
 
 static void paper_preset_and_sift_work_too(void **state)
 {
-    (void)state;
-    unit_counter counter = {0, 0, 0, 0};
-    asj_context *context = unit_context(&counter, 1);
+    const unit_fixture *fixture = *state;
+    asj_context *context = fixture->context;
     scene a, b;
     scene_make(identity, 1, &a);
     scene_make(oblique, 1, &b);
@@ -142,14 +139,12 @@ static void paper_preset_and_sift_work_too(void **state)
     }
     free(a.pixels);
     free(b.pixels);
-    unit_context_free(&counter, &context);
 }
 
 static void a_wrong_picture_gives_nothing(void **state)
 {
-    (void)state;
-    unit_counter counter = {0, 0, 0, 0};
-    asj_context *context = unit_context(&counter, 1);
+    const unit_fixture *fixture = *state;
+    asj_context *context = fixture->context;
     scene a, b;
     const double turned[4] = {-1, 0, 0, -1};
     scene_make(identity, 1, &a);
@@ -162,14 +157,12 @@ static void a_wrong_picture_gives_nothing(void **state)
     asj_match_result_free(&r);
     free(a.pixels);
     free(b.pixels);
-    unit_context_free(&counter, &context);
 }
 
 static void swapping_the_images_swaps_the_matches(void **state)
 {
-    (void)state;
-    unit_counter counter = {0, 0, 0, 0};
-    asj_context *context = unit_context(&counter, 1);
+    const unit_fixture *fixture = *state;
+    asj_context *context = fixture->context;
     scene a, b;
     scene_make(identity, 1, &a);
     scene_make(oblique, 1.05, &b);
@@ -189,7 +182,6 @@ static void swapping_the_images_swaps_the_matches(void **state)
     asj_match_result_free(&back);
     free(a.pixels);
     free(b.pixels);
-    unit_context_free(&counter, &context);
 }
 
 static void threads_change_nothing(void **state)
@@ -213,9 +205,8 @@ static void threads_change_nothing(void **state)
 
 static void empty_sets_and_single_junctions(void **state)
 {
-    (void)state;
-    unit_counter counter = {0, 0, 0, 0};
-    asj_context *context = unit_context(&counter, 1);
+    const unit_fixture *fixture = *state;
+    asj_context *context = fixture->context;
     scene a, b;
     scene_make(identity, 1, &a);
     scene_make(oblique, 1, &b);
@@ -235,7 +226,6 @@ static void empty_sets_and_single_junctions(void **state)
     asj_match_result_free(&r);
     free(a.pixels);
     free(b.pixels);
-    unit_context_free(&counter, &context);
 }
 
 static void refuse(asj_context *context, const scene *a, const scene *b, const asj_match_options *options, asj_status expected,
@@ -250,9 +240,8 @@ static void refuse(asj_context *context, const scene *a, const scene *b, const a
 
 static void bad_input_is_refused(void **state)
 {
-    (void)state;
-    unit_counter counter = {0, 0, 0, 0};
-    asj_context *context = unit_context(&counter, 1);
+    const unit_fixture *fixture = *state;
+    asj_context *context = fixture->context;
     scene a, b;
     scene_make(identity, 1, &a);
     scene_make(oblique, 1, &b);
@@ -288,7 +277,6 @@ static void bad_input_is_refused(void **state)
     assert_int_equal(asj_match(context, &a.image, NULL, 0, &b.image, NULL, 0, NULL, NULL), ASJ_ERROR_ARGUMENT);
     free(a.pixels);
     free(b.pixels);
-    unit_context_free(&counter, &context);
 }
 
 static void segments_of_matches(void **state)
@@ -427,5 +415,5 @@ int main(void)
         cmocka_unit_test(out_of_memory),
         cmocka_unit_test(options_are_read_and_written),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }
