@@ -10,12 +10,8 @@
  * branches are maxima over orientations and neighbouring arcs share pixels, so in noise a step passes with probability 0.19 instead
  * of 1/256. The strip's NFA bounds the false detections at every epsilon (tests/accuracy/noise.c).
  *
- * The strip also knows which way its gradients point: with g_u and g_n the components along and across the branch, the dominant
- * direction is off the normal by  1/2 atan2(2 sum g_u g_n, sum g_n^2 - sum g_u^2)  (structure tensor). A line of samples that runs
- * askew over a bundle of nearly parallel edges collects junction-ness from all of them, but their gradients give it away.
- *
- * And it knows whether the branch reaches the junction: the strength of its first NEAR pixels. A branch whose edge only starts some
- * pixels away, across a rim or a gap, has less there than noise would have. */
+ * The strip also knows whether the branch reaches the junction: the strength of its first NEAR pixels. A branch whose edge only
+ * starts some pixels away, across a rim or a gap, has less there than noise would have. */
 #include "strip.h"
 #include "gradient.h"
 #include "nfa.h"
@@ -26,7 +22,7 @@
 #define NEAR 6 /* px: the part of the strip next to the junction */
 
 typedef struct lanes {
-    double gamma[ASJ_STRIP_LANES], uu[ASJ_STRIP_LANES], un[ASJ_STRIP_LANES], nn[ASJ_STRIP_LANES], near_gamma[ASJ_STRIP_LANES];
+    double gamma[ASJ_STRIP_LANES], near_gamma[ASJ_STRIP_LANES];
 } lanes;
 
 static double total(const double v[ASJ_STRIP_LANES])
@@ -43,9 +39,6 @@ static inline void add_pixel(const asj_strip_walk *walk, double dx, double dy, d
         return;
     const double along = gx * ux + gy * uy, across = gy * ux - gx * uy, gamma = fmax(fabs(across) - fabs(along), 0);
     to->gamma[lane] += gamma;
-    to->uu[lane] += along * along;
-    to->un[lane] += along * across;
-    to->nn[lane] += across * across;
     sums->pixels++;
     if (t <= walk->near) {
         to->near_gamma[lane] += gamma;
@@ -70,9 +63,6 @@ void asj_strip_sums_of(const asj_frame *frame, const asj_strip_walk *walk, asj_s
         }
     }
     sums->gamma = total(list.gamma);
-    sums->uu = total(list.uu);
-    sums->un = total(list.un);
-    sums->nn = total(list.nn);
     sums->near_gamma = total(list.near_gamma);
 }
 
@@ -113,10 +103,7 @@ asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, con
                          const asj_strip_line *line)
 {
     const asj_strip_sums s = add_up(context, frame, options, line, NEAR);
-    asj_strip strip = {log_nfa(context, frame, s.gamma, s.pixels), 0, 0};
-    if (s.pixels == 0)
-        return strip;
-    strip.deviation = fabs(0.5 * atan2(2 * s.un, s.nn - s.uu));
+    asj_strip strip = {log_nfa(context, frame, s.gamma, s.pixels), 0};
     if (s.near_pixels > 0)
         strip.near_strength = (s.near_gamma - s.near_pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(s.near_pixels));
     return strip;

@@ -6,8 +6,7 @@
 #include "core/image.h"
 
 typedef struct asj_strip {
-    double log_nfa;   /* natural logarithm of the number of false alarms */
-    double deviation; /* rad in [0, pi/2]: between the strip's dominant gradient direction and the normal of the branch */
+    double log_nfa;       /* natural logarithm of the number of false alarms */
     double near_strength; /* standard deviations above the null model in the part next to the junction */
 } asj_strip;
 
@@ -39,10 +38,9 @@ typedef struct asj_strip_walk {
     int32_t first, last;     /* steps along */
 } asj_strip_walk;
 
-/* Over the pixels of a strip: sums of gamma, of products of the gradient's components along and across, in 1/1024 and its square;
- * gamma of the part next to the junction; numbers of pixels. */
+/* Over the pixels of a strip: the sum of gamma in 1/1024, that of the part next to the junction, numbers of pixels. */
 typedef struct asj_strip_sums {
-    double gamma, uu, un, nn, near_gamma;
+    double gamma, near_gamma;
     int32_t pixels, near_pixels;
 } asj_strip_sums;
 
