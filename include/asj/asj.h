@@ -19,6 +19,7 @@
 #include <asj/detect.h>
 #include <asj/device.h>
 #include <asj/field.h>
+#include <asj/geometry.h>
 #include <asj/image.h>
 #include <asj/junction.h>
 #include <asj/match.h>

@@ -84,6 +84,9 @@ synth_camera synth_room_camera(int32_t index, int32_t width, int32_t height);
 int synth_room_random(synth_room *room, uint64_t seed);
 synth_camera synth_room_random_camera(uint64_t seed, int32_t index, int32_t width, int32_t height);
 
+/* The picture's polygons alone, nearest last. 0, or -1. */
+int synth_view_paint(const synth_room *room, const synth_camera *camera, synth_view *view);
+
 /* The picture's polygons, nearest last, and its junctions: edges with a step of at least `min_contrast` grey levels. 0, or -1. */
 int synth_view_make(const synth_room *room, const synth_camera *camera, double min_contrast, synth_view *view);
 void synth_view_free(synth_view *view);
@@ -103,6 +106,9 @@ int synth_room_transfer(const synth_room *room, const synth_camera *from, double
 
 /* F with x2' F x1 = 0 for the images x1, x2 of one point in two cameras; row by row, largest entry 1 or -1. */
 void synth_fundamental(const synth_camera *first, const synth_camera *second, double f[9]);
+
+/* x2 ~ R x1 + t in camera coordinates: R row by row, |t| = 1; t is not finite when both stand at one place. */
+void synth_relative_pose(const synth_camera *first, const synth_camera *second, double rotation[9], double translation[3]);
 
 /* Junctions of two views that are the same point of the room. Writes at most `capacity` and returns how many there are. */
 int32_t synth_correspondences(const synth_view *first, const synth_view *second, synth_correspondence *out, int32_t capacity);

@@ -153,6 +153,24 @@ void synth_fundamental(const synth_camera *first, const synth_camera *second, do
         f[k] /= largest;
 }
 
+/* Columns of R2 R1' are the axes of the first camera as the second one sees them; t = R2 (C1 - C2). */
+void synth_relative_pose(const synth_camera *first, const synth_camera *second, double rotation[9], double translation[3])
+{
+    const synth_vector t = to_camera(second, first->position);
+    const double length = sqrt(dot(t, t));
+    for (int k = 0; k < 3; k++) {
+        const synth_vector axis = {k == 0, k == 1, k == 2}, d = to_world_direction(first, axis);
+        const synth_vector at = {second->position.x + d.x, second->position.y + d.y, second->position.z + d.z};
+        const synth_vector seen = to_camera(second, at);
+        rotation[k] = seen.x;
+        rotation[3 + k] = seen.y;
+        rotation[6 + k] = seen.z;
+    }
+    translation[0] = t.x / length;
+    translation[1] = t.y / length;
+    translation[2] = t.z / length;
+}
+
 /* ---- the picture ---- */
 
 /* Light falls from the window's side and fades towards the back and the floor, a few grey levels a metre. */
@@ -319,12 +337,20 @@ static synth_corner corner_at(const synth_room *room, const synth_camera *camera
     return corner;
 }
 
-int synth_view_make(const synth_room *room, const synth_camera *camera, double min_contrast, synth_view *view)
+int synth_view_paint(const synth_room *room, const synth_camera *camera, synth_view *view)
 {
     memset(view, 0, sizeof *view);
     view->camera = *camera;
     synth_scene_init(&view->scene, camera->width, camera->height, 0.0);
-    int result = paint_room(room, camera, &view->scene);
+    const int result = paint_room(room, camera, &view->scene);
+    if (result != 0)
+        synth_view_free(view);
+    return result;
+}
+
+int synth_view_make(const synth_room *room, const synth_camera *camera, double min_contrast, synth_view *view)
+{
+    int result = synth_view_paint(room, camera, view);
     if (result == 0)
         result = synth_truth_of_scene(&view->scene, min_contrast, &view->truth);
     if (result == 0 && !(view->corners = malloc(((size_t)view->truth.count + 1) * sizeof *view->corners)))

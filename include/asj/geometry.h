@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_GEOMETRY_H
+#define ASJ_GEOMETRY_H
+
+#include <asj/context.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What relates two images. */
+enum {
+    ASJ_GEOMETRY_NONE = 0,        /* nothing is estimated */
+    ASJ_GEOMETRY_AUTO = 1,        /* what the candidates speak for most: a homography, or else an essential matrix (cameras known)
+                                   * or a fundamental matrix (not known) */
+    ASJ_GEOMETRY_ESSENTIAL = 2,   /* cameras with known focal length: rotation and direction of the translation */
+    ASJ_GEOMETRY_FUNDAMENTAL = 3, /* any cameras without lens distortion */
+    ASJ_GEOMETRY_HOMOGRAPHY = 4   /* a plane, or a camera that only turns */
+};
+
+/* How an estimation ended. */
+enum {
+    ASJ_GEOMETRY_NOT_ASKED = 0,
+    ASJ_GEOMETRY_ACCEPTED = 1,
+    ASJ_GEOMETRY_CHANCE = 2,      /* none stands out from what chance brings */
+    ASJ_GEOMETRY_TOO_FEW = 3,     /* fewer than two places with candidates in either image */
+    ASJ_GEOMETRY_AMBIGUOUS = 4,   /* another one with other matches explains almost as much: things that repeat */
+    ASJ_GEOMETRY_DEGENERATE = 5   /* what matches leaves it open: a camera that only turns has no translation */
+};
+
+/* A pin-hole camera without distortion. px; pixel centres at integers. fx = 0: not known. */
+typedef struct asj_camera {
+    double fx, fy; /* focal lengths */
+    double cx, cy; /* principal point */
+} asj_camera;
+
+/* A candidate: perhaps these two points are one. */
+typedef struct asj_geometry_candidate {
+    uint32_t place1, place2; /* candidates with the same place in an image are rivals: one of them is right at most. Below 2^24 */
+    double x1, y1, x2, y2;   /* px */
+    double affine[4];        /* linear part of the map from image 1 to image 2, row by row: a11 a12 a21 a22; must not mirror */
+    double probability;      /* that it is right, from what it looks like alone: 0 .. 1. Those of a place are brought to a sum
+                              * of 0.9 where they are more */
+} asj_geometry_candidate;
+
+/* Fill with asj_geometry_options_init(), then change fields. */
+typedef struct asj_geometry_options {
+    int32_t model;           /* ASJ_GEOMETRY_...; auto */
+    int32_t samples;         /* 1 .. 100000; 1000 */
+    uint64_t seed;           /* of the samples; 1 */
+    asj_camera cameras[2];   /* of image 1 and image 2; not known. Without them the middle of the image and the larger side as focal
+                              * length serve as a guess for samples, which nothing rests on */
+    int32_t widths[2], heights[2]; /* px of the images; must be given */
+    double epsilon;          /* accepted is what chance brings at most so often, in pairs of unrelated images: 1e-12 .. 1;
+                              * 1e-7 */
+    double location_sd;      /* px: error of a location. 0.1 .. 10; 1.5 */
+    double angle_sd;         /* deg: error of a map's rotation. 1 .. 45; 9 */
+    double scale_sd;         /* error of the log of a map's scale. 0.02 .. 1; 0.22 */
+    double reserved[16];     /* zero */
+} asj_geometry_options;
+
+ASJ_API void asj_geometry_options_init(asj_geometry_options *options);
+
+/* Two-view geometry. */
+typedef struct asj_geometry {
+    int32_t status;          /* ASJ_GEOMETRY_ACCEPTED, ...: only when accepted are the fields below those of an answer; otherwise
+                              * they tell of the best that was found, or are 0 */
+    int32_t model;           /* ASJ_GEOMETRY_ESSENTIAL, _FUNDAMENTAL, _HOMOGRAPHY */
+    int32_t has_pose;        /* rotation and translation are known */
+    int32_t has_second;      /* second_log10_nfa is known */
+    double matrix[9];        /* row by row, of norm 1. Homography: image 1 -> image 2. Else the fundamental matrix: x2' F x1 = 0
+                              * with pixels (x, y, 1); the essential matrix is K2' F K1 */
+    double rotation[9];      /* x2 ~ R x1 + t in camera coordinates (x right, y down, z forward), row by row */
+    double translation[3];   /* of length 1: how far is not known */
+    double covariance[36];   /* of the rotation (vector w with R_true = exp([w]x) R, rad) and the translation, 6 x 6, row by row;
+                              * given the matches, so a lower bound */
+    double focal[2];         /* px: of the cameras that were used; 0 when they are not known */
+    double log10_nfa;        /* log10 of how often chance brings such a geometry in a pair of unrelated images */
+    double second_log10_nfa; /* .. the best other one, which has other matches */
+    double inliers;          /* sum of the candidates' probabilities */
+    double reserved[16];
+} asj_geometry;
+
+/* Estimates the two-view geometry of candidate matches.
+ *
+ * candidates     may be NULL when count is 0; only read
+ * probabilities  NULL, or room for `count` numbers: the probability of each candidate given the geometry; 0 where there is none
+ * result         written whole when ASJ_OK is returned
+ *
+ * src/geometry/likelihood.c says what is maximised, search.c how, evidence.c what log10_nfa rests on. The result depends on the
+ * input and the seed, not on the number of threads.
+ *
+ * ASJ_ERROR_ARGUMENT   a NULL pointer; a candidate that is not finite, lies 10^6 px away, mirrors or collapses, or a probability
+ *                      outside 0 .. 1
+ * ASJ_ERROR_OPTION     an option outside its range; a camera with a focal length that is negative or not finite, or a principal
+ * point
+ *                      that is not finite; model essential without cameras
+ * ASJ_ERROR_LIMIT      more than 2^24 candidates or places
+ * ASJ_ERROR_MEMORY */
+ASJ_API asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
+                                         const asj_geometry_options *options, double *probabilities, asj_geometry *result);
+
+/* "essential", "fundamental", "homography", "auto", "none"; "unknown" outside the range. A static string. */
+ASJ_API const char *asj_geometry_model_name(int32_t model);
+/* "accepted", "chance", "too few", "ambiguous", "degenerate", "not asked"; "unknown". */
+ASJ_API const char *asj_geometry_status_name(int32_t status);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

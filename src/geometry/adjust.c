@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Expectation and maximisation (Dempster, Laird and Rubin 1977): the probabilities of the candidates given the geometry, then the
+ * geometry by one Gauss-Newton step over the weighted residuals; standard deviations shrink from WIDE times to 1, so that the first
+ * steps look farther. Derivatives are central differences of the residuals along each parameter. A residual of square q weighs
+ * 1 / (1 + q / TAIL) (Cauchy's), since A and x are not normal far out. */
+#include "adjust.h"
+#include "small_matrix.h"
+
+#include <math.h>
+#include <string.h>
+
+#define WIDE 3.0
+#define TAIL 6.0
+#define BEHIND 2.0
+#define LEAST 1e-3 /* probability below which a candidate is left out */
+#define STEP 1e-6
+#define DAMPING 1e-3 /* of the prior that parameters stay, in units of their information: keeps what nothing determines */
+
+typedef struct equations {
+    double normal[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS];
+    double right[ASJ_MODEL_PARAMETERS];
+} equations;
+
+/* Adds one candidate's residuals and derivatives. */
+static void add_candidate(const asj_pairs *set, const asj_pair *c, const asj_model *model, const asj_model *moved, double weight,
+                          equations *e)
+{
+    asj_residuals at, plus, minus;
+    double slope[ASJ_MODEL_PARAMETERS][6];
+    const int32_t n = model->parameters, rows = model->view.planar ? 6 : 3;
+    asj_residuals_of(&model->view, set, c, &at);
+    if (!isfinite(at.square))
+        return;
+    for (int32_t p = 0; p < n; p++) {
+        asj_residuals_of(&moved[2 * p].view, set, c, &plus);
+        asj_residuals_of(&moved[2 * p + 1].view, set, c, &minus);
+        if (!isfinite(plus.square) || !isfinite(minus.square))
+            return;
+        for (int32_t r = 0; r < rows; r++)
+            slope[p][r] = (plus.value[r] - minus.value[r]) / (2 * STEP);
+    }
+    weight /= 1 + at.square / TAIL;
+    for (int32_t p = 0; p < n; p++)
+        for (int32_t r = 0; r < rows; r++) {
+            for (int32_t q = 0; q <= p; q++)
+                e->normal[p * n + q] += weight * slope[p][r] * slope[q][r];
+            e->right[p] -= weight * slope[p][r] * at.value[r];
+        }
+}
+
+static int32_t set_up(const asj_pairs *set, const asj_model *model, const double *probability, equations *e)
+{
+    asj_model moved[2 * ASJ_MODEL_PARAMETERS];
+    const int32_t n = model->parameters;
+    memset(e, 0, sizeof *e);
+    for (int32_t p = 0; p < 2 * n; p++) {
+        double delta[ASJ_MODEL_PARAMETERS] = {0};
+        delta[p / 2] = p % 2 == 0 ? STEP : -STEP;
+        if (!asj_model_move(model, delta, &moved[p]))
+            return 0;
+        double dot = 0; /* a matrix known up to its factor must not change its sign */
+        for (int32_t k = 0; k < 9; k++)
+            dot += moved[p].view.matrix[k] * model->view.matrix[k];
+        for (int32_t k = 0; k < 9 && dot < 0; k++)
+            moved[p].view.matrix[k] = -moved[p].view.matrix[k];
+    }
+    for (int32_t k = 0; k < set->count; k++)
+        if (probability[k] > LEAST)
+            add_candidate(set, &set->list[k], model, moved, probability[k], e);
+    for (int32_t p = 0; p < n; p++)
+        for (int32_t q = 0; q < p; q++)
+            e->normal[q * n + p] = e->normal[p * n + q];
+    return 1;
+}
+
+void asj_information(const asj_pairs *set, const asj_model *model, const double *probability, double *information)
+{
+    equations e;
+    if (!set_up(set, model, probability, &e))
+        memset(&e, 0, sizeof e);
+    memcpy(information, e.normal, (size_t)(model->parameters * model->parameters) * sizeof *information);
+}
+
+/* One step; 0 when the equations cannot be solved. */
+static int32_t step(const asj_pairs *set, asj_model *model, const double *probability)
+{
+    equations e;
+    const int32_t n = model->parameters;
+    if (!set_up(set, model, probability, &e))
+        return 0;
+    for (int32_t p = 0; p < n; p++)
+        e.normal[p * (n + 1)] += DAMPING * e.normal[p * (n + 1)] + 1e-3;
+    if (!asj_cholesky_solve(e.normal, n, e.right, NULL))
+        return 0;
+    double size = 0;
+    for (int32_t p = 0; p < n; p++)
+        size = fmax(size, fabs(e.right[p]));
+    if (!isfinite(size))
+        return 0;
+    for (int32_t p = 0; p < n && size > 0.3; p++)
+        e.right[p] *= 0.3 / size;
+    asj_model moved;
+    if (!asj_model_move(model, e.right, &moved))
+        return 0;
+    *model = moved;
+    return 1;
+}
+
+double asj_choose_motion(const asj_pairs *set, const double *probability, asj_model *model)
+{
+    double essential[9], rotations[2][9], t[3], best = -HUGE_VAL;
+    int32_t chosen = 0;
+    asj_essential_of(model->view.matrix, model->cameras, essential);
+    if (!asj_motions_of(essential, rotations, t))
+        return -HUGE_VAL;
+    for (int32_t m = 0; m < 4; m++) {
+        const double sign = m < 2 ? 1 : -1, translation[3] = {sign * t[0], sign * t[1], sign * t[2]};
+        double balance = 0;
+        for (int32_t k = 0; k < set->count; k++)
+            if (probability[k] > LEAST) {
+                double r1[3], r2[3];
+                asj_ray(&model->cameras[0], set->list[k].x1, set->list[k].y1, r1);
+                asj_ray(&model->cameras[1], set->list[k].x2, set->list[k].y2, r2);
+                const int32_t side = asj_in_front(rotations[m % 2], translation, r1, r2);
+                balance += side > 0 ? probability[k] : side < 0 ? -BEHIND * probability[k] : 0;
+            }
+        if (balance > best) {
+            best = balance;
+            chosen = m;
+        }
+    }
+    memcpy(model->rotation, rotations[chosen % 2], sizeof model->rotation);
+    for (int32_t k = 0; k < 3; k++)
+        model->translation[k] = chosen < 2 ? t[k] : -t[k];
+    asj_model_complete(model);
+    return best;
+}
+
+void asj_adjust(const asj_pairs *set, asj_model *model, int32_t rounds, asj_adjust_scratch *scratch)
+{
+    for (int32_t round = 0; round < rounds; round++) {
+        const double loose = WIDE + (1 - WIDE) * fmin(1, round / fmax(1, rounds - 3.0));
+        asj_probabilities(set, &model->view, loose, &scratch->score, scratch->probability);
+        if (!step(set, model, scratch->probability))
+            break;
+    }
+    model->score = asj_score(set, set->count, &model->view, 1, &scratch->score);
+}
+
+void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *s)
+{
+    for (int32_t v = 0; v < 2; v++) {
+        asj_release(memory, s->score.sum[v]);
+        asj_release(memory, s->score.touched[v]);
+    }
+    asj_release(memory, s->probability);
+}
+
+int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_adjust_scratch *s)
+{
+    int32_t good = 1;
+    for (int32_t v = 0; v < 2; v++) {
+        const size_t places = (size_t)set->place_count[v];
+        s->score.sum[v] = asj_allocate_zero(memory, places, sizeof *s->score.sum[v]);
+        s->score.touched[v] = asj_allocate(memory, places, sizeof *s->score.touched[v]);
+        good = good && s->score.sum[v] && s->score.touched[v];
+    }
+    s->probability = asj_allocate(memory, (size_t)set->count, sizeof *s->probability);
+    return good && s->probability;
+}

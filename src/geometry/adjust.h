@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_SRC_GEOMETRY_ADJUST_H
+#define ASJ_SRC_GEOMETRY_ADJUST_H
+
+#include "core/memory.h"
+#include "model.h"
+
+/* What one thread works in: probability has one number a candidate. */
+typedef struct asj_adjust_scratch {
+    asj_score_scratch score;
+    double *probability;
+} asj_adjust_scratch;
+
+/* 0 without memory; to be freed either way. All zero at first. */
+int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_adjust_scratch *scratch);
+void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *scratch);
+
+/* Moves the model to where the candidates want it, in so many rounds: adjust.c. Its score is that of all candidates then. */
+void asj_adjust(const asj_pairs *set, asj_model *model, int32_t rounds, asj_adjust_scratch *scratch);
+
+/* The normal matrix (information) of the model's parameters at the candidates' probabilities: parameters x parameters. */
+void asj_information(const asj_pairs *set, const asj_model *model, const double *probability, double *information);
+
+/* Of the four motions of an essential matrix the one with most probability in front of both cameras; what is behind counts BEHIND
+ * times against it. Returns the balance. */
+double asj_choose_motion(const asj_pairs *set, const double *probability, asj_model *model);
+
+#endif

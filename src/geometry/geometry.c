@@ -1,0 +1,340 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* asj_geometry_estimate(): two-view geometry from candidate matches with affine maps.
+ *
+ *   pairs.c       candidates -> places, priors
+ *   search.c      samples (minimal.c, five_point.c), scores (likelihood.c), refinement (adjust.c)
+ *   evidence.c    how often chance brings as much
+ *   model.c       what moves when a geometry moves
+ *
+ * Which kind: the one with the larger evidence. Likelihood ratios of both kinds are taken against the same background, and the
+ * volume of their parameters is paid for in the evidence, so a homography wins where a plane explains as much as parallax would,
+ * although it has more parameters: it says where a match must lie along the line, too.
+ *
+ * Ambiguous: another geometry, of whatever kind, whose log evidence is at least NEARLY of the best one's, and whose matches
+ * contradict those of the best one: CONTRARY of them give another partner to a place that is matched. Things that repeat do that,
+ * shifted by a period. The evidence itself would be surer (odds of a hundred are 5 nats of a hundred or two), but what repeats is
+ * matched more or less well for reasons that the model does not know, and all its places together. */
+#include "core/angle.h"
+#include "evidence.h"
+#include "pairs.h"
+#include "search.h"
+#include "small_matrix.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MOST_KINDS 2
+#define NEARLY 0.7
+#define CONTRARY 0.4
+#define TWOFOLD 3.0 /* nats */
+#define OTHER_MOTION (10 * ASJ_DEGREE)
+#define LOOSE_DIRECTION (30 * ASJ_DEGREE) /* rad: a translation known worse than this is none */
+
+/* One call. */
+typedef struct estimation {
+    asj_context *context;
+    const asj_geometry_options *options;
+    asj_pairs set;
+    asj_model finalists[MOST_KINDS * ASJ_FINALISTS];
+    int32_t count;
+    asj_adjust_scratch scratch;
+    double *other; /* probabilities under a second geometry */
+} estimation;
+
+/* --- options ----------------------------------------------------------------------------------------------------------------- */
+
+void asj_geometry_options_init(asj_geometry_options *options)
+{
+    if (!options)
+        return;
+    memset(options, 0, sizeof *options);
+    options->model = ASJ_GEOMETRY_AUTO;
+    options->samples = 1000;
+    options->seed = 1;
+    options->epsilon = 1e-7;
+    options->location_sd = 1.5;
+    options->angle_sd = 9;
+    options->scale_sd = 0.22;
+}
+
+static int32_t within(double value, double low, double high)
+{
+    return value >= low && value <= high;
+}
+
+static int32_t known(const asj_camera *c)
+{
+    return c->fx > 0;
+}
+
+static asj_status check_camera(asj_context *context, const asj_camera *c, int32_t number)
+{
+    if (c->fx == 0 && c->fy == 0 && isfinite(c->cx) && isfinite(c->cy))
+        return ASJ_OK;
+    if (!within(c->fx, 1, 1e7) || !within(c->fy, 1, 1e7) || !within(fabs(c->cx), 0, 1e7) || !within(fabs(c->cy), 0, 1e7))
+        return asj_fail(context, ASJ_ERROR_OPTION, "camera %d cannot be: fx %g, fy %g, cx %g, cy %g", (int)number,
+                        c->fx, c->fy, c->cx, c->cy);
+    return ASJ_OK;
+}
+
+static asj_status check(asj_context *context, const asj_geometry_options *o)
+{
+    for (int32_t v = 0; v < 2; v++) {
+        const asj_status status = check_camera(context, &o->cameras[v], v + 1);
+        if (status != ASJ_OK)
+            return status;
+        if (o->widths[v] < 1 || o->heights[v] < 1)
+            return asj_fail(context, ASJ_ERROR_OPTION, "image %d has no size", (int)v + 1);
+    }
+    if (o->model < ASJ_GEOMETRY_NONE || o->model > ASJ_GEOMETRY_HOMOGRAPHY)
+        return asj_fail(context, ASJ_ERROR_OPTION, "no such geometry: %d", (int)o->model);
+    if (o->model == ASJ_GEOMETRY_ESSENTIAL && !(known(&o->cameras[0]) && known(&o->cameras[1])))
+        return asj_fail(context, ASJ_ERROR_OPTION, "an essential matrix needs both cameras");
+    if (o->samples < 1 || o->samples > 100000 || !within(o->epsilon, 1e-12, 1) || !within(o->location_sd, 0.1, 10) ||
+        !within(o->angle_sd, 1, 45) || !within(o->scale_sd, 0.02, 1))
+        return asj_fail(context, ASJ_ERROR_OPTION, "samples, epsilon or a standard deviation of the geometry is out of range");
+    return ASJ_OK;
+}
+
+/* --- search ------------------------------------------------------------------------------------------------------------------ */
+
+static asj_status search_kind(estimation *e, int32_t kind)
+{
+    const asj_geometry_options *o = e->options;
+    asj_search search = {kind, o->samples, o->seed, {o->cameras[0], o->cameras[1]}};
+    for (int32_t v = 0; v < 2; v++)
+        if (!known(&search.cameras[v])) {
+            const double longer = o->widths[v] > o->heights[v] ? o->widths[v] : o->heights[v];
+            search.cameras[v] = (asj_camera){longer, longer, 0.5 * (o->widths[v] - 1), 0.5 * (o->heights[v] - 1)};
+        }
+    int32_t count = 0;
+    const asj_status status = asj_geometry_search(e->context, &e->set, &search, e->finalists + e->count, &count);
+    e->count += count;
+    return status;
+}
+
+static asj_status search_all(estimation *e)
+{
+    const asj_geometry_options *o = e->options;
+    const int32_t epipolar = known(&o->cameras[0]) && known(&o->cameras[1]) ? ASJ_GEOMETRY_ESSENTIAL : ASJ_GEOMETRY_FUNDAMENTAL;
+    asj_status status = ASJ_OK;
+    if (o->model != ASJ_GEOMETRY_HOMOGRAPHY)
+        status = search_kind(e, o->model == ASJ_GEOMETRY_AUTO ? epipolar : o->model);
+    if (status == ASJ_OK && (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_HOMOGRAPHY))
+        status = search_kind(e, ASJ_GEOMETRY_HOMOGRAPHY);
+    return status;
+}
+
+/* The one with the largest evidence, of a kind or of any (ASJ_GEOMETRY_AUTO); -1 when there is none. */
+static int32_t best_of(const estimation *e, int32_t kind)
+{
+    int32_t best = -1;
+    for (int32_t k = 0; k < e->count; k++)
+        if ((kind == ASJ_GEOMETRY_AUTO || e->finalists[k].kind == kind) && e->finalists[k].evidence > -HUGE_VAL &&
+            (best < 0 || e->finalists[k].evidence > e->finalists[best].evidence))
+            best = k;
+    return best;
+}
+
+static double log10_nfa(const estimation *e, const asj_model *m)
+{
+    const double tried = e->options->model == ASJ_GEOMETRY_AUTO ? MOST_KINDS : 1;
+    return (log(tried) - m->evidence) / log(10);
+}
+
+/* --- answer ------------------------------------------------------------------------------------------------------------------ */
+
+/* How much of the second geometry's matches contradicts the first one's: it gives another partner to a place that the first one has
+ * matched, in either image. As a part of all of them. taken: scratch, probability of the first one by place. */
+static double contradiction(estimation *e, const asj_model *second)
+{
+    const double *mine = e->scratch.probability;
+    double *const *taken = e->scratch.score.sum;
+    double against = 0, all = 0;
+    asj_probabilities(&e->set, &second->view, 1, &e->scratch.score, e->other);
+    for (int32_t k = 0; k < e->set.count; k++) {
+        taken[0][e->set.list[k].place1] += mine[k];
+        taken[1][e->set.list[k].place2] += mine[k];
+    }
+    for (int32_t k = 0; k < e->set.count; k++) {
+        const double first = taken[0][e->set.list[k].place1] - mine[k], other = taken[1][e->set.list[k].place2] - mine[k];
+        against += e->other[k] * fmin(1, fmax(first, other));
+        all += e->other[k];
+    }
+    for (int32_t v = 0; v < 2; v++)
+        memset(taken[v], 0, (size_t)e->set.place_count[v] * sizeof *taken[v]);
+    return all > 0 ? against / all : 0;
+}
+
+/* The largest evidence of a geometry that contradicts the one whose probabilities are in scratch; -1 = none. */
+static int32_t second_of(estimation *e, int32_t best)
+{
+    int32_t second = -1;
+    for (int32_t n = 0; n < e->count; n++)
+        if (n != best && (second < 0 || e->finalists[n].evidence > e->finalists[second].evidence) &&
+            contradiction(e, &e->finalists[n]) > CONTRARY)
+            second = n;
+    return second;
+}
+
+/* Covariance of rotation and translation, 6 x 6, from that of the five parameters of model.c; the largest standard deviation of the
+ * direction of translation. */
+static double set_covariance(const estimation *e, const asj_model *m, double covariance[36])
+{
+    double information[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], five[25], frame[6][5] = {{0}};
+    double axis[3], other[3];
+    asj_information(&e->set, m, e->scratch.probability, information);
+    for (int32_t p = 0; p < 5; p++) {
+        double a[25], column[5] = {0};
+        memcpy(a, information, sizeof a);
+        for (int32_t k = 0; k < 5; k++)
+            a[6 * k] += 0.05; /* a radian each is as little as can be known of an angle */
+        column[p] = 1;
+        if (!asj_cholesky_solve(a, 5, column, NULL))
+            return HUGE_VAL;
+        for (int32_t k = 0; k < 5; k++)
+            five[5 * k + p] = column[k];
+    }
+    asj_translation_axes(m->translation, axis, other);
+    for (int32_t k = 0; k < 3; k++) {
+        frame[k][k] = 1;
+        frame[3 + k][3] = axis[k];
+        frame[3 + k][4] = other[k];
+    }
+    for (int32_t i = 0; i < 6; i++)
+        for (int32_t j = 0; j < 6; j++) {
+            covariance[6 * i + j] = 0;
+            for (int32_t p = 0; p < 5; p++)
+                for (int32_t q = 0; q < 5; q++)
+                    covariance[6 * i + j] += frame[i][p] * five[5 * p + q] * frame[j][q];
+        }
+    /* the larger eigenvalue of the direction's 2 x 2 block */
+    const double a = five[18], b = 0.5 * (five[19] + five[23]), c = five[24];
+    return sqrt(0.5 * (a + c) + sqrt(0.25 * (a - c) * (a - c) + b * b));
+}
+
+/* Is there another motion that explains as much? All on one plane there are two (Hartley and Zisserman, 13.4). */
+static int32_t is_twofold(const estimation *e, int32_t best)
+{
+    const asj_model *m = &e->finalists[best];
+    for (int32_t n = 0; n < e->count; n++) {
+        const asj_model *o = &e->finalists[n];
+        double turn[9];
+        if (o->kind != ASJ_GEOMETRY_ESSENTIAL || !(o->evidence > m->evidence - TWOFOLD))
+            continue;
+        asj_multiply3_transposed(o->rotation, m->rotation, turn);
+        if (asj_rotation_angle(turn) > OTHER_MOTION || fabs(asj_dot3(o->translation, m->translation)) < cos(OTHER_MOTION))
+            return 1;
+    }
+    return 0;
+}
+
+/* Rotation and translation of an essential matrix. 0 when its translation is not determined. */
+static int32_t set_pose(estimation *e, asj_model *m, asj_geometry *result)
+{
+    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
+    if (!(asj_choose_motion(&e->set, e->scratch.probability, m) > -HUGE_VAL))
+        return 0;
+    const double loose = set_covariance(e, m, result->covariance);
+    memcpy(result->rotation, m->rotation, sizeof result->rotation);
+    memcpy(result->translation, m->translation, sizeof result->translation);
+    result->focal[0] = m->cameras[0].fx;
+    result->focal[1] = m->cameras[1].fx;
+    result->has_pose = loose < LOOSE_DIRECTION;
+    return result->has_pose;
+}
+
+static void set_matrix(const asj_model *m, asj_geometry *result)
+{
+    double sum = 0;
+    for (int32_t k = 0; k < 9; k++)
+        sum += m->view.matrix[k] * m->view.matrix[k];
+    for (int32_t k = 0; k < 9; k++)
+        result->matrix[k] = m->view.matrix[k] / sqrt(sum);
+}
+
+static void answer(estimation *e, double *probabilities, asj_geometry *result)
+{
+    const int32_t best = best_of(e, ASJ_GEOMETRY_AUTO);
+    result->status = ASJ_GEOMETRY_CHANCE;
+    if (best < 0)
+        return;
+    asj_model *m = &e->finalists[best];
+    const double least = log10(e->options->epsilon);
+    result->model = m->kind;
+    result->log10_nfa = log10_nfa(e, m);
+    const int32_t essential = best_of(e, ASJ_GEOMETRY_ESSENTIAL); /* a plane's pose comes from here, too */
+    int32_t determined = 1;
+    if (essential >= 0 && log10_nfa(e, &e->finalists[essential]) <= least) {
+        const int32_t open = essential != best && is_twofold(e, essential);
+        determined = (!open && set_pose(e, &e->finalists[essential], result)) || essential != best;
+    }
+    set_matrix(m, result);
+    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
+    for (int32_t k = 0; k < e->set.count; k++)
+        result->inliers += e->scratch.probability[k];
+    const int32_t second = second_of(e, best);
+    if (second >= 0) {
+        result->has_second = 1;
+        result->second_log10_nfa = log10_nfa(e, &e->finalists[second]);
+    }
+    if (result->log10_nfa > least)
+        return;
+    result->status = !determined ? ASJ_GEOMETRY_DEGENERATE : ASJ_GEOMETRY_ACCEPTED;
+    if (second >= 0 && result->second_log10_nfa <= least && result->second_log10_nfa <= NEARLY * result->log10_nfa)
+        result->status = ASJ_GEOMETRY_AMBIGUOUS;
+    for (int32_t k = 0; k < e->set.count && probabilities; k++)
+        probabilities[e->set.list[k].source] = e->scratch.probability[k];
+}
+
+asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
+                                 const asj_geometry_options *options, double *probabilities, asj_geometry *result)
+{
+    if (!context)
+        return ASJ_ERROR_ARGUMENT;
+    if (!options || !result || (!candidates && count > 0))
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "the candidates, the options or the result is NULL");
+    asj_status status = check(context, options);
+    if (status != ASJ_OK)
+        return status;
+    asj_geometry found;
+    memset(&found, 0, sizeof found);
+    estimation *e = asj_allocate_zero(&context->memory, 1, sizeof *e);
+    if (!e)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the geometry");
+    e->context = context;
+    e->options = options;
+    status = asj_pairs_create(context, candidates, count, options, &e->set);
+    for (size_t k = 0; k < count && probabilities; k++)
+        probabilities[k] = 0;
+    if (status == ASJ_OK && options->model != ASJ_GEOMETRY_NONE) {
+        if (e->set.place_count[0] < 2 || e->set.place_count[1] < 2) {
+            found.status = ASJ_GEOMETRY_TOO_FEW;
+        } else {
+            e->other = asj_allocate(&context->memory, (size_t)e->set.count, sizeof *e->other);
+            status = e->other && asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch)
+                         ? search_all(e) : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the geometry");
+            if (status == ASJ_OK)
+                answer(e, probabilities, &found);
+        }
+    }
+    asj_adjust_scratch_free(&context->memory, &e->scratch);
+    asj_release(&context->memory, e->other);
+    asj_pairs_free(&context->memory, &e->set);
+    asj_release(&context->memory, e);
+    if (status == ASJ_OK)
+        *result = found;
+    return status;
+}
+
+const char *asj_geometry_model_name(int32_t model)
+{
+    static const char *const names[] = {"none", "auto", "essential", "fundamental", "homography"};
+    return model >= ASJ_GEOMETRY_NONE && model <= ASJ_GEOMETRY_HOMOGRAPHY ? names[model] : "unknown";
+}
+
+const char *asj_geometry_status_name(int32_t status)
+{
+    static const char *const names[] = {"not asked", "accepted", "chance", "too few", "ambiguous", "degenerate"};
+    return status >= ASJ_GEOMETRY_NOT_ASKED && status <= ASJ_GEOMETRY_DEGENERATE ? names[status] : "unknown";
+}

@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The model of candidates (Bayes' rule over rivals, one place at a time).
+ *
+ * An epipolar geometry F (x2' F x1 = 0) and an affine correspondence (x1, x2, A) give three equations (Raposo and Barreto, "Theory
+ * and practice of structure-from-motion using affine correspondences", CVPR 2016; Barath et al. on the same subject): with the
+ * epipolar lines l2 = F x1 and l1 = F' x2, their normals n2, n1 (first two entries), and because x2' F x1 stays 0 when x1 moves by
+ * d and x2 by A d,
+ *
+ *     x2' F x1 = 0      and      A' n2 + n1 = 0.
+ *
+ * Residuals, each over its standard deviation:
+ *
+ *     |x2' F x1| / min(|n1|, |n2|)               px: distance from the line, in the image where it is larger
+ *     sine of the angle between A' n2 and -n1    and the cosine must be positive
+ *     log |A' n2| - log |n1|                     the map scales the distance from the line as the geometry says
+ *
+ * Right candidates: normal in all three. Wrong ones: the distance is anywhere up to `spread` px, the angle anywhere, the log of the
+ * scale anywhere in a width of SCALE_WIDTH. Likelihood ratio = the quotient.
+ *
+ * A homography H gives six: with J its derivative at x1, B = J^-1 A (the identity if A is right): displacement of x2 (two, px, in
+ * the image where it is larger), the angle of the rotation in B, half the log of det B, and the two terms of its shear. Wrong ones
+ * lie anywhere in the image; angle and scale as above; shear anywhere in SHEAR_WIDTH squared.
+ *
+ * A place has rivals, at most one of which is right; p_c the priors, LR_c the ratios:
+ *
+ *     score = sum over the places of log(1 - sum p_c + sum p_c LR_c),
+ *
+ * over those of image 1 and over those of image 2, and the smaller counts (a match is one to one). When partners are wrong and
+ * independent, each LR has mean 1, so exp(score) has mean 1 for every fixed geometry: that is what evidence.c rests on. */
+#include "likelihood.h"
+#include "core/angle.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#define SCALE_WIDTH 2.5
+#define SHEAR_WIDTH 1.5
+#define SHEAR_SD 0.25
+#define FAR 20.0 /* squared residual beyond which the ratio is as good as 0: exp(-10) times the peak of about 1e4 */
+#define FAR_PLANAR 34.0
+#define WIDEST 3.0 /* largest `loose` */
+
+void asj_epipolar_residuals(const double f[9], const asj_pairs *set, const asj_pair *c, asj_residuals *r)
+{
+    const double n2x = f[0] * c->x1 + f[1] * c->y1 + f[2], n2y = f[3] * c->x1 + f[4] * c->y1 + f[5];
+    const double n1x = f[0] * c->x2 + f[3] * c->y2 + f[6], n1y = f[1] * c->x2 + f[4] * c->y2 + f[7];
+    const double e = c->x2 * n2x + c->y2 * n2y + f[6] * c->x1 + f[7] * c->y1 + f[8];
+    const double s1 = n1x * n1x + n1y * n1y, s2 = n2x * n2x + n2y * n2y, least = s1 < s2 ? s1 : s2;
+    const double sd = set->location_sd;
+    r->square = HUGE_VAL;
+    if (!(e * e <= FAR * WIDEST * WIDEST * sd * sd * least) || !(least > 0))
+        return;
+    const double mx = c->affine[0] * n2x + c->affine[2] * n2y, my = c->affine[1] * n2x + c->affine[3] * n2y;
+    const double s = mx * mx + my * my, cosine = -(mx * n1x + my * n1y);
+    if (!(cosine > 0))
+        return;
+    r->value[0] = e / (sqrt(least) * sd);
+    r->value[1] = (my * n1x - mx * n1y) / (sqrt(s * s1) * set->angle_sd);
+    r->value[2] = 0.5 * log(s / s1) / set->scale_sd;
+    r->square = r->value[0] * r->value[0] + r->value[1] * r->value[1] + r->value[2] * r->value[2];
+}
+
+void asj_planar_residuals(const asj_two_view *view, const asj_pairs *set, const asj_pair *c, asj_residuals *r)
+{
+    const double *h = view->matrix;
+    const double w = h[6] * c->x1 + h[7] * c->y1 + h[8], x = (h[0] * c->x1 + h[1] * c->y1 + h[2]) / w;
+    const double y = (h[3] * c->x1 + h[4] * c->y1 + h[5]) / w, dx = c->x2 - x, dy = c->y2 - y;
+    const double sd = set->location_sd;
+    r->square = HUGE_VAL;
+    if (!(w > 0) || !(dx * dx + dy * dy <= FAR_PLANAR * WIDEST * WIDEST * sd * sd))
+        return;
+    /* J and B = J^-1 A */
+    const double j0 = (h[0] - x * h[6]) / w, j1 = (h[1] - x * h[7]) / w, j2 = (h[3] - y * h[6]) / w, j3 = (h[4] - y * h[7]) / w;
+    const double det = j0 * j3 - j1 * j2;
+    if (!(det > 1e-12))
+        return;
+    const double *a = c->affine;
+    const double b0 = (j3 * a[0] - j1 * a[2]) / det, b1 = (j3 * a[1] - j1 * a[3]) / det;
+    const double b2 = (j0 * a[2] - j2 * a[0]) / det, b3 = (j0 * a[3] - j2 * a[1]) / det, area = b0 * b3 - b1 * b2;
+    const double ex = (j3 * dx - j1 * dy) / det, ey = (j0 * dy - j2 * dx) / det;
+    const int back = ex * ex + ey * ey > dx * dx + dy * dy;
+    if (!(area > 0))
+        return;
+    const double scale = sqrt(area);
+    r->value[0] = (back ? ex : dx) / sd;
+    r->value[1] = (back ? ey : dy) / sd;
+    r->value[2] = atan2(b2 - b1, b0 + b3) / set->angle_sd;
+    r->value[3] = log(scale) / set->scale_sd;
+    r->value[4] = 0.5 * (b0 - b3) / (scale * SHEAR_SD);
+    r->value[5] = 0.5 * (b1 + b2) / (scale * SHEAR_SD);
+    r->square = 0;
+    for (int32_t k = 0; k < 6; k++)
+        r->square += r->value[k] * r->value[k];
+}
+
+void asj_residuals_of(const asj_two_view *view, const asj_pairs *set, const asj_pair *pair, asj_residuals *r)
+{
+    if (view->planar)
+        asj_planar_residuals(view, set, pair, r);
+    else
+        asj_epipolar_residuals(view->matrix, set, pair, r);
+}
+
+double asj_likelihood_peak(const asj_pairs *set, int32_t planar, double loose)
+{
+    const double sd = loose * set->location_sd, normal = sqrt(2 * ASJ_PI);
+    const double shape = 2 * ASJ_PI / (normal * loose * set->angle_sd) * SCALE_WIDTH / (normal * loose * set->scale_sd);
+    if (!planar)
+        return log(2 * set->spread / (normal * sd) * shape);
+    const double shear = SHEAR_WIDTH * SHEAR_WIDTH / (2 * ASJ_PI * loose * SHEAR_SD * loose * SHEAR_SD);
+    return log(set->area / (2 * ASJ_PI * sd * sd) * shape * shear);
+}
+
+double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, const asj_pair *c, double peak, double loose)
+{
+    asj_residuals r;
+    asj_residuals_of(view, set, c, &r);
+    const double square = r.square / (loose * loose);
+    return square < (view->planar ? FAR_PLANAR : FAR) ? exp(peak - 0.5 * square) : 0;
+}
+
+/* Is the candidate too far from its epipolar line, or from where a homography puts it, for any ratio above 0? Most are, and this
+ * says so soonest. */
+static inline int32_t is_far(const asj_two_view *view, const asj_pair *c, double limit)
+{
+    const double *f = view->matrix;
+    const double n2x = f[0] * c->x1 + f[1] * c->y1 + f[2], n2y = f[3] * c->x1 + f[4] * c->y1 + f[5];
+    if (view->planar) {
+        const double w = f[6] * c->x1 + f[7] * c->y1 + f[8], dx = c->x2 * w - n2x, dy = c->y2 * w - n2y;
+        return dx * dx + dy * dy > limit * w * w;
+    }
+    const double n1x = f[0] * c->x2 + f[3] * c->y2 + f[6], n1y = f[1] * c->x2 + f[4] * c->y2 + f[7];
+    const double e = c->x2 * n2x + c->y2 * n2y + f[6] * c->x1 + f[7] * c->y1 + f[8], e2 = e * e;
+    return e2 > limit * (n1x * n1x + n1y * n1y) || e2 > limit * (n2x * n2x + n2y * n2y);
+}
+
+/* What is_far() compares with. */
+static double far_limit(const asj_pairs *set, const asj_two_view *view, double loose)
+{
+    return (view->planar ? FAR_PLANAR : FAR) * loose * loose * set->location_sd * set->location_sd;
+}
+
+double asj_score(const asj_pairs *set, int32_t count, const asj_two_view *view, double loose, asj_score_scratch *scratch)
+{
+    const double peak = asj_likelihood_peak(set, view->planar, loose), limit = far_limit(set, view, loose);
+    int32_t touched[2] = {0, 0};
+    double score[2] = {0, 0};
+    for (int32_t k = 0; k < count; k++) {
+        const asj_pair *c = &set->list[k];
+        const double ratio = is_far(view, c, limit) ? 0 : asj_likelihood_ratio(view, set, c, peak, loose);
+        if (!(ratio > 0))
+            continue;
+        for (int32_t v = 0; v < 2; v++) {
+            const uint32_t place = v == 0 ? c->place1 : c->place2;
+            if (scratch->sum[v][place] == 0)
+                scratch->touched[v][touched[v]++] = place;
+            scratch->sum[v][place] += c->prior * ratio;
+        }
+    }
+    for (int32_t v = 0; v < 2; v++)
+        for (int32_t k = 0; k < touched[v]; k++) {
+            const uint32_t place = scratch->touched[v][k];
+            score[v] += log(1 - set->prior[v][place] + scratch->sum[v][place]) - log(1 - set->prior[v][place]);
+            scratch->sum[v][place] = 0;
+        }
+    for (int32_t v = 0; v < 2; v++)
+        score[v] += set->empty[v];
+    return score[0] < score[1] ? score[0] : score[1];
+}
+
+void asj_probabilities(const asj_pairs *set, const asj_two_view *view, double loose, asj_score_scratch *scratch,
+                       double *probability)
+{
+    const double peak = asj_likelihood_peak(set, view->planar, loose), limit = far_limit(set, view, loose);
+    for (int32_t k = 0; k < set->count; k++) {
+        const asj_pair *c = &set->list[k];
+        probability[k] = is_far(view, c, limit) ? 0 : c->prior * asj_likelihood_ratio(view, set, c, peak, loose);
+        scratch->sum[0][c->place1] += probability[k];
+        scratch->sum[1][c->place2] += probability[k];
+    }
+    for (int32_t k = 0; k < set->count; k++) {
+        const asj_pair *c = &set->list[k];
+        if (probability[k] > 0) {
+            /* all that competes: the rivals at either place, and no match at all */
+            const double rest1 = 1 - set->prior[0][c->place1] + scratch->sum[0][c->place1] - probability[k];
+            const double rest2 = 1 - set->prior[1][c->place2] + scratch->sum[1][c->place2] - probability[k];
+            const double rest = rest1 > rest2 ? rest1 : rest2;
+            probability[k] = probability[k] / (probability[k] + rest);
+        }
+    }
+    for (int32_t v = 0; v < 2; v++)
+        memset(scratch->sum[v], 0, (size_t)set->place_count[v] * sizeof *scratch->sum[v]);
+}

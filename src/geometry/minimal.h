@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Geometries from two or three affine correspondences. */
+#ifndef ASJ_SRC_MINIMAL_H
+#define ASJ_SRC_MINIMAL_H
+
+#include "model.h"
+
+/* Essential matrix and motion from two candidates: see minimal.c. 0 when none agrees with both. */
+int32_t asj_essential_from_two(const asj_pairs *set, const asj_pair *const pairs[2], const asj_camera cameras[2], asj_model *model);
+
+/* Fundamental matrix from three candidates, homography from two. 0 when they do not determine it. */
+int32_t asj_fundamental_from_three(const asj_pair *const pairs[3], const asj_camera cameras[2], asj_model *model);
+int32_t asj_homography_from_two(const asj_pair *const pairs[2], const asj_camera cameras[2], asj_model *model);
+
+#endif

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Geometries with parameters: what hypotheses are and what refinement moves. */
+#ifndef ASJ_SRC_MODEL_H
+#define ASJ_SRC_MODEL_H
+
+#include "likelihood.h"
+
+#include <asj/geometry.h>
+
+#define ASJ_MODEL_PARAMETERS 8
+
+typedef struct asj_model {
+    int32_t kind;             /* ASJ_GEOMETRY_ESSENTIAL, _FUNDAMENTAL or _HOMOGRAPHY */
+    int32_t parameters;       /* 5 (essential), 6 (essential and one focal length), 7 (fundamental), 8 (homography) */
+    asj_camera cameras[2];    /* fundamental, homography: what brings pixels to numbers near 1 */
+    double rotation[9];       /* essential: x2 ~ R x1 + t in camera coordinates, |t| = 1 */
+    double translation[3];
+    asj_two_view view;
+    double score;             /* asj_score() */
+    double evidence;          /* asj_log_evidence() */
+} asj_model;
+
+/* (x, y, 1) = K^-1 of a pixel. */
+static inline void asj_ray(const asj_camera *k, double x, double y, double ray[3])
+{
+    ray[0] = (x - k->cx) / k->fx;
+    ray[1] = (y - k->cy) / k->fy;
+    ray[2] = 1;
+}
+
+/* F = K2^-T E K1^-1 of norm 1, and E = K2' F K1; the same for a homography: H = K2 N K1^-1, N = K2^-1 H K1. */
+void asj_fundamental_of(const double essential[9], const asj_camera cameras[2], double f[9]);
+void asj_essential_of(const double f[9], const asj_camera cameras[2], double essential[9]);
+void asj_pixel_homography(const double normal[9], const asj_camera cameras[2], double h[9]);
+void asj_normal_homography(const double h[9], const asj_camera cameras[2], double normal[9]);
+
+/* The four motions of an essential matrix (Hartley and Zisserman, result 9.19): rotations[0 or 1], +- translation. 0 for a matrix
+ * that is none. */
+int32_t asj_motions_of(const double essential[9], double rotations[2][9], double translation[3]);
+
+/* Is a point in front of both cameras? Rays as asj_ray() gives them; 1, -1 behind one of them, 0 too far to say. */
+int32_t asj_in_front(const double rotation[9], const double translation[3], const double ray1[3], const double ray2[3]);
+
+/* Fills view from rotation and translation (essential) or completes it (homography: the inverse). 0 when it cannot be. */
+int32_t asj_model_complete(asj_model *model);
+
+/* The two directions, at right angles to t and to each other, in which a translation of length 1 moves. */
+void asj_translation_axes(const double t[3], double axis[3], double other[3]);
+
+/* The model moved by `delta`, one number for each parameter: radians, changes of the log of the focal length or of a ratio,
+ * entries. */
+int32_t asj_model_move(const asj_model *model, const double *delta, asj_model *moved);
+
+#endif

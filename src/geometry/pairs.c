@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Candidates as the geometry works on them. Of many thousand the likeliest 3000 are looked at: on wide pairs of rooms all of them
+ * (up to 30 000) give the same poses within what the seed changes. */
+#include "pairs.h"
+#include "core/angle.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FARTHEST 1e6       /* px */
+#define MOST_COUNT 0x1000000
+#define MOST_OF_PLACE 0.9  /* nothing is sure before geometry */
+
+static int32_t usable(const asj_geometry_candidate *c)
+{
+    const double numbers[9] = {c->x1, c->y1, c->x2, c->y2, c->affine[0], c->affine[1], c->affine[2], c->affine[3], c->probability};
+    const double det = c->affine[0] * c->affine[3] - c->affine[1] * c->affine[2];
+    for (int32_t k = 0; k < 9; k++)
+        if (!(fabs(numbers[k]) <= FARTHEST))
+            return 0;
+    return det > 1e-6 && c->probability >= 0 && c->probability <= 1;
+}
+
+static int likelier(const void *left, const void *right)
+{
+    const asj_pair *p = left, *q = right;
+    if (p->prior != q->prior)
+        return p->prior > q->prior ? -1 : 1;
+    return p->source < q->source ? -1 : p->source > q->source;
+}
+
+/* New numbers for the places of one image that are left, in order of their old ones. */
+static asj_status number_places(asj_context *context, asj_pairs *set, int32_t side)
+{
+    uint32_t largest = 0, next = 0;
+    for (int32_t k = 0; k < set->count; k++) {
+        const uint32_t place = side == 0 ? set->list[k].place1 : set->list[k].place2;
+        largest = place > largest ? place : largest;
+    }
+    uint32_t *number = asj_allocate_zero(&context->memory, (size_t)largest + 1, sizeof *number);
+    if (!number)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu places", (unsigned long)largest + 1);
+    for (int32_t k = 0; k < set->count; k++)
+        number[side == 0 ? set->list[k].place1 : set->list[k].place2] = 1;
+    for (uint32_t p = 0; set->count > 0 && p <= largest; p++)
+        if (number[p])
+            number[p] = next++;
+    for (int32_t k = 0; k < set->count; k++) {
+        uint32_t *place = side == 0 ? &set->list[k].place1 : &set->list[k].place2;
+        *place = number[*place];
+    }
+    asj_release(&context->memory, number);
+    set->place_count[side] = (int32_t)next;
+    set->prior[side] = asj_allocate_zero(&context->memory, next, sizeof *set->prior[side]);
+    return set->prior[side] ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu places", (unsigned long)next);
+}
+
+static void sum_priors(asj_pairs *set)
+{
+    for (int32_t v = 0; v < 2; v++)
+        memset(set->prior[v], 0, (size_t)set->place_count[v] * sizeof *set->prior[v]);
+    for (int32_t k = 0; k < set->count; k++) {
+        set->prior[0][set->list[k].place1] += set->list[k].prior;
+        set->prior[1][set->list[k].place2] += set->list[k].prior;
+    }
+}
+
+static void limit_priors(asj_pairs *set)
+{
+    sum_priors(set);
+    for (int32_t k = 0; k < set->count; k++) {
+        asj_pair *c = &set->list[k];
+        const double most = fmax(set->prior[0][c->place1], set->prior[1][c->place2]);
+        c->prior *= most > MOST_OF_PLACE ? MOST_OF_PLACE / most : 1;
+    }
+    sum_priors(set);
+    for (int32_t v = 0; v < 2; v++) {
+        set->empty[v] = 0;
+        for (int32_t p = 0; p < set->place_count[v]; p++)
+            set->empty[v] += log(1 - set->prior[v][p]);
+    }
+}
+
+static void set_scales(const asj_geometry_options *options, asj_pairs *set)
+{
+    const double w1 = options->widths[0], h1 = options->heights[0], w2 = options->widths[1], h2 = options->heights[1];
+    set->location_sd = options->location_sd;
+    set->angle_sd = options->angle_sd * ASJ_DEGREE;
+    set->scale_sd = options->scale_sd;
+    set->spread = 0.2 * (sqrt(w1 * w1 + h1 * h1) + sqrt(w2 * w2 + h2 * h2)); /* 0.4 of the diagonal: 300 px at 624 x 460 */
+    set->area = sqrt(w1 * h1) * sqrt(w2 * h2);
+}
+
+asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
+                            const asj_geometry_options *options, asj_pairs *set)
+{
+    memset(set, 0, sizeof *set);
+    if (count > MOST_COUNT)
+        return asj_fail(context, ASJ_ERROR_LIMIT, "%zu candidates are more than %d", count, MOST_COUNT);
+    set->list = asj_allocate_zero(&context->memory, count, sizeof *set->list);
+    if (!set->list)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
+    for (size_t k = 0; k < count; k++) {
+        const asj_geometry_candidate *c = &candidates[k];
+        if (!usable(c))
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "candidate %zu has numbers that cannot be", k);
+        if (c->place1 >= MOST_COUNT || c->place2 >= MOST_COUNT)
+            return asj_fail(context, ASJ_ERROR_LIMIT, "candidate %zu has a place beyond %d", k, MOST_COUNT);
+        set->list[k] = (asj_pair){c->x1, c->y1, c->x2, c->y2, {c->affine[0], c->affine[1], c->affine[2], c->affine[3]},
+                                  c->probability, c->place1, c->place2, (uint32_t)k, 0};
+    }
+    if (count > 1)
+        qsort(set->list, count, sizeof *set->list, likelier);
+    set->count = (int32_t)(count < ASJ_MOST_PAIRS ? count : ASJ_MOST_PAIRS);
+    while (set->count > 0 && !(set->list[set->count - 1].prior > 0))
+        set->count--;
+    set_scales(options, set);
+    for (int32_t v = 0; v < 2; v++) {
+        const asj_status status = number_places(context, set, v);
+        if (status != ASJ_OK)
+            return status;
+    }
+    limit_priors(set);
+    return ASJ_OK;
+}
+
+void asj_pairs_free(asj_memory *memory, asj_pairs *set)
+{
+    asj_release(memory, set->list);
+    asj_release(memory, set->prior[0]);
+    asj_release(memory, set->prior[1]);
+    memset(set, 0, sizeof *set);
+}

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_SRC_GEOMETRY_SEARCH_H
+#define ASJ_SRC_GEOMETRY_SEARCH_H
+
+#include "core/context.h"
+#include "adjust.h"
+
+#define ASJ_FINALISTS 15
+
+typedef struct asj_search {
+    int32_t kind;
+    int32_t samples;
+    uint64_t seed;
+    asj_camera cameras[2];
+} asj_search;
+
+/* The best geometries of the kind, refined, the best score first; finalists has room for ASJ_FINALISTS. *count may be 0. */
+asj_status asj_geometry_search(asj_context *context, const asj_pairs *set, const asj_search *search, asj_model *finalists,
+                               int32_t *count);
+
+#endif

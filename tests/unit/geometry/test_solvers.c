@@ -1,0 +1,343 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Small matrices, roots of polynomials, and minimal solvers against motions that are known. */
+#include "unit_test.h"
+
+#include "geometry/five_point.h"
+#include "geometry/minimal.h"
+#include "geometry/polynomial.h"
+#include "geometry/small_matrix.h"
+
+/* --- matrices ---------------------------------------------------------------------------------------------------------------- */
+
+static void random_matrix(synth_random *random, double m[9])
+{
+    for (int k = 0; k < 9; k++)
+        m[k] = synth_random_between(random, -2, 2);
+}
+
+static void singular_values_rebuild(void **state)
+{
+    (void)state;
+    synth_random random;
+    synth_random_seed(&random, 1);
+    for (int i = 0; i < 300; i++) {
+        double m[9], u[9], s[3], v[9], scaled[9], back[9];
+        random_matrix(&random, m);
+        if (i % 3 == 1) /* rank 2, and rank 1 */
+            for (int k = 0; k < 3; k++)
+                m[6 + k] = m[k] - 2 * m[3 + k];
+        if (i % 3 == 2)
+            for (int k = 0; k < 9; k++)
+                m[k] = (1 + k / 3) * (k % 3 - 0.5);
+        asj_svd3(m, u, s, v);
+        unit_near("det U", i, 0, asj_determinant3(u), 1, 1e-9);
+        unit_near("det V", i, 0, asj_determinant3(v), 1, 1e-9);
+        assert_true(s[0] >= s[1] - 1e-12 && s[1] >= fabs(s[2]) - 1e-7);
+        for (int k = 0; k < 9; k++)
+            scaled[k] = u[k] * s[k % 3];
+        asj_multiply3_transposed(scaled, v, back);
+        for (int k = 0; k < 9; k++)
+            unit_near("U S V'", i, k, back[k], m[k], 1e-7);
+    }
+}
+
+static void rotations_and_their_angles(void **state)
+{
+    (void)state;
+    synth_random random;
+    synth_random_seed(&random, 2);
+    for (int i = 0; i < 200; i++) {
+        const double size = i < 100 ? pow(10, -0.1 * i) : synth_random_between(&random, 0, 3.1);
+        double w[3], r[9], unit[9];
+        for (int k = 0; k < 3; k++)
+            w[k] = synth_random_between(&random, -1, 1);
+        assert_true(asj_normalise3(w));
+        for (int k = 0; k < 3; k++)
+            w[k] *= size;
+        asj_rotation_of(w, r);
+        asj_multiply3_transposed(r, r, unit);
+        for (int k = 0; k < 9; k++)
+            unit_near("R R'", i, k, unit[k], k % 4 == 0, 1e-12);
+        unit_near("angle", i, size, asj_rotation_angle(r), size, 1e-9);
+    }
+}
+
+static void systems_are_solved_or_refused(void **state)
+{
+    (void)state;
+    double a[9] = {4, 2, 0, 2, 5, 1, 0, 1, 3}, b[3] = {8, 15, 11}, log_determinant;
+    assert_true(asj_cholesky_solve(a, 3, b, &log_determinant)); /* x = 1, 2, 3 */
+    for (int k = 0; k < 3; k++)
+        unit_near("x", k, 0, b[k], k + 1, 1e-12);
+    unit_near("log det", 0, 0, log_determinant, log(44), 1e-12);
+    double bad[4] = {1, 2, 2, 1}, right[2] = {1, 1}, nan_matrix[4] = {NAN, 0, 0, 1};
+    assert_false(asj_cholesky_solve(bad, 2, right, NULL));
+    assert_false(asj_cholesky_solve(nan_matrix, 2, right, NULL));
+    double same[18] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 1, 2, 3, 4, 5, 6, 7, 8, 9}, basis[81];
+    assert_false(asj_null_space9(same, 2, basis));
+    double zero[3] = {0, 0, 0}, inverse[9], singular[9] = {1, 2, 3, 2, 4, 6, 0, 0, 1};
+    assert_false(asj_normalise3(zero));
+    assert_false(asj_invert3(singular, inverse));
+}
+
+/* --- polynomials ------------------------------------------------------------------------------------------------------------- */
+
+static void roots_of_products(void **state)
+{
+    (void)state;
+    synth_random random;
+    synth_random_seed(&random, 3);
+    for (int i = 0; i < 500; i++) {
+        const int degree = 1 + i % ASJ_POLYNOMIAL_DEGREE, pairs = degree > 2 ? i / 10 % 2 : 0, real = degree - 2 * pairs;
+        double c[ASJ_POLYNOMIAL_DEGREE + 1] = {1}, wanted[ASJ_POLYNOMIAL_DEGREE], found[ASJ_POLYNOMIAL_DEGREE];
+        int n = 0;
+        for (int r = 0; r < real; r++) { /* at least 0.1 apart, inside and outside [-1, 1] */
+            wanted[r] = (r - real / 2) * 0.45 + synth_random_between(&random, 0, 0.3);
+            n++;
+            for (int k = n; k >= 0; k--)
+                c[k] = (k > 0 ? c[k - 1] : 0) - wanted[r] * (k < n ? c[k] : 0);
+        }
+        for (int p = 0; p < pairs; p++) { /* x^2 + x + 2 has none */
+            n += 2;
+            for (int k = n; k >= 0; k--)
+                c[k] = (k < n - 1 ? 2 * c[k] : 0) + (k > 0 && k < n ? c[k - 1] : 0) + (k > 1 ? c[k - 2] : 0);
+        }
+        assert_int_equal(asj_polynomial_roots(c, degree, found), real);
+        for (int r = 0; r < real; r++) {
+            double nearest = HUGE_VAL;
+            for (int k = 0; k < real; k++)
+                nearest = fmin(nearest, fabs(found[k] - wanted[r]));
+            unit_near("root", i, r, nearest, 0, 1e-6);
+        }
+    }
+    const double none[3] = {1, 0, 1}, bad[3] = {1, NAN, 1}, zero[3] = {0, 0, 0};
+    double found[2];
+    assert_int_equal(asj_polynomial_roots(none, 2, found), 0);
+    assert_int_equal(asj_polynomial_roots(bad, 2, found), 0);
+    assert_int_equal(asj_polynomial_roots(zero, 2, found), 0);
+}
+
+/* --- two views --------------------------------------------------------------------------------------------------------------- */
+
+typedef struct motion {
+    double rotation[9], translation[3], essential[9];
+} motion;
+
+static motion random_motion(synth_random *random)
+{
+    motion m;
+    double w[3], skew[9];
+    for (int k = 0; k < 3; k++) {
+        w[k] = synth_random_between(random, -0.6, 0.6);
+        m.translation[k] = synth_random_between(random, -1, 1);
+    }
+    assert_true(asj_normalise3(m.translation));
+    asj_rotation_of(w, m.rotation);
+    asj_skew3(m.translation, skew);
+    asj_multiply3(skew, m.rotation, m.essential);
+    return m;
+}
+
+static void transfer(const motion *m, const double point[3], double out[3])
+{
+    asj_apply3(m->rotation, point, out);
+    for (int k = 0; k < 3; k++)
+        out[k] += m->translation[k];
+}
+
+static void five_points_give_the_motion(void **state)
+{
+    (void)state;
+    synth_random random;
+    int missed = 0;
+    synth_random_seed(&random, 4);
+    for (int i = 0; i < 1000; i++) {
+        const motion m = random_motion(&random);
+        asj_ray_pair pairs[5];
+        double found[ASJ_FIVE_POINT_SOLUTIONS][9], best = HUGE_VAL;
+        for (int k = 0; k < 5; k++) { /* every second time all on one plane */
+            const double p[3] = {synth_random_between(&random, -2, 2), synth_random_between(&random, -2, 2),
+                                 i % 2 ? 5 : synth_random_between(&random, 3, 7)};
+            double q[3];
+            transfer(&m, p, q);
+            pairs[k] = (asj_ray_pair){p[0] / p[2], p[1] / p[2], q[0] / q[2], q[1] / q[2]};
+        }
+        const int32_t count = asj_five_point(pairs, found);
+        for (int32_t s = 0; s < count; s++) {
+            double plus = 0, minus = 0;
+            for (int k = 0; k < 5; k++) { /* naive: every solution fits its points and is essential */
+                const double x1[3] = {pairs[k].x1, pairs[k].y1, 1}, x2[3] = {pairs[k].x2, pairs[k].y2, 1};
+                double line[3];
+                asj_apply3(found[s], x1, line);
+                unit_near("x2' E x1", i, s, asj_dot3(x2, line), 0, 1e-6);
+            }
+            double u[9], values[3], v[9];
+            asj_svd3(found[s], u, values, v);
+            unit_near("singular values", i, s, values[1] / values[0], 1, 0.02);
+            unit_near("rank", i, s, values[2] / values[0], 0, 1e-3);
+            for (int k = 0; k < 9; k++) {
+                plus = fmax(plus, fabs(found[s][k] - m.essential[k]));
+                minus = fmax(minus, fabs(found[s][k] + m.essential[k]));
+            }
+            best = fmin(best, fmin(plus, minus));
+        }
+        missed += !(best < 1e-4);
+    }
+    assert_in_range(missed, 0, 15); /* of 1000: where roots nearly coincide */
+    const asj_ray_pair repeated[5] = {{0.1, 0.2, 0.3, 0.4}, {0.1, 0.2, 0.3, 0.4}, {0.1, 0.2, 0.3, 0.4}, {0, 0, 0, 0}, {1, 0, 1, 0}};
+    const asj_ray_pair bad[5] = {{NAN, 0, 0, 0}, {0, 1, 0, 1}, {1, 0, 1, 0}, {1, 1, 1, 1}, {0.5, 0, 0.5, 0}};
+    double found[ASJ_FIVE_POINT_SOLUTIONS][9];
+    assert_int_equal(asj_five_point(repeated, found), 0);
+    assert_int_equal(asj_five_point(bad, found), 0);
+}
+
+static const asj_camera cameras[2] = {{600, 610, 320, 240}, {550, 550, 310, 250}};
+
+static void project(const asj_camera *c, const double p[3], double xy[2])
+{
+    xy[0] = c->fx * p[0] / p[2] + c->cx;
+    xy[1] = c->fy * p[1] / p[2] + c->cy;
+}
+
+/* A candidate on the plane through `point` with the normal: locations, and the derivative of the map by differences. */
+static asj_pair patch(const motion *m, const double point[3], const double normal[3])
+{
+    asj_pair pair;
+    double x1[2], x2[2], q[3];
+    memset(&pair, 0, sizeof pair);
+    project(&cameras[0], point, x1);
+    transfer(m, point, q);
+    project(&cameras[1], q, x2);
+    pair.x1 = x1[0];
+    pair.y1 = x1[1];
+    pair.x2 = x2[0];
+    pair.y2 = x2[1];
+    for (int k = 0; k < 2; k++) {
+        double ends[2][2];
+        for (int side = 0; side < 2; side++) {
+            const double step = side ? 1e-3 : -1e-3;
+            double ray[3], p[3];
+            asj_ray(&cameras[0], x1[0] + (k == 0 ? step : 0), x1[1] + (k == 1 ? step : 0), ray);
+            const double depth = asj_dot3(normal, point) / asj_dot3(normal, ray);
+            for (int j = 0; j < 3; j++)
+                p[j] = depth * ray[j];
+            transfer(m, p, q);
+            project(&cameras[1], q, ends[side]);
+        }
+        pair.affine[k] = (ends[1][0] - ends[0][0]) / 2e-3;
+        pair.affine[2 + k] = (ends[1][1] - ends[0][1]) / 2e-3;
+    }
+    return pair;
+}
+
+static asj_pair random_patch(synth_random *random, const motion *m, int planar)
+{
+    const double flat[3] = {0.3, -0.2, -1};
+    double normal[3] = {synth_random_between(random, -0.5, 0.5), synth_random_between(random, -0.5, 0.5), -1}, point[3];
+    for (int k = 0; k < 2; k++)
+        point[k] = synth_random_between(random, -1.5, 1.5);
+    point[2] = planar ? 5 + flat[0] * point[0] + flat[1] * point[1] : synth_random_between(random, 4, 7);
+    return patch(m, point, planar ? flat : normal);
+}
+
+/* The equations on which everything rests: x2' F x1 = 0, and A' n2 = -n1, sign included. */
+static void right_candidates_have_no_residuals(void **state)
+{
+    (void)state;
+    synth_random random;
+    const asj_pairs set = {.location_sd = 1, .angle_sd = 0.1, .scale_sd = 0.1};
+    synth_random_seed(&random, 5);
+    for (int i = 0; i < 200; i++) {
+        const motion m = random_motion(&random);
+        asj_pair pair = random_patch(&random, &m, 0);
+        asj_residuals r;
+        double f[9];
+        asj_fundamental_of(m.essential, cameras, f);
+        asj_epipolar_residuals(f, &set, &pair, &r);
+        unit_near("residual", i, 0, r.square, 0, 1e-3);
+        for (int k = 0; k < 4; k++) /* turned by 180 degrees: the sign is wrong */
+            pair.affine[k] = -pair.affine[k];
+        asj_epipolar_residuals(f, &set, &pair, &r);
+        assert_true(r.square > 1e30);
+    }
+}
+
+static void two_candidates_give_the_motion(void **state)
+{
+    (void)state;
+    synth_random random;
+    const asj_pairs set = {.location_sd = 1.5, .angle_sd = 0.16, .scale_sd = 0.22};
+    int right = 0, tried = 0;
+    synth_random_seed(&random, 6);
+    for (int i = 0; i < 300; i++) {
+        const motion m = random_motion(&random);
+        const asj_pair pairs[2] = {random_patch(&random, &m, 0), random_patch(&random, &m, 0)};
+        const asj_pair *const both[2] = {&pairs[0], &pairs[1]};
+        asj_model model;
+        double turn[9];
+        memset(&model, 0, sizeof model);
+        tried++;
+        if (!asj_essential_from_two(&set, both, cameras, &model))
+            continue;
+        asj_multiply3_transposed(model.rotation, m.rotation, turn);
+        right += asj_rotation_angle(turn) < 0.05 && asj_dot3(model.translation, m.translation) > 0.995;
+    }
+    assert_in_range(right, 180, tried); /* 196: three points of an affine map are not quite where the camera sees them */
+}
+
+static void three_candidates_give_the_fundamental_matrix(void **state)
+{
+    (void)state;
+    synth_random random;
+    synth_random_seed(&random, 7);
+    for (int i = 0; i < 200; i++) {
+        const motion m = random_motion(&random);
+        const asj_pair pairs[3] = {random_patch(&random, &m, 0), random_patch(&random, &m, 0), random_patch(&random, &m, 0)};
+        const asj_pair *const all[3] = {&pairs[0], &pairs[1], &pairs[2]};
+        const asj_pair other = random_patch(&random, &m, 0);
+        const asj_pairs set = {.location_sd = 1, .angle_sd = 0.1, .scale_sd = 0.1};
+        asj_model model;
+        asj_residuals r;
+        memset(&model, 0, sizeof model);
+        assert_true(asj_fundamental_from_three(all, cameras, &model));
+        asj_epipolar_residuals(model.view.matrix, &set, &other, &r);
+        unit_near("a fourth one", i, 0, r.square, 0, 0.05);
+        unit_near("rank", i, 0, asj_determinant3(model.view.matrix), 0, 1e-15);
+    }
+    const motion m = random_motion(&random);
+    const asj_pair pair = random_patch(&random, &m, 0);
+    const asj_pair *const same[3] = {&pair, &pair, &pair};
+    asj_model model;
+    assert_false(asj_fundamental_from_three(same, cameras, &model));
+}
+
+static void two_candidates_give_the_homography(void **state)
+{
+    (void)state;
+    synth_random random;
+    synth_random_seed(&random, 8);
+    for (int i = 0; i < 200; i++) {
+        const motion m = random_motion(&random);
+        const asj_pair pairs[3] = {random_patch(&random, &m, 1), random_patch(&random, &m, 1), random_patch(&random, &m, 1)};
+        const asj_pair *const both[2] = {&pairs[0], &pairs[1]};
+        const asj_pairs set = {.location_sd = 1, .angle_sd = 0.1, .scale_sd = 0.1};
+        asj_model model;
+        asj_residuals r;
+        memset(&model, 0, sizeof model);
+        assert_true(asj_homography_from_two(both, cameras, &model));
+        asj_planar_residuals(&model.view, &set, &pairs[2], &r);
+        unit_near("a third one", i, 0, r.square, 0, 0.05);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(singular_values_rebuild), cmocka_unit_test(rotations_and_their_angles),
+        cmocka_unit_test(systems_are_solved_or_refused), cmocka_unit_test(roots_of_products),
+        cmocka_unit_test(five_points_give_the_motion), cmocka_unit_test(right_candidates_have_no_residuals),
+        cmocka_unit_test(two_candidates_give_the_motion), cmocka_unit_test(three_candidates_give_the_fundamental_matrix),
+        cmocka_unit_test(two_candidates_give_the_homography),
+    };
+    return cmocka_run_group_tests_name("solvers", tests, NULL, NULL);
+}
