@@ -15,9 +15,6 @@ typedef struct cli_plot_style {
     double scale; /* plot pixels for one image pixel; 0 = automatic */
 } cli_plot_style;
 
-/* 1 when this build can plot. */
-int cli_plot_available(void);
-
 /* Writes a plot; the file appears whole or not at all. On failure `message` receives a line that names the cause. */
 asj_status cli_plot_write(const char *path, int32_t format, const asj_image *image, const asj_detection *detection,
                           const cli_plot_style *style, char *message, size_t message_size);

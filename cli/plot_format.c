@@ -3,9 +3,17 @@
 #include "plot_format.h"
 #include "message.h"
 #include "parse.h"
-#include "plot.h"
 
 #include <string.h>
+
+int cli_plot_available(void)
+{
+#ifdef CLI_HAVE_CAIRO
+    return 1;
+#else
+    return 0;
+#endif
+}
 
 int32_t cli_plot_format_of_word(const char *word)
 {

@@ -11,6 +11,9 @@ enum { CLI_PLOT_PHOTO = 0, CLI_PLOT_WHITE = 1 };
 #define CLI_PLOT_MIN_SCALE 0.01
 #define CLI_PLOT_MAX_SCALE 16
 
+/* 1 when this build can plot. */
+int cli_plot_available(void);
+
 /* CLI_PLOT_... of "png", "svg" or "pdf" in either case, or -1. */
 int32_t cli_plot_format_of_word(const char *word);
 

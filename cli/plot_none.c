@@ -5,11 +5,6 @@
 
 #include <stdio.h>
 
-int cli_plot_available(void)
-{
-    return 0;
-}
-
 static asj_status refuse(char *message, size_t message_size)
 {
     snprintf(message, message_size, "this build cannot plot (it was made without cairo)");

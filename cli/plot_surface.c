@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Plot files: a drawing on a surface of each format, streamed into an output of libasj-io. */
 #include "plot_surface.h"
-#include "plot.h"
+#include "plot_format.h"
 
 #include <asj/io.h>
 
@@ -11,11 +11,6 @@
 #include <stdio.h>
 
 enum { LARGEST_SURFACE = 32767 };
-
-int cli_plot_available(void)
-{
-    return 1;
-}
 
 static cairo_status_t write_stream(void *output, const unsigned char *data, unsigned size)
 {

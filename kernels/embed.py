@@ -28,7 +28,7 @@ def array(name, text):
 
 def main(output, common_path, *paths):
     common = read(common_path)
-    parts = ['#include "cl/program.h"\n', array("common", common)]
+    parts = ['#include "cl/source.h"\n', array("common", common)]
     programs, kernels = [], []
     for index, path in enumerate(paths):
         text = read(path)

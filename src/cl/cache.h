@@ -3,7 +3,8 @@
 #ifndef ASJ_SRC_CL_CACHE_H
 #define ASJ_SRC_CL_CACHE_H
 
-#include "program.h"
+#include "core/context.h"
+#include "source.h"
 
 #define ASJ_CL_KEY_SIZE 96
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+#include "program.h"
 #include "cache.h"
 #include "error.h"
 #include "state.h"

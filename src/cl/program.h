@@ -4,27 +4,7 @@
 #define ASJ_SRC_CL_PROGRAM_H
 
 #include "runtime.h"
-
-/* ---- made by kernels/embed.py ---- */
-
-typedef struct asj_cl_source {
-    const char *name;     /* of the file, without .cl */
-    const char *parts[2]; /* common.clh and the file itself */
-    size_t sizes[2];
-    const char *hash;     /* of both */
-} asj_cl_source;
-
-typedef struct asj_cl_kernel_name {
-    const char *name;
-    int32_t source;
-} asj_cl_kernel_name;
-
-extern const asj_cl_source asj_cl_sources[];
-extern const int32_t asj_cl_source_count;
-extern const asj_cl_kernel_name asj_cl_kernel_names[];
-extern const int32_t asj_cl_kernel_count;
-
-/* ---- program.c ---- */
+#include "source.h"
 
 /* No fast arithmetic: the bits must be those of the CPU. */
 #define ASJ_CL_BUILD_OPTIONS "-cl-std=CL1.2"

@@ -15,6 +15,7 @@
  * the upper tail, and one minus a distribution function cancels to 0 where it matters (the paper's "F = 0 for t > J/2" is
  * that). Here tails are sums of positive terms, or the saddlepoint approximation. The central limit theorem is nowhere used:
  * it is wrong by 4 to 18 powers of ten at the tails that decide. */
+#include "nfa.h"
 #include "nfa_tables.h"
 #include "core/angle.h"
 

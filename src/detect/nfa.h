@@ -4,16 +4,7 @@
 #define ASJ_SRC_NFA_H
 
 #include "core/context.h"
-
-/* Mean and standard deviation of one pairwise junction-ness gamma under the null model (closed forms in nfa.c). */
-#define ASJ_GAMMA_MEAN 0.330494606292647
-#define ASJ_GAMMA_SD 0.504136432767844
-
-/* Most samples of an arc: 2 w + 1, w = arc_half_width <= 3. Tails are tabulated for up to as many terms. */
-#define ASJ_MAX_ARC 7
-
-/* Tables for one context; built once, then only read (any number of threads). */
-typedef struct asj_nfa asj_nfa;
+#include "null_model.h"
 
 asj_status asj_nfa_create(asj_memory *memory, asj_nfa **nfa);
 void asj_nfa_free(asj_memory *memory, asj_nfa **nfa);
@@ -27,14 +18,8 @@ static inline const asj_nfa *asj_nfa_of(const asj_context *context)
     return context->null_model.state;
 }
 
-/* ln F(t; n): natural logarithm of P(gamma_1 + .. + gamma_n >= t) under the null model, n >= 1. 0 for t <= 0. */
-double asj_nfa_log_sector_tail(const asj_nfa *nfa, double t, int32_t n);
-
-/* Smallest t with ln F(t; n) <= log_p (bisection on the function above; log_p <= 0). */
+/* Smallest t with ln F(t; n) <= log_p (bisection on asj_nfa_log_sector_tail(); log_p <= 0). */
 double asj_nfa_sector_threshold(const asj_nfa *nfa, double log_p, int32_t n);
-
-/* ln G(s; n): natural logarithm of P(gamma~_1 + .. + gamma~_n >= s), 1 <= n <= ASJ_MAX_ARC, s > 0. */
-double asj_nfa_log_arc_tail(const asj_nfa *nfa, double s, int32_t n);
 
 /* Smallest s > 0 with ln G(s; n) <= log_p. A result > 0 even when every s passes: an arc without any junction is no event. */
 double asj_nfa_arc_threshold(const asj_nfa *nfa, double log_p, int32_t n);

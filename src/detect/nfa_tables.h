@@ -3,7 +3,8 @@
 #ifndef ASJ_SRC_NFA_TABLES_H
 #define ASJ_SRC_NFA_TABLES_H
 
-#include "nfa.h"
+#include "core/memory.h"
+#include "null_model.h"
 
 enum {
     ASJ_NFA_PER_UNIT = 32,                      /* nodes per unit of every table: a power of two, so that finding a cell is exact */

@@ -4,7 +4,7 @@
 #define ASJ_SRC_RAY_WALK_H
 
 #include "nfa.h"
-#include "scan.h"
+#include "ray.h"
 
 /* A ray in whole numbers, as it is walked along. */
 typedef struct asj_ray_direction {

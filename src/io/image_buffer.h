@@ -5,8 +5,7 @@
 
 #include <asj/image.h>
 
-#include "image_probe.h"
-#include "input.h"
+#include "probe.h"
 
 typedef struct asj_image_buffer {
     unsigned char *pixels; /* malloc; rows without gaps */

@@ -4,44 +4,11 @@
 #ifndef ASJ_IO_IMAGE_PROBE_H
 #define ASJ_IO_IMAGE_PROBE_H
 
-#include "input.h"
-
-typedef enum asj_image_kind {
-    ASJ_KIND_UNKNOWN = 0, /* no image format that is known here */
-    ASJ_KIND_PNG,
-    ASJ_KIND_JPEG,
-    ASJ_KIND_TIFF,        /* BigTIFF too */
-    ASJ_KIND_WEBP,
-    ASJ_KIND_JPEG2000,
-    ASJ_KIND_PNM,
-    ASJ_KIND_BMP,
-    ASJ_KIND_SUN_RASTER,
-    ASJ_KIND_RADIANCE,
-    ASJ_KIND_HEIF,        /* AVIF too */
-    ASJ_KIND_OTHER        /* known by name only */
-} asj_image_kind;
-
-typedef struct asj_image_probe {
-    asj_image_kind kind;
-    const char *name;       /* "JPEG", ... */
-    uint64_t width, height; /* as declared; has_size = 0: the header does not say, or says nonsense */
-    int32_t has_size;
-    int32_t orientation;    /* EXIF; 1 when there is none */
-    int32_t is_truncated;   /* the file ends before the image does */
-    const char *fault;      /* what else is wrong with the file's structure, or NULL */
-    size_t codestream;      /* JPEG 2000: where it begins */
-    int32_t is_ycc;         /* JPEG 2000: the file says that its colours are sYCC */
-} asj_image_probe;
+#include "probe.h"
 
 void asj_probe_image(const asj_input *input, asj_image_probe *probe);
 
 /* The kind by the signature, which stands in the first bytes. */
 asj_image_kind asj_probe_kind(const asj_input *input);
-
-/* Formats with files of their own: size, orientation, truncation, fault. */
-void asj_probe_jpeg(const asj_input *input, asj_image_probe *probe);
-void asj_probe_jpeg2000(const asj_input *input, asj_image_probe *probe);
-void asj_probe_pnm(const asj_input *input, asj_image_probe *probe);
-void asj_probe_tiff(const asj_input *input, asj_image_probe *probe);
 
 #endif

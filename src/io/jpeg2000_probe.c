@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The structure of a JPEG 2000 file (ISO/IEC 15444-1): the boxes of JP2 (annex I) down to the codestream, whose main header (annex
  * A) is read up to the first tile. The decoder gets the codestream alone, so that it can find no other than this one. */
-#include "image_probe.h"
+#include "probe.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 /* The marker structure of a JPEG file (ITU-T T.81, annex B). The decoder behind OpenCV fills what is missing from a truncated file
  * with gray and reports success; a file whose end marker is missing is therefore told here. */
 #include "exif.h"
-#include "image_probe.h"
+#include "probe.h"
 
 #include <string.h>
 

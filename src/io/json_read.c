@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* JSON of schema "asj-junctions-1": json_write.c. The outer object and the list of junctions are walked here and every value in
  * them is parsed by jansson, so that memory does not grow with the file and each junction's line is known. */
-#include "junction_list.h"
+#include "junction_formats.h"
 
 #include <jansson.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 
 #include <asj/io.h>
 
-#include "input.h"
+#include "message.h"
 
 /* Most junctions of a file. */
 #define ASJ_JUNCTIONS_MAX (1u << 24)
@@ -29,9 +29,5 @@ void asj_set_angle(asj_branch *branch, double angle);
 /* Checks what no junction may have (a negative length or scale), sorts the branches by angle and adds it.
  * ASJ_ERROR_FORMAT, ASJ_ERROR_LIMIT, ASJ_ERROR_MEMORY */
 asj_status asj_junction_list_add(asj_junction_list *list, const asj_junction *junction, size_t line, const asj_message *message);
-
-/* The readers. */
-asj_status asj_read_text(const asj_input *input, asj_junction_list *list, const asj_message *message);
-asj_status asj_read_json(const asj_input *input, asj_junction_list *list, const asj_message *message);
 
 #endif

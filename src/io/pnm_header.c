@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "pnm_header.h"
 
-#include "image_probe.h"
+#include "probe.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* .asj text: text_write.c describes it. One item a line, fields apart by blanks; empty lines are passed over. */
-#include "junction_list.h"
+#include "junction_formats.h"
 
 #include "number.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The first directory of a TIFF or BigTIFF file: size, orientation, and tiles that the format allows. */
 #include "exif.h"
-#include "image_probe.h"
+#include "probe.h"
 
 enum { TAG_WIDTH = 256, TAG_HEIGHT = 257, TAG_TILE_WIDTH = 322, TAG_TILE_HEIGHT = 323 };
 

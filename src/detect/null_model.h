@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The null model: its constants, and the tails of its n-fold sums, tabulated (nfa_sector.c, nfa_arc.c). */
+#ifndef ASJ_SRC_DETECT_NULL_MODEL_H
+#define ASJ_SRC_DETECT_NULL_MODEL_H
+
+#include <stdint.h>
+
+/* Mean and standard deviation of one pairwise junction-ness gamma under the null model (closed forms in nfa.c). */
+#define ASJ_GAMMA_MEAN 0.330494606292647
+#define ASJ_GAMMA_SD 0.504136432767844
+
+/* Most samples of an arc: 2 w + 1, w = arc_half_width <= 3. Tails are tabulated for up to as many terms. */
+#define ASJ_MAX_ARC 7
+
+/* Tables for one context; built once, then only read (any number of threads). */
+typedef struct asj_nfa asj_nfa;
+
+/* ln F(t; n): natural logarithm of P(gamma_1 + .. + gamma_n >= t) under the null model, n >= 1. 0 for t <= 0. */
+double asj_nfa_log_sector_tail(const asj_nfa *nfa, double t, int32_t n);
+
+/* ln G(s; n): natural logarithm of P(gamma~_1 + .. + gamma~_n >= s), 1 <= n <= ASJ_MAX_ARC, s > 0. */
+double asj_nfa_log_arc_tail(const asj_nfa *nfa, double s, int32_t n);
+
+#endif
