@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { BACKEND, DEVICE, THREADS, MAX_MEGAPIXELS, TIME, QUIET };
+enum { BACKEND, DEVICE, THREADS, SIMD, MAX_MEGAPIXELS, TIME, QUIET };
 
 /* The largest image that asj_detect() takes. */
 #define MAX_MEGAPIXELS_LIMIT (ASJ_MAX_PIXELS / 1e6)
@@ -21,6 +21,8 @@ const cli_option cli_common_options[] = {
      "this OpenCL device: its number in 'asj-cli devices', gpu, cpu, accelerator, or a part of its name; implies --backend opencl"},
     {THREADS, 0, "threads", "N",
      "threads on the CPU, 0 .. 256; 0 (the default) is one for each processor; the results do not depend on it"},
+    {SIMD, 0, "simd", "reference|sse2|avx2|avx512|neon",
+     "vector instructions of the CPU, for comparisons; auto (the default): the best that it has; the results do not depend on it"},
     {MAX_MEGAPIXELS, 0, "max-megapixels", "N", "refuse larger images before they are decoded (default 268, at most 536)"},
     {TIME, 0, "time", NULL, "print how long each stage took"},
     {QUIET, 'q', "quiet", NULL, "print nothing but errors (and what was asked for)"},
@@ -53,6 +55,16 @@ static int take_threads(cli_common *common, const char *text)
     return CLI_SUCCESS;
 }
 
+static int take_simd(cli_common *common, const char *text)
+{
+    for (int32_t simd = 0; simd < ASJ_SIMD_COUNT; simd++)
+        if (strcmp(text, asj_simd_name(simd)) == 0) {
+            common->simd = simd;
+            return CLI_SUCCESS;
+        }
+    return cli_usage_error(NULL, "--simd: '%s' is not auto, reference, sse2, avx2, avx512 or neon", text);
+}
+
 static int take_max_megapixels(cli_common *common, const char *text)
 {
     double number;
@@ -70,6 +82,7 @@ int cli_common_take(void *target, int id, const char *text)
     case BACKEND: return take_backend(common, text);
     case DEVICE: common->device = text; break;
     case THREADS: return take_threads(common, text);
+    case SIMD: return take_simd(common, text);
     case MAX_MEGAPIXELS: return take_max_megapixels(common, text);
     case TIME: common->time = 1; break;
     default: common->quiet = 1; break;
@@ -112,6 +125,7 @@ int cli_session_open(cli_session *session, const cli_common *common, size_t imag
     asj_context_options_init(&options);
     options.backend = common->backend;
     options.threads = common->threads;
+    options.simd = common->simd;
     options.device = common->device;
     options.log = print_log;
     options.log_user = session;

@@ -12,6 +12,7 @@
 typedef struct cli_common {
     int32_t backend;
     int32_t threads;
+    int32_t simd;
     const char *device;
     uint64_t max_pixels;
     int time;

@@ -46,8 +46,8 @@ static void print_choice(const char *name, int32_t backend)
     else if (asj_context_backend(context) == ASJ_BACKEND_OPENCL)
         printf("%s\n", asj_context_device(context));
     else
-        printf("the CPU without OpenCL, %d thread%s\n", (int)asj_context_threads(context),
-               asj_context_threads(context) == 1 ? "" : "s");
+        printf("the CPU without OpenCL, %d thread%s, %s\n", (int)asj_context_threads(context),
+               asj_context_threads(context) == 1 ? "" : "s", asj_simd_name(asj_context_simd(context)));
     asj_context_free(&context);
 }
 

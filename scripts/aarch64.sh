@@ -67,7 +67,7 @@ on_aarch64() {
     mkdir -p "$arm"
     arm_cross_file > "$arm/cross.ini"
     arm_has_cmocka || (arm_unpack_cmocka) > /dev/null 2>&1
-    wanted='parity detection-parity'
+    wanted='parity parity-list detection-parity'
     if arm_has_cmocka; then
         wanted="$wanted $arm_units"
     else

@@ -191,6 +191,32 @@ static void threads_do_not_change_the_result(void **state)
     free(one);
 }
 
+/* The best and the portable form are always there; of x86 and ARM one is not. */
+static void forms_do_not_change_the_result(void **state)
+{
+    static const char *const forms[] = {"reference", "sse2", "avx2", "avx512", "neon"};
+    int missing = 0;
+    (void)state;
+    expect_code(run_cli("detect", "-q", "--simd", "auto", "-o", "best.asj", "scene.png", NULL), 0);
+    size_t size = 0;
+    char *best = read_bytes("best.asj", &size);
+    assert_non_null(best);
+    for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
+        const outcome *result = run_cli("detect", "-q", "--simd", forms[i], "-o", "form.asj", "scene.png", NULL);
+        if (i == 0 || result->code == 0) {
+            expect_code(result, 0);
+            expect_file("form.asj", best);
+            continue;
+        }
+        missing++;
+        expect_code(result, 1);
+        expect_in(result, result->err, forms[i]);
+        expect_in(result, result->err, " vector instructions: ");
+    }
+    assert_true(missing >= 1);
+    free(best);
+}
+
 static void empty_images_give_no_junctions(void **state)
 {
     (void)state;
@@ -371,6 +397,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(times_are_printed_on_request),
         cmocka_unit_test(no_progress_without_a_terminal),
         cmocka_unit_test(threads_do_not_change_the_result),
+        cmocka_unit_test(forms_do_not_change_the_result),
         cmocka_unit_test(empty_images_give_no_junctions),
         cmocka_unit_test(many_images_go_to_a_folder),
         cmocka_unit_test(existing_results_are_replaced),

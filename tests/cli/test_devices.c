@@ -90,7 +90,7 @@ static void devices_says_what_would_run(void **state)
     const outcome *result = run_cli("devices", NULL);
     expect_code(result, 0);
     expect_in(result, result->out, "--backend auto ");
-    expect_in(result, result->out, "--backend cpu    the CPU without OpenCL");
+    expect_in(result, result->out, "--backend cpu    the CPU without OpenCL, ");
     expect_empty(result, "standard error", result->err);
     expect_code(run_cli("devices", "--help", NULL), 0);
     result = run_cli("devices", "everything", NULL);

@@ -392,6 +392,20 @@ static void threads_do_not_change_the_result(void **state)
     free(three);
 }
 
+static void the_portable_form_gives_the_same(void **state)
+{
+    (void)state;
+    expect_code(run_cli("match", "-q", "-o", "best.csv", "first.png", "second.png", NULL), 0);
+    expect_code(run_cli("match", "-q", "--simd", "reference", "-o", "portable.csv", "first.png", "second.png", NULL), 0);
+    size_t sizes[2] = {0};
+    char *best = read_bytes("best.csv", &sizes[0]), *portable = read_bytes("portable.csv", &sizes[1]);
+    assert_non_null(best);
+    assert_non_null(portable);
+    assert_string_equal(best, portable);
+    free(best);
+    free(portable);
+}
+
 static void times_are_printed_on_request(void **state)
 {
     (void)state;
@@ -449,6 +463,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(options_reach_detector_and_matcher),
         cmocka_unit_test(presets_are_for_both_or_for_one),
         cmocka_unit_test(threads_do_not_change_the_result),
+        cmocka_unit_test(the_portable_form_gives_the_same),
         cmocka_unit_test(times_are_printed_on_request),
         cmocka_unit_test(an_interrupt_leaves_nothing),
     };

@@ -100,6 +100,8 @@ static const struct {
     {{"detect", "--threads", "-1", "scene.png"}, "--threads: '-1'"},
     {{"detect", "--threads", "257", "scene.png"}, "--threads: '257'"},
     {{"detect", "--threads", "1e1", "scene.png"}, "--threads: '1e1'"},
+    {{"detect", "--simd", "mmx", "scene.png"}, "--simd: 'mmx'"},
+    {{"match", "--simd", "AVX2", "scene.png", "scene.png"}, "--simd: 'AVX2'"},
     {{"detect", "--max-megapixels", "0", "scene.png"}, "--max-megapixels: '0'"},
     {{"detect", "--max-megapixels", "nan", "scene.png"}, "--max-megapixels: 'nan'"},
     {{"detect", "--plot-color", "red", "scene.png"}, "--plot-color: 'red'"},

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Every variant of every operation against the reference, bit for bit; with --devices, every OpenCL device instead, with the
- * operations that devices have; with --bench, times of all of them:
- *     parity [--devices] [--bench] [--quick] [--seed N] [--rounds N] [--sabotage]
+ * operations that devices have; with --bench, times of all of them; with --list, which form has which operation; with --coverage,
+ * which operation is compared by which check:
+ *     parity [--devices] [--bench] [--list] [--coverage] [--quick] [--seed N] [--rounds N] [--sabotage]
  * Exit status 0 = all equal, 1 = not, 77 = nothing but the reference is there. */
 #define _POSIX_C_SOURCE 200809L
 #include "bench.h"
+#include "matrix.h"
 #include "operations.h"
 #include "targets.h"
 
@@ -157,7 +159,7 @@ static int work(run_state *state, int devices, long rounds)
 int main(int argc, char **argv)
 {
     run_state state = {0};
-    int bench = 0, devices = 0;
+    int bench = 0, coverage = 0, devices = 0;
     long rounds = 1;
     state.seed = 1;
     for (int i = 1; i < argc; i++) {
@@ -165,6 +167,10 @@ int main(int argc, char **argv)
             bench = 1;
         else if (strcmp(argv[i], "--devices") == 0)
             devices = 1;
+        else if (strcmp(argv[i], "--list") == 0)
+            return matrix_list();
+        else if (strcmp(argv[i], "--coverage") == 0)
+            coverage = 1;
         else if (strcmp(argv[i], "--quick") == 0)
             state.quick = 1;
         else if (strcmp(argv[i], "--sabotage") == 0)
@@ -174,11 +180,12 @@ int main(int argc, char **argv)
         else if (strcmp(argv[i], "--rounds") == 0 && i + 1 < argc)
             rounds = strtol(argv[++i], NULL, 10);
         else {
-            fprintf(stderr, "usage: parity [--devices] [--bench] [--quick] [--seed N] [--rounds N] [--sabotage]\n");
+            fprintf(stderr, "usage: parity [--devices] [--bench] [--list] [--coverage] [--quick] [--seed N] [--rounds N] "
+                            "[--sabotage]\n");
             return 2;
         }
     }
-    const int status = bench ? bench_run(1052, 780) : work(&state, devices, rounds);
+    const int status = coverage ? matrix_coverage(state.sabotage) : bench ? bench_run(1052, 780) : work(&state, devices, rounds);
     targets_close(&state.list);
     return status;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Contexts: how they are made, what they say and what they hold. */
 #include "core/context.h"
+#include "tables.h"
 #include "unit_test.h"
 
 static asj_context_options with(unit_counter *counter)
@@ -54,6 +55,7 @@ static void test_refused(void **state)
     options.allocator.allocate = NULL;
     assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_ARGUMENT);
     static const int32_t backends[] = {-1, 3, INT32_MAX}, threads[] = {-1, 257, INT32_MIN, INT32_MAX};
+    static const int32_t forms[] = {-1, ASJ_SIMD_COUNT, INT32_MAX};
     for (size_t i = 0; i < UNIT_COUNT(backends); i++) {
         options = with(&counter);
         options.backend = backends[i];
@@ -68,7 +70,77 @@ static void test_refused(void **state)
         assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_OPTION);
         assert_null(context);
     }
+    for (size_t i = 0; i < UNIT_COUNT(forms); i++) {
+        options = with(&counter);
+        options.simd = forms[i];
+        context = (asj_context *)&counter;
+        assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_OPTION);
+        assert_null(context);
+    }
     assert_int_equal(counter.live, 0);
+}
+
+static void keep_line(void *user, int32_t level, const char *message)
+{
+    char *line = user;
+    assert_int_equal(level, ASJ_LOG_ERROR);
+    snprintf(line, 256, "%s", message);
+}
+
+/* Each form that runs here is had by its name; of the others the log says why not, and the best is one that runs. */
+static void test_simd(void **state)
+{
+    (void)state;
+    for (int32_t simd = ASJ_SIMD_AUTO; simd < ASJ_SIMD_COUNT; simd++) {
+        unit_counter counter;
+        char line[256] = "";
+        asj_context_options options = with(&counter);
+        asj_context *context = NULL;
+        options.backend = ASJ_BACKEND_CPU;
+        options.simd = simd;
+        options.log = keep_line;
+        options.log_user = line;
+        const asj_status status = asj_context_create(&options, &context);
+        if (simd == ASJ_SIMD_AUTO || asj_tables_runs(simd)) {
+            const int32_t expected = simd == ASJ_SIMD_AUTO ? asj_tables_best() : simd;
+            assert_int_equal(status, ASJ_OK);
+            assert_int_equal(asj_context_simd(context), expected);
+            assert_string_equal(context->ops->name, asj_simd_name(expected));
+            assert_string_equal(line, "");
+            unit_context_free(&counter, &context);
+            continue;
+        }
+        assert_int_equal(status, ASJ_ERROR_DEVICE);
+        assert_null(context);
+        assert_int_equal(counter.live, 0);
+        assert_non_null(strstr(line, asj_simd_name(simd)));
+        assert_non_null(strstr(line, asj_tables_has(simd) ? "this processor lacks them" : "not in this build"));
+    }
+    assert_true(asj_tables_runs(ASJ_SIMD_REFERENCE));
+    assert_true(asj_tables_best() >= ASJ_SIMD_REFERENCE && asj_tables_runs(asj_tables_best()));
+    assert_string_equal(asj_simd_name(ASJ_SIMD_AVX512), "avx512");
+    assert_string_equal(asj_simd_name(ASJ_SIMD_COUNT), "unknown");
+    assert_string_equal(asj_simd_name(-1), "unknown");
+    assert_int_equal(asj_context_simd(NULL), ASJ_SIMD_AUTO);
+}
+
+/* No operation is missing in any form. */
+static void test_tables(void **state)
+{
+    (void)state;
+    for (int32_t simd = ASJ_SIMD_REFERENCE; simd < ASJ_SIMD_COUNT; simd++) {
+        asj_tables tables;
+        void (*operation)(void);
+        memset(&tables, 0, sizeof tables);
+        if (!asj_tables_fill(simd, &tables))
+            continue;
+        for (size_t at = offsetof(asj_tables, image); at < sizeof tables; at += sizeof operation) {
+            memcpy(&operation, (const char *)&tables + at, sizeof operation);
+            assert_true(operation != NULL);
+        }
+    }
+    assert_false(asj_tables_fill(ASJ_SIMD_AUTO, NULL));
+    assert_false(asj_tables_fill(ASJ_SIMD_COUNT, NULL));
 }
 
 static void test_threads(void **state)
@@ -269,7 +341,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_defaults), cmocka_unit_test(test_refused), cmocka_unit_test(test_threads),
-            cmocka_unit_test(test_memory),
+            cmocka_unit_test(test_memory), cmocka_unit_test(test_simd), cmocka_unit_test(test_tables),
         cmocka_unit_test(test_messages), cmocka_unit_test(test_log),     cmocka_unit_test(test_progress),
             cmocka_unit_test(test_clock),
     };
