@@ -3,10 +3,6 @@
  * rows: of L-junctions of image 1. Lists are kept in order of score, of equals the smaller index first: one order, however the
  * work is divided. */
 
-#define NO_PARTNER INT_MIN
-#define ROWS 4    /* frames of image 1 and 2 of a work item */
-#define COLUMNS 2
-
 /* Sixteen products, added in pairs. Compilers for processors have one instruction for that, and find it when nothing comes between
  * the two products: `all`, -1, keeps them together where its value is not known at compile time. */
 static int8 multiply(short16 a, short16 b, int all)
@@ -59,7 +55,7 @@ static void multiply_frames(__global const short16 *left, __global const short16
 __kernel void distance_products(__global const short *left, __global const short *right, int length, int first, int rows,
                                 int columns, int pitch, __global int *products)
 {
-    const int row = (int)get_global_id(0) * ROWS, column = (int)get_global_id(1) * COLUMNS;
+    const int row = (int)get_global_id(0) * PRODUCT_ROWS, column = (int)get_global_id(1) * PRODUCT_COLUMNS;
     if (row < rows && column < columns)
         multiply_frames((__global const short16 *)(left + (size_t)(first + row) * (size_t)length),
                         (__global const short16 *)(right + (size_t)column * (size_t)length), length / 16, rows - row,
@@ -70,7 +66,7 @@ __kernel void distance_products(__global const short *left, __global const short
 __kernel void distance_products_paired(__global const short *left, __global const short *right, int length, int first, int rows,
                                        int columns, int pitch, __global int *products, int all)
 {
-    const int row = (int)get_global_id(0) * ROWS, column = (int)get_global_id(1) * COLUMNS;
+    const int row = (int)get_global_id(0) * PRODUCT_ROWS, column = (int)get_global_id(1) * PRODUCT_COLUMNS;
     if (row < rows && column < columns)
         multiply_frames((__global const short16 *)(left + (size_t)(first + row) * (size_t)length),
                         (__global const short16 *)(right + (size_t)column * (size_t)length), length / 16, rows - row,

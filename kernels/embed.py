@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Kernels as C: the bytes of every program, its hash, and which kernel stands in which.
 
-embed.py OUTPUT.c COMMON.clh PROGRAM.cl...
+embed.py OUTPUT.c CONTRACT.h COMMON.clh PROGRAM.cl...
 
 Arrays of bytes, since C99 promises string literals of 4095 characters only. #line directives make compilers name the files."""
 import hashlib
@@ -26,8 +26,8 @@ def array(name, text):
     return f"static const char {name}[] = {{\n    " + ",\n    ".join(lines) + "\n};\n"
 
 
-def main(output, common_path, *paths):
-    common = read(common_path)
+def main(output, contract_path, common_path, *paths):
+    common = read(contract_path) + read(common_path)
     parts = ['#include "cl/source.h"\n', array("common", common)]
     programs, kernels = [], []
     for index, path in enumerate(paths):

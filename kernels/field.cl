@@ -2,23 +2,7 @@
 /* Step 2 on a device: candidates for junctions, as in field.c. Two forms with the same results: field_pixels, a work item for
  * each pixel of the rows that have candidates, for devices with thousands of them; field_tiles, a work item for a tile of the
  * image, for processors: there the planes of sector_plan.h, which neighbours share, save most of the work. Planes of the frame
- * as in gradient.cl.
- *
- * The table, in ints (src/cl/field_ops.c): a, b of each family; OFFSET_INTS for each offset; where each plain slot ends; which
- * plain slot each extra slot adds to the total; SECTOR_INTS for each sector. */
-
-typedef struct field_sizes {
-    int radius, sectors, suppress, apart, families, offsets, plain_slots, slots, step;
-} field_sizes;
-
-#define MARGIN 32
-#define LANES 16 /* pixels of a mask */
-#define MAX_OFFSETS 252 /* of radius 9 */
-
-#define OFFSET_INTS 7
-enum { OFFSET_DX, OFFSET_DY, OFFSET_PLANE, OFFSET_X, OFFSET_Y, OFFSET_CROSS_X, OFFSET_DOT_Y };
-#define SECTOR_INTS 5
-enum { SECTOR_LOW, SECTOR_HIGH, SECTOR_MEAN, SECTOR_SCALE, SECTOR_LEAST };
+ * and the table: contract.h. */
 
 typedef struct field_table {
     __global const int *families, *offsets, *boundaries, *extras, *sectors;
@@ -29,7 +13,7 @@ static field_table open_table(const field_sizes *s, __global const int *table)
     field_table t;
     t.families = table;
     t.offsets = t.families + 2 * s->families;
-    t.boundaries = t.offsets + OFFSET_INTS * s->offsets;
+    t.boundaries = t.offsets + FIELD_OFFSET_INTS * s->offsets;
     t.extras = t.boundaries + s->plain_slots;
     t.sectors = t.extras + (s->slots - s->plain_slots);
     return t;
@@ -73,12 +57,12 @@ static ulong find_peaks(const field_sizes *s, __global const int *sectors, __loc
 {
     ulong peaks = 0;
     for (int k = 0; k < s->sectors; k++) {
-        const int here = strength(slot, step, sectors + SECTOR_INTS * k);
-        int largest = here >= sectors[SECTOR_INTS * k + SECTOR_LEAST];
+        const int here = strength(slot, step, sectors + FIELD_SECTOR_INTS * k);
+        int largest = here >= sectors[FIELD_SECTOR_INTS * k + SECTOR_LEAST];
         for (int d = 1; largest && d <= s->suppress; d++) {
             const int before = k >= d ? k - d : k - d + s->sectors, after = k + d < s->sectors ? k + d : k + d - s->sectors;
-            largest = here > strength(slot, step, sectors + SECTOR_INTS * before) &&
-                      here >= strength(slot, step, sectors + SECTOR_INTS * after);
+            largest = here > strength(slot, step, sectors + FIELD_SECTOR_INTS * before) &&
+                      here >= strength(slot, step, sectors + FIELD_SECTOR_INTS * after);
         }
         peaks |= (ulong)largest << k;
     }
@@ -93,7 +77,7 @@ static void fill_slots(const field_sizes *s, const field_table *t, __local const
     int i = 0;
     for (int j = 0; j < s->plain_slots; j++) {
         for (const int end = t->boundaries[j]; i < end; i++) {
-            __global const int *o = t->offsets + OFFSET_INTS * i;
+            __global const int *o = t->offsets + FIELD_OFFSET_INTS * i;
             const short2 g = here[o[OFFSET_DY] * pitch + o[OFFSET_DX]];
             const int cross = (g.x * o[OFFSET_Y] >> 16) - (g.y * o[OFFSET_CROSS_X] >> 16);
             const int dot = (g.x * o[OFFSET_X] >> 16) - (g.y * o[OFFSET_DOT_Y] >> 16);
@@ -138,10 +122,8 @@ __kernel void field_pixels(__global const short *gradient_x, __global const shor
     }
 }
 
-/* ---- field_tiles: a work item takes TILE x tile_rows pixels, GROUP vectors of a row at once; it is the whole work-group ---- */
-
-#define TILE 128 /* pixels */
-#define GROUP 4  /* vectors of LANES pixels */
+/* ---- field_tiles: a work item takes FIELD_TILE x tile_rows pixels, FIELD_GROUP vectors of a row at once; it is the whole
+ * work-group ---- */
 
 /* 16 numbers from anywhere. */
 struct __attribute__((packed)) anywhere {
@@ -179,7 +161,7 @@ static void group_slots(const field_sizes *s, const field_table *t, __local cons
     ushort16 s0 = 0, s1 = 0, s2 = 0, s3 = 0;
     __local ushort16 *slot = slots;
     int i = 0, j = 0;
-    for (; j < s->plain_slots; j++, slot += GROUP) {
+    for (; j < s->plain_slots; j++, slot += FIELD_GROUP) {
         for (const int end = t->boundaries[j]; i < end; i++) {
             __local const ushort *gamma = planes + at[i];
             s0 += load(gamma);
@@ -192,8 +174,8 @@ static void group_slots(const field_sizes *s, const field_table *t, __local cons
         slot[2] = s2;
         slot[3] = s3;
     }
-    for (; j < s->slots; j++, slot += GROUP) {
-        __local const ushort16 *low = slots + t->extras[j - s->plain_slots] * GROUP;
+    for (; j < s->slots; j++, slot += FIELD_GROUP) {
+        __local const ushort16 *low = slots + t->extras[j - s->plain_slots] * FIELD_GROUP;
         slot[0] = s0 + low[0];
         slot[1] = s1 + low[1];
         slot[2] = s2 + low[2];
@@ -206,22 +188,22 @@ static void group_slots(const field_sizes *s, const field_table *t, __local cons
 static int group_strengths(const field_sizes *s, __global const int *sector, __local const ushort16 *slots,
                            __local short16 *strengths)
 {
-    __local short16 *z = strengths + s->suppress * GROUP;
+    __local short16 *z = strengths + s->suppress * FIELD_GROUP;
     short16 some = 0;
-    for (int k = 0; k < s->sectors; k++, sector += SECTOR_INTS, z += GROUP) {
-        __local const ushort16 *low = slots + sector[SECTOR_LOW] * GROUP, *high = slots + sector[SECTOR_HIGH] * GROUP;
+    for (int k = 0; k < s->sectors; k++, sector += FIELD_SECTOR_INTS, z += FIELD_GROUP) {
+        __local const ushort16 *low = slots + sector[SECTOR_LOW] * FIELD_GROUP, *high = slots + sector[SECTOR_HIGH] * FIELD_GROUP;
         const ushort16 mean = (ushort)sector[SECTOR_MEAN], scale = (ushort)sector[SECTOR_SCALE];
         const short16 least = (short)(sector[SECTOR_LEAST] - 1);
-        for (int v = 0; v < GROUP; v++) {
+        for (int v = 0; v < FIELD_GROUP; v++) {
             z[v] = as_short16(high_product_unsigned(excess(high[v] - low[v], mean), scale));
             some |= z[v] > least;
         }
     }
     if (!any16(some))
         return 0;
-    for (int i = 0; i < s->suppress * GROUP; i++) {
-        strengths[i] = strengths[s->sectors * GROUP + i];
-        z[i] = strengths[s->suppress * GROUP + i];
+    for (int i = 0; i < s->suppress * FIELD_GROUP; i++) {
+        strengths[i] = strengths[s->sectors * FIELD_GROUP + i];
+        z[i] = strengths[s->suppress * FIELD_GROUP + i];
     }
     return 1;
 }
@@ -231,8 +213,8 @@ static short16 is_peak(__local const short16 *z, int suppress, int least)
 {
     short16 before = (short)(least - 1), after = 0;
     for (int d = 1; d <= suppress; d++) {
-        before = max(before, z[-d * GROUP]);
-        after = max(after, z[d * GROUP]);
+        before = max(before, z[-d * FIELD_GROUP]);
+        after = max(after, z[d * FIELD_GROUP]);
     }
     return (z[0] > before) & (z[0] >= after);
 }
@@ -253,7 +235,7 @@ static uint find_candidates(const field_sizes *s, __global const int *sector, __
     twice.vector = 0;
     for (int word = 0, k = 0; word < 4; word++) {
         short16 bits = 0;
-        for (int bit = 0; bit < 16 && k < s->sectors; bit++, k++, z += GROUP, sector += SECTOR_INTS) {
+        for (int bit = 0; bit < 16 && k < s->sectors; bit++, k++, z += FIELD_GROUP, sector += FIELD_SECTOR_INTS) {
             const short16 peak = is_peak(z, s->suppress, sector[SECTOR_LEAST]);
             twice.vector |= seen & peak;
             seen |= peak;
@@ -279,11 +261,11 @@ __kernel void field_tiles(__global const short *gradient_x, __global const short
 {
     const field_table t = open_table(&sizes, table);
     const int radius = sizes.radius, depth = 2 * radius + 1, row_size = 4 * sizes.families * plane_stride;
-    const int left = TILE * (int)get_global_id(0), right = min(left + TILE, blocks * LANES);
+    const int left = FIELD_TILE * (int)get_global_id(0), right = min(left + FIELD_TILE, blocks * LANES);
     const int reach = (right - left + 2 * radius + LANES - 1) / LANES;
     const int first = top + tile_rows * (int)get_global_id(1), last = min(first + tile_rows, bottom);
     const ulong partners = make_partners(&sizes);
-    int at[MAX_OFFSETS];
+    int at[FIELD_MAX_OFFSETS];
     for (int y = first - radius; y < last + radius; y++) {
         const size_t from = (size_t)(y - base) * (size_t)stride + (size_t)(left - radius + MARGIN);
         const int centre = y - radius;
@@ -298,16 +280,16 @@ __kernel void field_tiles(__global const short *gradient_x, __global const short
             continue;
         }
         for (int i = 0; i < sizes.offsets; i++) {
-            __global const int *o = t.offsets + OFFSET_INTS * i;
+            __global const int *o = t.offsets + FIELD_OFFSET_INTS * i;
             at[i] = ((centre + o[OFFSET_DY] + depth) % depth * row_size + o[OFFSET_PLANE] * plane_stride) * LANES +
                     o[OFFSET_DX] + radius;
         }
-        for (int x = left; x < right; x += GROUP * LANES, to += GROUP) {
-            const int runs = min(GROUP, (right - x) / LANES);
+        for (int x = left; x < right; x += FIELD_GROUP * LANES, to += FIELD_GROUP) {
+            const int runs = min(FIELD_GROUP, (right - x) / LANES);
             group_slots(&sizes, &t, (__local const ushort *)planes + x - left, at, slots);
             const int interesting = group_strengths(&sizes, t.sectors, slots, strengths);
             for (int v = 0; v < runs; v++) {
-                __local const short16 *z = strengths + sizes.suppress * GROUP + v;
+                __local const short16 *z = strengths + sizes.suppress * FIELD_GROUP + v;
                 const uint mask = interesting ? find_candidates(&sizes, t.sectors, z, partners) : 0;
                 to[v] = (ushort)thin(mask, width - x - v * LANES, sizes.step);
             }

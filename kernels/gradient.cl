@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 1 on a device: the normalised gradient of gradient.c, where the formulas are explained. A work item takes eight pixels
- * of a row. Planes are laid out as in image.h: sample (x, y) at [(y - base) * stride + x + MARGIN], row `base` being the first
- * that the buffer holds. Both kernels write the margin too, as zeros. */
+ * of a row. Both kernels write the margin too, as zeros. */
 
-#define MARGIN 32
-#define LIMIT 93 /* round(256 / (sigma_0 L)) */
-/* C_c = round(1024 c / 0.7825) */
-#define UNITS(c) ((2 * 1024 * 10000 * (c) + 7825) / (2 * 7825))
+/* C_c = round(1024 c / sigma_0) */
+#define UNITS(c) ((2 * GRADIENT_ONE * 10000 * (c) + GRADIENT_SIGMA) / (2 * GRADIENT_SIGMA))
 
 /* Floor of the square root, 0 <= s < 2^31: the estimate is off by one at most. */
 static int8 integer_sqrt(int8 s)
@@ -46,7 +43,7 @@ static void differences(__global const ushort *gray, int x, int y, int width, in
 __kernel void gradient_norms(__global const ushort *gray, __global ushort8 *norms, int width, int height, int stride, int base,
                              int first, int last)
 {
-    const int x = 8 * (int)get_global_id(0) - MARGIN, y = first + (int)get_global_id(1);
+    const int x = GRADIENT_PIXELS * (int)get_global_id(0) - MARGIN, y = first + (int)get_global_id(1);
     if (x >= stride - MARGIN || y >= last)
         return;
     int8 dx = 0, dy = 0;
@@ -76,26 +73,24 @@ static int8 window_counts(int x, int y, int width, int height)
     return rows * max(min(column + 2, (int8)(width - 1)) - max(column - 2, (int8)0) + 1, (int8)1);
 }
 
-/* Here a work item takes ROWS such pieces, one below the other, so that they share the sums of rows. */
-#define ROWS 4
-
+/* Here a work item takes GRADIENT_ROWS such pieces, one below the other, so that they share the sums of rows. */
 __kernel void gradient_normalise(__global const ushort *gray, __global const ushort *norms, __global short8 *gradient_x,
                                  __global short8 *gradient_y, int width, int height, int stride, int base, int first, int last,
                                  int epsilon)
 {
-    const int x = 8 * (int)get_global_id(0) - MARGIN, top = first + ROWS * (int)get_global_id(1);
+    const int x = GRADIENT_PIXELS * (int)get_global_id(0) - MARGIN, top = first + GRADIENT_ROWS * (int)get_global_id(1);
     if (x >= stride - MARGIN || top >= last)
         return;
     const int inside = x >= 0 && x < width, rows = inside ? height : 0; /* beside the image all is zero */
     int8 sum_0 = row_sum(norms, x, top - 2, rows, stride, base), sum_1 = row_sum(norms, x, top - 1, rows, stride, base);
     int8 sum_2 = row_sum(norms, x, top, rows, stride, base), sum_3 = row_sum(norms, x, top + 1, rows, stride, base);
-    for (int y = top; y < min(top + ROWS, last); y++) {
+    for (int y = top; y < min(top + GRADIENT_ROWS, last); y++) {
         const size_t at = (size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN);
         const int8 sum_4 = row_sum(norms, x, y + 2, rows, stride, base);
         int8 dx = 0, dy = 0;
         if (y >= 0 && y < rows) {
             const int8 count = window_counts(x, y, width, height), sum = sum_0 + sum_1 + sum_2 + sum_3 + sum_4;
-            const int8 least = (convert_int8(vload8(0, norms + at)) * count * LIMIT) >> 8;
+            const int8 least = (convert_int8(vload8(0, norms + at)) * count * GRADIENT_LIMIT) >> 8;
             const int8 scale = quotient(UNITS(count) << 16, max(sum + count * epsilon, least));
             differences(gray, x, y, width, height, stride, base, &dx, &dy);
             dx = (dx * scale + 32768) >> 16;

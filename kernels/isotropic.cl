@@ -1,31 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 3 on a device: the strongest branches at candidates, for each radius, as in isotropic.c; the host judges them. Two forms
  * with the same results: isotropic_candidates, a work-group for each candidate, for devices with thousands of work items;
- * isotropic_batches, a work item for LANES candidates, for processors. Planes of the frame as in gradient.cl.
+ * isotropic_batches, a work item for LANES candidates, for processors. Planes and table: contract.h.
  *
  * A peak is one number: its sum in the upper half, its sector in the lower; 0 = none. Those of candidate c for radius r go to
- * peaks[(c * radii + r) * most], in the order of asj_isotropic_judge(). A candidate is x in the lower half, y in the upper.
- *
- * The table, in ints (src/cl/isotropic_ops.c): RADIUS_INTS for each radius, which say where in the table the rest is. Gammas are
- * held by runs of RUN neighbours in a row (asj_sector_runs). */
-
-#define MARGIN 32
-#define MAX_BRANCHES 5
-
-#define RADIUS_INTS 9
-enum {
-    RADIUS_SECTORS, RADIUS_SUPPRESS, RADIUS_PLAIN_SLOTS, RADIUS_SLOTS,
-    RADIUS_RUNS,        /* number of runs when gammas of its own are made; 0 = those of the radius before serve it */
-    RADIUS_RUN_AT,      /* RUN_INTS for each of these */
-    RADIUS_PLACE_AT,    /* for each offset: its place in the runs */
-    RADIUS_SLOT_AT,     /* where each plain slot ends; which plain slot each extra slot adds to the total */
-    RADIUS_SECTOR_AT    /* SECTOR_INTS for each sector */
-};
-#define RUN 8
-#define RUN_INTS (2 + 4 * RUN)
-enum { RUN_DX, RUN_DY, RUN_X, RUN_Y = RUN_X + RUN, RUN_CROSS_X = RUN_Y + RUN, RUN_DOT_Y = RUN_CROSS_X + RUN };
-#define SECTOR_INTS 7
-enum { SECTOR_LOW, SECTOR_HIGH, SECTOR_MEAN, SECTOR_SCALE, SECTOR_LEAST, SECTOR_FIRST, SECTOR_SIZE };
+ * peaks[(c * radii + r) * most], in the order of asj_isotropic_judge(). A candidate is x in the lower half, y in the upper. */
 
 /* ---- isotropic_candidates ---- */
 
@@ -99,14 +78,14 @@ __kernel void isotropic_candidates(__global const short *gradient_x, __global co
         barrier(CLK_LOCAL_MEM_FENCE);
         const int own = table[radius[RADIUS_SLOT_AT] + radius[RADIUS_PLAIN_SLOTS] - 1]; /* the last plain slot is the total */
         for (int k = item; k < count; k += items) {
-            __global const int *sector = sectors + SECTOR_INTS * k;
+            __global const int *sector = sectors + ISOTROPIC_SECTOR_INTS * k;
             const uint sum = sector_sum(gammas, table + radius[RADIUS_PLACE_AT], own, sector);
             strengths[k] = strength(sum, sector);
             found[k] = sum << 16 | (uint)k;
         }
         barrier(CLK_LOCAL_MEM_FENCE);
         for (int k = item; k < count; k += items)
-            if (!is_largest(strengths, k, count, radius[RADIUS_SUPPRESS], (uint)sectors[SECTOR_INTS * k + SECTOR_LEAST]))
+            if (!is_largest(strengths, k, count, radius[RADIUS_SUPPRESS], (uint)sectors[ISOTROPIC_SECTOR_INTS * k + SECTOR_LEAST]))
                 found[k] = 0;
         barrier(CLK_LOCAL_MEM_FENCE);
         if (item == 0)
@@ -115,8 +94,6 @@ __kernel void isotropic_candidates(__global const short *gradient_x, __global co
 }
 
 /* ---- isotropic_batches: a work item is the whole work-group ---- */
-
-#define LANES 16
 
 /* The numbers of a and b in turns, in each half: those from its first four, or from its last. */
 #define FIRST_FOUR(a, b) (a).s0, (b).s0, (a).s1, (b).s1, (a).s2, (b).s2, (a).s3, (b).s3
@@ -192,7 +169,7 @@ static void batch_strengths(__global const int *radius, __global const int *sect
                             __local short16 *strengths)
 {
     const int count = radius[RADIUS_SECTORS], suppress = radius[RADIUS_SUPPRESS];
-    for (int k = 0; k < count; k++, sector += SECTOR_INTS) {
+    for (int k = 0; k < count; k++, sector += ISOTROPIC_SECTOR_INTS) {
         const ushort16 sum = slots[sector[SECTOR_HIGH]] - slots[sector[SECTOR_LOW]];
         const ushort16 mean = (ushort)sector[SECTOR_MEAN], scale = (ushort)sector[SECTOR_SCALE];
         strengths[k + suppress] = as_short16(high_product_unsigned(excess(sum, mean), scale));
@@ -219,7 +196,7 @@ static void batch_peaks(__global const int *radius, __global const int *sector, 
     const int suppress = radius[RADIUS_SUPPRESS];
     uint16 first = 0, second = 0, third = 0, fourth = 0, fifth = 0;
     strength += suppress;
-    for (int k = 0; k < radius[RADIUS_SECTORS]; k++, sector += SECTOR_INTS, strength++) {
+    for (int k = 0; k < radius[RADIUS_SECTORS]; k++, sector += ISOTROPIC_SECTOR_INTS, strength++) {
         short16 before = (short)(sector[SECTOR_LEAST] - 1), after = 0;
         if (!any16(strength[0] > before))
             continue;

@@ -2,39 +2,21 @@
 /* Step 7 on a device: canonical patches, as in patch.c. A work-group takes a patch; on processors it has one work item, whose
  * loops over samples compilers turn into vectors. */
 
-#define LEVELS 6
-#define GRID_BITS 13
-#define GRID_INTS 7
-enum { GRID_LEVEL, GRID_X, GRID_Y, GRID_AX, GRID_AY, GRID_BX, GRID_BY };
-#define UNIT_ONE 16384
-#define GRAY_ONE 128
-
-/* The pyramid's planes, one after the other in a buffer. */
-typedef struct patch_pyramid {
-    int width[LEVELS], height[LEVELS];
-    int offset[LEVELS]; /* of the level's first element */
-} patch_pyramid;
-
-typedef struct patch_sums {
-    int inside, sum;
-    ulong squares;
-} patch_sums;
-
 /* Grey levels of a grid, those of this work item, and their sums. */
-static patch_sums sample(__global const ushort *planes, const patch_pyramid *p, __global const int *grid, int size,
+static patch_sums sample(__global const ushort *planes, const patch_pyramid *p, __global const patch_grid *grid, int size,
                          __local ushort *grey)
 {
-    const int level = grid[GRID_LEVEL], middle = 1 << (GRID_BITS - 1);
-    const int last_x = (p->width[0] - 1) << GRID_BITS, last_y = (p->height[0] - 1) << GRID_BITS;
+    const int level = grid->level, middle = 1 << (PATCH_GRID_BITS - 1);
+    const int last_x = (p->width[0] - 1) << PATCH_GRID_BITS, last_y = (p->height[0] - 1) << PATCH_GRID_BITS;
     const int right = (p->width[level] - 1) << 8, bottom = (p->height[level] - 1) << 8, stride = p->width[level] + 1;
-    const int ax = grid[GRID_AX], ay = grid[GRID_AY], bx = grid[GRID_BX], by = grid[GRID_BY];
+    const int ax = grid->ax, ay = grid->ay, bx = grid->bx, by = grid->by;
     __global const ushort *plane = planes + p->offset[level];
     patch_sums sums = {0, 0, 0};
     for (int j = (int)get_local_id(1); j < size; j += (int)get_local_size(1))
         for (int i = (int)get_local_id(0); i < size; i += (int)get_local_size(0)) {
-            const int x = grid[GRID_X] + i * ax + j * bx, y = grid[GRID_Y] + i * ay + j * by;
-            const int ix = clamp((((x + middle) >> level) - middle) >> (GRID_BITS - 8), 0, right);
-            const int iy = clamp((((y + middle) >> level) - middle) >> (GRID_BITS - 8), 0, bottom);
+            const int x = grid->x + i * ax + j * bx, y = grid->y + i * ay + j * by;
+            const int ix = clamp((((x + middle) >> level) - middle) >> (PATCH_GRID_BITS - 8), 0, right);
+            const int iy = clamp((((y + middle) >> level) - middle) >> (PATCH_GRID_BITS - 8), 0, bottom);
             const int wx = ix & 255, wy = iy & 255, at = (iy >> 8) * stride + (ix >> 8);
             const int upper = (256 - wx) * plane[at] + wx * plane[at + 1];
             const int lower = (256 - wx) * plane[at + stride] + wx * plane[at + stride + 1];
@@ -67,12 +49,12 @@ static int unit_scale(const patch_sums *s, int size)
 {
     const int samples = size * size;
     const long root = whole_root(s->squares * (ulong)samples - (ulong)((long)s->sum * s->sum));
-    return (int)(((long)UNIT_ONE << 32) / ((root + samples * GRAY_ONE) * size));
+    return (int)(((long)PATCH_UNIT_ONE << 32) / ((root + samples * PATCH_GRAY_ONE) * size));
 }
 
 /* plain_scale: 0 = patches are brought to zero mean and unit norm, else levels are multiplied with it, in 2^-32.
  * sums: one for each work item, and one for the patch. */
-__kernel void patch_describe(__global const ushort *planes, patch_pyramid pyramid, __global const int *grids, int size,
+__kernel void patch_describe(__global const ushort *planes, patch_pyramid pyramid, __global const patch_grid *grids, int size,
                              int plain_scale, __global short *units, __global int *inside, __local ushort *grey,
                              __local patch_sums *sums)
 {
@@ -81,9 +63,9 @@ __kernel void patch_describe(__global const ushort *planes, patch_pyramid pyrami
     const size_t patch = get_group_id(0);
     const patch_sums none = {0, 0, 0};
     __local patch_sums *all = sums + items;
-    grids += patch * GRID_INTS;
+    grids += patch;
     units += patch * (size_t)samples;
-    if (grids[GRID_LEVEL] >= 0) {
+    if (grids->level >= 0) {
         sums[item] = sample(planes, &pyramid, grids, size, grey);
     } else {
         sums[item] = none;

@@ -7,26 +7,9 @@
  * asked[] is touched by atomic operations only, known[] (1 + entry, 0 = not known) written when entries are computed only, so
  * nothing is read while it is written. The order of the entries differs from time to time, the results do not.
  *
- * Planes of the frame as in gradient.cl. */
-
-#define MARGIN 32
-#define LANES 16
-#define BRANCHES 4
-#define MAX_SLOTS 176  /* of radius 9: two for each sector, and one more for each that runs past the last offset */
-#define MAX_SECTORS 56
+ * Planes and tables: contract.h. */
 
 /* ---- local junctions ---- */
-
-typedef struct scan_sizes {
-    int radius, sectors, suppress, offsets, plain_slots, slots;
-} scan_sizes;
-
-/* The table, in ints (src/cl/scan_ops.c): OFFSET_INTS for each offset; where each plain slot ends; which plain slot each extra slot
- * adds to the total; SECTOR_INTS for each sector (src/detect/sector_plan.h). */
-#define OFFSET_INTS 6
-enum { OFFSET_DX, OFFSET_DY, OFFSET_X, OFFSET_Y, OFFSET_CROSS_X, OFFSET_DOT_Y };
-#define SECTOR_INTS 5
-enum { SECTOR_LOW, SECTOR_HIGH, SECTOR_MEAN, SECTOR_SCALE, SECTOR_LEAST };
 
 typedef struct scan_table {
     __global const int *offsets, *boundaries, *extras, *sectors;
@@ -36,7 +19,7 @@ static scan_table open_table(const scan_sizes *s, __global const int *table)
 {
     scan_table t;
     t.offsets = table;
-    t.boundaries = t.offsets + OFFSET_INTS * s->offsets;
+    t.boundaries = t.offsets + SCAN_OFFSET_INTS * s->offsets;
     t.extras = t.boundaries + s->plain_slots;
     t.sectors = t.extras + (s->slots - s->plain_slots);
     return t;
@@ -50,7 +33,7 @@ static void run_slots(const scan_sizes *s, const scan_table *t, __global const s
     int i = 0, j = 0;
     for (; j < s->plain_slots; j++) {
         for (const int end = t->boundaries[j]; i < end; i++) {
-            __global const int *o = t->offsets + OFFSET_INTS * i;
+            __global const int *o = t->offsets + SCAN_OFFSET_INTS * i;
             const int at = o[OFFSET_DY] * stride + o[OFFSET_DX];
             const short16 x = vload16(0, gx + at), y = vload16(0, gy + at);
             const short16 cross = high_product(x, (short)o[OFFSET_Y]) - high_product(y, (short)o[OFFSET_CROSS_X]);
@@ -65,7 +48,7 @@ static void run_slots(const scan_sizes *s, const scan_table *t, __global const s
 
 static void run_strengths(const scan_sizes *s, __global const int *sector, const ushort16 *slots, short16 *strengths)
 {
-    for (int k = 0; k < s->sectors; k++, sector += SECTOR_INTS) {
+    for (int k = 0; k < s->sectors; k++, sector += FIELD_SECTOR_INTS) {
         const ushort16 sum = slots[sector[SECTOR_HIGH]] - slots[sector[SECTOR_LOW]];
         const ushort16 mean = (ushort)sector[SECTOR_MEAN], scale = (ushort)sector[SECTOR_SCALE];
         strengths[k] = as_short16(high_product_unsigned(excess(sum, mean), scale));
@@ -100,7 +83,7 @@ static uint take_place(uint *place, uint branch, int *moves)
 static void insert(uint *list, uint branch)
 {
     int moves = 0;
-    for (int i = 0; i < BRANCHES; i++)
+    for (int i = 0; i < SCAN_BRANCHES; i++)
         branch = take_place(list + i, branch, &moves);
 }
 
@@ -124,15 +107,15 @@ __kernel void scan_runs(__global const short *gradient_x, __global const short *
     const uint run = entries[entry];
     const int x = (int)(run % (uint)blocks) * LANES, y = (int)(run / (uint)blocks);
     const size_t at = (size_t)(y - base) * (size_t)stride + (size_t)(x + MARGIN);
-    ushort16 slots[MAX_SLOTS];
-    short16 strengths[MAX_SECTORS];
-    uint list[LANES * BRANCHES];
+    ushort16 slots[SCAN_MAX_SLOTS];
+    short16 strengths[SCAN_MAX_SECTORS];
+    uint list[LANES * SCAN_BRANCHES];
     run_slots(&sizes, &t, gradient_x + at, gradient_y + at, stride, slots);
     run_strengths(&sizes, t.sectors, slots, strengths);
-    for (int i = 0; i < LANES * BRANCHES; i++)
+    for (int i = 0; i < LANES * SCAN_BRANCHES; i++)
         list[i] = 0;
     for (int k = 0; k < sizes.sectors; k++) {
-        const short16 peak = is_peak(&sizes, strengths, k, t.sectors[SECTOR_INTS * k + SECTOR_LEAST]);
+        const short16 peak = is_peak(&sizes, strengths, k, t.sectors[FIELD_SECTOR_INTS * k + SECTOR_LEAST]);
         short peaks[LANES], before[LANES], here[LANES], after[LANES];
         if (!any16(peak))
             continue;
@@ -142,10 +125,10 @@ __kernel void scan_runs(__global const short *gradient_x, __global const short *
         vstore16(strengths[k + 1 < sizes.sectors ? k + 1 : 0], 0, after);
         for (int i = 0; i < LANES; i++)
             if (peaks[i])
-                insert(list + i * BRANCHES, interpolate(sizes.sectors, k, before[i], here[i], after[i]));
+                insert(list + i * SCAN_BRANCHES, interpolate(sizes.sectors, k, before[i], here[i], after[i]));
     }
-    __global uint *to = branches + (size_t)entry * (LANES * BRANCHES);
-    for (int i = 0; i < LANES * BRANCHES; i++)
+    __global uint *to = branches + (size_t)entry * (LANES * SCAN_BRANCHES);
+    for (int i = 0; i < LANES * SCAN_BRANCHES; i++)
         to[i] = list[i];
     known[run] = (uint)entry + 1;
 }
@@ -158,7 +141,7 @@ static void pixel_slots(const scan_sizes *s, const scan_table *t, __global const
     int i = 0, j = 0;
     for (; j < s->plain_slots; j++) {
         for (const int end = t->boundaries[j]; i < end; i++) {
-            __global const int *o = t->offsets + OFFSET_INTS * i;
+            __global const int *o = t->offsets + SCAN_OFFSET_INTS * i;
             const int at = o[OFFSET_DY] * stride + o[OFFSET_DX], x = gx[at], y = gy[at];
             const int cross = (x * o[OFFSET_Y] >> 16) - (y * o[OFFSET_CROSS_X] >> 16);
             const int dot = (x * o[OFFSET_X] >> 16) - (y * o[OFFSET_DOT_Y] >> 16);
@@ -172,7 +155,7 @@ static void pixel_slots(const scan_sizes *s, const scan_table *t, __global const
 
 static int pixel_strength(const scan_sizes *s, const scan_table *t, __local const ushort *slot, int step, int k)
 {
-    __global const int *sector = t->sectors + SECTOR_INTS * (k < 0 ? k + s->sectors : k < s->sectors ? k : k - s->sectors);
+    __global const int *sector = t->sectors + FIELD_SECTOR_INTS * (k < 0 ? k + s->sectors : k < s->sectors ? k : k - s->sectors);
     const int sum = (ushort)(slot[sector[SECTOR_HIGH] * step] - slot[sector[SECTOR_LOW] * step]);
     return (int)((uint)max(sum - sector[SECTOR_MEAN], 0) * (uint)sector[SECTOR_SCALE] >> 16);
 }
@@ -183,7 +166,7 @@ static uint4 pixel_branches(const scan_sizes *s, const scan_table *t, __local co
     uint first = 0, second = 0, third = 0, fourth = 0;
     for (int k = 0; k < s->sectors; k++) {
         const int here = pixel_strength(s, t, slot, step, k);
-        int peak = here >= t->sectors[SECTOR_INTS * k + SECTOR_LEAST];
+        int peak = here >= t->sectors[FIELD_SECTOR_INTS * k + SECTOR_LEAST];
         for (int d = 1; peak && d <= s->suppress; d++)
             peak = here > pixel_strength(s, t, slot, step, k - d) && here >= pixel_strength(s, t, slot, step, k + d);
         if (!peak)
@@ -220,30 +203,7 @@ __kernel void scan_pixels(__global const short *gradient_x, __global const short
 
 /* ---- rays ---- */
 
-#define REOPEN 3        /* as in src/detect/scan.c */
-#define STRIDE 4
-#define PLAIN 4
-#define TABLE_RADIUS 256
-#define TABLE_WIDTH 4
-
-typedef struct scan_ray {
-    long x, y;      /* start, 1/65536 px */
-    int ux, uy;     /* direction, 2^-30 */
-    int angle;      /* of it, 1/65536 of a turn */
-    int radius;     /* of the next step; 0 = the ray has ended */
-    int looked;     /* last step that is to be looked at by itself */
-    int forward, axial;
-    int forward_failures, ahead_passes, ahead_failures, axial_failures;
-} scan_ray;
-
-typedef struct scan_image {
-    int width, height, blocks, half_width, tolerance, axial, bridge, threshold;
-    int ahead; /* steps that a ray asks for, beside a quarter of its length */
-    int edge;  /* least sum of gamma of a row under which there is an edge, 2^-24 */
-    int stride, base; /* of the planes */
-} scan_image;
-
-/* cos and sin of d / r in 2^-30 at [r TABLE_WIDTH + d], then those of 1024 angles in 2^-14. */
+/* cos and sin of d / r in 2^-30 at [r SCAN_TABLE_WIDTH + d], then those of SCAN_UNITS angles in 2^-14. */
 typedef struct scan_angles {
     __global const int2 *arc, *units;
 } scan_angles;
@@ -256,7 +216,8 @@ typedef struct sample {
 static sample place(const scan_ray *ray, const scan_angles *angles, int r, int d)
 {
     const int size = abs(d);
-    const int2 turn = r < TABLE_RADIUS ? angles->arc[r * TABLE_WIDTH + size] : (int2)(1 << 30, (int)(((uint)size << 30) / (uint)r));
+    const int2 turn = r < SCAN_TABLE_RADIUS ? angles->arc[r * SCAN_TABLE_WIDTH + size]
+                                            : (int2)(1 << 30, (int)(((uint)size << 30) / (uint)r));
     const long c = turn.x, s = d < 0 ? -turn.y : turn.y;
     const long ex = (c * ray->ux - s * ray->uy) >> 30, ey = (c * ray->uy + s * ray->ux) >> 30;
     sample at;
@@ -278,7 +239,7 @@ static int run_at(const scan_image *image, const sample *at)
 /* gamma~ of a branch seen from the ray; *ahead: whether it points along the ray. */
 static int junctionness(const scan_angles *angles, uint branch, const sample *at, int *ahead)
 {
-    const int2 unit = angles->units[(((branch & 65535) + 32) >> 6) & 1023];
+    const int2 unit = angles->units[(((branch & 65535) + 32) >> 6) & (SCAN_UNITS - 1)];
     const int along = unit.x * at->cosine + unit.y * at->sine, across = unit.x * at->sine - unit.y * at->cosine;
     const int difference = (int)abs(along) - (int)abs(across);
     *ahead = along > 0;
@@ -331,7 +292,7 @@ static int step(const scan_image *image, scan_ray *ray, int radius, int4 sums)
     ray->ahead_passes = sums.s1 >= image->threshold ? ray->ahead_passes + 1 : 0;
     ray->ahead_failures = ray->ahead_passes ? 0 : ray->ahead_failures + 1;
     ray->axial_failures = sums.s2 >= image->threshold ? 0 : ray->axial_failures + 1;
-    if (ray->ahead_passes >= REOPEN)
+    if (ray->ahead_passes >= SCAN_REOPEN)
         ray->forward_failures = 0;
     else if (sums.s0 < image->threshold || ray->forward_failures > image->tolerance)
         ray->forward_failures++;
@@ -370,12 +331,12 @@ static void pass_over(const scan_image *image, scan_ray *ray, __global const sho
     int end = ray->radius;
     while (has_edge(image, ray, end, gradient_x, gradient_y))
         end++;
-    if (end - ray->radius <= PLAIN)
+    if (end - ray->radius <= SCAN_PLAIN)
         return;
-    ray->forward = end - PLAIN - 1;
+    ray->forward = end - SCAN_PLAIN - 1;
     ray->axial = image->axial ? ray->forward : 0;
     ray->ahead_failures = 0;
-    ray->radius = end - PLAIN;
+    ray->radius = end - SCAN_PLAIN;
 }
 
 /* One step or a stride, as in src/detect/scan.c; returns 0 when a run that it needs is not known. */
@@ -387,7 +348,7 @@ static int advance(const scan_image *image, const scan_angles *angles, scan_ray 
     if (ray->radius > ray->looked && image->tolerance > 0 && ray->forward_failures == 0 &&
         (!image->axial || ray->axial_failures == 0)) {
         pass_over(image, ray, gradient_x, gradient_y);
-        stride = STRIDE;
+        stride = SCAN_STRIDE;
     }
     if (!arc_sums(image, angles, ray, ray->radius + stride - 1, known, branches, &sums))
         return 0;
@@ -410,7 +371,7 @@ __kernel void scan_walk(__global const short *gradient_x, __global const short *
     const int number = (int)get_global_id(0);
     if (number >= count)
         return;
-    const scan_angles angles = {angle_table, angle_table + TABLE_RADIUS * TABLE_WIDTH};
+    const scan_angles angles = {angle_table, angle_table + SCAN_TABLE_RADIUS * SCAN_TABLE_WIDTH};
     scan_ray ray = rays[number];
     if (ray.radius == 0)
         return;

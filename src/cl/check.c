@@ -39,7 +39,7 @@ asj_status asj_cl_check(asj_context *context)
     asj_status status = asj_cl_reserve(context, &buffer, sizeof results);
     const asj_cl_argument arguments[] = {ASJ_CL_BUFFER(&buffer)};
     if (status == ASJ_OK)
-        status = asj_cl_run(context, "check", 1, &global, NULL, arguments, 1);
+        status = asj_cl_run(context, "check", 1, &global, NULL, ASJ_CL_ARGUMENTS(arguments));
     if (status == ASJ_OK)
         status = asj_cl_read(context, &buffer, 0, results, sizeof results);
     asj_cl_release(context, &buffer);

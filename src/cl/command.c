@@ -46,11 +46,11 @@ asj_status asj_cl_end(asj_context *context, const char *call, const char *subjec
 
 /* ---- kernels ---- */
 
-static asj_status set_arguments(asj_context *context, int32_t number, const asj_cl_argument *arguments, int32_t count)
+static asj_status set_arguments(asj_context *context, int32_t number, asj_cl_arguments arguments)
 {
     struct asj_cl *cl = context->cl;
-    for (int32_t i = 0; i < count; i++) {
-        const asj_cl_argument *a = &arguments[i];
+    for (int32_t i = 0; i < arguments.count; i++) {
+        const asj_cl_argument *a = &arguments.list[i];
         const void *value = a->kind == ASJ_CL_KIND_NUMBER ? &a->number : a->value;
         const cl_int error = cl->api.SetKernelArg(cl->kernels[number], (cl_uint)i, a->size, value);
         if (error != CL_SUCCESS) {
@@ -63,14 +63,14 @@ static asj_status set_arguments(asj_context *context, int32_t number, const asj_
 }
 
 asj_status asj_cl_run(asj_context *context, const char *kernel, int32_t dimensions, const size_t *global, const size_t *local,
-                      const asj_cl_argument *arguments, int32_t count)
+                      asj_cl_arguments arguments)
 {
     struct asj_cl *cl = context->cl;
     int32_t number;
     cl_event event;
     asj_status status = asj_cl_find_kernel(context, kernel, &number);
     if (status == ASJ_OK)
-        status = set_arguments(context, number, arguments, count);
+        status = set_arguments(context, number, arguments);
     for (int32_t i = 0; i < dimensions; i++)
         if (global[i] == 0)
             return status;

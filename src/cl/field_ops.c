@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 2 on the device (kernels/field.cl). */
+#include "kernels/contract.h"
 #include "detect.h"
 #include "overrides.h"
 #include "planes.h"
@@ -7,25 +8,18 @@
 
 #include <asj/device.h>
 
-/* As field_sizes in the kernel. */
-typedef struct field_sizes {
-    int32_t radius, sectors, suppress, apart, families, offsets, plain_slots, slots, step;
-} field_sizes;
-
-/* As in the kernel. */
-#define TILE 128 /* pixels */
-#define GROUP 4  /* vectors of ASJ_LANES pixels */
-#define TILE_ROWS 64 /* those above and below that a tile needs are made by its neighbours as well */
+#define TILE_ROWS 64 /* pixels of a column for a work item: those above and below that it needs, its neighbours make as well */
 
 static int32_t *add_sectors(const asj_field *field, int32_t *next)
 {
     const asj_sectors *s = &field->sectors;
     for (int32_t k = 0; k < s->count; k++) {
-        *next++ = field->plan.low[k];
-        *next++ = field->plan.high[k];
-        *next++ = s->mean[k];
-        *next++ = s->scale[k];
-        *next++ = field->candidate[k];
+        next[SECTOR_LOW] = field->plan.low[k];
+        next[SECTOR_HIGH] = field->plan.high[k];
+        next[SECTOR_MEAN] = s->mean[k];
+        next[SECTOR_SCALE] = s->scale[k];
+        next[SECTOR_LEAST] = field->candidate[k];
+        next += FIELD_SECTOR_INTS;
     }
     return next;
 }
@@ -35,8 +29,9 @@ static asj_status load_table(asj_context *context, asj_cl_table *table, const as
     const asj_sectors *s = &field->sectors;
     const asj_sector_plan *plan = &field->plan;
     int32_t *numbers, *next;
-    asj_status status = asj_cl_table_begin(context, table, 2 * (size_t)plan->family_count + 7 * (size_t)s->offset_count +
-                                           (size_t)plan->slot_count + 5 * (size_t)s->count, &numbers);
+    const size_t most = 2 * (size_t)plan->family_count + FIELD_OFFSET_INTS * (size_t)s->offset_count + (size_t)plan->slot_count +
+                        FIELD_SECTOR_INTS * (size_t)s->count;
+    asj_status status = asj_cl_table_begin(context, table, most, &numbers);
     if (status != ASJ_OK)
         return status;
     next = numbers;
@@ -46,9 +41,14 @@ static asj_status load_table(asj_context *context, asj_cl_table *table, const as
     }
     for (int32_t i = 0; i < s->offset_count; i++) {
         const asj_direction u = asj_sector_direction(s, i);
-        const int32_t offset[7] = {s->dx[i], s->dy[i], plan->plane[i], u.x, u.y, u.cross_x, u.dot_y};
-        for (int j = 0; j < 7; j++)
-            *next++ = offset[j];
+        next[OFFSET_DX] = s->dx[i];
+        next[OFFSET_DY] = s->dy[i];
+        next[OFFSET_X] = u.x;
+        next[OFFSET_Y] = u.y;
+        next[OFFSET_CROSS_X] = u.cross_x;
+        next[OFFSET_DOT_Y] = u.dot_y;
+        next[OFFSET_PLANE] = plan->plane[i];
+        next += FIELD_OFFSET_INTS;
     }
     for (int32_t j = 0; j < plan->plain_count; j++)
         *next++ = plan->boundary[j];
@@ -74,7 +74,7 @@ typedef struct launch {
 /* Vectors. */
 static int32_t plane_stride(const field_sizes *s)
 {
-    return (TILE + 2 * s->radius + ASJ_LANES - 1) / ASJ_LANES;
+    return (FIELD_TILE + 2 * s->radius + ASJ_LANES - 1) / ASJ_LANES;
 }
 
 /* Bytes of local memory of a tile: planes of all rows in reach, slots, strengths. */
@@ -82,18 +82,18 @@ static void tile_memory(const field_sizes *s, size_t bytes[3])
 {
     const size_t vector = ASJ_LANES * sizeof(int16_t);
     bytes[0] = (size_t)(2 * s->radius + 1) * 4 * (size_t)s->families * (size_t)plane_stride(s) * vector;
-    bytes[1] = (size_t)s->slots * GROUP * vector;
-    bytes[2] = (size_t)(s->sectors + 2 * s->suppress) * GROUP * vector;
+    bytes[1] = (size_t)s->slots * FIELD_GROUP * vector;
+    bytes[2] = (size_t)(s->sectors + 2 * s->suppress) * FIELD_GROUP * vector;
 }
 
 static asj_status run_tiles(asj_context *context, struct asj_cl_detect *detect, const launch *l, const size_t bytes[3])
 {
     static const size_t local[2] = {1, 1};
     const size_t rows = (size_t)(l->bottom - l->top);
-    const size_t global[2] = {((size_t)l->frame->width + TILE - 1) / TILE, (rows + TILE_ROWS - 1) / TILE_ROWS};
+    const size_t global[2] = {((size_t)l->frame->width + FIELD_TILE - 1) / FIELD_TILE, (rows + TILE_ROWS - 1) / TILE_ROWS};
     const asj_cl_argument arguments[] = {COMMON_ARGUMENTS, ASJ_CL_INT(TILE_ROWS), ASJ_CL_INT(plane_stride(&l->sizes)),
                                          ASJ_CL_LOCAL(bytes[0]), ASJ_CL_LOCAL(bytes[1]), ASJ_CL_LOCAL(bytes[2])};
-    return asj_cl_run(context, "field_tiles", 2, global, local, arguments, (int32_t)(sizeof arguments / sizeof arguments[0]));
+    return asj_cl_run(context, "field_tiles", 2, global, local, ASJ_CL_ARGUMENTS(arguments));
 }
 
 /* Bytes of local memory of columns x rows pixels: gradient, slots, results. */
@@ -124,7 +124,7 @@ static asj_status run_pixels(asj_context *context, struct asj_cl_detect *detect,
     const size_t rows = (size_t)((l->bottom + step - 1) / step - first) + (l->bottom <= first * step);
     const size_t global[2] = {(columns + local[0] - 1) / local[0] * local[0], (rows + local[1] - 1) / local[1] * local[1]};
     const asj_cl_argument arguments[] = {COMMON_ARGUMENTS, ASJ_CL_LOCAL(bytes[0]), ASJ_CL_LOCAL(bytes[1]), ASJ_CL_LOCAL(bytes[2])};
-    return asj_cl_run(context, "field_pixels", 2, global, local, arguments, (int32_t)(sizeof arguments / sizeof arguments[0]));
+    return asj_cl_run(context, "field_pixels", 2, global, local, ASJ_CL_ARGUMENTS(arguments));
 }
 
 /* Rows that fit at once. */
@@ -144,8 +144,9 @@ static asj_status make_rows(asj_context *context, const asj_field *field, const 
     if (status != ASJ_OK)
         return status;
     const launch l = {frame,
-                      {field->sectors.radius, field->sectors.count, field->suppress, field->apart, field->plan.family_count,
-                       field->sectors.offset_count, field->plan.plain_count, field->plan.slot_count, field->step},
+                      {.radius = field->sectors.radius, .sectors = field->sectors.count, .suppress = field->suppress,
+                       .apart = field->apart, .families = field->plan.family_count, .offsets = field->sectors.offset_count,
+                       .plain_slots = field->plan.plain_count, .slots = field->plan.slot_count, .step = field->step},
                       top, bottom};
     const asj_cl_limits *limits = asj_cl_get_limits(context);
     tile_memory(&l.sizes, bytes);

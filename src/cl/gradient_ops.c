@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 1 on the device (kernels/gradient.cl). The planes stay there for the steps that follow, when they fit; the host has them
  * too, for the steps that look at single junctions. */
+#include "kernels/contract.h"
 #include "detect.h"
 #include "detect/gradient.h"
 #include "overrides.h"
@@ -9,18 +10,14 @@
 
 #include <math.h>
 
-/* As in the kernels: of a work item. */
-#define PIXELS 8
-#define ROWS 4
-
 /* Runs a kernel of gradient.cl for whole rows, margins included, so many by each work item. */
 static asj_status run(asj_context *context, const char *kernel, const asj_frame *frame, int32_t row_count, int32_t by_item,
-                      const asj_cl_argument *arguments, int32_t count)
+                      asj_cl_arguments arguments)
 {
     static const size_t local[2] = {16, 4};
-    const size_t columns = (size_t)frame->stride / PIXELS, rows = (size_t)((row_count + by_item - 1) / by_item);
+    const size_t columns = (size_t)frame->stride / GRADIENT_PIXELS, rows = (size_t)((row_count + by_item - 1) / by_item);
     const size_t global[2] = {(columns + local[0] - 1) / local[0] * local[0], (rows + local[1] - 1) / local[1] * local[1]};
-    return asj_cl_run(context, kernel, 2, global, local, arguments, count);
+    return asj_cl_run(context, kernel, 2, global, local, arguments);
 }
 
 /* The gradient of rows top .. bottom - 1, on the device. With `margins` those too, so that the planes are complete. */
@@ -36,9 +33,10 @@ static asj_status calculate(asj_context *context, struct asj_cl_detect *detect, 
         ASJ_CL_BUFFER(&detect->gray), ASJ_CL_BUFFER(&detect->norms), ASJ_CL_BUFFER(&detect->gradient_x),
         ASJ_CL_BUFFER(&detect->gradient_y), ASJ_CL_INT(frame->width), ASJ_CL_INT(frame->height), ASJ_CL_INT(stride),
         ASJ_CL_INT(base), ASJ_CL_INT(top - more), ASJ_CL_INT(bottom + more), ASJ_CL_INT(epsilon)};
-    asj_status status = run(context, "gradient_norms", frame, bottom - top + 2 * reach, 1, norms, 8);
+    asj_status status = run(context, "gradient_norms", frame, bottom - top + 2 * reach, 1, ASJ_CL_ARGUMENTS(norms));
     if (status == ASJ_OK)
-        status = run(context, "gradient_normalise", frame, bottom - top + 2 * more, ROWS, normalise, 11);
+        status = run(context, "gradient_normalise", frame, bottom - top + 2 * more, GRADIENT_ROWS,
+                     ASJ_CL_ARGUMENTS(normalise));
     return status;
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 3 on the device (kernels/isotropic.cl): it finds the strongest branches of each candidate, the host judges them. */
+#include "kernels/contract.h"
 #include "detect.h"
 #include "overrides.h"
 #include "planes.h"
@@ -8,13 +9,6 @@
 
 #include <asj/device.h>
 #include <string.h>
-
-/* As in the kernels. */
-#define RADIUS_NUMBERS 9
-#define RUN ASJ_SECTOR_RUN
-#define RUN_NUMBERS (2 + 4 * RUN)
-#define SECTOR_NUMBERS 7
-#define LANES 16
 
 /* Candidates that are sent at once: enough for any device to be busy, few enough for their peaks to stay in a cache. */
 #define MOST_CANDIDATES 65536
@@ -25,8 +19,8 @@ static size_t table_size(const asj_isotropic *test)
     size_t count = 0;
     for (int32_t r = 0; r < test->radius_count; r++) {
         const asj_isotropic_radius *entry = &test->radii[r];
-        count += RADIUS_NUMBERS + (size_t)entry->sectors.offset_count + (size_t)entry->plan.slot_count +
-                 RUN_NUMBERS * (size_t)test->radii[entry->source].runs.count + SECTOR_NUMBERS * (size_t)entry->sectors.count;
+        count += RADIUS_INTS + (size_t)entry->sectors.offset_count + (size_t)entry->plan.slot_count +
+                 RUN_INTS * (size_t)test->radii[entry->source].runs.count + ISOTROPIC_SECTOR_INTS * (size_t)entry->sectors.count;
     }
     return count;
 }
@@ -34,11 +28,15 @@ static size_t table_size(const asj_isotropic *test)
 static int32_t *add_runs(const asj_sector_runs *runs, int32_t *next)
 {
     for (int32_t r = 0; r < runs->count; r++) {
-        *next++ = runs->dx[r];
-        *next++ = runs->dy[r];
-        for (int32_t row = 4 * r; row < 4 * r + 4; row++)
-            for (int32_t i = 0; i < RUN; i++)
-                *next++ = runs->factors[row][i];
+        next[RUN_DX] = runs->dx[r];
+        next[RUN_DY] = runs->dy[r];
+        for (int32_t i = 0; i < RUN; i++) {
+            next[RUN_X + i] = runs->factors[4 * r][i];
+            next[RUN_Y + i] = runs->factors[4 * r + 1][i];
+            next[RUN_CROSS_X + i] = runs->factors[4 * r + 2][i];
+            next[RUN_DOT_Y + i] = runs->factors[4 * r + 3][i];
+        }
+        next += RUN_INTS;
     }
     return next;
 }
@@ -56,10 +54,14 @@ static int32_t *add_sectors(const asj_isotropic_radius *entry, int32_t *next)
 {
     const asj_sectors *s = &entry->sectors;
     for (int32_t k = 0; k < s->count; k++) {
-        const int32_t sector[SECTOR_NUMBERS] = {entry->plan.low[k], entry->plan.high[k], s->mean[k], s->scale[k],
-                                                entry->least[k],    s->first[k],         s->size[k]};
-        for (int j = 0; j < SECTOR_NUMBERS; j++)
-            *next++ = sector[j];
+        next[SECTOR_LOW] = entry->plan.low[k];
+        next[SECTOR_HIGH] = entry->plan.high[k];
+        next[SECTOR_MEAN] = s->mean[k];
+        next[SECTOR_SCALE] = s->scale[k];
+        next[SECTOR_LEAST] = entry->least[k];
+        next[SECTOR_FIRST] = s->first[k];
+        next[SECTOR_SIZE] = s->size[k];
+        next += ISOTROPIC_SECTOR_INTS;
     }
     return next;
 }
@@ -70,26 +72,26 @@ static asj_status load_table(asj_context *context, asj_cl_table *table, const as
     asj_status status = asj_cl_table_begin(context, table, table_size(test), &numbers);
     if (status != ASJ_OK)
         return status;
-    int32_t *next = numbers + RADIUS_NUMBERS * test->radius_count;
+    int32_t *next = numbers + RADIUS_INTS * test->radius_count;
     for (int32_t r = 0; r < test->radius_count; r++) {
         const asj_isotropic_radius *entry = &test->radii[r];
         const asj_sectors *s = &entry->sectors;
         const asj_sector_runs *runs = &test->radii[entry->source].runs;
         const int shared = r > 0 && entry->source == test->radii[r - 1].source;
-        int32_t *radius = numbers + RADIUS_NUMBERS * r;
-        radius[0] = s->count;
-        radius[1] = entry->suppress;
-        radius[2] = entry->plan.plain_count;
-        radius[3] = entry->plan.slot_count;
-        radius[4] = shared ? 0 : runs->count;
-        radius[5] = (int32_t)(next - numbers);
+        int32_t *radius = numbers + RADIUS_INTS * r;
+        radius[RADIUS_SECTORS] = s->count;
+        radius[RADIUS_SUPPRESS] = entry->suppress;
+        radius[RADIUS_PLAIN_SLOTS] = entry->plan.plain_count;
+        radius[RADIUS_SLOTS] = entry->plan.slot_count;
+        radius[RADIUS_RUNS] = shared ? 0 : runs->count;
+        radius[RADIUS_RUN_AT] = (int32_t)(next - numbers);
         next = shared ? next : add_runs(runs, next);
-        radius[6] = (int32_t)(next - numbers);
+        radius[RADIUS_PLACE_AT] = (int32_t)(next - numbers);
         for (int32_t i = 0; i < s->offset_count; i++)
             *next++ = entry->place[i];
-        radius[7] = (int32_t)(next - numbers);
+        radius[RADIUS_SLOT_AT] = (int32_t)(next - numbers);
         next = add_slots(&entry->plan, next);
-        radius[8] = (int32_t)(next - numbers);
+        radius[RADIUS_SECTOR_AT] = (int32_t)(next - numbers);
         next = add_sectors(entry, next);
     }
     return asj_cl_table_end(context, table, (size_t)(next - numbers));
@@ -151,8 +153,7 @@ static asj_status run_batches(asj_context *context, struct asj_cl_detect *detect
     const size_t global = (b->count + LANES - 1) / LANES;
     const asj_cl_argument arguments[] = {COMMON_ARGUMENTS, ASJ_CL_INT(b->count), ASJ_CL_LOCAL(bytes[0]), ASJ_CL_LOCAL(bytes[1]),
                                          ASJ_CL_LOCAL(bytes[2]), ASJ_CL_LOCAL(bytes[3])};
-    return asj_cl_run(context, "isotropic_batches", 1, &global, &local, arguments,
-                      (int32_t)(sizeof arguments / sizeof arguments[0]));
+    return asj_cl_run(context, "isotropic_batches", 1, &global, &local, ASJ_CL_ARGUMENTS(arguments));
 }
 
 static asj_status run_candidates(asj_context *context, struct asj_cl_detect *detect, const batch *b, size_t gammas, size_t sectors)
@@ -166,8 +167,7 @@ static asj_status run_candidates(asj_context *context, struct asj_cl_detect *det
     const asj_cl_argument arguments[] = {COMMON_ARGUMENTS, ASJ_CL_LOCAL(gammas * sizeof(uint16_t)),
                                          ASJ_CL_LOCAL(sectors * sizeof(uint32_t)), ASJ_CL_LOCAL(sectors * sizeof(uint32_t))};
     if (status == ASJ_OK)
-        status = asj_cl_run(context, "isotropic_candidates", 1, &global, &local, arguments,
-                            (int32_t)(sizeof arguments / sizeof arguments[0]));
+        status = asj_cl_run(context, "isotropic_candidates", 1, &global, &local, ASJ_CL_ARGUMENTS(arguments));
     return status;
 }
 

@@ -2,6 +2,7 @@
 /* Step 7 on the device: canonical patches (kernels/patch.cl), products of all pairs and best partners (kernels/distance.cl). The
  * planes of the pyramid come from the host, which needs them as well; patches stay on the device between the two steps. SIFT
  * descriptors, patches that keep their mean when they are compared, and the paper's induced patches are left to the CPU. */
+#include "kernels/contract.h"
 #include "detect.h"
 #include "match/describe.h"
 #include "overrides.h"
@@ -15,15 +16,6 @@
 
 #define IMAGES 2
 #define MOST_FRAMES (ASJ_MAX_HYPOTHESES * ASJ_MAX_HYPOTHESES) /* of an L-junction */
-
-/* As in the kernels. */
-typedef struct patch_pyramid {
-    int32_t width[ASJ_PYRAMID_LEVELS], height[ASJ_PYRAMID_LEVELS], offset[ASJ_PYRAMID_LEVELS];
-} patch_pyramid;
-
-#define SUMS_BYTES 16 /* patch_sums */
-#define ROWS 4
-#define COLUMNS 2
 
 /* An image's patches as the device has them. */
 typedef struct device_features {
@@ -135,11 +127,11 @@ static asj_status run_describe(asj_context *context, struct asj_cl_match *match,
         ASJ_CL_BUFFER(&match->planes), ASJ_CL_STRUCT(sizes, sizeof *sizes), ASJ_CL_BUFFER(&match->grids),
         ASJ_CL_INT(options->patch_size), ASJ_CL_INT(options->normalise ? 0 : asj_patch_plain_scale(options->patch_size)),
         ASJ_CL_BUFFER(&to->patches), ASJ_CL_BUFFER(&match->inside), ASJ_CL_LOCAL(samples * sizeof(uint16_t)),
-        ASJ_CL_LOCAL((local[0] * local[1] + 1) * SUMS_BYTES)};
+        ASJ_CL_LOCAL((local[0] * local[1] + 1) * sizeof(patch_sums))};
     asj_status status = asj_cl_reserve(context, &to->patches, count * samples * sizeof(int16_t));
     if (status == ASJ_OK)
         status = asj_cl_reserve(context, &match->inside, count * sizeof(int32_t));
-    return status == ASJ_OK ? asj_cl_run(context, "patch_describe", 2, global, local, arguments, 9) : status;
+    return status == ASJ_OK ? asj_cl_run(context, "patch_describe", 2, global, local, ASJ_CL_ARGUMENTS(arguments)) : status;
 }
 
 /* What is written where an L-junction's frames begin, and which frames can be used. */
@@ -232,17 +224,20 @@ typedef struct block {
     uint32_t frame, frames;   /* its frames */
 } block;
 
+#define PRODUCT_ARGUMENTS                                                                                                     \
+    ASJ_CL_BUFFER(&b->images[0]->patches), ASJ_CL_BUFFER(&b->images[1]->patches), ASJ_CL_INT(b->length),                      \
+        ASJ_CL_INT(b->frame), ASJ_CL_INT(b->frames), ASJ_CL_INT(b->frames2), ASJ_CL_INT(b->frames2),                          \
+        ASJ_CL_BUFFER(&match->products)
+
 static asj_status run_products(asj_context *context, struct asj_cl_match *match, const block *b)
 {
     const size_t local[2] = {8, 8};
-    const size_t global[2] = {round_up((b->frames + ROWS - 1) / ROWS, local[0]),
-                              round_up((b->frames2 + COLUMNS - 1) / COLUMNS, local[1])};
-    const asj_cl_argument arguments[] = {
-        ASJ_CL_BUFFER(&b->images[0]->patches), ASJ_CL_BUFFER(&b->images[1]->patches), ASJ_CL_INT(b->length), ASJ_CL_INT(b->frame),
-        ASJ_CL_INT(b->frames), ASJ_CL_INT(b->frames2), ASJ_CL_INT(b->frames2), ASJ_CL_BUFFER(&match->products), ASJ_CL_INT(-1)};
+    const size_t global[2] = {round_up((b->frames + PRODUCT_ROWS - 1) / PRODUCT_ROWS, local[0]),
+                              round_up((b->frames2 + PRODUCT_COLUMNS - 1) / PRODUCT_COLUMNS, local[1])};
+    const asj_cl_argument arguments[] = {PRODUCT_ARGUMENTS}, paired[] = {PRODUCT_ARGUMENTS, ASJ_CL_INT(-1)};
     if (processor(context))
-        return asj_cl_run(context, "distance_products_paired", 2, global, local, arguments, 9);
-    return asj_cl_run(context, "distance_products", 2, global, local, arguments, 8);
+        return asj_cl_run(context, "distance_products_paired", 2, global, local, ASJ_CL_ARGUMENTS(paired));
+    return asj_cl_run(context, "distance_products", 2, global, local, ASJ_CL_ARGUMENTS(arguments));
 }
 
 static asj_status run_scores(asj_context *context, struct asj_cl_match *match, const block *b)
@@ -253,7 +248,7 @@ static asj_status run_scores(asj_context *context, struct asj_cl_match *match, c
         ASJ_CL_BUFFER(&match->products), ASJ_CL_INT(b->frames2), ASJ_CL_BUFFER(&b->images[0]->frames),
         ASJ_CL_BUFFER(&b->images[0]->usable), ASJ_CL_BUFFER(&b->images[1]->frames), ASJ_CL_BUFFER(&b->images[1]->usable),
         ASJ_CL_INT(b->first), ASJ_CL_INT(b->count), ASJ_CL_INT(b->count2), ASJ_CL_BUFFER(&match->scores)};
-    return asj_cl_run(context, "distance_scores", 2, global, local, arguments, 10);
+    return asj_cl_run(context, "distance_scores", 2, global, local, ASJ_CL_ARGUMENTS(arguments));
 }
 
 /* With one part only, the rows' lists are made where they belong. */
@@ -266,9 +261,9 @@ static asj_status run_rows(asj_context *context, struct asj_cl_match *match, con
                                     ASJ_CL_INT(b->count2), ASJ_CL_INT(b->parts), ASJ_CL_INT(b->limit), ASJ_CL_BUFFER(to)};
     const asj_cl_argument merge[] = {ASJ_CL_BUFFER(&match->lists), ASJ_CL_INT(b->first), ASJ_CL_INT(b->count),
                                      ASJ_CL_INT(b->parts), ASJ_CL_INT(b->limit), ASJ_CL_BUFFER(&match->rows)};
-    asj_status status = asj_cl_run(context, "distance_rows", 2, global, local, rows, 7);
+    asj_status status = asj_cl_run(context, "distance_rows", 2, global, local, ASJ_CL_ARGUMENTS(rows));
     if (status == ASJ_OK && b->parts > 1)
-        status = asj_cl_run(context, "distance_merge", 1, &global_merge, &local_merge, merge, 6);
+        status = asj_cl_run(context, "distance_merge", 1, &global_merge, &local_merge, ASJ_CL_ARGUMENTS(merge));
     return status;
 }
 
@@ -277,7 +272,7 @@ static asj_status run_columns(asj_context *context, struct asj_cl_match *match, 
     const size_t local = 16, global = round_up(b->count2, local);
     const asj_cl_argument arguments[] = {ASJ_CL_BUFFER(&match->scores), ASJ_CL_INT(b->first), ASJ_CL_INT(b->count),
                                          ASJ_CL_INT(b->count2), ASJ_CL_INT(b->limit), ASJ_CL_BUFFER(&match->columns)};
-    return asj_cl_run(context, "distance_columns", 1, &global, &local, arguments, 6);
+    return asj_cl_run(context, "distance_columns", 1, &global, &local, ASJ_CL_ARGUMENTS(arguments));
 }
 
 /* Frames of image 1 whose products are held at once: on a processor what its caches like. At least those of an L-junction. */

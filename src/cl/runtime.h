@@ -70,10 +70,18 @@ typedef struct asj_cl_argument {
 #define ASJ_CL_LOCAL(bytes) {ASJ_CL_KIND_LOCAL, 0, (size_t)(bytes), NULL}                     /* __local */
 #define ASJ_CL_STRUCT(pointer, bytes) {ASJ_CL_KIND_VALUE, 0, (size_t)(bytes), (pointer)}      /* anything by value, float too */
 
+typedef struct asj_cl_arguments {
+    const asj_cl_argument *list;
+    int32_t count;
+} asj_cl_arguments;
+
+/* All of an array. */
+#define ASJ_CL_ARGUMENTS(array) ((asj_cl_arguments){(array), (int32_t)(sizeof(array) / sizeof *(array))})
+
 /* Puts a kernel of kernels/NAME.cl into the queue and does not wait. Builds its program when this is the first use. `local` NULL =
  * the device chooses; else each global size must be a multiple of the local one. A global size of 0 is fine: nothing runs. */
 asj_status asj_cl_run(asj_context *context, const char *kernel, int32_t dimensions, const size_t *global, const size_t *local,
-                      const asj_cl_argument *arguments, int32_t count);
+                      asj_cl_arguments arguments);
 
 /* The largest work-group that this kernel can run with on the device, and the preferred multiple of its size. Either pointer may be
  * NULL. Builds the program as well. */

@@ -2,6 +2,7 @@
 /* Step 4 on the device (kernels/ray_scan.cl). What is known of the image's local junctions is kept until the gradient changes, so
  * that the second scan of an image finds what the first one computed. An image that is not on the device as a whole is left to the
  * CPU. */
+#include "kernels/contract.h"
 #include "detect.h"
 #include "overrides.h"
 #include "planes.h"
@@ -12,26 +13,7 @@
 
 #include <string.h>
 
-/* As in the kernel. */
-#define OFFSET_INTS 6
-#define SECTOR_INTS 5
-
 #define GROUP 16 /* work items: small groups share the work evenly, as rays differ in length */
-
-typedef struct scan_sizes {
-    int32_t radius, sectors, suppress, offsets, plain_slots, slots;
-} scan_sizes;
-
-typedef struct scan_ray {
-    int64_t x, y;
-    int32_t ux, uy, angle, radius, looked, forward, axial;
-    int32_t forward_failures, ahead_passes, ahead_failures, axial_failures;
-    int32_t padding;
-} scan_ray;
-
-typedef struct scan_image {
-    int32_t width, height, blocks, half_width, tolerance, axial, bridge, threshold, ahead, edge, stride, base;
-} scan_image;
 
 struct asj_cl_scan {
     asj_cl_table field, angles;
@@ -69,7 +51,7 @@ void asj_cl_free_scan(asj_context *context)
 
 static asj_status load_angles(asj_context *context, asj_cl_table *table, const asj_scan *scan)
 {
-    const size_t numbers = 2 * (ASJ_SCAN_TABLE_RADIUS * ASJ_SCAN_TABLE_WIDTH + 1024);
+    const size_t numbers = 2 * (ASJ_SCAN_TABLE_RADIUS * ASJ_SCAN_TABLE_WIDTH + SCAN_UNITS);
     int32_t *next;
     asj_status status = asj_cl_table_begin(context, table, numbers, &next);
     if (status != ASJ_OK)
@@ -79,7 +61,7 @@ static asj_status load_angles(asj_context *context, asj_cl_table *table, const a
             *next++ = scan->arc_cosine[r][d];
             *next++ = scan->arc_sine[r][d];
         }
-    for (int32_t i = 0; i < 1024; i++) {
+    for (int32_t i = 0; i < SCAN_UNITS; i++) {
         *next++ = scan->unit[i][0];
         *next++ = scan->unit[i][1];
     }
@@ -92,26 +74,33 @@ static void fill_field(const asj_field *field, int32_t *next)
     const asj_sector_plan *plan = &field->plan;
     for (int32_t i = 0; i < s->offset_count; i++) {
         const asj_direction u = asj_sector_direction(s, i);
-        const int32_t offset[OFFSET_INTS] = {s->dx[i], s->dy[i], u.x, u.y, u.cross_x, u.dot_y};
-        memcpy(next, offset, sizeof offset);
-        next += OFFSET_INTS;
+        next[OFFSET_DX] = s->dx[i];
+        next[OFFSET_DY] = s->dy[i];
+        next[OFFSET_X] = u.x;
+        next[OFFSET_Y] = u.y;
+        next[OFFSET_CROSS_X] = u.cross_x;
+        next[OFFSET_DOT_Y] = u.dot_y;
+        next += SCAN_OFFSET_INTS;
     }
     for (int32_t j = 0; j < plan->plain_count; j++)
         *next++ = plan->boundary[j];
     for (int32_t j = 0; j < plan->slot_count - plan->plain_count; j++)
         *next++ = plan->extra[j];
     for (int32_t k = 0; k < s->count; k++) {
-        const int32_t sector[SECTOR_INTS] = {plan->low[k], plan->high[k], s->mean[k], s->scale[k], field->keep[k]};
-        memcpy(next, sector, sizeof sector);
-        next += SECTOR_INTS;
+        next[SECTOR_LOW] = plan->low[k];
+        next[SECTOR_HIGH] = plan->high[k];
+        next[SECTOR_MEAN] = s->mean[k];
+        next[SECTOR_SCALE] = s->scale[k];
+        next[SECTOR_LEAST] = field->keep[k];
+        next += FIELD_SECTOR_INTS;
     }
 }
 
 /* *changed: another field than before. */
 static asj_status load_field(asj_context *context, asj_cl_table *table, const asj_field *field, int32_t *changed)
 {
-    const size_t count = OFFSET_INTS * (size_t)field->sectors.offset_count + (size_t)field->plan.slot_count +
-                         SECTOR_INTS * (size_t)field->sectors.count;
+    const size_t count = SCAN_OFFSET_INTS * (size_t)field->sectors.offset_count + (size_t)field->plan.slot_count +
+                         FIELD_SECTOR_INTS * (size_t)field->sectors.count;
     int32_t *numbers;
     asj_status status = asj_cl_table_begin(context, table, count, &numbers);
     if (status != ASJ_OK)
@@ -192,6 +181,12 @@ static asj_status make_room(asj_context *context, struct asj_cl_scan *state, siz
     return status;
 }
 
+#define COMPUTE_ARGUMENTS                                                                                                     \
+    ASJ_CL_BUFFER(&detect->gradient_x), ASJ_CL_BUFFER(&detect->gradient_y), ASJ_CL_INT(frame->stride),                        \
+        ASJ_CL_INT(detect->first), ASJ_CL_INT(frame->blocks), ASJ_CL_BUFFER(&state->field.buffer),                            \
+        ASJ_CL_STRUCT(&sizes, sizeof sizes), ASJ_CL_BUFFER(&state->entries), ASJ_CL_INT(state->done), ASJ_CL_INT(count),      \
+        ASJ_CL_BUFFER(&state->branches), ASJ_CL_BUFFER(&state->known)
+
 /* All entries up to `count` that have no branches yet. */
 static asj_status compute(asj_context *context, struct asj_cl_scan *state, const asj_field *field, const asj_frame *frame,
                           uint32_t count)
@@ -200,19 +195,17 @@ static asj_status compute(asj_context *context, struct asj_cl_scan *state, const
     asj_status status = make_room(context, state, count, (size_t)frame->blocks * (size_t)frame->height);
     if (status != ASJ_OK)
         return status;
-    const scan_sizes sizes = {field->sectors.radius, field->sectors.count, field->suppress, field->sectors.offset_count,
-                              field->plan.plain_count, field->plan.slot_count};
+    const scan_sizes sizes = {.radius = field->sectors.radius, .sectors = field->sectors.count, .suppress = field->suppress,
+                              .offsets = field->sectors.offset_count, .plain_slots = field->plan.plain_count,
+                              .slots = field->plan.slot_count};
     const size_t entries = count - state->done, pixels = 64, memory = pixels * (size_t)sizes.slots * sizeof(uint16_t);
-    const asj_cl_argument arguments[] = {
-        ASJ_CL_BUFFER(&detect->gradient_x), ASJ_CL_BUFFER(&detect->gradient_y), ASJ_CL_INT(frame->stride),
-        ASJ_CL_INT(detect->first), ASJ_CL_INT(frame->blocks), ASJ_CL_BUFFER(&state->field.buffer),
-        ASJ_CL_STRUCT(&sizes, sizeof sizes), ASJ_CL_BUFFER(&state->entries), ASJ_CL_INT(state->done), ASJ_CL_INT(count),
-        ASJ_CL_BUFFER(&state->branches), ASJ_CL_BUFFER(&state->known), ASJ_CL_LOCAL(memory)};
+    const asj_cl_argument runs[] = {COMPUTE_ARGUMENTS}, by_pixels[] = {COMPUTE_ARGUMENTS, ASJ_CL_LOCAL(memory)};
     const asj_cl_limits *limits = asj_cl_get_limits(context);
     const int by_pixel = limits->type != ASJ_DEVICE_CPU && memory <= limits->local_memory;
     const size_t local = by_pixel ? pixels : GROUP, items = by_pixel ? entries * ASJ_LANES : entries;
     const size_t global = (items + local - 1) / local * local;
-    status = asj_cl_run(context, by_pixel ? "scan_pixels" : "scan_runs", 1, &global, &local, arguments, by_pixel ? 13 : 12);
+    status = by_pixel ? asj_cl_run(context, "scan_pixels", 1, &global, &local, ASJ_CL_ARGUMENTS(by_pixels))
+                      : asj_cl_run(context, "scan_runs", 1, &global, &local, ASJ_CL_ARGUMENTS(runs));
     if (status == ASJ_OK)
         state->done = count;
     return status;
@@ -230,7 +223,7 @@ static asj_status walk(asj_context *context, struct asj_cl_scan *state, const sc
         ASJ_CL_BUFFER(&state->counts)};
     asj_status status = asj_cl_zero(context, &state->counts, sizeof(uint32_t), sizeof(uint32_t));
     if (status == ASJ_OK)
-        status = asj_cl_run(context, "scan_walk", 1, &global, &local, arguments, 11);
+        status = asj_cl_run(context, "scan_walk", 1, &global, &local, ASJ_CL_ARGUMENTS(arguments));
     return status == ASJ_OK ? asj_cl_read(context, &state->counts, 0, counts, 2 * sizeof *counts) : status;
 }
 
@@ -274,10 +267,11 @@ asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const as
         status = prepare(context, state, scan, frame);
     if (status == ASJ_OK)
         status = send_rays(context, state, rays, count);
-    const scan_image image = {frame->width, frame->height, frame->blocks, scan->half_width, scan->tolerance, scan->axial,
-                              scan->axial ? scan->field->sectors.radius : -1, scan->threshold,
-                              asj_cl_get_limits(context)->type == ASJ_DEVICE_CPU ? 4 : 32, ASJ_SCAN_EDGE, (int32_t)frame->stride,
-                              status == ASJ_OK ? context->cl->detect->first : 0};
+    const scan_image image = {
+        .width = frame->width, .height = frame->height, .blocks = frame->blocks, .half_width = scan->half_width,
+        .tolerance = scan->tolerance, .axial = scan->axial, .bridge = scan->axial ? scan->field->sectors.radius : -1,
+        .threshold = scan->threshold, .ahead = asj_cl_get_limits(context)->type == ASJ_DEVICE_CPU ? 4 : 32, .edge = ASJ_SCAN_EDGE,
+        .stride = (int32_t)frame->stride, .base = status == ASJ_OK ? context->cl->detect->first : 0};
     while (status == ASJ_OK && counts[1] > 0) {
         status = walk(context, state, &image, count, counts);
         if (status == ASJ_OK && counts[0] > state->done)

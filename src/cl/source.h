@@ -8,7 +8,7 @@
 
 typedef struct asj_cl_source {
     const char *name;     /* of the file, without .cl */
-    const char *parts[2]; /* common.clh and the file itself */
+    const char *parts[2]; /* contract.h with common.clh, and the file itself */
     size_t sizes[2];
     const char *hash;     /* of both */
 } asj_cl_source;

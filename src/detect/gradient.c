@@ -31,7 +31,7 @@
 #include <math.h>
 #include <string.h>
 
-#define SIGMA_0 0.7825
+#define SIGMA_0 (ASJ_GRADIENT_SIGMA / 10000.0)
 #define LEAST_PIXELS 32768 /* for a thread: about 40 us */
 
 typedef char arithmetic_shift_is_needed[(-3 >> 1) == -2 ? 1 : -1];

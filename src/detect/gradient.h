@@ -8,6 +8,7 @@
 /* Units of the normalised gradient, and the largest norm that it can have (see gradient.c). */
 #define ASJ_GRADIENT_ONE 1024
 #define ASJ_GRADIENT_LIMIT 3.5
+#define ASJ_GRADIENT_SIGMA 7825 /* sigma_0 in 1/10000 */
 
 /* Fills frame->gradient_x and frame->gradient_y from frame->gray. */
 asj_status asj_gradient(asj_context *context, asj_frame *frame, const asj_detect_options *options);

@@ -105,7 +105,6 @@ asj_arc_sums asj_ray_walk_sums(const asj_scan *scan, const asj_ray_walk *walk, c
     return sums;
 }
 
-#define REOPEN 3 /* steps in a row that must look ahead again after a crossing; one or two happen by chance in noise */
 
 /* Takes the step to radius r; 0 when the ray ends. */
 static int advance(const asj_scan *scan, const asj_arc_sums *sums, int32_t bridge, int32_t r, asj_ray_progress *p, asj_ray *ray)
@@ -113,7 +112,7 @@ static int advance(const asj_scan *scan, const asj_arc_sums *sums, int32_t bridg
     p->ahead_passes = sums->ahead >= scan->threshold ? p->ahead_passes + 1 : 0;
     p->ahead_failures = p->ahead_passes ? 0 : p->ahead_failures + 1;
     p->axial_failures = sums->axial >= scan->threshold ? 0 : p->axial_failures + 1;
-    if (p->ahead_passes >= REOPEN)
+    if (p->ahead_passes >= ASJ_RAY_REOPEN)
         p->forward_failures = 0; /* back after a crossing */
     else if (sums->forward < scan->threshold || p->forward_failures > scan->tolerance)
         p->forward_failures++;
@@ -146,8 +145,6 @@ void asj_ray_walk_finish(const asj_scan *scan, asj_ray *ray)
         ray->axial = ray->forward + bridge;
 }
 
-#define STRIDE 4 /* steps to the next one that is looked at, while nothing fails */
-#define PLAIN 4  /* steps before the end of a plain edge that are looked at all the same: there the branch may end */
 
 /* Whether there is an edge along the ray at radius r: three pixels across, rounded. The border's margin is zero. */
 static int has_edge(const asj_frame *frame, const asj_ray_direction *way, int32_t r)
@@ -173,9 +170,9 @@ static void pass_over(const asj_scan *scan, const asj_frame *frame, asj_ray_walk
     int32_t end = walk->r;
     while (has_edge(frame, &walk->way, end))
         end++;
-    if (end - walk->r <= PLAIN)
+    if (end - walk->r <= ASJ_RAY_PLAIN)
         return;
-    walk->r = end - PLAIN;
+    walk->r = end - ASJ_RAY_PLAIN;
     walk->ray->forward = walk->r - 1;
     walk->ray->axial = scan->axial ? walk->ray->forward : 0;
     walk->progress.ahead_failures = 0;
@@ -197,7 +194,7 @@ int32_t asj_ray_walk_next(const asj_scan *scan, const asj_frame *frame, asj_ray_
     if (!walk->strides)
         return walk->r;
     pass_over(scan, frame, walk);
-    walk->looked = walk->r + STRIDE - 1;
+    walk->looked = walk->r + ASJ_RAY_STRIDE - 1;
     return walk->looked;
 }
 

@@ -6,6 +6,10 @@
 #include "nfa.h"
 #include "ray.h"
 
+#define ASJ_RAY_REOPEN 3 /* steps in a row that must look ahead again after a crossing; one or two happen by chance in noise */
+#define ASJ_RAY_STRIDE 4 /* steps to the next one that is looked at, while nothing fails */
+#define ASJ_RAY_PLAIN 4  /* steps before the end of a plain edge that are looked at all the same: there the branch may end */
+
 /* A ray in whole numbers, as it is walked along. */
 typedef struct asj_ray_direction {
     int64_t x, y;   /* start of the ray, 1/65536 px */

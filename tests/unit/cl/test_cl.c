@@ -240,12 +240,13 @@ static void test_runs(void **state)
     assert_int_equal(asj_cl_profile(context, 1), ASJ_OK);
     assert_int_equal(asj_cl_reserve(context, &buffer, sizeof once), ASJ_OK);
     const asj_cl_argument arguments[] = {ASJ_CL_BUFFER(&buffer)};
-    assert_int_equal(asj_cl_run(context, "check", 1, &global, NULL, arguments, 1), ASJ_OK);
+    const asj_cl_arguments first = ASJ_CL_ARGUMENTS(arguments);
+    assert_int_equal(asj_cl_run(context, "check", 1, &global, NULL, first), ASJ_OK);
     assert_int_equal(asj_cl_read(context, &buffer, 0, once, sizeof once), ASJ_OK);
     assert_int_equal(asj_cl_zero(context, &buffer, 0, sizeof once), ASJ_OK);
-    assert_int_equal(asj_cl_run(context, "check", 1, &global, &local, arguments, 1), ASJ_OK);
+    assert_int_equal(asj_cl_run(context, "check", 1, &global, &local, first), ASJ_OK);
     global = 0;
-    assert_int_equal(asj_cl_run(context, "check", 1, &global, &local, arguments, 1), ASJ_OK); /* nothing to do */
+    assert_int_equal(asj_cl_run(context, "check", 1, &global, &local, first), ASJ_OK); /* nothing to do */
     assert_int_equal(asj_cl_finish(context), ASJ_OK);
     assert_int_equal(asj_cl_read(context, &buffer, 0, again, sizeof again), ASJ_OK);
     assert_memory_equal(once, again, sizeof once);
@@ -289,14 +290,15 @@ static void test_failures(void **state)
     assert_int_equal(asj_cl_read(context, &buffer, 4, &number, 1), ASJ_ERROR_DEVICE);
     assert_non_null(strstr(asj_context_message(context), "clEnqueueReadBuffer"));
     const asj_cl_argument arguments[] = {ASJ_CL_BUFFER(&buffer), ASJ_CL_INT(1), ASJ_CL_UINT(2)};
+    const asj_cl_arguments first = {arguments, 1};
     const asj_cl_argument wrong[] = {ASJ_CL_STRUCT(&number, 3)};
-    assert_int_equal(asj_cl_run(context, "no_such_kernel", 1, &global, NULL, arguments, 1), ASJ_ERROR_DEVICE);
+    assert_int_equal(asj_cl_run(context, "no_such_kernel", 1, &global, NULL, first), ASJ_ERROR_DEVICE);
     assert_non_null(strstr(asj_context_message(context), "no_such_kernel"));
-    assert_int_equal(asj_cl_run(context, "check", 1, &global, NULL, arguments, 3), ASJ_ERROR_DEVICE);
+    assert_int_equal(asj_cl_run(context, "check", 1, &global, NULL, ASJ_CL_ARGUMENTS(arguments)), ASJ_ERROR_DEVICE);
     assert_non_null(strstr(asj_context_message(context), "clSetKernelArg(check, 1): CL_INVALID_ARG_INDEX"));
-    assert_int_equal(asj_cl_run(context, "check", 1, &global, NULL, wrong, 1), ASJ_ERROR_DEVICE);
+    assert_int_equal(asj_cl_run(context, "check", 1, &global, NULL, ASJ_CL_ARGUMENTS(wrong)), ASJ_ERROR_DEVICE);
     assert_non_null(strstr(asj_context_message(context), "CL_INVALID_ARG_SIZE"));
-    assert_int_equal(asj_cl_run(context, "check", 1, &global, &local, arguments, 1), ASJ_ERROR_DEVICE);
+    assert_int_equal(asj_cl_run(context, "check", 1, &global, &local, first), ASJ_ERROR_DEVICE);
     assert_non_null(strstr(asj_context_message(context), "clEnqueueNDRangeKernel(check): CL_INVALID_WORK_"));
     asj_cl_release(context, &buffer);
     unit_context_free(&counter, &context);
