@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_DESCRIBE_H
 #define ASJ_SRC_DESCRIBE_H
 
-#include "image_features.h"
+#include "features.h"
 #include "patch.h"
 
 /* Numbers in a described patch; whether they are unit vectors. */

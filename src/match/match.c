@@ -22,6 +22,7 @@
 #include "consensus.h"
 #include "core/backend.h"
 #include "guided.h"
+#include "image_features.h"
 #include "match_options.h"
 #include "match_result.h"
 #include "shortlist.h"

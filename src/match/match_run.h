@@ -4,7 +4,7 @@
 #define ASJ_SRC_MATCH_RUN_H
 
 #include "candidate.h"
-#include "image_features.h"
+#include "features.h"
 
 typedef struct asj_match_run {
     asj_context *context;

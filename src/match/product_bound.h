@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_PRODUCT_BOUND_H
 #define ASJ_SRC_PRODUCT_BOUND_H
 
-#include "image_features.h"
+#include "features.h"
 
 #define ASJ_BOUND_LENGTH 32 /* numbers in a bound vector: 30 coefficients, the norm of the rest, the slack */
 #define ASJ_BOUND_LANES 16  /* vectors on the right lie together: number 2 k and 2 k + 1 of all of them, then the next two */

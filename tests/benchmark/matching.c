@@ -5,6 +5,7 @@
 
 #include "match/align.h"
 #include "match/describe.h"
+#include "match/image_features.h"
 #include "match/match_options.h"
 #include "match/shortlist.h"
 #include "measure.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "random_pair.h"
+#include "match/image_features.h"
 
 #define MOST_JUNCTIONS 256
 

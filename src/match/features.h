@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* All that the matcher needs of one image. Nothing in it depends on the other image: once created it is complete and only read,
+ * so that one image can be matched with many. */
+#ifndef ASJ_SRC_MATCH_FEATURES_H
+#define ASJ_SRC_MATCH_FEATURES_H
+
+#include "core/pyramid.h"
+#include "l_junctions.h"
+
+typedef struct asj_image_features {
+    asj_pyramid pyramid;
+    asj_l_junctions l_junctions;
+    int16_t *patches;        /* canonical: `length` numbers for each frame, unit vectors unless option normalise is no;
+                              * induced: for each L-junction */
+    uint8_t *usable;         /* of each of them: its patch lies in the image */
+    uint64_t device_copy;    /* names what the device of the context that described them keeps of them; 0 = nothing. Means
+                              * nothing to another context. */
+} asj_image_features;
+
+#endif
