@@ -160,12 +160,12 @@ static asj_status make_rows(asj_context *context, const asj_field *field, const 
 }
 
 asj_status asj_cl_field_rows(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
-                             uint16_t *scratch, size_t scratch_size, uint16_t *masks)
+                             const asj_scratch *scratch, uint16_t *masks)
 {
     const int32_t band = asj_cl_plane_rows(context, frame) - 2 * ASJ_MARGIN;
     asj_status status = ASJ_OK;
     if (band < 1)
-        return asj_field_rows(context, field, frame, top, bottom, scratch, scratch_size, masks);
+        return asj_field_rows(context, field, frame, top, bottom, scratch, masks);
     for (int32_t y = top; y < bottom && status == ASJ_OK; y += band)
         status = make_rows(context, field, frame, y, bottom - y < band ? bottom : y + band, masks);
     return status;

@@ -238,21 +238,22 @@ static size_t most_candidates(const asj_context *context, size_t numbers)
     return most > MOST_CANDIDATES ? MOST_CANDIDATES : (size_t)most;
 }
 
-asj_status asj_cl_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top,
-                                 int32_t bottom, const uint16_t *masks, const size_t *starts, uint16_t *scratch,
-                                 size_t scratch_size, asj_isotropic_junction *junctions)
+asj_status asj_cl_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame,
+                                 const asj_candidate_rows *rows, const asj_scratch *scratch, asj_isotropic_junction *junctions)
 {
+    const int32_t top = rows->top, bottom = rows->bottom;
+    const size_t *starts = rows->starts;
     const int32_t band = asj_cl_plane_rows(context, frame) - 2 * ASJ_MARGIN;
     const size_t numbers = (size_t)(test->radius_count * test->max_branches), most = most_candidates(context, numbers);
     struct asj_cl_detect *detect;
     asj_status status = asj_cl_detect_get(context, &detect);
     if (status == ASJ_OK && (band < 1 || most < (size_t)frame->width))
-        return asj_isotropic_rows(context, test, frame, top, bottom, masks, starts, scratch, scratch_size, junctions);
+        return asj_isotropic_rows(context, test, frame, rows, scratch, junctions);
     for (int32_t first = top, last; status == ASJ_OK && first < bottom; first = last) {
         for (last = first + 1; last < bottom && last - first < band; last++)
             if (starts[last + 1 - top] - starts[first - top] > most)
                 break;
-        const batch b = {test, frame, masks, first, last, starts[last - top] - starts[first - top]};
+        const batch b = {test, frame, rows->masks, first, last, starts[last - top] - starts[first - top]};
         if (b.count > 0)
             status = find_peaks(context, detect, &b);
         if (status != ASJ_OK || b.count == 0)

@@ -12,10 +12,9 @@
 /* gradient_ops.c, field_ops.c, isotropic_ops.c; for what they keep see detect.h */
 asj_status asj_cl_gradient(asj_context *context, asj_frame *frame, const asj_detect_options *options);
 asj_status asj_cl_field_rows(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
-                             uint16_t *scratch, size_t scratch_size, uint16_t *masks);
-asj_status asj_cl_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top,
-                                 int32_t bottom, const uint16_t *masks, const size_t *starts, uint16_t *scratch,
-                                 size_t scratch_size, asj_isotropic_junction *junctions);
+                             const asj_scratch *scratch, uint16_t *masks);
+asj_status asj_cl_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame,
+                                 const asj_candidate_rows *rows, const asj_scratch *scratch, asj_isotropic_junction *junctions);
 
 /* scan_ops.c; struct asj_cl_scan in context->cl->scan */
 asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);

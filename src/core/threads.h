@@ -21,6 +21,18 @@ static inline int32_t asj_thread_number(void)
 #endif
 }
 
+/* Scratch of the threads of a loop: `size` elements for each. */
+typedef struct asj_scratch {
+    uint16_t *memory;
+    size_t size;
+} asj_scratch;
+
+/* That of the calling thread. */
+static inline uint16_t *asj_thread_scratch(const asj_scratch *scratch)
+{
+    return scratch->memory + (size_t)asj_thread_number() * scratch->size;
+}
+
 /* How many threads a context uses that was asked for `wanted`; 0 = one for each processor. */
 static inline int32_t asj_thread_count(int32_t wanted)
 {

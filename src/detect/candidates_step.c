@@ -39,8 +39,7 @@ asj_status asj_step_candidates(asj_detection_run *run)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the candidates");
     for (int32_t top = 0; top < height; top += ASJ_ROW_GROUP) {
         const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
-        asj_status status = context->ops->field->rows(context, run->field, frame, top, bottom, run->scratch, run->scratch_size,
-                                                      run->candidates);
+        asj_status status = context->ops->field->rows(context, run->field, frame, top, bottom, &run->scratch, run->candidates);
         if (status == ASJ_OK)
             status = asj_detection_run_progress(run, ASJ_STAGE_CANDIDATES, 0.05 + 0.45 * bottom / height);
         if (status != ASJ_OK)

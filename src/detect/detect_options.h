@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* The options of the detector and their check. */
 #ifndef ASJ_SRC_DETECT_OPTIONS_H
 #define ASJ_SRC_DETECT_OPTIONS_H
 

@@ -2,7 +2,6 @@
 /* Tables, planes and scratch of a pass; what it tells the caller while it works. */
 #include "detection_run.h"
 #include "detect_options.h"
-#include "core/threads.h"
 
 #include <math.h>
 #include <string.h>
@@ -64,12 +63,10 @@ static asj_status set_size(asj_detection_run *run, asj_detector *detector, int32
 
 static asj_status make_scratch(asj_detection_run *run)
 {
-    const size_t threads = (size_t)run->context->threads;
-    run->scratch_size = asj_field_scratch(run->field);
-    if (run->test->scratch > run->scratch_size)
-        run->scratch_size = run->test->scratch;
-    run->scratch = asj_allocate(&run->context->memory, threads * run->scratch_size, sizeof *run->scratch);
-    return run->scratch ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu threads", threads);
+    const size_t threads = (size_t)run->context->threads, field = asj_field_scratch(run->field), test = run->test->scratch;
+    run->scratch.size = field > test ? field : test;
+    run->scratch.memory = asj_allocate(&run->context->memory, threads * run->scratch.size, sizeof *run->scratch.memory);
+    return run->scratch.memory ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu threads", threads);
 }
 
 static asj_status prepare(asj_detection_run *run)
@@ -108,15 +105,10 @@ asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context,
 void asj_detection_run_end(asj_detection_run *run)
 {
     asj_memory *memory = &run->context->memory;
-    asj_release(memory, run->scratch);
+    asj_release(memory, run->scratch.memory);
     asj_release(memory, run->candidates);
     asj_release(memory, run->isotropic);
     asj_release(memory, run->hypotheses);
-}
-
-uint16_t *asj_detection_run_scratch(const asj_detection_run *run)
-{
-    return run->scratch + (size_t)asj_thread_number() * run->scratch_size;
 }
 
 size_t asj_detection_run_room(size_t count)

@@ -32,8 +32,7 @@ typedef struct asj_detection_run {
     const asj_field *field;          /* tables of steps 2, .. */
     const asj_isotropic *test;       /* .. 3 .. */
     const asj_scan *scan;            /* .. and 4 */
-    uint16_t *scratch;               /* `scratch_size` elements for each thread of the context */
-    size_t scratch_size;
+    asj_scratch scratch;             /* for as many threads as the context has */
 
     uint16_t *candidates;            /* step 2: one bit for each pixel; run b of row y at [y * blocks + b] */
     size_t candidate_count;
@@ -49,7 +48,7 @@ typedef struct asj_detection_run {
 /* Rows are worked on in groups, between which progress is reported. */
 #define ASJ_ROW_GROUP 128
 
-/* Junctions that make a thread worth its while in steps that fit lines: about 40 us. */
+/* Junctions that a thread needs to be worth waking in steps that fit lines: about 40 us. */
 #define ASJ_LEAST_JUNCTIONS 4
 
 /* Checks the arguments of a public function that writes to `output`, makes the tables for the options (NULL = default) and the
@@ -57,9 +56,6 @@ typedef struct asj_detection_run {
 asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context, const asj_image *image,
                                    const asj_detect_options *options, const void *output);
 void asj_detection_run_end(asj_detection_run *run);
-
-/* The scratch of the calling thread, inside a parallel region. */
-uint16_t *asj_detection_run_scratch(const asj_detection_run *run);
 
 /* Length of a list that is allocated for `count` elements: room for a few when there are hardly any, so that the next of a stream
  * of pictures needs no more. */

@@ -8,7 +8,7 @@
  * Departure: the number of tests is K, the orientations of this one pixel. With all pixels of the image (the paper's #J(1)) no
  * branch survives at radius 3 and hardly one at 5, and rays end long before their edge does.
  *
- * Candidates: pixels with two branches of z >= candidate_strength whose directions are more than 0.35 rad away from being equal or
+ * Candidates: pixels with two branches of z >= candidate_strength whose directions are more than APART away from being equal or
  * opposite. They replace the line segment detector that feeds ACJ. Preset `paper` asks for 5.15, which is sqrt(NM) K F <= 1 at
  * radius 7 in a photograph of 0.8 megapixels: what the paper's number of tests would be if it counted one line of the image.
  *
@@ -23,6 +23,10 @@
 
 #include <math.h>
 #include <string.h>
+
+/* rad (20 degrees): chosen below minimum_opening (25), since a local branch is off by a few degrees. Larger loses corners that open
+ * little, smaller takes the two sectors along a thick or bent edge for two branches. */
+#define APART 0.35
 
 #define LEAST_RUNS 128 /* for a thread: about 25 us */
 
@@ -69,7 +73,7 @@ asj_status asj_field_create(asj_context *context, const asj_detect_options *opti
     }
     const double per_radian = s->count / ASJ_TWO_PI;
     field->suppress = (int32_t)lrint(options->sector_width / options->field_radius * per_radian);
-    field->apart = (int32_t)ceil(0.35 * per_radian);
+    field->apart = (int32_t)ceil(APART * per_radian);
     field->step = options->candidate_step;
     set_limits(field);
     return ASJ_OK;
@@ -145,17 +149,22 @@ static void find_peaks(const asj_field *field, const int16_t *z, const uint16_t 
     }
 }
 
-/* Strengths and peaks at ASJ_LANES pixels; where they stand in the scratch. */
-static void evaluate(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, const uint16_t *least,
-                     uint16_t *scratch, int16_t **z, int16_t **peaks)
+/* Where they stand in the scratch: sector k of pixel i at [k * ASJ_LANES + i]. */
+typedef struct evaluation {
+    int16_t *z, *peaks;
+} evaluation;
+
+/* Strengths and peaks at ASJ_LANES pixels. */
+static evaluation evaluate(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, const uint16_t *least,
+                           uint16_t *scratch)
 {
     const asj_sectors *s = &field->sectors;
     const ptrdiff_t at = y * frame->stride + x;
-    *z = (int16_t *)(scratch + asj_sector_scratch(s));
-    *peaks = *z + (size_t)s->count * ASJ_LANES;
-    asj_sector_sums(s, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, (uint16_t *)*z);
-    strengths(s, *z);
-    find_peaks(field, *z, least, *peaks);
+    int16_t *z = (int16_t *)(scratch + asj_sector_scratch(s)), *peaks = z + (size_t)s->count * ASJ_LANES;
+    asj_sector_sums(s, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, (uint16_t *)z);
+    strengths(s, z);
+    find_peaks(field, z, least, peaks);
+    return (evaluation){z, peaks};
 }
 
 static int any_lane(const int16_t *lanes)
@@ -170,8 +179,8 @@ void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, 
                      asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES])
 {
     const asj_sectors *s = &field->sectors;
-    int16_t *z, *peaks;
-    evaluate(field, frame, x, y, field->keep, scratch, &z, &peaks);
+    const evaluation e = evaluate(field, frame, x, y, field->keep, scratch);
+    const int16_t *z = e.z, *peaks = e.peaks;
     memset(branches, 0, ASJ_LANES * sizeof *branches);
     for (int32_t k = 0; k < s->count; k++) {
         const int16_t *before = z + (size_t)(k > 0 ? k - 1 : s->count - 1) * ASJ_LANES;
@@ -215,8 +224,8 @@ static void or_shifted(const int16_t *restrict in, int16_t *restrict out, int32_
 uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch)
 {
     const int32_t count = field->sectors.count;
-    int16_t *z, *peaks;
-    evaluate(field, frame, x, y, field->candidate, scratch, &z, &peaks);
+    const evaluation e = evaluate(field, frame, x, y, field->candidate, scratch);
+    int16_t *z = e.z, *peaks = e.peaks;
     int16_t some[ASJ_LANES] = {0};
     for (int32_t k = 0; k < count; k++)
         for (int i = 0; i < ASJ_LANES; i++)
@@ -261,21 +270,20 @@ void asj_field_thin(const asj_field *field, const asj_frame *frame, int32_t run,
     }
 }
 
-void asj_field_tile(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
-                    uint16_t *scratch, uint16_t *masks)
+void asj_field_tile(const asj_field *field, const asj_frame *frame, const asj_tile *tile, uint16_t *scratch, uint16_t *masks)
 {
-    for (int32_t y = top; y < bottom; y++) {
-        uint16_t *row = masks + (ptrdiff_t)y * frame->blocks + run;
-        for (int32_t b = 0; b < runs; b++)
+    for (int32_t y = tile->top; y < tile->bottom; y++) {
+        uint16_t *row = masks + (ptrdiff_t)y * frame->blocks + tile->run;
+        for (int32_t b = 0; b < tile->runs; b++)
             row[b] = asj_field_has_candidates(field, y)
-                         ? (uint16_t)asj_field_candidates(field, frame, (run + b) * ASJ_LANES, y, scratch)
+                         ? (uint16_t)asj_field_candidates(field, frame, (tile->run + b) * ASJ_LANES, y, scratch)
                          : 0;
-        asj_field_thin(field, frame, run, runs, row);
+        asj_field_thin(field, frame, tile->run, tile->runs, row);
     }
 }
 
 asj_status asj_field_rows(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
-                          uint16_t *scratch, size_t scratch_size, uint16_t *masks)
+                          const asj_scratch *scratch, uint16_t *masks)
 {
     const int32_t threads = asj_threads_for(context, (int64_t)frame->blocks * (bottom - top), LEAST_RUNS);
     /* tiles are half as wide where there are so few that threads would wait for the last one */
@@ -283,9 +291,9 @@ asj_status asj_field_rows(asj_context *context, const asj_field *field, const as
     const int32_t per_tile = threads == 1 || frame->blocks >= many ? largest : largest / 2;
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int32_t run = 0; run < frame->blocks; run += per_tile) {
-        const int32_t runs = frame->blocks - run < per_tile ? frame->blocks - run : per_tile;
-        const size_t thread = (size_t)asj_thread_number();
-        context->ops->field->tile(field, frame, run, runs, top, bottom, scratch + thread * scratch_size, masks);
+        const int32_t left = frame->blocks - run;
+        const asj_tile tile = {run, left < per_tile ? left : per_tile, top, bottom};
+        context->ops->field->tile(field, frame, &tile, asj_thread_scratch(scratch), masks);
     }
     return ASJ_OK;
 }

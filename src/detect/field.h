@@ -5,6 +5,7 @@
 
 #include "sector_plan.h"
 #include "sector_runs.h"
+#include "core/threads.h"
 
 #include <asj/field.h>
 
@@ -49,7 +50,7 @@ typedef struct asj_pixel {
     int32_t x, y;
 } asj_pixel;
 
-/* The branches at `count` pixels; neighbours in a row had best follow each other. */
+/* The branches at `count` pixels; those that are neighbours in a row should follow each other. */
 void asj_field_pixels(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,
                       asj_field_branch (*branches)[ASJ_FIELD_BRANCHES]);
 
@@ -57,16 +58,19 @@ void asj_field_pixels(const asj_field *field, const asj_frame *frame, const asj_
  * opposite. */
 uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch);
 
-/* The same for a tile: `runs` runs (at most candidate_step * ASJ_FIELD_TILE pixels) from run `run` on, rows top .. bottom - 1;
- * those of run b of row y go to masks[y * frame->blocks + b]. Pixels outside the image are none, nor those that asj_field_thin()
- * clears. */
-void asj_field_tile(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
-                    uint16_t *scratch, uint16_t *masks);
+/* Part of an image: `runs` runs of ASJ_LANES pixels from run `run` on, in rows top .. bottom - 1. */
+typedef struct asj_tile {
+    int32_t run, runs;
+    int32_t top, bottom;
+} asj_tile;
 
-/* The same for rows top .. bottom - 1 of the whole image, by all threads of the context; `scratch_size` elements for each
- * thread. A device may fail. */
+/* The same for a tile of at most candidate_step * ASJ_FIELD_TILE columns; candidates of run b of row y go to
+ * masks[y * frame->blocks + b]. Pixels outside the image are none, nor those that asj_field_thin() clears. */
+void asj_field_tile(const asj_field *field, const asj_frame *frame, const asj_tile *tile, uint16_t *scratch, uint16_t *masks);
+
+/* The same for rows top .. bottom - 1 of the whole image, by all threads of the context. A device may fail. */
 asj_status asj_field_rows(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
-                          uint16_t *scratch, size_t scratch_size, uint16_t *masks);
+                          const asj_scratch *scratch, uint16_t *masks);
 
 /* ---- for the vector forms of the above ---- */
 
@@ -107,10 +111,9 @@ size_t asj_field_plane_stride(const asj_field *field);
 typedef struct asj_field_ops {
     /* asj_field_rows() */
     asj_status (*rows)(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
-                       uint16_t *scratch, size_t scratch_size, uint16_t *masks);
+                       const asj_scratch *scratch, uint16_t *masks);
     /* asj_field_tile() */
-    void (*tile)(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
-                 uint16_t *scratch, uint16_t *masks);
+    void (*tile)(const asj_field *field, const asj_frame *frame, const asj_tile *tile, uint16_t *scratch, uint16_t *masks);
     /* asj_field_pixels() */
     void (*pixels)(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,
                    asj_field_branch (*branches)[ASJ_FIELD_BRANCHES]);

@@ -143,19 +143,19 @@ void asj_isotropic_band(const asj_isotropic *test, const asj_frame *frame, int32
 #define LEAST_CANDIDATES 64
 #define BANDS_PER_THREAD 4
 
-asj_status asj_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
-                              const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
-                              asj_isotropic_junction *junctions)
+asj_status asj_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame,
+                              const asj_candidate_rows *rows, const asj_scratch *scratch, asj_isotropic_junction *junctions)
 {
-    const int32_t rows = bottom - top, threads = asj_threads_for(context, (int64_t)starts[rows], LEAST_CANDIDATES);
-    const int32_t bands = threads == 1 || rows < BANDS_PER_THREAD * threads ? threads : BANDS_PER_THREAD * threads;
+    const int32_t count = rows->bottom - rows->top;
+    const size_t *starts = rows->starts;
+    const int32_t threads = asj_threads_for(context, (int64_t)starts[count], LEAST_CANDIDATES);
+    const int32_t bands = threads == 1 || count < BANDS_PER_THREAD * threads ? threads : BANDS_PER_THREAD * threads;
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int32_t band = 0; band < bands; band++) {
-        const int32_t first = (int32_t)((int64_t)rows * band / bands), last = (int32_t)((int64_t)rows * (band + 1) / bands);
-        const size_t thread = (size_t)asj_thread_number();
+        const int32_t first = (int32_t)((int64_t)count * band / bands), last = (int32_t)((int64_t)count * (band + 1) / bands);
         if (starts[last] > starts[first])
-            context->ops->isotropic->band(test, frame, top + first, top + last, masks, scratch + thread * scratch_size,
-                                         junctions + starts[first]);
+            context->ops->isotropic->band(test, frame, rows->top + first, rows->top + last, rows->masks,
+                                          asj_thread_scratch(scratch), junctions + starts[first]);
     }
     return ASJ_OK;
 }

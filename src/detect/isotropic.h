@@ -59,11 +59,16 @@ void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int3
 void asj_isotropic_band(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
                         uint16_t *scratch, asj_isotropic_junction *junctions);
 
-/* The same by all threads of the context; the records of row y start at junctions[starts[y - top]], and starts[bottom - top] ends
- * the last. `scratch_size` elements for each thread. */
-asj_status asj_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
-                              const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
-                              asj_isotropic_junction *junctions);
+/* The candidates of rows top .. bottom - 1, and how their records follow each other. */
+typedef struct asj_candidate_rows {
+    int32_t top, bottom;
+    const uint16_t *masks; /* of the whole image */
+    const size_t *starts;  /* records of row y start at starts[y - top]; starts[bottom - top] ends the last */
+} asj_candidate_rows;
+
+/* The same by all threads of the context. A device may fail. */
+asj_status asj_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame,
+                              const asj_candidate_rows *rows, const asj_scratch *scratch, asj_isotropic_junction *junctions);
 
 /* ---- for the vector forms of the above ---- */
 
@@ -96,9 +101,8 @@ void asj_isotropic_judge(const asj_isotropic *test, const asj_isotropic_radius *
 /* Operations (core/ops.h): step 3 by all threads, which a device replaces, and for the rows of one. */
 typedef struct asj_isotropic_ops {
     /* asj_isotropic_rows() */
-    asj_status (*rows)(asj_context *context, const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom,
-                       const uint16_t *masks, const size_t *starts, uint16_t *scratch, size_t scratch_size,
-                       asj_isotropic_junction *junctions);
+    asj_status (*rows)(asj_context *context, const asj_isotropic *test, const asj_frame *frame, const asj_candidate_rows *rows,
+                       const asj_scratch *scratch, asj_isotropic_junction *junctions);
     /* asj_isotropic_band() */
     void (*band)(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
                  uint16_t *scratch, asj_isotropic_junction *junctions);

@@ -29,6 +29,7 @@ static asj_status test_group(asj_detection_run *run, int32_t top, int32_t bottom
     asj_context *context = run->context;
     size_t starts[ASJ_ROW_GROUP + 1];
     count_candidates(run, top, bottom, starts);
+    const asj_candidate_rows rows = {top, bottom, run->candidates, starts};
     const size_t total = starts[bottom - top], most = run->isotropic_count + total, size = sizeof(asj_isotropic_junction);
     asj_status status = asj_grow(&context->memory, &l->records, &l->record_capacity, asj_detection_run_room(total), size, 0);
     if (status == ASJ_OK)
@@ -37,8 +38,7 @@ static asj_status test_group(asj_detection_run *run, int32_t top, int32_t bottom
     if (status != ASJ_OK)
         return asj_fail(context, status, "no memory for %zu candidates", most);
     if (total > 0)
-        status = context->ops->isotropic->rows(context, run->test, run->frame, top, bottom, run->candidates, starts, run->scratch,
-                                               run->scratch_size, l->records);
+        status = context->ops->isotropic->rows(context, run->test, run->frame, &rows, &run->scratch, l->records);
     if (status != ASJ_OK)
         return status;
     const asj_isotropic_junction *tested = l->records;

@@ -19,10 +19,29 @@
 #include <math.h>
 
 #define MAX_SAMPLES ASJ_PROFILE_SAMPLES
-#define OFFSET_CORRELATION 3.0
+
+#define OFFSET_CORRELATION 3.0 /* factors of s^2: see above */
 #define ANGLE_CORRELATION 10.0
-#define LEAST_ERROR 0.03 /* px: systematic error of a centroid (sampling, interpolation), at either end of a line */
+#define LEAST_ERROR 0.03       /* px: systematic error of a centroid (sampling, interpolation), at either end of a line */
+
+/* The weaker sign makes a thin line of the two if it has this share of the stronger one's weight. Chosen: less takes faint edges
+ * beside a strong one for its partner, more leaves bands between unlike surfaces to one of their edges. */
+#define BOTH_STRONG 0.4
+
+/* px: the largest distance of the edges of a thin line, and the largest half-width of the band in which both are looked for, for
+ * which a profile has room: 2 ceil(4.5) + 1 = ASJ_PROFILE_OFFSETS. */
 #define THIN 4.5
+#define WIDEST 4.5
+
+/* Least variance of t over the weights, relative to its mean square from the junction: of a fit over samples, and of one over whole
+ * pixels, which asks for a few pixels of the branch. Below, rounding or a single pixel decides. */
+#define LEAST_SPREAD 1e-5
+#define LEAST_PIXEL_SPREAD 1e-2
+
+/* Where a line is looked for: from (x, y) along (ux, uy). */
+typedef struct axis {
+    double x, y, ux, uy;
+} axis;
 
 /* The samples of a band around the line s = a + b t. Centroids are r(t) from there; no sum needs one, but for the residuals. */
 typedef struct samples {
@@ -43,8 +62,8 @@ typedef struct line {
 } line;
 
 /* Those whose gradient points along +n are of sign 1, along -n of sign 0. */
-static void collect(const asj_line_ops *ops, const asj_frame *frame, double x, double y, double ux, double uy,
-                    const asj_line_range *range, double half_width, const line *around, samples *out)
+static void collect(const asj_line_ops *ops, const asj_frame *frame, const axis *along, const asj_line_range *range,
+                    double half_width, const line *around, samples *out)
 {
     const int32_t reach = (int32_t)ceil(half_width);
     asj_line_profile *profile = &out->profile;
@@ -52,8 +71,8 @@ static void collect(const asj_line_ops *ops, const asj_frame *frame, double x, d
     out->step = fmax((range->last - range->first) / (MAX_SAMPLES - 1), 1);
     out->a = around->a;
     out->b = around->b;
-    profile->ux = (float)ux;
-    profile->uy = (float)uy;
+    profile->ux = (float)along->ux;
+    profile->uy = (float)along->uy;
     profile->first = (float)range->first;
     profile->step = (float)out->step;
     profile->a = (float)around->a;
@@ -62,10 +81,10 @@ static void collect(const asj_line_ops *ops, const asj_frame *frame, double x, d
         profile->offset[i + reach] = (float)(half_width * i / reach);
     profile->offsets = 2 * reach + 1;
     profile->count = (int32_t)((range->last - range->first) / out->step + 1e-9) + 1;
-    profile->x = (int32_t)floor(x);
-    profile->y = (int32_t)floor(y);
-    profile->origin_x = (float)(x - profile->x);
-    profile->origin_y = (float)(y - profile->y);
+    profile->x = (int32_t)floor(along->x);
+    profile->y = (int32_t)floor(along->y);
+    profile->origin_x = (float)(along->x - profile->x);
+    profile->origin_y = (float)(along->y - profile->y);
     ops->profile(frame, profile, &out->sums);
 }
 
@@ -82,7 +101,7 @@ static moments moments_of(const samples *in, int32_t side)
 static int solve(const samples *in, const moments *m, line *out)
 {
     const double determinant = m->w * m->tt - m->t * m->t;
-    if (m->count < 3 || !(determinant > 1e-5 * m->w * m->tt))
+    if (m->count < 3 || !(determinant > LEAST_SPREAD * m->w * m->tt))
         return 0;
     *out = (line){in->a + (m->tt * m->r - m->t * m->tr) / determinant, in->b + (m->w * m->tr - m->t * m->r) / determinant, 0, 0};
     return 1;
@@ -135,7 +154,7 @@ static int choose(const samples *in, const asj_line_range *range, int variances,
     if (variances)
         find_variances(in, &list[strong], strong, &lines[strong]);
     *found = lines[strong];
-    if (list[!strong].w < 0.4 * list[strong].w || !solve(in, &list[!strong], &lines[!strong]))
+    if (list[!strong].w < BOTH_STRONG * list[strong].w || !solve(in, &list[!strong], &lines[!strong]))
         return 1;
     if (variances)
         find_variances(in, &list[!strong], !strong, &lines[!strong]);
@@ -146,13 +165,13 @@ static int choose(const samples *in, const asj_line_range *range, int variances,
 int asj_line_fit(const asj_line_ops *ops, const asj_frame *frame, double x, double y, const asj_line_range *range,
                  asj_hypothesis_branch *branch)
 {
-    const double ux = cos(branch->angle), uy = sin(branch->angle);
+    const axis along = {x, y, cos(branch->angle), sin(branch->angle)};
     line found = {branch->offset, 0, 0, 0};
     double apart = branch->apart;
     samples list;
     for (int32_t i = 0; i < range->iterations; i++) {
         double half_width = range->half_width[i] + 0.5 * apart;
-        collect(ops, frame, x, y, ux, uy, range, half_width < 4.5 ? half_width : 4.5, &found, &list);
+        collect(ops, frame, &along, range, half_width < WIDEST ? half_width : WIDEST, &found, &list);
         if (!choose(&list, range, i + 1 == range->iterations, &found, &apart))
             return 0;
     }
@@ -186,7 +205,7 @@ static int solve_sums(const asj_line_sums *sums, const asj_rough_line *rough, do
     const double t = ux * x + uy * y, tt = ux * ux * xx + 2 * ux * uy * xy + uy * uy * yy;
     const double s = ux * y - uy * x, ts = ux * uy * (yy - xx) + (ux * ux - uy * uy) * xy;
     const double determinant = w * tt - t * t;
-    if (!(determinant > 1e-2 * w * (tt + middle * (2 * t + middle * w)))) /* less than a few pixels of the branch */
+    if (!(determinant > LEAST_PIXEL_SPREAD * w * (tt + middle * (2 * t + middle * w))))
         return 0;
     const double b = (w * ts - t * s) / determinant;
     *out = (line){rough->offset + (tt * s - t * ts) / determinant - b * middle, b, 0, 0};
@@ -200,15 +219,17 @@ int asj_line_guess(const asj_line_ops *ops, const asj_frame *frame, double x, do
     asj_line_band band;
     asj_line_sums sums[2];
     line lines[2], found;
-    asj_line_band_set(frame, x + middle * ux - rough->offset * uy, y + middle * uy + rough->offset * ux, ux, uy,
-                      0.5 * (t[1] - t[0]), wide < 4.5 ? wide : 4.5, &band);
+    const asj_line_box box = {x + middle * ux - rough->offset * uy, y + middle * uy + rough->offset * ux, ux, uy,
+                              0.5 * (t[1] - t[0]), wide < WIDEST ? wide : WIDEST};
+    asj_line_band_set(frame, &box, &band);
     ops->sums(frame, &band, sums);
     const int strong = sums[1].w > sums[0].w;
     double apart = 0;
     if (!solve_sums(&sums[strong], rough, middle, &lines[strong]))
         return 0;
     found = lines[strong];
-    if ((double)sums[!strong].w >= 0.4 * (double)sums[strong].w && solve_sums(&sums[!strong], rough, middle, &lines[!strong]))
+    if ((double)sums[!strong].w >= BOTH_STRONG * (double)sums[strong].w &&
+        solve_sums(&sums[!strong], rough, middle, &lines[!strong]))
         thin(lines, t[0], t[1], &found, &apart);
     if (!(fabs(found.b) < 1))
         return 0;

@@ -43,9 +43,9 @@ static int32_t smaller(int32_t a, int32_t b)
     return a < b ? a : b;
 }
 
-void asj_line_band_set(const asj_frame *frame, double x, double y, double ux, double uy, double half_length, double half_width,
-                       asj_line_band *band)
+void asj_line_band_set(const asj_frame *frame, const asj_line_box *box, asj_line_band *band)
 {
+    const double x = box->x, y = box->y, ux = box->ux, uy = box->uy, half_length = box->half_length, half_width = box->half_width;
     const double wide = half_length * fabs(ux) + half_width * fabs(uy), high = half_length * fabs(uy) + half_width * fabs(ux);
     band->ux = (float)ux;
     band->uy = (float)uy;

@@ -23,9 +23,15 @@ typedef struct asj_line_sums {
     float w, x, y, xx, xy, yy;
 } asj_line_sums;
 
-/* Around (x, y). Pixels at the border of the image, where a gradient has one neighbour only, are left out. */
-void asj_line_band_set(const asj_frame *frame, double x, double y, double ux, double uy, double half_length, double half_width,
-                       asj_line_band *band);
+/* Where a band lies: its middle, the unit vector along it, half its length and width in px. */
+typedef struct asj_line_box {
+    double x, y;
+    double ux, uy;
+    double half_length, half_width;
+} asj_line_box;
+
+/* Pixels at the border of the image, where a gradient has one neighbour only, are left out. */
+void asj_line_band_set(const asj_frame *frame, const asj_line_box *box, asj_line_band *band);
 
 /* sums[1]: the gradient points along +n, sums[0]: along -n. */
 void asj_line_sums_of(const asj_frame *frame, const asj_line_band *band, asj_line_sums sums[2]);

@@ -32,7 +32,7 @@ static void field_row(const asj_detection_run *run, int32_t y, asj_local_branch 
         const int32_t count = frame->width - first < PART ? frame->width - first : PART;
         for (int32_t i = 0; i < count; i++)
             pixels[i] = (asj_pixel){first + i, y};
-        run->context->ops->field->pixels(run->field, frame, pixels, count, asj_detection_run_scratch(run), found);
+        run->context->ops->field->pixels(run->field, frame, pixels, count, asj_thread_scratch(&run->scratch), found);
         for (int32_t i = 0; i < count; i++)
             for (int b = 0; b < ASJ_FIELD_BRANCHES; b++)
                 *out++ = local_branch(run, found[i][b]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* One ray of step 4, step by step: which arc it has to look at next, and what follows from it. */
+/* One ray of step 4, step by step: which arc decides next, and what follows from it. */
 #ifndef ASJ_SRC_RAY_WALK_H
 #define ASJ_SRC_RAY_WALK_H
 
@@ -28,9 +28,9 @@ typedef struct asj_arc_sums {
     int32_t forward, ahead, axial; /* of the forward branches; of those among them that point ahead; of the axial branches */
 } asj_arc_sums;
 
-/* What a walk along a ray has come to. */
+/* Passes and failures in a row along a ray so far. */
 typedef struct asj_ray_progress {
-    int32_t forward_failures, ahead_passes, ahead_failures, axial_failures; /* in a row */
+    int32_t forward_failures, ahead_passes, ahead_failures, axial_failures;
 } asj_ray_progress;
 
 typedef struct asj_ray_walk {
@@ -45,7 +45,7 @@ typedef struct asj_ray_walk {
 
 void asj_ray_walk_start(asj_ray *ray, asj_ray_walk *walk);
 
-/* The radius of the arc that is to be looked at next. */
+/* The radius of the next arc to sum. */
 int32_t asj_ray_walk_next(const asj_scan *scan, const asj_frame *frame, asj_ray_walk *walk);
 
 /* The samples of the arc at radius r, 2 half_width + 1 of them. */

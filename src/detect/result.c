@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Results: hypotheses become junctions in memory that outlives the context and serves the next image. */
 #include "result.h"
 
 #include <math.h>

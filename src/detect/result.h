@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* The result of asj_detect(), filled from hypotheses. */
 #ifndef ASJ_SRC_RESULT_H
 #define ASJ_SRC_RESULT_H
 

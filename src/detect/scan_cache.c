@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Memory for the local junctions that rays have visited: how much, and an empty one for each image. */
 #include "scan_cache.h"
 
 #include <string.h>

@@ -11,13 +11,11 @@
 
 #define STRIP 64 /* px: see by_strip() */
 
-/* px. Chosen: turns of less than the pixel that needs_scan() tolerates change an end by a few pixels, and twice the diameter of the
- * local junctions is beyond what they make of it; less finds more branches too short and scans these twice, more scans pixels
- * again to the same result. */
+/* px. Chosen: the diameter of the local junctions (15), of which those around an end decide where it is. Less has more branches end
+ * before the part that is scanned again, which are then scanned from their beginning; more follows the same pixels again. */
 #define SCANNED_AGAIN 16
 
-/* px: no pixel of a ray that is nearer than this to the branch's line is another pixel. */
-#define SAME_RAY 1
+#define SAME_RAY 1 /* px: a ray that is never farther from the branch than this visits the same pixels, or their neighbours */
 
 /* Whether a branch has no length yet, or is somewhere along it more than SAME_RAY away from the ray that gave it. */
 static int needs_scan(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Planes and slots of a plan: which gammas are shared, which partial sums are needed. */
 #include "sector_plan.h"
 
 #include <stdlib.h>

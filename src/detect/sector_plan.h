@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* How the sums of all sectors of one radius are had with the least work when they are wanted at every pixel of a region. */
+/* How to compute the sums of all sectors of one radius with the least work at every pixel of a region. */
 #ifndef ASJ_SRC_SECTOR_PLAN_H
 #define ASJ_SRC_SECTOR_PLAN_H
 

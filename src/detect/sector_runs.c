@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Runs of a disc: its offsets in pieces of rows, as vector forms load them. */
 #include "sector_runs.h"
 
 #include <string.h>

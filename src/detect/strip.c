@@ -23,6 +23,7 @@
 
 typedef struct lanes {
     double gamma[ASJ_STRIP_LANES], near_gamma[ASJ_STRIP_LANES];
+    int32_t pixels, near_pixels; /* of all lanes */
 } lanes;
 
 static double total(const double v[ASJ_STRIP_LANES])
@@ -31,18 +32,17 @@ static double total(const double v[ASJ_STRIP_LANES])
 }
 
 /* A pixel at (dx, dy) from the strip's start. */
-static inline void add_pixel(const asj_strip_walk *walk, double dx, double dy, double gx, double gy, int32_t lane, lanes *to,
-                             asj_strip_sums *sums)
+static inline void add_pixel(const asj_strip_walk *walk, double dx, double dy, double gx, double gy, int32_t lane, lanes *to)
 {
     const double ux = walk->ux, uy = walk->uy, t = dx * ux + dy * uy, s = dy * ux - dx * uy;
     if (!(t > 0.5 && t <= walk->reach && fabs(s) <= walk->half_width))
         return;
     const double along = gx * ux + gy * uy, across = gy * ux - gx * uy, gamma = fmax(fabs(across) - fabs(along), 0);
     to->gamma[lane] += gamma;
-    sums->pixels++;
+    to->pixels++;
     if (t <= walk->near) {
         to->near_gamma[lane] += gamma;
-        sums->near_pixels++;
+        to->near_pixels++;
     }
 }
 
@@ -51,7 +51,6 @@ void asj_strip_sums_of(const asj_frame *frame, const asj_strip_walk *walk, asj_s
 {
     lanes list;
     memset(&list, 0, sizeof list);
-    memset(sums, 0, sizeof *sums);
     for (int32_t i = walk->first; i <= walk->last; i++) {
         int32_t first, last;
         asj_strip_step(frame, walk, i, &first, &last);
@@ -59,11 +58,10 @@ void asj_strip_sums_of(const asj_frame *frame, const asj_strip_walk *walk, asj_s
             const int32_t x = walk->along_x ? i : j, y = walk->along_x ? j : i;
             const ptrdiff_t at = y * frame->stride + x;
             add_pixel(walk, x - walk->x, y - walk->y, frame->gradient_x[at], frame->gradient_y[at], (j - first) % ASJ_STRIP_LANES,
-                      &list, sums);
+                      &list);
         }
     }
-    sums->gamma = total(list.gamma);
-    sums->near_gamma = total(list.near_gamma);
+    *sums = (asj_strip_sums){total(list.gamma), total(list.near_gamma), list.pixels, list.near_pixels};
 }
 
 static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,

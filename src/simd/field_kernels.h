@@ -288,9 +288,9 @@ static void open_tile(const asj_field *field, uint16_t *scratch, tile *t)
     }
 }
 
-static void field_tile(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
-                       uint16_t *scratch, uint16_t *masks)
+static void field_tile(const asj_field *field, const asj_frame *frame, const asj_tile *part, uint16_t *scratch, uint16_t *masks)
 {
+    const int32_t run = part->run, runs = part->runs, top = part->top, bottom = part->bottom;
     const int32_t radius = field->sectors.radius, depth = 2 * radius + 1, per_run = ASJ_LANES / field->step;
     const int32_t groups = (runs * per_run + GROUP_PIXELS - 1) / GROUP_PIXELS;
     tile t;

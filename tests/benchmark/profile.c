@@ -51,13 +51,12 @@ static void add(double *sum, double more)
     *sum += more;
 }
 
-static void count_tile(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, int32_t top, int32_t bottom,
-                       uint16_t *scratch, uint16_t *masks)
+static void count_tile(const asj_field *field, const asj_frame *frame, const asj_tile *tile, uint16_t *scratch, uint16_t *masks)
 {
-    const int32_t around = 2 * field->sectors.radius;
-    add(&counted.tile_pixels, (double)runs * ASJ_LANES * (bottom - top) / (field->step * field->step));
-    add(&counted.plane_pixels, (double)(runs * ASJ_LANES + around) * (bottom - top + around));
-    wrapped.field.tile(field, frame, run, runs, top, bottom, scratch, masks);
+    const int32_t around = 2 * field->sectors.radius, width = tile->runs * ASJ_LANES, height = tile->bottom - tile->top;
+    add(&counted.tile_pixels, (double)width * height / (field->step * field->step));
+    add(&counted.plane_pixels, (double)(width + around) * (height + around));
+    wrapped.field.tile(field, frame, tile, scratch, masks);
 }
 
 static void count_pixels(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,

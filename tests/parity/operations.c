@@ -117,9 +117,10 @@ static asj_status run_tiles(asj_context *context, const subject *s, uint16_t *sc
     int32_t x, top;
     choose(s, &x, &top);
     top /= 2;
-    for (int32_t run = 0; run < blocks; run += per_tile)
-        context->ops->field->tile(&s->field, &s->frame, run, blocks - run < per_tile ? blocks - run : per_tile, top,
-                                  s->frame.height, scratch, output);
+    for (int32_t run = 0; run < blocks; run += per_tile) {
+        const asj_tile tile = {run, blocks - run < per_tile ? blocks - run : per_tile, top, s->frame.height};
+        context->ops->field->tile(&s->field, &s->frame, &tile, scratch, output);
+    }
     return ASJ_OK;
 }
 
@@ -174,7 +175,8 @@ static asj_status run_field_rows(asj_context *context, const subject *s, uint16_
 {
     int32_t x, top;
     choose(s, &x, &top);
-    return context->ops->field->rows(context, &s->field, &s->frame, top / 2, s->frame.height, scratch, s->scratch_size, output);
+    const asj_scratch whole = {scratch, s->scratch_size};
+    return context->ops->field->rows(context, &s->field, &s->frame, top / 2, s->frame.height, &whole, output);
 }
 
 static size_t records_size(const subject *s)
@@ -196,8 +198,9 @@ static asj_status run_isotropic_rows(asj_context *context, const subject *s, uin
             for (uint32_t bits = masks[i]; bits; bits &= bits - 1)
                 starts[y + 1]++;
         }
-        status = context->ops->isotropic->rows(context, &s->isotropic, &s->frame, 0, s->frame.height, masks, starts, scratch,
-                                              s->scratch_size, output);
+        const asj_candidate_rows candidates = {0, s->frame.height, masks, starts};
+        const asj_scratch whole = {scratch, s->scratch_size};
+        status = context->ops->isotropic->rows(context, &s->isotropic, &s->frame, &candidates, &whole, output);
     }
     free(starts);
     free(masks);
@@ -245,7 +248,8 @@ static asj_status run_line_sums(asj_context *context, const subject *s, uint16_t
     double x, y, length;
     const double angle = choose_line(s, &random, &x, &y, &length), half_width = synth_random_between(&random, 0.5, 5);
     (void)scratch;
-    asj_line_band_set(s->picture, x, y, cos(angle), sin(angle), 0.5 * length, half_width, &band);
+    const asj_line_box box = {x, y, cos(angle), sin(angle), 0.5 * length, half_width};
+    asj_line_band_set(s->picture, &box, &band);
     context->ops->line->sums(s->picture, &band, output);
     return ASJ_OK;
 }

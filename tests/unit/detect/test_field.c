@@ -234,7 +234,8 @@ static void test_candidate_step(void **state)
         make_field(f, &field);
         scratch = malloc(asj_field_scratch(&field) * sizeof *scratch);
         assert_non_null(scratch);
-        asj_field_tile(&field, &f->frame, 0, f->frame.blocks, 0, f->frame.height, scratch, step == 1 ? all : thin);
+        const asj_tile whole = {0, f->frame.blocks, 0, f->frame.height};
+        asj_field_tile(&field, &f->frame, &whole, scratch, step == 1 ? all : thin);
         free(scratch);
         asj_field_free(&f->context->memory, &field);
     }
