@@ -53,13 +53,19 @@ static int leads(const asj_candidate *guide, int32_t side, uint32_t l, uint32_t 
            angle_between(map, u + 2, v + 2) <= limit;
 }
 
-static int proposed(int32_t side, uint32_t l, uint32_t k)
+/* Marks all pairs (i, j) that image `side` proposes: wanted[i * MOST_L + j]. */
+static void propose(int32_t side, uint8_t *wanted)
 {
-    for (size_t n = 0; n < pair.run.choices.count; n++)
-        if (asked(n, side, &pair.image[side].l_junctions.l[l]) &&
-            leads(&pair.run.candidates.list[pair.run.choices.list[n].candidate], side, l, k))
-            return 1;
-    return 0;
+    const asj_l_junctions *mine = &pair.image[side].l_junctions, *others = &pair.image[1 - side].l_junctions;
+    for (uint32_t l = 0; l < mine->count; l++)
+        for (size_t n = 0; n < pair.run.choices.count; n++) {
+            const asj_candidate *guide = &pair.run.candidates.list[pair.run.choices.list[n].candidate];
+            if (!asked(n, side, &mine->l[l]))
+                continue;
+            for (uint32_t k = 0; k < others->count; k++)
+                if (leads(guide, side, l, k))
+                    wanted[side == 0 ? l * MOST_L + k : k * MOST_L + l] = 1;
+        }
 }
 
 /* Its place in the list, or -1. */
@@ -120,9 +126,9 @@ static void proposals_are_those_of_the_rule(void **state)
         const size_t known = pair.run.candidates.count;
         assert_true(count1 <= MOST_L && count2 <= MOST_L && known <= UNIT_COUNT(before) && pair.run.choices.count > 10);
         memcpy(before, pair.run.candidates.list, known * sizeof *before);
-        for (uint32_t i = 0; i < count1; i++)
-            for (uint32_t j = 0; j < count2; j++)
-                wanted[i * MOST_L + j] = (uint8_t)(proposed(0, i, j) || proposed(1, j, i));
+        memset(wanted, 0, sizeof wanted);
+        propose(0, wanted);
+        propose(1, wanted);
         assert_int_equal(asj_guided(&pair.run), ASJ_OK);
         for (uint32_t i = 0; i < count1; i++)
             for (uint32_t j = 0; j < count2; j++) {
