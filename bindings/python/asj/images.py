@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Images as arrays, and from files."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._native import ffi, lib
+from .errors import ImageError
+
+_GRAY = {"uint8": lib.ASJ_FORMAT_GRAY8, "uint16": lib.ASJ_FORMAT_GRAY16, "float32": lib.ASJ_FORMAT_GRAY_FLOAT}
+_COLOUR = {3: lib.ASJ_FORMAT_RGB8, 4: lib.ASJ_FORMAT_RGBA8}
+
+
+@dataclass(frozen=True)
+class View:
+    """An array as the library sees it. The pixels stay where they are unless their layout has to change."""
+
+    pixels: NDArray[Any]
+    pointer: Any
+    width: int
+    height: int
+
+
+def view(image: ArrayLike, white: float = 0.0) -> View:
+    """HxW of uint8, uint16 or float (1.0 is white), or HxWx3 or HxWx4 of uint8, uint16 or float in the order red, green, blue.
+
+    `white` is the value that means white, if it is not the type's: 1023 for a 10-bit camera in uint16.
+    """
+    pixels = np.asarray(image)
+    if pixels.dtype == np.bool_:
+        pixels = pixels.astype(np.uint8) * np.uint8(255)
+    if pixels.dtype.kind == "f" and pixels.dtype.itemsize != 4:
+        pixels = pixels.astype(np.float32)
+    if not pixels.dtype.isnative:
+        pixels = pixels.astype(pixels.dtype.newbyteorder("="))
+    if pixels.dtype.name not in _GRAY:
+        raise ImageError(f"an image of type {pixels.dtype.name}: uint8, uint16 or float")
+    if pixels.ndim == 3 and pixels.shape[2] == 1:
+        pixels = pixels[:, :, 0]
+    if pixels.ndim == 3 and pixels.shape[2] in _COLOUR and pixels.dtype != np.uint8:
+        pixels = _luma(pixels)
+    if pixels.ndim not in (2, 3) or (pixels.ndim == 3 and pixels.shape[2] not in _COLOUR):
+        raise ImageError(f"an image of shape {pixels.shape}: (height, width), (height, width, 3) or (height, width, 4)")
+    if pixels.shape[0] < 1 or pixels.shape[1] < 1:
+        raise ImageError(f"an image of {pixels.shape[1]} x {pixels.shape[0]} pixels")
+    if not _fits(pixels):
+        pixels = np.ascontiguousarray(pixels)
+    record = ffi.new("asj_image *")
+    record.data = ffi.cast("void *", pixels.ctypes.data)
+    record.format = _GRAY[pixels.dtype.name] if pixels.ndim == 2 else _COLOUR[pixels.shape[2]]
+    record.height, record.width = pixels.shape[:2]
+    record.white = white
+    record.stride = pixels.strides[0]
+    return View(pixels, record, record.width, record.height)
+
+
+def _fits(pixels: NDArray[Any]) -> bool:
+    """Rows from top to bottom, in each the samples side by side."""
+    channels = 1 if pixels.ndim == 2 else pixels.shape[2]
+    inner = pixels.strides[1] == channels * pixels.itemsize and (pixels.ndim == 2 or pixels.strides[2] == pixels.itemsize)
+    row = pixels.shape[1] * channels * pixels.itemsize
+    return inner and pixels.strides[0] >= row and pixels.strides[0] % pixels.itemsize == 0
+
+
+def _luma(pixels: NDArray[Any]) -> NDArray[Any]:
+    """Gray from 16-bit or float colour, with the library's weights (include/asj/image.h)."""
+    weights = np.array([77, 150, 29]) / 256
+    gray = pixels[..., 0] * weights[0] + pixels[..., 1] * weights[1] + pixels[..., 2] * weights[2]
+    if pixels.dtype.kind == "u":
+        gray = np.rint(gray)
+    return np.ascontiguousarray(gray.astype(pixels.dtype))
+
+
+def read(path: str | os.PathLike[str]) -> NDArray[np.uint8]:
+    """An image file as an array, upright (its EXIF orientation is applied): HxW, or HxWx3 in the order red, green, blue.
+
+    Needs Pillow. Damaged files raise ImageError.
+    """
+    try:
+        from PIL import Image, ImageOps
+    except ImportError as missing:  # pragma: no cover
+        raise ImportError("asj.read_image() needs Pillow: pip install pillow") from missing
+    try:
+        with Image.open(path) as file:
+            upright = ImageOps.exif_transpose(file)
+            gray = upright.mode in ("1", "L", "LA", "I;16", "F", "I")
+            if upright.mode == "I;16":
+                return np.asarray(upright)
+            return np.array(upright.convert("L" if gray else "RGB"))
+    except FileNotFoundError:
+        raise
+    except (OSError, ValueError, SyntaxError, MemoryError, Image.DecompressionBombError) as bad:
+        raise ImageError(f"{os.fspath(path)}: {bad}") from bad
+
+
+def focal_length(path: str | os.PathLike[str]) -> float | None:
+    """Focal length in pixels of the upright image, from EXIF data (focal length of 35 mm film); None where there is none."""
+    from PIL import Image
+
+    with Image.open(path) as file:
+        width, height = file.size
+        exif = file.getexif().get_ifd(0x8769)
+    film = exif.get(0xA405)
+    return float(film) * max(width, height) / 36.0 if film else None

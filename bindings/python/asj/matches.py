@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Matches of two images."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import arrays
+from ._native import ffi, lib
+from .context import Context, current
+from .features import Features
+from .options import MATCHER
+
+_ENDS = {"cut": lib.ASJ_END_CUT, "inner": lib.ASJ_END_INNER, "both": lib.ASJ_END_BOTH}
+
+
+class Matches:
+    """Matched L-junctions (corners) of two images, smallest distance first."""
+
+    #: (K,) records of the library's asj_junction_match
+    matches: NDArray[Any]
+
+    def __init__(self, result: Any, features1: Features, features2: Features) -> None:
+        self._result = result
+        self.features1, self.features2 = features1, features2
+        self.matches = arrays.view(result.matches, result.match_count, "asj_junction_match", result)
+        self._l1 = arrays.view(result.l_junctions1, result.l_junction_count1, "asj_l_junction", result)
+        self._l2 = arrays.view(result.l_junctions2, result.l_junction_count2, "asj_l_junction", result)
+
+    def __len__(self) -> int:
+        return len(self.matches)
+
+    def __repr__(self) -> str:
+        return f"<asj.Matches: {len(self)}>"
+
+    @property
+    def indices(self) -> NDArray[np.uint32]:
+        """(K, 2) indices of the junctions in features1 and features2."""
+        return np.stack([self.matches["junction1"], self.matches["junction2"]], axis=1)
+
+    @property
+    def l_indices(self) -> NDArray[np.uint32]:
+        """(K, 2) indices of the L-junctions in l_junctions1 and l_junctions2."""
+        return arrays.columns(self.matches, "l1", (2,), "u4")
+
+    @property
+    def l_junctions1(self) -> NDArray[Any]:
+        """The L-junctions of the first image that the matcher used."""
+        return self._l1
+
+    @property
+    def l_junctions2(self) -> NDArray[Any]:
+        """The L-junctions of the second image that the matcher used."""
+        return self._l2
+
+    @property
+    def xy1(self) -> NDArray[np.float32]:
+        """(K, 2) locations in the first image, as detected."""
+        return arrays.columns(self.matches, "x1", (2,))
+
+    @property
+    def xy2(self) -> NDArray[np.float32]:
+        """(K, 2) locations in the second image, where the alignment of the match puts them."""
+        return arrays.columns(self.matches, "x2", (2,))
+
+    @property
+    def affine(self) -> NDArray[np.float64]:
+        """(K, 2, 3) affine maps from the first image to the second."""
+        return arrays.columns(self.matches, "affine", (2, 3), "f8")
+
+    @property
+    def distance(self) -> NDArray[np.float32]:
+        """(K,) distance of the patches."""
+        return np.asarray(self.matches["distance"])
+
+    @property
+    def ratio(self) -> NDArray[np.float32]:
+        """(K,) how much worse the second best at another place is; inf when there is none."""
+        return np.asarray(self.matches["ratio"])
+
+    @property
+    def similarity(self) -> NDArray[np.float32]:
+        """(K,) correlation of the aligned discs."""
+        return np.asarray(self.matches["similarity"])
+
+    def segments(self, ends: str = "both") -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint32]]:
+        """Line segments that match, each edge once: (S, 2, 2) in the first image, (S, 2, 2) in the second, (S,) index of the match.
+
+        ends   what must be known of the far ends: "both" (both branches' own ends correspond), "inner" (or a junction on the longer
+               one does), "cut" (or the longer one was cut where the map puts the end of the shorter one)
+        """
+        if ends not in _ENDS:
+            raise ValueError(f"ends is {ends!r}: one of {', '.join(_ENDS)}")
+        count = lib.asj_match_segments(self._result, _ENDS[ends], ffi.NULL, 0)
+        room = ffi.new("asj_segment_match[]", max(count, 1))
+        lib.asj_match_segments(self._result, _ENDS[ends], room, count)
+        records = arrays.view(room, count, "asj_segment_match", room)
+        return (arrays.columns(records, "x1", (2, 2)), arrays.columns(records, "x2", (2, 2)), np.asarray(records["match"]))
+
+
+def match(features1: Features, features2: Features, *, preset: str = "default", context: Context | None = None, **options: object) -> Matches:
+    """Matches the features of two images.
+
+    options  those of the matcher by name (:func:`asj.match_options` lists them), for instance ratio=1.3, descriptor="sift"
+    """
+    for features in (features1, features2):
+        if features.preset == "default" and preset != "paper":
+            warnings.warn('features of asj.detect(preset="default") give fewer matches; use preset="match"', stacklevel=2)
+            break
+    record = MATCHER.fill(preset, options)
+    place = ffi.new("asj_match_result **")
+    one, two = features1._detection, features2._detection
+    (context or current()).call(
+        lib.asj_match, features1._view.pointer, one.junctions, one.junction_count, features2._view.pointer, two.junctions,
+        two.junction_count, record, place,
+    )  # fmt: skip
+    return Matches(ffi.gc(place[0], _free), features1, features2)
+
+
+def _free(pointer: Any) -> None:
+    place = ffi.new("asj_match_result **", pointer)
+    lib.asj_match_result_free(place)

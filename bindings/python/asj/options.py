@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Options as keywords, checked against the library's own table."""
+
+from __future__ import annotations
+
+import difflib
+import warnings
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ._native import ffi, lib
+from .errors import OptionError, error, text
+
+
+@dataclass(frozen=True)
+class OptionInfo:
+    """One row of an option table."""
+
+    key: str
+    unit: str
+    help: str
+    minimum: float
+    maximum: float
+    choices: tuple[str, ...]
+
+
+class _Table:
+    """The options of the detector or of the matcher."""
+
+    def __init__(self, what: str, struct: str, count: Any, row: Any, preset: Any, set_: Any, get: Any) -> None:
+        self.what, self.struct = what, struct
+        self._preset, self._set, self._get = preset, set_, get
+        self.rows = [_info(row(i)) for i in range(count())]
+        self.keys = [info.key for info in self.rows]
+
+    def fill(self, preset: str, values: Mapping[str, object]) -> Any:
+        """A C struct with the preset's values and those given."""
+        if preset not in PRESETS:
+            raise OptionError(f"there is no preset {preset!r}{_like(preset, PRESETS)}: one of {', '.join(PRESETS)}")
+        options = ffi.new(f"{self.struct} *")
+        status = self._preset(options, PRESETS[preset])
+        if status != lib.ASJ_OK:
+            raise error(status, f"the {self.what} has no preset {preset!r}")
+        for key, value in values.items():
+            self._assign(options, key, value)
+        return options
+
+    def _assign(self, options: Any, key: str, value: object) -> None:
+        message = ffi.new("char[512]")
+        status = self._set(options, key.encode(), _written(value).encode(), message, 512)
+        said = text(message)
+        if status != lib.ASJ_OK:
+            hint = "" if key in self.keys else _like(key, self.keys)
+            raise error(status, (said or f"there is no option {key!r}") + hint)
+        if said:
+            warnings.warn(said, DeprecationWarning, stacklevel=5)
+
+    def values(self, options: Any) -> dict[str, str]:
+        """All options as text."""
+        result = {}
+        room = ffi.new("char[256]")
+        for key in self.keys:
+            status = self._get(options, key.encode(), room, 256)
+            if status != lib.ASJ_OK:
+                raise error(status, f"{key}: no value")
+            result[key] = text(room)
+        return result
+
+
+def _info(row: Any) -> OptionInfo:
+    choices = []
+    if row.choices != ffi.NULL:
+        i = 0
+        while row.choices[i] != ffi.NULL:
+            choices.append(text(row.choices[i]))
+            i += 1
+    return OptionInfo(text(row.key), text(row.unit), text(row.help), row.minimum, row.maximum, tuple(choices))
+
+
+def _written(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Iterable):
+        return ",".join(str(int(radius)) for radius in value)
+    if isinstance(value, float):
+        return repr(value)
+    return str(value)
+
+
+def _like(word: str, words: Iterable[str]) -> str:
+    close = difflib.get_close_matches(word.replace("-", "_"), list(words), 2)
+    return f"; did you mean {' or '.join(close)}?" if close else ""
+
+
+PRESETS: dict[str, int] = {
+    name.removeprefix("ASJ_PRESET_").lower(): getattr(lib, name) for name in dir(lib) if name.startswith("ASJ_PRESET_")
+}
+DETECTOR = _Table("detector", "asj_detect_options", lib.asj_detect_option_count, lib.asj_detect_option,
+                  lib.asj_detect_options_preset, lib.asj_detect_options_set, lib.asj_detect_options_get)  # fmt: skip
+MATCHER = _Table("matcher", "asj_match_options", lib.asj_match_option_count, lib.asj_match_option,
+                 lib.asj_match_options_preset, lib.asj_match_options_set, lib.asj_match_options_get)  # fmt: skip
+
+
+def detect_options() -> list[OptionInfo]:
+    """The options of :func:`asj.detect`, with their ranges.
+
+    >>> next(o.unit for o in detect_options() if o.key == "minimum_length")
+    'px'
+    """
+    return list(DETECTOR.rows)
+
+
+def match_options() -> list[OptionInfo]:
+    """The options of :func:`asj.match`, with their ranges."""
+    return list(MATCHER.rows)

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Pictures with matplotlib, which is only needed here."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .features import Features
+from .matches import Matches
+
+
+def _axes(axes: Any, width: float, height: float) -> Any:
+    if axes is not None:
+        return axes
+    import matplotlib.pyplot as plt
+
+    _, axes = plt.subplots(figsize=(width / 100, height / 100), dpi=100)
+    return axes
+
+
+def _show(axes: Any, image: ArrayLike) -> None:
+    pixels = np.asarray(image)
+    axes.imshow(pixels, cmap="gray" if pixels.ndim == 2 else None, interpolation="nearest")
+    axes.set_axis_off()
+
+
+def plot(image: ArrayLike, features: Features, axes: Any = None) -> Any:
+    """Junctions as dots and branches to their ends over the image, blue = surest. Returns matplotlib's axes."""
+    from matplotlib.collections import LineCollection
+
+    pixels = np.asarray(image)
+    axes = _axes(axes, pixels.shape[1], pixels.shape[0])
+    _show(axes, pixels)
+    sure = np.clip(-features.log10_nfa / 30, 0, 1)
+    lines = LineCollection(features.segments, array=sure[features.branches["junction"]], cmap="turbo_r", linewidths=1, clim=(0, 1))
+    axes.add_collection(lines)
+    axes.scatter(features.xy[:, 0], features.xy[:, 1], s=9, c=sure, cmap="turbo_r", vmin=0, vmax=1)
+    return axes
+
+
+def plot_matches(image1: ArrayLike, image2: ArrayLike, matches: Matches, axes: Any = None) -> Any:
+    """Both images side by side with their matched corners in the same colours. Returns matplotlib's axes."""
+    from matplotlib.collections import LineCollection
+
+    one, two = (_colour(image) for image in (image1, image2))
+    canvas = np.full((max(len(one), len(two)), one.shape[1] + two.shape[1], 3), 255, np.uint8)
+    canvas[: len(one), : one.shape[1]] = one
+    canvas[: len(two), one.shape[1] :] = two
+    axes = _axes(axes, canvas.shape[1], canvas.shape[0])
+    _show(axes, canvas)
+    colour = np.linspace(0, 1, max(len(matches), 2))[: len(matches)]
+    shift = np.array([one.shape[1], 0])
+    for side, offset in (("1", 0 * shift), ("2", shift)):
+        centre = np.stack([matches.matches["x" + side], matches.matches["y" + side]], 1) + offset
+        for end in "ab":
+            tip = np.stack([matches.matches[f"{end}x{side}"], matches.matches[f"{end}y{side}"]], 1) + offset
+            axes.add_collection(LineCollection(np.stack([centre, tip], 1), array=colour, cmap="hsv", linewidths=1.2))
+        axes.scatter(centre[:, 0], centre[:, 1], s=9, c=colour, cmap="hsv")
+    return axes
+
+
+def _colour(image: ArrayLike) -> Any:
+    pixels = np.asarray(image)
+    if pixels.dtype != np.uint8:
+        top = float(pixels.max()) or 1.0
+        pixels = (pixels / (top if pixels.dtype.kind != "f" else max(top, 1.0)) * 255).astype(np.uint8)
+    return pixels[..., :3] if pixels.ndim == 3 else np.repeat(pixels[:, :, None], 3, 2)
