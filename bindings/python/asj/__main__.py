@@ -1,13 +1,144 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""python -m asj: junctions of many images and matches of their pairs, for a reconstruction."""
+"""python -m asj collect: junctions of many images and matches of their pairs, for a reconstruction."""
 
+from __future__ import annotations
+
+import argparse
+import signal
+import sqlite3
 import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from . import __version__, collection, errors
+from .collection import plan as plans
+from .collection.run import Dask, Processes
+from .options import DETECTOR, MATCHER
 
 
-def main() -> int:
-    """Runs the command line."""
-    print("python -m asj: commands come with the collection")
-    return 2
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m asj", description=__doc__)
+    parser.add_argument("--version", action="version", version=f"asj {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True)
+    collect = commands.add_parser("collect", help="detect in all images of a folder, match pairs, write files for a reconstruction")
+    collect.add_argument("folder", type=Path, help="images, also in folders below it")
+    which = collect.add_mutually_exclusive_group()
+    which.add_argument("--all-pairs", action="store_true", help="every pair of images (default)")
+    which.add_argument("--sequential", type=int, metavar="N", help="each image with the N images after it, by name")
+    which.add_argument("--pairs", type=Path, metavar="FILE", help="pairs from a file: two names a line")
+    outputs = collect.add_argument_group("outputs, at least one")
+    outputs.add_argument("--colmap", type=Path, metavar="FILE.db", help="COLMAP database (needs pycolmap)")
+    outputs.add_argument("--hdf5", type=Path, metavar="FOLDER", help="features.h5 and matches.h5 as hloc reads them (needs h5py)")
+    outputs.add_argument("--limap", type=Path, metavar="FOLDER", help="line segments and their matches as text, as LIMAP reads them")
+    work = collect.add_argument_group("work")
+    work.add_argument("--store", type=Path, metavar="FILE", help="what has been done so far (default: beside the first output)")
+    work.add_argument("--resume", action="store_true", help="go on with the store of a run that ended early")
+    work.add_argument("--jobs", type=int, default=2, metavar="N", help="worker processes (default 2)")
+    work.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler, for instance tcp://host:8786, instead of processes here")
+    work.add_argument("--no-verify", action="store_true", help="COLMAP: no two-view geometries")
+    work.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="detector", help="an option of the detector")
+    work.add_argument("--match-set", action="append", default=[], metavar="NAME=VALUE", dest="matcher", help="an option of the matcher")
+    work.add_argument("--quiet", action="store_true", help="no progress")
+    return parser
+
+
+def _options(words: Sequence[str], table: Any, preset: str) -> dict[str, str]:
+    options = {"preset": preset}
+    for word in words:
+        key, equal, value = word.partition("=")
+        if not equal:
+            raise errors.OptionError(f"{word}: NAME=VALUE is expected")
+        options[key.strip().replace("-", "_")] = value
+    table.fill(options["preset"], {key: value for key, value in options.items() if key != "preset"})
+    return options
+
+
+def _plan(arguments: argparse.Namespace) -> plans.Plan:
+    names = plans.find_images(arguments.folder)
+    if not names:
+        raise ValueError(f"{arguments.folder}: no images there")
+    if arguments.pairs:
+        pairs = plans.read_pairs(arguments.pairs, names)
+    elif arguments.sequential is not None:
+        if arguments.sequential < 1:
+            raise ValueError("--sequential: 1 or more")
+        pairs = plans.sequential_pairs(names, arguments.sequential)
+    else:
+        pairs = plans.all_pairs(names)
+    return plans.Plan(
+        arguments.folder, names, pairs, _options(arguments.detector, DETECTOR, "match"), _options(arguments.matcher, MATCHER, "default")
+    )
+
+
+def _progress(what: str, done: int, total: int, left: float) -> None:
+    end = "\n" if done == total else "\r"
+    print(f"{what}: {done} of {total}, {left:.0f} s left   ", end=end, file=sys.stderr, flush=True)
+
+
+def _write(arguments: argparse.Namespace, store: collection.Store) -> None:
+    if arguments.colmap:
+        from .collection import colmap
+
+        colmap.write(store, arguments.colmap, verify=not arguments.no_verify)
+    if arguments.hdf5:
+        from .collection import hdf5
+
+        arguments.hdf5.mkdir(parents=True, exist_ok=True)
+        hdf5.write_features(store, arguments.hdf5 / "features.h5")
+        hdf5.write_matches(store, arguments.hdf5 / "matches.h5")
+    if arguments.limap:
+        from .collection import limap
+
+        limap.write(store, arguments.limap)
+
+
+def _check_outputs(arguments: argparse.Namespace) -> Path:
+    """Refuses before the work what would fail after it; returns the place of the store."""
+    outputs = [path for path in (arguments.colmap, arguments.hdf5, arguments.limap) if path]
+    if not outputs:
+        raise ValueError("no output: name --colmap, --hdf5 or --limap")
+    if arguments.colmap:
+        import pycolmap  # noqa: F401
+    if arguments.hdf5:
+        import h5py  # noqa: F401
+    for path in outputs:
+        if not path.absolute().parent.is_dir():
+            raise FileNotFoundError(f"{path}: there is no folder {path.absolute().parent}")
+    store: Path | None = arguments.store
+    return store or outputs[0].with_name(outputs[0].name + ".work")
+
+
+def _collect(arguments: argparse.Namespace) -> int:
+    place = _check_outputs(arguments)
+    plan = _plan(arguments)
+    progress = None if arguments.quiet or not sys.stderr.isatty() else _progress
+    open_store = collection.Store.resume if arguments.resume and place.exists() else collection.Store.create
+    with open_store(place, plan) as store:
+        if arguments.dask:
+            from distributed import Client
+
+            with Client(arguments.dask) as client:
+                summary = collection.collect(plan, store, Dask(client), progress)
+        else:
+            summary = collection.collect(plan, store, Processes(arguments.jobs), progress)
+        _write(arguments, store)
+    print(summary)
+    return 1 if summary.failed_images or summary.failed_pairs else 0
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Exit code 0: everything was done; 1: some inputs failed, the others are done; 2: wrong usage, or the work cannot be done."""
+    arguments = _parser().parse_args(words)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        return _collect(arguments)
+    except KeyboardInterrupt:
+        print("interrupted; --resume goes on", file=sys.stderr)
+        return 130
+    except (errors.Error, collection.StoreError, OSError, ValueError, ImportError, sqlite3.Error) as bad:
+        print(f"python -m asj: {bad}", file=sys.stderr)
+        return 2
 
 
 if __name__ == "__main__":

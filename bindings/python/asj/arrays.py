@@ -57,6 +57,13 @@ def view(pointer: Any, count: int, name: str, owner: object) -> NDArray[Any]:
     return raw.view(dtype)
 
 
+def pointer(records: NDArray[Any], name: str) -> Any:
+    """The structs of an array as C sees them; NULL when there are none. Valid as long as the array is."""
+    if len(records) == 0:
+        return ffi.NULL
+    return ffi.cast(f"{name} *", records.ctypes.data)
+
+
 def columns(records: NDArray[Any], first: str, shape: tuple[int, ...], dtype: str = "f4") -> NDArray[Any]:
     """Neighbouring fields of equal type as one plain array, field `first` and those behind it: (N, *shape). No copy."""
     element = np.dtype(dtype)

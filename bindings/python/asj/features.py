@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import arrays, images
 from ._native import ffi, lib
 from .context import Context, current
+from .errors import FormatError
 from .options import DETECTOR
 
 
@@ -26,12 +27,24 @@ class Features:
     #: (L,) records of asj_l_junction: a junction, two of its branches in order, and their ends
     l_junctions: NDArray[Any]
 
-    def __init__(self, view: images.View, detection: Any, options: Any, preset: str) -> None:
-        self._view, self._detection, self._options = view, detection, options
+    def __init__(self, view: images.View, junctions: NDArray[Any], l_junctions: NDArray[Any], options: Any, preset: str) -> None:
+        self._view, self._options = view, options
         self.preset = preset
         self.width, self.height = view.width, view.height
-        self.junctions = arrays.view(detection.junctions, detection.junction_count, "asj_junction", detection)
-        self.l_junctions = arrays.view(detection.l_junctions, detection.l_junction_count, "asj_l_junction", detection)
+        self.junctions, self.l_junctions = junctions, l_junctions
+
+    @classmethod
+    def from_records(cls, image: ArrayLike, records: bytes, *, preset: str = "match", white: float = 0.0, **options: object) -> Features:
+        """Features of an image whose junctions are known: `records` are those of `junctions.tobytes()`, found with these options."""
+        dtype = arrays.struct_type("asj_junction")
+        if len(records) % dtype.itemsize:
+            raise FormatError(f"{len(records)} bytes are no whole number of junctions of {dtype.itemsize} bytes")
+        junctions = np.frombuffer(records, dtype)
+        record = DETECTOR.fill(preset, options)
+        return cls(images.view(image, white), junctions, _decompose(junctions, record.minimum_opening), record, preset)
+
+    def __reduce__(self) -> Any:
+        return _restore, (self.image, self._view.pointer.white, self.junctions.tobytes(), self.options, self.preset)
 
     def __len__(self) -> int:
         return len(self.junctions)
@@ -72,23 +85,27 @@ class Features:
     @property
     def branches(self) -> NDArray[Any]:
         """(M,) all branches: records of asj_branch with the index of their `junction` in front. M is the sum of branch_count."""
-        counts = self.junctions["branch_count"]
-        used = np.arange(lib.ASJ_MAX_BRANCHES) < counts[:, None]
-        fields = arrays.struct_type("asj_branch")
-        names = [name for name in fields.names or () if not name.startswith("reserved")]
-        result = np.zeros(int(counts.sum()), [("junction", "u4")] + [(name, fields[name]) for name in names])
-        result["junction"] = np.repeat(np.arange(len(self), dtype=np.uint32), counts)
-        for name in names:
-            result[name] = self.junctions["branches"][name][used]
-        return result
+        return segments_of(self.junctions)[1]
 
     @property
     def segments(self) -> NDArray[np.float32]:
         """(M, 2, 2) line segments of all branches, in the order of `branches`: the junction, the branch's end."""
-        branches = self.branches
-        start = self.xy[branches["junction"]]
-        along = np.stack([np.cos(branches["angle"]), np.sin(branches["angle"])], axis=1)
-        return np.stack([start, start + along * branches["length"][:, None]], axis=1).astype(np.float32)
+        return segments_of(self.junctions)[0]
+
+
+def segments_of(junctions: NDArray[Any]) -> tuple[NDArray[np.float32], NDArray[Any]]:
+    """Segments and branches of an array of junctions."""
+    counts = junctions["branch_count"]
+    used = np.arange(lib.ASJ_MAX_BRANCHES) < counts[:, None]
+    fields = arrays.struct_type("asj_branch")
+    names = [name for name in fields.names or () if not name.startswith("reserved")]
+    branches = np.zeros(int(counts.sum()), [("junction", "u4")] + [(name, fields[name]) for name in names])
+    branches["junction"] = np.repeat(np.arange(len(junctions), dtype=np.uint32), counts)
+    for name in names:
+        branches[name] = junctions["branches"][name][used]
+    start = np.stack([junctions["x"], junctions["y"]], axis=1)[branches["junction"]]
+    along = np.stack([np.cos(branches["angle"]), np.sin(branches["angle"])], axis=1)
+    return np.stack([start, start + along * branches["length"][:, None]], axis=1).astype(np.float32), branches
 
 
 def detect(image: ArrayLike, *, preset: str = "match", context: Context | None = None, white: float = 0.0, **options: object) -> Features:
@@ -107,7 +124,22 @@ def detect(image: ArrayLike, *, preset: str = "match", context: Context | None =
     view = images.view(image, white)
     place = ffi.new("asj_detection **")
     (context or current()).call(lib.asj_detect, view.pointer, record, place)
-    return Features(view, ffi.gc(place[0], _free), record, preset)
+    found = ffi.gc(place[0], _free)
+    junctions = arrays.view(found.junctions, found.junction_count, "asj_junction", found)
+    l_junctions = arrays.view(found.l_junctions, found.l_junction_count, "asj_l_junction", found)
+    return Features(view, junctions, l_junctions, record, preset)
+
+
+def _decompose(junctions: NDArray[Any], opening: float) -> NDArray[Any]:
+    source = arrays.pointer(junctions, "asj_junction")
+    count = lib.asj_decompose(source, len(junctions), opening, ffi.NULL, 0)
+    room = ffi.new("asj_l_junction[]", max(count, 1))
+    lib.asj_decompose(source, len(junctions), opening, room, count)
+    return arrays.view(room, count, "asj_l_junction", room)
+
+
+def _restore(image: NDArray[Any], white: float, records: bytes, options: dict[str, str], preset: str) -> Features:
+    return Features.from_records(image, records, preset=preset, white=white, **options)
 
 
 def _free(pointer: Any) -> None:

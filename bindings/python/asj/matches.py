@@ -113,10 +113,10 @@ def match(features1: Features, features2: Features, *, preset: str = "default", 
             break
     record = MATCHER.fill(preset, options)
     place = ffi.new("asj_match_result **")
-    one, two = features1._detection, features2._detection
+    one, two = features1.junctions, features2.junctions
     (context or current()).call(
-        lib.asj_match, features1._view.pointer, one.junctions, one.junction_count, features2._view.pointer, two.junctions,
-        two.junction_count, record, place,
+        lib.asj_match, features1._view.pointer, arrays.pointer(one, "asj_junction"), len(one),
+        features2._view.pointer, arrays.pointer(two, "asj_junction"), len(two), record, place,
     )  # fmt: skip
     return Matches(ffi.gc(place[0], _free), features1, features2)
 

@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Junctions of many images and matches of their pairs: resumable, in parallel processes or on Dask, for a reconstruction."""
+
+from .plan import Plan, all_pairs, find_images, read_pairs, sequential_pairs
+from .run import Summary, collect
+from .store import Store, StoreError
+
+__all__ = ["Plan", "Store", "StoreError", "Summary", "all_pairs", "collect", "find_images", "read_pairs", "sequential_pairs"]

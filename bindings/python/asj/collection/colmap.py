@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""A COLMAP database of a collection, written through pycolmap, so that it has the form of the installed version.
+
+Key points are the junctions, with their affine shape, moved by half a pixel (COLMAP's first pixel has its centre at (0.5, 0.5)).
+The shape takes the unit circle to an ellipse along two branches of the junction. Images have a camera each, SIMPLE_RADIAL, with the
+focal length of their EXIF data where they have one and 1.2 times the longer side elsewhere, as COLMAP itself guesses.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import arrays
+from .output import whole_file
+from .store import Store
+
+
+def write(store: Store, path: Path, verify: bool = True) -> None:
+    """Everything in the store; with `verify` also two-view geometries, which reconstruction needs."""
+    import pycolmap
+
+    with whole_file(path) as temporary:
+        os.remove(temporary)
+        database = pycolmap.Database.open(temporary)
+        try:
+            numbers = {number: _image(database, pycolmap, name, detected) for number, name, detected in store.detected() if detected.features is not None}
+            for one, two, matched in store.matched():
+                if matched.matches:
+                    records = np.frombuffer(matched.matches, arrays.struct_type("asj_junction_match"))
+                    pairs = np.stack([records["junction1"], records["junction2"]], axis=1)
+                    database.write_matches(numbers[one], numbers[two], np.ascontiguousarray(pairs, np.uint32))
+        finally:
+            database.close()
+        if verify:
+            pycolmap.geometric_verification(temporary)
+        for left in ("-wal", "-shm"):
+            Path(f"{temporary}{left}").unlink(missing_ok=True)
+
+
+def _image(database: Any, pycolmap: Any, name: str, detected: Any) -> int:
+    focal = detected.focal or 1.2 * max(detected.width, detected.height)
+    camera = pycolmap.Camera.create(0, pycolmap.CameraModelId.SIMPLE_RADIAL, focal, detected.width, detected.height)
+    camera.has_prior_focal_length = detected.focal is not None
+    camera_id = database.write_camera(camera)
+    number = database.write_image(pycolmap.Image(name=name, camera_id=camera_id))
+    junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
+    database.write_keypoints(number, key_points(junctions))
+    return int(number)
+
+
+def key_points(junctions: NDArray[Any]) -> NDArray[np.float32]:
+    """(N, 6): x, y, then the matrix of the shape by rows."""
+    branches = junctions["branches"]
+    used = np.arange(branches.shape[1]) < junctions["branch_count"][:, None]
+    # the pair of branches that opens most nearly by a right angle
+    angle = branches["angle"]
+    opening = np.abs(np.sin(angle[:, :, None] - angle[:, None, :]))
+    opening[~(used[:, :, None] & used[:, None, :])] = -1
+    best = opening.reshape(len(junctions), -1).argmax(axis=1)
+    rows = np.arange(len(junctions))
+    first, second = best // branches.shape[1], best % branches.shape[1]
+    result = np.empty((len(junctions), 6), np.float32)
+    result[:, 0], result[:, 1] = junctions["x"] + 0.5, junctions["y"] + 0.5
+    for column, which in ((0, first), (1, second)):
+        reach = np.maximum(junctions["scale"], 1)
+        result[:, 2 + column] = reach * np.cos(angle[rows, which])
+        result[:, 4 + column] = reach * np.sin(angle[rows, which])
+    return result

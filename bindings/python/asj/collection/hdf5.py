@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Features and matches as HDF5 files in the layout of hloc (hierarchical localization).
+
+features: a group an image with `keypoints` (N, 2) float32 in pixels (centre of the first pixel (0, 0)), `scores` (N,), `image_size`
+(width, height). matches: a group for each pair, names with - for /, with `matches0` (N,) int32, -1 = none, and `matching_scores0`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from .. import arrays
+from .output import whole_file
+from .store import Store
+
+
+def write_features(store: Store, path: Path) -> None:
+    """The key points of all images."""
+    import h5py
+
+    with whole_file(path) as temporary, h5py.File(temporary, "w") as file:
+        for _, name, detected in store.detected():
+            if detected.features is None:
+                continue
+            junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
+            group = file.create_group(name)
+            group["keypoints"] = np.stack([junctions["x"], junctions["y"]], axis=1)
+            group["scores"] = -junctions["log10_nfa"]
+            group["image_size"] = np.array([detected.width, detected.height])
+
+
+def write_matches(store: Store, path: Path) -> None:
+    """The matches of all pairs."""
+    import h5py
+
+    names = dict(store.images())
+    sizes = {n: len(d.features or b"") // arrays.struct_type("asj_junction").itemsize for n, _, d in store.detected()}
+    with whole_file(path) as temporary, h5py.File(temporary, "w") as file:
+        for one, two, matched in store.matched():
+            if matched.matches is None:
+                continue
+            records = np.frombuffer(matched.matches, arrays.struct_type("asj_junction_match"))
+            matches = np.full(sizes[one], -1, np.int32)
+            scores = np.zeros(sizes[one], np.float32)
+            matches[records["junction1"]] = records["junction2"]
+            scores[records["junction1"]] = np.clip(records["similarity"], 0, 1)
+            group = file.create_group(names[one].replace("/", "-") + "/" + names[two].replace("/", "-"))
+            group["matches0"] = matches
+            group["matching_scores0"] = scores

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Line segments and their matches as LIMAP reads them.
+
+segments/segments_<image>.txt: the count, then x1 y1 x2 y2 score in each line; matches/matches_<image>.npy would hold a dictionary,
+so the pairs are written as text: matches/matches_<image1>_<image2>.txt, two indices in each line. Images have the numbers of the
+COLMAP database.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from .. import arrays
+from ..features import segments_of
+from .output import whole_file
+from .store import Store
+
+
+def write(store: Store, folder: Path) -> None:
+    """The segments of all images and the matches of all pairs."""
+    (folder / "segments").mkdir(parents=True, exist_ok=True)
+    (folder / "matches").mkdir(exist_ok=True)
+    numbers: dict[int, int] = {}
+    for image, _, detected in store.detected():
+        if detected.features is None:
+            continue
+        number = numbers[image] = len(numbers) + 1
+        junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
+        segments, branches = segments_of(junctions)
+        with whole_file(folder / "segments" / f"segments_{number}.txt") as temporary, temporary.open("w", encoding="ascii") as file:
+            file.write(f"{len(segments)}\n")
+            for (start, end), branch in zip(segments.tolist(), branches):
+                file.write(f"{start[0]:.6f} {start[1]:.6f} {end[0]:.6f} {end[1]:.6f} {-branch['log10_nfa']:.6f}\n")
+    for one, two, matched in store.matched():
+        if matched.lines is None:
+            continue
+        lines = np.frombuffer(matched.lines, np.uint32).reshape(-1, 2)
+        with whole_file(folder / "matches" / f"matches_{numbers[one]}_{numbers[two]}.txt") as temporary:
+            temporary.write_text("".join(f"{i} {j}\n" for i, j in lines.tolist()), encoding="ascii")

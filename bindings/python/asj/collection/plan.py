@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Which images, and which pairs of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ENDINGS = {".avif", ".bmp", ".heic", ".heif", ".jp2", ".jpeg", ".jpg", ".pgm", ".png", ".pnm", ".ppm", ".tif", ".tiff", ".webp"}
+_TILE = 16  # images along a side of a tile of pairs: a process keeps that many in memory
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The work: images by name below a folder, pairs of names, options of detector and matcher."""
+
+    folder: Path
+    images: list[str]
+    pairs: list[tuple[str, str]]
+    detector: dict[str, str] = field(default_factory=dict)
+    matcher: dict[str, str] = field(default_factory=dict)
+
+
+def find_images(folder: Path) -> list[str]:
+    """Names of the image files below the folder, sorted, with / between folders."""
+    if not folder.is_dir():
+        raise NotADirectoryError(f"{folder} is not a folder")
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.suffix.lower() in ENDINGS and path.is_file())
+
+
+def all_pairs(names: list[str]) -> list[tuple[str, str]]:
+    """Every pair, tile by tile, so that neighbouring pairs need the same images.
+
+    >>> all_pairs(["a", "b", "c"])
+    [('a', 'b'), ('a', 'c'), ('b', 'c')]
+    """
+    order = [(i, j) for i in range(len(names)) for j in range(i + 1, len(names))]
+    order.sort(key=lambda pair: (pair[0] // _TILE, pair[1] // _TILE, pair))
+    return [(names[i], names[j]) for i, j in order]
+
+
+def sequential_pairs(names: list[str], reach: int) -> list[tuple[str, str]]:
+    """Each image with the `reach` images that follow it.
+
+    >>> sequential_pairs(["a", "b", "c"], 1)
+    [('a', 'b'), ('b', 'c')]
+    """
+    return [(name, other) for i, name in enumerate(names) for other in names[i + 1 : i + 1 + reach]]
+
+
+def read_pairs(path: Path, names: Iterable[str]) -> list[tuple[str, str]]:
+    """Pairs from a text file, two names a line; # begins a comment. Pairs that come twice, or turned round, stay once."""
+    known = set(names)
+    seen: set[frozenset[str]] = set()
+    pairs = []
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        words = line.split("#")[0].split()
+        if not words:
+            continue
+        if len(words) != 2:
+            raise ValueError(f"{path}, line {number}: two names of images, not {len(words)} words")
+        for word in words:
+            if word not in known:
+                raise ValueError(f"{path}, line {number}: there is no image {word}")
+        if words[0] == words[1]:
+            raise ValueError(f"{path}, line {number}: an image cannot be matched with itself")
+        if frozenset(words) not in seen:
+            seen.add(frozenset(words))
+            pairs.append((words[0], words[1]))
+    return pairs

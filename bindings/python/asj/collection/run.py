@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Does the waiting work of a collection, in processes of this machine or on Dask, and writes what comes back."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import multiprocessing
+import time
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from ..features import Features
+from . import tasks
+from .plan import Plan
+from .store import Store
+from .tasks import Detected, Matched
+
+Report = Callable[[str, int, int, float], None]  # what, done, of how many, seconds left
+
+
+@dataclass(frozen=True)
+class Summary:
+    """How a collection ended."""
+
+    images: int
+    failed_images: int
+    pairs: int
+    failed_pairs: int
+    skipped_pairs: int
+    seconds: float
+    failures: list[tuple[str, str]]
+
+    def __str__(self) -> str:
+        text = f"{self.images} images, {self.pairs} pairs in {self.seconds:.1f} s"
+        if self.failed_images or self.failed_pairs:
+            text += f"; failed: {self.failed_images} images, {self.failed_pairs} pairs; {self.skipped_pairs} pairs of failed images left out"
+        return text + "".join(f"\n  {name}: {why}" for name, why in self.failures)
+
+
+class Workers(Protocol):
+    """Who does the work. Results come in any order, each once."""
+
+    def detect(self, plan: Plan, images: list[tuple[int, str]]) -> Iterator[tuple[int, Detected]]:
+        """Results of images by number."""
+
+    def match(self, plan: Plan, store: Store, pairs: list[tuple[int, int, int]]) -> Iterator[tuple[int, Matched]]:
+        """Results of pairs by number."""
+
+
+def collect(plan: Plan, store: Store, workers: Workers, report: Report | None = None) -> Summary:
+    """Does what is waiting in the store. A call that was killed is gone on with by the next one."""
+    begin = time.monotonic()
+    images = store.waiting_images()
+    for number, detected in _reported("images", workers.detect(plan, images), len(images), report):
+        store.save_image(number, detected)
+    pairs = store.waiting_pairs()
+    for number, matched in _reported("pairs", workers.match(plan, store, pairs), len(pairs), report):
+        store.save_pair(number, matched)
+    of_images, of_pairs = store.counts("images"), store.counts("pairs")
+    return Summary(
+        sum(of_images.values()), of_images.get("failed", 0), sum(of_pairs.values()), of_pairs.get("failed", 0),
+        of_pairs.get("waiting", 0), time.monotonic() - begin, store.failures(),
+    )  # fmt: skip
+
+
+def _reported(what: str, results: Iterable[Any], total: int, report: Report | None) -> Iterator[Any]:
+    begin = time.monotonic()
+    for done, result in enumerate(results, 1):
+        yield result
+        if report:
+            report(what, done, total, (time.monotonic() - begin) / done * (total - done))
+
+
+# ---- processes of this machine ----
+
+_kept = tasks.Kept()
+_store: Store | None = None
+
+
+def _begin_process(threads: int) -> None:
+    tasks.start(threads)
+
+
+def _detect(folder: Path, number: int, name: str, options: dict[str, str]) -> tuple[int, Detected]:
+    return number, tasks.detect_image(folder / name, options)[0]
+
+
+def _match(folder: Path, number: int, records: list[tuple[str, bytes]], plan_options: tuple[dict[str, str], dict[str, str]]) -> tuple[int, Matched]:
+    detector, matcher = plan_options
+    try:
+        one, two = (_kept.get(folder / name, data, detector) for name, data in records)
+    except Exception as bad:  # an image that was there for detection and is not any more
+        return number, Matched(str(bad) or type(bad).__name__, None, None, None)
+    return number, tasks.match_images(one, two, matcher)
+
+
+class Processes:
+    """Worker processes of this machine. Pairs are handed out in groups that share images."""
+
+    def __init__(self, jobs: int, threads: int = 1) -> None:
+        if jobs < 1:
+            raise ValueError(f"jobs is {jobs}: 1 or more")
+        self.jobs, self.threads = jobs, threads
+
+    def _pool(self) -> concurrent.futures.ProcessPoolExecutor:
+        return concurrent.futures.ProcessPoolExecutor(
+            self.jobs, multiprocessing.get_context("spawn"), initializer=_begin_process, initargs=(self.threads,)
+        )
+
+    def detect(self, plan: Plan, images: list[tuple[int, str]]) -> Iterator[tuple[int, Detected]]:
+        """One task an image."""
+        with self._pool() as pool:
+            yield from _bounded(pool, self.jobs, ((_detect, plan.folder, number, name, plan.detector) for number, name in images))
+
+    def match(self, plan: Plan, store: Store, pairs: list[tuple[int, int, int]]) -> Iterator[tuple[int, Matched]]:
+        """One task a pair."""
+        names = dict(store.images())
+
+        def work() -> Iterator[tuple[Any, ...]]:
+            for number, *both in pairs:
+                records = [(names[image], store.features(image).features or b"") for image in both]
+                yield (_match, plan.folder, number, records, (plan.detector, plan.matcher))
+
+        with self._pool() as pool:
+            yield from _bounded(pool, self.jobs, work())
+
+
+def _bounded(pool: concurrent.futures.Executor, jobs: int, work: Iterator[tuple[Any, ...]]) -> Iterator[Any]:
+    """Results as they come; only a few tasks wait in the pool, whatever the length of the list."""
+    waiting: set[concurrent.futures.Future[Any]] = set()
+    try:
+        for task in work:
+            waiting.add(pool.submit(*task))
+            if len(waiting) >= 4 * jobs:
+                done, waiting = concurrent.futures.wait(waiting, return_when=concurrent.futures.FIRST_COMPLETED)
+                for future in done:
+                    yield future.result()
+        for future in concurrent.futures.as_completed(waiting):
+            yield future.result()
+    except BaseException:
+        for future in waiting:
+            future.cancel()
+        raise
+
+
+# ---- Dask ----
+
+
+def _dask_detect(path: Path, options: dict[str, str]) -> tuple[Detected, Features | None]:
+    return tasks.detect_image(path, options)
+
+
+def _dask_summary(result: tuple[Detected, Features | None]) -> Detected:
+    return result[0]
+
+
+def _dask_match(one: tuple[Detected, Features | None], two: tuple[Detected, Features | None], options: dict[str, str]) -> Matched:
+    if one[1] is None or two[1] is None:
+        return Matched("an image without junctions", None, None, None)
+    return tasks.match_images(one[1], two[1], options)
+
+
+class Dask:
+    """Workers of a Dask cluster, which must see the images under the same paths. Features stay where they were made."""
+
+    def __init__(self, client: Any) -> None:
+        self.client = client
+        self._features: dict[int, Any] = {}
+
+    def detect(self, plan: Plan, images: list[tuple[int, str]]) -> Iterator[tuple[int, Detected]]:
+        """One task an image; a second one brings its junctions here."""
+        yield from self._results(
+            (number, self.client.submit(_dask_summary, self._feature(plan, number, name), pure=False)) for number, name in images
+        )
+
+    def match(self, plan: Plan, store: Store, pairs: list[tuple[int, int, int]]) -> Iterator[tuple[int, Matched]]:
+        """One task a pair; an image whose features are on no worker any more is looked at once more."""
+        names = dict(store.images())
+        last = {image: position for position, (_, *both) in enumerate(pairs) for image in both}
+
+        def work() -> Iterator[tuple[int, Any]]:
+            for position, (number, *both) in enumerate(pairs):
+                one, two = (self._feature(plan, image, names[image]) for image in both)
+                yield number, self.client.submit(_dask_match, one, two, plan.matcher, pure=False, retries=2)
+                for image in both:
+                    if last[image] == position:
+                        del self._features[image]
+
+        yield from self._results(work())
+
+    def _feature(self, plan: Plan, number: int, name: str) -> Any:
+        if number not in self._features:
+            self._features[number] = self.client.submit(_dask_detect, (plan.folder / name).absolute(), plan.detector, pure=False, retries=2)
+        return self._features[number]
+
+    def _results(self, work: Iterable[tuple[int, Any]]) -> Iterator[tuple[int, Any]]:
+        from distributed import as_completed
+
+        numbers: dict[Any, int] = {}
+        queue = as_completed()
+        most = 8 * max(1, sum(self.client.nthreads().values()))
+        for number, future in work:
+            numbers[future] = number
+            queue.add(future)
+            while queue.count() >= most:
+                yield self._one(next(queue), numbers)
+        for future in queue:
+            yield self._one(future, numbers)
+
+    def _one(self, future: Any, numbers: dict[Any, int]) -> tuple[int, Any]:
+        return numbers.pop(future), future.result()

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""What has been done so far: an SQLite file that survives a process killed at any moment. One process writes it."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterator
+from pathlib import Path
+from types import TracebackType
+
+from .. import __version__
+from .plan import Plan
+from .tasks import Detected, Matched
+
+_FORMAT = "asj-collection-1"
+_SCHEMA = """
+CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT;
+CREATE TABLE images (
+    id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, state TEXT NOT NULL DEFAULT 'waiting', error TEXT,
+    width INTEGER, height INTEGER, focal REAL, features BLOB) STRICT;
+CREATE TABLE pairs (
+    id INTEGER PRIMARY KEY, image1 INTEGER NOT NULL REFERENCES images(id), image2 INTEGER NOT NULL REFERENCES images(id),
+    state TEXT NOT NULL DEFAULT 'waiting', error TEXT, matches BLOB, lines BLOB, geometry TEXT,
+    UNIQUE (image1, image2)) STRICT;
+"""
+
+
+class StoreError(Exception):
+    """A store that cannot be used: of another version, of other work, damaged."""
+
+
+class Store:
+    """The results of a collection. A transaction holds one result: it is there whole, or not yet."""
+
+    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
+        self.path = path
+        self._connection = connection
+
+    @classmethod
+    def create(cls, path: Path, plan: Plan) -> Store:
+        """A new store with all work waiting."""
+        if path.exists():
+            raise StoreError(f"{path} is there already: go on with it (--resume), or remove it")
+        connection = _connect(path)
+        numbers = {name: number for number, name in enumerate(plan.images, 1)}
+        with connection:
+            connection.executescript("BEGIN;" + _SCHEMA)
+            connection.executemany("INSERT INTO about VALUES (?, ?)", _about(plan).items())
+            connection.executemany("INSERT INTO images (id, name) VALUES (?, ?)", [(n, name) for name, n in numbers.items()])
+            connection.executemany(
+                "INSERT INTO pairs (image1, image2) VALUES (?, ?)", [(numbers[one], numbers[two]) for one, two in plan.pairs]
+            )
+        return cls(path, connection)
+
+    @classmethod
+    def resume(cls, path: Path, plan: Plan) -> Store:
+        """The store of the same work, with what has been done."""
+        if not path.exists():
+            raise StoreError(f"{path} is not there: nothing to go on with")
+        connection = _connect(path)
+        try:
+            found = dict(connection.execute("SELECT key, value FROM about"))
+        except sqlite3.DatabaseError as bad:
+            connection.close()
+            raise StoreError(f"{path} is no store of a collection: {bad}") from bad
+        for key, wanted in _about(plan).items():
+            if found.get(key) != wanted:
+                connection.close()
+                raise StoreError(f"{path} is of other work: {key} is {found.get(key)!r} there, and {wanted!r} now")
+        store = cls(path, connection)
+        names = [name for _, name in store.images()]
+        pairs = connection.execute(
+            "SELECT a.name, b.name FROM pairs p JOIN images a ON a.id = image1 JOIN images b ON b.id = image2 ORDER BY p.id"
+        ).fetchall()
+        if names != plan.images or pairs != plan.pairs:
+            connection.close()
+            raise StoreError(f"{path} is of other work: its images or pairs differ")
+        return store
+
+    def close(self) -> None:
+        """Ends the connection; the write-ahead log goes into the file."""
+        self._connection.close()
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+    def images(self) -> list[tuple[int, str]]:
+        """Number and name of every image."""
+        return self._connection.execute("SELECT id, name FROM images ORDER BY id").fetchall()
+
+    def waiting_images(self) -> list[tuple[int, str]]:
+        """Those without a result."""
+        return self._connection.execute("SELECT id, name FROM images WHERE state = 'waiting' ORDER BY id").fetchall()
+
+    def waiting_pairs(self) -> list[tuple[int, int, int]]:
+        """Number of the pair and of its two images, of those without a result whose images both have one."""
+        return self._connection.execute(
+            "SELECT p.id, image1, image2 FROM pairs p JOIN images a ON a.id = image1 JOIN images b ON b.id = image2 "
+            "WHERE p.state = 'waiting' AND a.state = 'done' AND b.state = 'done' ORDER BY p.id"
+        ).fetchall()
+
+    def save_image(self, number: int, result: Detected) -> None:
+        """The result of one image, in a transaction of its own."""
+        with self._connection:
+            self._connection.execute(
+                "UPDATE images SET state = ?, error = ?, width = ?, height = ?, focal = ?, features = ? WHERE id = ?",
+                (_state(result.error), result.error, result.width, result.height, result.focal, result.features, number),
+            )
+
+    def save_pair(self, number: int, result: Matched) -> None:
+        """The result of one pair, in a transaction of its own."""
+        with self._connection:
+            self._connection.execute(
+                "UPDATE pairs SET state = ?, error = ?, matches = ?, lines = ?, geometry = ? WHERE id = ?",
+                (_state(result.error), result.error, result.matches, result.lines, result.geometry, number),
+            )
+
+    def detected(self) -> Iterator[tuple[int, str, Detected]]:
+        """Number, name and result of every image that has one, in order."""
+        for number, name, error, width, height, focal, features in self._connection.execute(
+            "SELECT id, name, error, width, height, focal, features FROM images WHERE state <> 'waiting' ORDER BY id"
+        ):
+            yield number, name, Detected(error, width or 0, height or 0, focal, features)
+
+    def features(self, number: int) -> Detected:
+        """The result of one image."""
+        row = self._connection.execute("SELECT error, width, height, focal, features FROM images WHERE id = ?", (number,)).fetchone()
+        return Detected(*row)
+
+    def matched(self) -> Iterator[tuple[int, int, Matched]]:
+        """Numbers of both images and result of every pair that has one, ordered by the images."""
+        for one, two, error, matches, lines, geometry in self._connection.execute(
+            "SELECT image1, image2, error, matches, lines, geometry FROM pairs WHERE state <> 'waiting' ORDER BY image1, image2"
+        ):
+            yield one, two, Matched(error, matches, lines, geometry)
+
+    def counts(self, table: str) -> dict[str, int]:
+        """How many images or pairs are in which state."""
+        if table not in ("images", "pairs"):
+            raise ValueError(table)
+        return dict(self._connection.execute(f"SELECT state, count(*) FROM {table} GROUP BY state"))
+
+    def failures(self) -> list[tuple[str, str]]:
+        """Names of what failed, and why."""
+        rows: list[tuple[str, str]] = self._connection.execute("SELECT name, error FROM images WHERE state = 'failed' ORDER BY id").fetchall()
+        rows += self._connection.execute(
+            "SELECT a.name || ' ' || b.name, p.error FROM pairs p JOIN images a ON a.id = image1 JOIN images b ON b.id = image2 "
+            "WHERE p.state = 'failed' ORDER BY p.id"
+        ).fetchall()
+        return rows
+
+
+def _state(error: str | None) -> str:
+    return "failed" if error else "done"
+
+
+def _about(plan: Plan) -> dict[str, str]:
+    return {
+        "format": _FORMAT,
+        "version": __version__,
+        "detector": json.dumps(plan.detector, sort_keys=True),
+        "matcher": json.dumps(plan.matcher, sort_keys=True),
+    }
+
+
+def _connect(path: Path) -> sqlite3.Connection:
+    try:
+        connection = sqlite3.connect(path, timeout=60)
+        connection.execute("PRAGMA journal_mode = WAL")
+        connection.execute("PRAGMA synchronous = NORMAL")
+    except sqlite3.DatabaseError as bad:
+        raise StoreError(f"{path}: {bad}") from bad
+    return connection

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""What a worker does: junctions of one image, matches of one pair. A failure is a result too."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import context, errors, images
+from ..features import Features, detect
+from ..matches import Matches, match
+
+_KEPT = 40  # images that a process keeps in memory: two sides of a tile of pairs, and a few
+
+
+@dataclass(frozen=True)
+class Detected:
+    """The result of one image: its junctions as the library's records."""
+
+    error: str | None
+    width: int
+    height: int
+    focal: float | None
+    features: bytes | None
+
+
+@dataclass(frozen=True)
+class Matched:
+    """The result of one pair: the library's match records, index pairs of line segments, the geometry as JSON."""
+
+    error: str | None
+    matches: bytes | None
+    lines: bytes | None
+    geometry: str | None
+
+
+def start(threads: int) -> None:
+    """Called once in a worker process."""
+    context.set_current(context.Context(threads=threads))
+
+
+def detect_image(path: Path, options: dict[str, str]) -> tuple[Detected, Features | None]:
+    """The junctions of an image file."""
+    try:
+        pixels = images.read(path)
+        features = detect(pixels, **_keywords(options))
+        return Detected(None, features.width, features.height, images.focal_length(path), features.junctions.tobytes()), features
+    except (errors.Error, OSError, MemoryError) as bad:
+        return Detected(_line(bad), 0, 0, None, None), None
+
+
+def match_images(one: Features, two: Features, options: dict[str, str]) -> Matched:
+    """The matches of two images."""
+    try:
+        found = match(one, two, **_keywords(options))
+        return Matched(None, found.matches.tobytes(), line_indices(found).tobytes(), None)
+    except (errors.Error, MemoryError) as bad:
+        return Matched(_line(bad), None, None, None)
+
+
+class Kept:
+    """The images that this process used last."""
+
+    def __init__(self) -> None:
+        self._features: OrderedDict[Path, Features] = OrderedDict()
+
+    def get(self, path: Path, records: bytes, options: dict[str, str]) -> Features:
+        """The features of an image whose junctions are known."""
+        features = self._features.get(path)
+        if features is None:
+            features = Features.from_records(images.read(path), records, **_keywords(options))
+            self._features[path] = features
+            if len(self._features) > _KEPT:
+                self._features.popitem(last=False)
+        else:
+            self._features.move_to_end(path)
+        return features
+
+
+def line_indices(found: Matches) -> NDArray[np.uint32]:
+    """(S, 2) which of features.segments match: the segments of a match by the branches that point along them."""
+    first, second, which = found.segments("cut")
+    ends = [
+        _branch_of(features, found.indices[which, side].astype(np.int64), segments)
+        for side, (features, segments) in enumerate(((found.features1, first), (found.features2, second)))
+    ]
+    return np.stack(ends, axis=1).astype(np.uint32)
+
+
+def _branch_of(features: Features, junctions: NDArray[np.int64], segments: NDArray[np.float32]) -> NDArray[np.int64]:
+    """The branch of each junction that points along the segment, as an index into features.segments."""
+    counts = features.junctions["branch_count"].astype(np.int64)
+    first = np.concatenate([[0], np.cumsum(counts)])
+    along = segments[:, 1] - segments[:, 0]
+    angle = np.arctan2(along[:, 1], along[:, 0])
+    angles = features.junctions["branches"]["angle"][junctions]
+    away = np.abs((angles - angle[:, None] + np.pi) % (2 * np.pi) - np.pi)
+    away[np.arange(away.shape[1]) >= counts[junctions][:, None]] = np.inf
+    nearest: NDArray[np.int64] = first[junctions] + np.argmin(away, axis=1)
+    return nearest
+
+
+def _keywords(options: dict[str, str]) -> dict[str, Any]:
+    return dict(options)
+
+
+def _line(bad: BaseException) -> str:
+    return (str(bad) or type(bad).__name__).replace("\n", "; ")

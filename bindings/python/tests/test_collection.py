@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Collections: the same content in one process, in several, on Dask, and after being killed; files that others read."""
+
+from __future__ import annotations
+
+import random
+import shutil
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from asj.__main__ import main
+from asj.collection import Plan, Store, StoreError, all_pairs, find_images, read_pairs
+
+MODULE = [sys.executable, "-m", "asj", "collect"]
+
+
+def content(store: Path) -> list[object]:
+    """All results, without the times and places that may differ."""
+    with sqlite3.connect(store) as connection:
+        return [
+            connection.execute("SELECT name, state, error, width, height, features FROM images ORDER BY id").fetchall(),
+            connection.execute("SELECT image1, image2, state, error, matches, lines FROM pairs ORDER BY image1, image2").fetchall(),
+        ]
+
+
+@pytest.fixture
+def done(photographs: Path, tmp_path: Path) -> Path:
+    """The store of a run in one process."""
+    assert main(["collect", str(photographs), "--limap", str(tmp_path / "limap"), "--jobs", "1", "--quiet"]) == 1
+    return tmp_path / "limap.work"
+
+
+def test_names_and_pairs(photographs: Path, tmp_path: Path) -> None:
+    names = find_images(photographs)
+    assert names == ["a.png", "b.png", "broken.png", "c.png", "more/d.png", "other.png"]
+    assert len(all_pairs(names)) == 15
+    listed = tmp_path / "pairs.txt"
+    listed.write_text("a.png b.png # near\n\nb.png a.png\na.png more/d.png\n")
+    assert read_pairs(listed, names) == [("a.png", "b.png"), ("a.png", "more/d.png")]
+    for text, why in (("a.png", "two names"), ("a.png z.png", "no image z.png"), ("a.png a.png", "itself")):
+        listed.write_text(text)
+        with pytest.raises(ValueError, match=why):
+            read_pairs(listed, names)
+
+
+def test_results(done: Path) -> None:
+    images, pairs = content(done)
+    assert [row[1] for row in images] == ["done", "done", "failed", "done", "done", "done"]  # type: ignore[attr-defined]
+    counts = {(row[0], row[1]): len(row[4] or b"") for row in pairs}  # type: ignore[attr-defined]
+    assert counts[1, 2] > 20 * 100 and counts[1, 3] == 0  # the third is no image
+
+
+def test_several_processes(done: Path, photographs: Path, tmp_path: Path) -> None:
+    assert main(["collect", str(photographs), "--limap", str(tmp_path / "again"), "--jobs", "3", "--quiet"]) == 1
+    assert content(tmp_path / "again.work") == content(done)
+    for file in (tmp_path / "limap").rglob("*.txt"):
+        assert file.read_bytes() == (tmp_path / "again" / file.relative_to(tmp_path / "limap")).read_bytes()
+
+
+def test_killed_and_resumed(done: Path, photographs: Path, tmp_path: Path) -> None:
+    words = [*MODULE, str(photographs), "--limap", str(tmp_path / "killed"), "--jobs", "2", "--quiet", "--resume"]
+    times = random.Random(5)
+    for _ in range(3):
+        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        time.sleep(times.uniform(0.3, 3))
+        process.kill()
+        process.wait()
+    assert subprocess.run(words, stdout=subprocess.DEVNULL).returncode == 1
+    assert content(tmp_path / "killed.work") == content(done)
+
+
+def test_dask_with_a_lost_worker(done: Path, photographs: Path, tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    from asj.collection import collect
+    from asj.collection.run import Dask
+
+    names = find_images(photographs)
+    plan = Plan(photographs, names, all_pairs(names), {"preset": "match"}, {"preset": "default"})
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+        Store.create(tmp_path / "dask.work", plan) as store,
+    ):
+        pids = list(client.run(lambda: __import__("os").getpid()).values())
+        killed: list[int] = []
+
+        def kill_one(what: str, number: int, total: int, left: float) -> None:
+            del total, left
+            if what == "pairs" and number == 2 and not killed:
+                killed.append(pids[0])
+                __import__("os").kill(pids[0], 9)
+
+        summary = collect(plan, store, Dask(client), kill_one)
+    assert killed and summary.failed_images == 1
+    assert content(tmp_path / "dask.work") == content(done)
+
+
+def test_colmap(done: Path, photographs: Path, tmp_path: Path) -> None:
+    pycolmap = pytest.importorskip("pycolmap")
+    shutil.copy(done, tmp_path / "scene.db.work")
+    assert main(["collect", str(photographs), "--colmap", str(tmp_path / "scene.db"), "--resume", "--quiet"]) == 1
+    database = pycolmap.Database.open(tmp_path / "scene.db")
+    assert database.num_images() == 5
+    first, second = (database.read_image_with_name(name).image_id for name in ("a.png", "b.png"))
+    one, two = database.read_keypoints(first), database.read_keypoints(second)
+    matches = database.read_matches(first, second)
+    moved = two[matches[:, 1], :2] - one[matches[:, 0], :2]
+    assert one.shape[1] == 6 and len(matches) > 20 and np.mean(np.linalg.norm(moved - (6, 4), axis=1) < 1.5) > 0.9
+    assert len(database.read_two_view_geometry(first, second).inlier_matches) > 15
+    database.close()
+
+
+def test_hdf5(done: Path, photographs: Path, tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    shutil.copy(done, tmp_path / "h5.work")
+    assert main(["collect", str(photographs), "--hdf5", str(tmp_path / "h5"), "--resume", "--quiet"]) == 1
+    with h5py.File(tmp_path / "h5" / "features.h5") as features, h5py.File(tmp_path / "h5" / "matches.h5") as matches:
+        assert features["more/d.png"]["keypoints"].shape[1] == 2 and features["a.png"]["image_size"][:].tolist() == [480, 360]
+        matches0 = matches["a.png"]["b.png"]["matches0"][:]
+        assert len(matches0) == len(features["a.png"]["keypoints"]) and (matches0 >= 0).sum() > 20
+        assert "more-d.png" in matches["a.png"]
+        moved = features["b.png"]["keypoints"][:][matches0[matches0 >= 0]] - features["a.png"]["keypoints"][:][matches0 >= 0]
+        assert np.median(np.linalg.norm(moved - (6, 4), axis=1)) < 1
+
+
+def test_limap(done: Path, tmp_path: Path) -> None:
+    del done
+    first = (tmp_path / "limap" / "segments" / "segments_1.txt").read_text().splitlines()
+    second = (tmp_path / "limap" / "segments" / "segments_2.txt").read_text().splitlines()
+    assert int(first[0]) == len(first) - 1
+    one, two = (np.array([line.split() for line in lines[1:]], float) for lines in (first, second))
+    pairs = np.array([line.split() for line in (tmp_path / "limap" / "matches" / "matches_1_2.txt").read_text().splitlines()], int)
+    moved = two[pairs[:, 1], :2] - one[pairs[:, 0], :2]
+    turned = np.arctan2(*(two[pairs[:, 1], 2:4] - two[pairs[:, 1], :2]).T) - np.arctan2(*(one[pairs[:, 0], 2:4] - one[pairs[:, 0], :2]).T)
+    assert len(pairs) > 30 and np.mean(np.linalg.norm(moved - (6, 4), axis=1) < 1.5) > 0.9 and np.median(np.abs(np.sin(turned))) < 0.02
+
+
+def test_bad_use(done: Path, photographs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def says(words: list[str], why: str) -> None:
+        assert main(["collect", *words]) == 2
+        assert why in capsys.readouterr().err
+
+    limap = ["--limap", str(tmp_path / "limap")]
+    says([str(photographs)], "no output")
+    says([str(tmp_path / "nowhere"), *limap], "not a folder")
+    says([str(photographs), *limap], "is there already")
+    says([str(photographs), *limap, "--resume", "--set", "minimum_length=9"], "other work")
+    says([str(photographs), *limap, "--set", "minimum_lenght=9"], "did you mean")
+    says([str(photographs), "--limap", "/proc/no/folder"], "no folder")
+    says([str(photographs), *limap, "--jobs", "0", "--resume"], "jobs is 0")
+    (tmp_path / "junk.work").write_bytes(b"this is no database" * 100)
+    says([str(photographs), "--limap", str(tmp_path / "junk"), "--resume"], "junk.work")
+    with sqlite3.connect(done) as connection:
+        connection.execute("UPDATE about SET value = 'asj-collection-0' WHERE key = 'format'")
+    says([str(photographs), *limap, "--resume"], "asj-collection-0")
+    plan = Plan(photographs, ["a.png"], [])
+    with pytest.raises(StoreError):
+        Store.create(done, plan)
+
+
+def test_full_disk(photographs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("no /dev/full here")
+    assert main(["collect", str(photographs), "--limap", "/dev/full/x", "--quiet"]) == 2
+    assert "/dev/full" in capsys.readouterr().err

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Detection: values, types of images, memory, bad input."""
+
+from __future__ import annotations
+
+import gc
+import pickle
+import signal
+import threading
+import time
+from typing import Any
+
+import asj
+import numpy as np
+import pytest
+from conftest import Scene, panels
+
+
+def square() -> Scene:
+    image = np.zeros((200, 200), np.uint8)
+    image[60:140, 60:140] = 255
+    return image
+
+
+def corners(features: asj.Features) -> list[list[float]]:
+    return sorted(np.round(features.xy * 2).astype(float).tolist())
+
+
+CORNERS = sorted([[119.0, 119.0], [119.0, 279.0], [279.0, 119.0], [279.0, 279.0]])
+
+
+def test_square() -> None:
+    features = asj.detect(square(), preset="default")
+    assert corners(features) == CORNERS
+    assert len(features.branches) == 8 and features.segments.shape == (8, 2, 2)
+    assert np.allclose(np.linalg.norm(features.segments[:, 1] - features.segments[:, 0], axis=1), features.branches["length"], atol=1e-3)
+    assert features.l_junctions["junction"].tolist() == [0, 1, 2, 3]
+    assert (features.log10_nfa < 0).all() and (features.uncertainty > 0).all()
+    assert features.xy.base is not None and not features.xy.flags.writeable
+
+
+@pytest.mark.parametrize(
+    "same",
+    [
+        lambda g: g.astype(np.uint16) * 257, lambda g: (g / 255).astype(np.float32), lambda g: g / 255, lambda g: np.stack([g] * 3, 2),
+        lambda g: np.stack([g] * 4, 2), lambda g: g.astype(bool), lambda g: np.asfortranarray(g), lambda g: np.pad(g, 7)[7:-7, 7:-7],
+        lambda g: g[::-1, ::-1][::-1, ::-1], lambda g: g.astype(">u2") * 257, lambda g: g[:, :, None], lambda g: g.tolist()
+        and np.array(g.tolist(), np.uint8),
+    ],
+)  # fmt: skip
+def test_image_types(same: Any) -> None:
+    assert corners(asj.detect(same(square()), preset="default")) == CORNERS
+
+
+def test_views_are_not_copied(scene: Scene) -> None:
+    padded = np.pad(scene, 5)
+    part = padded[5:-5, 5:-5]
+    assert np.shares_memory(asj.detect(part).image, padded)
+
+
+def test_colour_order() -> None:
+    image = np.zeros((200, 200, 3), np.uint8)
+    image[:, :, 2] = square() // 2  # blue is dark: 29 of 256
+    gray = ((square() // 2).astype(int) * 29 + 128) >> 8
+    one, two = asj.detect(image), asj.detect(gray.astype(np.uint8))
+    assert np.array_equal(one.junctions, two.junctions)
+
+
+@pytest.mark.parametrize(
+    ("bad", "error"),
+    [
+        (np.zeros((3, 3, 5), np.uint8), asj.ImageError), (np.zeros(9, np.uint8), asj.ImageError), (np.zeros((0, 4), np.uint8), asj.ImageError),
+        (np.full((9, 9), np.nan), asj.ImageError), (np.full((9, 9), np.inf, np.float32), asj.ImageError), (np.zeros((4, 4), complex), asj.ImageError),
+        (np.zeros((4, 4), np.int32), asj.ImageError), (np.zeros((2, 70000), np.uint8), asj.LimitError), (None, asj.ImageError),
+        ("a.png", asj.ImageError), (np.zeros((2, 2, 2, 2), np.uint8), asj.ImageError),
+    ],
+)  # fmt: skip
+def test_bad_images(bad: Any, error: type[asj.Error]) -> None:
+    with pytest.raises(error):
+        asj.detect(bad)
+
+
+def test_options() -> None:
+    assert asj.detect(square(), preset="default", minimum_length=30).options["minimum_length"] == "30"
+    assert len(asj.detect(square(), preset="default", minimum_length=500)) == 0
+    assert asj.detect(square(), isotropic_radii=(5, 9), strip_test=False).options["isotropic_radii"] == "5,9"
+    with pytest.raises(asj.OptionError, match="did you mean minimum_length"):
+        asj.detect(square(), minimum_lenght=3)
+    with pytest.raises(asj.OptionError, match="0 .. 1000"):
+        asj.detect(square(), minimum_length=-1)
+    with pytest.raises(asj.OptionError, match="did you mean default"):
+        asj.detect(square(), preset="defualt")
+    assert {"epsilon", "minimum_length"} <= {option.key for option in asj.detect_options()}
+
+
+def test_results_outlive_the_context(scene: Scene) -> None:
+    context = asj.Context(threads=1)
+    features = asj.detect(scene, context=context)
+    xy = features.xy
+    expected = xy.copy()
+    del context, features
+    gc.collect()
+    asj.detect(panels(seed=3))
+    assert np.array_equal(xy, expected)
+
+
+def test_pickle(scene: Scene) -> None:
+    features = asj.detect(scene, minimum_length=5)
+    again = pickle.loads(pickle.dumps(features))
+    assert np.array_equal(again.junctions, features.junctions) and np.array_equal(again.l_junctions, features.l_junctions)
+    assert np.array_equal(again.image, features.image) and again.options == features.options
+
+
+def test_progress_and_cancelling(scene: Scene) -> None:
+    seen: list[tuple[str, float]] = []
+    asj.detect(scene, context=asj.Context(progress=lambda stage, done: seen.append((stage, done))))
+    assert len(seen) > 3 and [done for _, done in seen] == sorted(done for _, done in seen)
+    with pytest.raises(asj.Cancelled):
+        asj.detect(scene, context=asj.Context(progress=lambda stage, done: done > 0.3))
+    with pytest.raises(ZeroDivisionError):
+        asj.detect(scene, context=asj.Context(progress=lambda stage, done: 1 / 0))
+
+
+def test_interrupt() -> None:
+    big = np.random.default_rng(0).integers(0, 255, (3000, 4000), np.uint8)
+    timer = threading.Timer(0.05, signal.raise_signal, (signal.SIGINT,))
+    begin = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        timer.start()
+        for _ in range(50):
+            asj.detect(big)
+    assert time.monotonic() - begin < 20
+
+
+def test_threads_work_at_once(scene: Scene) -> None:
+    expected = asj.detect(scene).junctions
+    wrong: list[int] = []
+
+    def work() -> None:
+        for _ in range(5):
+            if not np.array_equal(asj.detect(scene).junctions, expected):
+                wrong.append(1)
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+def test_devices() -> None:
+    with pytest.raises(asj.DeviceError):
+        asj.Context(backend="opencl", device="a device that nobody has")
+    with pytest.raises(asj.OptionError):
+        asj.Context(backend="cuda")
+    with pytest.raises(asj.OptionError):
+        asj.Context(threads=-1)
