@@ -35,7 +35,7 @@ def plot(image: ArrayLike, features: Features, axes: Any = None) -> Any:
     axes = _axes(axes, pixels.shape[1], pixels.shape[0])
     _show(axes, pixels)
     sure = np.clip(-features.log10_nfa / 30, 0, 1)
-    lines = LineCollection(features.segments, array=sure[features.branches["junction"]], cmap="turbo_r", linewidths=1, clim=(0, 1))
+    lines = LineCollection(list(features.segments), array=sure[features.branches["junction"]], cmap="turbo_r", linewidths=1, clim=(0, 1))
     axes.add_collection(lines)
     axes.scatter(features.xy[:, 0], features.xy[:, 1], s=9, c=sure, cmap="turbo_r", vmin=0, vmax=1)
     return axes
@@ -57,7 +57,7 @@ def plot_matches(image1: ArrayLike, image2: ArrayLike, matches: Matches, axes: A
         centre = np.stack([matches.matches["x" + side], matches.matches["y" + side]], 1) + offset
         for end in "ab":
             tip = np.stack([matches.matches[f"{end}x{side}"], matches.matches[f"{end}y{side}"]], 1) + offset
-            axes.add_collection(LineCollection(np.stack([centre, tip], 1), array=colour, cmap="hsv", linewidths=1.2))
+            axes.add_collection(LineCollection(list(np.stack([centre, tip], 1)), array=colour, cmap="hsv", linewidths=1.2))
         axes.scatter(centre[:, 0], centre[:, 1], s=9, c=colour, cmap="hsv")
     return axes
 
