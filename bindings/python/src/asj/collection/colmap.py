@@ -44,7 +44,9 @@ def write(store: Store, path: Path, verify: bool = True) -> None:
 
 def _image(database: Any, pycolmap: Any, name: str, detected: Any) -> int:
     focal = detected.focal or 1.2 * max(detected.width, detected.height)
-    camera = pycolmap.Camera.create(0, pycolmap.CameraModelId.SIMPLE_RADIAL, focal, detected.width, detected.height)
+    camera = pycolmap.Camera(
+        model="SIMPLE_RADIAL", width=detected.width, height=detected.height, params=[focal, detected.width / 2, detected.height / 2, 0.0]
+    )
     camera.has_prior_focal_length = detected.focal is not None
     camera_id = database.write_camera(camera)
     number = database.write_image(pycolmap.Image(name=name, camera_id=camera_id))

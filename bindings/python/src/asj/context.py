@@ -99,21 +99,17 @@ def _free(pointer: Any) -> None:
     lib.asj_context_free(place)
 
 
-def _stopped(kind: type[BaseException], value: BaseException | None, traceback: Any) -> int:
-    del kind, value, traceback
+def _stop(kind: type[BaseException], value: BaseException | None, traceback: Any) -> int:
+    """An exception of the callback, or an interrupt at any place in it: the call stops, and passes it on."""
+    context: Context = ffi.from_handle(traceback.tb_frame.f_locals["user"])
+    context._exception = value or kind()
     return 1
 
 
-@ffi.def_extern(name="asj_python_progress", error=1, onerror=_stopped)  # type: ignore[untyped-decorator]
+@ffi.def_extern(name="asj_python_progress", error=1, onerror=_stop)  # type: ignore[untyped-decorator]
 def _progress(user: Any, stage: int, done: float) -> int:
     context: Context = ffi.from_handle(user)
-    try:
-        if context.progress is not None and context.progress(text(lib.asj_stage_name(stage)), done):
-            return 1
-    except BaseException as raised:  # an interrupt arrives here too
-        context._exception = raised
-        return 1
-    return 0
+    return 1 if context.progress is not None and context.progress(text(lib.asj_stage_name(stage)), done) else 0
 
 
 @ffi.def_extern(name="asj_python_log")  # type: ignore[untyped-decorator]
