@@ -114,8 +114,17 @@ fewer_parts() {
     return $state_of_fewer
 }
 
+# Only how many passed counts here; what failed is in the log.
+python_package() {
+    logged python sh "$root/scripts/python.sh" || return 1
+    count=$(sed -n 's/^\([0-9][0-9]*\) passed.*/\1/p' "$logs/python.log")
+    passed=$((passed + count))
+    sed -n 's/.*is consistent with the following platform tag: /wheel: /p' "$logs/python.log"
+}
+
 more_checks() {
     step style sh "$root/scripts/style.sh"
+    step python python_package
     step sanitizers with_sanitizers
     step fewer-parts fewer_parts
     step no-cli build build-no-cli -Dcli=disabled -Dtests=disabled --werror
