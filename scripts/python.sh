@@ -12,5 +12,5 @@ cd "$root/bindings/python"
 "$folder/bin/pytest" -q -p no:cacheprovider tests asj
 "$folder/bin/mypy" --cache-dir "$folder/mypy"
 "$folder/bin/pip" wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$folder/wheel" .
-PATH=$folder/bin:$PATH auditwheel --quiet repair --wheel-dir "$folder/wheelhouse" "$folder"/wheel/asj-*.whl
+PATH=$folder/bin:$PATH auditwheel repair --wheel-dir "$folder/wheelhouse" "$folder"/wheel/asj-*.whl
 "$folder/bin/auditwheel" show "$folder"/wheelhouse/asj-*.whl
