@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The help, the options and the checks of `asj-cli detect`. */
 #include "detect_arguments.h"
+#include "ending.h"
 #include "help.h"
 #include "message.h"
 
@@ -63,9 +64,10 @@ void cli_detect_arguments_free(cli_detect_arguments *arguments)
     cli_settings_free(&arguments->settings);
 }
 
+static const char *const formats[] = {"asj", "json", "csv", NULL};
+
 static int take_output(void *target, int id, const char *text)
 {
-    static const char *const formats[] = {"asj", "json", "csv", NULL};
     cli_detect_arguments *arguments = target;
     switch (id) {
     case OUTPUT: arguments->output = text; break;
@@ -148,6 +150,8 @@ static int check(cli_detect_arguments *arguments)
         if (strcmp(arguments->images[i], "-") == 0)
             return cli_usage_error("detect", "images are not read from standard input (a file named - is ./-)");
     int result = cli_common_check("detect", &arguments->common);
+    if (result == CLI_SUCCESS)
+        result = cli_check_ending("detect", "junctions", arguments->output, arguments->format, formats);
     return result == CLI_SUCCESS ? check_plot(arguments) : result;
 }
 

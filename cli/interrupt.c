@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Signals set a flag that progress callbacks look at: results are whole or absent. */
-#define _POSIX_C_SOURCE 200809L
+#define _XOPEN_SOURCE 700
 #include "interrupt.h"
 
 #include <signal.h>
@@ -27,6 +27,7 @@ void cli_interrupt_install(void)
     action.sa_handler = SIG_IGN;
     action.sa_flags = 0;
     sigaction(SIGPIPE, &action, NULL);
+    sigaction(SIGXFSZ, &action, NULL); /* a file beyond the limit of the shell is then an error like a full disk */
 }
 
 int cli_interrupted(void)

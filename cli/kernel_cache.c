@@ -58,10 +58,13 @@ static void put(void *user, const char *key, const void *data, size_t size)
     const cli_kernel_cache *cache = user;
     char path[CLI_CACHE_PATH];
     asj_output *output = NULL;
+    struct stat facts;
     if (!join(path, cache->folder, key))
         return;
     mkdir(cache->base, 0700);
     mkdir(cache->folder, 0700);
+    if (lstat(path, &facts) == 0 && !S_ISREG(facts.st_mode)) /* a pipe would be waited for */
+        return;
     if (asj_output_begin(path, &output, NULL, 0) != ASJ_OK)
         return;
     if (asj_output_write(output, data, size) == ASJ_OK)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The help, the options and the checks of `asj-cli match`. */
 #include "match_arguments.h"
+#include "ending.h"
 #include "help.h"
 #include "message.h"
 #include "outputs.h"
@@ -74,9 +75,10 @@ void cli_match_arguments_free(cli_match_arguments *arguments)
     cli_settings_free(&arguments->match_settings);
 }
 
+static const char *const formats[] = {"csv", "json", NULL};
+
 static int take_output(void *target, int id, const char *text)
 {
-    static const char *const formats[] = {"csv", "json", NULL};
     static const char *const ends[] = {"cut", "inner", "both", NULL}; /* in the order of ASJ_END_... */
     cli_match_arguments *arguments = target;
     switch (id) {
@@ -174,20 +176,10 @@ static int check_files(const cli_match_arguments *arguments)
             inputs[input_count++] = arguments->junctions[v];
     }
     if (arguments->output && strcmp(arguments->output, "-") != 0)
-        outputs[output_count++] = (cli_planned){arguments->output, "the matches"};
+        outputs[output_count++] = (cli_planned){arguments->output, "the matches", NULL};
     if (arguments->plot)
-        outputs[output_count++] = (cli_planned){arguments->plot, "the plot"};
+        outputs[output_count++] = (cli_planned){arguments->plot, "the plot", NULL};
     return cli_check_collisions("match", outputs, output_count, inputs, input_count);
-}
-
-/* Names that promise something else than they would get. */
-static int check_output(const cli_match_arguments *arguments)
-{
-    static const char *const others[] = {"asj", "png", "svg", "pdf", "jpg", "jpeg", NULL};
-    const char *dot = arguments->output && !arguments->format ? strrchr(arguments->output, '.') : NULL;
-    if (dot && cli_find_word(others, dot + 1) >= 0)
-        return cli_usage_error("match", "--output: %s: matches are written as csv or json (a picture: --plot)", arguments->output);
-    return CLI_SUCCESS;
 }
 
 /* Options of the detector when it has nothing to do. */
@@ -214,7 +206,7 @@ static int check(cli_match_arguments *arguments, char **operands, int operand_co
     }
     int result = cli_common_check("match", &arguments->common);
     if (result == CLI_SUCCESS)
-        result = check_output(arguments);
+        result = cli_check_ending("match", "matches", arguments->output, arguments->format, formats);
     if (result == CLI_SUCCESS)
         result = check_detector(arguments);
     if (result == CLI_SUCCESS && arguments->plot)

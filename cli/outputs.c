@@ -4,6 +4,8 @@
 #include "outputs.h"
 #include "message.h"
 
+#include <asj/io.h>
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -79,7 +81,22 @@ static int name_outputs(const cli_detect_arguments *arguments, cli_outputs *outp
 
 static int compare_planned(const void *a, const void *b)
 {
-    return strcmp(((const cli_planned *)a)->path, ((const cli_planned *)b)->path);
+    return strcmp(((const cli_planned *)a)->target, ((const cli_planned *)b)->target);
+}
+
+/* What each output will be, so that two spellings of one file are seen to be the same. 0 = no memory */
+static int find_targets(cli_planned *outputs, size_t count)
+{
+    enum { LONGEST = 8192 };
+    char *target = malloc(LONGEST);
+    int good = target != NULL;
+    for (size_t i = 0; i < count && good; i++) {
+        int found = asj_output_target(outputs[i].path, target, LONGEST) == ASJ_OK; /* else it cannot be written anyway */
+        outputs[i].target = copy(found ? target : outputs[i].path);
+        good = outputs[i].target != NULL;
+    }
+    free(target);
+    return good;
 }
 
 static int compare_identity(const void *a, const void *b)
@@ -95,9 +112,9 @@ static size_t list_planned(const cli_detect_arguments *arguments, const cli_outp
     size_t n = 0;
     for (size_t i = 0; i < outputs->count; i++) {
         if (outputs->of[i].junctions && strcmp(outputs->of[i].junctions, "-") != 0)
-            list[n++] = (cli_planned){outputs->of[i].junctions, arguments->images[i]};
+            list[n++] = (cli_planned){outputs->of[i].junctions, arguments->images[i], NULL};
         if (outputs->of[i].plot)
-            list[n++] = (cli_planned){outputs->of[i].plot, arguments->images[i]};
+            list[n++] = (cli_planned){outputs->of[i].plot, arguments->images[i], NULL};
     }
     return n;
 }
@@ -118,7 +135,7 @@ static int check_against(const char *command, const cli_planned *outputs, size_t
 {
     struct stat facts;
     for (size_t i = 1; i < output_count; i++)
-        if (strcmp(outputs[i - 1].path, outputs[i].path) == 0)
+        if (strcmp(outputs[i - 1].target, outputs[i].target) == 0)
             return cli_usage_error(command, "%s: would be written twice, for %s and for %s", outputs[i].path,
                                    outputs[i - 1].purpose, outputs[i].purpose);
     for (size_t i = 0; i < output_count; i++) {
@@ -135,13 +152,16 @@ int cli_check_collisions(const char *command, cli_planned *outputs, size_t outpu
                          size_t input_count)
 {
     identity *list = calloc(input_count + 1, sizeof *list);
-    if (!list) {
+    int result = CLI_FAILED;
+    if (!list || !find_targets(outputs, output_count)) {
         cli_error("out of memory");
-        return CLI_FAILED;
+    } else {
+        if (output_count > 1)
+            qsort(outputs, output_count, sizeof *outputs, compare_planned);
+        result = check_against(command, outputs, output_count, list, identify(inputs, input_count, list));
     }
-    if (output_count > 1)
-        qsort(outputs, output_count, sizeof *outputs, compare_planned);
-    int result = check_against(command, outputs, output_count, list, identify(inputs, input_count, list));
+    for (size_t i = 0; i < output_count; i++)
+        free(outputs[i].target);
     free(list);
     return result;
 }

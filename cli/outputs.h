@@ -8,6 +8,7 @@
 typedef struct cli_planned {
     const char *path;
     const char *purpose;
+    char *target; /* filled in by cli_check_collisions() */
 } cli_planned;
 
 /* Two results may not share a name, and none may take the place of an input. Sorts `outputs`. CLI_SUCCESS, or CLI_USAGE or

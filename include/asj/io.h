@@ -64,10 +64,15 @@ ASJ_API const char *asj_io_image_formats(void);
 /* An output file that appears whole or not at all: it is written beside its place under another name and renamed by
  * asj_output_commit(). So a file that was there before stays until then, and stays for good when anything fails. "-" and
  * /dev/stdout are standard output; that, pipes and devices are written directly. A protected file is not replaced, a symbolic
- * link is followed, and the permissions of a file that was there before are kept. A process that is killed in between leaves a
+ * link is followed, even to a file that is not there yet, and the permissions of a file that was there before are kept. A process that is killed in between leaves a
  * file named .asj-NUMBER-NUMBER.tmp.
  * Thread safety: one thread at a time per output. */
 typedef struct asj_output asj_output;
+
+/* The absolute path of the file that an output of this path creates or replaces: folders resolved, symbolic links followed. So two
+ * paths are one file when their targets are the same text. For what is no regular file the text means nothing.
+ * ASJ_ERROR_ARGUMENT, ASJ_ERROR_MEMORY; ASJ_ERROR_FILE: the folder is missing, or target_size bytes are too few */
+ASJ_API asj_status asj_output_target(const char *path, char *target, size_t target_size);
 
 /* On success the caller owns *output until commit or abort.
  * ASJ_ERROR_ARGUMENT  path or output is NULL

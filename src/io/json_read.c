@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* JSON of schema "asj-junctions-1": json_write.c. The outer object and the list of junctions are walked here and every value in
- * them is parsed by jansson, so that memory does not grow with the file and each junction's line is known. */
+/* JSON of schema "asj-junctions-1": json_write.c. The outer object and the list of junctions are walked here, what is not needed is
+ * passed over, and every other value is parsed by jansson, so that memory does not grow with the file and each junction's line is
+ * known. */
+#include "c_locale.h"
+#include "json_skip.h"
 #include "junction_formats.h"
 
 #include <jansson.h>
@@ -13,7 +16,7 @@ typedef struct json_reader {
     size_t line; /* of `next`, from 1 */
     const asj_message *message;
     asj_junction_list *list;
-    int has_schema, has_junctions;
+    int has_schema, has_image, has_junctions;
 } json_reader;
 
 static char skip_space(json_reader *reader)
@@ -51,16 +54,44 @@ static asj_status expect_more(json_reader *reader, char close, int *more)
     return expect(reader, close);
 }
 
+/* Passes over everything up to `stop`. */
+static void go_to(json_reader *reader, const char *stop)
+{
+    for (; reader->next < stop; reader->next++)
+        reader->line += *reader->next == '\n';
+}
+
+/* Where the next value ends. */
+static asj_status find_end(json_reader *reader, const char **value_end)
+{
+    const char *stop;
+
+    skip_space(reader);
+    if (reader->next == reader->end)
+        return asj_line_fail(reader->message, reader->line, "damaged JSON: the file ends where a value should follow");
+    *value_end = asj_json_skip(reader->next, reader->end, &stop);
+    if (*value_end)
+        return ASJ_OK;
+    go_to(reader, stop);
+    return asj_line_fail(reader->message, reader->line, "damaged JSON: %s",
+                         stop == reader->end ? "the file ends inside a value" : "a value that breaks off");
+}
+
+/* Jansson's own form of a value can be 25 times as long as its text. */
+enum { LONGEST_VALUE = 1 << 20 };
+
 /* Parses one value; the caller lets go of it. */
 static asj_status read_value(json_reader *reader, json_t **value)
 {
     const char *stop;
     json_error_t error;
+    asj_status status = find_end(reader, &stop);
 
-    skip_space(reader);
-    if (reader->next == reader->end)
-        return asj_line_fail(reader->message, reader->line, "damaged JSON: the file ends where a value should follow");
-    *value = json_loadb(reader->next, (size_t)(reader->end - reader->next),
+    if (status != ASJ_OK)
+        return status;
+    if (stop - reader->next > LONGEST_VALUE)
+        return asj_line_fail(reader->message, reader->line, "a value longer than %d bytes", LONGEST_VALUE);
+    *value = json_loadb(reader->next, (size_t)(stop - reader->next),
                         JSON_DECODE_ANY | JSON_DISABLE_EOF_CHECK | JSON_REJECT_DUPLICATES, &error);
     if (!*value) {
         if (json_error_code(&error) == json_error_out_of_memory)
@@ -68,8 +99,7 @@ static asj_status read_value(json_reader *reader, json_t **value)
         return asj_line_fail(reader->message, reader->line + (size_t)(error.line > 0 ? error.line - 1 : 0), "damaged JSON: %s",
                              error.text);
     }
-    for (stop = reader->next + error.position; reader->next < stop; reader->next++)
-        reader->line += *reader->next == '\n';
+    go_to(reader, stop);
     return ASJ_OK;
 }
 
@@ -136,13 +166,18 @@ static asj_status read_junction(const json_reader *reader, size_t line, const js
     return status == ASJ_OK ? asj_junction_list_add(reader->list, &junction, line, reader->message) : status;
 }
 
+static asj_status fail_second(const json_reader *reader, const char *key)
+{
+    return asj_line_fail(reader->message, reader->line, "\"%s\" stands here a second time", key);
+}
+
 static asj_status read_junctions(json_reader *reader)
 {
     asj_status status = expect(reader, '[');
     int more = 1;
 
     if (status == ASJ_OK && reader->has_junctions)
-        return asj_line_fail(reader->message, reader->line, "\"junctions\" stands here a second time");
+        return fail_second(reader, "junctions");
     reader->has_junctions = 1;
     if (status == ASJ_OK && skip_space(reader) == ']')
         return expect(reader, ']');
@@ -161,10 +196,24 @@ static asj_status read_junctions(json_reader *reader)
     return status;
 }
 
+static asj_status read_schema(json_reader *reader, const json_t *value)
+{
+    if (reader->has_schema)
+        return fail_second(reader, "schema");
+    reader->has_schema = 1;
+    if (!json_is_string(value) || strcmp(json_string_value(value), SCHEMA))
+        return asj_line_fail(reader->message, reader->line, "\"schema\" is not \"" SCHEMA "\"");
+    return ASJ_OK;
+}
+
 static asj_status read_image(json_reader *reader, const json_t *value)
 {
     json_int_t width = json_integer_value(json_object_get(value, "width"));
     json_int_t height = json_integer_value(json_object_get(value, "height"));
+
+    if (reader->has_image)
+        return fail_second(reader, "image");
+    reader->has_image = 1;
     if (width < 1 || height < 1 || width > ASJ_MAX_SIDE || height > ASJ_MAX_SIDE)
         return asj_line_fail(reader->message, reader->line, "\"image\" needs a \"width\" and a \"height\" from 1 to %d",
                              ASJ_MAX_SIDE);
@@ -173,7 +222,7 @@ static asj_status read_image(json_reader *reader, const json_t *value)
     return ASJ_OK;
 }
 
-/* The value of a key of the outer object; what is not needed is parsed and passed over. */
+/* The value of a key of the outer object. */
 static asj_status read_entry(json_reader *reader, const char *key)
 {
     json_t *value = NULL;
@@ -181,14 +230,16 @@ static asj_status read_entry(json_reader *reader, const char *key)
 
     if (!strcmp(key, "junctions"))
         return read_junctions(reader);
-    status = read_value(reader, &value);
-    if (status == ASJ_OK && !strcmp(key, "schema")) {
-        if (!json_is_string(value) || strcmp(json_string_value(value), SCHEMA))
-            status = asj_line_fail(reader->message, reader->line, "\"schema\" is not \"" SCHEMA "\"");
-        reader->has_schema = 1;
+    if (strcmp(key, "schema") && strcmp(key, "image")) {
+        const char *stop;
+        status = find_end(reader, &stop);
+        if (status == ASJ_OK)
+            go_to(reader, stop);
+        return status;
     }
-    if (status == ASJ_OK && !strcmp(key, "image"))
-        status = read_image(reader, value);
+    status = read_value(reader, &value);
+    if (status == ASJ_OK)
+        status = strcmp(key, "schema") ? read_image(reader, value) : read_schema(reader, value);
     json_decref(value);
     return status;
 }
@@ -232,9 +283,14 @@ static asj_status check_locations(const json_reader *reader)
 
 asj_status asj_read_json(const asj_input *input, asj_junction_list *list, const asj_message *message)
 {
-    json_reader reader = {(const char *)input->bytes, (const char *)input->bytes + input->size, 1, message, list, 0, 0};
-    asj_status status = read_object(&reader);
+    json_reader reader = {(const char *)input->bytes, (const char *)input->bytes + input->size, 1, message, list, 0, 0, 0};
+    asj_c_locale locale;
+    asj_status status = asj_c_locale_begin(&locale, message);
 
+    if (status != ASJ_OK)
+        return status;
+    status = read_object(&reader);
+    asj_c_locale_end(&locale);
     if (status == ASJ_OK && (!reader.has_schema || !reader.has_junctions))
         status = asj_line_fail(message, reader.line, "not a junction file: no \"schema\" or no \"junctions\"");
     return status == ASJ_OK ? check_locations(&reader) : status;

@@ -2,6 +2,7 @@
 /* JSON, schema "asj-junctions-1": asj-formats(5). */
 #include "junction_output.h"
 
+#include "c_locale.h"
 #include "json_options.h"
 #include "json_output.h"
 
@@ -57,8 +58,12 @@ asj_status asj_write_json(asj_output *output, const asj_detection_report *report
 {
     const asj_detection *found = report->detection;
     asj_json_output json = {output, 0};
+    asj_c_locale locale;
+    asj_status status = asj_c_locale_begin(&locale, message);
     uint32_t i;
 
+    if (status != ASJ_OK)
+        return status;
     put_head(&json, report);
     asj_output_text(output, ",\n\"junctions\": [");
     for (i = 0; i < found->junction_count && !json.out_of_memory; i++)
@@ -67,5 +72,6 @@ asj_status asj_write_json(asj_output *output, const asj_detection_report *report
     for (i = 0; i < found->l_junction_count && !json.out_of_memory; i++)
         asj_json_put(&json, i ? ",\n" : "\n", asj_json_l_junction(&found->l_junctions[i]), ASJ_JSON_FLOATS);
     asj_output_text(output, "]\n}\n");
+    asj_c_locale_end(&locale);
     return json.out_of_memory ? asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for JSON") : ASJ_OK;
 }

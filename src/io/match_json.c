@@ -2,6 +2,7 @@
 /* JSON, schema "asj-matches-1": asj-formats(5). */
 #include "match_output.h"
 
+#include "c_locale.h"
 #include "json_options.h"
 #include "json_output.h"
 
@@ -103,8 +104,12 @@ asj_status asj_write_match_json(asj_output *output, const asj_match_report *repo
 {
     const asj_match_result *result = report->result;
     asj_json_output json = {output, 0};
+    asj_c_locale locale;
+    asj_status status = asj_c_locale_begin(&locale, message);
     size_t i;
 
+    if (status != ASJ_OK)
+        return status;
     put_head(&json, report, segments);
     asj_output_text(output, ",\n\"matches\": [");
     for (i = 0; i < result->match_count && !json.out_of_memory; i++)
@@ -116,5 +121,6 @@ asj_status asj_write_match_json(asj_output *output, const asj_match_report *repo
     put_corners(&json, "],\n\"l_junctions1\": [", result->l_junctions1, result->l_junction_count1);
     put_corners(&json, "],\n\"l_junctions2\": [", result->l_junctions2, result->l_junction_count2);
     asj_output_text(output, "]\n}\n");
+    asj_c_locale_end(&locale);
     return json.out_of_memory ? asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for JSON") : ASJ_OK;
 }

@@ -60,6 +60,41 @@ static int open_file_of_path(const char *path)
     return -1;
 }
 
+/* The folder of `path` and then `name`; `name` alone when it begins at the root. */
+static char *beside(const char *path, const char *name)
+{
+    const char *slash = strrchr(path, '/');
+    size_t folder = slash && name[0] != '/' ? (size_t)(slash - path) + 1 : 0, size = folder + strlen(name) + 1;
+    char *joined = malloc(size);
+    if (joined) {
+        memcpy(joined, path, folder);
+        memcpy(joined + folder, name, size - folder);
+    }
+    return joined;
+}
+
+/* A path whose last part is no symbolic link: the links of `path` followed to the end, which need not exist. */
+static char *follow_links(const char *path)
+{
+    enum { MOST_LINKS = 40, MOST_BYTES = 4096 };
+    char *at = copy_text(path), name[MOST_BYTES];
+    int i;
+
+    for (i = 0; at && i < MOST_LINKS; i++) {
+        ssize_t length = readlink(at, name, sizeof name - 1);
+        char *next;
+        if (length < 0)
+            return at;
+        name[length] = '\0';
+        next = beside(at, name);
+        free(at);
+        at = next;
+    }
+    free(at);
+    errno = i == MOST_LINKS ? ELOOP : ENOMEM;
+    return NULL;
+}
+
 /* Creates a file of a new name beside the target. open() and not mkstemp(): it gives the permissions that the umask of the process
  * asks for, and the umask cannot be read without changing it. */
 static int create_temporary(asj_output *output)
@@ -103,7 +138,7 @@ static int open_target(asj_output *output)
     if (stat(output->path, &info)) {
         if (errno != ENOENT)
             return -1;
-        output->target = copy_text(output->path);
+        output->target = follow_links(output->path); /* to where a link will point */
         return output->target ? create_temporary(output) : -1;
     }
     if (S_ISDIR(info.st_mode)) {
@@ -119,6 +154,31 @@ static int open_target(asj_output *output)
     if (file >= 0 && fchmod(file, info.st_mode & 0777))
         errno = 0; /* some file systems know no permissions: the file itself matters more */
     return file;
+}
+
+asj_status asj_output_target(const char *path, char *target, size_t target_size)
+{
+    char *file, *folder = NULL, *absolute = NULL;
+    const char *slash, *name;
+    int length = -1;
+
+    if (!path || !target || !target_size)
+        return ASJ_ERROR_ARGUMENT;
+    file = follow_links(path);
+    if (!file)
+        return errno == ENOMEM ? ASJ_ERROR_MEMORY : ASJ_ERROR_FILE;
+    slash = strrchr(file, '/');
+    name = slash ? slash + 1 : file;
+    folder = slash ? copy_text(file) : copy_text(".");
+    if (folder && slash)
+        folder[slash - file + 1] = '\0';
+    absolute = folder ? realpath(folder, NULL) : NULL;
+    if (absolute)
+        length = snprintf(target, target_size, "%s/%s", absolute, name);
+    free(absolute);
+    free(folder);
+    free(file);
+    return length >= 0 && (size_t)length < target_size ? ASJ_OK : ASJ_ERROR_FILE;
 }
 
 asj_status asj_output_begin(const char *path, asj_output **output, char *text, size_t text_size)

@@ -116,8 +116,8 @@ static const struct {
     {{"detect", "-o", "both.asj", "scene.png", "scene.png"}, "--out-dir"},
     {{"detect", "--out-dir", ".", "scene.png", "folder/scene.png"}, "written twice, for scene.png and for folder/scene.png"},
     {{"detect", "--out-dir", ".", "scene.png", "scene.jpg"}, "./scene.asj: would be written twice"},
-    {{"detect", "-o", "scene.png", "scene.png"}, "scene.png: is an input file"},
-    {{"detect", "-o", "./scene.png", "scene.png"}, "scene.png: is an input file"},
+    {{"detect", "-f", "asj", "-o", "scene.png", "scene.png"}, "scene.png: is an input file"},
+    {{"detect", "-f", "asj", "-o", "./scene.png", "scene.png"}, "scene.png: is an input file"},
     {{"detect", "-"}, "standard input"},
 };
 

@@ -245,28 +245,51 @@ void become_root(void)
         abort();
 }
 
-static int comma_is_written(void)
+json_t *load_json_text(const char *text)
 {
-    char text[32];
-    snprintf(text, sizeof text, "%.1f", 0.5);
-    return strcmp(text, "0,5") == 0;
+    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0), before = uselocale(c);
+    json_t *value = json_loads(text, JSON_DECODE_ANY, NULL);
+    uselocale(before);
+    freelocale(c);
+    return value;
 }
 
-int set_comma_locale(void)
+json_t *load_json_file(const char *path, size_t flags)
 {
-    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8", "ru_RU.UTF-8", "pt_BR.UTF-8"};
-    char command[2048], place[] = "/tmp/asj-locale-XXXXXX";
-    size_t i;
+    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0), before = uselocale(c);
+    json_t *value = json_load_file(path, flags, NULL);
+    uselocale(before);
+    freelocale(c);
+    return value;
+}
+
+static int separator_is_written(const char *separator)
+{
+    char text[32], wanted[32];
+    snprintf(text, sizeof text, "%.1f", 0.5);
+    snprintf(wanted, sizeof wanted, "0%s5", separator);
+    return strcmp(text, wanted) == 0;
+}
+
+int set_separator_locale(const char *kind)
+{
+    static const char *const commas[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8", "ru_RU.UTF-8", "pt_BR.UTF-8", NULL};
+    static const char *const wide[] = {"ps_AF.UTF-8", "ps_AF.utf8", "ps_AF", NULL};
+    int is_wide = !strcmp(kind, "wide");
+    const char *separator = is_wide ? "\xd9\xab" : ",", *source = is_wide ? "ps_AF" : "de_DE";
+    const char *const *names = is_wide ? wide : commas;
+    char command[2048], place[] = "/tmp/asj-locale-XXXXXX", name[32];
     int made;
 
-    for (i = 0; i < sizeof names / sizeof names[0]; i++)
-        if (setlocale(LC_ALL, names[i]))
-            return comma_is_written();
+    for (; *names; names++)
+        if (setlocale(LC_ALL, *names))
+            return separator_is_written(separator);
     if (!mkdtemp(place))
         return 0;
-    snprintf(command, sizeof command, "localedef -i de_DE -f UTF-8 %s/de_DE.UTF-8 >/dev/null 2>&1", place);
     setenv("LOCPATH", place, 1);
-    made = !system(command) && setlocale(LC_ALL, "de_DE.UTF-8") && comma_is_written();
+    snprintf(name, sizeof name, "%s.UTF-8", source);
+    snprintf(command, sizeof command, "localedef -i %s -f UTF-8 %s/%s >/dev/null 2>&1", source, place, name);
+    made = !system(command) && setlocale(LC_ALL, name) && separator_is_written(separator);
     snprintf(command, sizeof command, "rm -r %s", place);
     return !system(command) && made;
 }

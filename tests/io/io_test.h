@@ -12,6 +12,8 @@
 
 #include <cmocka.h>
 
+#include <jansson.h>
+
 /* Group fixtures: a new empty folder, and its end with everything in it. */
 int make_folder(void **state);
 int remove_folder(void **state);
@@ -53,9 +55,13 @@ void stored_place(int orientation, int32_t width, int32_t height, int32_t x, int
 /* Reads a file that must be refused with `status`, and a line that names it and holds `cause`. */
 void assert_image_refused(const char *path, uint64_t max_pixels, asj_status status, const char *cause);
 
-/* Sets a locale with a decimal comma, and makes sure that printf() follows it; one is made in a folder of its own where none is
- * installed but its sources are. 0 = none is available. */
-int set_comma_locale(void);
+/* Sets a locale whose decimal separator is another: "comma", or "wide", which has one of several bytes. Makes sure that printf()
+ * follows it; a locale is made in a folder of its own where none is installed but its sources are. 0 = none is available. */
+int set_separator_locale(const char *kind);
+
+/* Jansson's readers in the "C" locale, whatever that of the process is: jansson cannot do with a separator of several bytes. */
+json_t *load_json_text(const char *text);
+json_t *load_json_file(const char *path, size_t flags);
 
 /* Becomes an ordinary user, for whom permissions count; 0 when that cannot be. become_root() undoes it. */
 int become_ordinary(void);

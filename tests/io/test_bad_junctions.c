@@ -53,6 +53,8 @@ static const bad_file bad_files[] = {
     {"{\"junctions\":[]}", 1, "schema", ASJ_ERROR_FORMAT},
     {"{\"schema\":\"asj-junctions-1\"}", 1, "junctions", ASJ_ERROR_FORMAT},
     {"{\"schema\":\"asj-junctions-2\",\"junctions\":[]}", 1, "schema", ASJ_ERROR_FORMAT},
+    {"{\"schema\":\"asj-junctions-1\",\n\"schema\":\"asj-junctions-1\",\"junctions\":[]}", 2, "a second time", ASJ_ERROR_FORMAT},
+    {J "],\n\"image\":{\"width\":10,\"height\":8}}", 4, "a second time", ASJ_ERROR_FORMAT},
     {"{\"schema\":7}", 1, "schema", ASJ_ERROR_FORMAT},
     {"{7:7}", 1, "key", ASJ_ERROR_FORMAT},
     {"{\"a\" 7}", 1, "':'", ASJ_ERROR_FORMAT},
@@ -105,7 +107,7 @@ static void files_that_cannot_be_read(void **state)
     static const bad_file missing = {"(missing)", 0, "No such file", ASJ_ERROR_FILE};
     static const bad_file directory = {"(.)", 0, "directory", ASJ_ERROR_FILE};
     static const bad_file empty = {"", 0, "empty", ASJ_ERROR_FORMAT};
-    static const bad_file zeros = {"(zeros)", 1, "first line", ASJ_ERROR_FORMAT};
+    static const bad_file zeros = {"(zeros)", 0, "not text", ASJ_ERROR_FORMAT};
     asj_junction_file *file = NULL;
     (void)state;
     check_refused(in_folder("missing"), &missing);

@@ -29,7 +29,31 @@ typedef struct cost {
     double seconds;
 } cost;
 
-static cost cost_of(const char *path)
+typedef asj_status reader(const char *path);
+
+static asj_status nothing(const char *path)
+{
+    (void)path;
+    return (asj_status)NOTHING;
+}
+
+static asj_status image(const char *path)
+{
+    asj_image_file *file = NULL;
+    asj_status status = asj_image_file_read(path, 0, &file, NULL, 0);
+    asj_image_file_free(&file);
+    return status;
+}
+
+static asj_status junctions(const char *path)
+{
+    asj_junction_file *file = NULL;
+    asj_status status = asj_junctions_read(path, &file, NULL, 0);
+    asj_junction_file_free(&file);
+    return status;
+}
+
+static cost cost_of(reader *read_file, const char *path)
 {
     struct rusage use;
     cost result;
@@ -37,12 +61,8 @@ static cost cost_of(const char *path)
     pid_t child = fork();
 
     assert_true(child >= 0);
-    if (!child) {
-        asj_image_file *file = NULL;
-        asj_status status = path ? asj_image_file_read(path, 0, &file, NULL, 0) : (asj_status)NOTHING;
-        asj_image_file_free(&file);
-        _exit((int)status & 0xff);
-    }
+    if (!child)
+        _exit((int)read_file(path) & 0xff);
     while (wait4(child, &state, 0, &use) < 0)
         assert_int_equal(errno, EINTR);
     assert_true(WIFEXITED(state));
@@ -53,9 +73,9 @@ static cost cost_of(const char *path)
     return result;
 }
 
-static void assert_cheap(const char *path, asj_status status)
+static void assert_cheap(reader *read_file, const char *path, asj_status status)
 {
-    cost idle = cost_of(NULL), got = cost_of(path);
+    cost idle = cost_of(nothing, NULL), got = cost_of(read_file, path);
     struct stat info;
     long file_kilobytes;
 
@@ -93,7 +113,7 @@ static void png_with_compressed_text(void **state)
         fwrite(chunk.bytes, 1, chunk.size, file);
     fwrite(png.bytes + 33, 1, png.size - 33, file);
     fclose(file);
-    assert_cheap(path, ASJ_OK);
+    assert_cheap(image, path, ASJ_OK);
 }
 
 /* An 8 x 8 image by its first SIZ segment, 20000 x 20000 by its second. */
@@ -115,7 +135,7 @@ static void jpeg2000_with_two_sizes(void **state)
     append(&file, "\xff\x52\0\x0c\0\0\0\1\0\5\4\4\0\0\xff\x5c\0\x13\x40", 19);
     append(&file, "\x40\x40\x40\x40\x40\x40\x40\x40\x40\x40\x40\x40\x40\x40\x40\x40", 16);
     append(&file, "\xff\x90\0\x0a\0\0\0\0\0\0\0\1\xff\x93\xff\xd9", 16);
-    assert_cheap(write_bytes("two.j2k", file.bytes, file.size), ASJ_ERROR_FORMAT);
+    assert_cheap(image, write_bytes("two.j2k", file.bytes, file.size), ASJ_ERROR_FORMAT);
 }
 
 /* Sizes of 64 bits in a TIFF of 32, and a BigTIFF that is too large. */
@@ -127,25 +147,43 @@ static void tiff_with_long_sizes(void **state)
     static const unsigned char small[] = {'I', 'I', 42, 0, 8, 0, 0, 0, 2, 0, 0, 1, 16, 0, 1, 0, 0, 0, 38, 0, 0, 0,
                                           1, 1, 16, 0, 1, 0, 0, 0, 38, 0, 0, 0, 0, 0, 0, 0, 0x30, 0x75, 0, 0, 0, 0, 0, 0};
     (void)state;
-    assert_cheap(write_bytes("big.tif", big, sizeof big), ASJ_ERROR_LIMIT);
-    assert_cheap(write_bytes("small.tif", small, sizeof small), ASJ_ERROR_FORMAT);
+    assert_cheap(image, write_bytes("big.tif", big, sizeof big), ASJ_ERROR_LIMIT);
+    assert_cheap(image, write_bytes("small.tif", small, sizeof small), ASJ_ERROR_FORMAT);
 }
 
 static void pnm_with_a_comment_that_ends_twice(void **state)
 {
     static const char head[] = "P5\n#\r30000 30000 255 \n4 4 255\n0123456789abcdef";
     (void)state;
-    assert_cheap(write_bytes("cr.pgm", head, sizeof head), ASJ_ERROR_LIMIT);
+    assert_cheap(image, write_bytes("cr.pgm", head, sizeof head), ASJ_ERROR_LIMIT);
 }
 
 static void files_without_end(void **state)
 {
-    char message[512];
-    asj_junction_file *file;
     (void)state;
-    assert_cheap("/dev/zero", ASJ_ERROR_FORMAT);
-    assert_int_equal(asj_junctions_read("/dev/zero", &file, message, sizeof message), ASJ_ERROR_FORMAT);
-    assert_non_null(strstr(message, "not text"));
+    assert_cheap(image, "/dev/zero", ASJ_ERROR_FORMAT);
+    assert_cheap(junctions, "/dev/zero", ASJ_ERROR_FORMAT);
+}
+
+/* 8 MB of empty lists under a key that nobody needs, and under one that is needed. */
+static void json_with_long_values(void **state)
+{
+    enum { LISTS = 2 * 1024 * 1024 };
+    static const char *const keys[] = {"unknown", "image"};
+    static const asj_status wanted[] = {ASJ_OK, ASJ_ERROR_FORMAT};
+    int k, i;
+    (void)state;
+    for (k = 0; k < 2; k++) {
+        const char *path = in_folder("long.json");
+        FILE *file = fopen(path, "wb");
+        assert_non_null(file);
+        fprintf(file, "{\"schema\":\"asj-junctions-1\",\"junctions\":[],\"%s\":[[]", keys[k]);
+        for (i = 0; i < LISTS; i++)
+            fputs(",[] ", file);
+        fputs("]}", file);
+        fclose(file);
+        assert_cheap(junctions, path, wanted[k]);
+    }
 }
 
 /* Signatures of decoders that OpenCV has, or that it takes for such, on what another of its decoders reads as a medical image. */
@@ -165,7 +203,7 @@ static void signatures_in_front_of_dicom(void **state)
         memset(file, 0, sizeof file);
         memcpy(file, heads[i].bytes, heads[i].size);
         memcpy(file + 128, "DICM", 4);
-        got = cost_of(write_bytes("medical", file, sizeof file));
+        got = cost_of(image, write_bytes("medical", file, sizeof file));
         assert_true(got.status == ASJ_ERROR_FORMAT || got.status == ASJ_ERROR_UNSUPPORTED);
     }
 }
@@ -175,7 +213,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(png_with_compressed_text), cmocka_unit_test(jpeg2000_with_two_sizes),
         cmocka_unit_test(tiff_with_long_sizes),     cmocka_unit_test(pnm_with_a_comment_that_ends_twice),
-        cmocka_unit_test(files_without_end),        cmocka_unit_test(signatures_in_front_of_dicom),
+        cmocka_unit_test(files_without_end),        cmocka_unit_test(json_with_long_values),
+        cmocka_unit_test(signatures_in_front_of_dicom),
     };
     return cmocka_run_group_tests_name("io: bombs", tests, make_folder, remove_folder);
 }

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Which files asj-cli writes, and which it had better not. */
+#define _XOPEN_SOURCE 700
+#include "files.h"
+#include "program.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static int make_files(void **state)
+{
+    (void)state;
+    write_scene("scene.png");
+    write_views("first.png", "second.png");
+    return 0;
+}
+
+/* A process that python or nohup has started may have the signal ignored: the program has to cope with the default. */
+static void a_limit_of_file_size_is_an_error(void **state)
+{
+    struct rlimit before, small;
+    const int files = count_files(".");
+    (void)state;
+    signal(SIGXFSZ, SIG_DFL);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    small = before;
+    small.rlim_cur = 1024;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+    const outcome *result = run_cli("detect", "-f", "json", "-o", "large.json", "scene.png", NULL);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    expect_code(result, 1);
+    expect_in(result, result->err, "large.json");
+    assert_int_equal(count_files("."), files);
+}
+
+/* An output without an ending is a link to what the plot is called, in several spellings; nothing of that exists before. */
+static void two_spellings_of_one_output(void **state)
+{
+    static const char *const plots[] = {"both.svg", "./both.svg", "folder/../both.svg", "folder/link.svg", NULL};
+    char absolute[4096];
+    (void)state;
+    mkdir("folder", 0777);
+    assert_int_equal(symlink("both.svg", "same"), 0);
+    assert_int_equal(symlink("../both.svg", "folder/link.svg"), 0);
+    for (size_t i = 0; plots[i] && !without_cairo; i++) {
+        const outcome *result = run_cli("detect", "-o", "same", "--plot", plots[i], "scene.png", NULL);
+        expect_code(result, 2);
+        expect_in(result, result->err, "written twice");
+        assert_false(exists("both.svg"));
+    }
+    assert_non_null(getcwd(absolute, sizeof absolute - 16));
+    strcat(absolute, "/both.svg");
+    expect_code(run_cli("match", "-o", "same", "--plot", absolute, "first.png", "second.png", NULL), 2);
+    assert_false(exists("both.svg"));
+    unlink("same");
+    unlink("folder/link.svg");
+    rmdir("folder");
+}
+
+static void a_link_to_nothing_yet_is_followed(void **state)
+{
+    struct stat facts;
+    (void)state;
+    mkdir("folder", 0777);
+    assert_int_equal(symlink("target.asj", "folder/second.asj"), 0);
+    assert_int_equal(symlink("folder/second.asj", "first.asj"), 0);
+    expect_code(run_cli("detect", "-q", "-o", "first.asj", "scene.png", NULL), 0);
+    assert_int_equal(lstat("first.asj", &facts), 0);
+    assert_true(S_ISLNK(facts.st_mode));
+    assert_int_equal(lstat("folder/target.asj", &facts), 0);
+    assert_true(S_ISREG(facts.st_mode));
+    assert_int_equal(symlink("loop.asj", "loop.asj"), 0);
+    expect_code(run_cli("detect", "-q", "-o", "loop.asj", "scene.png", NULL), 1);
+    unlink("folder/target.asj");
+    unlink("folder/second.asj");
+    rmdir("folder");
+}
+
+static void names_that_promise_another_format(void **state)
+{
+    static const char *const bad[] = {"result.png", "result.PNG", "result.db", "result.svg", "result.what", NULL};
+    (void)state;
+    for (size_t i = 0; bad[i]; i++) {
+        expect_code(run_cli("detect", "-o", bad[i], "scene.png", NULL), 2);
+        const outcome *result = run_cli("match", "-o", bad[i], "first.png", "second.png", NULL);
+        expect_code(result, 2);
+        expect_in(result, result->err, "are written as");
+        assert_false(exists(bad[i]));
+    }
+    expect_code(run_cli("match", "-o", "result.asj", "first.png", "second.png", NULL), 2);
+    expect_code(run_cli("detect", "-q", "-f", "json", "-o", "result.what", "scene.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "-o", "result.txt", "scene.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "-o", "result", "scene.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "-o", "/dev/null", "scene.png", NULL), 0);
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_limit_of_file_size_is_an_error), cmocka_unit_test(two_spellings_of_one_output),
+        cmocka_unit_test(a_link_to_nothing_yet_is_followed), cmocka_unit_test(names_that_promise_another_format),
+    };
+    program_start(argc, argv);
+    return program_end(cmocka_run_group_tests(tests, make_files, NULL));
+}

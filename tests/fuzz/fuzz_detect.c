@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The detector: any image of up to 96 x 96 pixels, any options. Twice the same input, twice the same junctions. */
+#include "fuzz.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static asj_status set(void *options, const char *key, const char *text)
+{
+    return asj_detect_options_set(options, key, text, NULL, 0);
+}
+
+static void check_detection(const asj_detection *found)
+{
+    uint32_t i;
+    int32_t b;
+    for (i = 0; i < found->junction_count; i++) {
+        const asj_junction *junction = &found->junctions[i];
+        fuzz_check(junction->branch_count >= 2 && junction->branch_count <= ASJ_MAX_BRANCHES, "a branch count out of range");
+        fuzz_check(junction->x >= -64 && junction->y >= -64 && junction->x <= (float)found->width + 64 &&
+                   junction->y <= (float)found->height + 64, "a junction far outside");
+        for (b = 0; b < junction->branch_count; b++)
+            fuzz_check(junction->branches[b].angle >= 0 && junction->branches[b].angle <= 6.2831855f &&
+                       junction->branches[b].length >= 0, "a branch out of range");
+    }
+    for (i = 0; i < found->l_junction_count; i++)
+        fuzz_check(found->l_junctions[i].junction < found->junction_count, "an L-junction of nothing");
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    fuzz_bytes bytes = {data, size};
+    asj_detection *first = NULL, *second = NULL;
+    asj_detect_options options;
+    asj_image image;
+    asj_status status;
+
+    asj_detect_options_preset(&options, fuzz_byte(&bytes) % 4 == 3 ? ASJ_PRESET_PAPER : ASJ_PRESET_DEFAULT);
+    fuzz_options(&bytes, asj_detect_option_count(), asj_detect_option, set, &options);
+    fuzz_image(&bytes, 96, &image);
+    status = asj_detect(fuzz_context(), &image, &options, &first);
+    fuzz_check((status == ASJ_OK) == (first != NULL), "a status and a result that do not fit");
+    if (first) {
+        check_detection(first);
+        fuzz_check(asj_detect(fuzz_context(), &image, &options, &second) == ASJ_OK, "no result the second time");
+        fuzz_check(second->junction_count == first->junction_count &&
+                   (!first->junction_count ||
+                    !memcmp(first->junctions, second->junctions, first->junction_count * sizeof *first->junctions)),
+                   "another result the second time");
+    }
+    asj_detection_free(&first);
+    asj_detection_free(&second);
+    free((void *)(size_t)image.data);
+    return 0;
+}

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The matcher: two images of up to 96 x 96 pixels, any options, junctions of any kind, bad ones too. */
+#include "fuzz.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST = 24 };
+
+static asj_status set(void *options, const char *key, const char *text)
+{
+    return asj_match_options_set(options, key, text, NULL, 0);
+}
+
+static size_t make_junctions(fuzz_bytes *bytes, const asj_image *image, asj_junction *junctions)
+{
+    size_t count = fuzz_byte(bytes) % (MOST + 1), i;
+    memset(junctions, 0, MOST * sizeof *junctions);
+    for (i = 0; i < count; i++) {
+        asj_junction *junction = &junctions[i];
+        int32_t b;
+        junction->x = (float)fuzz_byte(bytes) / 255.0f * (float)image->width;
+        junction->y = (float)fuzz_byte(bytes) / 255.0f * (float)image->height;
+        junction->scale = (float)(3 + fuzz_byte(bytes) % 12);
+        junction->branch_count = (int32_t)(fuzz_byte(bytes) % 8); /* 0, 1, 6 and 7 are refused */
+        for (b = 0; b < junction->branch_count && b < ASJ_MAX_BRANCHES; b++) {
+            junction->branches[b].angle = (float)(fuzz_pair(bytes) % 62832) / 10000.0f;
+            junction->branches[b].length = (float)fuzz_byte(bytes);
+            junction->branches[b].strength = 3;
+        }
+    }
+    return count;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    fuzz_bytes bytes = {data, size};
+    asj_junction junctions[2][MOST];
+    asj_segment_match segments[4];
+    asj_match_result *result = NULL;
+    asj_match_options options;
+    asj_image images[2];
+    size_t counts[2], v;
+    asj_status status;
+
+    asj_match_options_preset(&options, fuzz_byte(&bytes) % 4 == 3 ? ASJ_PRESET_PAPER : ASJ_PRESET_DEFAULT);
+    fuzz_options(&bytes, asj_match_option_count(), asj_match_option, set, &options);
+    for (v = 0; v < 2; v++) {
+        fuzz_bytes pixels = {bytes.next, bytes.left < 80 ? bytes.left : 80}; /* both images have what to draw from */
+        fuzz_image(&pixels, 96, &images[v]);
+        bytes.next = pixels.next;
+        bytes.left -= (bytes.left < 80 ? bytes.left : 80) - pixels.left;
+    }
+    for (v = 0; v < 2; v++)
+        counts[v] = make_junctions(&bytes, &images[v], junctions[v]);
+    status = asj_match(fuzz_context(), &images[0], junctions[0], counts[0], &images[1], junctions[1], counts[1], &options, &result);
+    fuzz_check((status == ASJ_OK) == (result != NULL), "a status and a result that do not fit");
+    if (result) {
+        uint32_t i;
+        for (i = 0; i < result->match_count; i++)
+            fuzz_check(result->matches[i].l1 < result->l_junction_count1 && result->matches[i].l2 < result->l_junction_count2 &&
+                       result->matches[i].distance == result->matches[i].distance, "a match of nothing");
+        fuzz_check(asj_match_segments(result, ASJ_END_CUT, segments, 4) <= (size_t)ASJ_MAX_BRANCHES * result->match_count,
+                   "more segments than promised");
+    }
+    asj_match_result_free(&result);
+    for (v = 0; v < 2; v++)
+        free((void *)(size_t)images[v].data);
+    return 0;
+}
