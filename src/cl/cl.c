@@ -9,10 +9,23 @@
 #include "error.h"
 #include "overrides.h"
 #include "program.h"
+#include "startup.h"
 #include "state.h"
 
 #include <stdio.h>
 #include <string.h>
+
+/* api->library NULL when there is no OpenCL: ASJ_OK and the reason then. */
+static asj_status load_and_enumerate(asj_memory *memory, const char *library, asj_cl_api *api, asj_cl_found *found, char *message,
+                                     size_t message_size)
+{
+    asj_status status = ASJ_OK;
+    asj_cl_startup_begin();
+    if (asj_cl_load(library, api, message, message_size))
+        status = asj_cl_enumerate(memory, api, found, message, message_size);
+    asj_cl_startup_end();
+    return status;
+}
 
 asj_status asj_cl_list(asj_memory *memory, const char *library, asj_device **devices, size_t *count, char *message,
                        size_t message_size)
@@ -21,9 +34,9 @@ asj_status asj_cl_list(asj_memory *memory, const char *library, asj_device **dev
     asj_cl_found found;
     *devices = NULL;
     *count = 0;
-    if (!asj_cl_load(library, &api, message, message_size))
+    asj_status status = load_and_enumerate(memory, library, &api, &found, message, message_size);
+    if (!api.library)
         return ASJ_OK;
-    asj_status status = asj_cl_enumerate(memory, &api, &found, message, message_size);
     if (status == ASJ_OK) {
         *devices = found.records;
         *count = found.count;
@@ -82,11 +95,13 @@ static int open_device(struct asj_cl *cl, const asj_cl_found *found, size_t inde
     char text[ASJ_CL_ERROR_SIZE];
     cl_int error = CL_SUCCESS;
     cl->device = found->devices[index];
+    asj_cl_startup_begin();
     cl->context = cl->api.CreateContext(properties, 1, &cl->device, NULL, NULL, &error);
     if (cl->context) {
         call = "clCreateCommandQueue";
         cl->queue = cl->api.CreateCommandQueue(cl->context, cl->device, 0, &error);
     }
+    asj_cl_startup_end();
     if (cl->queue) {
         call = "clGetDeviceInfo";
         error = get_limits(cl, record);
@@ -137,9 +152,9 @@ static asj_status search(asj_context *context, const char *library)
     struct asj_cl *cl = context->cl;
     asj_cl_found found;
     char message[256] = "";
-    if (!asj_cl_load(library, &cl->api, message, sizeof message))
+    asj_status status = load_and_enumerate(&context->memory, library, &cl->api, &found, message, sizeof message);
+    if (!cl->api.library)
         return asj_fail(context, ASJ_ERROR_DEVICE, "%s", message);
-    asj_status status = asj_cl_enumerate(&context->memory, &cl->api, &found, message, sizeof message);
     if (status != ASJ_OK)
         status = asj_fail(context, status, "no memory for a list of devices");
     else if (found.count == 0)
