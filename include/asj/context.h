@@ -125,9 +125,9 @@ typedef struct asj_context_options {
 ASJ_API void asj_context_options_init(asj_context_options *options);
 
 /* Everything that lives from call to call: tables, scratch memory, threads, device. A context serves one thread at a time;
- * several contexts may run at once, and there is no state outside them. About 1 MB, plus scratch memory of the detector and the
- * matcher, which is kept for the next call: a call that does what the one before did allocates nothing but its result. What several
- * calls in a row had no use for is given back. */
+ * several contexts may run at once, and there is no state outside them but a lock under which OpenCL
+ * starts. About 1 MB, plus scratch memory of the detector and the matcher, which is kept for the next call: a call that
+ * does what the one before did allocates nothing but its result. What several calls in a row had no use for is given back. */
 typedef struct asj_context asj_context;
 
 /* Makes a context. `options` NULL = the defaults. On success the caller owns *context until asj_context_free().

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Jansson reads and writes numbers by strtod() and snprintf() and then exchanges one byte for the decimal separator of the locale:
- * a separator of several bytes (ps_AF) ends the process or damages the output. While jansson works, the thread is in the "C" locale;
- * other threads and setlocale() do not notice. */
+ * a separator of several bytes (ps_AF) ends the process or damages the output. While jansson works, the thread is in the "C"
+ * locale; other threads and setlocale() do not notice. */
 #ifndef ASJ_IO_C_LOCALE_H
 #define ASJ_IO_C_LOCALE_H
 
