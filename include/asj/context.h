@@ -64,8 +64,8 @@ typedef struct asj_allocator {
 typedef void (*asj_log_callback)(void *user, int32_t level, const char *message);
 
 /* Progress of the current call: stage (ASJ_STAGE_...) and how much of the whole call is done, in [0, 1], never falling.
- * Called from the thread that calls the library, a few dozen times a call. Return 0 to go on, anything else to stop: the call
- * then returns ASJ_ERROR_CANCELLED. */
+ * Called from the thread that calls the library, a few dozen times a call, and every 50 ms where a step takes longer. Return 0
+ * to go on, anything else to stop: the call then returns ASJ_ERROR_CANCELLED. */
 typedef int32_t (*asj_progress_callback)(void *user, int32_t stage, double done);
 
 /* What a dump hands out: a plane of the pipeline, or a list of points. Valid during the call only. An image that is done once more

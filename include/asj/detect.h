@@ -13,7 +13,7 @@ extern "C" {
 
 /* Junctions of one image. The arrays belong to the result and are NULL when empty. */
 typedef struct asj_detection {
-    const asj_junction *junctions;     /* most meaningful first; ties by y, then x */
+    const asj_junction *junctions;     /* most meaningful first, before values became floats */
     const asj_l_junction *l_junctions; /* in order of their junction */
     uint32_t junction_count;
     uint32_t l_junction_count;

@@ -7,29 +7,39 @@
 #include "suppress.h"
 #include "validate.h"
 #include "core/threads.h"
+#include "core/watch.h"
 
 #define LEAST_GUESSES (4 * ASJ_LEAST_JUNCTIONS) /* for a thread: a guess takes a quarter of a fit */
 
-static void guess_all(asj_detection_run *run)
+static asj_status guess_all(asj_detection_run *run)
 {
+    asj_watch watch;
     const int64_t count = (int64_t)run->hypothesis_count;
     const int32_t threads = asj_threads_for(run->context, count, LEAST_GUESSES);
     (void)threads;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_LOCATE);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 16)
     for (int64_t i = 0; i < count; i++)
-        asj_locate_guess(run->context, run->frame, run->options, &run->hypotheses[i]);
+        if (!asj_watch_stops(&watch))
+            asj_locate_guess(run->context, run->frame, run->options, &run->hypotheses[i]);
+    return asj_watch_end(&watch);
 }
 
-static void locate_all(asj_detection_run *run)
+static asj_status locate_all(asj_detection_run *run)
 {
+    asj_watch watch;
     const int64_t count = (int64_t)run->hypothesis_count;
     const int32_t threads = asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS);
     (void)threads;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_LOCATE);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
     for (int64_t i = 0; i < count; i++) {
+        if (asj_watch_stops(&watch))
+            continue;
         asj_locate(run->context, run->frame, run->options, &run->hypotheses[i]);
         asj_reject_early(run->context, run->frame, run->options, &run->hypotheses[i]);
     }
+    return asj_watch_end(&watch);
 }
 
 asj_status asj_step_locate(asj_detection_run *run)
@@ -41,11 +51,12 @@ asj_status asj_step_locate(asj_detection_run *run)
     for (size_t i = 0; i < count; i++)
         if (asj_isotropic_has_opening(run->options, &run->isotropic[i]))
             asj_hypothesis_start(&run->isotropic[i], &run->hypotheses[run->hypothesis_count++]);
-    guess_all(run);
-    asj_status status = asj_suppress_all(run, ASJ_SUPPRESS_TWINS);
-    if (status != ASJ_OK)
-        return status;
-    locate_all(run);
-    status = asj_suppress_all(run, ASJ_SUPPRESS_CLOSE);
+    asj_status status = guess_all(run);
+    if (status == ASJ_OK)
+        status = asj_suppress_all(run, ASJ_SUPPRESS_TWINS);
+    if (status == ASJ_OK)
+        status = locate_all(run);
+    if (status == ASJ_OK)
+        status = asj_suppress_all(run, ASJ_SUPPRESS_CLOSE);
     return status == ASJ_OK ? asj_detection_run_dump_hypotheses(run, ASJ_STAGE_LOCATE, "located") : status;
 }

@@ -6,28 +6,37 @@
 #include "suppress.h"
 #include "validate.h"
 #include "core/threads.h"
+#include "core/watch.h"
 
 asj_status asj_step_orient(asj_detection_run *run)
 {
     const int64_t count = (int64_t)run->hypothesis_count;
     const int32_t threads = asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS);
+    asj_watch watch;
     (void)threads;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
     for (int64_t i = 0; i < count; i++)
-        asj_orient(run->context, run->frame, run->options, &run->hypotheses[i]);
-    return ASJ_OK;
+        if (!asj_watch_stops(&watch))
+            asj_orient(run->context, run->frame, run->options, &run->hypotheses[i]);
+    return asj_watch_end(&watch);
 }
 
-static void refine_all(asj_detection_run *run)
+static asj_status refine_all(asj_detection_run *run)
 {
+    asj_watch watch;
     const int64_t count = (int64_t)run->hypothesis_count;
     const int32_t threads = asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS);
     (void)threads;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
     for (int64_t i = 0; i < count; i++) {
+        if (asj_watch_stops(&watch))
+            continue;
         asj_refine(run->context, run->frame, run->options, &run->hypotheses[i]);
         asj_validate(run->context, run->frame, run->options, &run->hypotheses[i]);
     }
+    return asj_watch_end(&watch);
 }
 
 static asj_status snap_ends(asj_detection_run *run)
@@ -43,8 +52,9 @@ static asj_status snap_ends(asj_detection_run *run)
 
 asj_status asj_step_refine(asj_detection_run *run)
 {
-    refine_all(run);
-    asj_status status = asj_suppress_all(run, ASJ_SUPPRESS_CLOSE);
+    asj_status status = refine_all(run);
+    if (status == ASJ_OK)
+        status = asj_suppress_all(run, ASJ_SUPPRESS_CLOSE);
     if (status == ASJ_OK)
         status = snap_ends(run);
     return status == ASJ_OK ? asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "junctions") : status;

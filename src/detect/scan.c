@@ -10,6 +10,7 @@
 #include "scan_cache.h"
 #include "core/angle.h"
 #include "core/threads.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -66,6 +67,7 @@ typedef struct follower {
     size_t thread;
     uint16_t *scratch;
     group *rays;
+    asj_watch *watch;
 } follower;
 
 /* The branches at a sample, now or when those that are missing are computed. */
@@ -142,6 +144,8 @@ static void follow_part(const follower *f, size_t *next, size_t threads, asj_ray
             if (more)
                 asj_ray_walk_start(&rays[i], &g->walks[g->count++]);
         }
+        if (asj_watch_stops(f->watch))
+            return;
         advance_group(f);
     }
 }
@@ -153,18 +157,21 @@ typedef struct workplaces {
     group *groups;
 } workplaces;
 
-static void follow_rays(const asj_context *context, const asj_scan *scan, const asj_frame *frame, const workplaces *w,
+static asj_status follow_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, const workplaces *w,
                         int32_t threads, asj_ray *rays, size_t count)
 {
+    asj_watch watch;
+    asj_watch_start(&watch, context, ASJ_STAGE_SCAN);
     for (int32_t i = 0; i < threads; i++)
         w->next[i] = count * (size_t)i / (size_t)threads;
 #pragma omp parallel num_threads(threads)
     {
         const size_t thread = (size_t)asj_thread_number();
         const follower f = {context->ops->field, scan, frame, thread, w->scratch + thread * asj_field_scratch(scan->field),
-                            &w->groups[thread]};
+                            &w->groups[thread], &watch};
         follow_part(&f, w->next, (size_t)threads, rays, count);
     }
+    return asj_watch_end(&watch);
 }
 
 asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count)
@@ -176,7 +183,7 @@ asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_f
                           asj_allocate(memory, (size_t)threads, sizeof *w.next),
                           asj_allocate(memory, (size_t)threads, sizeof *w.groups)};
     if (w.scratch && w.next && w.groups)
-        follow_rays(context, scan, frame, &w, threads, rays, count);
+        status = follow_rays(context, scan, frame, &w, threads, rays, count);
     else
         status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for following rays");
     asj_release(memory, w.groups);

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "watch.h"
+#include "threads.h"
+
+#define PAUSE 50 /* ms */
+
+void asj_watch_start(asj_watch *watch, asj_context *context, int32_t stage)
+{
+    watch->context = context;
+    watch->stage = stage;
+    watch->stopped = 0;
+    watch->next_ms = asj_clock_ms() + PAUSE;
+}
+
+int asj_watch_stops(asj_watch *watch)
+{
+    int32_t stopped;
+    if (!watch->context->options.progress)
+        return 0;
+#pragma omp atomic read
+    stopped = watch->stopped;
+    if (stopped || asj_thread_number() != 0 || asj_clock_ms() < watch->next_ms)
+        return stopped;
+    stopped = asj_progress(watch->context, watch->stage, 0) != ASJ_OK; /* no farther than before: progress never falls */
+    watch->next_ms = asj_clock_ms() + PAUSE;
+#pragma omp atomic write
+    watch->stopped = stopped;
+    return stopped;
+}
+
+asj_status asj_watch_end(const asj_watch *watch)
+{
+    return watch->stopped ? ASJ_ERROR_CANCELLED : ASJ_OK;
+}

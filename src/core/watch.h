@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Stopping inside of a step: loops over junctions, rays or matches ask at every turn whether the caller wants to stop, and at most
+ * every 50 ms the caller is really asked, by the thread that called the library. */
+#ifndef ASJ_SRC_WATCH_H
+#define ASJ_SRC_WATCH_H
+
+#include "context.h"
+
+typedef struct asj_watch {
+    asj_context *context;
+    int32_t stage;
+    int32_t stopped;
+    double next_ms; /* when the caller is asked again */
+} asj_watch;
+
+void asj_watch_start(asj_watch *watch, asj_context *context, int32_t stage);
+
+/* 1 = leave the loop. From any thread of a parallel region; a clock is read each time, which takes some 30 ns. */
+int asj_watch_stops(asj_watch *watch);
+
+/* After the loop: ASJ_OK or ASJ_ERROR_CANCELLED. */
+asj_status asj_watch_end(const asj_watch *watch);
+
+#endif
