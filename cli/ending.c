@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* What the ending of a name promises, and what is written. */
 #define _POSIX_C_SOURCE 200809L
 #include "ending.h"
 #include "message.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* The lock of startup.h. */
 #define _POSIX_C_SOURCE 200809L
 #include "startup.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* The "C" locale for one thread: POSIX 2008, and macOS in a header of its own. */
 #define _POSIX_C_SOURCE 200809L
 #include "c_locale.h"
 

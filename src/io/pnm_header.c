@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Headers are text: numbers between blanks and comments. The probe and the reader share this parser. */
 #include "pnm_header.h"
 
 #include "probe.h"
