@@ -13,12 +13,13 @@ import sys
 # Folders are relative to ROOT; "src" alone is its top, where all is put together. Public headers may be used by all.
 ALLOWED = {
     "include/asj": [],
+    "kernels": [],  # the header that kernels and their hosts share
     "src/core": [],
     "src/detect": ["src/core"],
     "src/geometry": ["src/core"],
     "src/match": ["src/core", "src/geometry"],  # and detect's results, which are public
     "src/simd": ["src/core", "src/detect", "src/match"],
-    "src/cl": ["src/core", "src/detect", "src/match"],
+    "src/cl": ["src/core", "src/detect", "src/match", "kernels"],
     "src": ["src/core", "src/detect", "src/geometry", "src/match", "src/simd", "src/cl"],
     "src/io": [],
     "cli": [],  # the library through its public headers
@@ -41,7 +42,7 @@ def folder_of(path):
 
 
 def sources(root):
-    for top in ("include", "src", "cli"):
+    for top in ("include", "src", "cli", "kernels"):
         for path, folders, names in os.walk(os.path.join(root, top)):
             folders.sort()
             for name in sorted(names):
@@ -54,8 +55,8 @@ def module_of(path):
 
 
 def resolve(path, included, files):
-    """The file that an include means: beside the file, else from src or include; None where it is made by the build."""
-    for folder in (os.path.dirname(path), "src", "include"):
+    """The file that an include means: beside the file, else from src, include or the root; None for what the build makes."""
+    for folder in (os.path.dirname(path), "src", "include", ""):
         candidate = os.path.normpath(os.path.join(folder, included))
         if candidate in files:
             return candidate
