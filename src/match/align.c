@@ -12,6 +12,7 @@
  * Which image is the template: the one in which the corner is smaller (template_side()), so that the other is sampled down, never
  * up, and swapping the images changes nothing. */
 #include "align.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -193,23 +194,26 @@ static void group_by_template(const asj_match_run *run, size_t first, const grou
         g->order[g->start[g->group[k] + 1]++] = (uint32_t)k;
 }
 
-static void align_groups(asj_match_run *run, size_t first, const grouping *g, const asj_aligner *aligner)
+static asj_status align_groups(asj_match_run *run, size_t first, const grouping *g, const asj_aligner *aligner)
 {
+    asj_watch watch;
     const int64_t count1 = run->image[0]->l_junctions.location_count;
     const int64_t locations = count1 + run->image[1]->l_junctions.location_count;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_ALIGN);
 #pragma omp parallel for num_threads(run->context->threads) schedule(dynamic, 4)
     for (int64_t p = 0; p < locations; p++) {
         asj_template t;
         const int32_t side = p >= count1;
         const asj_image_features *features = run->image[side];
         const int64_t at = side ? p - count1 : p;
-        if (g->start[p] == g->start[p + 1])
+        if (g->start[p] == g->start[p + 1] || asj_watch_stops(&watch))
             continue;
         asj_template_create(aligner->disc, &features->pyramid, features->l_junctions.location_x[at],
                             features->l_junctions.location_y[at], &t);
-        for (uint32_t k = g->start[p]; k < g->start[p + 1]; k++)
+        for (uint32_t k = g->start[p]; k < g->start[p + 1] && !asj_watch_stops(&watch); k++)
             align_one(run, aligner, &t, side, &run->candidates.list[first + g->order[k]]);
     }
+    return asj_watch_end(&watch);
 }
 
 asj_status asj_align_candidates(asj_match_run *run, size_t first)
@@ -227,8 +231,9 @@ asj_status asj_align_candidates(asj_match_run *run, size_t first)
         const asj_aligner aligner = {disc, run->options->align_iterations, run->options->max_move};
         asj_disc_create(run->options->align_radius, disc);
         group_by_template(run, first, &g);
-        align_groups(run, first, &g, &aligner);
-        drop_unlike(run, first);
+        status = align_groups(run, first, &g, &aligner);
+        if (status == ASJ_OK)
+            drop_unlike(run, first);
     }
     asj_release(memory, g.start);
     asj_release(memory, g.order);

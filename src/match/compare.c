@@ -9,6 +9,7 @@
 #include "compare.h"
 #include "describe.h"
 #include "patch_induced.h"
+#include "core/watch.h"
 
 #include <math.h>
 
@@ -79,17 +80,20 @@ static int32_t compare(const asj_match_run *run, asj_candidate *c)
     return asj_affine_between(&l_junctions1->frames[f], &l_junctions2->frames[g], &c->map);
 }
 
-void asj_compare_and_drop(const asj_match_run *run, asj_candidates *candidates)
+asj_status asj_compare_and_drop(const asj_match_run *run, asj_candidates *candidates)
 {
+    asj_watch watch;
     asj_candidate *list = candidates->list;
     const int64_t count = (int64_t)candidates->count;
     size_t kept = 0;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_DISTANCES);
 #pragma omp parallel for num_threads(run->context->threads) schedule(static)
     for (int64_t k = 0; k < count; k++)
-        if (!compare(run, &list[k]))
+        if (!asj_watch_stops(&watch) && !compare(run, &list[k]))
             list[k].distance2 = -1;
     for (int64_t k = 0; k < count; k++)
         if (list[k].distance2 >= 0)
             list[kept++] = list[k];
     candidates->count = kept;
+    return asj_watch_end(&watch);
 }

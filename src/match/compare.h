@@ -17,6 +17,6 @@ typedef struct asj_pair_score {
 asj_pair_score asj_score_pair(const asj_match_run *run, uint32_t i, uint32_t j);
 
 /* Compares every pair of the list, fills distance2 and map, and drops pairs without a map; the order stays. */
-void asj_compare_and_drop(const asj_match_run *run, asj_candidates *candidates);
+asj_status asj_compare_and_drop(const asj_match_run *run, asj_candidates *candidates);
 
 #endif

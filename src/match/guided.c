@@ -11,6 +11,7 @@
 #include "align.h"
 #include "compare.h"
 #include "nearest.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -132,14 +133,20 @@ static asj_status one_side(const asj_match_run *run, int32_t side, const guides 
     asj_status status = all ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
     if (status == ASJ_OK) {
         const int64_t count = mine->count;
+        asj_watch watch;
+        asj_watch_start(&watch, run->context, ASJ_STAGE_ALIGN);
 #pragma omp parallel for num_threads(run->context->threads) schedule(dynamic, 16)
         for (int64_t l = 0; l < count; l++) {
             uint32_t near[GUIDES_ASKED];
+            if (asj_watch_stops(&watch))
+                continue;
             const uint32_t n = nearest_guides(asked, (double)mine->l[l].x, (double)mine->l[l].y, near);
             for (uint32_t k = 0; k < n; k++)
                 ask(run, side, (uint32_t)l, &asked->list[near[k]], &all[l]);
         }
-        status = collect(run, side, all, fresh);
+        status = asj_watch_end(&watch);
+        if (status == ASJ_OK)
+            status = collect(run, side, all, fresh);
     }
     asj_release(&run->context->memory, all);
     return status;
@@ -161,9 +168,11 @@ static asj_status append(asj_match_run *run, asj_candidates *fresh)
     void *list = candidates->list;
     const size_t before = candidates->count;
     asj_candidates_sort(fresh);
-    asj_compare_and_drop(run, fresh);
-    asj_status status = asj_grow(&run->context->memory, &list, &candidates->capacity, before + fresh->count,
-                                 sizeof *candidates->list, before);
+    asj_status status = asj_compare_and_drop(run, fresh);
+    if (status != ASJ_OK)
+        return status;
+    status = asj_grow(&run->context->memory, &list, &candidates->capacity, before + fresh->count, sizeof *candidates->list,
+                      before);
     if (status != ASJ_OK)
         return asj_fail(run->context, status, "no memory for %zu candidates", before + fresh->count);
     candidates->list = list;

@@ -157,11 +157,20 @@ static int same(const asj_segment_match *s, const asj_segment_match *t)
             distance2(s->x2, s->y2, t->ex2, t->ey2) <= near2 && distance2(s->ex2, s->ey2, t->x2, t->y2) <= near2);
 }
 
+/* Whether a segment of match m, each of which begins at the match's location, can be the same pair as s: that place would lie
+ * together with an end of s. Nearly all matches are told apart by this alone. */
+static int can_be_same(const asj_segment_match *s, const asj_junction_match *m)
+{
+    const double l1 = distance2(s->x1, s->y1, s->ex1, s->ey1), least = SAME_END * SAME_END, share = SAME_END_SHARE * SAME_END_SHARE;
+    const double near1 = share * l1 > least ? share * l1 : least;
+    return distance2(s->x1, s->y1, m->x1, m->y1) <= near1 || distance2(s->ex1, s->ey1, m->x1, m->y1) <= near1;
+}
+
 /* Is there the same pair with a better known end, or an equally known one that comes first? */
 static int duplicate(const asj_match_result *result, int32_t minimum_end, const asj_segment_match *s, int32_t slot)
 {
     for (uint32_t k = 0; k < result->match_count; k++)
-        for (int32_t n = 0; n < SLOTS; n++) {
+        for (int32_t n = 0; n < SLOTS && can_be_same(s, &result->matches[k]); n++) {
             asj_segment_match t;
             if ((k == s->match && n == slot) || !segment_of(result, k, n, &t) || t.end < minimum_end)
                 continue;

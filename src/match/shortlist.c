@@ -53,7 +53,7 @@ asj_status asj_shortlist(asj_match_run *run)
         if (status == ASJ_OK)
             status = collect(run, rows, columns);
         if (status == ASJ_OK)
-            asj_compare_and_drop(run, &run->candidates);
+            status = asj_compare_and_drop(run, &run->candidates);
     }
     asj_release(memory, rows);
     asj_release(memory, columns);

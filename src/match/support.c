@@ -5,6 +5,7 @@
  * guided pass brings new candidates, those known before are only compared with the new ones. */
 #include "support.h"
 #include "support_gate.h"
+#include "core/watch.h"
 
 #include <string.h>
 
@@ -246,14 +247,20 @@ static asj_status find_all(const search *in, block *b, asj_supporters *found)
     if (!b->list)
         return asj_fail(in->run->context, ASJ_ERROR_MEMORY, "no memory for %zu pairs of candidates", b->capacity);
     asj_status status = ASJ_OK;
+    asj_watch watch;
+    asj_watch_start(&watch, in->run->context, ASJ_STAGE_ASSIGN);
     for (size_t first = 0, end; first < in->run->candidates.count && status == ASJ_OK; first = end) {
         end = take_block(in, first, b);
 #pragma omp parallel for num_threads(in->run->context->threads) schedule(dynamic, 16)
         for (int64_t k = (int64_t)first; k < (int64_t)end; k++) {
             const asj_candidate *c = &in->run->candidates.list[k];
+            if (asj_watch_stops(&watch))
+                continue;
             found->count[c->number - 1] = find_supporters(in, c, b->list + b->starts[k]);
         }
-        status = keep(in, first, end, b, found);
+        status = asj_watch_end(&watch);
+        if (status == ASJ_OK)
+            status = keep(in, first, end, b, found);
     }
     return status;
 }
