@@ -24,6 +24,12 @@ use_from() { # NAME: programs against what is installed there
     export PKG_CONFIG_PATH LD_LIBRARY_PATH
     static=
     [ "$1" = shared ] || static=--static
+    if command -v cmake > /dev/null; then
+        rm -rf "$work/cmake-build"
+        cmake -S "$work/cmake" -B "$work/cmake-build" -DCMAKE_PREFIX_PATH="$prefix" > "$work/log" 2>&1 &&
+            cmake --build "$work/cmake-build" >> "$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
+        [ "$("$work/cmake-build/core")" = "$version" ] && [ "$("$work/cmake-build/both")" = "$version" ]
+    fi
     core="$(pkg-config --cflags asj) $work/core.c -o $work/core $(pkg-config $static --libs asj)"
     both="$(pkg-config --cflags asj-io) $work/both.c -o $work/both $(pkg-config $static --libs asj-io)"
     ${CC:-cc} -std=c99 $strict $core
@@ -37,7 +43,7 @@ use_from() { # NAME: programs against what is installed there
         [ ! -e "$program" ] || ${CC:-cc} -std=c99 $(pkg-config --cflags asj-io) "$program" -o "$work/readme" \
             $(pkg-config $static --libs asj-io)
     done
-    [ "$("$prefix/bin/asj-cli" --version | grep -cF "$version")" -ge 1 ]
+    [ "$(env -u LD_LIBRARY_PATH "$prefix/bin/asj-cli" --version | grep -cF "$version")" -ge 1 ]
 }
 
 version=$(sh "$root/scripts/version.sh")
@@ -74,6 +80,17 @@ int main(void)
     return 0;
 }
 END
+mkdir "$work/cmake"
+cp "$work/core.c" "$work/both.c" "$work/cmake"
+cat > "$work/cmake/CMakeLists.txt" << 'END'
+cmake_minimum_required(VERSION 3.12)
+project(user C)
+find_package(asj 0.1 REQUIRED)
+add_executable(core core.c)
+target_link_libraries(core asj::asj)
+add_executable(both both.c)
+target_link_libraries(both asj::io)
+END
 if [ -e "$root/README.md" ]; then # every C block with a main function
     awk -v to="$work/readme-" '/^```c$/ { n++; on = 1; text = ""; next }
         /^```$/ && on { on = 0; if (text ~ /int main/) printf "%s", text > (to n ".c") }
@@ -84,7 +101,7 @@ fi
     install_into shared
     install_into static -Ddefault_library=static
 } > "$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
-for file in bin/asj-cli lib/libasj.so lib/libasj-io.so lib/pkgconfig/asj.pc lib/pkgconfig/asj-io.pc \
+for file in bin/asj-cli lib/libasj.so lib/libasj-io.so lib/pkgconfig/asj.pc lib/pkgconfig/asj-io.pc lib/cmake/asj/asjConfig.cmake \
     share/man/man1/asj-cli.1 share/man/man5/asj-formats.5 $(cd "$root/include" && printf 'include/%s ' asj/*.h); do
     [ -s "$work/shared/$file" ] || { echo "not installed: $file"; exit 1; }
 done
@@ -92,5 +109,6 @@ for file in lib/libasj.a lib/libasj-io.a; do
     [ -s "$work/static/$file" ] || { echo "not installed: $file"; exit 1; }
 done
 use_from shared
+rm "$work"/static/lib/*.so* # nothing there may need them
 use_from static
 (cd "$work/shared" && find . -type f -o -type l | sort)
