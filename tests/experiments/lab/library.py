@@ -33,6 +33,7 @@ class Detector:
 
 DEFAULT = Detector("default")
 PAPER = Detector("paper", ("--preset", "paper"))
+MATCHING = Detector("matching", ("--preset", "match"))
 ISOTROPIC_DEFAULT = Detector("isotropic, default", (), True)
 ISOTROPIC_PAPER = Detector("isotropic, paper", ("--preset", "paper"), True)
 

@@ -52,12 +52,6 @@ def of_matcher(lib, image1, image2):
     return _departures(ours["options"], paper["options"], set(ours["detect_options"]))
 
 
-def detector_of_matching(lib, image1, image2):
-    """Arguments that make asj-cli detect find what asj-cli match looks for."""
-    ours = lib.match((), image1, image2)[0]["detect_options"]
-    return words(_departures(ours, _detect_options(lib, library.DEFAULT, image1)), "ours")
-
-
 def words(departures, which):
     """Arguments that set these options: which is "paper" or "ours"."""
     return tuple(word for d in departures for word in (d.flag, getattr(d, which)))

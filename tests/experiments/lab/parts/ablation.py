@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 
-from .. import criteria, matches, options, pairs, score
+from .. import criteria, library, matches, options, pairs, score
 from ..library import Detector
 from ..report import Part
 from ..tables import accuracy
@@ -18,7 +18,6 @@ TIMES = ("seconds", "detection")
 NOTICEABLE_POINTS, NOTICEABLE_SHARE, NOTICEABLE_TIME = 0.5, 0.01, 0.2
 NEEDS_BACK = {"neighbours": ("minimum_support",)}  # nobody asked, no support
 SYNTHETIC = {"recall": "recall", "precision": "precision", "lengths": "<=3"}
-MATCHING = "matching"  # the detector as asj-cli match sets it
 
 
 def _configurations(departures):
@@ -61,8 +60,6 @@ def _junction_files(session, detector, pair, limit):
 
 
 def _matching(limit, session, detector, words, pair):
-    if detector == MATCHING:
-        detector = Detector(MATCHING, session.shared["matching options"])
     first, second = _junction_files(session, detector, pair, limit)
     data, seconds = session.library.match(words + ("--junctions1", first, "--junctions2", second), pair.image1, pair.image2, limit)
     found = matches.of_library(data, seconds)
@@ -185,7 +182,6 @@ def run(session):
     if session.quick:
         judged, pictures, few = judged[-1:], pictures[:1], judged[-1:]
     lib, sample = session.library, session.rendered[0]
-    session.shared["matching options"] = options.detector_of_matching(lib, sample.image1, sample.image2)
     detector = _configurations(options.of_detector(lib, sample.image1))
     matcher = _configurations(options.of_matcher(lib, sample.image1, sample.image2))
     if session.quick:
@@ -197,7 +193,7 @@ def run(session):
             _add_detector(session, jobs, kind, d, words, pictures, few)
         for kind, d, words in filter(rank, reversed(matcher)):
             for pair in judged:
-                jobs.add(("Matcher", kind, d, "match", pair.name), _matching, session, MATCHING, words, pair)
+                jobs.add(("Matcher", kind, d, "match", pair.name), _matching, session, library.MATCHING, words, pair)
     cells = jobs.run()
     part.text("Detector: pictures %s; pairs %s. Matcher: pairs %s." % (
         ", ".join(p.key for p in pictures), ", ".join(p.name for p in few), ", ".join(p.name for p in judged)))
