@@ -67,7 +67,7 @@ def main():
         environment.enter(ROOT, HERE, arguments.system_python)
         build = arguments.build or environment.build(ROOT)
     except environment.Unavailable as reason:
-        print("experiments: skipped: %s" % reason, file=sys.stderr)
+        print("SKIPPED: %s" % reason)
         return SKIPPED
     from lab import session
     return session.run(arguments, build)

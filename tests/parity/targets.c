@@ -105,7 +105,7 @@ void targets_close(target_list *list)
 int targets_missing(const target_list *list)
 {
     if (!list->devices) {
-        printf("only the reference is there: nothing to compare\n");
+        printf("SKIPPED: only the reference is there, nothing to compare\n");
         return 77;
     }
     const char *required = getenv("ASJ_REQUIRE_OPENCL");
