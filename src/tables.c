@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* The tables of operations, filled with the reference and a vector form; which forms this processor runs. */
 #include "tables.h"
 #include "simd/variants.h"
 

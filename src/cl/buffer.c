@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Buffers of the device, and transfers to and from them. */
 #include "command.h"
 #include "error.h"
 #include "state.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* An entry of the kernel cache: written and read back, refused when it is not of this device, driver and source. */
 #include "cache.h"
 #include "state.h"
 

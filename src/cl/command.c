@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Kernels in the queue, waiting for them, and their times. */
 #include "command.h"
 #include "error.h"
 #include "program.h"

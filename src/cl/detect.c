@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* What the detector keeps on the device: made when first needed, freed with the context. */
 #include "detect.h"
 #include "state.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* All devices of all platforms, each looked at for what the library needs. */
 #include "enumerate.h"
 #include "error.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Codes of OpenCL as words and as failures. */
 #include "error.h"
 #include "state.h"
 

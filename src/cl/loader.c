@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* libOpenCL by dlopen(), and its functions by name. */
 #define _POSIX_C_SOURCE 200809L
 #include "loader.h"
 

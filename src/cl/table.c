@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Tables on the device, and memory of the host for transfers. */
 #include "table.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* A call begins on the device; when that fails under `auto`, it is done once more on the CPU. */
 #include "backend.h"
 
 int32_t asj_context_backend(const asj_context *context)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Messages, log, progress and the clock; a context frees its parts. */
 #define _POSIX_C_SOURCE 200809L
 #include "context.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Selectors and lists of devices, and the choice among them. */
 #include "device.h"
 
 #include <stdio.h>

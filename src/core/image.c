@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Views of every format, checked -> planes of grey levels. */
 #include "image.h"
 #include "threads.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* The allocator with its checks and counts, and blocks that are kept from call to call. */
 #include "memory.h"
 
 #include <stdlib.h>

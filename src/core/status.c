@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Statuses, stages and vector forms as words; the version. */
 #include <asj/context.h>
 #include <asj/status.h>
 #include <asj/version.h>
