@@ -45,16 +45,30 @@ static int detect(run *r)
     return result;
 }
 
+static void set_geometry(const run *r, asj_match_options *options)
+{
+    options->geometry.model = r->arguments->geometry;
+    for (int v = 0; v < 2; v++) {
+        const asj_image *image = &r->inputs[v].image->image;
+        const double focal = r->arguments->focal;
+        options->geometry.cameras[v] = r->arguments->cameras[v];
+        if (focal > 0 && !(options->geometry.cameras[v].fx > 0))
+            options->geometry.cameras[v] = (asj_camera){focal, focal, 0.5 * (image->width - 1), 0.5 * (image->height - 1)};
+    }
+}
+
 static int match(run *r)
 {
     char both[2 * MESSAGE_SIZE];
     size_t counts[2];
     const asj_junction *first = cli_match_input_junctions(&r->inputs[0], &counts[0]);
     const asj_junction *second = cli_match_input_junctions(&r->inputs[1], &counts[1]);
+    asj_match_options options = r->arguments->options;
+    set_geometry(r, &options);
     r->at = "the matching";
     cli_progress_next(&r->session.progress, STEPS - 1, "matching");
     asj_status status = asj_match(r->session.context, &r->inputs[0].image->image, first, counts[0], &r->inputs[1].image->image,
-                                  second, counts[1], &r->arguments->options, &r->result);
+                                  second, counts[1], &options, &r->result);
     if (status == ASJ_OK)
         return CLI_SUCCESS;
     if (status == ASJ_ERROR_OPTION)

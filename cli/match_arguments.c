@@ -36,7 +36,7 @@ static const char conclusion[] =
 
 enum {
     OUTPUT, FORMAT, LINES, LINE_ENDS, JUNCTIONS_1, JUNCTIONS_2, PLOT, PLOT_BACKGROUND, PLOT_LAYOUT, PLOT_SCALE, PRESET,
-    DETECT_PRESET, MATCH_PRESET
+    DETECT_PRESET, MATCH_PRESET, GEOMETRY, CAMERA_1, CAMERA_2, FOCAL
 };
 
 static const cli_option output_options[] = {
@@ -51,6 +51,14 @@ static const cli_option output_options[] = {
 static const cli_option input_options[] = {
     {JUNCTIONS_1, 0, "junctions1", "FILE", "junctions of IMAGE1, .asj or JSON, instead of detecting them"},
     {JUNCTIONS_2, 0, "junctions2", "FILE", "the same for IMAGE2"},
+};
+
+static const cli_option geometry_options[] = {
+    {GEOMETRY, 0, "geometry", "auto|essential|fundamental|homography|none",
+     "estimate what relates the two views, and let it decide which matches hold; none is the default"},
+    {CAMERA_1, 0, "camera1", "FX,FY,CX,CY", "focal lengths and principal point of the camera of IMAGE1, px"},
+    {CAMERA_2, 0, "camera2", "FX,FY,CX,CY", "the same for IMAGE2"},
+    {FOCAL, 0, "focal", "F", "focal length of both cameras, px; the principal point is the middle of the image"},
 };
 
 static const cli_option plot_options[] = {
@@ -100,6 +108,50 @@ static int take_input(void *target, int id, const char *text)
 {
     cli_match_arguments *arguments = target;
     arguments->junctions[id == JUNCTIONS_2] = text;
+    return CLI_SUCCESS;
+}
+
+#define LONGEST 1e7 /* px */
+
+static int take_camera(const char *name, const char *text, asj_camera *camera)
+{
+    char copy[256], *at = copy;
+    double values[4];
+    if (strlen(text) < sizeof copy) {
+        int count = 0;
+        strcpy(copy, text);
+        while (at && count < 4) {
+            char *comma = strchr(at, ',');
+            if (comma)
+                *comma = 0;
+            if (!cli_parse_number(at, count < 2 ? 1 : -LONGEST, LONGEST, &values[count]))
+                break;
+            count++;
+            at = comma ? comma + 1 : NULL;
+        }
+        if (count == 4 && !at) {
+            *camera = (asj_camera){values[0], values[1], values[2], values[3]};
+            return CLI_SUCCESS;
+        }
+    }
+    return cli_usage_error("match", "--%s: '%s' is not FX,FY,CX,CY in px, with focal lengths of 1 and more", name, text);
+}
+
+static int take_geometry(void *target, int id, const char *text)
+{
+    static const char *const models[] = {"none", "auto", "essential", "fundamental", "homography", NULL}; /* as ASJ_GEOMETRY_... */
+    cli_match_arguments *arguments = target;
+    switch (id) {
+    case GEOMETRY:
+        if ((arguments->geometry = cli_find_word(models, text)) < 0)
+            return cli_usage_error("match", "--geometry: '%s' is not auto, essential, fundamental, homography or none", text);
+        break;
+    case CAMERA_1: return take_camera("camera1", text, &arguments->cameras[0]);
+    case CAMERA_2: return take_camera("camera2", text, &arguments->cameras[1]);
+    default:
+        if (!cli_parse_number(text, 1, LONGEST, &arguments->focal))
+            return cli_usage_error("match", "--focal: '%s' is not a length in px, 1 and more", text);
+    }
     return CLI_SUCCESS;
 }
 
@@ -195,6 +247,19 @@ static int check_detector(const cli_match_arguments *arguments)
     return CLI_SUCCESS;
 }
 
+/* Cameras without a geometry that uses them, and the other way round. */
+static int check_geometry(const cli_match_arguments *arguments)
+{
+    const int first = arguments->cameras[0].fx > 0, second = arguments->cameras[1].fx > 0, focal = arguments->focal > 0;
+    if ((first || second || focal) && arguments->geometry == ASJ_GEOMETRY_NONE)
+        return cli_usage_error("match", "a camera changes nothing without --geometry");
+    if (first != second && !focal)
+        return cli_usage_error("match", "--camera%d is missing (or --focal)", first ? 2 : 1);
+    if (arguments->geometry == ASJ_GEOMETRY_ESSENTIAL && !first && !focal)
+        return cli_usage_error("match", "--geometry essential needs --camera1 and --camera2, or --focal");
+    return CLI_SUCCESS;
+}
+
 static int check(cli_match_arguments *arguments, char **operands, int operand_count)
 {
     if (operand_count != 2)
@@ -209,6 +274,8 @@ static int check(cli_match_arguments *arguments, char **operands, int operand_co
         result = cli_check_ending("match", "matches", arguments->output, arguments->format, formats);
     if (result == CLI_SUCCESS)
         result = check_detector(arguments);
+    if (result == CLI_SUCCESS)
+        result = check_geometry(arguments);
     if (result == CLI_SUCCESS && arguments->plot)
         result = cli_plot_format_of_name("match", arguments->plot, &arguments->plot_format);
     return result == CLI_SUCCESS ? check_files(arguments) : result;
@@ -232,6 +299,7 @@ int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *argumen
     const cli_group groups[] = {
         {"Results", output_options, sizeof output_options / sizeof output_options[0], take_output, arguments},
         {"Junctions", input_options, sizeof input_options / sizeof input_options[0], take_input, arguments},
+        {"Geometry", geometry_options, sizeof geometry_options / sizeof geometry_options[0], take_geometry, arguments},
         {"Plot", plot_options, sizeof plot_options / sizeof plot_options[0], take_plot, arguments},
         {"Presets", preset_options, sizeof preset_options / sizeof preset_options[0], take_preset, arguments},
         {"Running", cli_common_options, cli_common_option_count, cli_common_take, &arguments->common},

@@ -19,6 +19,9 @@ typedef struct cli_match_arguments {
     const char *output;       /* -o; NULL = none */
     const char *format;       /* "csv", "json"; NULL = by the name of `output` */
     const char *junctions[2]; /* files; NULL = detect */
+    int32_t geometry;         /* ASJ_GEOMETRY_... */
+    asj_camera cameras[2];    /* fx 0 = not given */
+    double focal;             /* px; 0 = not given */
     int lines;
     int32_t minimum_end;      /* ASJ_END_... */
     const char *plot;         /* a file; NULL = none */

@@ -3,6 +3,7 @@
 #define ASJ_MATCH_H
 
 #include <asj/context.h>
+#include <asj/geometry.h>
 #include <asj/image.h>
 #include <asj/junction.h>
 #include <asj/options.h>
@@ -62,6 +63,9 @@ typedef struct asj_match_options {
     /* line segments */
     double end_tolerance;        /* branch ends correspond when lengths agree within this part. 0.01 .. 1; 0.12 */
     double reserved[21];         /* zero */
+    /* two-view geometry; not among the options with a key. model: none, the default, and then the rest of it does not matter. Sizes
+     * of the images are filled in */
+    asj_geometry_options geometry;
 } asj_match_options;
 
 /* As for the detector: see options.h. */
@@ -94,6 +98,8 @@ typedef struct asj_junction_match {
     float ratio;            /* how much worse the second best at another place is; HUGE_VAL when there is none */
     float similarity;       /* correlation of the aligned discs, -1 .. 1; 0 when not aligned */
     float support;          /* neighbouring matches that agree, each counted 0 to 1 */
+    float probability;      /* that the match is right, given the geometry, where one was accepted, and its rivals; else 0 */
+    float reserved;         /* zero */
 } asj_junction_match;
 
 /* Matches of two images. The arrays belong to the result and are NULL when empty. */
@@ -107,10 +113,15 @@ typedef struct asj_match_result {
     double total_ms;                   /* wall time of the call */
     double stage_ms[16];               /* by ASJ_STAGE_... */
     uint64_t candidates;               /* pairs that were aligned or compared by the pair's own map */
+    asj_geometry geometry;             /* status not asked where options->geometry.model is none */
     uint64_t reserved[7];
 } asj_match_result;
 
-/* Matches the junctions of two images: the pipeline of the paper, step 7. No epipolar geometry is estimated.
+/* Matches the junctions of two images: the pipeline of the paper, step 7.
+ *
+ * With options->geometry.model the two-view geometry is estimated as well, from many more candidates than become matches
+ * (geometry.h; src/match/two_view.c). Where one is accepted, matches that contradict it go, and others that it makes likely come;
+ * where none is, the matches are those that there are without.
  *
  * image1, image2   views; only read, and only during the call
  * junctions1, 2    from asj_detect() or a file; may be NULL when the count is 0. Junctions with branches that differ in

@@ -57,13 +57,40 @@ static void put_head(asj_json_output *json, const asj_match_report *report, cons
     asj_json_put(json, ",\n\"counts\": ", counts, 0);
 }
 
+static json_t *numbers(const double *values, int count)
+{
+    json_t *list = json_array();
+    int k;
+    for (k = 0; k < count; k++)
+        json_array_append_new(list, json_real(values[k]));
+    return list;
+}
+
+/* What was accepted, or null; the status says why not. */
+static void put_geometry(asj_json_output *json, const asj_geometry *g)
+{
+    const int accepted = g->status == ASJ_GEOMETRY_ACCEPTED;
+    json_t *value = json_null();
+    if (g->status == ASJ_GEOMETRY_NOT_ASKED)
+        return;
+    if (accepted)
+        value = json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:b}", "model", asj_geometry_model_name(g->model),
+                          "matrix", numbers(g->matrix, 9), "rotation", g->has_pose ? numbers(g->rotation, 9) : json_null(),
+                          "translation", g->has_pose ? numbers(g->translation, 3) : json_null(),
+                          "covariance", g->has_pose ? numbers(g->covariance, 36) : json_null(),
+                          "focal", g->focal[0] > 0 ? numbers(g->focal, 2) : json_null(), "log10_nfa", g->log10_nfa,
+                          "inliers", g->inliers, "ambiguous", 0);
+    asj_json_put(json, ",\n\"geometry\": ", value, JSON_REAL_PRECISION(15));
+    asj_json_put(json, ",\n\"geometry_status\": ", json_string(asj_geometry_status_name(g->status)), 0);
+}
+
 static const char *end_name(int32_t end)
 {
     return end == ASJ_END_BOTH ? "both" : end == ASJ_END_INNER ? "inner" : "cut";
 }
 
 /* Two halves, joined: a json_pack() with everything could not be read. */
-static json_t *match_value(const asj_junction_match *m)
+static json_t *match_value(const asj_junction_match *m, int geometry)
 {
     const double *h = m->affine;
     json_t *value = json_pack("{s:I, s:I, s:I, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}",
@@ -81,6 +108,8 @@ static json_t *match_value(const asj_junction_match *m)
         value = NULL;
     }
     json_decref(rest);
+    if (value && geometry)
+        json_object_set_new(value, "probability", json_real((double)m->probability));
     return value;
 }
 
@@ -103,6 +132,7 @@ asj_status asj_write_match_json(asj_output *output, const asj_match_report *repo
                                 const asj_message *message)
 {
     const asj_match_result *result = report->result;
+    const int geometry = result->geometry.status == ASJ_GEOMETRY_ACCEPTED;
     asj_json_output json = {output, 0};
     asj_c_locale locale;
     asj_status status = asj_c_locale_begin(&locale, message);
@@ -111,9 +141,10 @@ asj_status asj_write_match_json(asj_output *output, const asj_match_report *repo
     if (status != ASJ_OK)
         return status;
     put_head(&json, report, segments);
+    put_geometry(&json, &result->geometry);
     asj_output_text(output, ",\n\"matches\": [");
     for (i = 0; i < result->match_count && !json.out_of_memory; i++)
-        asj_json_put(&json, i ? ",\n" : "\n", match_value(&result->matches[i]), ASJ_JSON_FLOATS);
+        asj_json_put(&json, i ? ",\n" : "\n", match_value(&result->matches[i], geometry), ASJ_JSON_FLOATS);
     if (report->lines)
         asj_output_text(output, "],\n\"lines\": [");
     for (i = 0; i < segments->count && !json.out_of_memory; i++)

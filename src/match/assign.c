@@ -94,7 +94,7 @@ static void choose(asj_match_run *run, const winner *winners1, const winner *win
     asj_choices *choices = &run->choices;
     choices->count = 0;
     for (uint32_t p = 0; p < run->image[0]->l_junctions.location_count; p++) {
-        asj_choice choice = {winners1[p].candidate, 0};
+        asj_choice choice = {winners1[p].candidate, 0, 0};
         if (choice.candidate == UINT32_MAX)
             continue;
         const asj_candidate *c = &candidates->list[choice.candidate];

@@ -13,6 +13,7 @@
  *   assign.c         ratio test, mutual check: matches
  *   guided.c         matches propose matches near them; once more from align.c on
  *   verify.c         each match is judged by the matches around it
+ *   two_view.c       the geometry of the pair, when asked for: candidates once more, a longer list (prior.c, ../geometry/)
  *   match_result.c   what the caller sees; segments.c: which ends of the branches correspond
  *
  * Up to the consensus every aligned candidate is there, several for a location; a step that needs all of them stands before
@@ -27,6 +28,7 @@
 #include "match_result.h"
 #include "shortlist.h"
 #include "support.h"
+#include "two_view.h"
 #include "verify.h"
 
 #include <string.h>
@@ -88,6 +90,7 @@ static asj_status run_steps(asj_match_run *run, stop_watch *watch)
         {ASJ_STAGE_ASSIGN, 0.94, asj_assign},
     };
     static const step last = {ASJ_STAGE_ASSIGN, 0.95, asj_verify};
+    static const step geometry = {ASJ_STAGE_ASSIGN, 0.96, asj_apply_geometry};
     asj_status status = run_list(run, first, sizeof first / sizeof *first, watch);
     for (int32_t round = 0; round < run->options->guided_rounds && run->options->neighbours > 0 && status == ASJ_OK; round++) {
         const size_t before = run->candidates.count;
@@ -97,7 +100,9 @@ static asj_status run_steps(asj_match_run *run, stop_watch *watch)
         if (status == ASJ_OK)
             status = run_list(run, again, sizeof again / sizeof *again, watch);
     }
-    return status == ASJ_OK ? run_step(run, &last, watch) : status;
+    if (status == ASJ_OK)
+        status = run_step(run, &last, watch);
+    return status == ASJ_OK ? run_step(run, &geometry, watch) : status;
 }
 
 static asj_status finish(const asj_match_run *run, stop_watch *watch, asj_match_result **result)

@@ -68,12 +68,17 @@ static const asj_option_table table = {rows, sizeof rows / sizeof *rows, sizeof(
 
 void asj_match_options_init(asj_match_options *options)
 {
-    asj_option_table_preset(&table, options, ASJ_PRESET_DEFAULT);
+    asj_match_options_preset(options, ASJ_PRESET_DEFAULT);
 }
 
 asj_status asj_match_options_preset(asj_match_options *options, int32_t preset)
 {
-    return asj_option_table_preset(&table, options, preset);
+    const asj_status status = asj_option_table_preset(&table, options, preset);
+    if (status == ASJ_OK) {
+        asj_geometry_options_init(&options->geometry);
+        options->geometry.model = ASJ_GEOMETRY_NONE;
+    }
+    return status;
 }
 
 size_t asj_match_option_count(void)

@@ -57,6 +57,7 @@ static void fill(const asj_match_run *run, const asj_choice *choice, asj_junctio
     m->ratio = choice->ratio;
     m->similarity = c->similarity;
     m->support = c->support;
+    m->probability = choice->probability;
 }
 
 static int by_distance(const void *left, const void *right)
@@ -104,6 +105,7 @@ asj_match_result *asj_match_result_create(const asj_match_run *run)
     shown->l_junctions2 = in2->count ? r->l2 : NULL;
     shown->l_junction_count1 = in1->count;
     shown->l_junction_count2 = in2->count;
+    shown->geometry = run->geometry;
     return shown;
 }
 

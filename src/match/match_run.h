@@ -13,6 +13,7 @@ typedef struct asj_match_run {
     asj_candidates candidates; /* shortlist.c fills them, align.c their maps, consensus.c their scores */
     asj_support support;       /* support.c: who agrees with whom */
     asj_choices choices;       /* assign.c; room for every location of image 1 */
+    asj_geometry geometry;     /* two_view.c */
 } asj_match_run;
 
 /* L-junction of a candidate in image `side` (0 or 1). */

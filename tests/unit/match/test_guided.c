@@ -103,7 +103,7 @@ static void choose(void)
         const asj_candidate *c = &all->list[k];
         if (c->i % 3 == 0 && asj_match_run_l(&pair.run, c, 0)->branch_a == asj_match_run_l(&pair.run, c, 1)->branch_a &&
             asj_match_run_l(&pair.run, c, 0)->junction == asj_match_run_l(&pair.run, c, 1)->junction)
-            pair.run.choices.list[pair.run.choices.count++] = (asj_choice){(uint32_t)k, 2};
+            pair.run.choices.list[pair.run.choices.count++] = (asj_choice){(uint32_t)k, 2, 0};
     }
 }
 

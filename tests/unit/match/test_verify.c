@@ -46,7 +46,7 @@ static size_t verify(asj_context *context, stage *s)
         memset(&s->list[count], 0, sizeof s->list[count]);
         s->list[count].i = s->list[count].j = l;
         s->list[count].map = (asj_linear){{1, 0, 0, 1}, {1, 0, 0, 1}};
-        s->choices[count] = (asj_choice){(uint32_t)count, 2};
+        s->choices[count] = (asj_choice){(uint32_t)count, 2, 0};
         count++;
     }
     assert_int_equal(count, s->count);
@@ -126,7 +126,7 @@ static void without_memory_it_says_so(void **state)
     (void)state;
     unit_counter counter = {0, 0, 0, 0};
     asj_context *context = unit_context(&counter, 1);
-    asj_choice choice = {0, 1};
+    asj_choice choice = {0, 1, 0};
     asj_match_options options;
     asj_match_options_init(&options);
     asj_match_run run = {.context = context, .options = &options, .choices = {&choice, 1}};

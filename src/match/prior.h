@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* How probable a candidate is before any geometry. */
+#ifndef ASJ_SRC_MATCH_PRIOR_H
+#define ASJ_SRC_MATCH_PRIOR_H
+
+#include "match_run.h"
+
+/* One number for each candidate of the run: see prior.c. */
+asj_status asj_candidate_priors(const asj_match_run *run, double *prior);
+
+#endif

@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Two-view geometry on rendered rooms seen from far apart, whose cameras are known.
+ *
+ *     wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--first N] [--last N] [--threads N]
+ *
+ * Pairs of seeds --first (0) to --last (99): status, model, log10 NFA, pose error (the larger of rotation and direction of
+ * translation, degrees) and matches within 4 px of their epipolar lines. Then the area under the curve of recall over error up to
+ * 5, 10 and 20 degrees, how many of the pairs with a third in common were accepted, and how many of the accepted are wrong by more
+ * than 3 degrees. --held-out: seeds that nothing was tuned on. --unrelated: image 1 of a seed with image 2 of the next one.
+ * --check: exit 1 when an accepted pose is off by more than 30 degrees more often than below, or fewer are accepted. */
+#define _POSIX_C_SOURCE 200809L
+#include "wide_pair.h"
+
+#include <asj/asj.h>
+
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define DEGREE (3.14159265358979323846 / 180.0)
+#define MOST 10000
+#define NEAR 4.0 /* px */
+
+static const double least_accepted = 0.5; /* of --check */
+static const int most_far_off = 2;
+
+typedef struct settings {
+    int check, held_out, unrelated, no_cameras;
+    long first, last;
+    asj_context *context;
+} settings;
+
+typedef struct tally {
+    double errors[MOST];
+    int pairs, accepted, with_pose, wrong, far_off, common, common_accepted;
+} tally;
+
+static int detect(const settings *set, const synth_wide_pair *pair, int which, uint8_t **pixels, asj_image *image,
+                  asj_detection **found)
+{
+    asj_detect_options options;
+    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
+    *pixels = synth_wide_picture(pair, which);
+    *image = (asj_image){*pixels, ASJ_FORMAT_RGB8, SYNTH_WIDE_WIDTH, SYNTH_WIDE_HEIGHT, 0, 0};
+    return *pixels && asj_detect(set->context, image, &options, found) == ASJ_OK ? 0 : -1;
+}
+
+static double pose_error(const asj_geometry *g, const synth_wide_pair *pair)
+{
+    double r[9], t[3], trace = 0, dot = 0;
+    if (g->status != ASJ_GEOMETRY_ACCEPTED || !g->has_pose)
+        return 180;
+    synth_relative_pose(&pair->cameras[0], &pair->cameras[1], r, t);
+    for (int k = 0; k < 9; k++)
+        trace += r[k] * g->rotation[k];
+    for (int k = 0; k < 3; k++)
+        dot += t[k] * g->translation[k];
+    return fmax(acos(fmax(-1, fmin(1, (trace - 1) / 2))), acos(fmin(1, fabs(dot)))) / DEGREE;
+}
+
+static uint32_t count_right(const asj_match_result *result, const synth_wide_pair *pair)
+{
+    double f[9];
+    uint32_t right = 0;
+    synth_fundamental(&pair->cameras[0], &pair->cameras[1], f);
+    for (uint32_t k = 0; k < result->match_count; k++) {
+        const double x = (double)result->matches[k].x1, y = (double)result->matches[k].y1;
+        const double a = f[0] * x + f[1] * y + f[2], b = f[3] * x + f[4] * y + f[5], c = f[6] * x + f[7] * y + f[8];
+        right += fabs(a * (double)result->matches[k].x2 + b * (double)result->matches[k].y2 + c) < NEAR * sqrt(a * a + b * b);
+    }
+    return right;
+}
+
+static void count(const settings *set, const synth_wide_pair *pair, const asj_match_result *result, tally *sum)
+{
+    const asj_geometry *g = &result->geometry;
+    const int accepted = g->status == ASJ_GEOMETRY_ACCEPTED;
+    const double error = set->unrelated ? 180 : pose_error(g, pair);
+    sum->errors[sum->pairs++] = error;
+    sum->accepted += accepted;
+    sum->with_pose += accepted && g->has_pose;
+    sum->wrong += accepted && g->has_pose && error > 3;
+    sum->far_off += accepted && g->has_pose && error > 30;
+    sum->common += pair->common >= 1.0 / 3;
+    sum->common_accepted += pair->common >= 1.0 / 3 && accepted;
+    printf("%-7lu angle %2.0f scale %4.2f common %4.2f  %-10s %-11s log10 NFA %7.1f error %6.1f  matches %3u / %3u  %.0f ms\n",
+           (unsigned long)pair->seed, pair->angle, pair->scale, pair->common, asj_geometry_status_name(g->status),
+           asj_geometry_model_name(g->model), g->log10_nfa, error, set->unrelated ? 0 : (unsigned)count_right(result, pair),
+           (unsigned)result->match_count, result->total_ms);
+    fflush(stdout);
+}
+
+static int match(const settings *set, const synth_wide_pair *first, const synth_wide_pair *second, tally *sum)
+{
+    const synth_wide_pair *pairs[2] = {first, second};
+    uint8_t *pixels[2] = {NULL, NULL};
+    asj_image images[2];
+    asj_detection *found[2] = {NULL, NULL};
+    asj_match_options options;
+    asj_match_result *result = NULL;
+    int failed = 0;
+    asj_match_options_init(&options);
+    options.geometry.model = ASJ_GEOMETRY_AUTO;
+    for (int v = 0; v < 2 && !failed; v++) {
+        const double f = pairs[v]->cameras[v].focal;
+        if (!set->no_cameras)
+            options.geometry.cameras[v] = (asj_camera){f, f, 0.5 * (SYNTH_WIDE_WIDTH - 1), 0.5 * (SYNTH_WIDE_HEIGHT - 1)};
+        failed = detect(set, pairs[v], v, &pixels[v], &images[v], &found[v]);
+    }
+    if (!failed)
+        failed = asj_match(set->context, &images[0], found[0]->junctions, found[0]->junction_count, &images[1], found[1]->junctions,
+                           found[1]->junction_count, &options, &result) != ASJ_OK;
+    if (!failed)
+        count(set, first, result, sum);
+    asj_match_result_free(&result);
+    for (int v = 0; v < 2; v++) {
+        asj_detection_free(&found[v]);
+        free(pixels[v]);
+    }
+    return failed;
+}
+
+static int by_size(const void *left, const void *right)
+{
+    const double a = *(const double *)left, b = *(const double *)right;
+    return (a > b) - (a < b);
+}
+
+/* Percent: the mean of the recall, which rises linearly between errors, from 0 to `limit` degrees. */
+static double area(const double *errors, int count, double limit)
+{
+    double sum = 0, x = 0, y = 0;
+    for (int k = 0; k < count && errors[k] < limit; k++) {
+        const double next = (k + 1.0) / count;
+        sum += (errors[k] - x) * (y + next) / 2;
+        x = errors[k];
+        y = next;
+    }
+    return count ? 100 * (sum + (limit - x) * y) / limit : 0;
+}
+
+static int report(const settings *set, tally *sum)
+{
+    qsort(sum->errors, (size_t)sum->pairs, sizeof *sum->errors, by_size);
+    printf("%d pairs: AUC at 5, 10, 20 degrees %.1f %.1f %.1f; accepted %d, of those with a third in common %d of %d; "
+           "with a pose %d, of these off by more than 3 degrees %d, 30 degrees %d\n", sum->pairs, area(sum->errors, sum->pairs, 5),
+           area(sum->errors, sum->pairs, 10), area(sum->errors, sum->pairs, 20), sum->accepted, sum->common_accepted, sum->common,
+           sum->with_pose, sum->wrong, sum->far_off);
+    if (!set->check)
+        return 0;
+    return sum->accepted >= least_accepted * sum->pairs && sum->far_off <= most_far_off ? 0 : 1;
+}
+
+static int run(const settings *set)
+{
+    static tally sum;
+    const uint64_t start = set->held_out ? SYNTH_WIDE_HELD_OUT : 0;
+    synth_wide_pair last;
+    int have_last = 0, failed = 0;
+    for (long seed = set->first; seed <= set->last && sum.pairs < MOST && !failed; seed++) {
+        synth_wide_pair pair;
+        if (synth_wide_pair_make(&pair, start + (uint64_t)seed) != 0)
+            continue; /* no such viewpoints in this room */
+        if (!set->unrelated) {
+            failed = match(set, &pair, &pair, &sum);
+            synth_wide_pair_free(&pair);
+            continue;
+        }
+        if (have_last) {
+            failed = match(set, &last, &pair, &sum);
+            synth_wide_pair_free(&last);
+        }
+        last = pair;
+        have_last = 1;
+    }
+    if (have_last)
+        synth_wide_pair_free(&last);
+    if (failed) {
+        fprintf(stderr, "wide_rooms: %s\n", asj_context_message(set->context));
+        return 1;
+    }
+    return report(set, &sum);
+}
+
+int main(int argc, char **argv)
+{
+    static const struct option longs[] = {{"check", 0, NULL, 'c'}, {"held-out", 0, NULL, 'h'}, {"unrelated", 0, NULL, 'u'},
+                                          {"no-cameras", 0, NULL, 'n'}, {"first", 1, NULL, 'f'}, {"last", 1, NULL, 'l'},
+                                          {"threads", 1, NULL, 't'}, {NULL, 0, NULL, 0}};
+    settings set = {.last = 99};
+    asj_context_options how;
+    int c;
+    asj_context_options_init(&how);
+    while ((c = getopt_long(argc, argv, "", longs, NULL)) != -1)
+        switch (c) {
+        case 'c': set.check = 1; break;
+        case 'h': set.held_out = 1; break;
+        case 'u': set.unrelated = 1; break;
+        case 'n': set.no_cameras = 1; break;
+        case 'f': set.first = strtol(optarg, NULL, 10); break;
+        case 'l': set.last = strtol(optarg, NULL, 10); break;
+        case 't': how.threads = (int32_t)strtol(optarg, NULL, 10); break;
+        default:
+            fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--first N] [--last N] "
+                  "[--threads N]\n", stderr);
+            return 2;
+        }
+    if (asj_context_create(&how, &set.context) != ASJ_OK)
+        return 1;
+    const int result = run(&set);
+    asj_context_free(&set.context);
+    return result;
+}

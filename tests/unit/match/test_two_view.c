@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The geometry in the matcher: on a rendered room seen from far apart the pose is that of the cameras and the matches obey it;
+ * without one, or where it is not accepted, the matches are those of before. */
+#include "unit_test.h"
+
+#include "wide_pair.h"
+
+#include <asj/asj.h>
+
+#define SEED 6 /* a furnished room, 33 degrees */
+
+typedef struct views {
+    synth_wide_pair pair;
+    uint8_t *pixels[2];
+    asj_image images[2];
+    asj_detection *found[2];
+} views;
+
+static void make(asj_context *context, uint64_t seed, views *v)
+{
+    asj_detect_options options;
+    assert_int_equal(synth_wide_pair_make(&v->pair, seed), 0);
+    assert_int_equal(asj_detect_options_preset(&options, ASJ_PRESET_MATCH), ASJ_OK);
+    for (int k = 0; k < 2; k++) {
+        v->pixels[k] = synth_wide_picture(&v->pair, k);
+        assert_non_null(v->pixels[k]);
+        v->images[k] = (asj_image){v->pixels[k], ASJ_FORMAT_RGB8, SYNTH_WIDE_WIDTH, SYNTH_WIDE_HEIGHT, 0, 0};
+        assert_int_equal(asj_detect(context, &v->images[k], &options, &v->found[k]), ASJ_OK);
+    }
+}
+
+static void release(views *v)
+{
+    for (int k = 0; k < 2; k++) {
+        asj_detection_free(&v->found[k]);
+        free(v->pixels[k]);
+    }
+    synth_wide_pair_free(&v->pair);
+}
+
+static asj_status match(asj_context *context, const views *first, const views *second, const asj_match_options *options,
+                        asj_match_result **result)
+{
+    return asj_match(context, &first->images[0], first->found[0]->junctions, first->found[0]->junction_count, &second->images[1],
+                     second->found[1]->junctions, second->found[1]->junction_count, options, result);
+}
+
+static asj_match_options with_cameras(const views *v)
+{
+    asj_match_options options;
+    asj_match_options_init(&options);
+    assert_int_equal(options.geometry.model, ASJ_GEOMETRY_NONE);
+    options.geometry.model = ASJ_GEOMETRY_AUTO;
+    for (int k = 0; k < 2; k++) {
+        const double f = v->pair.cameras[k].focal;
+        options.geometry.cameras[k] = (asj_camera){f, f, 0.5 * (SYNTH_WIDE_WIDTH - 1), 0.5 * (SYNTH_WIDE_HEIGHT - 1)};
+    }
+    return options;
+}
+
+static void the_pose_of_a_room_is_found(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_match_result *result = NULL;
+    views v;
+    double r[9], t[3], f[9], trace = 0, dot = 0;
+    make(context, SEED, &v);
+    const asj_match_options options = with_cameras(&v);
+    assert_int_equal(match(context, &v, &v, &options, &result), ASJ_OK);
+    const asj_geometry *g = &result->geometry;
+    assert_int_equal(g->status, ASJ_GEOMETRY_ACCEPTED);
+    assert_true(g->has_pose);
+    synth_relative_pose(&v.pair.cameras[0], &v.pair.cameras[1], r, t);
+    for (int k = 0; k < 9; k++)
+        trace += r[k] * g->rotation[k];
+    for (int k = 0; k < 3; k++)
+        dot += t[k] * g->translation[k];
+    unit_near("rotation, deg", SEED, 0, acos(fmin(1, (trace - 1) / 2)) * 180 / UNIT_PI, 0, 3);
+    unit_near("translation, deg", SEED, 0, acos(fmin(1, dot)) * 180 / UNIT_PI, 0, 3);
+    synth_fundamental(&v.pair.cameras[0], &v.pair.cameras[1], f);
+    uint32_t right = 0, likely = 0;
+    for (uint32_t k = 0; k < result->match_count; k++) {
+        const asj_junction_match *m = &result->matches[k];
+        const double x = (double)m->x1, y = (double)m->y1, a = f[0] * x + f[1] * y + f[2], b = f[3] * x + f[4] * y + f[5];
+        const double c = f[6] * x + f[7] * y + f[8];
+        right += fabs(a * (double)m->x2 + b * (double)m->y2 + c) / sqrt(a * a + b * b) < 4;
+        likely += m->probability > 0.5f;
+        assert_true(m->probability >= 0 && m->probability <= 1);
+    }
+    assert_true(result->match_count >= 20);
+    assert_true(10 * right >= 9 * result->match_count);
+    assert_true(3 * likely >= 2 * result->match_count);
+    asj_match_result_free(&result);
+    release(&v);
+    unit_context_free(&counter, &context);
+}
+
+static void what_is_not_accepted_changes_nothing(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_match_result *without = NULL, *with = NULL;
+    views a, b;
+    make(context, SEED, &a);
+    make(context, 14, &b); /* another room */
+    asj_match_options options = with_cameras(&a);
+    assert_int_equal(match(context, &a, &b, &options, &with), ASJ_OK);
+    assert_int_not_equal(with->geometry.status, ASJ_GEOMETRY_ACCEPTED);
+    assert_int_not_equal(with->geometry.status, ASJ_GEOMETRY_NOT_ASKED);
+    options.geometry.model = ASJ_GEOMETRY_NONE;
+    assert_int_equal(match(context, &a, &b, &options, &without), ASJ_OK);
+    assert_int_equal(without->geometry.status, ASJ_GEOMETRY_NOT_ASKED);
+    assert_int_equal(with->match_count, without->match_count);
+    if (with->match_count)
+        assert_memory_equal(with->matches, without->matches, with->match_count * sizeof *with->matches);
+    asj_match_result_free(&with);
+    options.geometry.model = ASJ_GEOMETRY_AUTO;
+    options.geometry.cameras[0].fx = -1;
+    assert_int_equal(match(context, &a, &b, &options, &with), ASJ_ERROR_OPTION);
+    assert_null(with);
+    asj_match_result_free(&without);
+    release(&a);
+    release(&b);
+    unit_context_free(&counter, &context);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_pose_of_a_room_is_found), cmocka_unit_test(what_is_not_accepted_changes_nothing),
+    };
+    return cmocka_run_group_tests_name("two views", tests, NULL, NULL);
+}
