@@ -53,17 +53,25 @@ typedef struct asj_detect_options {
                                    * 0 = one fixed scale. default 0; paper 1 */
     /* step 2: local junction field, candidates */
     int32_t field_radius;         /* px: 3, 5, 7 or 9; 7 */
-    double sector_width;          /* tau: half-width of a sector's outer arc in pixels. 1 .. 3; 2 */
+    double sector_width;          /* tau: half-width of a sector's outer arc in pixels. 1 .. 3; 2; paper 2.5 */
     double field_epsilon;         /* a local branch is kept when (sectors of its pixel) x tail <= this. 1e-6 .. 100; 1 */
     double candidate_strength;    /* standard deviations that two local branches of a candidate need. 0 .. 12; 2.4;
                                    * paper 5.15; match 2 */
     int32_t candidate_step;       /* px from one pixel that may be a candidate to the next, along x and along y. 1 .. 2;
                                    * 2; paper 1; match 1 */
+    int32_t seeds;                /* ASJ_SEEDS_...: where candidates come from; field; paper segments. With segments the two
+                                   * options before this mean nothing, with field the next three */
+    double segment_epsilon;       /* NFA allowed for a line segment. 1e-6 .. 1e12; 1e6 */
+    double seed_gap;              /* px between two segments that nearly meet, from where they would. 0 .. 50; 12 */
+    int32_t seed_radius;          /* px around such a place, and around the ends of such segments. 0 .. 10; 3 */
     /* step 3: isotropic junctions */
-    uint32_t isotropic_radii;     /* bit r set = radius r is tested, 3 .. 30; 7,14; paper 3-12 */
-    double epsilon;               /* NFA allowed for a junction, and for a branch (steps 3 and 5). 1e-30 .. 1e6; 1; match 1e4 */
+    uint32_t isotropic_radii;     /* bit r set = radius r is tested, 3 .. 30; 7,14; paper 3-10 */
+    int32_t isotropic_persistence; /* radii of these, one after the other, at which a junction is meaningful. 1 .. 8; 1; paper 3 */
+    int32_t disjoint_sectors;     /* 1 = the sectors of a junction do not overlap: its branches are 2 Delta apart, not Delta.
+                                   * 0; paper 1 */
     int32_t max_branches;         /* branches tested together. 2 .. 5; 5 */
     int32_t more_branches_win;    /* 1 = among junctions closer than half a radius the one with more branches stays. 0; paper 1 */
+    double epsilon;               /* NFA allowed for a junction, and for a branch (steps 3 and 5). 1e-30 .. 1e6; 1; match 1e4 */
     /* step 4: branch lengths */
     double scan_epsilon;          /* NFA at which a step along a ray still belongs to the branch. 1e-6 .. 1e3; 1; match 10 */
     int32_t scan_start;           /* px: first radius looked at; 0 = the junction's isotropic scale. 0 .. 30; 3; paper 0; match 0 */
@@ -89,6 +97,7 @@ typedef struct asj_detect_options {
     double reserved[20];          /* zero */
 } asj_detect_options;
 
+enum { ASJ_SEEDS_FIELD = 0, ASJ_SEEDS_SEGMENTS = 1 };
 enum { ASJ_REFINE_LINE_FIT = 0, ASJ_REFINE_SEARCH = 1 };
 
 /* Fills in the preset `default`. NULL is ignored. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 2 over an image: one bit for each pixel that may be a junction. Another source of candidates sets bits of its own in the
- * same plane, after those of the field. */
+ * same plane. */
+#include "seeds.h"
 #include "steps.h"
 
 static size_t count_bits(const uint16_t *masks, size_t count)
@@ -29,22 +30,33 @@ static asj_status dump(const asj_detection_run *run)
     return ASJ_OK;
 }
 
+/* Where the local field has two strong branches. */
+static asj_status find_in_field(asj_detection_run *run)
+{
+    asj_context *context = run->context;
+    const int32_t height = run->frame->height;
+    asj_status status = ASJ_OK;
+    for (int32_t top = 0; top < height && status == ASJ_OK; top += ASJ_ROW_GROUP) {
+        const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
+        status = context->ops->field->rows(context, run->field, run->frame, top, bottom, &run->scratch, run->candidates);
+        if (status == ASJ_OK)
+            status = asj_detection_run_progress(run, ASJ_STAGE_CANDIDATES, 0.05 + 0.45 * bottom / height);
+    }
+    return status;
+}
+
 asj_status asj_step_candidates(asj_detection_run *run)
 {
     asj_context *context = run->context;
-    const asj_frame *frame = run->frame;
-    const int32_t blocks = frame->blocks, height = frame->height;
-    run->candidates = asj_allocate(&context->memory, (size_t)blocks * (size_t)height, sizeof *run->candidates);
+    const size_t runs = (size_t)run->frame->blocks * (size_t)run->frame->height;
+    run->candidates = asj_allocate(&context->memory, runs, sizeof *run->candidates);
     if (!run->candidates)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the candidates");
-    for (int32_t top = 0; top < height; top += ASJ_ROW_GROUP) {
-        const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
-        asj_status status = context->ops->field->rows(context, run->field, frame, top, bottom, &run->scratch, run->candidates);
-        if (status == ASJ_OK)
-            status = asj_detection_run_progress(run, ASJ_STAGE_CANDIDATES, 0.05 + 0.45 * bottom / height);
-        if (status != ASJ_OK)
-            return status;
-    }
-    run->candidate_count = count_bits(run->candidates, (size_t)blocks * (size_t)height);
+    const asj_status status = run->options->seeds == ASJ_SEEDS_SEGMENTS
+                                  ? asj_seeds_mark(context, run->frame, run->options, run->candidates)
+                                  : find_in_field(run);
+    if (status != ASJ_OK)
+        return status;
+    run->candidate_count = count_bits(run->candidates, runs);
     return context->options.dump ? dump(run) : ASJ_OK;
 }

@@ -15,8 +15,9 @@
 #define REFINE "step 5, location, orientation and validation"
 
 #define RADII_DEFAULT (1u << 7 | 1u << 14)
-#define RADII_PAPER (((1u << 13) - 1) & ~((1u << 3) - 1)) /* 3 .. 12 */
+#define RADII_PAPER (((1u << 11) - 1) & ~((1u << 3) - 1)) /* 3 .. 10 */
 
+static const char *const sources[] = {"field", "segments", NULL};
 static const char *const refinements[] = {"line_fit", "search", NULL};
 
 /* ..., range, default, paper, match, help */
@@ -26,18 +27,27 @@ static const asj_option_info rows[] = {
     SWITCH(GRADIENT, ADVANCED, standardise, 0, 1, 0, "give each gradient axis zero mean and unit variance over the image"),
 
     INTEGER_STEPS(CANDIDATES, ADVANCED, field_radius, "px", 3, 9, 2, 7, 7, 7, "radius of the local junctions: 3, 5, 7 or 9"),
-    NUMBER(CANDIDATES, ADVANCED, sector_width, "px", 1, 3, 2, 2, 2, "half-width of a sector at its outer end (tau)"),
+    NUMBER(CANDIDATES, ADVANCED, sector_width, "px", 1, 3, 2, 2.5, 2, "half-width of a sector at its outer end (tau)"),
     NUMBER(CANDIDATES, ADVANCED, field_epsilon, "NFA", 1e-6, 100, 1, 1, 1,
            "false alarms allowed for the local branches of one pixel"),
     NUMBER(CANDIDATES, COMMON, candidate_strength, "sd", 0, 12, 2.4, 5.15, 2,
            "strength that two local branches need at a candidate pixel; lower finds weaker corners"),
     INTEGER(CANDIDATES, ADVANCED, candidate_step, "px", 1, 2, 2, 1, 1,
             "from one pixel that may be a candidate to the next, along x and along y"),
+    CHOICE(CANDIDATES, ADVANCED, seeds, 1, ASJ_SEEDS_FIELD, ASJ_SEEDS_SEGMENTS, ASJ_SEEDS_FIELD, sources,
+           "where candidates come from: local junctions, or line segments that nearly meet"),
+    NUMBER(CANDIDATES, ADVANCED, segment_epsilon, "NFA", 1e-6, 1e12, 1e6, 1e6, 1e6, "false alarms allowed for a line segment"),
+    NUMBER(CANDIDATES, ADVANCED, seed_gap, "px", 0, 50, 12, 12, 12, "distance between two segments that nearly meet, at most"),
+    INTEGER(CANDIDATES, ADVANCED, seed_radius, "px", 0, 10, 3, 3, 3,
+            "candidates lie this close to where segments nearly meet, or end then"),
 
     RADII(ISOTROPIC, ADVANCED, isotropic_radii, 3, 30, RADII_DEFAULT, RADII_PAPER, RADII_DEFAULT,
           "radii at which isotropic junctions are tested"),
     NUMBER(ISOTROPIC, COMMON, epsilon, "NFA", 1e-30, 1e6, 1, 1, 1e4,
            "false alarms allowed in an image of noise, for junctions and for branches"),
+    INTEGER(ISOTROPIC, ADVANCED, isotropic_persistence, "", 1, 8, 1, 3, 1,
+            "radii in a row at which a junction must be meaningful"),
+    SWITCH(ISOTROPIC, ADVANCED, disjoint_sectors, 0, 1, 0, "the branches of an isotropic junction do not share pixels"),
     INTEGER(ISOTROPIC, ADVANCED, max_branches, "", 2, ASJ_MAX_BRANCHES, 5, 5, 5, "most branches of a junction"),
     SWITCH(ISOTROPIC, ADVANCED, more_branches_win, 0, 1, 0,
            "of junctions closer than half a radius keep the one with more branches"),

@@ -14,6 +14,7 @@ typedef struct asj_isotropic_junction {
     uint16_t branch_count;
     uint16_t angle[ASJ_MAX_BRANCHES];    /* in 1/65536 of a turn */
     uint16_t strength[ASJ_MAX_BRANCHES]; /* in 1/256 of a standard deviation */
+    uint32_t meaningful;                 /* bit i: at radius i of the test; only kept when persistence is more than 1 */
     double log_nfa;                      /* natural logarithm */
 } asj_isotropic_junction;
 
@@ -40,6 +41,7 @@ typedef struct asj_isotropic {
     double log_tests[ASJ_MAX_BRANCHES + 1]; /* ln #J(M) */
     double log_epsilon;
     int32_t max_branches;
+    int32_t persistence;  /* radii in a row at which a junction is meaningful, at least */
     double *tail_tables[128]; /* by number of pixels; shared by the radii */
     size_t scratch;           /* elements of uint16_t for asj_isotropic_block() and asj_isotropic_band() */
 } asj_isotropic;
@@ -49,6 +51,9 @@ void asj_isotropic_free(asj_memory *memory, asj_isotropic *test);
 
 /* Sets the numbers of tests for an image of this size, and what follows from them. */
 void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, int32_t height, asj_isotropic *test);
+
+/* Whether a junction that was tested is one: meaningful, at enough radii in a row. */
+int asj_isotropic_persists(const asj_isotropic *test, const asj_isotropic_junction *junction);
 
 /* Tests the pixels x + i, bit i of `candidates` set; writes one record for each such bit, in order. A candidate that no radius
  * makes meaningful has branch_count 0. */

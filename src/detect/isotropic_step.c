@@ -44,7 +44,7 @@ static asj_status test_group(asj_detection_run *run, int32_t top, int32_t bottom
     const asj_isotropic_junction *tested = l->records;
     asj_isotropic_junction *found = l->found;
     for (size_t i = 0; i < total; i++)
-        if (tested[i].branch_count)
+        if (asj_isotropic_persists(run->test, &tested[i]))
             found[run->isotropic_count++] = tested[i];
     return ASJ_OK;
 }

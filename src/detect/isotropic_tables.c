@@ -21,7 +21,7 @@ static asj_status make_tails(asj_context *context, asj_isotropic *test, int32_t 
     return ASJ_OK;
 }
 
-static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t radius, double tau)
+static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t radius, double tau, int32_t disjoint)
 {
     asj_isotropic_radius *entry = &test->radii[test->radius_count];
     asj_status status = asj_sectors_create(&context->memory, radius, tau, &entry->sectors);
@@ -31,7 +31,7 @@ static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t
     status = asj_sector_plan_create(&context->memory, &entry->sectors, &entry->plan);
     if (status != ASJ_OK)
         return status;
-    entry->suppress = (int32_t)lrint(tau / radius * entry->sectors.count / ASJ_TWO_PI);
+    entry->suppress = (int32_t)lrint((disjoint ? 2 : 1) * tau / radius * entry->sectors.count / ASJ_TWO_PI);
     entry->straight = (int32_t)((0.5 - tau / radius / ASJ_PI) * entry->sectors.count);
     entry->tails = asj_allocate(&context->memory, (size_t)entry->sectors.count, sizeof *entry->tails);
     if (!entry->tails)
@@ -96,11 +96,12 @@ asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *
     memset(test, 0, sizeof *test);
     for (int32_t r = 3; r <= ASJ_MAX_RADIUS && status == ASJ_OK; r++)
         if (options->isotropic_radii >> r & 1)
-            status = make_radius(context, test, r, options->sector_width);
+            status = make_radius(context, test, r, options->sector_width, options->disjoint_sectors);
     if (status == ASJ_OK)
         status = share_offsets(&context->memory, test);
     measure_scratch(test);
     test->max_branches = options->max_branches;
+    test->persistence = options->isotropic_persistence;
     test->log_epsilon = log(options->epsilon);
     if (status != ASJ_OK)
         return asj_fail(context, status, "no memory for the tables of the isotropic test");

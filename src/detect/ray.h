@@ -13,6 +13,14 @@ typedef struct asj_ray {
     int32_t forward, axial; /* out: last radius that passed, 0 = none; axial 0 when not asked for */
 } asj_ray;
 
+/* The length that a ray's ends stand for. */
+static inline double asj_ray_length(const asj_detect_options *options, const asj_ray *ray)
+{
+    const double length = options->scan_axial ? 0.5 * (ray->forward + ray->axial) : ray->forward;
+    /* a ray that starts at the isotropic scale is as long as that already */
+    return options->scan_start == 0 && length < ray->start ? ray->start : length;
+}
+
 #define ASJ_SCAN_TABLE_RADIUS 256
 #define ASJ_SCAN_TABLE_WIDTH 4
 

@@ -10,7 +10,6 @@
 #include "refine.h"
 #include "line_fit.h"
 #include "locate.h"
-#include "search.h"
 
 #include <math.h>
 
@@ -69,10 +68,8 @@ static void follow_line(const asj_context *context, const asj_frame *frame, cons
 
 void asj_refine(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
-    if (options->refinement == ASJ_REFINE_SEARCH) {
-        asj_search_orientation(frame, options, hypothesis);
-        return;
-    }
+    if (options->refinement == ASJ_REFINE_SEARCH)
+        return; /* that is done (search_step.c) */
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         follow_line(context, frame, hypothesis, &hypothesis->branches[i]);
     asj_locate_meet(hypothesis);
@@ -99,12 +96,8 @@ static void find_line(const asj_context *context, const asj_frame *frame, const 
     asj_rough_line_keep(&line, branch);
 }
 
-void asj_orient(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
+void asj_orient(const asj_context *context, const asj_frame *frame, asj_hypothesis *hypothesis)
 {
-    if (options->refinement == ASJ_REFINE_SEARCH) {
-        asj_search_orientation(frame, options, hypothesis);
-        return;
-    }
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         find_line(context, frame, hypothesis, &hypothesis->branches[i]);
     asj_locate_meet(hypothesis);

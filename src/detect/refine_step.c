@@ -10,6 +10,8 @@
 
 asj_status asj_step_orient(asj_detection_run *run)
 {
+    if (run->options->refinement == ASJ_REFINE_SEARCH)
+        return asj_step_search(run);
     const int64_t count = (int64_t)run->hypothesis_count;
     const int32_t threads = asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS);
     asj_watch watch;
@@ -18,7 +20,7 @@ asj_status asj_step_orient(asj_detection_run *run)
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
     for (int64_t i = 0; i < count; i++)
         if (!asj_watch_stops(&watch))
-            asj_orient(run->context, run->frame, run->options, &run->hypotheses[i]);
+            asj_orient(run->context, run->frame, &run->hypotheses[i]);
     return asj_watch_end(&watch);
 }
 

@@ -27,9 +27,7 @@ static int needs_scan(const asj_hypothesis *hypothesis, const asj_hypothesis_bra
 
 static void set_length(const asj_detection_run *run, const asj_ray *ray, asj_hypothesis_branch *branch)
 {
-    const double length = run->options->scan_axial ? 0.5 * (ray->forward + ray->axial) : ray->forward;
-    /* a ray that starts at the isotropic scale is as long as that already */
-    branch->length = run->options->scan_start == 0 && length < ray->start ? ray->start : length;
+    branch->length = asj_ray_length(run->options, ray);
     branch->scanned = (asj_scanned_ray){ray->x, ray->y, ray->angle};
 }
 

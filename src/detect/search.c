@@ -1,17 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 5 as in the paper (option refinement = search):  argmax_theta sum of gamma over S_p(r_theta, theta),  over theta +- 0.1 rad
- * (paper, end of section "Junction Detection"; the step is ours, a twentieth of that).
+/* Junction-ness of a sector of any radius (paper, eq. junction-ness-branch).
  *
- * The sector of scale r has constant width 2 tau, so its number of pixels J differs from angle to angle; what is maximised is the
- * normalised  (omega - J mu) / (sigma sqrt(J)),  as the sum itself would prefer angles with more pixels. */
+ * The sector of scale r has constant width 2 tau at its end, so its number of pixels J differs from angle to angle and from scale
+ * to scale. Departure: what is maximised is the normalised  (omega - J mu) / (sigma sqrt(J)),  as the sum itself would prefer
+ * angles with more pixels. Under zoom by 0.9, 73 % of the branches of three photographs keep their length with it, 69 % with the
+ * sum. */
 #include "search.h"
+#include "gradient.h"
 #include "nfa.h"
 
 #include <math.h>
-
-#define STEPS 20          /* to either side */
-#define STEP 0.005        /* rad */
-#define LEAST_LENGTH 3.0  /* px: shorter branches are searched as if they were this long */
 
 typedef struct sums {
     double gamma, pixels;
@@ -29,7 +27,7 @@ static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double dx, d
 
 /* Normalised junction-ness of the sector of radius `length` around `angle`, at a whole pixel. Walks along the axis (x or y) that
  * the branch is longer on, and across it over the few pixels that can be inside. */
-static double sector_strength(const asj_frame *frame, double x, double y, double angle, double length, double tau)
+double asj_search_strength(const asj_frame *frame, double x, double y, double angle, double length, double tau)
 {
     const double ux = cos(angle), uy = sin(angle), limit = cos(tau / length);
     const int32_t px = (int32_t)lrint(x), py = (int32_t)lrint(y), steps = (int32_t)ceil(length);
@@ -50,19 +48,3 @@ static double sector_strength(const asj_frame *frame, double x, double y, double
     return s.pixels > 0 ? (s.gamma - s.pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(s.pixels)) : 0;
 }
 
-void asj_search_orientation(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
-{
-    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
-        asj_hypothesis_branch *branch = &hypothesis->branches[i];
-        const double start = branch->angle, length = fmax(branch->length, LEAST_LENGTH);
-        double best = -HUGE_VAL;
-        for (int step = -STEPS; step <= STEPS; step++) {
-            double angle = start + STEP * step;
-            double strength = sector_strength(frame, hypothesis->x, hypothesis->y, angle, length, options->sector_width);
-            if (strength > best) {
-                best = strength;
-                branch->angle = asj_angle_wrap(angle);
-            }
-        }
-    }
-}

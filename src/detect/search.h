@@ -3,9 +3,10 @@
 #ifndef ASJ_SRC_SEARCH_H
 #define ASJ_SRC_SEARCH_H
 
-#include "hypothesis.h"
+#include "core/image.h"
 
-/* Turns each branch of a junction, whose lengths are known, to the angle within 0.1 rad at which its sector is strongest. */
-void asj_search_orientation(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis);
+/* Normalised junction-ness of the sector of radius `length` around `angle`, half-width tau px, at a whole pixel: standard
+ * deviations above the null model's mean. */
+double asj_search_strength(const asj_frame *frame, double x, double y, double angle, double length, double tau);
 
 #endif

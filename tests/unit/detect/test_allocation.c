@@ -41,14 +41,16 @@ static void ignore_dump(void *user, const asj_dump *dump)
 }
 
 /* From a new context every time (`fresh`), and with one that has worked and failed before. */
-static void check_detect(int fresh, int for_good, int dump)
+static void check_detect(int32_t preset, int fresh, int for_good, int dump)
 {
+    asj_detect_options detect_options;
     uint8_t *pixels = picture(WIDTH, HEIGHT);
     const asj_image image = unit_gray8(pixels, WIDTH, HEIGHT);
     unit_counter counter;
     asj_context *context = NULL;
     asj_status status = ASJ_ERROR_MEMORY;
     long n = 1;
+    asj_detect_options_preset(&detect_options, preset);
     for (; status != ASJ_OK && n < MOST; n++) {
         asj_detection *found = (asj_detection *)pixels;
         if (!context) {
@@ -63,7 +65,7 @@ static void check_detect(int fresh, int for_good, int dump)
         counter.calls = 0;
         counter.fail_at = n;
         counter.for_good = for_good;
-        status = asj_detect(context, &image, NULL, &found);
+        status = asj_detect(context, &image, &detect_options, &found);
         counter.fail_at = 0;
         if (status == ASJ_OK) {
             assert_true(found->junction_count >= 3);
@@ -71,7 +73,7 @@ static void check_detect(int fresh, int for_good, int dump)
             assert_int_equal(status, ASJ_ERROR_MEMORY);
             assert_null(found);
             assert_non_null(strstr(asj_context_message(context), "memory"));
-            assert_int_equal(asj_detect(context, &image, NULL, &found), ASJ_OK); /* works afterwards */
+            assert_int_equal(asj_detect(context, &image, &detect_options, &found), ASJ_OK); /* works afterwards */
             assert_true(found->junction_count >= 3);
         }
         asj_detection_free(&found);
@@ -87,9 +89,10 @@ static void check_detect(int fresh, int for_good, int dump)
 static void test_detect(void **state)
 {
     (void)state;
-    check_detect(1, 0, 1);
-    check_detect(0, 1, 1);
-    check_detect(0, 0, 0);
+    check_detect(ASJ_PRESET_DEFAULT, 1, 0, 1);
+    check_detect(ASJ_PRESET_DEFAULT, 0, 1, 1);
+    check_detect(ASJ_PRESET_DEFAULT, 0, 0, 0);
+    check_detect(ASJ_PRESET_PAPER, 0, 0, 0);
 }
 
 static void test_local_field(void **state)

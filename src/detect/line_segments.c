@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Line segments: regions of samples that share the direction of their level lines, each tested as a rectangle.
+ *
+ * Source: von Gioi, Jakubowicz, Morel, Randall, "LSD: A fast line segment detector with a false detection control", PAMI 32(4),
+ * 2010: the level-line field (line_segments_levels.c), region growing from the steepest samples on and its refinement
+ * (line_segments_region.c), rectangles (line_segments_rectangle.c), their number of false alarms (line_segments_nfa.c). Here: which
+ * regions are tested, and the rectangle's improvement (section 2.9): when it is not meaningful, it is tried again with its pixels
+ * counted at precisions p / 2 .. p / 32, then, with each in turn, up to five times half a sample narrower: on both sides, then on
+ * the one, then on the other. What is kept is whatever has the fewest false alarms.
+ *
+ * n aligned samples have at least 6 (N M)^(5/2) p^n false alarms at the precision that they grew with; smaller regions are passed
+ * over, as in the article. */
+#include "line_segments.h"
+
+#include "line_segments_nfa.h"
+#include "line_segments_region.h"
+#include "core/watch.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PRECISION 0.125 /* of the tolerance: 22.5 of 180 degrees */
+#define NARROWER 0.5    /* samples */
+#define TRIALS 5
+
+/* cos(pi / 8), cos(pi / 16), .. */
+static const float cosines[ASJ_SEGMENT_PRECISIONS] = {0.92387953f, 0.98078528f, 0.99518473f, 0.99879546f, 0.99969882f, 0.9999247f};
+
+typedef struct search {
+    asj_context *context;
+    asj_levels levels;
+    asj_region region;
+    double log_tests, log_epsilon;
+    int32_t least; /* samples of a region that is tested */
+    void *list;    /* of asj_line_segment */
+    size_t count, capacity;
+} search;
+
+/* ln of the fewest false alarms of a rectangle over the precisions. */
+static double log_alarms(const search *s, const asj_rectangle *r)
+{
+    int32_t aligned[ASJ_SEGMENT_PRECISIONS];
+    const int32_t n = asj_rectangle_count(&s->levels, r, cosines, ASJ_SEGMENT_PRECISIONS, aligned);
+    double best = HUGE_VAL, p = PRECISION;
+    for (int32_t i = 0; i < ASJ_SEGMENT_PRECISIONS; i++, p /= 2)
+        best = fmin(best, s->log_tests + asj_segment_log_tail(n, aligned[i], p));
+    return best;
+}
+
+/* Makes it narrower as long as that is possible, and keeps the best. */
+static void try_narrower(const search *s, double low, double high, asj_rectangle *best, double *log_nfa)
+{
+    asj_rectangle r = *best;
+    for (int32_t i = 0; i < TRIALS && r.high - r.low > NARROWER; i++) {
+        r.low += low;
+        r.high -= high;
+        const double alarms = log_alarms(s, &r);
+        if (alarms < *log_nfa) {
+            *log_nfa = alarms;
+            *best = r;
+        }
+    }
+}
+
+static double improve(const search *s, asj_rectangle *r)
+{
+    double log_nfa = log_alarms(s, r);
+    if (log_nfa > s->log_epsilon)
+        try_narrower(s, NARROWER / 2, NARROWER / 2, r, &log_nfa);
+    if (log_nfa > s->log_epsilon)
+        try_narrower(s, NARROWER, 0, r, &log_nfa);
+    if (log_nfa > s->log_epsilon)
+        try_narrower(s, 0, NARROWER, r, &log_nfa);
+    return log_nfa;
+}
+
+static asj_line_segment segment_of(const asj_rectangle *r, double log_nfa)
+{
+    const double across = 0.5 * (r->low + r->high), x = r->x - across * r->uy, y = r->y + across * r->ux;
+    return (asj_line_segment){asj_levels_place(x + r->first * r->ux), asj_levels_place(y + r->first * r->uy),
+                              asj_levels_place(x + r->last * r->ux), asj_levels_place(y + r->last * r->uy),
+                              asj_rectangle_width(r) / ASJ_LEVELS_SCALE, log_nfa};
+}
+
+/* The region around a sample that belongs to none yet. One that is too small frees nothing: its samples would not do better. */
+static asj_status test_region(search *s, int32_t seed)
+{
+    asj_rectangle rectangle;
+    asj_region_grow(&s->levels, seed, ASJ_REGION_COSINE, &s->region);
+    if (s->region.count < s->least || !asj_region_approximate(&s->levels, &s->region, &rectangle) || s->region.count < s->least)
+        return ASJ_OK;
+    const double log_nfa = improve(s, &rectangle);
+    if (log_nfa > s->log_epsilon)
+        return ASJ_OK;
+    asj_status status = asj_grow(&s->context->memory, &s->list, &s->capacity, s->count + 1, sizeof(asj_line_segment), s->count);
+    if (status == ASJ_OK)
+        ((asj_line_segment *)s->list)[s->count++] = segment_of(&rectangle, log_nfa);
+    return status;
+}
+
+static asj_status test_all(search *s)
+{
+    asj_status status = ASJ_OK;
+    asj_watch watch;
+    s->log_tests = asj_segment_log_tests(s->levels.width, s->levels.height);
+    s->least = (int32_t)ceil(fmax((s->log_tests - s->log_epsilon) / -log(PRECISION), 2));
+    memset(s->region.used, 0, (size_t)s->levels.width * (size_t)s->levels.height);
+    asj_watch_start(&watch, s->context, ASJ_STAGE_CANDIDATES);
+    for (int32_t i = 0; i < s->levels.order_count && status == ASJ_OK; i++) {
+        if (s->region.used[s->levels.order[i]])
+            continue;
+        status = asj_watch_stops(&watch) ? asj_watch_end(&watch) : test_region(s, s->levels.order[i]);
+    }
+    return status;
+}
+
+asj_status asj_line_segments_find(asj_context *context, const asj_frame *frame, double epsilon, asj_line_segment **segments,
+                                  size_t *count)
+{
+    asj_memory *memory = &context->memory;
+    search s;
+    memset(&s, 0, sizeof s);
+    *segments = NULL;
+    *count = 0;
+    asj_status status = asj_levels_create(context, frame, &s.levels);
+    if (status != ASJ_OK || s.levels.order_count == 0) {
+        asj_levels_free(memory, &s.levels);
+        return status;
+    }
+    const size_t samples = (size_t)s.levels.width * (size_t)s.levels.height;
+    s.context = context;
+    s.log_epsilon = log(epsilon);
+    s.region.samples = asj_allocate(memory, samples, sizeof *s.region.samples);
+    s.region.used = asj_allocate(memory, samples, sizeof *s.region.used);
+    status = s.region.samples && s.region.used ? test_all(&s) : ASJ_ERROR_MEMORY;
+    if (status == ASJ_OK) {
+        *segments = s.list;
+        *count = s.count;
+    } else {
+        asj_release(memory, s.list);
+        if (status == ASJ_ERROR_MEMORY)
+            asj_fail(context, status, "no memory for the line segments of %d x %d pixels", (int)frame->width, (int)frame->height);
+    }
+    asj_release(memory, s.region.samples);
+    asj_release(memory, s.region.used);
+    asj_levels_free(memory, &s.levels);
+    return status;
+}

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The level-line field of an image.
+ *
+ * Source: von Gioi, Jakubowicz, Morel, Randall, "LSD: A fast line segment detector with a false detection control", PAMI 32(4),
+ * 2010, sections 2.1 to 2.4:
+ *   - the image is reduced to 0.8 of its size by a Gaussian of standard deviation 0.6 / 0.8 px, against stairs and noise;
+ *   - gradient on 2 x 2 pixels,  gx = (i(x+1,y) + i(x+1,y+1) - i(x,y) - i(x,y+1)) / 2,
+ *                                gy = (i(x,y+1) + i(x+1,y+1) - i(x,y) - i(x+1,y)) / 2,
+ *     level-line angle  atan(gx / -gy), here the unit vector (-gy, gx) / |g|;
+ *   - rounding grey levels to whole numbers errs by q = 2 at most, hence the level line by asin(q / |g|): where that exceeds the
+ *     angle tolerance,  |g| <= q / sin(22.5 deg),  no level line is defined;
+ *   - samples in order of |g|, in 1024 classes.
+ *
+ * Pixels are areas: working pixel i covers the image's (i .. i + 1) / 0.8 - 1/2, so its centre is (i + 1/2) / 0.8 - 1/2. Samples
+ * stand half a working pixel further (asj_levels_place()). Outside the image its border pixels repeat.
+ *
+ * The Gaussian's taps are whole numbers in 1/4096 that sum to one; sums of at most 4096 x 255 x 128 fit 32 bits. */
+#include "line_segments_levels.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PHASES 4           /* (i + 1/2) / 0.8 - 1/2 has four fractions */
+#define REACH 3            /* taps to either side of the pixel before the centre, and one more */
+#define TAPS (2 * REACH + 2)
+#define ONE 4096
+#define BLUR (0.6 / ASJ_LEVELS_SCALE) /* px */
+#define QUANTISATION 2     /* grey levels */
+#define SINE 0.3826834323650898 /* of 22.5 degrees */
+#define CLASSES 1024
+
+double asj_levels_place(double value)
+{
+    return (value + 1) / ASJ_LEVELS_SCALE - 0.5;
+}
+
+/* The pixel at or before the centre of working pixel i, and how far it is: (5 i + 5/2 - 2) / 4 = (10 i + 1) / 8. */
+static int32_t pixel_before(int32_t i, double *rest)
+{
+    const int32_t eighths = 10 * i + 1;
+    *rest = eighths % 8 / 8.0;
+    return eighths / 8;
+}
+
+static void make_taps(int32_t taps[PHASES][TAPS])
+{
+    for (int32_t phase = 0; phase < PHASES; phase++) {
+        double weights[TAPS], total = 0, rest;
+        int32_t sum = 0;
+        pixel_before(phase, &rest);
+        for (int32_t k = 0; k < TAPS; k++) {
+            const double d = (k - REACH - rest) / BLUR;
+            weights[k] = exp(-0.5 * d * d);
+            total += weights[k];
+        }
+        for (int32_t k = 0; k < TAPS; k++) {
+            taps[phase][k] = (int32_t)(ONE * weights[k] / total + 0.5);
+            sum += taps[phase][k];
+        }
+        taps[phase][REACH] += ONE - sum;
+    }
+}
+
+static int32_t inside(int32_t i, int32_t size)
+{
+    return i < 0 ? 0 : i < size ? i : size - 1;
+}
+
+/* One row of the reduced image: down the columns first, then along the row. */
+static void reduce_row(const asj_frame *frame, int32_t y, int32_t width, int32_t taps[PHASES][TAPS], uint16_t *column,
+                       uint16_t *out)
+{
+    double rest;
+    const int32_t top = pixel_before(y, &rest) - REACH, *down = taps[y % PHASES];
+    for (int32_t x = 0; x < frame->width; x++) {
+        int32_t sum = ONE / 2;
+        for (int32_t k = 0; k < TAPS; k++)
+            sum += down[k] * frame->gray[inside(top + k, frame->height) * frame->stride + x];
+        column[x] = (uint16_t)(sum / ONE);
+    }
+    for (int32_t x = 0; x < width; x++) {
+        const int32_t left = pixel_before(x, &rest) - REACH, *along = taps[x % PHASES];
+        int32_t sum = ONE / 2;
+        for (int32_t k = 0; k < TAPS; k++)
+            sum += along[k] * column[inside(left + k, frame->width)];
+        out[x] = (uint16_t)(sum / ONE);
+    }
+}
+
+/* The samples between two rows of the reduced image. Returns how many level lines are defined. */
+static int32_t level_row(const uint16_t *above, const uint16_t *below, int32_t width, asj_direction *direction, float *norm)
+{
+    const float unit = 0.5f / ASJ_GRAY_ONE, least = (float)(QUANTISATION / SINE);
+    int32_t defined = 0;
+    for (int32_t x = 0; x < width; x++) {
+        const int32_t falling = below[x + 1] - above[x], rising = above[x + 1] - below[x];
+        const float gx = (float)(falling + rising) * unit, gy = (float)(falling - rising) * unit;
+        const float size = sqrtf(gx * gx + gy * gy);
+        const int is = size > least;
+        norm[x] = is ? size : 0;
+        direction[x] = is ? (asj_direction){-gy / size, gx / size} : (asj_direction){0, 0};
+        defined += is;
+    }
+    return defined;
+}
+
+/* Steepest first; in a class from top to bottom, from left to right. */
+static void sort_samples(asj_levels *levels)
+{
+    const int32_t count = levels->width * levels->height;
+    int32_t starts[CLASSES + 1] = {0};
+    float most = 0;
+    for (int32_t i = 0; i < count; i++)
+        most = levels->norm[i] > most ? levels->norm[i] : most;
+    const float classes = most > 0 ? (CLASSES - 1) / most : 0;
+    for (int32_t i = 0; i < count; i++)
+        if (levels->norm[i] > 0)
+            starts[CLASSES - (int32_t)(levels->norm[i] * classes)]++;
+    for (int32_t c = 0; c < CLASSES; c++)
+        starts[c + 1] += starts[c];
+    levels->order_count = starts[CLASSES];
+    for (int32_t i = 0; i < count; i++)
+        if (levels->norm[i] > 0)
+            levels->order[starts[CLASSES - 1 - (int32_t)(levels->norm[i] * classes)]++] = i;
+}
+
+static void fill(const asj_frame *frame, uint16_t *rows[3], asj_levels *levels)
+{
+    int32_t taps[PHASES][TAPS];
+    make_taps(taps);
+    uint16_t *above = rows[0], *below = rows[1];
+    reduce_row(frame, 0, levels->width + 1, taps, rows[2], above);
+    for (int32_t y = 0; y < levels->height; y++) {
+        const size_t at = (size_t)y * (size_t)levels->width;
+        reduce_row(frame, y + 1, levels->width + 1, taps, rows[2], below);
+        level_row(above, below, levels->width, levels->direction + at, levels->norm + at);
+        uint16_t *swap = above;
+        above = below;
+        below = swap;
+    }
+    sort_samples(levels);
+}
+
+asj_status asj_levels_create(asj_context *context, const asj_frame *frame, asj_levels *levels)
+{
+    asj_memory *memory = &context->memory;
+    memset(levels, 0, sizeof *levels);
+    levels->width = (int32_t)(frame->width * 4LL / 5) - 1;
+    levels->height = (int32_t)(frame->height * 4LL / 5) - 1;
+    if (levels->width < 1 || levels->height < 1) {
+        levels->width = levels->height = 0;
+        return ASJ_OK;
+    }
+    const size_t count = (size_t)levels->width * (size_t)levels->height, row = (size_t)frame->width;
+    uint16_t *scratch = asj_allocate(memory, 3 * row, sizeof *scratch);
+    levels->direction = asj_allocate(memory, count, sizeof *levels->direction);
+    levels->norm = asj_allocate(memory, count, sizeof *levels->norm);
+    levels->order = asj_allocate(memory, count, sizeof *levels->order);
+    if (scratch && levels->direction && levels->norm && levels->order) {
+        fill(frame, (uint16_t *[3]){scratch, scratch + row, scratch + 2 * row}, levels);
+        asj_release(memory, scratch);
+        return ASJ_OK;
+    }
+    asj_release(memory, scratch);
+    asj_levels_free(memory, levels);
+    return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the level lines of %d x %d pixels", (int)frame->width,
+                    (int)frame->height);
+}
+
+void asj_levels_free(asj_memory *memory, asj_levels *levels)
+{
+    asj_release(memory, levels->direction);
+    asj_release(memory, levels->norm);
+    asj_release(memory, levels->order);
+    memset(levels, 0, sizeof *levels);
+}

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 5 as in the paper (option refinement = search), over an image.
+ *
+ * "A branch with the most accurate orientation theta should have the maximum junction-ness with the scale r_theta"
+ *     theta^ = argmax_theta  sum over q in S_p(r_theta, theta) of gamma_p(q)          (paper, end of section "Junction Detection")
+ * The scale depends on the orientation: a ray that is a degree off leaves its edge early. So each branch is scanned (step 4) at
+ * every orientation within 0.1 rad of that of the isotropic test, and has then both its orientation and its scale. The range is
+ * half a sector of the isotropic test; the step of 0.005 rad is ours, 1 px at a distance of 200. */
+#include "search.h"
+#include "steps.h"
+#include "core/threads.h"
+#include "core/watch.h"
+
+#include <math.h>
+
+#define STEPS 20                /* to either side */
+#define ORIENTATIONS (2 * STEPS + 1)
+#define STEP 0.005              /* rad */
+#define TOGETHER 512            /* branches whose rays are followed at once */
+
+typedef struct lists {
+    asj_hypothesis **hypotheses; /* of each branch */
+    asj_hypothesis_branch **branches;
+    asj_ray *rays; /* ORIENTATIONS for each branch */
+} lists;
+
+/* The branch takes the orientation whose ray has the strongest sector; of equals that nearest to where it was before. */
+static void choose(const asj_detection_run *run, const asj_hypothesis *hypothesis, const asj_ray *rays,
+                   asj_hypothesis_branch *branch)
+{
+    double best = -HUGE_VAL;
+    for (int32_t i = 0; i < ORIENTATIONS; i++) {
+        const asj_ray *ray = &rays[i % 2 ? STEPS - (i + 1) / 2 : STEPS + i / 2];
+        const double length = asj_ray_length(run->options, ray);
+        const double strength = asj_search_strength(run->frame, hypothesis->x, hypothesis->y, ray->angle, length,
+                                                    run->options->sector_width);
+        if (strength <= best)
+            continue;
+        best = strength;
+        branch->angle = ray->angle;
+        branch->length = length;
+        branch->scanned = (asj_scanned_ray){ray->x, ray->y, ray->angle};
+    }
+}
+
+static asj_status search(const asj_detection_run *run, const lists *l, size_t count)
+{
+    const int64_t branches = (int64_t)count;
+    for (size_t b = 0; b < count; b++) {
+        const asj_hypothesis *h = l->hypotheses[b];
+        const int32_t start = run->options->scan_start > 0 ? run->options->scan_start : (int32_t)h->radius;
+        for (int32_t i = 0; i < ORIENTATIONS; i++)
+            l->rays[b * ORIENTATIONS + (size_t)i] =
+                (asj_ray){h->x, h->y, asj_angle_wrap(l->branches[b]->angle + STEP * (i - STEPS)), start, 0, 0};
+    }
+    const asj_status status = run->context->ops->scan->rays(run->context, run->scan, run->frame, l->rays, count * ORIENTATIONS);
+    if (status != ASJ_OK)
+        return status;
+    const int32_t threads = asj_threads_for(run->context, branches, ASJ_LEAST_JUNCTIONS);
+    asj_watch watch;
+    (void)threads;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
+    for (int64_t b = 0; b < branches; b++)
+        if (!asj_watch_stops(&watch))
+            choose(run, l->hypotheses[b], l->rays + b * ORIENTATIONS, l->branches[b]);
+    return asj_watch_end(&watch);
+}
+
+static asj_status search_all(asj_detection_run *run, const lists *l)
+{
+    asj_status status = ASJ_OK;
+    size_t count = 0;
+    for (size_t i = 0; i < run->hypothesis_count && status == ASJ_OK; i++) {
+        asj_hypothesis *hypothesis = &run->hypotheses[i];
+        for (int32_t b = 0; b < hypothesis->branch_count; b++) {
+            l->hypotheses[count] = hypothesis;
+            l->branches[count++] = &hypothesis->branches[b];
+        }
+        if (count + ASJ_MAX_BRANCHES > TOGETHER || i + 1 == run->hypothesis_count) {
+            status = search(run, l, count);
+            count = 0;
+        }
+    }
+    return status;
+}
+
+asj_status asj_step_search(asj_detection_run *run)
+{
+    asj_memory *memory = &run->context->memory;
+    const lists l = {asj_allocate(memory, TOGETHER, sizeof *l.hypotheses), asj_allocate(memory, TOGETHER, sizeof *l.branches),
+                     asj_allocate(memory, (size_t)TOGETHER * ORIENTATIONS, sizeof *l.rays)};
+    asj_status status = ASJ_OK;
+    if (l.hypotheses && l.branches && l.rays)
+        status = search_all(run, &l);
+    else
+        status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the rays of %d branches", TOGETHER);
+    asj_release(memory, l.rays);
+    asj_release(memory, l.branches);
+    asj_release(memory, l.hypotheses);
+    return status;
+}
