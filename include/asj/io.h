@@ -99,8 +99,8 @@ enum {
     ASJ_FILE_ASJ = 0,       /* .asj text, decomposed: one record of two branches for each L-junction (asj-formats(5)) */
     ASJ_FILE_ASJ_WHOLE = 1, /* .asj text with whole junctions of two to five branches */
     ASJ_FILE_JSON = 2,      /* schema "asj-junctions-1": everything, with options, version, back end and times */
-    ASJ_FILE_CSV = 3        /* a header, then one line a branch: junction,x,y,scale,log10_nfa,location_sd,branch,angle,length,
-                             * strength,branch_log10_nfa,angle_sd */
+    ASJ_FILE_CSV = 3        /* a header, then one line a branch: junction,x,y,scale,log10_nfa,location_sd,octave,branch,
+                             * angle,length,strength,branch_log10_nfa,angle_sd,width */
 };
 
 /* What is written. Only `detection` is needed. */

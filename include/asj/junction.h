@@ -17,7 +17,7 @@ typedef struct asj_branch {
     float strength;   /* junction-ness of the branch at the isotropic scale, in standard deviations of the null model */
     float log10_nfa;  /* log10 of the expected number of strips as good as this one in an image of noise; the smaller the surer */
     float angle_sd;   /* rad: standard uncertainty of `angle`; 0 = not known */
-    float reserved;   /* zero */
+    float width;      /* px: standard deviation of the blur of the edge under it, when that is a step; 0 = sharp or not known */
 } asj_branch;
 
 /* px that a junction may lie outside its image: branches may meet beyond the border. The detector's largest max_move. */
@@ -30,6 +30,7 @@ typedef struct asj_junction {
     float log10_nfa;        /* log10 NFA of the isotropic junction */
     float location_sd;      /* px: standard uncertainty of x and of y (root mean square of the two); 0 = not known */
     int32_t branch_count;   /* 2 .. ASJ_MAX_BRANCHES */
+    int32_t octave;         /* that located it: 0 = the image itself, 1 = its half, 2 = its quarter, ..; 0 = or not known */
     asj_branch branches[ASJ_MAX_BRANCHES]; /* those beyond branch_count are zero */
 } asj_junction;
 

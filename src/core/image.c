@@ -67,6 +67,7 @@ asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t wid
 {
     frame->width = width;
     frame->height = height;
+    frame->octaves = 1;
     frame->blocks = (width + ASJ_LANES - 1) / ASJ_LANES;
     frame->stride = (ptrdiff_t)frame->blocks * ASJ_LANES + 2 * ASJ_MARGIN;
     size_t stride = (size_t)frame->stride, padded = stride * ((size_t)height + 2 * ASJ_MARGIN);
@@ -215,3 +216,29 @@ asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_imag
 }
 
 const asj_image_ops asj_image_reference = {.luma = asj_image_luma};
+
+/* Rows move to the front of the same memory: row y is written when rows 2 y and 2 y + 1 have been read, and stands before them,
+ * since the new stride is no longer than the old one. */
+static void halve_row(const uint16_t *upper, const uint16_t *lower, int32_t width, uint16_t *to)
+{
+    for (int32_t x = 0; x < width; x++)
+        to[x] = (uint16_t)((upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1] + 2) >> 2);
+    to[width] = to[width - 1];
+}
+
+asj_status asj_frame_halve(asj_context *context, asj_frame *frame)
+{
+    const ptrdiff_t stride = frame->stride;
+    const uint16_t *from = frame->gray;
+    const int32_t octaves = frame->octaves;
+    asj_status status = asj_frame_prepare(context, frame, frame->width / 2, frame->height / 2);
+    if (status != ASJ_OK)
+        return status;
+    frame->octaves = octaves;
+    for (int32_t y = 0; y < frame->height; y++) {
+        uint16_t *to = frame->gray + y * frame->stride;
+        halve_row(from + 2 * y * stride, from + (2 * y + 1) * stride, frame->width, to);
+        to[-1] = to[0];
+    }
+    return ASJ_OK;
+}

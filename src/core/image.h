@@ -29,6 +29,7 @@ typedef struct asj_frame {
     int16_t *gradient_y;
     void *memory[3];              /* what the three planes stand in */
     size_t capacity[3];
+    int32_t octaves;              /* that share the false alarms allowed: 1, or more (octaves.c) */
     void *rows;                   /* scratch of asj_gradient() */
     size_t row_capacity;
 } asj_frame;
@@ -49,6 +50,10 @@ typedef struct asj_image_ops {
     void (*luma)(const uint8_t *pixels, int32_t width, int32_t step, int32_t red, uint16_t *gray); /* asj_image_luma() */
 } asj_image_ops;
 extern const asj_image_ops asj_image_reference;
+
+/* Halves the grey plane in place: means of 2 x 2 pixels, an odd last column or row left out; gradient planes are to be filled
+ * anew. */
+asj_status asj_frame_halve(asj_context *context, asj_frame *frame);
 
 /* Fills frame->gray from the view (asj_frame_prepare() first). Finds NaN and infinity. */
 asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image);

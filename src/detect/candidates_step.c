@@ -49,7 +49,8 @@ asj_status asj_step_candidates(asj_detection_run *run)
 {
     asj_context *context = run->context;
     const size_t runs = (size_t)run->frame->blocks * (size_t)run->frame->height;
-    run->candidates = asj_allocate(&context->memory, runs, sizeof *run->candidates);
+    if (!run->candidates) /* the first octave is the largest */
+        run->candidates = asj_allocate(&context->memory, runs, sizeof *run->candidates);
     if (!run->candidates)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the candidates");
     const asj_status status = run->options->seeds == ASJ_SEEDS_SEGMENTS

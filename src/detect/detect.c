@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj_detect(): the paper's steps in order. */
 #include "core/backend.h"
+#include "octaves.h"
 #include "result.h"
 #include "steps.h"
 
@@ -8,7 +9,7 @@
 
 /* Lengths and orientations depend on each other: a ray along a branch that is a degree off leaves the edge early. So the branches
  * are scanned, oriented over their length, and scanned again where that moved them. */
-static asj_status run_steps(asj_detection_run *run)
+static asj_status run_octave(asj_detection_run *run)
 {
     static const struct {
         asj_status (*step)(asj_detection_run *run);
@@ -31,6 +32,27 @@ static asj_status run_steps(asj_detection_run *run)
         if (status == ASJ_OK)
             status = asj_detection_run_progress(run, steps[i].stage, steps[i].done);
     }
+    return status;
+}
+
+/* From the finest to the coarsest; each takes as long as its share of all pixels. */
+static asj_status run_octaves(asj_detection_run *run)
+{
+    const asj_octave_range range = asj_octaves_of(run->options, run->image->width, run->image->height);
+    asj_status status = asj_step_load(run);
+    while (run->octave < range.first && status == ASJ_OK)
+        status = asj_step_halve(run);
+    for (;;) {
+        run->done += run->octave > range.first ? run->share : 0;
+        run->share = (double)run->frame->width * run->frame->height / range.pixels;
+        status = status == ASJ_OK ? run_octave(run) : status;
+        if (status != ASJ_OK || run->octave + 1 == range.end)
+            break;
+        status = asj_step_next_octave(run);
+    }
+    if (status == ASJ_OK)
+        status = asj_step_merge_octaves(run);
+    asj_detection_run_time(run, ASJ_STAGE_REFINE);
     return status;
 }
 
@@ -60,7 +82,7 @@ static asj_status detect(asj_context *context, const asj_image *image, const asj
     asj_status status = asj_detection_run_begin(&run, context, image, options, result);
     run.clock = start;
     if (status == ASJ_OK)
-        status = run_steps(&run);
+        status = run_octaves(&run);
     if (status == ASJ_OK)
         status = finish(&run, start, result);
     asj_detection_run_end(&run);

@@ -8,6 +8,7 @@
 #include "detect_options.h"
 
 #define OPTIONS_TYPE asj_detect_options
+#define OCTAVES "octaves"
 #define GRADIENT "step 1, gradient"
 #define CANDIDATES "step 2, local junctions and candidates"
 #define ISOTROPIC "step 3, isotropic junctions"
@@ -22,6 +23,10 @@ static const char *const refinements[] = {"line_fit", "search", NULL};
 
 /* ..., range, default, paper, match, help */
 static const asj_option_info rows[] = {
+    INTEGER(OCTAVES, COMMON, octaves, "", 1, 16, 16, 1, 1,
+            "how often the image is looked at, each time at half the size, as far as it allows; more finds softer corners"),
+    INTEGER(OCTAVES, COMMON, first_octave, "", 0, 15, 0, 0, 0, "sizes that are left out: 1 = begin at half the image's size"),
+
     NUMBER(GRADIENT, COMMON, gradient_epsilon, "grey/px", 0.05, 16, 0.4, 0.05, 0.4,
            "gradient below which a surface counts as flat; raise it against compression noise"),
     SWITCH(GRADIENT, ADVANCED, standardise, 0, 1, 0, "give each gradient axis zero mean and unit variance over the image"),

@@ -2,6 +2,7 @@
 /* Tables, planes and scratch of a pass; what it tells the caller while it works. */
 #include "detection_run.h"
 #include "detect_options.h"
+#include "octaves.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,20 +46,19 @@ static asj_status make_tables(asj_context *context, const asj_detect_options *op
     return ASJ_OK;
 }
 
-/* Planes, numbers of tests and an empty cache for an image of this size. */
-static asj_status set_size(asj_detection_run *run, asj_detector *detector, int32_t width, int32_t height)
+asj_status asj_detection_run_set_size(asj_detection_run *run)
 {
     asj_context *context = run->context;
-    asj_status status = asj_frame_prepare(context, run->frame, width, height);
-    if (status != ASJ_OK)
-        return status;
-    if (width != detector->width || height != detector->height) {
-        asj_isotropic_set_size(run->options, width, height, &detector->isotropic);
-        asj_scan_set_size(context, run->options, width, height, &detector->scan);
-        detector->width = width;
-        detector->height = height;
+    asj_detector *detector = context->detector.state;
+    const asj_frame *frame = run->frame;
+    if (frame->width != detector->width || frame->height != detector->height || frame->octaves != detector->octaves) {
+        asj_isotropic_set_size(run->options, frame->width, frame->height, frame->octaves, &detector->isotropic);
+        asj_scan_set_size(context, run->options, frame->width, frame->height, &detector->scan);
+        detector->width = frame->width;
+        detector->height = frame->height;
+        detector->octaves = frame->octaves;
     }
-    return asj_scan_cache_prepare(context, run->frame, context->threads, &detector->scan_cache);
+    return asj_scan_cache_prepare(context, frame, context->threads, &detector->scan_cache);
 }
 
 static asj_status make_scratch(asj_detection_run *run)
@@ -79,7 +79,12 @@ static asj_status prepare(asj_detection_run *run)
     run->field = &detector->field;
     run->test = &detector->isotropic;
     run->scan = &detector->scan;
-    status = set_size(run, detector, run->image->width, run->image->height);
+    status = asj_frame_prepare(run->context, run->frame, run->image->width, run->image->height);
+    if (status != ASJ_OK)
+        return status;
+    const asj_octave_range range = asj_octaves_of(run->options, run->image->width, run->image->height);
+    run->frame->octaves = range.end - range.first;
+    status = asj_detection_run_set_size(run);
     return status == ASJ_OK ? make_scratch(run) : status;
 }
 
@@ -89,6 +94,7 @@ asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context,
     char message[256];
     memset(run, 0, sizeof *run);
     run->clock = asj_clock_ms();
+    run->share = 1;
     run->context = context;
     run->image = image;
     if (!image || !output)
@@ -105,10 +111,20 @@ asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context,
 void asj_detection_run_end(asj_detection_run *run)
 {
     asj_memory *memory = &run->context->memory;
-    asj_release(memory, run->scratch.memory);
+    asj_detection_run_clear(run);
     asj_release(memory, run->candidates);
+    asj_release(memory, run->all);
+    asj_release(memory, run->scratch.memory);
+}
+
+void asj_detection_run_clear(asj_detection_run *run)
+{
+    asj_memory *memory = &run->context->memory;
     asj_release(memory, run->isotropic);
     asj_release(memory, run->hypotheses);
+    run->isotropic = NULL;
+    run->hypotheses = NULL;
+    run->candidate_count = run->isotropic_count = run->hypothesis_count = 0;
 }
 
 size_t asj_detection_run_room(size_t count)
@@ -118,7 +134,7 @@ size_t asj_detection_run_room(size_t count)
 
 asj_status asj_detection_run_progress(const asj_detection_run *run, int32_t stage, double done)
 {
-    return asj_progress(run->context, stage, done);
+    return asj_progress(run->context, stage, run->done + run->share * done);
 }
 
 void asj_detection_run_time(asj_detection_run *run, int32_t stage)

@@ -15,20 +15,22 @@ typedef struct asj_detector {
     asj_field field;
     asj_isotropic isotropic;
     asj_scan scan;
-    int32_t width, height;      /* that the numbers of tests were set for */
+    int32_t width, height;      /* that the numbers of tests were set for, */
+    int32_t octaves;            /* and for so many octaves */
     asj_frame frame;            /* planes, for images of any size */
     asj_scan_cache scan_cache;
 } asj_detector;
 
 /* Steps read tables and planes through these pointers and nowhere else. So a pass may run on any frame, for example that of a level
- * of a pyramid: the numbers of tests are those of its own size, coordinates are its own, and whoever runs several passes merges
- * their hypotheses. */
+ * of a pyramid: coordinates are its own, numbers of tests are those of its own size, and octaves_step.c merges what the passes
+ * have found. */
 typedef struct asj_detection_run {
     asj_context *context;
     const asj_detect_options *options;
     asj_detect_options defaults;     /* what `options` points to when the caller gives none */
     const asj_image *image;
-    asj_frame *frame;                /* its planes: step 1 fills them */
+    asj_frame *frame;                /* its planes, or those of the image halved `octave` times: step 1 fills them */
+    int32_t octave;
     const asj_field *field;          /* tables of steps 2, .. */
     const asj_isotropic *test;       /* .. 3 .. */
     const asj_scan *scan;            /* .. and 4 */
@@ -40,7 +42,11 @@ typedef struct asj_detection_run {
     size_t isotropic_count;
     asj_hypothesis *hypotheses;      /* from the location on */
     size_t hypothesis_count;
+    asj_hypothesis *all;             /* of the octaves that are done, in pixels of the image */
+    size_t all_count, all_capacity;
+    size_t candidate_total, isotropic_total; /* and how many they had */
 
+    double done, share;              /* progress: of the whole before this octave, and by it */
     double stage_ms[16];             /* time spent in each stage (ASJ_STAGE_...) up to `clock`, in milliseconds */
     double clock;
 } asj_detection_run;
@@ -57,11 +63,18 @@ asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context,
                                    const asj_detect_options *options, const void *output);
 void asj_detection_run_end(asj_detection_run *run);
 
+/* Numbers of tests and an empty cache for the size of the frame. */
+asj_status asj_detection_run_set_size(asj_detection_run *run);
+
+/* Releases what steps 3 to 5 have found; the candidates' memory serves the next octave. */
+void asj_detection_run_clear(asj_detection_run *run);
+
 /* Length of a list that is allocated for `count` elements: room for a few when there are hardly any, so that the next of a stream
  * of pictures needs no more. */
 size_t asj_detection_run_room(size_t count);
 
-/* Reports that the stage is done up to here, as a part of the whole run; ASJ_ERROR_CANCELLED when the caller wants to stop. */
+/* Reports that the stage is done up to here, as a part of the pass over one octave; ASJ_ERROR_CANCELLED when the caller wants to
+ * stop. */
 asj_status asj_detection_run_progress(const asj_detection_run *run, int32_t stage, double done);
 
 /* Adds the time since the last call to the stage. */

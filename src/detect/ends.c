@@ -36,12 +36,12 @@ static double snapped_length(const asj_hypothesis *hypothesis, const asj_hypothe
                              const asj_hypothesis *const *order, size_t count)
 {
     const double ux = cos(branch->angle), uy = sin(branch->angle), end_y = hypothesis->y + branch->length * uy;
-    const double around = reach + OFF_LINE;
+    const double off_line = OFF_LINE * (1 << branch->octave), around = reach + off_line;
     double best = reach, length = branch->length;
     for (size_t i = lower_bound(order, count, end_y - around); i < count && order[i]->y <= end_y + around; i++) {
         const double dx = order[i]->x - hypothesis->x, dy = order[i]->y - hypothesis->y;
         const double t = dx * ux + dy * uy, off = fabs(dy * ux - dx * uy);
-        if (order[i] != hypothesis && t > 0 && off <= OFF_LINE && fabs(t - branch->length) < best) {
+        if (order[i] != hypothesis && t > 0 && off <= off_line && fabs(t - branch->length) < best) {
             best = fabs(t - branch->length);
             length = t;
         }

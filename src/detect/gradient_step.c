@@ -1,13 +1,23 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 1 over an image: grey plane, then its normalised gradient. */
+/* Step 1 over an image: grey plane, of each octave, and its normalised gradient. */
 #include "steps.h"
+
+asj_status asj_step_load(asj_detection_run *run)
+{
+    return asj_frame_load(run->context, run->frame, run->image);
+}
+
+asj_status asj_step_halve(asj_detection_run *run)
+{
+    run->octave++;
+    asj_status status = asj_frame_halve(run->context, run->frame);
+    return status == ASJ_OK ? asj_detection_run_set_size(run) : status;
+}
 
 asj_status asj_step_gradient(asj_detection_run *run)
 {
     asj_frame *frame = run->frame;
-    asj_status status = asj_frame_load(run->context, frame, run->image);
-    if (status == ASJ_OK)
-        status = run->context->ops->gradient->planes(run->context, frame, run->options);
+    asj_status status = run->context->ops->gradient->planes(run->context, frame, run->options);
     if (status != ASJ_OK)
         return status;
     asj_detection_run_dump_plane(run, ASJ_DUMP_PLANE_U16, "gray", frame->gray, 1.0 / ASJ_GRAY_ONE);

@@ -21,6 +21,8 @@ typedef struct asj_hypothesis_branch {
     double angle_variance;   /* rad^2 of the fit */
     double offset_variance;  /* px^2 of the fit at the junction */
     double apart;            /* px between the two edges of a thin line, 0 = one edge */
+    double width;            /* px of its octave: standard deviation of the edge's blur (edge_width.c); 0 = sharp or not known */
+    int32_t octave;          /* that found it */
 } asj_hypothesis_branch;
 
 typedef struct asj_hypothesis {
@@ -29,6 +31,7 @@ typedef struct asj_hypothesis {
     double radius;             /* px: of that test */
     double log_nfa;            /* natural logarithm, of that test */
     double location_variance;  /* px^2, mean of both axes */
+    int32_t octave;            /* that located it: 0 = the image itself, 1 = the image halved, .. */
     int32_t branch_count;      /* 0 = rejected */
     asj_hypothesis_branch branches[ASJ_MAX_BRANCHES];
 } asj_hypothesis;

@@ -50,7 +50,8 @@ asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *
 void asj_isotropic_free(asj_memory *memory, asj_isotropic *test);
 
 /* Sets the numbers of tests for an image of this size, and what follows from them. */
-void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, int32_t height, asj_isotropic *test);
+void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves,
+                            asj_isotropic *test);
 
 /* Whether a junction that was tested is one: meaningful, at enough radii in a row. */
 int asj_isotropic_persists(const asj_isotropic *test, const asj_isotropic_junction *junction);

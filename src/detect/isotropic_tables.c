@@ -162,10 +162,13 @@ static void set_least(const asj_isotropic *test, asj_isotropic_radius *entry)
     }
 }
 
-void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, int32_t height, asj_isotropic *test)
+void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves,
+                            asj_isotropic *test)
 {
+
     for (int32_t m = 2; m <= ASJ_MAX_BRANCHES; m++)
-        test->log_tests[m] = asj_nfa_log_junction_tests(width, height, options->isotropic_radii, options->sector_width, m);
+        test->log_tests[m] = asj_nfa_log_junction_tests(width, height, options->isotropic_radii, options->sector_width, m) +
+                             log(octaves);
     for (int32_t r = 0; r < test->radius_count; r++)
         set_least(test, &test->radii[r]);
 }

@@ -59,6 +59,8 @@ static asj_status local_field(asj_context *context, const asj_image *image, cons
     asj_detection_run run;
     asj_status status = asj_detection_run_begin(&run, context, image, options, branches);
     if (status == ASJ_OK)
+        status = asj_step_load(&run);
+    if (status == ASJ_OK)
         status = asj_step_gradient(&run);
     if (status == ASJ_OK)
         status = field_rows(&run, branches);

@@ -2,7 +2,9 @@
 /* Between steps 3 and 4, over an image: isotropic junctions become hypotheses with sub-pixel locations. Most of them are edges,
  * duplicates or noise, so what costs little rejects first: directions that do not open, a quick guess of the lines, twins; only
  * then the line fits and the strips. */
+#include "edge_width.h"
 #include "locate.h"
+#include "octaves.h"
 #include "steps.h"
 #include "suppress.h"
 #include "validate.h"
@@ -10,6 +12,22 @@
 #include "core/watch.h"
 
 #define LEAST_GUESSES (4 * ASJ_LEAST_JUNCTIONS) /* for a thread: a guess takes a quarter of a fit */
+
+/* What finer octaves have located well is not followed again. */
+static asj_status drop_known(asj_detection_run *run, int located)
+{
+    const int32_t width = run->image->width, height = run->image->height;
+    if (run->all_count == 0)
+        return ASJ_OK;
+    const size_t count = asj_octaves_cells(run->all_count, width, height);
+    int32_t *cells = asj_allocate_list(&run->context->memory, count, sizeof *cells);
+    if (!cells)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu cells", count);
+    run->hypothesis_count = asj_octaves_drop_known(run->hypotheses, run->hypothesis_count, run->octave, located, run->all,
+                                                   run->all_count, width, height, cells);
+    asj_release(&run->context->memory, cells);
+    return ASJ_OK;
+}
 
 static asj_status guess_all(asj_detection_run *run)
 {
@@ -38,6 +56,8 @@ static asj_status locate_all(asj_detection_run *run)
             continue;
         asj_locate(run->context, run->frame, run->options, &run->hypotheses[i]);
         asj_reject_early(run->context, run->frame, run->options, &run->hypotheses[i]);
+        if (run->all_count > 0)
+            asj_edge_widths(run->frame, &run->hypotheses[i]);
     }
     return asj_watch_end(&watch);
 }
@@ -51,12 +71,16 @@ asj_status asj_step_locate(asj_detection_run *run)
     for (size_t i = 0; i < count; i++)
         if (asj_isotropic_has_opening(run->options, &run->isotropic[i]))
             asj_hypothesis_start(&run->isotropic[i], &run->hypotheses[run->hypothesis_count++]);
-    asj_status status = guess_all(run);
+    asj_status status = drop_known(run, 0);
+    if (status == ASJ_OK)
+        status = guess_all(run);
     if (status == ASJ_OK)
         status = asj_suppress_all(run, ASJ_SUPPRESS_TWINS);
     if (status == ASJ_OK)
         status = locate_all(run);
     if (status == ASJ_OK)
         status = asj_suppress_all(run, ASJ_SUPPRESS_CLOSE);
+    if (status == ASJ_OK)
+        status = drop_known(run, 1);
     return status == ASJ_OK ? asj_detection_run_dump_hypotheses(run, ASJ_STAGE_LOCATE, "located") : status;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 5 over an image: orientations to scan along again, and at the end orientations, locations and validation. */
 #include "refine.h"
-#include "ends.h"
+#include "edge_width.h"
 #include "steps.h"
 #include "suppress.h"
 #include "validate.h"
@@ -35,21 +35,11 @@ static asj_status refine_all(asj_detection_run *run)
     for (int64_t i = 0; i < count; i++) {
         if (asj_watch_stops(&watch))
             continue;
+        asj_edge_widths(run->frame, &run->hypotheses[i]);
         asj_refine(run->context, run->frame, run->options, &run->hypotheses[i]);
         asj_validate(run->context, run->frame, run->options, &run->hypotheses[i]);
     }
     return asj_watch_end(&watch);
-}
-
-static asj_status snap_ends(asj_detection_run *run)
-{
-    const size_t count = run->hypothesis_count;
-    const asj_hypothesis **order = asj_allocate_list(&run->context->memory, asj_detection_run_room(count), sizeof *order);
-    if (!order)
-        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", count);
-    asj_ends_snap(run->hypotheses, count, run->options->snap_distance, order);
-    asj_release(&run->context->memory, order);
-    return ASJ_OK;
 }
 
 asj_status asj_step_refine(asj_detection_run *run)
@@ -57,7 +47,5 @@ asj_status asj_step_refine(asj_detection_run *run)
     asj_status status = refine_all(run);
     if (status == ASJ_OK)
         status = asj_suppress_all(run, ASJ_SUPPRESS_CLOSE);
-    if (status == ASJ_OK)
-        status = snap_ends(run);
     return status == ASJ_OK ? asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "junctions") : status;
 }

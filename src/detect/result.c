@@ -24,6 +24,7 @@ static void convert(const asj_hypothesis *hypothesis, asj_junction *out)
     out->log10_nfa = (float)(hypothesis->log_nfa / LN_10);
     out->location_sd = (float)sqrt(hypothesis->location_variance);
     out->branch_count = hypothesis->branch_count;
+    out->octave = hypothesis->octave;
     for (int32_t i = 0; i < hypothesis->branch_count; i++) {
         const asj_hypothesis_branch *branch = &hypothesis->branches[i];
         float angle = (float)branch->angle;
@@ -32,6 +33,7 @@ static void convert(const asj_hypothesis *hypothesis, asj_junction *out)
         out->branches[i].strength = (float)branch->strength;
         out->branches[i].log10_nfa = (float)(branch->log_nfa / LN_10);
         out->branches[i].angle_sd = (float)sqrt(branch->angle_variance);
+        out->branches[i].width = (float)(branch->width * (1 << branch->octave));
     }
 }
 

@@ -6,7 +6,9 @@
 
 #include "detection_run.h"
 
-asj_status asj_step_gradient(asj_detection_run *run);   /* step 1 (gradient_step.c): image -> planes of the frame */
+asj_status asj_step_load(asj_detection_run *run);       /* gradient_step.c: image -> grey plane of the frame */
+asj_status asj_step_halve(asj_detection_run *run);      /* gradient_step.c: -> grey plane of the next octave */
+asj_status asj_step_gradient(asj_detection_run *run);   /* step 1 (gradient_step.c): -> gradient planes */
 asj_status asj_step_candidates(asj_detection_run *run); /* step 2 (candidates_step.c): planes -> candidates */
 asj_status asj_step_isotropic(asj_detection_run *run);  /* step 3 (isotropic_step.c): candidates -> isotropic junctions */
 asj_status asj_step_locate(asj_detection_run *run);     /* locate_step.c: isotropic junctions -> hypotheses */
@@ -14,5 +16,7 @@ asj_status asj_step_scan(asj_detection_run *run);       /* step 4 (scan_step.c):
 asj_status asj_step_orient(asj_detection_run *run);     /* step 5 (refine_step.c): orientations, to scan along again */
 asj_status asj_step_search(asj_detection_run *run);     /* the same as in the paper (search_step.c), with their lengths */
 asj_status asj_step_refine(asj_detection_run *run);     /* step 5 (refine_step.c): orientations, location, validation */
+asj_status asj_step_next_octave(asj_detection_run *run);  /* octaves_step.c: hypotheses put by, the next octave's grey plane */
+asj_status asj_step_merge_octaves(asj_detection_run *run);/* octaves_step.c: one list of hypotheses; ends of branches */
 
 #endif

@@ -7,6 +7,7 @@
 
 typedef struct asj_strip {
     double log_nfa;       /* natural logarithm of the number of false alarms */
+    double waver;         /* mean square of the gradient along the branch over that across it: 0 = an edge without noise */
     double near_strength; /* standard deviations above the null model in the part next to the junction */
 } asj_strip;
 
@@ -16,6 +17,9 @@ typedef struct asj_strip_line {
     double angle;  /* rad */
     double length; /* px; no more than strip_length counts */
 } asj_strip_line;
+
+/* ln NFA of a strip whose pixels are not independent: see strip.c. `width` of its edge, px. */
+double asj_strip_correlated(const asj_frame *frame, const asj_strip *strip, double width);
 
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          const asj_strip_line *line);
@@ -38,9 +42,10 @@ typedef struct asj_strip_walk {
     int32_t first, last;     /* steps along */
 } asj_strip_walk;
 
-/* Over the pixels of a strip: the sum of gamma in 1/1024, that of the part next to the junction, numbers of pixels. */
+/* Over the pixels of a strip: the sum of gamma in 1/1024, those of the squares of the gradient's components
+ * along and across, that of gamma of the part next to the junction, numbers of pixels. */
 typedef struct asj_strip_sums {
-    double gamma, near_gamma;
+    double gamma, uu, nn, near_gamma;
     int32_t pixels, near_pixels;
 } asj_strip_sums;
 

@@ -34,6 +34,12 @@ static int by_meaning(const void *a, const void *b)
     return p->x < q->x ? -1 : p->x > q->x;
 }
 
+void asj_suppress_sort(asj_hypothesis *hypotheses, size_t count)
+{
+    if (count > 1)
+        qsort(hypotheses, count, sizeof *hypotheses, by_meaning);
+}
+
 /* Kept hypotheses are linked into a grid of cells as wide as the largest suppression radius, so that only the cells around need a
  * look. */
 #define CELL 11 /* px: CLOSE_SHARE * ASJ_MAX_RADIUS rounded up */
@@ -85,7 +91,7 @@ size_t asj_suppress(asj_hypothesis *hypotheses, size_t count, int32_t rule, int3
     for (size_t i = 0; i < count; i++)
         if (hypotheses[i].branch_count >= 2)
             hypotheses[valid++] = hypotheses[i];
-    qsort(hypotheses, valid, sizeof *hypotheses, by_meaning);
+    asj_suppress_sort(hypotheses, valid);
     memset(heads, 0xff, (size_t)columns * (size_t)rows * sizeof *heads);
     for (size_t i = 0; i < valid; i++) {
         const asj_hypothesis hypothesis = hypotheses[i];

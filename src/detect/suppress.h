@@ -15,6 +15,9 @@ enum {
 size_t asj_suppress(asj_hypothesis *hypotheses, size_t count, int32_t rule, int32_t width, int32_t height, int32_t *cells);
 size_t asj_suppress_cells(size_t count, int32_t width, int32_t height);
 
+/* Sorts by meaningfulness, ties by place. */
+void asj_suppress_sort(asj_hypothesis *hypotheses, size_t count);
+
 /* The same for those of a run. */
 asj_status asj_suppress_all(asj_detection_run *run, int32_t rule);
 

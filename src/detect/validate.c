@@ -101,9 +101,9 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
         asj_hypothesis_branch *branch = &hypothesis->branches[i];
         const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
         const asj_strip strip = asj_strip_test(context, frame, options, &line);
-        branch->log_nfa = strip.log_nfa;
+        branch->log_nfa = options->strip_test ? asj_strip_correlated(frame, &strip, branch->width) : strip.log_nfa;
         keep[i] = branch->length >= options->minimum_length && branch->length > 0 && fabs(branch->offset) <= LARGEST_OFFSET &&
-                  (!options->strip_test || strip.log_nfa <= log_epsilon) &&
+                  (!options->strip_test || branch->log_nfa <= log_epsilon) &&
                   strip.near_strength >= options->near_strength &&
                   !(options->ignore_frame && on_frame(frame, hypothesis, branch));
     }

@@ -9,6 +9,7 @@
 #include <jansson.h>
 #include <string.h>
 
+#define LARGEST_OCTAVE 15
 #define SCHEMA "asj-junctions-1"
 
 typedef struct json_reader {
@@ -138,7 +139,7 @@ static asj_status read_branch(const json_reader *reader, size_t line, const json
 {
     const member members[] = {{"angle", 1, &branch->angle},         {"length", 1, &branch->length},
                               {"strength", 0, &branch->strength},   {"log10_nfa", 0, &branch->log10_nfa},
-                              {"angle_sd", 0, &branch->angle_sd}};
+                              {"angle_sd", 0, &branch->angle_sd},   {"width", 0, &branch->width}};
     asj_status status = read_members(reader, line, object, members, sizeof members / sizeof members[0]);
     if (status == ASJ_OK)
         asj_set_angle(branch, (double)branch->angle);
@@ -149,15 +150,19 @@ static asj_status read_junction(const json_reader *reader, size_t line, const js
 {
     static const asj_junction none = {0};
     asj_junction junction = none;
+    float octave = 0;
     const member members[] = {{"x", 1, &junction.x},         {"y", 1, &junction.y},
                               {"scale", 0, &junction.scale}, {"log10_nfa", 0, &junction.log10_nfa},
-                              {"location_sd", 0, &junction.location_sd}};
+                              {"location_sd", 0, &junction.location_sd}, {"octave", 0, &octave}};
     asj_status status = read_members(reader, line, object, members, sizeof members / sizeof members[0]);
     const json_t *branches = json_object_get(object, "branches");
     size_t count = json_array_size(branches), b;
 
     if (status != ASJ_OK)
         return status;
+    if (!(octave >= 0 && octave <= LARGEST_OCTAVE))
+        return asj_line_fail(reader->message, line, "\"octave\" must be from 0 to %d", LARGEST_OCTAVE);
+    junction.octave = (int32_t)octave;
     if (count < 2 || count > ASJ_MAX_BRANCHES)
         return asj_line_fail(reader->message, line, "a junction must have \"branches\", 2 to %d of them", ASJ_MAX_BRANCHES);
     junction.branch_count = (int32_t)count;

@@ -41,17 +41,18 @@ static json_t *junction_value(const asj_junction *junction)
     int32_t b;
     for (b = 0; b < junction->branch_count && branches; b++) {
         const asj_branch *branch = &junction->branches[b];
-        json_t *value = json_pack("{s:f, s:f, s:f, s:f, s:f}", "angle", (double)branch->angle, "length", (double)branch->length,
+        json_t *value = json_pack("{s:f, s:f, s:f, s:f, s:f, s:f}", "angle", (double)branch->angle,
+                                  "length", (double)branch->length,
                                   "strength", (double)branch->strength, "log10_nfa", (double)branch->log10_nfa,
-                                  "angle_sd", (double)branch->angle_sd);
+                                  "angle_sd", (double)branch->angle_sd, "width", (double)branch->width);
         if (json_array_append_new(branches, value)) {
             json_decref(branches);
             branches = NULL;
         }
     }
-    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:o}", "x", (double)junction->x, "y", (double)junction->y,
+    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:i, s:o}", "x", (double)junction->x, "y", (double)junction->y,
                      "scale", (double)junction->scale, "log10_nfa", (double)junction->log10_nfa,
-                     "location_sd", (double)junction->location_sd, "branches", branches);
+                     "location_sd", (double)junction->location_sd, "octave", (int)junction->octave, "branches", branches);
 }
 
 asj_status asj_write_json(asj_output *output, const asj_detection_report *report, const asj_message *message)

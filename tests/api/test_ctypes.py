@@ -12,12 +12,12 @@ class Image(c.Structure):
 
 
 class Branch(c.Structure):
-    _fields_ = [(name, c.c_float) for name in ("angle", "length", "strength", "log10_nfa", "angle_sd", "reserved")]
+    _fields_ = [(name, c.c_float) for name in ("angle", "length", "strength", "log10_nfa", "angle_sd", "width")]
 
 
 class Junction(c.Structure):
     _fields_ = [(name, c.c_float) for name in ("x", "y", "scale", "log10_nfa", "location_sd")] + \
-               [("branch_count", c.c_int32), ("branches", Branch * 5)]
+               [("branch_count", c.c_int32), ("octave", c.c_int32), ("branches", Branch * 5)]
 
 
 class Detection(c.Structure):

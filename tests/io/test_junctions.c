@@ -34,6 +34,7 @@ static void fill_branch(asj_branch *branch, int32_t b, int32_t count)
     branch->strength = random_float(-3, 30);
     branch->log10_nfa = random_float(-300, 5);
     branch->angle_sd = random_float(0, 0.01f);
+    branch->width = random_float(0, 10);
 }
 
 /* Random junctions, the first with the most awkward floats. */
@@ -51,6 +52,7 @@ static void fill_detection(void)
         junction->scale = i % 2 ? 7.0f : random_float(3, 30);
         junction->log10_nfa = random_float(-500, 0);
         junction->location_sd = random_float(0, 1);
+        junction->octave = (int32_t)(i % 5);
         count = junction->branch_count = 2 + (int32_t)(i % 4);
         for (b = 0; b < count; b++)
             fill_branch(&junction->branches[b], b, count);
@@ -178,7 +180,8 @@ static float next_field(char **at)
 
 static void csv_gives_every_float_back(void **state)
 {
-    static const char head[] = "junction,x,y,scale,log10_nfa,location_sd,branch,angle,length,strength,branch_log10_nfa,angle_sd\n";
+    static const char head[] = "junction,x,y,scale,log10_nfa,location_sd,octave,branch,angle,length,strength,branch_log10_nfa,"
+        "angle_sd,width\n";
     static char text[400000];
     FILE *file = fopen(write_report("all.csv", ASJ_FILE_CSV), "rb");
     char *at = text;
@@ -194,10 +197,10 @@ static void csv_gives_every_float_back(void **state)
         for (b = 0; b < junctions[i].branch_count; b++) {
             const asj_junction *j = &junctions[i];
             const asj_branch *r = &j->branches[b];
-            const float wanted[12] = {(float)i, j->x, j->y, j->scale, j->log10_nfa, j->location_sd, (float)b, r->angle, r->length,
-                                      r->strength, r->log10_nfa, r->angle_sd};
+            const float wanted[14] = {(float)i, j->x, j->y, j->scale, j->log10_nfa, j->location_sd, (float)j->octave, (float)b,
+                                      r->angle, r->length, r->strength, r->log10_nfa, r->angle_sd, r->width};
             int field;
-            for (field = 0; field < 12; field++)
+            for (field = 0; field < 14; field++)
                 assert_true(next_field(&at) == wanted[field]);
         }
     assert_string_equal(at, "");
@@ -212,11 +215,13 @@ static void golden_text_and_csv(void **state)
     static const char whole[] = "1\n486.533356 388.250000\n3 14 14 -46.909500\n0.062500 15.164062 126.000000\n"
                                 "3.125000 14.000000 149.500000\n4.750000 12.660156 253.000000\n";
     static const char csv[] =
-        "junction,x,y,scale,log10_nfa,location_sd,branch,angle,length,strength,branch_log10_nfa,angle_sd\n"
-        "0,486.53336,388.25,14,-46.9095,0.1,0,0.0625,126,15.1640625,-134.5,0.001\n"
-        "0,486.53336,388.25,14,-46.9095,0.1,1,3.125,149.5,14,0,0\n0,486.53336,388.25,14,-46.9095,0.1,2,4.75,253,12.660156,0,0\n";
-    static const asj_junction junction = {486.533356f, 388.25f, 14, -46.9095f, 0.1f, 3,
-                                          {{0.0625f, 126, 15.1640625f, -134.5f, 0.001f, 0},
+        "junction,x,y,scale,log10_nfa,location_sd,octave,branch,angle,length,strength,branch_log10_nfa,"
+        "angle_sd,width\n"
+        "0,486.53336,388.25,14,-46.9095,0.1,1,0,0.0625,126,15.1640625,-134.5,0.001,2.5\n"
+        "0,486.53336,388.25,14,-46.9095,0.1,1,1,3.125,149.5,14,0,0,0\n"
+        "0,486.53336,388.25,14,-46.9095,0.1,1,2,4.75,253,12.660156,0,0,0\n";
+    static const asj_junction junction = {486.533356f, 388.25f, 14, -46.9095f, 0.1f, 3, 1,
+                                          {{0.0625f, 126, 15.1640625f, -134.5f, 0.001f, 2.5f},
                                            {3.125f, 149.5f, 14, 0, 0, 0},
                                            {4.75f, 253, 12.6601562f, 0, 0, 0}}};
     static const asj_l_junction two[2] = {{0, 2, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0, 0, 0, 0}};

@@ -124,7 +124,7 @@ int subject_create(asj_context *context, int32_t width, int32_t height, int32_t 
         fill_planes(s);
     ok = ok && fill_picture(s);
     if (ok) {
-        asj_isotropic_set_size(&s->options, width, height, &s->isotropic);
+        asj_isotropic_set_size(&s->options, width, height, s->frame.octaves, &s->isotropic);
         s->scratch_size = asj_field_scratch(&s->field);
         if (s->isotropic.scratch > s->scratch_size)
             s->scratch_size = s->isotropic.scratch;

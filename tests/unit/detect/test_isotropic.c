@@ -30,7 +30,7 @@ static void make(fixture *f, uint32_t radii, int32_t max_branches)
     f->options.isotropic_radii = radii;
     f->options.max_branches = max_branches;
     assert_int_equal(asj_isotropic_create(f->context, &f->options, &tested), ASJ_OK);
-    asj_isotropic_set_size(&f->options, f->frame.width, f->frame.height, &tested);
+    asj_isotropic_set_size(&f->options, f->frame.width, f->frame.height, f->frame.octaves, &tested);
 }
 
 /* ---- the definition ---- */

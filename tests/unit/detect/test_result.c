@@ -57,7 +57,7 @@ static void test_conversion(void **state)
             unit_near("strength", i, b, j->branches[b].strength, 4.5, 0);
             unit_near("branch NFA", i, b, j->branches[b].log10_nfa, -20 / log(10), 1e-5);
             unit_near("angle sd", i, b, j->branches[b].angle_sd, 0.01, 1e-7);
-            assert_true(j->branches[b].reserved == 0);
+            assert_true(j->branches[b].width == 0);
         }
         for (int32_t b = j->branch_count; b < ASJ_MAX_BRANCHES; b++)
             assert_true(j->branches[b].angle == 0 && j->branches[b].length == 0 && j->branches[b].angle_sd == 0);

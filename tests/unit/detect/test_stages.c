@@ -15,7 +15,8 @@ typedef struct watcher {
 static int32_t watch(void *user, int32_t stage, double done)
 {
     watcher *w = user;
-    w->wrong += done < w->last || done < 0 || done > 1 || stage < w->stage_last - 1 || stage < 0 || stage >= ASJ_STAGE_COUNT;
+    w->wrong += done < w->last || done < 0 || done > 1 || stage < 0 || stage >= ASJ_STAGE_COUNT;
+    w->wrong += stage < w->stage_last - 1 && stage != ASJ_STAGE_GRADIENT; /* which begins an octave */
     w->last = done;
     w->stage_last = stage;
     w->stages |= 1u << stage;
@@ -25,9 +26,10 @@ static int32_t watch(void *user, int32_t stage, double done)
 
 typedef struct dumps {
     int count;
-    char names[16][24];
-    size_t points[16];
+    char names[24][24];
+    size_t points[24];
     int wrong;
+    int halves; /* a smaller one begins the next octave */
     int32_t width, height;
 } dumps;
 
@@ -36,8 +38,12 @@ static void look(void *user, const asj_dump *dump)
 {
     dumps *d = user;
     long sum = 0;
-    d->wrong += dump->width != d->width || dump->height != d->height || !dump->data || d->count >= 16;
-    if (d->count >= 16)
+    if (d->halves && dump->width < d->width) {
+        d->width /= 2;
+        d->height /= 2;
+    }
+    d->wrong += dump->width != d->width || dump->height != d->height || !dump->data || d->count >= 24;
+    if (d->count >= 24)
         return;
     snprintf(d->names[d->count], sizeof d->names[0], "%s", dump->name);
     d->points[d->count++] = dump->kind == ASJ_DUMP_POINTS ? dump->count : 0;
@@ -166,11 +172,14 @@ static void test_cancel_field(void **state)
 /* All that context.h names, in the order of the steps, with as many points as the result says. */
 static void test_dumps(void **state)
 {
+    asj_detect_options once;
+    asj_detect_options_init(&once);
+    once.octaves = 1;
     static const char *const names[] = {"gray", "gradient_x", "gradient_y", "candidates", "isotropic", "located", "junctions"};
     fixture *f = *state;
     asj_detection *found = NULL;
     f->dumps.count = f->dumps.wrong = 0;
-    assert_int_equal(asj_detect(f->context, &f->image, NULL, &found), ASJ_OK);
+    assert_int_equal(asj_detect(f->context, &f->image, &once, &found), ASJ_OK);
     assert_int_equal(f->dumps.count, UNIT_COUNT(names));
     assert_int_equal(f->dumps.wrong, 0);
     for (size_t i = 0; i < UNIT_COUNT(names); i++)
@@ -224,11 +233,29 @@ static void test_counts(void **state)
     asj_detection_free(&found);
 }
 
+/* Each octave hands out everything again, half as large: 320 x 240, 160 x 120, 80 x 60. */
+static void test_octave_dumps(void **state)
+{
+    fixture *f = *state;
+    asj_detection *found = NULL;
+    f->dumps = (dumps){.width = f->image.width, .height = f->image.height, .halves = 1};
+    assert_int_equal(asj_detect(f->context, &f->image, NULL, &found), ASJ_OK);
+    assert_int_equal(f->dumps.count, 21);
+    assert_int_equal(f->dumps.wrong, 0);
+    assert_int_equal(f->dumps.width, 80);
+    assert_int_equal(f->dumps.points[3] + f->dumps.points[10] + f->dumps.points[17], found->candidates);
+    assert_int_equal(f->dumps.points[4] + f->dumps.points[11] + f->dumps.points[18], found->isotropic);
+    assert_true(f->dumps.points[6] + f->dumps.points[13] + f->dumps.points[20] >= found->junction_count);
+    asj_detection_free(&found);
+    f->dumps = (dumps){.width = f->image.width, .height = f->image.height};
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_progress), cmocka_unit_test(test_cancel), cmocka_unit_test(test_cancel_field),
-        cmocka_unit_test(test_dumps),    cmocka_unit_test(test_times),  cmocka_unit_test(test_counts),
+        cmocka_unit_test(test_dumps),    cmocka_unit_test(test_octave_dumps), cmocka_unit_test(test_times),
+        cmocka_unit_test(test_counts),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

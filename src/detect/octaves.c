@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Octaves. The paper looks at one scale. Edges blurred by 2 px or more fall through that: their gradient spreads over more pixels
+ * than a sector is wide, and noise, which does not, drowns it. On the image halved (means of 2 x 2 pixels) such an edge is half as
+ * wide and the noise half as strong, so the same steps find there what they miss here. Pixel (i, j) of octave o is centred at
+ *     x = (i + 0.5) 2^o - 0.5,  y likewise.
+ *
+ * Which octave an edge belongs to is decided by its own width (edge_width.c), not by which octave fired first: lines that are
+ * fitted to edges wider than the fits look follow noise, and corners of them are off by pixels.
+ *   - a branch wider than WIDEST is dropped: a coarser octave sees it, or nothing does (a gradient of light);
+ *   - a junction that two branches narrower than SHARP make is located by the finest octave that found it;
+ *   - others give way to the next coarser octave, and stay when that has found nothing.
+ * Each octave counts its own tests, times the number of octaves: an n-th of the false alarms that epsilon allows for each, so that
+ * all of them together have no more than epsilon. (Counting the pixels of all octaves in each says the same of them together, but
+ * asks of coarse octaves, which have few pixels, as much as of the image itself.)
+ *
+ * Junctions of two octaves are one when they are closer than NEAR px of the coarser octave and have a direction in common. The one
+ * that stays gets the other's branches that were too soft for its own octave to see. */
+#include "octaves.h"
+#include "core/angle.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LEAST_SIDE 48 /* px of an octave: twice the largest of the default radii to either side, and something between */
+
+#define SHARP 1.7  /* px of its octave: from here on an edge is sharp (below 0.9) in the next one */
+#define WIDEST 2.3 /* px: beyond, the band of the fits (1.6 px to either side) holds less than half of the edge */
+
+#define NEAR 2.5                  /* px of the coarser octave */
+#define SAME_DIRECTION 0.3        /* rad */
+#define JOINED_APART (20 * ASJ_DEGREE) /* a branch that joins others points elsewhere; merge_angle, if that is more */
+#define JOINED_OFF 1.5            /* px of the coarser octave: its line passes the junction at most so far away */
+
+static double scale_of(int32_t octave)
+{
+    return (double)(1 << octave);
+}
+
+/* How many there are. */
+static int32_t count_octaves(int32_t width, int32_t height)
+{
+    int32_t count = 1;
+    while (width >> count >= LEAST_SIDE && height >> count >= LEAST_SIDE)
+        count++;
+    return count;
+}
+
+asj_octave_range asj_octaves_of(const asj_detect_options *options, int32_t width, int32_t height)
+{
+    const int32_t count = count_octaves(width, height);
+    asj_octave_range range = {options->first_octave < count ? options->first_octave : count - 1, 0, 0};
+    range.end = count - range.first < options->octaves ? count : range.first + options->octaves;
+    for (int32_t o = range.first; o < range.end; o++)
+        range.pixels += (double)(width >> o) * (height >> o);
+    return range;
+}
+
+void asj_octaves_map(asj_hypothesis *hypothesis, int32_t octave)
+{
+    const double scale = scale_of(octave);
+    hypothesis->octave = octave;
+    hypothesis->x = (hypothesis->x + 0.5) * scale - 0.5;
+    hypothesis->y = (hypothesis->y + 0.5) * scale - 0.5;
+    hypothesis->radius *= scale;
+    hypothesis->location_variance *= scale * scale;
+    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
+        asj_hypothesis_branch *branch = &hypothesis->branches[i];
+        branch->octave = octave;
+        branch->length *= scale;
+        branch->offset *= scale;
+        branch->offset_variance *= scale * scale;
+        branch->apart *= scale;
+    }
+}
+
+/* Of the two sharpest branches the less sharp one, px of the octave: two make a junction. */
+static double softness(const asj_hypothesis *hypothesis)
+{
+    double first = HUGE_VAL, second = HUGE_VAL;
+    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
+        const double width = hypothesis->branches[i].width;
+        second = width < first ? first : fmin(second, width);
+        first = fmin(first, width);
+    }
+    return second;
+}
+
+/* Sharp ones first, of these the finest octave first; of the others the coarsest. Ties by meaning and place. */
+static int by_preference(const void *a, const void *b)
+{
+    const asj_hypothesis *p = a, *q = b;
+    const int soft = softness(p) > SHARP, other = softness(q) > SHARP;
+    if (soft != other)
+        return soft - other;
+    if (p->octave != q->octave)
+        return soft ? q->octave - p->octave : p->octave - q->octave;
+    if (p->log_nfa != q->log_nfa)
+        return p->log_nfa < q->log_nfa ? -1 : 1;
+    if (p->y != q->y)
+        return p->y < q->y ? -1 : 1;
+    return p->x < q->x ? -1 : p->x > q->x;
+}
+
+static size_t drop_wide(asj_hypothesis *hypotheses, size_t count, double minimum_opening)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        int keep[ASJ_MAX_BRANCHES];
+        for (int32_t b = 0; b < hypotheses[i].branch_count; b++)
+            keep[b] = hypotheses[i].branches[b].width <= WIDEST;
+        asj_hypothesis_select(&hypotheses[i], keep);
+        if (asj_hypothesis_has_opening(&hypotheses[i], minimum_opening * ASJ_DEGREE))
+            hypotheses[kept++] = hypotheses[i];
+    }
+    return kept;
+}
+
+static int share_direction(const asj_hypothesis *a, const asj_hypothesis *b)
+{
+    for (int32_t i = 0; i < a->branch_count; i++)
+        for (int32_t j = 0; j < b->branch_count; j++)
+            if (asj_angle_distance(a->branches[i].angle, b->branches[j].angle) < SAME_DIRECTION)
+                return 1;
+    return 0;
+}
+
+/* Hypotheses that stay, linked by the cell that they lie in. */
+typedef struct grid {
+    int32_t *heads, *next;
+    int32_t columns, rows;
+    double cell; /* px: the farthest that two junctions which are one may lie apart */
+} grid;
+
+static double largest_cell(int32_t width, int32_t height)
+{
+    return NEAR * scale_of(count_octaves(width, height) - 1);
+}
+
+static size_t columns_of(int32_t width, double cell)
+{
+    return (size_t)(width / cell) + 3; /* a border for junctions just outside the image, and for the neighbours */
+}
+
+size_t asj_octaves_cells(size_t count, int32_t width, int32_t height)
+{
+    const double cell = largest_cell(width, height);
+    return columns_of(width, cell) * columns_of(height, cell) + count;
+}
+
+static int32_t cell_of(const grid *g, const asj_hypothesis *hypothesis)
+{
+    const double column = floor(hypothesis->x / g->cell) + 1, row = floor(hypothesis->y / g->cell) + 1;
+    const int32_t x = (int32_t)fmax(1, fmin(column, g->columns - 2)), y = (int32_t)fmax(1, fmin(row, g->rows - 2));
+    return y * g->columns + x;
+}
+
+static grid make_grid(int32_t width, int32_t height, int32_t *cells)
+{
+    const double cell = largest_cell(width, height);
+    grid g = {cells, NULL, (int32_t)columns_of(width, cell), (int32_t)columns_of(height, cell), cell};
+    const size_t count = (size_t)g.columns * (size_t)g.rows;
+    g.next = cells + count;
+    memset(g.heads, 0xff, count * sizeof *g.heads);
+    return g;
+}
+
+static void link_hypothesis(grid *g, const asj_hypothesis *hypotheses, size_t index)
+{
+    const int32_t cell = cell_of(g, &hypotheses[index]);
+    g->next[index] = g->heads[cell];
+    g->heads[cell] = (int32_t)index;
+}
+
+/* The nearest of those that stay which is the same junction in another octave; -1 = none. */
+static int32_t find_same(const grid *g, const asj_hypothesis *hypotheses, const asj_hypothesis *hypothesis)
+{
+    const int32_t cell = cell_of(g, hypothesis);
+    double least = HUGE_VAL;
+    int32_t found = -1;
+    for (int32_t dy = -1; dy <= 1; dy++)
+        for (int32_t dx = -1; dx <= 1; dx++)
+            for (int32_t i = g->heads[cell + dy * g->columns + dx]; i >= 0; i = g->next[i]) {
+                const asj_hypothesis *other = &hypotheses[i];
+                const double reach = NEAR * scale_of(other->octave > hypothesis->octave ? other->octave : hypothesis->octave);
+                const double distance = hypot(other->x - hypothesis->x, other->y - hypothesis->y);
+                if (other->octave != hypothesis->octave && distance <= reach && distance < least &&
+                    share_direction(other, hypothesis)) {
+                    least = distance;
+                    found = i;
+                }
+            }
+    return found;
+}
+
+static int points_elsewhere(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, double least)
+{
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        if (asj_angle_distance(hypothesis->branches[i].angle, branch->angle) < least)
+            return 0;
+    return 1;
+}
+
+static void insert_by_angle(asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+{
+    int32_t i = hypothesis->branch_count++;
+    for (; i > 0 && hypothesis->branches[i - 1].angle > branch->angle; i--)
+        hypothesis->branches[i] = hypothesis->branches[i - 1];
+    hypothesis->branches[i] = *branch;
+}
+
+/* Adds the branches of a coarser octave that are too soft for the octave of `hypothesis`. */
+static void join(const asj_hypothesis *coarse, double merge_angle, asj_hypothesis *hypothesis)
+{
+    const double least = fmax(JOINED_APART, merge_angle * ASJ_DEGREE), scale = scale_of(coarse->octave);
+    const double dx = hypothesis->x - coarse->x, dy = hypothesis->y - coarse->y;
+    for (int32_t i = 0; i < coarse->branch_count && hypothesis->branch_count < ASJ_MAX_BRANCHES; i++) {
+        asj_hypothesis_branch branch = coarse->branches[i];
+        const double ux = cos(branch.angle), uy = sin(branch.angle);
+        branch.offset -= dy * ux - dx * uy;
+        branch.length -= dx * ux + dy * uy;
+        if (branch.width * scale > SHARP * scale_of(hypothesis->octave) && fabs(branch.offset) <= JOINED_OFF * scale &&
+            branch.length > 0 && points_elsewhere(hypothesis, &branch, least))
+            insert_by_angle(hypothesis, &branch);
+    }
+}
+
+size_t asj_octaves_merge(asj_hypothesis *hypotheses, size_t count, const asj_detect_options *options, int32_t width, int32_t height,
+                         int32_t *cells)
+{
+    grid g = make_grid(width, height, cells);
+    size_t kept = 0;
+    count = drop_wide(hypotheses, count, options->minimum_opening);
+    if (count > 1)
+        qsort(hypotheses, count, sizeof *hypotheses, by_preference);
+    for (size_t i = 0; i < count; i++) {
+        const asj_hypothesis hypothesis = hypotheses[i];
+        const int32_t same = find_same(&g, hypotheses, &hypothesis);
+        if (same >= 0 && hypothesis.octave > hypotheses[same].octave)
+            join(&hypothesis, options->merge_angle, &hypotheses[same]);
+        if (same >= 0)
+            continue;
+        hypotheses[kept] = hypothesis;
+        link_hypothesis(&g, hypotheses, kept++);
+    }
+    return kept;
+}
+
+/* Whether join() would take no branch. */
+static int adds_nothing(const asj_hypothesis *hypothesis, int located, const asj_hypothesis *finer)
+{
+    const double relative = scale_of(hypothesis->octave - finer->octave);
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        if ((!located || hypothesis->branches[i].width * relative > SHARP) &&
+            points_elsewhere(finer, &hypothesis->branches[i], JOINED_APART))
+            return 0;
+    return 1;
+}
+
+static int is_known(const grid *g, const asj_hypothesis *finer, const asj_hypothesis *hypothesis, int located)
+{
+    const int32_t cell = cell_of(g, hypothesis);
+    for (int32_t dy = -1; dy <= 1; dy++)
+        for (int32_t dx = -1; dx <= 1; dx++)
+            for (int32_t i = g->heads[cell + dy * g->columns + dx]; i >= 0; i = g->next[i])
+                if (hypot(finer[i].x - hypothesis->x, finer[i].y - hypothesis->y) <= NEAR * scale_of(hypothesis->octave) &&
+                    share_direction(hypothesis, &finer[i]) && adds_nothing(hypothesis, located, &finer[i]))
+                    return 1;
+    return 0;
+}
+
+size_t asj_octaves_drop_known(asj_hypothesis *hypotheses, size_t count, int32_t octave, int located, const asj_hypothesis *finer,
+                              size_t finer_count, int32_t width, int32_t height, int32_t *cells)
+{
+    grid g = make_grid(width, height, cells);
+    size_t kept = 0;
+    for (size_t i = 0; i < finer_count; i++)
+        if (softness(&finer[i]) <= SHARP)
+            link_hypothesis(&g, finer, i);
+    for (size_t i = 0; i < count; i++) {
+        asj_hypothesis mapped = hypotheses[i];
+        asj_octaves_map(&mapped, octave);
+        if (!is_known(&g, finer, &mapped, located))
+            hypotheses[kept++] = hypotheses[i];
+    }
+    return kept;
+}

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Hypotheses of several octaves become one list. Octave o works on the image halved o times. */
+#ifndef ASJ_SRC_OCTAVES_H
+#define ASJ_SRC_OCTAVES_H
+
+#include "hypothesis.h"
+
+/* The octaves that the options ask for and an image of this size has: first .. end - 1, at least one. */
+typedef struct asj_octave_range {
+    int32_t first, end;
+    double pixels; /* of all of them */
+} asj_octave_range;
+
+asj_octave_range asj_octaves_of(const asj_detect_options *options, int32_t width, int32_t height);
+
+/* From the pixels of an octave to those of the image; the hypothesis and its branches belong to that octave from then on. */
+void asj_octaves_map(asj_hypothesis *hypothesis, int32_t octave);
+
+/* Merges hypotheses in pixels of the image, each octave's without duplicates: see octaves.c. Returns how many stay, at the front,
+ * in no order that matters. `cells` is scratch of asj_octaves_cells() elements. */
+size_t asj_octaves_merge(asj_hypothesis *hypotheses, size_t count, const asj_detect_options *options, int32_t width, int32_t height,
+                         int32_t *cells);
+
+/* Of hypotheses in pixels of `octave`, drops those that would not survive the merge and could add nothing: which lie at a sharp one
+ * of `finer`, in pixels of the image, and have its directions only; or, once they are `located` and the widths of their branches
+ * known, others that are not soft. Returns how many stay; `cells` as above, for finer_count. */
+size_t asj_octaves_drop_known(asj_hypothesis *hypotheses, size_t count, int32_t octave, int located, const asj_hypothesis *finer,
+                              size_t finer_count, int32_t width, int32_t height, int32_t *cells);
+size_t asj_octaves_cells(size_t count, int32_t width, int32_t height);
+
+#endif

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Octaves over an image: what one leaves behind, the next one's grey plane, and at the end one list. */
+#include "octaves.h"
+#include "ends.h"
+#include "steps.h"
+#include "suppress.h"
+
+#include <string.h>
+
+static int is_inside(const asj_detection_run *run, const asj_hypothesis *hypothesis)
+{
+    return hypothesis->x >= -ASJ_MAX_OUTSIDE && hypothesis->x <= run->image->width - 1 + ASJ_MAX_OUTSIDE &&
+           hypothesis->y >= -ASJ_MAX_OUTSIDE && hypothesis->y <= run->image->height - 1 + ASJ_MAX_OUTSIDE;
+}
+
+/* The hypotheses of this octave go to the list of all. */
+static asj_status collect(asj_detection_run *run)
+{
+    const size_t total = run->all_count + run->hypothesis_count;
+    void *list = run->all;
+    asj_status status = asj_grow(&run->context->memory, &list, &run->all_capacity, asj_detection_run_room(total),
+                                 sizeof *run->all, run->all_count);
+    run->all = list;
+    if (status != ASJ_OK)
+        return asj_fail(run->context, status, "no memory for %zu junctions", total);
+    for (size_t i = 0; i < run->hypothesis_count; i++) {
+        run->all[run->all_count] = run->hypotheses[i];
+        asj_octaves_map(&run->all[run->all_count], run->octave);
+        run->all_count += (size_t)is_inside(run, &run->all[run->all_count]);
+    }
+    run->candidate_total += run->candidate_count;
+    run->isotropic_total += run->isotropic_count;
+    asj_detection_run_clear(run);
+    return ASJ_OK;
+}
+
+asj_status asj_step_next_octave(asj_detection_run *run)
+{
+    asj_status status = collect(run);
+    return status == ASJ_OK ? asj_step_halve(run) : status;
+}
+
+static asj_status merge(asj_detection_run *run)
+{
+    const int32_t width = run->image->width, height = run->image->height;
+    const size_t count = asj_octaves_cells(run->all_count, width, height);
+    int32_t *cells = asj_allocate_list(&run->context->memory, count, sizeof *cells);
+    if (!cells)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu cells", count);
+    run->all_count = asj_octaves_merge(run->all, run->all_count, run->options, width, height, cells);
+    asj_release(&run->context->memory, cells);
+    return ASJ_OK;
+}
+
+static asj_status snap_ends(asj_detection_run *run)
+{
+    const size_t count = run->hypothesis_count;
+    const asj_hypothesis **order = asj_allocate_list(&run->context->memory, asj_detection_run_room(count), sizeof *order);
+    if (!order)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", count);
+    asj_ends_snap(run->hypotheses, count, run->options->snap_distance, order);
+    asj_release(&run->context->memory, order);
+    return ASJ_OK;
+}
+
+asj_status asj_step_merge_octaves(asj_detection_run *run)
+{
+    asj_status status = collect(run);
+    if (status == ASJ_OK && run->options->octaves > 1)
+        status = merge(run);
+    if (status != ASJ_OK)
+        return status;
+    run->hypotheses = run->all;
+    run->hypothesis_count = run->all_count;
+    run->candidate_count = run->candidate_total;
+    run->isotropic_count = run->isotropic_total;
+    run->all = NULL;
+    run->all_count = run->all_capacity = 0;
+    asj_suppress_sort(run->hypotheses, run->hypothesis_count);
+    return snap_ends(run);
+}

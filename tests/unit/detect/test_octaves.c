@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Octaves: where their pixels are, which of two junctions stays, what joins; and the widths of edges that decide. */
+#include "detect/edge_width.h"
+#include "detect/octaves.h"
+#include "render.h"
+#include "scenes.h"
+#include "unit_test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A corner with branches to the right and down, of the given width, in pixels of its octave. */
+static asj_hypothesis corner(double x, double y, double width)
+{
+    asj_hypothesis h;
+    memset(&h, 0, sizeof h);
+    h.x = x;
+    h.y = y;
+    h.radius = 7;
+    h.log_nfa = -20;
+    h.location_variance = 0.01;
+    h.branch_count = 2;
+    for (int i = 0; i < 2; i++) {
+        h.branches[i].angle = i * 0.5 * UNIT_PI;
+        h.branches[i].length = 20;
+        h.branches[i].width = width;
+    }
+    return h;
+}
+
+static asj_hypothesis of_octave(int32_t octave, double x, double y, double width)
+{
+    asj_hypothesis h = corner(x, y, width);
+    asj_octaves_map(&h, octave);
+    return h;
+}
+
+static size_t merge(asj_hypothesis *list, size_t count)
+{
+    asj_detect_options options;
+    asj_detect_options_init(&options);
+    int32_t *cells = malloc(asj_octaves_cells(count, 640, 480) * sizeof *cells);
+    assert_non_null(cells);
+    const size_t kept = asj_octaves_merge(list, count, &options, 640, 480, cells);
+    free(cells);
+    return kept;
+}
+
+static void test_range(void **state)
+{
+    asj_detect_options options;
+    (void)state;
+    asj_detect_options_init(&options);
+    asj_octave_range range = asj_octaves_of(&options, 640, 480); /* 480, 240, 120, 60 */
+    assert_int_equal(range.first, 0);
+    assert_int_equal(range.end, 4);
+    assert_true(range.pixels == 640 * 480 * (1 + 0.25 + 0.0625 + 0.015625));
+    options.octaves = 2;
+    options.first_octave = 1;
+    range = asj_octaves_of(&options, 640, 480);
+    assert_int_equal(range.first, 1);
+    assert_int_equal(range.end, 3);
+    options.first_octave = 15; /* the coarsest there is */
+    range = asj_octaves_of(&options, 640, 480);
+    assert_int_equal(range.first, 3);
+    assert_int_equal(range.end, 4);
+    range = asj_octaves_of(&options, 1, 1);
+    assert_int_equal(range.first, 0);
+    assert_int_equal(range.end, 1);
+}
+
+/* The corner between the first four pixels of level 0 is the centre of pixel 0 of level 1. */
+static void test_map(void **state)
+{
+    asj_hypothesis h = of_octave(1, 0, 10, 1);
+    (void)state;
+    assert_true(h.x == 0.5 && h.y == 20.5 && h.radius == 14 && h.octave == 1);
+    assert_true(h.branches[1].length == 40 && h.branches[1].width == 1 && h.branches[1].octave == 1);
+    unit_near("variance", 0, 0, h.location_variance, 0.04, 1e-12);
+}
+
+static void test_finest_sharp_one_stays(void **state)
+{
+    asj_hypothesis list[3] = {of_octave(2, 25, 25, 0.7), of_octave(0, 101, 101, 1.2), of_octave(1, 50, 50, 0.8)};
+    (void)state;
+    assert_int_equal(merge(list, 3), 1);
+    assert_int_equal(list[0].octave, 0);
+    assert_true(list[0].x == 101);
+}
+
+static void test_soft_one_gives_way(void **state)
+{
+    asj_hypothesis list[2] = {of_octave(0, 101, 101, 2.0), of_octave(1, 50, 50, 1.0)}, alone = list[0], wide = corner(9, 9, 5);
+    (void)state;
+    assert_int_equal(merge(list, 2), 1);
+    assert_int_equal(list[0].octave, 1);
+    assert_int_equal(merge(&alone, 1), 1); /* nothing coarser is there */
+    assert_int_equal(merge(&wide, 1), 0);  /* a gradient of light */
+}
+
+static void test_others_stay(void **state)
+{
+    asj_hypothesis far[2] = {of_octave(0, 101, 101, 1), of_octave(1, 53.5, 50, 1)}; /* 6.5 px = 3.25 of the coarser */
+    asj_hypothesis turned[2] = {of_octave(0, 101, 101, 1), of_octave(1, 50, 50, 1)};
+    (void)state;
+    for (int i = 0; i < 2; i++)
+        turned[1].branches[i].angle += 0.7 + UNIT_PI; /* no direction in common */
+    assert_int_equal(merge(far, 2), 2);
+    assert_int_equal(merge(turned, 2), 2);
+}
+
+/* A third branch of the coarser octave joins when it is too soft for the finer one, in order of angle. */
+static void test_soft_branch_joins(void **state)
+{
+    (void)state;
+    for (int soft = 0; soft < 2; soft++) {
+        asj_hypothesis list[2] = {of_octave(0, 100.5, 100.5, 1), corner(50, 50, 0.8)};
+        list[1].branch_count = 3;
+        list[1].branches[2] = list[1].branches[1];
+        list[1].branches[1].angle = 0.25 * UNIT_PI;
+        list[1].branches[1].width = soft ? 1.2 : 0.5;
+        asj_octaves_map(&list[1], 1);
+        assert_int_equal(merge(list, 2), 1);
+        assert_int_equal(list[0].branch_count, soft ? 3 : 2);
+        if (soft)
+            assert_true(list[0].branches[1].octave == 1 && list[0].branches[1].length == 40 && list[0].branches[0].octave == 0);
+    }
+}
+
+/* A step blurred by 0.6 to 3 px, on its line and half a pixel beside it. Of sharp ones no more is known than that they are. */
+static void test_widths(void **state)
+{
+    static const double blurs[] = {0.6, 1, 1.5, 2, 3};
+    unit_counter counter;
+    asj_context *context = unit_context(&counter, 1);
+    (void)state;
+    for (size_t i = 0; i < UNIT_COUNT(blurs); i++) {
+        synth_scene scene;
+        asj_frame frame;
+        memset(&frame, 0, sizeof frame);
+        synth_scene_init(&scene, 80, 80, 60);
+        synth_add_rectangle(&scene, (synth_point){-9.5, 39.5}, 99, 60, 0, 160);
+        uint8_t *pixels = unit_picture(&scene, blurs[i], 0, 1);
+        const asj_image image = unit_gray8(pixels, 80, 80);
+        assert_int_equal(asj_frame_prepare(context, &frame, 80, 80), ASJ_OK);
+        assert_int_equal(asj_frame_load(context, &frame, &image), ASJ_OK);
+        for (int beside = 0; beside < 2; beside++) {
+            asj_hypothesis h = corner(20, 39.5 + 0.5 * beside, 0);
+            h.branch_count = 1;
+            asj_edge_widths(&frame, &h);
+            if (blurs[i] < 1)
+                assert_true(h.branches[0].width < 0.8);
+            else
+                unit_near("width", blurs[i], beside, h.branches[0].width, blurs[i], 0.15);
+        }
+        asj_frame_free(&context->memory, &frame);
+        free(pixels);
+    }
+    unit_context_free(&counter, &context);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_range),          cmocka_unit_test(test_map),
+        cmocka_unit_test(test_finest_sharp_one_stays), cmocka_unit_test(test_soft_one_gives_way),
+        cmocka_unit_test(test_others_stay),    cmocka_unit_test(test_soft_branch_joins),
+        cmocka_unit_test(test_widths),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
