@@ -22,7 +22,8 @@ class Features:
     The arrays are read-only views of the library's memory.
     """
 
-    #: (N,) records of the library's asj_junction: x, y, scale, log10_nfa, location_sd, branch_count, branches
+    #: (N,) records of the library's asj_junction: x, y, scale, log10_nfa, location_sd, branch_count, octave,
+    #: branches
     junctions: NDArray[Any]
     #: (L,) records of asj_l_junction: a junction, two of its branches in order, and their ends
     l_junctions: NDArray[Any]
