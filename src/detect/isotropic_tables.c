@@ -165,7 +165,6 @@ static void set_least(const asj_isotropic *test, asj_isotropic_radius *entry)
 void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves,
                             asj_isotropic *test)
 {
-
     for (int32_t m = 2; m <= ASJ_MAX_BRANCHES; m++)
         test->log_tests[m] = asj_nfa_log_junction_tests(width, height, options->isotropic_radii, options->sector_width, m) +
                              log(octaves);

@@ -35,7 +35,8 @@ static asj_status refine_all(asj_detection_run *run)
     for (int64_t i = 0; i < count; i++) {
         if (asj_watch_stops(&watch))
             continue;
-        asj_edge_widths(run->frame, &run->hypotheses[i]);
+        if (run->frame->octaves > 1) /* soft edges are looked for: how soft? */
+            asj_edge_widths(run->frame, &run->hypotheses[i]);
         asj_refine(run->context, run->frame, run->options, &run->hypotheses[i]);
         asj_validate(run->context, run->frame, run->options, &run->hypotheses[i]);
     }

@@ -135,5 +135,5 @@ double asj_strip_correlated(const asj_frame *frame, const asj_strip *strip, doub
 {
     const double log_tests = log_number_of_tests(frame), relative = strip->waver / NOISE_WAVER;
     const double alike = 1 + ALIKE * fmax(width - INDEPENDENT_WIDTH, 0) * relative * relative;
-    return strip->log_nfa < log_tests ? log_tests + (strip->log_nfa - log_tests) / alike : strip->log_nfa;
+    return alike > 1 && strip->log_nfa < log_tests ? log_tests + (strip->log_nfa - log_tests) / alike : strip->log_nfa;
 }

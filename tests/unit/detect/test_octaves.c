@@ -40,6 +40,7 @@ static size_t merge(asj_hypothesis *list, size_t count)
 {
     asj_detect_options options;
     asj_detect_options_init(&options);
+    options.octaves = 16;
     int32_t *cells = malloc(asj_octaves_cells(count, 640, 480) * sizeof *cells);
     assert_non_null(cells);
     const size_t kept = asj_octaves_merge(list, count, &options, 640, 480, cells);
@@ -52,6 +53,7 @@ static void test_range(void **state)
     asj_detect_options options;
     (void)state;
     asj_detect_options_init(&options);
+    options.octaves = 16;
     asj_octave_range range = asj_octaves_of(&options, 640, 480); /* 480, 240, 120, 60 */
     assert_int_equal(range.first, 0);
     assert_int_equal(range.end, 4);
