@@ -148,7 +148,8 @@ static void tiff_with_long_sizes(void **state)
                                           1, 1, 16, 0, 1, 0, 0, 0, 38, 0, 0, 0, 0, 0, 0, 0, 0x30, 0x75, 0, 0, 0, 0, 0, 0};
     (void)state;
     assert_cheap(image, write_bytes("big.tif", big, sizeof big), ASJ_ERROR_LIMIT);
-    assert_cheap(image, write_bytes("small.tif", small, sizeof small), ASJ_ERROR_FORMAT);
+    assert_cheap(image, write_bytes("small.tif", small, sizeof small),
+                 strstr(asj_io_image_formats(), "TIFF") ? ASJ_ERROR_FORMAT : ASJ_ERROR_UNSUPPORTED);
 }
 
 static void pnm_with_a_comment_that_ends_twice(void **state)
