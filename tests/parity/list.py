@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """The table of operations in the documentation is what the build says: list.py PARITY README. Forms that this build or this
 processor lacks ("?") are left to builds that have them."""
+import os
+import shlex
 import subprocess
 import sys
 
@@ -19,7 +21,8 @@ def documented(path):
 
 
 def main(parity, readme):
-    found = rows(subprocess.run([parity, "--list"], capture_output=True, text=True, check=True).stdout.split("\n"))
+    emulator = shlex.split(os.environ.get("MESON_EXE_WRAPPER", ""))  # a build for another machine
+    found = rows(subprocess.run(emulator + [parity, "--list"], capture_output=True, text=True, check=True).stdout.split("\n"))
     shown = documented(readme)
     if len(found) < 2 or len(found) != len(shown):
         print(f"{len(found)} lines of parity --list, {len(shown)} in {readme}")
