@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* The embedded programs, built for the device when one of their kernels is first asked for, or taken from the store (cache.c). */
 #include "program.h"
 #include "cache.h"
 #include "error.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* A loop of many threads asks the caller whether to go on: one of them asks, the others see the answer. See watch.h. */
 #include "watch.h"
 #include "threads.h"
 

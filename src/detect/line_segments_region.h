@@ -8,7 +8,7 @@
 /* cos of the angle tolerance, 22.5 degrees: p = 1/8 of all directions. */
 #define ASJ_REGION_COSINE 0.92387953251128676
 
-/* A region in the making. `samples` and `used` belong to the caller: as many elements as the field has samples. */
+/* A region while it grows. `samples` and `used` belong to the caller: as many elements as the field has samples. */
 typedef struct asj_region {
     int32_t *samples;
     uint8_t *used;      /* 1: sample belongs to a region that was kept, or to this one */

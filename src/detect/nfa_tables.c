@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Nodes and weights of Gauss-Legendre quadrature, 16 points (Abramowitz and Stegun, table 25.4); the other half mirrors them. */
 #include "nfa_tables.h"
 
 const double asj_nfa_gauss_node[ASJ_NFA_GAUSS] = {

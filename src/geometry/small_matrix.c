@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Products, inverses and decompositions of matrices of a few rows. See small_matrix.h. */
 #include "small_matrix.h"
 
 #include <math.h>

@@ -87,7 +87,7 @@ static void keep_line(void *user, int32_t level, const char *message)
     snprintf(line, 256, "%s", message);
 }
 
-/* Each form that runs here is had by its name; of the others the log says why not, and the best is one that runs. */
+/* Each form that runs here can be asked for by its name; of the others the log says why not, and the best is one that runs. */
 static void test_simd(void **state)
 {
     (void)state;

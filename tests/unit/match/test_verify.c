@@ -102,7 +102,7 @@ static void a_t_needs_more(void **state)
     unit_context_free(&counter, &context);
 }
 
-static void far_witnesses_say_little(void **state)
+static void far_neighbours_say_little(void **state)
 {
     (void)state;
     unit_counter counter = {0, 0, 0, 0};
@@ -141,7 +141,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_contradicted_goes),
         cmocka_unit_test(a_t_needs_more),
-        cmocka_unit_test(far_witnesses_say_little),
+        cmocka_unit_test(far_neighbours_say_little),
         cmocka_unit_test(without_memory_it_says_so),
     };
     return cmocka_run_group_tests_name("verify", tests, NULL, NULL);
