@@ -105,7 +105,7 @@ fewer_parts() {
     root=$whole/out/without-opencl
     rm -rf "$root/src" "$root/kernels" && mkdir -p "$root" &&
         (cd "$whole" &&
-            cp -R -p README.md CHANGELOG.md LICENSE cli include meson.build meson_options.txt scripts src tests "$root") &&
+            cp -R -p README.md CHANGELOG.md LICENSE bindings cli include meson.build meson_options.txt scripts src tests "$root") &&
         rm -rf "$root/src/cl" && build_and_test build-fewer '--no-suite accuracy --no-suite experiments' \
         -Djpeg=disabled -Dtiff=disabled -Dwebp=disabled -Djpeg2000=disabled -Dopencv=disabled -Dcairo=disabled \
         -Dopenmp=disabled -Dio=enabled -Dcli=enabled -Dtests=enabled --werror
