@@ -75,5 +75,5 @@ on_aarch64() {
         skipped=$((skipped + 1))
     fi
     build_and_test build-aarch64 "$wanted --timeout-multiplier 4" --cross-file "$arm/cross.ini" -Dio=disabled -Dopencv=disabled \
-        -Dcairo=disabled -Dcli=disabled -Dopencl=disabled -Dopenmp=enabled -Dsimd=enabled -Dtests=auto --werror
+        -Dcairo=disabled -Dcli=disabled -Dopencl=disabled -Dthreads=enabled -Dsimd=enabled -Dtests=auto --werror
 }

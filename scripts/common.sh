@@ -80,7 +80,6 @@ look_for() {
         case $more in
         cmocka) want libcmocka-dev pkg-config --exists cmocka ;;
         clang) want clang clang --version ;;
-        libomp) want libomp-dev eval 'printf "#include <omp.h>\n" | clang -fopenmp -fsyntax-only -x c -' ;;
         venv) want python3-venv python3 -c 'import venv, ensurepip' ;;
         opencl) want opencl-headers has_opencl_headers ;;
         pocl) want 'pocl-opencl-icd ocl-icd-libopencl1' has_opencl_driver ;;
@@ -118,7 +117,7 @@ apt() {
         apt-get -q -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# need [cmocka] [clang] [libomp] [mandoc] [venv] [opencl] [pocl] [oclgrind] [locale]: installs what is missing for the build, and
+# need [cmocka] [clang] [mandoc] [venv] [opencl] [pocl] [oclgrind] [locale]: installs what is missing for the build, and
 # for these.
 need() {
     mkdir -p "$logs" && [ -w "$logs" ] || fail "cannot write into $logs"

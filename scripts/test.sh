@@ -108,7 +108,7 @@ fewer_parts() {
             cp -R -p README.md CHANGELOG.md LICENSE bindings cli include meson.build meson_options.txt scripts src tests "$root") &&
         rm -rf "$root/src/cl" && build_and_test build-fewer '--no-suite accuracy --no-suite experiments' \
         -Djpeg=disabled -Dtiff=disabled -Dwebp=disabled -Djpeg2000=disabled -Dopencv=disabled -Dcairo=disabled \
-        -Dopenmp=disabled -Dio=enabled -Dcli=enabled -Dtests=enabled --werror
+        -Dthreads=disabled -Dio=enabled -Dcli=enabled -Dtests=enabled --werror
     state_of_fewer=$?
     root=$whole
     return $state_of_fewer
@@ -153,7 +153,7 @@ start_of_all=$(date +%s)
 ASJ_REQUIRE_OPENCL=1 # a test that finds no device fails: PoCL is there
 export ASJ_REQUIRE_OPENCL
 if [ "$everything" = true ]; then
-    need cmocka clang libomp mandoc venv opencl pocl oclgrind locale
+    need cmocka clang mandoc venv opencl pocl oclgrind locale
     step tests build_and_test build-test '' -Dauto_features=enabled --werror
     more_checks
 else

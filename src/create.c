@@ -114,7 +114,9 @@ asj_status asj_context_create_from(const char *library, const asj_context_option
     context->memory = memory;
     context->options = *options;
     context->threads = asj_thread_count(options->threads);
-    asj_status status = fill_tables(context);
+    asj_status status = asj_pool_open(context);
+    if (status == ASJ_OK)
+        status = fill_tables(context);
     if (status == ASJ_OK)
         status = asj_nfa_open(context);
     if (status == ASJ_OK)

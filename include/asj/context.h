@@ -100,12 +100,20 @@ typedef struct asj_kernel_cache {
     void *user;
 } asj_kernel_cache;
 
+/* Threads of the caller's own, for programs that have a pool already. Calls task(job, number) once for each number 0 .. count - 1,
+ * on any threads, at once or one after the other, and returns when all have returned. The tasks take their work from one queue, so
+ * one that begins late finds nothing left to do and returns at once. `count` is at most the number of threads of the context.
+ * Called from the thread that calls the library, a few dozen times a call. Progress is reported in the middle of a step only while
+ * a task runs on that thread. A library that was built without threads does not call it. */
+typedef void (*asj_parallel_task)(void *job, int32_t number);
+typedef void (*asj_parallel_callback)(void *user, int32_t count, asj_parallel_task task, void *job);
+
 /* How a context is made. Fill it with asj_context_options_init() and change what you need: fields added later take their
  * defaults from there. */
 typedef struct asj_context_options {
     int32_t backend;                /* ASJ_BACKEND_..., default auto */
     int32_t threads;                /* threads of the CPU path, 0 .. 256; default 0 = as many as processors. The results do
-                                     * not depend on it. 1 when the library was built without OpenMP. */
+                                     * not depend on it. 1 when the library was built without threads. */
     const char *device;             /* which OpenCL device: its number in asj_device_list, "gpu", "cpu", "accelerator", or a part
                                      * of its name or its platform's, upper or lower case; the first that can be used is taken.
                                      * Default NULL = any, GPUs first. ASJ_BACKEND_AUTO looks at GPUs only. */
@@ -119,16 +127,21 @@ typedef struct asj_context_options {
     asj_dump_callback dump;         /* default NULL; costs nothing when NULL */
     void *dump_user;
     asj_kernel_cache kernel_cache;  /* default: none */
-    uint64_t reserved[13];          /* zero */
+    asj_parallel_callback parallel; /* default NULL = threads of the context's own, which sleep between loops */
+    void *parallel_user;
+    uint64_t reserved[11];          /* zero */
 } asj_context_options;
 
 /* Fills in the defaults. `options` may not be NULL (it is then left alone). */
 ASJ_API void asj_context_options_init(asj_context_options *options);
 
 /* Everything that lives from call to call: tables, scratch memory, threads, device. A context serves one thread at a time;
- * several contexts may run at once, and there is no state outside them but a lock under which OpenCL
- * starts. About 1 MB, plus scratch memory of the detector and the matcher, which is kept for the next call: a call that
- * does what the one before did allocates nothing but its result. What several calls in a row had no use for is given back. */
+ * several contexts may run at once, and there is no state outside them but a lock under which OpenCL starts. About 1 MB, plus
+ * scratch memory of the detector and the matcher, which is kept for the next call: a call that does what the one before did
+ * allocates nothing but its result. What several calls in a row had no use for is given back.
+ * Threads, one less than `threads`, are made by the first call that is worth them; when the system gives fewer, these do. They
+ * sleep when there is no call, block all signals, and end in asj_context_free(). The child of a fork() that did not come in the
+ * middle of a call may go on with a context that has no device, and makes threads of its own. */
 typedef struct asj_context asj_context;
 
 /* Makes a context. `options` NULL = the defaults. On success the caller owns *context until asj_context_free().

@@ -231,6 +231,24 @@ static void judge_row(const batch *b, int32_t y, const uint32_t *peaks, asj_isot
     }
 }
 
+typedef struct job {
+    const batch *b;
+    const uint32_t *peaks;
+    const size_t *starts; /* of candidates, for each row from `top` on */
+    int32_t top;
+    asj_isotropic_junction *junctions;
+} job;
+
+static void judge_rows(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    const size_t numbers = (size_t)(j->b->test->radius_count * j->b->test->max_branches), *starts = j->starts;
+    const int32_t first = j->b->first;
+    for (int64_t y = first + part->first; y < first + part->end; y++)
+        judge_row(j->b, (int32_t)y, j->peaks + (starts[y - j->top] - starts[first - j->top]) * numbers,
+                  j->junctions + starts[y - j->top]);
+}
+
 /* Candidates whose peaks a buffer has room for. */
 static size_t most_candidates(const asj_context *context, size_t numbers)
 {
@@ -258,10 +276,8 @@ asj_status asj_cl_isotropic_rows(asj_context *context, const asj_isotropic *test
             status = find_peaks(context, detect, &b);
         if (status != ASJ_OK || b.count == 0)
             continue;
-        const uint32_t *peaks = detect->host_peaks.memory;
-#pragma omp parallel for num_threads(asj_threads_for(context, (int64_t)b.count, LEAST_CANDIDATES)) schedule(dynamic, 4)
-        for (int32_t y = first; y < last; y++)
-            judge_row(&b, y, peaks + (starts[y - top] - starts[first - top]) * numbers, junctions + starts[y - top]);
+        const job j = {&b, detect->host_peaks.memory, starts, top, junctions};
+        asj_parallel(context, asj_threads_for(context, (int64_t)b.count, LEAST_CANDIDATES), last - first, 4, judge_rows, &j);
     }
     return status;
 }

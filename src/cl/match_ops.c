@@ -100,6 +100,20 @@ static asj_status send_planes(asj_context *context, struct asj_cl_match *match, 
     return status;
 }
 
+typedef struct grid_job {
+    const asj_match_options *options;
+    const asj_image_features *features;
+    asj_patch_grid *grids;
+} grid_job;
+
+static void set_grids(const void *data, const asj_part *part)
+{
+    const grid_job *j = data;
+    for (int64_t f = part->first; f < part->end; f++)
+        asj_patch_grid_set(&j->features->pyramid, &j->features->l_junctions.frames[f], j->options->patch_size,
+                           j->options->window_start, j->options->window_end, &j->grids[f]);
+}
+
 static asj_status send_grids(asj_context *context, struct asj_cl_match *match, const asj_match_options *options,
                              const asj_image_features *features)
 {
@@ -111,10 +125,8 @@ static asj_status send_grids(asj_context *context, struct asj_cl_match *match, c
     if (status != ASJ_OK)
         return status;
     asj_patch_grid *grids = match->host_grids.memory;
-#pragma omp parallel for num_threads(context->threads) schedule(static)
-    for (int64_t f = 0; f < count; f++)
-        asj_patch_grid_set(&features->pyramid, &features->l_junctions.frames[f], options->patch_size, options->window_start,
-                           options->window_end, &grids[f]);
+    const grid_job j = {options, features, grids};
+    asj_parallel(context, context->threads, count, 0, set_grids, &j);
     return asj_cl_write(context, &match->grids, 0, grids, bytes);
 }
 

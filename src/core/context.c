@@ -22,6 +22,7 @@ void asj_context_free(asj_context **pointer)
     asj_context *context = *pointer;
     if (context->cl)
         context->device->free(context);
+    asj_kept_free(&context->memory, &context->pool);
     asj_kept_free(&context->memory, &context->detector);
     asj_kept_free(&context->memory, &context->null_model);
     asj_kept_free(&context->memory, &context->tables);

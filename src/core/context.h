@@ -32,6 +32,7 @@ struct asj_context {
     struct asj_cl *cl_aside;      /* the device, and its operations, while a call does without it (backend.h) */
     const asj_ops *ops_aside;
     const asj_device_calls *device;
+    asj_kept pool;                /* core/threads.h */
     asj_kept tables;              /* tables.h: what the operations above point to */
     asj_kept null_model;          /* detect/nfa.h */
     asj_kept detector;            /* detect/detect.h: scratch and tables of the detector */

@@ -195,22 +195,39 @@ static void prepare_conversion(const asj_context *context, const asj_image *imag
     c->levels = white < 255 || white > 255 ? c->table : NULL;
 }
 
+typedef struct job {
+    const conversion *c;
+    asj_frame *frame;
+    const asj_image *image;
+    ptrdiff_t stride;
+    int32_t *failed;
+} job;
+
+static int load_row_at(const job *j, int64_t y)
+{
+    return load_row(j->c, j->frame->gray + y * j->frame->stride, (const char *)j->image->data + y * j->stride, j->image);
+}
+
+static void load_rows(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t y = part->first; y < part->end; y++)
+        if (!load_row_at(j, y))
+            __atomic_store_n(j->failed, 1, __ATOMIC_RELAXED);
+}
+
 asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image)
 {
     const ptrdiff_t row_bytes = (ptrdiff_t)image->width * find_format(image->format)->bytes_per_pixel;
     const ptrdiff_t stride = image->stride ? image->stride : row_bytes;
     const int32_t height = image->height;
-    int32_t failed = 0; /* not a reduction, for which some compilers export a symbol of their own */
+    int32_t failed = 0;
     conversion c;
     prepare_conversion(context, image, &c);
-#pragma omp parallel for num_threads(asj_threads_for(context, (int64_t)image->width * height, LEAST_PIXELS)) schedule(static)
-    for (int32_t y = 0; y < height; y++)
-        if (!load_row(&c, frame->gray + (ptrdiff_t)y * frame->stride, (const char *)image->data + (ptrdiff_t)y * stride, image)) {
-#pragma omp atomic write
-            failed = 1;
-        }
+    const job j = {&c, frame, image, stride, &failed};
+    asj_parallel(context, asj_threads_for(context, (int64_t)image->width * height, LEAST_PIXELS), height, 0, load_rows, &j);
     for (int32_t y = 0; failed && y < height; y++)
-        if (!load_row(&c, frame->gray + (ptrdiff_t)y * frame->stride, (const char *)image->data + (ptrdiff_t)y * stride, image))
+        if (!load_row_at(&j, y))
             return asj_fail(context, ASJ_ERROR_IMAGE, "row %d of the image holds NaN or infinity", (int)y);
     return ASJ_OK;
 }

@@ -4,12 +4,14 @@
  * Why integers: planes and interpolation weights (8 bits) are exact, so every back end can give the same bits. The loss is below
  * 1/256 of a grey level. */
 #include "pyramid.h"
+#include "threads.h"
 
 #include <math.h>
 #include <string.h>
 
 #define WEIGHT_BITS 14
 #define LARGEST_RADIUS ASJ_BLUR_RADIUS
+#define LEAST_PIXELS 32768 /* for a thread */
 
 /* Taps of a Gaussian over 2 radius + 1 pixels that sum to 2^14 exactly: the centre takes what rounding leaves. */
 static int32_t gaussian(double sigma, int32_t *taps)
@@ -71,6 +73,39 @@ static void copy_border(uint16_t *plane, int32_t width, int32_t height)
     memcpy(plane + height * stride, plane + (height - 1) * stride, (size_t)stride * sizeof *plane);
 }
 
+typedef struct blur_job {
+    const asj_pyramid_ops *ops;
+    const asj_frame *frame;
+    const int32_t *taps;
+    int32_t radius;
+    size_t padded;     /* elements of a strip */
+    uint16_t *scratch; /* a strip for each row */
+    uint16_t *across, *plane;
+} blur_job;
+
+static void blur_lines(const void *data, const asj_part *part)
+{
+    const blur_job *j = data;
+    const int32_t width = j->frame->width;
+    for (int64_t y = part->first; y < part->end; y++) {
+        uint16_t *line = j->scratch + (size_t)y * j->padded + LARGEST_RADIUS;
+        memcpy(line, j->frame->gray + y * j->frame->stride, (size_t)width * sizeof *line);
+        for (int32_t i = 1; i <= j->radius; i++) {
+            line[-i] = line[0];
+            line[width - 1 + i] = line[width - 1];
+        }
+        blur_line(j->ops, line, width, j->taps, j->radius, j->across + y * (width + 1));
+    }
+}
+
+static void blur_columns(const void *data, const asj_part *part)
+{
+    const blur_job *j = data;
+    const int32_t width = j->frame->width, stride = width + 1;
+    for (int64_t y = part->first; y < part->end; y++)
+        blur_column(j->ops, j->across, stride, width, j->frame->height, (int32_t)y, j->taps, j->radius, j->plane + y * stride);
+}
+
 /* Blurs the frame's grey plane into level 0. */
 static asj_status fill_base(asj_context *context, const asj_frame *frame, double smoothing, asj_pyramid *pyramid)
 {
@@ -91,34 +126,39 @@ static asj_status fill_base(asj_context *context, const asj_frame *frame, double
         asj_release(&context->memory, scratch);
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory to blur an image");
     }
-#pragma omp parallel for num_threads(context->threads) schedule(static)
-    for (int32_t y = 0; y < height; y++) {
-        uint16_t *line = scratch + (size_t)y * padded + LARGEST_RADIUS;
-        memcpy(line, frame->gray + y * frame->stride, (size_t)width * sizeof *line);
-        for (int32_t i = 1; i <= radius; i++) {
-            line[-i] = line[0];
-            line[width - 1 + i] = line[width - 1];
-        }
-        blur_line(context->ops->pyramid, line, width, taps, radius, across + y * stride);
-    }
-#pragma omp parallel for num_threads(context->threads) schedule(static)
-    for (int32_t y = 0; y < height; y++)
-        blur_column(context->ops->pyramid, across, stride, width, height, y, taps, radius, pyramid->plane[0] + y * stride);
+    const blur_job j = {context->ops->pyramid, frame, taps, radius, padded, scratch, across, pyramid->plane[0]};
+    const int32_t threads = asj_threads_for(context, (int64_t)width * height, LEAST_PIXELS);
+    asj_parallel(context, threads, height, 0, blur_lines, &j);
+    asj_parallel(context, threads, height, 0, blur_columns, &j);
     asj_release(&context->memory, across);
     asj_release(&context->memory, scratch);
     return ASJ_OK;
 }
 
-static void halve(const uint16_t *from, int32_t from_width, uint16_t *to, int32_t width, int32_t height, int32_t threads)
+/* A level, and that above it. */
+typedef struct halve_job {
+    const uint16_t *from;
+    uint16_t *to;
+    ptrdiff_t from_stride, stride;
+    int32_t width;
+} halve_job;
+
+static void halve_rows(const void *data, const asj_part *part)
 {
-    const ptrdiff_t from_stride = from_width + 1, stride = width + 1;
-    (void)threads; /* without OpenMP */
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int32_t y = 0; y < height; y++) {
-        const uint16_t *upper = from + 2 * y * from_stride, *lower = upper + from_stride;
-        for (int32_t x = 0; x < width; x++)
-            to[y * stride + x] = (uint16_t)((upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1] + 2) >> 2);
+    const halve_job *j = data;
+    for (int64_t y = part->first; y < part->end; y++) {
+        const uint16_t *upper = j->from + 2 * y * j->from_stride, *lower = upper + j->from_stride;
+        uint16_t *to = j->to + y * j->stride;
+        for (int32_t x = 0; x < j->width; x++)
+            to[x] = (uint16_t)((upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1] + 2) >> 2);
     }
+}
+
+static void halve(const asj_context *context, asj_pyramid *pyramid, int32_t level)
+{
+    const int32_t width = pyramid->width[level], height = pyramid->height[level];
+    const halve_job j = {pyramid->plane[level - 1], pyramid->plane[level], pyramid->width[level - 1] + 1, width + 1, width};
+    asj_parallel(context, asj_threads_for(context, (int64_t)width * height, LEAST_PIXELS), height, 0, halve_rows, &j);
 }
 
 static asj_status fill(asj_context *context, const asj_frame *frame, double smoothing, asj_pyramid *pyramid)
@@ -139,8 +179,7 @@ static asj_status fill(asj_context *context, const asj_frame *frame, double smoo
         return status;
     for (int32_t l = 0; l < pyramid->levels; l++) {
         if (l > 0)
-            halve(pyramid->plane[l - 1], pyramid->width[l - 1], pyramid->plane[l], pyramid->width[l], pyramid->height[l],
-                  context->threads);
+            halve(context, pyramid, l);
         copy_border(pyramid->plane[l], pyramid->width[l], pyramid->height[l]);
     }
     return ASJ_OK;

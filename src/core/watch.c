@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* A loop of many threads asks the caller whether to go on: one of them asks, the others see the answer. See watch.h. */
 #include "watch.h"
-#include "threads.h"
 
 #define PAUSE 50 /* ms */
 
@@ -13,19 +12,16 @@ void asj_watch_start(asj_watch *watch, asj_context *context, int32_t stage)
     watch->next_ms = asj_clock_ms() + PAUSE;
 }
 
-int asj_watch_stops(asj_watch *watch)
+int asj_watch_stops(asj_watch *watch, const asj_part *part)
 {
-    int32_t stopped;
     if (!watch->context->options.progress)
         return 0;
-#pragma omp atomic read
-    stopped = watch->stopped;
-    if (stopped || asj_thread_number() != 0 || asj_clock_ms() < watch->next_ms)
+    int32_t stopped = __atomic_load_n(&watch->stopped, __ATOMIC_RELAXED);
+    if (stopped || (part && !part->caller) || asj_clock_ms() < watch->next_ms)
         return stopped;
     stopped = asj_progress(watch->context, watch->stage, 0) != ASJ_OK; /* no farther than before: progress never falls */
     watch->next_ms = asj_clock_ms() + PAUSE;
-#pragma omp atomic write
-    watch->stopped = stopped;
+    __atomic_store_n(&watch->stopped, stopped, __ATOMIC_RELAXED);
     return stopped;
 }
 

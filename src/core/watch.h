@@ -4,7 +4,7 @@
 #ifndef ASJ_SRC_WATCH_H
 #define ASJ_SRC_WATCH_H
 
-#include "context.h"
+#include "threads.h"
 
 typedef struct asj_watch {
     asj_context *context;
@@ -15,8 +15,9 @@ typedef struct asj_watch {
 
 void asj_watch_start(asj_watch *watch, asj_context *context, int32_t stage);
 
-/* 1 = leave the loop. From any thread of a parallel region; a clock is read each time, which takes some 30 ns. */
-int asj_watch_stops(asj_watch *watch);
+/* 1 = leave the loop. From any thread; `part` is what that thread does of the loop, NULL where the loop is not shared out. A clock
+ * is read each time, which takes some 30 ns. */
+int asj_watch_stops(asj_watch *watch, const asj_part *part);
 
 /* After the loop: ASJ_OK or ASJ_ERROR_CANCELLED. */
 asj_status asj_watch_end(const asj_watch *watch);

@@ -56,6 +56,7 @@ typedef struct asj_detection_run {
 
 /* Junctions that a thread needs to be worth waking in steps that fit lines: about 40 us. */
 #define ASJ_LEAST_JUNCTIONS 4
+#define ASJ_JUNCTIONS_AT_ONCE 2
 
 /* Checks the arguments of a public function that writes to `output`, makes the tables for the options (NULL = default) and the
  * planes for the image. Whatever the result, asj_detection_run_end() releases what the run holds. */

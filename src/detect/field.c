@@ -282,6 +282,25 @@ void asj_field_tile(const asj_field *field, const asj_frame *frame, const asj_ti
     }
 }
 
+typedef struct job {
+    asj_context *context;
+    const asj_field *field;
+    const asj_frame *frame;
+    int32_t top, bottom, per_tile;
+    const asj_scratch *scratch;
+    uint16_t *masks;
+} job;
+
+static void do_tiles(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t i = part->first; i < part->end; i++) {
+        const int32_t run = (int32_t)i * j->per_tile, left = j->frame->blocks - run;
+        const asj_tile tile = {run, left < j->per_tile ? left : j->per_tile, j->top, j->bottom};
+        j->context->ops->field->tile(j->field, j->frame, &tile, asj_thread_scratch(j->scratch, part), j->masks);
+    }
+}
+
 asj_status asj_field_rows(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
                           const asj_scratch *scratch, uint16_t *masks)
 {
@@ -289,12 +308,8 @@ asj_status asj_field_rows(asj_context *context, const asj_field *field, const as
     /* tiles are half as wide where there are so few that threads would wait for the last one */
     const int32_t largest = field->step * ASJ_FIELD_TILE / ASJ_LANES, many = 8 * threads * largest;
     const int32_t per_tile = threads == 1 || frame->blocks >= many ? largest : largest / 2;
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int32_t run = 0; run < frame->blocks; run += per_tile) {
-        const int32_t left = frame->blocks - run;
-        const asj_tile tile = {run, left < per_tile ? left : per_tile, top, bottom};
-        context->ops->field->tile(field, frame, &tile, asj_thread_scratch(scratch), masks);
-    }
+    const job j = {context, field, frame, top, bottom, per_tile, scratch, masks};
+    asj_parallel(context, threads, (frame->blocks + per_tile - 1) / per_tile, 1, do_tiles, &j);
     return ASJ_OK;
 }
 

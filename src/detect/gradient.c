@@ -33,6 +33,8 @@
 
 #define SIGMA_0 (ASJ_GRADIENT_SIGMA / 10000.0)
 #define LEAST_PIXELS 32768 /* for a thread: about 40 us */
+#define BANDS_PER_THREAD 4 /* so that a thread that comes late costs little; each band sums up four rows more than it needs */
+#define LEAST_ROWS 32      /* of a band */
 
 typedef char arithmetic_shift_is_needed[(-3 >> 1) == -2 ? 1 : -1];
 
@@ -163,23 +165,37 @@ static void standardise(const asj_frame *frame, int16_t *plane)
         }
 }
 
+typedef struct job {
+    const asj_gradient_ops *ops;
+    const asj_frame *frame;
+    uint32_t epsilon;
+    int32_t bands;
+    asj_scratch scratch;
+} job;
+
+static void do_bands(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t band = part->first; band < part->end; band++) {
+        const int32_t first = (int32_t)(j->frame->height * band / j->bands);
+        const int32_t last = (int32_t)(j->frame->height * (band + 1) / j->bands);
+        uint16_t *scratch = asj_thread_scratch(&j->scratch, part);
+        memset(scratch, 0, j->scratch.size * sizeof *scratch);
+        gradient_band(j->ops, j->frame, j->epsilon, first, last, scratch);
+    }
+}
+
 asj_status asj_gradient(asj_context *context, asj_frame *frame, const asj_detect_options *options)
 {
     const uint32_t epsilon = (uint32_t)lrint(256 * options->gradient_epsilon);
-    const int32_t bands = asj_threads_for(context, (int64_t)frame->width * frame->height, LEAST_PIXELS);
+    const int32_t threads = asj_threads_for(context, (int64_t)frame->width * frame->height, LEAST_PIXELS);
+    const int32_t many = BANDS_PER_THREAD * threads, bands = threads == 1 || frame->height < LEAST_ROWS * many ? threads : many;
     const size_t size = gradient_scratch(frame->width);
-    asj_status status = asj_grow(&context->memory, &frame->rows, &frame->row_capacity, (size_t)bands * size, sizeof(uint16_t), 0);
+    asj_status status = asj_grow(&context->memory, &frame->rows, &frame->row_capacity, (size_t)threads * size, sizeof(uint16_t), 0);
     if (status != ASJ_OK)
         return asj_fail(context, status, "no memory for the gradient's rows");
-    uint16_t *scratch = frame->rows;
-    memset(scratch, 0, (size_t)bands * size * sizeof *scratch);
-#pragma omp parallel for num_threads(bands) schedule(static)
-    for (int32_t band = 0; band < bands; band++) {
-        const int32_t first = (int32_t)((int64_t)frame->height * band / bands);
-        const int32_t last = (int32_t)((int64_t)frame->height * (band + 1) / bands);
-        if (first < last)
-            gradient_band(context->ops->gradient, frame, epsilon, first, last, scratch + (size_t)band * size);
-    }
+    const job j = {context->ops->gradient, frame, epsilon, bands, {frame->rows, size}};
+    asj_parallel(context, threads, bands, 1, do_bands, &j);
     if (options->standardise) {
         standardise(frame, frame->gradient_x);
         standardise(frame, frame->gradient_y);

@@ -162,20 +162,37 @@ void asj_isotropic_band(const asj_isotropic *test, const asj_frame *frame, int32
 #define LEAST_CANDIDATES 64
 #define BANDS_PER_THREAD 4
 
+typedef struct job {
+    asj_context *context;
+    const asj_isotropic *test;
+    const asj_frame *frame;
+    const asj_candidate_rows *rows;
+    const asj_scratch *scratch;
+    asj_isotropic_junction *junctions;
+    int32_t bands;
+} job;
+
+static void test_bands(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    const asj_candidate_rows *rows = j->rows;
+    const int64_t count = rows->bottom - rows->top;
+    for (int64_t band = part->first; band < part->end; band++) {
+        const int32_t first = (int32_t)(count * band / j->bands), last = (int32_t)(count * (band + 1) / j->bands);
+        if (rows->starts[last] > rows->starts[first])
+            j->context->ops->isotropic->band(j->test, j->frame, rows->top + first, rows->top + last, rows->masks,
+                                             asj_thread_scratch(j->scratch, part), j->junctions + rows->starts[first]);
+    }
+}
+
 asj_status asj_isotropic_rows(asj_context *context, const asj_isotropic *test, const asj_frame *frame,
                               const asj_candidate_rows *rows, const asj_scratch *scratch, asj_isotropic_junction *junctions)
 {
     const int32_t count = rows->bottom - rows->top;
-    const size_t *starts = rows->starts;
-    const int32_t threads = asj_threads_for(context, (int64_t)starts[count], LEAST_CANDIDATES);
+    const int32_t threads = asj_threads_for(context, (int64_t)rows->starts[count], LEAST_CANDIDATES);
     const int32_t bands = threads == 1 || count < BANDS_PER_THREAD * threads ? threads : BANDS_PER_THREAD * threads;
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int32_t band = 0; band < bands; band++) {
-        const int32_t first = (int32_t)((int64_t)count * band / bands), last = (int32_t)((int64_t)count * (band + 1) / bands);
-        if (starts[last] > starts[first])
-            context->ops->isotropic->band(test, frame, rows->top + first, rows->top + last, rows->masks,
-                                          asj_thread_scratch(scratch), junctions + starts[first]);
-    }
+    const job j = {context, test, frame, rows, scratch, junctions, bands};
+    asj_parallel(context, threads, bands, 1, test_bands, &j);
     return ASJ_OK;
 }
 

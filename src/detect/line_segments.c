@@ -109,7 +109,7 @@ static asj_status test_all(search *s)
     for (int32_t i = 0; i < s->levels.order_count && status == ASJ_OK; i++) {
         if (s->region.used[s->levels.order[i]])
             continue;
-        status = asj_watch_stops(&watch) ? asj_watch_end(&watch) : test_region(s, s->levels.order[i]);
+        status = asj_watch_stops(&watch, NULL) ? asj_watch_end(&watch) : test_region(s, s->levels.order[i]);
     }
     return status;
 }

@@ -22,7 +22,7 @@ static asj_local_branch local_branch(const asj_detection_run *run, asj_field_bra
     return out;
 }
 
-static void field_row(const asj_detection_run *run, int32_t y, asj_local_branch *out)
+static void field_row(const asj_detection_run *run, int32_t y, uint16_t *scratch, asj_local_branch *out)
 {
     enum { PART = 2 * ASJ_FIELD_BATCH };
     const asj_frame *frame = run->frame;
@@ -32,22 +32,35 @@ static void field_row(const asj_detection_run *run, int32_t y, asj_local_branch 
         const int32_t count = frame->width - first < PART ? frame->width - first : PART;
         for (int32_t i = 0; i < count; i++)
             pixels[i] = (asj_pixel){first + i, y};
-        run->context->ops->field->pixels(run->field, frame, pixels, count, asj_thread_scratch(&run->scratch), found);
+        run->context->ops->field->pixels(run->field, frame, pixels, count, scratch, found);
         for (int32_t i = 0; i < count; i++)
             for (int b = 0; b < ASJ_FIELD_BRANCHES; b++)
                 *out++ = local_branch(run, found[i][b]);
     }
 }
 
+typedef struct job {
+    const asj_detection_run *run;
+    int32_t top;
+    asj_local_branch *branches;
+} job;
+
+static void do_rows(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t y = j->top + part->first; y < j->top + part->end; y++)
+        field_row(j->run, (int32_t)y, asj_thread_scratch(&j->run->scratch, part),
+                  j->branches + (size_t)y * (size_t)j->run->frame->width * ASJ_FIELD_BRANCHES);
+}
+
 static asj_status field_rows(const asj_detection_run *run, asj_local_branch *branches)
 {
-    const int32_t width = run->frame->width, height = run->frame->height;
+    const int32_t height = run->frame->height;
     asj_status status = asj_detection_run_progress(run, ASJ_STAGE_GRADIENT, 0.05);
     for (int32_t top = 0; status == ASJ_OK && top < height; top += ASJ_ROW_GROUP) {
         const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
-#pragma omp parallel for num_threads(run->context->threads) schedule(dynamic, 4)
-        for (int32_t y = top; y < bottom; y++)
-            field_row(run, y, branches + (size_t)y * (size_t)width * ASJ_FIELD_BRANCHES);
+        const job j = {run, top, branches};
+        asj_parallel(run->context, run->context->threads, bottom - top, 4, do_rows, &j);
         status = asj_detection_run_progress(run, ASJ_STAGE_CANDIDATES, (double)bottom / height);
     }
     return status;

@@ -29,36 +29,50 @@ static asj_status drop_known(asj_detection_run *run, int located)
     return ASJ_OK;
 }
 
+/* Hypotheses that are shared out. */
+typedef struct job {
+    asj_detection_run *run;
+    asj_watch *watch;
+} job;
+
+static void guess_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++)
+        asj_locate_guess(j->run->context, j->run->frame, j->run->options, &j->run->hypotheses[i]);
+}
+
 static asj_status guess_all(asj_detection_run *run)
 {
     asj_watch watch;
     const int64_t count = (int64_t)run->hypothesis_count;
-    const int32_t threads = asj_threads_for(run->context, count, LEAST_GUESSES);
-    (void)threads;
+    const job j = {run, &watch};
     asj_watch_start(&watch, run->context, ASJ_STAGE_LOCATE);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 16)
-    for (int64_t i = 0; i < count; i++)
-        if (!asj_watch_stops(&watch))
-            asj_locate_guess(run->context, run->frame, run->options, &run->hypotheses[i]);
+    asj_parallel(run->context, asj_threads_for(run->context, count, LEAST_GUESSES), count, 2 * ASJ_JUNCTIONS_AT_ONCE, guess_some,
+                 &j);
     return asj_watch_end(&watch);
+}
+
+static void locate_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    const asj_detection_run *run = j->run;
+    for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++) {
+        asj_locate(run->context, run->frame, run->options, &run->hypotheses[i]);
+        asj_reject_early(run->context, run->frame, run->options, &run->hypotheses[i]);
+        if (run->all_count > 0)
+            asj_edge_widths(run->frame, &run->hypotheses[i]);
+    }
 }
 
 static asj_status locate_all(asj_detection_run *run)
 {
     asj_watch watch;
     const int64_t count = (int64_t)run->hypothesis_count;
-    const int32_t threads = asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS);
-    (void)threads;
+    const job j = {run, &watch};
     asj_watch_start(&watch, run->context, ASJ_STAGE_LOCATE);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
-    for (int64_t i = 0; i < count; i++) {
-        if (asj_watch_stops(&watch))
-            continue;
-        asj_locate(run->context, run->frame, run->options, &run->hypotheses[i]);
-        asj_reject_early(run->context, run->frame, run->options, &run->hypotheses[i]);
-        if (run->all_count > 0)
-            asj_edge_widths(run->frame, &run->hypotheses[i]);
-    }
+    asj_parallel(run->context, asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS), count, ASJ_JUNCTIONS_AT_ONCE, locate_some,
+                 &j);
     return asj_watch_end(&watch);
 }
 

@@ -123,9 +123,7 @@ static size_t take_ray(size_t *next, size_t threads, size_t own, size_t count)
 {
     for (size_t k = 0; k < threads; k++) {
         const size_t part = (own + k) % threads, end = count * (part + 1) / threads;
-        size_t ray;
-#pragma omp atomic capture
-        ray = next[part]++;
+        const size_t ray = __atomic_fetch_add(&next[part], 1, __ATOMIC_RELAXED);
         if (ray < end)
             return ray;
     }
@@ -133,7 +131,7 @@ static size_t take_ray(size_t *next, size_t threads, size_t own, size_t count)
 }
 
 /* next[i]: see take_ray(). */
-static void follow_part(const follower *f, size_t *next, size_t threads, asj_ray *rays, size_t count)
+static void follow_part(const follower *f, const asj_part *part, size_t *next, size_t threads, asj_ray *rays, size_t count)
 {
     group *g = f->rays;
     g->count = g->missing = 0;
@@ -144,7 +142,7 @@ static void follow_part(const follower *f, size_t *next, size_t threads, asj_ray
             if (more)
                 asj_ray_walk_start(&rays[i], &g->walks[g->count++]);
         }
-        if (asj_watch_stops(f->watch))
+        if (asj_watch_stops(f->watch, part))
             return;
         advance_group(f);
     }
@@ -157,20 +155,38 @@ typedef struct workplaces {
     group *groups;
 } workplaces;
 
+typedef struct job {
+    asj_context *context;
+    const asj_scan *scan;
+    const asj_frame *frame;
+    const workplaces *w;
+    asj_watch *watch;
+    size_t threads;
+    asj_ray *rays;
+    size_t count;
+} job;
+
+/* As many followers as threads, each done once, by whoever comes; to one that comes late the others have left nothing. */
+static void follow_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t i = part->first; i < part->end; i++) {
+        const size_t own = (size_t)i;
+        const follower f = {j->context->ops->field, j->scan, j->frame, own, j->w->scratch + own * asj_field_scratch(j->scan->field),
+                            &j->w->groups[own], j->watch};
+        follow_part(&f, part, j->w->next, j->threads, j->rays, j->count);
+    }
+}
+
 static asj_status follow_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, const workplaces *w,
                         int32_t threads, asj_ray *rays, size_t count)
 {
     asj_watch watch;
+    const job j = {context, scan, frame, w, &watch, (size_t)threads, rays, count};
     asj_watch_start(&watch, context, ASJ_STAGE_SCAN);
     for (int32_t i = 0; i < threads; i++)
         w->next[i] = count * (size_t)i / (size_t)threads;
-#pragma omp parallel num_threads(threads)
-    {
-        const size_t thread = (size_t)asj_thread_number();
-        const follower f = {context->ops->field, scan, frame, thread, w->scratch + thread * asj_field_scratch(scan->field),
-                            &w->groups[thread], &watch};
-        follow_part(&f, w->next, (size_t)threads, rays, count);
-    }
+    asj_parallel(context, threads, threads, 1, follow_some, &j);
     return asj_watch_end(&watch);
 }
 

@@ -43,6 +43,20 @@ static void choose(const asj_detection_run *run, const asj_hypothesis *hypothesi
     }
 }
 
+/* Branches that are shared out. */
+typedef struct job {
+    const asj_detection_run *run;
+    const lists *l;
+    asj_watch *watch;
+} job;
+
+static void choose_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t b = part->first; b < part->end && !asj_watch_stops(j->watch, part); b++)
+        choose(j->run, j->l->hypotheses[b], j->l->rays + b * ORIENTATIONS, j->l->branches[b]);
+}
+
 static asj_status search(const asj_detection_run *run, const lists *l, size_t count)
 {
     const int64_t branches = (int64_t)count;
@@ -56,14 +70,11 @@ static asj_status search(const asj_detection_run *run, const lists *l, size_t co
     const asj_status status = run->context->ops->scan->rays(run->context, run->scan, run->frame, l->rays, count * ORIENTATIONS);
     if (status != ASJ_OK)
         return status;
-    const int32_t threads = asj_threads_for(run->context, branches, ASJ_LEAST_JUNCTIONS);
     asj_watch watch;
-    (void)threads;
+    const job j = {run, l, &watch};
     asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
-    for (int64_t b = 0; b < branches; b++)
-        if (!asj_watch_stops(&watch))
-            choose(run, l->hypotheses[b], l->rays + b * ORIENTATIONS, l->branches[b]);
+    asj_parallel(run->context, asj_threads_for(run->context, branches, ASJ_LEAST_JUNCTIONS), branches, ASJ_JUNCTIONS_AT_ONCE,
+                 choose_some, &j);
     return asj_watch_end(&watch);
 }
 

@@ -153,27 +153,61 @@ static int32_t pick(const asj_model *models, const ranked *order, int32_t count,
 /* --- all of it --------------------------------------------------------------------------------------------------------------- */
 
 typedef struct work {
+    asj_context *context;
     asj_memory *memory;
     asj_model *models, *starts;
     ranked *order;
     double *sum;
-    asj_adjust_scratch *scratch;
-    int32_t threads;
+    asj_adjust_scratch *scratch; /* for each thread */
 } work;
+
+/* What a loop over samples or models works on. */
+typedef struct job {
+    const asj_pairs *set;
+    const asj_search *search;
+    work *w;
+    asj_model *models;
+    int32_t first, count, rounds;
+} job;
+
+static void sample_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t n = part->first; n < part->end; n++) {
+        asj_model *m = &j->models[n];
+        const int32_t good = sample(j->set, j->w->sum, j->first, j->search, (uint64_t)n, m);
+        m->score = good ? asj_score(j->set, j->first, &m->view, LOOSE, &j->w->scratch[part->thread].score) : -HUGE_VAL;
+        j->w->order[n] = (ranked){m->score, (int32_t)n};
+    }
+}
 
 static void draw_samples(const asj_pairs *set, const asj_search *search, work *w)
 {
     const int32_t first = set->count < PRESELECTED ? set->count : PRESELECTED, samples = search->samples;
     for (int32_t k = 0; k < first; k++)
         w->sum[k] = (k > 0 ? w->sum[k - 1] : 0) + set->list[k].prior;
-#pragma omp parallel for num_threads(w->threads) schedule(dynamic, 8)
-    for (int32_t n = 0; n < samples; n++) {
-        asj_model *m = &w->models[n];
-        const int32_t good = sample(set, w->sum, first, search, (uint64_t)n, m);
-        m->score = good ? asj_score(set, first, &m->view, LOOSE, &w->scratch[asj_thread_number()].score) : -HUGE_VAL;
-        w->order[n] = (ranked){m->score, n};
-    }
+    const job j = {.set = set, .search = search, .w = w, .models = w->models, .first = first};
+    asj_parallel(w->context, w->context->threads, samples, 8, sample_some, &j);
     qsort(w->order, (size_t)samples, sizeof *w->order, by_score);
+}
+
+static void sample_around(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    const int32_t first = j->first;
+    asj_adjust_scratch *scratch = &j->w->scratch[part->thread];
+    double *sum = scratch->probability;
+    for (int64_t n = part->first; n < part->end; n++) {
+        asj_probabilities(j->set, &j->models[n].view, WIDEST, &scratch->score, sum);
+        for (int32_t k = 1; k < first; k++)
+            sum[k] += sum[k - 1];
+        for (int64_t k = 0; k < LOCAL; k++) {
+            asj_model *m = &j->models[j->count + n * LOCAL + k];
+            const uint64_t stream = ((uint64_t)j->rounds + 1) << 32 | (uint64_t)(n * LOCAL + k);
+            const int32_t good = sample(j->set, sum, first, j->search, stream, m);
+            m->score = good ? asj_score(j->set, first, &m->view, LOOSE, &scratch->score) : -HUGE_VAL;
+        }
+    }
 }
 
 /* Samples once more, from what each of the `count` models makes likely: LOCAL of them each, behind the models. Returns how many
@@ -182,34 +216,28 @@ static int32_t draw_around(const asj_pairs *set, const asj_search *search, work 
                            int32_t round)
 {
     const int32_t first = set->count < PRESELECTED ? set->count : PRESELECTED;
-#pragma omp parallel for num_threads(w->threads) schedule(dynamic, 1)
-    for (int32_t n = 0; n < count; n++) {
-        asj_adjust_scratch *scratch = &w->scratch[asj_thread_number()];
-        double *sum = scratch->probability;
-        asj_probabilities(set, &models[n].view, WIDEST, &scratch->score, sum);
-        for (int32_t k = 1; k < first; k++)
-            sum[k] += sum[k - 1];
-        for (int32_t k = 0; k < LOCAL; k++) {
-            asj_model *m = &models[count + n * LOCAL + k];
-            const uint64_t stream = ((uint64_t)round + 1) << 32 | (uint64_t)(n * LOCAL + k);
-            const int32_t good = sample(set, sum, first, search, stream, m);
-            m->score = good ? asj_score(set, first, &m->view, LOOSE, &scratch->score) : -HUGE_VAL;
-        }
-    }
+    const job j = {set, search, w, models, first, count, round};
+    asj_parallel(w->context, w->context->threads, count, 1, sample_around, &j);
     for (int32_t n = 0; n < count; n++) /* in the same measure as the samples */
         models[n].score = asj_score(set, first, &models[n].view, LOOSE, &w->scratch[0].score);
     return count * (LOCAL + 1);
+}
+
+static void adjust_each(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t n = part->first; n < part->end; n++) {
+        asj_adjust(j->set, &j->models[n], j->rounds, &j->w->scratch[part->thread]);
+        j->w->order[n] = (ranked){j->models[n].score, (int32_t)n};
+    }
 }
 
 /* Refines models in so many rounds and leaves the `most` best ones that differ in `finalists`. */
 static int32_t adjust_some(const asj_pairs *set, work *w, asj_model *models, int32_t count, int32_t rounds, int32_t most,
                            asj_model *finalists)
 {
-#pragma omp parallel for num_threads(w->threads) schedule(dynamic, 1)
-    for (int32_t n = 0; n < count; n++) {
-        asj_adjust(set, &models[n], rounds, &w->scratch[asj_thread_number()]);
-        w->order[n] = (ranked){models[n].score, n};
-    }
+    const job j = {.set = set, .w = w, .models = models, .rounds = rounds};
+    asj_parallel(w->context, w->context->threads, count, 1, adjust_each, &j);
     qsort(w->order, (size_t)count, sizeof *w->order, by_score);
     return pick(models, w->order, count, most, finalists);
 }
@@ -227,16 +255,23 @@ static void judge(const asj_pairs *set, work *w, asj_model *finalists, int32_t c
         finalists[n] = copy[w->order[n].index];
 }
 
+/* The best samples, now by all pairs. */
+static void score_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t n = part->first; n < part->end; n++) {
+        ranked *r = &j->w->order[n];
+        if (r->score > -HUGE_VAL)
+            r->score = asj_score(j->set, j->set->count, &j->models[r->index].view, LOOSE, &j->w->scratch[part->thread].score);
+    }
+}
+
 static int32_t run(const asj_pairs *set, const asj_search *search, work *w, asj_model *finalists)
 {
     const int32_t samples = search->samples, most = samples < SHORT ? samples : SHORT;
     draw_samples(set, search, w);
-#pragma omp parallel for num_threads(w->threads) schedule(dynamic, 4)
-    for (int32_t n = 0; n < most; n++)
-        if (w->order[n].score > -HUGE_VAL) {
-            const asj_two_view *view = &w->models[w->order[n].index].view;
-            w->order[n].score = asj_score(set, set->count, view, LOOSE, &w->scratch[asj_thread_number()].score);
-        }
+    const job j = {.set = set, .w = w, .models = w->models};
+    asj_parallel(w->context, w->context->threads, most, 4, score_some, &j);
     qsort(w->order, (size_t)most, sizeof *w->order, by_score);
     int32_t count = pick(w->models, w->order, most, STARTS, w->starts);
     count = adjust_some(set, w, w->starts, count, FEW_ROUNDS, CENTRES, w->models);
@@ -257,20 +292,21 @@ asj_status asj_geometry_search(asj_context *context, const asj_pairs *set, const
                                int32_t *count)
 {
     asj_memory *memory = &context->memory;
-    work w = {.memory = memory, .threads = context->threads};
+    const int32_t threads = context->threads;
+    work w = {.context = context, .memory = memory};
     *count = 0;
     const size_t least = CENTRES * (LOCAL + 1), samples = (size_t)search->samples > least ? (size_t)search->samples : least;
     w.models = asj_allocate_zero(memory, samples, sizeof *w.models);
     w.starts = asj_allocate_zero(memory, STARTS, sizeof *w.starts);
     w.order = asj_allocate(memory, samples, sizeof *w.order);
     w.sum = asj_allocate(memory, PRESELECTED, sizeof *w.sum);
-    w.scratch = asj_allocate_zero(memory, (size_t)w.threads, sizeof *w.scratch);
+    w.scratch = asj_allocate_zero(memory, (size_t)threads, sizeof *w.scratch);
     int32_t good = w.models && w.starts && w.order && w.sum && w.scratch;
-    for (int32_t t = 0; t < w.threads && good; t++)
+    for (int32_t t = 0; t < threads && good; t++)
         good = asj_adjust_scratch_create(memory, set, &w.scratch[t]);
     if (good && set->count >= 2)
         *count = run(set, search, &w, finalists);
-    for (int32_t t = 0; w.scratch && t < w.threads; t++)
+    for (int32_t t = 0; w.scratch && t < threads; t++)
         asj_adjust_scratch_free(memory, &w.scratch[t]);
     asj_release(memory, w.scratch);
     asj_release(memory, w.sum);

@@ -194,25 +194,40 @@ static void group_by_template(const asj_match_run *run, size_t first, const grou
         g->order[g->start[g->group[k] + 1]++] = (uint32_t)k;
 }
 
+typedef struct job {
+    asj_match_run *run;
+    size_t first;
+    const grouping *g;
+    const asj_aligner *aligner;
+    asj_watch *watch;
+} job;
+
+static void align_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    const grouping *g = j->g;
+    const int64_t count1 = j->run->image[0]->l_junctions.location_count;
+    for (int64_t p = part->first; p < part->end; p++) {
+        asj_template t;
+        const int32_t side = p >= count1;
+        const asj_image_features *features = j->run->image[side];
+        const int64_t at = side ? p - count1 : p;
+        if (g->start[p] == g->start[p + 1] || asj_watch_stops(j->watch, part))
+            continue;
+        asj_template_create(j->aligner->disc, &features->pyramid, features->l_junctions.location_x[at],
+                            features->l_junctions.location_y[at], &t);
+        for (uint32_t k = g->start[p]; k < g->start[p + 1] && !asj_watch_stops(j->watch, part); k++)
+            align_one(j->run, j->aligner, &t, side, &j->run->candidates.list[j->first + g->order[k]]);
+    }
+}
+
 static asj_status align_groups(asj_match_run *run, size_t first, const grouping *g, const asj_aligner *aligner)
 {
     asj_watch watch;
-    const int64_t count1 = run->image[0]->l_junctions.location_count;
-    const int64_t locations = count1 + run->image[1]->l_junctions.location_count;
+    const int64_t locations = (int64_t)run->image[0]->l_junctions.location_count + run->image[1]->l_junctions.location_count;
+    const job j = {run, first, g, aligner, &watch};
     asj_watch_start(&watch, run->context, ASJ_STAGE_ALIGN);
-#pragma omp parallel for num_threads(run->context->threads) schedule(dynamic, 4)
-    for (int64_t p = 0; p < locations; p++) {
-        asj_template t;
-        const int32_t side = p >= count1;
-        const asj_image_features *features = run->image[side];
-        const int64_t at = side ? p - count1 : p;
-        if (g->start[p] == g->start[p + 1] || asj_watch_stops(&watch))
-            continue;
-        asj_template_create(aligner->disc, &features->pyramid, features->l_junctions.location_x[at],
-                            features->l_junctions.location_y[at], &t);
-        for (uint32_t k = g->start[p]; k < g->start[p + 1] && !asj_watch_stops(&watch); k++)
-            align_one(run, aligner, &t, side, &run->candidates.list[first + g->order[k]]);
-    }
+    asj_parallel(run->context, run->context->threads, locations, 4, align_some, &j);
     return asj_watch_end(&watch);
 }
 

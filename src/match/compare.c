@@ -80,17 +80,29 @@ static int32_t compare(const asj_match_run *run, asj_candidate *c)
     return asj_affine_between(&l_junctions1->frames[f], &l_junctions2->frames[g], &c->map);
 }
 
+typedef struct job {
+    const asj_match_run *run;
+    asj_candidate *list;
+    asj_watch *watch;
+} job;
+
+static void compare_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t k = part->first; k < part->end && !asj_watch_stops(j->watch, part); k++)
+        if (!compare(j->run, &j->list[k]))
+            j->list[k].distance2 = -1;
+}
+
 asj_status asj_compare_and_drop(const asj_match_run *run, asj_candidates *candidates)
 {
     asj_watch watch;
     asj_candidate *list = candidates->list;
     const int64_t count = (int64_t)candidates->count;
+    const job j = {run, list, &watch};
     size_t kept = 0;
     asj_watch_start(&watch, run->context, ASJ_STAGE_DISTANCES);
-#pragma omp parallel for num_threads(run->context->threads) schedule(static)
-    for (int64_t k = 0; k < count; k++)
-        if (!asj_watch_stops(&watch) && !compare(run, &list[k]))
-            list[k].distance2 = -1;
+    asj_parallel(run->context, run->context->threads, count, 0, compare_some, &j);
     for (int64_t k = 0; k < count; k++)
         if (list[k].distance2 >= 0)
             list[kept++] = list[k];

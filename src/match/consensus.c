@@ -18,6 +18,7 @@
  * there, less in an image with fewer corners. */
 #include "consensus.h"
 #include "support.h"
+#include "core/threads.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,6 +28,7 @@
 #define LEAST_SIMILARITY 1e-3f /* keeps the sign of what the alignment found unlike */
 #define LEAST_NEEDED 1e-6f     /* a divisor, where no support is needed */
 #define LEAST_DISTANCE2 1e-12f /* a divisor, without neighbours */
+#define LEAST_CANDIDATES 256   /* for a thread */
 
 /* One image's half of the graph. */
 typedef struct half {
@@ -123,22 +125,33 @@ typedef struct ratings {
     float *appearance, *score, *confidence;
 } ratings;
 
+typedef struct job {
+    const asj_match_run *run;
+    const ratings *r;
+} job;
+
+static void rate_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t k = part->first; k < part->end; k++) {
+        asj_candidate *c = &j->run->candidates.list[k];
+        const float in1 = sum_up(&j->run->support.side[0], c->number, j->r->confidence);
+        const float in2 = sum_up(&j->run->support.side[1], c->number, j->r->confidence);
+        c->support = (in1 + in2) * 0.5f;
+        c->score = j->r->score[k] = j->r->appearance[k] * (BASE + c->support);
+    }
+}
+
 static void relax(asj_match_run *run, half halves[2], const ratings *r)
 {
     asj_candidate *list = run->candidates.list;
     const int64_t count = (int64_t)run->candidates.count;
+    const job j = {run, r};
     const float needed = asj_needed_support(run), least = needed > LEAST_NEEDED ? needed : LEAST_NEEDED;
     for (int64_t k = 0; k < count; k++)
         r->confidence[list[k].number - 1] = r->appearance[k];
     for (int step = 0; step < STEPS; step++) {
-#pragma omp parallel for num_threads(run->context->threads) schedule(static)
-        for (int64_t k = 0; k < count; k++) {
-            asj_candidate *c = &list[k];
-            const float in1 = sum_up(&run->support.side[0], c->number, r->confidence);
-            const float in2 = sum_up(&run->support.side[1], c->number, r->confidence);
-            c->support = (in1 + in2) * 0.5f;
-            c->score = r->score[k] = r->appearance[k] * (BASE + c->support);
-        }
+        asj_parallel(run->context, asj_threads_for(run->context, count, LEAST_CANDIDATES), count, 0, rate_some, &j);
         best_of_locations(&halves[0], r->score, 1);
         best_of_locations(&halves[1], r->score, 1);
         for (int64_t k = 0; k < count; k++) {

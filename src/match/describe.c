@@ -4,6 +4,7 @@
  * pair's map, are in patch_induced.c. */
 #include "describe.h"
 #include "sift.h"
+#include "core/threads.h"
 
 int32_t asj_patch_length(const asj_match_options *options)
 {
@@ -25,18 +26,29 @@ static void describe(const asj_match_options *options, const asj_pyramid *pyrami
         asj_patch_scale(grey, options->patch_size, unit);
 }
 
-asj_status asj_describe_frames(asj_context *context, const asj_match_options *options, asj_image_features *features)
+typedef struct job {
+    const asj_match_options *options;
+    asj_image_features *features;
+} job;
+
+static void describe_some(const void *data, const asj_part *part)
 {
+    const job *j = data;
+    const asj_match_options *options = j->options;
+    asj_image_features *features = j->features;
     const size_t length = (size_t)asj_patch_length(options);
-    const int64_t count = features->l_junctions.frame_count;
-    (void)context; /* without OpenMP */
-#pragma omp parallel for num_threads(context->threads) schedule(static)
-    for (int64_t f = 0; f < count; f++) {
+    for (int64_t f = part->first; f < part->end; f++) {
         uint16_t grey[ASJ_PATCH_SAMPLES];
         features->usable[f] = (uint8_t)asj_patch_sample(&features->pyramid, &features->l_junctions.frames[f], options->patch_size,
                                                         options->window_start, options->window_end, grey);
         describe(options, &features->pyramid, grey, features->patches + (size_t)f * length);
     }
+}
+
+asj_status asj_describe_frames(asj_context *context, const asj_match_options *options, asj_image_features *features)
+{
+    const job j = {options, features};
+    asj_parallel(context, context->threads, features->l_junctions.frame_count, 0, describe_some, &j);
     return ASJ_OK;
 }
 

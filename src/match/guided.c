@@ -126,24 +126,36 @@ static asj_status collect(const asj_match_run *run, int32_t side, const proposal
     return ASJ_OK;
 }
 
+typedef struct job {
+    const asj_match_run *run;
+    int32_t side;
+    const guides *asked;
+    proposals *all;
+    asj_watch *watch;
+} job;
+
+static void ask_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    const asj_l_junction *mine = j->run->image[j->side]->l_junctions.l;
+    for (int64_t l = part->first; l < part->end && !asj_watch_stops(j->watch, part); l++) {
+        uint32_t near[GUIDES_ASKED];
+        const uint32_t n = nearest_guides(j->asked, (double)mine[l].x, (double)mine[l].y, near);
+        for (uint32_t k = 0; k < n; k++)
+            ask(j->run, j->side, (uint32_t)l, &j->asked->list[near[k]], &j->all[l]);
+    }
+}
+
 static asj_status one_side(const asj_match_run *run, int32_t side, const guides *asked, asj_candidates *fresh)
 {
     const asj_l_junctions *mine = &run->image[side]->l_junctions;
     proposals *all = asj_allocate_zero(&run->context->memory, mine->count, sizeof *all);
     asj_status status = all ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
     if (status == ASJ_OK) {
-        const int64_t count = mine->count;
         asj_watch watch;
+        const job j = {run, side, asked, all, &watch};
         asj_watch_start(&watch, run->context, ASJ_STAGE_ALIGN);
-#pragma omp parallel for num_threads(run->context->threads) schedule(dynamic, 16)
-        for (int64_t l = 0; l < count; l++) {
-            uint32_t near[GUIDES_ASKED];
-            if (asj_watch_stops(&watch))
-                continue;
-            const uint32_t n = nearest_guides(asked, (double)mine->l[l].x, (double)mine->l[l].y, near);
-            for (uint32_t k = 0; k < n; k++)
-                ask(run, side, (uint32_t)l, &asked->list[near[k]], &all[l]);
-        }
+        asj_parallel(run->context, run->context->threads, mine->count, 16, ask_some, &j);
         status = asj_watch_end(&watch);
         if (status == ASJ_OK)
             status = collect(run, side, all, fresh);

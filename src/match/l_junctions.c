@@ -11,6 +11,7 @@
  * itself. */
 #include "l_junctions.h"
 #include "nearest.h"
+#include "core/threads.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,6 +24,7 @@
 #define LEAST_START 10.0     /* px */
 #define LEAST_BEFORE_END 8.0 /* px */
 #define LEAST_APART 4.0      /* px */
+#define LEAST_LOCATIONS 32   /* for a thread */
 #define OPPOSITE (-0.978147601) /* cosine of 180 - 12 degrees: half the least opening of branches, and less */
 
 static asj_status check(asj_context *context, const asj_junction_list *input)
@@ -132,6 +134,20 @@ static uint32_t find_nearest(const asj_l_junctions *all, uint32_t location, doub
     return list.count;
 }
 
+typedef struct job {
+    const asj_match_options *options;
+    asj_l_junctions *all;
+} job;
+
+static void find_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    asj_l_junctions *all = j->all;
+    for (int64_t p = part->first; p < part->end; p++)
+        all->neighbour_count[p] = find_nearest(all, (uint32_t)p, j->options->separation, all->neighbour_limit,
+                                               all->neighbour + (size_t)p * all->neighbour_limit);
+}
+
 static asj_status find_neighbours(asj_context *context, const asj_match_options *options, asj_l_junctions *all)
 {
     all->neighbour_limit = (uint32_t)options->neighbours;
@@ -141,11 +157,8 @@ static asj_status find_neighbours(asj_context *context, const asj_match_options 
     all->neighbour_count = asj_allocate(&context->memory, all->location_count, sizeof(uint32_t));
     if (!all->neighbour || !all->neighbour_count)
         return no_memory(context);
-    const int64_t count = all->location_count;
-#pragma omp parallel for num_threads(context->threads) schedule(static)
-    for (int64_t p = 0; p < count; p++)
-        all->neighbour_count[p] = find_nearest(all, (uint32_t)p, options->separation, all->neighbour_limit,
-                                               all->neighbour + (size_t)p * all->neighbour_limit);
+    const job j = {options, all};
+    asj_parallel(context, asj_threads_for(context, all->location_count, LEAST_LOCATIONS), all->location_count, 0, find_some, &j);
     return ASJ_OK;
 }
 
@@ -213,6 +226,13 @@ static void fill_frames(asj_l_junctions *all)
     }
 }
 
+static void prepare_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t i = part->first; i < part->end; i++)
+        prepare(j->all, (uint32_t)i, j->options->length_hypotheses);
+}
+
 static asj_status make_frames(asj_context *context, const asj_match_options *options, asj_l_junctions *all)
 {
     asj_memory *memory = &context->memory;
@@ -221,10 +241,8 @@ static asj_status make_frames(asj_context *context, const asj_match_options *opt
     all->first_frame = asj_allocate(memory, (size_t)all->count + 1, sizeof *all->first_frame);
     if (!all->lengths || !all->direction || !all->first_frame)
         return no_memory(context);
-    const int64_t count = all->count;
-#pragma omp parallel for num_threads(context->threads) schedule(static)
-    for (int64_t i = 0; i < count; i++)
-        prepare(all, (uint32_t)i, options->length_hypotheses);
+    const job j = {options, all};
+    asj_parallel(context, asj_threads_for(context, all->count, LEAST_LOCATIONS), all->count, 0, prepare_some, &j);
     uint32_t total = 0;
     for (uint32_t i = 0; i < all->count; i++) {
         all->first_frame[i] = total;

@@ -8,6 +8,7 @@
 #include "patch_induced.h"
 #include "describe.h"
 #include "sift.h"
+#include "core/threads.h"
 
 #include <math.h>
 
@@ -39,24 +40,36 @@ static float difference(const asj_match_options *options, const int16_t *left, c
     return product < 1 ? (float)sqrt(2 - 2 * product) : 0;
 }
 
+typedef struct job {
+    const asj_match_options *options;
+    asj_image_features *features;
+} job;
+
+static void describe_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    const size_t length = (size_t)asj_patch_length(j->options);
+    const double side = 2 * j->options->patch_radius;
+    for (int64_t l = part->first; l < part->end; l++) {
+        uint16_t grey[ASJ_PATCH_SAMPLES];
+        const asj_l_junction *at = &j->features->l_junctions.l[l];
+        const asj_affine_frame square = {(double)at->x, (double)at->y, side, 0, 0, side};
+        j->features->usable[l] = (uint8_t)asj_patch_sample(&j->features->pyramid, &square, j->options->patch_size, -0.5, 0.5, grey);
+        describe(j->options, grey, j->features->patches + (size_t)l * length);
+    }
+}
+
 /* The square of an L-junction does not depend on its partner: it is described once. */
 asj_status asj_patch_induced_describe(asj_context *context, const asj_match_options *options, asj_image_features *features)
 {
     const size_t length = (size_t)asj_patch_length(options);
     const int64_t count = features->l_junctions.count;
-    const double side = 2 * options->patch_radius;
     features->patches = asj_allocate(&context->memory, (size_t)count * length, sizeof *features->patches);
     features->usable = asj_allocate(&context->memory, (size_t)count, sizeof *features->usable);
     if (!features->patches || !features->usable)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lld patches", (long long)count);
-#pragma omp parallel for num_threads(context->threads) schedule(static)
-    for (int64_t l = 0; l < count; l++) {
-        uint16_t grey[ASJ_PATCH_SAMPLES];
-        const asj_l_junction *at = &features->l_junctions.l[l];
-        const asj_affine_frame square = {(double)at->x, (double)at->y, side, 0, 0, side};
-        features->usable[l] = (uint8_t)asj_patch_sample(&features->pyramid, &square, options->patch_size, -0.5, 0.5, grey);
-        describe(options, grey, features->patches + (size_t)l * length);
-    }
+    const job j = {options, features};
+    asj_parallel(context, context->threads, count, 0, describe_some, &j);
     return ASJ_OK;
 }
 

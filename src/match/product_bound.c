@@ -11,6 +11,7 @@
  * which is one product of vectors with one more number. Another pair of numbers makes up for what rounding B f loses. */
 #include "product_bound.h"
 #include "describe.h"
+#include "core/threads.h"
 
 #include <math.h>
 #include <string.h>
@@ -57,6 +58,24 @@ static void fill_vector(const asj_patch_ops *ops, const int16_t *patch, const in
     numbers[TERMS] = (int16_t)ceil(sqrt(rest > 0 ? rest : 0));
 }
 
+typedef struct job {
+    const asj_patch_ops *ops;
+    const asj_image_features *features;
+    const int16_t *rows;
+    int32_t length;
+    int16_t slack, *all;
+} job;
+
+static void fill_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t f = part->first; f < part->end; f++) {
+        int16_t *vector = j->all + f * ASJ_BOUND_LENGTH;
+        fill_vector(j->ops, j->features->patches + (size_t)f * (size_t)j->length, j->rows, j->length, vector);
+        vector[ASJ_BOUND_LENGTH - 1] = j->slack;
+    }
+}
+
 /* Bound vectors of all frames, one after the other; the slack of either side. */
 static asj_status fill_all(asj_context *context, const asj_match_options *options, const asj_image_features *features,
                            int16_t slack, int16_t **vectors)
@@ -71,11 +90,8 @@ static asj_status fill_all(asj_context *context, const asj_match_options *option
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the bound vectors of %lld patches", (long long)count);
     }
     fill_rows(options->patch_size, rows);
-#pragma omp parallel for num_threads(context->threads) schedule(static)
-    for (int64_t f = 0; f < count; f++) {
-        fill_vector(context->ops->patch, features->patches + (size_t)f * (size_t)length, rows, length, all + f * ASJ_BOUND_LENGTH);
-        all[f * ASJ_BOUND_LENGTH + ASJ_BOUND_LENGTH - 1] = slack;
-    }
+    const job j = {context->ops->patch, features, rows, length, slack, all};
+    asj_parallel(context, context->threads, count, 0, fill_some, &j);
     asj_release(&context->memory, rows);
     return ASJ_OK;
 }

@@ -8,11 +8,13 @@
 #include "describe.h"
 #include "product_bound.h"
 #include "shortlist.h"
+#include "core/threads.h"
 
 #define FIRST_ROWS 8
 #define MOST_ROWS 64
 #define FIRST_FRAMES 16 /* the frames of one L-junction at least */
 #define MOST_FRAMES 256
+#define LEAST_OFFERS 16384 /* for a thread */
 
 /* All that the two passes over a block share. */
 typedef struct table {
@@ -126,6 +128,27 @@ static void offer_rows(const table *t, int64_t first, int64_t end, uint32_t j)
         t->least[g] = threshold(list, t->limit);
 }
 
+/* Rows first .. end - 1 of the table. */
+typedef struct job {
+    const table *t;
+    int64_t first, end;
+} job;
+
+static void score_rows(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    const int64_t count2 = j->t->image2->l_junctions.count;
+    for (int64_t i = part->first; i < part->end; i++)
+        (products_do(j->t->run->options) ? multiply_row : score_row)(j->t, (uint32_t)(j->first + i), j->t->scores + i * count2);
+}
+
+static void offer_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t column = part->first; column < part->end; column++)
+        offer_rows(j->t, j->first, j->end, (uint32_t)column);
+}
+
 static asj_status work(const table *t)
 {
     asj_context *context = t->run->context;
@@ -134,12 +157,9 @@ static asj_status work(const table *t)
         const int64_t wanted = FIRST_ROWS + first / 4;
         end = first + (wanted < MOST_ROWS ? wanted : MOST_ROWS);
         end = end < count1 ? end : count1;
-#pragma omp parallel for num_threads(context->threads) schedule(dynamic, 2)
-        for (int64_t i = first; i < end; i++)
-            (products_do(t->run->options) ? multiply_row : score_row)(t, (uint32_t)i, t->scores + (i - first) * count2);
-#pragma omp parallel for num_threads(context->threads) schedule(static)
-        for (int64_t j = 0; j < count2; j++)
-            offer_rows(t, first, end, (uint32_t)j);
+        const job j = {t, first, end};
+        asj_parallel(context, context->threads, end - first, 1, score_rows, &j);
+        asj_parallel(context, asj_threads_for(context, (end - first) * count2, LEAST_OFFERS), count2, 0, offer_some, &j);
         asj_status status = asj_progress(context, ASJ_STAGE_DISTANCES, 0.2 + 0.4 * (double)end / (double)count1);
         if (status != ASJ_OK)
             return status;

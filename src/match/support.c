@@ -240,6 +240,23 @@ static asj_status keep(const search *in, size_t first, size_t end, block *b, asj
     return ASJ_OK;
 }
 
+typedef struct job {
+    const search *in;
+    const block *b;
+    asj_supporters *found;
+    asj_watch *watch;
+    size_t first;
+} job;
+
+static void find_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    const asj_candidate *list = j->in->run->candidates.list + j->first;
+    const size_t *starts = j->b->starts + j->first;
+    for (int64_t k = part->first; k < part->end && !asj_watch_stops(j->watch, part); k++)
+        j->found->count[list[k].number - 1] = find_supporters(j->in, &list[k], j->b->list + starts[k]);
+}
+
 static asj_status find_all(const search *in, block *b, asj_supporters *found)
 {
     find_limits(in, b);
@@ -251,13 +268,8 @@ static asj_status find_all(const search *in, block *b, asj_supporters *found)
     asj_watch_start(&watch, in->run->context, ASJ_STAGE_ASSIGN);
     for (size_t first = 0, end; first < in->run->candidates.count && status == ASJ_OK; first = end) {
         end = take_block(in, first, b);
-#pragma omp parallel for num_threads(in->run->context->threads) schedule(dynamic, 16)
-        for (int64_t k = (int64_t)first; k < (int64_t)end; k++) {
-            const asj_candidate *c = &in->run->candidates.list[k];
-            if (asj_watch_stops(&watch))
-                continue;
-            found->count[c->number - 1] = find_supporters(in, c, b->list + b->starts[k]);
-        }
+        const job j = {in, b, found, &watch, first};
+        asj_parallel(in->run->context, in->run->context->threads, (int64_t)(end - first), 16, find_some, &j);
         status = asj_watch_end(&watch);
         if (status == ASJ_OK)
             status = keep(in, first, end, b, found);

@@ -22,7 +22,9 @@
 #include "verify.h"
 #include "agreement.h"
 #include "nearest.h"
+#include "core/threads.h"
 
+#define LEAST_MATCHES 8      /* for a thread */
 #define ROUNDS 2             /* a third one changes nothing */
 #define PRIOR_NEIGHBOURS 6.0 /* corners of a thing of its own; 3 or 10 trade right for wrong ones as verify_agreement does */
 #define T_FACTOR 1.5         /* in rendered rooms 1.25 brings 55 right and 26 wrong ones, 2 costs 161 right and 38 wrong ones */
@@ -88,15 +90,20 @@ static double agreement(const trial *t, size_t self)
     return sum / asked;
 }
 
+static void agree_some(const void *data, const asj_part *part)
+{
+    const trial *t = data;
+    for (int64_t n = part->first; n < part->end; n++)
+        t->agreed[n] = agreement(t, (size_t)n);
+}
+
 static void try_all(const trial *t)
 {
     const int64_t count = (int64_t)t->run->choices.count;
     for (int64_t n = 0; n < count; n++)
         t->suspects[n] = suspect_of(t, (size_t)n);
     for (int round = 0; round < ROUNDS; round++) {
-#pragma omp parallel for num_threads(t->run->context->threads) schedule(static)
-        for (int64_t n = 0; n < count; n++)
-            t->agreed[n] = agreement(t, (size_t)n);
+        asj_parallel(t->run->context, asj_threads_for(t->run->context, count, LEAST_MATCHES), count, 0, agree_some, t);
         for (int64_t n = 0; n < count; n++)
             t->suspects[n].stays = t->agreed[n] >= t->suspects[n].needs;
     }

@@ -40,7 +40,7 @@ run() { # NAME LINKER_OPTIONS
 }
 run shared $(pkg-config --libs asj) -Wl,-rpath,"$libraries"
 if [ -e "$libraries/libasj.a" ]; then
-    more=$(pkg-config --static --libs asj | grep -oE -e '-fopenmp|-ldl' | sort -u)
+    more=$(pkg-config --static --libs asj | grep -oE -e '-pthread|-ldl' | sort -u)
     run static "$libraries/libasj.a" $more -lm
     if ldd "$work/static" 2> /dev/null | grep -q libasj; then echo 'the static program needs libasj.so'; exit 1; fi
 else

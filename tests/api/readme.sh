@@ -23,7 +23,7 @@ block $program > "$work/first.c"
     printf '}\n'
 } > "$work/match.c"
 "$@" -std=c99 -Wall -Wextra -Wpedantic -Werror -I"$include" -c "$work/match.c" -o "$work/match.o" || exit 1
-"$@" -std=c99 -Wall -Wextra -Wpedantic -Werror -I"$include" "$work/first.c" "$library" -fopenmp -lm -ldl -o "$work/first" ||
+"$@" -std=c99 -Wall -Wextra -Wpedantic -Werror -I"$include" "$work/first.c" "$library" -pthread -lm -ldl -o "$work/first" ||
     "$@" -std=c99 -I"$include" "$work/first.c" "$library" -lm -ldl -o "$work/first" || exit 1
 "$work/first" > "$work/corners" || exit 1
 cat "$work/corners"
@@ -53,7 +53,7 @@ int main(void)
     return 0;
 }
 END
-"$@" -std=c99 -I"$include" "$work/options.c" "$library" -fopenmp -lm -ldl -o "$work/options" ||
+"$@" -std=c99 -I"$include" "$work/options.c" "$library" -pthread -lm -ldl -o "$work/options" ||
     "$@" -std=c99 -I"$include" "$work/options.c" "$library" -lm -ldl -o "$work/options" || exit 1
 "$work/options" > "$work/keys"
 awk '/^\| you want \| turn \|$/ { on = 1; next } !/^\|/ { on = 0 } on' "$readme" | grep -oE '`[a-z_]+` [0-9]' | tr -d '` 0-9' |

@@ -88,7 +88,7 @@ static int measure(const uint8_t *pixels, const settings *set, measured *m)
     asj_context *context = measure_context(m->threads);
     if (!context)
         return fail("cannot make a context");
-    m->threads = asj_context_threads(context); /* 1 without OpenMP */
+    m->threads = asj_context_threads(context); /* 1 in a build without threads */
     const int result = run_all(context, &image, set, set->runs ? set->runs : large ? 3 : 5, m);
     asj_context_free(&context);
     return result;

@@ -2,7 +2,7 @@
 #include "machine.h"
 #include "measure.h"
 
-#include "core/context.h"
+#include "core/threads.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +11,7 @@
 #define ROUNDS 2000000
 #define CHAINS 12 /* independent, so that no result is waited for */
 #define RUNS 5
+#define MOST_THREADS 256
 
 /* Each result depends on the chain before it and on numbers that the compiler does not know, so nothing can be left out. The
  * sanitizers must not look at what wraps around on purpose: unsigned numbers. */
@@ -55,55 +56,74 @@ static loops choose(void)
     return (loops){whole_16, floating_16, 16};
 }
 
+typedef struct sum_job {
+    const loops *l;
+    int whole;
+    double *sums;
+} sum_job;
+
+static void sum_up(const void *data, const asj_part *part)
+{
+    const sum_job *j = data;
+    for (int64_t t = part->first; t < part->end; t++)
+        j->sums[t] = j->whole ? j->l->whole(ROUNDS, (uint16_t)(3 + t), 7) : j->l->floating(ROUNDS, 0.999, 1e-3);
+}
+
 /* Milliseconds of the fastest of some runs by all threads. */
-static double time_loop(const loops *l, int whole, int32_t threads)
+static double time_loop(const asj_context *context, const loops *l, int whole)
 {
     volatile double sink = 0;
-    double least = 0;
+    double sums[MOST_THREADS], least = 0;
+    const sum_job j = {l, whole, sums};
     for (int run = 0; run < RUNS; run++) {
         const double start = asj_clock_ms();
-        double sum = 0;
-#ifdef _OPENMP
-#pragma omp parallel for num_threads(threads) schedule(static) reduction(+ : sum)
-#endif
-        for (int32_t t = 0; t < threads; t++)
-            sum += whole ? l->whole(ROUNDS, (uint16_t)(3 + t), 7) : l->floating(ROUNDS, 0.999, 1e-3);
-        sink = sink + sum;
+        asj_parallel(context, context->threads, context->threads, 1, sum_up, &j);
+        for (int32_t t = 0; t < context->threads; t++)
+            sink = sink + sums[t];
         const double ms = asj_clock_ms() - start;
         least = run == 0 || ms < least ? ms : least;
     }
     return least;
 }
 
-static double copy_rate(char *from, char *to, int32_t threads)
+typedef struct copy_job {
+    char *to;
+    const char *from;
+    size_t size;
+} copy_job;
+
+static void copy(const void *data, const asj_part *part)
 {
-    const size_t part = COPY_BYTES / (size_t)threads;
+    const copy_job *j = data;
+    for (int64_t t = part->first; t < part->end; t++)
+        memcpy(j->to + (size_t)t * j->size, j->from + (size_t)t * j->size, j->size);
+}
+
+static double copy_rate(const asj_context *context, char *from, char *to)
+{
+    const copy_job j = {to, from, COPY_BYTES / (size_t)context->threads};
     double least = 0;
     memset(from, 1, COPY_BYTES);
     memset(to, 2, COPY_BYTES);
     for (int run = 0; run < RUNS; run++) {
         const double start = asj_clock_ms();
-#ifdef _OPENMP
-#pragma omp parallel for num_threads(threads) schedule(static)
-#endif
-        for (int32_t t = 0; t < threads; t++)
-            memcpy(to + (size_t)t * part, from + (size_t)t * part, part);
+        asj_parallel(context, context->threads, context->threads, 1, copy, &j);
         const double ms = asj_clock_ms() - start;
         least = run == 0 || ms < least ? ms : least;
     }
     return 2.0 * (double)COPY_BYTES / (least * 1e-3);
 }
 
-int machine_measure(int32_t threads, machine_limits *limits)
+int machine_measure(const asj_context *context, machine_limits *limits)
 {
     const loops l = choose();
-    const double rounds = 2.0 * CHAINS * ROUNDS * threads;
+    const double rounds = 2.0 * CHAINS * ROUNDS * context->threads;
     char *from = malloc(COPY_BYTES), *to = malloc(COPY_BYTES);
     const int result = from && to ? 0 : -1;
     if (result == 0)
-        limits->bytes = copy_rate(from, to, threads);
-    limits->whole = rounds * l.width / 2 / (time_loop(&l, 1, threads) * 1e-3);
-    limits->floating = rounds * l.width / 8 / (time_loop(&l, 0, threads) * 1e-3);
+        limits->bytes = copy_rate(context, from, to);
+    limits->whole = rounds * l.width / 2 / (time_loop(context, &l, 1) * 1e-3);
+    limits->floating = rounds * l.width / 8 / (time_loop(context, &l, 0) * 1e-3);
     limits->width = l.width;
     free(from);
     free(to);

@@ -3,7 +3,7 @@
 #ifndef ASJ_TESTS_BENCHMARK_MACHINE_H
 #define ASJ_TESTS_BENCHMARK_MACHINE_H
 
-#include <stdint.h>
+#include <asj/context.h>
 
 typedef struct machine_limits {
     double bytes;    /* read and written by copies of memory that no cache holds, each second */
@@ -12,7 +12,7 @@ typedef struct machine_limits {
     int32_t width;   /* bytes in the vectors that these were done with: 16, 32 or 64 */
 } machine_limits;
 
-/* 0, or -1 when memory is short. Takes about half a second. */
-int machine_measure(int32_t threads, machine_limits *limits);
+/* With the threads of a context. 0, or -1 when memory is short. Takes about half a second. */
+int machine_measure(const asj_context *context, machine_limits *limits);
 
 #endif

@@ -47,8 +47,11 @@ static struct {
 
 static void add(double *sum, double more)
 {
-#pragma omp atomic
-    *sum += more;
+    double before, after;
+    __atomic_load(sum, &before, __ATOMIC_RELAXED);
+    do
+        after = before + more;
+    while (!__atomic_compare_exchange(sum, &before, &after, 0, __ATOMIC_RELAXED, __ATOMIC_RELAXED));
 }
 
 static void count_tile(const asj_field *field, const asj_frame *frame, const asj_tile *tile, uint16_t *scratch, uint16_t *masks)
@@ -273,7 +276,7 @@ int profile_print(const asj_image *image, const asj_detect_options *options, int
     machine_limits limits;
     asj_context *context = measure_context(threads);
     int result = -1;
-    if (context && machine_measure(asj_context_threads(context), &limits) == 0) {
+    if (context && machine_measure(context, &limits) == 0) {
         printf("libasj %s, sample room %d x %d, %d thread%s, operations: %s\n", asj_version_string(), (int)image->width,
                (int)image->height, (int)asj_context_threads(context), asj_context_threads(context) == 1 ? "" : "s",
                context->ops->name);

@@ -153,7 +153,7 @@ static void test_threads(void **state)
         asj_context *context = NULL;
         options.threads = threads[i];
         assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
-#ifdef _OPENMP
+#ifdef ASJ_HAVE_THREADS
         assert_int_equal(asj_context_threads(context), threads[i]);
 #else
         assert_int_equal(asj_context_threads(context), 1);
