@@ -47,7 +47,8 @@ static const cli_option output_options[] = {
 static const cli_option plot_options[] = {
     {PLOT, 'p', "plot", "FILE",
      "draw the junctions: FILE.png, FILE.svg or FILE.pdf; with --out-dir only png, svg or pdf: photo.jpg gives DIR/photo.plot.png"},
-    {PLOT_COLOR, 0, "plot-color", "nfa|branch", "branches coloured by how sure they are (the default) or by their number"},
+    {PLOT_COLOR, 0, "plot-color", "nfa|branch|edge",
+     "branches coloured by how sure they are (the default) or by their number, or edges between two junctions by how sure they are"},
     {PLOT_BACKGROUND, 0, "plot-background", "photo|white", "over the pale photograph (the default) or on white"},
     {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of the image, 0.01 .. 16; default: small images are enlarged"},
 };
@@ -83,7 +84,7 @@ static int take_output(void *target, int id, const char *text)
 
 static int take_plot(void *target, int id, const char *text)
 {
-    static const char *const colors[] = {"nfa", "branch", NULL};
+    static const char *const colors[] = {"nfa", "branch", "edge", NULL};
     cli_detect_arguments *arguments = target;
     switch (id) {
     case PLOT:
@@ -91,7 +92,7 @@ static int take_plot(void *target, int id, const char *text)
         break;
     case PLOT_COLOR:
         if ((arguments->style.color = cli_find_word(colors, text)) < 0)
-            return cli_usage_error("detect", "--plot-color: '%s' is not nfa or branch", text);
+            return cli_usage_error("detect", "--plot-color: '%s' is not nfa, branch or edge", text);
         break;
     case PLOT_BACKGROUND:
         return cli_plot_take_background("detect", text, &arguments->style.background);

@@ -11,6 +11,7 @@
 #define FULL_TURN 6.283185307179586
 #define LEGEND_HEIGHT 2.4 /* in font sizes, like all lengths of the legend */
 #define LEGEND_WIDTH 32
+#define LOOSE_GRAY 0.62 /* of branches that are part of no edge */
 
 /* Sizes in units of the plot: pixels of a PNG, points of a PDF. The image is above, a strip with the legend below. */
 typedef struct cli_plot_layout {
@@ -51,9 +52,26 @@ static void draw_branches(cairo_t *cairo, const cli_plot_layout *layout, const a
         const asj_branch *branch = &junction->branches[i];
         double x = (double)junction->x + (double)branch->length * cos((double)branch->angle);
         double y = (double)junction->y + (double)branch->length * sin((double)branch->angle);
-        set_color(cairo, color == CLI_PLOT_COLOR_BRANCH ? cli_branch_color(i) : cli_ramp_color((double)branch->log10_nfa));
+        if (color == CLI_PLOT_COLOR_EDGE)
+            cairo_set_source_rgb(cairo, LOOSE_GRAY, LOOSE_GRAY, LOOSE_GRAY);
+        else
+            set_color(cairo, color == CLI_PLOT_COLOR_BRANCH ? cli_branch_color(i) : cli_ramp_color((double)branch->log10_nfa));
         cairo_move_to(cairo, place(layout, (double)junction->x), place(layout, (double)junction->y));
         cairo_line_to(cairo, place(layout, x), place(layout, y));
+        cairo_stroke(cairo);
+    }
+}
+
+/* From junction to junction. Edges meet at junctions only, so their order does not matter. */
+static void draw_edges(cairo_t *cairo, const cli_plot_layout *layout, const asj_detection *detection)
+{
+    cairo_set_line_width(cairo, 1.5 * layout->line);
+    for (uint32_t i = 0; i < detection->edge_count; i++) {
+        const asj_edge *edge = &detection->edges[i];
+        const asj_junction *a = &detection->junctions[edge->junction_a], *b = &detection->junctions[edge->junction_b];
+        set_color(cairo, cli_ramp_color((double)edge->log10_nfa));
+        cairo_move_to(cairo, place(layout, (double)a->x), place(layout, (double)a->y));
+        cairo_line_to(cairo, place(layout, (double)b->x), place(layout, (double)b->y));
         cairo_stroke(cairo);
     }
 }
@@ -79,6 +97,8 @@ static void draw_junctions(cairo_t *cairo, const cli_plot_layout *layout, const 
     cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT); /* ends where the branch ends */
     for (uint32_t i = detection->junction_count; i-- > 0;)
         draw_branches(cairo, layout, &detection->junctions[i], color);
+    if (color == CLI_PLOT_COLOR_EDGE)
+        draw_edges(cairo, layout, detection);
     for (uint32_t i = detection->junction_count; i-- > 0;)
         draw_dot(cairo, layout, &detection->junctions[i]);
     cairo_restore(cairo);
@@ -113,10 +133,10 @@ static void draw_legend(cairo_t *cairo, const cli_plot_layout *layout, const asj
     /* the font inside cairo: the same on every machine, and there is always one */
     cairo_select_font_face(cairo, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cairo, em);
-    snprintf(text, sizeof text, "%lu junction%s", (unsigned long)detection->junction_count,
-             detection->junction_count == 1 ? "" : "s");
+    const unsigned long count = color == CLI_PLOT_COLOR_EDGE ? detection->edge_count : detection->junction_count;
+    snprintf(text, sizeof text, "%lu %s%s", count, color == CLI_PLOT_COLOR_EDGE ? "edge" : "junction", count == 1 ? "" : "s");
     draw_text(cairo, 0.8 * em, base, text);
-    if (color == CLI_PLOT_COLOR_NFA) {
+    if (color != CLI_PLOT_COLOR_BRANCH) {
         snprintf(text, sizeof text, "log10 NFA   %g", CLI_RAMP_UNSURE);
         draw_text(cairo, 10.5 * em, base, text);
         draw_ramp(cairo, 18 * em, middle - 0.35 * em, 8 * em, 0.7 * em);

@@ -7,7 +7,7 @@
 
 #include <asj/detect.h>
 
-enum { CLI_PLOT_COLOR_NFA = 0, CLI_PLOT_COLOR_BRANCH = 1 };
+enum { CLI_PLOT_COLOR_NFA = 0, CLI_PLOT_COLOR_BRANCH = 1, CLI_PLOT_COLOR_EDGE = 2 };
 
 typedef struct cli_plot_style {
     int32_t color;

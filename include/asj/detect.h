@@ -19,12 +19,13 @@ typedef struct asj_detection {
     uint32_t l_junction_count;
     int32_t width, height;             /* of the image */
     int32_t backend;                   /* ASJ_BACKEND_CPU or ASJ_BACKEND_OPENCL: what did the work */
-    int32_t reserved_1;
+    uint32_t edge_count;
     double total_ms;                   /* wall time of the call */
     double stage_ms[16];               /* by ASJ_STAGE_... */
     uint64_t candidates;               /* pixels that reached the isotropic test */
     uint64_t isotropic;                /* junctions that passed it */
-    uint64_t reserved[6];
+    const asj_edge *edges;             /* what joins two junctions; in order of junction_a, then of branch_a */
+    uint64_t reserved[5];
 } asj_detection;
 
 /* Finds the anisotropic-scale junctions of an image: the pipeline of the paper, steps 1 to 6.

@@ -100,7 +100,8 @@ enum {
     ASJ_FILE_ASJ_WHOLE = 1, /* .asj text with whole junctions of two to five branches */
     ASJ_FILE_JSON = 2,      /* schema "asj-junctions-1": everything, with options, version, back end and times */
     ASJ_FILE_CSV = 3        /* a header, then one line a branch: junction,x,y,scale,log10_nfa,location_sd,octave,branch,
-                             * angle,length,strength,branch_log10_nfa,angle_sd,width */
+                             * angle,length,strength,branch_log10_nfa,angle_sd,width,length_sd,end,to_junction,to_branch,
+                             * edge_log10_nfa; the last three are empty where the branch is part of no edge */
 };
 
 /* What is written. Only `detection` is needed. */
@@ -113,7 +114,7 @@ typedef struct asj_detection_report {
 
 /* Writes junctions as asj_output_begin() and asj_output_commit() do.
  * ASJ_ERROR_ARGUMENT  a NULL pointer, no such file format, or a detection that no reader would take: NaN or infinity, a
- *                     branch_count beyond ASJ_MAX_BRANCHES, an L-junction of a junction or branch that is not there
+ *                     branch_count beyond ASJ_MAX_BRANCHES, an L-junction or edge of a junction or branch that is not there
  * ASJ_ERROR_FILE      cannot create, disk full, cannot rename
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_detection_report *report,
@@ -153,7 +154,9 @@ typedef struct asj_junction_file {
     const uint32_t *lines;         /* for each junction the line of the file where it begins, from 1: for messages */
     uint32_t junction_count;
     int32_t width, height;         /* of the image; 0 when the file does not say (.asj) */
-    int32_t reserved[5];
+    uint32_t edge_count;           /* JSON only */
+    const asj_edge *edges;         /* in the order of the file */
+    int32_t reserved[2];
 } asj_junction_file;
 
 /* Reads .asj text, as this library or the paper's authors' program writes it, or this library's JSON; the content decides which.
@@ -164,7 +167,8 @@ typedef struct asj_junction_file {
  * ASJ_ERROR_FILE      missing, a directory, unreadable
  * ASJ_ERROR_FORMAT    empty, not such a file, wrong counts, NaN, infinity, a negative length or scale, fewer than 2 or more than
  *                     ASJ_MAX_BRANCHES branches, text after the end; JSON: a location more than ASJ_MAX_OUTSIDE
- *                     px outside the image
+ *                     px outside the image; edges of branches that are not there, stand in no order
+ *                     of angle or are part of two edges
  * ASJ_ERROR_LIMIT     more than 2^24 junctions, a file longer than 2^31 - 1 bytes
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_junctions_read(const char *path, asj_junction_file **file, char *message, size_t message_size);

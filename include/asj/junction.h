@@ -10,6 +10,17 @@ extern "C" {
 
 #define ASJ_MAX_BRANCHES 5
 
+/* What is at the far end of a branch. Ends at a junction or at a crossing are places of the scene, which another picture of it may
+ * show too; where something hides an edge or the border cuts it that is not so, and where it fades the place is known least. */
+enum {
+    ASJ_BRANCH_END_UNKNOWN = 0,   /* not looked at: junctions from files that do not say it */
+    ASJ_BRANCH_END_JUNCTION = 1,  /* another junction of the list */
+    ASJ_BRANCH_END_CROSSING = 2,  /* edges that go on or turn away there, and no junction of the list */
+    ASJ_BRANCH_END_FADED = 3,     /* nothing: the edge gets too weak to be told */
+    ASJ_BRANCH_END_OCCLUSION = 4, /* an edge that passes by in one line, which may hide the rest */
+    ASJ_BRANCH_END_BORDER = 5     /* the border of the image */
+};
+
 /* One straight branch of a junction, pointing away from it. */
 typedef struct asj_branch {
     float angle;      /* rad in [0, 2 pi), from +x (right) towards +y (down) */
@@ -18,6 +29,8 @@ typedef struct asj_branch {
     float log10_nfa;  /* log10 of the expected number of strips as good as this one in an image of noise; the smaller the surer */
     float angle_sd;   /* rad: standard uncertainty of `angle`; 0 = not known */
     float width;      /* px: standard deviation of the blur of the edge under it, when that is a step; 0 = sharp or not known */
+    float length_sd;  /* px: standard uncertainty of the end along the branch; 0 = not known */
+    int32_t end;      /* ASJ_BRANCH_END_...: what is there */
 } asj_branch;
 
 /* px that a junction may lie outside its image: branches may meet beyond the border. The detector's largest max_move. */
@@ -43,6 +56,15 @@ typedef struct asj_l_junction {
     float ax, ay;               /* px: end of branch a */
     float bx, by;               /* px: end of branch b */
 } asj_l_junction;
+
+/* A straight edge of the picture between two junctions: a branch of each, which point at each other. Every branch is part of one
+ * edge at most, and no other junction that has branches along the line in both directions lies between. */
+typedef struct asj_edge {
+    uint32_t junction_a, junction_b; /* indices of the junctions, a < b */
+    uint16_t branch_a, branch_b;     /* indices of their branches */
+    float log10_nfa;                 /* log10 of the expected number of strips as good as the part between in an image of noise */
+    uint32_t reserved[2];            /* zero */
+} asj_edge;
 
 #ifdef __cplusplus
 }

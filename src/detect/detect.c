@@ -23,7 +23,8 @@ static asj_status run_octave(asj_detection_run *run)
         {asj_step_scan, ASJ_STAGE_SCAN, 0.90},             /* step 4 */
         {asj_step_orient, ASJ_STAGE_REFINE, 0.92},         /* step 5 */
         {asj_step_scan, ASJ_STAGE_SCAN, 0.95},             /* step 4 */
-        {asj_step_refine, ASJ_STAGE_REFINE, 0.99},         /* step 5 */
+        {asj_step_refine, ASJ_STAGE_REFINE, 0.98},         /* step 5 */
+        {asj_step_ends, ASJ_STAGE_REFINE, 0.99},
     };
     asj_status status = ASJ_OK;
     for (size_t i = 0; i < sizeof steps / sizeof steps[0] && status == ASJ_OK; i++) {
@@ -52,6 +53,8 @@ static asj_status run_octaves(asj_detection_run *run)
     }
     if (status == ASJ_OK)
         status = asj_step_merge_octaves(run);
+    if (status == ASJ_OK)
+        status = asj_step_join(run);
     asj_detection_run_time(run, ASJ_STAGE_REFINE);
     return status;
 }
@@ -60,7 +63,8 @@ static asj_status run_octaves(asj_detection_run *run)
 static asj_status finish(asj_detection_run *run, double start, asj_detection **result)
 {
     const double minimum_opening = run->options->minimum_opening;
-    asj_status status = asj_result_fill(run->context, run->hypotheses, run->hypothesis_count, minimum_opening, result);
+    const asj_findings findings = {run->hypotheses, run->hypothesis_count, run->edges, run->edge_count};
+    asj_status status = asj_result_fill(run->context, &findings, minimum_opening, result);
     if (status != ASJ_OK)
         return asj_fail(run->context, status, "no memory for %zu junctions", run->hypothesis_count);
     asj_detection *found = *result;

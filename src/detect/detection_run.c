@@ -112,6 +112,7 @@ void asj_detection_run_end(asj_detection_run *run)
 {
     asj_memory *memory = &run->context->memory;
     asj_detection_run_clear(run);
+    asj_release(memory, run->edges);
     asj_release(memory, run->candidates);
     asj_release(memory, run->all);
     asj_release(memory, run->scratch.memory);

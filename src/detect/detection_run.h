@@ -44,6 +44,8 @@ typedef struct asj_detection_run {
     size_t hypothesis_count;
     asj_hypothesis *all;             /* of the octaves that are done, in pixels of the image */
     size_t all_count, all_capacity;
+    asj_edge *edges;                 /* between hypotheses */
+    size_t edge_count;
     size_t candidate_total, isotropic_total; /* and how many they had */
 
     double done, share;              /* progress: of the whole before this octave, and by it */

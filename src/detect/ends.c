@@ -2,13 +2,15 @@
 /* The ray scan knows the end of an edge to about a pixel when the edge ends in plain sight, and worse where it ends at others:
  * around a corner the local junctions hold several branches, and which one is closest to the ray is a matter of noise. The corner
  * itself is located to a few tenths of a pixel. So when a junction lies on the line of a branch (within OFF_LINE px) and within
- * snap_distance of its end, that is where the branch ends. The paper has no such step (snap_distance = 0). */
+ * snap_distance of its end, that is where the branch ends. The paper has no such step (snap_distance = 0); there
+ * such ends are only told to be at a junction. */
 #include "ends.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #define OFF_LINE 2.0 /* px */
+#define AT_END 4.0   /* px: a junction so near is what is at the end, whether the end moves or not */
 
 static int by_row(const void *a, const void *b)
 {
@@ -32,31 +34,47 @@ static size_t lower_bound(const asj_hypothesis *const *order, size_t count, doub
     return low;
 }
 
-static double snapped_length(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, double reach,
-                             const asj_hypothesis *const *order, size_t count)
+/* The junction on the line of a branch nearest to its end, less than `reach` px away; NULL = none. *distance: px to it. */
+static const asj_hypothesis *find_end(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, double reach,
+                                      const asj_hypothesis *const *order, size_t count, double *distance)
 {
     const double ux = cos(branch->angle), uy = sin(branch->angle), end_y = hypothesis->y + branch->length * uy;
     const double off_line = OFF_LINE * (1 << branch->octave), around = reach + off_line;
-    double best = reach, length = branch->length;
+    const asj_hypothesis *found = NULL;
+    double best = reach;
     for (size_t i = lower_bound(order, count, end_y - around); i < count && order[i]->y <= end_y + around; i++) {
         const double dx = order[i]->x - hypothesis->x, dy = order[i]->y - hypothesis->y;
         const double t = dx * ux + dy * uy, off = fabs(dy * ux - dx * uy);
         if (order[i] != hypothesis && t > 0 && off <= off_line && fabs(t - branch->length) < best) {
             best = fabs(t - branch->length);
-            length = t;
+            *distance = t;
+            found = order[i];
         }
     }
-    return length;
+    return found;
+}
+
+static void snap(const asj_hypothesis *hypothesis, double reach, const asj_hypothesis *const *order, size_t count,
+                 asj_hypothesis_branch *branch)
+{
+    double distance = 0;
+    const asj_hypothesis *end = find_end(hypothesis, branch, fmax(reach, AT_END), order, count, &distance);
+    if (!end)
+        return;
+    branch->end = ASJ_BRANCH_END_JUNCTION;
+    if (fabs(distance - branch->length) >= reach)
+        return;
+    branch->length = distance;
+    branch->end_variance = hypothesis->location_variance + end->location_variance;
 }
 
 void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order)
 {
-    if (count == 0 || reach <= 0)
-        return;
     for (size_t i = 0; i < count; i++)
         order[i] = &hypotheses[i];
-    qsort(order, count, sizeof *order, by_row);
+    if (count > 1)
+        qsort(order, count, sizeof *order, by_row);
     for (size_t i = 0; i < count; i++)
         for (int32_t b = 0; b < hypotheses[i].branch_count; b++)
-            hypotheses[i].branches[b].length = snapped_length(&hypotheses[i], &hypotheses[i].branches[b], reach, order, count);
+            snap(&hypotheses[i], reach, order, count, &hypotheses[i].branches[b]);
 }

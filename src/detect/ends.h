@@ -5,7 +5,7 @@
 
 #include "hypothesis.h"
 
-/* Moves the ends of branches onto junctions that lie on their line within `reach` px of the end. `order` is scratch for `count`
+/* Moves the ends of branches onto junctions that lie on their line within `reach` px of the end, and tells which end at one. `order` is scratch for `count`
  * elements. */
 void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order);
 

@@ -70,6 +70,7 @@ void asj_octaves_map(asj_hypothesis *hypothesis, int32_t octave)
         branch->length *= scale;
         branch->offset *= scale;
         branch->offset_variance *= scale * scale;
+        branch->end_variance *= scale * scale;
         branch->apart *= scale;
     }
 }

@@ -11,8 +11,8 @@
 typedef struct result {
     asj_detection detection; /* first: the public pointer is this one */
     asj_memory memory;       /* the allocator; results outlive their context */
-    void *junctions, *l_junctions;
-    size_t capacity, l_capacity;
+    void *junctions, *l_junctions, *edges;
+    size_t capacity, l_capacity, edge_capacity;
 } result;
 
 static void convert(const asj_hypothesis *hypothesis, asj_junction *out)
@@ -34,6 +34,8 @@ static void convert(const asj_hypothesis *hypothesis, asj_junction *out)
         out->branches[i].log10_nfa = (float)(branch->log_nfa / LN_10);
         out->branches[i].angle_sd = (float)sqrt(branch->angle_variance);
         out->branches[i].width = (float)(branch->width * (1 << branch->octave));
+        out->branches[i].length_sd = (float)sqrt(branch->end_variance);
+        out->branches[i].end = branch->end;
     }
 }
 
@@ -48,14 +50,27 @@ static asj_status reserve(asj_memory *memory, void **list, size_t *capacity, siz
     return count > *capacity ? asj_grow(memory, list, capacity, count + count / 2, size, 0) : ASJ_OK;
 }
 
-static asj_status fill(result *r, const asj_hypothesis *hypotheses, size_t count, double minimum_opening)
+static asj_status fill_edges(result *r, const asj_findings *findings)
 {
+    const size_t count = findings->edge_count;
+    const asj_status status = reserve(&r->memory, &r->edges, &r->edge_capacity, count, sizeof(asj_edge));
+    if (status != ASJ_OK || count == 0)
+        return status;
+    memcpy(r->edges, findings->edges, count * sizeof(asj_edge));
+    r->detection.edges = r->edges;
+    r->detection.edge_count = (uint32_t)count;
+    return ASJ_OK;
+}
+
+static asj_status fill(result *r, const asj_findings *findings, double minimum_opening)
+{
+    const size_t count = findings->count;
     asj_status status = reserve(&r->memory, &r->junctions, &r->capacity, count, sizeof(asj_junction));
     if (status != ASJ_OK || count == 0)
         return status;
     asj_junction *junctions = r->junctions;
     for (size_t i = 0; i < count; i++)
-        convert(&hypotheses[i], &junctions[i]);
+        convert(&findings->hypotheses[i], &junctions[i]);
     const size_t l_count = asj_decompose(junctions, count, minimum_opening, NULL, 0);
     status = reserve(&r->memory, &r->l_junctions, &r->l_capacity, l_count, sizeof(asj_l_junction));
     if (status != ASJ_OK)
@@ -66,16 +81,15 @@ static asj_status fill(result *r, const asj_hypothesis *hypotheses, size_t count
     r->detection.junction_count = (uint32_t)count;
     r->detection.l_junctions = l_count > 0 ? r->l_junctions : NULL;
     r->detection.l_junction_count = (uint32_t)l_count;
-    return ASJ_OK;
+    return fill_edges(r, findings);
 }
 
-asj_status asj_result_fill(const asj_context *context, const asj_hypothesis *hypotheses, size_t count, double minimum_opening,
-                           asj_detection **detection)
+asj_status asj_result_fill(const asj_context *context, const asj_findings *findings, double minimum_opening, asj_detection **detection)
 {
     result *r = (result *)*detection;
     if (r) {
         asj_result_clear(&r->detection);
-        return fill(r, hypotheses, count, minimum_opening);
+        return fill(r, findings, minimum_opening);
     }
     asj_memory memory = {.allocator = context->memory.allocator};
     r = asj_allocate_zero(&memory, 1, sizeof *r);
@@ -83,7 +97,7 @@ asj_status asj_result_fill(const asj_context *context, const asj_hypothesis *hyp
         return ASJ_ERROR_MEMORY;
     r->memory = memory;
     *detection = &r->detection;
-    const asj_status status = fill(r, hypotheses, count, minimum_opening);
+    const asj_status status = fill(r, findings, minimum_opening);
     if (status != ASJ_OK)
         asj_detection_free(detection);
     return status;
@@ -95,6 +109,7 @@ void asj_detection_free(asj_detection **pointer)
         return;
     result *r = (result *)*pointer;
     asj_memory memory = r->memory;
+    asj_release(&memory, r->edges);
     asj_release(&memory, r->l_junctions);
     asj_release(&memory, r->junctions);
     asj_release(&memory, r);

@@ -82,12 +82,11 @@ void asj_strip_sums_of(const asj_frame *frame, const asj_strip_walk *walk, asj_s
                              list.near_pixels};
 }
 
-static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                             const asj_strip_line *line, double near)
+asj_strip_sums asj_strip_add_up(const asj_context *context, const asj_frame *frame, const asj_strip_line *line, double half_width,
+                                double near)
 {
     const double x = line->x, y = line->y;
-    asj_strip_walk walk = {x, y, cos(line->angle), sin(line->angle), fmin(line->length, options->strip_length),
-                           options->strip_half_width, near, 0, 0, 0, 0, 0};
+    asj_strip_walk walk = {x, y, cos(line->angle), sin(line->angle), line->length, half_width, near, 0, 0, 0, 0, 0};
     walk.along_x = fabs(walk.ux) >= fabs(walk.uy);
     const double start = walk.along_x ? x : y, step = walk.along_x ? walk.ux : walk.uy, end = start + walk.reach * step;
     const int32_t size = walk.along_x ? frame->width : frame->height;
@@ -102,9 +101,22 @@ static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame,
     return sums;
 }
 
+static asj_strip_sums add_up(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                             const asj_strip_line *line, double near)
+{
+    asj_strip_line start = *line;
+    start.length = fmin(line->length, options->strip_length);
+    return asj_strip_add_up(context, frame, &start, options->strip_half_width, near);
+}
+
+double asj_strip_log_tests(int32_t width, int32_t height, int32_t octaves)
+{
+    return 1.5 * log((double)width * height) + log(octaves);
+}
+
 static double log_number_of_tests(const asj_frame *frame)
 {
-    return 1.5 * log((double)frame->width * frame->height) + log(frame->octaves);
+    return asj_strip_log_tests(frame->width, frame->height, frame->octaves);
 }
 
 static double log_nfa(const asj_context *context, const asj_frame *frame, double gamma, int32_t pixels)
@@ -131,9 +143,14 @@ asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, con
 
 const asj_strip_ops asj_strip_reference = {.sums = asj_strip_sums_of};
 
+double asj_strip_alike(const asj_strip *strip, double width)
+{
+    const double relative = strip->waver / NOISE_WAVER;
+    return 1 + ALIKE * fmax(width - INDEPENDENT_WIDTH, 0) * relative * relative;
+}
+
 double asj_strip_correlated(const asj_frame *frame, const asj_strip *strip, double width)
 {
-    const double log_tests = log_number_of_tests(frame), relative = strip->waver / NOISE_WAVER;
-    const double alike = 1 + ALIKE * fmax(width - INDEPENDENT_WIDTH, 0) * relative * relative;
+    const double log_tests = log_number_of_tests(frame), alike = asj_strip_alike(strip, width);
     return alike > 1 && strip->log_nfa < log_tests ? log_tests + (strip->log_nfa - log_tests) / alike : strip->log_nfa;
 }

@@ -21,6 +21,9 @@ typedef struct asj_strip_line {
 /* ln NFA of a strip whose pixels are not independent: see strip.c. `width` of its edge, px. */
 double asj_strip_correlated(const asj_frame *frame, const asj_strip *strip, double width);
 
+/* How many of its pixels are as good as one. */
+double asj_strip_alike(const asj_strip *strip, double width);
+
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          const asj_strip_line *line);
 
@@ -48,6 +51,13 @@ typedef struct asj_strip_sums {
     double gamma, uu, nn, near_gamma;
     int32_t pixels, near_pixels;
 } asj_strip_sums;
+
+/* The sums of any strip, however long; gamma in standard units. `near` px: see asj_strip_walk. */
+asj_strip_sums asj_strip_add_up(const asj_context *context, const asj_frame *frame, const asj_strip_line *line, double half_width,
+                                double near);
+
+/* ln of the number of strips in an image of this size, one of so many octaves. */
+double asj_strip_log_tests(int32_t width, int32_t height, int32_t octaves);
 
 void asj_strip_sums_of(const asj_frame *frame, const asj_strip_walk *walk, asj_strip_sums *sums);
 

@@ -5,6 +5,7 @@
 #include "c_locale.h"
 #include "json_skip.h"
 #include "junction_formats.h"
+#include "junction_graph.h"
 
 #include <jansson.h>
 #include <string.h>
@@ -17,7 +18,7 @@ typedef struct json_reader {
     size_t line; /* of `next`, from 1 */
     const asj_message *message;
     asj_junction_list *list;
-    int has_schema, has_image, has_junctions;
+    int has_schema, has_image, has_junctions, has_edges;
 } json_reader;
 
 static char skip_space(json_reader *reader)
@@ -139,11 +140,17 @@ static asj_status read_branch(const json_reader *reader, size_t line, const json
 {
     const member members[] = {{"angle", 1, &branch->angle},         {"length", 1, &branch->length},
                               {"strength", 0, &branch->strength},   {"log10_nfa", 0, &branch->log10_nfa},
-                              {"angle_sd", 0, &branch->angle_sd},   {"width", 0, &branch->width}};
+                              {"angle_sd", 0, &branch->angle_sd},   {"width", 0, &branch->width},
+                              {"length_sd", 0, &branch->length_sd}};
     asj_status status = read_members(reader, line, object, members, sizeof members / sizeof members[0]);
-    if (status == ASJ_OK)
-        asj_set_angle(branch, (double)branch->angle);
-    return status;
+    const json_t *end = json_object_get(object, "end");
+    if (status != ASJ_OK)
+        return status;
+    branch->end = !end ? ASJ_BRANCH_END_UNKNOWN : json_is_string(end) ? asj_end_of_word(json_string_value(end)) : -1;
+    if (branch->end < 0)
+        return asj_line_fail(reader->message, line, "\"end\" of a branch is no kind of end");
+    asj_set_angle(branch, (double)branch->angle);
+    return ASJ_OK;
 }
 
 static asj_status read_junction(const json_reader *reader, size_t line, const json_t *object)
@@ -176,14 +183,44 @@ static asj_status fail_second(const json_reader *reader, const char *key)
     return asj_line_fail(reader->message, reader->line, "\"%s\" stands here a second time", key);
 }
 
-static asj_status read_junctions(json_reader *reader)
+/* An index of an edge; -1 when it is none. */
+static json_int_t read_index(const json_t *object, const char *key)
+{
+    const json_t *value = json_object_get(object, key);
+    const json_int_t index = json_integer_value(value);
+    return json_is_integer(value) && index >= 0 && index <= UINT16_MAX * (json_int_t)UINT16_MAX ? index : -1;
+}
+
+static asj_status read_edge(const json_reader *reader, size_t line, const json_t *object)
+{
+    static const asj_edge none = {0};
+    asj_edge edge = none;
+    const json_int_t from = read_index(object, "junction_a"), to = read_index(object, "junction_b");
+    const json_int_t one = read_index(object, "branch_a"), other = read_index(object, "branch_b");
+    const member members[] = {{"log10_nfa", 0, &edge.log10_nfa}};
+    asj_status status = read_members(reader, line, object, members, 1);
+
+    if (status != ASJ_OK)
+        return status;
+    if (from < 0 || to < 0 || one < 0 || other < 0 || one >= ASJ_MAX_BRANCHES || other >= ASJ_MAX_BRANCHES)
+        return asj_line_fail(reader->message, line, "an edge needs two junctions and their branches");
+    edge.junction_a = (uint32_t)from;
+    edge.junction_b = (uint32_t)to;
+    edge.branch_a = (uint16_t)one;
+    edge.branch_b = (uint16_t)other;
+    return asj_junction_list_add_edge(reader->list, &edge, line, reader->message);
+}
+
+/* A list of junctions or of edges. */
+static asj_status read_list(json_reader *reader, asj_status (*read)(const json_reader *, size_t, const json_t *), const char *key,
+                            int *has)
 {
     asj_status status = expect(reader, '[');
     int more = 1;
 
-    if (status == ASJ_OK && reader->has_junctions)
-        return fail_second(reader, "junctions");
-    reader->has_junctions = 1;
+    if (status == ASJ_OK && *has)
+        return fail_second(reader, key);
+    *has = 1;
     if (status == ASJ_OK && skip_space(reader) == ']')
         return expect(reader, ']');
     while (status == ASJ_OK && more) {
@@ -193,7 +230,7 @@ static asj_status read_junctions(json_reader *reader)
         line = reader->line;
         status = read_value(reader, &value);
         if (status == ASJ_OK)
-            status = read_junction(reader, line, value);
+            status = read(reader, line, value);
         json_decref(value);
         if (status == ASJ_OK)
             status = expect_more(reader, ']', &more);
@@ -234,7 +271,9 @@ static asj_status read_entry(json_reader *reader, const char *key)
     asj_status status;
 
     if (!strcmp(key, "junctions"))
-        return read_junctions(reader);
+        return read_list(reader, read_junction, key, &reader->has_junctions);
+    if (!strcmp(key, "edges"))
+        return read_list(reader, read_edge, key, &reader->has_edges);
     if (strcmp(key, "schema") && strcmp(key, "image")) {
         const char *stop;
         status = find_end(reader, &stop);
@@ -288,7 +327,7 @@ static asj_status check_locations(const json_reader *reader)
 
 asj_status asj_read_json(const asj_input *input, asj_junction_list *list, const asj_message *message)
 {
-    json_reader reader = {(const char *)input->bytes, (const char *)input->bytes + input->size, 1, message, list, 0, 0, 0};
+    json_reader reader = {(const char *)input->bytes, (const char *)input->bytes + input->size, 1, message, list, 0, 0, 0, 0};
     asj_c_locale locale;
     asj_status status = asj_c_locale_begin(&locale, message);
 
@@ -298,5 +337,7 @@ asj_status asj_read_json(const asj_input *input, asj_junction_list *list, const 
     asj_c_locale_end(&locale);
     if (status == ASJ_OK && (!reader.has_schema || !reader.has_junctions))
         status = asj_line_fail(message, reader.line, "not a junction file: no \"schema\" or no \"junctions\"");
-    return status == ASJ_OK ? check_locations(&reader) : status;
+    if (status == ASJ_OK)
+        status = check_locations(&reader);
+    return status == ASJ_OK ? asj_junction_list_check_edges(list, message) : status;
 }

@@ -5,6 +5,7 @@
 #include "c_locale.h"
 #include "json_options.h"
 #include "json_output.h"
+#include "junction_graph.h"
 
 #include <asj/version.h>
 
@@ -31,8 +32,9 @@ static void put_head(asj_json_output *json, const asj_detection_report *report)
     asj_json_put(json, ",\n\"timing\": ",
         asj_json_timing(found->total_ms, found->stage_ms, ASJ_STAGE_GRADIENT, ASJ_STAGE_DECOMPOSE), JSON_REAL_PRECISION(15));
     asj_json_put(json, ",\n\"counts\": ",
-        json_pack("{s:I, s:I, s:I, s:I}", "candidates", (json_int_t)found->candidates, "isotropic", (json_int_t)found->isotropic,
-                  "junctions", (json_int_t)found->junction_count, "l_junctions", (json_int_t)found->l_junction_count), 0);
+        json_pack("{s:I, s:I, s:I, s:I, s:I}", "candidates", (json_int_t)found->candidates, "isotropic",
+                  (json_int_t)found->isotropic, "junctions", (json_int_t)found->junction_count, "edges",
+                  (json_int_t)found->edge_count, "l_junctions", (json_int_t)found->l_junction_count), 0);
 }
 
 static json_t *junction_value(const asj_junction *junction)
@@ -41,10 +43,11 @@ static json_t *junction_value(const asj_junction *junction)
     int32_t b;
     for (b = 0; b < junction->branch_count && branches; b++) {
         const asj_branch *branch = &junction->branches[b];
-        json_t *value = json_pack("{s:f, s:f, s:f, s:f, s:f, s:f}", "angle", (double)branch->angle,
+        json_t *value = json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:s*}", "angle", (double)branch->angle,
                                   "length", (double)branch->length,
                                   "strength", (double)branch->strength, "log10_nfa", (double)branch->log10_nfa,
-                                  "angle_sd", (double)branch->angle_sd, "width", (double)branch->width);
+                                  "angle_sd", (double)branch->angle_sd, "width", (double)branch->width,
+                                  "length_sd", (double)branch->length_sd, "end", asj_end_word(branch->end));
         if (json_array_append_new(branches, value)) {
             json_decref(branches);
             branches = NULL;
@@ -53,6 +56,13 @@ static json_t *junction_value(const asj_junction *junction)
     return json_pack("{s:f, s:f, s:f, s:f, s:f, s:i, s:o}", "x", (double)junction->x, "y", (double)junction->y,
                      "scale", (double)junction->scale, "log10_nfa", (double)junction->log10_nfa,
                      "location_sd", (double)junction->location_sd, "octave", (int)junction->octave, "branches", branches);
+}
+
+static json_t *edge_value(const asj_edge *edge)
+{
+    return json_pack("{s:I, s:i, s:I, s:i, s:f}", "junction_a", (json_int_t)edge->junction_a, "branch_a", (int)edge->branch_a,
+                     "junction_b", (json_int_t)edge->junction_b, "branch_b", (int)edge->branch_b,
+                     "log10_nfa", (double)edge->log10_nfa);
 }
 
 asj_status asj_write_json(asj_output *output, const asj_detection_report *report, const asj_message *message)
@@ -69,6 +79,9 @@ asj_status asj_write_json(asj_output *output, const asj_detection_report *report
     asj_output_text(output, ",\n\"junctions\": [");
     for (i = 0; i < found->junction_count && !json.out_of_memory; i++)
         asj_json_put(&json, i ? ",\n" : "\n", junction_value(&found->junctions[i]), ASJ_JSON_FLOATS);
+    asj_output_text(output, "],\n\"edges\": [");
+    for (i = 0; i < found->edge_count && !json.out_of_memory; i++)
+        asj_json_put(&json, i ? ",\n" : "\n", edge_value(&found->edges[i]), ASJ_JSON_FLOATS);
     asj_output_text(output, "],\n\"l_junctions\": [");
     for (i = 0; i < found->l_junction_count && !json.out_of_memory; i++)
         asj_json_put(&json, i ? ",\n" : "\n", asj_json_l_junction(&found->l_junctions[i]), ASJ_JSON_FLOATS);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The rules that both readers of junction files share. */
+#include "junction_graph.h"
 #include "junction_list.h"
 
 #include <math.h>
@@ -31,15 +32,19 @@ void asj_set_angle(asj_branch *branch, double angle)
     branch->angle = (double)nearest < two_pi ? nearest : 0.0f; /* the float next to 2 pi lies above it */
 }
 
-static void sort_branches(asj_junction *junction)
+/* 1 when they were not in order. */
+static int sort_branches(asj_junction *junction)
 {
     int32_t i, j;
+    int moved = 0;
     for (i = 1; i < junction->branch_count; i++) {
         asj_branch branch = junction->branches[i];
         for (j = i; j > 0 && junction->branches[j - 1].angle > branch.angle; j--)
             junction->branches[j] = junction->branches[j - 1];
         junction->branches[j] = branch;
+        moved |= j < i;
     }
+    return moved;
 }
 
 static asj_status make_room(asj_junction_list *list, const asj_message *message)
@@ -78,8 +83,73 @@ asj_status asj_junction_list_add(asj_junction_list *list, const asj_junction *ju
     if (status != ASJ_OK)
         return status;
     list->junctions[list->count] = *junction;
-    sort_branches(&list->junctions[list->count]);
+    list->was_sorted |= sort_branches(&list->junctions[list->count]);
     list->lines[list->count] = line > UINT32_MAX ? UINT32_MAX : (uint32_t)line;
     list->count++;
     return ASJ_OK;
+}
+
+static asj_status make_edge_room(asj_junction_list *list, const asj_message *message)
+{
+    size_t wanted = list->edge_capacity ? 2 * list->edge_capacity : 64;
+    asj_edge *edges;
+    uint32_t *lines;
+
+    if (list->edge_count < list->edge_capacity)
+        return ASJ_OK;
+    edges = realloc(list->edges, wanted * sizeof *edges);
+    if (edges)
+        list->edges = edges;
+    lines = realloc(list->edge_lines, wanted * sizeof *lines);
+    if (lines)
+        list->edge_lines = lines;
+    if (!edges || !lines)
+        return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for %zu edges", wanted);
+    list->edge_capacity = wanted;
+    return ASJ_OK;
+}
+
+asj_status asj_junction_list_add_edge(asj_junction_list *list, const asj_edge *edge, size_t line, const asj_message *message)
+{
+    asj_status status;
+    if (list->edge_count >= ASJ_EDGES_MAX)
+        return asj_message_fail(message, ASJ_ERROR_LIMIT, "more than %u edges", ASJ_EDGES_MAX);
+    status = make_edge_room(list, message);
+    if (status != ASJ_OK)
+        return status;
+    list->edges[list->edge_count] = *edge;
+    list->edge_lines[list->edge_count++] = line > UINT32_MAX ? UINT32_MAX : (uint32_t)line;
+    return ASJ_OK;
+}
+
+/* Marks a branch as taken; 0 when it was taken before. */
+static int take(unsigned char *taken, uint32_t junction, uint16_t branch)
+{
+    unsigned char bit = (unsigned char)(1u << branch);
+    int was_free = !(taken[junction] & bit);
+    taken[junction] |= bit;
+    return was_free;
+}
+
+asj_status asj_junction_list_check_edges(const asj_junction_list *list, const asj_message *message)
+{
+    asj_status status = ASJ_OK;
+    unsigned char *taken;
+    size_t i;
+    if (!list->edge_count)
+        return ASJ_OK;
+    if (list->was_sorted)
+        return asj_line_fail(message, list->edge_lines[0], "edges name branches, which must stand in order of angle then");
+    taken = calloc(list->count ? list->count : 1, 1);
+    if (!taken)
+        return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for %zu junctions", list->count);
+    for (i = 0; i < list->edge_count && status == ASJ_OK; i++) {
+        const asj_edge *e = &list->edges[i];
+        if (!asj_is_sound_edge(list->junctions, list->count, e))
+            status = asj_line_fail(message, list->edge_lines[i], "an edge of a junction or branch that is not there");
+        else if (!take(taken, e->junction_a, e->branch_a) || !take(taken, e->junction_b, e->branch_b))
+            status = asj_line_fail(message, list->edge_lines[i], "a branch is part of two edges");
+    }
+    free(taken);
+    return status;
 }

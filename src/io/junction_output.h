@@ -8,9 +8,9 @@
 #include "message.h"
 
 void asj_write_text(asj_output *output, const asj_detection *detection, int whole);
-void asj_write_csv(asj_output *output, const asj_detection *detection);
 
 /* ASJ_ERROR_MEMORY */
+asj_status asj_write_csv(asj_output *output, const asj_detection *detection, const asj_message *message);
 asj_status asj_write_json(asj_output *output, const asj_detection_report *report, const asj_message *message);
 
 #endif

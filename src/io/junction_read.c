@@ -30,6 +30,8 @@ static void publish(owned_junctions *owned)
     owned->file.junction_count = (uint32_t)owned->list.count;
     owned->file.width = owned->list.width;
     owned->file.height = owned->list.height;
+    owned->file.edges = owned->list.edges;
+    owned->file.edge_count = (uint32_t)owned->list.edge_count;
 }
 
 asj_status asj_junctions_read(const char *path, asj_junction_file **file, char *text, size_t text_size)
@@ -71,6 +73,8 @@ void asj_junction_file_free(asj_junction_file **file)
     owned = (owned_junctions *)(void *)*file;
     free(owned->list.junctions);
     free(owned->list.lines);
+    free(owned->list.edges);
+    free(owned->list.edge_lines);
     free(owned);
     *file = NULL;
 }

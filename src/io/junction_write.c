@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Junction files: checks what is to be written, opens the output, calls the writer of the format. */
+#include "junction_graph.h"
 #include "junction_output.h"
 
 #include <math.h>
@@ -15,7 +16,7 @@ static int is_sound(const asj_junction *junction)
     for (b = 0; b < junction->branch_count; b++) {
         const asj_branch *branch = &junction->branches[b];
         if (!isfinite(branch->angle) || !isfinite(branch->length) || !isfinite(branch->strength) || !isfinite(branch->log10_nfa) ||
-            !isfinite(branch->angle_sd))
+            !isfinite(branch->angle_sd) || !isfinite(branch->width) || !isfinite(branch->length_sd))
             return 0;
     }
     return 1;
@@ -31,7 +32,8 @@ static int is_sound_pair(const asj_detection *detection, const asj_l_junction *p
 static asj_status check(const asj_detection *detection, const asj_message *message)
 {
     uint32_t i;
-    if ((detection->junction_count && !detection->junctions) || (detection->l_junction_count && !detection->l_junctions))
+    if ((detection->junction_count && !detection->junctions) || (detection->l_junction_count && !detection->l_junctions) ||
+        (detection->edge_count && !detection->edges))
         return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the detection has a count but no array");
     for (i = 0; i < detection->junction_count; i++)
         if (!is_sound(&detection->junctions[i]))
@@ -40,6 +42,10 @@ static asj_status check(const asj_detection *detection, const asj_message *messa
     for (i = 0; i < detection->l_junction_count; i++)
         if (!is_sound_pair(detection, &detection->l_junctions[i]))
             return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: L-junction %lu has NaN, infinity or a wrong index",
+                                    (unsigned long)i);
+    for (i = 0; i < detection->edge_count; i++)
+        if (!asj_is_sound_edge(detection->junctions, detection->junction_count, &detection->edges[i]))
+            return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: edge %lu has NaN, infinity or a wrong index",
                                     (unsigned long)i);
     return ASJ_OK;
 }
@@ -63,7 +69,7 @@ asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_
     if (file_format == ASJ_FILE_JSON)
         status = asj_write_json(output, report, &message);
     else if (file_format == ASJ_FILE_CSV)
-        asj_write_csv(output, report->detection);
+        status = asj_write_csv(output, report->detection, &message);
     else
         asj_write_text(output, report->detection, file_format == ASJ_FILE_ASJ_WHOLE);
     if (status != ASJ_OK) {

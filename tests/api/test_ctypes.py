@@ -12,7 +12,8 @@ class Image(c.Structure):
 
 
 class Branch(c.Structure):
-    _fields_ = [(name, c.c_float) for name in ("angle", "length", "strength", "log10_nfa", "angle_sd", "width")]
+    _fields_ = [(name, c.c_float) for name in ("angle", "length", "strength", "log10_nfa", "angle_sd", "width", "length_sd")] + \
+               [("end", c.c_int32)]
 
 
 class Junction(c.Structure):

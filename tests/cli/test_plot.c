@@ -118,15 +118,18 @@ static void small_images_are_enlarged(void **state)
 static void the_colors_follow_the_option(void **state)
 {
     (void)state;
-    size_t sizes[2] = {0};
-    expect_code(run_cli("detect", "-q", "--plot", "nfa.png", "scene.png", NULL), 0);
-    expect_code(run_cli("detect", "-q", "--plot", "branch.png", "--plot-color", "branch", "scene.png", NULL), 0);
-    char *nfa = read_bytes("nfa.png", &sizes[0]), *branch = read_bytes("branch.png", &sizes[1]);
-    assert_non_null(nfa);
-    assert_non_null(branch);
-    assert_false(sizes[0] == sizes[1] && memcmp(nfa, branch, sizes[0]) == 0);
-    free(nfa);
-    free(branch);
+    static const char *const colors[3] = {"nfa", "branch", "edge"};
+    char *plots[3];
+    size_t sizes[3] = {0};
+    for (int i = 0; i < 3; i++) {
+        expect_code(run_cli("detect", "-q", "--plot", "color.png", "--plot-color", colors[i], "scene.png", NULL), 0);
+        plots[i] = read_bytes("color.png", &sizes[i]);
+        assert_non_null(plots[i]);
+        for (int k = 0; k < i; k++)
+            assert_false(sizes[i] == sizes[k] && memcmp(plots[i], plots[k], sizes[i]) == 0);
+    }
+    for (int i = 0; i < 3; i++)
+        free(plots[i]);
 }
 
 static void expect_text(const char *path, const char *beginning, const char *within, const char *without)

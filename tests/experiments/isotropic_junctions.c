@@ -41,7 +41,8 @@ static asj_status fill(const asj_detection_run *run, asj_detection **found)
             hypothesis->branches[b].log_nfa = hypothesis->log_nfa;
         }
     }
-    asj_status status = asj_result_fill(run->context, run->hypotheses, run->hypothesis_count, run->options->minimum_opening, found);
+    asj_status status = asj_result_fill(run->context, &(asj_findings){run->hypotheses, run->hypothesis_count, NULL, 0},
+                                        run->options->minimum_opening, found);
     if (status != ASJ_OK)
         return status;
     (*found)->width = run->image->width;

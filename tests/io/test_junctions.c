@@ -16,6 +16,7 @@
 static char message[512];
 static asj_junction junctions[COUNT];
 static asj_l_junction pairs[10 * COUNT];
+static asj_edge edges[COUNT];
 static asj_detect_options options;
 static asj_detection detection;
 static asj_detection_report report;
@@ -35,6 +36,8 @@ static void fill_branch(asj_branch *branch, int32_t b, int32_t count)
     branch->log10_nfa = random_float(-300, 5);
     branch->angle_sd = random_float(0, 0.01f);
     branch->width = random_float(0, 10);
+    branch->length_sd = random_float(0, 5);
+    branch->end = b % 6;
 }
 
 /* Random junctions, the first with the most awkward floats. */
@@ -63,7 +66,16 @@ static void fill_detection(void)
     junctions[0].branches[0].angle = 0;
     junctions[0].branches[1].angle = 6.28318501f; /* the last float below 2 pi */
     junctions[0].branches[1].strength = 3.40282347e38f;
+    memset(edges, 0, sizeof edges);
+    for (i = 0; i < COUNT / 2; i++) { /* the first branch of each of the first half with the second of one of the rest */
+        edges[i].junction_a = i;
+        edges[i].junction_b = COUNT - 1 - i;
+        edges[i].branch_b = 1;
+        edges[i].log10_nfa = random_float(-300, 0);
+    }
     memset(&detection, 0, sizeof detection);
+    detection.edges = edges;
+    detection.edge_count = COUNT / 2;
     detection.junctions = junctions;
     detection.junction_count = COUNT;
     detection.l_junctions = pairs;
@@ -112,6 +124,8 @@ static void json_gives_every_bit_back(void **state)
         assert_memory_equal(&file->junctions[i], &junctions[i], sizeof junctions[i]);
     for (i = 1; i < COUNT; i++)
         assert_int_equal(file->lines[i], file->lines[0] + i);
+    assert_int_equal(file->edge_count, COUNT / 2);
+    assert_memory_equal(file->edges, edges, COUNT / 2 * sizeof *edges);
     asj_junction_file_free(&file);
     assert_null(file);
 }
@@ -163,6 +177,15 @@ static void decomposed_text_holds_the_pairs(void **state)
     asj_junction_file_free(&file);
 }
 
+/* The next field of a CSV line as it stands; passes the comma or the end of the line. */
+static const char *next_text(char **at)
+{
+    char *text = *at, *end = text + strcspn(text, ",\n");
+    *end = '\0';
+    *at = end + 1;
+    return text;
+}
+
 /* Reads the next field of a CSV line with a decimal point, and passes the comma or the end of the line. */
 static float next_field(char **at)
 {
@@ -181,7 +204,8 @@ static float next_field(char **at)
 static void csv_gives_every_float_back(void **state)
 {
     static const char head[] = "junction,x,y,scale,log10_nfa,location_sd,octave,branch,angle,length,strength,branch_log10_nfa,"
-        "angle_sd,width\n";
+        "angle_sd,width,length_sd,end,to_junction,to_branch,edge_log10_nfa\n";
+    static const char *const words[] = {"", "junction", "crossing", "faded", "occlusion", "border"};
     static char text[400000];
     FILE *file = fopen(write_report("all.csv", ASJ_FILE_CSV), "rb");
     char *at = text;
@@ -197,11 +221,22 @@ static void csv_gives_every_float_back(void **state)
         for (b = 0; b < junctions[i].branch_count; b++) {
             const asj_junction *j = &junctions[i];
             const asj_branch *r = &j->branches[b];
-            const float wanted[14] = {(float)i, j->x, j->y, j->scale, j->log10_nfa, j->location_sd, (float)j->octave, (float)b,
-                                      r->angle, r->length, r->strength, r->log10_nfa, r->angle_sd, r->width};
+            const float wanted[15] = {(float)i, j->x, j->y, j->scale, j->log10_nfa, j->location_sd, (float)j->octave, (float)b,
+                                      r->angle, r->length, r->strength, r->log10_nfa, r->angle_sd, r->width,
+                                      r->length_sd};
+            const uint32_t place = i < COUNT / 2 ? i : COUNT - 1 - i;
             int field;
-            for (field = 0; field < 14; field++)
+            for (field = 0; field < 15; field++)
                 assert_true(next_field(&at) == wanted[field]);
+            assert_string_equal(next_text(&at), words[r->end]);
+            if (b == (i < COUNT / 2 ? 0 : 1)) {
+                assert_true(next_field(&at) == (float)(COUNT - 1 - i));
+                assert_true(next_field(&at) == (i < COUNT / 2 ? 1 : 0));
+                assert_true(next_field(&at) == edges[place].log10_nfa);
+            } else {
+                for (field = 0; field < 3; field++)
+                    assert_string_equal(next_text(&at), "");
+            }
         }
     assert_string_equal(at, "");
 }
@@ -216,14 +251,15 @@ static void golden_text_and_csv(void **state)
                                 "3.125000 14.000000 149.500000\n4.750000 12.660156 253.000000\n";
     static const char csv[] =
         "junction,x,y,scale,log10_nfa,location_sd,octave,branch,angle,length,strength,branch_log10_nfa,"
-        "angle_sd,width\n"
-        "0,486.53336,388.25,14,-46.9095,0.1,1,0,0.0625,126,15.1640625,-134.5,0.001,2.5\n"
-        "0,486.53336,388.25,14,-46.9095,0.1,1,1,3.125,149.5,14,0,0,0\n"
-        "0,486.53336,388.25,14,-46.9095,0.1,1,2,4.75,253,12.660156,0,0,0\n";
+        "angle_sd,width,length_sd,end,to_junction,to_branch,edge_log10_nfa\n"
+        "0,486.53336,388.25,14,-46.9095,0.1,1,0,0.0625,126,15.1640625,-134.5,0.001,2.5,0.5,faded,,,\n"
+        "0,486.53336,388.25,14,-46.9095,0.1,1,1,3.125,149.5,14,0,0,0,0,,,,\n"
+        "0,486.53336,388.25,14,-46.9095,0.1,1,2,4.75,253,12.660156,0,0,0,0,border,,,\n";
     static const asj_junction junction = {486.533356f, 388.25f, 14, -46.9095f, 0.1f, 3, 1,
-                                          {{0.0625f, 126, 15.1640625f, -134.5f, 0.001f, 2.5f},
-                                           {3.125f, 149.5f, 14, 0, 0, 0},
-                                           {4.75f, 253, 12.6601562f, 0, 0, 0}}};
+                                          {{0.0625f, 126, 15.1640625f, -134.5f, 0.001f, 2.5f, 0.5f,
+                                            ASJ_BRANCH_END_FADED},
+                                           {3.125f, 149.5f, 14, 0, 0, 0, 0, ASJ_BRANCH_END_UNKNOWN},
+                                           {4.75f, 253, 12.6601562f, 0, 0, 0, 0, ASJ_BRANCH_END_BORDER}}};
     static const asj_l_junction two[2] = {{0, 2, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0, 0, 0, 0}};
     static const char *const wanted[] = {text, whole, NULL, csv};
     static test_bytes found;
@@ -232,6 +268,7 @@ static void golden_text_and_csv(void **state)
     (void)state;
     one.junctions = &junction;
     one.junction_count = 1;
+    one.edge_count = 0;
     one.l_junctions = two;
     one.l_junction_count = 2;
     report.detection = &one;
@@ -289,6 +326,9 @@ static void json_has_its_schema(void **state)
     assert_true(json_is_boolean(json_object_get(stored, "strip_test")));
     assert_string_equal(json_string_value(json_object_get(stored, "refinement")), "line_fit");
     assert_int_equal(json_integer_value(json_array_get(json_object_get(stored, "isotropic_radii"), 0)), 7);
+    assert_int_equal(json_integer_value(json_object_get(json_object_get(root, "counts"), "edges")), COUNT / 2);
+    assert_int_equal(json_array_size(json_object_get(root, "edges")), COUNT / 2);
+    assert_int_equal(json_integer_value(json_object_get(json_array_get(json_object_get(root, "edges"), 3), "junction_b")), COUNT - 4);
     json_decref(root);
 }
 
@@ -317,6 +357,7 @@ static void unsound_detections_are_not_written(void **state)
 {
     asj_junction bad[6];
     asj_detection wrong = detection;
+    asj_edge edge;
     const char *path = in_folder("never");
     size_t i;
     (void)state;
@@ -328,13 +369,30 @@ static void unsound_detections_are_not_written(void **state)
     bad[3].branch_count = -1;
     bad[4].location_sd = -bad[1].branches[1].length;
     wrong.junction_count = 1;
-    wrong.l_junction_count = 0;
+    wrong.l_junction_count = wrong.edge_count = 0;
     report.detection = &wrong;
     for (i = 0; i < 5; i++) {
         wrong.junctions = &bad[i];
         assert_int_equal(asj_junctions_write(path, ASJ_FILE_JSON, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
         assert_non_null(strstr(message, "junction 0"));
     }
+    wrong.junctions = junctions;
+    wrong.junction_count = COUNT;
+    wrong.edges = &edge;
+    wrong.edge_count = 1;
+    for (i = 0; i < 4; i++) {
+        edge = edges[0];
+        edge.junction_b = i == 0 ? COUNT : edge.junction_b;
+        edge.branch_a = (uint16_t)(i == 1 ? junctions[0].branch_count : 0);
+        edge.junction_a = i == 2 ? edge.junction_b : 0;
+        edge.log10_nfa = i == 3 ? bad[0].x : -1;
+        assert_int_equal(asj_junctions_write(path, ASJ_FILE_CSV, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
+        assert_non_null(strstr(message, "edge 0"));
+    }
+    wrong.edges = NULL;
+    assert_int_equal(asj_junctions_write(path, ASJ_FILE_CSV, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
+    wrong.edge_count = 0;
+    wrong.junction_count = 1;
     wrong.junctions = &bad[5];
     wrong.l_junction_count = detection.l_junction_count; /* pairs of junctions that are not there */
     assert_int_equal(asj_junctions_write(path, ASJ_FILE_ASJ, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);

@@ -35,6 +35,9 @@ def test_square() -> None:
     assert len(features.branches) == 8 and features.segments.shape == (8, 2, 2)
     assert np.allclose(np.linalg.norm(features.segments[:, 1] - features.segments[:, 0], axis=1), features.branches["length"], atol=1e-3)
     assert features.l_junctions["junction"].tolist() == [0, 1, 2, 3]
+    assert (features.branches["end"] == 1).all()  # at junctions
+    sides = [features.xy[edge["junction_a"]] - features.xy[edge["junction_b"]] for edge in features.edges]
+    assert len(sides) == 4 and np.allclose(np.linalg.norm(sides, axis=1), 80, atol=0.2)
     assert (features.log10_nfa < 0).all() and (features.uncertainty > 0).all()
     assert features.xy.base is not None and not features.xy.flags.writeable
 
@@ -108,6 +111,7 @@ def test_pickle(scene: Scene) -> None:
     features = asj.detect(scene, minimum_length=5)
     again = pickle.loads(pickle.dumps(features))
     assert np.array_equal(again.junctions, features.junctions) and np.array_equal(again.l_junctions, features.l_junctions)
+    assert len(features.edges) and np.array_equal(again.edges, features.edges)
     assert np.array_equal(again.image, features.image) and again.options == features.options
 
 

@@ -50,7 +50,11 @@ static void test_random(void **state)
                 unit_near("length", (double)i, b, hypotheses[i].branches[b].length,
                           naive_length(before, count, i, &before[i].branches[b], reach), 1e-9);
                 moved += hypotheses[i].branches[b].length != before[i].branches[b].length;
+                if (hypotheses[i].branches[b].length != before[i].branches[b].length)
+                    assert_int_equal(hypotheses[i].branches[b].end, ASJ_BRANCH_END_JUNCTION);
                 hypotheses[i].branches[b].length = before[i].branches[b].length;
+                hypotheses[i].branches[b].end = before[i].branches[b].end;
+                hypotheses[i].branches[b].end_variance = before[i].branches[b].end_variance;
             }
         assert_memory_equal(hypotheses, before, sizeof before); /* nothing else changes */
     }
@@ -65,13 +69,19 @@ static void test_off(void **state)
     memset(hypotheses, 0, sizeof hypotheses);
     hypotheses[0].branch_count = 1;
     hypotheses[0].branches[0].length = 20;
-    hypotheses[1].x = 21;
+    hypotheses[0].location_variance = 0.02;
+    hypotheses[1].location_variance = 0.03;
+    hypotheses[1].x = 26;
     memcpy(before, hypotheses, sizeof before);
     asj_ends_snap(hypotheses, 2, 0, order);
     assert_memory_equal(hypotheses, before, sizeof before);
+    hypotheses[1].x = 21; /* so near that it is what is there */
+    asj_ends_snap(hypotheses, 2, 0, order);
+    assert_true(hypotheses[0].branches[0].length == 20 && hypotheses[0].branches[0].end == ASJ_BRANCH_END_JUNCTION);
     asj_ends_snap(hypotheses, 0, 5, NULL);
     asj_ends_snap(hypotheses, 2, 5, order);
     assert_true(hypotheses[0].branches[0].length == 21);
+    unit_near("variance", 0, 0, hypotheses[0].branches[0].end_variance, 0.05, 1e-12);
 }
 
 int main(void)

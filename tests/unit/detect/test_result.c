@@ -24,6 +24,8 @@ static void fill(asj_hypothesis *hypotheses, size_t count)
             branch->strength = 4.5;
             branch->log_nfa = -20;
             branch->angle_variance = 1e-4;
+            branch->end_variance = 0.25;
+            branch->end = b;
         }
     }
 }
@@ -37,8 +39,10 @@ static void test_conversion(void **state)
     (void)state;
     fill(hypotheses, COUNT);
     hypotheses[0].branches[1].angle = nextafter(2 * UNIT_PI, 0); /* rounds to 2 pi, which is not in [0, 2 pi) */
+    const asj_edge edges[2] = {{0, 3, 1, 0, -7, {0, 0}}, {2, 5, 0, 1, -9, {0, 0}}};
+    const asj_findings findings = {hypotheses, COUNT, edges, 2};
     asj_detection *made = NULL;
-    assert_int_equal(asj_result_fill(context, hypotheses, COUNT, 15, &made), ASJ_OK);
+    assert_int_equal(asj_result_fill(context, &findings, 15, &made), ASJ_OK);
     assert_non_null(made);
     asj_context_free(&context); /* the result lives on */
     assert_int_equal(made->junction_count, COUNT);
@@ -57,7 +61,8 @@ static void test_conversion(void **state)
             unit_near("strength", i, b, j->branches[b].strength, 4.5, 0);
             unit_near("branch NFA", i, b, j->branches[b].log10_nfa, -20 / log(10), 1e-5);
             unit_near("angle sd", i, b, j->branches[b].angle_sd, 0.01, 1e-7);
-            assert_true(j->branches[b].width == 0);
+            assert_true(j->branches[b].width == 0 && j->branches[b].end == b);
+            unit_near("length sd", i, b, j->branches[b].length_sd, 0.5, 1e-7);
         }
         for (int32_t b = j->branch_count; b < ASJ_MAX_BRANCHES; b++)
             assert_true(j->branches[b].angle == 0 && j->branches[b].length == 0 && j->branches[b].angle_sd == 0);
@@ -65,6 +70,8 @@ static void test_conversion(void **state)
     asj_l_junction expected[COUNT * 10];
     assert_int_equal(made->l_junction_count, asj_decompose(made->junctions, COUNT, 15, expected, COUNT * 10));
     assert_memory_equal(made->l_junctions, expected, made->l_junction_count * sizeof *expected);
+    assert_int_equal(made->edge_count, 2);
+    assert_memory_equal(made->edges, edges, sizeof edges);
     asj_detection_free(&made);
     assert_null(made);
     assert_int_equal(counter.live, 0);
@@ -76,9 +83,12 @@ static void test_empty_and_without_l(void **state)
     unit_counter counter;
     asj_context *context = unit_context(&counter, 1);
     (void)state;
+    const asj_edge edge = {0, 1, 0, 0, -3, {0, 0}};
+    const asj_findings nothing = {NULL, 0, NULL, 0}, three = {hypotheses, 3, &edge, 1};
     asj_detection *made = NULL;
-    assert_int_equal(asj_result_fill(context, NULL, 0, 25, &made), ASJ_OK);
+    assert_int_equal(asj_result_fill(context, &nothing, 25, &made), ASJ_OK);
     assert_non_null(made);
+    assert_true(!made->edges && made->edge_count == 0);
     assert_true(!made->junctions && !made->l_junctions && made->junction_count == 0 && made->l_junction_count == 0);
     asj_detection_free(&made);
     fill(hypotheses, 3);
@@ -86,14 +96,14 @@ static void test_empty_and_without_l(void **state)
         hypotheses[i].branch_count = 2;
         hypotheses[i].branches[1].angle = hypotheses[i].branches[0].angle + 0.1; /* too narrow */
     }
-    assert_int_equal(asj_result_fill(context, hypotheses, 3, 25, &made), ASJ_OK);
+    assert_int_equal(asj_result_fill(context, &three, 25, &made), ASJ_OK);
     assert_true(made && made->junction_count == 3 && !made->l_junctions && made->l_junction_count == 0);
     asj_detection_free(&made);
-    for (long n = 1; n <= 3; n++) { /* the struct, the junctions, the L-junctions */
+    for (long n = 1; n <= 4; n++) { /* the struct, the junctions, the L-junctions, the edges */
         const long live = counter.live;
         counter.fail_at = counter.calls + n;
         fill(hypotheses, 3);
-        assert_int_equal(asj_result_fill(context, hypotheses, 3, 25, &made), ASJ_ERROR_MEMORY);
+        assert_int_equal(asj_result_fill(context, &three, 25, &made), ASJ_ERROR_MEMORY);
         assert_null(made);
         assert_int_equal(counter.live, live);
     }

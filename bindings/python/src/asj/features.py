@@ -27,25 +27,29 @@ class Features:
     junctions: NDArray[Any]
     #: (L,) records of asj_l_junction: a junction, two of its branches in order, and their ends
     l_junctions: NDArray[Any]
+    #: (E,) records of asj_edge: two junctions, a branch of each, log10 NFA of the edge between them
+    edges: NDArray[Any]
 
-    def __init__(self, view: images.View, junctions: NDArray[Any], l_junctions: NDArray[Any], options: Any, preset: str) -> None:
+    def __init__(
+        self, view: images.View, junctions: NDArray[Any], l_junctions: NDArray[Any], edges: NDArray[Any], options: Any, preset: str
+    ) -> None:
         self._view, self._options = view, options
         self.preset = preset
         self.width, self.height = view.width, view.height
-        self.junctions, self.l_junctions = junctions, l_junctions
+        self.junctions, self.l_junctions, self.edges = junctions, l_junctions, edges
 
     @classmethod
-    def from_records(cls, image: ArrayLike, records: bytes, *, preset: str = "match", white: float = 0.0, **options: object) -> Features:
-        """Features of an image whose junctions are known: `records` are those of `junctions.tobytes()`, found with these options."""
-        dtype = arrays.struct_type("asj_junction")
-        if len(records) % dtype.itemsize:
-            raise FormatError(f"{len(records)} bytes are no whole number of junctions of {dtype.itemsize} bytes")
-        junctions = np.frombuffer(records, dtype)
+    def from_records(
+        cls, image: ArrayLike, records: bytes, edges: bytes = b"", *, preset: str = "match", white: float = 0.0, **options: object
+    ) -> Features:
+        """Features of an image whose junctions are known: `records` are those of `junctions.tobytes()`, found with these options,
+        `edges` those of `edges.tobytes()`."""
+        junctions, joined = _records(records, "asj_junction", "junctions"), _records(edges, "asj_edge", "edges")
         record = DETECTOR.fill(preset, options)
-        return cls(images.view(image, white), junctions, _decompose(junctions, record.minimum_opening), record, preset)
+        return cls(images.view(image, white), junctions, _decompose(junctions, record.minimum_opening), joined, record, preset)
 
     def __reduce__(self) -> Any:
-        return _restore, (self.image, self._view.pointer.white, self.junctions.tobytes(), self.options, self.preset)
+        return _restore, (self.image, self._view.pointer.white, self.junctions.tobytes(), self.edges.tobytes(), self.options, self.preset)
 
     def __len__(self) -> int:
         return len(self.junctions)
@@ -128,7 +132,8 @@ def detect(image: ArrayLike, *, preset: str = "match", context: Context | None =
     found = ffi.gc(place[0], _free)
     junctions = arrays.view(found.junctions, found.junction_count, "asj_junction", found)
     l_junctions = arrays.view(found.l_junctions, found.l_junction_count, "asj_l_junction", found)
-    return Features(view, junctions, l_junctions, record, preset)
+    edges = arrays.view(found.edges, found.edge_count, "asj_edge", found)
+    return Features(view, junctions, l_junctions, edges, record, preset)
 
 
 def _decompose(junctions: NDArray[Any], opening: float) -> NDArray[Any]:
@@ -139,8 +144,15 @@ def _decompose(junctions: NDArray[Any], opening: float) -> NDArray[Any]:
     return arrays.view(room, count, "asj_l_junction", room)
 
 
-def _restore(image: NDArray[Any], white: float, records: bytes, options: dict[str, str], preset: str) -> Features:
-    return Features.from_records(image, records, preset=preset, white=white, **options)
+def _records(data: bytes, name: str, what: str) -> NDArray[Any]:
+    dtype = arrays.struct_type(name)
+    if len(data) % dtype.itemsize:
+        raise FormatError(f"{len(data)} bytes are no whole number of {what} of {dtype.itemsize} bytes")
+    return np.frombuffer(data, dtype)
+
+
+def _restore(image: NDArray[Any], white: float, records: bytes, edges: bytes, options: dict[str, str], preset: str) -> Features:
+    return Features.from_records(image, records, edges, preset=preset, white=white, **options)
 
 
 def _free(pointer: Any) -> None:

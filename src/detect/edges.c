@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* An edge joins junctions i and j when a branch of either points at the other: with t the distance from i to j along the branch of i,
+ *   - j lies at most max(OFF_LINE, OFF_SHARE t) px off that branch's line, and i off the line of the other branch;
+ *   - the two point against each other to within TURN;
+ *   - one of them reaches the other junction (its length is t or more, but for the uncertainty of its end), the other goes at least
+ *     half of the way: the scan may lose a fading edge from one side that it follows from the other;
+ *   - the part between is meaningful: log NFA <= log epsilon (edge_evidence.c), by the branch that reaches.
+ *
+ * Junctions on a line. Branches run on through other junctions (ray_walk.c), so along a line every branch points at many. Joined are
+ * neighbours: j is the nearest junction on the way of i that fulfils the above, and i that of j. At first a junction on the way counts
+ * only if it divides the edge: if the branch ends there, or another one of its own goes on. One whose branch to the other side was not
+ * found must not keep apart what both ends say is one. Then the same without that condition among branches that are left: where a scan
+ * has overshot a corner, only the other branch knows where the edge ends. */
+#include "edges.h"
+#include "edge_evidence.h"
+#include "strip.h"
+#include "core/angle.h"
+
+#include <math.h>
+#include <string.h>
+
+#define OFF_LINE 2.0   /* px of the branch's octave: as branches snap (ends.c) */
+#define OFF_SHARE 0.01 /* of the length: 0.6 degrees. Lenses bend long edges */
+#define TURN (15 * ASJ_DEGREE) /* default of merge_angle: closer branches would be one */
+#define END_NEAR 4.0   /* px of the branch's octave, or .. */
+#define END_SURE 3.0   /* .. standard uncertainties of the end */
+#define LEAST 3.0      /* px */
+#define LN_10 2.302585092994046
+#define CELL 32        /* px of the grid in which junctions on the way are looked for */
+
+typedef struct graph {
+    const asj_context *context;
+    const asj_hypothesis *hypotheses;
+    int32_t *heads, *next; /* junctions by cell */
+    int32_t *nearest;      /* of each branch: junction * ASJ_MAX_BRANCHES + branch of what it may be joined with, -1 = none */
+    int32_t *joined;       /* the same of what it is joined with */
+    int must_divide;       /* whether junctions on the way count only if they divide the edge */
+    int32_t columns, rows;
+    double log_epsilon, log_tests[ASJ_MAX_OCTAVES];
+} graph;
+
+/* One branch, seen from its junction. */
+typedef struct way {
+    size_t junction;
+    int32_t branch;
+    const asj_hypothesis *from;
+    const asj_hypothesis_branch *along;
+    double ux, uy;
+} way;
+
+static size_t columns_of(int32_t side)
+{
+    return (size_t)side / CELL + 3; /* a border, for neighbours and for junctions just outside the image */
+}
+
+size_t asj_edges_scratch(size_t count, int32_t width, int32_t height)
+{
+    return columns_of(width) * columns_of(height) + (1 + 2 * ASJ_MAX_BRANCHES) * count;
+}
+
+static int32_t cell_of(double x, int32_t cells)
+{
+    const double cell = floor(x / CELL) + 1;
+    return (int32_t)fmax(1, fmin(cell, cells - 2));
+}
+
+static void fill_grid(graph *g, size_t count)
+{
+    memset(g->heads, 0xff, (size_t)g->columns * (size_t)g->rows * sizeof *g->heads);
+    for (size_t i = count; i-- > 0;) {
+        const int32_t cell = cell_of(g->hypotheses[i].y, g->rows) * g->columns + cell_of(g->hypotheses[i].x, g->columns);
+        g->next[i] = g->heads[cell];
+        g->heads[cell] = (int32_t)i;
+    }
+}
+
+static double end_tolerance(const asj_hypothesis_branch *branch)
+{
+    return fmax(END_NEAR * (1 << branch->octave), END_SURE * sqrt(branch->end_variance));
+}
+
+static double off_tolerance(const asj_hypothesis_branch *branch, double distance)
+{
+    return fmax(OFF_LINE * (1 << branch->octave), OFF_SHARE * distance);
+}
+
+static int ends_at(const asj_hypothesis_branch *branch, double distance)
+{
+    return fabs(branch->length - distance) <= end_tolerance(branch);
+}
+
+static int reaches(const asj_hypothesis_branch *branch, double distance)
+{
+    return branch->length >= distance - end_tolerance(branch);
+}
+
+/* Whether a junction has a branch in this direction. */
+static int goes_on(const asj_hypothesis *hypothesis, double angle)
+{
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        if (asj_angle_distance(hypothesis->branches[i].angle, angle) <= TURN)
+            return 1;
+    return 0;
+}
+
+static double log_nfa(const graph *g, const asj_hypothesis_branch *branch, double distance)
+{
+    return asj_edge_evidence_log_nfa(g->context, &branch->evidence, distance / (1 << branch->octave), g->log_tests[branch->octave]);
+}
+
+/* Of the two branches those that reach the other junction tell what lies between; the surer one of both. */
+static double between(const graph *g, const asj_hypothesis_branch *a, const asj_hypothesis_branch *b, double distance)
+{
+    const double one = reaches(a, distance) ? log_nfa(g, a, distance) : HUGE_VAL;
+    return fmin(one, reaches(b, distance) ? log_nfa(g, b, distance) : HUGE_VAL);
+}
+
+static int covers(const asj_hypothesis_branch *a, const asj_hypothesis_branch *b, double distance)
+{
+    return (reaches(a, distance) && b->length >= 0.5 * distance) || (reaches(b, distance) && a->length >= 0.5 * distance);
+}
+
+/* Whether a branch is part of an edge. */
+static int is_joined(const graph *g, int32_t junction, int32_t branch)
+{
+    return g->joined[(size_t)junction * ASJ_MAX_BRANCHES + (size_t)branch] >= 0;
+}
+
+/* The branch of junction `index` that comes back along w; -1 = none. *distance: px from one to the other. */
+static int32_t comes_back(const graph *g, const way *w, int32_t index, double *distance)
+{
+    const asj_hypothesis *to = &g->hypotheses[index];
+    const double dx = to->x - w->from->x, dy = to->y - w->from->y, t = dx * w->ux + dy * w->uy;
+    const double off = fabs(dy * w->ux - dx * w->uy), back = w->along->angle + ASJ_PI;
+    double least = TURN;
+    int32_t found = -1;
+    *distance = t;
+    if (t < LEAST || off > off_tolerance(w->along, t))
+        return -1;
+    for (int32_t i = 0; i < to->branch_count; i++) {
+        const asj_hypothesis_branch *branch = &to->branches[i];
+        const double turn = asj_angle_distance(branch->angle, back);
+        if (turn > least || is_joined(g, index, i) || fabs(dy * cos(branch->angle) - dx * sin(branch->angle)) > off_tolerance(branch, t) ||
+            !covers(w->along, branch, t) || between(g, w->along, branch, t) > g->log_epsilon)
+            continue;
+        least = turn;
+        found = i;
+    }
+    return found;
+}
+
+/* Looks at the junctions of one cell; the nearest so far is *nearest px away. Returns it as junction * ASJ_MAX_BRANCHES + branch. */
+static int32_t look_in(const graph *g, const way *w, int32_t cell, double *nearest, int32_t found)
+{
+    for (int32_t i = g->heads[cell]; i >= 0; i = g->next[i]) {
+        const asj_hypothesis *to = &g->hypotheses[i];
+        double distance;
+        const int32_t branch = (size_t)i == w->junction ? -1 : comes_back(g, w, i, &distance);
+        if (branch >= 0 && distance < *nearest &&
+            (!g->must_divide || ends_at(w->along, distance) || goes_on(to, w->along->angle))) {
+            *nearest = distance;
+            found = i * ASJ_MAX_BRANCHES + branch;
+        }
+    }
+    return found;
+}
+
+/* The nearest junction on the way of a branch that it may be joined with; -1 = none. At t along the way all junctions up to
+ * t + CELL / 2 lie in the cells around. */
+static int32_t find_nearest(const graph *g, size_t junction, int32_t branch)
+{
+    const asj_hypothesis *from = &g->hypotheses[junction];
+    const asj_hypothesis_branch *along = &from->branches[branch];
+    const way w = {junction, branch, from, along, cos(along->angle), sin(along->angle)};
+    const double last = 2 * along->length + end_tolerance(along);
+    double nearest = HUGE_VAL;
+    int32_t found = -1;
+    for (double t = 0; t < last + CELL && nearest > t - CELL / 2; t += CELL) {
+        const double x = from->x + t * w.ux, y = from->y + t * w.uy;
+        if (x < -CELL || y < -CELL || x > g->columns * CELL || y > g->rows * CELL)
+            break;
+        const int32_t column = cell_of(x, g->columns), row = cell_of(y, g->rows);
+        for (int32_t dy = -1; dy <= 1; dy++)
+            for (int32_t dx = -1; dx <= 1; dx++)
+                found = look_in(g, &w, (row + dy) * g->columns + column + dx, &nearest, found);
+    }
+    return found;
+}
+
+static void mark_end(asj_hypothesis *from, int32_t branch, const asj_hypothesis *to)
+{
+    asj_hypothesis_branch *along = &from->branches[branch];
+    if (ends_at(along, hypot(to->x - from->x, to->y - from->y)))
+        along->end = ASJ_BRANCH_END_JUNCTION;
+}
+
+static void start(graph *g, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves)
+{
+    g->log_epsilon = log(options->epsilon);
+    for (int32_t o = 0; o < ASJ_MAX_OCTAVES; o++)
+        g->log_tests[o] = asj_strip_log_tests(width >> o > 0 ? width >> o : 1, height >> o > 0 ? height >> o : 1, octaves);
+}
+
+/* Joins branches that are the nearest of each other. */
+static void join_nearest(graph *g, size_t count, int must_divide)
+{
+    g->must_divide = must_divide;
+    for (size_t i = 0; i < count; i++)
+        for (int32_t b = 0; b < g->hypotheses[i].branch_count; b++)
+            g->nearest[i * ASJ_MAX_BRANCHES + (size_t)b] = is_joined(g, (int32_t)i, b) ? -1 : find_nearest(g, i, b);
+    for (size_t i = 0; i < count; i++)
+        for (int32_t b = 0; b < g->hypotheses[i].branch_count; b++) {
+            const int32_t own = (int32_t)(i * ASJ_MAX_BRANCHES) + b, other = g->nearest[own];
+            if (other < 0 || g->nearest[other] != own)
+                continue;
+            g->joined[own] = other;
+            g->joined[other] = own;
+        }
+}
+
+static asj_edge edge_of(const graph *g, int32_t own, int32_t other)
+{
+    const int32_t i = own / ASJ_MAX_BRANCHES, b = own % ASJ_MAX_BRANCHES, j = other / ASJ_MAX_BRANCHES, c = other % ASJ_MAX_BRANCHES;
+    const asj_hypothesis *from = &g->hypotheses[i], *to = &g->hypotheses[j];
+    const double distance = hypot(to->x - from->x, to->y - from->y);
+    return (asj_edge){(uint32_t)i, (uint32_t)j, (uint16_t)b, (uint16_t)c,
+                      (float)(between(g, &from->branches[b], &to->branches[c], distance) / LN_10), {0, 0}};
+}
+
+size_t asj_edges_join(const asj_context *context, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves,
+                      asj_hypothesis *hypotheses, size_t count, int32_t *scratch, asj_edge *edges)
+{
+    graph g = {.context = context, .hypotheses = hypotheses, .heads = scratch, .columns = (int32_t)columns_of(width),
+               .rows = (int32_t)columns_of(height)};
+    size_t found = 0;
+    start(&g, options, width, height, octaves);
+    g.next = scratch + (size_t)g.columns * (size_t)g.rows;
+    g.nearest = g.next + count;
+    g.joined = g.nearest + count * ASJ_MAX_BRANCHES;
+    memset(g.joined, 0xff, count * ASJ_MAX_BRANCHES * sizeof *g.joined);
+    fill_grid(&g, count);
+    join_nearest(&g, count, 1);
+    join_nearest(&g, count, 0);
+    for (size_t i = 0; i < count; i++)
+        for (int32_t b = 0; b < hypotheses[i].branch_count; b++) {
+            const int32_t own = (int32_t)(i * ASJ_MAX_BRANCHES) + b, other = g.joined[own];
+            if (other < own)
+                continue;
+            edges[found] = edge_of(&g, own, other);
+            mark_end(&hypotheses[i], b, &hypotheses[edges[found].junction_b]);
+            mark_end(&hypotheses[edges[found].junction_b], edges[found].branch_b, &hypotheses[i]);
+            found++;
+        }
+    return found;
+}

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Edges over an image: memory around edges.c. */
+#include "edges.h"
+#include "octaves.h"
+#include "steps.h"
+
+static size_t count_branches(const asj_detection_run *run)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < run->hypothesis_count; i++)
+        count += (size_t)run->hypotheses[i].branch_count;
+    return count;
+}
+
+asj_status asj_step_join(asj_detection_run *run)
+{
+    asj_memory *memory = &run->context->memory;
+    const int32_t width = run->image->width, height = run->image->height;
+    const size_t count = run->hypothesis_count, most = asj_detection_run_room(count_branches(run) / 2);
+    const asj_octave_range range = asj_octaves_of(run->options, width, height);
+    int32_t *scratch = asj_allocate_list(memory, asj_edges_scratch(asj_detection_run_room(count), width, height), sizeof *scratch);
+    run->edges = asj_allocate_list(memory, most, sizeof *run->edges);
+    asj_status status = ASJ_OK;
+    if (scratch && run->edges)
+        run->edge_count = asj_edges_join(run->context, run->options, width, height, range.end - range.first, run->hypotheses,
+                                         count, scratch, run->edges);
+    else
+        status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for edges between %zu junctions", count);
+    asj_release(memory, scratch);
+    return status;
+}
