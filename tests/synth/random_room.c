@@ -8,7 +8,9 @@
  *   3 pictures   walls with pictures, posters, windows of all sizes
  *
  * Boxes stand in slabs of depth that do not overlap, and side by side in a slab, so that sorting them is exact: slabs by their
- * distance, boxes of a slab from the sides to the middle. */
+ * distance, boxes of a slab from the sides to the middle.
+ *
+ * No call has more than one random number among its arguments: their order is the compiler's choice, and the room would be, too. */
 #include "furniture.h"
 #include "random.h"
 
@@ -60,7 +62,8 @@ static void add_picture(plan *p, const room_face *f, double u0, double v0, doubl
         const double w = width * between(p, 0.1, 0.35), h = height * between(p, 0.1, 0.35), lean = between(p, -0.3, 0.3);
         const synth_point shape[4] = {{x, y}, {x + w, y + lean * h * 0.1}, {x + w * (1 - fabs(lean)), y + h},
                                       {x, y + h * (1 - lean * 0.2)}};
-        room_add_polygon(p->room, f, shape, chance(p, 0.5) ? 3 : 4, against(p, inside));
+        const double gray = against(p, inside);
+        room_add_polygon(p->room, f, shape, chance(p, 0.5) ? 3 : 4, gray);
     }
 }
 
@@ -124,13 +127,14 @@ static void add_shell(plan *p)
             for (int k = i % 2; (k + 1) * side < p->wide; k += 2)
                 room_add_rectangle(p->room, &floor, k * side, i * side, (k + 1) * side, (i + 1) * side, gray);
     } else if (chance(p, 0.6)) {
-        room_add_framed(p->room, &floor, 0.6, 1.0, between(p, 2.0, p->wide - 0.5), between(p, 2.5, 4.0), 0.12, against(p, ground),
-                        against(p, ground));
+        const double inside = against(p, ground), frame = against(p, ground), v1 = between(p, 2.5, 4.0);
+        room_add_framed(p->room, &floor, 0.6, 1.0, between(p, 2.0, p->wide - 0.5), v1, 0.12, frame, inside);
     }
     room_add_rectangle(p->room, &ceiling, 0, 0, p->wide, length, fmin(wall + between(p, 8, 40), 240));
     for (int i = whole(p, 0, 4); i > 0; i--) {
         const double u = between(p, 0.3, p->wide - 1), v = between(p, 4.5, length - 1);
-        room_add_rectangle(p->room, &ceiling, u, v, u + between(p, 0.3, 0.8), v + between(p, 0.3, 0.8), against(p, wall));
+        const double gray = against(p, wall), v1 = v + between(p, 0.3, 0.8);
+        room_add_rectangle(p->room, &ceiling, u, v, u + between(p, 0.3, 0.8), v1, gray);
     }
     const room_face *const walls[3] = {&back, &left, &right};
     const double from[3] = {0, 5.0, 0}, to[3] = {p->wide, length, 4.2};
@@ -189,8 +193,10 @@ int synth_room_random(synth_room *room, uint64_t seed)
     p.deep = between(&p, 5.0, 7.0);
     add_shell(&p);
     const int slabs = p.kind == 2 ? 3 : p.kind == 3 ? 1 : whole(&p, 0, 2);
-    for (int i = slabs - 1; i >= 0; i--)
-        add_slab(&p, p.deep - (slabs - i) * 1.1 + between(&p, 0, 0.3), between(&p, 0.35, 0.7));
+    for (int i = slabs - 1; i >= 0; i--) {
+        const double depth = between(&p, 0.35, 0.7);
+        add_slab(&p, p.deep - (slabs - i) * 1.1 + between(&p, 0, 0.3), depth);
+    }
     if (room->failed)
         synth_room_free(room);
     return room->failed ? -1 : 0;

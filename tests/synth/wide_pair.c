@@ -71,8 +71,8 @@ static space free_space(const synth_room *room)
 
 static synth_vector anywhere(const space *s, synth_random *random)
 {
-    const synth_vector p = {between(random, 0.3, s->wide - 0.3), between(random, -1.8, -1.1),
-                            between(random, s->near_end + 0.2, s->front)};
+    const double x = between(random, 0.3, s->wide - 0.3), y = between(random, -1.8, -1.1);
+    const synth_vector p = {x, y, between(random, s->near_end + 0.2, s->front)};
     return p;
 }
 
@@ -139,8 +139,10 @@ static int find_cameras(synth_wide_pair *pair, synth_random *random)
         synth_vector target;
         synth_camera *a = &pair->cameras[0], *b = &pair->cameras[1];
         const double loose = 1 + 9.0 * i / TRIALS; /* what was drawn need not fit the room */
-        *a = stand(anywhere(&s, random), between(random, -50, 50) * DEGREE, between(random, -5, 20) * DEGREE,
-                   between(random, -5, 5) * DEGREE, focal);
+        /* one after the other: the order of a call's arguments is the compiler's choice */
+        const double roll = between(random, -5, 5) * DEGREE, pitch = between(random, -5, 20) * DEGREE;
+        const double yaw = between(random, -50, 50) * DEGREE;
+        *a = stand(anywhere(&s, random), yaw, pitch, roll, focal);
         if (synth_room_trace(&pair->room, a, 0.5 * (a->width - 1), 0.5 * (a->height - 1), &target) < 0)
             continue;
         const synth_vector position = anywhere(&s, random);
