@@ -21,35 +21,58 @@ typedef struct equations {
     double right[ASJ_MODEL_PARAMETERS];
 } equations;
 
-/* Adds one candidate's residuals and derivatives. */
-static void add_candidate(const asj_pairs *set, const asj_pair *c, const asj_model *model, const asj_model *moved, double weight,
-                          equations *e)
+/* Does a parameter move that part? A plane's own parameters move that plane only. */
+static int32_t moves(const asj_model *model, int32_t parameter, int32_t part)
+{
+    return model->view.planar || parameter < 5 || model->kind != ASJ_GEOMETRY_ESSENTIAL || 1 + (parameter - 5) / 3 == part;
+}
+
+/* Adds the residuals and derivatives of one candidate's part. */
+static void add_part(const asj_pairs *set, const asj_pair *c, int32_t part, const asj_model *model, const asj_model *moved,
+                     double weight, equations *e)
 {
     asj_residuals at, plus, minus;
     double slope[ASJ_MODEL_PARAMETERS][6];
-    const int32_t n = model->parameters, rows = model->view.planar ? 6 : 3;
-    asj_residuals_of(&model->view, set, c, &at);
+    int32_t used[ASJ_MODEL_PARAMETERS], count = 0;
+    const int32_t n = model->parameters, rows = asj_part_is_planar(&model->view, part) ? 6 : 3;
+    asj_part_residuals(&model->view, part, set, c, &at);
     if (!isfinite(at.square))
         return;
     for (int32_t p = 0; p < n; p++) {
-        asj_residuals_of(&moved[2 * p].view, set, c, &plus);
-        asj_residuals_of(&moved[2 * p + 1].view, set, c, &minus);
+        if (!moves(model, p, part))
+            continue;
+        asj_part_residuals(&moved[2 * p].view, part, set, c, &plus);
+        asj_part_residuals(&moved[2 * p + 1].view, part, set, c, &minus);
         if (!isfinite(plus.square) || !isfinite(minus.square))
             return;
         for (int32_t r = 0; r < rows; r++)
             slope[p][r] = (plus.value[r] - minus.value[r]) / (2 * STEP);
+        used[count++] = p;
     }
     weight /= 1 + at.square / TAIL;
-    for (int32_t p = 0; p < n; p++)
+    for (int32_t i = 0; i < count; i++)
         for (int32_t r = 0; r < rows; r++) {
-            for (int32_t q = 0; q <= p; q++)
-                e->normal[p * n + q] += weight * slope[p][r] * slope[q][r];
+            const int32_t p = used[i];
+            for (int32_t k = 0; k <= i; k++)
+                e->normal[p * n + used[k]] += weight * slope[p][r] * slope[used[k]][r];
             e->right[p] -= weight * slope[p][r] * at.value[r];
         }
 }
 
-static int32_t set_up(const asj_pairs *set, const asj_model *model, const double *probability, equations *e)
+/* Adds one candidate: each of its parts as far as it is probable. */
+static void add_candidate(const asj_pairs *set, const asj_pair *c, const asj_model *model, const asj_model *moved,
+                          const asj_peaks *peaks, double weight, equations *e)
 {
+    double parts[ASJ_MOST_PARTS];
+    const double sum = asj_likelihood_ratio(&model->view, set, c, peaks, parts);
+    for (int32_t k = 0; k <= model->view.plane_count && sum > 0; k++)
+        if (weight * parts[k] > LEAST * sum)
+            add_part(set, c, k, model, moved, weight * parts[k] / sum, e);
+}
+
+static int32_t set_up(const asj_pairs *set, const asj_model *model, const double *probability, double loose, equations *e)
+{
+    const asj_peaks peaks = asj_likelihood_peaks(set, &model->view, loose);
     asj_model moved[2 * ASJ_MODEL_PARAMETERS];
     const int32_t n = model->parameters;
     memset(e, 0, sizeof *e);
@@ -66,7 +89,7 @@ static int32_t set_up(const asj_pairs *set, const asj_model *model, const double
     }
     for (int32_t k = 0; k < set->count; k++)
         if (probability[k] > LEAST)
-            add_candidate(set, &set->list[k], model, moved, probability[k], e);
+            add_candidate(set, &set->list[k], model, moved, &peaks, probability[k], e);
     for (int32_t p = 0; p < n; p++)
         for (int32_t q = 0; q < p; q++)
             e->normal[q * n + p] = e->normal[p * n + q];
@@ -76,17 +99,17 @@ static int32_t set_up(const asj_pairs *set, const asj_model *model, const double
 void asj_information(const asj_pairs *set, const asj_model *model, const double *probability, double *information)
 {
     equations e;
-    if (!set_up(set, model, probability, &e))
+    if (!set_up(set, model, probability, 1, &e))
         memset(&e, 0, sizeof e);
     memcpy(information, e.normal, (size_t)(model->parameters * model->parameters) * sizeof *information);
 }
 
 /* One step; 0 when the equations cannot be solved. */
-static int32_t step(const asj_pairs *set, asj_model *model, const double *probability)
+static int32_t step(const asj_pairs *set, asj_model *model, const double *probability, double loose)
 {
     equations e;
     const int32_t n = model->parameters;
-    if (!set_up(set, model, probability, &e))
+    if (!set_up(set, model, probability, loose, &e))
         return 0;
     for (int32_t p = 0; p < n; p++)
         e.normal[p * (n + 1)] += DAMPING * e.normal[p * (n + 1)] + 1e-3;
@@ -141,7 +164,9 @@ void asj_adjust(const asj_pairs *set, asj_model *model, int32_t rounds, asj_adju
     for (int32_t round = 0; round < rounds; round++) {
         const double loose = WIDE + (1 - WIDE) * fmin(1, round / fmax(1, rounds - 3.0));
         asj_probabilities(set, &model->view, loose, &scratch->score, scratch->probability);
-        if (!step(set, model, scratch->probability))
+        if (round == 0 && model->kind == ASJ_GEOMETRY_ESSENTIAL && model->view.plane_count == 0)
+            asj_choose_motion(set, scratch->probability, model);
+        if (!step(set, model, scratch->probability, loose))
             break;
     }
     model->score = asj_score(set, set->count, &model->view, 1, &scratch->score);
@@ -154,6 +179,8 @@ void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *s)
         asj_release(memory, s->score.touched[v]);
     }
     asj_release(memory, s->probability);
+    asj_release(memory, s->shares);
+    asj_release(memory, s->best);
 }
 
 int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_adjust_scratch *s)
@@ -165,6 +192,9 @@ int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_
         s->score.touched[v] = asj_allocate(memory, places, sizeof *s->score.touched[v]);
         good = good && s->score.sum[v] && s->score.touched[v];
     }
+    const size_t most = (size_t)(set->place_count[0] > set->place_count[1] ? set->place_count[0] : set->place_count[1]);
     s->probability = asj_allocate(memory, (size_t)set->count, sizeof *s->probability);
-    return good && s->probability;
+    s->shares = asj_allocate(memory, most, sizeof *s->shares);
+    s->best = asj_allocate(memory, most, sizeof *s->best);
+    return good && s->probability && s->shares && s->best;
 }

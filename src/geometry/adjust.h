@@ -5,10 +5,18 @@
 #include "core/memory.h"
 #include "model.h"
 
-/* What one thread works in: probability has one number a candidate. */
+/* What a place contributes to the evidence. */
+typedef struct asj_share {
+    double value;
+    const asj_pair *pair; /* its best candidate */
+} asj_share;
+
+/* What one thread works in: probability has one number a candidate; shares and best have one a place of the image that has more. */
 typedef struct asj_adjust_scratch {
     asj_score_scratch score;
     double *probability;
+    asj_share *shares;
+    double *best;
 } asj_adjust_scratch;
 
 /* 0 without memory; to be freed either way. All zero at first. */

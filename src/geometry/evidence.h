@@ -4,7 +4,8 @@
 
 #include "adjust.h"
 
-/* Natural log of the evidence for a geometry of the model's kind near the model: evidence.c. -HUGE_VAL without memory, too. */
-double asj_log_evidence(asj_memory *memory, const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch);
+/* Natural log of the evidence for a geometry of the model's kind near the model: evidence.c. -HUGE_VAL when there is
+ * none. */
+double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch);
 
 #endif

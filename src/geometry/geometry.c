@@ -12,10 +12,15 @@
  *
  * Ambiguous: another geometry, of whatever kind, whose log evidence is at least NEARLY of the best one's, and whose matches
  * contradict those of the best one: CONTRARY of them give another partner to a place that is matched. Things that repeat do that,
- * shifted by a period. The evidence itself would be surer (odds of a hundred are 5 nats of a hundred or two), but what repeats is
- * matched more or less well for reasons that the model does not know, and all its places together. */
+ * shifted by a period or turned. The evidence itself would be surer (odds of a hundred are 5 nats of a hundred or two), but what
+ * repeats is matched more or less well for reasons that the model does not know, and all its places together: of rendered rooms
+ * with tiled floors, wrong geometries have up to twice the log evidence of the right one.
+ *
+ * A pose is one that is known to within POSE_SD; and no other motion may explain nearly as much (ALIKE): all on one plane there are
+ * two (Hartley and Zisserman, 13.4), and near that everything between. */
 #include "core/angle.h"
 #include "evidence.h"
+#include "motions.h"
 #include "pairs.h"
 #include "search.h"
 #include "small_matrix.h"
@@ -24,11 +29,13 @@
 #include <string.h>
 
 #define MOST_KINDS 2
-#define NEARLY 0.7
+#define NEARLY 0.5
 #define CONTRARY 0.4
-#define TWOFOLD 3.0 /* nats */
-#define OTHER_MOTION (10 * ASJ_DEGREE)
-#define LOOSE_DIRECTION (30 * ASJ_DEGREE) /* rad: a translation known worse than this is none */
+#define ALIKE 0.95
+#define ALMOST 0.8
+#define OTHER_MOTION (6 * ASJ_DEGREE)
+#define POSE_SD (2.2 * ASJ_DEGREE)
+#define LOOSE_DIRECTION (30 * ASJ_DEGREE) /* a translation known worse than this is none */
 
 /* One call. */
 typedef struct estimation {
@@ -122,6 +129,9 @@ static asj_status search_all(estimation *e)
         status = search_kind(e, o->model == ASJ_GEOMETRY_AUTO ? epipolar : o->model);
     if (status == ASJ_OK && (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_HOMOGRAPHY))
         status = search_kind(e, ASJ_GEOMETRY_HOMOGRAPHY);
+    if (status == ASJ_OK && epipolar == ASJ_GEOMETRY_ESSENTIAL &&
+        (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_ESSENTIAL))
+        status = asj_refine_motions(e->context, &e->set, o->cameras, e->finalists, &e->count);
     return status;
 }
 
@@ -177,20 +187,21 @@ static int32_t second_of(estimation *e, int32_t best)
     return second;
 }
 
-/* Covariance of rotation and translation, 6 x 6, from that of the five parameters of model.c; the largest standard deviation of the
- * direction of translation. */
+/* Covariance of rotation and translation, 6 x 6, from that of the five parameters of model.c; the largest standard deviation of a
+ * combination of them. */
 static double set_covariance(const estimation *e, const asj_model *m, double covariance[36])
 {
     double information[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], five[25], frame[6][5] = {{0}};
     double axis[3], other[3];
     asj_information(&e->set, m, e->scratch.probability, information);
+    const int32_t n = m->parameters;
     for (int32_t p = 0; p < 5; p++) {
-        double a[25], column[5] = {0};
+        double a[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], column[ASJ_MODEL_PARAMETERS] = {0};
         memcpy(a, information, sizeof a);
-        for (int32_t k = 0; k < 5; k++)
-            a[6 * k] += 0.05; /* a radian each is as little as can be known of an angle */
+        for (int32_t k = 0; k < n; k++)
+            a[(n + 1) * k] += 0.05; /* a radian each is as little as can be known of an angle */
         column[p] = 1;
-        if (!asj_cholesky_solve(a, 5, column, NULL))
+        if (!asj_cholesky_solve(a, n, column, NULL))
             return HUGE_VAL;
         for (int32_t k = 0; k < 5; k++)
             five[5 * k + p] = column[k];
@@ -208,19 +219,19 @@ static double set_covariance(const estimation *e, const asj_model *m, double cov
                 for (int32_t q = 0; q < 5; q++)
                     covariance[6 * i + j] += frame[i][p] * five[5 * p + q] * frame[j][q];
         }
-    /* the larger eigenvalue of the direction's 2 x 2 block */
-    const double a = five[18], b = 0.5 * (five[19] + five[23]), c = five[24];
-    return sqrt(0.5 * (a + c) + sqrt(0.25 * (a - c) * (a - c) + b * b));
+    double values[5], vectors[25];
+    asj_symmetric_eigen(five, 5, values, vectors);
+    return sqrt(values[4]);
 }
 
-/* Is there another motion that explains as much? All on one plane there are two (Hartley and Zisserman, 13.4). */
+/* Is there another motion that explains as much? */
 static int32_t is_twofold(const estimation *e, int32_t best)
 {
     const asj_model *m = &e->finalists[best];
     for (int32_t n = 0; n < e->count; n++) {
         const asj_model *o = &e->finalists[n];
         double turn[9];
-        if (o->kind != ASJ_GEOMETRY_ESSENTIAL || !(o->evidence > m->evidence - TWOFOLD))
+        if (o->kind != ASJ_GEOMETRY_ESSENTIAL || !(o->evidence > ALIKE * m->evidence))
             continue;
         asj_multiply3_transposed(o->rotation, m->rotation, turn);
         if (asj_rotation_angle(turn) > OTHER_MOTION || fabs(asj_dot3(o->translation, m->translation)) < cos(OTHER_MOTION))
@@ -229,19 +240,21 @@ static int32_t is_twofold(const estimation *e, int32_t best)
     return 0;
 }
 
-/* Rotation and translation of an essential matrix. 0 when its translation is not determined. */
-static int32_t set_pose(estimation *e, asj_model *m, asj_geometry *result)
+/* Rotation and translation of an essential matrix. 0 when nothing determines its translation. */
+static int32_t set_pose(estimation *e, int32_t number, asj_geometry *result)
 {
+    asj_model *m = &e->finalists[number];
+    const int32_t open = is_twofold(e, number);
     asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
-    if (!(asj_choose_motion(&e->set, e->scratch.probability, m) > -HUGE_VAL))
+    if (m->view.plane_count == 0 && !(asj_choose_motion(&e->set, e->scratch.probability, m) > -HUGE_VAL))
         return 0;
-    const double loose = set_covariance(e, m, result->covariance);
+    const double sd = set_covariance(e, m, result->covariance);
     memcpy(result->rotation, m->rotation, sizeof result->rotation);
     memcpy(result->translation, m->translation, sizeof result->translation);
     result->focal[0] = m->cameras[0].fx;
     result->focal[1] = m->cameras[1].fx;
-    result->has_pose = loose < LOOSE_DIRECTION;
-    return result->has_pose;
+    result->has_pose = !open && sd < POSE_SD;
+    return sd < LOOSE_DIRECTION;
 }
 
 static void set_matrix(const asj_model *m, asj_geometry *result)
@@ -253,22 +266,30 @@ static void set_matrix(const asj_model *m, asj_geometry *result)
         result->matrix[k] = m->view.matrix[k] / sqrt(sum);
 }
 
+/* A camera that only turns obeys a homography, and an essential matrix with any translation and a plane far away: the homography
+ * says what there is to say. */
+static int32_t instead_of(const estimation *e, int32_t best)
+{
+    const int32_t flat = best_of(e, ASJ_GEOMETRY_HOMOGRAPHY);
+    return flat >= 0 && e->finalists[flat].evidence > ALMOST * e->finalists[best].evidence ? flat : best;
+}
+
 static void answer(estimation *e, double *probabilities, asj_geometry *result)
 {
-    const int32_t best = best_of(e, ASJ_GEOMETRY_AUTO);
+    int32_t best = best_of(e, ASJ_GEOMETRY_AUTO), determined = 1;
     result->status = ASJ_GEOMETRY_CHANCE;
     if (best < 0)
         return;
-    asj_model *m = &e->finalists[best];
     const double least = log10(e->options->epsilon);
+    const int32_t essential = best_of(e, ASJ_GEOMETRY_ESSENTIAL); /* a plane's pose comes from here, too */
+    if (essential >= 0 && log10_nfa(e, &e->finalists[essential]) <= least)
+        determined = set_pose(e, essential, result);
+    if (!determined)
+        best = instead_of(e, best);
+    determined = determined || best != essential;
+    const asj_model *m = &e->finalists[best];
     result->model = m->kind;
     result->log10_nfa = log10_nfa(e, m);
-    const int32_t essential = best_of(e, ASJ_GEOMETRY_ESSENTIAL); /* a plane's pose comes from here, too */
-    int32_t determined = 1;
-    if (essential >= 0 && log10_nfa(e, &e->finalists[essential]) <= least) {
-        const int32_t open = essential != best && is_twofold(e, essential);
-        determined = (!open && set_pose(e, &e->finalists[essential], result)) || essential != best;
-    }
     set_matrix(m, result);
     asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
     for (int32_t k = 0; k < e->set.count; k++)
@@ -281,7 +302,7 @@ static void answer(estimation *e, double *probabilities, asj_geometry *result)
     if (result->log10_nfa > least)
         return;
     result->status = !determined ? ASJ_GEOMETRY_DEGENERATE : ASJ_GEOMETRY_ACCEPTED;
-    if (second >= 0 && result->second_log10_nfa <= least && result->second_log10_nfa <= NEARLY * result->log10_nfa)
+    if (second >= 0 && result->second_log10_nfa <= NEARLY * result->log10_nfa)
         result->status = ASJ_GEOMETRY_AMBIGUOUS;
     for (int32_t k = 0; k < e->set.count && probabilities; k++)
         probabilities[e->set.list[k].source] = e->scratch.probability[k];

@@ -21,6 +21,13 @@
  * the image where it is larger), the angle of the rotation in B, half the log of det B, and the two terms of its shear. Wrong ones
  * lie anywhere in the image; angle and scale as above; shear anywhere in SHEAR_WIDTH squared.
  *
+ * Rooms are made of planes. An essential matrix [t]x R may have some, n'X = 1 in coordinates of camera 1: on each lies what obeys
+ * its homography K2 (R + t n') K1^-1 (Hartley and Zisserman, 13.1). A right candidate lies on one of them in ON_PLANES of all
+ * cases, on each as likely, or else anywhere: its likelihood is the sum of the parts.
+ *
+ * What is right lies in front of both cameras; of the points of an epipolar line half do. So the ratio is multiplied by 2 - BEHIND
+ * or by BEHIND, and by 1 where rays are so nearly parallel that locations do not tell.
+ *
  * A place has rivals, at most one of which is right; p_c the priors, LR_c the ratios:
  *
  *     score = sum over the places of log(1 - sum p_c + sum p_c LR_c),
@@ -40,6 +47,8 @@
 #define FAR 20.0 /* squared residual beyond which the ratio is as good as 0: exp(-10) times the peak of about 1e4 */
 #define FAR_PLANAR 34.0
 #define WIDEST 3.0 /* largest `loose` */
+#define ON_PLANES 0.75
+#define BEHIND 0.1
 
 void asj_epipolar_residuals(const double f[9], const asj_pairs *set, const asj_pair *c, asj_residuals *r)
 {
@@ -61,9 +70,8 @@ void asj_epipolar_residuals(const double f[9], const asj_pairs *set, const asj_p
     r->square = r->value[0] * r->value[0] + r->value[1] * r->value[1] + r->value[2] * r->value[2];
 }
 
-void asj_planar_residuals(const asj_two_view *view, const asj_pairs *set, const asj_pair *c, asj_residuals *r)
+void asj_planar_residuals(const double h[9], const asj_pairs *set, const asj_pair *c, asj_residuals *r)
 {
-    const double *h = view->matrix;
     const double w = h[6] * c->x1 + h[7] * c->y1 + h[8], x = (h[0] * c->x1 + h[1] * c->y1 + h[2]) / w;
     const double y = (h[3] * c->x1 + h[4] * c->y1 + h[5]) / w, dx = c->x2 - x, dy = c->y2 - y;
     const double sd = set->location_sd;
@@ -94,30 +102,71 @@ void asj_planar_residuals(const asj_two_view *view, const asj_pairs *set, const 
         r->square += r->value[k] * r->value[k];
 }
 
-void asj_residuals_of(const asj_two_view *view, const asj_pairs *set, const asj_pair *pair, asj_residuals *r)
+void asj_part_residuals(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *c, asj_residuals *r)
 {
-    if (view->planar)
-        asj_planar_residuals(view, set, pair, r);
+    if (part > 0)
+        asj_planar_residuals(view->planes[part - 1], set, c, r);
+    else if (view->planar)
+        asj_planar_residuals(view->matrix, set, c, r);
     else
-        asj_epipolar_residuals(view->matrix, set, pair, r);
+        asj_epipolar_residuals(view->matrix, set, c, r);
 }
 
-double asj_likelihood_peak(const asj_pairs *set, int32_t planar, double loose)
+asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, double loose)
 {
     const double sd = loose * set->location_sd, normal = sqrt(2 * ASJ_PI);
     const double shape = 2 * ASJ_PI / (normal * loose * set->angle_sd) * SCALE_WIDTH / (normal * loose * set->scale_sd);
-    if (!planar)
-        return log(2 * set->spread / (normal * sd) * shape);
     const double shear = SHEAR_WIDTH * SHEAR_WIDTH / (2 * ASJ_PI * loose * SHEAR_SD * loose * SHEAR_SD);
-    return log(set->area / (2 * ASJ_PI * sd * sd) * shape * shear);
+    const double line = log(2 * set->spread / (normal * sd) * shape);
+    const double plane = log(set->area / (2 * ASJ_PI * sd * sd) * shape * shear);
+    asj_peaks peaks = {view->planar ? plane : line, plane, loose};
+    if (!view->planar && view->plane_count > 0) {
+        peaks.first += log(1 - ON_PLANES);
+        peaks.plane += log(ON_PLANES / view->plane_count);
+    }
+    return peaks;
 }
 
-double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, const asj_pair *c, double peak, double loose)
+/* The factor that being in front of both cameras is worth: see above. d1 and d2, the depths, as in asj_in_front() of model.c. */
+static double side_factor(const asj_two_view *view, const asj_pair *c)
 {
-    asj_residuals r;
-    asj_residuals_of(view, set, c, &r);
-    const double square = r.square / (loose * loose);
-    return square < (view->planar ? FAR_PLANAR : FAR) ? exp(peak - 0.5 * square) : 0;
+    const double *m = view->turned, *t = view->translation;
+    const double a0 = m[0] * c->x1 + m[1] * c->y1 + m[2], a1 = m[3] * c->x1 + m[4] * c->y1 + m[5];
+    const double a2 = m[6] * c->x1 + m[7] * c->y1 + m[8];
+    const double b0 = (c->x2 - view->ray2[2]) * view->ray2[0], b1 = (c->y2 - view->ray2[3]) * view->ray2[1];
+    const double n0 = a1 - a2 * b1, n1 = a2 * b0 - a0, n2 = a0 * b1 - a1 * b0; /* a x b, b = (b0, b1, 1) */
+    const double square = n0 * n0 + n1 * n1 + n2 * n2, aa = a0 * a0 + a1 * a1 + a2 * a2, bb = b0 * b0 + b1 * b1 + 1;
+    if (!(square > view->parallax2 * aa * bb))
+        return 1;
+    const double first = (b1 * t[2] - t[1]) * n0 + (t[0] - b0 * t[2]) * n1 + (b0 * t[1] - b1 * t[0]) * n2;
+    const double second = (a1 * t[2] - a2 * t[1]) * n0 + (a2 * t[0] - a0 * t[2]) * n1 + (a0 * t[1] - a1 * t[0]) * n2;
+    return first > 0 && second > 0 ? 2 - BEHIND : BEHIND;
+}
+
+double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, const asj_pair *c, const asj_peaks *peaks,
+                            double *parts)
+{
+    const double tighter = 1 / (peaks->loose * peaks->loose);
+    double sum = 0;
+    for (int32_t k = 0; k <= view->plane_count; k++) {
+        const int32_t planar = asj_part_is_planar(view, k);
+        const double *front = k > 0 ? view->in_front[k - 1] : NULL;
+        asj_residuals r;
+        double ratio = 0;
+        r.square = HUGE_VAL;
+        if (!front || front[0] * c->x1 + front[1] * c->y1 + front[2] > 0)
+            asj_part_residuals(view, k, set, c, &r);
+        const double square = r.square * tighter;
+        if (square < (planar ? FAR_PLANAR : FAR)) {
+            ratio = exp((k > 0 ? peaks->plane : peaks->first) - 0.5 * square);
+            if (!planar && view->has_motion)
+                ratio *= side_factor(view, c);
+        }
+        if (parts)
+            parts[k] = ratio;
+        sum += ratio;
+    }
+    return sum;
 }
 
 /* Is the candidate too far from its epipolar line, or from where a homography puts it, for any ratio above 0? Most are, and this
@@ -143,12 +192,13 @@ static double far_limit(const asj_pairs *set, const asj_two_view *view, double l
 
 double asj_score(const asj_pairs *set, int32_t count, const asj_two_view *view, double loose, asj_score_scratch *scratch)
 {
-    const double peak = asj_likelihood_peak(set, view->planar, loose), limit = far_limit(set, view, loose);
+    const asj_peaks peaks = asj_likelihood_peaks(set, view, loose);
+    const double limit = far_limit(set, view, loose);
     int32_t touched[2] = {0, 0};
     double score[2] = {0, 0};
     for (int32_t k = 0; k < count; k++) {
         const asj_pair *c = &set->list[k];
-        const double ratio = is_far(view, c, limit) ? 0 : asj_likelihood_ratio(view, set, c, peak, loose);
+        const double ratio = is_far(view, c, limit) ? 0 : asj_likelihood_ratio(view, set, c, &peaks, NULL);
         if (!(ratio > 0))
             continue;
         for (int32_t v = 0; v < 2; v++) {
@@ -172,10 +222,11 @@ double asj_score(const asj_pairs *set, int32_t count, const asj_two_view *view, 
 void asj_probabilities(const asj_pairs *set, const asj_two_view *view, double loose, asj_score_scratch *scratch,
                        double *probability)
 {
-    const double peak = asj_likelihood_peak(set, view->planar, loose), limit = far_limit(set, view, loose);
+    const asj_peaks peaks = asj_likelihood_peaks(set, view, loose);
+    const double limit = far_limit(set, view, loose);
     for (int32_t k = 0; k < set->count; k++) {
         const asj_pair *c = &set->list[k];
-        probability[k] = is_far(view, c, limit) ? 0 : c->prior * asj_likelihood_ratio(view, set, c, peak, loose);
+        probability[k] = is_far(view, c, limit) ? 0 : c->prior * asj_likelihood_ratio(view, set, c, &peaks, NULL);
         scratch->sum[0][c->place1] += probability[k];
         scratch->sum[1][c->place2] += probability[k];
     }

@@ -35,22 +35,46 @@ typedef struct asj_residuals {
     double square;
 } asj_residuals;
 
+#define ASJ_MOST_PLANES 4
+#define ASJ_MOST_PARTS (1 + ASJ_MOST_PLANES)
+
 /* A two-view geometry as candidates meet it. */
 typedef struct asj_two_view {
     int32_t planar;          /* 0: matrix is fundamental, 1: a homography, image 1 -> image 2 */
+    int32_t plane_count;     /* of a fundamental matrix: planes that lie in it */
     double matrix[9];
-    double inverse[9];       /* planar: of the homography */
+    double planes[ASJ_MOST_PLANES][9]; /* their homographies, positive where they are in front of camera 1 */
+    double in_front[ASJ_MOST_PLANES][3]; /* a pixel (x, y, 1) of the plane is in front of camera 1 when its product is positive */
+    int32_t has_motion;      /* what follows is known: which side of the cameras a point is */
+    int32_t reserved;
+    double turned[9];        /* R K1^-1 */
+    double translation[3];
+    double ray2[4];          /* 1 / fx, 1 / fy, cx, cy of camera 2 */
+    double parallax2;        /* squared sine of the angle between rays below which a point is too far to have a side */
 } asj_two_view;
 
 void asj_epipolar_residuals(const double f[9], const asj_pairs *set, const asj_pair *pair, asj_residuals *r);
-void asj_planar_residuals(const asj_two_view *view, const asj_pairs *set, const asj_pair *pair, asj_residuals *r);
-void asj_residuals_of(const asj_two_view *view, const asj_pairs *set, const asj_pair *pair, asj_residuals *r);
+void asj_planar_residuals(const double h[9], const asj_pairs *set, const asj_pair *pair, asj_residuals *r);
 
-/* Logarithm of the largest likelihood ratio, where all residuals are zero; standard deviations times `loose`. */
-double asj_likelihood_peak(const asj_pairs *set, int32_t planar, double loose);
+/* What a candidate may be: part 0 is anywhere in a geometry without planes or on the plane of a homography, part k on its k-th
+ * plane. */
+static inline int32_t asj_part_is_planar(const asj_two_view *view, int32_t part)
+{
+    return view->planar || part > 0;
+}
+void asj_part_residuals(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *pair, asj_residuals *r);
 
-/* Likelihood if right over likelihood if wrong; peak: asj_likelihood_peak(). */
-double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, const asj_pair *pair, double peak, double loose);
+/* Logarithm of the largest likelihood ratio of the parts, where all residuals are zero, with their shares; standard deviations
+ * times `loose`. */
+typedef struct asj_peaks {
+    double first, plane; /* of part 0 and of the planes */
+    double loose;
+} asj_peaks;
+asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, double loose);
+
+/* Likelihood if right over likelihood if wrong; parts: NULL, or what each part has of it. */
+double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, const asj_pair *pair, const asj_peaks *peaks,
+                            double *parts);
 
 /* Scratch for a score: place by place, and a list of those touched. */
 typedef struct asj_score_scratch {

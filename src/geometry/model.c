@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* How the geometries move.
  *
- * essential: R <- exp([w]x) R, and t turned about the two axes at right angles to it. With one unknown focal length, f <- f exp(d)
- * in both cameras. fundamental: E' = K2' F K1 = U diag(1, s, 0) V', which has seven degrees of freedom: U and V turned, s <- s
- * exp(d) (Bartoli and Sturm, "Nonlinear estimation of the fundamental matrix with minimal parameters", PAMI 2004). homography: the
- * entries of K2^-1 H K1 but the largest, which is 1. */
+ * essential: R <- exp([w]x) R, and t turned about the two axes at right angles to it; each plane's n by its entries. fundamental:
+ * E' = K2' F K1 = U diag(1, s, 0) V', which has seven degrees of freedom: U and V turned, s <- s exp(d) (Bartoli and Sturm,
+ * "Nonlinear estimation of the fundamental matrix with minimal parameters", PAMI 2004). homography: the entries of K2^-1 H K1 but
+ * the largest, which is 1. */
 #include "model.h"
 #include "small_matrix.h"
 
 #include <math.h>
 #include <string.h>
+
+#define PARALLAX 0.006 /* rad between rays: a location is out by 1.5 px of 600, each of two */
 
 static int32_t unit_norm(double m[9])
 {
@@ -106,21 +108,50 @@ int32_t asj_in_front(const double rotation[9], const double translation[3], cons
     return asj_dot3(side1, c) > 0 && asj_dot3(side2, c) > 0 ? 1 : -1;
 }
 
+/* The homographies of the planes: K2 (R + t n') K1^-1. In front of camera 1 is what has n' K1^-1 (x, y, 1)' > 0. */
+static void complete_planes(asj_model *m, const double k1[9])
+{
+    for (int32_t p = 0; p < m->view.plane_count; p++) {
+        double normal[9];
+        for (int32_t k = 0; k < 9; k++)
+            normal[k] = m->rotation[k] + m->translation[k / 3] * m->planes[p][k % 3];
+        asj_pixel_homography(normal, m->cameras, m->view.planes[p]);
+        asj_apply3_transposed(k1, m->planes[p], m->view.in_front[p]);
+    }
+}
+
+static int32_t complete_essential(asj_model *m)
+{
+    const asj_camera *c2 = &m->cameras[1];
+    double skew[9], essential[9], k1[9];
+    if (!asj_normalise3(m->translation))
+        return 0;
+    asj_skew3(m->translation, skew);
+    asj_multiply3(skew, m->rotation, essential);
+    asj_fundamental_of(essential, m->cameras, m->view.matrix);
+    inverse_of(&m->cameras[0], k1);
+    asj_multiply3(m->rotation, k1, m->view.turned);
+    memcpy(m->view.translation, m->translation, sizeof m->translation);
+    m->view.ray2[0] = 1 / c2->fx;
+    m->view.ray2[1] = 1 / c2->fy;
+    m->view.ray2[2] = c2->cx;
+    m->view.ray2[3] = c2->cy;
+    m->view.parallax2 = PARALLAX * PARALLAX;
+    m->view.has_motion = 1;
+    complete_planes(m, k1);
+    return 1;
+}
+
 int32_t asj_model_complete(asj_model *m)
 {
+    double inverse[9];
     if (m->kind == ASJ_GEOMETRY_HOMOGRAPHY) {
         m->view.planar = 1;
-        return asj_invert3(m->view.matrix, m->view.inverse);
+        return asj_invert3(m->view.matrix, inverse);
     }
     m->view.planar = 0;
-    if (m->kind == ASJ_GEOMETRY_ESSENTIAL) {
-        double skew[9], essential[9];
-        if (!asj_normalise3(m->translation))
-            return 0;
-        asj_skew3(m->translation, skew);
-        asj_multiply3(skew, m->rotation, essential);
-        asj_fundamental_of(essential, m->cameras, m->view.matrix);
-    }
+    if (m->kind == ASJ_GEOMETRY_ESSENTIAL && !complete_essential(m))
+        return 0;
     return unit_norm(m->view.matrix);
 }
 
@@ -141,10 +172,8 @@ static int32_t move_essential(const asj_model *model, const double *delta, asj_m
     asj_translation_axes(t, axis, other);
     for (int32_t k = 0; k < 3; k++)
         moved->translation[k] = t[k] + delta[3] * axis[k] + delta[4] * other[k];
-    for (int32_t v = 0; v < 2 && model->parameters == 6; v++) {
-        moved->cameras[v].fx *= exp(delta[5]);
-        moved->cameras[v].fy *= exp(delta[5]);
-    }
+    for (int32_t k = 0; k < 3 * model->view.plane_count; k++)
+        moved->planes[k / 3][k % 3] += delta[5 + k];
     return asj_model_complete(moved);
 }
 

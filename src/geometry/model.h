@@ -7,14 +7,15 @@
 
 #include <asj/geometry.h>
 
-#define ASJ_MODEL_PARAMETERS 8
+#define ASJ_MODEL_PARAMETERS (5 + 3 * ASJ_MOST_PLANES)
 
 typedef struct asj_model {
     int32_t kind;             /* ASJ_GEOMETRY_ESSENTIAL, _FUNDAMENTAL or _HOMOGRAPHY */
-    int32_t parameters;       /* 5 (essential), 6 (essential and one focal length), 7 (fundamental), 8 (homography) */
+    int32_t parameters;       /* 5 (essential) and 3 for each plane, 7 (fundamental), 8 (homography) */
     asj_camera cameras[2];    /* fundamental, homography: what brings pixels to numbers near 1 */
     double rotation[9];       /* essential: x2 ~ R x1 + t in camera coordinates, |t| = 1 */
     double translation[3];
+    double planes[ASJ_MOST_PLANES][3]; /* essential: n of n'X = 1 with |t| = 1, in coordinates of camera 1; view.plane_count */
     asj_two_view view;
     double score;             /* asj_score() */
     double evidence;          /* asj_log_evidence() */
@@ -41,14 +42,14 @@ int32_t asj_motions_of(const double essential[9], double rotations[2][9], double
 /* Is a point in front of both cameras? Rays as asj_ray() gives them; 1, -1 behind one of them, 0 too far to say. */
 int32_t asj_in_front(const double rotation[9], const double translation[3], const double ray1[3], const double ray2[3]);
 
-/* Fills view from rotation and translation (essential) or completes it (homography: the inverse). 0 when it cannot be. */
+/* Fills view from rotation, translation and planes (essential), or checks it. 0 when it cannot be. */
 int32_t asj_model_complete(asj_model *model);
 
 /* The two directions, at right angles to t and to each other, in which a translation of length 1 moves. */
 void asj_translation_axes(const double t[3], double axis[3], double other[3]);
 
-/* The model moved by `delta`, one number for each parameter: radians, changes of the log of the focal length or of a ratio,
- * entries. */
+/* The model moved by `delta`, one number for each parameter: radians and entries of the planes' n (essential), radians and the
+ * change of the log of a ratio (fundamental), entries (homography). */
 int32_t asj_model_move(const asj_model *model, const double *delta, asj_model *moved);
 
 #endif

@@ -11,6 +11,7 @@
 #include "counter_random.h"
 #include "evidence.h"
 #include "minimal.h"
+#include "ranking.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -28,22 +29,6 @@
 #define ROUNDS 8
 #define LOOSE 2.0
 #define TRIES 20
-#define SAME_TURN 0.05      /* rad: rotations nearer than this and .. */
-#define SAME_DIRECTION 0.1  /* rad: .. translations nearer than this are one hypothesis */
-#define SAME_MATRIX 0.05    /* of matrices of norm 1 in normalised coordinates */
-
-typedef struct ranked {
-    double score;
-    int32_t index;
-} ranked;
-
-static int by_score(const void *left, const void *right)
-{
-    const ranked *p = left, *q = right;
-    if (p->score != q->score)
-        return p->score > q->score ? -1 : 1;
-    return p->index - q->index;
-}
 
 /* --- samples ----------------------------------------------------------------------------------------------------------------- */
 
@@ -91,6 +76,7 @@ static int32_t guess(const asj_pairs *set, const asj_pair *const pairs[2], const
         return 0;
     model->kind = ASJ_GEOMETRY_FUNDAMENTAL;
     model->parameters = 7;
+    model->view.has_motion = 0; /* its cameras are a guess */
     memcpy(model->cameras, search->cameras, sizeof model->cameras);
     return 1;
 }
@@ -109,54 +95,13 @@ static int32_t sample(const asj_pairs *set, const double *sum, int32_t count, co
     return wanted == 3 ? asj_fundamental_from_three(pairs, search->cameras, model) : guess(set, pairs, search, stream, model);
 }
 
-/* --- choice ------------------------------------------------------------------------------------------------------------------ */
-
-static int32_t same(const asj_model *a, const asj_model *b)
-{
-    if (a->kind == ASJ_GEOMETRY_ESSENTIAL) {
-        double turn[9], c[3];
-        asj_multiply3_transposed(a->rotation, b->rotation, turn);
-        asj_cross3(a->translation, b->translation, c);
-        return asj_rotation_angle(turn) < SAME_TURN && asj_dot3(a->translation, b->translation) > 0 &&
-               sqrt(asj_dot3(c, c)) < SAME_DIRECTION;
-    }
-    double p[9], q[9], dot = 0, pp = 0, qq = 0;
-    if (a->kind == ASJ_GEOMETRY_HOMOGRAPHY) {
-        asj_normal_homography(a->view.matrix, a->cameras, p);
-        asj_normal_homography(b->view.matrix, b->cameras, q);
-    } else {
-        asj_essential_of(a->view.matrix, a->cameras, p);
-        asj_essential_of(b->view.matrix, b->cameras, q);
-    }
-    for (int32_t k = 0; k < 9; k++) {
-        dot += p[k] * q[k];
-        pp += p[k] * p[k];
-        qq += q[k] * q[k];
-    }
-    return dot * dot > (1 - SAME_MATRIX * SAME_MATRIX) * pp * qq;
-}
-
-/* The best ones that differ. */
-static int32_t pick(const asj_model *models, const ranked *order, int32_t count, int32_t most, asj_model *finalists)
-{
-    int32_t picked = 0;
-    for (int32_t k = 0; k < count && picked < most; k++) {
-        int32_t fresh = order[k].score > -HUGE_VAL;
-        for (int32_t m = 0; m < picked && fresh; m++)
-            fresh = !same(&finalists[m], &models[order[k].index]);
-        if (fresh)
-            finalists[picked++] = models[order[k].index];
-    }
-    return picked;
-}
-
 /* --- all of it --------------------------------------------------------------------------------------------------------------- */
 
 typedef struct work {
     asj_context *context;
     asj_memory *memory;
     asj_model *models, *starts;
-    ranked *order;
+    asj_ranked *order;
     double *sum;
     asj_adjust_scratch *scratch; /* for each thread */
 } work;
@@ -177,7 +122,7 @@ static void sample_some(const void *data, const asj_part *part)
         asj_model *m = &j->models[n];
         const int32_t good = sample(j->set, j->w->sum, j->first, j->search, (uint64_t)n, m);
         m->score = good ? asj_score(j->set, j->first, &m->view, LOOSE, &j->w->scratch[part->thread].score) : -HUGE_VAL;
-        j->w->order[n] = (ranked){m->score, (int32_t)n};
+        j->w->order[n] = (asj_ranked){m->score, (int32_t)n};
     }
 }
 
@@ -188,7 +133,7 @@ static void draw_samples(const asj_pairs *set, const asj_search *search, work *w
         w->sum[k] = (k > 0 ? w->sum[k - 1] : 0) + set->list[k].prior;
     const job j = {.set = set, .search = search, .w = w, .models = w->models, .first = first};
     asj_parallel(w->context, w->context->threads, samples, 8, sample_some, &j);
-    qsort(w->order, (size_t)samples, sizeof *w->order, by_score);
+    qsort(w->order, (size_t)samples, sizeof *w->order, asj_by_score);
 }
 
 static void sample_around(const void *data, const asj_part *part)
@@ -228,7 +173,7 @@ static void adjust_each(const void *data, const asj_part *part)
     const job *j = data;
     for (int64_t n = part->first; n < part->end; n++) {
         asj_adjust(j->set, &j->models[n], j->rounds, &j->w->scratch[part->thread]);
-        j->w->order[n] = (ranked){j->models[n].score, (int32_t)n};
+        j->w->order[n] = (asj_ranked){j->models[n].score, (int32_t)n};
     }
 }
 
@@ -238,18 +183,19 @@ static int32_t adjust_some(const asj_pairs *set, work *w, asj_model *models, int
 {
     const job j = {.set = set, .w = w, .models = models, .rounds = rounds};
     asj_parallel(w->context, w->context->threads, count, 1, adjust_each, &j);
-    qsort(w->order, (size_t)count, sizeof *w->order, by_score);
-    return pick(models, w->order, count, most, finalists);
+    qsort(w->order, (size_t)count, sizeof *w->order, asj_by_score);
+    return asj_pick(models, w->order, count, most, finalists);
 }
 
 static void judge(const asj_pairs *set, work *w, asj_model *finalists, int32_t count)
 {
     asj_model copy[ASJ_FINALISTS];
-    for (int32_t n = 0; n < count; n++) { /* allocates: in this thread */
-        finalists[n].evidence = asj_log_evidence(w->memory, set, &finalists[n], &w->scratch[0]);
-        w->order[n] = (ranked){finalists[n].evidence, n};
+#pragma omp parallel for num_threads(w->threads) schedule(dynamic, 1)
+    for (int32_t n = 0; n < count; n++) {
+        finalists[n].evidence = asj_log_evidence(set, &finalists[n], &w->scratch[asj_thread_number()]);
+        w->order[n] = (asj_ranked){finalists[n].evidence, n};
     }
-    qsort(w->order, (size_t)count, sizeof *w->order, by_score);
+    qsort(w->order, (size_t)count, sizeof *w->order, asj_by_score);
     memcpy(copy, finalists, sizeof copy);
     for (int32_t n = 0; n < count; n++)
         finalists[n] = copy[w->order[n].index];
@@ -272,15 +218,15 @@ static int32_t run(const asj_pairs *set, const asj_search *search, work *w, asj_
     draw_samples(set, search, w);
     const job j = {.set = set, .w = w, .models = w->models};
     asj_parallel(w->context, w->context->threads, most, 4, score_some, &j);
-    qsort(w->order, (size_t)most, sizeof *w->order, by_score);
-    int32_t count = pick(w->models, w->order, most, STARTS, w->starts);
+    qsort(w->order, (size_t)most, sizeof *w->order, asj_by_score);
+    int32_t count = asj_pick(w->models, w->order, most, STARTS, w->starts);
     count = adjust_some(set, w, w->starts, count, FEW_ROUNDS, CENTRES, w->models);
     for (int32_t round = 0; round < AROUND; round++) {
         count = draw_around(set, search, w, w->models, count < CENTRES ? count : CENTRES, round);
         for (int32_t n = 0; n < count; n++)
-            w->order[n] = (ranked){w->models[n].score, n};
-        qsort(w->order, (size_t)count, sizeof *w->order, by_score);
-        count = pick(w->models, w->order, count, STARTS, w->starts);
+            w->order[n] = (asj_ranked){w->models[n].score, n};
+        qsort(w->order, (size_t)count, sizeof *w->order, asj_by_score);
+        count = asj_pick(w->models, w->order, count, STARTS, w->starts);
         count = adjust_some(set, w, w->starts, count, FEW_ROUNDS, ASJ_FINALISTS, w->models);
     }
     count = adjust_some(set, w, w->models, count, ROUNDS, ASJ_FINALISTS, finalists);

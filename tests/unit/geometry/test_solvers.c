@@ -4,6 +4,7 @@
 
 #include "geometry/five_point.h"
 #include "geometry/minimal.h"
+#include "geometry/planes.h"
 #include "geometry/polynomial.h"
 #include "geometry/small_matrix.h"
 
@@ -325,8 +326,49 @@ static void two_candidates_give_the_homography(void **state)
         asj_residuals r;
         memset(&model, 0, sizeof model);
         assert_true(asj_homography_from_two(both, cameras, &model));
-        asj_planar_residuals(&model.view, &set, &pairs[2], &r);
+        asj_planar_residuals(model.view.matrix, &set, &pairs[2], &r);
         unit_near("a third one", i, 0, r.square, 0, 0.05);
+    }
+}
+
+/* Of the motions of a plane's homography one is the motion, with the plane; both explain every candidate of the plane. */
+static void a_homography_gives_its_motions(void **state)
+{
+    (void)state;
+    synth_random random;
+    synth_random_seed(&random, 9);
+    for (int i = 0; i < 100; i++) {
+        const motion m = random_motion(&random);
+        asj_pair list[12];
+        asj_pairs set = {.list = list, .count = 12, .location_sd = 1, .angle_sd = 0.1, .scale_sd = 0.1, .spread = 300, .area = 3e5};
+        asj_model plane, motions[2];
+        for (int k = 0; k < 12; k++) {
+            list[k] = random_patch(&random, &m, 1);
+            list[k].prior = 0.5;
+        }
+        const asj_pair *const both[2] = {&list[0], &list[1]};
+        memset(&plane, 0, sizeof plane);
+        assert_true(asj_homography_from_two(both, cameras, &plane));
+        const int32_t count = asj_motions_of_homography(&set, &plane, cameras, motions);
+        double least = HUGE_VAL;
+        assert_in_range(count, 1, 2);
+        for (int32_t n = 0; n < count; n++) {
+            double turn[9];
+            asj_residuals r;
+            asj_multiply3_transposed(motions[n].rotation, m.rotation, turn);
+            least = fmin(least, asj_rotation_angle(turn) + acos(fmin(1, asj_dot3(motions[n].translation, m.translation))));
+            for (int k = 0; k < 12; k++) {
+                asj_part_residuals(&motions[n].view, 1, &set, &list[k], &r);
+                unit_near("on the plane", i, k, r.square, 0, 0.1);
+                asj_part_residuals(&motions[n].view, 0, &set, &list[k], &r);
+                unit_near("on its line", i, k, r.square, 0, 0.1);
+            }
+        }
+        unit_near("motion", i, 0, least, 0, 0.02);
+        double turned[9];
+        asj_pixel_homography(m.rotation, cameras, turned); /* a camera that only turns */
+        memcpy(plane.view.matrix, turned, sizeof turned);
+        assert_int_equal(asj_motions_of_homography(&set, &plane, cameras, motions), 0);
     }
 }
 
@@ -337,7 +379,7 @@ int main(void)
         cmocka_unit_test(systems_are_solved_or_refused), cmocka_unit_test(roots_of_products),
         cmocka_unit_test(five_points_give_the_motion), cmocka_unit_test(right_candidates_have_no_residuals),
         cmocka_unit_test(two_candidates_give_the_motion), cmocka_unit_test(three_candidates_give_the_fundamental_matrix),
-        cmocka_unit_test(two_candidates_give_the_homography),
+        cmocka_unit_test(two_candidates_give_the_homography), cmocka_unit_test(a_homography_gives_its_motions),
     };
     return cmocka_run_group_tests_name("solvers", tests, NULL, NULL);
 }

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Motions with planes: each essential matrix that was found, and each motion of a homography that was found, is refined, and the
+ * best that differ receive planes. So walls and floor speak for one motion together, and what one plane leaves open (two motions;
+ * which of its tiles) the others decide. */
+#include "motions.h"
+#include "core/threads.h"
+#include "evidence.h"
+#include "planes.h"
+#include "ranking.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_STARTS (3 * ASJ_FINALISTS)
+#define FEW_ROUNDS 4
+#define ROUNDS 8
+#define WITH_PLANES 8
+
+typedef struct motions {
+    asj_model starts[MOST_STARTS], picked[ASJ_FINALISTS];
+    asj_ranked order[MOST_STARTS];
+    int32_t count, threads;
+} motions;
+
+static void collect(const asj_pairs *set, const asj_camera cameras[2], asj_model *finalists, int32_t *count, motions *m)
+{
+    int32_t kept = 0;
+    for (int32_t k = 0; k < *count; k++) {
+        if (finalists[k].kind == ASJ_GEOMETRY_ESSENTIAL) {
+            m->starts[m->count++] = finalists[k];
+            continue;
+        }
+        if (finalists[k].kind == ASJ_GEOMETRY_HOMOGRAPHY)
+            m->count += asj_motions_of_homography(set, &finalists[k], cameras, m->starts + m->count);
+        finalists[kept++] = finalists[k];
+    }
+    *count = kept;
+}
+
+static void refine(const asj_pairs *set, asj_adjust_scratch *scratch, motions *m)
+{
+#pragma omp parallel for num_threads(m->threads) schedule(dynamic, 1)
+    for (int32_t n = 0; n < m->count; n++) {
+        asj_adjust(set, &m->starts[n], FEW_ROUNDS, &scratch[asj_thread_number()]);
+        m->starts[n].evidence = asj_log_evidence(set, &m->starts[n], &scratch[asj_thread_number()]);
+        m->order[n] = (asj_ranked){m->starts[n].evidence, n};
+    }
+    qsort(m->order, (size_t)m->count, sizeof *m->order, asj_by_score);
+    m->count = asj_pick(m->starts, m->order, m->count, ASJ_FINALISTS, m->picked);
+    const int32_t most = m->count < WITH_PLANES ? m->count : WITH_PLANES;
+#pragma omp parallel for num_threads(m->threads) schedule(dynamic, 1)
+    for (int32_t n = 0; n < most; n++) {
+        asj_adjust_scratch *s = &scratch[asj_thread_number()];
+        asj_add_planes(set, &m->picked[n], s);
+        asj_model last = m->picked[n];
+        asj_adjust(set, &last, ROUNDS, s);
+        last.evidence = asj_log_evidence(set, &last, s);
+        if (last.evidence > m->picked[n].evidence)
+            m->picked[n] = last;
+    }
+}
+
+asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const asj_camera cameras[2], asj_model *finalists,
+                              int32_t *count)
+{
+    asj_memory *memory = &context->memory;
+    const int32_t threads = context->threads;
+    motions *m = asj_allocate_zero(memory, 1, sizeof *m);
+    asj_adjust_scratch *scratch = asj_allocate_zero(memory, (size_t)threads, sizeof *scratch);
+    int32_t good = m && scratch;
+    for (int32_t t = 0; t < threads && good; t++)
+        good = asj_adjust_scratch_create(memory, set, &scratch[t]);
+    if (good) {
+        m->threads = threads;
+        collect(set, cameras, finalists, count, m);
+        refine(set, scratch, m);
+        memcpy(finalists + *count, m->picked, (size_t)m->count * sizeof *m->picked);
+        *count += m->count;
+    }
+    for (int32_t t = 0; scratch && t < threads; t++)
+        asj_adjust_scratch_free(memory, &scratch[t]);
+    asj_release(memory, scratch);
+    asj_release(memory, m);
+    return good ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the motions of %d candidates", (int)set->count);
+}
