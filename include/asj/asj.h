@@ -18,6 +18,7 @@
 #include <asj/context.h>
 #include <asj/detect.h>
 #include <asj/device.h>
+#include <asj/features.h>
 #include <asj/field.h>
 #include <asj/geometry.h>
 #include <asj/image.h>

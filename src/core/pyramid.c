@@ -161,9 +161,10 @@ static void halve(const asj_context *context, asj_pyramid *pyramid, int32_t leve
     asj_parallel(context, asj_threads_for(context, (int64_t)width * height, LEAST_PIXELS), height, 0, halve_rows, &j);
 }
 
-static asj_status fill(asj_context *context, const asj_frame *frame, double smoothing, asj_pyramid *pyramid)
+asj_status asj_pyramid_allocate(asj_context *context, int32_t width, int32_t height, asj_pyramid *pyramid)
 {
-    int32_t width = frame->width, height = frame->height;
+    memset(pyramid, 0, sizeof *pyramid);
+    pyramid->ops = context->ops;
     for (int32_t l = 0; l < ASJ_PYRAMID_LEVELS && (l == 0 || (width >= 8 && height >= 8)); l++) {
         pyramid->width[l] = width;
         pyramid->height[l] = height;
@@ -174,22 +175,32 @@ static asj_status fill(asj_context *context, const asj_frame *frame, double smoo
         width /= 2;
         height /= 2;
     }
-    asj_status status = fill_base(context, frame, smoothing, pyramid);
-    if (status != ASJ_OK)
-        return status;
+    return ASJ_OK;
+}
+
+void asj_pyramid_complete(asj_context *context, asj_pyramid *pyramid)
+{
     for (int32_t l = 0; l < pyramid->levels; l++) {
         if (l > 0)
             halve(context, pyramid, l);
         copy_border(pyramid->plane[l], pyramid->width[l], pyramid->height[l]);
     }
-    return ASJ_OK;
+}
+
+static asj_status fill(asj_context *context, const asj_frame *frame, double smoothing, asj_pyramid *pyramid)
+{
+    asj_status status = asj_pyramid_allocate(context, frame->width, frame->height, pyramid);
+    if (status == ASJ_OK)
+        status = fill_base(context, frame, smoothing, pyramid);
+    if (status == ASJ_OK)
+        asj_pyramid_complete(context, pyramid);
+    return status;
 }
 
 asj_status asj_pyramid_create(asj_context *context, const asj_image *image, double smoothing, asj_pyramid *pyramid)
 {
     asj_frame frame;
     memset(pyramid, 0, sizeof *pyramid);
-    pyramid->ops = context->ops;
     memset(&frame, 0, sizeof frame);
     asj_status status = asj_image_check(context, image);
     if (status == ASJ_OK)

@@ -23,6 +23,11 @@ typedef struct asj_pyramid {
 asj_status asj_pyramid_create(asj_context *context, const asj_image *image, double smoothing, asj_pyramid *pyramid);
 void asj_pyramid_free(asj_memory *memory, asj_pyramid *pyramid);
 
+/* The same in two parts, for a level 0 from elsewhere: room for all levels, and, when level 0 holds its pixels, their borders and
+ * the other levels. ASJ_ERROR_MEMORY; on failure the caller still frees. */
+asj_status asj_pyramid_allocate(asj_context *context, int32_t width, int32_t height, asj_pyramid *pyramid);
+void asj_pyramid_complete(asj_context *context, asj_pyramid *pyramid);
+
 /* The level on which neighbouring samples that span `area` px^2 (of level 0) are closest to 1 px apart, a little on the fine
  * side. */
 int32_t asj_pyramid_level(const asj_pyramid *pyramid, double area);

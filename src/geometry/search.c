@@ -206,7 +206,7 @@ static void score_some(const void *data, const asj_part *part)
 {
     const job *j = data;
     for (int64_t n = part->first; n < part->end; n++) {
-        ranked *r = &j->w->order[n];
+        asj_ranked *r = &j->w->order[n];
         if (r->score > -HUGE_VAL)
             r->score = asj_score(j->set, j->set->count, &j->models[r->index].view, LOOSE, &j->w->scratch[part->thread].score);
     }

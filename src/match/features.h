@@ -13,8 +13,8 @@ typedef struct asj_image_features {
     int16_t *patches;        /* canonical: `length` numbers for each frame, unit vectors unless option normalise is no;
                               * induced: for each L-junction */
     uint8_t *usable;         /* of each of them: its patch lies in the image */
-    uint64_t device_copy;    /* names what the device of the context that described them keeps of them; 0 = nothing. Means
-                              * nothing to another context. */
+    uint64_t device_copy;    /* names what the device of the context that described them keeps of them; 0 = nothing. It lasts for
+                              * the call: features that are kept have none (kept_features.c), as they may be matched anywhere */
 } asj_image_features;
 
 #endif

@@ -8,6 +8,12 @@
 
 #include <string.h>
 
+asj_status asj_image_features_describe(asj_context *context, const asj_match_options *options, asj_image_features *features)
+{
+    return options->patches == ASJ_PATCHES_CANONICAL ? asj_describe(context, options, features)
+                                                     : asj_patch_induced_describe(context, options, features);
+}
+
 static asj_status create(asj_context *context, const asj_match_options *options, const asj_image *image,
                          const asj_junction_list *junctions, asj_image_features *features)
 {
@@ -15,8 +21,7 @@ static asj_status create(asj_context *context, const asj_match_options *options,
     if (status == ASJ_OK)
         status = asj_pyramid_create(context, image, options->smoothing, &features->pyramid);
     if (status == ASJ_OK)
-        status = options->patches == ASJ_PATCHES_CANONICAL ? asj_describe(context, options, features)
-                                                           : asj_patch_induced_describe(context, options, features);
+        status = asj_image_features_describe(context, options, features);
     return status;
 }
 

@@ -10,6 +10,8 @@
  * is held. */
 asj_status asj_image_features_create(asj_context *context, const asj_match_options *options, const asj_image *image,
                                      const asj_junction *junctions, size_t count, int32_t which, asj_image_features *features);
+/* The last part of it: the patches, when L-junctions and pyramid are there. */
+asj_status asj_image_features_describe(asj_context *context, const asj_match_options *options, asj_image_features *features);
 void asj_image_features_free(asj_memory *memory, asj_image_features *features);
 
 #endif

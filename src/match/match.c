@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* asj_match(): step 7 of the paper.
+/* asj_match(), and asj_match_features(), which is what it does after the features of both images: step 7 of the paper.
  *
  * Of each image (image_features.c):
  *   l_junctions.c    junctions -> ordered L-junctions with frames
@@ -23,7 +23,7 @@
 #include "consensus.h"
 #include "core/backend.h"
 #include "guided.h"
-#include "image_features.h"
+#include "kept_features.h"
 #include "match_options.h"
 #include "match_result.h"
 #include "shortlist.h"
@@ -186,6 +186,56 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
     asj_backend_begin(context);
     do
         status = match(context, options, sources, result);
+    while (asj_backend_retry(context, status));
+    return status;
+}
+
+static asj_status match_kept(asj_context *context, const asj_match_options *options, const asj_features *kept[2],
+                             asj_match_result **result)
+{
+    const asj_image_features views[2] = {asj_features_view(context, kept[0]), asj_features_view(context, kept[1])};
+    const asj_image_features *both[2] = {&views[0], &views[1]};
+    stop_watch watch = {.clock = asj_clock_ms()};
+    return match_features(context, options, both, &watch, result);
+}
+
+/* Features tell what they were made with; the pair's steps read the same options. */
+static asj_status check_options(asj_context *context, const asj_match_options *options, const asj_features *kept[2])
+{
+    char message[256];
+    if (asj_match_options_check(options, message, sizeof message) != ASJ_OK)
+        return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
+    for (int32_t n = 0; n < 2; n++) {
+        const char *key = asj_match_options_difference(options, &kept[n]->options);
+        char wanted[64] = "", made[64] = "";
+        if (!key)
+            continue;
+        asj_match_options_get(options, key, wanted, sizeof wanted);
+        asj_match_options_get(&kept[n]->options, key, made, sizeof made);
+        return asj_fail(context, ASJ_ERROR_OPTION, "the features of image %d were made with %s %s, not %s", (int)n + 1, key, made,
+                        wanted);
+    }
+    return ASJ_OK;
+}
+
+asj_status asj_match_features(asj_context *context, const asj_features *features1, const asj_features *features2,
+                              const asj_match_options *options, asj_match_result **result)
+{
+    const asj_features *kept[2] = {features1, features2};
+    if (result)
+        *result = NULL;
+    if (!context)
+        return ASJ_ERROR_ARGUMENT;
+    if (!features1 || !features2 || !result)
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "features or the result are NULL");
+    if (!options)
+        options = &features1->options;
+    asj_status status = check_options(context, options, kept);
+    if (status != ASJ_OK)
+        return status;
+    asj_backend_begin(context);
+    do
+        status = match_kept(context, options, kept, result);
     while (asj_backend_retry(context, status));
     return status;
 }

@@ -3,6 +3,8 @@
 #include "match_options.h"
 #include "core/option_table.h"
 
+#include <string.h>
+
 #define OPTIONS_TYPE asj_match_options
 #define FRAMES "frames of L-junctions"
 #define DESCRIPTION "description"
@@ -105,4 +107,21 @@ asj_status asj_match_options_get(const asj_match_options *options, const char *k
 asj_status asj_match_options_check(const asj_match_options *options, char *message, size_t message_size)
 {
     return asj_option_table_check(&table, options, message, message_size);
+}
+
+/* What the frames and patches of an image depend on: two groups, and what neighbours are. */
+static int describes(const asj_option_info *row)
+{
+    return strcmp(row->group, FRAMES) == 0 || strcmp(row->group, DESCRIPTION) == 0 || strcmp(row->key, "neighbours") == 0 ||
+           strcmp(row->key, "separation") == 0;
+}
+
+const char *asj_match_options_difference(const asj_match_options *left, const asj_match_options *right)
+{
+    for (size_t n = 0; n < table.count; n++) {
+        const size_t size = rows[n].type == ASJ_OPTION_NUMBER ? sizeof(double) : sizeof(int32_t);
+        if (describes(&rows[n]) && memcmp((const char *)left + rows[n].offset, (const char *)right + rows[n].offset, size) != 0)
+            return rows[n].key;
+    }
+    return NULL;
 }

@@ -8,4 +8,8 @@
 /* The one place where the matcher's options are checked: ASJ_OK, or ASJ_ERROR_OPTION and a sentence. */
 asj_status asj_match_options_check(const asj_match_options *options, char *message, size_t message_size);
 
+/* The first key, in the order of the table, by which features of an image differ that are made with these options; NULL = they are
+ * the same features. */
+const char *asj_match_options_difference(const asj_match_options *left, const asj_match_options *right);
+
 #endif

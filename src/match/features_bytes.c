@@ -1,0 +1,297 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Features as bytes: what .asjf files hold (asj-formats(5)).
+ *
+ *      0  8 bytes        0x89 A S J F CR LF 0x1a: tells a file that was sent as text
+ *      8  u32            version of the format: 1
+ *     12  u32            CRC-32 of all that follows
+ *     16  u64            size of the whole
+ *     24  u32, u32       width and height of the image, px
+ *     32  u32            bytes of the options' text
+ *     36  u32            number of junctions
+ *     40  text           options: a line KEY=VALUE for each
+ *         junctions      x, y, scale, log10_nfa, location_sd: five floats; u32 number of branches; u32 octave; for each branch
+ *                        angle, length, strength, log10_nfa, angle_sd, width: six floats
+ *         u16            the image after the blur, in 1/128 of a grey level, row by row
+ *
+ * All numbers with the least significant byte first, floats as IEEE 754.
+ *
+ * Only what cannot be computed is there: L-junctions, neighbours, frames, patches and the coarser images are made again; the
+ * patches alone would double the size. So there is no index that a hostile file could set, and what a file says is checked as
+ * asj_match() checks what a caller says. */
+#include "core/backend.h"
+#include "core/bytes.h"
+#include "core/image.h"
+#include "kept_features.h"
+#include "match_options.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define VERSION 1
+#define HEADER 40
+#define CHECKED 16          /* the checksum is of the bytes from here on */
+#define JUNCTION_BYTES 28
+#define BRANCH_BYTES 24
+#define MOST_TEXT 65536     /* bytes of options */
+#define LONGEST_LINE 256
+
+static const uint8_t magic[8] = {0x89, 'A', 'S', 'J', 'F', '\r', '\n', 0x1a};
+
+/* --- save --------------------------------------------------------------------------------------------------------------------- */
+
+/* Writes the options' text when `to` is not NULL; returns its length. */
+static size_t put_options(const asj_match_options *options, uint8_t *to)
+{
+    char line[LONGEST_LINE], value[LONGEST_LINE / 2];
+    size_t size = 0;
+    for (size_t n = 0; n < asj_match_option_count(); n++) {
+        const char *key = asj_match_option(n)->key;
+        asj_match_options_get(options, key, value, sizeof value);
+        const int length = snprintf(line, sizeof line, "%s=%s\n", key, value);
+        if (to)
+            memcpy(to + size, line, (size_t)length);
+        size += (size_t)length;
+    }
+    return size;
+}
+
+static uint8_t *put_floats(uint8_t *to, const float *values, size_t count)
+{
+    for (size_t n = 0; n < count; n++, to += 4)
+        asj_put_float(to, values[n]);
+    return to;
+}
+
+static uint8_t *put_junction(uint8_t *to, const asj_junction *j)
+{
+    const float head[] = {j->x, j->y, j->scale, j->log10_nfa, j->location_sd};
+    to = put_floats(to, head, 5);
+    asj_put_u32(to, (uint32_t)j->branch_count);
+    asj_put_u32(to + 4, (uint32_t)j->octave);
+    to += 8;
+    for (int32_t b = 0; b < j->branch_count; b++) {
+        const asj_branch *branch = &j->branches[b];
+        const float values[] = {branch->angle,     branch->length,   branch->strength,
+                                branch->log10_nfa, branch->angle_sd, branch->width};
+        to = put_floats(to, values, 6);
+    }
+    return to;
+}
+
+static void put_plane(uint8_t *to, const asj_pyramid *pyramid)
+{
+    const size_t width = (size_t)pyramid->width[0], stride = width + 1;
+    for (size_t y = 0; y < (size_t)pyramid->height[0]; y++)
+        for (size_t x = 0; x < width; x++, to += 2)
+            asj_put_u16(to, pyramid->plane[0][y * stride + x]);
+}
+
+size_t asj_features_save(const asj_features *features, void *bytes, size_t capacity)
+{
+    if (!features)
+        return 0;
+    const asj_pyramid *pyramid = &features->of_image.pyramid;
+    const size_t text = put_options(&features->options, NULL), pixels = (size_t)pyramid->width[0] * (size_t)pyramid->height[0];
+    size_t size = HEADER + text + JUNCTION_BYTES * (size_t)features->junction_count + 2 * pixels;
+    for (uint32_t n = 0; n < features->junction_count; n++)
+        size += BRANCH_BYTES * (size_t)features->junctions[n].branch_count;
+    if (!bytes || capacity < size)
+        return size;
+    uint8_t *start = bytes, *to = start + HEADER + text;
+    memcpy(start, magic, sizeof magic);
+    asj_put_u32(start + 8, VERSION);
+    asj_put_u64(start + 16, size);
+    asj_put_u32(start + 24, (uint32_t)pyramid->width[0]);
+    asj_put_u32(start + 28, (uint32_t)pyramid->height[0]);
+    asj_put_u32(start + 32, (uint32_t)text);
+    asj_put_u32(start + 36, features->junction_count);
+    put_options(&features->options, start + HEADER);
+    for (uint32_t n = 0; n < features->junction_count; n++)
+        to = put_junction(to, &features->junctions[n]);
+    put_plane(to, pyramid);
+    asj_put_u32(start + 12, asj_crc32(start + CHECKED, size - CHECKED));
+    return size;
+}
+
+/* --- load --------------------------------------------------------------------------------------------------------------------- */
+
+/* Bytes that are read one after the other. */
+typedef struct reader {
+    asj_context *context;
+    const uint8_t *next;
+    size_t left;
+    int32_t width, height;
+    uint32_t text, count;
+} reader;
+
+static asj_status damaged(const reader *r, const char *what)
+{
+    return asj_fail(r->context, ASJ_ERROR_FORMAT, "the features are damaged: %s", what);
+}
+
+static asj_status read_header(reader *r)
+{
+    const uint8_t *start = r->next;
+    const size_t size = r->left;
+    if (size < sizeof magic || memcmp(start, magic, sizeof magic) != 0)
+        return asj_fail(r->context, ASJ_ERROR_FORMAT, "these are no features (.asjf)");
+    if (size < HEADER)
+        return damaged(r, "the header is truncated");
+    if (asj_get_u32(start + 8) != VERSION)
+        return asj_fail(r->context, ASJ_ERROR_UNSUPPORTED, "the features are of version %lu, and this library reads version %d",
+                        (unsigned long)asj_get_u32(start + 8), VERSION);
+    if (asj_get_u64(start + 16) != size)
+        return asj_fail(r->context, ASJ_ERROR_FORMAT, "the features are damaged: %zu bytes where there should be %llu", size,
+                        (unsigned long long)asj_get_u64(start + 16));
+    if (asj_get_u32(start + 12) != asj_crc32(start + CHECKED, size - CHECKED))
+        return damaged(r, "the checksum is wrong");
+    const uint32_t width = asj_get_u32(start + 24), height = asj_get_u32(start + 28);
+    if (width < 1 || height < 1)
+        return damaged(r, "an image without pixels");
+    if (width > ASJ_MAX_SIDE || height > ASJ_MAX_SIDE || (uint64_t)width * height > ASJ_MAX_PIXELS)
+        return asj_fail(r->context, ASJ_ERROR_LIMIT, "features of an image of %lu x %lu pixels", (unsigned long)width,
+                        (unsigned long)height);
+    r->width = (int32_t)width;
+    r->height = (int32_t)height;
+    r->text = asj_get_u32(start + 32);
+    r->count = asj_get_u32(start + 36);
+    r->next += HEADER;
+    r->left -= HEADER;
+    const size_t pixels = (size_t)width * height * 2;
+    if (r->text > MOST_TEXT || pixels > r->left || r->text > r->left - pixels ||
+        r->count > (r->left - pixels - r->text) / JUNCTION_BYTES)
+        return damaged(r, "the counts are wrong");
+    return ASJ_OK;
+}
+
+static asj_status read_options(reader *r, asj_match_options *options)
+{
+    char line[LONGEST_LINE], message[256];
+    size_t length = 0;
+    asj_match_options_init(options);
+    for (uint32_t n = 0; n < r->text; n++) {
+        const char c = (char)r->next[n];
+        if (c != '\n') {
+            if (c < ' ' || c > '~' || length + 1 >= sizeof line)
+                return damaged(r, "the options are no text");
+            line[length++] = c;
+            continue;
+        }
+        line[length] = 0;
+        length = 0;
+        char *equals = strchr(line, '=');
+        if (!equals)
+            return damaged(r, "an option without a value");
+        *equals = 0;
+        if (asj_match_options_set(options, line, equals + 1, message, sizeof message) != ASJ_OK)
+            return asj_fail(r->context, ASJ_ERROR_FORMAT, "the features were made with an option that cannot be: %s", message);
+    }
+    if (length > 0 || asj_match_options_check(options, message, sizeof message) != ASJ_OK)
+        return damaged(r, "the options are not complete");
+    r->next += r->text;
+    r->left -= r->text;
+    return ASJ_OK;
+}
+
+static void get_floats(const uint8_t *from, float *const *to, size_t count)
+{
+    for (size_t n = 0; n < count; n++)
+        *to[n] = asj_get_float(from + 4 * n);
+}
+
+static asj_status read_junction(reader *r, asj_junction *j)
+{
+    float *const head[] = {&j->x, &j->y, &j->scale, &j->log10_nfa, &j->location_sd};
+    if (r->left < JUNCTION_BYTES)
+        return damaged(r, "the junctions are truncated");
+    get_floats(r->next, head, 5);
+    const uint32_t branches = asj_get_u32(r->next + 20);
+    j->octave = (int32_t)(asj_get_u32(r->next + 24) & 0xff);
+    r->next += JUNCTION_BYTES;
+    r->left -= JUNCTION_BYTES;
+    if (branches > ASJ_MAX_BRANCHES || r->left < branches * (size_t)BRANCH_BYTES)
+        return damaged(r, "a junction has too many branches");
+    j->branch_count = (int32_t)branches;
+    for (uint32_t b = 0; b < branches; b++, r->next += BRANCH_BYTES, r->left -= BRANCH_BYTES) {
+        asj_branch *branch = &j->branches[b];
+        float *const values[] = {&branch->angle, &branch->length, &branch->strength, &branch->log10_nfa, &branch->angle_sd,
+                                 &branch->width};
+        get_floats(r->next, values, 6);
+    }
+    return ASJ_OK;
+}
+
+/* Level 0 of the pyramid, and the others from it. */
+static asj_status read_plane(reader *r, asj_pyramid *pyramid)
+{
+    const size_t width = (size_t)r->width, stride = width + 1;
+    if (r->left != 2 * width * (size_t)r->height)
+        return damaged(r, "the pixels are not all there, or there are more");
+    const asj_status status = asj_pyramid_allocate(r->context, r->width, r->height, pyramid);
+    uint32_t most = 0;
+    for (size_t y = 0; y < (size_t)r->height && status == ASJ_OK; y++)
+        for (size_t x = 0; x < width; x++, r->next += 2) {
+            const uint32_t grey = asj_get_u16(r->next);
+            most = grey > most ? grey : most;
+            pyramid->plane[0][y * stride + x] = (uint16_t)grey;
+        }
+    if (status == ASJ_OK && most > ASJ_GRAY_MAX)
+        return damaged(r, "a pixel is whiter than white");
+    if (status == ASJ_OK)
+        asj_pyramid_complete(r->context, pyramid);
+    return status;
+}
+
+static asj_status make(reader *r, const asj_match_options *options, const asj_junction *junctions, asj_image_features *made)
+{
+    const asj_junction_list list = {junctions, r->count, r->width, r->height, 1};
+    asj_status status = asj_l_junctions_create(r->context, options, &list, &made->l_junctions);
+    if (status == ASJ_ERROR_ARGUMENT)
+        status = damaged(r, "a junction that cannot be");
+    if (status == ASJ_OK)
+        status = read_plane(r, &made->pyramid);
+    return status == ASJ_OK ? asj_image_features_describe(r->context, options, made) : status;
+}
+
+static asj_status load(asj_context *context, const uint8_t *bytes, size_t size, asj_features **features)
+{
+    reader r = {.context = context, .next = bytes, .left = size};
+    asj_match_options options;
+    asj_image_features made;
+    memset(&made, 0, sizeof made);
+    asj_status status = read_header(&r);
+    if (status == ASJ_OK)
+        status = read_options(&r, &options);
+    if (status != ASJ_OK)
+        return status;
+    asj_junction *junctions = asj_allocate_zero(&context->memory, r.count, sizeof *junctions);
+    if (!junctions)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu junctions", (unsigned long)r.count);
+    for (uint32_t n = 0; n < r.count && status == ASJ_OK; n++)
+        status = read_junction(&r, &junctions[n]);
+    if (status == ASJ_OK)
+        status = make(&r, &options, junctions, &made);
+    if (status == ASJ_OK)
+        status = asj_features_keep(context, &options, junctions, r.count, &made, features);
+    asj_image_features_free(&context->memory, &made);
+    asj_release(&context->memory, junctions);
+    if (status == ASJ_OK && (status = asj_progress(context, ASJ_STAGE_PATCHES, 1)) != ASJ_OK)
+        asj_features_free(features);
+    return status;
+}
+
+asj_status asj_features_load(asj_context *context, const void *bytes, size_t size, asj_features **features)
+{
+    if (features)
+        *features = NULL;
+    if (!context)
+        return ASJ_ERROR_ARGUMENT;
+    if (!bytes || !features)
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "the bytes or the result is NULL");
+    asj_status status;
+    asj_backend_begin(context);
+    do
+        status = load(context, bytes, size, features);
+    while (asj_backend_retry(context, status));
+    return status;
+}
