@@ -10,6 +10,7 @@
 #include <asj/detect.h>
 #include <asj/io.h>
 
+#include <stdio.h>
 #include <string.h>
 
 enum { MESSAGE_SIZE = 1024 };
@@ -21,6 +22,28 @@ typedef struct run {
     double read_ms;
 } run;
 
+static asj_status write_features(run *r, const char *path, const asj_image *pixels, const asj_detection *detection, char *message)
+{
+    asj_features *features = NULL;
+    asj_status status = asj_features_create(r->session.context, pixels, detection->junctions, detection->junction_count, NULL,
+                                            &features);
+    if (status != ASJ_OK)
+        snprintf(message, MESSAGE_SIZE, "%s", asj_context_message(r->session.context));
+    else
+        status = asj_features_write(path, features, message, MESSAGE_SIZE);
+    asj_features_free(&features);
+    return status;
+}
+
+static asj_status write_junctions(run *r, const char *image, const char *path, const asj_image *pixels,
+                                  const asj_detection *detection, char *message)
+{
+    const int32_t format = cli_detect_file_format(r->arguments);
+    const asj_detection_report report = {detection, &r->arguments->options, image, {0}};
+    return format == CLI_FILE_FEATURES ? write_features(r, path, pixels, detection, message)
+                                       : asj_junctions_write(path, format, &report, message, MESSAGE_SIZE);
+}
+
 static int write_results(run *r, const char *image, const cli_output *output, const asj_image *pixels,
                          const asj_detection *detection)
 {
@@ -28,9 +51,9 @@ static int write_results(run *r, const char *image, const cli_output *output, co
     char message[MESSAGE_SIZE] = "";
     int result = CLI_SUCCESS;
     if (output->junctions) {
-        asj_detection_report report = {detection, &arguments->options, image, {0}};
-        asj_status status = asj_junctions_write(output->junctions, cli_detect_file_format(arguments), &report, message,
-                                                sizeof message);
+        asj_status status = write_junctions(r, image, output->junctions, pixels, detection, message);
+        if (status == ASJ_ERROR_CANCELLED)
+            return CLI_FAILED;
         if (status != ASJ_OK)
             result = cli_session_fail(&r->session, output->junctions, message, status);
     }

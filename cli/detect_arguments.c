@@ -20,6 +20,7 @@ static const char introduction[] =
     "                                                      everything as JSON, and a picture to look at\n"
     "  asj-cli detect --out-dir out --plot png *.jpg       a result and a plot for every photograph\n"
     "  asj-cli detect --epsilon 0.01 photo.jpg             only the surest junctions\n"
+    "  asj-cli detect -o photo.asjf photo.jpg              features: all that 'asj-cli match' needs of it\n"
     "\n"
     "Images: PNG, and where built with OpenCV every format that it reads. A file that cannot be read is\n"
     "reported and the others are done.\n";
@@ -38,9 +39,9 @@ static const cli_option output_options[] = {
      "where the junctions of one image go; - is standard output (the default for one image without a plot)"},
     {OUT_DIR, 'd', "out-dir", "DIR",
      "existing folder for the results of one or several images: photo.jpg gives DIR/photo.asj"},
-    {FORMAT, 'f', "format", "asj|json|csv",
-     "asj: text, one record for each pair of branches; json: everything; csv: one line a branch. "
-     "Default: by the end of FILE, else asj"},
+    {FORMAT, 'f', "format", "asj|json|csv|asjf",
+     "asj: text, one record for each pair of branches; json: everything; csv: one line a branch; asjf: features, all that 'asj-cli "
+     "match' needs of the image. Default: by the end of FILE, else asj"},
     {WHOLE, 0, "whole", NULL, "asj: whole junctions of two to five branches (json and csv always have them)"},
 };
 
@@ -56,7 +57,7 @@ static const cli_option plot_options[] = {
 static const cli_option preset_options[] = {
     {PRESET, 0, "preset", "default|paper|match",
      "start from these values of the options below, wherever this stands: our recommendation, the paper to the letter, or what "
-     "'asj-cli match' detects: weaker junctions too"},
+     "'asj-cli match' detects: weaker junctions too (the default for asjf)"},
     {FOR, 0, "for", "matching", "the same as --preset match"},
 };
 
@@ -65,7 +66,7 @@ void cli_detect_arguments_free(cli_detect_arguments *arguments)
     cli_settings_free(&arguments->settings);
 }
 
-static const char *const formats[] = {"asj", "json", "csv", NULL};
+static const char *const formats[] = {"asj", "json", "csv", "asjf", NULL};
 
 static int take_output(void *target, int id, const char *text)
 {
@@ -76,7 +77,7 @@ static int take_output(void *target, int id, const char *text)
     case WHOLE: arguments->whole = 1; break;
     default:
         if (cli_find_word(formats, text) < 0)
-            return cli_usage_error("detect", "--format: '%s' is not asj, json or csv", text);
+            return cli_usage_error("detect", "--format: '%s' is not asj, json, csv or asjf", text);
         arguments->format = text;
     }
     return CLI_SUCCESS;
@@ -156,11 +157,33 @@ static int check(cli_detect_arguments *arguments)
     return result == CLI_SUCCESS ? check_plot(arguments) : result;
 }
 
+const char *cli_detect_extension(const cli_detect_arguments *arguments)
+{
+    if (arguments->format)
+        return arguments->format;
+    const char *dot = arguments->output ? strrchr(arguments->output, '.') : NULL;
+    if (dot && strcmp(dot, ".json") == 0)
+        return "json";
+    if (dot && strcmp(dot, ".asjf") == 0)
+        return "asjf";
+    return dot && strcmp(dot, ".csv") == 0 ? "csv" : "asj";
+}
+
+static void choose_preset(cli_detect_arguments *arguments)
+{
+    const int features = strcmp(cli_detect_extension(arguments), "asjf") == 0;
+    if (arguments->preset < 0)
+        arguments->preset = features ? ASJ_PRESET_MATCH : ASJ_PRESET_DEFAULT;
+    else if (features && arguments->preset == ASJ_PRESET_DEFAULT && !arguments->common.quiet)
+        cli_note("asj-cli detect: warning: features of --preset default give fewer matches than those of --preset match");
+}
+
 int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *arguments)
 {
     int first = argc;
     memset(arguments, 0, sizeof *arguments);
     cli_common_init(&arguments->common);
+    arguments->preset = -1;
     if (!cli_settings_create(&arguments->settings, argc))
         return CLI_FAILED;
     const cli_group groups[] = {
@@ -179,19 +202,10 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
         return result;
     arguments->images = argv + first;
     arguments->image_count = (size_t)(argc - first);
+    choose_preset(arguments);
     asj_detect_options_preset(&arguments->options, arguments->preset);
     result = cli_settings_apply(&arguments->settings, "detect", arguments->common.quiet, &arguments->options, set_option);
     return result == CLI_SUCCESS ? check(arguments) : result;
-}
-
-const char *cli_detect_extension(const cli_detect_arguments *arguments)
-{
-    if (arguments->format)
-        return arguments->format;
-    const char *dot = arguments->output ? strrchr(arguments->output, '.') : NULL;
-    if (dot && strcmp(dot, ".json") == 0)
-        return "json";
-    return dot && strcmp(dot, ".csv") == 0 ? "csv" : "asj";
 }
 
 int32_t cli_detect_file_format(const cli_detect_arguments *arguments)
@@ -201,5 +215,7 @@ int32_t cli_detect_file_format(const cli_detect_arguments *arguments)
         return ASJ_FILE_JSON;
     if (strcmp(extension, "csv") == 0)
         return ASJ_FILE_CSV;
+    if (strcmp(extension, "asjf") == 0)
+        return CLI_FILE_FEATURES;
     return arguments->whole ? ASJ_FILE_ASJ_WHOLE : ASJ_FILE_ASJ;
 }

@@ -16,7 +16,7 @@ typedef struct cli_detect_arguments {
     cli_settings settings;
     const char *output;    /* -o; NULL = none */
     const char *out_dir;   /* NULL = none */
-    const char *format;    /* "asj", "json", "csv"; NULL = by the name of `output` */
+    const char *format;    /* "asj", "json", "csv", "asjf"; NULL = by the name of `output` */
     int whole;
     const char *plot;      /* a file, or with out_dir a format; NULL = none */
     int32_t plot_format;   /* CLI_PLOT_... */
@@ -30,7 +30,8 @@ typedef struct cli_detect_arguments {
 int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *arguments);
 void cli_detect_arguments_free(cli_detect_arguments *arguments);
 
-/* The format of the result files: ASJ_FILE_..., and the end of their names. */
+/* The format of the result files: ASJ_FILE_... or this one, and the end of their names. */
+#define CLI_FILE_FEATURES 100
 int32_t cli_detect_file_format(const cli_detect_arguments *arguments);
 const char *cli_detect_extension(const cli_detect_arguments *arguments);
 

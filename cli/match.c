@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* asj-cli match: two images, their junctions from the detector or from files, the matches. */
+/* asj-cli match: two images, their junctions from the detector or from files, or features from files; the matches. */
 #include "match.h"
 #include "interrupt.h"
 #include "match_arguments.h"
@@ -28,8 +28,8 @@ static int read_inputs(run *r)
     int result = CLI_SUCCESS;
     for (int v = 0; v < 2 && !cli_interrupted(); v++) { /* the second one is looked at even when the first is bad */
         r->at = r->arguments->images[v];
-        if (cli_match_input_read(&r->session, r->arguments, v, &r->inputs[v]) != CLI_SUCCESS)
-            result = CLI_FAILED;
+        const int one = cli_match_input_read(&r->session, r->arguments, v, &r->inputs[v]);
+        result = one > result ? one : result;
     }
     return cli_interrupted() ? CLI_FAILED : result;
 }
@@ -49,7 +49,7 @@ static void set_geometry(const run *r, asj_match_options *options)
 {
     options->geometry.model = r->arguments->geometry;
     for (int v = 0; v < 2; v++) {
-        const asj_image *image = &r->inputs[v].image->image;
+        const asj_image *image = &r->inputs[v].pixels;
         const double focal = r->arguments->focal;
         options->geometry.cameras[v] = r->arguments->cameras[v];
         if (focal > 0 && !(options->geometry.cameras[v].fx > 0))
@@ -57,21 +57,38 @@ static void set_geometry(const run *r, asj_match_options *options)
     }
 }
 
-static int match(run *r)
+/* Where one of both is features, the other becomes features too. */
+static asj_status match_features(run *r, const asj_match_options *options)
 {
-    char both[2 * MESSAGE_SIZE];
+    asj_status status = ASJ_OK;
+    for (int v = 0; v < 2 && status == ASJ_OK; v++)
+        status = cli_match_input_describe(&r->session, r->arguments, &r->inputs[v]);
+    if (status != ASJ_OK)
+        return status;
+    return asj_match_features(r->session.context, r->inputs[0].features, r->inputs[1].features, options, &r->result);
+}
+
+static asj_status match_images(run *r, const asj_match_options *options)
+{
     size_t counts[2];
     const asj_junction *first = cli_match_input_junctions(&r->inputs[0], &counts[0]);
     const asj_junction *second = cli_match_input_junctions(&r->inputs[1], &counts[1]);
+    return asj_match(r->session.context, &r->inputs[0].pixels, first, counts[0], &r->inputs[1].pixels, second, counts[1], options,
+                     &r->result);
+}
+
+static int match(run *r)
+{
+    char both[2 * MESSAGE_SIZE];
     asj_match_options options = r->arguments->options;
+    const int features = r->inputs[0].features || r->inputs[1].features;
     set_geometry(r, &options);
     r->at = "the matching";
     cli_progress_next(&r->session.progress, STEPS - 1, "matching");
-    asj_status status = asj_match(r->session.context, &r->inputs[0].image->image, first, counts[0], &r->inputs[1].image->image,
-                                  second, counts[1], &options, &r->result);
+    asj_status status = features ? match_features(r, &options) : match_images(r, &options);
     if (status == ASJ_OK)
         return CLI_SUCCESS;
-    if (status == ASJ_ERROR_OPTION)
+    if (status == ASJ_ERROR_OPTION && !features)
         return cli_usage_error("match", "%s", asj_context_message(r->session.context));
     if (status == ASJ_ERROR_CANCELLED)
         return CLI_FAILED;
@@ -102,13 +119,13 @@ static int write_matches(run *r, const char *path)
     report.lines = arguments->lines;
     report.minimum_end = arguments->minimum_end;
     report.options = &arguments->options;
-    if (!arguments->junctions[0] || !arguments->junctions[1])
+    if (r->inputs[0].detection || r->inputs[1].detection)
         report.detect_options = &arguments->detect_options;
     for (int v = 0; v < 2; v++) {
         report.image_names[v] = arguments->images[v];
         report.junction_names[v] = arguments->junctions[v];
-        report.widths[v] = r->inputs[v].image->image.width;
-        report.heights[v] = r->inputs[v].image->image.height;
+        report.widths[v] = r->inputs[v].pixels.width;
+        report.heights[v] = r->inputs[v].pixels.height;
     }
     asj_status status = asj_matches_write(path, cli_match_file_format(arguments), &report, message, sizeof message);
     return status == ASJ_OK ? CLI_SUCCESS : cli_session_fail(&r->session, path, message, status);
@@ -119,9 +136,11 @@ static int write_plot(run *r)
     const cli_match_arguments *arguments = r->arguments;
     char message[MESSAGE_SIZE] = "";
     const cli_plot_match_content content = {
-        {&r->inputs[0].image->image, &r->inputs[1].image->image}, r->result, r->segments, r->segment_count};
-    asj_status status = cli_plot_match(arguments->plot, arguments->plot_format, &content, &arguments->style, message,
-                                       sizeof message);
+        {&r->inputs[0].pixels, &r->inputs[1].pixels}, r->result, r->segments, r->segment_count};
+    cli_plot_match_style style = arguments->style;
+    if (!content.images[0]->data || !content.images[1]->data)
+        style.background = CLI_PLOT_WHITE; /* features are no photograph */
+    asj_status status = cli_plot_match(arguments->plot, arguments->plot_format, &content, &style, message, sizeof message);
     return status == ASJ_OK ? CLI_SUCCESS : cli_session_fail(&r->session, arguments->plot, message, status);
 }
 

@@ -22,7 +22,9 @@ static const char introduction[] =
     "  asj-cli match --lines -o lines.csv left.jpg right.jpg\n"
     "                                                      line segments that correspond\n"
     "  asj-cli match --junctions1 a.asj --junctions2 b.asj a.png b.png\n"
-    "                                                      junctions from files instead of the detector\n";
+    "                                                      junctions from files instead of the detector\n"
+    "  asj-cli match a.asjf b.asjf                         features that 'asj-cli detect -o a.asjf' wrote:\n"
+    "                                                      each image is looked at once, for any number of pairs\n";
 
 static const char conclusion[] =
     "\n"

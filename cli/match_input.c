@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* An image and its junctions for match. */
+/* An image and its junctions, or its features, for match. */
 #include "match_input.h"
 #include "message.h"
 
+#include <math.h>
 #include <stdio.h>
 
 enum { MESSAGE_SIZE = 1024 };
@@ -33,24 +34,70 @@ static int check_places(cli_session *session, const char *path, const cli_match_
     return CLI_SUCCESS;
 }
 
+/* Junctions for looking at have an NFA below 1, and those of a photograph reach up to it; of junctions for matching thousands of
+ * times as many false alarms are taken. So a list that ends within a factor of ten below 1 was cut there. 0 is what files say that
+ * do not know. */
+enum { FEW = 8 };
+
+static void warn_of_few(cli_session *session, const char *path, const asj_junction_file *file)
+{
+    uint32_t known = 0;
+    float largest = -HUGE_VALF;
+    for (uint32_t i = 0; i < file->junction_count; i++) {
+        const float nfa = file->junctions[i].log10_nfa;
+        known += nfa != 0;
+        largest = nfa > largest ? nfa : largest;
+    }
+    if (known < FEW || largest > 0 || largest < -1)
+        return;
+    cli_progress_clear(&session->progress);
+    cli_note("asj-cli match: warning: %s has only the surest junctions, which give few matches; 'asj-cli detect --for matching' "
+             "finds what match needs", path);
+}
+
+static int read_features(cli_session *session, cli_match_input *input, const char *junctions)
+{
+    char message[MESSAGE_SIZE] = "";
+    asj_features_info info;
+    if (junctions)
+        return cli_usage_error("match", "%s changes nothing: %s is a file of features, which has its junctions", junctions,
+                               input->name);
+    const asj_status status = asj_features_read(session->context, input->name, &input->features, message, sizeof message);
+    if (status != ASJ_OK)
+        return status == ASJ_ERROR_CANCELLED ? CLI_FAILED : cli_session_fail(session, input->name, message, status);
+    asj_features_get_info(input->features, &info);
+    input->pixels.width = info.width;
+    input->pixels.height = info.height;
+    return CLI_SUCCESS;
+}
+
 int cli_match_input_read(cli_session *session, const cli_match_arguments *arguments, int v, cli_match_input *input)
 {
     char message[MESSAGE_SIZE] = "";
     const char *path = arguments->junctions[v];
     double start = cli_now_ms();
     input->name = arguments->images[v];
+    if (asj_features_probe(input->name)) {
+        const int result = read_features(session, input, path);
+        input->read_ms = cli_now_ms() - start;
+        return result;
+    }
     asj_status status = asj_image_file_read(input->name, arguments->common.max_pixels, &input->image, message, sizeof message);
     if (status != ASJ_OK)
         return cli_session_fail(session, input->name, message, status);
+    input->pixels = input->image->image;
     if (path && (status = asj_junctions_read(path, &input->file, message, sizeof message)) != ASJ_OK)
         return cli_session_fail(session, path, message, status);
     input->read_ms = cli_now_ms() - start;
-    return path ? check_places(session, path, input) : CLI_SUCCESS;
+    const int result = path ? check_places(session, path, input) : CLI_SUCCESS;
+    if (path && result == CLI_SUCCESS && !arguments->common.quiet && arguments->match_preset != ASJ_PRESET_PAPER)
+        warn_of_few(session, path, input->file);
+    return result;
 }
 
 int cli_match_input_detect(cli_session *session, const cli_match_arguments *arguments, cli_match_input *input)
 {
-    if (input->file)
+    if (input->file || input->features)
         return CLI_SUCCESS;
     asj_status status = asj_detect(session->context, &input->image->image, &arguments->detect_options, &input->detection);
     if (status == ASJ_OK)
@@ -60,6 +107,15 @@ int cli_match_input_detect(cli_session *session, const cli_match_arguments *argu
     if (status == ASJ_ERROR_CANCELLED)
         return CLI_FAILED;
     return cli_session_fail(session, input->name, asj_context_message(session->context), status);
+}
+
+asj_status cli_match_input_describe(cli_session *session, const cli_match_arguments *arguments, cli_match_input *input)
+{
+    size_t count;
+    if (input->features)
+        return ASJ_OK;
+    const asj_junction *junctions = cli_match_input_junctions(input, &count);
+    return asj_features_create(session->context, &input->pixels, junctions, count, &arguments->options, &input->features);
 }
 
 const asj_junction *cli_match_input_junctions(const cli_match_input *input, size_t *count)
@@ -73,4 +129,5 @@ void cli_match_input_free(cli_match_input *input)
     asj_image_file_free(&input->image);
     asj_junction_file_free(&input->file);
     asj_detection_free(&input->detection);
+    asj_features_free(&input->features);
 }

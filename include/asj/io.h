@@ -5,6 +5,7 @@
 #define ASJ_IO_H
 
 #include <asj/detect.h>
+#include <asj/features.h>
 #include <asj/image.h>
 #include <asj/junction.h>
 #include <asj/match.h>
@@ -173,6 +174,25 @@ typedef struct asj_junction_file {
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_junctions_read(const char *path, asj_junction_file **file, char *message, size_t message_size);
 ASJ_API void asj_junction_file_free(asj_junction_file **file);
+
+/* Features of an image as a file: asj-formats(5), .asjf. Written as asj_output_begin() and asj_output_commit() do.
+ * ASJ_ERROR_ARGUMENT  a NULL pointer
+ * ASJ_ERROR_LIMIT     more than 2^31 - 1 bytes: an image of more than a gigapixel
+ * ASJ_ERROR_FILE      cannot create, disk full, cannot rename
+ * ASJ_ERROR_MEMORY */
+ASJ_API asj_status asj_features_write(const char *path, const asj_features *features, char *message, size_t message_size);
+
+/* Reads them back. The context computes what is not in the file. On success the caller owns *features until asj_features_free().
+ * ASJ_ERROR_ARGUMENT  a NULL pointer
+ * ASJ_ERROR_FILE      missing, a directory, unreadable
+ * ASJ_ERROR_FORMAT, ASJ_ERROR_UNSUPPORTED, ASJ_ERROR_LIMIT, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED, ASJ_ERROR_DEVICE
+ *                     as asj_features_load(); a file longer than 2^31 - 1 bytes */
+ASJ_API asj_status asj_features_read(asj_context *context, const char *path, asj_features **features,
+                                     char *message, size_t message_size);
+
+/* 1 when the file begins as a file of features does, whatever its name; 0 when it does not, cannot be read, or is no regular
+ * file. */
+ASJ_API int32_t asj_features_probe(const char *path);
 
 #ifdef __cplusplus
 }

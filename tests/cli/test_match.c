@@ -248,8 +248,7 @@ static void junctions_come_from_files(void **state)
 }
 
 /* The preset match makes detect write what match would detect: the same matches, bit by bit through JSON. Through .asj, whose six
- * decimals are fewer than a float has, the alignment of a few
- * ends elsewhere, by 0.11 px at most here. */
+ * decimals are fewer than a float has, the alignment of a few ends elsewhere, by 0.11 px at most here. */
 static void the_preset_match_detects_for_match(void **state)
 {
     (void)state;
@@ -282,6 +281,80 @@ static void the_preset_match_detects_for_match(void **state)
         for (int c = X1; c <= BY2; c++)
             assert_true(fabs(found.rows[k][c] - other.rows[m][c]) < 0.25); /* px */
     }
+}
+
+/* Ten junctions, the weakest of them with this log10 NFA. */
+static void write_junctions(const char *path, double weakest)
+{
+    char text[1024];
+    int used = snprintf(text, sizeof text, "10\n");
+    for (int i = 0; i < 10; i++)
+        used += snprintf(text + used, sizeof text - (size_t)used, "%d 50\n2 7 7 %g\n0 5 30\n1.5 5 30\n", 40 + 20 * i,
+                         weakest != 0 ? weakest - i : 0);
+    write_bytes(path, text, (size_t)used);
+}
+
+/* A file with the surest junctions only, cut at an NFA of 1, is not for matching, and match says so: on photographs it gives few
+ * matches. Files with weaker ones, files of clean pictures and files that know no NFA are no reason to, nor is matching by the
+ * paper, which detects so itself. */
+static void the_surest_junctions_give_a_warning(void **state)
+{
+    (void)state;
+    static const struct {
+        double weakest;
+        const char *option, *value;
+        int warns;
+    } cases[] = {{-0.3, "--ratio", "1.5", 1}, {0.4, "--ratio", "1.5", 0}, {-5, "--ratio", "1.5", 0}, {0, "--ratio", "1.5", 0},
+                 {-0.3, "--match-preset", "paper", 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        write_junctions("sure.asj", cases[i].weakest);
+        const outcome *result = run_cli("match", "first.png", "second.png", "--junctions1", "sure.asj", "--junctions2", "sure.asj",
+                                        cases[i].option, cases[i].value, NULL);
+        expect_code(result, 0);
+        const char *first = strstr(result->err, "warning: sure.asj has only the surest junctions");
+        assert_int_equal(first != NULL, cases[i].warns);
+        assert_int_equal(first && strstr(first + 1, "warning: sure.asj"), cases[i].warns); /* of both images */
+    }
+    write_junctions("sure.asj", -0.3);
+    const outcome *result = run_cli("match", "-q", "first.png", "second.png", "--junctions1", "sure.asj", NULL);
+    expect_empty(result, "standard error", result->err);
+}
+
+static void expect_found_again(const outcome *result)
+{
+    expect_code(result, 0);
+    parse_csv(result->out, &other);
+    assert_int_equal(found.count, other.count);
+    assert_memory_equal(found.rows, other.rows, found.count * sizeof found.rows[0]);
+}
+
+/* Features take the place of either image or of both, with the same result; the images may be gone. */
+static void features_take_the_place_of_images(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("match", "-q", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    parse_csv(result->out, &found);
+    assert_true(found.count > 10);
+    expect_code(run_cli("detect", "-q", "-o", "1.asjf", "first.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "-f", "asjf", "-d", ".", "second.png", NULL), 0);
+    expect_found_again(run_cli("match", "-q", "1.asjf", "second.asjf", NULL));
+    expect_found_again(run_cli("match", "-q", "1.asjf", "second.png", NULL));
+    expect_found_again(run_cli("match", "-q", "first.png", "second.asjf", NULL));
+    expect_code(run_cli("match", "-q", "-o", "f.json", "1.asjf", "second.asjf", NULL), 0);
+    size_t size = 0;
+    char *text = read_bytes("f.json", &size);
+    assert_non_null(text);
+    assert_non_null(strstr(text, "\"name\": \"1.asjf\""));
+    assert_null(strstr(text, "detect_options"));
+    free(text);
+    if (!without_cairo)
+        expect_code(run_cli("match", "-q", "-p", "f.png", "1.asjf", "second.png", NULL), 0);
+    result = run_cli("detect", "-o", "1.asjf", "--preset", "default", "first.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "warning: features of --preset default");
+    result = run_cli("match", "--geometry", "auto", "--focal", "300", "1.asjf", "second.asjf", NULL);
+    expect_code(result, 0);
 }
 
 /* The number behind "name" in JSON, from where `within` begins. */
@@ -459,6 +532,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(line_segments_take_the_place_of_matches),
         cmocka_unit_test(junctions_come_from_files),
         cmocka_unit_test(the_preset_match_detects_for_match),
+        cmocka_unit_test(the_surest_junctions_give_a_warning),
+        cmocka_unit_test(features_take_the_place_of_images),
         cmocka_unit_test(former_names_are_taken_with_a_warning),
         cmocka_unit_test(options_reach_detector_and_matcher),
         cmocka_unit_test(presets_are_for_both_or_for_one),

@@ -196,6 +196,32 @@ static void bad_images_are_refused(void **state)
     expect_refusal(run_cli("match", "--junctions2", "missing.asj", "first.png", "second.png", NULL), "asj-cli: missing.asj: ", "");
 }
 
+static void bad_features_are_refused(void **state)
+{
+    (void)state;
+    size_t size = 0;
+    expect_code(run_cli("detect", "-q", "-o", "good.asjf", "first.png", NULL), 0);
+    free(read_bytes("good.asjf", &size));
+    assert_true(size > 1000);
+    write_part("cut.asjf", "good.asjf", size - 1);
+    write_part("head.asjf", "good.asjf", 20);
+    write_damaged("damaged.asjf", "good.asjf", size / 2);
+    write_damaged("later.asjf", "good.asjf", 8);
+    static const char *const files[][2] = {{"cut.asjf", "where there should be"}, {"head.asjf", "truncated"},
+                                           {"damaged.asjf", "checksum"}, {"later.asjf", "version"}};
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        char beginning[64];
+        snprintf(beginning, sizeof beginning, "asj-cli: %s: ", files[i][0]);
+        expect_refusal(run_cli("match", "-o", "never.csv", files[i][0], "second.png", NULL), beginning, files[i][1]);
+        expect_refusal(run_cli("match", "-o", "never.csv", "good.asjf", files[i][0], NULL), beginning, files[i][1]);
+    }
+    expect_refusal(run_cli("match", "-o", "never.csv", "--descriptor", "sift", "good.asjf", "second.png", NULL),
+                   "asj-cli: good.asjf, second.png: ", "the features of image 1 were made with descriptor raw, not sift");
+    const outcome *result = run_cli("match", "-o", "never.csv", "--junctions1", "good.asj", "good.asjf", "second.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "good.asj changes nothing: good.asjf is a file of features");
+}
+
 static void results_that_cannot_be_written_are_errors(void **state)
 {
     (void)state;
@@ -226,6 +252,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(junctions_beside_the_image_are_taken),
         cmocka_unit_test(junctions_of_another_image_are_refused),
         cmocka_unit_test(bad_images_are_refused),
+        cmocka_unit_test(bad_features_are_refused),
         cmocka_unit_test(results_that_cannot_be_written_are_errors),
     };
     program_start(argc, argv);
