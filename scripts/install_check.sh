@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# Installs the library into a folder of its own and uses it from there as other programs would: through pkg-config, from C99 and
-# C++, shared and static. The C programs of README.md are among them.
+# Installs the library into a folder of its own and uses it from there as other programs would: through pkg-config and CMake, from
+# C99 and C++, shared and static; and without installing it, as a subproject of meson. The C programs of README.md are among them.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 work=$(mktemp -d)
@@ -44,6 +44,32 @@ use_from() { # NAME: programs against what is installed there
             $(pkg-config $static --libs asj-io)
     done
     [ "$(env -u LD_LIBRARY_PATH "$prefix/bin/asj-cli" --version | grep -cF "$version")" -ge 1 ]
+}
+
+# fully_static, after use_from static: with the C library linked in too there is no dynamic loader, so no OpenCL, and nothing is
+# said about it.
+fully_static() {
+    printf 'int main(void) { return 0; }\n' > "$work/empty.c"
+    ${CC:-cc} -static "$work/empty.c" -o "$work/empty" -lm 2> /dev/null || { echo 'skipped: no static C library'; return 0; }
+    ${CC:-cc} -std=c99 -static $(pkg-config --cflags asj) "$work/core.c" -o "$work/whole" $(pkg-config --static --libs asj) \
+        2> "$work/log" || { cat "$work/log"; exit 1; }
+    [ "$("$work/whole" 2>&1)" = "$version" ] || { echo 'a fully static program fails'; exit 1; }
+}
+
+# subproject: a project that asks for the static library gets it, and no shared one is built.
+subproject() {
+    mkdir -p "$work/user/subprojects"
+    cp "$work/core.c" "$work/user"
+    ln -s "$root" "$work/user/subprojects/asj"
+    cat > "$work/user/meson.build" << 'END'
+project('user', 'c')
+asj = dependency('asj', static: true, fallback: 'asj', default_options: ['io=disabled', 'tests=disabled'])
+executable('core', 'core.c', dependencies: asj)
+END
+    { meson setup "$work/user/build" "$work/user" --force-fallback-for=asj && meson compile -C "$work/user/build"; } \
+        > "$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
+    [ "$("$work/user/build/core")" = "$version" ] || { echo 'the program of the parent project fails'; exit 1; }
+    [ -z "$(find "$work/user/build" -name '*.so*')" ] || { echo 'static: true has built a shared library'; exit 1; }
 }
 
 version=$(sh "$root/scripts/version.sh")
@@ -109,6 +135,8 @@ for file in lib/libasj.a lib/libasj-io.a; do
     [ -s "$work/static/$file" ] || { echo "not installed: $file"; exit 1; }
 done
 use_from shared
-rm "$work"/static/lib/*.so* # nothing there may need them
+[ -z "$(find "$work/static" -name '*.so*')" ] || { echo 'default_library=static has built shared libraries'; exit 1; }
 use_from static
+fully_static
+subproject
 (cd "$work/shared" && find . -type f -o -type l | sort)
