@@ -74,10 +74,10 @@ static void print_summary(const char *image, const cli_output *output, const asj
              junctions && output->plot ? ", " : "", output->plot ? output->plot : "");
 }
 
-static int detect_pixels(run *r, const char *image, const cli_output *output, const asj_image *pixels)
+static int detect_pixels(run *r, const char *image, const cli_output *output, const asj_image *pixels, const asj_region *region)
 {
     asj_detection *detection = NULL;
-    asj_status status = asj_detect(r->session.context, pixels, &r->arguments->options, &detection);
+    asj_status status = asj_detect_region(r->session.context, pixels, region, &r->arguments->options, &detection);
     if (status == ASJ_ERROR_OPTION)
         return cli_usage_error("detect", "%s", asj_context_message(r->session.context));
     if (status == ASJ_ERROR_CANCELLED)
@@ -98,6 +98,18 @@ static int detect_pixels(run *r, const char *image, const cli_output *output, co
     return result;
 }
 
+static int detect_part(run *r, const char *image, const cli_output *output, const asj_image *pixels)
+{
+    const cli_detect_arguments *arguments = r->arguments;
+    asj_image_file *mask = NULL;
+    asj_region region;
+    int result = cli_region_open(&r->session, &arguments->region, arguments->common.max_pixels, image, pixels, &region, &mask);
+    if (result == CLI_SUCCESS)
+        result = cli_interrupted() ? CLI_FAILED : detect_pixels(r, image, output, pixels, &region);
+    asj_image_file_free(&mask);
+    return result;
+}
+
 static int detect_file(run *r, const char *image, const cli_output *output)
 {
     asj_image_file *file = NULL;
@@ -107,7 +119,7 @@ static int detect_file(run *r, const char *image, const cli_output *output)
     r->read_ms = cli_now_ms() - start;
     if (status != ASJ_OK)
         return cli_session_fail(&r->session, image, message, status);
-    int result = cli_interrupted() ? CLI_FAILED : detect_pixels(r, image, output, &file->image);
+    int result = detect_part(r, image, output, &file->image);
     asj_image_file_free(&file);
     return result;
 }

@@ -32,7 +32,7 @@ static const char conclusion[] =
     "Exit status: 0 all images done, 1 some failed, 2 wrong usage, 130 interrupted.\n"
     "More: man asj-cli; file formats: man asj-formats\n";
 
-enum { OUTPUT, OUT_DIR, FORMAT, WHOLE, PLOT, PLOT_COLOR, PLOT_BACKGROUND, PLOT_SCALE, PRESET, FOR };
+enum { OUTPUT, OUT_DIR, FORMAT, WHOLE, REGION, MASK, PLOT, PLOT_COLOR, PLOT_BACKGROUND, PLOT_SCALE, PRESET, FOR };
 
 static const cli_option output_options[] = {
     {OUTPUT, 'o', "output", "FILE",
@@ -43,6 +43,12 @@ static const cli_option output_options[] = {
      "asj: text, one record for each pair of branches; json: everything; csv: one line a branch; asjf: features, all that 'asj-cli "
      "match' needs of the image. Default: by the end of FILE, else asj"},
     {WHOLE, 0, "whole", NULL, "asj: whole junctions of two to five branches (json and csv always have them)"},
+};
+
+static const cli_option region_options[] = {
+    {REGION, 0, "region", "X,Y,WIDTH,HEIGHT",
+     "only junctions in this part of the image, px from the top left; branches may leave it"},
+    {MASK, 0, "mask", "FILE", "no junction where this 8-bit gray image, of the size of every IMAGE, is black (0)"},
 };
 
 static const cli_option plot_options[] = {
@@ -80,6 +86,15 @@ static int take_output(void *target, int id, const char *text)
             return cli_usage_error("detect", "--format: '%s' is not asj, json, csv or asjf", text);
         arguments->format = text;
     }
+    return CLI_SUCCESS;
+}
+
+static int take_region(void *target, int id, const char *text)
+{
+    cli_detect_arguments *arguments = target;
+    if (id == REGION)
+        return cli_region_take("detect", "region", text, &arguments->region);
+    arguments->region.mask = text;
     return CLI_SUCCESS;
 }
 
@@ -188,6 +203,7 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
         return CLI_FAILED;
     const cli_group groups[] = {
         {"Results", output_options, sizeof output_options / sizeof output_options[0], take_output, arguments},
+        {"Where", region_options, sizeof region_options / sizeof region_options[0], take_region, arguments},
         {"Plot", plot_options, sizeof plot_options / sizeof plot_options[0], take_plot, arguments},
         {"Preset", preset_options, sizeof preset_options / sizeof preset_options[0], take_preset, arguments},
         {"Running", cli_common_options, cli_common_option_count, cli_common_take, &arguments->common},

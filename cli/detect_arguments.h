@@ -5,6 +5,7 @@
 
 #include "common.h"
 #include "plot.h"
+#include "region.h"
 #include "settings.h"
 
 #include <asj/options.h>
@@ -18,6 +19,7 @@ typedef struct cli_detect_arguments {
     const char *out_dir;   /* NULL = none */
     const char *format;    /* "asj", "json", "csv", "asjf"; NULL = by the name of `output` */
     int whole;
+    cli_region region;
     const char *plot;      /* a file, or with out_dir a format; NULL = none */
     int32_t plot_format;   /* CLI_PLOT_... */
     cli_plot_style style;

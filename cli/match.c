@@ -40,7 +40,7 @@ static int detect(run *r)
     for (int v = 0; v < 2 && result == CLI_SUCCESS; v++) {
         r->at = r->inputs[v].name;
         cli_progress_next(&r->session.progress, (size_t)v, r->at);
-        result = cli_match_input_detect(&r->session, r->arguments, &r->inputs[v]);
+        result = cli_match_input_detect(&r->session, r->arguments, v, &r->inputs[v]);
     }
     return result;
 }

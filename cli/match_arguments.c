@@ -37,8 +37,8 @@ static const char conclusion[] =
     "More: man asj-cli; file formats: man asj-formats\n";
 
 enum {
-    OUTPUT, FORMAT, LINES, LINE_ENDS, JUNCTIONS_1, JUNCTIONS_2, PLOT, PLOT_BACKGROUND, PLOT_LAYOUT, PLOT_SCALE, PRESET,
-    DETECT_PRESET, MATCH_PRESET, GEOMETRY, CAMERA_1, CAMERA_2, FOCAL
+    OUTPUT, FORMAT, LINES, LINE_ENDS, JUNCTIONS_1, JUNCTIONS_2, REGION_1, REGION_2, MASK_1, MASK_2, PLOT,
+    PLOT_BACKGROUND, PLOT_LAYOUT, PLOT_SCALE, PRESET, DETECT_PRESET, MATCH_PRESET, GEOMETRY, CAMERA_1, CAMERA_2, FOCAL
 };
 
 static const cli_option output_options[] = {
@@ -53,6 +53,10 @@ static const cli_option output_options[] = {
 static const cli_option input_options[] = {
     {JUNCTIONS_1, 0, "junctions1", "FILE", "junctions of IMAGE1, .asj or JSON, instead of detecting them"},
     {JUNCTIONS_2, 0, "junctions2", "FILE", "the same for IMAGE2"},
+    {REGION_1, 0, "region1", "X,Y,WIDTH,HEIGHT", "detect only in this part of IMAGE1, px from the top left; branches may leave it"},
+    {REGION_2, 0, "region2", "X,Y,WIDTH,HEIGHT", "the same for IMAGE2"},
+    {MASK_1, 0, "mask1", "FILE", "no junction where this 8-bit gray image, of the size of IMAGE1, is black (0)"},
+    {MASK_2, 0, "mask2", "FILE", "the same for IMAGE2"},
 };
 
 static const cli_option geometry_options[] = {
@@ -109,7 +113,13 @@ static int take_output(void *target, int id, const char *text)
 static int take_input(void *target, int id, const char *text)
 {
     cli_match_arguments *arguments = target;
-    arguments->junctions[id == JUNCTIONS_2] = text;
+    switch (id) {
+    case REGION_1: return cli_region_take("match", "region1", text, &arguments->regions[0]);
+    case REGION_2: return cli_region_take("match", "region2", text, &arguments->regions[1]);
+    case MASK_1:
+    case MASK_2: arguments->regions[id == MASK_2].mask = text; break;
+    default: arguments->junctions[id == JUNCTIONS_2] = text;
+    }
     return CLI_SUCCESS;
 }
 
@@ -221,13 +231,15 @@ static int apply_settings(cli_match_arguments *arguments)
 
 static int check_files(const cli_match_arguments *arguments)
 {
-    const char *inputs[4];
+    const char *inputs[6];
     cli_planned outputs[2];
     size_t input_count = 0, output_count = 0;
     for (int v = 0; v < 2; v++) {
         inputs[input_count++] = arguments->images[v];
         if (arguments->junctions[v])
             inputs[input_count++] = arguments->junctions[v];
+        if (arguments->regions[v].mask)
+            inputs[input_count++] = arguments->regions[v].mask;
     }
     if (arguments->output && strcmp(arguments->output, "-") != 0)
         outputs[output_count++] = (cli_planned){arguments->output, "the matches", NULL};
@@ -239,6 +251,10 @@ static int check_files(const cli_match_arguments *arguments)
 /* Options of the detector when it has nothing to do. */
 static int check_detector(const cli_match_arguments *arguments)
 {
+    for (int v = 0; v < 2; v++)
+        if (arguments->junctions[v] && (arguments->regions[v].mask || arguments->regions[v].width > 0))
+            return cli_usage_error("match", "--%s%d changes nothing: the junctions of that image come from a file",
+                                   arguments->regions[v].mask ? "mask" : "region", v + 1);
     if (!arguments->junctions[0] || !arguments->junctions[1])
         return CLI_SUCCESS;
     if (arguments->detect_settings.count > 0)

@@ -5,6 +5,7 @@
 
 #include "common.h"
 #include "plot_match.h"
+#include "region.h"
 #include "settings.h"
 
 #include <asj/match.h>
@@ -19,6 +20,7 @@ typedef struct cli_match_arguments {
     const char *output;       /* -o; NULL = none */
     const char *format;       /* "csv", "json"; NULL = by the name of `output` */
     const char *junctions[2]; /* files; NULL = detect */
+    cli_region regions[2];    /* where junctions are detected */
     int32_t geometry;         /* ASJ_GEOMETRY_... */
     asj_camera cameras[2];    /* fx 0 = not given */
     double focal;             /* px; 0 = not given */

@@ -95,11 +95,10 @@ int cli_match_input_read(cli_session *session, const cli_match_arguments *argume
     return result;
 }
 
-int cli_match_input_detect(cli_session *session, const cli_match_arguments *arguments, cli_match_input *input)
+static int detect(cli_session *session, const cli_match_arguments *arguments, const asj_region *region, cli_match_input *input)
 {
-    if (input->file || input->features)
-        return CLI_SUCCESS;
-    asj_status status = asj_detect(session->context, &input->image->image, &arguments->detect_options, &input->detection);
+    const asj_image *image = &input->image->image;
+    asj_status status = asj_detect_region(session->context, image, region, &arguments->detect_options, &input->detection);
     if (status == ASJ_OK)
         return CLI_SUCCESS;
     if (status == ASJ_ERROR_OPTION)
@@ -107,6 +106,20 @@ int cli_match_input_detect(cli_session *session, const cli_match_arguments *argu
     if (status == ASJ_ERROR_CANCELLED)
         return CLI_FAILED;
     return cli_session_fail(session, input->name, asj_context_message(session->context), status);
+}
+
+int cli_match_input_detect(cli_session *session, const cli_match_arguments *arguments, int v, cli_match_input *input)
+{
+    asj_image_file *mask = NULL;
+    asj_region region;
+    if (input->file || input->features)
+        return CLI_SUCCESS;
+    const asj_image *image = &input->image->image;
+    int result = cli_region_open(session, &arguments->regions[v], arguments->common.max_pixels, input->name, image, &region, &mask);
+    if (result == CLI_SUCCESS)
+        result = detect(session, arguments, &region, input);
+    asj_image_file_free(&mask);
+    return result;
 }
 
 asj_status cli_match_input_describe(cli_session *session, const cli_match_arguments *arguments, cli_match_input *input)

@@ -22,7 +22,7 @@ typedef struct cli_match_input {
 int cli_match_input_read(cli_session *session, const cli_match_arguments *arguments, int v, cli_match_input *input);
 
 /* Detects junctions unless a file gave them. CLI_FAILED without a word when a signal came. */
-int cli_match_input_detect(cli_session *session, const cli_match_arguments *arguments, cli_match_input *input);
+int cli_match_input_detect(cli_session *session, const cli_match_arguments *arguments, int v, cli_match_input *input);
 
 /* Features of an image that has been read, with its junctions, unless a file gave them. */
 asj_status cli_match_input_describe(cli_session *session, const cli_match_arguments *arguments, cli_match_input *input);

@@ -182,13 +182,20 @@ int cli_outputs_plan(const cli_detect_arguments *arguments, cli_outputs *outputs
     outputs->count = 0;
     outputs->of = calloc(arguments->image_count, sizeof *outputs->of);
     cli_planned *list = calloc(2 * arguments->image_count, sizeof *list);
+    const char **inputs = calloc(arguments->image_count + 1, sizeof *inputs);
+    size_t input_count = arguments->image_count;
     if (outputs->of)
         outputs->count = arguments->image_count;
-    if (!outputs->of || !list || !name_outputs(arguments, outputs))
+    if (inputs) {
+        memcpy(inputs, arguments->images, arguments->image_count * sizeof *inputs);
+        inputs[input_count] = arguments->region.mask;
+        input_count += arguments->region.mask != NULL;
+    }
+    if (!outputs->of || !list || !inputs || !name_outputs(arguments, outputs))
         cli_error("out of memory");
     else if (!arguments->out_dir || (result = check_folder(arguments->out_dir)) == CLI_SUCCESS)
-        result = cli_check_collisions("detect", list, list_planned(arguments, outputs, list),
-                                      (const char *const *)arguments->images, arguments->image_count);
+        result = cli_check_collisions("detect", list, list_planned(arguments, outputs, list), inputs, input_count);
+    free(inputs);
     free(list);
     return result;
 }

@@ -55,6 +55,24 @@ ASJ_API asj_status asj_detect(asj_context *context, const asj_image *image, cons
 ASJ_API asj_status asj_detect_into(asj_context *context, const asj_image *image, const asj_detect_options *options,
                                    asj_detection **result);
 
+/* Where junctions are looked for. Zero = everywhere. */
+typedef struct asj_region {
+    const asj_image *mask;       /* gray8, of the size of the image: no junction where it is 0. NULL = none. Only read, and only
+                                  * during the call; its white level means nothing */
+    int32_t x, y, width, height; /* px: only junctions in this part of the image, which must lie within it; all 0 = everywhere */
+    uint64_t reserved[4];        /* zero */
+} asj_region;
+
+/* asj_detect_into() in a part of the image. A junction is where the pixel is that its location rounds to; beyond the border of the
+ * image, the nearest pixel of it. Pixels outside the region speak for or against junctions inside as ever, branches may leave it,
+ * and as many tests count as without it: what is found is what the whole image gives, less what lies outside. (Lengths and weak
+ * junctions at its border may differ, where a junction outside is not there to end a branch at or to compete with.) Time: step 1
+ * stays, step 2 is that of the rows of the rectangle, all others that of the junctions inside.
+ * `region` NULL = everywhere. Errors as asj_detect(), and
+ * ASJ_ERROR_ARGUMENT   the rectangle leaves the image or is empty; a mask that is not gray8, or not of the image's size */
+ASJ_API asj_status asj_detect_region(asj_context *context, const asj_image *image, const asj_region *region,
+                                     const asj_detect_options *options, asj_detection **result);
+
 /* Does ahead what the first asj_detect() with these options and an image of this size would do once: makes tables, allocates,
  * compiles the kernels of the device. It detects the junctions of a test picture of that size, so it takes as long as that.
  * `options` NULL = preset `default`. Never needed; errors as asj_detect(). */

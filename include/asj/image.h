@@ -29,13 +29,14 @@ enum {
  * Coordinates everywhere in this library: the centre of the first pixel is (0, 0), x points right, y points down, and the
  * centres of all pixels lie at integers. Angles are in radians in [0, 2 pi), from +x towards +y: clockwise on the screen. */
 typedef struct asj_image {
-    const void *data;   /* first sample of the top row */
+    const void *data;   /* first sample of the top row, wherever that stands */
     int32_t format;     /* ASJ_FORMAT_... */
     int32_t width;      /* pixels, 1 .. ASJ_MAX_SIDE */
     int32_t height;     /* pixels, 1 .. ASJ_MAX_SIDE */
     float white;        /* sample value that means white; 0 = the format's: 255, 65535, or 1.0 for floats. A 10-bit camera
                          * in 16-bit samples has 1023. Values above it are cut, and so are those below 0. */
-    ptrdiff_t stride;   /* bytes from one row to the next, at least a row long; 0 = rows without gaps */
+    ptrdiff_t stride;   /* bytes from one row to the one below it, at least a row long; 0 = rows without gaps. Negative where images
+                         * are stored bottom-up: `data` then points into the last row of the memory */
 } asj_image;
 
 #ifdef __cplusplus

@@ -39,7 +39,7 @@ asj_status asj_image_check(asj_context *context, const asj_image *image)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%d x %d pixels are more than the library takes (side %d, %d pixels in all)",
                         (int)image->width, (int)image->height, ASJ_MAX_SIDE, ASJ_MAX_PIXELS);
     ptrdiff_t row = (ptrdiff_t)image->width * format->bytes_per_pixel;
-    if (image->stride != 0 && image->stride < row)
+    if (image->stride != 0 && image->stride < row && image->stride > -row)
         return asj_fail(context, ASJ_ERROR_IMAGE, "stride %lld is shorter than a row of %d %s pixels (%lld bytes)",
                         (long long)image->stride, (int)image->width, format->name, (long long)row);
     if (!(image->white >= 0) || isinf(image->white))

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 2 over an image: one bit for each pixel that may be a junction. Another source of candidates sets bits of its own in the
  * same plane. */
+#include "region.h"
 #include "seeds.h"
 #include "steps.h"
 
@@ -35,9 +36,13 @@ static asj_status find_in_field(asj_detection_run *run)
 {
     asj_context *context = run->context;
     const int32_t height = run->frame->height;
+    int32_t first, end;
     asj_status status = ASJ_OK;
+    asj_region_rows(run, &first, &end);
     for (int32_t top = 0; top < height && status == ASJ_OK; top += ASJ_ROW_GROUP) {
         const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
+        if (bottom <= first || top >= end)
+            continue; /* asj_region_clear_candidates() clears them */
         status = context->ops->field->rows(context, run->field, run->frame, top, bottom, &run->scratch, run->candidates);
         if (status == ASJ_OK)
             status = asj_detection_run_progress(run, ASJ_STAGE_CANDIDATES, 0.05 + 0.45 * bottom / height);
@@ -53,9 +58,11 @@ asj_status asj_step_candidates(asj_detection_run *run)
         run->candidates = asj_allocate(&context->memory, runs, sizeof *run->candidates);
     if (!run->candidates)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the candidates");
-    const asj_status status = run->options->seeds == ASJ_SEEDS_SEGMENTS
-                                  ? asj_seeds_mark(context, run->frame, run->options, run->candidates)
-                                  : find_in_field(run);
+    asj_status status = run->options->seeds == ASJ_SEEDS_SEGMENTS
+                            ? asj_seeds_mark(context, run->frame, run->options, run->candidates)
+                            : find_in_field(run);
+    if (status == ASJ_OK && run->region)
+        status = asj_region_clear_candidates(run);
     if (status != ASJ_OK)
         return status;
     run->candidate_count = count_bits(run->candidates, runs);

@@ -2,6 +2,7 @@
 /* asj_detect(): the paper's steps in order. */
 #include "core/backend.h"
 #include "octaves.h"
+#include "region.h"
 #include "result.h"
 #include "steps.h"
 
@@ -79,12 +80,15 @@ static asj_status finish(asj_detection_run *run, double start, asj_detection **r
     return ASJ_OK;
 }
 
-static asj_status detect(asj_context *context, const asj_image *image, const asj_detect_options *options, double start,
-                         asj_detection **result)
+static asj_status detect(asj_context *context, const asj_image *image, const asj_region *region, const asj_detect_options *options,
+                         double start, asj_detection **result)
 {
     asj_detection_run run;
     asj_status status = asj_detection_run_begin(&run, context, image, options, result);
     run.clock = start;
+    run.region = region;
+    if (status == ASJ_OK)
+        status = asj_region_check(context, image, region);
     if (status == ASJ_OK)
         status = run_octaves(&run);
     if (status == ASJ_OK)
@@ -93,7 +97,8 @@ static asj_status detect(asj_context *context, const asj_image *image, const asj
     return status;
 }
 
-asj_status asj_detect_into(asj_context *context, const asj_image *image, const asj_detect_options *options, asj_detection **result)
+asj_status asj_detect_region(asj_context *context, const asj_image *image, const asj_region *region,
+                             const asj_detect_options *options, asj_detection **result)
 {
     const double start = asj_clock_ms();
     asj_status status;
@@ -103,9 +108,14 @@ asj_status asj_detect_into(asj_context *context, const asj_image *image, const a
         return ASJ_ERROR_ARGUMENT;
     asj_backend_begin(context);
     do
-        status = detect(context, image, options, start, result);
+        status = detect(context, image, region, options, start, result);
     while (asj_backend_retry(context, status));
     return status;
+}
+
+asj_status asj_detect_into(asj_context *context, const asj_image *image, const asj_detect_options *options, asj_detection **result)
+{
+    return asj_detect_region(context, image, NULL, options, result);
 }
 
 asj_status asj_detect(asj_context *context, const asj_image *image, const asj_detect_options *options, asj_detection **result)

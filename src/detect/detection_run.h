@@ -29,6 +29,7 @@ typedef struct asj_detection_run {
     const asj_detect_options *options;
     asj_detect_options defaults;     /* what `options` points to when the caller gives none */
     const asj_image *image;
+    const asj_region *region;        /* NULL = everywhere */
     asj_frame *frame;                /* its planes, or those of the image halved `octave` times: step 1 fills them */
     int32_t octave;
     const asj_field *field;          /* tables of steps 2, .. */

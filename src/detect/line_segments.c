@@ -29,7 +29,7 @@ static const float cosines[ASJ_SEGMENT_PRECISIONS] = {0.92387953f, 0.98078528f, 
 typedef struct search {
     asj_context *context;
     asj_levels levels;
-    asj_region region;
+    asj_support_region region;
     double log_tests, log_epsilon;
     int32_t least; /* samples of a region that is tested */
     void *list;    /* of asj_line_segment */

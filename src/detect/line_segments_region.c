@@ -25,7 +25,7 @@ static void around(int32_t at, int32_t size, int32_t *first, int32_t *last)
     *last = at + 1 < size ? at + 1 : at;
 }
 
-void asj_region_grow(const asj_levels *levels, int32_t seed, double cosine, asj_region *region)
+void asj_region_grow(const asj_levels *levels, int32_t seed, double cosine, asj_support_region *region)
 {
     double x = (double)levels->direction[seed].x, y = (double)levels->direction[seed].y;
     double least = cosine * sqrt(x * x + y * y);
@@ -54,7 +54,7 @@ void asj_region_grow(const asj_levels *levels, int32_t seed, double cosine, asj_
     region->y = y / size;
 }
 
-static int dense(const asj_region *region, const asj_rectangle *r)
+static int dense(const asj_support_region *region, const asj_rectangle *r)
 {
     return region->count >= DENSITY * asj_rectangle_length(r) * asj_rectangle_width(r);
 }
@@ -66,7 +66,7 @@ static double squared_distance(const asj_levels *levels, int32_t a, int32_t b)
 }
 
 /* cos of twice the standard deviation of the angles, about that of the seed, within `radius` of it. */
-static double narrower_cosine(const asj_levels *levels, const asj_region *region, double radius)
+static double narrower_cosine(const asj_levels *levels, const asj_support_region *region, double radius)
 {
     const asj_direction seed = levels->direction[region->samples[0]];
     double sum = 0, squares = 0, count = 0;
@@ -84,7 +84,7 @@ static double narrower_cosine(const asj_levels *levels, const asj_region *region
 }
 
 /* Drops the samples that are farther than `radius` from the first. */
-static void cut(const asj_levels *levels, double radius, asj_region *region)
+static void cut(const asj_levels *levels, double radius, asj_support_region *region)
 {
     const int32_t seed = region->samples[0];
     int32_t kept = 0;
@@ -98,12 +98,12 @@ static void cut(const asj_levels *levels, double radius, asj_region *region)
     region->count = kept;
 }
 
-static asj_rectangle rectangle_of(const asj_levels *levels, const asj_region *region)
+static asj_rectangle rectangle_of(const asj_levels *levels, const asj_support_region *region)
 {
     return asj_rectangle_of(levels, region->samples, region->count, region->x, region->y);
 }
 
-static double farthest(const asj_levels *levels, const asj_region *region)
+static double farthest(const asj_levels *levels, const asj_support_region *region)
 {
     double most = 0;
     for (int32_t i = 0; i < region->count; i++)
@@ -111,7 +111,7 @@ static double farthest(const asj_levels *levels, const asj_region *region)
     return sqrt(most);
 }
 
-int asj_region_approximate(const asj_levels *levels, asj_region *region, asj_rectangle *rectangle)
+int asj_region_approximate(const asj_levels *levels, asj_support_region *region, asj_rectangle *rectangle)
 {
     *rectangle = rectangle_of(levels, region);
     if (dense(region, rectangle))

@@ -2,6 +2,7 @@
 /* Octaves over an image: what one leaves behind, the next one's grey plane, and at the end one list. */
 #include "octaves.h"
 #include "ends.h"
+#include "region.h"
 #include "steps.h"
 #include "suppress.h"
 
@@ -76,6 +77,8 @@ asj_status asj_step_merge_octaves(asj_detection_run *run)
     run->isotropic_count = run->isotropic_total;
     run->all = NULL;
     run->all_count = run->all_capacity = 0;
+    if (run->region)
+        run->hypothesis_count = asj_region_keep(run->image, run->region, run->hypotheses, run->hypothesis_count);
     asj_suppress_sort(run->hypotheses, run->hypothesis_count);
     return snap_ends(run);
 }

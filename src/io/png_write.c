@@ -98,7 +98,8 @@ static asj_status check_view(const asj_image *image, const asj_message *message)
         return asj_message_fail(message, ASJ_ERROR_IMAGE, "pixel format %d cannot be written as PNG", (int)image->format);
     if (!image->data || image->width < 1 || image->height < 1 || image->width > ASJ_MAX_SIDE || image->height > ASJ_MAX_SIDE)
         return asj_message_fail(message, ASJ_ERROR_IMAGE, "no pixels, or a side outside 1 .. %d", ASJ_MAX_SIDE);
-    if (image->stride && image->stride < (ptrdiff_t)((size_t)image->width * size))
+    const ptrdiff_t row = (ptrdiff_t)((size_t)image->width * size);
+    if (image->stride && image->stride < row && image->stride > -row)
         return asj_message_fail(message, ASJ_ERROR_IMAGE, "the stride is shorter than a row");
     return ASJ_OK;
 }

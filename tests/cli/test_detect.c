@@ -379,6 +379,41 @@ static void an_interrupt_stops_a_detection_in_the_middle(void **state)
     assert_int_equal(count_files("middle"), 0);
 }
 
+/* The left half by either way, and nothing under a mask that is black. */
+static void only_a_part_of_the_image_on_request(void **state)
+{
+    (void)state;
+    enum { HALF = SCENE_WIDTH / 2 };
+    char message[256];
+    static unsigned char pixels[SCENE_WIDTH * SCENE_HEIGHT];
+    for (int i = 0; i < SCENE_WIDTH * SCENE_HEIGHT; i++)
+        pixels[i] = (unsigned char)(i % SCENE_WIDTH < HALF ? 9 : 0);
+    asj_image mask = {pixels, ASJ_FORMAT_GRAY8, SCENE_WIDTH, SCENE_HEIGHT, 0, 0};
+    assert_int_equal(asj_png_write("left.png", &mask, message, sizeof message), ASJ_OK);
+    write_constant("small.png", 10, 10);
+    const outcome *result = run_cli("detect", "-o", "part.asj", "--region", "0,0,160,240", "scene.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "scene.png: 2 junctions");
+    result = run_cli("detect", "-o", "masked.asj", "--mask", "left.png", "scene.png", NULL);
+    expect_code(result, 0);
+    size_t size;
+    char *text = read_bytes("part.asj", &size);
+    assert_non_null(text);
+    expect_file("masked.asj", text);
+    free(text);
+    result = run_cli("detect", "--mask", "small.png", "scene.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "small.png: this mask has another size than an image of 320 x 240 pixels");
+    result = run_cli("detect", "--region", "100,100,221,20", "scene.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "scene.png: the region leaves an image of 320 x 240 pixels");
+    memset(pixels, 0, sizeof pixels);
+    assert_int_equal(asj_png_write("black.png", &mask, message, sizeof message), ASJ_OK);
+    result = run_cli("match", "--region1", "0,0,160,240", "--mask2", "black.png", "-o", "m.csv", "scene.png", "scene.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, ": 0 matches");
+}
+
 static int make_files(void **state)
 {
     (void)state;
@@ -404,6 +439,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(an_interrupt_leaves_only_whole_results),
         cmocka_unit_test(progress_is_shown_on_a_terminal),
         cmocka_unit_test(an_interrupt_stops_a_detection_in_the_middle),
+        cmocka_unit_test(only_a_part_of_the_image_on_request),
     };
     program_start(argc, argv);
     return program_end(cmocka_run_group_tests(tests, make_files, NULL));

@@ -67,7 +67,7 @@ static void help_of_detect_wins_over_what_follows(void **state)
 
 /* Each line of arguments, and what standard error must contain. */
 static const struct {
-    const char *arguments[8];
+    const char *arguments[10];
     const char *message;
 } wrong[] = {
     {{NULL}, "which command?"},
@@ -119,12 +119,21 @@ static const struct {
     {{"detect", "-f", "asj", "-o", "scene.png", "scene.png"}, "scene.png: is an input file"},
     {{"detect", "-f", "asj", "-o", "./scene.png", "scene.png"}, "scene.png: is an input file"},
     {{"detect", "-"}, "standard input"},
+    {{"detect", "--region", "1,2,3", "scene.png"}, "--region: '1,2,3'"},
+    {{"detect", "--region", "1,2,3,0", "scene.png"}, "--region: '1,2,3,0'"},
+    {{"detect", "--region", "1,2,-3,4", "scene.png"}, "--region: '1,2,-3,4'"},
+    {{"detect", "--region", "1,2,3,4,", "scene.png"}, "--region: '1,2,3,4,'"},
+    {{"detect", "--region", "1,2,3,99999999999999999999", "scene.png"}, "--region: '"},
+    {{"match", "--region2", "", "scene.png", "scene.png"}, "--region2: ''"},
+    {{"match", "--junctions1", "scene.asj", "--mask1", "scene.png", "scene.png", "scene.png"}, "--mask1 changes nothing"},
+    {{"detect", "--mask", "mask.png", "-f", "asj", "-o", "mask.png", "scene.png"}, "mask.png: is an input file"},
 };
 
 static void wrong_usage_ends_with_2_and_says_why(void **state)
 {
     (void)state;
     write_scene("scene.png");
+    write_constant("mask.png", SCENE_WIDTH, SCENE_HEIGHT);
     int files = count_files(".");
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         const outcome *result = run_cli_list(wrong[i].arguments);

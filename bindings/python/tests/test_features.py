@@ -55,10 +55,25 @@ def test_image_types(same: Any) -> None:
     assert corners(asj.detect(same(square()), preset="default")) == CORNERS
 
 
+def test_part_of_the_image() -> None:
+    left = [corner for corner in CORNERS if corner[0] < 200]
+    allowed = np.zeros((200, 200), bool)
+    allowed[:, :100] = True
+    assert corners(asj.detect(square(), preset="default", region=(0, 0, 100, 200))) == left
+    assert corners(asj.detect(square(), preset="default", mask=allowed)) == left
+    assert corners(asj.detect(square(), preset="default", mask=allowed[::-1], region=(0, 0, 200, 100))) == left[:1]
+    for region in ((1, 0, 200, 200), (0, 0, 0, 0), (5, 5, 0, 5), (-1, 0, 5, 5)):
+        with pytest.raises(ValueError):
+            asj.detect(square(), region=region)
+    with pytest.raises(ValueError, match="mask of 199 x 200"):
+        asj.detect(square(), mask=allowed[:, 1:])
+
+
 def test_views_are_not_copied(scene: Scene) -> None:
     padded = np.pad(scene, 5)
     part = padded[5:-5, 5:-5]
     assert np.shares_memory(asj.detect(part).image, padded)
+    assert np.shares_memory(asj.detect(part[::-1]).image, padded)
 
 
 def test_colour_order() -> None:

@@ -212,7 +212,31 @@ static void test_refused(void **state)
     }
 }
 
-/* A stride is at least a row long, whatever the format; negative ones are not offered. */
+/* Rows from the last to the first: the same picture. */
+static void test_bottom_up(void **state)
+{
+    enum { WIDTH = 19, HEIGHT = 7 };
+    static uint8_t pixels[WIDTH * HEIGHT * 4], turned[WIDTH * HEIGHT * 4];
+    static uint16_t gray_before[WIDTH * HEIGHT];
+    fixture *f = *state;
+    for (int32_t format = ASJ_FORMAT_GRAY8; format <= ASJ_FORMAT_BGRA8; format++) {
+        const ptrdiff_t row = WIDTH * bytes_of(format);
+        for (int32_t i = 0; i < row * HEIGHT; i++)
+            pixels[i] = (uint8_t)(i * 37 + i / 11);
+        for (int32_t y = 0; y < HEIGHT; y++)
+            memcpy(turned + (HEIGHT - 1 - y) * row, pixels + y * row, (size_t)row);
+        const asj_image image = {pixels, format, WIDTH, HEIGHT, 0, 0};
+        const asj_image bottom_up = {turned + (HEIGHT - 1) * row, format, WIDTH, HEIGHT, 0, -row};
+        assert_int_equal(load(f, &image), ASJ_OK);
+        for (int32_t i = 0; i < WIDTH * HEIGHT; i++)
+            gray_before[i] = (uint16_t)gray(f, i % WIDTH, i / WIDTH);
+        assert_int_equal(load(f, &bottom_up), ASJ_OK);
+        for (int32_t i = 0; i < WIDTH * HEIGHT; i++)
+            assert_int_equal(gray(f, i % WIDTH, i / WIDTH), gray_before[i]);
+    }
+}
+
+/* A stride is at least a row long, whatever the format and the direction. */
 static void test_short_strides(void **state)
 {
     static const uint8_t pixels[64] = {0};
@@ -222,8 +246,10 @@ static void test_short_strides(void **state)
         expect(*state, &image, ASJ_ERROR_IMAGE, "stride");
         image.stride++;
         expect(*state, &image, ASJ_OK, "");
-        image.stride = -image.stride;
+        image.stride = 1 - image.stride;
         expect(*state, &image, ASJ_ERROR_IMAGE, "stride");
+        image.stride = PTRDIFF_MIN;
+        assert_int_equal(asj_image_check(((fixture *)*state)->context, &image), ASJ_OK); /* nobody has so much memory */
         image.stride = 1;
         expect(*state, &image, ASJ_ERROR_IMAGE, "stride");
     }
@@ -269,7 +295,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_gray8),         cmocka_unit_test(test_gray16),     cmocka_unit_test(test_float),
         cmocka_unit_test(test_extreme_white), cmocka_unit_test(test_colour),     cmocka_unit_test(test_strides),
-        cmocka_unit_test(test_refused),       cmocka_unit_test(test_short_strides), cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_refused),       cmocka_unit_test(test_short_strides),
+        cmocka_unit_test(test_bottom_up), cmocka_unit_test(test_not_finite),
         cmocka_unit_test(test_prepare),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);

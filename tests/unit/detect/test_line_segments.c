@@ -113,7 +113,7 @@ typedef struct field {
     float norm[FIELD];
     int32_t samples[FIELD];
     uint8_t used[FIELD];
-    asj_region region;
+    asj_support_region region;
 } field;
 
 static field *random_field(uint64_t seed)
@@ -128,7 +128,7 @@ static field *random_field(uint64_t seed)
         f->norm[i] = (float)synth_random_between(&random, 6, 60);
     }
     f->levels = (asj_levels){FIELD_WIDTH, FIELD_HEIGHT, f->direction, f->norm, NULL, 0};
-    f->region = (asj_region){f->samples, f->used, 0, 0, 0};
+    f->region = (asj_support_region){f->samples, f->used, 0, 0, 0};
     return f;
 }
 

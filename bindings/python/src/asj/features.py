@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import arrays, images
 from ._native import ffi, lib
 from .context import Context, current
-from .errors import FormatError
+from .errors import FormatError, ImageError
 from .options import DETECTOR
 
 
@@ -113,22 +113,42 @@ def segments_of(junctions: NDArray[Any]) -> tuple[NDArray[np.float32], NDArray[A
     return np.stack([start, start + along * branches["length"][:, None]], axis=1).astype(np.float32), branches
 
 
-def detect(image: ArrayLike, *, preset: str = "match", context: Context | None = None, white: float = 0.0, **options: object) -> Features:
+def detect(
+    image: ArrayLike,
+    *,
+    preset: str = "match",
+    context: Context | None = None,
+    white: float = 0.0,
+    mask: ArrayLike | None = None,
+    region: tuple[int, int, int, int] | None = None,
+    **options: object,
+) -> Features:
     """Finds the junctions of an image: an array of HxW, HxWx3 or HxWx4 (red, green, blue), uint8, uint16 or float (1.0 is white).
 
     preset   "match" for features that are to be matched: weaker junctions too, since the matcher tells the false ones. "default"
              for junctions that are to be looked at; "paper" for the published method
+    mask     HxW of bool or uint8: no junction where it is 0
+    region   x, y, width, height: only junctions in this part of the image; branches may leave it
     options  those of the detector by name (:func:`asj.detect_options` lists them), for instance minimum_length=30
 
     >>> import numpy as np
     >>> square = np.zeros((200, 200), np.uint8); square[60:140, 60:140] = 255
     >>> sorted(np.round(detect(square, preset="default").xy).astype(int).tolist())
     [[60, 60], [60, 140], [140, 60], [140, 140]]
+    >>> sorted(np.round(detect(square, preset="default", region=(0, 0, 100, 200)).xy).astype(int).tolist())
+    [[60, 60], [60, 140]]
     """
     record = DETECTOR.fill(preset, options)
     view = images.view(image, white)
+    part = ffi.new("asj_region *")
+    if region is not None:
+        part.x, part.y, part.width, part.height = region
+        if part.width == 0:
+            raise ImageError("a region without pixels")
+    allowed = images.view(mask) if mask is not None else None  # lives until the call has ended
+    part.mask = allowed.pointer if allowed else ffi.NULL
     place = ffi.new("asj_detection **")
-    (context or current()).call(lib.asj_detect, view.pointer, record, place)
+    (context or current()).call(lib.asj_detect_region, view.pointer, part, record, place)
     found = ffi.gc(place[0], _free)
     junctions = arrays.view(found.junctions, found.junction_count, "asj_junction", found)
     l_junctions = arrays.view(found.l_junctions, found.l_junction_count, "asj_l_junction", found)

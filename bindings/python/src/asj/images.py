@@ -61,11 +61,11 @@ def view(image: ArrayLike, white: float = 0.0) -> View:
 
 
 def _fits(pixels: NDArray[Any]) -> bool:
-    """Rows from top to bottom, in each the samples side by side."""
+    """Rows from top to bottom or from bottom to top, in each the samples side by side."""
     channels = 1 if pixels.ndim == 2 else pixels.shape[2]
     inner = pixels.strides[1] == channels * pixels.itemsize and (pixels.ndim == 2 or pixels.strides[2] == pixels.itemsize)
     row = pixels.shape[1] * channels * pixels.itemsize
-    return inner and pixels.strides[0] >= row and pixels.strides[0] % pixels.itemsize == 0
+    return inner and abs(pixels.strides[0]) >= row and pixels.strides[0] % pixels.itemsize == 0
 
 
 def _luma(pixels: NDArray[Any]) -> NDArray[Any]:

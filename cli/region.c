@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* --region and --mask. */
+#include "region.h"
+#include "message.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MESSAGE_SIZE = 1024 };
+
+int cli_region_take(const char *command, const char *name, const char *text, cli_region *region)
+{
+    int32_t values[4];
+    const char *at = text;
+    int count = 0;
+    for (; count < 4 && *at >= '0' && *at <= '9'; count++) {
+        char *end;
+        const long value = strtol(at, &end, 10);
+        if (value > ASJ_MAX_SIDE || (count < 3 ? *end != ',' : *end != '\0'))
+            break;
+        values[count] = (int32_t)value;
+        at = end + (count < 3);
+    }
+    if (count < 4 || values[2] < 1 || values[3] < 1)
+        return cli_usage_error(command, "--%s: '%s' is not X,Y,WIDTH,HEIGHT in whole pixels, from 0,0 at the top left", name, text);
+    region->x = values[0];
+    region->y = values[1];
+    region->width = values[2];
+    region->height = values[3];
+    return CLI_SUCCESS;
+}
+
+static int fail(cli_session *session, const char *name, const char *problem, const asj_image *image)
+{
+    char message[MESSAGE_SIZE];
+    snprintf(message, sizeof message, "%s an image of %d x %d pixels", problem, (int)image->width, (int)image->height);
+    return cli_session_fail(session, name, message, ASJ_ERROR_ARGUMENT);
+}
+
+int cli_region_open(cli_session *session, const cli_region *region, uint64_t max_pixels, const char *name, const asj_image *image,
+                    asj_region *result, asj_image_file **mask)
+{
+    char message[MESSAGE_SIZE] = "";
+    memset(result, 0, sizeof *result);
+    if (region->width > 0 && (region->x >= image->width || region->width > image->width - region->x ||
+                              region->y >= image->height || region->height > image->height - region->y))
+        return fail(session, name, "the region leaves", image);
+    result->x = region->x;
+    result->y = region->y;
+    result->width = region->width;
+    result->height = region->height;
+    if (!region->mask)
+        return CLI_SUCCESS;
+    asj_status status = asj_image_file_read(region->mask, max_pixels, mask, message, sizeof message);
+    if (status != ASJ_OK)
+        return cli_session_fail(session, region->mask, message, status);
+    result->mask = &(*mask)->image;
+    if (result->mask->format != ASJ_FORMAT_GRAY8)
+        return cli_session_fail(session, region->mask, "a mask is an 8-bit gray image", ASJ_ERROR_ARGUMENT);
+    if (result->mask->width != image->width || result->mask->height != image->height)
+        return fail(session, region->mask, "this mask has another size than", image);
+    return CLI_SUCCESS;
+}

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* A part of an image on the command line: a rectangle, a mask. */
+#ifndef ASJ_CLI_REGION_H
+#define ASJ_CLI_REGION_H
+
+#include "common.h"
+
+#include <asj/detect.h>
+#include <asj/io.h>
+
+typedef struct cli_region {
+    const char *mask;            /* a file; NULL = none */
+    int32_t x, y, width, height; /* width 0 = the whole image */
+} cli_region;
+
+/* --NAME X,Y,WIDTH,HEIGHT. CLI_SUCCESS, or CLI_USAGE after saying why. */
+int cli_region_take(const char *command, const char *name, const char *text, cli_region *region);
+
+/* What asj_detect_region() takes for this image; reads the mask, which the caller frees. CLI_SUCCESS, or CLI_FAILED after saying
+ * why: a mask that cannot be read, is not 8-bit gray or of another size; a rectangle that leaves the image. */
+int cli_region_open(cli_session *session, const cli_region *region, uint64_t max_pixels, const char *name, const asj_image *image,
+                    asj_region *result, asj_image_file **mask);
+
+#endif

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The region decides twice. Candidates (step 2) that lie too far from it for any junction to move into it are not tested: that is
+ * what saves time. Of the junctions that were found those outside are dropped at the end: that is exact. In between the image is
+ * what it is without a region: what lies outside still speaks for or against a junction inside, and branches reach as far.
+ *
+ * A junction moves by max_move px of its octave while it is located; so candidates stay up to `reach` = that, rounded up, and one
+ * more around the region. Pixel (i, j) of octave o stands for the pixels i 2^o .. (i + 1) 2^o - 1 of the image, j likewise. */
+#include "region.h"
+
+#include <math.h>
+#include <string.h>
+
+/* First pixel and the one after the last, along x and along y. */
+typedef struct rectangle {
+    int32_t left, right, top, bottom;
+} rectangle;
+
+static rectangle rectangle_of(const asj_image *image, const asj_region *region)
+{
+    if (region->width == 0)
+        return (rectangle){0, image->width, 0, image->height};
+    return (rectangle){region->x, region->x + region->width, region->y, region->y + region->height};
+}
+
+static const uint8_t *mask_row(const asj_image *mask, int32_t y)
+{
+    return (const uint8_t *)mask->data + y * (mask->stride ? mask->stride : (ptrdiff_t)mask->width);
+}
+
+static int lies_within(int32_t first, int32_t length, int32_t whole)
+{
+    return first >= 0 && length > 0 && first < whole && length <= whole - first;
+}
+
+asj_status asj_region_check(asj_context *context, const asj_image *image, const asj_region *region)
+{
+    if (!region)
+        return ASJ_OK;
+    const int everywhere = region->x == 0 && region->y == 0 && region->width == 0 && region->height == 0;
+    if (!everywhere && (!lies_within(region->x, region->width, image->width) ||
+                        !lies_within(region->y, region->height, image->height)))
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "a region of %d x %d pixels at (%d, %d) is not within an image of %d x %d",
+                        (int)region->width, (int)region->height, (int)region->x, (int)region->y, (int)image->width,
+                        (int)image->height);
+    const asj_image *mask = region->mask;
+    if (!mask)
+        return ASJ_OK;
+    if (mask->format != ASJ_FORMAT_GRAY8)
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "the mask is not gray8");
+    if (mask->width != image->width || mask->height != image->height)
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "a mask of %d x %d pixels for an image of %d x %d", (int)mask->width,
+                        (int)mask->height, (int)image->width, (int)image->height);
+    return asj_image_check(context, mask);
+}
+
+static int32_t reach_of(const asj_detection_run *run)
+{
+    return (int32_t)ceil(run->options->max_move) + 1;
+}
+
+/* Pixels of the octave whose neighbourhood meets first .. end - 1 of the image. */
+static void octave_range(const asj_detection_run *run, int32_t first, int32_t end, int32_t size, int32_t *from, int32_t *to)
+{
+    const int32_t reach = reach_of(run);
+    *from = (first >> run->octave) - reach;
+    *to = ((end - 1) >> run->octave) + 1 + reach;
+    *from = *from > 0 ? *from : 0;
+    *to = *to < size ? *to : size;
+    *from = *from < *to ? *from : *to; /* the last pixel of the image may belong to no pixel of the octave */
+}
+
+void asj_region_rows(const asj_detection_run *run, int32_t *top, int32_t *bottom)
+{
+    *top = 0;
+    *bottom = run->frame->height;
+    if (run->region) {
+        const rectangle r = rectangle_of(run->image, run->region);
+        octave_range(run, r.top, r.bottom, run->frame->height, top, bottom);
+    }
+}
+
+/* line[x] = 1 where the mask allows pixel (x, any row first .. end - 1) of the image. */
+static void gather_rows(const asj_image *mask, int32_t first, int32_t end, uint8_t *line)
+{
+    memset(line, 0, (size_t)mask->width);
+    for (int32_t y = first; y < end; y++) {
+        const uint8_t *row = mask_row(mask, y);
+        for (int32_t x = 0; x < mask->width; x++)
+            line[x] |= row[x] != 0;
+    }
+}
+
+static int32_t clamp(int32_t value, int32_t size)
+{
+    return value < 0 ? 0 : value > size ? size : value;
+}
+
+/* Row y of the octave: bits of candidates with nothing of `line` (NULL = all of it) near, or outside left .. right - 1, go. */
+static void clear_row(const asj_detection_run *run, int32_t y, int32_t left, int32_t right, const uint8_t *line)
+{
+    uint16_t *bits = run->candidates + (ptrdiff_t)y * run->frame->blocks;
+    const int32_t width = run->image->width, reach = reach_of(run), octave = run->octave;
+    int32_t last = -1; /* the last pixel of the image that is allowed, of those before `next` */
+    for (int32_t x = 0, next = 0; x < run->frame->width; x++) {
+        const int32_t first = clamp((x - reach) * (1 << octave), width), end = clamp((x + reach + 1) * (1 << octave), width);
+        for (; line && next < end; next++)
+            last = line[next] ? next : last;
+        if (x < left || x >= right || (line && last < first))
+            bits[x / ASJ_LANES] = (uint16_t)(bits[x / ASJ_LANES] & ~(1u << x % ASJ_LANES));
+    }
+}
+
+asj_status asj_region_clear_candidates(asj_detection_run *run)
+{
+    const asj_image *mask = run->region->mask;
+    const size_t row_size = (size_t)run->frame->blocks * sizeof *run->candidates;
+    const int32_t height = run->image->height, reach = reach_of(run);
+    int32_t top, bottom, left, right;
+    uint8_t *line = mask ? asj_allocate(&run->context->memory, (size_t)run->image->width, 1) : NULL;
+    if (mask && !line)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for a row of the mask");
+    const rectangle r = rectangle_of(run->image, run->region);
+    octave_range(run, r.left, r.right, run->frame->width, &left, &right);
+    asj_region_rows(run, &top, &bottom);
+    for (int32_t y = 0; y < run->frame->height; y++) {
+        if (y < top || y >= bottom) {
+            memset(run->candidates + (ptrdiff_t)y * run->frame->blocks, 0, row_size);
+            continue;
+        }
+        if (mask)
+            gather_rows(mask, clamp((y - reach) * (1 << run->octave), height), clamp((y + reach + 1) * (1 << run->octave), height),
+                        line);
+        clear_row(run, y, left, right, line);
+    }
+    asj_release(&run->context->memory, line);
+    return ASJ_OK;
+}
+
+/* The pixel that a location rounds to; the nearest one of the image where a junction lies beyond its border. */
+static int32_t pixel_of(double location, int32_t size)
+{
+    const double rounded = floor(location + 0.5);
+    return rounded < 0 ? 0 : rounded > size - 1 ? size - 1 : (int32_t)rounded;
+}
+
+size_t asj_region_keep(const asj_image *image, const asj_region *region, asj_hypothesis *hypotheses, size_t count)
+{
+    const rectangle r = rectangle_of(image, region);
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        const int32_t x = pixel_of(hypotheses[i].x, image->width), y = pixel_of(hypotheses[i].y, image->height);
+        if (x >= r.left && x < r.right && y >= r.top && y < r.bottom && (!region->mask || mask_row(region->mask, y)[x] != 0))
+            hypotheses[kept++] = hypotheses[i];
+    }
+    return kept;
+}
