@@ -29,6 +29,7 @@
 #define CELL 32        /* px of the grid in which junctions on the way are looked for */
 
 typedef struct graph {
+    asj_watch *watch;
     const asj_context *context;
     const asj_hypothesis *hypotheses;
     int32_t *heads, *next; /* junctions by cell */
@@ -201,13 +202,17 @@ static void start(graph *g, const asj_detect_options *options, int32_t width, in
         g->log_tests[o] = asj_strip_log_tests(width >> o > 0 ? width >> o : 1, height >> o > 0 ? height >> o : 1, octaves);
 }
 
-/* Joins branches that are the nearest of each other. */
-static void join_nearest(graph *g, size_t count, int must_divide)
+static void find_all(graph *g, size_t count, int must_divide)
 {
     g->must_divide = must_divide;
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count && !asj_watch_stops(g->watch, NULL); i++)
         for (int32_t b = 0; b < g->hypotheses[i].branch_count; b++)
             g->nearest[i * ASJ_MAX_BRANCHES + (size_t)b] = is_joined(g, (int32_t)i, b) ? -1 : find_nearest(g, i, b);
+}
+
+/* Joins branches that are the nearest of each other. */
+static void join_nearest(graph *g, size_t count)
+{
     for (size_t i = 0; i < count; i++)
         for (int32_t b = 0; b < g->hypotheses[i].branch_count; b++) {
             const int32_t own = (int32_t)(i * ASJ_MAX_BRANCHES) + b, other = g->nearest[own];
@@ -227,10 +232,10 @@ static asj_edge edge_of(const graph *g, int32_t own, int32_t other)
                       (float)(between(g, &from->branches[b], &to->branches[c], distance) / LN_10), {0, 0}};
 }
 
-size_t asj_edges_join(const asj_context *context, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves,
+size_t asj_edges_join(asj_watch *watch, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves,
                       asj_hypothesis *hypotheses, size_t count, int32_t *scratch, asj_edge *edges)
 {
-    graph g = {.context = context, .hypotheses = hypotheses, .heads = scratch, .columns = (int32_t)columns_of(width),
+    graph g = {.watch = watch, .context = watch->context, .hypotheses = hypotheses, .heads = scratch, .columns = (int32_t)columns_of(width),
                .rows = (int32_t)columns_of(height)};
     size_t found = 0;
     start(&g, options, width, height, octaves);
@@ -239,8 +244,12 @@ size_t asj_edges_join(const asj_context *context, const asj_detect_options *opti
     g.joined = g.nearest + count * ASJ_MAX_BRANCHES;
     memset(g.joined, 0xff, count * ASJ_MAX_BRANCHES * sizeof *g.joined);
     fill_grid(&g, count);
-    join_nearest(&g, count, 1);
-    join_nearest(&g, count, 0);
+    for (int32_t pass = 0; pass < 2; pass++) {
+        find_all(&g, count, pass == 0);
+        if (asj_watch_end(watch) != ASJ_OK)
+            return 0;
+        join_nearest(&g, count);
+    }
     for (size_t i = 0; i < count; i++)
         for (int32_t b = 0; b < hypotheses[i].branch_count; b++) {
             const int32_t own = (int32_t)(i * ASJ_MAX_BRANCHES) + b, other = g.joined[own];

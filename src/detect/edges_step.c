@@ -21,10 +21,13 @@ asj_status asj_step_join(asj_detection_run *run)
     int32_t *scratch = asj_allocate_list(memory, asj_edges_scratch(asj_detection_run_room(count), width, height), sizeof *scratch);
     run->edges = asj_allocate_list(memory, most, sizeof *run->edges);
     asj_status status = ASJ_OK;
-    if (scratch && run->edges)
-        run->edge_count = asj_edges_join(run->context, run->options, width, height, range.end - range.first, run->hypotheses,
-                                         count, scratch, run->edges);
-    else
+    asj_watch watch;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
+    if (scratch && run->edges) {
+        run->edge_count = asj_edges_join(&watch, run->options, width, height, range.end - range.first, run->hypotheses, count,
+                                         scratch, run->edges);
+        status = asj_watch_end(&watch);
+    } else
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for edges between %zu junctions", count);
     asj_release(memory, scratch);
     return status;

@@ -5,16 +5,26 @@
 #include "core/threads.h"
 #include "core/watch.h"
 
+/* Hypotheses that are shared out. */
+typedef struct job {
+    asj_detection_run *run;
+    asj_watch *watch;
+} job;
+
+static void measure_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++)
+        asj_edge_evidence_measure(j->run->context, j->run->frame, j->run->options, &j->run->hypotheses[i]);
+}
+
 asj_status asj_step_ends(asj_detection_run *run)
 {
     asj_watch watch;
     const int64_t count = (int64_t)run->hypothesis_count;
-    const int32_t threads = asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS);
-    (void)threads;
+    const job j = {run, &watch};
     asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 8)
-    for (int64_t i = 0; i < count; i++)
-        if (!asj_watch_stops(&watch))
-            asj_edge_evidence_measure(run->context, run->frame, run->options, &run->hypotheses[i]);
+    asj_parallel(run->context, asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS), count, ASJ_JUNCTIONS_AT_ONCE,
+                 measure_some, &j);
     return asj_watch_end(&watch);
 }

@@ -20,8 +20,15 @@
 typedef struct motions {
     asj_model starts[MOST_STARTS], picked[ASJ_FINALISTS];
     asj_ranked order[MOST_STARTS];
-    int32_t count, threads;
+    int32_t count;
 } motions;
+
+/* What a loop over motions works on. */
+typedef struct job {
+    const asj_pairs *set;
+    asj_adjust_scratch *scratch; /* for each thread */
+    motions *m;
+} job;
 
 static void collect(const asj_pairs *set, const asj_camera cameras[2], asj_model *finalists, int32_t *count, motions *m)
 {
@@ -38,27 +45,41 @@ static void collect(const asj_pairs *set, const asj_camera cameras[2], asj_model
     *count = kept;
 }
 
-static void refine(const asj_pairs *set, asj_adjust_scratch *scratch, motions *m)
+static void refine_some(const void *data, const asj_part *part)
 {
-#pragma omp parallel for num_threads(m->threads) schedule(dynamic, 1)
-    for (int32_t n = 0; n < m->count; n++) {
-        asj_adjust(set, &m->starts[n], FEW_ROUNDS, &scratch[asj_thread_number()]);
-        m->starts[n].evidence = asj_log_evidence(set, &m->starts[n], &scratch[asj_thread_number()]);
-        m->order[n] = (asj_ranked){m->starts[n].evidence, n};
+    const job *j = data;
+    asj_adjust_scratch *s = &j->scratch[part->thread];
+    for (int64_t n = part->first; n < part->end; n++) {
+        asj_model *model = &j->m->starts[n];
+        asj_adjust(j->set, model, FEW_ROUNDS, s);
+        model->evidence = asj_log_evidence(j->set, model, s);
+        j->m->order[n] = (asj_ranked){model->evidence, (int32_t)n};
     }
+}
+
+static void add_planes_to_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    asj_adjust_scratch *s = &j->scratch[part->thread];
+    for (int64_t n = part->first; n < part->end; n++) {
+        asj_model *model = &j->m->picked[n];
+        asj_add_planes(j->set, model, s);
+        asj_model last = *model;
+        asj_adjust(j->set, &last, ROUNDS, s);
+        last.evidence = asj_log_evidence(j->set, &last, s);
+        if (last.evidence > model->evidence)
+            *model = last;
+    }
+}
+
+static void refine(asj_context *context, const job *j)
+{
+    motions *m = j->m;
+    asj_parallel(context, context->threads, m->count, 1, refine_some, j);
     qsort(m->order, (size_t)m->count, sizeof *m->order, asj_by_score);
     m->count = asj_pick(m->starts, m->order, m->count, ASJ_FINALISTS, m->picked);
     const int32_t most = m->count < WITH_PLANES ? m->count : WITH_PLANES;
-#pragma omp parallel for num_threads(m->threads) schedule(dynamic, 1)
-    for (int32_t n = 0; n < most; n++) {
-        asj_adjust_scratch *s = &scratch[asj_thread_number()];
-        asj_add_planes(set, &m->picked[n], s);
-        asj_model last = m->picked[n];
-        asj_adjust(set, &last, ROUNDS, s);
-        last.evidence = asj_log_evidence(set, &last, s);
-        if (last.evidence > m->picked[n].evidence)
-            m->picked[n] = last;
-    }
+    asj_parallel(context, context->threads, most, 1, add_planes_to_some, j);
 }
 
 asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const asj_camera cameras[2], asj_model *finalists,
@@ -72,9 +93,9 @@ asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const 
     for (int32_t t = 0; t < threads && good; t++)
         good = asj_adjust_scratch_create(memory, set, &scratch[t]);
     if (good) {
-        m->threads = threads;
+        const job j = {set, scratch, m};
         collect(set, cameras, finalists, count, m);
-        refine(set, scratch, m);
+        refine(context, &j);
         memcpy(finalists + *count, m->picked, (size_t)m->count * sizeof *m->picked);
         *count += m->count;
     }

@@ -187,14 +187,20 @@ static int32_t adjust_some(const asj_pairs *set, work *w, asj_model *models, int
     return asj_pick(models, w->order, count, most, finalists);
 }
 
+static void judge_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t n = part->first; n < part->end; n++) {
+        j->models[n].evidence = asj_log_evidence(j->set, &j->models[n], &j->w->scratch[part->thread]);
+        j->w->order[n] = (asj_ranked){j->models[n].evidence, (int32_t)n};
+    }
+}
+
 static void judge(const asj_pairs *set, work *w, asj_model *finalists, int32_t count)
 {
     asj_model copy[ASJ_FINALISTS];
-#pragma omp parallel for num_threads(w->threads) schedule(dynamic, 1)
-    for (int32_t n = 0; n < count; n++) {
-        finalists[n].evidence = asj_log_evidence(set, &finalists[n], &w->scratch[asj_thread_number()]);
-        w->order[n] = (asj_ranked){finalists[n].evidence, n};
-    }
+    const job j = {.set = set, .w = w, .models = finalists};
+    asj_parallel(w->context, w->context->threads, count, 1, judge_some, &j);
     qsort(w->order, (size_t)count, sizeof *w->order, asj_by_score);
     memcpy(copy, finalists, sizeof copy);
     for (int32_t n = 0; n < count; n++)

@@ -10,7 +10,7 @@
  *     36  u32            number of junctions
  *     40  text           options: a line KEY=VALUE for each
  *         junctions      x, y, scale, log10_nfa, location_sd: five floats; u32 number of branches; u32 octave; for each branch
- *                        angle, length, strength, log10_nfa, angle_sd, width: six floats
+ *                        angle, length, strength, log10_nfa, angle_sd, width, length_sd: seven floats; u32 end
  *         u16            the image after the blur, in 1/128 of a grey level, row by row
  *
  * All numbers with the least significant byte first, floats as IEEE 754.
@@ -31,7 +31,7 @@
 #define HEADER 40
 #define CHECKED 16          /* the checksum is of the bytes from here on */
 #define JUNCTION_BYTES 28
-#define BRANCH_BYTES 24
+#define BRANCH_BYTES 32
 #define MOST_TEXT 65536     /* bytes of options */
 #define LONGEST_LINE 256
 
@@ -72,8 +72,10 @@ static uint8_t *put_junction(uint8_t *to, const asj_junction *j)
     for (int32_t b = 0; b < j->branch_count; b++) {
         const asj_branch *branch = &j->branches[b];
         const float values[] = {branch->angle,     branch->length,   branch->strength,
-                                branch->log10_nfa, branch->angle_sd, branch->width};
-        to = put_floats(to, values, 6);
+                                branch->log10_nfa, branch->angle_sd, branch->width, branch->length_sd};
+        to = put_floats(to, values, 7);
+        asj_put_u32(to, (uint32_t)branch->end);
+        to += 4;
     }
     return to;
 }
@@ -215,8 +217,12 @@ static asj_status read_junction(reader *r, asj_junction *j)
     for (uint32_t b = 0; b < branches; b++, r->next += BRANCH_BYTES, r->left -= BRANCH_BYTES) {
         asj_branch *branch = &j->branches[b];
         float *const values[] = {&branch->angle, &branch->length, &branch->strength, &branch->log10_nfa, &branch->angle_sd,
-                                 &branch->width};
-        get_floats(r->next, values, 6);
+                                 &branch->width, &branch->length_sd};
+        get_floats(r->next, values, 7);
+        const uint32_t end = asj_get_u32(r->next + 28);
+        if (end > ASJ_BRANCH_END_BORDER)
+            return damaged(r, "an end of a branch of no known kind");
+        branch->end = (int32_t)end;
     }
     return ASJ_OK;
 }

@@ -48,7 +48,9 @@ static void join(drawing *d)
     assert_non_null(scratch);
     assert_int_equal(asj_context_create(NULL, &context), ASJ_OK);
     asj_detect_options_init(&options);
-    d->edge_count = asj_edges_join(context, &options, 640, 480, 1, d->list, d->count, scratch, d->edges);
+    asj_watch watch;
+    asj_watch_start(&watch, context, ASJ_STAGE_REFINE);
+    d->edge_count = asj_edges_join(&watch, &options, 640, 480, 1, d->list, d->count, scratch, d->edges);
     asj_context_free(&context);
     free(scratch);
 }

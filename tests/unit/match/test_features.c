@@ -2,6 +2,7 @@
 /* Features that are kept: they match as asj_match() does, bit for bit, from any context, any thread and any bytes; bytes that are
  * damaged, cut or hostile give an error. */
 #include "core/bytes.h"
+#include "core/threads.h"
 #include "match/kept_features.h"
 #include "room.h"
 #include "unit_test.h"
@@ -173,27 +174,40 @@ static void they_outlive_their_context(void **state)
 
 typedef struct job {
     asj_features *const *f;
-    asj_match_result *results[2];
-    asj_status status[2];
+    asj_context **contexts;
+    asj_match_result **results;
+    asj_status *status;
 } job;
 
-/* Both loops' turns at once where there is OpenMP, with a context each. */
+static void match_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t n = part->first; n < part->end; n++)
+        j->status[n] = asj_match_features(j->contexts[n], j->f[0], j->f[1], NULL, &j->results[n]);
+}
+
+/* At once where there are threads, with a context each. */
 static void many_threads_match_the_same_features(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
     asj_match_result *expected = match_images(context, NULL);
     asj_features *f[2] = {features_of(context, 0, NULL), features_of(context, 1, NULL)};
-    job j = {.f = f};
-    asj_context *contexts[2];
+    asj_match_result *results[2];
+    asj_status status[2];
+    asj_context *contexts[2], *two;
+    asj_context_options options;
+    asj_context_options_init(&options);
+    options.threads = 2;
+    assert_int_equal(asj_context_create(&options, &two), ASJ_OK);
     for (int32_t n = 0; n < 2; n++)
         assert_int_equal(asj_context_create(NULL, &contexts[n]), ASJ_OK);
-#pragma omp parallel for num_threads(2) schedule(static, 1)
-    for (int32_t n = 0; n < 2; n++)
-        j.status[n] = asj_match_features(contexts[n], j.f[0], j.f[1], NULL, &j.results[n]);
+    const job j = {f, contexts, results, status};
+    asj_parallel(two, 2, 2, 1, match_some, &j);
+    asj_context_free(&two);
     for (int32_t n = 0; n < 2; n++) {
-        assert_int_equal(j.status[n], ASJ_OK);
-        assert_same(expected, j.results[n]);
-        asj_match_result_free(&j.results[n]);
+        assert_int_equal(status[n], ASJ_OK);
+        assert_same(expected, results[n]);
+        asj_match_result_free(&results[n]);
         asj_context_free(&contexts[n]);
     }
     asj_match_result_free(&expected);
