@@ -95,10 +95,12 @@ typedef struct asj_detect_options {
     double near_strength;         /* standard deviations that a branch needs in its first 6 px. -10 .. 10; 0;
                                    * paper -10; match -10 */
     double snap_distance;         /* px: a branch that ends this close to a junction on its line ends there. 0 .. 30; 8; paper 0 */
+    double end_contrast;          /* share of its own contrast at which an edge that fades ends, at no junction and no crossing; 0 =
+                                   * where the scan loses it, which depends on noise. 0 .. 0.9; 0 */
     int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`.
                                    * 1; paper 0; match 0 */
     int32_t reserved_integer;     /* zero */
-    double reserved[20];          /* zero */
+    double reserved[19];          /* zero */
 } asj_detect_options;
 
 enum { ASJ_SEEDS_FIELD = 0, ASJ_SEEDS_SEGMENTS = 1 };

@@ -79,6 +79,8 @@ static const asj_option_info rows[] = {
            "strength that a branch needs in its first 6 px: it must reach the junction"),
     NUMBER(REFINE, ADVANCED, snap_distance, "px", 0, 30, 8, 0, 8,
            "a branch that ends this close to a junction on its line ends at it"),
+    NUMBER(REFINE, ADVANCED, end_contrast, "", 0, 0.9, 0, 0, 0,
+           "an edge that fades ends where it has this share of its contrast left; 0 = where noise has it"),
 };
 static const asj_option_table table = {rows, sizeof rows / sizeof *rows, sizeof(asj_detect_options)};
 

@@ -9,6 +9,7 @@
  * whose gradient changes sign within a is sharp: 0. Of a thin line each of the two edges is blurred by no more than half of what is
  * between them. */
 #include "edge_width.h"
+#include "gray_at.h"
 
 #include <math.h>
 
@@ -20,22 +21,6 @@
 #define LEAST_SPAN 4.0   /* px */
 #define FLATTEST 0.98    /* q of an edge whose width cannot be told */
 
-static int32_t inside(double value, int32_t last)
-{
-    return value <= 0 ? 0 : value >= last ? last : (int32_t)value;
-}
-
-/* Grey level at (x, y), bilinear; outside the image its border counts. */
-static double gray_at(const asj_frame *frame, double x, double y)
-{
-    const int32_t column = inside(x, frame->width - 1), row = inside(y, frame->height - 1);
-    const int32_t right = column + 1 < frame->width ? 1 : 0;
-    const double wx = fmin(fmax(x - column, 0), 1), wy = fmin(fmax(y - row, 0), 1);
-    const uint16_t *upper = frame->gray + row * frame->stride + column;
-    const uint16_t *lower = row + 1 < frame->height ? upper + frame->stride : upper;
-    return (1 - wy) * ((1 - wx) * upper[0] + wx * upper[right]) + wy * ((1 - wx) * lower[0] + wx * lower[right]);
-}
-
 /* Sums of the grey level along the branch, at -3, -1, 1 and 3 px from its line: their differences are the gradients at -2, 0 and
  * 2 px. */
 static void add_up(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, double sums[4])
@@ -46,7 +31,7 @@ static void add_up(const asj_frame *frame, const asj_hypothesis *hypothesis, con
     for (double t = FIRST; t <= last; t++)
         for (int i = 0; i < 4; i++) {
             const double s = branch->offset + ACROSS * (i - 1.5);
-            sums[i] += gray_at(frame, hypothesis->x + t * ux - s * uy, hypothesis->y + t * uy + s * ux);
+            sums[i] += asj_gray_at(frame, hypothesis->x + t * ux - s * uy, hypothesis->y + t * uy + s * ux);
         }
 }
 

@@ -54,13 +54,36 @@ static const asj_hypothesis *find_end(const asj_hypothesis *hypothesis, const as
     return found;
 }
 
+static void sort_by_row(const asj_hypothesis *hypotheses, size_t count, const asj_hypothesis **order)
+{
+    for (size_t i = 0; i < count; i++)
+        order[i] = &hypotheses[i];
+    if (count > 1)
+        qsort(order, count, sizeof *order, by_row);
+}
+
+void asj_ends_mark(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order)
+{
+    double distance;
+    sort_by_row(hypotheses, count, order);
+    for (size_t i = 0; i < count; i++)
+        for (int32_t b = 0; b < hypotheses[i].branch_count; b++) {
+            asj_hypothesis_branch *branch = &hypotheses[i].branches[b];
+            if (find_end(&hypotheses[i], branch, fmax(reach, AT_END), order, count, &distance))
+                branch->end = ASJ_BRANCH_END_JUNCTION;
+        }
+}
+
 static void snap(const asj_hypothesis *hypothesis, double reach, const asj_hypothesis *const *order, size_t count,
                  asj_hypothesis_branch *branch)
 {
     double distance = 0;
     const asj_hypothesis *end = find_end(hypothesis, branch, fmax(reach, AT_END), order, count, &distance);
-    if (!end)
+    if (!end) {
+        branch->length = branch->contrast_end > 0 ? branch->contrast_end : branch->length;
+        branch->end = branch->end == ASJ_BRANCH_END_JUNCTION ? ASJ_BRANCH_END_UNKNOWN : branch->end; /* of another octave, gone */
         return;
+    }
     branch->end = ASJ_BRANCH_END_JUNCTION;
     if (fabs(distance - branch->length) >= reach)
         return;
@@ -70,10 +93,7 @@ static void snap(const asj_hypothesis *hypothesis, double reach, const asj_hypot
 
 void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order)
 {
-    for (size_t i = 0; i < count; i++)
-        order[i] = &hypotheses[i];
-    if (count > 1)
-        qsort(order, count, sizeof *order, by_row);
+    sort_by_row(hypotheses, count, order);
     for (size_t i = 0; i < count; i++)
         for (int32_t b = 0; b < hypotheses[i].branch_count; b++)
             snap(&hypotheses[i], reach, order, count, &hypotheses[i].branches[b]);

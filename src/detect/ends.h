@@ -5,7 +5,11 @@
 
 #include "hypothesis.h"
 
-/* Moves the ends of branches onto junctions that lie on their line within `reach` px of the end, and tells which end at one. `order` is scratch for `count`
+/* Marks the branches that asj_ends_snap() would find a junction at the end of; what is at the others is still to be seen. */
+void asj_ends_mark(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order);
+
+/* Moves the ends of branches onto junctions that lie on their line within `reach` px of the end, tells which end at one, and takes the end by contrast of others that have
+ * one. `order` is scratch for `count`
  * elements. */
 void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order);
 

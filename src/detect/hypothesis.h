@@ -36,6 +36,7 @@ typedef struct asj_hypothesis_branch {
     int32_t octave;          /* that found it */
     double end_variance;     /* px^2 of the end along the branch; 0 = not known */
     int32_t end;             /* ASJ_BRANCH_END_... */
+    double contrast_end;     /* px: where the edge ends by its contrast (end_profile.c); 0 = as the scan says */
     asj_evidence evidence;
 } asj_hypothesis_branch;
 

@@ -203,8 +203,8 @@ static void prepare(asj_l_junctions *all, uint32_t i, int32_t limit)
     double *u = all->direction + 4 * (size_t)i;
     double a = direct(l, l->ax, l->ay, u), b = direct(l, l->bx, l->by, u + 2);
     if (a < LEAST_LENGTH || b < LEAST_LENGTH) {
-        all->lengths[2 * i] = (asj_lengths){0, {(float)a}};
-        all->lengths[2 * i + 1] = (asj_lengths){0, {(float)b}};
+        all->lengths[2 * i] = (asj_lengths){0, {(float)a}, 0};
+        all->lengths[2 * i + 1] = (asj_lengths){0, {(float)b}, 0};
         return;
     }
     find_lengths(all, (double)l->x, (double)l->y, u, a, limit, &all->lengths[2 * i]);
@@ -256,6 +256,15 @@ static asj_status make_frames(asj_context *context, const asj_match_options *opt
     return ASJ_OK;
 }
 
+static void set_ends(const asj_junction_list *input, asj_l_junctions *all)
+{
+    for (uint32_t i = 0; i < all->count; i++) {
+        const asj_branch *branches = input->list[all->l[i].junction].branches;
+        all->lengths[2 * i].end = branches[all->l[i].branch_a].end;
+        all->lengths[2 * i + 1].end = branches[all->l[i].branch_b].end;
+    }
+}
+
 /* Does another L-junction of the location have a branch opposite to u? */
 static int continues(const asj_l_junctions *all, uint32_t l, const double u[2])
 {
@@ -301,6 +310,8 @@ asj_status asj_l_junctions_create(asj_context *context, const asj_match_options 
         status = find_neighbours(context, options, all);
     if (status == ASJ_OK)
         status = make_frames(context, options, all);
+    if (status == ASJ_OK)
+        set_ends(input, all);
     if (status == ASJ_OK)
         status = find_t_junctions(context, all);
     return status;

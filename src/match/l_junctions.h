@@ -14,6 +14,7 @@
 typedef struct asj_lengths {
     int32_t count;
     float length[ASJ_MAX_HYPOTHESES];
+    int32_t end; /* ASJ_BRANCH_END_...: what is at its own end */
 } asj_lengths;
 
 typedef struct asj_l_junctions {

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* What is at the end of a branch that ends at no junction. Around the end E, which is known to a few pixels, other edges are looked for
+ * along short rays: from places on the branch's line up to AROUND px before and behind E, in directions up to MOST degrees off either
+ * side of it, and from E on ahead. A ray has an edge under it when the mean of
+ *     gamma = max(|g.n| - |g.u|, 0)        (n, u: across and along the ray; strip.c)
+ * over r = NEAR .. FAR px is at least EDGE. In noise the mean of seven is that large once in 3000 times (algorithm section 2.2), and
+ * rays side by side share pixels.
+ *   - E within BORDER px of the image's border, along the branch: the border;
+ *   - an edge to both sides, in one line to within STRAIGHT, and none ahead: an edge passes by, and the branch may go on behind what it
+ *     bounds: an occlusion;
+ *   - an edge to any side otherwise: a crossing, or a corner that was not found;
+ *   - none: the branch fades. */
+#include "end_kind.h"
+#include "end_profile.h"
+#include "gradient.h"
+#include "strip.h"
+#include "core/angle.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define AROUND 3     /* px */
+#define SHIFT 1.5    /* px from one place to the next */
+#define NEAR 2       /* px: first sample of a ray */
+#define FAR 8        /* px: last */
+#define LEAST 30     /* deg between a ray and the branch's line, .. */
+#define MOST 150
+#define STEP 10      /* deg from one ray to the next */
+#define AHEAD 20     /* deg off the branch's line that still are ahead */
+#define STRAIGHT 25  /* deg */
+#define EDGE 1.2     /* standard deviations of noise */
+#define BORDER 5.0   /* px: sectors are cut by the border, and lose the edge before it */
+
+#define SHARE 0.5    /* of its contrast that an edge loses where it fades, when ends are the scan's */
+#define END_SD 1.0   /* px: of the scan, where other edges end it */
+#define FADE_SD 0.4  /* px: of an end by contrast where the edge breaks off (measured), .. */
+#define CHERNOFF 0.51 /* .. and the standard deviation of Chernoff's distribution: see variance_of() */
+
+void asj_end_rays_make(asj_end_rays *rays)
+{
+    for (int32_t i = 0; i < ASJ_END_TURNS; i++) {
+        rays->cosine[i] = cos(STEP * i * ASJ_DEGREE);
+        rays->sine[i] = sin(STEP * i * ASJ_DEGREE);
+    }
+}
+
+/* Mean of gamma from (x, y) along (ux, uy). */
+static double edge_along(const asj_frame *frame, double x, double y, double ux, double uy)
+{
+    double sum = 0;
+    for (int32_t r = NEAR; r <= FAR; r++) {
+        const int32_t px = asj_strip_floor(x + r * ux + 0.5), py = asj_strip_floor(y + r * uy + 0.5);
+        if (px < 0 || py < 0 || px >= frame->width || py >= frame->height)
+            continue;
+        const ptrdiff_t at = py * frame->stride + px;
+        const double gx = frame->gradient_x[at], gy = frame->gradient_y[at];
+        sum += fmax(fabs(gy * ux - gx * uy) - fabs(gx * ux + gy * uy), 0);
+    }
+    return sum / ((FAR - NEAR + 1) * ASJ_GRADIENT_ONE);
+}
+
+/* An end, and the direction in which its branch comes there. */
+typedef struct arrival {
+    double x, y, ux, uy;
+} arrival;
+
+/* The same from a place `shift` px behind the end, along a ray turned by `turn` steps to one side (1: growing angles, -1). */
+static double edge_from(const asj_frame *frame, const asj_end_rays *rays, const arrival *end, double shift, int32_t turn, int side)
+{
+    const double c = rays->cosine[turn], s = side * rays->sine[turn];
+    return edge_along(frame, end->x + shift * end->ux, end->y + shift * end->uy, c * end->ux - s * end->uy, c * end->uy + s * end->ux);
+}
+
+/* The strongest edge to one side from around the end; returns its angle from the branch's line in degrees, 0 when there is none. */
+static double edge_beside(const asj_frame *frame, const asj_end_rays *rays, const arrival *end, int side)
+{
+    double best = EDGE, found = 0;
+    for (double shift = -AROUND; shift <= AROUND; shift += SHIFT)
+        for (int32_t turn = LEAST / STEP; turn <= MOST / STEP; turn++) {
+            const double edge = edge_from(frame, rays, end, shift, turn, side);
+            if (edge > best) {
+                best = edge;
+                found = turn * STEP;
+            }
+        }
+    return found;
+}
+
+static int edge_ahead(const asj_frame *frame, const asj_end_rays *rays, const arrival *end)
+{
+    for (int32_t turn = -AHEAD / STEP; turn <= AHEAD / STEP; turn++)
+        if (edge_from(frame, rays, end, AROUND, abs(turn), turn < 0 ? -1 : 1) > EDGE)
+            return 1;
+    return 0;
+}
+
+static int32_t kind_of(const asj_frame *frame, const asj_end_rays *rays, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+{
+    const double ux = cos(branch->angle), uy = sin(branch->angle);
+    const arrival end = {hypothesis->x + branch->length * ux, hypothesis->y + branch->length * uy, ux, uy};
+    const double bx = end.x + BORDER * ux, by = end.y + BORDER * uy;
+    if (bx < 0 || by < 0 || bx > frame->width - 1 || by > frame->height - 1)
+        return ASJ_BRANCH_END_BORDER;
+    const double left = edge_beside(frame, rays, &end, -1), right = edge_beside(frame, rays, &end, 1);
+    if (left > 0 && right > 0 && fabs(left + right - 180) <= STRAIGHT && !edge_ahead(frame, rays, &end))
+        return ASJ_BRANCH_END_OCCLUSION;
+    return left > 0 || right > 0 ? ASJ_BRANCH_END_CROSSING : ASJ_BRANCH_END_FADED;
+}
+
+/* Around the end the sum C(T) of end_profile.c is a parabola, -slope / 2 (T - end)^2, with a random walk on it, noise sqrt(T - end). The
+ * place of its maximum has Chernoff's distribution, (2 noise / slope)^(2/3) px wide. */
+static double variance_of(const asj_end_profile *profile)
+{
+    const double slope = 0.5 / fmax(profile->fading, 1);
+    const double walk = CHERNOFF * pow(2 * profile->noise / slope, 2.0 / 3);
+    return FADE_SD * FADE_SD + walk * walk;
+}
+
+/* Only where an edge fades, or the picture ends, contrast says more than the scan: elsewhere other edges are in the way. */
+static void measure(const asj_frame *frame, const asj_end_rays *rays, const asj_detect_options *options, const asj_hypothesis *hypothesis,
+                    asj_hypothesis_branch *branch)
+{
+    branch->end = kind_of(frame, rays, hypothesis, branch);
+    branch->end_variance = END_SD * END_SD;
+    if (branch->end != ASJ_BRANCH_END_FADED && branch->end != ASJ_BRANCH_END_BORDER)
+        return;
+    const double share = options->end_contrast > 0 ? options->end_contrast : SHARE;
+    const asj_end_profile profile = asj_end_profile_of(frame, hypothesis, branch, share);
+    const double off = options->end_contrast > 0 ? 0 : profile.end - branch->length;
+    if (profile.end <= 0)
+        return;
+    branch->end_variance = variance_of(&profile) + off * off;
+    if (options->end_contrast <= 0)
+        return;
+    asj_hypothesis_branch moved = *branch;
+    branch->contrast_end = moved.length = profile.end;
+    branch->end = profile.at_border ? ASJ_BRANCH_END_BORDER : kind_of(frame, rays, hypothesis, &moved);
+}
+
+void asj_end_kinds(const asj_frame *frame, const asj_end_rays *rays, const asj_detect_options *options, asj_hypothesis *hypothesis)
+{
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        if (hypothesis->branches[i].end != ASJ_BRANCH_END_JUNCTION)
+            measure(frame, rays, options, hypothesis, &hypothesis->branches[i]);
+}

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* What is at the end of a branch. */
+#ifndef ASJ_SRC_END_KIND_H
+#define ASJ_SRC_END_KIND_H
+
+#include "core/image.h"
+#include "hypothesis.h"
+
+/* Directions in which other edges are looked for: 0, 10, .. 150 degrees. */
+#define ASJ_END_TURNS 16
+typedef struct asj_end_rays {
+    double cosine[ASJ_END_TURNS], sine[ASJ_END_TURNS];
+} asj_end_rays;
+
+void asj_end_rays_make(asj_end_rays *rays);
+
+/* Sets the kind of every end that is not marked as a junction, with its uncertainty, and where the edge ends by its contrast if the
+ * options ask for that. */
+void asj_end_kinds(const asj_frame *frame, const asj_end_rays *rays, const asj_detect_options *options, asj_hypothesis *hypothesis);
+
+#endif

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* How the contrast of an edge goes along it, and where it ends by that. */
+#ifndef ASJ_SRC_END_PROFILE_H
+#define ASJ_SRC_END_PROFILE_H
+
+#include "core/image.h"
+#include "hypothesis.h"
+
+typedef struct asj_end_profile {
+    double end;    /* px from the junction: where the contrast falls below the share for good; 0 = it is never above */
+    double fading; /* px over which it falls from three quarters to one quarter around there */
+    double noise;  /* of the contrast at one pixel along the edge, over the branch's own contrast: standard deviation */
+    int at_border; /* 1 = the image ends first */
+} asj_end_profile;
+
+/* `share` of the branch's own contrast, 0 .. 1. */
+asj_end_profile asj_end_profile_of(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch,
+                                   double share);
+
+#endif
