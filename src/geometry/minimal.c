@@ -7,7 +7,7 @@
  * points in front of both cameras.
  *
  * fundamental: x2' F x1 = 0 and A' n2 + n1 = 0 are linear in F (likelihood.c), so three correspondences give nine equations: least
- * squares (eigenvector of the smallest eigenvalue of their normal matrix), then the nearest matrix of rank 2.
+ * squares (vector of the smallest eigenvalue of their normal matrix), then the nearest matrix of rank 2.
  *
  * homography (Barath and Hajder, "A theory of point-wise homography estimation", Pattern Recognition Letters 2017): with h3 x1 the
  * third coordinate, (h1 - x2 h3) (x1, y1, 1)' = 0, (h2 - y2 h3) (x1, y1, 1)' = 0 and their derivatives
@@ -122,18 +122,6 @@ static void add_row(double normal[81], const double row[9])
             normal[9 * i + k] += row[i] * row[k];
 }
 
-/* The vector of the smallest eigenvalue; 0 when the second smallest is as good as 0, too. */
-static int32_t solve_linear(const double normal[81], double solution[9])
-{
-    double values[9], vectors[81];
-    asj_symmetric_eigen(normal, 9, values, vectors);
-    if (!(values[1] > 1e-12 * values[8]) || !isfinite(values[8]))
-        return 0;
-    for (int32_t k = 0; k < 9; k++)
-        solution[k] = vectors[9 * k];
-    return 1;
-}
-
 int32_t asj_fundamental_from_three(const asj_pair *const pairs[3], const asj_camera cameras[2], asj_model *model)
 {
     double normal[81] = {0}, e[9], u[9], s[3], v[9];
@@ -149,7 +137,7 @@ int32_t asj_fundamental_from_three(const asj_pair *const pairs[3], const asj_cam
         add_row(normal, along[0]);
         add_row(normal, along[1]);
     }
-    if (!solve_linear(normal, e))
+    if (!asj_least_vector9(normal, e))
         return 0;
     asj_svd3(e, u, s, v);
     for (int32_t i = 0; i < 9; i++) /* U diag(s0, s1, 0) V' */
@@ -188,7 +176,7 @@ int32_t asj_homography_from_two(const asj_pair *const pairs[2], const asj_camera
             }
         }
     }
-    if (!solve_linear(normal, h))
+    if (!asj_least_vector9(normal, h))
         return 0;
     model->kind = ASJ_GEOMETRY_HOMOGRAPHY;
     model->parameters = 8;

@@ -12,6 +12,7 @@ typedef struct asj_search {
     int32_t samples;
     uint64_t seed;
     asj_camera cameras[2];
+    double least; /* nats: when no geometry reaches this score at first sight, there is none */
 } asj_search;
 
 /* The best geometries of the kind, refined, the best score first; finalists has room for ASJ_FINALISTS. *count may be 0. */

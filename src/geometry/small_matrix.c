@@ -225,6 +225,75 @@ int32_t asj_cholesky_solve(double *a, int32_t n, double *b, double *log_determin
     return 1;
 }
 
+/* A = P L D L' P' with the largest pivot first (Golub and Van Loan, 4.2.8): D falls, so its last entry tells of the smallest
+ * eigenvalue and the one before it of the second. L has ones on its diagonal. 0 when the last but one is as good as 0. */
+static int32_t factor9(double *a, int32_t order[9], double d[9])
+{
+    for (int32_t k = 0; k < 9; k++)
+        order[k] = k;
+    for (int32_t k = 0; k < 9; k++) {
+        int32_t best = k;
+        for (int32_t i = k + 1; i < 9; i++)
+            best = a[10 * i] > a[10 * best] ? i : best;
+        if (best != k) { /* both rows and columns of the symmetric matrix */
+            const int32_t keep = order[k];
+            order[k] = order[best];
+            order[best] = keep;
+            for (int32_t j = 0; j < 9; j++) {
+                const double row = a[9 * k + j];
+                a[9 * k + j] = a[9 * best + j];
+                a[9 * best + j] = row;
+            }
+            for (int32_t j = 0; j < 9; j++) {
+                const double column = a[9 * j + k];
+                a[9 * j + k] = a[9 * j + best];
+                a[9 * j + best] = column;
+            }
+        }
+        d[k] = a[10 * k];
+        if (k < 8 && (!(d[k] > 1e-12 * d[0]) || !isfinite(d[k])))
+            return 0;
+        for (int32_t i = k + 1; i < 9; i++) {
+            const double factor = a[9 * i + k] / d[k];
+            for (int32_t j = k + 1; j <= i; j++) {
+                a[9 * i + j] -= factor * a[9 * j + k];
+                a[9 * j + i] = a[9 * i + j];
+            }
+        }
+        for (int32_t i = k + 1; i < 9; i++)
+            a[9 * i + k] /= d[k];
+    }
+    return 1;
+}
+
+int32_t asj_least_vector9(double *a, double *vector)
+{
+    int32_t order[9];
+    double d[9], x[9] = {0, 0, 0, 0, 0, 0, 0, 0, 1};
+    if (!factor9(a, order, d))
+        return 0;
+    d[8] = fmax(d[8], 1e-15 * d[0]);
+    /* Inverse iteration from L'^-1 e9, which is the solution where there is an exact one. */
+    for (int32_t round = 0; round < 4; round++) {
+        for (int32_t i = 0; i < 9 && round > 0; i++)
+            for (int32_t k = 0; k < i; k++)
+                x[i] -= a[9 * i + k] * x[k];
+        for (int32_t i = 0; i < 9 && round > 0; i++)
+            x[i] /= d[i];
+        for (int32_t i = 8; i >= 0; i--)
+            for (int32_t k = i + 1; k < 9; k++)
+                x[i] -= a[9 * k + i] * x[k];
+        double size = 0;
+        for (int32_t i = 0; i < 9; i++)
+            size += x[i] * x[i];
+        for (int32_t i = 0; i < 9; i++)
+            x[i] /= sqrt(size);
+    }
+    for (int32_t i = 0; i < 9; i++)
+        vector[order[i]] = x[i];
+    return isfinite(x[0]) != 0;
+}
+
 /* Brings the largest of what is left to row and column `at`; 0 when all of it is nothing. */
 static int32_t pivot9(double *a, int32_t rows, int32_t at, int32_t *column)
 {

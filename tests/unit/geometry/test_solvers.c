@@ -42,6 +42,34 @@ static void singular_values_rebuild(void **state)
     }
 }
 
+/* The vector of the smallest eigenvalue, by both ways; none where two eigenvalues are 0. */
+static void the_least_vector_is_an_eigenvector(void **state)
+{
+    (void)state;
+    synth_random random;
+    synth_random_seed(&random, 12);
+    for (int i = 0; i < 200; i++) {
+        double a[81] = {0}, values[9], vectors[81], copy[81], v[9], along = 0;
+        const int rows = i % 3 == 0 ? 7 : i % 3 == 1 ? 8 : 12;
+        for (int r = 0; r < rows; r++) {
+            double row[9];
+            for (int k = 0; k < 9; k++)
+                row[k] = synth_random_between(&random, -2, 2);
+            for (int k = 0; k < 81; k++)
+                a[k] += row[k / 9] * row[k % 9];
+        }
+        asj_symmetric_eigen(a, 9, values, vectors);
+        memcpy(copy, a, sizeof a);
+        assert_int_equal(asj_least_vector9(copy, v), rows > 7);
+        if (rows == 7)
+            continue;
+        for (int k = 0; k < 9; k++)
+            along += v[k] * vectors[9 * k];
+        /* four rounds of iteration leave what the second smallest has, by the fourth power of the ratio and better */
+        unit_near("along the eigenvector", i, rows, fabs(along), 1, rows == 8 ? 1e-9 : 2 * pow(values[0] / values[1], 4) + 1e-9);
+    }
+}
+
 static void rotations_and_their_angles(void **state)
 {
     (void)state;
@@ -376,6 +404,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(singular_values_rebuild), cmocka_unit_test(rotations_and_their_angles),
+        cmocka_unit_test(the_least_vector_is_an_eigenvector),
         cmocka_unit_test(systems_are_solved_or_refused), cmocka_unit_test(roots_of_products),
         cmocka_unit_test(five_points_give_the_motion), cmocka_unit_test(right_candidates_have_no_residuals),
         cmocka_unit_test(two_candidates_give_the_motion), cmocka_unit_test(three_candidates_give_the_fundamental_matrix),
