@@ -26,6 +26,7 @@
 #include <asj/match.h>
 #include <asj/options.h>
 #include <asj/status.h>
+#include <asj/vanishing.h>
 #include <asj/version.h>
 
 #endif

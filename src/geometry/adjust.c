@@ -4,6 +4,7 @@
  * steps look farther. Derivatives are central differences of the residuals along each parameter. A residual of square q weighs
  * 1 / (1 + q / TAIL) (Cauchy's), since A and x are not normal far out. */
 #include "adjust.h"
+#include "manhattan.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -96,11 +97,25 @@ static int32_t set_up(const asj_pairs *set, const asj_model *model, const double
     return 1;
 }
 
+/* The prior of rotations pulls towards the nearest of those that are likely. */
+static void add_prior(const asj_pairs *set, const asj_model *model, equations *e)
+{
+    double information, w[3];
+    if (model->kind != ASJ_GEOMETRY_ESSENTIAL || !asj_nearest_rotation(set, model->rotation, w))
+        return;
+    asj_rotation_prior(set, model->rotation, &information);
+    for (int32_t k = 0; k < 3; k++) {
+        e->normal[k * (model->parameters + 1)] += information;
+        e->right[k] += information * w[k];
+    }
+}
+
 void asj_information(const asj_pairs *set, const asj_model *model, const double *probability, double *information)
 {
     equations e;
     if (!set_up(set, model, probability, 1, &e))
         memset(&e, 0, sizeof e);
+    add_prior(set, model, &e);
     memcpy(information, e.normal, (size_t)(model->parameters * model->parameters) * sizeof *information);
 }
 
@@ -111,6 +126,7 @@ static int32_t step(const asj_pairs *set, asj_model *model, const double *probab
     const int32_t n = model->parameters;
     if (!set_up(set, model, probability, loose, &e))
         return 0;
+    add_prior(set, model, &e);
     for (int32_t p = 0; p < n; p++)
         e.normal[p * (n + 1)] += DAMPING * e.normal[p * (n + 1)] + 1e-3;
     if (!asj_cholesky_solve(e.normal, n, e.right, NULL))

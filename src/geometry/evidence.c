@@ -11,7 +11,8 @@
  * number of tests times the tail in the a-contrario method (Desolneux, Moisan and Morel; Moisan and Stival 2004 for point matches,
  * with a count of samples): looking at more geometries does not make it any larger. It is taken about its peak (Laplace's method,
  * with the information matrix of adjust.c), q being flat over rotations (volume 8 pi^2), directions (4 pi) and, where the camera is
- * not known, what else there is:
+ * not known, what else there is (rotations that the images' own directions make likely have more than their share: manhattan.c, the
+ * density over the flat one being multiplied in):
  *
  *     log evidence = score + sum over the parameters of log(sqrt(2 pi) / width) - 1/2 log det(information + 2 pi / width^2).
  *
@@ -22,6 +23,7 @@
  * one in ten pairs of unrelated rendered rooms reaches 10^7, which should happen once in 10^7 pairs. */
 #include "evidence.h"
 #include "core/angle.h"
+#include "manhattan.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -103,6 +105,7 @@ static double side_score(const asj_pairs *set, const asj_two_view *view, int32_t
 double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch)
 {
     double information[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], none[ASJ_MODEL_PARAMETERS] = {0}, log_determinant, volume = 0;
+    double pull;
     const int32_t n = model->parameters;
     asj_probabilities(set, &model->view, 1, &scratch->score, scratch->probability);
     asj_information(set, model, scratch->probability, information);
@@ -111,6 +114,8 @@ double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust
         information[p * (n + 1)] += 2 * ASJ_PI / (width * width);
         volume += 0.5 * log(2 * ASJ_PI) - log(width);
     }
+    if (model->kind == ASJ_GEOMETRY_ESSENTIAL)
+        volume += asj_rotation_prior(set, model->rotation, &pull);
     if (!asj_cholesky_solve(information, n, none, &log_determinant))
         return -HUGE_VAL;
     const double first = side_score(set, &model->view, 0, scratch), second = side_score(set, &model->view, 1, scratch);

@@ -15,7 +15,9 @@ typedef struct asj_pair {
     uint32_t reserved;
 } asj_pair;
 
-/* Candidates, the likeliest first. */
+#define ASJ_ROTATIONS 24
+
+/* Candidates, the likeliest first, and what is known beforehand. */
 typedef struct asj_pairs {
     asj_pair *list;
     int32_t count;
@@ -27,6 +29,9 @@ typedef struct asj_pairs {
     double scale_sd;         /* of half the log of a ratio of squares */
     double spread;           /* px: wrong partners lie anywhere within this distance from an epipolar line */
     double area;             /* px^2: .. or anywhere in the image */
+    double rotations[ASJ_ROTATIONS][9]; /* manhattan.c */
+    int32_t rotation_count;  /* 0 or ASJ_ROTATIONS */
+    int32_t reserved;
 } asj_pairs;
 
 /* What a geometry says of one candidate: squared residual in standard deviations, HUGE_VAL where a sign is wrong. */

@@ -113,6 +113,36 @@ int32_t asj_essential_from_two(const asj_pairs *set, const asj_pair *const pairs
     return asj_model_complete(model);
 }
 
+/* y2 (t x R y1) = 0 says that t is at right angles to R y1 x y2: two give it. Of its signs the one that has both in front. */
+int32_t asj_translation_from_two(const asj_pair *const pairs[2], const double rotation[9], const asj_camera cameras[2],
+                                 asj_model *model)
+{
+    double rays[2][2][3], normal[2][3], *t = model->translation;
+    for (int32_t k = 0; k < 2; k++) {
+        double turned[3];
+        asj_ray(&cameras[0], pairs[k]->x1, pairs[k]->y1, rays[k][0]);
+        asj_ray(&cameras[1], pairs[k]->x2, pairs[k]->y2, rays[k][1]);
+        asj_apply3(rotation, rays[k][0], turned);
+        asj_cross3(turned, rays[k][1], normal[k]);
+        if (!asj_normalise3(normal[k]))
+            return 0;
+    }
+    asj_cross3(normal[0], normal[1], t);
+    if (!(asj_dot3(t, t) > 1e-6) || !asj_normalise3(t))
+        return 0;
+    if (asj_in_front(rotation, t, rays[0][0], rays[0][1]) < 0)
+        for (int32_t k = 0; k < 3; k++)
+            t[k] = -t[k];
+    for (int32_t k = 0; k < 2; k++)
+        if (asj_in_front(rotation, t, rays[k][0], rays[k][1]) < 0)
+            return 0;
+    model->kind = ASJ_GEOMETRY_ESSENTIAL;
+    model->parameters = 5;
+    memcpy(model->rotation, rotation, sizeof model->rotation);
+    memcpy(model->cameras, cameras, sizeof model->cameras);
+    return asj_model_complete(model);
+}
+
 /* --- linear ------------------------------------------------------------------------------------------------------------------ */
 
 static void add_row(double normal[81], const double row[9])

@@ -3,6 +3,7 @@
  * (up to 30 000) give the same poses within what the seed changes. */
 #include "pairs.h"
 #include "core/angle.h"
+#include "manhattan.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -116,6 +117,7 @@ asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *
     while (set->count > 0 && !(set->list[set->count - 1].prior > 0))
         set->count--;
     set_scales(options, set);
+    asj_manhattan_rotations(options->directions, set);
     for (int32_t v = 0; v < 2; v++) {
         const asj_status status = number_places(context, set, v);
         if (status != ASJ_OK)

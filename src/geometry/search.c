@@ -89,6 +89,8 @@ static int32_t sample(const asj_pairs *set, const double *sum, int32_t count, co
     const int32_t wanted = search->kind == ASJ_GEOMETRY_FUNDAMENTAL && stream % 4 == 3 ? 3 : 2;
     if (!(sum[count - 1] > 0) || !draw_some(set, sum, count, search->seed, stream, wanted, pairs))
         return 0;
+    if (search->kind == ASJ_GEOMETRY_ESSENTIAL && set->rotation_count > 0 && stream % 2 == 1)
+        return asj_translation_from_two(pairs, set->rotations[stream / 2 % ASJ_ROTATIONS], search->cameras, model);
     if (search->kind == ASJ_GEOMETRY_ESSENTIAL)
         return asj_essential_from_two(set, pairs, search->cameras, model);
     if (search->kind == ASJ_GEOMETRY_HOMOGRAPHY)

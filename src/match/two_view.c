@@ -10,16 +10,19 @@
  *   - a match that is there already goes when an epipolar geometry contradicts it: a location farther than FARTHEST px from its
  *     line. (A homography contradicts nothing: there are other planes.) But a geometry that contradicts more than half of the
  *     matches is not believed against them;
- *   - a candidate comes when its probability is LEAST at least, and both its locations are free; where there are MANY matches
- *     already, only when it is SURE at least. (On photographs that are none of the wide pairs three of four newcomers below SURE
- *     are right, and 45 of 47 above.)
+ *   - a candidate comes when its probability is LEAST_PROBABILITY at least, and both its locations are free; where there are
+ *     MANY_MATCHES already, only when it is SURE_PROBABILITY at least. (On photographs that are none of the wide pairs three of four
+ *     newcomers below that are right, and 45 of 47 above.)
  * Each match receives its probability. */
 #include "two_view.h"
 #include "align.h"
+#include "core/angle.h"
 #include "consensus.h"
 #include "prior.h"
 #include "shortlist.h"
 #include "support.h"
+
+#include <asj/vanishing.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -28,9 +31,9 @@
 #define WIDE_SHORTLIST 16
 #define CLUSTER 5.0  /* px */
 #define FARTHEST 4.0 /* px */
-#define LEAST 0.5
-#define SURE 0.99
-#define MANY 20
+#define LEAST_PROBABILITY 0.5
+#define SURE_PROBABILITY 0.99
+#define MANY_MATCHES 20
 
 /* The longer list, and what the geometry says of it. */
 typedef struct wide_run {
@@ -78,6 +81,63 @@ static asj_geometry_candidate candidate_for_geometry(const wide_run *w, const as
     return g;
 }
 
+/* The three directions of the scene in one image, from the branches of its L-junctions; zero when there are not two. Their angles
+ * carry no uncertainty here: vanishing.c takes it from their lengths. */
+static asj_status find_directions(asj_context *context, const asj_image_features *image, const asj_camera *camera,
+                                  double *directions)
+{
+    const asj_l_junctions *in = &image->l_junctions;
+    asj_vanishing_options options;
+    asj_vanishing_points found;
+    asj_junction *list = asj_allocate_zero(&context->memory, in->count, sizeof *list);
+    if (!list)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the directions of %lu L-junctions", (unsigned long)in->count);
+    for (uint32_t k = 0; k < in->count; k++) {
+        const asj_l_junction *l = &in->l[k];
+        const double to[2][2] = {{(double)l->ax - (double)l->x, (double)l->ay - (double)l->y},
+                                 {(double)l->bx - (double)l->x, (double)l->by - (double)l->y}};
+        list[k].x = l->x;
+        list[k].y = l->y;
+        list[k].branch_count = 2;
+        for (int32_t b = 0; b < 2; b++) {
+            const double angle = atan2(to[b][1], to[b][0]);
+            list[k].branches[b].angle = (float)(angle < 0 ? angle + ASJ_TWO_PI : angle);
+            list[k].branches[b].length = (float)sqrt(to[b][0] * to[b][0] + to[b][1] * to[b][1]);
+        }
+    }
+    asj_vanishing_options_init(&options);
+    options.camera = *camera;
+    options.width = image->pyramid.width[0];
+    options.height = image->pyramid.height[0];
+    const asj_status status = asj_find_vanishing_points(context, list, in->count, &options, &found);
+    asj_release(&context->memory, list);
+    if (status != ASJ_OK || found.count < 2)
+        return status;
+    const double *d = found.points[0].direction, *e = found.points[1].direction;
+    memcpy(directions, d, 3 * sizeof *d);
+    memcpy(directions + 3, e, 3 * sizeof *e);
+    for (int32_t k = 0; k < 3; k++)
+        directions[6 + k] = d[(k + 1) % 3] * e[(k + 2) % 3] - d[(k + 2) % 3] * e[(k + 1) % 3];
+    return ASJ_OK;
+}
+
+/* Sizes and, where both cameras are known, directions of both images, unless the caller gave some. */
+static asj_status complete_options(asj_match_run *run, asj_geometry_options *options)
+{
+    asj_status status = ASJ_OK;
+    double given = 0;
+    for (int32_t k = 0; k < 18; k++)
+        given += fabs(options->directions[k / 9][k % 9]);
+    for (int32_t side = 0; side < 2; side++) {
+        options->widths[side] = run->image[side]->pyramid.width[0];
+        options->heights[side] = run->image[side]->pyramid.height[0];
+    }
+    for (int32_t side = 0; side < 2 && given == 0 && status == ASJ_OK; side++)
+        if (options->cameras[0].fx > 0 && options->cameras[1].fx > 0)
+            status = find_directions(run->context, run->image[side], &options->cameras[side], options->directions[side]);
+    return status;
+}
+
 static asj_status estimate(asj_match_run *run, wide_run *w)
 {
     asj_memory *memory = &run->context->memory;
@@ -88,16 +148,14 @@ static asj_status estimate(asj_match_run *run, wide_run *w)
         w->place[side] = asj_allocate(memory, run->image[side]->l_junctions.location_count, sizeof *w->place[side]);
     if (!w->given || !w->probability || !w->place[0] || !w->place[1])
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the geometry of %zu candidates", count);
-    const asj_status status = asj_candidate_priors(&w->run, w->probability);
+    asj_geometry_options options = run->options->geometry;
+    asj_status status = asj_candidate_priors(&w->run, w->probability);
+    if (status == ASJ_OK)
+        status = complete_options(run, &options);
     if (status != ASJ_OK)
         return status;
     for (int32_t side = 0; side < 2; side++)
         cluster(&run->image[side]->l_junctions, w->place[side]);
-    asj_geometry_options options = run->options->geometry;
-    for (int32_t side = 0; side < 2; side++) {
-        options.widths[side] = run->image[side]->pyramid.width[0];
-        options.heights[side] = run->image[side]->pyramid.height[0];
-    }
     size_t kept = 0;
     for (size_t k = 0; k < count; k++) { /* a map that hardly keeps any area is no map */
         const asj_candidate *c = &w->run.candidates.list[k];
@@ -193,7 +251,7 @@ static asj_status add(asj_match_run *run, const asj_candidate *c, double probabi
 static asj_status rescue(asj_match_run *run, const wide_run *w, newcomer *list, uint8_t *const taken[2])
 {
     size_t count = 0;
-    const double least = run->choices.count < MANY ? LEAST : SURE;
+    const double least = run->choices.count < MANY_MATCHES ? LEAST_PROBABILITY : SURE_PROBABILITY;
     for (size_t n = 0; n < run->choices.count; n++) {
         const asj_candidate *c = &run->candidates.list[run->choices.list[n].candidate];
         for (int32_t side = 0; side < 2; side++)

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* asj_find_vanishing_points(): the directions of rendered rooms, none in noise, bad input. */
+#include "unit_test.h"
+
+#include "wide_pair.h"
+
+#include <asj/asj.h>
+
+#define SIZE 400
+
+/* Degrees between a direction and the nearest axis of the room, whose columns are those of the camera's rotation. */
+static double from_axis(const double direction[3], const synth_camera *camera)
+{
+    double r[9], t[3], best = 90;
+    synth_camera straight = *camera;
+    straight.yaw = straight.pitch = straight.roll = 0;
+    straight.position.x += 1;
+    synth_relative_pose(&straight, camera, r, t);
+    for (int a = 0; a < 3; a++) {
+        const double dot = direction[0] * r[a] + direction[1] * r[3 + a] + direction[2] * r[6 + a];
+        best = fmin(best, acos(fmin(1, fabs(dot))) * 180 / UNIT_PI);
+    }
+    return best;
+}
+
+static void rooms_have_three_directions(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    int points = 0, focals = 0;
+    for (uint64_t seed = 9; seed <= 12; seed++) {
+        synth_wide_pair pair;
+        assert_int_equal(synth_wide_pair_make(&pair, seed), 0);
+        const synth_camera *camera = &pair.cameras[0];
+        uint8_t *pixels = synth_wide_picture(&pair, 0);
+        const asj_image image = {pixels, ASJ_FORMAT_RGB8, SYNTH_WIDE_WIDTH, SYNTH_WIDE_HEIGHT, 0, 0};
+        asj_detection *found = NULL;
+        asj_vanishing_options options;
+        asj_vanishing_points with, without, again;
+        assert_non_null(pixels);
+        assert_int_equal(asj_detect(context, &image, NULL, &found), ASJ_OK);
+        asj_vanishing_options_init(&options);
+        options.width = SYNTH_WIDE_WIDTH;
+        options.height = SYNTH_WIDE_HEIGHT;
+        assert_int_equal(asj_find_vanishing_points(context, found->junctions, found->junction_count, &options, &without), ASJ_OK);
+        options.camera = (asj_camera){camera->focal, camera->focal, 0.5 * (SYNTH_WIDE_WIDTH - 1), 0.5 * (SYNTH_WIDE_HEIGHT - 1)};
+        assert_int_equal(asj_find_vanishing_points(context, found->junctions, found->junction_count, &options, &with), ASJ_OK);
+        assert_int_equal(asj_find_vanishing_points(context, found->junctions, found->junction_count, &options, &again), ASJ_OK);
+        assert_memory_equal(&with, &again, sizeof with);
+        assert_int_equal(with.focal_source, ASJ_FOCAL_GIVEN);
+        assert_in_range(with.count, 2, 3);
+        for (int32_t k = 0; k < with.count; k++) {
+            const asj_vanishing_point *p = &with.points[k];
+            unit_near("direction, deg", (double)seed, k, from_axis(p->direction, camera), 0, 0.8);
+            assert_true(p->log10_nfa <= -2 && p->branch_count >= 3);
+            assert_true(k == 0 || p->log10_nfa >= with.points[k - 1].log10_nfa);
+            for (int32_t m = 0; m < k; m++) { /* at right angles */
+                const double *q = with.points[m].direction;
+                unit_near("dot", (double)seed, k, p->direction[0] * q[0] + p->direction[1] * q[1] + p->direction[2] * q[2], 0, 1e-6);
+            }
+            /* the point is the image of the direction */
+            const double x = camera->focal * p->direction[0] + options.camera.cx * p->direction[2];
+            unit_near("point", (double)seed, k, x * p->point[2], p->point[0] * p->direction[2], 1e-6 * camera->focal);
+            points++;
+        }
+        if (without.focal_source == ASJ_FOCAL_FOUND) {
+            unit_near("focal length", (double)seed, 0, without.camera.fx / camera->focal, 1, 0.08);
+            focals++;
+        }
+        asj_detection_free(&found);
+        free(pixels);
+        synth_wide_pair_free(&pair);
+    }
+    assert_in_range(points, 10, 12);
+    assert_in_range(focals, 3, 4);
+    unit_context_free(&counter, &context);
+}
+
+/* Branches of any direction at any place: what is found is a false alarm; epsilon 0.01 allows none of 40 images, nearly always. */
+static void chance_has_no_directions(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_junction list[120];
+    synth_random random;
+    int alarms = 0;
+    synth_random_seed(&random, 77);
+    for (int i = 0; i < 40; i++) {
+        asj_vanishing_options options;
+        asj_vanishing_points found;
+        memset(list, 0, sizeof list);
+        for (int k = 0; k < 120; k++) {
+            list[k].x = (float)synth_random_between(&random, 0, SIZE);
+            list[k].y = (float)synth_random_between(&random, 0, SIZE);
+            list[k].branch_count = 2;
+            for (int b = 0; b < 2; b++) {
+                list[k].branches[b].angle = (float)synth_random_between(&random, 0, 2 * UNIT_PI);
+                list[k].branches[b].length = (float)synth_random_between(&random, 15, 60);
+                list[k].branches[b].angle_sd = 0.004F;
+            }
+        }
+        asj_vanishing_options_init(&options);
+        options.width = options.height = SIZE;
+        assert_int_equal(asj_find_vanishing_points(context, list, 120, &options, &found), ASJ_OK);
+        alarms += found.count;
+    }
+    assert_in_range(alarms, 0, 2);
+    unit_context_free(&counter, &context);
+}
+
+static void bad_input_is_refused(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_vanishing_options options;
+    asj_vanishing_points found;
+    asj_junction one;
+    memset(&one, 0, sizeof one);
+    one.branch_count = 2;
+    asj_vanishing_options_init(&options);
+    assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_OPTION); /* no size */
+    options.width = options.height = SIZE;
+    assert_int_equal(asj_find_vanishing_points(context, NULL, 0, &options, &found), ASJ_OK);
+    assert_int_equal(found.count, 0);
+    assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_OK);
+    assert_int_equal(found.count, 0);
+    assert_int_equal(asj_find_vanishing_points(NULL, &one, 1, &options, &found), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(asj_find_vanishing_points(context, NULL, 1, &options, &found), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(asj_find_vanishing_points(context, &one, 1, NULL, &found), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, NULL), ASJ_ERROR_ARGUMENT);
+    one.branches[1].angle = NAN;
+    assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_ARGUMENT);
+    one.branches[1].angle = 0;
+    one.branch_count = ASJ_MAX_BRANCHES + 1;
+    assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_ARGUMENT);
+    one.branch_count = 2;
+    options.camera.fx = options.camera.fy = -500;
+    assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_OPTION);
+    options.camera.fx = options.camera.fy = NAN;
+    assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_OPTION);
+    options.camera.fx = options.camera.fy = 0;
+    options.epsilon = 0;
+    assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_OPTION);
+    options.epsilon = 1;
+    for (long at = 1; at <= 2; at++) {
+        counter.fail_at = counter.calls + at;
+        assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_MEMORY);
+    }
+    counter.fail_at = 0;
+    unit_context_free(&counter, &context);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rooms_have_three_directions), cmocka_unit_test(chance_has_no_directions),
+        cmocka_unit_test(bad_input_is_refused),
+    };
+    return cmocka_run_group_tests_name("vanishing points", tests, NULL, NULL);
+}
