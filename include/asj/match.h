@@ -41,6 +41,9 @@ typedef struct asj_match_options {
     double window_end;           /* .. to here, in branch lengths. 0.25 .. 2; 1 */
     double patch_radius;         /* px: half a side of an induced patch. 4 .. 64; 16 */
     double smoothing;            /* px: standard deviation of the blur before anything is sampled. 0 .. 2; 0.8; paper 0 */
+    /* unrelated images */
+    double related_support;      /* images whose likeliest candidates agree less than this have nothing in common and are answered
+                                  * at once, without matches; 0 = none are. Not asked with a geometry. 0 .. 64; 0.14; paper 0 */
     /* short list, and alignment of its pairs */
     int32_t shortlist;           /* best candidates kept for each L-junction of either image. 1 .. 32; 4; paper 16 */
     int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map; 0 = none. 0 .. 30; 6; paper 0 */
@@ -62,7 +65,7 @@ typedef struct asj_match_options {
     double verify_agreement;     /* mean agreement with them that a match needs. 0 .. 1; 0.28; paper 0 */
     /* line segments */
     double end_tolerance;        /* branch ends correspond when lengths agree within this part. 0.01 .. 1; 0.12 */
-    double reserved[21];         /* zero */
+    double reserved[20];         /* zero */
     /* two-view geometry; not among the options with a key. model: none, the default, and then the rest of it does not matter. Sizes
      * of the images are filled in */
     asj_geometry_options geometry;

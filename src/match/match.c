@@ -6,6 +6,7 @@
  *   describe.c       patches in those frames                     (patch.c, sift.c; paper: patch_induced.c)
  *
  * Of the pair, the list below:
+ *   related.c        unless the images have nothing in common
  *   shortlist.c      best partners among all pairs               (rank.c; product_bound.c rules most pairs out)
  *   align.c          each candidate's map refined on the images  (disc.c; paper: not done)
  *   support.c        neighbouring candidates that agree          (agreement.c; support_gate.c; paper: not done)
@@ -26,6 +27,7 @@
 #include "kept_features.h"
 #include "match_options.h"
 #include "match_result.h"
+#include "related.h"
 #include "shortlist.h"
 #include "support.h"
 #include "two_view.h"
@@ -91,7 +93,14 @@ static asj_status run_steps(asj_match_run *run, stop_watch *watch)
     };
     static const step last = {ASJ_STAGE_ASSIGN, 0.95, asj_verify};
     static const step geometry = {ASJ_STAGE_ASSIGN, 0.96, asj_apply_geometry};
-    asj_status status = run_list(run, first, sizeof first / sizeof *first, watch);
+    int32_t related;
+    asj_status status = asj_progress(run->context, ASJ_STAGE_DISTANCES, 0.15);
+    if (status == ASJ_OK)
+        status = asj_related(run, &related);
+    stop(watch, ASJ_STAGE_DISTANCES);
+    if (status != ASJ_OK || !related)
+        return status;
+    status = run_list(run, first, sizeof first / sizeof *first, watch);
     for (int32_t round = 0; round < run->options->guided_rounds && run->options->neighbours > 0 && status == ASJ_OK; round++) {
         const size_t before = run->candidates.count;
         status = run_step(run, &guided, watch);

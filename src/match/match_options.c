@@ -8,6 +8,7 @@
 #define OPTIONS_TYPE asj_match_options
 #define FRAMES "frames of L-junctions"
 #define DESCRIPTION "description"
+#define RELATED "unrelated images"
 #define SHORTLIST "short list"
 #define ALIGNMENT "alignment"
 #define SUPPORT "support by neighbours"
@@ -34,6 +35,9 @@ static const asj_option_info rows[] = {
     NUMBER(DESCRIPTION, ADVANCED, window_end, "", 0.25, 2, 1, 1, 1, "a canonical patch ends here, in branch lengths"),
     NUMBER(DESCRIPTION, ADVANCED, patch_radius, "px", 4, 64, 16, 16, 16, "half a side of an induced patch"),
     NUMBER(DESCRIPTION, ADVANCED, smoothing, "px", 0, 2, 0.8, 0, 0.8, "blur of the images before patches are sampled"),
+
+    NUMBER(RELATED, ADVANCED, related_support, "", 0, 64, 0.14, 0, 0.14,
+           "images whose likeliest candidates agree less than this have nothing in common and are answered at once; 0 = none are"),
 
     INTEGER(SHORTLIST, ADVANCED, shortlist, "", 1, 32, 4, 16, 4, "best candidates kept for each L-junction of either image"),
 
