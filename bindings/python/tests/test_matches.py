@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import pickle
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import asj
@@ -61,6 +63,58 @@ def test_options(pair: tuple[asj.Features, asj.Features]) -> None:
     assert len(asj.match(*pair, ratio=10)) <= len(asj.match(*pair))
     with pytest.raises(asj.OptionError, match="did you mean"):
         asj.match(*pair, ratoi=2)
+
+
+def test_features_are_described_once(pair: tuple[asj.Features, asj.Features]) -> None:
+    one, two = (asj.detect(image) for image in (pair[0].image, pair[1].image))
+    expected = asj.match(one, two).matches
+    described = one._described
+    assert described is not None and np.array_equal(asj.match(one, two, ratio=2, minimum_support=1).features1.xy, one.xy)
+    assert one._described is described  # options of the pair change nothing in them
+    asj.match(one, two, descriptor="sift")
+    assert one._described is not described
+    with ThreadPoolExecutor(3) as threads:
+        for found in threads.map(lambda _: asj.match(one, two).matches, range(6)):
+            assert np.array_equal(found, expected)
+
+
+def test_files_of_features(tmp_path: Path, pair: tuple[asj.Features, asj.Features]) -> None:
+    pair[0].save(tmp_path / "one.asjf")
+    loaded = asj.load_features(tmp_path / "one.asjf")
+    expected = asj.match(*pair)
+    assert np.array_equal(asj.match(loaded, pair[1]).matches, expected.matches)
+    assert np.array_equal(asj.match(pickle.loads(pickle.dumps(loaded)), pair[1]).matches, expected.matches)
+    assert np.array_equal(loaded.xy, pair[0].xy) and len(loaded.l_junctions) > 20 and (loaded.width, loaded.height) == (480, 360)
+    with pytest.raises(asj.OptionError, match="descriptor raw, not sift"):
+        asj.match(loaded, pair[1], descriptor="sift")
+    with pytest.raises(AttributeError):
+        _ = loaded.image
+    data = (tmp_path / "one.asjf").read_bytes()
+    for bad in (b"", data[:100], data[:-1], data[:500] + b"?" + data[501:]):
+        (tmp_path / "bad.asjf").write_bytes(bad)
+        with pytest.raises(asj.FormatError):
+            asj.load_features(tmp_path / "bad.asjf")
+    with pytest.raises(FileNotFoundError):
+        pair[0].save(tmp_path / "nowhere" / "one.asjf")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.asjf", "one.asjf"]
+
+
+def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:
+    assert asj.match(*pair).geometry is None and not asj.match(*pair).probability.any()
+    found = asj.match(*pair, geometry="homography")
+    assert found.geometry and found.geometry.model == "homography" and found.geometry.log10_nfa < -7
+    moved = found.geometry.matrix @ (100, 50, 1)
+    assert np.allclose(moved[:2] / moved[2], (106, 54), atol=0.3)
+    assert (found.probability > 0.5).mean() > 0.8 and found.geometry.rotation is None
+    for camera in (500.0, (500, 500, 239.5, 179.5), np.array([[500, 0, 239.5], [0, 500, 179.5], [0, 0, 1]])):
+        assert asj.match(*pair, geometry="auto", camera1=camera).geometry
+    with pytest.raises(asj.OptionError, match="auto"):
+        asj.match(*pair, geometry="affine")
+    with pytest.raises(asj.OptionError, match="changes nothing"):
+        asj.match(*pair, camera1=500)
+    for wrong in ((1, 2), -5.0, np.full((3, 3), np.nan)):
+        with pytest.raises(asj.ArgumentError):
+            asj.match(*pair, geometry="auto", camera1=wrong)
 
 
 def test_warning_about_features_for_looking(scene: Scene, pair: tuple[asj.Features, asj.Features]) -> None:

@@ -22,7 +22,8 @@ from .errors import (
     OptionError,
     OutOfMemoryError,
 )
-from .features import Features, detect
+from .features import Features, detect, load_features
+from .geometry import Geometry
 from .images import read as read_image
 from .matches import Matches, match
 from .options import detect_options, match_options
@@ -31,7 +32,7 @@ from .plot import plot, plot_matches
 __version__ = errors.text(_lib.asj_version_string())
 
 __all__ = [
-    "ArgumentError", "Cancelled", "Context", "DeviceError", "Error", "Features", "FormatError", "ImageError", "LimitError",
-    "Matches", "OptionError", "OutOfMemoryError", "detect", "detect_options", "match", "match_options", "plot", "plot_matches",
-    "read_image", "set_current",
+    "ArgumentError", "Cancelled", "Context", "DeviceError", "Error", "Features", "FormatError", "Geometry", "ImageError",
+    "LimitError", "Matches", "OptionError", "OutOfMemoryError", "detect", "detect_options", "load_features", "match",
+    "match_options", "plot", "plot_matches", "read_image", "set_current",
 ]  # fmt: skip

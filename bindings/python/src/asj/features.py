@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import os
+import tempfile
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,14 +15,15 @@ from . import arrays, images
 from ._native import ffi, lib
 from .context import Context, current
 from .errors import FormatError, ImageError
-from .options import DETECTOR
+from .options import DETECTOR, MATCHER
 
 
 class Features:
     """Junctions of one image, most meaningful first, and what matching needs of it.
 
     Coordinates are pixels: the centre of the first pixel is (0, 0), x points right, y down. Angles are radians from +x towards +y.
-    The arrays are read-only views of the library's memory.
+    The arrays are read-only views of the library's memory. What matching needs (patches, a pyramid) is made when it is first asked for,
+    and kept: an image that is matched with many is described once. Any number of threads may match the same features.
     """
 
     #: (N,) records of the library's asj_junction: x, y, scale, log10_nfa, location_sd, branch_count, octave,
@@ -34,6 +38,7 @@ class Features:
         self, view: images.View, junctions: NDArray[Any], l_junctions: NDArray[Any], edges: NDArray[Any], options: Any, preset: str
     ) -> None:
         self._view, self._options = view, options
+        self._described: tuple[tuple[str, ...], Any] | None = None
         self.preset = preset
         self.width, self.height = view.width, view.height
         self.junctions, self.l_junctions, self.edges = junctions, l_junctions, edges
@@ -47,6 +52,40 @@ class Features:
         junctions, joined = _records(records, "asj_junction", "junctions"), _records(edges, "asj_edge", "edges")
         record = DETECTOR.fill(preset, options)
         return cls(images.view(image, white), junctions, _decompose(junctions, record.minimum_opening), joined, record, preset)
+
+    def described(self, options: Any, context: Context) -> Any:
+        """The library's asj_features for these options of the matcher: those kept, or new ones."""
+        key = MATCHER.of_an_image(options)
+        kept = self._described
+        if kept is None or kept[0] != key:
+            place = ffi.new("asj_features **")
+            source = arrays.pointer(self.junctions, "asj_junction")
+            context.call(lib.asj_features_create, self._view.pointer, source, len(self.junctions), options, place)
+            kept = self._described = key, ffi.gc(place[0], _free_described)
+        return kept[1]
+
+    def without_image(self, *, preset: str = "default", context: Context | None = None, **options: object) -> Features:
+        """What matching needs, and no more: to keep many, and to send them elsewhere. `options` as for :meth:`save`."""
+        return DescribedFeatures(self.described(MATCHER.fill(preset, options), context or current()))
+
+    def save(self, path: str | os.PathLike[str], *, preset: str = "default", context: Context | None = None, **options: object) -> None:
+        """Writes a file of features (.asjf), all that matching needs: :func:`asj.load_features` and `asj-cli match` read it.
+
+        options   those of the matcher that concern one image, for instance descriptor="sift"
+        """
+        handle = self.described(MATCHER.fill(preset, options), context or current())
+        size = lib.asj_features_save(handle, ffi.NULL, 0)
+        data = ffi.new("char[]", size)
+        lib.asj_features_save(handle, data, size)
+        target = Path(path)
+        with tempfile.NamedTemporaryFile(dir=target.parent, prefix=f".{target.name}-", delete=False) as file:
+            try:
+                file.write(ffi.buffer(data))
+                file.close()
+                os.replace(file.name, target)
+            except BaseException:
+                os.unlink(file.name)
+                raise
 
     def __reduce__(self) -> Any:
         return _restore, (self.image, self._view.pointer.white, self.junctions.tobytes(), self.edges.tobytes(), self.options, self.preset)
@@ -96,6 +135,63 @@ class Features:
     def segments(self) -> NDArray[np.float32]:
         """(M, 2, 2) line segments of all branches, in the order of `branches`: the junction, the branch's end."""
         return segments_of(self.junctions)[0]
+
+
+class DescribedFeatures(Features):
+    """Features without the photograph, as files have them. The options of the detector are not there either."""
+
+    def __init__(self, handle: Any) -> None:
+        info = ffi.new("asj_features_info *")
+        lib.asj_features_get_info(handle, info)
+        #: bytes of memory
+        self.nbytes = int(info.bytes)
+        self._described = MATCHER.of_an_image(info.options), handle
+        self.preset = "match"
+        self.width, self.height = info.width, info.height
+        self.junctions = arrays.view(info.junctions, info.junction_count, "asj_junction", handle)
+        self.l_junctions = arrays.view(info.l_junctions, info.l_junction_count, "asj_l_junction", handle)
+        self.edges = np.zeros(0, arrays.struct_type("asj_edge"))
+
+    def described(self, options: Any, context: Context) -> Any:
+        """Those that there are: the library refuses other options."""
+        del options, context
+        assert self._described is not None
+        return self._described[1]
+
+    @property
+    def image(self) -> NDArray[Any]:
+        """Not there."""
+        raise AttributeError("these features are without their image")
+
+    @property
+    def options(self) -> dict[str, str]:
+        """Not there."""
+        raise AttributeError("features without their image do not tell the options of the detector")
+
+    def __reduce__(self) -> Any:
+        handle = self.described(None, current())
+        data = ffi.new("char[]", lib.asj_features_save(handle, ffi.NULL, 0))
+        lib.asj_features_save(handle, data, len(data))
+        return _load, (bytes(ffi.buffer(data)),)
+
+
+def load_features(path: str | os.PathLike[str]) -> Features:
+    """Features that :meth:`asj.Features.save` or `asj-cli detect --format asjf` wrote.
+
+    Damaged files and those of later versions raise FormatError or Error with the cause.
+    """
+    return _load(Path(path).read_bytes())
+
+
+def _load(data: bytes) -> Features:
+    place = ffi.new("asj_features **")
+    current().call(lib.asj_features_load, ffi.from_buffer(data), len(data), place)
+    return DescribedFeatures(ffi.gc(place[0], _free_described))
+
+
+def _free_described(pointer: Any) -> None:
+    place = ffi.new("asj_features **", pointer)
+    lib.asj_features_free(place)
 
 
 def segments_of(junctions: NDArray[Any]) -> tuple[NDArray[np.float32], NDArray[Any]]:

@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 from . import arrays
 from ._native import ffi, lib
 from .context import Context, current
-from .features import Features
+from .features import Features, detect  # noqa: F401 (detect: the example of match())
+from .geometry import Camera, Geometry
+from .geometry import fill as fill_geometry
+from .geometry import read as read_geometry
 from .options import MATCHER
 
 _ENDS = {"cut": lib.ASJ_END_CUT, "inner": lib.ASJ_END_INNER, "both": lib.ASJ_END_BOTH}
@@ -87,6 +90,16 @@ class Matches:
         """(K,) correlation of the aligned discs."""
         return np.asarray(self.matches["similarity"])
 
+    @property
+    def probability(self) -> NDArray[np.float32]:
+        """(K,) that the match is right, given the geometry; 0 where none was accepted."""
+        return np.asarray(self.matches["probability"])
+
+    @property
+    def geometry(self) -> Geometry | None:
+        """What relates the two views; None unless :func:`asj.match` was asked for it."""
+        return read_geometry(self._result.geometry)
+
     def segments(self, ends: str = "both") -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint32]]:
         """Line segments that match, each edge once: (S, 2, 2) in the first image, (S, 2, 2) in the second, (S,) index of the match.
 
@@ -102,22 +115,36 @@ class Matches:
         return (arrays.columns(records, "x1", (2, 2)), arrays.columns(records, "x2", (2, 2)), np.asarray(records["match"]))
 
 
-def match(features1: Features, features2: Features, *, preset: str = "default", context: Context | None = None, **options: object) -> Matches:
+def match(
+    features1: Features, features2: Features, *, geometry: str = "none", camera1: Camera | None = None, camera2: Camera | None = None,
+    preset: str = "default", context: Context | None = None, **options: object,
+) -> Matches:  # fmt: skip
     """Matches the features of two images.
 
-    options  those of the matcher by name (:func:`asj.match_options` lists them), for instance ratio=1.3, descriptor="sift"
+    geometry   "auto", "essential", "fundamental" or "homography": estimates what relates the two views, drops matches that contradict
+               it and adds those that it makes likely; "none" does not
+    camera1    of the first image: the matrix K, (fx, fy, cx, cy), or a focal length in pixels; None = not known
+    camera2    of the second image; None = as camera1
+    options    those of the matcher by name (:func:`asj.match_options` lists them), for instance ratio=1.3, descriptor="sift"
+
+    >>> import numpy as np
+    >>> random = np.random.default_rng(1)
+    >>> wall = np.kron(random.integers(40, 220, (9, 12)), np.ones((40, 40))).astype(np.uint8)
+    >>> found = match(detect(wall[:300, :400]), detect(wall[20:320, 30:430]))
+    >>> np.median(found.xy1 - found.xy2, axis=0).round(1).tolist()
+    [30.0, 20.0]
     """
     for features in (features1, features2):
         if features.preset == "default" and preset != "paper":
             warnings.warn('features of asj.detect(preset="default") give fewer matches; use preset="match"', stacklevel=2)
             break
     record = MATCHER.fill(preset, options)
+    cameras = (camera1, camera1 if camera2 is None else camera2)
+    fill_geometry(record, geometry, cameras, [(features.width, features.height) for features in (features1, features2)])
+    context = context or current()
     place = ffi.new("asj_match_result **")
-    one, two = features1.junctions, features2.junctions
-    (context or current()).call(
-        lib.asj_match, features1._view.pointer, arrays.pointer(one, "asj_junction"), len(one),
-        features2._view.pointer, arrays.pointer(two, "asj_junction"), len(two), record, place,
-    )  # fmt: skip
+    one, two = features1.described(record, context), features2.described(record, context)
+    context.call(lib.asj_match_features, one, two, record, place)
     return Matches(ffi.gc(place[0], _free), features1, features2)
 
 

@@ -13,6 +13,9 @@ from ._native import ffi, lib
 from .errors import OptionError, error, text
 
 
+_IMAGE_GROUPS = ("frames of L-junctions", "description")
+
+
 @dataclass(frozen=True)
 class OptionInfo:
     """One row of an option table."""
@@ -23,6 +26,7 @@ class OptionInfo:
     minimum: float
     maximum: float
     choices: tuple[str, ...]
+    group: str
 
 
 class _Table:
@@ -33,6 +37,7 @@ class _Table:
         self._preset, self._set, self._get = preset, set_, get
         self.rows = [_info(row(i)) for i in range(count())]
         self.keys = [info.key for info in self.rows]
+        self._image_keys = [info.key for info in self.rows if info.group in _IMAGE_GROUPS or info.key in ("neighbours", "separation")]
 
     def fill(self, preset: str, values: Mapping[str, object]) -> Any:
         """A C struct with the preset's values and those given."""
@@ -46,6 +51,10 @@ class _Table:
             self._assign(options, key, value)
         return options
 
+    def of_an_image(self, options: Any) -> tuple[str, ...]:
+        """The values of the matcher's options that concern one image alone (asj_features_create())."""
+        return tuple(self._value(options, key) for key in self._image_keys)
+
     def _assign(self, options: Any, key: str, value: object) -> None:
         message = ffi.new("char[512]")
         status = self._set(options, key.encode(), _written(value).encode(), message, 512)
@@ -58,14 +67,14 @@ class _Table:
 
     def values(self, options: Any) -> dict[str, str]:
         """All options as text."""
-        result = {}
+        return {key: self._value(options, key) for key in self.keys}
+
+    def _value(self, options: Any, key: str) -> str:
         room = ffi.new("char[256]")
-        for key in self.keys:
-            status = self._get(options, key.encode(), room, 256)
-            if status != lib.ASJ_OK:
-                raise error(status, f"{key}: no value")
-            result[key] = text(room)
-        return result
+        status = self._get(options, key.encode(), room, 256)
+        if status != lib.ASJ_OK:
+            raise error(status, f"{key}: no value")
+        return text(room)
 
 
 def _info(row: Any) -> OptionInfo:
@@ -75,7 +84,7 @@ def _info(row: Any) -> OptionInfo:
         while row.choices[i] != ffi.NULL:
             choices.append(text(row.choices[i]))
             i += 1
-    return OptionInfo(text(row.key), text(row.unit), text(row.help), row.minimum, row.maximum, tuple(choices))
+    return OptionInfo(text(row.key), text(row.unit), text(row.help), row.minimum, row.maximum, tuple(choices), text(row.group))
 
 
 def _written(value: object) -> str:

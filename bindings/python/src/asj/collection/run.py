@@ -42,6 +42,9 @@ class Summary:
 class Workers(Protocol):
     """Who does the work. Results come in any order, each once."""
 
+    def close(self) -> None:
+        """The work is done, or will not be."""
+
     def detect(self, plan: Plan, images: list[tuple[int, str]]) -> Iterator[tuple[int, Detected]]:
         """Results of images by number."""
 
@@ -52,12 +55,15 @@ class Workers(Protocol):
 def collect(plan: Plan, store: Store, workers: Workers, report: Report | None = None) -> Summary:
     """Does what is waiting in the store. A call that was killed is gone on with by the next one."""
     begin = time.monotonic()
-    images = store.waiting_images()
-    for number, detected in _reported("images", workers.detect(plan, images), len(images), report):
-        store.save_image(number, detected)
-    pairs = store.waiting_pairs()
-    for number, matched in _reported("pairs", workers.match(plan, store, pairs), len(pairs), report):
-        store.save_pair(number, matched)
+    try:
+        images = store.waiting_images()
+        for number, detected in _reported("images", workers.detect(plan, images), len(images), report):
+            store.save_image(number, detected)
+        pairs = store.waiting_pairs()
+        for number, matched in _reported("pairs", workers.match(plan, store, pairs), len(pairs), report):
+            store.save_pair(number, matched)
+    finally:
+        workers.close()
     of_images, of_pairs = store.counts("images"), store.counts("pairs")
     return Summary(
         sum(of_images.values()), of_images.get("failed", 0), sum(of_pairs.values()), of_pairs.get("failed", 0),
@@ -83,36 +89,48 @@ def _begin_process(threads: int) -> None:
     tasks.start(threads)
 
 
-def _detect(folder: Path, number: int, name: str, options: dict[str, str]) -> tuple[int, Detected]:
-    return number, tasks.detect_image(folder / name, options)[0]
+def _detect(folder: Path, number: int, name: str, detector: dict[str, str], matcher: dict[str, str]) -> tuple[int, Detected]:
+    detected, features = tasks.detect_image(folder / name, detector, matcher)
+    if features is not None:
+        _kept.put(folder / name, features)
+    return number, detected
 
 
 def _match(folder: Path, number: int, records: list[tuple[str, bytes]], plan_options: tuple[dict[str, str], dict[str, str]]) -> tuple[int, Matched]:
     detector, matcher = plan_options
     try:
-        one, two = (_kept.get(folder / name, data, detector) for name, data in records)
+        one, two = (_kept.get(folder / name, data, detector, matcher) for name, data in records)
     except Exception as bad:  # an image that was there for detection and is not any more
         return number, Matched(str(bad) or type(bad).__name__, None, None, None)
     return number, tasks.match_images(one, two, matcher)
 
 
 class Processes:
-    """Worker processes of this machine. Pairs are handed out in groups that share images."""
+    """Worker processes of this machine, each with the features of the images that it used last."""
 
     def __init__(self, jobs: int, threads: int = 1) -> None:
         if jobs < 1:
             raise ValueError(f"jobs is {jobs}: 1 or more")
         self.jobs, self.threads = jobs, threads
+        self._executor: concurrent.futures.ProcessPoolExecutor | None = None
 
     def _pool(self) -> concurrent.futures.ProcessPoolExecutor:
-        return concurrent.futures.ProcessPoolExecutor(
-            self.jobs, multiprocessing.get_context("spawn"), initializer=_begin_process, initargs=(self.threads,)
-        )
+        if self._executor is None:
+            self._executor = concurrent.futures.ProcessPoolExecutor(
+                self.jobs, multiprocessing.get_context("spawn"), initializer=_begin_process, initargs=(self.threads,)
+            )
+        return self._executor
+
+    def close(self) -> None:
+        """Ends the processes."""
+        executor, self._executor = self._executor, None
+        if executor is not None:
+            executor.shutdown(cancel_futures=True)
 
     def detect(self, plan: Plan, images: list[tuple[int, str]]) -> Iterator[tuple[int, Detected]]:
         """One task an image."""
-        with self._pool() as pool:
-            yield from _bounded(pool, self.jobs, ((_detect, plan.folder, number, name, plan.detector) for number, name in images))
+        work = ((_detect, plan.folder, number, name, plan.detector, plan.matcher) for number, name in images)
+        yield from _bounded(self._pool, self.jobs, work)
 
     def match(self, plan: Plan, store: Store, pairs: list[tuple[int, int, int]]) -> Iterator[tuple[int, Matched]]:
         """One task a pair."""
@@ -123,16 +141,15 @@ class Processes:
                 records = [(names[image], store.features(image).features or b"") for image in both]
                 yield (_match, plan.folder, number, records, (plan.detector, plan.matcher))
 
-        with self._pool() as pool:
-            yield from _bounded(pool, self.jobs, work())
+        yield from _bounded(self._pool, self.jobs, work())
 
 
-def _bounded(pool: concurrent.futures.Executor, jobs: int, work: Iterator[tuple[Any, ...]]) -> Iterator[Any]:
+def _bounded(pool: Callable[[], concurrent.futures.Executor], jobs: int, work: Iterator[tuple[Any, ...]]) -> Iterator[Any]:
     """Results as they come; only a few tasks wait in the pool, whatever the length of the list."""
     waiting: set[concurrent.futures.Future[Any]] = set()
     try:
         for task in work:
-            waiting.add(pool.submit(*task))
+            waiting.add(pool().submit(*task))
             if len(waiting) >= 4 * jobs:
                 done, waiting = concurrent.futures.wait(waiting, return_when=concurrent.futures.FIRST_COMPLETED)
                 for future in done:
@@ -148,8 +165,8 @@ def _bounded(pool: concurrent.futures.Executor, jobs: int, work: Iterator[tuple[
 # ---- Dask ----
 
 
-def _dask_detect(path: Path, options: dict[str, str]) -> tuple[Detected, Features | None]:
-    return tasks.detect_image(path, options)
+def _dask_detect(path: Path, detector: dict[str, str], matcher: dict[str, str]) -> tuple[Detected, Features | None]:
+    return tasks.detect_image(path, detector, matcher)
 
 
 def _dask_summary(result: tuple[Detected, Features | None]) -> Detected:
@@ -168,6 +185,10 @@ class Dask:
     def __init__(self, client: Any) -> None:
         self.client = client
         self._features: dict[int, Any] = {}
+
+    def close(self) -> None:
+        """The features may go."""
+        self._features.clear()
 
     def detect(self, plan: Plan, images: list[tuple[int, str]]) -> Iterator[tuple[int, Detected]]:
         """One task an image; a second one brings its junctions here."""
@@ -192,7 +213,8 @@ class Dask:
 
     def _feature(self, plan: Plan, number: int, name: str) -> Any:
         if number not in self._features:
-            self._features[number] = self.client.submit(_dask_detect, (plan.folder / name).absolute(), plan.detector, pure=False, retries=2)
+            path = (plan.folder / name).absolute()
+            self._features[number] = self.client.submit(_dask_detect, path, plan.detector, plan.matcher, pure=False, retries=2)
         return self._features[number]
 
     def _results(self, work: Iterable[tuple[int, Any]]) -> Iterator[tuple[int, Any]]:

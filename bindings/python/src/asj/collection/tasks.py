@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import context, errors, images
-from ..features import Features, detect
+from ..features import DescribedFeatures, Features, detect
 from ..matches import Matches, match
 
-_KEPT = 40  # images that a process keeps in memory: two sides of a tile of pairs, and a few
+_KEPT = 512 << 20  # bytes of features that a process keeps in memory: a hundred photographs of a megapixel
 
 
 @dataclass(frozen=True)
@@ -44,12 +44,13 @@ def start(threads: int) -> None:
     context.set_current(context.Context(threads=threads))
 
 
-def detect_image(path: Path, options: dict[str, str]) -> tuple[Detected, Features | None]:
-    """The junctions of an image file."""
+def detect_image(path: Path, detector: dict[str, str], matcher: dict[str, str]) -> tuple[Detected, Features | None]:
+    """The junctions of an image file, and what matching needs of it."""
     try:
         pixels = images.read(path)
-        features = detect(pixels, **_keywords(options))
-        return Detected(None, features.width, features.height, images.focal_length(path), features.junctions.tobytes()), features
+        features = detect(pixels, **_keywords(detector))
+        result = Detected(None, features.width, features.height, images.focal_length(path), features.junctions.tobytes())
+        return result, features.without_image(**_keywords(matcher))
     except (errors.Error, OSError, MemoryError) as bad:
         return Detected(_line(bad), 0, 0, None, None), None
 
@@ -64,22 +65,33 @@ def match_images(one: Features, two: Features, options: dict[str, str]) -> Match
 
 
 class Kept:
-    """The images that this process used last."""
+    """The images that this process used last, up to a number of bytes."""
 
-    def __init__(self) -> None:
+    def __init__(self, most: int = _KEPT) -> None:
+        self._most, self._bytes = most, 0
         self._features: OrderedDict[Path, Features] = OrderedDict()
 
-    def get(self, path: Path, records: bytes, options: dict[str, str]) -> Features:
+    def get(self, path: Path, records: bytes, detector: dict[str, str], matcher: dict[str, str]) -> Features:
         """The features of an image whose junctions are known."""
         features = self._features.get(path)
         if features is None:
-            features = Features.from_records(images.read(path), records, **_keywords(options))
-            self._features[path] = features
-            if len(self._features) > _KEPT:
-                self._features.popitem(last=False)
+            found = Features.from_records(images.read(path), records, **_keywords(detector))
+            features = self.put(path, found.without_image(**_keywords(matcher)))
         else:
             self._features.move_to_end(path)
         return features
+
+    def put(self, path: Path, features: Features) -> Features:
+        """Keeps them; the least used ones go."""
+        self._features[path] = features
+        self._bytes += _size(features)
+        while self._bytes > self._most and len(self._features) > 2:
+            self._bytes -= _size(self._features.popitem(last=False)[1])
+        return features
+
+
+def _size(features: Features) -> int:
+    return features.nbytes if isinstance(features, DescribedFeatures) else 0
 
 
 def line_indices(found: Matches) -> NDArray[np.uint32]:

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Two-view geometry: what relates the two images of a match."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._native import lib
+from .errors import ArgumentError, OptionError, text
+
+Camera = Union[float, Sequence[float], NDArray[Any]]
+MODELS = {
+    "none": lib.ASJ_GEOMETRY_NONE,
+    "auto": lib.ASJ_GEOMETRY_AUTO,
+    "essential": lib.ASJ_GEOMETRY_ESSENTIAL,
+    "fundamental": lib.ASJ_GEOMETRY_FUNDAMENTAL,
+    "homography": lib.ASJ_GEOMETRY_HOMOGRAPHY,
+}
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """The geometry of two views. Only with status "accepted" do the other fields hold an answer."""
+
+    #: "accepted", "chance", "too few", "ambiguous", "degenerate"
+    status: str
+    #: "essential", "fundamental", "homography"
+    model: str
+    #: (3, 3) homography from image 1 to image 2, or fundamental matrix F with x2' F x1 = 0; pixels, norm 1
+    matrix: NDArray[np.float64]
+    #: (3, 3) and (3,) with x2 ~ R x1 + t in camera coordinates, |t| = 1; None where they are not determined
+    rotation: NDArray[np.float64] | None
+    translation: NDArray[np.float64] | None
+    #: (6, 6) of rotation (rad) and translation; None as above
+    covariance: NDArray[np.float64] | None
+    #: px, of both cameras; 0 when they are not known
+    focal: tuple[float, float]
+    #: log10 of how often chance brings such a geometry
+    log10_nfa: float
+    #: sum of the probabilities of the candidates
+    inliers: float
+
+    def __bool__(self) -> bool:
+        return self.status == "accepted"
+
+
+def fill(options: Any, model: str, cameras: Sequence[Camera | None], sizes: Sequence[tuple[int, int]]) -> None:
+    """Sets the geometry of an asj_match_options."""
+    if model not in MODELS:
+        raise OptionError(f"geometry is {model!r}: one of {', '.join(MODELS)}")
+    if model == "none" and any(camera is not None for camera in cameras):
+        raise OptionError('a camera changes nothing without geometry="auto" (or another)')
+    options.geometry.model = MODELS[model]
+    for place, camera, (width, height) in zip(options.geometry.cameras, cameras, sizes):
+        if camera is not None:
+            place.fx, place.fy, place.cx, place.cy = _numbers(camera, width, height)
+
+
+def _numbers(camera: ArrayLike, width: int, height: int) -> tuple[float, float, float, float]:
+    """Focal lengths and principal point of a matrix K, of (fx, fy, cx, cy), or of a focal length alone."""
+    values = np.asarray(camera, np.float64)
+    if values.shape == (3, 3):
+        numbers = [values[0, 0], values[1, 1], values[0, 2], values[1, 2]]
+    elif values.shape == (4,):
+        numbers = values.tolist()
+    elif values.shape == ():
+        numbers = [float(values), float(values), (width - 1) / 2, (height - 1) / 2]
+    else:
+        raise ArgumentError(f"a camera of shape {values.shape}: a matrix K (3, 3), (fx, fy, cx, cy), or a focal length in pixels")
+    if not np.isfinite(numbers).all() or numbers[0] <= 0 or numbers[1] <= 0:
+        raise ArgumentError("a camera must have finite numbers and focal lengths above 0")
+    return float(numbers[0]), float(numbers[1]), float(numbers[2]), float(numbers[3])
+
+
+def read(record: Any) -> Geometry | None:
+    """An asj_geometry; None when none was asked for."""
+    if record.status == lib.ASJ_GEOMETRY_NOT_ASKED:
+        return None
+
+    def array(field: Any, *shape: int) -> NDArray[np.float64]:
+        return np.array(list(field), np.float64).reshape(shape)
+
+    posed = bool(record.has_pose)
+    return Geometry(
+        text(lib.asj_geometry_status_name(record.status)), text(lib.asj_geometry_model_name(record.model)), array(record.matrix, 3, 3),
+        array(record.rotation, 3, 3) if posed else None, array(record.translation, 3) if posed else None,
+        array(record.covariance, 6, 6) if posed else None, (record.focal[0], record.focal[1]), record.log10_nfa, record.inliers,
+    )  # fmt: skip
