@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """A COLMAP database of a collection, written through pycolmap, so that it has the form of the installed version.
 
-Key points are the junctions, with their affine shape, moved by half a pixel (COLMAP's first pixel has its centre at (0.5, 0.5)).
+Key points are the junctions, each where all its matches together put it (locations.py), with their affine shape, moved by half a pixel
+(COLMAP's first pixel has its centre at (0.5, 0.5)).
 The shape takes the unit circle to an ellipse along two branches of the junction. Images have a camera each, SIMPLE_RADIAL, with the
 focal length of their EXIF data where they have one and 1.2 times the longer side elsewhere, as COLMAP itself guesses.
 """
@@ -9,6 +10,7 @@ focal length of their EXIF data where they have one and 1.2 times the longer sid
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,24 +18,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import arrays
+from . import locations
 from .output import whole_file
 from .store import Store
 
 
-def write(store: Store, path: Path, verify: bool = True) -> None:
-    """Everything in the store; with `verify` also two-view geometries, which reconstruction needs."""
+def write(store: Store, path: Path, verify: bool = True, refine: bool = True) -> None:
+    """Everything in the store; with `verify` also two-view geometries, which reconstruction needs. `refine`: junctions stand where their
+    matches put them, not where each was detected."""
     import pycolmap
 
     with whole_file(path) as temporary:
         os.remove(temporary)
         database = pycolmap.Database.open(temporary)
         try:
-            numbers = {number: _image(database, pycolmap, name, detected) for number, name, detected in store.detected() if detected.features is not None}
-            for one, two, matched in store.matched():
-                if matched.matches:
-                    records = np.frombuffer(matched.matches, arrays.struct_type("asj_junction_match"))
-                    pairs = np.stack([records["junction1"], records["junction2"]], axis=1)
-                    database.write_matches(numbers[one], numbers[two], np.ascontiguousarray(pairs, np.uint32))
+            moved = _locations(store) if refine else {}
+            numbers = {}
+            for number, name, detected in store.detected():
+                if detected.features is not None:
+                    numbers[number] = _image(database, pycolmap, name, detected, moved.get(number))
+            for one, two, records in _matches(store):
+                pairs = np.stack([records["junction1"], records["junction2"]], axis=1)
+                database.write_matches(numbers[one], numbers[two], np.ascontiguousarray(pairs, np.uint32))
         finally:
             database.close()
         if verify:
@@ -42,7 +48,23 @@ def write(store: Store, path: Path, verify: bool = True) -> None:
             Path(f"{temporary}{left}").unlink(missing_ok=True)
 
 
-def _image(database: Any, pycolmap: Any, name: str, detected: Any) -> int:
+def _matches(store: Store) -> Iterator[tuple[int, int, NDArray[Any]]]:
+    for one, two, matched in store.matched():
+        if matched.matches:
+            yield one, two, np.frombuffer(matched.matches, arrays.struct_type("asj_junction_match"))
+
+
+def _locations(store: Store) -> dict[int, NDArray[np.float32]]:
+    """Where the junctions of each image stand for all their matches."""
+    detected = {}
+    for number, _, image in store.detected():
+        if image.features is not None:
+            junctions = np.frombuffer(image.features, arrays.struct_type("asj_junction"))
+            detected[number] = np.stack([junctions["x"], junctions["y"]], axis=1)
+    return locations.refine(detected, _matches(store))
+
+
+def _image(database: Any, pycolmap: Any, name: str, detected: Any, moved: NDArray[np.float32] | None) -> int:
     focal = detected.focal or 1.2 * max(detected.width, detected.height)
     camera = pycolmap.Camera(
         model="SIMPLE_RADIAL", width=detected.width, height=detected.height, params=[focal, detected.width / 2, detected.height / 2, 0.0]
@@ -50,8 +72,10 @@ def _image(database: Any, pycolmap: Any, name: str, detected: Any) -> int:
     camera.has_prior_focal_length = detected.focal is not None
     camera_id = database.write_camera(camera)
     number = database.write_image(pycolmap.Image(name=name, camera_id=camera_id))
-    junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
-    database.write_keypoints(number, key_points(junctions))
+    points = key_points(np.frombuffer(detected.features, arrays.struct_type("asj_junction")))
+    if moved is not None:
+        points[:, :2] = moved + np.float32(0.5)
+    database.write_keypoints(number, points)
     return int(number)
 
 
