@@ -134,7 +134,9 @@ typedef struct asj_match_result {
  * result           on success *result belongs to the caller until asj_match_result_free()
  *
  * Each location takes part in one match at most. The result does not depend on the number of threads, and swapping the images
- * swaps the matches. Memory: the patches (patch_size^2 x 2 bytes for each frame) and short lists.
+ * swaps the matches. Memory: the patches (patch_size^2 x 2 bytes for each frame) and short lists. Time: all pairs of L-junctions
+ * are looked at, so twice as many in either image take four times as long (2 000 junctions of five branches at one point, 20 000
+ * L-junctions that all look alike: some ten seconds). The caller is asked every 50 ms whether to go on.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that is not finite, lies more than ASJ_MAX_OUTSIDE px outside its image, has a
  *                      wrong branch count or a negative length
@@ -159,7 +161,8 @@ typedef struct asj_segment_match {
 
 /* The matches as line-segment matches: the two branches of each match, then the other branches of the same two junctions that
  * the map takes to each other; those whose far ends correspond at least as `minimum_end` says (ASJ_END_...). A pair found
- * from both its ends comes once. Writes at most `capacity` of them and returns how many there are in all (ASJ_MAX_BRANCHES x
+ * from both its ends comes once: every pair is compared with every match, which takes 0.2 s for 5 000 matches and a second for
+ * 10 000. Writes at most `capacity` of them and returns how many there are in all (ASJ_MAX_BRANCHES x
  * match_count at most). */
 ASJ_API size_t asj_match_segments(const asj_match_result *result, int32_t minimum_end,
                                   asj_segment_match *segments, size_t capacity);

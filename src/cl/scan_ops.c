@@ -6,6 +6,7 @@
 #include "detect.h"
 #include "overrides.h"
 #include "planes.h"
+#include "core/watch.h"
 #include "detect/ray_walk.h"
 #include "state.h"
 
@@ -272,8 +273,10 @@ asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const as
         .tolerance = scan->tolerance, .axial = scan->axial, .bridge = scan->axial ? scan->field->sectors.radius : -1,
         .threshold = scan->threshold, .ahead = asj_cl_get_limits(context)->type == ASJ_DEVICE_CPU ? 4 : 32, .edge = ASJ_SCAN_EDGE,
         .stride = (int32_t)frame->stride, .base = status == ASJ_OK ? context->cl->detect->first : 0};
+    asj_watch watch;
+    asj_watch_start(&watch, context, ASJ_STAGE_SCAN);
     while (status == ASJ_OK && counts[1] > 0) {
-        status = walk(context, state, &image, count, counts);
+        status = asj_watch_stops(&watch, NULL) ? asj_watch_end(&watch) : walk(context, state, &image, count, counts);
         if (status == ASJ_OK && counts[0] > state->done)
             status = compute(context, state, scan->field, frame, counts[0]);
     }

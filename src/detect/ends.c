@@ -62,11 +62,11 @@ static void sort_by_row(const asj_hypothesis *hypotheses, size_t count, const as
         qsort(order, count, sizeof *order, by_row);
 }
 
-void asj_ends_mark(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order)
+void asj_ends_mark(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order, asj_watch *watch)
 {
     double distance;
     sort_by_row(hypotheses, count, order);
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count && !(watch && asj_watch_stops(watch, NULL)); i++)
         for (int32_t b = 0; b < hypotheses[i].branch_count; b++) {
             asj_hypothesis_branch *branch = &hypotheses[i].branches[b];
             if (find_end(&hypotheses[i], branch, fmax(reach, AT_END), order, count, &distance))
@@ -91,10 +91,10 @@ static void snap(const asj_hypothesis *hypothesis, double reach, const asj_hypot
     branch->end_variance = hypothesis->location_variance + end->location_variance;
 }
 
-void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order)
+void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order, asj_watch *watch)
 {
     sort_by_row(hypotheses, count, order);
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count && !(watch && asj_watch_stops(watch, NULL)); i++)
         for (int32_t b = 0; b < hypotheses[i].branch_count; b++)
             snap(&hypotheses[i], reach, order, count, &hypotheses[i].branches[b]);
 }

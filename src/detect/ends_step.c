@@ -44,7 +44,10 @@ asj_status asj_step_ends(asj_detection_run *run)
     const asj_hypothesis **order = asj_allocate_list(&run->context->memory, asj_detection_run_room(count), sizeof *order);
     if (!order)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", count);
-    asj_ends_mark(run->hypotheses, count, run->options->snap_distance, order);
+    asj_watch watch;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
+    asj_ends_mark(run->hypotheses, count, run->options->snap_distance, order, &watch);
     asj_release(&run->context->memory, order);
-    return measure_all(run);
+    const asj_status status = asj_watch_end(&watch);
+    return status == ASJ_OK ? measure_all(run) : status;
 }

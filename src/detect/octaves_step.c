@@ -59,9 +59,11 @@ static asj_status snap_ends(asj_detection_run *run)
     const asj_hypothesis **order = asj_allocate_list(&run->context->memory, asj_detection_run_room(count), sizeof *order);
     if (!order)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", count);
-    asj_ends_snap(run->hypotheses, count, run->options->snap_distance, order);
+    asj_watch watch;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
+    asj_ends_snap(run->hypotheses, count, run->options->snap_distance, order, &watch);
     asj_release(&run->context->memory, order);
-    return ASJ_OK;
+    return asj_watch_end(&watch);
 }
 
 asj_status asj_step_merge_octaves(asj_detection_run *run)

@@ -18,7 +18,7 @@
  * there, less in an image with fewer corners. */
 #include "consensus.h"
 #include "support.h"
-#include "core/threads.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -128,12 +128,13 @@ typedef struct ratings {
 typedef struct job {
     const asj_match_run *run;
     const ratings *r;
+    asj_watch *watch;
 } job;
 
 static void rate_some(const void *data, const asj_part *part)
 {
     const job *j = data;
-    for (int64_t k = part->first; k < part->end; k++) {
+    for (int64_t k = part->first; k < part->end && !asj_watch_stops(j->watch, part); k++) {
         asj_candidate *c = &j->run->candidates.list[k];
         const float in1 = sum_up(&j->run->support.side[0], c->number, j->r->confidence);
         const float in2 = sum_up(&j->run->support.side[1], c->number, j->r->confidence);
@@ -142,15 +143,17 @@ static void rate_some(const void *data, const asj_part *part)
     }
 }
 
-static void relax(asj_match_run *run, half halves[2], const ratings *r)
+static asj_status relax(asj_match_run *run, half halves[2], const ratings *r)
 {
     asj_candidate *list = run->candidates.list;
     const int64_t count = (int64_t)run->candidates.count;
-    const job j = {run, r};
+    asj_watch watch;
+    const job j = {run, r, &watch};
     const float needed = asj_needed_support(run), least = needed > LEAST_NEEDED ? needed : LEAST_NEEDED;
     for (int64_t k = 0; k < count; k++)
         r->confidence[list[k].number - 1] = r->appearance[k];
-    for (int step = 0; step < STEPS; step++) {
+    asj_watch_start(&watch, run->context, ASJ_STAGE_ASSIGN);
+    for (int step = 0; step < STEPS && !watch.stopped; step++) {
         asj_parallel(run->context, asj_threads_for(run->context, count, LEAST_CANDIDATES), count, 0, rate_some, &j);
         best_of_locations(&halves[0], r->score, 1);
         best_of_locations(&halves[1], r->score, 1);
@@ -159,6 +162,7 @@ static void relax(asj_match_run *run, half halves[2], const ratings *r)
             r->confidence[list[k].number - 1] = r->score[k] / (best > least ? best : least);
         }
     }
+    return asj_watch_end(&watch);
 }
 
 static void score_alone(asj_candidates *candidates)
@@ -187,7 +191,7 @@ asj_status asj_consensus(asj_match_run *run)
     if (status == ASJ_OK) {
         const ratings r = {block, block + count, block + 2 * count};
         rate(run, halves, r.score, r.appearance);
-        relax(run, halves, &r);
+        status = relax(run, halves, &r);
     }
     for (int side = 0; side < 2; side++)
         half_free(memory, &halves[side]);

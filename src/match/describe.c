@@ -4,7 +4,7 @@
  * pair's map, are in patch_induced.c. */
 #include "describe.h"
 #include "sift.h"
-#include "core/threads.h"
+#include "core/watch.h"
 
 int32_t asj_patch_length(const asj_match_options *options)
 {
@@ -29,6 +29,7 @@ static void describe(const asj_match_options *options, const asj_pyramid *pyrami
 typedef struct job {
     const asj_match_options *options;
     asj_image_features *features;
+    asj_watch *watch;
 } job;
 
 static void describe_some(const void *data, const asj_part *part)
@@ -37,7 +38,7 @@ static void describe_some(const void *data, const asj_part *part)
     const asj_match_options *options = j->options;
     asj_image_features *features = j->features;
     const size_t length = (size_t)asj_patch_length(options);
-    for (int64_t f = part->first; f < part->end; f++) {
+    for (int64_t f = part->first; f < part->end && !asj_watch_stops(j->watch, part); f++) {
         uint16_t grey[ASJ_PATCH_SAMPLES];
         features->usable[f] = (uint8_t)asj_patch_sample(&features->pyramid, &features->l_junctions.frames[f], options->patch_size,
                                                         options->window_start, options->window_end, grey);
@@ -47,9 +48,11 @@ static void describe_some(const void *data, const asj_part *part)
 
 asj_status asj_describe_frames(asj_context *context, const asj_match_options *options, asj_image_features *features)
 {
-    const job j = {options, features};
+    asj_watch watch;
+    const job j = {options, features, &watch};
+    asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
     asj_parallel(context, context->threads, features->l_junctions.frame_count, 0, describe_some, &j);
-    return ASJ_OK;
+    return asj_watch_end(&watch);
 }
 
 asj_status asj_describe(asj_context *context, const asj_match_options *options, asj_image_features *features)

@@ -11,7 +11,8 @@
  * itself. */
 #include "l_junctions.h"
 #include "nearest.h"
-#include "core/threads.h"
+#include "core/angle.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,6 +27,7 @@
 #define LEAST_APART 4.0      /* px */
 #define LEAST_LOCATIONS 32   /* for a thread */
 #define OPPOSITE (-0.978147601) /* cosine of 180 - 12 degrees: half the least opening of branches, and less */
+#define WITHIN 0.2095 /* rad: 12 degrees and a little more */
 
 static asj_status check(asj_context *context, const asj_junction_list *input)
 {
@@ -137,13 +139,14 @@ static uint32_t find_nearest(const asj_l_junctions *all, uint32_t location, doub
 typedef struct job {
     const asj_match_options *options;
     asj_l_junctions *all;
+    asj_watch *watch;
 } job;
 
 static void find_some(const void *data, const asj_part *part)
 {
     const job *j = data;
     asj_l_junctions *all = j->all;
-    for (int64_t p = part->first; p < part->end; p++)
+    for (int64_t p = part->first; p < part->end && !asj_watch_stops(j->watch, part); p++)
         all->neighbour_count[p] = find_nearest(all, (uint32_t)p, j->options->separation, all->neighbour_limit,
                                                all->neighbour + (size_t)p * all->neighbour_limit);
 }
@@ -157,9 +160,11 @@ static asj_status find_neighbours(asj_context *context, const asj_match_options 
     all->neighbour_count = asj_allocate(&context->memory, all->location_count, sizeof(uint32_t));
     if (!all->neighbour || !all->neighbour_count)
         return no_memory(context);
-    const job j = {options, all};
+    asj_watch watch;
+    const job j = {options, all, &watch};
+    asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
     asj_parallel(context, asj_threads_for(context, all->location_count, LEAST_LOCATIONS), all->location_count, 0, find_some, &j);
-    return ASJ_OK;
+    return asj_watch_end(&watch);
 }
 
 /* --- lengths and frames ----------------------------------------------------------------------------------------------------- */
@@ -229,7 +234,7 @@ static void fill_frames(asj_l_junctions *all)
 static void prepare_some(const void *data, const asj_part *part)
 {
     const job *j = data;
-    for (int64_t i = part->first; i < part->end; i++)
+    for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++)
         prepare(j->all, (uint32_t)i, j->options->length_hypotheses);
 }
 
@@ -241,8 +246,12 @@ static asj_status make_frames(asj_context *context, const asj_match_options *opt
     all->first_frame = asj_allocate(memory, (size_t)all->count + 1, sizeof *all->first_frame);
     if (!all->lengths || !all->direction || !all->first_frame)
         return no_memory(context);
-    const job j = {options, all};
+    asj_watch watch;
+    const job j = {options, all, &watch};
+    asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
     asj_parallel(context, asj_threads_for(context, all->count, LEAST_LOCATIONS), all->count, 0, prepare_some, &j);
+    if (watch.stopped)
+        return asj_watch_end(&watch);
     uint32_t total = 0;
     for (uint32_t i = 0; i < all->count; i++) {
         all->first_frame[i] = total;
@@ -265,14 +274,53 @@ static void set_ends(const asj_junction_list *input, asj_l_junctions *all)
     }
 }
 
-/* Does another L-junction of the location have a branch opposite to u? */
-static int continues(const asj_l_junctions *all, uint32_t l, const double u[2])
+/* A branch of the L-junctions of one location. */
+typedef struct spoke {
+    double angle; /* rad in [-pi, pi] */
+    uint32_t l;
+    int32_t branch;
+} spoke;
+
+static int by_angle(const void *left, const void *right)
 {
-    const uint32_t location = all->location[l];
-    for (uint32_t m = all->first_of_location[location]; m < all->first_of_location[location + 1]; m++) {
-        const double *v = all->direction + 4 * (size_t)all->l_of_location[m];
-        if (all->l_of_location[m] != l &&
-            (u[0] * v[0] + u[1] * v[1] < OPPOSITE || u[0] * v[2] + u[1] * v[3] < OPPOSITE))
+    const spoke *p = left, *q = right;
+    if (p->angle != q->angle)
+        return p->angle < q->angle ? -1 : 1;
+    return p->l != q->l ? p->l < q->l ? -1 : 1 : p->branch - q->branch;
+}
+
+/* Rising by angle. Thousands of L-junctions may share a location. */
+static uint32_t sort_spokes(const asj_l_junctions *all, uint32_t location, spoke *spokes)
+{
+    uint32_t count = 0;
+    for (uint32_t m = all->first_of_location[location]; m < all->first_of_location[location + 1]; m++)
+        for (int32_t branch = 0; branch < 2; branch++) {
+            const double *v = all->direction + 4 * (size_t)all->l_of_location[m] + 2 * branch;
+            spokes[count++] = (spoke){atan2(v[1], v[0]), all->l_of_location[m], branch};
+        }
+    qsort(spokes, count, sizeof *spokes, by_angle);
+    return count;
+}
+
+/* Does another L-junction of the location have a branch opposite to u? Looked for from OPPOSITE on, which decides by itself. */
+static int continues(const asj_l_junctions *all, const spoke *spokes, uint32_t count, uint32_t l, const double u[2])
+{
+    const double opposite = atan2(-u[1], -u[0]), least = opposite - WITHIN, from = least < -ASJ_PI ? least + ASJ_TWO_PI : least;
+    uint32_t low = 0, high = count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (spokes[middle].angle < from)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (uint32_t k = 0; k < count; k++) {
+        const spoke *s = &spokes[(low + k) % count];
+        const double *v = all->direction + 4 * (size_t)s->l + 2 * s->branch;
+        const double apart = fabs(s->angle - opposite);
+        if (apart > WITHIN && apart < ASJ_TWO_PI - WITHIN)
+            return 0;
+        if (s->l != l && u[0] * v[0] + u[1] * v[1] < OPPOSITE)
             return 1;
     }
     return 0;
@@ -280,13 +328,26 @@ static int continues(const asj_l_junctions *all, uint32_t l, const double u[2])
 
 static asj_status find_t_junctions(asj_context *context, asj_l_junctions *all)
 {
-    all->t_junction = asj_allocate(&context->memory, all->count, sizeof *all->t_junction);
-    if (!all->t_junction)
-        return no_memory(context);
-    for (uint32_t l = 0; l < all->count; l++) {
-        const double *u = all->direction + 4 * (size_t)l;
-        all->t_junction[l] = continues(all, l, u) != continues(all, l, u + 2);
+    uint32_t most = 0;
+    for (uint32_t p = 0; p < all->location_count; p++) {
+        const uint32_t here = all->first_of_location[p + 1] - all->first_of_location[p];
+        most = here > most ? here : most;
     }
+    spoke *spokes = asj_allocate(&context->memory, 2 * (size_t)most, sizeof *spokes);
+    all->t_junction = asj_allocate(&context->memory, all->count, sizeof *all->t_junction);
+    if (!all->t_junction || !spokes) {
+        asj_release(&context->memory, spokes);
+        return no_memory(context);
+    }
+    for (uint32_t p = 0; p < all->location_count; p++) {
+        const uint32_t count = sort_spokes(all, p, spokes);
+        for (uint32_t m = all->first_of_location[p]; m < all->first_of_location[p + 1]; m++) {
+            const uint32_t l = all->l_of_location[m];
+            const double *u = all->direction + 4 * (size_t)l;
+            all->t_junction[l] = continues(all, spokes, count, l, u) != continues(all, spokes, count, l, u + 2);
+        }
+    }
+    asj_release(&context->memory, spokes);
     return ASJ_OK;
 }
 

@@ -22,7 +22,7 @@
 #include "verify.h"
 #include "agreement.h"
 #include "nearest.h"
-#include "core/threads.h"
+#include "core/watch.h"
 
 #define LEAST_MATCHES 8      /* for a thread */
 #define ROUNDS 2             /* a third one changes nothing */
@@ -40,6 +40,7 @@ typedef struct trial {
     const asj_match_run *run;
     suspect *suspects; /* as many as choices */
     double *agreed;
+    asj_watch *watch;
 } trial;
 
 static const asj_candidate *candidate_of(const trial *t, size_t n)
@@ -93,20 +94,22 @@ static double agreement(const trial *t, size_t self)
 static void agree_some(const void *data, const asj_part *part)
 {
     const trial *t = data;
-    for (int64_t n = part->first; n < part->end; n++)
+    for (int64_t n = part->first; n < part->end && !asj_watch_stops(t->watch, part); n++)
         t->agreed[n] = agreement(t, (size_t)n);
 }
 
-static void try_all(const trial *t)
+static asj_status try_all(const trial *t)
 {
     const int64_t count = (int64_t)t->run->choices.count;
     for (int64_t n = 0; n < count; n++)
         t->suspects[n] = suspect_of(t, (size_t)n);
-    for (int round = 0; round < ROUNDS; round++) {
+    asj_watch_start(t->watch, t->run->context, ASJ_STAGE_ASSIGN);
+    for (int round = 0; round < ROUNDS && !t->watch->stopped; round++) {
         asj_parallel(t->run->context, asj_threads_for(t->run->context, count, LEAST_MATCHES), count, 0, agree_some, t);
         for (int64_t n = 0; n < count; n++)
             t->suspects[n].stays = t->agreed[n] >= t->suspects[n].needs;
     }
+    return asj_watch_end(t->watch);
 }
 
 asj_status asj_verify(asj_match_run *run)
@@ -116,14 +119,15 @@ asj_status asj_verify(asj_match_run *run)
     if (run->options->verify_neighbours == 0 || all == 0)
         return ASJ_OK;
     asj_memory *memory = &run->context->memory;
-    const trial t = {run, asj_allocate(memory, all, sizeof *t.suspects), asj_allocate(memory, all, sizeof *t.agreed)};
+    asj_watch watch;
+    const trial t = {run, asj_allocate(memory, all, sizeof *t.suspects), asj_allocate(memory, all, sizeof *t.agreed), &watch};
     asj_status status = ASJ_OK;
     if (!t.suspects || !t.agreed) {
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to verify %zu matches", all);
     } else {
-        try_all(&t);
+        status = try_all(&t);
         choices->count = 0;
-        for (size_t n = 0; n < all; n++)
+        for (size_t n = 0; status == ASJ_OK && n < all; n++)
             if (t.suspects[n].stays)
                 choices->list[choices->count++] = choices->list[n];
     }

@@ -115,11 +115,55 @@ static void lengths_are_those_of_junctions_on_the_branch(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* A location of another L-junction with a branch that is opposite to u to within 12 degrees. */
+static int goes_on(const asj_l_junctions *all, uint32_t l, const double *u)
+{
+    for (uint32_t m = 0; m < all->count; m++)
+        for (int32_t b = 0; b < 2 && m != l && all->location[m] == all->location[l]; b++) {
+            const double *v = all->direction + 4 * (size_t)m + 2 * b;
+            if (u[0] * v[0] + u[1] * v[1] < -0.978147601)
+                return 1;
+        }
+    return 0;
+}
+
+/* Twenty L-junctions share one location, six each of a dozen others; a third of the junctions has hardly any company. */
+static void t_junctions_have_one_branch_that_goes_on(void **state)
+{
+    (void)state;
+    asj_junction junctions[COUNT];
+    asj_match_options options;
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_l_junctions all;
+    uint32_t found = 0;
+    synth_random random;
+    synth_random_seed(&random, 11);
+    scatter(6, junctions);
+    for (int32_t k = 0; k < 2 * COUNT / 3; k++) {
+        junctions[k].x = 50 + 5 * (float)(k % 15 < 3 ? 0 : k % 15);
+        junctions[k].y = 60;
+        junctions[k].branches[1].angle = junctions[k].branches[0].angle + (float)synth_random_between(&random, 0.5, 2.5);
+    }
+    const asj_junction_list input = {junctions, COUNT, SIDE, SIDE, 1};
+    asj_match_options_init(&options);
+    assert_int_equal(asj_l_junctions_create(context, &options, &input, &all), ASJ_OK);
+    for (uint32_t l = 0; l < all.count; l++) {
+        const double *u = all.direction + 4 * (size_t)l;
+        assert_int_equal(all.t_junction[l], goes_on(&all, l, u) != goes_on(&all, l, u + 2));
+        found += all.t_junction[l];
+    }
+    assert_true(found > 10 && found < all.count - 10);
+    asj_l_junctions_free(&context->memory, &all);
+    unit_context_free(&counter, &context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(neighbours_are_the_nearest),
         cmocka_unit_test(lengths_are_those_of_junctions_on_the_branch),
+        cmocka_unit_test(t_junctions_have_one_branch_that_goes_on),
     };
     return cmocka_run_group_tests_name("l_junctions", tests, NULL, NULL);
 }
