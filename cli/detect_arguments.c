@@ -38,7 +38,7 @@ static const cli_option output_options[] = {
     {OUTPUT, 'o', "output", "FILE",
      "where the junctions of one image go; - is standard output (the default for one image without a plot)"},
     {OUT_DIR, 'd', "out-dir", "DIR",
-     "existing folder for the results of one or several images: photo.jpg gives DIR/photo.asj"},
+     "folder for the results of one or several images, made where it is missing: photo.jpg gives DIR/photo.asj"},
     {FORMAT, 'f', "format", "asj|json|csv|asjf",
      "asj: text, one record for each pair of branches; json: everything; csv: one line a branch; asjf: features, all that 'asj-cli "
      "match' needs of the image. Default: by the end of FILE, else asj"},

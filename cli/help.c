@@ -95,9 +95,40 @@ static void print_table(const cli_syntax *syntax, size_t t, int advanced)
         printf("\n%s: %zu options more with --help --advanced\n", table->title, hidden);
 }
 
+/* A line for the completions of shells: name, letter, argument, help, with tabs between them. */
+static void list_option(const char *name, char letter, const char *argument, const char *help)
+{
+    printf("%s\t%.*s\t%s\t", name, letter != 0, &letter, argument ? argument : "");
+    for (; *help; help++)
+        putchar(*help == '\n' ? ' ' : *help);
+    putchar('\n');
+}
+
+static void list_options(const cli_syntax *syntax)
+{
+    char name[CLI_NAME_SIZE], argument[128];
+    for (size_t g = 0; g < syntax->group_count; g++)
+        for (size_t i = 0; i < syntax->groups[g].count; i++) {
+            const cli_option *option = &syntax->groups[g].options[i];
+            list_option(option->name, option->letter, option->argument, option->help);
+        }
+    for (size_t t = 0; t < syntax->table_count; t++)
+        for (size_t i = 0; i < syntax->tables[t].count(); i++) {
+            const asj_option_info *row = syntax->tables[t].row(i);
+            cli_option_name(syntax, t, row->key, name);
+            cli_row_argument(row, argument, sizeof argument);
+            list_option(name, 0, argument, row->help);
+        }
+}
+
 void cli_help(const cli_syntax *syntax, int argc, char **argv)
 {
     int advanced = 0;
+    for (int i = 1; i < argc; i++)
+        if (strcmp(argv[i], "--list-options") == 0) {
+            list_options(syntax);
+            return;
+        }
     for (int i = 1; i < argc; i++)
         advanced |= strcmp(argv[i], "--advanced") == 0;
     fputs(syntax->introduction, stdout);

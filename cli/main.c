@@ -6,6 +6,7 @@
 #include "match.h"
 #include "message.h"
 #include "plot.h"
+#include "spelling.h"
 
 #include <asj/io.h>
 #include <asj/version.h>
@@ -61,6 +62,31 @@ static int check_version(void)
     return 0;
 }
 
+/* Whether a file was named: two of them are for match. */
+static int is_file(const char *name)
+{
+    FILE *file = fopen(name, "rb");
+    if (file)
+        fclose(file);
+    return file != NULL || strchr(name, '.') != NULL;
+}
+
+/* With what was probably meant. */
+static int say_unknown(int argc, char **argv)
+{
+    const char *name = argv[1];
+    for (size_t i = 0; i < COMMAND_COUNT; i++)
+        if (cli_spelling_is_close(cli_spelling_distance(name, strlen(name), commands[i].name), strlen(name)))
+            return cli_usage_error(NULL, "there is no command '%s'; did you mean: asj-cli %s", name, commands[i].name);
+    if (*name == '-')
+        return cli_usage_error(NULL, "there is no option '%s' before the command; did you mean: asj-cli detect %s%s", name, name,
+                               argc > 2 ? " ..." : "");
+    if (is_file(name))
+        return cli_usage_error(NULL, "there is no command '%s'; did you mean: asj-cli detect %s%s", name, name,
+                               argc > 2 ? " ..." : "");
+    return cli_usage_error(NULL, "there is no command '%s'", name);
+}
+
 static int run_command(int argc, char **argv)
 {
     if (argc < 2)
@@ -77,9 +103,7 @@ static int run_command(int argc, char **argv)
     for (size_t i = 0; i < COMMAND_COUNT; i++)
         if (strcmp(commands[i].name, name) == 0)
             return commands[i].run(argc - 1, argv + 1);
-    if (*name == '-')
-        return cli_usage_error(NULL, "there is no option '%s' before the command", name);
-    return cli_usage_error(NULL, "there is no command '%s'", name);
+    return say_unknown(argc, argv);
 }
 
 int main(int argc, char **argv)

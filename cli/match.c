@@ -165,6 +165,9 @@ static void print_summary(const run *r)
     cli_note("%s, %s: %lu match%s%s%s%s%s%s", r->inputs[0].name, r->inputs[1].name, (unsigned long)r->result->match_count,
              r->result->match_count == 1 ? "" : "es", lines, file || arguments->plot ? " -> " : "", file ? file : "",
              file && arguments->plot ? ", " : "", arguments->plot ? arguments->plot : "");
+    if (r->result->match_count == 0)
+        cli_note("matches need corners that both show, from not too different sides: try --geometry auto, --minimum-support 0 or "
+                 "'asj-cli detect --for matching --plot' on either image");
 }
 
 static void print_times(const run *r, double write_ms)

@@ -166,13 +166,27 @@ int cli_check_collisions(const char *command, cli_planned *outputs, size_t outpu
     return result;
 }
 
-static int check_folder(const char *path)
+/* Makes the folder, and those above it, where they are missing. */
+static int make_folder(const char *path)
 {
     struct stat facts;
-    int missing = stat(path, &facts) != 0;
-    if (!missing && S_ISDIR(facts.st_mode))
+    char *part = copy(path);
+    if (!part) {
+        cli_error("out of memory");
+        return CLI_FAILED;
+    }
+    errno = 0;
+    for (char *end = part; *end; end++)
+        if (*end == '/' && end > part) {
+            *end = '\0';
+            mkdir(part, 0777);
+            *end = '/';
+        }
+    const int made = mkdir(part, 0777) == 0 || errno == EEXIST, error = errno;
+    free(part);
+    if (stat(path, &facts) == 0 && S_ISDIR(facts.st_mode))
         return CLI_SUCCESS;
-    cli_file_error(path, missing ? strerror(errno) : "not a folder");
+    cli_file_error(path, made ? "not a folder" : strerror(error));
     return CLI_FAILED;
 }
 
@@ -193,7 +207,7 @@ int cli_outputs_plan(const cli_detect_arguments *arguments, cli_outputs *outputs
     }
     if (!outputs->of || !list || !inputs || !name_outputs(arguments, outputs))
         cli_error("out of memory");
-    else if (!arguments->out_dir || (result = check_folder(arguments->out_dir)) == CLI_SUCCESS)
+    else if (!arguments->out_dir || (result = make_folder(arguments->out_dir)) == CLI_SUCCESS)
         result = cli_check_collisions("detect", list, list_planned(arguments, outputs, list), inputs, input_count);
     free(inputs);
     free(list);

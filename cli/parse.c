@@ -2,6 +2,7 @@
 /* getopt_long() over the options written by hand and those of the library's tables. */
 #include "parse.h"
 #include "message.h"
+#include "spelling.h"
 
 #include <getopt.h>
 #include <stdio.h>
@@ -10,12 +11,12 @@
 
 /* Values that getopt_long() hands back: above every character, in the order of its table. */
 enum {
-    VALUE_HELP = 1000, VALUE_ADVANCED,
+    VALUE_HELP = 1000, VALUE_ADVANCED, VALUE_LIST,
     VALUE_OPTION /* + number of the option, in order of the groups, then of the tables, a former name after its row */
 };
 
 typedef struct getopt_tables {
-    struct option *long_options; /* help, advanced, the groups' options, the tables' names, an end mark */
+    struct option *long_options; /* help, advanced, list-options, the groups' options, the tables' names, an end mark */
     char *short_options;
     char (*names)[CLI_NAME_SIZE]; /* of the tables' rows, former ones too */
     size_t option_count;          /* options of all groups */
@@ -102,9 +103,10 @@ static void fill_tables(const cli_syntax *syntax, getopt_tables *tables)
     *letters++ = 'h';
     tables->long_options[0] = long_option("help", 0, VALUE_HELP);
     tables->long_options[1] = long_option("advanced", 0, VALUE_ADVANCED);
+    tables->long_options[2] = long_option("list-options", 0, VALUE_LIST);
     for (size_t i = 0; i < tables->option_count; i++) {
         const cli_option *option = find_option(syntax, i, &group);
-        tables->long_options[2 + i] = long_option(option->name, option->argument != NULL, VALUE_OPTION + i);
+        tables->long_options[3 + i] = long_option(option->name, option->argument != NULL, VALUE_OPTION + i);
         if (option->letter) {
             *letters++ = option->letter;
             if (option->argument)
@@ -116,7 +118,7 @@ static void fill_tables(const cli_syntax *syntax, getopt_tables *tables)
         size_t number = tables->option_count + i, table;
         const char *key = find_key(syntax, i, &table);
         cli_option_name(syntax, table, key, tables->names[i]);
-        tables->long_options[2 + number] = long_option(tables->names[i], 1, VALUE_OPTION + number);
+        tables->long_options[3 + number] = long_option(tables->names[i], 1, VALUE_OPTION + number);
     }
 }
 
@@ -134,7 +136,7 @@ static int make_tables(const cli_syntax *syntax, getopt_tables *tables)
         tables->option_count += syntax->groups[g].count;
     for (size_t table; find_key(syntax, tables->name_count, &table);)
         tables->name_count++;
-    tables->long_options = calloc(tables->option_count + tables->name_count + 3, sizeof *tables->long_options);
+    tables->long_options = calloc(tables->option_count + tables->name_count + 4, sizeof *tables->long_options);
     tables->short_options = calloc(2 * tables->option_count + 3, 1);
     tables->names = calloc(tables->name_count + 1, sizeof *tables->names);
     if (!tables->long_options || !tables->short_options || !tables->names) {
@@ -143,6 +145,22 @@ static int make_tables(const cli_syntax *syntax, getopt_tables *tables)
     }
     fill_tables(syntax, tables);
     return 1;
+}
+
+/* With the names that are spelled most nearly like the first `length` characters of `text`. */
+static int say_like(const cli_syntax *syntax, const getopt_tables *tables, const char *text, size_t length)
+{
+    const char *best = NULL;
+    size_t smallest = (size_t)-1;
+    for (const struct option *option = tables->long_options; option->name && length > 2; option++) {
+        const size_t distance = cli_spelling_distance(text + 2, length - 2, option->name);
+        if (distance < smallest && cli_spelling_is_close(distance, length - 2)) {
+            smallest = distance;
+            best = option->name;
+        }
+    }
+    return cli_usage_error(syntax->command, "there is no option '%s'%s%s", text, best ? "; did you mean: --" : "",
+                           best ? best : "");
 }
 
 /* What was wrong with the option that getopt_long() stopped at: `text` is "--name" or "--name=value", or holds "-x". */
@@ -157,7 +175,7 @@ static int say_unknown(const cli_syntax *syntax, const getopt_tables *tables, co
         beginnings += strncmp(option->name, text + 2, length - 2) == 0;
     if (beginnings > 1)
         return cli_usage_error(syntax->command, "'%s' could be one of several options", text);
-    return cli_usage_error(syntax->command, "there is no option '%s'", text);
+    return say_like(syntax, tables, text, length);
 }
 
 static int take_option(const cli_syntax *syntax, const getopt_tables *tables, size_t number, const char *text)
@@ -190,7 +208,7 @@ static int parse_with(const cli_syntax *syntax, const getopt_tables *tables, int
             result = cli_usage_error(syntax->command, "%s needs a value", argv[optind - 1]);
         else if (value == '?')
             result = say_unknown(syntax, tables, argv[optind - 1]);
-        else if (value == 'h' || value == VALUE_HELP || value == VALUE_ADVANCED)
+        else if (value == 'h' || (value >= VALUE_HELP && value < VALUE_OPTION))
             result = CLI_HELP;
         else if (value >= VALUE_OPTION)
             result = take_option(syntax, tables, (size_t)(value - VALUE_OPTION), optarg);

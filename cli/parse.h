@@ -51,8 +51,8 @@ typedef struct cli_syntax {
 void cli_option_name(const cli_syntax *syntax, size_t table, const char *key, char name[CLI_NAME_SIZE]);
 
 /* Calls `take` for every option of argv[1 .. argc-1], in order, and moves the operands to the end: *first_operand is the index of
- * the first. Returns CLI_SUCCESS, CLI_HELP (--help or --advanced was met; the rest is not looked at), CLI_USAGE or CLI_FAILED (no
- * memory). May be called once. */
+ * the first. Returns CLI_SUCCESS, CLI_HELP (--help, --advanced or --list-options was met; the rest is not looked at), CLI_USAGE or
+ * CLI_FAILED (no memory). May be called once. */
 int cli_parse(const cli_syntax *syntax, int argc, char **argv, int *first_operand);
 
 /* The words of a choice: index of `text` in the NULL-terminated `words`, or -1. */

@@ -140,13 +140,15 @@ static void control_characters_stay_out_of_messages(void **state)
     assert_null(strchr(result->err, '\033'));
 }
 
-static void a_missing_output_folder_is_noticed_before_any_work(void **state)
+static void an_output_folder_is_made_or_refused_before_any_work(void **state)
 {
     (void)state;
-    const outcome *result = run_cli("detect", "--out-dir", "nowhere", "good.png", "missing.png", NULL);
+    const outcome *result = run_cli("detect", "--out-dir", "good.png/sub", "good.png", "missing.png", NULL);
     expect_code(result, 1);
-    expect_in(result, result->err, "asj-cli: nowhere: No such file or directory");
+    expect_in(result, result->err, "asj-cli: good.png/sub: Not a directory");
     assert_int_equal(count_lines(result->err), 1);
+    expect_code(run_cli("detect", "-q", "--out-dir", "made/with//its parents/", "good.png", NULL), 0);
+    assert_true(exists("made/with/its parents/good.asj"));
     result = run_cli("detect", "--out-dir", "good.png", "good.png", NULL);
     expect_code(result, 1);
     expect_in(result, result->err, "asj-cli: good.png: not a folder");
@@ -235,7 +237,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(an_unreadable_file_is_named),
         cmocka_unit_test(the_limit_on_pixels_can_be_moved),
         cmocka_unit_test(control_characters_stay_out_of_messages),
-        cmocka_unit_test(a_missing_output_folder_is_noticed_before_any_work),
+        cmocka_unit_test(an_output_folder_is_made_or_refused_before_any_work),
         cmocka_unit_test(a_full_device_is_reported),
         cmocka_unit_test(a_closed_pipe_is_an_error_like_others),
         cmocka_unit_test(a_result_that_does_not_fit_leaves_nothing),
