@@ -38,7 +38,7 @@ static const char conclusion[] =
 
 enum {
     OUTPUT, FORMAT, LINES, LINE_ENDS, JUNCTIONS_1, JUNCTIONS_2, REGION_1, REGION_2, MASK_1, MASK_2, PLOT,
-    PLOT_BACKGROUND, PLOT_LAYOUT, PLOT_SCALE, PRESET, DETECT_PRESET, MATCH_PRESET, GEOMETRY, CAMERA_1, CAMERA_2, FOCAL
+    PLOT_BACKGROUND, PLOT_LINES, PLOT_LAYOUT, PLOT_SCALE, PRESET, DETECT_PRESET, MATCH_PRESET, GEOMETRY, CAMERA_1, CAMERA_2, FOCAL
 };
 
 static const cli_option output_options[] = {
@@ -69,7 +69,9 @@ static const cli_option geometry_options[] = {
 
 static const cli_option plot_options[] = {
     {PLOT, 'p', "plot", "FILE", "draw both photographs with the matches: FILE.png, FILE.svg or FILE.pdf"},
-    {PLOT_BACKGROUND, 0, "plot-background", "photo|white", "over the pale photographs (the default) or on white"},
+    {PLOT_BACKGROUND, 0, "plot-background", "photo|color|white",
+     "over the pale photographs in grey (the default) or in their colours, or on white"},
+    {PLOT_LINES, 0, "plot-lines", "yes|no", "lines from one photograph to the other; yes is the default"},
     {PLOT_LAYOUT, 0, "plot-layout", "auto|beside|below",
      "where the second photograph stands; auto (the default): what fits a screen"},
     {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of an image, 0.01 .. 16; default: small images are enlarged"},
@@ -169,12 +171,17 @@ static int take_geometry(void *target, int id, const char *text)
 
 static int take_plot(void *target, int id, const char *text)
 {
+    static const char *const answers[] = {"yes", "no", NULL};
     static const char *const layouts[] = {"auto", "beside", "below", NULL}; /* in the order of CLI_LAYOUT_... */
     cli_match_arguments *arguments = target;
     switch (id) {
     case PLOT: arguments->plot = text; break;
     case PLOT_BACKGROUND: return cli_plot_take_background("match", text, &arguments->style.background);
     case PLOT_SCALE: return cli_plot_take_scale("match", text, &arguments->style.scale);
+    case PLOT_LINES:
+        if ((arguments->style.without_lines = cli_find_word(answers, text)) < 0)
+            return cli_usage_error("match", "--plot-lines: '%s' is not yes or no", text);
+        break;
     default:
         if ((arguments->style.layout = cli_find_word(layouts, text)) < 0)
             return cli_usage_error("match", "--plot-layout: '%s' is not auto, beside or below", text);

@@ -10,7 +10,7 @@
 
 #define FULL_TURN 6.283185307179586
 #define LEGEND_HEIGHT 2.4 /* in font sizes, like all lengths of the legend */
-#define LEGEND_WIDTH 32
+#define LEGEND_WIDTH 40
 #define LOOSE_GRAY 0.62 /* of branches that are part of no edge */
 
 /* Sizes in units of the plot: pixels of a PNG, points of a PDF. The image is above, a strip with the legend below. */
@@ -137,11 +137,10 @@ static void draw_legend(cairo_t *cairo, const cli_plot_layout *layout, const asj
     snprintf(text, sizeof text, "%lu %s%s", count, color == CLI_PLOT_COLOR_EDGE ? "edge" : "junction", count == 1 ? "" : "s");
     draw_text(cairo, 0.8 * em, base, text);
     if (color != CLI_PLOT_COLOR_BRANCH) {
-        snprintf(text, sizeof text, "log10 NFA   %g", CLI_RAMP_UNSURE);
-        draw_text(cairo, 10.5 * em, base, text);
-        draw_ramp(cairo, 18 * em, middle - 0.35 * em, 8 * em, 0.7 * em);
-        snprintf(text, sizeof text, "%g and surer", CLI_RAMP_SURE);
-        draw_text(cairo, 26.4 * em, base, text);
+        draw_text(cairo, 10.5 * em, base, "barely");
+        draw_ramp(cairo, 14.4 * em, middle - 0.35 * em, 8 * em, 0.7 * em);
+        snprintf(text, sizeof text, "sure   (log10 NFA %g to %g)", CLI_RAMP_UNSURE, CLI_RAMP_SURE);
+        draw_text(cairo, 23 * em, base, text);
         return;
     }
     draw_text(cairo, 10.5 * em, base, "branch");
@@ -170,11 +169,41 @@ static void draw(cairo_t *cairo, void *user)
     const drawing *d = user;
     cairo_set_source_rgb(cairo, 1, 1, 1);
     cairo_paint(cairo);
-    if (d->style->background == CLI_PLOT_PHOTO)
-        cli_plot_photo(cairo, d->image, d->layout.scale, d->layout.width, d->layout.image_height);
+    if (d->style->background != CLI_PLOT_WHITE)
+        cli_plot_photo(cairo, d->image, d->style->background, d->layout.scale, d->layout.width, d->layout.image_height);
     draw_junctions(cairo, &d->layout, d->detection, d->style->color);
     if (d->layout.legend_height > 0)
         draw_legend(cairo, &d->layout, d->detection, d->style->color);
+}
+
+/* What a browser says of a junction or branch under its pointer. */
+static void annotate_junction(asj_output *output, const cli_plot_layout *layout, const asj_junction *junction, unsigned long number)
+{
+    char text[256];
+    const double x = place(layout, (double)junction->x), y = place(layout, (double)junction->y);
+    for (int32_t i = 0; i < junction->branch_count; i++) {
+        const asj_branch *branch = &junction->branches[i];
+        const double length = (double)branch->length * layout->scale, degrees = (double)branch->angle * 360 / FULL_TURN;
+        snprintf(text, sizeof text,
+                 "<g id=\"junction-%lu-branch-%d\"><title>junction %lu, branch %d: %.1f degrees, %.1f px, log10 NFA %.1f</title>\n",
+                 number, (int)i + 1, number, (int)i + 1, degrees, (double)branch->length, (double)branch->log10_nfa);
+        asj_output_text(output, text);
+        cli_plot_hot_line(output, x, y, x + length * cos((double)branch->angle), y + length * sin((double)branch->angle),
+                          2 * layout->line);
+        asj_output_text(output, "</g>\n");
+    }
+    snprintf(text, sizeof text, "<g id=\"junction-%lu\"><title>junction %lu: %.1f, %.1f, %d branches, log10 NFA %.1f</title>\n",
+             number, number, (double)junction->x, (double)junction->y, (int)junction->branch_count, (double)junction->log10_nfa);
+    asj_output_text(output, text);
+    cli_plot_hot_dot(output, x, y, 3 * layout->line);
+    asj_output_text(output, "</g>\n");
+}
+
+static void annotate(asj_output *output, void *user)
+{
+    const drawing *d = user;
+    for (uint32_t i = d->detection->junction_count; i-- > 0;)
+        annotate_junction(output, &d->layout, &d->detection->junctions[i], (unsigned long)i + 1);
 }
 
 asj_status cli_plot_write(const char *path, int32_t format, const asj_image *image, const asj_detection *detection,
@@ -182,6 +211,6 @@ asj_status cli_plot_write(const char *path, int32_t format, const asj_image *ima
 {
     drawing d = {.image = image, .detection = detection, .style = style};
     lay_out(image, style->scale, &d.layout);
-    return cli_plot_file(path, format, d.layout.width, d.layout.image_height + d.layout.legend_height, draw, &d, message,
-                         message_size);
+    return cli_plot_file(path, format, d.layout.width, d.layout.image_height + d.layout.legend_height,
+                         &(cli_plot_content){draw, annotate, &d}, message, message_size);
 }

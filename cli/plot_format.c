@@ -37,10 +37,10 @@ int cli_plot_format_of_name(const char *command, const char *name, int32_t *form
 
 int cli_plot_take_background(const char *command, const char *text, int32_t *background)
 {
-    static const char *const backgrounds[] = {"photo", "white", NULL}; /* in the order of CLI_PLOT_PHOTO, CLI_PLOT_WHITE */
+    static const char *const backgrounds[] = {"photo", "color", "white", NULL}; /* in the order of CLI_PLOT_PHOTO, .. */
     int word = cli_find_word(backgrounds, text);
     if (word < 0)
-        return cli_usage_error(command, "--plot-background: '%s' is not photo or white", text);
+        return cli_usage_error(command, "--plot-background: '%s' is not photo, color or white", text);
     *background = word;
     return CLI_SUCCESS;
 }

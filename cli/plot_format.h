@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 enum { CLI_PLOT_PNG = 0, CLI_PLOT_SVG = 1, CLI_PLOT_PDF = 2 };
-enum { CLI_PLOT_PHOTO = 0, CLI_PLOT_WHITE = 1 };
+enum { CLI_PLOT_PHOTO = 0, CLI_PLOT_PHOTO_COLOR = 1, CLI_PLOT_WHITE = 2 };
 
 #define CLI_PLOT_MIN_SCALE 0.01
 #define CLI_PLOT_MAX_SCALE 16

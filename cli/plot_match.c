@@ -182,8 +182,8 @@ static void draw_photos(cairo_t *cairo, const drawing *d)
     for (int v = 0; v < 2; v++) {
         cairo_save(cairo);
         cairo_translate(cairo, d->left[v], d->top[v]);
-        if (d->style->background == CLI_PLOT_PHOTO)
-            cli_plot_photo(cairo, d->content->images[v], d->scale, d->widths[v], d->heights[v]);
+        if (d->style->background != CLI_PLOT_WHITE)
+            cli_plot_photo(cairo, d->content->images[v], d->style->background, d->scale, d->widths[v], d->heights[v]);
         else { /* where the photographs would be */
             cairo_set_source_rgb(cairo, 0.8, 0.8, 0.8);
             cairo_set_line_width(cairo, 1);
@@ -271,11 +271,35 @@ static void draw(cairo_t *cairo, void *user)
     cairo_set_source_rgb(cairo, 1, 1, 1);
     cairo_paint(cairo);
     draw_photos(cairo, d);
-    draw_lines(cairo, d);
+    if (!d->style->without_lines)
+        draw_lines(cairo, d);
     draw_pairs(cairo, d, 0);
     draw_pairs(cairo, d, 1);
     if (d->legend_height > 0)
         draw_legend(cairo, d);
+}
+
+/* What a browser says of the things under its pointer. */
+static void annotate(asj_output *output, void *user)
+{
+    const drawing *d = user;
+    const char *name = d->content->segments ? "segment" : "match";
+    char text[512];
+    for (size_t k = 0; k < d->count; k++) {
+        const pair *p = &d->pairs[k];
+        const unsigned long number = (unsigned long)k + 1;
+        snprintf(text, sizeof text, "<g id=\"%s-%lu\"><title>%s %lu: %.1f, %.1f and %.1f, %.1f</title>\n", name, number, name,
+                 number, p->place[0][0], p->place[0][1], p->place[1][0], p->place[1][1]);
+        asj_output_text(output, text);
+        for (int v = 0; v < 2; v++)
+            cli_plot_hot_dot(output, to_x(d, v, p->place[v][0]), to_y(d, v, p->place[v][1]), 3 * d->line);
+        for (int b = 0; b < 2 * p->strokes; b++) {
+            const double *s = p->stroke[b % 2][b / 2];
+            cli_plot_hot_line(output, to_x(d, b % 2, s[0]), to_y(d, b % 2, s[1]), to_x(d, b % 2, s[2]), to_y(d, b % 2, s[3]),
+                              3 * d->line);
+        }
+        asj_output_text(output, "</g>\n");
+    }
 }
 
 asj_status cli_plot_match(const char *path, int32_t format, const cli_plot_match_content *content,
@@ -285,7 +309,8 @@ asj_status cli_plot_match(const char *path, int32_t format, const cli_plot_match
     lay_out(&d);
     asj_status status = ASJ_ERROR_MEMORY;
     if (make_pairs(&d))
-        status = cli_plot_file(path, format, d.width, d.height + d.legend_height, draw, &d, message, message_size);
+        status = cli_plot_file(path, format, d.width, d.height + d.legend_height, &(cli_plot_content){draw, annotate, &d}, message,
+                               message_size);
     free(d.pairs);
     return status;
 }

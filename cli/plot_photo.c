@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* A photograph as the pale background of a plot, scaled. */
 #include "plot_photo.h"
+#include "plot_format.h"
 
 #include <math.h>
 #include <string.h>
@@ -43,7 +44,20 @@ static double luma(const unsigned char *pixel, int32_t format)
     }
 }
 
-static double block_mean(const asj_image *image, int32_t left, int32_t top, int32_t reduction)
+/* Red, green and blue, 0 .. 2; luma for images that have no colours, and for channel GRAY. */
+enum { GRAY = 3 };
+static double sample(const unsigned char *pixel, int32_t format, int channel)
+{
+    switch (format) {
+    case ASJ_FORMAT_RGB8:
+    case ASJ_FORMAT_RGBA8: return channel == GRAY ? luma(pixel, format) : pixel[channel];
+    case ASJ_FORMAT_BGR8:
+    case ASJ_FORMAT_BGRA8: return channel == GRAY ? luma(pixel, format) : pixel[2 - channel];
+    default: return luma(pixel, format);
+    }
+}
+
+static double block_mean(const asj_image *image, int channel, int32_t left, int32_t top, int32_t reduction)
 {
     size_t bytes = bytes_of(image->format);
     ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)((size_t)image->width * bytes);
@@ -52,13 +66,19 @@ static double block_mean(const asj_image *image, int32_t left, int32_t top, int3
     double sum = 0;
     for (int32_t y = top; y < bottom; y++)
         for (int32_t x = left; x < right; x++)
-            sum += luma((const unsigned char *)image->data + y * stride + (ptrdiff_t)((size_t)x * bytes), image->format);
+            sum += sample((const unsigned char *)image->data + y * stride + (ptrdiff_t)((size_t)x * bytes), image->format, channel);
     return sum / ((double)(right - left) * (bottom - top));
+}
+
+static uint32_t pale(double value)
+{
+    value = value > 0 ? (value < 1 ? value : 1) : 0;
+    return (uint32_t)(255 * (1 - CONTRAST * (1 - value)) + 0.5);
 }
 
 /* The photograph as a surface of its own; every pixel is the mean of `reduction` x `reduction` pixels of the image (fewer at the
  * right and lower border). Its cairo status says whether it could be made. */
-static cairo_surface_t *make_photo(const asj_image *image, int32_t reduction)
+static cairo_surface_t *make_photo(const asj_image *image, int32_t background, int32_t reduction)
 {
     int32_t width = (image->width + reduction - 1) / reduction, height = (image->height + reduction - 1) / reduction;
     cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
@@ -69,10 +89,11 @@ static cairo_surface_t *make_photo(const asj_image *image, int32_t reduction)
     double white = white_of(image);
     for (int32_t y = 0; y < height; y++)
         for (int32_t x = 0; x < width; x++) {
-            double value = block_mean(image, x * reduction, y * reduction, reduction) / white;
-            value = value > 0 ? (value < 1 ? value : 1) : 0;
-            uint32_t gray = (uint32_t)(255 * (1 - CONTRAST * (1 - value)) + 0.5);
-            uint32_t pixel = gray << 16 | gray << 8 | gray;
+            uint32_t pixel = 0;
+            for (int c = 0; c < 3 && background == CLI_PLOT_PHOTO_COLOR; c++)
+                pixel = pixel << 8 | pale(block_mean(image, c, x * reduction, y * reduction, reduction) / white);
+            if (background != CLI_PLOT_PHOTO_COLOR)
+                pixel = 0x10101 * pale(block_mean(image, GRAY, x * reduction, y * reduction, reduction) / white);
             memcpy(pixels + y * stride + 4 * (ptrdiff_t)x, &pixel, sizeof pixel);
         }
     cairo_surface_mark_dirty(surface);
@@ -88,12 +109,12 @@ double cli_plot_natural_scale(int32_t width, int32_t height)
 }
 
 /* A reduced copy is enough, and several times smaller, where the plot is smaller than the image. */
-void cli_plot_photo(cairo_t *cairo, const asj_image *image, double scale, int32_t width, int32_t height)
+void cli_plot_photo(cairo_t *cairo, const asj_image *image, int32_t background, double scale, int32_t width, int32_t height)
 {
     int32_t reduction = scale < 1 ? (int32_t)(1 / scale) : 1;
     while (image->width / reduction > CLI_PLOT_LARGEST_SIDE || image->height / reduction > CLI_PLOT_LARGEST_SIDE)
         reduction++;
-    cairo_surface_t *photo = make_photo(image, reduction);
+    cairo_surface_t *photo = make_photo(image, background, reduction);
     cairo_save(cairo);
     cairo_rectangle(cairo, 0, 0, width, height);
     cairo_clip(cairo);

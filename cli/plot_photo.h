@@ -13,7 +13,8 @@
  * number so that pixels stay square, and images too large for a plot reduced. */
 double cli_plot_natural_scale(int32_t width, int32_t height);
 
-/* Draws the photograph in pale grey into the rectangle from (0, 0) to (width, height), `scale` units for a pixel. */
-void cli_plot_photo(cairo_t *cairo, const asj_image *image, double scale, int32_t width, int32_t height);
+/* Draws the pale photograph, in grey or in its colours (background: CLI_PLOT_PHOTO, CLI_PLOT_PHOTO_COLOR), into the rectangle from
+ * (0, 0) to (width, height), `scale` units for a pixel. */
+void cli_plot_photo(cairo_t *cairo, const asj_image *image, int32_t background, double scale, int32_t width, int32_t height);
 
 #endif

@@ -3,21 +3,75 @@
 #include "plot_surface.h"
 #include "plot_format.h"
 
-#include <asj/io.h>
-
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 
 #include <stdio.h>
+#include <string.h>
 
 enum { LARGEST_SURFACE = 32767 };
 
-static cairo_status_t write_stream(void *output, const unsigned char *data, unsigned size)
+/* cairo knows no titles: they go in front of the last line of an SVG, so the end of what was written is kept back. */
+#define SVG_END "</svg>\n"
+enum { KEPT = sizeof SVG_END - 1 };
+
+typedef struct stream {
+    asj_output *output;
+    unsigned char kept[KEPT];
+    size_t keep, count; /* how many bytes to keep back, and how many there are */
+} stream;
+
+static cairo_status_t write_stream(void *user, const unsigned char *data, unsigned size)
 {
-    return asj_output_write(output, data, size) == ASJ_OK ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+    stream *s = user;
+    asj_status status = ASJ_OK;
+    for (; s->keep > 0 && size > 0 && status == ASJ_OK; data++, size--) {
+        if (size > KEPT && s->count == 0) { /* in one piece what is not the end in any case */
+            status = asj_output_write(s->output, data, size - KEPT);
+            data += size - KEPT;
+            size = KEPT;
+        }
+        if (s->count == KEPT) {
+            if (status == ASJ_OK)
+                status = asj_output_write(s->output, s->kept, 1);
+            memmove(s->kept, s->kept + 1, --s->count);
+        }
+        s->kept[s->count++] = *data;
+    }
+    if (s->keep == 0)
+        status = asj_output_write(s->output, data, size);
+    return status == ASJ_OK ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
 }
 
-static cairo_surface_t *create_surface(asj_output *output, int32_t format, int32_t width, int32_t height)
+/* What was kept back, with the titles in front of it. */
+static void end_stream(stream *s, const cli_plot_content *content)
+{
+    const int whole = s->count == KEPT && memcmp(s->kept, SVG_END, KEPT) == 0;
+    if (whole) {
+        asj_output_text(s->output, "<g fill=\"none\" stroke=\"none\">\n");
+        content->annotate(s->output, content->user);
+        asj_output_text(s->output, "</g>\n");
+    }
+    asj_output_write(s->output, s->kept, s->count);
+}
+
+void cli_plot_hot_dot(asj_output *output, double x, double y, double radius)
+{
+    char text[160];
+    snprintf(text, sizeof text, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\" pointer-events=\"all\"/>\n", x, y, radius);
+    asj_output_text(output, text);
+}
+
+void cli_plot_hot_line(asj_output *output, double x1, double y1, double x2, double y2, double width)
+{
+    char text[240];
+    snprintf(text, sizeof text,
+             "<line x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\" stroke-width=\"%.2f\" pointer-events=\"stroke\"/>\n", x1, y1,
+             x2, y2, width);
+    asj_output_text(output, text);
+}
+
+static cairo_surface_t *create_surface(stream *output, int32_t format, int32_t width, int32_t height)
 {
     cairo_surface_t *surface;
     switch (format) {
@@ -35,25 +89,27 @@ static cairo_surface_t *create_surface(asj_output *output, int32_t format, int32
     }
 }
 
-static cairo_status_t draw_on(asj_output *output, int32_t format, int32_t width, int32_t height,
-                              void (*draw)(cairo_t *cairo, void *user), void *user)
+static cairo_status_t draw_on(asj_output *output, int32_t format, int32_t width, int32_t height, const cli_plot_content *content)
 {
-    cairo_surface_t *surface = create_surface(output, format, width, height);
+    stream to = {.output = output, .keep = format == CLI_PLOT_SVG ? KEPT : 0};
+    cairo_surface_t *surface = create_surface(&to, format, width, height);
     cairo_t *cairo = cairo_create(surface);
-    draw(cairo, user);
+    content->draw(cairo, content->user);
     cairo_status_t status = cairo_status(cairo);
     cairo_destroy(cairo);
     if (status == CAIRO_STATUS_SUCCESS && format == CLI_PLOT_PNG)
-        status = cairo_surface_write_to_png_stream(surface, write_stream, output);
+        status = cairo_surface_write_to_png_stream(surface, write_stream, &to);
     cairo_surface_finish(surface);
     if (status == CAIRO_STATUS_SUCCESS)
         status = cairo_surface_status(surface);
     cairo_surface_destroy(surface);
+    if (to.keep > 0)
+        end_stream(&to, content);
     return status;
 }
 
-asj_status cli_plot_file(const char *path, int32_t format, int32_t width, int32_t height, void (*draw)(cairo_t *cairo, void *user),
-                         void *user, char *message, size_t message_size)
+asj_status cli_plot_file(const char *path, int32_t format, int32_t width, int32_t height, const cli_plot_content *content,
+                         char *message, size_t message_size)
 {
     asj_output *output = NULL;
     if (format == CLI_PLOT_PNG && (width > LARGEST_SURFACE || height > LARGEST_SURFACE)) {
@@ -64,7 +120,7 @@ asj_status cli_plot_file(const char *path, int32_t format, int32_t width, int32_
     asj_status status = asj_output_begin(path, &output, message, message_size);
     if (status != ASJ_OK)
         return status;
-    cairo_status_t drawn = draw_on(output, format, width, height, draw, user);
+    cairo_status_t drawn = draw_on(output, format, width, height, content);
     /* after a write error committing fails too, and says why */
     if (drawn == CAIRO_STATUS_SUCCESS || drawn == CAIRO_STATUS_WRITE_ERROR)
         return asj_output_commit(&output, message, message_size);

@@ -78,6 +78,7 @@ static const struct {
     {{"match", "--line-ends", "all", "first.png", "first.png"}, "--line-ends: 'all'"},
     {{"match", "--plot", "picture.jpg", "first.png", "first.png"}, "--plot"},
     {{"match", "--plot-layout", "left", "first.png", "first.png"}, "--plot-layout: 'left'"},
+    {{"match", "--plot-lines", "red", "first.png", "first.png"}, "--plot-lines: 'red'"},
     {{"match", "--plot-background", "red", "first.png", "first.png"}, "--plot-background: 'red'"},
     {{"match", "--plot-scale", "0", "first.png", "first.png"}, "--plot-scale: '0'"},
     {{"match", "-f", "csv", "-o", "./first.png", "first.png", "second.png"}, "first.png: is an input file"},

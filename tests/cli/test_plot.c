@@ -102,6 +102,22 @@ static void the_photograph_is_pale_and_gray(void **state)
     asj_image_file_free(&plot);
 }
 
+static void the_photograph_keeps_its_colors_on_request(void **state)
+{
+    (void)state;
+    enum { SIDE = 40 };
+    static unsigned char red[SIDE * SIDE * 3];
+    for (int i = 0; i < SIDE * SIDE; i++)
+        red[3 * i] = 200;
+    asj_image image = {red, ASJ_FORMAT_RGB8, SIDE, SIDE, 0, 0};
+    assert_int_equal(asj_png_write("red.png", &image, NULL, 0), ASJ_OK);
+    expect_code(run_cli("detect", "-q", "--plot", "c.png", "--plot-background", "color", "--plot-scale", "1", "red.png", NULL), 0);
+    asj_image_file *plot = read_plot("c.png");
+    const unsigned char *color = pixel(plot, 20, 20);
+    assert_true(color[0] > 200 && color[1] < 160 && color[2] == color[1]);
+    asj_image_file_free(&plot);
+}
+
 static void small_images_are_enlarged(void **state)
 {
     (void)state;
@@ -155,6 +171,9 @@ static void svg_and_pdf_hold_the_photograph(void **state)
     expect_code(run_cli("detect", "-q", "--plot", "photo.svg", "--plot-scale", "2", "scene.png", NULL), 0);
     expect_code(run_cli("detect", "-q", "--plot", "white.SVG", "--plot-background", "white", "scene.png", NULL), 0);
     expect_code(run_cli("detect", "-q", "--plot", "photo.pdf", "--plot-scale", "2", "scene.png", NULL), 0);
+    expect_text("white.SVG", "<?xml", "<g id=\"junction-4\"><title>junction 4: ", NULL);
+    expect_text("white.SVG", "<?xml", "<title>junction 1, branch 2: ", "junction-5");
+    expect_text("white.SVG", "<?xml", "</g>\n</g>\n</svg>\n", NULL);
     expect_code(run_cli("detect", "-q", "--plot", "white.pdf", "--plot-background", "white", "scene.png", NULL), 0);
     expect_text("photo.svg", "<?xml", "width=\"640", NULL);
     expect_text("photo.svg", "<?xml", "data:image/png;base64,", NULL);
@@ -243,6 +262,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(junctions_are_drawn_where_they_are),
         cmocka_unit_test(the_photograph_is_pale_and_gray),
+        cmocka_unit_test(the_photograph_keeps_its_colors_on_request),
         cmocka_unit_test(small_images_are_enlarged),
         cmocka_unit_test(the_colors_follow_the_option),
         cmocka_unit_test(svg_and_pdf_hold_the_photograph),
