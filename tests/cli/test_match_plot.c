@@ -168,8 +168,8 @@ static void svg_and_pdf_hold_the_photographs(void **state)
     expect_text("w.svg", "<?xml", "</svg>", "data:image/png");
     expect_text("w.svg", "<?xml", "<g id=\"match-1\"><title>match 1: ", NULL);
     size_t sizes[2];
-    expect_code(run_cli("match", "-q", "--plot", "n.svg", "--plot-lines", "no", "--plot-background", "white", "first.png", "second.png",
-                        NULL), 0);
+    expect_code(run_cli("match", "-q", "--plot", "n.svg", "--plot-lines", "no", "--plot-background", "white", "first.png",
+                        "second.png", NULL), 0);
     char *with = read_text("w.svg", &sizes[0]), *without = read_text("n.svg", &sizes[1]);
     assert_true(sizes[1] < sizes[0]);
     free(with);

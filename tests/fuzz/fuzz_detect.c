@@ -27,22 +27,38 @@ static void check_detection(const asj_detection *found)
         fuzz_check(found->l_junctions[i].junction < found->junction_count, "an L-junction of nothing");
 }
 
+/* None, or a rectangle, which may leave the image; sometimes the image itself is the mask. */
+static asj_region *make_region(fuzz_bytes *bytes, const asj_image *image, asj_region *region)
+{
+    unsigned kind = fuzz_byte(bytes);
+    if (kind & 1) {
+        region->x = (int32_t)fuzz_byte(bytes) - 4;
+        region->y = (int32_t)fuzz_byte(bytes) - 4;
+        region->width = (int32_t)fuzz_byte(bytes);
+        region->height = (int32_t)fuzz_byte(bytes);
+    }
+    if (kind & 2)
+        region->mask = image;
+    return region;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     fuzz_bytes bytes = {data, size};
     asj_detection *first = NULL, *second = NULL;
     asj_detect_options options;
     asj_image image;
+    asj_region region = {0};
     asj_status status;
 
     asj_detect_options_preset(&options, fuzz_byte(&bytes) % 4 == 3 ? ASJ_PRESET_PAPER : ASJ_PRESET_DEFAULT);
     fuzz_options(&bytes, asj_detect_option_count(), asj_detect_option, set, &options);
     fuzz_image(&bytes, 96, &image);
-    status = asj_detect(fuzz_context(), &image, &options, &first);
+    status = asj_detect_region(fuzz_context(), &image, make_region(&bytes, &image, &region), &options, &first);
     fuzz_check((status == ASJ_OK) == (first != NULL), "a status and a result that do not fit");
     if (first) {
         check_detection(first);
-        fuzz_check(asj_detect(fuzz_context(), &image, &options, &second) == ASJ_OK, "no result the second time");
+        fuzz_check(asj_detect_region(fuzz_context(), &image, &region, &options, &second) == ASJ_OK, "no result the second time");
         fuzz_check(second->junction_count == first->junction_count &&
                    (!first->junction_count ||
                     !memcmp(first->junctions, second->junctions, first->junction_count * sizeof *first->junctions)),
