@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* A service that runs for days, in short: frames COUNT
  *
- * COUNT small pictures through one context and one result, every tenth matched with itself: once all kinds have been seen the memory
- * that the context holds grows no more, and nothing leaks. Then COUNT / 10 detections and matches with an
+ * COUNT small pictures through one context and one result, every tenth matched with itself: once all kinds have been seen the
+ * memory that the context holds grows no more, and nothing leaks. Then COUNT / 10 detections and matches with an
  * allocator that fails at random: each ends well, with the result of the first time, or reports the failure. */
 #include "random.h"
 #include "render.h"
