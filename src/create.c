@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* A context and its parts: the tables of operations, what the detector needs from the start, the device. This file stands above
+/* A context and its parts: the tables of operations, the threads, the device. This file stands above
  * everything; src/cl may be missing. */
 #include "create.h"
 #include "core/device.h"
 #include "core/threads.h"
-#include "detect/nfa.h"
 #include "tables.h"
 
 #ifdef ASJ_HAVE_OPENCL
@@ -117,8 +116,6 @@ asj_status asj_context_create_from(const char *library, const asj_context_option
     asj_status status = asj_pool_open(context);
     if (status == ASJ_OK)
         status = fill_tables(context);
-    if (status == ASJ_OK)
-        status = asj_nfa_open(context);
     if (status == ASJ_OK)
         status = open_device(context, library);
     context->options.device = NULL; /* the caller's string need not live on */

@@ -24,7 +24,6 @@ void asj_context_free(asj_context **pointer)
         context->device->free(context);
     asj_kept_free(&context->memory, &context->pool);
     asj_kept_free(&context->memory, &context->detector);
-    asj_kept_free(&context->memory, &context->null_model);
     asj_kept_free(&context->memory, &context->tables);
     asj_memory_trim(&context->memory);
     asj_memory memory = context->memory;

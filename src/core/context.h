@@ -34,7 +34,6 @@ struct asj_context {
     const asj_device_calls *device;
     asj_kept pool;                /* core/threads.h */
     asj_kept tables;              /* tables.h: what the operations above point to */
-    asj_kept null_model;          /* detect/nfa.h */
     asj_kept detector;            /* detect/detect.h: scratch and tables of the detector */
     double progress;              /* last value reported */
     int32_t device_failures;      /* backend.h */

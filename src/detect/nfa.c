@@ -77,37 +77,8 @@ double asj_nfa_log_junction_tests(int32_t width, int32_t height, uint32_t radii,
     return width < 1 || height < 1 || !(sum > 0) ? -HUGE_VAL : log((double)width) + log((double)height) + log(sum);
 }
 
-/* ---- life ---- */
-
-asj_status asj_nfa_create(asj_memory *memory, asj_nfa **nfa)
+const asj_nfa *asj_nfa_of(const asj_context *context)
 {
-    *nfa = NULL;
-    asj_nfa *made = asj_allocate_zero(memory, 1, sizeof *made);
-    if (!made)
-        return ASJ_ERROR_MEMORY;
-    asj_status status = asj_nfa_fill_sector(memory, made);
-    if (status == ASJ_OK)
-        status = asj_nfa_fill_arc(memory, made);
-    if (status == ASJ_OK)
-        *nfa = made;
-    else
-        asj_release(memory, made);
-    return status;
-}
-
-asj_status asj_nfa_open(asj_context *context)
-{
-    asj_nfa *nfa;
-    if (asj_nfa_create(&context->memory, &nfa) != ASJ_OK)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the tables of the null model");
-    context->null_model = (asj_kept){nfa, asj_release}; /* one block */
-    return ASJ_OK;
-}
-
-void asj_nfa_free(asj_memory *memory, asj_nfa **nfa)
-{
-    if (!nfa)
-        return;
-    asj_release(memory, *nfa);
-    *nfa = NULL;
+    (void)context;
+    return &asj_nfa_stored;
 }

@@ -6,17 +6,8 @@
 #include "core/context.h"
 #include "null_model.h"
 
-asj_status asj_nfa_create(asj_memory *memory, asj_nfa **nfa);
-void asj_nfa_free(asj_memory *memory, asj_nfa **nfa);
-
-/* Makes those of a context, which frees them. */
-asj_status asj_nfa_open(asj_context *context);
-
-/* Those of a context. */
-static inline const asj_nfa *asj_nfa_of(const asj_context *context)
-{
-    return context->null_model.state;
-}
+/* The tables; the same for all contexts. */
+const asj_nfa *asj_nfa_of(const asj_context *context);
 
 /* Smallest t with ln F(t; n) <= log_p (bisection on asj_nfa_log_sector_tail(); log_p <= 0). */
 double asj_nfa_sector_threshold(const asj_nfa *nfa, double log_p, int32_t n);

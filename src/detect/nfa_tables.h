@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* What stands behind asj_nfa: tables of ln tails, filled by nfa_sector.c and nfa_arc.c, and what both fill them with. */
+/* What stands behind asj_nfa: tables of ln tails, filled while the library is built (nfa_fill.h). */
 #ifndef ASJ_SRC_NFA_TABLES_H
 #define ASJ_SRC_NFA_TABLES_H
 
-#include "core/memory.h"
 #include "null_model.h"
 
 enum {
@@ -27,13 +26,8 @@ struct asj_nfa {
     double arc[ASJ_MAX_ARC + 1][ASJ_NFA_ARC_CELLS + 1];
 };
 
-/* Fill the tables of sums of gamma and of gamma~. */
-asj_status asj_nfa_fill_sector(asj_memory *memory, asj_nfa *nfa);
-asj_status asj_nfa_fill_arc(asj_memory *memory, asj_nfa *nfa);
-
-/* Gauss-Legendre, 16 points: positive half of the nodes on [-1, 1], weights (Abramowitz and Stegun, table 25.4). */
-#define ASJ_NFA_GAUSS 8
-extern const double asj_nfa_gauss_node[ASJ_NFA_GAUSS], asj_nfa_gauss_weight[ASJ_NFA_GAUSS];
+/* Written into the library by the program nfa_store.c. */
+extern const asj_nfa asj_nfa_stored;
 
 /* Linear in a table of ln P against i * step, so that it falls wherever the table falls. The error, step^2/8 |(ln P)''| at most, is
  * below 6e-5 decades, save next to the infinite density of gamma~ at 0: there 3e-3 decades in the first cell of G, 6e-4 in the

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The null model: its constants, and the tails of its n-fold sums, tabulated (nfa_sector.c, nfa_arc.c). */
+/* The null model: its constants, and the tails of its n-fold sums, tabulated (nfa_tables.h). */
 #ifndef ASJ_SRC_DETECT_NULL_MODEL_H
 #define ASJ_SRC_DETECT_NULL_MODEL_H
 
@@ -12,7 +12,7 @@
 /* Most samples of an arc: 2 w + 1, w = arc_half_width <= 3. Tails are tabulated for up to as many terms. */
 #define ASJ_MAX_ARC 7
 
-/* Tables for one context; built once, then only read (any number of threads). */
+/* Tables, only read. */
 typedef struct asj_nfa asj_nfa;
 
 /* ln F(t; n): natural logarithm of P(gamma_1 + .. + gamma_n >= t) under the null model, n >= 1. 0 for t <= 0. */

@@ -18,52 +18,18 @@ static const double pi = 3.14159265358979323846;
  * values, in decades. */
 static const double saddlepoint_error = 2e-3, table_error = 6e-5;
 
-/* ---- fixture: counting allocator, one set of tables --------------------------------------------------------------------- */
-
-typedef struct counter {
-    long calls, live, fail_at; /* the call that fails, counted from 1; 0 = none */
-} counter;
-
-static void *count_allocate(void *user, size_t size)
-{
-    counter *count = user;
-    if (++count->calls == count->fail_at)
-        return NULL;
-    void *block = malloc(size);
-    count->live += block != NULL;
-    return block;
-}
-
-static void count_release(void *user, void *block)
-{
-    counter *count = user;
-    count->live--;
-    free(block);
-}
+/* ---- the tables ------------------------------------------------------------------------------------------------------------ */
 
 typedef struct fixture {
-    counter count;
-    asj_memory memory;
-    asj_nfa *nfa;
+    const asj_nfa *nfa;
 } fixture;
 
 static int set_up(void **state)
 {
-    fixture *f = calloc(1, sizeof *f);
-    if (!f)
-        return -1;
-    f->memory.allocator = (asj_allocator){count_allocate, count_release, &f->count};
-    *state = f;
-    return asj_nfa_create(&f->memory, &f->nfa) == ASJ_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-    fixture *f = *state;
-    asj_nfa_free(&f->memory, &f->nfa);
-    int leaked = f->count.live != 0 || f->memory.now != 0;
-    free(f);
-    return leaked;
+    static fixture f;
+    f.nfa = asj_nfa_of(NULL);
+    *state = &f;
+    return 0;
 }
 
 static void check_near(const char *what, double n, double x, double value, double expected, double tolerance)
@@ -435,36 +401,6 @@ static void test_extremes(void **state)
     assert_true(asj_nfa_log_sector_tail(nfa, 5000 * ASJ_GAMMA_MEAN, 5000) > log(0.49));
 }
 
-/* ---- memory -------------------------------------------------------------------------------------------------------------- */
-
-static void test_out_of_memory(void **state)
-{
-    (void)state;
-    long fail_at = 1;
-    for (; fail_at < 100; fail_at++) {
-        counter count = {0, 0, fail_at};
-        asj_memory memory = {.allocator = {count_allocate, count_release, &count}};
-        asj_nfa *nfa = NULL;
-        asj_status status = asj_nfa_create(&memory, &nfa);
-        if (status == ASJ_OK) {
-            assert_non_null(nfa);
-            assert_true(memory.peak < 300000);
-            asj_nfa_free(&memory, &nfa);
-        } else {
-            assert_int_equal(status, ASJ_ERROR_MEMORY);
-        }
-        assert_null(nfa);
-        assert_int_equal(count.live, 0);
-        assert_true(memory.now == 0);
-        if (status == ASJ_OK)
-            break;
-    }
-    assert_in_range(fail_at, 2, 99);
-    asj_nfa *none = NULL;
-    asj_nfa_free(&((fixture *)*state)->memory, &none);
-    asj_nfa_free(&((fixture *)*state)->memory, NULL);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -473,7 +409,7 @@ int main(void)
         cmocka_unit_test(test_junction_tests), cmocka_unit_test(test_sector_naive),    cmocka_unit_test(test_arc_naive),
         cmocka_unit_test(test_simulation),     cmocka_unit_test(test_monotone),        cmocka_unit_test(test_monotone_in_n),
         cmocka_unit_test(test_seams),          cmocka_unit_test(test_atom),            cmocka_unit_test(test_thresholds_invert),
-        cmocka_unit_test(test_extremes),       cmocka_unit_test(test_out_of_memory),
+        cmocka_unit_test(test_extremes),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up, NULL);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Nodes and weights of Gauss-Legendre quadrature, 16 points (Abramowitz and Stegun, table 25.4); the other half mirrors them. */
-#include "nfa_tables.h"
+#include "nfa_fill.h"
 
 const double asj_nfa_gauss_node[ASJ_NFA_GAUSS] = {
     0.095012509837637441, 0.28160355077925892, 0.45801677765722737, 0.61787624440264377,
