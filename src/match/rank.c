@@ -25,7 +25,8 @@ typedef struct table {
     asj_partner *rows, *columns; /* `limit` for each L-junction of image 1 and of image 2 */
     int32_t *scores;             /* MOST_ROWS x count2; ASJ_NO_PARTNER also where the pair cannot come on a list */
     int16_t *left, *right;       /* bound vectors; NULL: every pair is compared */
-    int32_t *least;              /* of each frame of image 2: the threshold of its L-junction's list */
+    int32_t *least;              /* of each frame of image 2: the threshold of its L-junction's list, */
+    uint32_t *owner;             /* and that L-junction */
 } table;
 
 /* Inserts into a list that falls; the earlier of equals stays first. */
@@ -65,9 +66,9 @@ static void multiply_tile(const table *t, uint32_t i, uint32_t first, uint32_t e
     const asj_l_junctions *c1 = &t->image1->l_junctions, *c2 = &t->image2->l_junctions;
     const uint32_t start = c2->first_frame[first], stop = c2->first_frame[end];
     asj_partner *list = t->rows + (size_t)i * (size_t)t->limit;
-    int32_t frames[MOST_FRAMES], products[MOST_FRAMES], best[MOST_FRAMES];
-    for (uint32_t g = start; g < stop; g++)
-        best[g - start] = ASJ_NO_PARTNER;
+    int32_t frames[MOST_FRAMES], products[MOST_FRAMES];
+    for (uint32_t j = first; j < end; j++)
+        scores[j] = ASJ_NO_PARTNER;
     for (uint32_t f = c1->first_frame[i]; f < c1->first_frame[i + 1]; f++) {
         if (!t->image1->usable[f])
             continue;
@@ -75,16 +76,13 @@ static void multiply_tile(const table *t, uint32_t i, uint32_t first, uint32_t e
         t->ops->patch->products(t->image1->patches + (size_t)f * (size_t)t->length, t->image2->patches, t->length, frames, count,
                                products);
         for (int32_t k = 0; k < count; k++) {
-            int32_t *most = &best[(uint32_t)frames[k] - start];
-            *most = products[k] > *most ? products[k] : *most;
+            int32_t *best = &scores[t->owner[frames[k]]];
+            if (products[k] > *best && t->image2->usable[frames[k]])
+                *best = products[k];
         }
     }
-    for (uint32_t j = first; j < end; j++) {
-        scores[j] = ASJ_NO_PARTNER;
-        for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++)
-            scores[j] = t->image2->usable[g] && best[g - start] > scores[j] ? best[g - start] : scores[j];
+    for (uint32_t j = first; j < end; j++)
         offer(list, t->limit, scores[j], j);
-    }
 }
 
 static void multiply_row(const table *t, uint32_t i, int32_t *scores)
@@ -175,10 +173,14 @@ static asj_status prepare(table *t)
     const size_t padded = (size_t)asj_bound_blocks(c2->frame_count) * ASJ_BOUND_LANES;
     t->scores = asj_allocate(memory, MOST_ROWS * (size_t)c2->count, sizeof *t->scores);
     t->least = asj_allocate_zero(memory, padded, sizeof *t->least);
-    if (!t->scores || !t->least)
+    t->owner = asj_allocate(memory, c2->frame_count, sizeof *t->owner);
+    if (!t->scores || !t->least || !t->owner)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the distances of %u L-junctions", (unsigned)c2->count);
     for (uint32_t g = 0; g < c2->frame_count; g++)
         t->least[g] = ASJ_BOUND_LEAST;
+    for (uint32_t j = 0; j < c2->count; j++)
+        for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++)
+            t->owner[g] = j;
     if (!products_do(t->run->options) || t->run->options->descriptor != ASJ_DESCRIPTOR_RAW)
         return ASJ_OK;
     const asj_status status = asj_bound_left(context, t->run->options, t->image1, &t->left);
@@ -195,6 +197,7 @@ asj_status asj_rank_partners(const asj_match_run *run, asj_partner *rows, asj_pa
         status = work(&t);
     asj_release(memory, t.scores);
     asj_release(memory, t.least);
+    asj_release(memory, t.owner);
     asj_release(memory, t.left);
     asj_release(memory, t.right);
     return status;

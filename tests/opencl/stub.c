@@ -46,12 +46,15 @@ stub_state *stub_get_state(void)
 }
 
 /* Counts a call; 1 = it is to fail. A call that releases fails only by itself: what it does is done. */
-static int fails(const char *name, int releases)
+#define fails(name, releases) fails_from(name, releases, __builtin_return_address(0))
+static int fails_from(const char *name, int releases, const void *site)
 {
     if (!ready())
         return 1;
     if (state.counted && !strstr(name, state.counted))
         return 0;
+    if (state.calls < STUB_SITES)
+        state.sites[state.calls] = site;
     state.calls++;
     const int now = state.fail_at > 0 && (state.calls == state.fail_at ||
                                           (state.fail_from_there && !releases && state.calls > state.fail_at));

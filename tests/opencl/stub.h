@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+enum { STUB_SITES = 4096 };
 enum { STUB_CONTEXT, STUB_QUEUE, STUB_BUFFER, STUB_PROGRAM, STUB_KERNEL, STUB_EVENT, STUB_KINDS };
 
 typedef struct stub_state {
@@ -17,6 +18,7 @@ typedef struct stub_state {
     const char *counted;     /* only calls with this in their name are counted; NULL = all */
     /* what has happened */
     int64_t calls;
+    const void *sites[STUB_SITES]; /* where each call has come from: what it returns to */
     int64_t failures;
     const char *failed;      /* the first call that has failed, "clFinish" */
     int64_t live[STUB_KINDS];/* objects made and not released */

@@ -4,8 +4,8 @@
  * gives the right result in any case. Nothing is left behind: no memory, no object of OpenCL. The same where there is nothing to
  * use: a platform without devices, a library that is none.
  *
- * usage: test_faults PATH-OF-STUB [STEP]. With a step (slow builds), only every so many calls. Exit code 77 = there is no device,
- * unless ASJ_REQUIRE_OPENCL is 1. */
+ * usage: test_faults PATH-OF-STUB [STEP]. With a step (slow builds), only the first three calls from each place in the library, and
+ * every so many of the others. Exit code 77 = there is no device, unless ASJ_REQUIRE_OPENCL is 1. */
 #define _POSIX_C_SOURCE 200809L
 #include "core/context.h"
 #include "create.h"
@@ -29,7 +29,7 @@ typedef struct setting {
     const char *name;
     int32_t backend;
     int32_t from_there; /* all calls after the n-th fail too */
-    int32_t step;       /* n is 1, 1 + step, ..; times that of the command line */
+    int32_t step;       /* n is 1, 1 + step, .. */
     int32_t work;       /* 0 = only asj_prepare(), without stored kernels */
     const char *counted;/* NULL = all calls, else those with this in their name */
 } setting;
@@ -45,6 +45,7 @@ static int64_t allocated;
 static char heard[4096];
 static int warnings;
 static int problems;
+static int tried; /* contexts that could be used on after a failure; every tenth is */
 
 static void complain(const setting *set, int64_t n, const char *format, ...)
 {
@@ -193,7 +194,7 @@ static int one_failure(const setting *set, int64_t n)
     check_status(set, n, status, context);
     if (status == ASJ_OK && set->work && !work_same(&a, &expected))
         complain(set, n, "another result");
-    if (context && set->work && n / step % 10 == 0)
+    if (context && set->work && n > 0 && ++tried % 10 == 0)
         try_again(set, n, context);
     work_forget(&a);
     const int failed = stub->failures > 0;
@@ -202,13 +203,47 @@ static int one_failure(const setting *set, int64_t n)
     return failed || stub->failures > 0;
 }
 
+/* --- all failures ----------------------------------------------------------------------------------------------------------- */
+
+/* Calls of a run without failures: where they come from. */
+static const void *sites[STUB_SITES];
+static int64_t traced;
+
+static void trace(const setting *set)
+{
+    one_failure(set, 0);
+    traced = stub->calls < STUB_SITES ? stub->calls : STUB_SITES;
+    memcpy(sites, stub->sites, (size_t)traced * sizeof *sites);
+}
+
+/* Is call n among the first three that come from its place in the library? */
+static int is_new(int64_t n)
+{
+    int before = 0;
+    for (int64_t i = 0; i < n - 1 && n <= traced; i++)
+        before += sites[i] == sites[n - 1];
+    return before < 3;
+}
+
+/* The next call that is to fail. With a step, all that are new, and every so many of the others. */
+static int64_t next(const setting *set, int64_t n)
+{
+    do
+        n += set->step;
+    while (n <= traced && (n - 1) / set->step % step != 0 && !is_new(n));
+    return n;
+}
+
 static void all_failures(const setting *set)
 {
-    int64_t n = 1;
     const double start = asj_clock_ms();
-    while (one_failure(set, n) && problems < 20)
-        n += set->step * step;
-    printf("%-32s %5ld calls, %7.0f ms\n", set->name, (long)(n - 1), asj_clock_ms() - start);
+    int64_t n = 1, failures = 0;
+    traced = 0;
+    if (step > 1)
+        trace(set);
+    for (; one_failure(set, n) && problems < 20; n = next(set, n))
+        failures++;
+    printf("%-32s %5ld calls, %4ld failed, %7.0f ms\n", set->name, (long)(n - 1), (long)failures, asj_clock_ms() - start);
     fflush(stdout);
 }
 
