@@ -67,6 +67,7 @@ asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t wid
 {
     frame->width = width;
     frame->height = height;
+    frame->octave = 0;
     frame->octaves = 1;
     frame->blocks = (width + ASJ_LANES - 1) / ASJ_LANES;
     frame->stride = (ptrdiff_t)frame->blocks * ASJ_LANES + 2 * ASJ_MARGIN;
@@ -247,10 +248,11 @@ asj_status asj_frame_halve(asj_context *context, asj_frame *frame)
 {
     const ptrdiff_t stride = frame->stride;
     const uint16_t *from = frame->gray;
-    const int32_t octaves = frame->octaves;
+    const int32_t octave = frame->octave + 1, octaves = frame->octaves;
     asj_status status = asj_frame_prepare(context, frame, frame->width / 2, frame->height / 2);
     if (status != ASJ_OK)
         return status;
+    frame->octave = octave;
     frame->octaves = octaves;
     for (int32_t y = 0; y < frame->height; y++) {
         uint16_t *to = frame->gray + y * frame->stride;

@@ -29,6 +29,7 @@ typedef struct asj_frame {
     int16_t *gradient_y;
     void *memory[3];              /* what the three planes stand in */
     size_t capacity[3];
+    int32_t octave;               /* how often the image was halved to make it */
     int32_t octaves;              /* that share the false alarms allowed: 1, or more (octaves.c) */
     void *rows;                   /* scratch of asj_gradient() */
     size_t row_capacity;

@@ -166,16 +166,17 @@ void asj_detection_run_dump_points(const asj_detection_run *run, int32_t stage, 
 
 asj_status asj_detection_run_dump_hypotheses(const asj_detection_run *run, int32_t stage, const char *name)
 {
-    const size_t count = run->hypothesis_count;
     asj_memory *memory = &run->context->memory;
+    size_t count = 0;
     if (!run->context->options.dump)
         return ASJ_OK;
-    int32_t *points = asj_allocate_list(memory, count, 2 * sizeof *points);
+    int32_t *points = asj_allocate_list(memory, run->hypothesis_count, 2 * sizeof *points);
     if (!points)
-        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to dump %zu points", count);
-    for (size_t i = 0; i < count; i++) {
-        points[2 * i] = (int32_t)lrint(run->hypotheses[i].x);
-        points[2 * i + 1] = (int32_t)lrint(run->hypotheses[i].y);
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to dump %zu points", run->hypothesis_count);
+    for (size_t i = 0; i < run->hypothesis_count; i++) {
+        points[2 * count] = (int32_t)lrint(run->hypotheses[i].x);
+        points[2 * count + 1] = (int32_t)lrint(run->hypotheses[i].y);
+        count += run->hypotheses[i].branch_count > 0;
     }
     asj_detection_run_dump_points(run, stage, name, count, points);
     asj_release(memory, points);

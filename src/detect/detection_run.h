@@ -93,7 +93,7 @@ void asj_detection_run_dump_plane(const asj_detection_run *run, int32_t kind, co
 void asj_detection_run_dump_points(const asj_detection_run *run, int32_t stage, const char *name, size_t count,
                                    const int32_t *points);
 
-/* The same from the places of the hypotheses. No memory is an error like any other. */
+/* The same from the places of the hypotheses that are not rejected. No memory is an error like any other. */
 asj_status asj_detection_run_dump_hypotheses(const asj_detection_run *run, int32_t stage, const char *name);
 
 #endif

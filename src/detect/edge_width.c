@@ -5,7 +5,7 @@
  * branch at s = -a, 0, a from its line, which may itself be d off the edge,
  *     G(-a) G(a) / G(0)^2 = exp(-(((a - d)^2 + (a + d)^2 - 2 d^2) / (2 b^2)) = exp(-a^2 / b^2)   whatever d,
  * so     b^2 = -a^2 / ln(G(-a) G(a) / G(0)^2) = -a^2 / (2 ln q),   q = sqrt(G(-a) G(a)) / G(0).
- * The differences over two pixels and the interpolation between them blur as well: SAMPLING of that variance is theirs. An edge
+ * The differences over two pixels and the interpolation between them blur as well: ASJ_EDGE_SAMPLING of that variance is theirs. An edge
  * whose gradient changes sign within a is sharp: 0. Of a thin line each of the two edges is blurred by no more than half of what is
  * between them. */
 #include "edge_width.h"
@@ -14,7 +14,6 @@
 #include <math.h>
 
 #define ACROSS 2.0       /* px: a. Edges of up to 3 px can be told with it, and few neighbours are so close */
-#define SAMPLING 0.5     /* px^2: 1/3 of the differences, 1/6 of the interpolation (on average) */
 #define FIRST 2.0        /* px from the junction and from the end that are left out */
 #define LAST 18.0        /* px: more than enough to average noise away */
 #define UNKNOWN 10.0     /* px: the same while the length is not known */
@@ -28,7 +27,8 @@ static void add_up(const asj_frame *frame, const asj_hypothesis *hypothesis, con
     const double ux = cos(branch->angle), uy = sin(branch->angle);
     const double reach = branch->length > 0 ? branch->length - FIRST : UNKNOWN;
     const double last = fmax(fmin(reach, LAST), FIRST + LEAST_SPAN);
-    for (double t = FIRST; t <= last; t++)
+    const double step = frame->octave > 0 ? 1 : 2; /* px: where soft edges are many, neighbouring samples say much the same */
+    for (double t = FIRST; t <= last; t += step)
         for (int i = 0; i < 4; i++) {
             const double s = branch->offset + ACROSS * (i - 1.5);
             sums[i] += asj_gray_at(frame, hypothesis->x + t * ux - s * uy, hypothesis->y + t * uy + s * ux);
@@ -49,7 +49,7 @@ static double width_of(const asj_frame *frame, const asj_hypothesis *hypothesis,
     const double product = before / middle * (after / middle);
     if (product >= FLATTEST * FLATTEST)
         return ASJ_WIDEST_EDGE;
-    const double variance = -ACROSS * ACROSS / log(product) - SAMPLING;
+    const double variance = -ACROSS * ACROSS / log(product) - ASJ_EDGE_SAMPLING;
     return variance > 0 ? fmin(sqrt(variance), ASJ_WIDEST_EDGE) : 0;
 }
 

@@ -45,6 +45,7 @@ typedef struct asj_hypothesis {
     double x0, y0;             /* where the isotropic test found it */
     double radius;             /* px: of that test */
     double log_nfa;            /* natural logarithm, of that test */
+    double first;              /* px along the branches: where lines are fitted from, once they are guessed */
     double location_variance;  /* px^2, mean of both axes */
     int32_t octave;            /* that located it: 0 = the image itself, 1 = the image halved, .. */
     int32_t branch_count;      /* 0 = rejected */

@@ -22,7 +22,8 @@
  * at a corner; over 10 px a line has an angle, which over the isotropic scale of most junctions (7) it hardly has. The first guess
  * starts from a whole pixel and a sector's direction and needs a wide band; each later one may be narrower, which keeps
  * neighbouring edges out. */
-#define FIRST 2.0        /* px along: where fits begin */
+#define FIRST 2.0        /* px along: where fits begin, */
+#define SOFT_FIRST 5.0   /* and where a second look does: below */
 #define LEAST_END 10.0   /* px along: where they end, or at the isotropic scale if that is larger */
 #define GUESS_WIDTH 4.0  /* px across: of the first guess, */
 #define SECOND_WIDTH 2.5 /* of the second guess and the first fit, */
@@ -87,9 +88,14 @@ int asj_locate_meet(asj_hypothesis *hypothesis)
     return 1;
 }
 
+static double fit_first(const asj_hypothesis *hypothesis)
+{
+    return hypothesis->first > FIRST ? hypothesis->first : FIRST;
+}
+
 static double fit_end(const asj_hypothesis *hypothesis)
 {
-    return hypothesis->radius > LEAST_END ? hypothesis->radius : LEAST_END;
+    return (hypothesis->radius > LEAST_END ? hypothesis->radius : LEAST_END) + (fit_first(hypothesis) - FIRST);
 }
 
 static void fit_branches(const asj_context *context, const asj_frame *frame, const asj_line_range *range,
@@ -105,7 +111,7 @@ static void fit_branches(const asj_context *context, const asj_frame *frame, con
 static void guess_lines(const asj_context *context, const asj_frame *frame, double half_width, double end,
                         asj_hypothesis *hypothesis, asj_rough_line *lines)
 {
-    const double t[2] = {FIRST, end};
+    const double t[2] = {fit_first(hypothesis), end};
     int keep[ASJ_MAX_BRANCHES], kept = 0;
     for (int32_t i = 0; i < hypothesis->branch_count; i++) {
         lines[kept] = lines[i];
@@ -138,22 +144,23 @@ static int guess_meeting(const asj_detect_options *options, const asj_rough_line
            hypot(m->dx, m->dy) <= options->max_move + GUESS_MOVE;
 }
 
-void asj_locate_guess(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                      asj_hypothesis *hypothesis)
+/* The lines from `first` px on. *astray is set when they open but make no junction here. */
+static void guess_from(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, double first,
+                       asj_hypothesis *hypothesis, int *astray)
 {
     const double least = fmax((options->minimum_opening - GUESS_TURN) * ASJ_DEGREE, 0);
     asj_rough_line lines[ASJ_MAX_BRANCHES];
     meeting m;
-    if (options->refinement != ASJ_REFINE_LINE_FIT)
-        return;
+    hypothesis->first = first;
     get_lines(hypothesis, lines);
-    guess_lines(context, frame, GUESS_WIDTH, LEAST_END, hypothesis, lines); /* enough to tell edges */
+    guess_lines(context, frame, GUESS_WIDTH, LEAST_END + (first - FIRST), hypothesis, lines); /* enough to tell edges */
     if (!have_opening(lines, hypothesis->branch_count, least)) { /* most of the others */
         hypothesis->branch_count = 0;
         return;
     }
     guess_lines(context, frame, SECOND_WIDTH, fit_end(hypothesis), hypothesis, lines);
     if (!guess_meeting(options, lines, hypothesis->branch_count, least, &m)) {
+        *astray = 1;
         hypothesis->branch_count = 0;
         return;
     }
@@ -162,9 +169,24 @@ void asj_locate_guess(const asj_context *context, const asj_frame *frame, const 
     move(hypothesis, lines, m.dx, m.dy);
 }
 
+void asj_locate_guess(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                      asj_hypothesis *hypothesis)
+{
+    const asj_hypothesis before = *hypothesis;
+    int astray = 0;
+    if (options->refinement != ASJ_REFINE_LINE_FIT)
+        return;
+    guess_from(context, frame, options, FIRST, hypothesis, &astray);
+    if (!astray || frame->octave == 0)
+        return;
+    /* close by, soft edges bend so much that their lines miss the corner: coarse octaves, to which it is left, look farther out */
+    *hypothesis = before;
+    guess_from(context, frame, options, SOFT_FIRST, hypothesis, &astray);
+}
+
 void asj_locate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
-    const asj_line_range fine = {FIRST, fit_end(hypothesis), {SECOND_WIDTH, FIT_WIDTH, 0}, 2};
+    const asj_line_range fine = {fit_first(hypothesis), fit_end(hypothesis), {SECOND_WIDTH, FIT_WIDTH, 0}, 2};
     asj_rough_line lines[ASJ_MAX_BRANCHES];
     if (options->refinement != ASJ_REFINE_LINE_FIT)
         return;

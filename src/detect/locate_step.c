@@ -14,17 +14,17 @@
 #define LEAST_GUESSES (4 * ASJ_LEAST_JUNCTIONS) /* for a thread: a guess takes a quarter of a fit */
 
 /* What finer octaves have located well is not followed again. */
-static asj_status drop_known(asj_detection_run *run, int located)
+static asj_status drop_known(asj_detection_run *run, int known)
 {
     const int32_t width = run->image->width, height = run->image->height;
     if (run->all_count == 0)
         return ASJ_OK;
-    const size_t count = asj_octaves_cells(run->all_count, width, height);
+    const size_t count = asj_octave_grid_cells(run->all_count, width, height);
     int32_t *cells = asj_allocate_list(&run->context->memory, count, sizeof *cells);
     if (!cells)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu cells", count);
-    run->hypothesis_count = asj_octaves_drop_known(run->hypotheses, run->hypothesis_count, run->octave, located, run->all,
-                                                   run->all_count, width, height, cells);
+    run->hypothesis_count = asj_octaves_drop_known(run->hypotheses, run->hypothesis_count, run->octave, known, run->all,
+                                                   run->all_count, run->options, width, height, cells);
     asj_release(&run->context->memory, cells);
     return ASJ_OK;
 }
@@ -60,8 +60,6 @@ static void locate_some(const void *data, const asj_part *part)
     for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++) {
         asj_locate(run->context, run->frame, run->options, &run->hypotheses[i]);
         asj_reject_early(run->context, run->frame, run->options, &run->hypotheses[i]);
-        if (run->all_count > 0)
-            asj_edge_widths(run->frame, &run->hypotheses[i]);
     }
 }
 
@@ -76,6 +74,29 @@ static asj_status locate_all(asj_detection_run *run)
     return asj_watch_end(&watch);
 }
 
+static asj_status drop_known_early(asj_detection_run *run)
+{
+    return drop_known(run, ASJ_KNOWN_PIXEL);
+}
+
+static asj_status drop_known_late(asj_detection_run *run)
+{
+    for (size_t i = 0; i < run->hypothesis_count && run->all_count > 0; i++)
+        asj_edge_widths(run->frame, &run->hypotheses[i]);
+    return drop_known(run, ASJ_KNOWN_LINES);
+}
+
+static asj_status drop_twins(asj_detection_run *run)
+{
+    const asj_status status = asj_suppress_all(run, ASJ_SUPPRESS_TWINS);
+    return status == ASJ_OK ? drop_known(run, ASJ_KNOWN_ROUGHLY) : status;
+}
+
+static asj_status drop_close(asj_detection_run *run)
+{
+    return asj_suppress_all(run, ASJ_SUPPRESS_CLOSE);
+}
+
 asj_status asj_step_locate(asj_detection_run *run)
 {
     const size_t count = run->isotropic_count, room = asj_detection_run_room(count);
@@ -85,16 +106,16 @@ asj_status asj_step_locate(asj_detection_run *run)
     for (size_t i = 0; i < count; i++)
         if (asj_isotropic_has_opening(run->options, &run->isotropic[i]))
             asj_hypothesis_start(&run->isotropic[i], &run->hypotheses[run->hypothesis_count++]);
-    asj_status status = drop_known(run, 0);
-    if (status == ASJ_OK)
-        status = guess_all(run);
-    if (status == ASJ_OK)
-        status = asj_suppress_all(run, ASJ_SUPPRESS_TWINS);
-    if (status == ASJ_OK)
-        status = locate_all(run);
-    if (status == ASJ_OK)
-        status = asj_suppress_all(run, ASJ_SUPPRESS_CLOSE);
-    if (status == ASJ_OK)
-        status = drop_known(run, 1);
-    return status == ASJ_OK ? asj_detection_run_dump_hypotheses(run, ASJ_STAGE_LOCATE, "located") : status;
+    static const struct {
+        asj_status (*step)(asj_detection_run *run);
+        const char *name; /* of what is left then */
+    } steps[] = {{drop_known_early, "opening"}, {guess_all, "guessed"}, {drop_twins, "distinct"}, {locate_all, "fitted"},
+                 {drop_close, "apart"},         {drop_known_late, "located"}};
+    asj_status status = ASJ_OK;
+    for (size_t i = 0; i < sizeof steps / sizeof *steps && status == ASJ_OK; i++) {
+        status = steps[i].step(run);
+        if (status == ASJ_OK)
+            status = asj_detection_run_dump_hypotheses(run, ASJ_STAGE_LOCATE, steps[i].name);
+    }
+    return status;
 }

@@ -16,16 +16,16 @@
  * Junctions of two octaves are one when they are closer than NEAR px of the coarser octave and have a direction in common. The one
  * that stays gets the other's branches that were too soft for its own octave to see. */
 #include "octaves.h"
+#include "octave_ghosts.h"
 #include "core/angle.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define LEAST_SIDE 48 /* px of an octave: twice the largest of the default radii to either side, and something between */
 
 #define SHARP 1.7  /* px of its octave: from here on an edge is sharp (below 0.9) in the next one */
-#define WIDEST 2.3 /* px: beyond, the band of the fits (1.6 px to either side) holds less than half of the edge */
+#define WIDEST 2.7 /* px: beyond, the band of the fits (1.6 px to either side) holds less than half of the edge */
 
 #define NEAR 2.5                  /* px of the coarser octave */
 #define SAME_DIRECTION 0.3        /* rad */
@@ -127,62 +127,16 @@ static int share_direction(const asj_hypothesis *a, const asj_hypothesis *b)
     return 0;
 }
 
-/* Hypotheses that stay, linked by the cell that they lie in. */
-typedef struct grid {
-    int32_t *heads, *next;
-    int32_t columns, rows;
-    double cell; /* px: the farthest that two junctions which are one may lie apart */
-} grid;
-
-static double largest_cell(int32_t width, int32_t height)
-{
-    return NEAR * scale_of(count_octaves(width, height) - 1);
-}
-
-static size_t columns_of(int32_t width, double cell)
-{
-    return (size_t)(width / cell) + 3; /* a border for junctions just outside the image, and for the neighbours */
-}
-
-size_t asj_octaves_cells(size_t count, int32_t width, int32_t height)
-{
-    const double cell = largest_cell(width, height);
-    return columns_of(width, cell) * columns_of(height, cell) + count;
-}
-
-static int32_t cell_of(const grid *g, const asj_hypothesis *hypothesis)
-{
-    const double column = floor(hypothesis->x / g->cell) + 1, row = floor(hypothesis->y / g->cell) + 1;
-    const int32_t x = (int32_t)fmax(1, fmin(column, g->columns - 2)), y = (int32_t)fmax(1, fmin(row, g->rows - 2));
-    return y * g->columns + x;
-}
-
-static grid make_grid(int32_t width, int32_t height, int32_t *cells)
-{
-    const double cell = largest_cell(width, height);
-    grid g = {cells, NULL, (int32_t)columns_of(width, cell), (int32_t)columns_of(height, cell), cell};
-    const size_t count = (size_t)g.columns * (size_t)g.rows;
-    g.next = cells + count;
-    memset(g.heads, 0xff, count * sizeof *g.heads);
-    return g;
-}
-
-static void link_hypothesis(grid *g, const asj_hypothesis *hypotheses, size_t index)
-{
-    const int32_t cell = cell_of(g, &hypotheses[index]);
-    g->next[index] = g->heads[cell];
-    g->heads[cell] = (int32_t)index;
-}
-
 /* The nearest of those that stay which is the same junction in another octave; -1 = none. */
-static int32_t find_same(const grid *g, const asj_hypothesis *hypotheses, const asj_hypothesis *hypothesis)
+static int32_t find_same(const asj_octave_grid *grid, const asj_hypothesis *hypotheses, const asj_hypothesis *hypothesis)
 {
-    const int32_t cell = cell_of(g, hypothesis);
+    const int32_t coarsest = grid->coarsest > hypothesis->octave ? grid->coarsest : hypothesis->octave;
+    const asj_octave_cells w = asj_octave_grid_around(grid, hypothesis, NEAR * scale_of(coarsest));
     double least = HUGE_VAL;
     int32_t found = -1;
-    for (int32_t dy = -1; dy <= 1; dy++)
-        for (int32_t dx = -1; dx <= 1; dx++)
-            for (int32_t i = g->heads[cell + dy * g->columns + dx]; i >= 0; i = g->next[i]) {
+    for (int32_t row = w.top; row <= w.bottom; row++)
+        for (int32_t column = w.left; column <= w.right; column++)
+            for (int32_t i = grid->heads[row * grid->columns + column]; i >= 0; i = grid->next[i]) {
                 const asj_hypothesis *other = &hypotheses[i];
                 const double reach = NEAR * scale_of(other->octave > hypothesis->octave ? other->octave : hypothesis->octave);
                 const double distance = hypot(other->x - hypothesis->x, other->y - hypothesis->y);
@@ -231,20 +185,20 @@ static void join(const asj_hypothesis *coarse, double merge_angle, asj_hypothesi
 size_t asj_octaves_merge(asj_hypothesis *hypotheses, size_t count, const asj_detect_options *options, int32_t width, int32_t height,
                          int32_t *cells)
 {
-    grid g = make_grid(width, height, cells);
+    asj_octave_grid grid = asj_octave_grid_start(width, height, cells);
     size_t kept = 0;
     count = drop_wide(hypotheses, count, options->minimum_opening);
     if (count > 1)
         qsort(hypotheses, count, sizeof *hypotheses, by_preference);
     for (size_t i = 0; i < count; i++) {
         const asj_hypothesis hypothesis = hypotheses[i];
-        const int32_t same = find_same(&g, hypotheses, &hypothesis);
+        const int32_t same = find_same(&grid, hypotheses, &hypothesis);
         if (same >= 0 && hypothesis.octave > hypotheses[same].octave)
             join(&hypothesis, options->merge_angle, &hypotheses[same]);
-        if (same >= 0)
+        if (same >= 0 || asj_octave_ghost(&grid, hypotheses, &hypothesis, options->minimum_opening))
             continue;
         hypotheses[kept] = hypothesis;
-        link_hypothesis(&g, hypotheses, kept++);
+        asj_octave_grid_add(&grid, hypotheses, kept++);
     }
     return kept;
 }
@@ -260,30 +214,31 @@ static int adds_nothing(const asj_hypothesis *hypothesis, int located, const asj
     return 1;
 }
 
-static int is_known(const grid *g, const asj_hypothesis *finer, const asj_hypothesis *hypothesis, int located)
+static int is_known(const asj_octave_grid *grid, const asj_hypothesis *finer, const asj_hypothesis *hypothesis, int located)
 {
-    const int32_t cell = cell_of(g, hypothesis);
-    for (int32_t dy = -1; dy <= 1; dy++)
-        for (int32_t dx = -1; dx <= 1; dx++)
-            for (int32_t i = g->heads[cell + dy * g->columns + dx]; i >= 0; i = g->next[i])
+    const asj_octave_cells w = asj_octave_grid_around(grid, hypothesis, NEAR * scale_of(hypothesis->octave));
+    for (int32_t row = w.top; row <= w.bottom; row++)
+        for (int32_t column = w.left; column <= w.right; column++)
+            for (int32_t i = grid->heads[row * grid->columns + column]; i >= 0; i = grid->next[i])
                 if (hypot(finer[i].x - hypothesis->x, finer[i].y - hypothesis->y) <= NEAR * scale_of(hypothesis->octave) &&
                     share_direction(hypothesis, &finer[i]) && adds_nothing(hypothesis, located, &finer[i]))
                     return 1;
     return 0;
 }
 
-size_t asj_octaves_drop_known(asj_hypothesis *hypotheses, size_t count, int32_t octave, int located, const asj_hypothesis *finer,
-                              size_t finer_count, int32_t width, int32_t height, int32_t *cells)
+size_t asj_octaves_drop_known(asj_hypothesis *hypotheses, size_t count, int32_t octave, int known, const asj_hypothesis *finer,
+                              size_t finer_count, const asj_detect_options *options, int32_t width, int32_t height, int32_t *cells)
 {
-    grid g = make_grid(width, height, cells);
+    asj_octave_grid grid = asj_octave_grid_start(width, height, cells);
     size_t kept = 0;
     for (size_t i = 0; i < finer_count; i++)
         if (softness(&finer[i]) <= SHARP)
-            link_hypothesis(&g, finer, i);
+            asj_octave_grid_add(&grid, finer, i);
     for (size_t i = 0; i < count; i++) {
         asj_hypothesis mapped = hypotheses[i];
         asj_octaves_map(&mapped, octave);
-        if (!is_known(&g, finer, &mapped, located))
+        if (!is_known(&grid, finer, &mapped, known == ASJ_KNOWN_LINES) &&
+            !(known > ASJ_KNOWN_PIXEL && asj_octave_ghost(&grid, finer, &mapped, options->minimum_opening)))
             hypotheses[kept++] = hypotheses[i];
     }
     return kept;

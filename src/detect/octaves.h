@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_OCTAVES_H
 #define ASJ_SRC_OCTAVES_H
 
-#include "hypothesis.h"
+#include "octave_ghosts.h"
 
 /* The octaves that the options ask for and an image of this size has: first .. end - 1, at least one. */
 typedef struct asj_octave_range {
@@ -17,15 +17,17 @@ asj_octave_range asj_octaves_of(const asj_detect_options *options, int32_t width
 void asj_octaves_map(asj_hypothesis *hypothesis, int32_t octave);
 
 /* Merges hypotheses in pixels of the image, each octave's without duplicates: see octaves.c. Returns how many stay, at the front,
- * in no order that matters. `cells` is scratch of asj_octaves_cells() elements. */
+ * in no order that matters. `cells` is scratch of asj_octave_grid_cells() elements. */
 size_t asj_octaves_merge(asj_hypothesis *hypotheses, size_t count, const asj_detect_options *options, int32_t width, int32_t height,
                          int32_t *cells);
 
+/* What is known of hypotheses by now: a pixel and directions; the lines, roughly; the lines and the widths of their edges. */
+enum { ASJ_KNOWN_PIXEL, ASJ_KNOWN_ROUGHLY, ASJ_KNOWN_LINES };
+
 /* Of hypotheses in pixels of `octave`, drops those that would not survive the merge and could add nothing: which lie at a sharp one
- * of `finer`, in pixels of the image, and have its directions only; or, once they are `located` and the widths of their branches
- * known, others that are not soft. Returns how many stay; `cells` as above, for finer_count. */
-size_t asj_octaves_drop_known(asj_hypothesis *hypotheses, size_t count, int32_t octave, int located, const asj_hypothesis *finer,
-                              size_t finer_count, int32_t width, int32_t height, int32_t *cells);
-size_t asj_octaves_cells(size_t count, int32_t width, int32_t height);
+ * of `finer`, in pixels of the image, and have its directions only, or no soft ones else once widths are known; and ghosts, once
+ * lines are. Returns how many stay; `cells` as above, for finer_count. */
+size_t asj_octaves_drop_known(asj_hypothesis *hypotheses, size_t count, int32_t octave, int known, const asj_hypothesis *finer,
+                              size_t finer_count, const asj_detect_options *options, int32_t width, int32_t height, int32_t *cells);
 
 #endif

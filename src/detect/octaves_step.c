@@ -44,7 +44,7 @@ asj_status asj_step_next_octave(asj_detection_run *run)
 static asj_status merge(asj_detection_run *run)
 {
     const int32_t width = run->image->width, height = run->image->height;
-    const size_t count = asj_octaves_cells(run->all_count, width, height);
+    const size_t count = asj_octave_grid_cells(run->all_count, width, height);
     int32_t *cells = asj_allocate_list(&run->context->memory, count, sizeof *cells);
     if (!cells)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu cells", count);

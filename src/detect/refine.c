@@ -8,6 +8,7 @@
  *
  * search: the paper's way (search.c). */
 #include "refine.h"
+#include "bent_corner.h"
 #include "line_fit.h"
 #include "locate.h"
 
@@ -25,35 +26,29 @@
 #define WIDE 2.0
 #define HALF_WIDTH 1.6
 
-/* Ends of the part that is fitted,: see above. Of short branches less is left out, and at least 8 px are looked at. px. */
+/* Ends of the part that is fitted: see above. Of short branches less is left out, and at least 8 px are looked at. px. */
 #define LEFT_OUT_FIRST 5.0
 #define LEFT_OUT_LAST 3.0
 #define LEAST_LAST 8.0
 
-/* The corners at both ends bend a blurred edge: four of its standard deviations from a corner of 50 degrees its centroid is still a
- * quarter of a pixel off. So of soft edges more is left out, but no more than leaves a quarter of the branch. Sharp ones, below
- * BENT_FROM, keep what they have: the numbers above are for them. */
-#define BENT_FROM 0.9   /* px */
-#define BENT_WIDTHS 12.0
-#define BENT_MOST 8.0   /* px */
-#define BENT_SHARE 0.36
-#define LEAST_PART 3.0 /* px */
+/* The same of edges wider than ASJ_BENT_FROM, in their widths: what their own corner bends is known (bent_corner.c) and counts from
+ * two on; what bends the other end is not known. */
+#define SOFT_FIRST 2.0
+#define SOFT_LAST 4.0
+#define SOFT_SHARE 0.25 /* of the branch, at most */
+#define SOFT_LEAST 4.0 /* px: the shortest part */
 
-static double bent_px(const asj_hypothesis_branch *branch)
-{
-    return fmin(fmin(BENT_WIDTHS * fmax(branch->width - BENT_FROM, 0), BENT_MOST), BENT_SHARE * branch->length);
-}
-
-/* The part of a branch that its line is fitted to. */
 static double first_px(const asj_hypothesis_branch *branch)
 {
-    return fmax(fmin(LEFT_OUT_FIRST, 0.25 * branch->length + 0.5), bent_px(branch));
+    const double first = fmin(LEFT_OUT_FIRST, 0.25 * branch->length + 0.5);
+    return branch->width > ASJ_BENT_FROM ? fmin(first, SOFT_FIRST * branch->width) : first;
 }
 
 static double last_px(const asj_hypothesis_branch *branch)
 {
-    const double least = branch->width > BENT_FROM ? fmin(LEAST_LAST, first_px(branch) + LEAST_PART) : LEAST_LAST;
-    return fmax(branch->length - fmax(LEFT_OUT_LAST, bent_px(branch)), least);
+    const int soft = branch->width > ASJ_BENT_FROM;
+    const double left_out = soft ? fmax(LEFT_OUT_LAST, fmin(SOFT_LAST * branch->width, SOFT_SHARE * branch->length)) : LEFT_OUT_LAST;
+    return fmax(branch->length - left_out, soft ? fmin(LEAST_LAST, first_px(branch) + SOFT_LEAST) : LEAST_LAST);
 }
 
 /* The line over the whole branch, which asj_orient() has found roughly. Long branches are fitted over growing parts, each twice as
@@ -61,7 +56,7 @@ static double last_px(const asj_hypothesis_branch *branch)
  * moves the line significantly where it passes the junction, the edge is bent (lenses do that): then the shorter part is
  * believed. */
 static void follow_line(const asj_context *context, const asj_frame *frame, const asj_hypothesis *hypothesis,
-                        asj_hypothesis_branch *branch)
+                        asj_hypothesis_branch *branch, asj_fitted_part *part)
 {
     const double first = first_px(branch), end = last_px(branch);
     asj_hypothesis_branch longer = *branch;
@@ -76,18 +71,36 @@ static void follow_line(const asj_context *context, const asj_frame *frame, cons
             (reach > NEAR_PART && fabs(longer.offset - branch->offset) > BENT * sqrt(branch->offset_variance)))
             return;
         *branch = longer;
+        *part = (asj_fitted_part){first, last, HALF_WIDTH};
         if (reach >= end)
             return;
     }
+}
+
+/* The parts were fitted from (x, y) on. */
+static void unbend(asj_fitted_part *parts, double x, double y, asj_hypothesis *hypothesis)
+{
+    const double dx = hypothesis->x - x, dy = hypothesis->y - y;
+    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
+        const double along = dx * cos(hypothesis->branches[i].angle) + dy * sin(hypothesis->branches[i].angle);
+        if (!(parts[i].last > parts[i].first))
+            return;
+        parts[i].first -= along;
+        parts[i].last -= along;
+    }
+    asj_bent_corner(parts, hypothesis);
 }
 
 void asj_refine(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
     if (options->refinement == ASJ_REFINE_SEARCH)
         return; /* that is done (search_step.c) */
+    asj_fitted_part parts[ASJ_MAX_BRANCHES] = {{0, 0, 0}};
+    const double x = hypothesis->x, y = hypothesis->y;
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        follow_line(context, frame, hypothesis, &hypothesis->branches[i]);
-    asj_locate_meet(hypothesis);
+        follow_line(context, frame, hypothesis, &hypothesis->branches[i], &parts[i]);
+    if (asj_locate_meet(hypothesis))
+        unbend(parts, x, y, hypothesis);
 }
 
 /* The line over the whole branch, roughly: guessed over parts that grow from one at whose end it is known to a pixel, and once more

@@ -61,6 +61,8 @@ asj_status asj_step_refine(asj_detection_run *run)
 {
     asj_status status = refine_all(run);
     if (status == ASJ_OK)
+        status = asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "validated");
+    if (status == ASJ_OK)
         status = asj_suppress_all(run, ASJ_SUPPRESS_CLOSE);
     return status == ASJ_OK ? asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "junctions") : status;
 }

@@ -30,7 +30,7 @@
 #include <math.h>
 #include <string.h>
 
-#define ALIKE 1.2
+#define ALIKE 0.8
 #define INDEPENDENT_WIDTH 0.6 /* px */
 #define NOISE_WAVER 0.15
 

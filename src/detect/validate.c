@@ -21,6 +21,12 @@
 
 #define LARGEST_OFFSET 2.0 /* px: a line that misses the junction by more belongs to something else */
 
+/* A soft edge's end is uncertain by its width, and what a scan goes beyond a short one drowns it. So of edges wider than SOFT a strip
+ * without the last SOFT_END widths is tried too; the number of tests counts all ends. Not on the image itself: there such edges
+ * may be blurred noise, and true ones are sharper in the next octave. */
+#define SOFT 0.9     /* px */
+#define SOFT_END 4.0
+
 /* px: two pixels of a gradient's differences, and half a pixel */
 #define FRAME_REACH 2.5
 
@@ -87,26 +93,35 @@ void asj_reject_early(const asj_context *context, const asj_frame *frame, const 
     hypothesis->branch_count = opens ? hypothesis->branch_count : 0;
 }
 
+/* Sets the branch's number of false alarms; returns whether the branch is to be kept. */
+static int judge(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                 const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
+{
+    const double log_epsilon = log(options->epsilon);
+    asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
+    const asj_strip strip = asj_strip_test(context, frame, options, &line);
+    branch->log_nfa = options->strip_test ? asj_strip_correlated(frame, &strip, branch->width) : strip.log_nfa;
+    if (options->strip_test && branch->log_nfa > log_epsilon && frame->octave > 0 && branch->width > SOFT) {
+        line.length -= SOFT_END * branch->width;
+        const asj_strip shorter = asj_strip_test(context, frame, options, &line);
+        branch->log_nfa = fmin(branch->log_nfa, asj_strip_correlated(frame, &shorter, branch->width));
+    }
+    return branch->length >= options->minimum_length && branch->length > 0 && fabs(branch->offset) <= LARGEST_OFFSET &&
+           (!options->strip_test || branch->log_nfa <= log_epsilon) && strip.near_strength >= options->near_strength &&
+           !(options->ignore_frame && on_frame(frame, hypothesis, branch));
+}
+
 /* Lines over whole branches may move the junction as far again as those of the first fit (locate.c); what moves farther has drifted
  * to another edge. */
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
-    const double log_epsilon = log(options->epsilon);
     int keep[ASJ_MAX_BRANCHES];
     if (hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0) > 2 * options->max_move) {
         hypothesis->branch_count = 0;
         return;
     }
-    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
-        asj_hypothesis_branch *branch = &hypothesis->branches[i];
-        const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
-        const asj_strip strip = asj_strip_test(context, frame, options, &line);
-        branch->log_nfa = options->strip_test ? asj_strip_correlated(frame, &strip, branch->width) : strip.log_nfa;
-        keep[i] = branch->length >= options->minimum_length && branch->length > 0 && fabs(branch->offset) <= LARGEST_OFFSET &&
-                  (!options->strip_test || branch->log_nfa <= log_epsilon) &&
-                  strip.near_strength >= options->near_strength &&
-                  !(options->ignore_frame && on_frame(frame, hypothesis, branch));
-    }
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        keep[i] = judge(context, frame, options, hypothesis, &hypothesis->branches[i]);
     merge(options, hypothesis, keep);
     asj_hypothesis_select(hypothesis, keep);
     if (!asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE)) {

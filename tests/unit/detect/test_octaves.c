@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Octaves: where their pixels are, which of two junctions stays, what joins; and the widths of edges that decide. */
+#include "detect/bent_corner.h"
 #include "detect/edge_width.h"
 #include "detect/octaves.h"
 #include "render.h"
@@ -41,7 +42,7 @@ static size_t merge(asj_hypothesis *list, size_t count)
     asj_detect_options options;
     asj_detect_options_init(&options);
     options.octaves = 16;
-    int32_t *cells = malloc(asj_octaves_cells(count, 640, 480) * sizeof *cells);
+    int32_t *cells = malloc(asj_octave_grid_cells(count, 640, 480) * sizeof *cells);
     assert_non_null(cells);
     const size_t kept = asj_octaves_merge(list, count, &options, 640, 480, cells);
     free(cells);
@@ -130,6 +131,73 @@ static void test_soft_branch_joins(void **state)
     }
 }
 
+/* A finer corner stands on the coarse one's right branch, and that branch begins there unless it comes back, is far or turned. */
+static void test_ghosts(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        asj_hypothesis list[2] = {of_octave(2, 25, 25, 0.3), of_octave(0, i == 2 ? 131.5 : 117.5, 101.5, 1)};
+        list[1].branches[0].angle = i == 3 ? 0.4 : 0;
+        list[1].branches[1].angle = 1.5 * UNIT_PI;
+        list[1].branches[2] = list[1].branches[1];
+        list[1].branches[2].angle = UNIT_PI;
+        list[1].branch_count = i == 1 ? 3 : 2;
+        assert_int_equal(merge(list, 2), i == 0 ? 1 : 2);
+        assert_int_equal(list[0].octave, 0);
+    }
+}
+
+/* A corner blurred by 5 px: its lines meet a pixel or more off when nobody knows how blur bends them, outwards where it is acute
+ * and inwards where it is obtuse. */
+static void test_soft_corners(void **state)
+{
+    static const double openings[] = {80, 90, 110, 130};
+    unit_counter counter;
+    asj_context *context = unit_context(&counter, 1);
+    asj_detect_options options;
+    (void)state;
+    asj_detect_options_init(&options);
+    options.octaves = 16;
+    for (size_t i = 0; i < UNIT_COUNT(openings); i++) {
+        const double angles[] = {0.2, 0.2 + openings[i] * UNIT_PI / 180}, grays[] = {160, -1};
+        synth_scene scene;
+        asj_detection *found = NULL;
+        synth_scene_init(&scene, 240, 240, 100);
+        synth_add_star(&scene, (synth_point){120.3, 119.6}, angles, grays, 2, 80);
+        uint8_t *pixels = unit_picture(&scene, 5, 1, 3);
+        const asj_image image = unit_gray8(pixels, 240, 240);
+        assert_int_equal(asj_detect(context, &image, &options, &found), ASJ_OK);
+        double least = HUGE_VAL;
+        for (uint32_t j = 0; j < found->junction_count; j++)
+            least = fmin(least, hypot(found->junctions[j].x - 120.3, found->junctions[j].y - 119.6));
+        unit_near("distance from the corner", openings[i], 0, least, 0, 0.12 * 5);
+        asj_detection_free(&found);
+        free(pixels);
+    }
+    unit_context_free(&counter, &context);
+}
+
+/* Sharp corners, and junctions of more than two branches, are left as they are. */
+static void test_bent_corner_leaves(void **state)
+{
+    const asj_fitted_part parts[ASJ_MAX_BRANCHES] = {{3, 20, 1.6}, {3, 20, 1.6}, {3, 20, 1.6}};
+    asj_hypothesis sharp = corner(50, 50, 0.9), soft = corner(50, 50, 2), three = soft;
+    (void)state;
+    three.branch_count = 3;
+    three.branches[2].angle = 4;
+    three.branches[2].width = 2;
+    for (int b = 0; b < 3; b++)
+        sharp.branches[b].offset_variance = soft.branches[b].offset_variance = three.branches[b].offset_variance = 0.01;
+    const asj_hypothesis before = sharp, three_before = three;
+    asj_bent_corner(parts, &sharp);
+    assert_memory_equal(&sharp, &before, sizeof sharp);
+    asj_bent_corner(parts, &three);
+    assert_memory_equal(&three, &three_before, sizeof three);
+    asj_bent_corner(parts, &soft); /* a right corner's edges bend inwards: the true corner is outside, on the diagonal */
+    unit_near("diagonal", 0, 0, soft.x, soft.y, 1e-6);
+    assert_true(fabs(soft.x - 50) > 0.05 && fabs(soft.x - 50) < 2);
+}
+
 /* A step blurred by 0.6 to 3 px, on its line and half a pixel beside it. Of sharp ones no more is known than that they are. */
 static void test_widths(void **state)
 {
@@ -168,7 +236,8 @@ int main(void)
         cmocka_unit_test(test_range),          cmocka_unit_test(test_map),
         cmocka_unit_test(test_finest_sharp_one_stays), cmocka_unit_test(test_soft_one_gives_way),
         cmocka_unit_test(test_others_stay),    cmocka_unit_test(test_soft_branch_joins),
-        cmocka_unit_test(test_widths),
+        cmocka_unit_test(test_widths),         cmocka_unit_test(test_ghosts),
+        cmocka_unit_test(test_soft_corners),   cmocka_unit_test(test_bent_corner_leaves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

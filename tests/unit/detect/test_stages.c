@@ -26,8 +26,8 @@ static int32_t watch(void *user, int32_t stage, double done)
 
 typedef struct dumps {
     int count;
-    char names[24][24];
-    size_t points[24];
+    char names[40][24];
+    size_t points[40];
     int wrong;
     int halves; /* a smaller one begins the next octave */
     int32_t width, height;
@@ -42,8 +42,8 @@ static void look(void *user, const asj_dump *dump)
         d->width /= 2;
         d->height /= 2;
     }
-    d->wrong += dump->width != d->width || dump->height != d->height || !dump->data || d->count >= 24;
-    if (d->count >= 24)
+    d->wrong += dump->width != d->width || dump->height != d->height || !dump->data || d->count >= 40;
+    if (d->count >= 40)
         return;
     snprintf(d->names[d->count], sizeof d->names[0], "%s", dump->name);
     d->points[d->count++] = dump->kind == ASJ_DUMP_POINTS ? dump->count : 0;
@@ -172,7 +172,8 @@ static void test_cancel_field(void **state)
 /* All that context.h names, in the order of the steps, with as many points as the result says. */
 static void test_dumps(void **state)
 {
-    static const char *const names[] = {"gray", "gradient_x", "gradient_y", "candidates", "isotropic", "located", "junctions"};
+    static const char *const names[] = {"gray",     "gradient_x", "gradient_y", "candidates", "isotropic", "opening",  "guessed",
+                                        "distinct", "fitted",     "apart",      "located",    "validated", "junctions"};
     fixture *f = *state;
     asj_detection *found = NULL;
     f->dumps.count = f->dumps.wrong = 0;
@@ -183,8 +184,9 @@ static void test_dumps(void **state)
         assert_string_equal(f->dumps.names[i], names[i]);
     assert_int_equal(f->dumps.points[3], found->candidates);
     assert_true(f->dumps.points[4] <= f->dumps.points[3]);
-    assert_true(f->dumps.points[5] <= f->dumps.points[4]);
-    assert_int_equal(f->dumps.points[6], found->junction_count);
+    for (size_t i = 5; i < UNIT_COUNT(names); i++)
+        assert_true(f->dumps.points[i] <= f->dumps.points[i - 1]);
+    assert_int_equal(f->dumps.points[UNIT_COUNT(names) - 1], found->junction_count);
     asj_detection_free(&found);
     /* an image without candidates: lists of no points */
     static const uint8_t flat[100] = {0};
@@ -240,12 +242,12 @@ static void test_octave_dumps(void **state)
     all.octaves = 16;
     f->dumps = (dumps){.width = f->image.width, .height = f->image.height, .halves = 1};
     assert_int_equal(asj_detect(f->context, &f->image, &all, &found), ASJ_OK);
-    assert_int_equal(f->dumps.count, 21);
+    assert_int_equal(f->dumps.count, 3 * 13);
     assert_int_equal(f->dumps.wrong, 0);
     assert_int_equal(f->dumps.width, 80);
-    assert_int_equal(f->dumps.points[3] + f->dumps.points[10] + f->dumps.points[17], found->candidates);
-    assert_int_equal(f->dumps.points[4] + f->dumps.points[11] + f->dumps.points[18], found->isotropic);
-    assert_true(f->dumps.points[6] + f->dumps.points[13] + f->dumps.points[20] >= found->junction_count);
+    assert_int_equal(f->dumps.points[3] + f->dumps.points[16] + f->dumps.points[29], found->candidates);
+    assert_int_equal(f->dumps.points[4] + f->dumps.points[17] + f->dumps.points[30], found->isotropic);
+    assert_true(f->dumps.points[12] + f->dumps.points[25] + f->dumps.points[38] >= found->junction_count);
     asj_detection_free(&found);
     f->dumps = (dumps){.width = f->image.width, .height = f->image.height};
 }
