@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Blur rounds a corner: within three of its standard deviations the edges bend, inwards where the corner is acute and outwards where
- * it is obtuse, and lines fitted to them meet somewhere else. How far they bend is known.
+/* Blur rounds a corner: within three of its standard deviations the edges bend, inwards where the corner is acute and outwards
+ * where it is obtuse, and lines fitted to them meet somewhere else. How far they bend is known.
  *
  * Corner of opening phi at the origin, its first edge along t, s at right angles, the second edge along (cos phi, sin phi). Its
  * gradient is that of two half-lines of unit steps. Blurred with a Gaussian of standard deviation b, up to a factor, with
@@ -11,7 +11,7 @@
  * can be computed, sample for sample. Sought is the corner whose lines are those that were found. Corrected edges are what was
  * found, less what the corner as it is known by now would add; a few rounds settle to a hundredth of a pixel.
  *
- * What ends a branch at its other side bends it too. That part is left out of the fit (refine.c), since nobody knows by how much. */
+ * What ends a branch at its other side bends it too. That part is left out of the fit (refine.c): nobody knows by how much. */
 #include "bent_corner.h"
 #include "core/angle.h"
 #include "edge_width.h"

@@ -29,7 +29,7 @@ static void measure(const asj_context *context, const asj_frame *frame, const as
         along += sums.uu;
         across += sums.nn;
     }
-    const asj_strip whole = {0, across > 0 ? along / across : 0, 0};
+    const asj_strip whole = {0, across > 0 ? along / across : 0, 0, 1};
     evidence->alike = options->strip_test ? asj_strip_alike(&whole, branch->width) : 1;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Ghosts. What an octave sees is blurred: an edge that begins six of its pixels from a junction, at a corner of its own, seems to
- * begin there. Coarse octaves so make junctions of edges that do not meet, where their lines would, beside the fine corners at which
- * they end.
+ * begin there. Coarse octaves so make junctions of edges that do not meet, where their lines would, beside the fine corners at
+ * which they end.
  *
  * A branch of a coarse junction belongs to a finer junction when that lies on it, no more than BEGINS px of the coarse octave from
  * its beginning, has a branch the same way and none the other way: the edge begins there. When what is left has no opening, the
@@ -78,8 +78,8 @@ static int begins_at(const asj_hypothesis *hypothesis, const asj_hypothesis_bran
 }
 
 /* keep[b] = 0 for the branches that begin at one of the hypotheses from `first` on. */
-static void drop_begun(const asj_octave_grid *grid, const asj_hypothesis *hypotheses, int32_t first, const asj_hypothesis *hypothesis,
-                       int *keep)
+static void drop_begun(const asj_octave_grid *grid, const asj_hypothesis *hypotheses, int32_t first,
+                       const asj_hypothesis *hypothesis, int *keep)
 {
     for (int32_t i = first; i >= 0; i = grid->next[i])
         for (int32_t b = 0; b < hypothesis->branch_count && hypotheses[i].octave < hypothesis->octave; b++)

@@ -47,7 +47,8 @@ static double first_px(const asj_hypothesis_branch *branch)
 static double last_px(const asj_hypothesis_branch *branch)
 {
     const int soft = branch->width > ASJ_BENT_FROM;
-    const double left_out = soft ? fmax(LEFT_OUT_LAST, fmin(SOFT_LAST * branch->width, SOFT_SHARE * branch->length)) : LEFT_OUT_LAST;
+    const double far = soft ? fmin(SOFT_LAST * branch->width, SOFT_SHARE * branch->length) : 0;
+    const double left_out = fmax(LEFT_OUT_LAST, far);
     return fmax(branch->length - left_out, soft ? fmin(LEAST_LAST, first_px(branch) + SOFT_LEAST) : LEAST_LAST);
 }
 

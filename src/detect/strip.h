@@ -9,6 +9,7 @@ typedef struct asj_strip {
     double log_nfa;       /* natural logarithm of the number of false alarms */
     double waver;         /* mean square of the gradient along the branch over that across it: 0 = an edge without noise */
     double near_strength; /* standard deviations above the null model in the part next to the junction */
+    double near_share;    /* gamma of a pixel in that part, of the mean over the whole strip */
 } asj_strip;
 
 /* Where a strip lies. */
