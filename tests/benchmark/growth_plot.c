@@ -145,7 +145,8 @@ int growth_plot(const char *path, const growth_curve curves[4])
         return -1;
     }
     memcpy(copy, curves, sizeof copy);
-    if (cli_plot_file(path, format, WIDTH, HEIGHT, draw, copy, message, sizeof message) == ASJ_OK)
+    const cli_plot_content content = {.draw = draw, .user = copy};
+    if (cli_plot_file(path, format, WIDTH, HEIGHT, &content, message, sizeof message) == ASJ_OK)
         return 0;
     fprintf(stderr, "growth: %s\n", message);
     return -1;
