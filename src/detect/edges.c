@@ -23,7 +23,8 @@
 #define OFF_SHARE 0.01 /* of the length: 0.6 degrees. Lenses bend long edges */
 #define TURN (15 * ASJ_DEGREE) /* default of merge_angle: closer branches would be one */
 #define END_NEAR 4.0   /* px of the branch's octave, or .. */
-#define END_SURE 3.0   /* .. standard uncertainties of the end */
+#define END_SURE 3.0   /* .. standard uncertainties of the end, .. */
+#define END_MOST 8.0   /* .. but no more than this, the default of snap_distance: where an edge fades they may be fifty pixels */
 #define LEAST 3.0      /* px */
 #define LN_10 2.302585092994046
 #define CELL 32        /* px of the grid in which junctions on the way are looked for */
@@ -77,7 +78,7 @@ static void fill_grid(graph *g, size_t count)
 
 static double end_tolerance(const asj_hypothesis_branch *branch)
 {
-    return fmax(END_NEAR * (1 << branch->octave), END_SURE * sqrt(branch->end_variance));
+    return fmax(END_NEAR * (1 << branch->octave), fmin(END_SURE * sqrt(branch->end_variance), END_MOST * (1 << branch->octave)));
 }
 
 static double off_tolerance(const asj_hypothesis_branch *branch, double distance)

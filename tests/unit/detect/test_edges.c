@@ -129,6 +129,19 @@ static void test_overshoot(void **state)
     assert_int_equal(d.list[1].branches[1].end, ASJ_BRANCH_END_JUNCTION);
 }
 
+/* An end of which nothing is known is no end at the junction on its way. */
+static void test_unsure_end(void **state)
+{
+    drawing d = {.count = 0};
+    (void)state;
+    add_branch(add_junction(&d, 40, 70), 0, 130, 1.5);
+    add_branch(add_junction(&d, 140, 70), UNIT_PI, 100, 1.5);
+    d.list[0].branches[1].end_variance = 900;
+    join(&d);
+    assert_true(d.edge_count == 1 && joined(&d, 0, 1));
+    assert_int_equal(d.list[0].branches[1].end, ASJ_BRANCH_END_FADED);
+}
+
 /* Whatever stands there: every branch in one edge at most, sound indices in order. */
 static void test_random(void **state)
 {
@@ -290,7 +303,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pairs),  cmocka_unit_test(test_between), cmocka_unit_test(test_overshoot),
         cmocka_unit_test(test_random), cmocka_unit_test(test_door),    cmocka_unit_test(test_room),
-        cmocka_unit_test(test_parallelograms),
+        cmocka_unit_test(test_parallelograms), cmocka_unit_test(test_unsure_end),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }
