@@ -6,7 +6,7 @@
  * seem to open: after the fit the branches are parallel, or meet far away. A junction is rejected when
  *   - no two branches open by at least minimum_opening and at most pi minus that,
  *   - the smallest singular direction of the lines is not determined (determinant of the weighted normal matrix), or
- *   - it moves farther than max_move. */
+ *   - it moves farther than max_move, or somewhat more at sharp corners. */
 #include "locate.h"
 #include "core/angle.h"
 
@@ -33,6 +33,9 @@
  * which costs time; less begins to reject what the fits would accept. */
 #define GUESS_TURN 8.0
 #define GUESS_MOVE 1.0
+
+#define PLAIN 50      /* deg: corners that open by this much are found with the default of max_move, 2.5 px, whatever their direction */
+#define SHARP_MOVE 5.0 /* px: for 26 degrees with that default; max_move of preset match, which stays as it is */
 
 static void get_lines(const asj_hypothesis *hypothesis, asj_rough_line *lines)
 {
@@ -134,6 +137,23 @@ static int have_opening(const asj_rough_line *lines, int32_t count, double least
     return 0;
 }
 
+/* px that a junction may move. The sides of a wedge that opens by phi are 2 d tan(phi / 2) apart at d px from its apex, and blur joins
+ * what is too close: so the isotropic test sees a sharp corner farther inside than others. max_move is meant for openings of PLAIN
+ * degrees and more; of sharper ones the apex may be where the sides are as far apart as there, d tan(phi / 2) = max_move tan(PLAIN / 2),
+ * at most SHARP_MOVE. The best opening of any two lines counts; tan(phi / 2) = sin phi / (1 + cos phi). */
+static double most_move(const asj_detect_options *options, const asj_rough_line *lines, int32_t count)
+{
+    double widest = 0;
+    for (int32_t i = 0; i < count; i++)
+        for (int32_t j = i + 1; j < count; j++) {
+            const double sine = fabs(lines[i].ux * lines[j].uy - lines[i].uy * lines[j].ux);
+            const double cosine = lines[i].ux * lines[j].ux + lines[i].uy * lines[j].uy;
+            widest = sine >= widest * (1 + cosine) && 1 + cosine > 0 ? sine / (1 + cosine) : widest;
+        }
+    const double sharp = options->max_move * tan(0.5 * PLAIN * ASJ_DEGREE);
+    return fmax(options->max_move, sharp < widest * SHARP_MOVE ? sharp / widest : SHARP_MOVE);
+}
+
 /* Whether the lines make a junction near its pixel, and where. */
 static int guess_meeting(const asj_detect_options *options, const asj_rough_line *lines, int32_t count, double least, meeting *m)
 {
@@ -141,7 +161,7 @@ static int guess_meeting(const asj_detect_options *options, const asj_rough_line
     for (int32_t i = 0; i < count; i++)
         weights[i] = 1;
     return have_opening(lines, count, least) && meet_lines(lines, weights, count, m) &&
-           hypot(m->dx, m->dy) <= options->max_move + GUESS_MOVE;
+           hypot(m->dx, m->dy) <= most_move(options, lines, count) + GUESS_MOVE;
 }
 
 /* The lines from `first` px on. *astray is set when they open but make no junction here. */
@@ -194,7 +214,8 @@ void asj_locate(const asj_context *context, const asj_frame *frame, const asj_de
     /* back to the pixel: a guess is good enough to tell twins, not to start from */
     move(hypothesis, lines, hypothesis->x0 - hypothesis->x, hypothesis->y0 - hypothesis->y);
     fit_branches(context, frame, &fine, hypothesis);
+    get_lines(hypothesis, lines);
     if (!asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE) || !asj_locate_meet(hypothesis) ||
-        hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0) > options->max_move)
+        hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0) > most_move(options, lines, hypothesis->branch_count))
         hypothesis->branch_count = 0;
 }

@@ -133,6 +133,25 @@ static void test_shapes(void **state)
         }
 }
 
+/* Sharp corners, whose sides blur joins near the apex. */
+static void test_sharp(void **state)
+{
+    const fixture *f = *state;
+    for (int degrees = 36; degrees <= 48; degrees += 4)
+        for (int n = 0; n < 6; n++) {
+            const double turn = 1.05 * n + 0.1, opening = degrees * UNIT_PI / 180;
+            const double x = 100.3 - 35 * cos(turn + opening / 2), y = 99.6 - 35 * sin(turn + opening / 2);
+            synth_scene scene;
+            synth_scene_init(&scene, 200, 200, 100);
+            synth_add_star(&scene, (synth_point){x, y}, (const double[]){turn, turn + opening}, (const double[]){160, -1}, 2, 80);
+            asj_detection *found = detect_scene(f->context, &scene, 1, 2);
+            const asj_junction *j = nearest(found, x, y, 1.5);
+            if (!j || !has_branch(j, turn, 0.03) || !has_branch(j, turn + opening, 0.03))
+                fail_msg("%d degrees turned by %g: not found", degrees, turn);
+            asj_detection_free(&found);
+        }
+}
+
 /* Inner crossings of a board of tiles, with four branches each; a crossing is where branches of other junctions must pass. */
 static void test_crossings(void **state)
 {
@@ -547,7 +566,7 @@ static void test_radii(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shapes), cmocka_unit_test(test_crossings), cmocka_unit_test(test_tiny_and_flat),
+        cmocka_unit_test(test_shapes), cmocka_unit_test(test_sharp), cmocka_unit_test(test_crossings), cmocka_unit_test(test_tiny_and_flat),
         cmocka_unit_test(test_noise),  cmocka_unit_test(test_borders),   cmocka_unit_test(test_threads),
         cmocka_unit_test(test_reuse),  cmocka_unit_test(test_quarter_turn), cmocka_unit_test(test_formats),
         cmocka_unit_test(test_radii),
