@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The edge between two junctions is a part of a branch: from the junction to another one that it ends at or passes. The test is the
- * strip's (strip.c), over the whole part: the strip from the junction to t = d holds gamma(d) in n(d) pixels, and
+/* The edge between two junctions is a part of a branch: from the junction to another one that it ends at or passes. The test is
+ * the strip's (strip.c), over the whole part: the strip from the junction to t = d holds gamma(d) in n(d) pixels, and
  *     NFA = (NM)^(3/2) F(gamma(d); n(d)).
- * The image's planes are gone when edges are known (each octave has its own), so gamma and n are kept at eight places of the branch
- * and are linear between them. */
+ * The image's planes are gone when edges are known (each octave has its own), so gamma and n are kept at eight places of the
+ * branch and are linear between them. */
 #include "edge_evidence.h"
 #include "nfa.h"
 #include "strip.h"

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* An edge joins junctions i and j when a branch of either points at the other: with t the distance from i to j along the branch of i,
+/* An edge joins junctions i and j when a branch of either points at the other: with t the distance from i to j along the branch
+ * of i,
  *   - j lies at most max(OFF_LINE, OFF_SHARE t) px off that branch's line, and i off the line of the other branch;
  *   - the two point against each other to within TURN;
- *   - one of them reaches the other junction (its length is t or more, but for the uncertainty of its end), the other goes at least
- *     half of the way: the scan may lose a fading edge from one side that it follows from the other;
+ *   - one of them reaches the other junction (its length is t or more, but for the uncertainty of its end), the other goes at
+ *     least half of the way: the scan may lose a fading edge from one side that it follows from the other;
  *   - the part between is meaningful: log NFA <= log epsilon (edge_evidence.c), by the branch that reaches.
  *
- * Junctions on a line. Branches run on through other junctions (ray_walk.c), so along a line every branch points at many. Joined are
- * neighbours: j is the nearest junction on the way of i that fulfils the above, and i that of j. At first a junction on the way counts
- * only if it divides the edge: if the branch ends there, or another one of its own goes on. One whose branch to the other side was not
- * found must not keep apart what both ends say is one. Then the same without that condition among branches that are left: where a scan
- * has overshot a corner, only the other branch knows where the edge ends. */
+ * Junctions on a line. Branches run on through other junctions (ray_walk.c), so along a line every branch points at many. Joined
+ * are neighbours: j is the nearest junction on the way of i that fulfils the above, and i that of j. At first a junction on the
+ * way counts only if it divides the edge: if the branch ends there, or another one of its own goes on. One whose branch to the
+ * other side was not found must not keep apart what both ends say is one. Then the same without that condition among branches
+ * that are left: where a scan has overshot a corner, only the other branch knows where the edge ends. */
 #include "edges.h"
 #include "edge_evidence.h"
 #include "strip.h"
@@ -142,8 +143,9 @@ static int32_t comes_back(const graph *g, const way *w, int32_t index, double *d
     for (int32_t i = 0; i < to->branch_count; i++) {
         const asj_hypothesis_branch *branch = &to->branches[i];
         const double turn = asj_angle_distance(branch->angle, back);
-        if (turn > least || is_joined(g, index, i) || fabs(dy * cos(branch->angle) - dx * sin(branch->angle)) > off_tolerance(branch, t) ||
-            !covers(w->along, branch, t) || between(g, w->along, branch, t) > g->log_epsilon)
+        const double back_off = fabs(dy * cos(branch->angle) - dx * sin(branch->angle));
+        if (turn > least || is_joined(g, index, i) || back_off > off_tolerance(branch, t) || !covers(w->along, branch, t) ||
+            between(g, w->along, branch, t) > g->log_epsilon)
             continue;
         least = turn;
         found = i;
@@ -151,7 +153,8 @@ static int32_t comes_back(const graph *g, const way *w, int32_t index, double *d
     return found;
 }
 
-/* Looks at the junctions of one cell; the nearest so far is *nearest px away. Returns it as junction * ASJ_MAX_BRANCHES + branch. */
+/* Looks at the junctions of one cell; the nearest so far is *nearest px away. Returns it as junction * ASJ_MAX_BRANCHES + branch.
+ * */
 static int32_t look_in(const graph *g, const way *w, int32_t cell, double *nearest, int32_t found)
 {
     for (int32_t i = g->heads[cell]; i >= 0; i = g->next[i]) {
@@ -226,7 +229,8 @@ static void join_nearest(graph *g, size_t count)
 
 static asj_edge edge_of(const graph *g, int32_t own, int32_t other)
 {
-    const int32_t i = own / ASJ_MAX_BRANCHES, b = own % ASJ_MAX_BRANCHES, j = other / ASJ_MAX_BRANCHES, c = other % ASJ_MAX_BRANCHES;
+    const int32_t i = own / ASJ_MAX_BRANCHES, b = own % ASJ_MAX_BRANCHES;
+    const int32_t j = other / ASJ_MAX_BRANCHES, c = other % ASJ_MAX_BRANCHES;
     const asj_hypothesis *from = &g->hypotheses[i], *to = &g->hypotheses[j];
     const double distance = hypot(to->x - from->x, to->y - from->y);
     return (asj_edge){(uint32_t)i, (uint32_t)j, (uint16_t)b, (uint16_t)c,
@@ -236,8 +240,8 @@ static asj_edge edge_of(const graph *g, int32_t own, int32_t other)
 size_t asj_edges_join(asj_watch *watch, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves,
                       asj_hypothesis *hypotheses, size_t count, int32_t *scratch, asj_edge *edges)
 {
-    graph g = {.watch = watch, .context = watch->context, .hypotheses = hypotheses, .heads = scratch, .columns = (int32_t)columns_of(width),
-               .rows = (int32_t)columns_of(height)};
+    graph g = {.watch = watch, .context = watch->context, .hypotheses = hypotheses, .heads = scratch,
+               .columns = (int32_t)columns_of(width), .rows = (int32_t)columns_of(height)};
     size_t found = 0;
     start(&g, options, width, height, octaves);
     g.next = scratch + (size_t)g.columns * (size_t)g.rows;

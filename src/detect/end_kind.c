@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* What is at the end of a branch that ends at no junction. Around the end E, which is known to a few pixels, other edges are looked for
- * along short rays: from places on the branch's line up to AROUND px before and behind E, in directions up to MOST degrees off either
- * side of it, and from E on ahead. A ray has an edge under it when the mean of
+/* What is at the end of a branch that ends at no junction. Around the end E, which is known to a few pixels, other edges are
+ * looked for along short rays: from places on the branch's line up to AROUND px before and behind E, in directions up to MOST
+ * degrees off either side of it, and from E on ahead. A ray has an edge under it when the mean of
  *     gamma = max(|g.n| - |g.u|, 0)        (n, u: across and along the ray; strip.c)
- * over r = NEAR .. FAR px is at least EDGE. In noise the mean of seven is that large once in 3000 times (algorithm section 2.2), and
+ * over r = NEAR .. FAR px is at least EDGE. In noise the mean of seven is that large once in 4000 times (by simulation), and
  * rays side by side share pixels.
  *   - E within BORDER px of the image's border, along the branch: the border;
- *   - an edge to both sides, in one line to within STRAIGHT, and none ahead: an edge passes by, and the branch may go on behind what it
- *     bounds: an occlusion;
+ *   - an edge to both sides, in one line to within STRAIGHT, and none ahead: an edge passes by, and the branch may go on behind
+ *     what it bounds: an occlusion;
  *   - an edge to any side otherwise: a crossing, or a corner that was not found;
  *   - none: the branch fades. */
 #include "end_kind.h"
@@ -68,10 +68,12 @@ typedef struct arrival {
 static double edge_from(const asj_frame *frame, const asj_end_rays *rays, const arrival *end, double shift, int32_t turn, int side)
 {
     const double c = rays->cosine[turn], s = side * rays->sine[turn];
-    return edge_along(frame, end->x + shift * end->ux, end->y + shift * end->uy, c * end->ux - s * end->uy, c * end->uy + s * end->ux);
+    return edge_along(frame, end->x + shift * end->ux, end->y + shift * end->uy, c * end->ux - s * end->uy,
+                      c * end->uy + s * end->ux);
 }
 
-/* The strongest edge to one side from around the end; returns its angle from the branch's line in degrees, 0 when there is none. */
+/* The strongest edge to one side from around the end; returns its angle from the branch's line in degrees, 0 when there is none.
+ * */
 static double edge_beside(const asj_frame *frame, const asj_end_rays *rays, const arrival *end, int side)
 {
     double best = EDGE, found = 0;
@@ -94,7 +96,8 @@ static int edge_ahead(const asj_frame *frame, const asj_end_rays *rays, const ar
     return 0;
 }
 
-static int32_t kind_of(const asj_frame *frame, const asj_end_rays *rays, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+static int32_t kind_of(const asj_frame *frame, const asj_end_rays *rays, const asj_hypothesis *hypothesis,
+                       const asj_hypothesis_branch *branch)
 {
     const double ux = cos(branch->angle), uy = sin(branch->angle);
     const arrival end = {hypothesis->x + branch->length * ux, hypothesis->y + branch->length * uy, ux, uy};
@@ -107,8 +110,8 @@ static int32_t kind_of(const asj_frame *frame, const asj_end_rays *rays, const a
     return left > 0 || right > 0 ? ASJ_BRANCH_END_CROSSING : ASJ_BRANCH_END_FADED;
 }
 
-/* Around the end the sum C(T) of end_profile.c is a parabola, -slope / 2 (T - end)^2, with a random walk on it, noise sqrt(T - end). The
- * place of its maximum has Chernoff's distribution, (2 noise / slope)^(2/3) px wide. */
+/* Around the end the sum C(T) of end_profile.c is a parabola, -slope / 2 (T - end)^2, with a random walk on it, noise sqrt(T -
+ * end). The place of its maximum has Chernoff's distribution, (2 noise / slope)^(2/3) px wide. */
 static double variance_of(const asj_end_profile *profile)
 {
     const double slope = 0.5 / fmax(profile->fading, 1);
@@ -117,8 +120,8 @@ static double variance_of(const asj_end_profile *profile)
 }
 
 /* Only where an edge fades, or the picture ends, contrast says more than the scan: elsewhere other edges are in the way. */
-static void measure(const asj_frame *frame, const asj_end_rays *rays, const asj_detect_options *options, const asj_hypothesis *hypothesis,
-                    asj_hypothesis_branch *branch)
+static void measure(const asj_frame *frame, const asj_end_rays *rays, const asj_detect_options *options,
+                    const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
 {
     branch->end = kind_of(frame, rays, hypothesis, branch);
     branch->end_variance = END_SD * END_SD;

@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The ray scan (ray_walk.c) follows an edge until noise has it. So a fading edge ends where contrast, gain, noise and zoom happen to
- * put that point. What belongs to the scene is where the edge has lost a share of its own contrast.
+/* The ray scan (ray_walk.c) follows an edge until noise has it. So a fading edge ends where contrast, gain, noise and zoom happen
+ * to put that point. What belongs to the scene is where the edge has lost a share of its own contrast.
  *
- * Across the line the grey levels g(t, s), s = -HALF .. HALF px, less their mean, are the edge's cross-section times its contrast at
- * t. The cross-section m of unit norm is the principal direction of the means of g over blocks of BLOCK px along the branch: steps,
- * thin lines and soft edges all have one, and a change of sign (a crossing of checkerboard tiles) does not matter to it. Then
+ * Across the line the grey levels g(t, s), s = -HALF .. HALF px, less their mean, are the edge's cross-section times its contrast
+ * at t. The cross-section m of unit norm is the principal direction of the means of g over blocks of BLOCK px along the branch:
+ * steps, thin lines and soft edges all have one, and a change of sign (a crossing of checkerboard tiles) does not matter to it.
+ * Then
  *     a(t) = |<mean of g over t - 2 .. t + 2, m>|
- * is the contrast, and the branch's own contrast c is that of the best quarter of its blocks (the value three quarters of the way up).
- * The end is the T with the largest
+ * is the contrast, and the branch's own contrast c is that of the best quarter of its blocks (the value three quarters of the way
+ * up). The end is the T with the largest
  *     C(T) = sum over t <= T of min(max(a(t) / c - f, -w), w),   w = min(f, 1 - f),
- * the change point between an edge of contrast c and nothing: for a step down its place, for a slow fade where a(t) = f c, whatever
- * noise does, since many pixels decide. The limits keep single places from deciding: a gap of n px is bridged when more than n px of
- * edge follow it, up to GAP px. The sum begins WINDOW px before the end of the scan and may go that far beyond. */
+ * the change point between an edge of contrast c and nothing: for a step down its place, for a slow fade where a(t) = f c,
+ * whatever noise does, since many pixels decide. The limits keep single places from deciding: a gap of n px is bridged when more
+ * than n px of edge follow it, up to GAP px. The sum begins WINDOW px before the end of the scan and may go that far beyond. */
 #include "end_profile.h"
 #include "gray_at.h"
 

@@ -34,7 +34,7 @@
 #define GUESS_TURN 8.0
 #define GUESS_MOVE 1.0
 
-#define PLAIN 50      /* deg: corners that open by this much are found with the default of max_move, 2.5 px, whatever their direction */
+#define PLAIN 50      /* deg: corners that open by this much are found with the default of max_move, 2.5 px, however turned */
 #define SHARP_MOVE 5.0 /* px: for 26 degrees with that default; max_move of preset match, which stays as it is */
 
 static void get_lines(const asj_hypothesis *hypothesis, asj_rough_line *lines)
@@ -137,10 +137,11 @@ static int have_opening(const asj_rough_line *lines, int32_t count, double least
     return 0;
 }
 
-/* px that a junction may move. The sides of a wedge that opens by phi are 2 d tan(phi / 2) apart at d px from its apex, and blur joins
- * what is too close: so the isotropic test sees a sharp corner farther inside than others. max_move is meant for openings of PLAIN
- * degrees and more; of sharper ones the apex may be where the sides are as far apart as there, d tan(phi / 2) = max_move tan(PLAIN / 2),
- * at most SHARP_MOVE. The best opening of any two lines counts; tan(phi / 2) = sin phi / (1 + cos phi). */
+/* px that a junction may move. The sides of a wedge that opens by phi are 2 d tan(phi / 2) apart at d px from its apex, and blur
+ * joins what is too close: so the isotropic test sees a sharp corner farther inside than others. max_move is meant for openings of
+ * PLAIN degrees and more; of sharper ones the apex may be where the sides are as far apart as there,
+ * d tan(phi / 2) = max_move tan(PLAIN / 2), at most SHARP_MOVE. The best opening of any two lines counts;
+ * tan(phi / 2) = sin phi / (1 + cos phi). */
 static double most_move(const asj_detect_options *options, const asj_rough_line *lines, int32_t count)
 {
     double widest = 0;

@@ -84,7 +84,8 @@ static asj_status fill(result *r, const asj_findings *findings, double minimum_o
     return fill_edges(r, findings);
 }
 
-asj_status asj_result_fill(const asj_context *context, const asj_findings *findings, double minimum_opening, asj_detection **detection)
+asj_status asj_result_fill(const asj_context *context, const asj_findings *findings, double minimum_opening,
+                           asj_detection **detection)
 {
     result *r = (result *)*detection;
     if (r) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* CSV: one line for each branch, so that a spreadsheet can filter; the junction's own columns repeat. An edge stands in the lines of
- * both its branches, which name each other. */
+/* CSV: one line for each branch, so that a spreadsheet can filter; the junction's own columns repeat. An edge stands in the lines
+ * of both its branches, which name each other. */
 #include "junction_graph.h"
 #include "junction_output.h"
 

@@ -4,8 +4,8 @@
  * A branch ends where the scan lost it: at a corner, behind something, or where contrast gave out. Only ends at the same scene
  * point make a segment match. With s = |A u| the magnification of the refined map along the branch (u its unit vector in image
  * 1), lengths l1 and l2 agree when s l1 and l2 differ by a factor of at most 1 + end_tolerance. Of all combinations of the
- * branches' length hypotheses that agree, the longest is taken; own lengths agree only where what is at the ends does not speak against
- * it. When none agrees, the longer branch is cut where the map puts the other's end: the part that both images show. */
+ * branches' length hypotheses that agree, the longest is taken; own lengths agree only where what is at the ends does not speak
+ * against it. When none agrees, the longer branch is cut where the map puts the other's end: the part that both images show. */
 #include "segments.h"
 
 #include <math.h>
@@ -16,9 +16,10 @@ static int is_met(int32_t end)
     return end == ASJ_BRANCH_END_JUNCTION || end == ASJ_BRANCH_END_CROSSING || end == ASJ_BRANCH_END_OCCLUSION;
 }
 
-/* Whether two ends may be one place of the scene. Of equal kinds they may. A crossing is a junction that was not found in one of the
- * images, and so may an occlusion be, which is a T. Where one edge fades or leaves the picture and the other does not, that they are
- * equally long is chance: of such segments of sixteen pairs of photographs 33 to 73 % were right, of others 80 to 92 %. */
+/* Whether two ends may be one place of the scene. Of equal kinds they may. A crossing is a junction that was not found in one of
+ * the images, and so may an occlusion be, which is a T. Where one edge fades or leaves the picture and the other does not, that
+ * they are equally long is chance: of such segments of sixteen pairs of photographs 33 to 73 % were right, of others 80 to 92 %.
+ * */
 static int may_correspond(int32_t one, int32_t other)
 {
     return one == other || (is_met(one) && is_met(other)) || one == ASJ_BRANCH_END_UNKNOWN || other == ASJ_BRANCH_END_UNKNOWN;

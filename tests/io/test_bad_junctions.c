@@ -79,7 +79,8 @@ static const bad_file bad_files[] = {
     {J "{\"x\":1,\"y\":2,\"scale\":-1,\"branches\":[" B "," B "]}]}", 3, "negative scale", ASJ_ERROR_FORMAT},
     {J "{\"x\":1,\"y\":2,\"branches\":[" B ",{\"angle\":1,\"length\":-2}]}]}", 3, "negative length", ASJ_ERROR_FORMAT},
     {J G ",\n{\"x\":19.5,\"y\":2,\"branches\":[" B "," B "]}]}", 4, "outside", ASJ_ERROR_FORMAT},
-    {J "{\"x\":1,\"y\":2,\"branches\":[" B ",{\"angle\":1,\"length\":2,\"end\":\"here\"}]}]}", 3, "no kind of end", ASJ_ERROR_FORMAT},
+    {J "{\"x\":1,\"y\":2,\"branches\":[" B ",{\"angle\":1,\"length\":2,\"end\":\"here\"}]}]}", 3, "no kind of end",
+     ASJ_ERROR_FORMAT},
     {J "{\"x\":1,\"y\":2,\"branches\":[" B ",{\"angle\":1,\"length\":2,\"end\":3}]}]}", 3, "no kind of end", ASJ_ERROR_FORMAT},
     {J G "," G "],\n\"edges\":[7]}", 4, "no object", ASJ_ERROR_FORMAT},
     {J G "," G "],\n\"edges\":[{\"junction_a\":0}]}", 4, "two junctions", ASJ_ERROR_FORMAT},
@@ -90,8 +91,8 @@ static const bad_file bad_files[] = {
     {J G "," G "],\n\"edges\":[" E(1, 0, 0, 0) "]}", 4, "not there", ASJ_ERROR_FORMAT},
     {J G "," G "],\n\"edges\":[" E(0, 0, 1, 1) ",\n" E(0, 1, 1, 1) "]}", 5, "two edges", ASJ_ERROR_FORMAT},
     {J G "," G "],\n\"edges\":[],\n\"edges\":[]}", 5, "second time", ASJ_ERROR_FORMAT},
-    {J "{\"x\":1,\"y\":2,\"branches\":[" B ",{\"angle\":0.5,\"length\":2}]}," G "],\n\"edges\":[" E(0, 0, 1, 1) "]}", 4, "in order of angle",
-     ASJ_ERROR_FORMAT},
+    {J "{\"x\":1,\"y\":2,\"branches\":[" B ",{\"angle\":0.5,\"length\":2}]}," G "],\n\"edges\":[" E(0, 0, 1, 1) "]}", 4,
+     "in order of angle", ASJ_ERROR_FORMAT},
     {J G ",\n{\"x\":1,\"y\":-10.5,\"branches\":[" B "," B "]}]}", 4, "outside", ASJ_ERROR_FORMAT},
 };
 
@@ -136,7 +137,8 @@ static void files_that_cannot_be_read(void **state)
 }
 
 static const char text_sample[] = "2\n" GOOD "3 4\n3 7 5 -3.5\n0.5 1 10\n2.5 1 20\n4.5 1 300\n";
-static const char json_sample[] = J G ",\n" G "],\n\"edges\": [" E(0, 0, 1, 1) "],\n\"more\": [1, {\"a\": \"\\u00e9\"}, null, true, -1.5e3]}";
+static const char json_sample[] = J G ",\n" G "],\n\"edges\": [" E(0, 0, 1, 1)
+    "],\n\"more\": [1, {\"a\": \"\\u00e9\"}, null, true, -1.5e3]}";
 
 /* A number that is cut may still be one, so the last line is left out. */
 static void cut_at_every_length(void **state)

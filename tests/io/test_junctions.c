@@ -303,6 +303,7 @@ static void json_has_its_schema(void **state)
 {
     json_t *root = load_json_file(write_report("schema.json", ASJ_FILE_JSON), JSON_REJECT_DUPLICATES);
     json_t *stored = json_object_get(root, "options");
+    const json_t *edge;
     size_t i;
     (void)state;
     assert_non_null(root);
@@ -328,7 +329,8 @@ static void json_has_its_schema(void **state)
     assert_int_equal(json_integer_value(json_array_get(json_object_get(stored, "isotropic_radii"), 0)), 7);
     assert_int_equal(json_integer_value(json_object_get(json_object_get(root, "counts"), "edges")), COUNT / 2);
     assert_int_equal(json_array_size(json_object_get(root, "edges")), COUNT / 2);
-    assert_int_equal(json_integer_value(json_object_get(json_array_get(json_object_get(root, "edges"), 3), "junction_b")), COUNT - 4);
+    edge = json_array_get(json_object_get(root, "edges"), 3);
+    assert_int_equal(json_integer_value(json_object_get(edge, "junction_b")), COUNT - 4);
     json_decref(root);
 }
 

@@ -566,7 +566,8 @@ static void test_radii(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shapes), cmocka_unit_test(test_sharp), cmocka_unit_test(test_crossings), cmocka_unit_test(test_tiny_and_flat),
+        cmocka_unit_test(test_shapes), cmocka_unit_test(test_sharp), cmocka_unit_test(test_crossings),
+        cmocka_unit_test(test_tiny_and_flat),
         cmocka_unit_test(test_noise),  cmocka_unit_test(test_borders),   cmocka_unit_test(test_threads),
         cmocka_unit_test(test_reuse),  cmocka_unit_test(test_quarter_turn), cmocka_unit_test(test_formats),
         cmocka_unit_test(test_radii),

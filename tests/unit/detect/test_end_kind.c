@@ -67,8 +67,8 @@ static void test_faded(void **state)
         synth_scene scene;
         const double turn = 0.1 + n * 0.523;
         synth_scene_init(&scene, SIZE, SIZE, 110);
-        synth_add_star(&scene, (synth_point){SIZE / 2.0, SIZE / 2.0}, (const double[]){turn, turn + UNIT_PI}, (const double[]){170, -1},
-                       2, 90);
+        synth_add_star(&scene, (synth_point){SIZE / 2.0, SIZE / 2.0}, (const double[]){turn, turn + UNIT_PI},
+                       (const double[]){170, -1}, 2, 90);
         assert_int_equal(kind_at_middle(f, &scene, turn, 0), ASJ_BRANCH_END_FADED);
     }
 }
