@@ -14,6 +14,7 @@
 #include "gradient_kernels.h"
 #include "isotropic_kernels.h"
 #include "product_bound_kernels.h"
+#include "product_kernels.h"
 
 static void fill_kernels(const asj_ops *ops)
 {
@@ -23,6 +24,7 @@ static void fill_kernels(const asj_ops *ops)
     ops->field->pixels = field_pixels;
     ops->isotropic->band = isotropic_band;
     ops->bound->above = bound_above;
+    ops->patch->products = patch_products;
 }
 
 #endif

@@ -83,6 +83,8 @@ static inline vec v_pairs(vec a, vec b)
 {
     return from32(vpaddq_s32(vmull_s16(vget_low_s16(a), vget_low_s16(b)), vmull_high_s16(a, b)));
 }
+/* the sum of all 32-bit lanes */
+static inline int32_t v_sum32(vec v) { return vaddvq_s32(to32(v)); }
 /* the lower halves of products */
 static inline vec v_low32(vec a, vec b) { return from32(vmulq_s32(to32(a), to32(b))); }
 static inline vec v_max32(vec a, vec b) { return from32(vmaxq_s32(to32(a), to32(b))); }

@@ -20,7 +20,6 @@ void asj_fill_avx2(const asj_ops *ops)
     ops->strip->sums = strip_sums_avx2;
     ops->patch->levels = patch_levels_avx2;
     ops->patch->normalise = patch_normalise_avx2;
-    ops->patch->products = patch_products_avx2;
     ops->disc->compare = disc_compare_avx2;
     ops->gate->pass = support_gate_avx2;
 }

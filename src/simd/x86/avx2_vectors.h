@@ -61,6 +61,14 @@ static inline vec v_add32(vec a, vec b) { return _mm256_add_epi32(a, b); }
 static inline vec v_sub32(vec a, vec b) { return _mm256_sub_epi32(a, b); }
 /* signed 16-bit lanes: a b + next a next b */
 static inline vec v_pairs(vec a, vec b) { return _mm256_madd_epi16(a, b); }
+/* the sum of all 32-bit lanes */
+static inline int32_t v_sum32(__m256i v)
+{
+    __m128i s = _mm_add_epi32(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));
+    s = _mm_add_epi32(s, _mm_shuffle_epi32(s, 0x4e));
+    s = _mm_add_epi32(s, _mm_shuffle_epi32(s, 0xb1));
+    return _mm_cvtsi128_si32(s);
+}
 /* the lower halves of products */
 static inline vec v_low32(vec a, vec b) { return _mm256_mullo_epi32(a, b); }
 static inline vec v_max32(vec a, vec b) { return _mm256_max_epi32(a, b); }

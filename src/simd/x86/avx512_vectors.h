@@ -62,6 +62,8 @@ static inline vec v_add32(vec a, vec b) { return _mm512_add_epi32(a, b); }
 static inline vec v_sub32(vec a, vec b) { return _mm512_sub_epi32(a, b); }
 /* signed 16-bit lanes: a b + next a next b */
 static inline vec v_pairs(vec a, vec b) { return _mm512_madd_epi16(a, b); }
+/* the sum of all 32-bit lanes */
+static inline int32_t v_sum32(vec v) { return _mm512_reduce_add_epi32(v); }
 /* the lower halves of products */
 static inline vec v_low32(vec a, vec b) { return _mm512_mullo_epi32(a, b); }
 static inline vec v_max32(vec a, vec b) { return _mm512_max_epi32(a, b); }

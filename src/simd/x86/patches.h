@@ -8,38 +8,6 @@
 
 #include <immintrin.h>
 
-static inline int32_t sum_lanes(__m256i v)
-{
-    __m128i s = _mm_add_epi32(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));
-    s = _mm_add_epi32(s, _mm_shuffle_epi32(s, 0x4e));
-    s = _mm_add_epi32(s, _mm_shuffle_epi32(s, 0xb1));
-    return _mm_cvtsi128_si32(s);
-}
-
-/* Four patches on the right at once; lengths are multiples of 16. Sums of whole numbers that fit: any order gives the same. */
-static void patch_products_avx2(const int16_t *left, const int16_t *rights, int32_t length, const int32_t *which, int32_t count,
-                                int32_t *products)
-{
-    for (int32_t k = 0; k < count; k += 4) {
-        const int32_t last = count - k < 4 ? count - k - 1 : 3;
-        const int16_t *r[4];
-        __m256i sum[4] = {v_zero(), v_zero(), v_zero(), v_zero()};
-        for (int32_t n = 0; n < 4; n++)
-            r[n] = rights + (ptrdiff_t)which[k + (n < last ? n : last)] * length;
-        for (int32_t i = 0; i < length; i += 16) {
-            const __m256i l = v_load(left + i);
-            for (int32_t n = 0; n < 4; n++)
-                sum[n] = _mm256_add_epi32(sum[n], _mm256_madd_epi16(l, v_load(r[n] + i)));
-        }
-        const __m256i low = _mm256_hadd_epi32(sum[0], sum[1]), high = _mm256_hadd_epi32(sum[2], sum[3]);
-        const __m256i all = _mm256_hadd_epi32(low, high);
-        int32_t four[4];
-        _mm_storeu_si128((__m128i *)(void *)four, _mm_add_epi32(_mm256_castsi256_si128(all), _mm256_extracti128_si256(all, 1)));
-        for (int32_t n = 0; n <= last; n++)
-            products[k + n] = four[n];
-    }
-}
-
 /* Pairs of levels that share a tap are interleaved: one multiplication weights and adds both. */
 static void blur_row_avx2(const uint16_t *const *rows, const int32_t *taps, int32_t radius, int32_t width, uint16_t *to)
 {
@@ -170,7 +138,7 @@ static int32_t patch_levels_avx2(const asj_pyramid *pyramid, const asj_patch_gri
             _mm_storel_epi64((__m128i *)(void *)to, both);
             _mm_storel_epi64((__m128i *)(void *)(to + size), _mm_unpackhi_epi64(both, both));
         }
-    return sum_lanes(inside);
+    return v_sum32(inside);
 }
 
 /* Eight levels, as N g - s, times the scale: the high halves, rounded. */
@@ -194,7 +162,7 @@ static void patch_normalise_avx2(const uint16_t *grey, int32_t size, int16_t *un
     }
     int64_t lanes[4];
     v_store(lanes, squares);
-    const int32_t sum = sum_lanes(sums);
+    const int32_t sum = v_sum32(sums);
     const __m256i scale = _mm256_set1_epi32(asj_patch_unit_scale(sum, lanes[0] + lanes[1] + lanes[2] + lanes[3], size));
     const __m256i count = _mm256_set1_epi32(samples), shift = _mm256_set1_epi32(sum);
     for (int32_t i = 0; i < samples; i += 16) {

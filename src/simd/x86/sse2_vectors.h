@@ -54,6 +54,12 @@ static inline vec v_add32(vec a, vec b) { return _mm_add_epi32(a, b); }
 static inline vec v_sub32(vec a, vec b) { return _mm_sub_epi32(a, b); }
 /* signed 16-bit lanes: a b + next a next b */
 static inline vec v_pairs(vec a, vec b) { return _mm_madd_epi16(a, b); }
+/* the sum of all 32-bit lanes */
+static inline int32_t v_sum32(vec v)
+{
+    v = _mm_add_epi32(v, _mm_shuffle_epi32(v, 0x4e));
+    return _mm_cvtsi128_si32(_mm_add_epi32(v, _mm_shuffle_epi32(v, 0xb1)));
+}
 /* the lower halves of products */
 static inline vec v_low32(vec a, vec b)
 {
