@@ -76,10 +76,11 @@ build_and_test() {
     build "$folder_wanted" "$@" && run_tests "$folder_wanted" $tests_wanted
 }
 
-# The core alone: no library but libc and libm (the compiler's own run-time library may show up too). Without the accuracy suite: the
-# goldens show that its results are those of the whole build.
+# The core alone: no library but libc and libm (the compiler's own run-time library may show up too). Without the accuracy suite:
+# the goldens show that its results are those of the whole build.
 core_alone() {
-    build_and_test build-core '--no-suite accuracy --no-suite experiments' -Dauto_features=disabled -Dtests=enabled --werror || return 1
+    build_and_test build-core '--no-suite accuracy --no-suite experiments' -Dauto_features=disabled -Dtests=enabled --werror ||
+        return 1
     others=$(readelf -d "$folder/src/libasj.so" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | grep -vE '^lib(c|m|gcc_s)\.so|^ld-')
     [ -z "$others" ] || say "libasj.so needs $others"
     [ -z "$others" ]
