@@ -14,7 +14,7 @@
  * asks of coarse octaves, which have few pixels, as much as of the image itself.)
  *
  * Junctions of two octaves are one when they are closer than NEAR px of the coarser octave and have a direction in common. The one
- * that stays gets the other's branches that were too soft for its own octave to see. */
+ * that stays gets the other's branches that were too soft for its own octave to see. Ghosts go: octave_ghosts.c. */
 #include "octaves.h"
 #include "octave_ghosts.h"
 #include "core/angle.h"
