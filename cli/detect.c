@@ -35,13 +35,36 @@ static asj_status write_features(run *r, const char *path, const asj_image *pixe
     return status;
 }
 
+static asj_status find_directions(run *r, const asj_image *pixels, const asj_detection *detection, asj_vanishing_points *points,
+                                  char *message)
+{
+    asj_vanishing_options options;
+    asj_vanishing_options_init(&options);
+    options.camera = r->arguments->camera;
+    options.width = pixels->width;
+    options.height = pixels->height;
+    const asj_status status = asj_find_vanishing_points(r->session.context, detection->junctions, detection->junction_count,
+                                                        &options, points);
+    if (status != ASJ_OK)
+        snprintf(message, MESSAGE_SIZE, "%s", asj_context_message(r->session.context));
+    return status;
+}
+
 static asj_status write_junctions(run *r, const char *image, const char *path, const asj_image *pixels,
                                   const asj_detection *detection, char *message)
 {
     const int32_t format = cli_detect_file_format(r->arguments);
-    const asj_detection_report report = {detection, &r->arguments->options, image, {0}};
-    return format == CLI_FILE_FEATURES ? write_features(r, path, pixels, detection, message)
-                                       : asj_junctions_write(path, format, &report, message, MESSAGE_SIZE);
+    asj_detection_report report = {.detection = detection, .options = &r->arguments->options, .image_name = image};
+    asj_vanishing_points points;
+    if (format == CLI_FILE_FEATURES)
+        return write_features(r, path, pixels, detection, message);
+    if (r->arguments->vanishing_points) {
+        const asj_status status = find_directions(r, pixels, detection, &points, message);
+        if (status != ASJ_OK)
+            return status;
+        report.vanishing_points = &points;
+    }
+    return asj_junctions_write(path, format, &report, message, MESSAGE_SIZE);
 }
 
 static int write_results(run *r, const char *image, const cli_output *output, const asj_image *pixels,

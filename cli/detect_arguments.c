@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The help, the options and the checks of `asj-cli detect`. */
 #include "detect_arguments.h"
+#include "camera.h"
 #include "ending.h"
 #include "help.h"
 #include "message.h"
@@ -32,7 +33,10 @@ static const char conclusion[] =
     "Exit status: 0 all images done, 1 some failed, 2 wrong usage, 130 interrupted.\n"
     "More: man asj-cli; file formats: man asj-formats\n";
 
-enum { OUTPUT, OUT_DIR, FORMAT, WHOLE, REGION, MASK, PLOT, PLOT_COLOR, PLOT_BACKGROUND, PLOT_SCALE, PRESET, FOR };
+enum {
+    OUTPUT, OUT_DIR, FORMAT, WHOLE, REGION, MASK, VANISHING_POINTS, CAMERA, PLOT, PLOT_COLOR, PLOT_BACKGROUND, PLOT_SCALE,
+    PRESET, FOR
+};
 
 static const cli_option output_options[] = {
     {OUTPUT, 'o', "output", "FILE",
@@ -49,6 +53,13 @@ static const cli_option region_options[] = {
     {REGION, 0, "region", "X,Y,WIDTH,HEIGHT",
      "only junctions in this part of the image, px from the top left; branches may leave it"},
     {MASK, 0, "mask", "FILE", "no junction where this 8-bit gray image, of the size of every IMAGE, is black (0)"},
+};
+
+static const cli_option direction_options[] = {
+    {VANISHING_POINTS, 0, "vanishing-points", NULL, "json: where parallel edges of the scene meet, up to three directions"},
+    {CAMERA, 0, "camera", "FX,FY,CX,CY",
+     "focal lengths and principal point, px: then the directions are at right angles. Default: the focal length is found where two "
+     "directions determine it"},
 };
 
 static const cli_option plot_options[] = {
@@ -97,6 +108,15 @@ static int take_region(void *target, int id, const char *text)
     if (id == REGION)
         return cli_region_take("detect", "region", text, &arguments->region);
     arguments->region.mask = text;
+    return CLI_SUCCESS;
+}
+
+static int take_directions(void *target, int id, const char *text)
+{
+    cli_detect_arguments *arguments = target;
+    if (id == CAMERA)
+        return cli_take_camera("detect", "camera", text, &arguments->camera);
+    arguments->vanishing_points = 1;
     return CLI_SUCCESS;
 }
 
@@ -171,6 +191,10 @@ static int check(cli_detect_arguments *arguments)
     int result = cli_common_check("detect", &arguments->common);
     if (result == CLI_SUCCESS)
         result = cli_check_ending("detect", "junctions", arguments->output, arguments->format, formats);
+    if (result == CLI_SUCCESS && arguments->vanishing_points && cli_detect_file_format(arguments) != ASJ_FILE_JSON)
+        return cli_usage_error("detect", "--vanishing-points go into JSON: --format json, or --output FILE.json");
+    if (result == CLI_SUCCESS && arguments->camera.fx > 0 && !arguments->vanishing_points)
+        return cli_usage_error("detect", "a camera changes nothing without --vanishing-points");
     return result == CLI_SUCCESS ? check_plot(arguments) : result;
 }
 
@@ -206,6 +230,7 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
     const cli_group groups[] = {
         {"Results", output_options, sizeof output_options / sizeof output_options[0], take_output, arguments},
         {"Where", region_options, sizeof region_options / sizeof region_options[0], take_region, arguments},
+        {"Directions", direction_options, sizeof direction_options / sizeof direction_options[0], take_directions, arguments},
         {"Plot", plot_options, sizeof plot_options / sizeof plot_options[0], take_plot, arguments},
         {"Preset", preset_options, sizeof preset_options / sizeof preset_options[0], take_preset, arguments},
         {"Running", cli_common_options, cli_common_option_count, cli_common_take, &arguments->common},

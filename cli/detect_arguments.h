@@ -9,6 +9,7 @@
 #include "settings.h"
 
 #include <asj/options.h>
+#include <asj/vanishing.h>
 
 typedef struct cli_detect_arguments {
     cli_common common;
@@ -19,6 +20,8 @@ typedef struct cli_detect_arguments {
     const char *out_dir;   /* NULL = none */
     const char *format;    /* "asj", "json", "csv", "asjf"; NULL = by the name of `output` */
     int whole;
+    int vanishing_points;  /* into JSON */
+    asj_camera camera;     /* fx = 0: not known */
     cli_region region;
     const char *plot;      /* a file, or with out_dir a format; NULL = none */
     int32_t plot_format;   /* CLI_PLOT_... */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The help, the options and the checks of `asj-cli match`. */
 #include "match_arguments.h"
+#include "camera.h"
 #include "ending.h"
 #include "help.h"
 #include "message.h"
@@ -125,32 +126,6 @@ static int take_input(void *target, int id, const char *text)
     return CLI_SUCCESS;
 }
 
-#define LONGEST 1e7 /* px */
-
-static int take_camera(const char *name, const char *text, asj_camera *camera)
-{
-    char copy[256], *at = copy;
-    double values[4];
-    if (strlen(text) < sizeof copy) {
-        int count = 0;
-        strcpy(copy, text);
-        while (at && count < 4) {
-            char *comma = strchr(at, ',');
-            if (comma)
-                *comma = 0;
-            if (!cli_parse_number(at, count < 2 ? 1 : -LONGEST, LONGEST, &values[count]))
-                break;
-            count++;
-            at = comma ? comma + 1 : NULL;
-        }
-        if (count == 4 && !at) {
-            *camera = (asj_camera){values[0], values[1], values[2], values[3]};
-            return CLI_SUCCESS;
-        }
-    }
-    return cli_usage_error("match", "--%s: '%s' is not FX,FY,CX,CY in px, with focal lengths of 1 and more", name, text);
-}
-
 static int take_geometry(void *target, int id, const char *text)
 {
     static const char *const models[] = {"none", "auto", "essential", "fundamental", "homography", NULL}; /* as ASJ_GEOMETRY_... */
@@ -160,10 +135,10 @@ static int take_geometry(void *target, int id, const char *text)
         if ((arguments->geometry = cli_find_word(models, text)) < 0)
             return cli_usage_error("match", "--geometry: '%s' is not auto, essential, fundamental, homography or none", text);
         break;
-    case CAMERA_1: return take_camera("camera1", text, &arguments->cameras[0]);
-    case CAMERA_2: return take_camera("camera2", text, &arguments->cameras[1]);
+    case CAMERA_1: return cli_take_camera("match", "camera1", text, &arguments->cameras[0]);
+    case CAMERA_2: return cli_take_camera("match", "camera2", text, &arguments->cameras[1]);
     default:
-        if (!cli_parse_number(text, 1, LONGEST, &arguments->focal))
+        if (!cli_parse_number(text, 1, CLI_LONGEST_FOCAL, &arguments->focal))
             return cli_usage_error("match", "--focal: '%s' is not a length in px, 1 and more", text);
     }
     return CLI_SUCCESS;

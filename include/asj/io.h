@@ -9,6 +9,7 @@
 #include <asj/image.h>
 #include <asj/junction.h>
 #include <asj/match.h>
+#include <asj/vanishing.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -110,7 +111,8 @@ typedef struct asj_detection_report {
     const asj_detection *detection;
     const asj_detect_options *options; /* JSON: the options used; NULL = left out */
     const char *image_name;            /* JSON: NULL = left out */
-    uint64_t reserved[4];              /* zero */
+    const asj_vanishing_points *vanishing_points; /* JSON: NULL = left out */
+    uint64_t reserved[3];              /* zero */
 } asj_detection_report;
 
 /* Writes junctions as asj_output_begin() and asj_output_commit() do.

@@ -65,6 +65,30 @@ static json_t *edge_value(const asj_edge *edge)
                      "log10_nfa", (double)edge->log10_nfa);
 }
 
+static json_t *triple(const double values[3])
+{
+    return json_pack("[f, f, f]", values[0], values[1], values[2]);
+}
+
+static void put_vanishing_points(asj_json_output *json, const asj_vanishing_points *found)
+{
+    static const char *const sources[] = {"unknown", "given", "found"};
+    const int known = found->focal_source > 0 && found->focal_source <= 2;
+    const asj_camera *c = &found->camera;
+    json_t *points = json_array();
+    int32_t k;
+    for (k = 0; k < found->count && k < ASJ_MOST_VANISHING; k++) {
+        const asj_vanishing_point *p = &found->points[k];
+        json_array_append_new(points, json_pack("{s:o, s:o, s:f, s:I}", "point", triple(p->point), "direction",
+                                                known ? triple(p->direction) : json_null(), "log10_nfa", p->log10_nfa, "branches",
+                                                (json_int_t)p->branch_count));
+    }
+    asj_json_put(json, ",\n\"vanishing_points\": ",
+                 json_pack("{s:s, s:o, s:o}", "focal_source", sources[known ? found->focal_source : 0], "camera",
+                           known ? json_pack("[f, f, f, f]", c->fx, c->fy, c->cx, c->cy) : json_null(), "points", points),
+                 JSON_REAL_PRECISION(15));
+}
+
 asj_status asj_write_json(asj_output *output, const asj_detection_report *report, const asj_message *message)
 {
     const asj_detection *found = report->detection;
@@ -76,6 +100,8 @@ asj_status asj_write_json(asj_output *output, const asj_detection_report *report
     if (status != ASJ_OK)
         return status;
     put_head(&json, report);
+    if (report->vanishing_points)
+        put_vanishing_points(&json, report->vanishing_points);
     asj_output_text(output, ",\n\"junctions\": [");
     for (i = 0; i < found->junction_count && !json.out_of_memory; i++)
         asj_json_put(&json, i ? ",\n" : "\n", junction_value(&found->junctions[i]), ASJ_JSON_FLOATS);

@@ -150,6 +150,27 @@ static void the_preset_comes_first_wherever_it_stands(void **state)
     assert_true(json_number(result->out, "minimum_length") == 9);
 }
 
+/* A scene of four corners has no directions; what there is to say stands in the file, and only where it was asked for. */
+static void directions_are_written_on_request(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "-f", "json", "--vanishing-points", "--camera", "600,600,320,240", "scene.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->out, "\"vanishing_points\": {\"focal_source\": \"given\", \"camera\": [600");
+    expect_in(result, result->out, "\"points\": []");
+    result = run_cli("detect", "-f", "json", "scene.png", NULL);
+    assert_null(strstr(result->out, "vanishing_points"));
+    result = run_cli("detect", "--vanishing-points", "scene.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--vanishing-points go into JSON");
+    result = run_cli("detect", "-f", "json", "--camera", "600,600,320,240", "scene.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "a camera changes nothing without --vanishing-points");
+    result = run_cli("detect", "-f", "json", "--vanishing-points", "--camera", "0,600,320,240", "scene.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "is not FX,FY,CX,CY");
+}
+
 static void an_option_reaches_the_detector(void **state)
 {
     (void)state;
@@ -428,7 +449,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_name_or_the_option_chooses_the_format),
         cmocka_unit_test(whole_junctions_are_written_on_request),
         cmocka_unit_test(the_preset_comes_first_wherever_it_stands),
-        cmocka_unit_test(an_option_reaches_the_detector),
+        cmocka_unit_test(directions_are_written_on_request), cmocka_unit_test(an_option_reaches_the_detector),
         cmocka_unit_test(times_are_printed_on_request),
         cmocka_unit_test(no_progress_without_a_terminal),
         cmocka_unit_test(threads_do_not_change_the_result),
