@@ -170,6 +170,20 @@ static void print_summary(const run *r)
                  "'asj-cli detect --for matching --plot' on either image");
 }
 
+/* Why there are none, as far as it can be told. */
+static void print_hint(const run *r)
+{
+    const int32_t status = r->result->geometry.status;
+    if (r->result->match_count > 0)
+        return;
+    if (status == ASJ_GEOMETRY_NOT_ASKED)
+        cli_note("hint: views far apart may need --geometry auto, with --camera1 and --camera2 where they are known");
+    else if (status == ASJ_GEOMETRY_AMBIGUOUS)
+        cli_note("hint: several geometries explain the views as well: things that repeat");
+    else if (status != ASJ_GEOMETRY_ACCEPTED)
+        cli_note("hint: nothing in common stands out from chance (geometry: %s)", asj_geometry_status_name(status));
+}
+
 static void print_times(const run *r, double write_ms)
 {
     for (int v = 0; v < 2; v++)
@@ -196,8 +210,10 @@ static int run_all(run *r)
     result = write_results(r);
     double write_ms = cli_now_ms() - start;
     cli_progress_clear(&r->session.progress);
-    if (result == CLI_SUCCESS && !r->arguments->common.quiet)
+    if (result == CLI_SUCCESS && !r->arguments->common.quiet) {
         print_summary(r);
+        print_hint(r);
+    }
     if (result == CLI_SUCCESS && r->arguments->common.time)
         print_times(r, write_ms);
     return result;

@@ -163,6 +163,7 @@ static void no_match_is_a_result(void **state)
     expect_code(result, 0);
     assert_string_equal(result->out, HEADER);
     expect_in(result, result->err, "first.png, flat.png: 0 matches");
+    expect_in(result, result->err, "hint: views far apart may need --geometry auto");
     result = run_cli("match", "-q", "dot.png", "flat.png", NULL);
     expect_code(result, 0);
     assert_string_equal(result->out, HEADER);
