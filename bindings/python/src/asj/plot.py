@@ -25,6 +25,7 @@ def _show(axes: Any, image: ArrayLike) -> None:
     pixels = np.asarray(image)
     axes.imshow(pixels, cmap="gray" if pixels.ndim == 2 else None, interpolation="nearest")
     axes.set_axis_off()
+    axes.set_autoscale_on(False)  # the picture's own frame, whatever is drawn
 
 
 def plot(image: ArrayLike, features: Features, axes: Any = None) -> Any:
