@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-2-Clause
+# What other sanitizers see, in short: threads (contexts in threads, OpenCL that starts in many at once), memory that nobody has
+# written (the core alone), and some seconds of libFuzzer for each harness. Sourced by test.sh; needs clang.
+
+# sanitized FOLDER "TARGET..." OPTION...: only these targets, by clang.
+sanitized() {
+    folder_wanted=$1
+    targets=$2
+    shift 2
+    (CC=clang CXX=clang++ && export CC CXX && configure "$folder_wanted" -Dtests=enabled -Dio=disabled -Dcli=disabled \
+        -Dopencv=disabled -Dcairo=disabled -Dsimd=disabled -Db_lundef=false --buildtype=debug --optimization=1 "$@" &&
+        logged "build-$folder_wanted" ninja -C "$root/$folder_wanted" $targets)
+}
+
+with_thread_sanitizer() {
+    sanitized build-tsan 'tests/soak/contexts tests/opencl/test_startup' -Db_sanitize=thread -Dthreads=enabled -Dopencl=enabled &&
+        logged tsan-contexts "$root/build-tsan/tests/soak/contexts" 2 &&
+        # drivers are no code of ours
+        logged tsan-startup env TSAN_OPTIONS=ignore_noninstrumented_modules=1 "POCL_CACHE_DIR=$root/build-tsan/pocl-cache" \
+            "$root/build-tsan/tests/opencl/test_startup" 3
+}
+
+with_memory_sanitizer() {
+    sanitized build-msan 'tests/soak/frames tests/fuzz/replay-detect tests/fuzz/replay-match tests/fuzz/replay-geometry' \
+        -Db_sanitize=memory -Dthreads=enabled -Dopencl=disabled || return 1
+    logged msan-frames "$root/build-msan/tests/soak/frames" 40 || return 1
+    for harness in detect:30 match:300 geometry:0; do
+        logged "msan-${harness%:*}" "$root/build-msan/tests/fuzz/replay-${harness%:*}" "$root/tests/fuzz/corpus/${harness%:*}" \
+            "${harness#*:}" || return 1
+    done
+}
+
+# with_fuzzer SECONDS, for each harness
+with_fuzzer() {
+    harnesses='arguments detect match geometry features'
+    targets=
+    for harness in $harnesses; do
+        targets="$targets tests/fuzz/fuzz-$harness"
+    done
+    sanitized build-fuzz "$targets" -Dfuzz=enabled -Db_sanitize=address,undefined -Dthreads=disabled -Dopencl=disabled \
+        -Dc_args='-fsanitize=fuzzer-no-link -fno-sanitize-recover=undefined' || return 1
+    for harness in $harnesses; do
+        mkdir -p "$root/build-fuzz/found-$harness"
+        logged "fuzz-$harness" "$root/build-fuzz/tests/fuzz/fuzz-$harness" -max_total_time="$1" -max_len=4096 -timeout=60 \
+            -artifact_prefix="$root/build-fuzz/finding-" "$root/build-fuzz/found-$harness" "$root/tests/fuzz/corpus/$harness" ||
+            return 1
+        sed -n "s/^Done \([0-9]*\) runs in \([0-9]*\).*/fuzz-$harness: \1 executions in \2 s/p" "$logs/fuzz-$harness.log"
+    done
+}
