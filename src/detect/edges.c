@@ -232,7 +232,8 @@ static asj_edge edge_of(const graph *g, int32_t own, int32_t other)
     const int32_t i = own / ASJ_MAX_BRANCHES, b = own % ASJ_MAX_BRANCHES;
     const int32_t j = other / ASJ_MAX_BRANCHES, c = other % ASJ_MAX_BRANCHES;
     const asj_hypothesis *from = &g->hypotheses[i], *to = &g->hypotheses[j];
-    const double distance = hypot(to->x - from->x, to->y - from->y);
+    const double angle = from->branches[b].angle; /* along the branch, as comes_back() has measured it */
+    const double distance = (to->x - from->x) * cos(angle) + (to->y - from->y) * sin(angle);
     return (asj_edge){(uint32_t)i, (uint32_t)j, (uint16_t)b, (uint16_t)c,
                       (float)(between(g, &from->branches[b], &to->branches[c], distance) / LN_10), {0, 0}};
 }

@@ -11,11 +11,7 @@
 
 #include <math.h>
 
-typedef struct sums {
-    double gamma, pixels;
-} sums;
-
-static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double dx, double dy, double distance, sums *s)
+static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double dx, double dy, double distance, asj_search_sum *s)
 {
     if (x < 0 || y < 0 || x >= frame->width || y >= frame->height)
         return;
@@ -25,16 +21,15 @@ static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double dx, d
     s->pixels++;
 }
 
-/* Normalised junction-ness of the sector of radius `length` around `angle`, at a whole pixel. Walks along the axis (x or y) that
- * the branch is longer on, and across it over the few pixels that can be inside. */
-double asj_search_strength(const asj_frame *frame, double x, double y, double angle, double length, double tau)
+/* Walks along the axis (x or y) that the branch is longer on, and across it over the few pixels that can be inside. */
+asj_search_sum asj_search_omega(const asj_frame *frame, double x, double y, double angle, double length, double tau)
 {
     const double ux = cos(angle), uy = sin(angle), limit = cos(tau / length);
     const int32_t px = (int32_t)lrint(x), py = (int32_t)lrint(y), steps = (int32_t)ceil(length);
     const int along_x = fabs(ux) >= fabs(uy);
     const int32_t sign = (along_x ? ux : uy) < 0 ? -1 : 1;
     const double slope = along_x ? uy / fabs(ux) : ux / fabs(uy); /* across for one step along */
-    sums s = {0, 0};
+    asj_search_sum s = {0, 0};
     for (int32_t i = 0; i <= steps; i++) {
         /* tan grows faster than its tangent: half as much again, and everything when the sector is wide */
         const double spread = length < 8 ? 2 * length : i * 1.5 * tau / length * (1 + slope * slope) + 1.5;
@@ -45,6 +40,12 @@ double asj_search_strength(const asj_frame *frame, double x, double y, double an
                 add_pixel(frame, px + dx, py + dy, dx, dy, distance, &s);
         }
     }
+    return s;
+}
+
+double asj_search_strength(const asj_frame *frame, double x, double y, double angle, double length, double tau)
+{
+    const asj_search_sum s = asj_search_omega(frame, x, y, angle, length, tau);
     return s.pixels > 0 ? (s.gamma - s.pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(s.pixels)) : 0;
 }
 

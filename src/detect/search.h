@@ -5,8 +5,15 @@
 
 #include "core/image.h"
 
-/* Normalised junction-ness of the sector of radius `length` around `angle`, half-width tau px, at a whole pixel: standard
- * deviations above the null model's mean. */
+/* omega: the sum of gamma over the sector of radius `length` around `angle`, half-width tau px, at a whole pixel, and its pixels. */
+typedef struct asj_search_sum {
+    double gamma;
+    int32_t pixels;
+} asj_search_sum;
+
+asj_search_sum asj_search_omega(const asj_frame *frame, double x, double y, double angle, double length, double tau);
+
+/* Normalised junction-ness of that sector: standard deviations above the null model's mean. */
 double asj_search_strength(const asj_frame *frame, double x, double y, double angle, double length, double tau);
 
 #endif

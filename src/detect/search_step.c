@@ -4,12 +4,13 @@
  * "A branch with the most accurate orientation theta should have the maximum junction-ness with the scale r_theta"
  *     theta^ = argmax_theta  sum over q in S_p(r_theta, theta) of gamma_p(q)          (paper, end of section "Junction Detection")
  * The scale depends on the orientation: a ray that is a degree off leaves its edge early. So each branch is scanned (step 4) at
- * every orientation within 0.1 rad of that of the isotropic test, and has then both its orientation and its scale. The range is
- * half a sector of the isotropic test; the step of 0.005 rad is ours, 1 px at a distance of 200.
+ * every orientation within 0.1 rad of that of the isotropic test, followed outwards (follow.c), and has then both its orientation
+ * and its scale. The range is half a sector of the isotropic test; the step of 0.005 rad is ours, 1 px at a distance of 200.
  *
- * Every second orientation is scanned first, then both neighbours of the best: a ray 0.005 rad beside the best one is still
- * on the edge for 200 px and more, so hardly anything is missed; and the search is most of the preset's time. */
+ * Every fourth orientation is scanned first, then those around the best: 15 rays a branch instead of 41. Agreement with the output
+ * of the authors' program is the same, and of the L-junctions that repeat under zoom by 0.9 one in a hundred is lost. */
 #include "search.h"
+#include "follow.h"
 #include "steps.h"
 #include "core/threads.h"
 #include "core/watch.h"
@@ -18,8 +19,9 @@
 
 #define STEPS 20         /* to either side */
 #define STEP 0.005       /* rad */
-#define COARSE (STEPS + 1) /* every second orientation */
-#define FINE 2           /* the neighbours of the best */
+#define SPARSE 4         /* one of so many orientations is scanned first */
+#define COARSE (2 * STEPS / SPARSE + 1)
+#define FINE 4           /* those around the best */
 #define TOGETHER 512     /* branches whose rays are followed at once */
 
 /* Orientations at which a branch is looked at in one pass, relative to where it stands: of equals the first wins, so those nearest
@@ -40,7 +42,7 @@ static pass coarse_pass(void)
 {
     pass p = {COARSE, {0}};
     for (int32_t i = 0; i < COARSE; i++)
-        p.angles[i] = 2 * STEP * (i % 2 ? -(i + 1) / 2 : i / 2);
+        p.angles[i] = SPARSE * STEP * (i % 2 ? -(i + 1) / 2 : i / 2);
     return p;
 }
 
@@ -68,6 +70,12 @@ typedef struct job {
     const pass *p;
     asj_watch *watch;
 } job;
+
+/* Junctions whose branches are followed. */
+typedef struct follow_job {
+    asj_detection_run *run;
+    asj_watch *watch;
+} follow_job;
 
 static void choose_some(const void *data, const asj_part *part)
 {
@@ -101,7 +109,7 @@ static asj_status scan_pass(const asj_detection_run *run, const lists *l, size_t
 
 static asj_status search(const asj_detection_run *run, const lists *l, size_t count)
 {
-    const pass coarse = coarse_pass(), fine = {FINE, {-STEP, STEP}};
+    const pass coarse = coarse_pass(), fine = {FINE, {-STEP, STEP, -2 * STEP, 2 * STEP}};
     for (size_t b = 0; b < count; b++)
         l->strengths[b] = -HUGE_VAL;
     const asj_status status = scan_pass(run, l, count, &coarse);
@@ -118,12 +126,30 @@ static asj_status search_all(asj_detection_run *run, const lists *l)
             l->hypotheses[count] = hypothesis;
             l->branches[count++] = &hypothesis->branches[b];
         }
-        if (count + ASJ_MAX_BRANCHES > TOGETHER || i + 1 == run->hypothesis_count) {
+        if (count + ASJ_MAX_BRANCHES > TOGETHER || (i + 1 == run->hypothesis_count && count > 0)) {
             status = search(run, l, count);
             count = 0;
         }
     }
     return status;
+}
+
+static void follow_some(const void *data, const asj_part *part)
+{
+    const follow_job *j = data;
+    for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++)
+        asj_follow(j->run, &j->run->hypotheses[i]);
+}
+
+static asj_status follow_all(asj_detection_run *run)
+{
+    const int64_t count = (int64_t)run->hypothesis_count;
+    asj_watch watch;
+    const follow_job j = {run, &watch};
+    asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
+    asj_parallel(run->context, asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS), count, ASJ_JUNCTIONS_AT_ONCE, follow_some,
+                 &j);
+    return asj_watch_end(&watch);
 }
 
 asj_status asj_step_search(asj_detection_run *run)
@@ -133,9 +159,10 @@ asj_status asj_step_search(asj_detection_run *run)
                      asj_allocate(memory, TOGETHER, sizeof *l.strengths),
                      asj_allocate(memory, (size_t)TOGETHER * COARSE, sizeof *l.rays)};
     asj_status status = ASJ_OK;
-    if (l.hypotheses && l.branches && l.strengths && l.rays)
-        status = search_all(run, &l);
-    else
+    if (l.hypotheses && l.branches && l.strengths && l.rays) {
+        status = follow_all(run);
+        status = status == ASJ_OK ? search_all(run, &l) : status;
+    } else
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the rays of %d branches", TOGETHER);
     asj_release(memory, l.rays);
     asj_release(memory, l.strengths);
