@@ -13,8 +13,8 @@ usage: sh scripts/test.sh [--all]
 
 Installs what is missing (apt-get), builds everything in build-test/ and runs all tests.
 --all, or CI=true in the environment, takes warnings as errors, and also checks the style of the sources, builds with clang, runs
-the tests under the address and undefined-behaviour sanitizers and in builds with fewer parts, a few programs under the thread and the
-memory sanitizer, runs the tests of the core for 64-bit ARM under emulation, and uses an installed library from other programs.
+the tests under the address and undefined-behaviour sanitizers and in builds with fewer parts, a few programs under the thread and
+the memory sanitizer, runs the tests of the core for 64-bit ARM under emulation, and uses an installed library from other programs.
 Exit code: 0 everything passed, 1 something failed, 2 wrong usage, 3 packages are missing and cannot be installed here.
 END
 }
