@@ -4,7 +4,7 @@
 # these by giving the newest fields of structs back to `reserved`. Structs keep their size, and what the program finds is the same.
 # older.sh INCLUDE_DIRECTORY LIBRARY C COMPILER...
 set -u
-include=$1 library=$(realpath "$2")
+include=$1 library=$(cd "$(dirname "$2")" && pwd)/$(basename "$2")
 shift 2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
