@@ -7,7 +7,7 @@
  * translation, degrees) and matches within 4 px of their epipolar lines. Then the area under the curve of recall over error up to
  * 5, 10 and 20 degrees, how many of the pairs with a third in common were accepted, and how many of the accepted are wrong by more
  * than 3 degrees. --held-out: seeds that nothing was tuned on. --unrelated: image 1 of a seed with image 2 of the next one.
- * --check: exit 1 when an accepted pose is off by more than 30 degrees more often than below, or fewer are accepted. */
+ * --check: exit 1 when fewer poses are right (within 3 degrees) than below, or more are wrong. */
 #define _POSIX_C_SOURCE 200809L
 #include "wide_pair.h"
 
@@ -23,8 +23,8 @@
 #define MOST 10000
 #define NEAR 4.0 /* px */
 
-static const double least_accepted = 0.5; /* of --check */
-static const int most_far_off = 2;
+static const double least_right = 0.45; /* of --check: share of all pairs */
+static const int most_wrong = 1, most_far_off = 0;
 
 typedef struct settings {
     int check, held_out, unrelated, no_cameras;
@@ -150,7 +150,8 @@ static int report(const settings *set, tally *sum)
            sum->with_pose, sum->wrong, sum->far_off);
     if (!set->check)
         return 0;
-    return sum->accepted >= least_accepted * sum->pairs && sum->far_off <= most_far_off ? 0 : 1;
+    const int right = sum->with_pose - sum->wrong;
+    return right >= least_right * sum->pairs && sum->wrong <= most_wrong && sum->far_off <= most_far_off ? 0 : 1;
 }
 
 static int run(const settings *set)
