@@ -57,8 +57,8 @@ typedef struct asj_geometry_options {
     double angle_sd;         /* deg: error of a map's rotation. 1 .. 45; 9 */
     double scale_sd;         /* error of the log of a map's scale. 0.02 .. 1; 0.22 */
     double directions[2][9]; /* of image 1 and image 2: three directions of the scene at right angles to each other, in camera
-                              * coordinates, one after the other, in any order and of either sign (vanishing.h finds them); zero, the
-                              * default: not known. With cameras only */
+                              * coordinates, one after the other, in any order and of either sign (vanishing.h finds them); zero,
+                              * the default: not known. With cameras only */
     double reserved[16];     /* zero */
 } asj_geometry_options;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* What fills the tables of nfa_tables.h. It runs while the library is built (nfa_store.c) and is no part of it: at run time it would
- * take 3 ms in every process. */
+/* What fills the tables of nfa_tables.h. It runs while the library is built (nfa_store.c) and is no part of it: at run time it
+ * would take 3 ms in every process. */
 #ifndef ASJ_SRC_NFA_FILL_H
 #define ASJ_SRC_NFA_FILL_H
 

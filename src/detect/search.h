@@ -5,7 +5,8 @@
 
 #include "core/image.h"
 
-/* omega: the sum of gamma over the sector of radius `length` around `angle`, half-width tau px, at a whole pixel, and its pixels. */
+/* omega: the sum of gamma over the sector of radius `length` around `angle`, half-width tau px, at a whole pixel; and how many
+ * pixels it has in the image. */
 typedef struct asj_search_sum {
     double gamma;
     int32_t pixels;

@@ -34,8 +34,8 @@
 #define CLEAR 46.0   /* .. from here on there is something; between them the search is made once more, with other numbers */
 #define NEARLY 0.5
 #define CONTRARY 0.4
-/* Nats that a score loses at least on the way to an evidence: volume of the parameters, near places. Of 69 pairs of unrelated images
- * 46 stay below; of 46 accepted ones none is within 8 nats of it. */
+/* Nats that a score loses at least on the way to an evidence: volume of the parameters, near places. Of 69 pairs of unrelated
+ * images 46 stay below; of 46 accepted ones none is within 8 nats of it. */
 #define GIVE_UP 17.0
 #define ALIKE 0.95
 #define ALMOST 0.8

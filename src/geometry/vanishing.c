@@ -12,8 +12,8 @@
  * points in place of regions of the plane). Only branches take part that are known better than TAU; those of one line, which
  * would vote with one voice, count once: the longest stays.
  *
- * Points are defined by pairs of the LONGEST longest branches, the surest is refined (least squares of the sines), its voters leave,
- * and so on. Coordinates: K^-1 of pixels where the camera is known, else pixels from the middle over half the longer side.
+ * Points are defined by pairs of the LONGEST longest branches, the surest is refined (least squares of the sines), its voters
+ * leave, and so on. Coordinates: K^-1 of pixels where the camera is known, else pixels from the middle over half the longer side.
  *
  * Directions at right angles: with a focal length, the set of two or three points at right angles (within SQUARE) with the
  * largest sum of -log NFA, turned together to fit their branches. Without one, two finite points of directions at right angles give
@@ -307,7 +307,8 @@ static void point_of(const double d[3], double focal, double v[3])
 static double focal_error(const double p[3], const double q[3], double focal)
 {
     const double r1 = hypot(p[0], p[1]) / fabs(p[2]), r2 = hypot(q[0], q[1]) / fabs(q[2]);
-    const double s1 = r1 / hypot(r1, focal), s2 = r2 / hypot(r2, focal), c1 = focal / hypot(r1, focal), c2 = focal / hypot(r2, focal);
+    const double s1 = r1 / hypot(r1, focal), s2 = r2 / hypot(r2, focal);
+    const double c1 = focal / hypot(r1, focal), c2 = focal / hypot(r2, focal);
     const double cosine = (p[0] * q[0] + p[1] * q[1]) / (p[2] * q[2] * r1 * r2), tangent2 = 1 / (cosine * cosine) - 1;
     const double sum = 1 / (s1 * s1 * c1 * c1) + 1 / (s2 * s2 * c2 * c2) + tangent2 * (1 / (s1 * s1) + 1 / (s2 * s2));
     return 0.5 * DIRECTION_SD * sqrt(sum);
@@ -321,7 +322,8 @@ typedef struct frame {
     int32_t count;      /* of points that are sure; they come first */
 } frame;
 
-/* Turns the axes to their branches: one Gauss-Newton step over w, axes <- exp([w]x) axes, a sine of a branch moving by (l x w)'d. */
+/* Turns the axes to their branches: one Gauss-Newton step over w, axes <- exp([w]x) axes, where a branch's sine moves by
+ * (l x w)'d. */
 static void turn_frame(const search *s, double focal, double axes[3][3])
 {
     double normal[9] = {0}, right[3] = {0}, turn[9];

@@ -11,8 +11,8 @@
  *     line. (A homography contradicts nothing: there are other planes.) But a geometry that contradicts more than half of the
  *     matches is not believed against them;
  *   - a candidate comes when its probability is LEAST_PROBABILITY at least, and both its locations are free; where there are
- *     MANY_MATCHES already, only when it is SURE_PROBABILITY at least. (On photographs that are none of the wide pairs three of four
- *     newcomers below that are right, and 45 of 47 above.)
+ *     MANY_MATCHES already, only when it is SURE_PROBABILITY at least. (On photographs that are none of the wide pairs three of
+ *     four newcomers below that are right, and 45 of 47 above.)
  * Each match receives its probability. */
 #include "two_view.h"
 #include "align.h"

@@ -57,7 +57,8 @@ static void rooms_have_three_directions(void **state)
             assert_true(k == 0 || p->log10_nfa >= with.points[k - 1].log10_nfa);
             for (int32_t m = 0; m < k; m++) { /* at right angles */
                 const double *q = with.points[m].direction;
-                unit_near("dot", (double)seed, k, p->direction[0] * q[0] + p->direction[1] * q[1] + p->direction[2] * q[2], 0, 1e-6);
+                const double dot = p->direction[0] * q[0] + p->direction[1] * q[1] + p->direction[2] * q[2];
+                unit_near("dot", (double)seed, k, dot, 0, 1e-6);
             }
             /* the point is the image of the direction */
             const double x = camera->focal * p->direction[0] + options.camera.cx * p->direction[2];
