@@ -91,7 +91,7 @@ static cairo_surface_t *create_surface(stream *output, int32_t format, int32_t w
 
 static cairo_status_t draw_on(asj_output *output, int32_t format, int32_t width, int32_t height, const cli_plot_content *content)
 {
-    stream to = {.output = output, .keep = format == CLI_PLOT_SVG ? KEPT : 0};
+    stream to = {.output = output, .keep = format == CLI_PLOT_SVG && content->annotate ? KEPT : 0};
     cairo_surface_t *surface = create_surface(&to, format, width, height);
     cairo_t *cairo = cairo_create(surface);
     content->draw(cairo, content->user);

@@ -8,7 +8,7 @@
 
 typedef struct cli_plot_content {
     void (*draw)(cairo_t *cairo, void *user);
-    void (*annotate)(asj_output *output, void *user); /* elements of SVG above the drawing: titles of what cannot be seen */
+    void (*annotate)(asj_output *output, void *user); /* elements of SVG above the drawing: titles; NULL = none */
     void *user;
 } cli_plot_content;
 
