@@ -4,7 +4,7 @@
  * gives the right result in any case. Nothing is left behind: no memory, no object of OpenCL. The same where there is nothing to
  * use: a platform without devices, a library that is none.
  *
- * usage: test_faults PATH-OF-STUB [STEP]. With a step (slow builds), only the first three calls from each place in the library, and
+ * usage: test_faults PATH-OF-STUB [STEP]. With a step, only the first three calls from each place in the library, and
  * every so many of the others. Exit code 77 = there is no device, unless ASJ_REQUIRE_OPENCL is 1. */
 #define _POSIX_C_SOURCE 200809L
 #include "core/context.h"
