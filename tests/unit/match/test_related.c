@@ -130,7 +130,7 @@ static void out_of_memory(void **state)
         if (status == ASJ_OK)
             return;
     }
-    fail_msg("never enough memory");
+    fail_msg("%s", "never enough memory");
 }
 
 int main(void)
