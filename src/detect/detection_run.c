@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Tables, planes and scratch of a pass; what it tells the caller while it works. */
+/* Tables, planes and scratch of a pass; loops over its hypotheses; what it tells the caller while it works. */
 #include "detection_run.h"
 #include "detect_options.h"
 #include "octaves.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -131,6 +132,29 @@ void asj_detection_run_clear(asj_detection_run *run)
 size_t asj_detection_run_room(size_t count)
 {
     return count > LEAST_LIST ? count : LEAST_LIST;
+}
+
+typedef struct job {
+    asj_detection_run *run;
+    asj_watch *watch;
+    asj_hypothesis_work work;
+} job;
+
+static void work_on_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++)
+        j->work(j->run, &j->run->hypotheses[i]);
+}
+
+asj_status asj_detection_run_each(asj_detection_run *run, int32_t stage, int32_t least, asj_hypothesis_work work)
+{
+    const int64_t count = (int64_t)run->hypothesis_count;
+    asj_watch watch;
+    const job j = {run, &watch, work};
+    asj_watch_start(&watch, run->context, stage);
+    asj_parallel(run->context, asj_threads_for(run->context, count, least), count, least / 2, work_on_some, &j);
+    return asj_watch_end(&watch);
 }
 
 asj_status asj_detection_run_progress(const asj_detection_run *run, int32_t stage, double done)

@@ -77,6 +77,13 @@ void asj_detection_run_clear(asj_detection_run *run);
  * of pictures needs no more. */
 size_t asj_detection_run_room(size_t count);
 
+/* What is done to one hypothesis, without a look at the others. */
+typedef void (*asj_hypothesis_work)(const asj_detection_run *run, asj_hypothesis *hypothesis);
+
+/* Does it to every hypothesis, by the threads of the context, until the caller stops it. `least`: so many of them make a thread
+ * worth waking. */
+asj_status asj_detection_run_each(asj_detection_run *run, int32_t stage, int32_t least, asj_hypothesis_work work);
+
 /* Reports that the stage is done up to here, as a part of the pass over one octave; ASJ_ERROR_CANCELLED when the caller wants to
  * stop. */
 asj_status asj_detection_run_progress(const asj_detection_run *run, int32_t stage, double done);

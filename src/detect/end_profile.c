@@ -170,6 +170,8 @@ asj_end_profile asj_end_profile_of(const asj_frame *frame, const asj_hypothesis 
         return result;
     goes_on = goes_on && read_levels(frame, hypothesis, branch, p.first + 2 * WINDOW, &p);
     const double own = own_contrast(&p), limit = fmin(share, 1 - share);
+    if (!(own > 0)) /* flat but for a block or two: no contrast to take a share of */
+        return result;
     double sum = 0, most = 0;
     int32_t end = -1, at = 0;
     for (; at < p.count && sum > most - GAP * limit; at++) {

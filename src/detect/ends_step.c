@@ -37,8 +37,10 @@ static asj_status measure_all(asj_detection_run *run)
     return asj_watch_end(&watch);
 }
 
-/* Ends at junctions need no look at the picture. */
-asj_status asj_step_ends(asj_detection_run *run)
+/* asj_ends_mark() or asj_ends_snap(). */
+typedef void (*ends_work)(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order, asj_watch *watch);
+
+static asj_status look_for_junctions(asj_detection_run *run, ends_work work)
 {
     const size_t count = run->hypothesis_count;
     const asj_hypothesis **order = asj_allocate_list(&run->context->memory, asj_detection_run_room(count), sizeof *order);
@@ -46,8 +48,19 @@ asj_status asj_step_ends(asj_detection_run *run)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", count);
     asj_watch watch;
     asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
-    asj_ends_mark(run->hypotheses, count, run->options->snap_distance, order, &watch);
+    work(run->hypotheses, count, run->options->snap_distance, order, &watch);
     asj_release(&run->context->memory, order);
-    const asj_status status = asj_watch_end(&watch);
+    return asj_watch_end(&watch);
+}
+
+/* Ends at junctions need no look at the picture. */
+asj_status asj_step_ends(asj_detection_run *run)
+{
+    const asj_status status = look_for_junctions(run, asj_ends_mark);
     return status == ASJ_OK ? measure_all(run) : status;
+}
+
+asj_status asj_step_snap(asj_detection_run *run)
+{
+    return look_for_junctions(run, asj_ends_snap);
 }

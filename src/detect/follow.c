@@ -2,9 +2,9 @@
 /* Branches followed outwards, before the search of step 5 (option refinement = search).
  *
  * The isotropic test knows an orientation to a step of 1 / r rad, 11 degrees at r = 5: twice what the search covers. Sectors of
- * larger radii are narrower (Delta(r) = tau / r) and say better where a branch goes. So each branch takes, radius by radius, the
- * strongest of five sectors half a step apart,
- *     theta(r + 1) = argmax over k = -2 .. 2 of omega_p(r + 1, theta(r) + k / (2 (r + 1)))           (eq. junction-ness-branch)
+ * larger radii are narrower (Delta(r) = tau / r) and say better where a branch goes. So each branch takes the strongest of five
+ * sectors half a step apart, from radius r to r', an eighth and at least 1 px more,
+ *     theta(r') = argmax over k = -2 .. 2 of omega_p(r', theta(r) + k / (2 r'))                      (eq. junction-ness-branch)
  * as long as two branches like it are a meaningful junction:  #J(2) F(omega; J)^2 <= epsilon         (step 3), up to r = 60.
  *
  * A junction is one only if its branches, all together, are still meaningful at the radius after its own: texture makes junctions

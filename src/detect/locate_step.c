@@ -8,8 +8,6 @@
 #include "steps.h"
 #include "suppress.h"
 #include "validate.h"
-#include "core/threads.h"
-#include "core/watch.h"
 
 #define LEAST_GUESSES (4 * ASJ_LEAST_JUNCTIONS) /* for a thread: a guess takes a quarter of a fit */
 
@@ -29,49 +27,25 @@ static asj_status drop_known(asj_detection_run *run, int known)
     return ASJ_OK;
 }
 
-/* Hypotheses that are shared out. */
-typedef struct job {
-    asj_detection_run *run;
-    asj_watch *watch;
-} job;
-
-static void guess_some(const void *data, const asj_part *part)
+static void guess(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
-    const job *j = data;
-    for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++)
-        asj_locate_guess(j->run->context, j->run->frame, j->run->options, &j->run->hypotheses[i]);
+    asj_locate_guess(run->context, run->frame, run->options, hypothesis);
 }
 
 static asj_status guess_all(asj_detection_run *run)
 {
-    asj_watch watch;
-    const int64_t count = (int64_t)run->hypothesis_count;
-    const job j = {run, &watch};
-    asj_watch_start(&watch, run->context, ASJ_STAGE_LOCATE);
-    asj_parallel(run->context, asj_threads_for(run->context, count, LEAST_GUESSES), count, 2 * ASJ_JUNCTIONS_AT_ONCE, guess_some,
-                 &j);
-    return asj_watch_end(&watch);
+    return asj_detection_run_each(run, ASJ_STAGE_LOCATE, LEAST_GUESSES, guess);
 }
 
-static void locate_some(const void *data, const asj_part *part)
+static void locate(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
-    const job *j = data;
-    const asj_detection_run *run = j->run;
-    for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++) {
-        asj_locate(run->context, run->frame, run->options, &run->hypotheses[i]);
-        asj_reject_early(run->context, run->frame, run->options, &run->hypotheses[i]);
-    }
+    asj_locate(run->context, run->frame, run->options, hypothesis);
+    asj_reject_early(run->context, run->frame, run->options, hypothesis);
 }
 
 static asj_status locate_all(asj_detection_run *run)
 {
-    asj_watch watch;
-    const int64_t count = (int64_t)run->hypothesis_count;
-    const job j = {run, &watch};
-    asj_watch_start(&watch, run->context, ASJ_STAGE_LOCATE);
-    asj_parallel(run->context, asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS), count, ASJ_JUNCTIONS_AT_ONCE, locate_some,
-                 &j);
-    return asj_watch_end(&watch);
+    return asj_detection_run_each(run, ASJ_STAGE_LOCATE, ASJ_LEAST_JUNCTIONS, locate);
 }
 
 static asj_status drop_known_early(asj_detection_run *run)

@@ -53,19 +53,6 @@ static asj_status merge(asj_detection_run *run)
     return ASJ_OK;
 }
 
-static asj_status snap_ends(asj_detection_run *run)
-{
-    const size_t count = run->hypothesis_count;
-    const asj_hypothesis **order = asj_allocate_list(&run->context->memory, asj_detection_run_room(count), sizeof *order);
-    if (!order)
-        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", count);
-    asj_watch watch;
-    asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
-    asj_ends_snap(run->hypotheses, count, run->options->snap_distance, order, &watch);
-    asj_release(&run->context->memory, order);
-    return asj_watch_end(&watch);
-}
-
 asj_status asj_step_merge_octaves(asj_detection_run *run)
 {
     asj_status status = collect(run);
@@ -82,5 +69,5 @@ asj_status asj_step_merge_octaves(asj_detection_run *run)
     if (run->region)
         run->hypothesis_count = asj_region_keep(run->image, run->region, run->hypotheses, run->hypothesis_count);
     asj_suppress_sort(run->hypotheses, run->hypothesis_count);
-    return snap_ends(run);
+    return asj_step_snap(run);
 }

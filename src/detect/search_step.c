@@ -71,12 +71,6 @@ typedef struct job {
     asj_watch *watch;
 } job;
 
-/* Junctions whose branches are followed. */
-typedef struct follow_job {
-    asj_detection_run *run;
-    asj_watch *watch;
-} follow_job;
-
 static void choose_some(const void *data, const asj_part *part)
 {
     const job *j = data;
@@ -134,24 +128,6 @@ static asj_status search_all(asj_detection_run *run, const lists *l)
     return status;
 }
 
-static void follow_some(const void *data, const asj_part *part)
-{
-    const follow_job *j = data;
-    for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++)
-        asj_follow(j->run, &j->run->hypotheses[i]);
-}
-
-static asj_status follow_all(asj_detection_run *run)
-{
-    const int64_t count = (int64_t)run->hypothesis_count;
-    asj_watch watch;
-    const follow_job j = {run, &watch};
-    asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
-    asj_parallel(run->context, asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS), count, ASJ_JUNCTIONS_AT_ONCE, follow_some,
-                 &j);
-    return asj_watch_end(&watch);
-}
-
 asj_status asj_step_search(asj_detection_run *run)
 {
     asj_memory *memory = &run->context->memory;
@@ -160,7 +136,7 @@ asj_status asj_step_search(asj_detection_run *run)
                      asj_allocate(memory, (size_t)TOGETHER * COARSE, sizeof *l.rays)};
     asj_status status = ASJ_OK;
     if (l.hypotheses && l.branches && l.strengths && l.rays) {
-        status = follow_all(run);
+        status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, asj_follow);
         status = status == ASJ_OK ? search_all(run, &l) : status;
     } else
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the rays of %d branches", TOGETHER);

@@ -17,6 +17,7 @@ asj_status asj_step_orient(asj_detection_run *run);     /* step 5 (refine_step.c
 asj_status asj_step_search(asj_detection_run *run);     /* the same as in the paper (search_step.c), with their lengths */
 asj_status asj_step_refine(asj_detection_run *run);     /* step 5 (refine_step.c): orientations, location, validation */
 asj_status asj_step_ends(asj_detection_run *run);       /* ends_step.c: what is at the ends of branches, evidence along them */
+asj_status asj_step_snap(asj_detection_run *run);       /* ends_step.c: ends moved onto junctions */
 asj_status asj_step_next_octave(asj_detection_run *run);  /* octaves_step.c: hypotheses put by, the next octave's grey plane */
 asj_status asj_step_merge_octaves(asj_detection_run *run);/* octaves_step.c: one list of hypotheses; ends of branches */
 asj_status asj_step_join(asj_detection_run *run);       /* edges_step.c: edges between junctions */

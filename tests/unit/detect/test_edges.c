@@ -96,6 +96,20 @@ static void test_pairs(void **state)
     assert_int_equal(joins(100, 100, 0, 0, 0.33), 0); /* noise between */
 }
 
+/* A branch that only just reaches, and passes beside the other junction, which is a little farther off than along the branch. */
+static void test_only_just(void **state)
+{
+    (void)state;
+    for (int32_t i = 0; i < 40; i++) {
+        drawing d = {.count = 0};
+        add_branch(add_junction(&d, 40, 70), 0, 96 + 1e-3 * i, 1.5);
+        add_branch(add_junction(&d, 140, 71.9), UNIT_PI, 60, 1.5);
+        join(&d);
+        assert_int_equal(d.edge_count, 1);
+        assert_true(d.edges[0].log10_nfa < 0); /* infinity before: no branch reached as far as that */
+    }
+}
+
 /* a ---- t ---- b, all branches running to the far end: what is joined depends on the branches that t has. */
 static void test_between(void **state)
 {
@@ -303,7 +317,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pairs),  cmocka_unit_test(test_between), cmocka_unit_test(test_overshoot),
         cmocka_unit_test(test_random), cmocka_unit_test(test_door),    cmocka_unit_test(test_room),
-        cmocka_unit_test(test_parallelograms), cmocka_unit_test(test_unsure_end),
+        cmocka_unit_test(test_parallelograms), cmocka_unit_test(test_unsure_end), cmocka_unit_test(test_only_just),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }
