@@ -3,6 +3,7 @@
 #include "match.h"
 #include "interrupt.h"
 #include "match_arguments.h"
+#include "match_cameras.h"
 #include "match_input.h"
 #include "message.h"
 #include "timing.h"
@@ -17,6 +18,7 @@ typedef struct run {
     const cli_match_arguments *arguments;
     cli_session session;
     cli_match_input inputs[2];
+    asj_geometry_options geometry;
     asj_match_result *result;
     asj_segment_match *segments; /* with --lines */
     size_t segment_count;
@@ -45,18 +47,6 @@ static int detect(run *r)
     return result;
 }
 
-static void set_geometry(const run *r, asj_match_options *options)
-{
-    options->geometry.model = r->arguments->geometry;
-    for (int v = 0; v < 2; v++) {
-        const asj_image *image = &r->inputs[v].pixels;
-        const double focal = r->arguments->focal;
-        options->geometry.cameras[v] = r->arguments->cameras[v];
-        if (focal > 0 && !(options->geometry.cameras[v].fx > 0))
-            options->geometry.cameras[v] = (asj_camera){focal, focal, 0.5 * (image->width - 1), 0.5 * (image->height - 1)};
-    }
-}
-
 /* Where one of both is features, the other becomes features too. */
 static asj_status match_features(run *r, const asj_match_options *options)
 {
@@ -82,7 +72,7 @@ static int match(run *r)
     char both[2 * MESSAGE_SIZE];
     asj_match_options options = r->arguments->options;
     const int features = r->inputs[0].features || r->inputs[1].features;
-    set_geometry(r, &options);
+    options.geometry = r->geometry;
     r->at = "the matching";
     cli_progress_next(&r->session.progress, STEPS - 1, "matching");
     asj_status status = features ? match_features(r, &options) : match_images(r, &options);
@@ -198,6 +188,9 @@ static int run_all(run *r)
     int result = cli_session_open(&r->session, &r->arguments->common, STEPS);
     if (result == CLI_SUCCESS)
         result = read_inputs(r);
+    r->geometry = r->arguments->options.geometry;
+    if (result == CLI_SUCCESS)
+        result = cli_match_cameras(r->arguments, r->inputs, &r->geometry);
     if (result == CLI_SUCCESS)
         result = detect(r);
     if (result == CLI_SUCCESS)

@@ -65,7 +65,9 @@ static const cli_option geometry_options[] = {
      "estimate what relates the two views, and let it decide which matches hold; none is the default"},
     {CAMERA_1, 0, "camera1", "FX,FY,CX,CY", "focal lengths and principal point of the camera of IMAGE1, px"},
     {CAMERA_2, 0, "camera2", "FX,FY,CX,CY", "the same for IMAGE2"},
-    {FOCAL, 0, "focal", "F", "focal length of both cameras, px; the principal point is the middle of the image"},
+    {FOCAL, 0, "focal", "F|exif|none",
+     "focal length of both cameras, px, with the middle of the image as principal point; exif: each image's own, an error "
+     "without. By default EXIF data count where both images have them; none: they do not"},
 };
 
 static const cli_option plot_options[] = {
@@ -126,6 +128,16 @@ static int take_input(void *target, int id, const char *text)
     return CLI_SUCCESS;
 }
 
+static int take_focal(const char *text, cli_match_arguments *arguments)
+{
+    static const char *const sources[] = {"exif", "none", NULL}; /* from CLI_FOCAL_EXIF on */
+    const int32_t source = cli_find_word(sources, text);
+    arguments->focal_from = source < 0 ? CLI_FOCAL_GIVEN : CLI_FOCAL_EXIF + source;
+    if (source < 0 && !cli_parse_number(text, 1, CLI_LONGEST_FOCAL, &arguments->focal))
+        return cli_usage_error("match", "--focal: '%s' is not a length in px, 1 and more, or exif or none", text);
+    return CLI_SUCCESS;
+}
+
 static int take_geometry(void *target, int id, const char *text)
 {
     static const char *const models[] = {"none", "auto", "essential", "fundamental", "homography", NULL}; /* as ASJ_GEOMETRY_... */
@@ -137,9 +149,7 @@ static int take_geometry(void *target, int id, const char *text)
         break;
     case CAMERA_1: return cli_take_camera("match", "camera1", text, &arguments->cameras[0]);
     case CAMERA_2: return cli_take_camera("match", "camera2", text, &arguments->cameras[1]);
-    default:
-        if (!cli_parse_number(text, 1, CLI_LONGEST_FOCAL, &arguments->focal))
-            return cli_usage_error("match", "--focal: '%s' is not a length in px, 1 and more", text);
+    default: return take_focal(text, arguments);
     }
     return CLI_SUCCESS;
 }
@@ -247,16 +257,12 @@ static int check_detector(const cli_match_arguments *arguments)
     return CLI_SUCCESS;
 }
 
-/* Cameras without a geometry that uses them, and the other way round. */
+/* Cameras without a geometry that uses them; match_cameras.c looks for the other way round. */
 static int check_geometry(const cli_match_arguments *arguments)
 {
-    const int first = arguments->cameras[0].fx > 0, second = arguments->cameras[1].fx > 0, focal = arguments->focal > 0;
-    if ((first || second || focal) && arguments->geometry == ASJ_GEOMETRY_NONE)
+    const int first = arguments->cameras[0].fx > 0, second = arguments->cameras[1].fx > 0;
+    if ((first || second || arguments->focal_from != CLI_FOCAL_AUTO) && arguments->geometry == ASJ_GEOMETRY_NONE)
         return cli_usage_error("match", "a camera changes nothing without --geometry");
-    if (first != second && !focal)
-        return cli_usage_error("match", "--camera%d is missing (or --focal)", first ? 2 : 1);
-    if (arguments->geometry == ASJ_GEOMETRY_ESSENTIAL && !first && !focal)
-        return cli_usage_error("match", "--geometry essential needs --camera1 and --camera2, or --focal");
     return CLI_SUCCESS;
 }
 

@@ -10,6 +10,9 @@
 
 #include <asj/match.h>
 
+/* Where focal lengths come from that --camera1 and --camera2 do not say. */
+enum { CLI_FOCAL_AUTO = 0 /* EXIF data, if both images have them */, CLI_FOCAL_GIVEN, CLI_FOCAL_EXIF, CLI_FOCAL_NONE };
+
 typedef struct cli_match_arguments {
     cli_common common;
     asj_detect_options detect_options;
@@ -23,7 +26,8 @@ typedef struct cli_match_arguments {
     cli_region regions[2];    /* where junctions are detected */
     int32_t geometry;         /* ASJ_GEOMETRY_... */
     asj_camera cameras[2];    /* fx 0 = not given */
-    double focal;             /* px; 0 = not given */
+    int32_t focal_from;       /* CLI_FOCAL_... */
+    double focal;             /* px, CLI_FOCAL_GIVEN */
     int lines;
     int32_t minimum_end;      /* ASJ_END_... */
     const char *plot;         /* a file; NULL = none */

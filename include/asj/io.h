@@ -22,11 +22,21 @@ extern "C" {
  * decoded. */
 #define ASJ_IO_DEFAULT_MAX_PIXELS 268435456
 
+/* What a focal length from EXIF data rests on. */
+enum {
+    ASJ_FOCAL_NONE = 0,    /* there is none */
+    ASJ_FOCAL_FILM = 1,    /* the focal length of the same view on 35 mm film, in whole mm */
+    ASJ_FOCAL_PLANE = 2,   /* the focal length, and the resolution on the focal plane */
+    ASJ_FOCAL_UNUSABLE = 3 /* the EXIF data are damaged, their focal length cannot be, or the picture was cut since */
+};
+
 /* An image read from a file; it owns its pixels. */
 typedef struct asj_image_file {
     asj_image image;     /* view of the pixels: GRAY8, GRAY16, RGB8, BGR8 or GRAY_FLOAT */
     int32_t orientation; /* the EXIF orientation (1 .. 8) that was applied: the view is upright. 1 = none */
-    int32_t reserved[3];
+    int32_t focal_source;/* ASJ_FOCAL_... */
+    float focal_length;  /* px of `image`, from EXIF data; 0 = not known */
+    int32_t reserved;
 } asj_image_file;
 
 /* Reads an image: PNG (1 to 16 bits, palette, alpha, interlaced) and PNM (PBM, PGM, PPM, PAM, PFM) always; JPEG, TIFF, WebP, JPEG
@@ -36,6 +46,9 @@ typedef struct asj_image_file {
  * Upright: the EXIF orientation of PNG, JPEG, TIFF and WebP is applied, so that coordinates are those of the picture as viewers
  * show it. Transparency is ignored: the stored colours count. 16-bit colour becomes GRAY16 and colour in floats GRAY_FLOAT, by
  * the luma weights of image.h; floats are as stored, with 1.0 as white.
+ *
+ * Focal length: from the EXIF data of PNG, JPEG and WebP where the library was built with libexif, and of TIFF. EXIF data that
+ * cannot be read are no error.
  *
  * Damage: PNG is checked to the last checksum. A JPEG without its end marker is refused, and so is one whose compressed data the
  * decoder finds damaged, unless all that it found are surplus bytes at the end. Other formats are refused when they are truncated

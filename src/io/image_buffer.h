@@ -5,6 +5,7 @@
 
 #include <asj/image.h>
 
+#include "lens.h"
 #include "probe.h"
 
 typedef struct asj_image_buffer {
@@ -12,6 +13,7 @@ typedef struct asj_image_buffer {
     int32_t width, height;
     int32_t format;        /* ASJ_FORMAT_... */
     int32_t orientation;   /* EXIF: how `pixels` are stored */
+    asj_lens lens;         /* EXIF */
 } asj_image_buffer;
 
 /* Bytes of one pixel, or 0 for an unknown format. */

@@ -60,7 +60,12 @@ static asj_status decode(const asj_input *input, uint64_t max_pixels, asj_image_
     if (!probe.has_size && probe.kind != ASJ_KIND_PNG)
         return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged or unusual %s: its header does not tell its size", probe.name);
     buffer->orientation = probe.orientation;
-    return decoder(input, &probe, max_pixels, buffer, message);
+    status = decoder(input, &probe, max_pixels, buffer, message);
+#ifdef ASJ_IO_HAVE_EXIF
+    if (status == ASJ_OK && probe.exif)
+        asj_exif_lens(probe.exif, probe.exif_size, &buffer->lens);
+#endif
+    return status;
 }
 
 static asj_status wrap(const asj_image_buffer *buffer, asj_image_file **file, const asj_message *message)
@@ -74,6 +79,7 @@ static asj_status wrap(const asj_image_buffer *buffer, asj_image_file **file, co
     owned->file.image.width = buffer->width;
     owned->file.image.height = buffer->height;
     owned->file.orientation = buffer->orientation;
+    owned->file.focal_length = (float)asj_lens_focal(&buffer->lens, buffer->width, buffer->height, &owned->file.focal_source);
     *file = &owned->file;
     return ASJ_OK;
 }

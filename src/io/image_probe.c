@@ -59,7 +59,9 @@ static void probe_webp(const asj_input *input, asj_image_probe *probe)
             return;
         if (!memcmp(b + at, "EXIF", 4)) {
             size_t skip = length >= 6 && !memcmp(b + at + 8, "Exif\0\0", 6) ? 6 : 0;
-            probe->orientation = asj_exif_orientation(b + at + 8 + skip, length - skip);
+            probe->exif = b + at + 8 + skip;
+            probe->exif_size = length - skip;
+            probe->orientation = asj_exif_orientation(probe->exif, probe->exif_size);
         }
         if (length == left)
             return;

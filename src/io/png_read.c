@@ -169,8 +169,12 @@ static void read_end(png_reader *reader)
 
     png_read_end(reader->png, reader->info);
     reader->buffer->orientation = 1;
-    if (png_get_eXIf_1(reader->png, reader->info, &size, &block))
-        reader->buffer->orientation = asj_exif_orientation(block, size);
+    if (!png_get_eXIf_1(reader->png, reader->info, &size, &block))
+        return;
+    reader->buffer->orientation = asj_exif_orientation(block, size);
+#ifdef ASJ_IO_HAVE_EXIF
+    asj_exif_lens(block, size, &reader->buffer->lens);
+#endif
 }
 
 static asj_status decode(png_reader *reader)

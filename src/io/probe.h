@@ -26,6 +26,8 @@ typedef struct asj_image_probe {
     uint64_t width, height; /* as declared; has_size = 0: the header does not say, or says nonsense */
     int32_t has_size;
     int32_t orientation;    /* EXIF; 1 when there is none */
+    const unsigned char *exif; /* JPEG, WebP: the EXIF block in the file's bytes, or NULL */
+    size_t exif_size;
     int32_t is_truncated;   /* the file ends before the image does */
     const char *fault;      /* what else is wrong with the file's structure, or NULL */
     size_t codestream;      /* JPEG 2000: where it begins */

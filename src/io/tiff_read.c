@@ -318,6 +318,37 @@ static asj_status decode(tiff_reader *reader, const asj_image_probe *probe, uint
     return decode_by_libtiff(reader, max_pixels, buffer, message);
 }
 
+/* A fraction; libtiff's versions differ in what they keep it in. */
+static double fraction(TIFF *tiff, uint32_t tag)
+{
+    const TIFFField *field = TIFFFieldWithTag(tiff, tag);
+    double wide = 0;
+    float single = 0;
+    if (field && TIFFFieldSetGetSize(field) == (int)sizeof wide)
+        return TIFFGetField(tiff, tag, &wide) ? wide : 0;
+    return field && TIFFGetField(tiff, tag, &single) ? (double)single : 0;
+}
+
+/* The lens, from the EXIF directory that the first one refers to. */
+static void read_lens(TIFF *tiff, asj_lens *lens)
+{
+    uint64_t directory = 0;
+    uint16_t film = 0, unit = 2;
+    uint32_t width = 0, height = 0;
+    if (!TIFFGetField(tiff, TIFFTAG_EXIFIFD, &directory) || directory == 0)
+        return;
+    if (!TIFFReadEXIFDirectory(tiff, (toff_t)directory)) {
+        lens->is_damaged = 1;
+        return;
+    }
+    TIFFGetField(tiff, EXIFTAG_FOCALLENGTHIN35MMFILM, &film);
+    TIFFGetField(tiff, EXIFTAG_FOCALPLANERESOLUTIONUNIT, &unit);
+    TIFFGetField(tiff, EXIFTAG_PIXELXDIMENSION, &width);
+    TIFFGetField(tiff, EXIFTAG_PIXELYDIMENSION, &height);
+    *lens = (asj_lens){film, fraction(tiff, EXIFTAG_FOCALLENGTH), fraction(tiff, EXIFTAG_FOCALPLANEXRESOLUTION), unit, 0, width,
+                       height};
+}
+
 asj_status asj_tiff_decode(const asj_input *input, const asj_image_probe *probe, uint64_t max_pixels, asj_image_buffer *buffer,
                            const asj_message *message)
 {
@@ -330,6 +361,8 @@ asj_status asj_tiff_decode(const asj_input *input, const asj_image_probe *probe,
     if (!reader.tiff)
         return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged TIFF: %s", reader.cause);
     status = decode(&reader, probe, max_pixels, buffer, message);
+    if (status == ASJ_OK)
+        read_lens(reader.tiff, &buffer->lens);
     TIFFClose(reader.tiff);
     free(reader.raw);
     return status;

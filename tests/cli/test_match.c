@@ -358,6 +358,47 @@ static void features_take_the_place_of_images(void **state)
     expect_code(result, 0);
 }
 
+#ifdef ASJ_IMAGES
+#define LENS ASJ_IMAGES "/lens.png" /* 30 px in its EXIF data */
+#define NO_LENS ASJ_IMAGES "/gray.png"
+
+static void focal_lengths_come_from_exif(void **state)
+{
+    static const char *const unsaid[][9] = {{"match", "--geometry", "auto", LENS, NO_LENS},
+                                            {"match", "--geometry", "auto", "--focal", "none", LENS, LENS},
+                                            {"match", "--geometry", "auto", "--focal", "40", LENS, LENS},
+                                            {"match", "--geometry", "homography", LENS, LENS},
+                                            {"match", "-q", "--geometry", "auto", LENS, LENS},
+                                            {"match", LENS, LENS}};
+    static const struct {
+        const char *arguments[9], *message;
+    } missing[] = {
+        {{"match", "--geometry", "auto", "--focal", "exif", LENS, NO_LENS}, "gray.png has no focal length"},
+        {{"match", "--geometry", "essential", "--focal", "none", LENS, LENS}, "--geometry essential needs"},
+        {{"match", "--geometry", "essential", NO_LENS, LENS}, "--camera1 is missing"},
+        {{"match", "--geometry", "auto", "--camera1", "30,30,18,12", LENS, NO_LENS}, "--camera2 is missing"},
+    };
+    size_t k;
+    (void)state;
+    const outcome *result = run_cli("match", "--geometry", "auto", LENS, LENS, NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "lens.png: focal length 30 px, from EXIF data\n");
+    result = run_cli("match", "--geometry", "essential", "--camera2", "30,30,18,12", LENS, NO_LENS, NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "focal length 30 px");
+    for (k = 0; k < sizeof unsaid / sizeof unsaid[0]; k++) {
+        result = run_cli_list(unsaid[k]);
+        expect_code(result, 0);
+        assert_null(strstr(result->err, "focal length"));
+    }
+    for (k = 0; k < sizeof missing / sizeof missing[0]; k++) {
+        result = run_cli_list(missing[k].arguments);
+        expect_code(result, 2);
+        expect_in(result, result->err, missing[k].message);
+    }
+}
+#endif
+
 /* The number behind "name" in JSON, from where `within` begins. */
 static double json_number(const char *text, const char *within, const char *name)
 {
@@ -535,6 +576,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_preset_match_detects_for_match),
         cmocka_unit_test(the_surest_junctions_give_a_warning),
         cmocka_unit_test(features_take_the_place_of_images),
+#ifdef ASJ_IMAGES
+        cmocka_unit_test(focal_lengths_come_from_exif),
+#endif
         cmocka_unit_test(former_names_are_taken_with_a_warning),
         cmocka_unit_test(options_reach_detector_and_matcher),
         cmocka_unit_test(presets_are_for_both_or_for_one),

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* A camera is, in this order: what --camera1 or --camera2 says; --focal; with a geometry that uses cameras and no --focal none, the
+ * focal length of the image's EXIF data. All but the first have the middle of the image as principal point. Cameras count when both
+ * are known. */
+#include "match_cameras.h"
+#include "message.h"
+
+static int uses_cameras(int32_t model)
+{
+    return model == ASJ_GEOMETRY_AUTO || model == ASJ_GEOMETRY_ESSENTIAL;
+}
+
+static asj_camera of_focal(double focal, const asj_image *image)
+{
+    return (asj_camera){focal, focal, 0.5 * (image->width - 1), 0.5 * (image->height - 1)};
+}
+
+static void take_exif(const cli_match_arguments *arguments, const cli_match_input *input, asj_camera *camera)
+{
+    if (!input->image || camera->fx > 0)
+        return;
+    if (input->image->focal_length > 0)
+        *camera = of_focal((double)input->image->focal_length, &input->image->image);
+    else if (input->image->focal_source == ASJ_FOCAL_UNUSABLE && !arguments->common.quiet)
+        cli_note("%s: EXIF data not used: damaged, of a larger picture, or of a focal length that cannot be", input->name);
+}
+
+static void say_exif(const cli_match_arguments *arguments, const cli_match_input inputs[2], const asj_geometry_options *options)
+{
+    for (int v = 0; v < 2; v++)
+        if (!(arguments->cameras[v].fx > 0) && !arguments->common.quiet)
+            cli_note("%s: focal length %.0f px, from EXIF data%s", inputs[v].name, options->cameras[v].fx,
+                     inputs[v].image->focal_source == ASJ_FOCAL_FILM ? " (35 mm equivalent)" : "");
+}
+
+/* One camera without the other, or none where they must be. */
+static int fail(const cli_match_arguments *arguments, const cli_match_input inputs[2], const asj_geometry_options *options)
+{
+    const int missing = options->cameras[0].fx > 0 ? 1 : 0;
+    if (arguments->focal_from == CLI_FOCAL_EXIF)
+        return cli_usage_error("match", "--focal exif: %s has no focal length in its EXIF data", inputs[missing].name);
+    if (arguments->geometry == ASJ_GEOMETRY_ESSENTIAL && !(options->cameras[0].fx > 0) && !(options->cameras[1].fx > 0))
+        return cli_usage_error("match", "--geometry essential needs --camera1 and --camera2, --focal, or EXIF data in both");
+    return cli_usage_error("match", "--camera%d is missing (or --focal, or EXIF data in %s)", missing + 1, inputs[missing].name);
+}
+
+int cli_match_cameras(const cli_match_arguments *arguments, const cli_match_input inputs[2], asj_geometry_options *options)
+{
+    const int32_t from = arguments->focal_from;
+    const int exif = from == CLI_FOCAL_EXIF || (from == CLI_FOCAL_AUTO && uses_cameras(arguments->geometry));
+    options->model = arguments->geometry;
+    for (int v = 0; v < 2; v++) {
+        options->cameras[v] = arguments->cameras[v];
+        if (from == CLI_FOCAL_GIVEN && !(options->cameras[v].fx > 0))
+            options->cameras[v] = of_focal(arguments->focal, &inputs[v].pixels);
+        if (exif)
+            take_exif(arguments, &inputs[v], &options->cameras[v]);
+    }
+    if (options->cameras[0].fx > 0 && options->cameras[1].fx > 0) {
+        if (exif)
+            say_exif(arguments, inputs, options);
+        return CLI_SUCCESS;
+    }
+    const int given = arguments->cameras[0].fx > 0 || arguments->cameras[1].fx > 0;
+    if (given || from == CLI_FOCAL_EXIF || arguments->geometry == ASJ_GEOMETRY_ESSENTIAL)
+        return fail(arguments, inputs, options);
+    for (int v = 0; v < 2; v++) /* one alone is of no use */
+        options->cameras[v] = (asj_camera){0, 0, 0, 0};
+    return CLI_SUCCESS;
+}
