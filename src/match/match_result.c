@@ -12,6 +12,8 @@ typedef struct result {
     asj_memory memory;
     asj_junction_match *matches;
     asj_l_junction *l1, *l2;
+    asj_place *places; /* of `count` matches */
+    uint32_t count;
 } result;
 
 /* Where the aligned map puts the junction of image 1. When image 1 was the one that moved, the map takes its moved
@@ -91,7 +93,8 @@ asj_match_result *asj_match_result_create(const asj_match_run *run)
     r->l1 = copy(&memory, in1);
     r->l2 = copy(&memory, in2);
     asj_match_result *shown = &r->shown;
-    if (!r->matches || !r->l1 || !r->l2) {
+    r->places = asj_allocate(&memory, count, sizeof *r->places);
+    if (!r->matches || !r->l1 || !r->l2 || !r->places) {
         asj_match_result_free(&shown);
         return NULL;
     }
@@ -99,6 +102,8 @@ asj_match_result *asj_match_result_create(const asj_match_run *run)
         fill(run, &run->choices.list[n], &r->matches[n]);
     if (count > 1)
         qsort(r->matches, count, sizeof *r->matches, by_distance);
+    r->count = (uint32_t)count;
+    asj_places_sort(r->places, r->matches, r->count);
     shown->matches = count ? r->matches : NULL;
     shown->match_count = (uint32_t)count;
     shown->l_junctions1 = in1->count ? r->l1 : NULL;
@@ -106,7 +111,17 @@ asj_match_result *asj_match_result_create(const asj_match_run *run)
     shown->l_junction_count1 = in1->count;
     shown->l_junction_count2 = in2->count;
     shown->geometry = run->geometry;
+    shown->own = (uint64_t)(uintptr_t)r;
     return shown;
+}
+
+const asj_place *asj_match_result_places(const asj_match_result *shown, uint32_t *count)
+{
+    const result *r = (const result *)shown;
+    if (shown->own != (uint64_t)(uintptr_t)r || shown->matches != r->matches || shown->match_count > r->count)
+        return NULL;
+    *count = r->count;
+    return r->places;
 }
 
 void asj_match_result_free(asj_match_result **pointer)
@@ -118,6 +133,7 @@ void asj_match_result_free(asj_match_result **pointer)
     asj_release(&memory, r->matches);
     asj_release(&memory, r->l1);
     asj_release(&memory, r->l2);
+    asj_release(&memory, r->places);
     asj_release(&memory, r);
     *pointer = NULL;
 }

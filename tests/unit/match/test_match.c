@@ -2,6 +2,7 @@
 /* asj_match() as a whole: a picture with known corners and its affine copy, views of the room with exact truth, swapping, threads,
  * empty input, bad input, lack of memory. */
 #include "match/match_options.h"
+#include "match/match_result.h"
 #include "room.h"
 #include "unit_test.h"
 
@@ -89,6 +90,26 @@ static asj_match_result *match(asj_context *context, const scene *a, const scene
     return result;
 }
 
+/* A result knows where its matches are; a copy of it, or one that the caller has given other matches, does not, and has the same
+ * segments. */
+static void segments_do_not_depend_on_places(asj_match_result *r)
+{
+    const asj_junction_match *const own = r->matches;
+    const asj_match_result copy = *r;
+    asj_segment_match segments[ASJ_MAX_BRANCHES * CORNERS], others[ASJ_MAX_BRANCHES * CORNERS];
+    const size_t room = sizeof segments / sizeof *segments, count = asj_match_segments(r, ASJ_END_CUT, segments, room);
+    uint32_t places = 0;
+    assert_non_null(asj_match_result_places(r, &places));
+    assert_int_equal(places, r->match_count);
+    assert_null(asj_match_result_places(&copy, &places));
+    assert_true(count > r->match_count && count <= room);
+    assert_int_equal(asj_match_segments(&copy, ASJ_END_CUT, others, room), count);
+    assert_memory_equal(segments, others, count * sizeof *segments);
+    r->matches = own + 1;
+    assert_null(asj_match_result_places(r, &places));
+    r->matches = own;
+}
+
 static void finds_the_corners_of_an_oblique_copy(void **state)
 {
     const unit_fixture *fixture = *state;
@@ -112,6 +133,7 @@ static void finds_the_corners_of_an_oblique_copy(void **state)
         assert_int_equal(m->end_b, ASJ_END_BOTH);
     }
     assert_int_equal(right, r->match_count); /* not one wrong */
+    segments_do_not_depend_on_places(r);
     assert_true(r->match_count + 2 >= b.count);  /* and all but two found */
     asj_match_result_free(&r);
     assert_null(r);

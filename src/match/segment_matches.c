@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Matches as segment matches.
+ *
+ * A match says which junctions are one point, so their other branches correspond as well: each to the one that the map turns it
+ * towards. Their ends are judged like those of the two that made the match, by their own lengths.
+ *
+ * An edge between two matched junctions is found from both its ends. Such duplicates are pairs whose ends lie together in both
+ * images; the one with the better known end stays, of equals the first. A pair that is a part of another is no duplicate: it
+ * ends elsewhere, and so is another segment. */
+#include "segment_matches.h"
+
+#include "match_result.h"
+
+#include <math.h>
+
+#define LEAST_TURN_COSINE 0.978147601       /* cosine of 12 degrees: half the least opening of branches of the detector, and less */
+#define END_TOLERANCE 0.12     /* as the option's default */
+#define SAME_END 4.0           /* px, or .. */
+#define SAME_END_SHARE 0.05    /* .. this part of the length */
+#define SLOTS ASJ_MAX_BRANCHES /* segment pairs of one match: its branches a and b, then others */
+
+/* Branches of one junction, as its L-junctions name them: ends relative to the location. */
+typedef struct bundle {
+    int32_t known[ASJ_MAX_BRANCHES];
+    double x[ASJ_MAX_BRANCHES], y[ASJ_MAX_BRANCHES];
+} bundle;
+
+static void tie(bundle *b, const asj_l_junction *l, uint16_t branch, float ex, float ey)
+{
+    if (branch >= ASJ_MAX_BRANCHES)
+        return;
+    b->known[branch] = 1;
+    b->x[branch] = (double)ex - (double)l->x;
+    b->y[branch] = (double)ey - (double)l->y;
+}
+
+/* L-junctions of a junction follow each other. The branches of `l` itself are left out. */
+static void collect(const asj_l_junction *list, uint32_t count, uint32_t l, bundle *b)
+{
+    uint32_t first = l;
+    *b = (bundle){{0}, {0}, {0}};
+    while (first > 0 && list[first - 1].junction == list[l].junction)
+        first--;
+    for (uint32_t k = first; k < count && list[k].junction == list[l].junction; k++) {
+        tie(b, &list[k], list[k].branch_a, list[k].ax, list[k].ay);
+        tie(b, &list[k], list[k].branch_b, list[k].bx, list[k].by);
+    }
+    if (list[l].branch_a < ASJ_MAX_BRANCHES)
+        b->known[list[l].branch_a] = 0;
+    if (list[l].branch_b < ASJ_MAX_BRANCHES)
+        b->known[list[l].branch_b] = 0;
+}
+
+/* The branch of b that (x, y) points along, or -1. */
+static int32_t along(const bundle *b, double x, double y)
+{
+    const double length = sqrt(x * x + y * y);
+    double best = LEAST_TURN_COSINE;
+    int32_t found = -1;
+    for (int32_t k = 0; k < ASJ_MAX_BRANCHES; k++) {
+        const double own = sqrt(b->x[k] * b->x[k] + b->y[k] * b->y[k]);
+        if (b->known[k] && own > 0 && x * b->x[k] + y * b->y[k] > best * length * own) {
+            best = (x * b->x[k] + y * b->y[k]) / (length * own);
+            found = k;
+        }
+    }
+    return found;
+}
+
+/* The pair of branch k of b1 and what corresponds to it in b2; 0 when nothing does. */
+static int pair_up(const asj_junction_match *m, uint32_t index, const bundle *b1, const bundle *b2, int32_t k, asj_segment_match *s)
+{
+    const double x1 = b1->x[k], y1 = b1->y[k], x = m->affine[0] * x1 + m->affine[1] * y1, y = m->affine[3] * x1 + m->affine[4] * y1;
+    const int32_t partner = along(b2, x, y);
+    if (partner < 0 || along(b1, x1, y1) != k)
+        return 0;
+    const double x2 = b2->x[partner], y2 = b2->y[partner], mapped = sqrt(x * x + y * y), own = sqrt(x2 * x2 + y2 * y2);
+    double part1 = 1, part2 = 1;
+    const int cut = mapped > own * (1 + END_TOLERANCE) || own > mapped * (1 + END_TOLERANCE);
+    if (cut && mapped > own)
+        part1 = own / mapped;
+    else if (cut)
+        part2 = mapped / own;
+    *s = (asj_segment_match){index, cut ? ASJ_END_CUT : ASJ_END_BOTH,
+                             m->x1, m->y1, (float)((double)m->x1 + part1 * x1), (float)((double)m->y1 + part1 * y1),
+                             m->x2, m->y2, (float)((double)m->x2 + part2 * x2), (float)((double)m->y2 + part2 * y2)};
+    return 1;
+}
+
+/* Pair number `slot` of match `index`; 0 when there is none. */
+static int segment_of(const asj_match_result *result, uint32_t index, int32_t slot, asj_segment_match *s)
+{
+    const asj_junction_match *m = &result->matches[index];
+    if (slot < 2) {
+        *s = slot == 0
+            ? (asj_segment_match){index, m->end_a, m->x1, m->y1, m->ax1, m->ay1, m->x2, m->y2, m->ax2, m->ay2}
+            : (asj_segment_match){index, m->end_b, m->x1, m->y1, m->bx1, m->by1, m->x2, m->y2, m->bx2, m->by2};
+        return 1;
+    }
+    if (m->l1 >= result->l_junction_count1 || m->l2 >= result->l_junction_count2)
+        return 0;
+    bundle b1, b2;
+    collect(result->l_junctions1, result->l_junction_count1, m->l1, &b1);
+    collect(result->l_junctions2, result->l_junction_count2, m->l2, &b2);
+    for (int32_t k = 0; k < ASJ_MAX_BRANCHES; k++)
+        if (b1.known[k] && --slot < 2)
+            return pair_up(m, index, &b1, &b2, k, s);
+    return 0;
+}
+
+static double distance2(float x1, float y1, float x2, float y2)
+{
+    double dx = (double)x2 - (double)x1, dy = (double)y2 - (double)y1;
+    return dx * dx + dy * dy;
+}
+
+/* Do the ends lie together in both images, in this order or the other? */
+static int same(const asj_segment_match *s, const asj_segment_match *t)
+{
+    const double l1 = distance2(s->x1, s->y1, s->ex1, s->ey1), l2 = distance2(s->x2, s->y2, s->ex2, s->ey2);
+    const double least = SAME_END * SAME_END, share = SAME_END_SHARE * SAME_END_SHARE;
+    const double near1 = share * l1 > least ? share * l1 : least, near2 = share * l2 > least ? share * l2 : least;
+    return (distance2(s->x1, s->y1, t->x1, t->y1) <= near1 && distance2(s->ex1, s->ey1, t->ex1, t->ey1) <= near1 &&
+            distance2(s->x2, s->y2, t->x2, t->y2) <= near2 && distance2(s->ex2, s->ey2, t->ex2, t->ey2) <= near2) ||
+           (distance2(s->x1, s->y1, t->ex1, t->ey1) <= near1 && distance2(s->ex1, s->ey1, t->x1, t->y1) <= near1 &&
+            distance2(s->x2, s->y2, t->ex2, t->ey2) <= near2 && distance2(s->ex2, s->ey2, t->x2, t->y2) <= near2);
+}
+
+/* Where duplicates of a segment s begin: each segment of a match begins at the match's location, and so that lies together with an
+ * end of s. */
+typedef struct surroundings {
+    float x[2], y[2]; /* the ends of s */
+    double near2;     /* px^2 */
+} surroundings;
+
+static surroundings around(const asj_segment_match *s)
+{
+    const double l1 = distance2(s->x1, s->y1, s->ex1, s->ey1), least = SAME_END * SAME_END, share = SAME_END_SHARE * SAME_END_SHARE;
+    return (surroundings){{s->x1, s->ex1}, {s->y1, s->ey1}, share * l1 > least ? share * l1 : least};
+}
+
+/* What segments are looked for among. */
+typedef struct search {
+    const asj_match_result *result;
+    const asj_place *places;
+    uint32_t place_count;
+    int32_t minimum_end;
+} search;
+
+/* Has match k the same pair as s with a better known end, or an equally known one that comes first? */
+static int match_has(const search *in, uint32_t k, const surroundings *at, const asj_segment_match *s, int32_t slot)
+{
+    const asj_junction_match *m = &in->result->matches[k];
+    if (distance2(at->x[0], at->y[0], m->x1, m->y1) > at->near2 && distance2(at->x[1], at->y[1], m->x1, m->y1) > at->near2)
+        return 0;
+    for (int32_t n = 0; n < SLOTS; n++) {
+        asj_segment_match t;
+        if ((k == s->match && n == slot) || !segment_of(in->result, k, n, &t) || t.end < in->minimum_end)
+            continue;
+        const int before = k < s->match || (k == s->match && n < slot);
+        if ((t.end > s->end || (t.end == s->end && before)) && same(s, &t))
+            return 1;
+    }
+    return 0;
+}
+
+static int duplicate(const search *in, const asj_segment_match *s, int32_t slot)
+{
+    const surroundings at = around(s);
+    if (!in->places) {
+        for (uint32_t k = 0; k < in->result->match_count; k++)
+            if (match_has(in, k, &at, s, slot))
+                return 1;
+        return 0;
+    }
+    for (int32_t end = 0; end < 2; end++) {
+        asj_place_walk walk = asj_places_near(in->places, in->place_count, at.x[end], at.y[end], sqrt(at.near2));
+        for (uint32_t k; asj_places_next(&walk, &k);)
+            if (k < in->result->match_count && match_has(in, k, &at, s, slot))
+                return 1;
+    }
+    return 0;
+}
+
+size_t asj_segment_matches(const asj_match_result *result, const asj_place *places, uint32_t place_count, int32_t minimum_end,
+                           asj_segment_match *segments, size_t capacity)
+{
+    const search in = {result, places, place_count, minimum_end};
+    size_t count = 0;
+    for (uint32_t k = 0; result && k < result->match_count; k++)
+        for (int32_t n = 0; n < SLOTS; n++) {
+            asj_segment_match s;
+            if (!segment_of(result, k, n, &s) || s.end < minimum_end || duplicate(&in, &s, n))
+                continue;
+            if (segments && count < capacity)
+                segments[count] = s;
+            count++;
+        }
+    return count;
+}
+
+size_t asj_match_segments(const asj_match_result *result, int32_t minimum_end, asj_segment_match *segments, size_t capacity)
+{
+    uint32_t place_count = 0;
+    const asj_place *places = result ? asj_match_result_places(result, &place_count) : NULL;
+    return asj_segment_matches(result, places, place_count, minimum_end, segments, capacity);
+}
