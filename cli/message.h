@@ -3,7 +3,9 @@
 #ifndef ASJ_CLI_MESSAGE_H
 #define ASJ_CLI_MESSAGE_H
 
-#if defined(__GNUC__)
+#if defined(__MINGW32__) /* as in src/core/context.h */
+#define CLI_PRINTF(text, first) __attribute__((format(gnu_printf, text, first)))
+#elif defined(__GNUC__)
 #define CLI_PRINTF(text, first) __attribute__((format(printf, text, first)))
 #else
 #define CLI_PRINTF(text, first)

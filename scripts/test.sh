@@ -14,7 +14,8 @@ usage: sh scripts/test.sh [--all]
 Installs what is missing (apt-get), builds everything in build-test/ and runs all tests.
 --all, or CI=true in the environment, takes warnings as errors, and also checks the style of the sources, builds with clang, runs
 the tests under the address and undefined-behaviour sanitizers and in builds with fewer parts, a few programs under the thread and
-the memory sanitizer, runs the tests of the core for 64-bit ARM under emulation, and uses an installed library from other programs.
+the memory sanitizer, runs the tests of the core for 64-bit ARM under emulation, compares results with those of other machines, and
+uses an installed library from other programs.
 Exit code: 0 everything passed, 1 something failed, 2 wrong usage, 3 packages are missing and cannot be installed here.
 END
 }
@@ -127,6 +128,26 @@ python_package() {
     sed -n 's/.*is consistent with the following platform tag: /wheel: /p' "$logs/python.log"
 }
 
+machine_packages='gcc-s390x-linux-gnu libc6-dev-s390x-cross gcc-i686-linux-gnu libc6-dev-i386-cross musl-tools gcc-mingw-w64-x86-64
+qemu-user'
+
+machine_tools() {
+    for tool in s390x-linux-gnu-gcc i686-linux-gnu-gcc musl-gcc x86_64-w64-mingw32-gcc qemu-s390x qemu-i386; do
+        command -v "$tool" > /dev/null || return 1
+    done
+}
+
+# Results of other machines, under emulation: machines.sh leaves out those whose tools are neither here nor to be installed.
+on_machines() {
+    machine_tools || (become_root && apt install -y --no-install-recommends $machine_packages) > /dev/null 2>&1
+    logged machines sh "$root/scripts/machines.sh"
+    state_of_machines=$?
+    grep ': ' "$logs/machines.log"
+    skipped=$((skipped + $(grep -c ': skipped' "$logs/machines.log")))
+    passed=$((passed + $(grep -c 'results are the same' "$logs/machines.log")))
+    return $state_of_machines
+}
+
 more_checks() {
     step style sh "$root/scripts/style.sh"
     step python python_package
@@ -136,6 +157,7 @@ more_checks() {
     step core core_alone
     step install sh "$root/scripts/install_check.sh"
     step aarch64 on_aarch64
+    step machines on_machines
     step threads with_thread_sanitizer
     step memory with_memory_sanitizer
     step clang with_clang

@@ -43,20 +43,24 @@ struct asj_context {
 /* Frees what is kept, if anything. */
 void asj_kept_free(asj_memory *memory, asj_kept *kept);
 
+/* Which argument is a format as printf() has it, and the first of what it names. MinGW means the printf() of old Windows by that,
+ * which knows no %zu; meson.build asks for the one of C99. */
+#if defined(__MINGW32__)
+#define ASJ_PRINTF(text, first) __attribute__((format(gnu_printf, text, first)))
+#elif defined(__GNUC__)
+#define ASJ_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#else
+#define ASJ_PRINTF(text, first)
+#endif
+
 /* Stores the message of asj_context_message() and logs it as an error, unless the call may go on without the device; returns
  * `status`, so that a failing function can end with
  * `return asj_fail(context, ASJ_ERROR_IMAGE, "stride %td is shorter than a row", stride);` */
 asj_status asj_fail(asj_context *context, asj_status status, const char *format, ...)
-#ifdef __GNUC__
-    __attribute__((format(printf, 3, 4)))
-#endif
-    ;
+    ASJ_PRINTF(3, 4);
 
 void asj_log(asj_context *context, int32_t level, const char *format, ...)
-#ifdef __GNUC__
-    __attribute__((format(printf, 3, 4)))
-#endif
-    ;
+    ASJ_PRINTF(3, 4);
 
 /* Reports progress; ASJ_ERROR_CANCELLED when the caller wants to stop. */
 asj_status asj_progress(asj_context *context, int32_t stage, double done);

@@ -40,8 +40,10 @@ static void work(queue *q, int32_t thread, int32_t caller)
 
 #include <pthread.h>
 #include <sched.h>
-#include <signal.h>
 #include <unistd.h>
+#ifndef _WIN32
+#include <signal.h>
+#endif
 
 #define MOST_THREADS 256
 #define STACK (1 << 20) /* bytes: the deepest loop needs a few dozen kB */
@@ -139,23 +141,51 @@ static void start(asj_pool *pool)
     pool->process = getpid();
 }
 
-/* Workers until there are `wanted`, as far as the system gives them. Signals go to the program's own threads. */
+/* What threads begin with. Signals go to the program's own threads: Windows has none that go to threads. */
+#ifdef _WIN32
+typedef int signals;
+
+static void hold_signals(signals *before)
+{
+    *before = 0;
+}
+
+static void release_signals(const signals *before)
+{
+    (void)before;
+}
+#else
+typedef sigset_t signals;
+
+static void hold_signals(signals *before)
+{
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, before);
+}
+
+static void release_signals(const signals *before)
+{
+    pthread_sigmask(SIG_SETMASK, before, NULL);
+}
+#endif
+
+/* Workers until there are `wanted`, as far as the system gives them. */
 static void make_workers(asj_pool *pool, int32_t wanted)
 {
     pthread_attr_t attributes;
-    sigset_t all, before;
+    signals before;
     if (wanted > pool->most)
         wanted = pool->most;
     if (pool->workers >= wanted || pthread_attr_init(&attributes) != 0)
         return;
     pthread_attr_setstacksize(&attributes, STACK);
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
+    hold_signals(&before);
     while (pool->workers < wanted && pthread_create(&pool->thread[pool->workers], &attributes, run_worker, pool) == 0)
         pool->workers++;
     if (pool->workers < wanted)
         pool->most = pool->workers; /* not asked again */
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    release_signals(&before);
     pthread_attr_destroy(&attributes);
 }
 
@@ -262,8 +292,13 @@ int32_t asj_thread_count(int32_t wanted)
     if (wanted <= 0 && sched_getaffinity(0, sizeof allowed, &allowed) == 0)
         count = CPU_COUNT(&allowed);
 #endif
+#ifdef _WIN32
+    if (wanted <= 0)
+        count = pthread_num_processors_np();
+#else
     if (count <= 0)
         count = sysconf(_SC_NPROCESSORS_ONLN);
+#endif
     return wanted > 0 ? wanted : count < 1 ? 1 : count > MOST_THREADS ? MOST_THREADS : (int32_t)count;
 }
 

@@ -12,7 +12,9 @@ typedef struct asj_message {
     const char *path; /* the file that every line names first */
 } asj_message;
 
-#if defined(__GNUC__)
+#if defined(__MINGW32__) /* as in src/core/context.h */
+#define ASJ_IO_PRINTF(text, first) __attribute__((format(gnu_printf, text, first)))
+#elif defined(__GNUC__)
 #define ASJ_IO_PRINTF(text, first) __attribute__((format(printf, text, first)))
 #else
 #define ASJ_IO_PRINTF(text, first)
