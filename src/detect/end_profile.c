@@ -29,10 +29,14 @@
 #define NOTHING 1.0 /* square of 1/ASJ_GRAY_ONE grey levels */
 #define TURNS 12    /* of the power iteration: directions that far apart are told, and no other matters */
 
-/* The strip of grey levels along a branch: sample i lies t = first + i px from the junction. */
+/* The strip of grey levels along a branch: sample i lies t = first + i px from the junction. Beyond the branch they are read when
+ * they are asked for: mostly a few are. */
 typedef struct profile {
+    const asj_frame *frame;
+    double x, y, ux, uy, offset;
     double levels[2 * WINDOW][SAMPLES];
     int32_t first, count, own; /* samples, and how many of them belong to the branch */
+    int inside;                /* whether the image goes on behind the last */
     double section[SAMPLES];
 } profile;
 
@@ -41,25 +45,31 @@ static int is_inside(const asj_frame *frame, double x, double y)
     return x >= 0 && y >= 0 && x <= frame->width - 1 && y <= frame->height - 1;
 }
 
-/* Reads the samples up to `last`; returns whether the image goes on there. */
-static int read_levels(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, int32_t last,
-                       profile *p)
+/* Reads samples until there are `wanted`, or the image ends. */
+static void read_levels(profile *p, int32_t wanted)
 {
-    const double ux = cos(branch->angle), uy = sin(branch->angle);
-    for (; p->count < last - p->first; p->count++) {
-        const double t = p->first + p->count;
+    const double ux = p->ux, uy = p->uy;
+    for (; p->count < wanted && p->inside; p->count++) {
+        const double t = p->first + p->count, x = p->x + t * ux, y = p->y + t * uy;
         double *levels = p->levels[p->count], mean = 0;
-        if (!is_inside(frame, hypothesis->x + t * ux, hypothesis->y + t * uy))
-            return 0;
+        p->inside = is_inside(p->frame, x, y);
+        if (!p->inside)
+            return;
         for (int32_t i = 0; i < SAMPLES; i++) {
-            const double s = branch->offset + (i - HALF);
-            levels[i] = asj_gray_at(frame, hypothesis->x + t * ux - s * uy, hypothesis->y + t * uy + s * ux);
+            const double s = p->offset + (i - HALF);
+            levels[i] = asj_gray_at(p->frame, x - s * uy, y + s * ux);
             mean += levels[i] / SAMPLES;
         }
         for (int32_t i = 0; i < SAMPLES; i++)
             levels[i] -= mean;
     }
-    return 1;
+}
+
+/* Whether there is a sample `at`, within the longest profile; reads up to it and those around it that its contrast needs. */
+static int has_sample(profile *p, int32_t at)
+{
+    read_levels(p, at + SMOOTH + 1 < 2 * WINDOW ? at + SMOOTH + 1 : 2 * WINDOW);
+    return at < p->count;
 }
 
 static double product(const double *a, const double *b)
@@ -106,6 +116,7 @@ static int find_section(profile *p)
     return largest > NOTHING;
 }
 
+/* At a sample that there is: has_sample(). */
 static double contrast(const profile *p, int32_t at)
 {
     double mean[SAMPLES];
@@ -146,12 +157,12 @@ static double noise_of(const profile *p)
 }
 
 /* px around sample `end` in which the contrast lies between the two levels. */
-static double fading_around(const profile *p, int32_t end, double high, double low)
+static double fading_around(profile *p, int32_t end, double high, double low)
 {
     int32_t before = end, after = end;
     while (before > 0 && contrast(p, before) < high)
         before--;
-    while (after + 1 < p->count && contrast(p, after) > low)
+    while (has_sample(p, after + 1) && contrast(p, after) > low)
         after++;
     return after - before;
 }
@@ -160,21 +171,27 @@ asj_end_profile asj_end_profile_of(const asj_frame *frame, const asj_hypothesis 
                                    double share)
 {
     asj_end_profile result = {0, 0, 0, 0};
-    profile p;
     const int32_t length = (int32_t)lrint(branch->length);
+    profile p;
+    p.frame = frame;
+    p.x = hypothesis->x;
+    p.y = hypothesis->y;
+    p.ux = cos(branch->angle);
+    p.uy = sin(branch->angle);
+    p.offset = branch->offset;
     p.first = length - WINDOW > FIRST ? length - WINDOW : FIRST;
     p.count = 0;
-    int goes_on = read_levels(frame, hypothesis, branch, length > FIRST ? length : FIRST + 1, &p);
+    p.inside = 1;
+    read_levels(&p, (length > FIRST ? length : FIRST + 1) - p.first);
     p.own = p.count;
     if (p.own < 1 || !find_section(&p))
         return result;
-    goes_on = goes_on && read_levels(frame, hypothesis, branch, p.first + 2 * WINDOW, &p);
     const double own = own_contrast(&p), limit = fmin(share, 1 - share);
     if (!(own > 0)) /* flat but for a block or two: no contrast to take a share of */
         return result;
     double sum = 0, most = 0;
     int32_t end = -1, at = 0;
-    for (; at < p.count && sum > most - GAP * limit; at++) {
+    for (; sum > most - GAP * limit && has_sample(&p, at); at++) {
         sum += fmin(fmax(contrast(&p, at) / own - share, -limit), limit);
         if (sum > most) {
             most = sum;
@@ -183,7 +200,7 @@ asj_end_profile asj_end_profile_of(const asj_frame *frame, const asj_hypothesis 
     }
     if (end < 0)
         return result;
-    result.at_border = !goes_on && end >= p.count - 1 - SMOOTH;
+    result.at_border = !p.inside && end >= p.count - 1 - SMOOTH;
     result.end = p.first + end + 0.5;
     result.noise = noise_of(&p) / own;
     result.fading = fading_around(&p, end, 0.75 * own, 0.25 * own);
