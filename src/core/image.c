@@ -72,7 +72,7 @@ asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t wid
     frame->blocks = (width + ASJ_LANES - 1) / ASJ_LANES;
     frame->stride = (ptrdiff_t)frame->blocks * ASJ_LANES + 2 * ASJ_MARGIN;
     size_t stride = (size_t)frame->stride, padded = stride * ((size_t)height + 2 * ASJ_MARGIN);
-    asj_status status = prepare_plane(context, frame, 0, stride * (size_t)height + 2 * ASJ_GRAY_MARGIN);
+    asj_status status = prepare_plane(context, frame, 0, stride * ((size_t)height + 2 * ASJ_GRAY_BORDER) + 2 * ASJ_GRAY_MARGIN);
     if (status == ASJ_OK)
         status = prepare_plane(context, frame, 1, padded);
     if (status == ASJ_OK)
@@ -80,7 +80,7 @@ asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t wid
     if (status != ASJ_OK)
         return status;
     size_t origin = ASJ_MARGIN * stride + ASJ_MARGIN;
-    frame->gray = (uint16_t *)frame->memory[0] + ASJ_GRAY_MARGIN;
+    frame->gray = (uint16_t *)frame->memory[0] + ASJ_GRAY_MARGIN + ASJ_GRAY_BORDER * stride;
     frame->gradient_x = (int16_t *)frame->memory[1] + origin;
     frame->gradient_y = (int16_t *)frame->memory[2] + origin;
     for (int plane = 1; plane <= 2; plane++) {
@@ -167,6 +167,25 @@ typedef struct conversion {
     uint16_t table[256];
 } conversion;
 
+static void repeat_columns(uint16_t *gray, int32_t width)
+{
+    for (int32_t i = 0; i < ASJ_GRAY_BORDER; i++) {
+        gray[-1 - i] = gray[0];
+        gray[width + i] = gray[width - 1];
+    }
+}
+
+/* With their repeated columns. */
+static void repeat_rows(const asj_frame *frame)
+{
+    const size_t bytes = ((size_t)frame->width + 2 * ASJ_GRAY_BORDER) * sizeof *frame->gray;
+    uint16_t *first = frame->gray - ASJ_GRAY_BORDER, *last = first + (frame->height - 1) * frame->stride;
+    for (int32_t i = 1; i <= ASJ_GRAY_BORDER; i++) {
+        memcpy(first - i * frame->stride, first, bytes);
+        memcpy(last + i * frame->stride, last, bytes);
+    }
+}
+
 /* Returns 0 when a sample is NaN or infinite. */
 static int load_row(const conversion *c, uint16_t *gray, const void *row, const asj_image *image)
 {
@@ -181,8 +200,7 @@ static int load_row(const conversion *c, uint16_t *gray, const void *row, const 
     case ASJ_FORMAT_BGRA8: load_colour(c->ops, gray, row, width, 4, 2, c->levels); break;
     default: finite = load_float(gray, row, width, c->scale); break;
     }
-    gray[-1] = gray[0];
-    gray[width] = gray[width - 1];
+    repeat_columns(gray, width);
     return finite;
 }
 
@@ -230,18 +248,19 @@ asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_imag
     for (int32_t y = 0; failed && y < height; y++)
         if (!load_row_at(&j, y))
             return asj_fail(context, ASJ_ERROR_IMAGE, "row %d of the image holds NaN or infinity", (int)y);
+    repeat_rows(frame);
     return ASJ_OK;
 }
 
 const asj_image_ops asj_image_reference = {.luma = asj_image_luma};
 
 /* Rows move to the front of the same memory: row y is written when rows 2 y and 2 y + 1 have been read, and stands before them,
- * since the new stride is no longer than the old one. */
+ * since the new stride is no longer than the old one. So do the rows that repeat the first one. */
 static void halve_row(const uint16_t *upper, const uint16_t *lower, int32_t width, uint16_t *to)
 {
     for (int32_t x = 0; x < width; x++)
         to[x] = (uint16_t)((upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1] + 2) >> 2);
-    to[width] = to[width - 1];
+    repeat_columns(to, width);
 }
 
 asj_status asj_frame_halve(asj_context *context, asj_frame *frame)
@@ -257,7 +276,7 @@ asj_status asj_frame_halve(asj_context *context, asj_frame *frame)
     for (int32_t y = 0; y < frame->height; y++) {
         uint16_t *to = frame->gray + y * frame->stride;
         halve_row(from + 2 * y * stride, from + (2 * y + 1) * stride, frame->width, to);
-        to[-1] = to[0];
     }
+    repeat_rows(frame);
     return ASJ_OK;
 }

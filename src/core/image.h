@@ -9,8 +9,10 @@
 #define ASJ_GRAY_ONE 128
 #define ASJ_GRAY_MAX (255 * ASJ_GRAY_ONE)
 
-/* Samples of the gray plane on either side of a row that may be read: the border pixel again, then anything. */
+/* Samples of the gray plane on either side of a row that may be read: ASJ_GRAY_BORDER times the border pixel again, then anything.
+ * As many rows above and below repeat the first and the last one. So line fits near the border read what is there (line_sums.c). */
 #define ASJ_GRAY_MARGIN 32
+#define ASJ_GRAY_BORDER 8
 
 /* Zeros around the gradient planes, so that sectors may look outside: more than the largest radius. */
 #define ASJ_MARGIN 32
@@ -24,7 +26,7 @@ typedef struct asj_frame {
     int32_t width, height;
     int32_t blocks;               /* runs of ASJ_LANES pixels in a row */
     ptrdiff_t stride;             /* elements from row to row of gray, gx, gy */
-    uint16_t *gray;               /* x = -1 and x = width repeat the border; no rows above and below */
+    uint16_t *gray;               /* ASJ_GRAY_BORDER columns and rows around the image repeat its border */
     int16_t *gradient_x;          /* normalised gradient in 1/1024 units, zero in the margin */
     int16_t *gradient_y;
     void *memory[3];              /* what the three planes stand in */

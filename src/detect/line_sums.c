@@ -211,7 +211,8 @@ void asj_line_profile_of(const asj_frame *frame, const asj_line_profile *profile
 
 int asj_line_profile_inside(const asj_frame *frame, const asj_line_profile *profile, int32_t from, int32_t to)
 {
-    const float spare = 1.05f; /* px: one, and what rounding makes of large coordinates */
+    /* px: one, and what rounding makes of large coordinates; the border is repeated around the image */
+    const float spare = 1.05f - ASJ_GRAY_BORDER;
     for (int32_t i = 0; i < 4; i++) {
         const float t = profile->first + (float)(i & 1 ? to - 1 : from) * profile->step;
         const float s = profile->a + profile->b * t + profile->offset[i & 2 ? profile->offsets - 1 : 0];
