@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Expectation and maximisation (Dempster, Laird and Rubin 1977): the probabilities of the candidates given the geometry, then the
  * geometry by one Gauss-Newton step over the weighted residuals; standard deviations shrink from WIDE times to 1, so that the first
- * steps look farther. Derivatives are central differences of the residuals along each parameter. A residual of square q weighs
- * 1 / (1 + q / TAIL) (Cauchy's), since A and x are not normal far out. */
+ * steps look farther. A residual of square q weighs 1 / (1 + q / TAIL) (Cauchy's), since A and x are not normal far out. */
 #include "adjust.h"
 #include "manhattan.h"
+#include "slopes.h"
 #include "small_matrix.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #define WIDE 3.0
 #define TAIL 6.0
 #define BEHIND 2.0
 #define LEAST 1e-3 /* probability below which a candidate is left out */
-#define STEP 1e-6
 #define DAMPING 1e-3 /* of the prior that parameters stay, in units of their information: keeps what nothing determines */
 
 typedef struct equations {
@@ -22,75 +22,52 @@ typedef struct equations {
     double right[ASJ_MODEL_PARAMETERS];
 } equations;
 
-/* Does a parameter move that part? A plane's own parameters move that plane only. */
-static int32_t moves(const asj_model *model, int32_t parameter, int32_t part)
-{
-    return model->view.planar || parameter < 5 || model->kind != ASJ_GEOMETRY_ESSENTIAL || 1 + (parameter - 5) / 3 == part;
-}
-
 /* Adds the residuals and derivatives of one candidate's part. */
-static void add_part(const asj_pairs *set, const asj_pair *c, int32_t part, const asj_model *model, const asj_model *moved,
+static void add_part(const asj_pairs *set, const asj_pair *c, int32_t part, const asj_model *model, const asj_model_slopes *slopes,
                      double weight, equations *e)
 {
-    asj_residuals at, plus, minus;
-    double slope[ASJ_MODEL_PARAMETERS][6];
-    int32_t used[ASJ_MODEL_PARAMETERS], count = 0;
-    const int32_t n = model->parameters, rows = asj_part_is_planar(&model->view, part) ? 6 : 3;
-    asj_part_residuals(&model->view, part, set, c, &at);
-    if (!isfinite(at.square))
+    asj_residuals at;
+    double slope[ASJ_PART_PARAMETERS][6];
+    const int32_t n = model->parameters, *used = slopes->parameter[part];
+    const int32_t rows = asj_residual_slopes(&model->view, part, set, c, slopes, &at, slope);
+    if (rows == 0)
         return;
-    for (int32_t p = 0; p < n; p++) {
-        if (!moves(model, p, part))
-            continue;
-        asj_part_residuals(&moved[2 * p].view, part, set, c, &plus);
-        asj_part_residuals(&moved[2 * p + 1].view, part, set, c, &minus);
-        if (!isfinite(plus.square) || !isfinite(minus.square))
-            return;
-        for (int32_t r = 0; r < rows; r++)
-            slope[p][r] = (plus.value[r] - minus.value[r]) / (2 * STEP);
-        used[count++] = p;
-    }
     weight /= 1 + at.square / TAIL;
-    for (int32_t i = 0; i < count; i++)
-        for (int32_t r = 0; r < rows; r++) {
-            const int32_t p = used[i];
-            for (int32_t k = 0; k <= i; k++)
-                e->normal[p * n + used[k]] += weight * slope[p][r] * slope[used[k]][r];
-            e->right[p] -= weight * slope[p][r] * at.value[r];
+    for (int32_t i = 0; i < slopes->count[part]; i++) {
+        double *row = e->normal + (ptrdiff_t)used[i] * n;
+        for (int32_t k = 0; k <= i; k++) {
+            double sum = 0;
+            for (int32_t r = 0; r < rows; r++)
+                sum += slope[i][r] * slope[k][r];
+            row[used[k]] += weight * sum;
         }
+        for (int32_t r = 0; r < rows; r++)
+            e->right[used[i]] -= weight * slope[i][r] * at.value[r];
+    }
 }
 
 /* Adds one candidate: each of its parts as far as it is probable. */
-static void add_candidate(const asj_pairs *set, const asj_pair *c, const asj_model *model, const asj_model *moved,
+static void add_candidate(const asj_pairs *set, const asj_pair *c, const asj_model *model, const asj_model_slopes *slopes,
                           const asj_peaks *peaks, double weight, equations *e)
 {
     double parts[ASJ_MOST_PARTS];
     const double sum = asj_likelihood_ratio(&model->view, set, c, peaks, parts);
     for (int32_t k = 0; k <= model->view.plane_count && sum > 0; k++)
         if (weight * parts[k] > LEAST * sum)
-            add_part(set, c, k, model, moved, weight * parts[k] / sum, e);
+            add_part(set, c, k, model, slopes, weight * parts[k] / sum, e);
 }
 
 static int32_t set_up(const asj_pairs *set, const asj_model *model, const double *probability, double loose, equations *e)
 {
     const asj_peaks peaks = asj_likelihood_peaks(set, &model->view, loose);
-    asj_model moved[2 * ASJ_MODEL_PARAMETERS];
     const int32_t n = model->parameters;
+    asj_model_slopes slopes;
     memset(e, 0, sizeof *e);
-    for (int32_t p = 0; p < 2 * n; p++) {
-        double delta[ASJ_MODEL_PARAMETERS] = {0};
-        delta[p / 2] = p % 2 == 0 ? STEP : -STEP;
-        if (!asj_model_move(model, delta, &moved[p]))
-            return 0;
-        double dot = 0; /* a matrix known up to its factor must not change its sign */
-        for (int32_t k = 0; k < 9; k++)
-            dot += moved[p].view.matrix[k] * model->view.matrix[k];
-        for (int32_t k = 0; k < 9 && dot < 0; k++)
-            moved[p].view.matrix[k] = -moved[p].view.matrix[k];
-    }
+    if (!asj_model_slopes_of(model, &slopes))
+        return 0;
     for (int32_t k = 0; k < set->count; k++)
         if (probability[k] > LEAST)
-            add_candidate(set, &set->list[k], model, moved, &peaks, probability[k], e);
+            add_candidate(set, &set->list[k], model, &slopes, &peaks, probability[k], e);
     for (int32_t p = 0; p < n; p++)
         for (int32_t q = 0; q < p; q++)
             e->normal[q * n + p] = e->normal[p * n + q];
@@ -194,6 +171,7 @@ void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *s)
         asj_release(memory, s->score.sum[v]);
         asj_release(memory, s->score.touched[v]);
     }
+    asj_release(memory, s->score.near);
     asj_release(memory, s->probability);
     asj_release(memory, s->shares);
     asj_release(memory, s->best);
@@ -209,8 +187,9 @@ int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_
         good = good && s->score.sum[v] && s->score.touched[v];
     }
     const size_t most = (size_t)(set->place_count[0] > set->place_count[1] ? set->place_count[0] : set->place_count[1]);
+    s->score.near = asj_allocate(memory, (size_t)set->count + 1, sizeof *s->score.near);
     s->probability = asj_allocate(memory, (size_t)set->count, sizeof *s->probability);
     s->shares = asj_allocate(memory, most, sizeof *s->shares);
     s->best = asj_allocate(memory, most, sizeof *s->best);
-    return good && s->probability && s->shares && s->best;
+    return good && s->score.near && s->probability && s->shares && s->best;
 }

@@ -36,6 +36,7 @@
  * independent, each LR has mean 1, so exp(score) has mean 1 for every fixed geometry: that is what evidence.c rests on. */
 #include "likelihood.h"
 #include "core/angle.h"
+#include "near.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -43,7 +44,6 @@
 
 #define SCALE_WIDTH 2.5
 #define SHEAR_WIDTH 1.5
-#define SHEAR_SD 0.25
 #define FAR 20.0 /* squared residual beyond which the ratio is as good as 0: exp(-10) times the peak of about 1e4 */
 #define FAR_PLANAR 34.0
 #define WIDEST 3.0 /* largest `loose` */
@@ -95,8 +95,8 @@ void asj_planar_residuals(const double h[9], const asj_pairs *set, const asj_pai
     r->value[1] = (back ? ey : dy) / sd;
     r->value[2] = atan2(b2 - b1, b0 + b3) / set->angle_sd;
     r->value[3] = log(scale) / set->scale_sd;
-    r->value[4] = 0.5 * (b0 - b3) / (scale * SHEAR_SD);
-    r->value[5] = 0.5 * (b1 + b2) / (scale * SHEAR_SD);
+    r->value[4] = 0.5 * (b0 - b3) / (scale * ASJ_SHEAR_SD);
+    r->value[5] = 0.5 * (b1 + b2) / (scale * ASJ_SHEAR_SD);
     r->square = 0;
     for (int32_t k = 0; k < 6; k++)
         r->square += r->value[k] * r->value[k];
@@ -116,7 +116,7 @@ asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, d
 {
     const double sd = loose * set->location_sd, normal = sqrt(2 * ASJ_PI);
     const double shape = 2 * ASJ_PI / (normal * loose * set->angle_sd) * SCALE_WIDTH / (normal * loose * set->scale_sd);
-    const double shear = SHEAR_WIDTH * SHEAR_WIDTH / (2 * ASJ_PI * loose * SHEAR_SD * loose * SHEAR_SD);
+    const double shear = SHEAR_WIDTH * SHEAR_WIDTH / (2 * ASJ_PI * loose * ASJ_SHEAR_SD * loose * ASJ_SHEAR_SD);
     const double line = log(2 * set->spread / (normal * sd) * shape);
     const double plane = log(set->area / (2 * ASJ_PI * sd * sd) * shape * shear);
     asj_peaks peaks = {view->planar ? plane : line, plane, loose};
@@ -169,8 +169,7 @@ double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, cons
     return sum;
 }
 
-/* Is the candidate too far from its epipolar line, or from where a homography puts it, for any ratio above 0? Most are, and this
- * says so soonest. */
+/* Is the candidate too far from its epipolar line, or from where a homography puts it, for any ratio above 0? */
 static inline int32_t is_far(const asj_two_view *view, const asj_pair *c, double limit)
 {
     const double *f = view->matrix;
@@ -196,8 +195,9 @@ double asj_score(const asj_pairs *set, int32_t count, const asj_two_view *view, 
     const double limit = far_limit(set, view, loose);
     int32_t touched[2] = {0, 0};
     double score[2] = {0, 0};
-    for (int32_t k = 0; k < count; k++) {
-        const asj_pair *c = &set->list[k];
+    const int32_t near = asj_near(set, count, view, limit, scratch->near);
+    for (int32_t k = 0; k < near; k++) {
+        const asj_pair *c = &set->list[scratch->near[k]];
         const double ratio = is_far(view, c, limit) ? 0 : asj_likelihood_ratio(view, set, c, &peaks, NULL);
         if (!(ratio > 0))
             continue;
@@ -224,13 +224,17 @@ void asj_probabilities(const asj_pairs *set, const asj_two_view *view, double lo
 {
     const asj_peaks peaks = asj_likelihood_peaks(set, view, loose);
     const double limit = far_limit(set, view, loose);
-    for (int32_t k = 0; k < set->count; k++) {
+    const int32_t near = asj_near(set, set->count, view, limit, scratch->near);
+    memset(probability, 0, (size_t)set->count * sizeof *probability);
+    for (int32_t n = 0; n < near; n++) {
+        const uint32_t k = scratch->near[n];
         const asj_pair *c = &set->list[k];
         probability[k] = is_far(view, c, limit) ? 0 : c->prior * asj_likelihood_ratio(view, set, c, &peaks, NULL);
         scratch->sum[0][c->place1] += probability[k];
         scratch->sum[1][c->place2] += probability[k];
     }
-    for (int32_t k = 0; k < set->count; k++) {
+    for (int32_t n = 0; n < near; n++) {
+        const uint32_t k = scratch->near[n];
         const asj_pair *c = &set->list[k];
         if (probability[k] > 0) {
             /* all that competes: the rivals at either place, and no match at all */

@@ -38,13 +38,18 @@ static void inverse_of(const asj_camera *c, double k[9])
     memcpy(k, m, sizeof m);
 }
 
-void asj_fundamental_of(const double essential[9], const asj_camera cameras[2], double f[9])
+void asj_pixel_fundamental(const double essential[9], const asj_camera cameras[2], double f[9])
 {
     double k1[9], k2[9], half[9];
     inverse_of(&cameras[0], k1);
     inverse_of(&cameras[1], k2);
     asj_multiply3(essential, k1, half);
     asj_transposed_multiply3(k2, half, f);
+}
+
+void asj_fundamental_of(const double essential[9], const asj_camera cameras[2], double f[9])
+{
+    asj_pixel_fundamental(essential, cameras, f);
     unit_norm(f);
 }
 

@@ -29,7 +29,8 @@ static inline void asj_ray(const asj_camera *k, double x, double y, double ray[3
     ray[2] = 1;
 }
 
-/* F = K2^-T E K1^-1 of norm 1, and E = K2' F K1; the same for a homography: H = K2 N K1^-1, N = K2^-1 H K1. */
+/* K2^-T E K1^-1; and F, that of norm 1, and E = K2' F K1; the same for a homography: H = K2 N K1^-1, N = K2^-1 H K1. */
+void asj_pixel_fundamental(const double essential[9], const asj_camera cameras[2], double f[9]);
 void asj_fundamental_of(const double essential[9], const asj_camera cameras[2], double f[9]);
 void asj_essential_of(const double f[9], const asj_camera cameras[2], double essential[9]);
 void asj_pixel_homography(const double normal[9], const asj_camera cameras[2], double h[9]);

@@ -4,6 +4,7 @@
 #include "pairs.h"
 #include "core/angle.h"
 #include "manhattan.h"
+#include "near.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -90,6 +91,10 @@ static void set_scales(const asj_geometry_options *options, asj_pairs *set)
     set->angle_sd = options->angle_sd * ASJ_DEGREE;
     set->scale_sd = options->scale_sd;
     set->spread = 0.2 * (sqrt(w1 * w1 + h1 * h1) + sqrt(w2 * w2 + h2 * h2)); /* 0.4 of the diagonal: 300 px at 624 x 460 */
+    for (int32_t v = 0; v < 2; v++) {
+        set->middle[v][0] = 0.5 * (options->widths[v] - 1);
+        set->middle[v][1] = 0.5 * (options->heights[v] - 1);
+    }
     set->area = sqrt(w1 * h1) * sqrt(w2 * h2);
 }
 
@@ -124,12 +129,14 @@ asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *
             return status;
     }
     limit_priors(set);
-    return ASJ_OK;
+    return asj_near_prepare(&context->memory, set)
+               ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu candidates", (unsigned long)set->count);
 }
 
 void asj_pairs_free(asj_memory *memory, asj_pairs *set)
 {
     asj_release(memory, set->list);
+    asj_release(memory, set->at);
     asj_release(memory, set->prior[0]);
     asj_release(memory, set->prior[1]);
     memset(set, 0, sizeof *set);

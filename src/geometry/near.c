@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Most candidates are far from a geometry, and a hypothesis is judged by thousands of them, so the first look is made in single
+ * precision, on coordinates side by side, in loops without a branch, which compilers turn into vectors. Those that may be near are
+ * looked at exactly.
+ *
+ * Coordinates are taken from the images' middles. A sum of products in floats is out by less than ROUNDING times the sum of the
+ * largest products; call that b for e, the distance times the length n of its normal, and c for each entry of the normal. What is
+ * nearer than d = sqrt(limit) has |e| <= b + d (n + 2 c) as computed, and since (x + y)^2 <= (1 + t) x^2 + (1 + 1/t) y^2,
+ *
+ *     e^2 <= (1 + t)^2 d^2 n^2 + (1 + 1/t) (b^2 + (1 + t) d^2 4 c^2),    t = SLACK:
+ *
+ * rounding lets too many through, never too few. */
+#include "near.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#define ROUNDING 1e-6 /* 8 roundings of 2^-24 and as much again */
+#define SLACK 1e-3
+#define BLOCK 128
+
+int32_t asj_near_prepare(asj_memory *memory, asj_pairs *set)
+{
+    const size_t count = (size_t)set->count;
+    set->at = asj_allocate_zero(memory, 4 * count + 1, sizeof *set->at);
+    for (size_t k = 0; set->at && k < count; k++) {
+        const asj_pair *c = &set->list[k];
+        const double from_middle[4] = {c->x1 - set->middle[0][0], c->y1 - set->middle[0][1], c->x2 - set->middle[1][0],
+                                       c->y2 - set->middle[1][1]};
+        for (size_t n = 0; n < 4; n++) {
+            set->at[n * count + k] = (float)from_middle[n];
+            set->farthest[n] = fmax(set->farthest[n], fabs(from_middle[n]));
+        }
+    }
+    return set->at != NULL;
+}
+
+/* A geometry as the loops below want it: e^2 <= factor n^2 + extra. */
+typedef struct plan {
+    float m[9]; /* the matrix for coordinates from the middles */
+    float factor, extra;
+} plan;
+
+static double bound_of(const double row[3], double x, double y)
+{
+    return fabs(row[0]) * x + fabs(row[1]) * y + fabs(row[2]);
+}
+
+static plan plan_of(const asj_pairs *set, const asj_two_view *view, double limit)
+{
+    const double *a = set->middle[0], *b = set->middle[1], *far = set->farthest;
+    double m[9], row[3];
+    plan p;
+    for (ptrdiff_t i = 0; i < 3; i++) { /* x1 = x + a */
+        const double *r = view->matrix + 3 * i;
+        m[3 * i] = r[0];
+        m[3 * i + 1] = r[1];
+        m[3 * i + 2] = r[0] * a[0] + r[1] * a[1] + r[2];
+    }
+    for (ptrdiff_t k = 0; k < 3; k++) { /* x2 = x + b: x2 (b) of a homography, or x2' F */
+        if (view->planar) {
+            m[k] -= b[0] * m[6 + k];
+            m[3 + k] -= b[1] * m[6 + k];
+        } else {
+            m[6 + k] += b[0] * m[k] + b[1] * m[3 + k];
+        }
+    }
+    for (ptrdiff_t k = 0; k < 3; k++)
+        row[k] = bound_of(m + 3 * k, far[0], far[1]);
+    double compared, other;
+    if (view->planar) {
+        compared = row[0] + far[2] * row[2] + row[1] + far[3] * row[2]; /* of both coordinates */
+        other = row[2];
+    } else {
+        compared = row[0] * far[2] + row[1] * far[3] + row[2];
+        const double columns[2] = {fabs(m[0]) * far[2] + fabs(m[3]) * far[3] + fabs(m[6]),
+                                   fabs(m[1]) * far[2] + fabs(m[4]) * far[3] + fabs(m[7])};
+        other = fmax(fmax(row[0], row[1]), fmax(columns[0], columns[1]));
+    }
+    for (ptrdiff_t k = 0; k < 9; k++)
+        p.m[k] = (float)m[k];
+    compared *= ROUNDING;
+    other *= ROUNDING;
+    p.factor = (float)((1 + SLACK) * (1 + SLACK) * limit);
+    p.extra = (float)((1 + 1 / SLACK) * (compared * compared + (1 + SLACK) * limit * 4 * other * other));
+    return p;
+}
+
+static void near_lines(const plan *p, const float *x1, const float *y1, const float *x2, const float *y2, int32_t count,
+                       int32_t *near)
+{
+    const float m0 = p->m[0], m1 = p->m[1], m2 = p->m[2], m3 = p->m[3], m4 = p->m[4], m5 = p->m[5], m6 = p->m[6], m7 = p->m[7];
+    const float m8 = p->m[8], factor = p->factor, extra = p->extra;
+    for (int32_t k = 0; k < count; k++) {
+        const float n2x = m0 * x1[k] + m1 * y1[k] + m2, n2y = m3 * x1[k] + m4 * y1[k] + m5;
+        const float n1x = m0 * x2[k] + m3 * y2[k] + m6, n1y = m1 * x2[k] + m4 * y2[k] + m7;
+        const float e = x2[k] * n2x + y2[k] * n2y + m6 * x1[k] + m7 * y1[k] + m8, e2 = e * e;
+        const int32_t in1 = e2 <= factor * (n1x * n1x + n1y * n1y) + extra;
+        near[k] = in1 & (e2 <= factor * (n2x * n2x + n2y * n2y) + extra);
+    }
+}
+
+static void near_places(const plan *p, const float *x1, const float *y1, const float *x2, const float *y2, int32_t count,
+                        int32_t *near)
+{
+    const float m0 = p->m[0], m1 = p->m[1], m2 = p->m[2], m3 = p->m[3], m4 = p->m[4], m5 = p->m[5], m6 = p->m[6], m7 = p->m[7];
+    const float m8 = p->m[8], factor = p->factor, extra = p->extra;
+    for (int32_t k = 0; k < count; k++) {
+        const float w = m6 * x1[k] + m7 * y1[k] + m8;
+        const float dx = x2[k] * w - (m0 * x1[k] + m1 * y1[k] + m2), dy = y2[k] * w - (m3 * x1[k] + m4 * y1[k] + m5);
+        near[k] = dx * dx + dy * dy <= factor * (w * w) + extra;
+    }
+}
+
+int32_t asj_near(const asj_pairs *set, int32_t count, const asj_two_view *view, double limit, uint32_t *near)
+{
+    const plan p = plan_of(set, view, limit);
+    const float *at[4];
+    int32_t found = 0, is_near[BLOCK];
+    for (ptrdiff_t n = 0; n < 4; n++)
+        at[n] = set->at + n * set->count;
+    for (int32_t first = 0; first < count; first += BLOCK) {
+        const int32_t some = count - first < BLOCK ? count - first : BLOCK;
+        (view->planar ? near_places : near_lines)(&p, at[0] + first, at[1] + first, at[2] + first, at[3] + first, some, is_near);
+        for (int32_t k = 0; k < some; k++) {
+            near[found] = (uint32_t)(first + k);
+            found += is_near[k];
+        }
+    }
+    return found;
+}
