@@ -174,6 +174,7 @@ void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *s)
     asj_release(memory, s->score.near);
     asj_release(memory, s->probability);
     asj_release(memory, s->shares);
+    asj_release(memory, s->sorted);
     asj_release(memory, s->best);
 }
 
@@ -190,6 +191,7 @@ int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_
     s->score.near = asj_allocate(memory, (size_t)set->count + 1, sizeof *s->score.near);
     s->probability = asj_allocate(memory, (size_t)set->count, sizeof *s->probability);
     s->shares = asj_allocate(memory, most, sizeof *s->shares);
+    s->sorted = asj_allocate(memory, most, sizeof *s->sorted);
     s->best = asj_allocate(memory, most, sizeof *s->best);
-    return good && s->score.near && s->probability && s->shares && s->best;
+    return good && s->score.near && s->probability && s->shares && s->sorted && s->best;
 }

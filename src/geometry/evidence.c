@@ -24,6 +24,7 @@
 #include "evidence.h"
 #include "core/angle.h"
 #include "manhattan.h"
+#include "near.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -31,6 +32,7 @@
 #include <string.h>
 
 #define SHARED 30.0 /* px */
+#define LEAST_SHARE 0.01 /* nats: less is left out */
 
 /* Widths of the parameters' priors. */
 static double width_of(const asj_model *m, int32_t parameter)
@@ -57,6 +59,7 @@ static double distance2(const asj_pair *a, const asj_pair *b)
     return in1 < in2 ? in1 : in2;
 }
 
+/* `shares` fall. */
 static double count_apart(const asj_share *shares, int32_t count)
 {
     double total = 0;
@@ -71,35 +74,51 @@ static double count_apart(const asj_share *shares, int32_t count)
     return total;
 }
 
-/* The score of one image's places, near ones counted as said above. Places without a share have no pair. */
-static double side_score(const asj_pairs *set, const asj_two_view *view, int32_t side, asj_adjust_scratch *scratch)
+/* The score of one image's places, near ones counted as said above. ratio: of each of the `near` candidates. */
+static double side_score(const asj_pairs *set, int32_t side, const uint32_t *near, int32_t near_count, const double *ratio,
+                         asj_adjust_scratch *scratch)
 {
-    const asj_peaks peaks = asj_likelihood_peaks(set, view, 1);
-    const int32_t places = set->place_count[side];
     double *sum = scratch->score.sum[side];
-    int32_t count = 0;
-    memset(scratch->best, 0, (size_t)places * sizeof *scratch->best);
-    memset(scratch->shares, 0, (size_t)places * sizeof *scratch->shares);
-    for (int32_t k = 0; k < set->count; k++) {
-        const asj_pair *c = &set->list[k];
+    uint32_t *touched = scratch->score.touched[side];
+    int32_t places = 0, count = 0;
+    for (int32_t n = 0; n < near_count; n++) {
+        const asj_pair *c = &set->list[near[n]];
         const uint32_t place = side == 0 ? c->place1 : c->place2;
-        const double value = c->prior * asj_likelihood_ratio(view, set, c, &peaks, NULL);
+        const double value = c->prior * ratio[n];
+        if (!(value > 0))
+            continue;
+        if (sum[place] == 0) {
+            touched[places++] = place;
+            scratch->best[place] = 0;
+        }
         sum[place] += value;
         if (value > scratch->best[place]) {
             scratch->best[place] = value;
             scratch->shares[place].pair = c;
         }
     }
-    for (int32_t p = 0; p < places; p++) {
-        if (scratch->shares[p].pair) {
-            const double rest = 1 - set->prior[side][p];
-            scratch->shares[count].pair = scratch->shares[p].pair;
-            scratch->shares[count++].value = log((rest + sum[p]) / rest);
-        }
+    for (int32_t n = 0; n < places; n++) {
+        const uint32_t p = touched[n];
+        const double rest = 1 - set->prior[side][p], value = log((rest + sum[p]) / rest);
+        if (value > LEAST_SHARE)
+            scratch->sorted[count++] = (asj_share){value, scratch->shares[p].pair};
         sum[p] = 0;
     }
-    qsort(scratch->shares, (size_t)count, sizeof *scratch->shares, by_value);
-    return set->empty[side] + count_apart(scratch->shares, count);
+    if (count > 1)
+        qsort(scratch->sorted, (size_t)count, sizeof *scratch->sorted, by_value);
+    return set->empty[side] + count_apart(scratch->sorted, count);
+}
+
+double asj_score_apart(const asj_pairs *set, const asj_two_view *view, asj_adjust_scratch *scratch)
+{
+    const asj_peaks peaks = asj_likelihood_peaks(set, view, 1);
+    const int32_t near = asj_near(set, set->count, view, asj_far_limit(set, view, 1), scratch->score.near);
+    double *ratio = scratch->probability;
+    for (int32_t n = 0; n < near; n++)
+        ratio[n] = asj_likelihood_ratio(view, set, &set->list[scratch->score.near[n]], &peaks, NULL);
+    const double first = side_score(set, 0, scratch->score.near, near, ratio, scratch);
+    const double second = side_score(set, 1, scratch->score.near, near, ratio, scratch);
+    return first < second ? first : second;
 }
 
 double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch)
@@ -118,6 +137,5 @@ double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust
         volume += asj_rotation_prior(set, model->rotation, &pull);
     if (!asj_cholesky_solve(information, n, none, &log_determinant))
         return -HUGE_VAL;
-    const double first = side_score(set, &model->view, 0, scratch), second = side_score(set, &model->view, 1, scratch);
-    return (first < second ? first : second) + volume - 0.5 * log_determinant;
+    return asj_score_apart(set, &model->view, scratch) + volume - 0.5 * log_determinant;
 }

@@ -4,6 +4,9 @@
 
 #include "adjust.h"
 
+/* The score of likelihood.c with what candidates of near places share counted once: evidence.c. scratch->probability is lost. */
+double asj_score_apart(const asj_pairs *set, const asj_two_view *view, asj_adjust_scratch *scratch);
+
 /* Natural log of the evidence for a geometry of the model's kind near the model: evidence.c. -HUGE_VAL when there is
  * none. */
 double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch);

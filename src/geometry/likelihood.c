@@ -183,8 +183,7 @@ static inline int32_t is_far(const asj_two_view *view, const asj_pair *c, double
     return e2 > limit * (n1x * n1x + n1y * n1y) || e2 > limit * (n2x * n2x + n2y * n2y);
 }
 
-/* What is_far() compares with. */
-static double far_limit(const asj_pairs *set, const asj_two_view *view, double loose)
+double asj_far_limit(const asj_pairs *set, const asj_two_view *view, double loose)
 {
     return (view->planar ? FAR_PLANAR : FAR) * loose * loose * set->location_sd * set->location_sd;
 }
@@ -192,7 +191,7 @@ static double far_limit(const asj_pairs *set, const asj_two_view *view, double l
 double asj_score(const asj_pairs *set, int32_t count, const asj_two_view *view, double loose, asj_score_scratch *scratch)
 {
     const asj_peaks peaks = asj_likelihood_peaks(set, view, loose);
-    const double limit = far_limit(set, view, loose);
+    const double limit = asj_far_limit(set, view, loose);
     int32_t touched[2] = {0, 0};
     double score[2] = {0, 0};
     const int32_t near = asj_near(set, count, view, limit, scratch->near);
@@ -223,7 +222,7 @@ void asj_probabilities(const asj_pairs *set, const asj_two_view *view, double lo
                        double *probability)
 {
     const asj_peaks peaks = asj_likelihood_peaks(set, view, loose);
-    const double limit = far_limit(set, view, loose);
+    const double limit = asj_far_limit(set, view, loose);
     const int32_t near = asj_near(set, set->count, view, limit, scratch->near);
     memset(probability, 0, (size_t)set->count * sizeof *probability);
     for (int32_t n = 0; n < near; n++) {

@@ -31,6 +31,9 @@ typedef struct asj_peaks {
 } asj_peaks;
 asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, double loose);
 
+/* Squared distance, px, from the line or place beyond which the ratio is as good as 0. */
+double asj_far_limit(const asj_pairs *set, const asj_two_view *view, double loose);
+
 /* Likelihood if right over likelihood if wrong; parts: NULL, or what each part has of it. */
 double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, const asj_pair *pair, const asj_peaks *peaks,
                             double *parts);
