@@ -10,7 +10,13 @@
  *     steps    no strip test: the ray passes its first steps at scan_epsilon = epsilon, as far as the scan wants; rays start at
  *              scan_start, or at 3 px where that is 0. What the paper's text does, and no promise of ours
  *
- * The numbers of the first two are bounded by epsilon when the test keeps its promise; --check asserts it.
+ * and, without rays, the junctions that the whole detector finds at epsilon = scan_epsilon (segments at their own, which is above):
+ *
+ *     detector    as it is
+ *     everywhere  every pixel a candidate, one radius enough, branches that share pixels: nothing but the NFA of isotropic
+ *                 junctions, their branches' scans and what follows says no
+ *
+ * All but the steps are bounded by epsilon when the tests keep their promise; --check asserts it.
  *
  * Pixels are 128 + 20 times a normal number, rounded to 8 bits: the normalised gradient does not depend on mean and contrast. */
 #define _POSIX_C_SOURCE 200809L
@@ -38,8 +44,8 @@
 #define TWO_PI 6.283185307179586476925
 
 static const double epsilons[] = {0.01, 0.1, 1, 10, 100, 200};
-enum { EPSILONS = sizeof epsilons / sizeof epsilons[0], ANY = 0, SCANNED = 1, STEPS = 2, WAYS = 3 };
-static const char *const names[WAYS] = {"any", "scanned", "steps"};
+enum { EPSILONS = sizeof epsilons / sizeof epsilons[0], ANY = 0, SCANNED = 1, STEPS = 2, DETECTOR = 3, EVERYWHERE = 4, WAYS = 5 };
+static const char *const names[WAYS] = {"any", "scanned", "steps", "detector", "everywhere"};
 
 typedef struct experiment {
     asj_context *context;
@@ -77,18 +83,13 @@ static int prepare(experiment *e)
     return 0;
 }
 
-static int load(experiment *e, uint64_t seed)
+static int load(experiment *e, const asj_image *image, uint64_t seed)
 {
-    uint8_t *pixels = synth_noise_image(SIDE, SIDE, 128.0, 20.0, seed);
-    if (!pixels)
-        return fail("out of memory");
-    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, SIDE, SIDE, 0, 0};
-    asj_status status = asj_frame_load(e->context, &e->frame, &image);
+    asj_status status = asj_frame_load(e->context, &e->frame, image);
     if (status == ASJ_OK)
         status = asj_scan_cache_prepare(e->context, &e->frame, asj_context_threads(e->context), &e->cache);
     if (status == ASJ_OK)
         status = asj_gradient(e->context, &e->frame, &e->options);
-    free(pixels);
     if (status != ASJ_OK)
         return fail(asj_context_message(e->context));
     synth_random random;
@@ -150,6 +151,26 @@ static int count_steps(experiment *e)
     return 0;
 }
 
+static int count_junctions(experiment *e, const asj_image *image, int way)
+{
+    for (int k = 0; k < EPSILONS; k++) {
+        asj_detect_options options = e->options;
+        asj_detection *found = NULL;
+        options.epsilon = options.scan_epsilon = epsilons[k];
+        if (way == EVERYWHERE) {
+            options.seeds = ASJ_SEEDS_FIELD;
+            options.candidate_strength = 0.0;
+            options.isotropic_persistence = 1;
+            options.disjoint_sectors = 0;
+        }
+        if (asj_detect(e->context, image, &options, &found) != ASJ_OK)
+            return fail(asj_context_message(e->context));
+        e->count[way][k] += found->junction_count;
+        asj_detection_free(&found);
+    }
+    return 0;
+}
+
 static void count(experiment *e)
 {
     for (int way = 0; way < STEPS; way++)
@@ -160,20 +181,41 @@ static void count(experiment *e)
         }
 }
 
+static int follow_rays(experiment *e, const asj_image *image, uint64_t seed)
+{
+    int result = load(e, image, seed);
+    if (result == 0 && e->ways[ANY])
+        test_any_length(e);
+    if (result == 0 && e->ways[SCANNED])
+        result = test_scanned_length(e);
+    if (result == 0)
+        count(e);
+    if (result == 0 && e->ways[STEPS])
+        result = count_steps(e);
+    return result;
+}
+
+static int run_image(experiment *e, uint64_t seed)
+{
+    uint8_t *pixels = synth_noise_image(SIDE, SIDE, 128.0, 20.0, seed);
+    if (!pixels)
+        return fail("out of memory");
+    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, SIDE, SIDE, 0, 0};
+    int result = 0;
+    if (e->ways[ANY] || e->ways[SCANNED] || e->ways[STEPS])
+        result = follow_rays(e, &image, seed);
+    for (int way = DETECTOR; way <= EVERYWHERE && result == 0; way++)
+        if (e->ways[way])
+            result = count_junctions(e, &image, way);
+    free(pixels);
+    return result;
+}
+
 static int run(experiment *e)
 {
     int result = prepare(e);
-    for (int32_t i = 0; i < e->images && result == 0; i++) {
-        result = load(e, (uint64_t)(e->first + i));
-        if (result == 0 && e->ways[ANY])
-            test_any_length(e);
-        if (result == 0 && e->ways[SCANNED])
-            result = test_scanned_length(e);
-        if (result == 0)
-            count(e);
-        if (result == 0 && e->ways[STEPS])
-            result = count_steps(e);
-    }
+    for (int32_t i = 0; i < e->images && result == 0; i++)
+        result = run_image(e, (uint64_t)(e->first + i));
     return result;
 }
 
@@ -199,7 +241,7 @@ static int report(const experiment *e)
             printf("%10.3f", e->count[way][k] / e->images);
             broken += way != STEPS && e->count[way][k] > expected + 3.0 * sqrt(expected) + 1.0;
         }
-        if (way == STEPS)
+        if (way >= STEPS)
             printf("\n");
         else
             printf("%10.2f\n", e->worst[way]);
@@ -219,7 +261,7 @@ static int take_ways(const char *text, experiment *e)
         while (way < WAYS && (strlen(names[way]) != length || strncmp(names[way], text, length) != 0))
             way++;
         if (way == WAYS)
-            return fail("--ways: any, scanned, steps");
+            return fail("--ways: any, scanned, steps, detector, everywhere");
         e->ways[way] = 1;
         text += length + (text[length] == ',');
     }
@@ -248,9 +290,10 @@ static int parse(int argc, char **argv, experiment *e)
                 return fail("--preset: default, paper");
             break;
         case 'h':
-            printf("usage: noise [--images N] [--first SEED] [--preset default|paper] [--ways any,scanned,steps] [--check]\n"
-                   "             [key=value ...]\n"
-                   "False branches per image of 256 x 256 Gaussian noise, one ray in a random direction from every pixel.\n");
+            printf("usage: noise [--images N] [--first SEED] [--preset default|paper] [--check]\n"
+                   "             [--ways any,scanned,steps,detector,everywhere] [key=value ...]\n"
+                   "Images of 256 x 256 Gaussian noise: false branches an image, one ray in a random direction from every pixel;\n"
+                   "detector, everywhere: junctions an image.\n");
             return 1;
         default: return -1;
         }
