@@ -5,15 +5,13 @@
  * best pair of frames counts.
  *
  * Scores are whole numbers, so that any device ranks alike: <f, g> of unit vectors; 2 <f, g> - <f, f> - <g, g> of others, both in
- * units of 1/ASJ_UNIT_ONE^2; of the paper's patches (patch_induced.c) minus the distance in 1/DISTANCE_ONE. */
+ * units of 1/ASJ_UNIT_ONE^2; of the paper's patches minus the distance (patch_induced.c). */
 #include "compare.h"
 #include "describe.h"
 #include "patch_induced.h"
 #include "core/watch.h"
 
 #include <math.h>
-
-#define DISTANCE_ONE 65536 /* distances of raw patches are below 2^14, so that a score has at most 30 bits */
 
 static int32_t score_patches(const asj_match_options *options, const int16_t *f, const int16_t *g, int32_t length)
 {
@@ -54,8 +52,7 @@ asj_pair_score asj_score_pair(const asj_match_run *run, uint32_t i, uint32_t j)
 {
     if (run->options->patches == ASJ_PATCHES_CANONICAL)
         return score_frames(run, i, j);
-    const float distance = asj_patch_induced_distance(run, i, j);
-    return (asj_pair_score){distance < HUGE_VALF ? -(int32_t)lrintf(distance * DISTANCE_ONE) : ASJ_NO_PARTNER,
+    return (asj_pair_score){asj_patch_induced_to_score(asj_patch_induced_distance(run, i, j)),
                             run->image[0]->l_junctions.first_frame[i], run->image[1]->l_junctions.first_frame[j]};
 }
 

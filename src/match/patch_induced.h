@@ -11,4 +11,19 @@ asj_status asj_patch_induced_describe(asj_context *context, const asj_match_opti
 /* The paper's distance of L-junction i of image 1 and j of image 2; HUGE_VALF when the map of the pair leaves the image. */
 float asj_patch_induced_distance(const asj_match_run *run, uint32_t i, uint32_t j);
 
+/* ---- parts of it ---- */
+
+/* The map of the pair; 0: it has none, or a square leaves its own image. */
+int32_t asj_patch_induced_map(const asj_match_run *run, uint32_t i, uint32_t j, asj_linear *map);
+
+/* The square of another L-junction, carried by `map` to l. */
+asj_affine_frame asj_patch_induced_frame(const asj_match_options *options, const asj_l_junction *l, const double map[4]);
+
+/* Grey levels, of a sum of squares in 1/ASJ_GRAY_ONE. */
+float asj_patch_induced_raw(int64_t sum);
+
+/* A distance as a score (compare.h), and back. */
+int32_t asj_patch_induced_to_score(float distance);
+double asj_patch_induced_of_score(int32_t score);
+
 #endif

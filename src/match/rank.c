@@ -6,6 +6,7 @@
  * come on one later. So only pairs are compared whose bound says that they may be better than the last ones on the lists of
  * both (product_bound.c); blocks and tiles start small, for lists to compare with. */
 #include "describe.h"
+#include "induced_score.h"
 #include "product_bound.h"
 #include "shortlist.h"
 #include "core/threads.h"
@@ -27,6 +28,7 @@ typedef struct table {
     int16_t *left, *right;       /* bound vectors; NULL: every pair is compared */
     int32_t *least;              /* of each frame of image 2: the threshold of its L-junction's list, */
     uint32_t *owner;             /* and that L-junction */
+    asj_induced_squares squares; /* the paper's patches */
 } table;
 
 /* Inserts into a list that falls; the earlier of equals stays first. */
@@ -99,12 +101,44 @@ static void multiply_row(const table *t, uint32_t i, int32_t *scores)
 
 /* --- others ----------------------------------------------------------------------------------------------------------------- */
 
+/* The best score of a row, and the best of partners at another location. */
+typedef struct two_best {
+    int32_t best, second;
+    uint32_t location; /* of the best */
+} two_best;
+
+static void remember(two_best *row, int32_t score, uint32_t location)
+{
+    if (score > row->best) {
+        row->second = location != row->location ? row->best : row->second;
+        row->best = score;
+        row->location = location;
+    } else if (location != row->location && score > row->second) {
+        row->second = score;
+    }
+}
+
+/* When nothing but the ratio test reads the lists (assign.c), from image 1's side alone, a pair says something only if its row has
+ * not two better ones at different locations: of these one at least is the location's second best or better. */
+static int32_t two_suffice(const asj_match_options *o)
+{
+    return !o->mutual && o->separation == 0 && o->neighbours == 0 && o->align_iterations == 0 &&
+           o->geometry.model == ASJ_GEOMETRY_NONE;
+}
+
 static void score_row(const table *t, uint32_t i, int32_t *scores)
 {
-    const uint32_t count = t->image2->l_junctions.count;
-    for (uint32_t j = 0; j < count; j++) {
-        scores[j] = asj_score_pair(t->run, i, j).score;
-        offer(t->rows + (size_t)i * (size_t)t->limit, t->limit, scores[j], j);
+    const asj_l_junctions *c2 = &t->image2->l_junctions;
+    const size_t limit = (size_t)t->limit;
+    const int32_t two = two_suffice(t->run->options);
+    two_best row = {ASJ_NO_PARTNER, ASJ_NO_PARTNER, UINT32_MAX};
+    asj_partner *list = t->rows + i * limit;
+    for (uint32_t j = 0; j < c2->count; j++) {
+        const int32_t mine = list[limit - 1].score, theirs = t->columns[(j + 1) * limit - 1].score;
+        const int32_t needed = two ? row.second : mine < theirs ? mine : theirs;
+        scores[j] = asj_induced_score(t->run, &t->squares, i, j, needed);
+        offer(list, t->limit, scores[j], j);
+        remember(&row, scores[j], c2->location[j]);
     }
 }
 
@@ -176,6 +210,9 @@ static asj_status prepare(table *t)
     t->owner = asj_allocate(memory, c2->frame_count, sizeof *t->owner);
     if (!t->scores || !t->least || !t->owner)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the distances of %u L-junctions", (unsigned)c2->count);
+    const asj_status squares = asj_induced_squares_create(t->run, &t->squares);
+    if (squares != ASJ_OK)
+        return squares;
     for (uint32_t g = 0; g < c2->frame_count; g++)
         t->least[g] = ASJ_BOUND_LEAST;
     for (uint32_t j = 0; j < c2->count; j++)
@@ -200,6 +237,7 @@ asj_status asj_rank_partners(const asj_match_run *run, asj_partner *rows, asj_pa
     asj_release(memory, t.owner);
     asj_release(memory, t.left);
     asj_release(memory, t.right);
+    asj_induced_squares_free(memory, &t.squares);
     return status;
 }
 
