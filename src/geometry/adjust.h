@@ -11,7 +11,8 @@ typedef struct asj_share {
     const asj_pair *pair; /* its best candidate */
 } asj_share;
 
-/* What one thread works in: probability has one number a candidate; shares, sorted and best have one a place of the image that has more. */
+/* What one thread works in: probability has one number a candidate; shares, sorted and best have one a place of the image that has
+ * more. */
 typedef struct asj_adjust_scratch {
     asj_score_scratch score;
     double *probability;

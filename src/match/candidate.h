@@ -7,6 +7,9 @@
 
 #include <stddef.h>
 
+/* Scores of pairs are whole numbers, the larger the better (compare.c); this one says that there is none. */
+#define ASJ_NO_PARTNER INT32_MIN
+
 /* A pair that may be a match. */
 typedef struct asj_candidate {
     uint32_t i, j;           /* L-junctions of image 1 and 2 */

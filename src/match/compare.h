@@ -5,9 +5,6 @@
 
 #include "match_run.h"
 
-/* Scores of pairs are whole numbers, the larger the better (compare.c); this one says that there is none. */
-#define ASJ_NO_PARTNER INT32_MIN
-
 /* The score of L-junctions i of image 1 and j of image 2. For canonical patches the frames are those of the best pair of frames. */
 typedef struct asj_pair_score {
     int32_t score;           /* ASJ_NO_PARTNER = the pair cannot be compared */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 7 with the paper's patches (patch_induced.c), for all pairs: the same scores as asj_score_pair(), but a pair that cannot come
- * on a short list any more is left.
+/* Step 7 with the paper's patches (patch_induced.c), for all pairs: the same scores as asj_score_pair(), but a pair that cannot
+ * come on a short list any more is left.
  *
- * D = |f - Hf| + |g - H^-1 g| is a sum of roots of sums of squares, which only grow. The samples of both patches are taken in parts,
- * in turn, each a grid of its own over the whole patch; what is there bounds D from below, and a pair is left when that is too far
- * by more than rounding can be wrong. Descriptors and normalised patches need all samples: they are compared in one go. */
+ * D = |f - Hf| + |g - H^-1 g| is a sum of roots of sums of squares, which only grow. The samples of both patches are taken in
+ * parts, in turn, each a grid of its own over the whole patch; what is there bounds D from below, and a pair is left when that is too
+ * far by more than rounding can be wrong. Descriptors and normalised patches need all samples: they are compared in one go. */
 #include "induced_score.h"
 #include "compare.h"
 #include "describe.h"

@@ -6,7 +6,6 @@
  * Kept for comparison; canonical patches (patch.c) cost a hundredth. Departure: a pair is dropped when more than a quarter of a
  * warped square lies outside its image (the paper does not say what happens there). */
 #include "patch_induced.h"
-#include "compare.h"
 #include "describe.h"
 #include "sift.h"
 #include "core/threads.h"

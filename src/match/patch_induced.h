@@ -22,7 +22,7 @@ asj_affine_frame asj_patch_induced_frame(const asj_match_options *options, const
 /* Grey levels, of a sum of squares in 1/ASJ_GRAY_ONE. */
 float asj_patch_induced_raw(int64_t sum);
 
-/* A distance as a score (compare.h), and back. */
+/* A distance as a score (candidate.h), and back. */
 int32_t asj_patch_induced_to_score(float distance);
 double asj_patch_induced_of_score(int32_t score);
 

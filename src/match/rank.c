@@ -138,7 +138,8 @@ static void score_row(const table *t, uint32_t i, int32_t *scores)
         const int32_t needed = two ? row.second : mine < theirs ? mine : theirs;
         scores[j] = asj_induced_score(t->run, &t->squares, i, j, needed);
         offer(list, t->limit, scores[j], j);
-        remember(&row, scores[j], c2->location[j]);
+        if (two)
+            remember(&row, scores[j], c2->location[j]);
     }
 }
 

@@ -5,7 +5,7 @@
 
 #include "compare.h"
 
-/* A partner of an L-junction: its score (compare.h) and its index; of equal scores the smaller index comes first. */
+/* A partner of an L-junction: its score (candidate.h) and its index; of equal scores the smaller index comes first. */
 typedef struct asj_partner {
     int32_t score;           /* ASJ_NO_PARTNER = none */
     uint32_t index;
