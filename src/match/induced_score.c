@@ -3,8 +3,8 @@
  * come on a short list any more is left.
  *
  * D = |f - Hf| + |g - H^-1 g| is a sum of roots of sums of squares, which only grow. The samples of both patches are taken in
- * parts, in turn, each a grid of its own over the whole patch; what is there bounds D from below, and a pair is left when that is too
- * far by more than rounding can be wrong. Descriptors and normalised patches need all samples: they are compared in one go. */
+ * parts, in turn, each a grid of its own over the whole patch; what is there bounds D from below, and a pair is left when that is
+ * too far by more than rounding can be wrong. Descriptors and normalised patches need all samples: they are compared in one go. */
 #include "induced_score.h"
 #include "compare.h"
 #include "describe.h"
