@@ -44,6 +44,17 @@ static double width_of(const asj_model *m, int32_t parameter)
     return 3; /* entries of a normalised homography */
 }
 
+double asj_prior_information(const asj_model *model, int32_t parameter)
+{
+    const double width = width_of(model, parameter);
+    return 2 * ASJ_PI / (width * width);
+}
+
+double asj_log_volume(const asj_model *model, int32_t parameter)
+{
+    return 0.5 * log(2 * ASJ_PI) - log(width_of(model, parameter));
+}
+
 static int by_value(const void *left, const void *right)
 {
     const asj_share *p = left, *q = right;
@@ -129,9 +140,8 @@ double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust
     asj_probabilities(set, &model->view, 1, &scratch->score, scratch->probability);
     asj_information(set, model, scratch->probability, information);
     for (int32_t p = 0; p < n; p++) {
-        const double width = width_of(model, p);
-        information[p * (n + 1)] += 2 * ASJ_PI / (width * width);
-        volume += 0.5 * log(2 * ASJ_PI) - log(width);
+        information[p * (n + 1)] += asj_prior_information(model, p);
+        volume += asj_log_volume(model, p);
     }
     if (model->kind == ASJ_GEOMETRY_ESSENTIAL)
         volume += asj_rotation_prior(set, model->rotation, &pull);

@@ -7,6 +7,10 @@
 /* The score of likelihood.c with what candidates of near places share counted once: evidence.c. scratch->probability is lost. */
 double asj_score_apart(const asj_pairs *set, const asj_two_view *view, asj_adjust_scratch *scratch);
 
+/* Of a parameter: the information of its prior, and what Laplace's method adds to the log of the evidence for it. */
+double asj_prior_information(const asj_model *model, int32_t parameter);
+double asj_log_volume(const asj_model *model, int32_t parameter);
+
 /* Natural log of the evidence for a geometry of the model's kind near the model: evidence.c. -HUGE_VAL when there is
  * none. */
 double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch);

@@ -3,6 +3,7 @@
  *
  *   pairs.c       candidates -> places, priors
  *   search.c      samples (minimal.c, five_point.c), scores (likelihood.c), refinement (adjust.c)
+ *   motions.c     essential matrices with planes (planes.c), and what the candidates allow around them (posterior.c)
  *   evidence.c    how often chance brings as much
  *   model.c       what moves when a geometry moves
  *
@@ -16,12 +17,13 @@
  * repeats is matched more or less well for reasons that the model does not know, and all its places together: of rendered rooms
  * with tiled floors, wrong geometries have up to twice the log evidence of the right one.
  *
- * A pose is one that is known to within POSE_SD; and no other motion may explain nearly as much (ALIKE): all on one plane there are
- * two (Hartley and Zisserman, 13.4), and near that everything between. */
+ * A pose is one that is known to within POSE_SD, with all other motions counted as likely as their evidence says: all on one plane
+ * there are two (Hartley and Zisserman, 13.4), and near that everything between. */
 #include "core/angle.h"
 #include "evidence.h"
 #include "motions.h"
 #include "pairs.h"
+#include "posterior.h"
 #include "search.h"
 #include "small_matrix.h"
 
@@ -37,10 +39,8 @@
 /* Nats that a score loses at least on the way to an evidence: volume of the parameters, near places. Of 69 pairs of unrelated
  * images 46 stay below; of 46 accepted ones none is within 8 nats of it. */
 #define GIVE_UP 17.0
-#define ALIKE 0.95
 #define ALMOST 0.8
-#define OTHER_MOTION (6 * ASJ_DEGREE)
-#define POSE_SD (2.2 * ASJ_DEGREE)
+#define POSE_SD (4.0 * ASJ_DEGREE)
 #define LOOSE_DIRECTION (30 * ASJ_DEGREE) /* a translation known worse than this is none */
 
 /* One call. */
@@ -151,7 +151,7 @@ static asj_status search_once(estimation *e, uint64_t seed)
     if (status == ASJ_OK && epipolar == ASJ_GEOMETRY_ESSENTIAL &&
         (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_ESSENTIAL)) {
         int32_t count = e->count - before;
-        status = asj_refine_motions(e->context, &e->set, o->cameras, e->finalists + before, &count);
+        status = asj_refine_motions(e->context, &e->set, o->cameras, seed, e->finalists + before, &count);
         e->count = before + count;
     }
     return status;
@@ -213,24 +213,11 @@ static int32_t second_of(estimation *e, int32_t best)
 
 /* Covariance of rotation and translation, 6 x 6, from that of the five parameters of model.c; the largest standard deviation of a
  * combination of them. */
-static double set_covariance(const estimation *e, const asj_model *m, double covariance[36])
+static double set_covariance(const estimation *e, int32_t best, double covariance[36])
 {
-    double information[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], five[25], frame[6][5] = {{0}};
-    double axis[3], other[3];
-    asj_information(&e->set, m, e->scratch.probability, information);
-    const int32_t n = m->parameters;
-    for (int32_t p = 0; p < 5; p++) {
-        double a[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], column[ASJ_MODEL_PARAMETERS] = {0};
-        memcpy(a, information, sizeof a);
-        for (int32_t k = 0; k < n; k++)
-            a[(n + 1) * k] += 0.05; /* a radian each is as little as can be known of an angle */
-        column[p] = 1;
-        if (!asj_cholesky_solve(a, n, column, NULL))
-            return HUGE_VAL;
-        for (int32_t k = 0; k < 5; k++)
-            five[5 * k + p] = column[k];
-    }
-    asj_translation_axes(m->translation, axis, other);
+    double five[25], frame[6][5] = {{0}}, axis[3], other[3];
+    const double sd = asj_motion_covariance(e->finalists, e->count, best, five);
+    asj_translation_axes(e->finalists[best].translation, axis, other);
     for (int32_t k = 0; k < 3; k++) {
         frame[k][k] = 1;
         frame[3 + k][3] = axis[k];
@@ -243,41 +230,22 @@ static double set_covariance(const estimation *e, const asj_model *m, double cov
                 for (int32_t q = 0; q < 5; q++)
                     covariance[6 * i + j] += frame[i][p] * five[5 * p + q] * frame[j][q];
         }
-    double values[5], vectors[25];
-    asj_symmetric_eigen(five, 5, values, vectors);
-    return sqrt(values[4]);
-}
-
-/* Is there another motion that explains as much? */
-static int32_t is_twofold(const estimation *e, int32_t best)
-{
-    const asj_model *m = &e->finalists[best];
-    for (int32_t n = 0; n < e->count; n++) {
-        const asj_model *o = &e->finalists[n];
-        double turn[9];
-        if (o->kind != ASJ_GEOMETRY_ESSENTIAL || !(o->evidence > ALIKE * m->evidence))
-            continue;
-        asj_multiply3_transposed(o->rotation, m->rotation, turn);
-        if (asj_rotation_angle(turn) > OTHER_MOTION || fabs(asj_dot3(o->translation, m->translation)) < cos(OTHER_MOTION))
-            return 1;
-    }
-    return 0;
+    return sd;
 }
 
 /* Rotation and translation of an essential matrix. 0 when nothing determines its translation. */
 static int32_t set_pose(estimation *e, int32_t number, asj_geometry *result)
 {
     asj_model *m = &e->finalists[number];
-    const int32_t open = is_twofold(e, number);
     asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
     if (m->view.plane_count == 0 && !(asj_choose_motion(&e->set, e->scratch.probability, m) > -HUGE_VAL))
         return 0;
-    const double sd = set_covariance(e, m, result->covariance);
+    const double sd = set_covariance(e, number, result->covariance);
     memcpy(result->rotation, m->rotation, sizeof result->rotation);
     memcpy(result->translation, m->translation, sizeof result->translation);
     result->focal[0] = m->cameras[0].fx;
     result->focal[1] = m->cameras[1].fx;
-    result->has_pose = !open && sd < POSE_SD;
+    result->has_pose = sd < POSE_SD;
     return sd < LOOSE_DIRECTION;
 }
 
@@ -296,6 +264,14 @@ static int32_t instead_of(const estimation *e, int32_t best)
 {
     const int32_t flat = best_of(e, ASJ_GEOMETRY_HOMOGRAPHY);
     return flat >= 0 && e->finalists[flat].evidence > ALMOST * e->finalists[best].evidence ? flat : best;
+}
+
+/* What a rival is compared with: of a motion that stands for a whole region (posterior.c) the best of it, as the rivals are. */
+static double to_compare(const estimation *e, const asj_model *m)
+{
+    asj_model peak = *m;
+    peak.evidence = m->settled ? fmin(m->peak, m->evidence) : m->evidence;
+    return log10_nfa(e, &peak);
 }
 
 static void answer(estimation *e, double *probabilities, asj_geometry *result)
@@ -326,7 +302,7 @@ static void answer(estimation *e, double *probabilities, asj_geometry *result)
     if (result->log10_nfa > least)
         return;
     result->status = !determined ? ASJ_GEOMETRY_DEGENERATE : ASJ_GEOMETRY_ACCEPTED;
-    if (second >= 0 && result->second_log10_nfa <= NEARLY * result->log10_nfa)
+    if (second >= 0 && result->second_log10_nfa <= NEARLY * to_compare(e, m))
         result->status = ASJ_GEOMETRY_AMBIGUOUS;
     for (int32_t k = 0; k < e->set.count && probabilities; k++)
         probabilities[e->set.list[k].source] = e->scratch.probability[k];

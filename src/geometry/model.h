@@ -19,6 +19,10 @@ typedef struct asj_model {
     asj_two_view view;
     double score;             /* asj_score() */
     double evidence;          /* asj_log_evidence() */
+    double peak;              /* the evidence before asj_settle() has seen it */
+    double covariance[25];    /* of the motion's parameters, once asj_settle() has seen it */
+    int32_t settled;
+    int32_t reserved;
 } asj_model;
 
 /* (x, y, 1) = K^-1 of a pixel. */

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Motions with planes: each essential matrix that was found, and each motion of a homography that was found, is refined, and the
  * best that differ receive planes. So walls and floor speak for one motion together, and what one plane leaves open (two motions;
- * which of its tiles) the others decide. */
+ * which of its tiles) the others decide. The best SETTLED that lie apart become what the candidates allow around them
+ * (posterior.c). */
 #include "motions.h"
 #include "core/threads.h"
 #include "evidence.h"
 #include "planes.h"
+#include "posterior.h"
 #include "ranking.h"
 
 #include <math.h>
@@ -16,6 +18,7 @@
 #define FEW_ROUNDS 4
 #define ROUNDS 8
 #define WITH_PLANES 8
+#define SETTLED 3
 
 typedef struct motions {
     asj_model starts[MOST_STARTS], picked[ASJ_FINALISTS];
@@ -82,8 +85,27 @@ static void refine(asj_context *context, const job *j)
     asj_parallel(context, context->threads, most, 1, add_planes_to_some, j);
 }
 
-asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const asj_camera cameras[2], asj_model *finalists,
-                              int32_t *count)
+/* The best ones that are apart from each other become all that the candidates allow around them. */
+static void settle(asj_context *context, const job *j, uint64_t seed)
+{
+    motions *m = j->m;
+    for (int32_t k = 0; k < m->count; k++)
+        m->order[k] = (asj_ranked){m->picked[k].evidence, k};
+    qsort(m->order, (size_t)m->count, sizeof *m->order, asj_by_score);
+    for (int32_t k = 0, settled = 0; k < m->count && settled < SETTLED; k++) {
+        asj_model *model = &m->picked[m->order[k].index];
+        int32_t apart = model->evidence > 0;
+        for (int32_t i = 0; i < k && apart; i++)
+            apart = !asj_is_within(&m->picked[m->order[i].index], model);
+        if (!apart)
+            continue;
+        asj_settle(context, j->set, seed + (uint64_t)k, j->scratch, model);
+        settled++;
+    }
+}
+
+asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const asj_camera cameras[2], uint64_t seed,
+                              asj_model *finalists, int32_t *count)
 {
     asj_memory *memory = &context->memory;
     const int32_t threads = context->threads;
@@ -96,6 +118,7 @@ asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const 
         const job j = {set, scratch, m};
         collect(set, cameras, finalists, count, m);
         refine(context, &j);
+        settle(context, &j, seed);
         memcpy(finalists + *count, m->picked, (size_t)m->count * sizeof *m->picked);
         *count += m->count;
     }

@@ -7,7 +7,7 @@
 
 /* Essential matrices with planes, from those among the `count` finalists and from the homographies among them: motions.c. They take
  * the place of the essential matrices; `finalists` has room for 2 ASJ_FINALISTS. */
-asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const asj_camera cameras[2], asj_model *finalists,
-                              int32_t *count);
+asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const asj_camera cameras[2], uint64_t seed,
+                              asj_model *finalists, int32_t *count);
 
 #endif

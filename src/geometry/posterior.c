@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* What the candidates allow, as a whole. Around a motion the score is rugged: each candidate that comes or goes makes a peak of its
+ * own, a degree or two apart, and which of them a search climbs is luck. Their integral and their mean are not. They are taken by
+ * importance sampling in rounds (population Monte Carlo; Cappe, Guillin, Marin and Robert 2004): motions are drawn from normal
+ * distributions around the last mean, weighed by exp(score) over the density that they were drawn from, and mean and covariance of
+ * the weighed ones are those of the next round. The mean weight, with the flat density of motions as the prior, is the evidence
+ * (evidence.c), now of the whole region; the covariance is that of the pose.
+ *
+ * Drawn are the five parameters of the motion (model.c). Planes follow as the equations of adjust.c say, n' = -H_nn^-1 H_nm m', and
+ * are integrated over by Laplace's method. Standard deviations of a round: those of the last one, times 1, 2 and 4 in turn, which
+ * the density has all three of, so that what lies farther out is found and nothing weighs without bound. */
+#include "posterior.h"
+#include "core/angle.h"
+#include "core/threads.h"
+#include "counter_random.h"
+#include "evidence.h"
+#include "manhattan.h"
+#include "small_matrix.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#ifndef DRAWS
+#define DRAWS 120
+#define ROUNDS 3
+#endif
+#define MOTION 5
+#define LEAST_SD 1e-3 /* rad */
+#define WITHIN 4.0       /* standard deviations */
+#define MOST_TURN 0.6    /* rad */
+#define LEAST_WEIGHT 1e-3
+
+/* Where motions are drawn from. */
+typedef struct cloud {
+    double mean[MOTION];
+    double root[MOTION * MOTION]; /* lower triangle L of the covariance L L' */
+    double log_root;              /* log det L */
+    double follow[3 * ASJ_MOST_PLANES][MOTION];
+} cloud;
+
+typedef struct draw {
+    double at[MOTION];
+    double log_weight;
+} draw;
+
+static void normal_numbers(uint64_t seed, uint64_t stream, uint64_t number, double out[MOTION + 1])
+{
+    for (uint64_t k = 0; k < MOTION + 1; k += 2) { /* Box and Muller */
+        const double u = 1 - asj_counter_random(seed, stream, number * 8 + k), v = asj_counter_random(seed, stream, number * 8 + k + 1);
+        const double r = sqrt(-2 * log(u)), angle = 2 * ASJ_PI * v;
+        out[k] = r * cos(angle);
+        out[k + 1] = r * sin(angle);
+    }
+}
+
+/* Log of the density of the three normal distributions together, at x = mean + L y. */
+static double log_density(const cloud *c, const double x[MOTION])
+{
+    double y[MOTION], square = 0, sum = 0;
+    for (int32_t i = 0; i < MOTION; i++) {
+        y[i] = x[i] - c->mean[i];
+        for (int32_t k = 0; k < i; k++)
+            y[i] -= c->root[i * MOTION + k] * y[k];
+        y[i] /= c->root[i * MOTION + i];
+        square += y[i] * y[i];
+    }
+    for (int32_t k = 0; k < 3; k++) {
+        const double scale = 1 << k;
+        sum += exp(-0.5 * square / (scale * scale)) / (scale * scale * scale * scale * scale);
+    }
+    return log(sum / 3) - 0.5 * MOTION * log(2 * ASJ_PI) - c->log_root;
+}
+
+/* Lower triangle of a covariance whose standard deviations are brought between the bounds. */
+static int32_t set_root(double covariance[MOTION * MOTION], cloud *c)
+{
+    double none[MOTION] = {0}, log_determinant;
+    for (int32_t k = 0; k < MOTION; k++)
+        covariance[k * (MOTION + 1)] += LEAST_SD * LEAST_SD;
+    memcpy(c->root, covariance, sizeof c->root);
+    if (!asj_cholesky_solve(c->root, MOTION, none, &log_determinant))
+        return 0;
+    c->log_root = 0.5 * log_determinant;
+    return 1;
+}
+
+/* Inverse of the n x n matrix; 0 when it is not positive definite. */
+static int32_t invert(const double *a, int32_t n, double *inverse, double *log_determinant)
+{
+    for (int32_t p = 0; p < n; p++) {
+        double copy[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], column[ASJ_MODEL_PARAMETERS] = {0};
+        memcpy(copy, a, (size_t)(n * n) * sizeof *copy);
+        column[p] = 1;
+        if (!asj_cholesky_solve(copy, n, column, log_determinant))
+            return 0;
+        for (int32_t k = 0; k < n; k++)
+            inverse[k * n + p] = column[k];
+    }
+    return 1;
+}
+
+/* The cloud of Laplace's approximation at the model; *log_planes: what the planes add to the log of the evidence. */
+static int32_t start(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch, cloud *c, double *log_planes)
+{
+    double information[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], inverse[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS];
+    double of_planes[9 * ASJ_MOST_PLANES * ASJ_MOST_PLANES], inverse_planes[9 * ASJ_MOST_PLANES * ASJ_MOST_PLANES];
+    double covariance[MOTION * MOTION], log_determinant = 0;
+    const int32_t n = model->parameters, more = n - MOTION;
+    memset(c, 0, sizeof *c);
+    asj_probabilities(set, &model->view, 1, &scratch->score, scratch->probability);
+    asj_information(set, model, scratch->probability, information);
+    for (int32_t p = 0; p < n; p++)
+        information[p * (n + 1)] += asj_prior_information(model, p);
+    if (!invert(information, n, inverse, NULL))
+        return 0;
+    for (int32_t i = 0; i < MOTION; i++)
+        for (int32_t k = 0; k < MOTION; k++)
+            covariance[i * MOTION + k] = inverse[i * n + k];
+    for (int32_t i = 0; i < more; i++)
+        for (int32_t k = 0; k < more; k++)
+            of_planes[i * more + k] = information[(MOTION + i) * n + MOTION + k];
+    if (more > 0 && !invert(of_planes, more, inverse_planes, &log_determinant))
+        return 0;
+    for (int32_t i = 0; i < more; i++)
+        for (int32_t k = 0; k < MOTION; k++)
+            for (int32_t j = 0; j < more; j++)
+                c->follow[i][k] -= inverse_planes[i * more + j] * information[(MOTION + j) * n + k];
+    *log_planes = -0.5 * log_determinant;
+    for (int32_t p = MOTION; p < n; p++)
+        *log_planes += asj_log_volume(model, p);
+    return set_root(covariance, c);
+}
+
+static int32_t move(const asj_model *model, const cloud *c, const double at[MOTION], asj_model *moved)
+{
+    double delta[ASJ_MODEL_PARAMETERS] = {0};
+    memcpy(delta, at, MOTION * sizeof *at);
+    for (int32_t p = MOTION; p < model->parameters; p++)
+        for (int32_t k = 0; k < MOTION; k++)
+            delta[p] += c->follow[p - MOTION][k] * at[k];
+    return asj_model_move(model, delta, moved);
+}
+
+static double log_target(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch)
+{
+    double information;
+    return asj_score_apart(set, &model->view, scratch) + asj_rotation_prior(set, model->rotation, &information);
+}
+
+/* What a loop over draws works on. */
+typedef struct job {
+    const asj_pairs *set;
+    const asj_model *model;
+    const cloud *cloud;
+    uint64_t seed, stream;
+    asj_adjust_scratch *scratch; /* for each thread */
+    draw *draws;
+} job;
+
+static void draw_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    const cloud *c = j->cloud;
+    for (int64_t n = part->first; n < part->end; n++) {
+        draw *d = &j->draws[n];
+        double y[MOTION + 1];
+        asj_model moved;
+        const double scale = n == 0 ? 0 : 1 << n % 3;
+        normal_numbers(j->seed, j->stream, (uint64_t)n, y);
+        for (int32_t i = 0; i < MOTION; i++) {
+            d->at[i] = c->mean[i];
+            for (int32_t k = 0; k <= i; k++)
+                d->at[i] += scale * c->root[i * MOTION + k] * y[k];
+        }
+        d->log_weight = -HUGE_VAL;
+        if (move(j->model, c, d->at, &moved))
+            d->log_weight = log_target(j->set, &moved, &j->scratch[part->thread]) - log_density(c, d->at);
+    }
+}
+
+/* Mean and covariance of the draws; the log of their mean weight. */
+static double summarise(const draw draws[DRAWS], double mean[MOTION], double covariance[MOTION * MOTION])
+{
+    double largest = -HUGE_VAL, sum = 0;
+    for (int32_t n = 0; n < DRAWS; n++)
+        largest = fmax(largest, draws[n].log_weight);
+    memset(mean, 0, MOTION * sizeof *mean);
+    memset(covariance, 0, MOTION * MOTION * sizeof *covariance);
+    if (!(largest > -HUGE_VAL))
+        return -HUGE_VAL;
+    for (int32_t n = 0; n < DRAWS; n++) {
+        const double weight = exp(draws[n].log_weight - largest);
+        sum += weight;
+        for (int32_t k = 0; k < MOTION; k++)
+            mean[k] += weight * draws[n].at[k];
+    }
+    for (int32_t k = 0; k < MOTION; k++)
+        mean[k] /= sum;
+    for (int32_t n = 0; n < DRAWS; n++) {
+        const double weight = exp(draws[n].log_weight - largest) / sum;
+        for (int32_t i = 0; i < MOTION; i++)
+            for (int32_t k = 0; k < MOTION; k++)
+                covariance[i * MOTION + k] += weight * (draws[n].at[i] - mean[i]) * (draws[n].at[k] - mean[k]);
+    }
+    return largest + log(sum / DRAWS);
+}
+
+void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_adjust_scratch *scratch, asj_model *model)
+{
+    draw draws[DRAWS];
+    cloud c;
+    double log_planes, covariance[MOTION * MOTION], log_mean = -HUGE_VAL;
+    if (model->kind != ASJ_GEOMETRY_ESSENTIAL || !start(set, model, &scratch[0], &c, &log_planes))
+        return;
+    for (uint64_t round = 0; round < ROUNDS; round++) {
+        const job j = {set, model, &c, seed, round, scratch, draws};
+        asj_parallel(context, context->threads, DRAWS, 8, draw_some, &j);
+        log_mean = summarise(draws, c.mean, covariance);
+        if (!(log_mean > -HUGE_VAL) || !set_root(covariance, &c))
+            return;
+    }
+    asj_model moved;
+    if (!move(model, &c, c.mean, &moved))
+        return;
+    double volume = log_planes;
+    for (int32_t p = 0; p < MOTION; p++)
+        volume += asj_log_volume(model, p) - 0.5 * log(2 * ASJ_PI);
+    moved.peak = model->evidence;
+    moved.evidence = log_mean + volume;
+    memcpy(moved.covariance, covariance, sizeof covariance);
+    moved.settled = 1;
+    *model = moved;
+}
+
+/* The other motion in the parameters of the first; 0 when it is too far away for that. */
+static int32_t difference(const asj_model *model, const asj_model *other, double at[MOTION])
+{
+    double turn[9], axes[2][3];
+    asj_multiply3_transposed(other->rotation, model->rotation, turn);
+    const double angle = asj_rotation_angle(turn), factor = angle > 1e-6 ? angle / (2 * sin(angle)) : 0.5;
+    const double along = asj_dot3(other->translation, model->translation);
+    if (angle > MOST_TURN || !(along > cos(MOST_TURN)))
+        return 0;
+    at[0] = factor * (turn[7] - turn[5]);
+    at[1] = factor * (turn[2] - turn[6]);
+    at[2] = factor * (turn[3] - turn[1]);
+    asj_translation_axes(model->translation, axes[0], axes[1]);
+    for (int32_t k = 0; k < 2; k++)
+        at[3 + k] = asj_dot3(axes[k], other->translation) / along;
+    return 1;
+}
+
+int32_t asj_is_within(const asj_model *settled, const asj_model *other)
+{
+    double at[MOTION], covariance[MOTION * MOTION], y[MOTION], square = 0;
+    if (!settled->settled || !difference(settled, other, at))
+        return 0;
+    memcpy(covariance, settled->covariance, sizeof covariance);
+    for (int32_t k = 0; k < MOTION; k++)
+        covariance[k * (MOTION + 1)] += LEAST_SD * LEAST_SD;
+    memcpy(y, at, sizeof y);
+    if (!asj_cholesky_solve(covariance, MOTION, y, NULL))
+        return 0;
+    for (int32_t k = 0; k < MOTION; k++)
+        square += at[k] * y[k];
+    return square < WITHIN * WITHIN;
+}
+
+double asj_motion_covariance(const asj_model *models, int32_t count, int32_t best, double covariance[25])
+{
+    const asj_model *m = &models[best];
+    double at[MOTION], values[MOTION], vectors[MOTION * MOTION];
+    memcpy(covariance, m->covariance, sizeof m->covariance);
+    for (int32_t n = 0; n < count; n++) {
+        const asj_model *o = &models[n];
+        const double weight = exp(o->evidence - m->evidence);
+        if (n == best || o->kind != m->kind || !(weight > LEAST_WEIGHT) || asj_is_within(m, o))
+            continue;
+        if (!difference(m, o, at))
+            for (int32_t k = 0; k < MOTION; k++)
+                at[k] = MOST_TURN;
+        for (int32_t i = 0; i < MOTION; i++)
+            for (int32_t k = 0; k < MOTION; k++)
+                covariance[i * MOTION + k] += fmin(1, weight) * at[i] * at[k];
+    }
+    asj_symmetric_eigen(covariance, MOTION, values, vectors);
+    return m->settled ? sqrt(values[MOTION - 1]) : HUGE_VAL;
+}
