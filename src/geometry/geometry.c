@@ -31,9 +31,6 @@
 #include <string.h>
 
 #define MOST_KINDS 2
-#define ATTEMPTS 2
-#define HOPELESS 3.0 /* nats of evidence: below there is nothing, and .. */
-#define CLEAR 46.0   /* .. from here on there is something; between them the search is made once more, with other numbers */
 #define NEARLY 0.5
 #define CONTRARY 0.4
 /* Nats that a score loses at least on the way to an evidence: volume of the parameters, near places. Of 69 pairs of unrelated
@@ -48,7 +45,7 @@ typedef struct estimation {
     asj_context *context;
     const asj_geometry_options *options;
     asj_pairs set;
-    asj_model finalists[ATTEMPTS * MOST_KINDS * ASJ_FINALISTS];
+    asj_model finalists[MOST_KINDS * ASJ_FINALISTS];
     int32_t count;
     asj_adjust_scratch scratch;
     double *other; /* probabilities under a second geometry */
@@ -111,10 +108,10 @@ static asj_status check(asj_context *context, const asj_geometry_options *o)
 
 /* --- search ------------------------------------------------------------------------------------------------------------------ */
 
-static asj_status search_kind(estimation *e, int32_t kind, uint64_t seed)
+static asj_status search_kind(estimation *e, int32_t kind)
 {
     const asj_geometry_options *o = e->options;
-    asj_search search = {kind, o->samples, seed, {o->cameras[0], o->cameras[1]}, GIVE_UP - log(o->epsilon)};
+    asj_search search = {kind, o->samples, o->seed, {o->cameras[0], o->cameras[1]}, GIVE_UP - log(o->epsilon)};
     for (int32_t v = 0; v < 2; v++)
         if (!known(&search.cameras[v])) {
             const double longer = o->widths[v] > o->heights[v] ? o->widths[v] : o->heights[v];
@@ -137,36 +134,18 @@ static int32_t best_of(const estimation *e, int32_t kind)
     return best;
 }
 
-/* One search: appends what it finds. */
-static asj_status search_once(estimation *e, uint64_t seed)
+static asj_status search_all(estimation *e)
 {
     const asj_geometry_options *o = e->options;
     const int32_t epipolar = known(&o->cameras[0]) && known(&o->cameras[1]) ? ASJ_GEOMETRY_ESSENTIAL : ASJ_GEOMETRY_FUNDAMENTAL;
-    const int32_t before = e->count;
     asj_status status = ASJ_OK;
     if (o->model != ASJ_GEOMETRY_HOMOGRAPHY)
-        status = search_kind(e, o->model == ASJ_GEOMETRY_AUTO ? epipolar : o->model, seed);
+        status = search_kind(e, o->model == ASJ_GEOMETRY_AUTO ? epipolar : o->model);
     if (status == ASJ_OK && (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_HOMOGRAPHY))
-        status = search_kind(e, ASJ_GEOMETRY_HOMOGRAPHY, seed);
+        status = search_kind(e, ASJ_GEOMETRY_HOMOGRAPHY);
     if (status == ASJ_OK && epipolar == ASJ_GEOMETRY_ESSENTIAL &&
-        (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_ESSENTIAL)) {
-        int32_t count = e->count - before;
-        status = asj_refine_motions(e->context, &e->set, o->cameras, seed, e->finalists + before, &count);
-        e->count = before + count;
-    }
-    return status;
-}
-
-static asj_status search_all(estimation *e)
-{
-    asj_status status = ASJ_OK;
-    for (int32_t attempt = 0; attempt < ATTEMPTS && status == ASJ_OK; attempt++) {
-        const int32_t best = best_of(e, ASJ_GEOMETRY_AUTO);
-        const double evidence = best >= 0 ? e->finalists[best].evidence : -HUGE_VAL;
-        if (attempt > 0 && (evidence < HOPELESS || evidence > CLEAR))
-            break;
-        status = search_once(e, e->options->seed + ((uint64_t)attempt << 48));
-    }
+        (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_ESSENTIAL))
+        status = asj_refine_motions(e->context, &e->set, o->cameras, o->seed, e->finalists, &e->count);
     return status;
 }
 

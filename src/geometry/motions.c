@@ -16,9 +16,10 @@
 
 #define MOST_STARTS (3 * ASJ_FINALISTS)
 #define FEW_ROUNDS 4
-#define ROUNDS 8
-#define WITH_PLANES 8
+#define ROUNDS 5
+#define WITH_PLANES 4
 #define SETTLED 3
+#define UNLIKELY 7.0 /* nats below the best one */
 
 typedef struct motions {
     asj_model starts[MOST_STARTS], picked[ASJ_FINALISTS];
@@ -92,9 +93,10 @@ static void settle(asj_context *context, const job *j, uint64_t seed)
     for (int32_t k = 0; k < m->count; k++)
         m->order[k] = (asj_ranked){m->picked[k].evidence, k};
     qsort(m->order, (size_t)m->count, sizeof *m->order, asj_by_score);
+    const double least = m->count > 0 ? fmax(0, m->order[0].score - UNLIKELY) : 0;
     for (int32_t k = 0, settled = 0; k < m->count && settled < SETTLED; k++) {
         asj_model *model = &m->picked[m->order[k].index];
-        int32_t apart = model->evidence > 0;
+        int32_t apart = model->evidence > least;
         for (int32_t i = 0; i < k && apart; i++)
             apart = !asj_is_within(&m->picked[m->order[i].index], model);
         if (!apart)

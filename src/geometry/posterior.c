@@ -21,12 +21,11 @@
 #include <stddef.h>
 #include <string.h>
 
-#ifndef DRAWS
 #define DRAWS 120
 #define ROUNDS 3
-#endif
 #define MOTION 5
 #define LEAST_SD 1e-3 /* rad */
+#define MOST_SD 0.3      /* rad */
 #define WITHIN 4.0       /* standard deviations */
 #define MOST_TURN 0.6    /* rad */
 #define LEAST_WEIGHT 1e-3
@@ -72,7 +71,15 @@ static double log_density(const cloud *c, const double x[MOTION])
     return log(sum / 3) - 0.5 * MOTION * log(2 * ASJ_PI) - c->log_root;
 }
 
-/* Lower triangle of a covariance whose standard deviations are brought between the bounds. */
+/* Of a combination of the parameters. */
+static double largest_sd(const double covariance[MOTION * MOTION])
+{
+    double values[MOTION], vectors[MOTION * MOTION];
+    asj_symmetric_eigen(covariance, MOTION, values, vectors);
+    return sqrt(fmax(0, values[MOTION - 1]));
+}
+
+/* Lower triangle of a covariance whose standard deviations are no less than LEAST_SD. */
 static int32_t set_root(double covariance[MOTION * MOTION], cloud *c)
 {
     double none[MOTION] = {0}, log_determinant;
@@ -101,7 +108,7 @@ static int32_t invert(const double *a, int32_t n, double *inverse, double *log_d
 }
 
 /* The cloud of Laplace's approximation at the model; *log_planes: what the planes add to the log of the evidence. */
-static int32_t start(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch, cloud *c, double *log_planes)
+static int32_t start(const asj_pairs *set, asj_model *model, asj_adjust_scratch *scratch, cloud *c, double *log_planes)
 {
     double information[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], inverse[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS];
     double of_planes[9 * ASJ_MOST_PLANES * ASJ_MOST_PLANES], inverse_planes[9 * ASJ_MOST_PLANES * ASJ_MOST_PLANES];
@@ -129,6 +136,7 @@ static int32_t start(const asj_pairs *set, const asj_model *model, asj_adjust_sc
     *log_planes = -0.5 * log_determinant;
     for (int32_t p = MOTION; p < n; p++)
         *log_planes += asj_log_volume(model, p);
+    memcpy(model->covariance, covariance, sizeof covariance);
     return set_root(covariance, c);
 }
 
@@ -213,6 +221,11 @@ void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_a
     double log_planes, covariance[MOTION * MOTION], log_mean = -HUGE_VAL;
     if (model->kind != ASJ_GEOMETRY_ESSENTIAL || !start(set, model, &scratch[0], &c, &log_planes))
         return;
+    if (largest_sd(model->covariance) > MOST_SD) { /* a direction that nothing determines has no middle */
+        model->peak = model->evidence;
+        model->settled = 1;
+        return;
+    }
     for (uint64_t round = 0; round < ROUNDS; round++) {
         const job j = {set, model, &c, seed, round, scratch, draws};
         asj_parallel(context, context->threads, DRAWS, 8, draw_some, &j);
@@ -270,7 +283,7 @@ int32_t asj_is_within(const asj_model *settled, const asj_model *other)
 double asj_motion_covariance(const asj_model *models, int32_t count, int32_t best, double covariance[25])
 {
     const asj_model *m = &models[best];
-    double at[MOTION], values[MOTION], vectors[MOTION * MOTION];
+    double at[MOTION];
     memcpy(covariance, m->covariance, sizeof m->covariance);
     for (int32_t n = 0; n < count; n++) {
         const asj_model *o = &models[n];
@@ -284,6 +297,5 @@ double asj_motion_covariance(const asj_model *models, int32_t count, int32_t bes
             for (int32_t k = 0; k < MOTION; k++)
                 covariance[i * MOTION + k] += fmin(1, weight) * at[i] * at[k];
     }
-    asj_symmetric_eigen(covariance, MOTION, values, vectors);
-    return m->settled ? sqrt(values[MOTION - 1]) : HUGE_VAL;
+    return m->settled ? largest_sd(covariance) : HUGE_VAL;
 }
