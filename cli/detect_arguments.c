@@ -23,7 +23,7 @@ static const char introduction[] =
     "  asj-cli detect --epsilon 0.01 photo.jpg             only the surest junctions\n"
     "  asj-cli detect -o photo.asjf photo.jpg              features: all that 'asj-cli match' needs of it\n"
     "\n"
-    "Images: PNG, and where built with OpenCV every format that it reads. A file that cannot be read is\n"
+    "Images: PNG, PNM, and the formats that asj-cli --version lists. A file that cannot be read is\n"
     "reported and the others are done.\n";
 
 static const char conclusion[] =

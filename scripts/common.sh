@@ -74,6 +74,7 @@ look_for() {
     want libtiff-dev pkg-config --exists 'libtiff-4 >= 4.5'
     want libexif-dev pkg-config --exists 'libexif >= 0.6.22'
     want libopenjp2-7-dev pkg-config --exists 'libopenjp2 >= 2.3'
+    want libheif-dev pkg-config --exists 'libheif >= 1.13'
     want libjansson-dev pkg-config --exists 'jansson >= 2.11'
     want libcairo2-dev pkg-config --exists 'cairo >= 1.16'
     want libopencv-imgcodecs-dev has_opencv

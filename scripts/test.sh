@@ -113,7 +113,8 @@ fewer_parts() {
         (cd "$whole" &&
             cp -R -p README.md CHANGELOG.md LICENSE bindings cli include meson.build meson_options.txt scripts src tests "$root") &&
         rm -rf "$root/src/cl" && build_and_test build-fewer '--no-suite accuracy --no-suite experiments' \
-        -Djpeg=disabled -Dtiff=disabled -Dwebp=disabled -Djpeg2000=disabled -Dexif=disabled -Dopencv=disabled -Dcairo=disabled \
+        -Djpeg=disabled -Dtiff=disabled -Dwebp=disabled -Djpeg2000=disabled -Dheif=disabled -Dexif=disabled -Dopencv=disabled \
+        -Dcairo=disabled \
         -Dthreads=disabled -Dio=enabled -Dcli=enabled -Dtests=enabled --werror
     state_of_fewer=$?
     root=$whole

@@ -40,12 +40,13 @@ typedef struct asj_image_file {
 } asj_image_file;
 
 /* Reads an image: PNG (1 to 16 bits, palette, alpha, interlaced) and PNM (PBM, PGM, PPM, PAM, PFM) always; JPEG, TIFF, WebP, JPEG
- * 2000, BMP, Sun raster and Radiance HDR where the library was built with their readers (asj_io_image_formats()). The content of
- * the file decides which reader it gets, not its name. max_pixels 0 = ASJ_IO_DEFAULT_MAX_PIXELS.
+ * 2000, HEIF, AVIF, BMP, Sun raster and Radiance HDR where the library was built with their readers (asj_io_image_formats()). The
+ * content of the file decides which reader it gets, not its name. max_pixels 0 = ASJ_IO_DEFAULT_MAX_PIXELS.
  *
  * Upright: the EXIF orientation of PNG, JPEG, TIFF and WebP is applied, so that coordinates are those of the picture as viewers
- * show it. Transparency is ignored: the stored colours count. 16-bit colour becomes GRAY16 and colour in floats GRAY_FLOAT, by
- * the luma weights of image.h; floats are as stored, with 1.0 as white.
+ * show it; HEIF and AVIF are turned and cropped as their own properties say. Transparency is ignored: the stored colours count.
+ * 16-bit colour becomes GRAY16 and colour in floats GRAY_FLOAT, by the luma weights of image.h; floats are as stored, with 1.0 as
+ * white.
  *
  * Focal length: from the EXIF data of PNG, JPEG and WebP where the library was built with libexif, and of TIFF. EXIF data that
  * cannot be read are no error.
@@ -55,8 +56,9 @@ typedef struct asj_image_file {
  * or their decoder reports an error.
  * Size: a file that declares more than max_pixels, or a side longer than ASJ_MAX_SIDE, is refused before memory for its pixels is
  * taken. What is no image is known by its first 64 KiB, and read no further.
- * Processes: BMP, Sun raster and Radiance HDR are decoded by the program asj-io-opencv, which is started for the one file and has
- * ended when the call returns. Nothing else starts a process, and nothing is ever written to standard error.
+ * Processes: HEIF and AVIF are decoded by the program asj-io-heif, BMP, Sun raster and Radiance HDR by asj-io-opencv, which is
+ * started for the one file and has ended when the call returns; its memory and time are limited by the size that the file declares.
+ * Nothing else starts a process, and nothing is ever written to standard error.
  *
  * On success the caller owns *file until asj_image_file_free().
  * ASJ_ERROR_ARGUMENT     path or file is NULL

@@ -37,7 +37,7 @@ float asj_luma_float(float red, float green, float blue);
 typedef asj_status asj_image_decoder(const asj_input *input, const asj_image_probe *probe, uint64_t max_pixels,
                                      asj_image_buffer *buffer, const asj_message *message);
 asj_image_decoder asj_png_decode, asj_jpeg_decode, asj_webp_decode, asj_tiff_decode, asj_jpeg2000_decode, asj_pnm_decode;
-asj_image_decoder asj_opencv_decode; /* in a process of its own: opencv_read.c */
+asj_image_decoder asj_heif_decode, asj_opencv_decode; /* in processes of their own: decoder_process.h */
 
 /* The decoder that the kind of file has in this build, or NULL. */
 asj_image_decoder *asj_decoder_of(asj_image_kind kind);

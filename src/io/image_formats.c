@@ -32,6 +32,13 @@
 #define JPEG2000 NULL
 #define JPEG2000_NAME ""
 #endif
+#ifdef ASJ_IO_HAVE_HEIF
+#define HEIF asj_heif_decode
+#define HEIF_NAMES ", HEIF, AVIF"
+#else
+#define HEIF NULL
+#define HEIF_NAMES ""
+#endif
 #ifdef ASJ_IO_HAVE_OPENCV
 #define OPENCV asj_opencv_decode
 #define OPENCV_NAMES ", BMP, Sun raster, Radiance HDR"
@@ -49,6 +56,7 @@ asj_image_decoder *asj_decoder_of(asj_image_kind kind)
     case ASJ_KIND_TIFF: return TIFF;
     case ASJ_KIND_WEBP: return WEBP;
     case ASJ_KIND_JPEG2000: return JPEG2000;
+    case ASJ_KIND_HEIF: return HEIF;
     case ASJ_KIND_BMP:
     case ASJ_KIND_SUN_RASTER:
     case ASJ_KIND_RADIANCE: return OPENCV;
@@ -58,5 +66,5 @@ asj_image_decoder *asj_decoder_of(asj_image_kind kind)
 
 const char *asj_io_image_formats(void)
 {
-    return "PNG, PNM" JPEG_NAME TIFF_NAME WEBP_NAME JPEG2000_NAME OPENCV_NAMES;
+    return "PNG, PNM" JPEG_NAME TIFF_NAME WEBP_NAME JPEG2000_NAME HEIF_NAMES OPENCV_NAMES;
 }

@@ -129,7 +129,7 @@ static const signature *find_signature(const asj_input *input)
         {ASJ_KIND_RADIANCE, "Radiance HDR", 0, 11, "#?RADIANCE\n", probe_radiance},
         {ASJ_KIND_OTHER, "OpenEXR", 0, 4, "\x76\x2f\x31\x01", NULL},
         {ASJ_KIND_OTHER, "GIF", 0, 4, "GIF8", NULL},
-        {ASJ_KIND_HEIF, "HEIF or AVIF", 4, 4, "ftyp", NULL},
+        {ASJ_KIND_HEIF, "HEIF", 4, 4, "ftyp", asj_probe_heif},
         {ASJ_KIND_OTHER, "JPEG XL", 0, 12, "\0\0\0\x0cJXL \r\n\x87\n", NULL},
         {ASJ_KIND_OTHER, "JPEG XL", 0, 2, "\xff\x0a", NULL},
         {ASJ_KIND_OTHER, "PDF", 0, 5, "%PDF-", NULL},

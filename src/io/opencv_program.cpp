@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj-io-opencv PIXELS: decodes the image file on standard input with OpenCV and writes the pixels to standard output, for
- * libasj-io (opencv_read.c) and nobody else. The only C++ of the project. What is wrong with a file is told by an answer that does
- * not come. It limits its own memory to what an image of PIXELS needs, and its own time. */
-#include "opencv_answer.h"
+ * libasj-io (decoder_process.c) and nobody else. The only C++ of the project. What is wrong with a file is told by an answer that
+ * does not come. It limits its own memory to what an image of PIXELS needs, and its own time. */
+#include "decoder_answer.h"
 
 #include <opencv2/imgcodecs.hpp>
 
@@ -63,11 +63,11 @@ cv::Mat luma_of(const cv::Mat &matrix)
 bool write_answer(const cv::Mat &decoded)
 {
     const cv::Mat matrix = decoded.type() == CV_32FC3 ? luma_of(decoded) : decoded;
-    asj_opencv_answer answer = {ASJ_OPENCV_MAGIC, 0, static_cast<uint64_t>(matrix.cols), static_cast<uint64_t>(matrix.rows)};
+    asj_decoder_answer answer = {ASJ_DECODER_MAGIC, 0, static_cast<uint64_t>(matrix.cols), static_cast<uint64_t>(matrix.rows)};
     switch (matrix.type()) {
-    case CV_8UC1: answer.samples = ASJ_OPENCV_GRAY8; break;
-    case CV_8UC3: answer.samples = ASJ_OPENCV_BGR8; break;
-    case CV_32FC1: answer.samples = ASJ_OPENCV_GRAY_FLOAT; break;
+    case CV_8UC1: answer.samples = ASJ_DECODER_GRAY8; break;
+    case CV_8UC3: answer.samples = ASJ_DECODER_BGR8; break;
+    case CV_32FC1: answer.samples = ASJ_DECODER_GRAY_FLOAT; break;
     default: return false;
     }
     bool good = std::fwrite(&answer, sizeof answer, 1, stdout) == 1;

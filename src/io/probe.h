@@ -34,8 +34,9 @@ typedef struct asj_image_probe {
     int32_t is_ycc;         /* JPEG 2000: the file says that its colours are sYCC */
 } asj_image_probe;
 
-/* Size, orientation, truncation, fault. */
+/* Size, orientation, truncation, fault; asj_probe_heif() also the kind and the name, as it begins like a film. */
 void asj_probe_jpeg(const asj_input *input, asj_image_probe *probe);
+void asj_probe_heif(const asj_input *input, asj_image_probe *probe);
 void asj_probe_jpeg2000(const asj_input *input, asj_image_probe *probe);
 void asj_probe_pnm(const asj_input *input, asj_image_probe *probe);
 void asj_probe_tiff(const asj_input *input, asj_image_probe *probe);

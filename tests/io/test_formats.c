@@ -297,11 +297,14 @@ static void any_byte_changed(void **state)
 
 static void formats_that_are_known_but_not_read(void **state)
 {
-    static const char gif[] = "GIF89a\1\0\1\0\0\0\0;", pdf[] = "%PDF-1.4\n", heif[] = "\0\0\0\x18" "ftypheic\0\0\0\0";
+    static const char gif[] = "GIF89a\1\0\1\0\0\0\0;", pdf[] = "%PDF-1.4\n", film[] = "\0\0\0\x14" "ftypisom\0\0\0\0avc1";
+    static const char heif[] = "\0\0\0\x14" "ftypmif1\0\0\0\0heic";
     (void)state;
     assert_image_refused(write_bytes("x.gif", gif, sizeof gif - 1), 0, ASJ_ERROR_UNSUPPORTED, "GIF");
     assert_image_refused(write_bytes("x.pdf", pdf, sizeof pdf - 1), 0, ASJ_ERROR_UNSUPPORTED, "PDF");
-    assert_image_refused(write_bytes("x.heic", heif, sizeof heif - 1), 0, ASJ_ERROR_UNSUPPORTED, "HEIF");
+    assert_image_refused(write_bytes("x.mp4", film, sizeof film - 1), 0, ASJ_ERROR_UNSUPPORTED, "no still image");
+    assert_image_refused(write_bytes("x.heic", heif, sizeof heif - 1), 0,
+                         strstr(asj_io_image_formats(), "HEIF") ? ASJ_ERROR_FORMAT : ASJ_ERROR_UNSUPPORTED, "HEIF");
 }
 
 static int is_read(const char *format)

@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* What such a decoder and the libraries below it do to a process (abort, take memory, write to standard error) cannot be told, and
+ * is one refused file when it has a process of its own.
+ *
+ * The bytes of the file go to the program over a socket, then its answer (decoder_answer.h) comes back. No file of this process but
+ * that socket is open there, and standard error is not. */
+#define _GNU_SOURCE
+#include "decoder_answer.h"
+#include "decoder_process.h"
+
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* The program takes a second at most for what it should do (its own limit is of processor time). */
+enum { PATIENCE_MS = 60000, MOST_PATH = 4096 };
+
+static int is_there(char *path, const char *folder, size_t folder_size, const char *name)
+{
+    return snprintf(path, MOST_PATH, "%.*s%s", (int)folder_size, folder, name) < MOST_PATH && access(path, X_OK) == 0;
+}
+
+/* In a folder beside this library, where it is installed; in the folder of this library, as it is built; or where the build was
+ * told to install it, when this library is part of a program. */
+static int find_program(char *path, const char *program)
+{
+    Dl_info library;
+    const char *slash = NULL;
+    char beside[64];
+
+    snprintf(beside, sizeof beside, "asj/%s", program);
+    if (dladdr((void *)(size_t)asj_decode_elsewhere, &library) && library.dli_fname)
+        slash = strrchr(library.dli_fname, '/');
+    if (slash) {
+        size_t folder = (size_t)(slash - library.dli_fname) + 1;
+        if (is_there(path, library.dli_fname, folder, beside) || is_there(path, library.dli_fname, folder, program))
+            return 1;
+    }
+    return is_there(path, ASJ_IO_PROGRAMS "/", sizeof ASJ_IO_PROGRAMS, program);
+}
+
+/* 0, or errno. The program's standard input and output are `socket`. */
+static int start(const char *path, const char *program, int socket, const char *pixels, pid_t *process)
+{
+    char *arguments[3] = {(char *)(size_t)program, (char *)(size_t)pixels, NULL}, *environment[1] = {NULL};
+    posix_spawn_file_actions_t files;
+    posix_spawnattr_t attributes;
+    sigset_t signals;
+    int error;
+
+    if (posix_spawn_file_actions_init(&files))
+        return ENOMEM;
+    if (posix_spawnattr_init(&attributes)) {
+        posix_spawn_file_actions_destroy(&files);
+        return ENOMEM;
+    }
+    sigfillset(&signals);
+    posix_spawnattr_setsigdefault(&attributes, &signals);
+    sigemptyset(&signals);
+    posix_spawnattr_setsigmask(&attributes, &signals);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+    error = posix_spawn_file_actions_adddup2(&files, socket, STDIN_FILENO);
+    if (!error)
+        error = posix_spawn_file_actions_adddup2(&files, socket, STDOUT_FILENO);
+    if (!error)
+        error = posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    if (!error)
+        error = posix_spawn(process, path, &files, &attributes, arguments, environment);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&files);
+    return error;
+}
+
+/* Waits until the socket is ready. */
+static int is_ready(int socket, short what)
+{
+    struct pollfd one = {socket, what, 0};
+    int got;
+    do
+        got = poll(&one, 1, PATIENCE_MS);
+    while (got < 0 && errno == EINTR);
+    return got > 0;
+}
+
+/* All bytes, or 0. A closed socket is no signal but an error. */
+static int send_all(int socket, const unsigned char *bytes, size_t size)
+{
+    while (size) {
+        ssize_t sent = is_ready(socket, POLLOUT) ? send(socket, bytes, size, MSG_NOSIGNAL) : 0;
+        if (sent < 0 && errno == EINTR)
+            continue;
+        if (sent <= 0)
+            return 0;
+        bytes += sent;
+        size -= (size_t)sent;
+    }
+    return 1;
+}
+
+static int receive_all(int socket, void *to, size_t size)
+{
+    unsigned char *bytes = to;
+    while (size) {
+        ssize_t got = is_ready(socket, POLLIN) ? recv(socket, bytes, size, 0) : 0;
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0)
+            return 0;
+        bytes += got;
+        size -= (size_t)got;
+    }
+    return 1;
+}
+
+static int32_t format_of(uint32_t samples)
+{
+    switch (samples) {
+    case ASJ_DECODER_GRAY8: return ASJ_FORMAT_GRAY8;
+    case ASJ_DECODER_BGR8: return ASJ_FORMAT_BGR8;
+    case ASJ_DECODER_GRAY_FLOAT: return ASJ_FORMAT_GRAY_FLOAT;
+    case ASJ_DECODER_RGB8: return ASJ_FORMAT_RGB8;
+    case ASJ_DECODER_GRAY16: return ASJ_FORMAT_GRAY16;
+    default: return 0;
+    }
+}
+
+/* As the header says; turned or cropped it may be where the format says so. */
+static int is_expected(const asj_decoder_answer *answer, const asj_image_probe *probe)
+{
+    const uint64_t longer = probe->width > probe->height ? probe->width : probe->height;
+    if (probe->kind != ASJ_KIND_HEIF)
+        return answer->width == probe->width && answer->height == probe->height;
+    return answer->width && answer->height && answer->width <= longer && answer->height <= longer &&
+           answer->width * answer->height <= probe->width * probe->height;
+}
+
+static asj_status receive(int socket, const asj_image_probe *probe, uint64_t max_pixels, asj_image_buffer *buffer,
+                          const asj_message *message)
+{
+    asj_decoder_answer answer;
+    int32_t format;
+    asj_status status;
+
+    if (!receive_all(socket, &answer, sizeof answer) || answer.magic != ASJ_DECODER_MAGIC)
+        return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged or unusual %s: its decoder gave up", probe->name);
+    if (answer.samples == ASJ_DECODER_LACKS)
+        return asj_message_fail(message, ASJ_ERROR_UNSUPPORTED, "the %s decoder here lacks the codec of this file", probe->name);
+    format = format_of(answer.samples);
+    if (!format || !is_expected(&answer, probe))
+        return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged or unusual %s", probe->name);
+    status = asj_image_allocate(buffer, answer.width, answer.height, format, max_pixels, message);
+    if (status == ASJ_OK && !receive_all(socket, buffer->pixels, (size_t)(answer.width * answer.height) * asj_pixel_size(format)))
+        return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged %s: its decoder gave up", probe->name);
+    return status;
+}
+
+/* Two ends of a socket that no other program inherits. */
+static int open_sockets(int ends[2])
+{
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends))
+        return errno;
+    return 0;
+}
+
+asj_status asj_decode_elsewhere(const char *program, const asj_input *input, const asj_image_probe *probe, uint64_t max_pixels,
+                                asj_image_buffer *buffer, const asj_message *message)
+{
+    char path[MOST_PATH], pixels[32];
+    int ends[2], error, state;
+    pid_t process;
+    asj_status status = ASJ_OK;
+
+    if (!find_program(path, program))
+        return asj_message_fail(message, ASJ_ERROR_UNSUPPORTED, "%s is read by the program %s, which is not installed", probe->name,
+                                program);
+    error = open_sockets(ends);
+    if (error)
+        return asj_message_errno(message, error, "cannot start its decoder");
+    snprintf(pixels, sizeof pixels, "%llu", (unsigned long long)(probe->width * probe->height));
+    error = start(path, program, ends[1], pixels, &process);
+    close(ends[1]);
+    if (error) {
+        status = asj_message_errno(message, error, "cannot start its decoder");
+    } else {
+        if (send_all(ends[0], input->bytes, input->size))
+            shutdown(ends[0], SHUT_WR);
+        status = receive(ends[0], probe, max_pixels, buffer, message);
+        kill(process, SIGKILL); /* it has nothing more to do */
+        while (waitpid(process, &state, 0) < 0 && errno == EINTR)
+            continue;
+    }
+    close(ends[0]);
+    return status;
+}
