@@ -78,10 +78,13 @@ build_and_test() {
     build "$folder_wanted" "$@" && run_tests "$folder_wanted" $tests_wanted
 }
 
+# What other builds leave out: suites that take minutes and whose results the goldens stand for.
+quick='--no-suite accuracy --no-suite experiments --no-suite long'
+
 # The core alone: no library but libc and libm (the compiler's own run-time library may show up too). Without the accuracy suite:
 # the goldens show that its results are those of the whole build.
 core_alone() {
-    build_and_test build-core '--no-suite accuracy --no-suite experiments' -Dauto_features=disabled -Dtests=enabled --werror ||
+    build_and_test build-core "$quick" -Dauto_features=disabled -Dtests=enabled --werror ||
         return 1
     others=$(readelf -d "$folder/src/libasj.so" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | grep -vE '^lib(c|m|gcc_s)\.so|^ld-')
     [ -z "$others" ] || say "libasj.so needs $others"
@@ -92,14 +95,14 @@ core_alone() {
 with_clang() {
     CC=clang CXX=clang++
     export CC CXX
-    build_and_test build-clang '--no-suite accuracy --no-suite experiments --no-suite opencl --no-suite fails' \
+    build_and_test build-clang "$quick --no-suite opencl --no-suite fails" \
         -Dauto_features=enabled --werror
 }
 
 # Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code. Without the tests that must
 # fail, which need no sanitizer.
 with_sanitizers() {
-    build_and_test build-sanitize '--no-suite accuracy --no-suite experiments --no-suite fails --timeout-multiplier 4' \
+    build_and_test build-sanitize "$quick --no-suite fails --timeout-multiplier 4" \
         -Dauto_features=enabled --buildtype=debugoptimized -Db_sanitize=address,undefined -Dc_args=-fno-sanitize-recover=undefined \
         -Dcpp_args=-fno-sanitize-recover=undefined &&
         logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2
@@ -112,10 +115,9 @@ fewer_parts() {
     rm -rf "$root/src" "$root/kernels" && mkdir -p "$root" &&
         (cd "$whole" &&
             cp -R -p README.md CHANGELOG.md LICENSE bindings cli include meson.build meson_options.txt scripts src tests "$root") &&
-        rm -rf "$root/src/cl" && build_and_test build-fewer '--no-suite accuracy --no-suite experiments' \
+        rm -rf "$root/src/cl" && build_and_test build-fewer "$quick" \
         -Djpeg=disabled -Dtiff=disabled -Dwebp=disabled -Djpeg2000=disabled -Dheif=disabled -Dexif=disabled -Dopencv=disabled \
-        -Dcairo=disabled \
-        -Dthreads=disabled -Dio=enabled -Dcli=enabled -Dtests=enabled --werror
+        -Dcairo=disabled -Dthreads=disabled -Dio=enabled -Dcli=enabled -Dtests=enabled --werror
     state_of_fewer=$?
     root=$whole
     return $state_of_fewer

@@ -2,19 +2,30 @@
 /* A service that runs for days, in short: frames COUNT
  *
  * COUNT small pictures through one context and one result, every tenth matched with itself: once all kinds have been seen the
- * memory that the context holds grows no more, and nothing leaks. Then COUNT / 10 detections and matches with an
+ * memory that the context holds grows no more, nor does that of the process, nor its open files, and nothing leaks. Then COUNT / 10 detections and matches with an
  * allocator that fails at random: each ends well, with the result of the first time, or reports the failure. */
+#define _DEFAULT_SOURCE
 #include "random.h"
 #include "render.h"
 #include "scenes.h"
 
 #include <asj/asj.h>
 
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
-enum { PICTURES = 40, WARM = 2 * PICTURES };
+enum { PICTURES = 40, WARM = 2 * PICTURES, SPARE_KB = 1024 };
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define IS_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(thread_sanitizer)
+#define IS_SANITIZED 1
+#endif
+#endif
 
 typedef struct heap {
     long live;
@@ -82,6 +93,25 @@ static asj_status match(asj_context *context, const asj_image *image, const asj_
     return status;
 }
 
+/* How many of the first descriptors are open. */
+static int open_files(void)
+{
+    int count = 0;
+    for (int i = 0; i < 256; i++)
+        count += fcntl(i, F_GETFD) != -1;
+    return count;
+}
+
+/* The most memory that the process has had, kB; 0 where a sanitizer keeps what was freed. */
+static long most_memory(void)
+{
+    struct rusage use;
+#ifdef IS_SANITIZED
+    return 0;
+#endif
+    return getrusage(RUSAGE_SELF, &use) == 0 ? use.ru_maxrss : 0;
+}
+
 /* The stream. Memory may grow while the pictures are new, and when all have been seen no more. */
 static int stream(const asj_image *pictures, long frames)
 {
@@ -89,7 +119,8 @@ static int stream(const asj_image *pictures, long frames)
     asj_context *context = create(&h);
     asj_detection *found = NULL;
     uint64_t before = 0, now;
-    long live = 0;
+    long live = 0, resident = 0;
+    int files = 0;
     uint32_t matches;
     if (!context)
         return fail("no context", 0);
@@ -104,12 +135,20 @@ static int stream(const asj_image *pictures, long frames)
         asj_context_memory(context, &now, NULL);
         if (n >= WARM && (now > before || h.live > live))
             return fail("memory grows", n);
+        if (n == WARM) {
+            resident = most_memory();
+            files = open_files();
+        }
         before = now;
         live = h.live;
     }
+    if (most_memory() > resident + SPARE_KB)
+        return fail("the process grows, kB", most_memory() - resident);
+    if (open_files() != files)
+        return fail("files stay open", open_files());
     asj_detection_free(&found);
     asj_context_free(&context);
-    printf("%ld frames: %lu bytes held\n", frames, (unsigned long)before);
+    printf("%ld frames: %lu bytes held, %ld kB resident, %d open files\n", frames, (unsigned long)before, most_memory(), files);
     return h.live ? fail("memory is lost", h.live) : 0;
 }
 
