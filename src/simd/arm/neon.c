@@ -2,6 +2,7 @@
 /* Part of every 64-bit ARM processor. */
 #include "neon_vectors.h" /* before kernels.h */
 #include "simd/kernels.h"
+#include "simd/line_kernels.h"
 #include "core/image.h"
 #include "simd/variants.h"
 
@@ -32,5 +33,6 @@ static void image_luma_neon(const uint8_t *pixels, int32_t width, int32_t step, 
 void asj_fill_neon(const asj_ops *ops)
 {
     fill_kernels(ops);
+    fill_lines(ops);
     ops->image->luma = image_luma_neon;
 }

@@ -2,9 +2,11 @@
 /* Part of every x86-64 processor; on others compiled with -msse2 and called only where the processor has it. */
 #include "sse2_vectors.h" /* before kernels.h */
 #include "simd/kernels.h"
+#include "simd/line_kernels.h"
 #include "simd/variants.h"
 
 void asj_fill_sse2(const asj_ops *ops)
 {
     fill_kernels(ops);
+    fill_lines(ops);
 }
