@@ -3,7 +3,7 @@
  *
  *     isotropic_junctions [--preset paper] [key=value ...] IMAGE FILE.json
  *
- * Steps 1 to 3 of the detector and the location, as the options say (preset default: line fits and their rejection of edges;
+ * Steps 1 to 3 of the detector and the location, at the image's own size, as the options say (preset default: line fits and their rejection of edges;
  * preset paper: whole pixels). Every branch of a junction is as long as the junction's isotropic scale. The format is that of
  * asj-cli detect (asj-junctions-1). */
 #include "photograph.h"
@@ -24,7 +24,9 @@ static int fail(const char *what)
 
 static asj_status run_steps(asj_detection_run *run)
 {
-    asj_status status = asj_step_gradient(run);
+    asj_status status = asj_step_load(run);
+    if (status == ASJ_OK)
+        status = asj_step_gradient(run);
     if (status == ASJ_OK)
         status = asj_step_candidates(run);
     if (status == ASJ_OK)

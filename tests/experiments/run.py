@@ -15,7 +15,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, HERE)
 
-PARTS = ("noise", "repeatability", "scale", "points", "lines", "figures", "ablation")
+PARTS = ("noise", "repeatability", "scale", "points", "lines", "agreement", "figures", "ablation")
 SKIPPED = 77  # what meson takes for a skipped test
 
 

@@ -63,6 +63,8 @@ def _check_repeatability(session):
     text = session.library.run("repeatability", [picture.original()])[0]
     theirs = {float(w[0]): w[1:6] for w in (line.split() for line in text.splitlines()) if len(w) == 8 and w[-1] == "junctions"}
     whole = session.library.detect(library.DEFAULT, picture.original())
+    for detector in (library.ISOTROPIC_DEFAULT, library.ISOTROPIC_PAPER):
+        _expect("%s finds something" % detector.name, len(session.library.detect(detector, picture.original())) > 10, True)
     for factor in images.FACTORS[1:]:
         path, change = picture.zoomed(factor)
         found = session.library.detect(library.DEFAULT, path)

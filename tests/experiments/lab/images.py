@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """The pictures that detectors are asked to work on: photographs in grey, zoomed, blurred, noisy, compressed, brightened."""
 import os
+import threading
 from dataclasses import dataclass
 
 import cv2
@@ -77,7 +78,9 @@ class Picture:
         path = os.path.join(self.folder, name + ".png")
         if not os.path.exists(path):
             os.makedirs(self.folder, exist_ok=True)
-            cv2.imwrite(path, pixels)
+            mine = os.path.join(self.folder, "%s.%d.png" % (name, threading.get_ident()))
+            cv2.imwrite(mine, pixels)
+            os.replace(mine, path)   # whole, whoever else reads or writes it
         return path
 
     def original(self):

@@ -31,11 +31,11 @@ class Detector:
     isotropic: bool = False
 
 
-DEFAULT = Detector("default")
-PAPER = Detector("paper", ("--preset", "paper"))
+DEFAULT = Detector("default preset")
+PAPER = Detector("paper preset", ("--preset", "paper"))
 MATCHING = Detector("matching", ("--preset", "match"))
-ISOTROPIC_DEFAULT = Detector("isotropic, default", (), True)
-ISOTROPIC_PAPER = Detector("isotropic, paper", ("--preset", "paper"), True)
+ISOTROPIC_DEFAULT = Detector("isotropic stage, default preset", (), True)
+ISOTROPIC_PAPER = Detector("isotropic stage, paper preset", ("--preset", "paper"), True)
 
 
 def _wait(process, limit):

@@ -10,7 +10,16 @@ ARGUMENTS = {
     "paper preset, raw": ("--preset", "paper"),
     "paper preset, sift": ("--preset", "paper", "--descriptor", "sift"),
 }
-SLOW = "paper preset, sift"
+# The junctions of another detector, its name before each.
+MATCHERS = {
+    " junctions, libasj": (),
+    " junctions, paper's matcher, raw": ("--match-preset", "paper"),
+    " junctions, paper's matcher, sift": ("--match-preset", "paper", "--descriptor", "sift"),
+}
+
+
+def slow(method):
+    return method.endswith("sift")
 
 
 def _detectors(session):
@@ -21,14 +30,18 @@ def _detectors(session):
 
 def of_points(session):
     """Names of the library's rows, the slowest last."""
-    others = ["%s junctions, libasj" % n for n in _detectors(session)]
-    wanted = [m for m in ARGUMENTS if m != SLOW] + others
-    return wanted if session.quick else wanted + [SLOW]
+    rows = list(ARGUMENTS) + [name + matcher for name in _detectors(session) for matcher in MATCHERS]
+    return sorted((r for r in rows if not (slow(r) and session.quick)), key=slow)
+
+
+def _parts(method):
+    """(the other detector's name, the matcher's arguments)"""
+    return next((method[:-len(m)], words) for m, words in MATCHERS.items() if method.endswith(m))
 
 
 def files(session, method, pair):
     """The junction files of another detector for a pair, or None."""
-    name = method.removesuffix(" junctions, libasj")
+    name = _parts(method)[0]
     folder = dict(session.arguments.detector).get(name)
     if folder:
         given = tuple(os.path.join(folder, "%s-%d.asj" % (pair.key, i)) for i in (1, 2))
@@ -45,5 +58,5 @@ def match(session, method, pair, limit=None):
     arguments = ARGUMENTS.get(method)
     if arguments is None:
         first, second = files(session, method, pair)
-        arguments = ("--junctions1", first, "--junctions2", second)
+        arguments = _parts(method)[1] + ("--junctions1", first, "--junctions2", second)
     return matches.of_library(*session.library.match(arguments, pair.image1, pair.image2, limit))

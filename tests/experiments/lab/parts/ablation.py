@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Part 7: what each departure from the paper is worth. Two ways: from the paper preset to the default one option at a time, and the
+"""Part 8: what each departure from the paper is worth. Two ways: from the paper preset to the default one option at a time, and the
 default with a single option set back. The detector's options are judged by repeatability and by what the default matcher makes of
 the junctions, and on synthetic scenes; the matcher's options on the junctions that asj-cli match finds."""
 import json

@@ -1,24 +1,26 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Part 6: pictures of junctions and of matches."""
+"""Part 7: pictures of junctions and of matches."""
 import numpy as np
 
-from .. import drawing, library, methods, pairs, peer_points, score
+from .. import drawing, junctions, library, methods, pairs, peer_points, score
 from ..library import Failure
 from ..report import Part
 
-MOST_ISOTROPIC = 300   # the surest: more would hide the photograph
+MOST_DRAWN = 600   # the surest: more would hide the photograph
 
 
-def _detections(session, picture):
-    """The photograph with the junctions of the default preset, and with the isotropic ones of the paper preset."""
+def _detections(session, picture, given):
+    """The photograph with the junctions of the default preset, of the paper preset, and of those that stand in files:
+    (JPEG bytes, {name: how many})"""
     path = picture.original()
-    ours, isotropic = (session.library.detect(d, path) for d in (library.DEFAULT, library.ISOTROPIC_PAPER))
-    canvas = [drawing.pale(path) for _ in range(2)]
-    for i in range(len(ours)):
-        drawing.junction(canvas[0], ours, i, drawing.RED)
-    for i in range(min(len(isotropic), MOST_ISOTROPIC)):
-        drawing.junction(canvas[1], isotropic, i, drawing.RED)
-    return drawing.encode(drawing.beside(canvas)), len(ours), len(isotropic)
+    found = {d.name: session.library.detect(d, path) for d in (library.DEFAULT, library.PAPER)}
+    found.update({name: junctions.read_asj(file) for name, file in given.items()})
+    canvas = []
+    for each in found.values():
+        canvas.append(drawing.pale(path))
+        for i in range(min(len(each), MOST_DRAWN)):
+            drawing.junction(canvas[-1], each, i, drawing.RED)
+    return drawing.encode(drawing.beside(canvas)), {name: len(each) for name, each in found.items()}
 
 
 def _junction_matches(session, pair, clean):
@@ -86,7 +88,8 @@ def run(session):
     pictures, chosen = session.pictures(), session.pairs
     if session.quick:
         pictures, chosen = pictures[:1], session.pairs[:1]
-    steps = [("junctions of " + p.key, lambda p=p: _figure_of_junctions(part, session, p)) for p in pictures]
+    files = {session.view(p, 1).key: {name: both[0] for name, both in p.detections.items()} for p in session.pairs}
+    steps = [("junctions of " + p.key, lambda p=p: _figure_of_junctions(part, session, p, files[p.key])) for p in pictures]
     steps += [("matches of " + p.name, lambda p=p: _draw(part, session, p)) for p in chosen]
     clean = [p for p in chosen if p.kind != pairs.LINES][:4]
     steps += [("clean matches of " + p.name, lambda p=p: _draw_clean(part, session, p)) for p in clean]
@@ -98,8 +101,7 @@ def run(session):
     return part
 
 
-def _figure_of_junctions(part, session, picture):
-    data, ours, isotropic = _detections(session, picture)
-    part.numbers[picture.key] = {"default": ours, "isotropic of paper": isotropic}
-    part.picture(data, "jpeg", "%s: %d junctions of the default preset; %d isotropic ones of the paper preset%s" % (
-        picture.key, ours, isotropic, ", the %d surest drawn" % MOST_ISOTROPIC if isotropic > MOST_ISOTROPIC else ""))
+def _figure_of_junctions(part, session, picture, given):
+    data, counts = _detections(session, picture, given)
+    part.numbers[picture.key] = counts
+    part.picture(data, "jpeg", "%s, from the left: %s" % (picture.key, "; ".join("%s, %d" % item for item in counts.items())))

@@ -34,8 +34,8 @@ def _add_library(session, jobs):
     for pair in session.pairs:
         jobs.add((MERGED, pair.name), _library, session, methods.DEFAULT, True, pair)
     for method in methods.of_points(session):
-        if method == methods.SLOW and "points" not in session.arguments.only:
-            continue   # half an hour for one row: only where part 4 has its matches
+        if methods.slow(method) and "points" not in session.arguments.only:
+            continue   # minutes for one row: only where part 4 has its matches
         rows[BRANCHES % method] = method
         for pair in session.pairs:
             if methods.applies(session, method, pair):

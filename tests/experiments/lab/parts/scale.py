@@ -12,9 +12,9 @@ from ..report import Part
 
 ROWS = {
     "anisotropic: branch lengths, default": (library.DEFAULT, False),
-    "anisotropic: branch lengths, paper": (library.PAPER, False),
+    "anisotropic: branch lengths, paper preset": (library.PAPER, False),
     "isotropic: scale, default": (library.ISOTROPIC_DEFAULT, True),
-    "isotropic: scale, paper": (library.ISOTROPIC_PAPER, True),
+    "isotropic: scale, paper preset": (library.ISOTROPIC_PAPER, True),
 }
 LEAST_DRAWN = 600      # px: a copy narrower than that is drawn enlarged
 LEAST_LENGTH = 20.0   # px in the original: below, the unit of the isotropic radii counts more than the zoom
@@ -44,7 +44,7 @@ def _circles(session, picture, factor):
     times = max(1, round(LEAST_DRAWN / ground.shape[1]))
     ground = cv2.resize(ground, None, fx=times, fy=times, interpolation=cv2.INTER_NEAREST)
     canvas, enlarge = [ground.copy(), ground.copy()], criteria.Zoom(times, times)
-    for which, detector in enumerate((library.ISOTROPIC_PAPER, library.DEFAULT)):
+    for which, detector in enumerate((library.ISOTROPIC_PAPER, library.PAPER)):
         first, second = (session.library.detect(detector, p) for p in (picture.original(), path))
         partners = paired(first, second, change)
         wanted, found = (enlarge.expected(j)[0] for j in (change.expected(first)[0], second))
@@ -91,7 +91,7 @@ def run(session):
                              height=4))
     for factor in (0.6, 0.3):
         part.picture(_circles(session, pictures[0], factor), "jpeg",
-                     "%s zoomed by %.1f. Left: isotropic scales, yellow: s r1, red: r2. Right: branches, yellow: those of the "
-                     "original times s, green: those found." % (pictures[0].key, factor))
+                     "%s zoomed by %.1f, paper preset. Left: isotropic scales, yellow: s r1, red: r2. Right: branches, yellow: "
+                     "those of the original times s, green: those found." % (pictures[0].key, factor))
     part.account(jobs)
     return part
