@@ -6,8 +6,8 @@
  * them on all candidates; and the best of these that differ are refined a little. What they make likely is then sampled in its
  * turn, AROUND times ("local optimisation", Chum, Matas and Kittler 2003). Where the best of the first ones is as poor as in images
  * that have nothing in common, nothing more is looked for. Sample n draws its numbers from stream n, so that threads change
- * nothing. STARTS, CENTRES, SHORT, LOCAL and the rounds are as small as they can be: with three times as many the same of 78 rendered
- * rooms and seven wide pairs of photographs are accepted, within what the seed changes, in three times the time. */
+ * nothing. STARTS, CENTRES, SHORT, LOCAL and the rounds are as small as they can be: with three times as many the same of 78
+ * rendered rooms and seven wide pairs of photographs are accepted, within what the seed changes, in three times the time. */
 #include "search.h"
 #include "core/threads.h"
 #include "counter_random.h"

@@ -2,8 +2,8 @@
 /* A service that runs for days, in short: frames COUNT
  *
  * COUNT small pictures through one context and one result, every tenth matched with itself: once all kinds have been seen the
- * memory that the context holds grows no more, nor does that of the process, nor its open files, and nothing leaks. Then COUNT / 10 detections and matches with an
- * allocator that fails at random: each ends well, with the result of the first time, or reports the failure. */
+ * memory that the context holds grows no more, nor does that of the process, nor its open files, and nothing leaks. Then
+ * COUNT / 10 detections and matches with an allocator that fails at random: each ends well, with the result of the first time, or reports the failure. */
 #define _DEFAULT_SOURCE
 #include "random.h"
 #include "render.h"

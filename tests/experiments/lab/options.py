@@ -27,7 +27,8 @@ def _word(value):
     return "%.12g" % value if isinstance(value, float) else str(value)
 
 
-# What makes the paper preset slow, first: without it everything else is quick. And without neighbours minimum_support leaves nothing.
+# What makes the paper preset slow, first: without it everything else is quick. And without neighbours minimum_support leaves
+# nothing.
 FIRST = ("refinement", "patches", "shortlist", "neighbours")
 
 

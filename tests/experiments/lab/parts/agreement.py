@@ -56,7 +56,8 @@ def _means(cells):
 def _report(part, name, cells):
     means = {d: _means([c for k, c in cells.items() if k[:2] == (name, d)]) for d in dict.fromkeys(k[1] for k in cells)}
     part.heading("Places of: " + name)
-    part.table(["mean of photographs", "places to one of theirs", "theirs found", "ours near theirs", "their branches", "of these lengths"],
+    part.table(["mean of photographs", "places to one of theirs", "theirs found", "ours near theirs", "their branches",
+                "of these lengths"],
                [[d] + ["%.2f" % m[k] for k in ("ratio", "found", "near", "branches", "lengths")] for d, m in means.items()])
     pictures = dict.fromkeys(k[2] for k in cells if k[0] == name)
     rows = []

@@ -141,7 +141,8 @@ TEXT = (
     "Share of the junctions of the original that have a correspondence in the changed copy, in percent, mean over the pictures. "
     "Corresponding: location within 3 px, every branch within pi/20 of one of the other's, the same number of branches, and (ACJ) "
     "isotropic scales or (ASJ) every branch length within 3 px of one of the other's. One to one, closest first.",
-    "ASJ are whole junctions, branches followed to their ends; the authors' program prints L-junctions, so those rows are its like. "
+    "ASJ are whole junctions, branches followed to their ends; the authors' program prints L-junctions, so those rows are its "
+    "like. "
     "The paper compares ASJ with the ACJ detector: its counterpart is the paper preset before branches are followed, with the "
     "candidates of that preset (near line segments). The default preset has an isotropic stage of its own, with sub-pixel lines "
     "that the ACJ detector lacks; it is shown beside, at the image's own size. A detector that is there as files has rows where "
