@@ -4,8 +4,8 @@
  *     isotropic_junctions [--preset paper] [key=value ...] IMAGE FILE.json
  *
  * Steps 1 to 3 of the detector and the location, at the image's own size, as the options say (preset default: line fits and their
- * rejection of edges; preset paper: whole pixels). Every branch of a junction is as long as the junction's isotropic scale. The format is that of
- * asj-cli detect (asj-junctions-1). */
+ * rejection of edges; preset paper: whole pixels). Every branch of a junction is as long as the junction's isotropic scale.
+ * The format is that of asj-cli detect (asj-junctions-1). */
 #include "photograph.h"
 
 #include "detect/result.h"

@@ -3,7 +3,8 @@
  *
  * COUNT small pictures through one context and one result, every tenth matched with itself: once all kinds have been seen the
  * memory that the context holds grows no more, nor does that of the process, nor its open files, and nothing leaks. Then
- * COUNT / 10 detections and matches with an allocator that fails at random: each ends well, with the result of the first time, or reports the failure. */
+ * COUNT / 10 detections and matches with an allocator that fails at random: each ends well, with the result of the first time,
+ * or reports the failure. */
 #define _DEFAULT_SOURCE
 #include "random.h"
 #include "render.h"

@@ -71,8 +71,8 @@ def run(session):
               "is the library's counterpart of the paper's row. Whole detectors are asked for junctions, with epsilon for the "
               "isotropic junctions, the steps of the scan and the strips alike; where every pixel is a candidate, one meaningful "
               "radius is enough and branches may share pixels, so that the NFA is all that holds. The paper preset has no strip "
-              "test; its scan alone keeps no bound, since a ray that follows local branches which were chosen as maxima finds more of "
-              "them than the null model says. "
+              "test; its scan alone keeps no bound, since a ray that follows local branches which were chosen as maxima finds "
+              "more of them than the null model says. "
               "With local branches filtered by the paper's number of tests the scan comes to the size of the paper's row, but then "
               "hardly any branch of a photograph is left.")
     jobs = session.jobs("noise")
