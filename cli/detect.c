@@ -96,7 +96,7 @@ static void print_summary(const char *image, const cli_output *output, const asj
              detection->junction_count == 1 ? "" : "s", junctions || output->plot ? " -> " : "", junctions ? junctions : "",
              junctions && output->plot ? ", " : "", output->plot ? output->plot : "");
     if (detection->junction_count == 0)
-        cli_note("%s: weaker corners are found with --epsilon 100 --candidate-strength 2, blurred ones with --octaves 8", image);
+        cli_note("%s: weaker corners are found with --epsilon 100 --candidate-strength 2", image);
 }
 
 static int detect_pixels(run *r, const char *image, const cli_output *output, const asj_image *pixels, const asj_region *region)

@@ -48,7 +48,7 @@ typedef struct asj_option_info {
 typedef struct asj_detect_options {
     /* octaves: the whole detector on the image, on its half, on its quarter, .. */
     int32_t octaves;              /* how many at most, from first_octave on, as long as 48 px of either side are left. 1 .. 16;
-                                   * default 1 */
+                                   * default 16; paper 1; match 1 */
     int32_t first_octave;         /* 0 = the image itself, 1 = its half, ..: large photographs may begin there. 0 .. 15; 0 */
     /* step 1: normalised gradient */
     double gradient_epsilon;      /* grey levels (0..255) per pixel added to the local mean of the gradient norm; what is much

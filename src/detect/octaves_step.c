@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Octaves over an image: what one leaves behind, the next one's grey plane, and at the end one list. */
 #include "octaves.h"
+#include "octave_confirm.h"
 #include "ends.h"
 #include "region.h"
 #include "steps.h"
 #include "suppress.h"
 
 #include <string.h>
+
+#define LEAST_CONFIRMED (4 * ASJ_LEAST_JUNCTIONS) /* for a thread */
 
 static int is_inside(const asj_detection_run *run, const asj_hypothesis *hypothesis)
 {
@@ -41,14 +44,28 @@ asj_status asj_step_next_octave(asj_detection_run *run)
     return status == ASJ_OK ? asj_step_halve(run) : status;
 }
 
+static void confirm(const asj_detection_run *run, asj_hypothesis *hypothesis)
+{
+    asj_octave_confirm(run->frame, run->options->minimum_opening, hypothesis);
+}
+
+/* With the image's own grey plane, made again. */
+static asj_status confirm_all(asj_detection_run *run)
+{
+    asj_status status = asj_frame_prepare(run->context, run->frame, run->image->width, run->image->height);
+    if (status == ASJ_OK)
+        status = asj_step_load(run);
+    return status == ASJ_OK ? asj_detection_run_each(run, ASJ_STAGE_REFINE, LEAST_CONFIRMED, confirm) : status;
+}
+
 static asj_status merge(asj_detection_run *run)
 {
     const int32_t width = run->image->width, height = run->image->height;
-    const size_t count = asj_octave_grid_cells(run->all_count, width, height);
+    const size_t count = asj_octave_grid_cells(run->hypothesis_count, width, height);
     int32_t *cells = asj_allocate_list(&run->context->memory, count, sizeof *cells);
     if (!cells)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu cells", count);
-    run->all_count = asj_octaves_merge(run->all, run->all_count, run->options, width, height, cells);
+    run->hypothesis_count = asj_octaves_merge(run->hypotheses, run->hypothesis_count, run->options, width, height, cells);
     asj_release(&run->context->memory, cells);
     return ASJ_OK;
 }
@@ -56,8 +73,6 @@ static asj_status merge(asj_detection_run *run)
 asj_status asj_step_merge_octaves(asj_detection_run *run)
 {
     asj_status status = collect(run);
-    if (status == ASJ_OK && run->options->octaves > 1)
-        status = merge(run);
     if (status != ASJ_OK)
         return status;
     run->hypotheses = run->all;
@@ -66,6 +81,12 @@ asj_status asj_step_merge_octaves(asj_detection_run *run)
     run->isotropic_count = run->isotropic_total;
     run->all = NULL;
     run->all_count = run->all_capacity = 0;
+    if (run->options->octaves > 1)
+        status = confirm_all(run);
+    if (status == ASJ_OK && run->options->octaves > 1)
+        status = merge(run);
+    if (status != ASJ_OK)
+        return status;
     if (run->region)
         run->hypothesis_count = asj_region_keep(run->image, run->region, run->hypotheses, run->hypothesis_count);
     asj_suppress_sort(run->hypotheses, run->hypothesis_count);

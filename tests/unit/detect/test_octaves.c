@@ -2,6 +2,7 @@
 /* Octaves: where their pixels are, which of two junctions stays, what joins; and the widths of edges that decide. */
 #include "detect/bent_corner.h"
 #include "detect/edge_width.h"
+#include "detect/octave_confirm.h"
 #include "detect/octaves.h"
 #include "render.h"
 #include "scenes.h"
@@ -230,6 +231,38 @@ static void test_widths(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* A bright rectangle, its corner at (60, 60): how many branches the image confirms of a corner of octave 1 with branches to the
+ * right and down, `gap` px to the left of it. */
+static int confirmed(double gap, double width, double blur)
+{
+    unit_counter counter;
+    asj_context *context = unit_context(&counter, 1);
+    synth_scene scene;
+    asj_frame frame;
+    memset(&frame, 0, sizeof frame);
+    synth_scene_init(&scene, 160, 160, 100);
+    synth_add_rectangle(&scene, (synth_point){60, 60}, 80, 80, 0, 140);
+    unit_frame_of(context, &scene, blur, 2, NULL, &frame);
+    asj_hypothesis h = corner(0, 0, width / 2);
+    asj_octaves_map(&h, 1);
+    h.x = 60 - gap;
+    h.y = 60;
+    asj_octave_confirm(&frame, 25, &h);
+    asj_frame_free(&context->memory, &frame);
+    unit_context_free(&counter, &context);
+    return h.branch_count;
+}
+
+/* The image has to show edges where they begin, and as soft as they are said to be. */
+static void test_confirm(void **state)
+{
+    (void)state;
+    assert_int_equal(confirmed(0, 1, 1), 2);
+    assert_int_equal(confirmed(6, 1, 1), 0); /* one edge begins 6 px farther, the other is not there at all */
+    assert_int_equal(confirmed(0, 4, 4), 2);
+    assert_int_equal(confirmed(0, 4, 1), 0); /* sharp */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -238,6 +271,7 @@ int main(void)
         cmocka_unit_test(test_others_stay),    cmocka_unit_test(test_soft_branch_joins),
         cmocka_unit_test(test_widths),         cmocka_unit_test(test_ghosts),
         cmocka_unit_test(test_soft_corners),   cmocka_unit_test(test_bent_corner_leaves),
+        cmocka_unit_test(test_confirm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
