@@ -7,10 +7,14 @@
  *     theta(r') = argmax over k = -2 .. 2 of omega_p(r', theta(r) + k / (2 r'))                      (eq. junction-ness-branch)
  * as long as two branches like it are a meaningful junction:  #J(2) F(omega; J)^2 <= epsilon         (step 3), up to r = 60.
  *
+ * The disc of the junction's radius has to lie in the image: beside the border the radius is made as small as that asks for, and a
+ * junction that has no radius left is dropped. An edge that leaves the image makes no corner there then. In the output of the
+ * authors' program the scale, which exceeds the radius by two at least, is never above the distance to the border by more than 1.
+ *
  * A junction is one only if its branches, all together, are still meaningful at the radius after its own: texture makes junctions
  * at single places and radii. In the output of the authors' program the scale always exceeds the radius beside it, by two at
  * least. This is ours; the paper does not say how its program comes from radius to radius. Of the L-junctions of six photographs
- * 35 % repeat under zoom by 0.9 in place, angles and lengths with it and 22 % without. */
+ * 35 % repeated under zoom by 0.9 in place, angles and lengths with it and 22 % without. */
 #include "follow.h"
 #include "core/angle.h"
 #include "nfa.h"
@@ -71,9 +75,28 @@ static void follow_branch(const asj_detection_run *run, const asj_hypothesis *hy
     }
 }
 
+/* The first radius at which a junction can be meaningful at as many in a row as are asked for. */
+static int32_t least_radius(const asj_detect_options *options)
+{
+    int32_t r = 0;
+    for (int32_t seen = 0; r < 31 && seen < options->isotropic_persistence; r++)
+        seen += options->isotropic_radii >> r & 1 ? 1 : 0;
+    return r - 1;
+}
+
+/* Makes the radius as small as the border asks for; 0: none is left. */
+static int fit_into_image(const asj_detection_run *run, asj_hypothesis *hypothesis)
+{
+    const double right = run->frame->width - 1 - hypothesis->x, below = run->frame->height - 1 - hypothesis->y;
+    const double most = fmin(fmin(hypothesis->x, hypothesis->y), fmin(right, below));
+    if (hypothesis->radius > most)
+        hypothesis->radius = (int32_t)most;
+    return hypothesis->radius >= least_radius(run->options);
+}
+
 void asj_follow(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
-    if (!is_meaningful(run, hypothesis, (int32_t)hypothesis->radius + 1)) {
+    if (!fit_into_image(run, hypothesis) || !is_meaningful(run, hypothesis, (int32_t)hypothesis->radius + 1)) {
         hypothesis->branch_count = 0;
         return;
     }
