@@ -47,22 +47,33 @@ asj_status asj_image_check(asj_context *context, const asj_image *image)
     return ASJ_OK;
 }
 
-static asj_status prepare_plane(asj_context *context, asj_frame *frame, int plane, size_t count)
+static asj_status prepare_memory(asj_context *context, asj_frame *frame, size_t count)
 {
-    void *block = frame->memory[plane];
-    if (frame->capacity[plane] >= count)
+    if (frame->capacity >= count)
         return ASJ_OK;
-    asj_release(&context->memory, block);
-    frame->memory[plane] = NULL;
-    frame->capacity[plane] = 0;
-    block = asj_allocate_zero(&context->memory, count, sizeof(int16_t));
-    if (!block)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for a plane of %zu samples", count);
-    frame->memory[plane] = block;
-    frame->capacity[plane] = count;
+    asj_release(&context->memory, frame->memory);
+    frame->capacity = 0;
+    frame->memory = asj_allocate_zero(&context->memory, count, sizeof *frame->memory);
+    if (!frame->memory)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for planes of %zu samples", count);
+    frame->capacity = count;
     return ASJ_OK;
 }
 
+/* Zeros around a plane of the gradient. */
+static void clear_margins(const asj_frame *frame, int16_t *rows)
+{
+    const size_t stride = (size_t)frame->stride, width = (size_t)frame->width, height = (size_t)frame->height;
+    memset(rows, 0, ASJ_MARGIN * stride * sizeof *rows);
+    memset(rows + (height + ASJ_MARGIN) * stride, 0, ASJ_MARGIN * stride * sizeof *rows);
+    for (size_t y = 0; y < height; y++) {
+        int16_t *row = rows + (y + ASJ_MARGIN) * stride;
+        memset(row, 0, ASJ_MARGIN * sizeof *row);
+        memset(row + ASJ_MARGIN + width, 0, (stride - ASJ_MARGIN - width) * sizeof *row);
+    }
+}
+
+/* Gray levels stand last: asj_frame_halve() reads those of the larger image when the planes of the smaller one have been set up. */
 asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t width, int32_t height)
 {
     frame->width = width;
@@ -71,35 +82,23 @@ asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t wid
     frame->octaves = 1;
     frame->blocks = (width + ASJ_LANES - 1) / ASJ_LANES;
     frame->stride = (ptrdiff_t)frame->blocks * ASJ_LANES + 2 * ASJ_MARGIN;
-    size_t stride = (size_t)frame->stride, padded = stride * ((size_t)height + 2 * ASJ_MARGIN);
-    asj_status status = prepare_plane(context, frame, 0, stride * ((size_t)height + 2 * ASJ_GRAY_BORDER) + 2 * ASJ_GRAY_MARGIN);
-    if (status == ASJ_OK)
-        status = prepare_plane(context, frame, 1, padded);
-    if (status == ASJ_OK)
-        status = prepare_plane(context, frame, 2, padded);
+    const size_t stride = (size_t)frame->stride, padded = stride * ((size_t)height + 2 * ASJ_MARGIN);
+    const size_t gray = stride * ((size_t)height + 2 * ASJ_GRAY_BORDER) + 2 * ASJ_GRAY_MARGIN;
+    const size_t origin = ASJ_MARGIN * stride + ASJ_MARGIN;
+    const asj_status status = prepare_memory(context, frame, 2 * padded + gray);
     if (status != ASJ_OK)
         return status;
-    size_t origin = ASJ_MARGIN * stride + ASJ_MARGIN;
-    frame->gray = (uint16_t *)frame->memory[0] + ASJ_GRAY_MARGIN + ASJ_GRAY_BORDER * stride;
-    frame->gradient_x = (int16_t *)frame->memory[1] + origin;
-    frame->gradient_y = (int16_t *)frame->memory[2] + origin;
-    for (int plane = 1; plane <= 2; plane++) {
-        int16_t *rows = frame->memory[plane];
-        memset(rows, 0, ASJ_MARGIN * stride * sizeof *rows);
-        memset(rows + padded - ASJ_MARGIN * stride, 0, ASJ_MARGIN * stride * sizeof *rows);
-        for (int32_t y = 0; y < height; y++) {
-            int16_t *row = rows + (size_t)(y + ASJ_MARGIN) * stride;
-            memset(row, 0, ASJ_MARGIN * sizeof *row);
-            memset(row + ASJ_MARGIN + width, 0, (stride - ASJ_MARGIN - (size_t)width) * sizeof *row);
-        }
-    }
+    frame->gradient_x = frame->memory + origin;
+    frame->gradient_y = frame->gradient_x + padded;
+    frame->gray = (uint16_t *)frame->memory + 2 * padded + ASJ_GRAY_MARGIN + ASJ_GRAY_BORDER * stride;
+    clear_margins(frame, frame->memory);
+    clear_margins(frame, frame->memory + padded);
     return ASJ_OK;
 }
 
 void asj_frame_free(asj_memory *memory, asj_frame *frame)
 {
-    for (int plane = 0; plane < 3; plane++)
-        asj_release(memory, frame->memory[plane]);
+    asj_release(memory, frame->memory);
     asj_release(memory, frame->rows);
     memset(frame, 0, sizeof *frame);
 }

@@ -29,8 +29,8 @@ typedef struct asj_frame {
     uint16_t *gray;               /* ASJ_GRAY_BORDER columns and rows around the image repeat its border */
     int16_t *gradient_x;          /* normalised gradient in 1/1024 units, zero in the margin */
     int16_t *gradient_y;
-    void *memory[3];              /* what the three planes stand in */
-    size_t capacity[3];
+    int16_t *memory;              /* what the three planes stand in */
+    size_t capacity;              /* elements of it */
     int32_t octave;               /* how often the image was halved to make it */
     int32_t octaves;              /* that share the false alarms allowed: 1, or more (octaves.c) */
     void *rows;                   /* scratch of asj_gradient() */
