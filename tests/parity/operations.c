@@ -154,7 +154,6 @@ static double step_1_bytes(const subject *s)
 
 static asj_status run_gradient(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
-    const size_t count = plane_elements(s);
     (void)scratch;
     for (int32_t y = 0; y < s->picture->height; y++)
         for (int32_t x = 0; x < s->picture->width; x++) { /* nothing that an earlier run has left */
@@ -162,8 +161,7 @@ static asj_status run_gradient(asj_context *context, const subject *s, uint16_t 
             s->picture->gradient_y[y * s->picture->stride + x] = -12345;
         }
     asj_status status = context->ops->gradient->planes(context, s->picture, &s->options);
-    memcpy(output, s->picture->memory[1], count * sizeof(int16_t));
-    memcpy((int16_t *)output + count, s->picture->memory[2], count * sizeof(int16_t));
+    memcpy(output, s->picture->memory, planes_size(s));
     asj_release(&context->memory, s->picture->rows); /* this context's, which the frame would keep */
     s->picture->rows = NULL;
     s->picture->row_capacity = 0;
