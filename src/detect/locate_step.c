@@ -73,11 +73,13 @@ static asj_status drop_close(asj_detection_run *run)
 
 asj_status asj_step_locate(asj_detection_run *run)
 {
-    const size_t count = run->isotropic_count, room = asj_detection_run_room(count);
-    run->hypotheses = asj_allocate_list(&run->context->memory, room, sizeof *run->hypotheses);
+    size_t count = 0;
+    for (size_t i = 0; i < run->isotropic_count; i++)
+        count += (size_t)asj_isotropic_has_opening(run->options, &run->isotropic[i]);
+    run->hypotheses = asj_allocate_list(&run->context->memory, asj_detection_run_room(count), sizeof *run->hypotheses);
     if (!run->hypotheses)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", count);
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < run->isotropic_count; i++)
         if (asj_isotropic_has_opening(run->options, &run->isotropic[i]))
             asj_hypothesis_start(&run->isotropic[i], &run->hypotheses[run->hypothesis_count++]);
     static const struct {
