@@ -26,6 +26,7 @@
 #include <string.h>
 
 #define REACH 12.0 /* px */
+#define CONTRADICTION 136.0 /* squared residual, in standard deviations: twice what likelihood.c looks at */
 
 /* The correspondence in normalised coordinates. */
 typedef struct normal_pair {
@@ -105,7 +106,7 @@ int32_t asj_essential_from_two(const asj_pairs *set, const asj_pair *const pairs
             chosen = s;
         }
     }
-    if (chosen < 0 || !choose_motion(solutions[chosen], rays, model))
+    if (chosen < 0 || !(best < CONTRADICTION) || !choose_motion(solutions[chosen], rays, model))
         return 0;
     model->kind = ASJ_GEOMETRY_ESSENTIAL;
     model->parameters = 5;
@@ -181,7 +182,7 @@ int32_t asj_fundamental_from_three(const asj_pair *const pairs[3], const asj_cam
     return asj_model_complete(model);
 }
 
-int32_t asj_homography_from_two(const asj_pair *const pairs[2], const asj_camera cameras[2], asj_model *model)
+int32_t asj_homography_from_two(const asj_pairs *set, const asj_pair *const pairs[2], const asj_camera cameras[2], asj_model *model)
 {
     double normal[81] = {0}, h[9];
     for (int32_t k = 0; k < 2; k++) {
@@ -218,5 +219,11 @@ int32_t asj_homography_from_two(const asj_pair *const pairs[2], const asj_camera
     for (int32_t k = 0; k < 9; k++)
         h[k] *= sign;
     asj_pixel_homography(h, cameras, model->view.matrix);
+    for (int32_t k = 0; k < 2; k++) { /* twelve equations for eight unknowns: most wrong ones contradict each other */
+        asj_residuals r;
+        asj_planar_residuals(model->view.matrix, set, pairs[k], &r);
+        if (!(r.square < CONTRADICTION))
+            return 0;
+    }
     return asj_model_complete(model);
 }

@@ -12,8 +12,9 @@ int32_t asj_essential_from_two(const asj_pairs *set, const asj_pair *const pairs
 int32_t asj_translation_from_two(const asj_pair *const pairs[2], const double rotation[9], const asj_camera cameras[2],
                                  asj_model *model);
 
-/* Fundamental matrix from three candidates, homography from two. 0 when they do not determine it. */
+/* Fundamental matrix from three candidates, homography from two. 0 when they do not determine it, or contradict it. */
 int32_t asj_fundamental_from_three(const asj_pair *const pairs[3], const asj_camera cameras[2], asj_model *model);
-int32_t asj_homography_from_two(const asj_pair *const pairs[2], const asj_camera cameras[2], asj_model *model);
+int32_t asj_homography_from_two(const asj_pairs *set, const asj_pair *const pairs[2], const asj_camera cameras[2],
+                                asj_model *model);
 
 #endif

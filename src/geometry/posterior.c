@@ -46,9 +46,8 @@ typedef struct draw {
 static void normal_numbers(uint64_t seed, uint64_t stream, uint64_t number, double out[MOTION + 1])
 {
     for (uint64_t k = 0; k < MOTION + 1; k += 2) { /* Box and Muller */
-        const double u = 1 - asj_counter_random(seed, stream, number * 8 + k),
-                     v = asj_counter_random(seed, stream, number * 8 + k + 1);
-        const double r = sqrt(-2 * log(u)), angle = 2 * ASJ_PI * v;
+        const double u = 1 - asj_counter_random(seed, stream, number * 8 + k);
+        const double r = sqrt(-2 * log(u)), angle = 2 * ASJ_PI * asj_counter_random(seed, stream, number * 8 + k + 1);
         out[k] = r * cos(angle);
         out[k + 1] = r * sin(angle);
     }

@@ -345,6 +345,7 @@ static void two_candidates_give_the_homography(void **state)
     (void)state;
     synth_random random;
     synth_random_seed(&random, 8);
+    int contradictions = 0;
     for (int i = 0; i < 200; i++) {
         const motion m = random_motion(&random);
         const asj_pair pairs[3] = {random_patch(&random, &m, 1), random_patch(&random, &m, 1), random_patch(&random, &m, 1)};
@@ -353,10 +354,16 @@ static void two_candidates_give_the_homography(void **state)
         asj_model model;
         asj_residuals r;
         memset(&model, 0, sizeof model);
-        assert_true(asj_homography_from_two(both, cameras, &model));
+        assert_true(asj_homography_from_two(&set, both, cameras, &model));
         asj_planar_residuals(model.view.matrix, &set, &pairs[2], &r);
         unit_near("a third one", i, 0, r.square, 0, 0.05);
+        asj_pair wrong = pairs[1];
+        for (int k = 0; k < 4; k++) /* a quarter turn more than the first one, which no plane explains */
+            wrong.affine[k] = k < 2 ? -pairs[1].affine[2 + k] : pairs[1].affine[k - 2];
+        const asj_pair *const apart[2] = {&pairs[0], &wrong};
+        contradictions += !asj_homography_from_two(&set, apart, cameras, &model);
     }
+    assert_true(contradictions > 190);
 }
 
 /* Of the motions of a plane's homography one is the motion, with the plane; both explain every candidate of the plane. */
@@ -376,7 +383,7 @@ static void a_homography_gives_its_motions(void **state)
         }
         const asj_pair *const both[2] = {&list[0], &list[1]};
         memset(&plane, 0, sizeof plane);
-        assert_true(asj_homography_from_two(both, cameras, &plane));
+        assert_true(asj_homography_from_two(&set, both, cameras, &plane));
         const int32_t count = asj_motions_of_homography(&set, &plane, cameras, motions);
         double least = HUGE_VAL;
         assert_in_range(count, 1, 2);
