@@ -65,9 +65,9 @@ static const cli_option geometry_options[] = {
      "estimate what relates the two views, and let it decide which matches hold; none is the default"},
     {CAMERA_1, 0, "camera1", "FX,FY,CX,CY", "focal lengths and principal point of the camera of IMAGE1, px"},
     {CAMERA_2, 0, "camera2", "FX,FY,CX,CY", "the same for IMAGE2"},
-    {FOCAL, 0, "focal", "F|exif|none",
+    {FOCAL, 0, "focal", "F|exif|estimate|none",
      "focal length of both cameras, px, with the middle of the image as principal point; exif: each image's own, an error "
-     "without. By default EXIF data count where both images have them; none: they do not"},
+     "without; estimate: found with the motion. By default EXIF data count where both images have them; none: they do not"},
 };
 
 static const cli_option plot_options[] = {
@@ -130,11 +130,11 @@ static int take_input(void *target, int id, const char *text)
 
 static int take_focal(const char *text, cli_match_arguments *arguments)
 {
-    static const char *const sources[] = {"exif", "none", NULL}; /* from CLI_FOCAL_EXIF on */
+    static const char *const sources[] = {"exif", "estimate", "none", NULL}; /* from CLI_FOCAL_EXIF on */
     const int32_t source = cli_find_word(sources, text);
     arguments->focal_from = source < 0 ? CLI_FOCAL_GIVEN : CLI_FOCAL_EXIF + source;
     if (source < 0 && !cli_parse_number(text, 1, CLI_LONGEST_FOCAL, &arguments->focal))
-        return cli_usage_error("match", "--focal: '%s' is not a length in px, 1 and more, or exif or none", text);
+        return cli_usage_error("match", "--focal: '%s' is not a length in px, 1 and more, or exif, estimate or none", text);
     return CLI_SUCCESS;
 }
 
@@ -263,6 +263,10 @@ static int check_geometry(const cli_match_arguments *arguments)
     const int first = arguments->cameras[0].fx > 0, second = arguments->cameras[1].fx > 0;
     if ((first || second || arguments->focal_from != CLI_FOCAL_AUTO) && arguments->geometry == ASJ_GEOMETRY_NONE)
         return cli_usage_error("match", "a camera changes nothing without --geometry");
+    if (arguments->focal_from == CLI_FOCAL_ESTIMATE && (first || second))
+        return cli_usage_error("match", "--focal estimate: --camera%d gives it", first ? 1 : 2);
+    if (arguments->focal_from == CLI_FOCAL_ESTIMATE && arguments->geometry > ASJ_GEOMETRY_ESSENTIAL)
+        return cli_usage_error("match", "--focal estimate changes nothing with this geometry, which has no focal length");
     return CLI_SUCCESS;
 }
 

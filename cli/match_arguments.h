@@ -11,7 +11,8 @@
 #include <asj/match.h>
 
 /* Where focal lengths come from that --camera1 and --camera2 do not say. */
-enum { CLI_FOCAL_AUTO = 0 /* EXIF data, if both images have them */, CLI_FOCAL_GIVEN, CLI_FOCAL_EXIF, CLI_FOCAL_NONE };
+enum { CLI_FOCAL_AUTO = 0 /* EXIF data, if both images have them */, CLI_FOCAL_GIVEN, CLI_FOCAL_EXIF, CLI_FOCAL_ESTIMATE,
+       CLI_FOCAL_NONE };
 
 typedef struct cli_match_arguments {
     cli_common common;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* A camera is, in this order: what --camera1 or --camera2 says; --focal; with a geometry that uses cameras and no --focal none, the
  * focal length of the image's EXIF data. All but the first have the middle of the image as principal point. Cameras count when both
- * are known. */
+ * are known. --focal estimate leaves them open. */
 #include "match_cameras.h"
 #include "message.h"
 
@@ -49,6 +49,9 @@ int cli_match_cameras(const cli_match_arguments *arguments, const cli_match_inpu
     const int32_t from = arguments->focal_from;
     const int exif = from == CLI_FOCAL_EXIF || (from == CLI_FOCAL_AUTO && uses_cameras(arguments->geometry));
     options->model = arguments->geometry;
+    options->find_focal = from == CLI_FOCAL_ESTIMATE;
+    if (options->find_focal)
+        return CLI_SUCCESS;
     for (int v = 0; v < 2; v++) {
         options->cameras[v] = arguments->cameras[v];
         if (from == CLI_FOCAL_GIVEN && !(options->cameras[v].fx > 0))

@@ -59,7 +59,12 @@ typedef struct asj_geometry_options {
     double directions[2][9]; /* of image 1 and image 2: three directions of the scene at right angles to each other, in camera
                               * coordinates, one after the other, in any order and of either sign (vanishing.h finds them); zero,
                               * the default: not known. With cameras only */
-    double reserved[16];     /* zero */
+    int32_t find_focal;      /* 1 = no camera is known, but both have square pixels, the principal point in the middle of the image
+                              * and the same focal length, as a part of the longer side: it is found with the motion, between 0.4
+                              * and 4 of the longer side. Model auto and essential only. Where the motion leaves it open, auto
+                              * gives a fundamental matrix or a homography, and essential ends degenerate. 0 */
+    int32_t reserved_integer;/* zero */
+    double reserved[15];     /* zero */
 } asj_geometry_options;
 
 ASJ_API void asj_geometry_options_init(asj_geometry_options *options);
@@ -77,11 +82,12 @@ typedef struct asj_geometry {
     double translation[3];   /* of length 1: how far is not known */
     double covariance[36];   /* of the rotation (vector w with R_true = exp([w]x) R, rad) and the translation, 6 x 6, row by row;
                               * given the matches, so a lower bound */
-    double focal[2];         /* px: of the cameras that were used; 0 when they are not known */
+    double focal[2];         /* px: of the cameras that were used, given or found; 0 when they are not known */
     double log10_nfa;        /* log10 of how often chance brings such a geometry in a pair of unrelated images */
     double second_log10_nfa; /* .. the best other one, which has other matches */
     double inliers;          /* sum of the candidates' probabilities */
-    double reserved[16];
+    double focal_sd;         /* of the log of the focal length, where it was found; 0 where it was given */
+    double reserved[15];
 } asj_geometry;
 
 /* Estimates the two-view geometry of candidate matches.

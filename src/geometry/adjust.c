@@ -12,6 +12,7 @@
 #include <string.h>
 
 #define WIDE 3.0
+#define LIKE_ROUNDS 2
 #define TAIL 6.0
 #define BEHIND 2.0
 #define LEAST 1e-3 /* probability below which a candidate is left out */
@@ -160,6 +161,19 @@ void asj_adjust(const asj_pairs *set, asj_model *model, int32_t rounds, asj_adju
         if (round == 0 && model->kind == ASJ_GEOMETRY_ESSENTIAL && model->view.plane_count == 0)
             asj_choose_motion(set, scratch->probability, model);
         if (!step(set, model, scratch->probability, loose))
+            break;
+    }
+    model->score = asj_score(set, set->count, &model->view, 1, &scratch->score);
+}
+
+void asj_adjust_like(const asj_pairs *set, asj_model *model, const asj_model *like, int32_t rounds, asj_adjust_scratch *scratch)
+{
+    asj_probabilities(set, &like->view, 1, &scratch->score, scratch->probability);
+    for (int32_t round = 0; round < rounds; round++) {
+        const int32_t settled = round >= LIKE_ROUNDS;
+        if (settled)
+            asj_probabilities(set, &model->view, 1, &scratch->score, scratch->probability);
+        if (!step(set, model, scratch->probability, settled ? 1 : WIDE))
             break;
     }
     model->score = asj_score(set, set->count, &model->view, 1, &scratch->score);

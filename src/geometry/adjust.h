@@ -27,6 +27,9 @@ void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *scratch);
 /* Moves the model to where the candidates want it, in so many rounds: adjust.c. Its score is that of all candidates then. */
 void asj_adjust(const asj_pairs *set, asj_model *model, int32_t rounds, asj_adjust_scratch *scratch);
 
+/* The same for a model that should explain the candidates that `like` does, and may still be some way off. */
+void asj_adjust_like(const asj_pairs *set, asj_model *model, const asj_model *like, int32_t rounds, asj_adjust_scratch *scratch);
+
 /* The normal matrix (information) of the model's parameters at the candidates' probabilities: parameters x parameters. */
 void asj_information(const asj_pairs *set, const asj_model *model, const double *probability, double *information);
 

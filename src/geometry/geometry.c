@@ -4,6 +4,7 @@
  *   pairs.c       candidates -> places, priors
  *   search.c      samples (minimal.c, five_point.c), scores (likelihood.c), refinement (adjust.c)
  *   motions.c     essential matrices with planes (planes.c), and what the candidates allow around them (posterior.c)
+ *   focal.c       the same for a row of focal lengths, where none is known and it is asked for
  *   evidence.c    how often chance brings as much
  *   model.c       what moves when a geometry moves
  *
@@ -21,6 +22,7 @@
  * there are two (Hartley and Zisserman, 13.4), and near that everything between. */
 #include "core/angle.h"
 #include "evidence.h"
+#include "focal.h"
 #include "motions.h"
 #include "pairs.h"
 #include "posterior.h"
@@ -30,7 +32,7 @@
 #include <math.h>
 #include <string.h>
 
-#define MOST_KINDS 2
+#define MOST_KINDS 3
 #define NEARLY 0.5
 #define CONTRARY 0.4
 /* Nats that a score loses at least on the way to an evidence: volume of the parameters, near places. Of 69 pairs of unrelated
@@ -49,6 +51,8 @@ typedef struct estimation {
     int32_t count;
     asj_adjust_scratch scratch;
     double *other; /* probabilities under a second geometry */
+    asj_focal focal;
+    int32_t focal_at; /* where the finalist with the found focal length stands; -1 = there is none */
 } estimation;
 
 /* --- options ----------------------------------------------------------------------------------------------------------------- */
@@ -98,7 +102,13 @@ static asj_status check(asj_context *context, const asj_geometry_options *o)
     }
     if (o->model < ASJ_GEOMETRY_NONE || o->model > ASJ_GEOMETRY_HOMOGRAPHY)
         return asj_fail(context, ASJ_ERROR_OPTION, "no such geometry: %d", (int)o->model);
-    if (o->model == ASJ_GEOMETRY_ESSENTIAL && !(known(&o->cameras[0]) && known(&o->cameras[1])))
+    if (o->find_focal < 0 || o->find_focal > 1)
+        return asj_fail(context, ASJ_ERROR_OPTION, "find_focal is %d, not 0 or 1", (int)o->find_focal);
+    if (o->find_focal && (known(&o->cameras[0]) || known(&o->cameras[1])))
+        return asj_fail(context, ASJ_ERROR_OPTION, "find_focal: the focal length of a camera is given");
+    if (o->find_focal && o->model > ASJ_GEOMETRY_ESSENTIAL)
+        return asj_fail(context, ASJ_ERROR_OPTION, "find_focal: only model auto and essential have a focal length");
+    if (o->model == ASJ_GEOMETRY_ESSENTIAL && !o->find_focal && !(known(&o->cameras[0]) && known(&o->cameras[1])))
         return asj_fail(context, ASJ_ERROR_OPTION, "an essential matrix needs both cameras");
     if (o->samples < 1 || o->samples > 100000 || !within(o->epsilon, 1e-12, 1) || !within(o->location_sd, 0.1, 10) ||
         !within(o->angle_sd, 1, 45) || !within(o->scale_sd, 0.02, 1))
@@ -108,7 +118,8 @@ static asj_status check(asj_context *context, const asj_geometry_options *o)
 
 /* --- search ------------------------------------------------------------------------------------------------------------------ */
 
-static asj_status search_kind(estimation *e, int32_t kind)
+/* Cameras that are not known have the longer side as focal length. */
+static asj_search plan(const estimation *e, int32_t kind)
 {
     const asj_geometry_options *o = e->options;
     asj_search search = {kind, o->samples, o->seed, {o->cameras[0], o->cameras[1]}, GIVE_UP - log(o->epsilon)};
@@ -117,6 +128,12 @@ static asj_status search_kind(estimation *e, int32_t kind)
             const double longer = o->widths[v] > o->heights[v] ? o->widths[v] : o->heights[v];
             search.cameras[v] = (asj_camera){longer, longer, 0.5 * (o->widths[v] - 1), 0.5 * (o->heights[v] - 1)};
         }
+    return search;
+}
+
+static asj_status search_kind(estimation *e, int32_t kind)
+{
+    const asj_search search = plan(e, kind);
     int32_t count = 0;
     const asj_status status = asj_geometry_search(e->context, &e->set, &search, e->finalists + e->count, &count);
     e->count += count;
@@ -134,24 +151,41 @@ static int32_t best_of(const estimation *e, int32_t kind)
     return best;
 }
 
+/* One focal length for both, in place of cameras. */
+static asj_status search_focal(estimation *e)
+{
+    const asj_search search = plan(e, ASJ_GEOMETRY_ESSENTIAL);
+    asj_model flat[ASJ_FINALISTS];
+    int32_t count = 0;
+    for (int32_t k = 0; k < e->count && count < ASJ_FINALISTS; k++)
+        if (e->finalists[k].kind == ASJ_GEOMETRY_HOMOGRAPHY)
+            flat[count++] = e->finalists[k];
+    const asj_status status = asj_find_focal(e->context, &e->set, &search, flat, count, &e->focal);
+    if (status == ASJ_OK && e->focal.model.evidence > -HUGE_VAL) {
+        e->focal_at = e->count;
+        e->finalists[e->count++] = e->focal.model;
+    }
+    return status;
+}
+
 static asj_status search_all(estimation *e)
 {
     const asj_geometry_options *o = e->options;
     const int32_t epipolar = known(&o->cameras[0]) && known(&o->cameras[1]) ? ASJ_GEOMETRY_ESSENTIAL : ASJ_GEOMETRY_FUNDAMENTAL;
     asj_status status = ASJ_OK;
-    if (o->model != ASJ_GEOMETRY_HOMOGRAPHY)
+    if (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_FUNDAMENTAL || o->model == epipolar)
         status = search_kind(e, o->model == ASJ_GEOMETRY_AUTO ? epipolar : o->model);
     if (status == ASJ_OK && (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_HOMOGRAPHY))
         status = search_kind(e, ASJ_GEOMETRY_HOMOGRAPHY);
     if (status == ASJ_OK && epipolar == ASJ_GEOMETRY_ESSENTIAL &&
         (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_ESSENTIAL))
-        status = asj_refine_motions(e->context, &e->set, o->cameras, o->seed, e->finalists, &e->count);
-    return status;
+        status = asj_refine_motions(e->context, &e->set, o->cameras, o->seed, ASJ_SETTLED, e->finalists, &e->count);
+    return status == ASJ_OK && o->find_focal ? search_focal(e) : status;
 }
 
 static double log10_nfa(const estimation *e, const asj_model *m)
 {
-    const double tried = e->options->model == ASJ_GEOMETRY_AUTO ? MOST_KINDS : 1;
+    const double tried = e->options->model != ASJ_GEOMETRY_AUTO ? 1 : e->options->find_focal ? MOST_KINDS : MOST_KINDS - 1;
     return (log(tried) - m->evidence) / log(10);
 }
 
@@ -212,6 +246,26 @@ static double set_covariance(const estimation *e, int32_t best, double covarianc
     return sd;
 }
 
+/* What is not known of the focal length moves the motion, too: the covariance grows by d d' with d the motion's difference when the
+ * focal length is a standard deviation longer. Its length, rad. */
+static double add_focal(const asj_focal *focal, asj_geometry *result)
+{
+    const double *d = focal->along;
+    for (int32_t i = 0; i < 36; i++)
+        result->covariance[i] += d[i / 6] * d[i % 6];
+    result->focal_sd = focal->sd;
+    return sqrt(asj_dot3(d, d) + asj_dot3(d + 3, d + 3));
+}
+
+static void clear_pose(asj_geometry *result)
+{
+    result->has_pose = 0;
+    result->focal[0] = result->focal[1] = result->focal_sd = 0;
+    memset(result->rotation, 0, sizeof result->rotation);
+    memset(result->translation, 0, sizeof result->translation);
+    memset(result->covariance, 0, sizeof result->covariance);
+}
+
 /* Rotation and translation of an essential matrix. 0 when nothing determines its translation. */
 static int32_t set_pose(estimation *e, int32_t number, asj_geometry *result)
 {
@@ -219,12 +273,16 @@ static int32_t set_pose(estimation *e, int32_t number, asj_geometry *result)
     asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
     if (m->view.plane_count == 0 && !(asj_choose_motion(&e->set, e->scratch.probability, m) > -HUGE_VAL))
         return 0;
-    const double sd = set_covariance(e, number, result->covariance);
+    double sd = set_covariance(e, number, result->covariance);
+    if (number == e->focal_at && e->focal.is_known)
+        sd = hypot(sd, add_focal(&e->focal, result));
     memcpy(result->rotation, m->rotation, sizeof result->rotation);
     memcpy(result->translation, m->translation, sizeof result->translation);
     result->focal[0] = m->cameras[0].fx;
     result->focal[1] = m->cameras[1].fx;
     result->has_pose = sd < POSE_SD;
+    if (number == e->focal_at && (sd >= LOOSE_DIRECTION || !e->focal.is_known)) /* a motion that is none tells no focal length */
+        clear_pose(result);
     return sd < LOOSE_DIRECTION;
 }
 
@@ -253,21 +311,29 @@ static double to_compare(const estimation *e, const asj_model *m)
     return log10_nfa(e, &peak);
 }
 
+/* A plane, or a camera that only turns, explains as much with any focal length: one that was found is believed where the motion
+ * explains about as much as anything else. */
+static int32_t is_believed(const estimation *e, int32_t essential, int32_t best)
+{
+    return essential != e->focal_at || e->finalists[essential].evidence > ALMOST * e->finalists[best].evidence;
+}
+
 static void answer(estimation *e, double *probabilities, asj_geometry *result)
 {
     int32_t best = best_of(e, ASJ_GEOMETRY_AUTO), determined = 1;
+    const double least = log10(e->options->epsilon);
     result->status = ASJ_GEOMETRY_CHANCE;
     if (best < 0)
         return;
-    const double least = log10(e->options->epsilon);
     const int32_t essential = best_of(e, ASJ_GEOMETRY_ESSENTIAL); /* a plane's pose comes from here, too */
-    if (essential >= 0 && log10_nfa(e, &e->finalists[essential]) <= least)
+    if (essential >= 0 && is_believed(e, essential, best) && log10_nfa(e, &e->finalists[essential]) <= least)
         determined = set_pose(e, essential, result);
     if (!determined)
         best = instead_of(e, best);
     determined = determined || best != essential;
     const asj_model *m = &e->finalists[best];
-    result->model = m->kind;
+    const int32_t open_focal = best == e->focal_at && !e->focal.is_known;
+    result->model = open_focal ? ASJ_GEOMETRY_FUNDAMENTAL : m->kind;
     result->log10_nfa = log10_nfa(e, m);
     set_matrix(m, result);
     asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
@@ -280,6 +346,8 @@ static void answer(estimation *e, double *probabilities, asj_geometry *result)
     }
     if (result->log10_nfa > least)
         return;
+    if (open_focal && e->options->model == ASJ_GEOMETRY_ESSENTIAL)
+        determined = 0;
     result->status = !determined ? ASJ_GEOMETRY_DEGENERATE : ASJ_GEOMETRY_ACCEPTED;
     if (second >= 0 && result->second_log10_nfa <= NEARLY * to_compare(e, m))
         result->status = ASJ_GEOMETRY_AMBIGUOUS;
@@ -304,6 +372,7 @@ asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candid
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the geometry");
     e->context = context;
     e->options = options;
+    e->focal_at = -1;
     status = asj_pairs_create(context, candidates, count, options, &e->set);
     for (size_t k = 0; k < count && probabilities; k++)
         probabilities[k] = 0;

@@ -18,7 +18,6 @@
 #define FEW_ROUNDS 4
 #define ROUNDS 5
 #define WITH_PLANES 4
-#define SETTLED 3
 #define UNLIKELY 7.0 /* nats below the best one */
 
 typedef struct motions {
@@ -87,14 +86,14 @@ static void refine(asj_context *context, const job *j)
 }
 
 /* The best ones that are apart from each other become all that the candidates allow around them. */
-static void settle(asj_context *context, const job *j, uint64_t seed)
+static void settle(asj_context *context, const job *j, uint64_t seed, int32_t most)
 {
     motions *m = j->m;
     for (int32_t k = 0; k < m->count; k++)
         m->order[k] = (asj_ranked){m->picked[k].evidence, k};
     qsort(m->order, (size_t)m->count, sizeof *m->order, asj_by_score);
     const double least = m->count > 0 ? fmax(0, m->order[0].score - UNLIKELY) : 0;
-    for (int32_t k = 0, settled = 0; k < m->count && settled < SETTLED; k++) {
+    for (int32_t k = 0, settled = 0; k < m->count && settled < most; k++) {
         asj_model *model = &m->picked[m->order[k].index];
         int32_t apart = model->evidence > least;
         for (int32_t i = 0; i < k && apart; i++)
@@ -106,7 +105,7 @@ static void settle(asj_context *context, const job *j, uint64_t seed)
     }
 }
 
-asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const asj_camera cameras[2], uint64_t seed,
+asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const asj_camera cameras[2], uint64_t seed, int32_t settled,
                               asj_model *finalists, int32_t *count)
 {
     asj_memory *memory = &context->memory;
@@ -120,7 +119,7 @@ asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const 
         const job j = {set, scratch, m};
         collect(set, cameras, finalists, count, m);
         refine(context, &j);
-        settle(context, &j, seed);
+        settle(context, &j, seed, settled);
         memcpy(finalists + *count, m->picked, (size_t)m->count * sizeof *m->picked);
         *count += m->count;
     }

@@ -74,11 +74,12 @@ static void put_geometry(asj_json_output *json, const asj_geometry *g)
     if (g->status == ASJ_GEOMETRY_NOT_ASKED)
         return;
     if (accepted)
-        value = json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:b}", "model", asj_geometry_model_name(g->model),
+        value = json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:b}", "model", asj_geometry_model_name(g->model),
                           "matrix", numbers(g->matrix, 9), "rotation", g->has_pose ? numbers(g->rotation, 9) : json_null(),
                           "translation", g->has_pose ? numbers(g->translation, 3) : json_null(),
                           "covariance", g->has_pose ? numbers(g->covariance, 36) : json_null(),
-                          "focal", g->focal[0] > 0 ? numbers(g->focal, 2) : json_null(), "log10_nfa", g->log10_nfa,
+                          "focal", g->focal[0] > 0 ? numbers(g->focal, 2) : json_null(), "focal_sd",
+                          g->focal_sd > 0 ? json_real(g->focal_sd) : json_null(), "log10_nfa", g->log10_nfa,
                           "inliers", g->inliers, "ambiguous", 0);
     asj_json_put(json, ",\n\"geometry\": ", value, JSON_REAL_PRECISION(15));
     asj_json_put(json, ",\n\"geometry_status\": ", json_string(asj_geometry_status_name(g->status)), 0);

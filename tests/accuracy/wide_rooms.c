@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Two-view geometry on rendered rooms seen from far apart, whose cameras are known.
  *
- *     wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--first N] [--last N] [--threads N]
+ *     wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--first N] [--last N] [--threads N]
  *
  * Pairs of seeds --first (0) to --last (99): status, model, log10 NFA, pose error (the larger of rotation and direction of
  * translation, degrees) and matches within 4 px of their epipolar lines. Then the area under the curve of recall over error up to
@@ -27,14 +27,14 @@ static const double least_right = 0.45; /* of --check: share of all pairs */
 static const int most_wrong = 1, most_far_off = 0;
 
 typedef struct settings {
-    int check, held_out, unrelated, no_cameras;
+    int check, held_out, unrelated, no_cameras, find_focal;
     long first, last;
     asj_context *context;
 } settings;
 
 typedef struct tally {
-    double errors[MOST];
-    int pairs, accepted, with_pose, wrong, far_off, common, common_accepted;
+    double errors[MOST], focals[MOST]; /* relative error of those that were found */
+    int focal_count, pairs, accepted, with_pose, wrong, far_off, common, common_accepted;
 } tally;
 
 static int detect(const settings *set, const synth_wide_pair *pair, int which, uint8_t **pixels, asj_image *image,
@@ -83,12 +83,17 @@ static void count(const settings *set, const synth_wide_pair *pair, const asj_ma
     sum->with_pose += accepted && g->has_pose;
     sum->wrong += accepted && g->has_pose && error > 3;
     sum->far_off += accepted && g->has_pose && error > 30;
+    if (accepted && g->focal_sd > 0)
+        sum->focals[sum->focal_count++] = fabs(g->focal[0] / pair->cameras[0].focal - 1);
     sum->common += pair->common >= 1.0 / 3;
     sum->common_accepted += pair->common >= 1.0 / 3 && accepted;
-    printf("%-7lu angle %2.0f scale %4.2f common %4.2f  %-10s %-11s log10 NFA %7.1f error %6.1f  matches %3u / %3u  %.0f ms\n",
+    printf("%-7lu angle %2.0f scale %4.2f common %4.2f  %-10s %-11s log10 NFA %7.1f error %6.1f  matches %3u / %3u  %.0f ms",
            (unsigned long)pair->seed, pair->angle, pair->scale, pair->common, asj_geometry_status_name(g->status),
            asj_geometry_model_name(g->model), g->log10_nfa, error, set->unrelated ? 0 : (unsigned)count_right(result, pair),
            (unsigned)result->match_count, result->total_ms);
+    if (g->focal_sd > 0)
+        printf("  focal length %.0f (%.0f), sd %.3f", g->focal[0], pair->cameras[0].focal, g->focal_sd);
+    puts("");
     fflush(stdout);
 }
 
@@ -103,9 +108,10 @@ static int match(const settings *set, const synth_wide_pair *first, const synth_
     int failed = 0;
     asj_match_options_init(&options);
     options.geometry.model = ASJ_GEOMETRY_AUTO;
+    options.geometry.find_focal = set->find_focal;
     for (int v = 0; v < 2 && !failed; v++) {
         const double f = pairs[v]->cameras[v].focal;
-        if (!set->no_cameras)
+        if (!set->no_cameras && !set->find_focal)
             options.geometry.cameras[v] = (asj_camera){f, f, 0.5 * (SYNTH_WIDE_WIDTH - 1), 0.5 * (SYNTH_WIDE_HEIGHT - 1)};
         failed = detect(set, pairs[v], v, &pixels[v], &images[v], &found[v]);
     }
@@ -148,6 +154,11 @@ static int report(const settings *set, tally *sum)
            "with a pose %d, of these off by more than 3 degrees %d, 30 degrees %d\n", sum->pairs, area(sum->errors, sum->pairs, 5),
            area(sum->errors, sum->pairs, 10), area(sum->errors, sum->pairs, 20), sum->accepted, sum->common_accepted, sum->common,
            sum->with_pose, sum->wrong, sum->far_off);
+    qsort(sum->focals, (size_t)sum->focal_count, sizeof *sum->focals, by_size);
+    if (sum->focal_count > 0)
+        printf("focal lengths found %d: error median %.1f %%, three quarters within %.1f %%, largest %.1f %%\n", sum->focal_count,
+               100 * sum->focals[sum->focal_count / 2], 100 * sum->focals[3 * sum->focal_count / 4],
+               100 * sum->focals[sum->focal_count - 1]);
     if (!set->check)
         return 0;
     const int right = sum->with_pose - sum->wrong;
@@ -188,7 +199,8 @@ static int run(const settings *set)
 int main(int argc, char **argv)
 {
     static const struct option longs[] = {{"check", 0, NULL, 'c'}, {"held-out", 0, NULL, 'h'}, {"unrelated", 0, NULL, 'u'},
-                                          {"no-cameras", 0, NULL, 'n'}, {"first", 1, NULL, 'f'}, {"last", 1, NULL, 'l'},
+                                          {"no-cameras", 0, NULL, 'n'},
+                                          {"find-focal", 0, NULL, 'o'}, {"first", 1, NULL, 'f'}, {"last", 1, NULL, 'l'},
                                           {"threads", 1, NULL, 't'}, {NULL, 0, NULL, 0}};
     settings set = {.last = 99};
     asj_context_options how;
@@ -200,12 +212,13 @@ int main(int argc, char **argv)
         case 'h': set.held_out = 1; break;
         case 'u': set.unrelated = 1; break;
         case 'n': set.no_cameras = 1; break;
+        case 'o': set.find_focal = 1; break;
         case 'f': set.first = strtol(optarg, NULL, 10); break;
         case 'l': set.last = strtol(optarg, NULL, 10); break;
         case 't': how.threads = (int32_t)strtol(optarg, NULL, 10); break;
         default:
-            fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--first N] [--last N] "
-                  "[--threads N]\n", stderr);
+            fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--first N] "
+                  "[--last N] [--threads N]\n", stderr);
             return 2;
         }
     if (asj_context_create(&how, &set.context) != ASJ_OK)

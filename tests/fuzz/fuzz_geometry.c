@@ -23,6 +23,7 @@ static void make_options(fuzz_bytes *bytes, asj_geometry_options *options)
     options->samples = 1 + (int32_t)(fuzz_byte(bytes) % 64);
     options->seed = fuzz_byte(bytes);
     options->widths[0] = options->widths[1] = options->heights[0] = options->heights[1] = SIDE;
+    options->find_focal = !(what & 64) && (what & 32) && options->model == ASJ_GEOMETRY_AUTO;
     if (what & 64) {
         camera_of(bytes, &options->cameras[0]);
         camera_of(bytes, &options->cameras[1]);

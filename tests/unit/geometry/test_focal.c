@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* asj_geometry_estimate() with find_focal: focal lengths that are found, motions that leave them open, what is refused. */
+#include "unit_test.h"
+
+#include "geometry/small_matrix.h"
+
+#include <asj/geometry.h>
+
+#define WIDTH 640
+#define HEIGHT 480
+#define RIGHT 26
+#define COUNT (3 * RIGHT)
+
+typedef struct scene {
+    double focal, rotation[9], translation[3];
+    int32_t is_flat; /* on one plane that faces camera 1 */
+    asj_geometry_candidate candidates[COUNT];
+} scene;
+
+/* Where a point of the plane through `point` with the normal, seen at pixel (x, y) of image 1, is in image 2. */
+static void map(const scene *s, double x, double y, const double point[3], const double normal[3], double xy[2])
+{
+    const double ray[3] = {(x - 319.5) / s->focal, (y - 239.5) / s->focal, 1};
+    const double depth = asj_dot3(normal, point) / asj_dot3(normal, ray), p[3] = {depth * ray[0], depth * ray[1], depth};
+    double q[3];
+    asj_apply3(s->rotation, p, q);
+    for (int k = 0; k < 3; k++)
+        q[k] += s->translation[k];
+    xy[0] = s->focal * q[0] / q[2] + 319.5;
+    xy[1] = s->focal * q[1] / q[2] + 239.5;
+}
+
+/* RIGHT right candidates, noise of half a pixel and 5 %, and two wrong ones for each place. */
+static void make(scene *s, const double turn[3], const double translation[3], uint64_t seed)
+{
+    synth_random random;
+    synth_random_seed(&random, seed);
+    asj_rotation_of(turn, s->rotation);
+    memcpy(s->translation, translation, sizeof s->translation);
+    memset(s->candidates, 0, sizeof s->candidates);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        asj_geometry_candidate *c = &s->candidates[i];
+        c->place1 = i % RIGHT;
+        c->place2 = i < RIGHT ? i : (7 * i + 3) % RIGHT;
+        c->probability = i < RIGHT ? 0.3 : 0.15;
+        if (i >= RIGHT) {
+            const double angle = synth_random_between(&random, 0, 2 * UNIT_PI), size = exp(synth_random_between(&random, -1, 1));
+            c->x1 = s->candidates[c->place1].x1;
+            c->y1 = s->candidates[c->place1].y1;
+            c->x2 = s->candidates[c->place2].x2;
+            c->y2 = s->candidates[c->place2].y2;
+            c->affine[0] = c->affine[3] = size * cos(angle);
+            c->affine[2] = size * sin(angle);
+            c->affine[1] = -c->affine[2];
+            continue;
+        }
+        const double x = synth_random_between(&random, 20, WIDTH - 20), y = synth_random_between(&random, 20, HEIGHT - 20);
+        const double depth = s->is_flat ? 5 : synth_random_between(&random, 3, 8);
+        const double point[3] = {depth * (x - 319.5) / s->focal, depth * (y - 239.5) / s->focal, depth};
+        const double normal[3] = {s->is_flat ? 0 : synth_random_between(&random, -0.7, 0.7),
+                                  s->is_flat ? 0 : synth_random_between(&random, -0.7, 0.7), -1};
+        double at[2], along[2][2];
+        map(s, x, y, point, normal, at);
+        map(s, x + 0.01, y, point, normal, along[0]);
+        map(s, x, y + 0.01, point, normal, along[1]);
+        c->x1 = x;
+        c->y1 = y;
+        c->x2 = at[0] + 0.5 * synth_random_normal(&random);
+        c->y2 = at[1] + 0.5 * synth_random_normal(&random);
+        for (int k = 0; k < 2; k++)
+            for (int j = 0; j < 2; j++)
+                c->affine[2 * j + k] = (along[k][j] - at[j]) / 0.01 * (1 + 0.05 * synth_random_normal(&random));
+    }
+}
+
+static asj_geometry_options blind_options(int32_t model)
+{
+    asj_geometry_options o;
+    asj_geometry_options_init(&o);
+    assert_int_equal(o.find_focal, 0);
+    o.model = model;
+    o.find_focal = 1;
+    o.samples = 200;
+    for (int v = 0; v < 2; v++) {
+        o.widths[v] = WIDTH;
+        o.heights[v] = HEIGHT;
+    }
+    return o;
+}
+
+static asj_geometry estimate(asj_context *context, const scene *s, const asj_geometry_options *o)
+{
+    asj_geometry g;
+    assert_int_equal(asj_geometry_estimate(context, s->candidates, COUNT, o, NULL, &g), ASJ_OK);
+    double sum = g.log10_nfa + g.inliers + g.focal[0] + g.focal[1] + g.focal_sd;
+    for (int k = 0; k < 36; k++)
+        sum += g.covariance[k] + g.matrix[k % 9] + g.rotation[k % 9] + g.translation[k % 3];
+    assert_true(isfinite(sum));
+    return g;
+}
+
+static void focal_lengths_are_found(void **state)
+{
+    (void)state;
+    const double focal[3] = {350, 600, 1100}, turn[3] = {0.15, -0.5, 0.1}, translation[3] = {2, -0.5, 0.8};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    scene s = {.focal = 0};
+    for (int i = 0; i < 3; i++) {
+        const asj_geometry_options o = blind_options(i == 1 ? ASJ_GEOMETRY_ESSENTIAL : ASJ_GEOMETRY_AUTO);
+        s.focal = focal[i];
+        make(&s, turn, translation, (uint64_t)i + 1);
+        const asj_geometry g = estimate(context, &s, &o);
+        assert_int_equal(g.status, ASJ_GEOMETRY_ACCEPTED);
+        assert_int_equal(g.model, ASJ_GEOMETRY_ESSENTIAL);
+        assert_true(g.focal_sd > 0 && g.focal_sd < 0.12 && g.focal[0] == g.focal[1]);
+        unit_near("focal length, in standard deviations", i, focal[i], log(g.focal[0] / focal[i]) / g.focal_sd, 0, 3);
+        double rest[9];
+        asj_multiply3_transposed(g.rotation, s.rotation, rest);
+        unit_near("rotation, deg", i, 0, asj_rotation_angle(rest) * 180 / UNIT_PI, 0, 3);
+    }
+    unit_context_free(&counter, &context);
+}
+
+/* Sideways with parallel axes, and a plane that faces the camera: any focal length explains them. A camera that only turns has no
+ * translation. None is an answer with a focal length. */
+static void what_leaves_it_open_has_none(void **state)
+{
+    (void)state;
+    const double turns[3][3] = {{0, 0, 0}, {0, 0, 0.2}, {0, 0, 0}}, moves[3][3] = {{1.5, 0.4, 0}, {1, 0, 0}, {0, 0, 0}};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    scene s = {.focal = 600};
+    for (int i = 0; i < 3; i++) {
+        s.is_flat = i == 1;
+        make(&s, turns[i], moves[i], 7);
+        for (int32_t model = ASJ_GEOMETRY_AUTO; model <= ASJ_GEOMETRY_ESSENTIAL; model++) {
+            const asj_geometry_options o = blind_options(model);
+            const asj_geometry g = estimate(context, &s, &o);
+            assert_true(g.focal[0] == 0 && g.focal_sd == 0 && !g.has_pose);
+            if (model == ASJ_GEOMETRY_ESSENTIAL)
+                assert_int_equal(g.status, ASJ_GEOMETRY_DEGENERATE);
+            else
+                assert_true(g.status == ASJ_GEOMETRY_ACCEPTED && g.model != ASJ_GEOMETRY_ESSENTIAL);
+        }
+    }
+    unit_context_free(&counter, &context);
+}
+
+static void threads_change_nothing(void **state)
+{
+    (void)state;
+    const double turn[3] = {0.15, -0.5, 0.1}, translation[3] = {2, -0.5, 0.8};
+    const asj_geometry_options o = blind_options(ASJ_GEOMETRY_ESSENTIAL);
+    scene s = {.focal = 500};
+    asj_geometry first = {0}, other;
+    make(&s, turn, translation, 5);
+    for (int32_t threads = 1; threads <= 3; threads += 2) {
+        unit_counter counter = {0};
+        asj_context *context = unit_context(&counter, threads);
+        other = estimate(context, &s, &o);
+        if (threads > 1)
+            assert_memory_equal(&first, &other, sizeof first);
+        first = other;
+        unit_context_free(&counter, &context);
+    }
+}
+
+static void bad_options_are_refused(void **state)
+{
+    (void)state;
+    const double none[3] = {0, 0, 0};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    scene s = {.focal = 600};
+    asj_geometry g;
+    make(&s, none, none, 3);
+    for (int32_t model = ASJ_GEOMETRY_FUNDAMENTAL; model <= ASJ_GEOMETRY_HOMOGRAPHY; model++) {
+        const asj_geometry_options o = blind_options(model);
+        assert_int_equal(asj_geometry_estimate(context, s.candidates, COUNT, &o, NULL, &g), ASJ_ERROR_OPTION);
+    }
+    asj_geometry_options o = blind_options(ASJ_GEOMETRY_AUTO);
+    o.cameras[1] = (asj_camera){600, 600, 320, 240};
+    assert_int_equal(asj_geometry_estimate(context, s.candidates, COUNT, &o, NULL, &g), ASJ_ERROR_OPTION);
+    o = blind_options(ASJ_GEOMETRY_AUTO);
+    o.find_focal = 2;
+    assert_int_equal(asj_geometry_estimate(context, s.candidates, COUNT, &o, NULL, &g), ASJ_ERROR_OPTION);
+    o = blind_options(ASJ_GEOMETRY_AUTO);
+    assert_int_equal(asj_geometry_estimate(context, s.candidates, 1, &o, NULL, &g), ASJ_OK);
+    assert_int_equal(g.status, ASJ_GEOMETRY_TOO_FEW);
+    o = blind_options(ASJ_GEOMETRY_ESSENTIAL);
+    assert_int_equal(asj_geometry_estimate(context, s.candidates, 2, &o, NULL, &g), ASJ_OK);
+    assert_int_equal(g.status, ASJ_GEOMETRY_CHANCE);
+    unit_context_free(&counter, &context);
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    (void)state;
+    const double turn[3] = {0.15, -0.5, 0.1}, translation[3] = {2, -0.5, 0.8};
+    asj_geometry_options o = blind_options(ASJ_GEOMETRY_ESSENTIAL);
+    scene s = {.focal = 500};
+    asj_geometry g;
+    long calls = 0;
+    o.samples = 20;
+    make(&s, turn, translation, 5);
+    for (long at = 0; at <= calls; at += at < 8 ? 1 : 17) {
+        unit_counter counter = {0};
+        asj_context *context = unit_context(&counter, 1);
+        const long before = counter.calls;
+        counter.fail_at = at ? before + at : 0;
+        const asj_status status = asj_geometry_estimate(context, s.candidates, 12, &o, NULL, &g);
+        assert_true(status == ASJ_OK || (at > 0 && status == ASJ_ERROR_MEMORY));
+        calls = at == 0 ? counter.calls - before : calls;
+        counter.fail_at = 0;
+        unit_context_free(&counter, &context);
+    }
+    assert_true(calls > 20);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(focal_lengths_are_found), cmocka_unit_test(what_leaves_it_open_has_none),
+        cmocka_unit_test(threads_change_nothing), cmocka_unit_test(bad_options_are_refused),
+        cmocka_unit_test(every_allocation_may_fail),
+    };
+    return cmocka_run_group_tests_name("focal", tests, NULL, NULL);
+}
