@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MESSAGE_SIZE = 1024, STEPS = 3 /* on the progress line: two detections and the matching */ };
+enum { FEW = 8, MESSAGE_SIZE = 1024, STEPS = 3 /* on the progress line: two detections and the matching */ };
 
 typedef struct run {
     const cli_match_arguments *arguments;
@@ -155,23 +155,28 @@ static void print_summary(const run *r)
     cli_note("%s, %s: %lu match%s%s%s%s%s%s", r->inputs[0].name, r->inputs[1].name, (unsigned long)r->result->match_count,
              r->result->match_count == 1 ? "" : "es", lines, file || arguments->plot ? " -> " : "", file ? file : "",
              file && arguments->plot ? ", " : "", arguments->plot ? arguments->plot : "");
-    if (r->result->match_count == 0)
-        cli_note("matches need corners that both show, from not too different sides: try --geometry auto, --minimum-support 0 or "
-                 "'asj-cli detect --for matching --plot' on either image");
 }
 
-/* Why there are none, as far as it can be told. */
+/* Why there are none, as far as it can be told, and what to try. */
 static void print_hint(const run *r)
 {
     const int32_t status = r->result->geometry.status;
     if (r->result->match_count > 0)
         return;
-    if (status == ASJ_GEOMETRY_NOT_ASKED)
-        cli_note("hint: views far apart may need --geometry auto, with --camera1 and --camera2 where they are known");
+    if (r->result->l_junction_count1 < FEW || r->result->l_junction_count2 < FEW)
+        cli_note("hint: %s has %lu corners only: 'asj-cli detect --for matching --plot' shows them",
+                 r->inputs[r->result->l_junction_count1 < FEW ? 0 : 1].name,
+                 (unsigned long)(r->result->l_junction_count1 < FEW ? r->result->l_junction_count1 : r->result->l_junction_count2));
+    else if (status == ASJ_GEOMETRY_NOT_ASKED)
+        cli_note("hint: matches need corners that both show, from not too different sides; for views far apart try "
+                 "--geometry auto, with --camera1 and --camera2 or --focal where they are known");
     else if (status == ASJ_GEOMETRY_AMBIGUOUS)
         cli_note("hint: several geometries explain the views as well: things that repeat");
+    else if (status == ASJ_GEOMETRY_DEGENERATE)
+        cli_note("hint: what matches leaves the motion open: a plane, or a camera that only turned; try --geometry auto");
     else if (status != ASJ_GEOMETRY_ACCEPTED)
-        cli_note("hint: nothing in common stands out from chance (geometry: %s)", asj_geometry_status_name(status));
+        cli_note("hint: nothing in common stands out from chance (geometry: %s)%s", asj_geometry_status_name(status),
+                 r->geometry.cameras[0].fx > 0 || r->geometry.find_focal ? "" : "; cameras or --focal estimate would help");
 }
 
 static void print_times(const run *r, double write_ms)

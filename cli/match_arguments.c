@@ -39,7 +39,8 @@ static const char conclusion[] =
 
 enum {
     OUTPUT, FORMAT, LINES, LINE_ENDS, JUNCTIONS_1, JUNCTIONS_2, REGION_1, REGION_2, MASK_1, MASK_2, PLOT,
-    PLOT_BACKGROUND, PLOT_LINES, PLOT_LAYOUT, PLOT_SCALE, PRESET, DETECT_PRESET, MATCH_PRESET, GEOMETRY, CAMERA_1, CAMERA_2, FOCAL
+    PLOT_BACKGROUND, PLOT_LINES, PLOT_EPIPOLAR, PLOT_LAYOUT, PLOT_SCALE, PRESET, DETECT_PRESET, MATCH_PRESET, GEOMETRY, CAMERA_1,
+    CAMERA_2, FOCAL
 };
 
 static const cli_option output_options[] = {
@@ -75,6 +76,8 @@ static const cli_option plot_options[] = {
     {PLOT_BACKGROUND, 0, "plot-background", "photo|color|white",
      "over the pale photographs in grey (the default) or in their colours, or on white"},
     {PLOT_LINES, 0, "plot-lines", "yes|no", "lines from one photograph to the other; yes is the default"},
+    {PLOT_EPIPOLAR, 0, "plot-epipolar", "yes|no",
+     "epipolar lines of the matches, where --geometry found an epipolar geometry; no is the default"},
     {PLOT_LAYOUT, 0, "plot-layout", "auto|beside|below",
      "where the second photograph stands; auto (the default): what fits a screen"},
     {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of an image, 0.01 .. 16; default: small images are enlarged"},
@@ -157,6 +160,7 @@ static int take_geometry(void *target, int id, const char *text)
 static int take_plot(void *target, int id, const char *text)
 {
     static const char *const answers[] = {"yes", "no", NULL};
+    int32_t answer;
     static const char *const layouts[] = {"auto", "beside", "below", NULL}; /* in the order of CLI_LAYOUT_... */
     cli_match_arguments *arguments = target;
     switch (id) {
@@ -166,6 +170,11 @@ static int take_plot(void *target, int id, const char *text)
     case PLOT_LINES:
         if ((arguments->style.without_lines = cli_find_word(answers, text)) < 0)
             return cli_usage_error("match", "--plot-lines: '%s' is not yes or no", text);
+        break;
+    case PLOT_EPIPOLAR:
+        if ((answer = cli_find_word(answers, text)) < 0)
+            return cli_usage_error("match", "--plot-epipolar: '%s' is not yes or no", text);
+        arguments->style.epipolar = answer == 0;
         break;
     default:
         if ((arguments->style.layout = cli_find_word(layouts, text)) < 0)

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Every match has one colour for its junctions, branches and line, given in order of place in the first photograph: from left to
  * right when the second one stands beside it, else from top to bottom. So lines that run close together differ in colour, and a
- * match in the wrong place stands out among neighbours of other colours. Branch b is darker than branch a. */
+ * match in the wrong place stands out among neighbours of other colours. Branch b is darker than branch a. What a geometry rejected
+ * is grey, below everything else. */
 #include "plot_match.h"
 #include "plot_color.h"
+#include "plot_epipolar.h"
 #include "plot_photo.h"
 #include "plot_surface.h"
 
@@ -29,7 +31,7 @@ typedef struct drawing {
     const cli_plot_match_content *content;
     const cli_plot_match_style *style;
     pair *pairs;
-    size_t count;
+    size_t count, rejected;
     int32_t beside;
     double scale, line, font;
     int32_t widths[2], heights[2]; /* of the photographs in the plot */
@@ -215,6 +217,43 @@ static void draw_stroke(cairo_t *cairo, const drawing *d, int v, const double st
     cairo_stroke(cairo);
 }
 
+/* Grey, with their lines. */
+static void draw_rejected(cairo_t *cairo, const drawing *d)
+{
+    cairo_set_source_rgba(cairo, 0.45, 0.45, 0.45, 0.8);
+    for (size_t k = 0; k < d->rejected; k++) {
+        pair p;
+        pair_of_match(&d->content->result->rejected[k], &p);
+        cairo_set_line_width(cairo, d->line);
+        for (int b = 0; b < 4; b++)
+            draw_stroke(cairo, d, b % 2, p.stroke[b % 2][b / 2]);
+        if (d->style->without_lines)
+            continue;
+        cairo_set_line_width(cairo, 0.5 * d->line);
+        cairo_move_to(cairo, to_x(d, 0, p.place[0][0]), to_y(d, 0, p.place[0][1]));
+        cairo_line_to(cairo, to_x(d, 1, p.place[1][0]), to_y(d, 1, p.place[1][1]));
+        cairo_stroke(cairo);
+    }
+}
+
+/* In the colour of the match. */
+static void draw_epipolar_lines(cairo_t *cairo, const drawing *d)
+{
+    const asj_geometry *g = &d->content->result->geometry;
+    if (g->status != ASJ_GEOMETRY_ACCEPTED || g->model == ASJ_GEOMETRY_HOMOGRAPHY)
+        return;
+    cairo_set_line_width(cairo, 0.7 * d->line);
+    for (size_t k = 0; k < d->count; k++)
+        for (int v = 0; v < 2; v++) {
+            double ends[4];
+            const double *from = d->pairs[k].place[1 - v];
+            const asj_image *image = d->content->images[v];
+            set_color(cairo, d, &d->pairs[k], 1, 0.55);
+            if (cli_epipolar_line(g, v, from[0], from[1], image->width, image->height, ends))
+                draw_stroke(cairo, d, v, ends);
+        }
+}
+
 static void draw_dot(cairo_t *cairo, const drawing *d, int v, const pair *p)
 {
     double x = to_x(d, v, p->place[v][0]), y = to_y(d, v, p->place[v][1]);
@@ -247,7 +286,7 @@ static void draw_pairs(cairo_t *cairo, const drawing *d, int v)
 
 static void draw_legend(cairo_t *cairo, const drawing *d)
 {
-    char text[160];
+    char text[200], rejected[40] = "";
     const char *what[] = {"matches", "match", "line segments", "line segment"};
     const char *name = what[(d->content->segments ? 2 : 0) + (d->count == 1 ? 1 : 0)];
     const char *order = d->beside ? "left to right" : "top to bottom";
@@ -256,11 +295,13 @@ static void draw_legend(cairo_t *cairo, const drawing *d)
     cairo_select_font_face(cairo, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cairo, d->font);
     cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
-    if (d->width >= 56 * d->font && d->count > 1)
-        snprintf(text, sizeof text, "%lu %s   one colour each, by place in the first photograph, %s%s", count, name, order,
-                 d->content->segments ? "" : "; branch b is darker");
+    if (d->rejected > 0)
+        snprintf(rejected, sizeof rejected, "; grey: %lu rejected", (unsigned long)d->rejected);
+    if (d->width >= (d->rejected ? 66 : 56) * d->font && d->count > 1)
+        snprintf(text, sizeof text, "%lu %s   one colour each, by place in the first photograph, %s%s%s", count, name, order,
+                 d->content->segments ? "" : "; branch b is darker", rejected);
     else
-        snprintf(text, sizeof text, "%lu %s", count, name);
+        snprintf(text, sizeof text, "%lu %s%s", count, name, rejected);
     cairo_move_to(cairo, 0.8 * d->font, d->height + 1.55 * d->font);
     cairo_show_text(cairo, text);
 }
@@ -271,6 +312,9 @@ static void draw(cairo_t *cairo, void *user)
     cairo_set_source_rgb(cairo, 1, 1, 1);
     cairo_paint(cairo);
     draw_photos(cairo, d);
+    draw_rejected(cairo, d);
+    if (d->style->epipolar)
+        draw_epipolar_lines(cairo, d);
     if (!d->style->without_lines)
         draw_lines(cairo, d);
     draw_pairs(cairo, d, 0);
@@ -306,6 +350,7 @@ asj_status cli_plot_match(const char *path, int32_t format, const cli_plot_match
                           const cli_plot_match_style *style, char *message, size_t message_size)
 {
     drawing d = {.content = content, .style = style};
+    d.rejected = content->segments ? 0 : (size_t)content->result->rejected_count;
     lay_out(&d);
     asj_status status = ASJ_ERROR_MEMORY;
     if (make_pairs(&d))

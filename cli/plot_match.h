@@ -13,6 +13,7 @@ enum { CLI_LAYOUT_AUTO = 0, CLI_LAYOUT_BESIDE = 1, CLI_LAYOUT_BELOW = 2 };
 typedef struct cli_plot_match_style {
     int32_t background; /* CLI_PLOT_PHOTO, .. */
     int32_t without_lines;
+    int32_t epipolar;   /* epipolar lines, where there are any */
     int32_t layout;
     double scale;       /* plot pixels for one image pixel; 0 = automatic */
 } cli_plot_match_style;

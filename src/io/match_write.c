@@ -35,12 +35,17 @@ static asj_status check(const asj_match_result *result, const asj_message *messa
     const uint32_t counts[2] = {result->l_junction_count1, result->l_junction_count2};
     uint32_t i;
     int v;
-    if ((result->match_count && !result->matches) || (counts[0] && !lists[0]) || (counts[1] && !lists[1]))
+    if ((result->match_count && !result->matches) || (result->rejected_count && !result->rejected) ||
+        (counts[0] && !lists[0]) || (counts[1] && !lists[1]))
         return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the result has a count but no array");
     for (i = 0; i < result->match_count; i++)
         if (!is_sound(result, &result->matches[i]))
             return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: match %lu has NaN, infinity or a wrong index",
                                     (unsigned long)i);
+    for (i = 0; i < result->rejected_count; i++)
+        if (!is_sound(result, &result->rejected[i]))
+            return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: rejected match %lu has NaN, infinity or a wrong "
+                                    "index", (unsigned long)i);
     for (v = 0; v < 2; v++)
         for (i = 0; i < counts[v]; i++)
             if (!is_sound_corner(&lists[v][i]))

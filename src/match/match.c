@@ -139,6 +139,7 @@ static asj_status match_features(asj_context *context, const asj_match_options *
         status = finish(&run, watch, result);
     asj_release(&context->memory, run.candidates.list);
     asj_release(&context->memory, run.choices.list);
+    asj_release(&context->memory, run.rejected.list);
     asj_support_free(&context->memory, &run.support);
     if (status == ASJ_OK && asj_progress(context, ASJ_STAGE_ASSIGN, 1) != ASJ_OK) {
         asj_match_result_free(result);

@@ -10,7 +10,7 @@
 typedef struct result {
     asj_match_result shown; /* first, so that the caller's pointer is ours */
     asj_memory memory;
-    asj_junction_match *matches;
+    asj_junction_match *matches, *rejected;
     asj_l_junction *l1, *l2;
     asj_place *places; /* of `count` matches */
     uint32_t count;
@@ -80,6 +80,17 @@ static asj_l_junction *copy(asj_memory *memory, const asj_l_junctions *l_junctio
     return l;
 }
 
+/* Choices as matches, smallest distance first; NULL without memory. */
+static asj_junction_match *list_of(const asj_match_run *run, asj_memory *memory, const asj_choices *choices)
+{
+    asj_junction_match *list = asj_allocate(memory, choices->count, sizeof *list);
+    for (size_t n = 0; list && n < choices->count; n++)
+        fill(run, &choices->list[n], &list[n]);
+    if (list && choices->count > 1)
+        qsort(list, choices->count, sizeof *list, by_distance);
+    return list;
+}
+
 asj_match_result *asj_match_result_create(const asj_match_run *run)
 {
     asj_memory memory = {.allocator = run->context->memory.allocator};
@@ -89,21 +100,20 @@ asj_match_result *asj_match_result_create(const asj_match_run *run)
     if (!r)
         return NULL;
     r->memory = memory;
-    r->matches = asj_allocate(&memory, count, sizeof *r->matches);
+    r->matches = list_of(run, &memory, &run->choices);
+    r->rejected = list_of(run, &memory, &run->rejected);
     r->l1 = copy(&memory, in1);
     r->l2 = copy(&memory, in2);
     asj_match_result *shown = &r->shown;
     r->places = asj_allocate(&memory, count, sizeof *r->places);
-    if (!r->matches || !r->l1 || !r->l2 || !r->places) {
+    if (!r->matches || !r->rejected || !r->l1 || !r->l2 || !r->places) {
         asj_match_result_free(&shown);
         return NULL;
     }
-    for (size_t n = 0; n < count; n++)
-        fill(run, &run->choices.list[n], &r->matches[n]);
-    if (count > 1)
-        qsort(r->matches, count, sizeof *r->matches, by_distance);
     r->count = (uint32_t)count;
     asj_places_sort(r->places, r->matches, r->count);
+    shown->rejected = run->rejected.count ? r->rejected : NULL;
+    shown->rejected_count = run->rejected.count;
     shown->matches = count ? r->matches : NULL;
     shown->match_count = (uint32_t)count;
     shown->l_junctions1 = in1->count ? r->l1 : NULL;
@@ -131,6 +141,7 @@ void asj_match_result_free(asj_match_result **pointer)
     result *r = (result *)*pointer;
     asj_memory memory = r->memory;
     asj_release(&memory, r->matches);
+    asj_release(&memory, r->rejected);
     asj_release(&memory, r->l1);
     asj_release(&memory, r->l2);
     asj_release(&memory, r->places);

@@ -14,6 +14,7 @@ typedef struct asj_match_run {
     asj_support support;       /* support.c: who agrees with whom */
     asj_choices choices;       /* assign.c; room for every location of image 1 */
     asj_geometry geometry;     /* two_view.c */
+    asj_choices rejected;      /* two_view.c: what were choices before */
 } asj_match_run;
 
 /* L-junction of a candidate in image `side` (0 or 1). */

@@ -198,10 +198,13 @@ static double probability_of(const wide_run *w, const asj_candidate *c)
     return found ? w->probability[found - wide->list] : 0;
 }
 
-static void filter(asj_match_run *run, const wide_run *w)
+static asj_status filter(asj_match_run *run, const wide_run *w)
 {
-    asj_choices *choices = &run->choices;
+    asj_choices *choices = &run->choices, *rejected = &run->rejected;
     size_t against = 0, kept = 0;
+    rejected->list = asj_allocate(&run->context->memory, choices->count, sizeof *rejected->list);
+    if (!rejected->list)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the geometry");
     for (int32_t pass = 0; pass < 2; pass++) {
         for (size_t n = 0; n < choices->count; n++) {
             const asj_candidate *c = &run->candidates.list[choices->list[n].candidate];
@@ -212,10 +215,13 @@ static void filter(asj_match_run *run, const wide_run *w)
             } else if (!far || 2 * against > choices->count) {
                 choices->list[kept] = choices->list[n];
                 choices->list[kept++].probability = (float)probability_of(w, c);
+            } else {
+                rejected->list[rejected->count++] = choices->list[n];
             }
         }
     }
     choices->count = kept;
+    return ASJ_OK;
 }
 
 /* --- matches that come ------------------------------------------------------------------------------------------------------- */
@@ -284,8 +290,9 @@ static asj_status apply(asj_match_run *run, const wide_run *w)
     asj_status status = list && taken[0] && taken[1] ? ASJ_OK
                                                      : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the geometry");
     if (status == ASJ_OK) {
-        filter(run, w);
-        status = rescue(run, w, list, taken);
+        status = filter(run, w);
+        if (status == ASJ_OK)
+            status = rescue(run, w, list, taken);
     }
     asj_release(memory, taken[0]);
     asj_release(memory, taken[1]);

@@ -163,7 +163,11 @@ static void no_match_is_a_result(void **state)
     expect_code(result, 0);
     assert_string_equal(result->out, HEADER);
     expect_in(result, result->err, "first.png, flat.png: 0 matches");
-    expect_in(result, result->err, "hint: views far apart may need --geometry auto");
+    expect_in(result, result->err, "hint: flat.png has 0 corners only");
+    result = run_cli("match", "--minimum-support", "60", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "0 matches");
+    expect_in(result, result->err, "for views far apart try --geometry auto");
     result = run_cli("match", "-q", "dot.png", "flat.png", NULL);
     expect_code(result, 0);
     assert_string_equal(result->out, HEADER);

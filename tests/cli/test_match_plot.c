@@ -197,6 +197,23 @@ static void plots_are_repeatable(void **state)
         free(bytes[i]);
 }
 
+/* With a geometry. Lines are drawn where they are asked for, on both sides; a word that is neither yes nor no is refused. */
+static void epipolar_lines_are_drawn_on_demand(void **state)
+{
+    size_t with = 0, without = 0;
+    (void)state;
+    expect_code(run_cli("match", "-q", "--geometry", "fundamental", "-p", "with.svg", "--plot-epipolar", "yes", "first.png",
+                        "second.png", NULL), 0);
+    expect_code(run_cli("match", "-q", "--geometry", "fundamental", "-p", "without.svg", "--plot-epipolar", "no", "first.png",
+                        "second.png", NULL), 0);
+    free(read_bytes("with.svg", &with));
+    free(read_bytes("without.svg", &without));
+    assert_true(with > without + 2000);
+    const outcome *result = run_cli("match", "-p", "with.svg", "--plot-epipolar", "1", "first.png", "second.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--plot-epipolar: '1' is not yes or no");
+}
+
 static void a_plot_alone_prints_no_matches(void **state)
 {
     (void)state;
@@ -246,6 +263,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(views_of_any_size_are_drawn),
         cmocka_unit_test(svg_and_pdf_hold_the_photographs),
         cmocka_unit_test(plots_are_repeatable),
+        cmocka_unit_test(epipolar_lines_are_drawn_on_demand),
         cmocka_unit_test(a_plot_alone_prints_no_matches),
         cmocka_unit_test(plots_take_the_place_of_no_other_file),
     };

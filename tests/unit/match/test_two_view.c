@@ -9,6 +9,7 @@
 #include <asj/asj.h>
 
 #define SEED 6 /* a furnished room, 33 degrees */
+#define REJECTING 3
 
 typedef struct views {
     synth_wide_pair pair;
@@ -111,6 +112,48 @@ static void the_pose_is_that_of_the_cameras(void **state)
     unit_context_free(&counter, &context);
 }
 
+static uint64_t count_of(const asj_junction_match *list, uint64_t count, const asj_junction_match *m)
+{
+    uint64_t found = 0;
+    for (uint64_t k = 0; k < count; k++)
+        found += list[k].l1 == m->l1 && list[k].l2 == m->l2;
+    return found;
+}
+
+/* Every match that there is without the geometry is either there with it or among the rejected ones, which lie off their lines. */
+static void what_goes_is_told(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_match_result *without = NULL, *with = NULL;
+    views v;
+    uint64_t told = 0;
+    make(context, REJECTING, &v);
+    asj_match_options options = with_cameras(&v);
+    assert_int_equal(match(context, &v, &v, &options, &with), ASJ_OK);
+    options.geometry.model = ASJ_GEOMETRY_NONE;
+    assert_int_equal(match(context, &v, &v, &options, &without), ASJ_OK);
+    assert_int_equal(with->geometry.status, ASJ_GEOMETRY_ACCEPTED);
+    assert_int_equal(without->rejected_count, 0);
+    assert_null(without->rejected);
+    assert_in_range(with->rejected_count, 1, without->match_count);
+    for (uint32_t k = 0; k < without->match_count; k++) {
+        const asj_junction_match *m = &without->matches[k];
+        const uint64_t kept = count_of(with->matches, with->match_count, m);
+        const uint64_t gone = count_of(with->rejected, with->rejected_count, m);
+        assert_int_equal(kept + gone, 1);
+        told += gone;
+        if (gone)
+            assert_true(from_line(with->geometry.matrix, m) > 3);
+    }
+    assert_int_equal(told, with->rejected_count);
+    asj_match_result_free(&with);
+    asj_match_result_free(&without);
+    release(&v);
+    unit_context_free(&counter, &context);
+}
+
 static void what_is_not_accepted_changes_nothing(void **state)
 {
     (void)state;
@@ -144,7 +187,8 @@ static void what_is_not_accepted_changes_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_pose_is_that_of_the_cameras), cmocka_unit_test(what_is_not_accepted_changes_nothing),
+        cmocka_unit_test(the_pose_is_that_of_the_cameras), cmocka_unit_test(what_goes_is_told),
+        cmocka_unit_test(what_is_not_accepted_changes_nothing),
     };
     return cmocka_run_group_tests_name("two views", tests, NULL, NULL);
 }
