@@ -14,6 +14,7 @@ from typing import Any
 from . import __version__, collection, errors
 from .collection import plan as plans
 from .collection.run import Dask, Processes
+from .geometry import MODELS
 from .options import DETECTOR, MATCHER
 
 
@@ -39,6 +40,14 @@ def _parser() -> argparse.ArgumentParser:
     work.add_argument("--no-verify", action="store_true", help="COLMAP: no two-view geometries")
     work.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="detector", help="an option of the detector")
     work.add_argument("--match-set", action="append", default=[], metavar="NAME=VALUE", dest="matcher", help="an option of the matcher")
+    work.add_argument(
+        "--geometry", choices=list(MODELS), default="none", help="estimate what relates the images of a pair, and let it decide which matches hold"
+    )
+    work.add_argument(
+        "--focal", default="exif", metavar="F|exif|estimate|none",
+        help="focal lengths for the geometry: of the EXIF data where both images have them (default), one that is found for each pair, "
+        "none, or a number of pixels",
+    )  # fmt: skip
     work.add_argument("--quiet", action="store_true", help="no progress")
     return parser
 
@@ -54,6 +63,22 @@ def _options(words: Sequence[str], table: Any, preset: str) -> dict[str, str]:
     return options
 
 
+def _focal(arguments: argparse.Namespace) -> str:
+    word: str = arguments.focal
+    if word not in ("exif", "estimate", "none"):
+        try:
+            good = 1 <= float(word) <= 1e7
+        except ValueError:
+            good = False
+        if not good:
+            raise ValueError(f"--focal: {word!r} is not a length in pixels, 1 and more, or exif, estimate or none")
+    if word != "exif" and arguments.geometry not in ("auto", "essential"):
+        raise ValueError("--focal changes nothing without --geometry auto or essential")
+    if word == "none" and arguments.geometry == "essential":
+        raise ValueError("--geometry essential needs focal lengths")
+    return word
+
+
 def _plan(arguments: argparse.Namespace) -> plans.Plan:
     names = plans.find_images(arguments.folder)
     if not names:
@@ -67,8 +92,9 @@ def _plan(arguments: argparse.Namespace) -> plans.Plan:
     else:
         pairs = plans.all_pairs(names)
     return plans.Plan(
-        arguments.folder, names, pairs, _options(arguments.detector, DETECTOR, "match"), _options(arguments.matcher, MATCHER, "default")
-    )
+        arguments.folder, names, pairs, _options(arguments.detector, DETECTOR, "match"), _options(arguments.matcher, MATCHER, "default"),
+        arguments.geometry, _focal(arguments),
+    )  # fmt: skip
 
 
 def _progress(what: str, done: int, total: int, left: float) -> None:

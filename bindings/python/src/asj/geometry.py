@@ -38,8 +38,10 @@ class Geometry:
     translation: NDArray[np.float64] | None
     #: (6, 6) of rotation (rad) and translation; None as above
     covariance: NDArray[np.float64] | None
-    #: px, of both cameras; 0 when they are not known
+    #: px, of both cameras, given or found; 0 when they are not known
     focal: tuple[float, float]
+    #: standard deviation of the log of the focal length, where it was found; else 0
+    focal_sd: float
     #: log10 of how often chance brings such a geometry
     log10_nfa: float
     #: sum of the probabilities of the candidates
@@ -49,13 +51,16 @@ class Geometry:
         return self.status == "accepted"
 
 
-def fill(options: Any, model: str, cameras: Sequence[Camera | None], sizes: Sequence[tuple[int, int]]) -> None:
+def fill(options: Any, model: str, cameras: Sequence[Camera | None], sizes: Sequence[tuple[int, int]], find_focal: bool) -> None:
     """Sets the geometry of an asj_match_options."""
     if model not in MODELS:
         raise OptionError(f"geometry is {model!r}: one of {', '.join(MODELS)}")
     if model == "none" and any(camera is not None for camera in cameras):
         raise OptionError('a camera changes nothing without geometry="auto" (or another)')
+    if find_focal and model not in ("auto", "essential"):
+        raise OptionError(f'find_focal needs geometry="auto" or "essential", not {model!r}')
     options.geometry.model = MODELS[model]
+    options.geometry.find_focal = int(find_focal)
     for place, camera, (width, height) in zip(options.geometry.cameras, cameras, sizes):
         if camera is not None:
             place.fx, place.fy, place.cx, place.cy = _numbers(camera, width, height)
@@ -89,5 +94,5 @@ def read(record: Any) -> Geometry | None:
     return Geometry(
         text(lib.asj_geometry_status_name(record.status)), text(lib.asj_geometry_model_name(record.model)), array(record.matrix, 3, 3),
         array(record.rotation, 3, 3) if posed else None, array(record.translation, 3) if posed else None,
-        array(record.covariance, 6, 6) if posed else None, (record.focal[0], record.focal[1]), record.log10_nfa, record.inliers,
+        array(record.covariance, 6, 6) if posed else None, (record.focal[0], record.focal[1]), record.focal_sd, record.log10_nfa, record.inliers,
     )  # fmt: skip

@@ -99,12 +99,30 @@ def read(path: str | os.PathLike[str]) -> NDArray[np.uint8]:
         raise ImageError(f"{os.fspath(path)}: {bad}") from bad
 
 
+_FILM_DIAGONAL = 43.26661530556787  # mm, of 36 x 24
+_MM_PER_UNIT = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}
+
+
 def focal_length(path: str | os.PathLike[str]) -> float | None:
-    """Focal length in pixels of the upright image, from EXIF data (focal length of 35 mm film); None where there is none."""
+    """Focal length in pixels of the upright image, from EXIF data; None where there is none that can be.
+
+    From the focal length on 35 mm film, by the diagonal, or else from the focal length and the resolution on the focal plane. A picture
+    that was cut since has none. The same as the library's asj_image_file.focal_length (src/io/lens.c).
+    """
     from PIL import Image
 
-    with Image.open(path) as file:
-        width, height = file.size
-        exif = file.getexif().get_ifd(0x8769)
-    film = exif.get(0xA405)
-    return float(film) * max(width, height) / 36.0 if film else None
+    try:
+        with Image.open(path) as file:
+            longer, shorter = max(file.size), min(file.size)
+            exif = file.getexif().get_ifd(0x8769)
+        was = [float(exif.get(tag, 0)) for tag in (0xA002, 0xA003)]
+        film, mm, per_unit = (float(exif.get(tag, 0)) for tag in (0xA405, 0x920A, 0xA20E))
+        unit = _MM_PER_UNIT.get(int(exif.get(0xA210, 2)), 0.0)
+    except (OSError, ValueError, SyntaxError, TypeError, ArithmeticError, KeyError, Image.DecompressionBombError):
+        return None
+    if min(was) > 0 and not abs(max(was) * shorter / (min(was) * longer) - 1) <= 0.01:
+        return None
+    focal = film * np.hypot(longer, shorter) / _FILM_DIAGONAL
+    if not film > 0 and unit > 0:
+        focal = mm * per_unit / unit * (longer / max(was) if max(was) > 0 else 1)
+    return float(focal) if 0.2 * longer <= focal <= 50 * longer else None

@@ -96,6 +96,11 @@ class Matches:
         return np.asarray(self.matches["probability"])
 
     @property
+    def rejected(self) -> NDArray[Any]:
+        """Records of what would match without the geometry, and contradicts it."""
+        return arrays.view(self._result.rejected, self._result.rejected_count, "asj_junction_match", self._result)
+
+    @property
     def geometry(self) -> Geometry | None:
         """What relates the two views; None unless :func:`asj.match` was asked for it."""
         return read_geometry(self._result.geometry)
@@ -117,7 +122,8 @@ class Matches:
 
 def match(
     features1: Features, features2: Features, *, geometry: str = "none", camera1: Camera | None = None, camera2: Camera | None = None,
-    preset: str = "default", context: Context | None = None, **options: object,
+    find_focal: bool = False, preset: str = "default", context: Context | None = None,
+    **options: object,
 ) -> Matches:  # fmt: skip
     """Matches the features of two images.
 
@@ -125,6 +131,7 @@ def match(
                it and adds those that it makes likely; "none" does not
     camera1    of the first image: the matrix K, (fx, fy, cx, cy), or a focal length in pixels; None = not known
     camera2    of the second image; None = as camera1
+    find_focal no camera is known: one focal length for both is found with the motion ("auto" and "essential")
     options    those of the matcher by name (:func:`asj.match_options` lists them), for instance ratio=1.3, descriptor="sift"
 
     >>> import numpy as np
@@ -140,7 +147,7 @@ def match(
             break
     record = MATCHER.fill(preset, options)
     cameras = (camera1, camera1 if camera2 is None else camera2)
-    fill_geometry(record, geometry, cameras, [(features.width, features.height) for features in (features1, features2)])
+    fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in (features1, features2)], find_focal)
     context = context or current()
     place = ffi.new("asj_match_result **")
     one, two = features1.described(record, context), features2.described(record, context)

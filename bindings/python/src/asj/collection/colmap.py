@@ -4,11 +4,16 @@
 Key points are the junctions, each where all its matches together put it (locations.py), with their affine shape, moved by half a pixel
 (COLMAP's first pixel has its centre at (0.5, 0.5)).
 The shape takes the unit circle to an ellipse along two branches of the junction. Images have a camera each, SIMPLE_RADIAL, with the
-focal length of their EXIF data where they have one and 1.2 times the longer side elsewhere, as COLMAP itself guesses.
+focal length of their EXIF data where they have one (and then it is marked as known) and 1.2 times the longer side elsewhere, as COLMAP
+itself guesses.
+
+Where an epipolar geometry was asked for and accepted, that is the pair's two-view geometry, with all its matches as inliers, since what
+contradicts it has gone. COLMAP's own verification gives the others: a homography speaks for one plane only.
 """
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -44,8 +49,42 @@ def write(store: Store, path: Path, verify: bool = True, refine: bool = True) ->
             database.close()
         if verify:
             pycolmap.geometric_verification(temporary)
+        _write_geometries(store, pycolmap, temporary, numbers)
         for left in ("-wal", "-shm"):
             Path(f"{temporary}{left}").unlink(missing_ok=True)
+
+
+def _write_geometries(store: Store, pycolmap: Any, path: Path, numbers: dict[int, int]) -> None:
+    """Accepted epipolar geometries, in place of what COLMAP may have found for these pairs."""
+    database = pycolmap.Database.open(path)
+    try:
+        for one, two, matched in store.matched():
+            found = json.loads(matched.geometry) if matched.geometry and matched.matches else None
+            if found and found["status"] == "accepted" and found["model"] != "homography":
+                records = np.frombuffer(matched.matches or b"", arrays.struct_type("asj_junction_match"))
+                geometry = _geometry(pycolmap, found, np.stack([records["junction1"], records["junction2"]], axis=1))
+                if database.exists_two_view_geometry(numbers[one], numbers[two]):
+                    database.delete_two_view_geometry(numbers[one], numbers[two])
+                database.write_two_view_geometry(numbers[one], numbers[two], geometry)
+    finally:
+        database.close()
+
+
+_HALF_A_PIXEL = np.array([[1.0, 0.0, -0.5], [0.0, 1.0, -0.5], [0.0, 0.0, 1.0]])  # from COLMAP's pixels to ours
+
+
+def _geometry(pycolmap: Any, found: dict[str, Any], pairs: NDArray[np.uint32]) -> Any:
+    """As COLMAP has it: x2' F x1 = 0, cam2_from_cam1 = (R, t)."""
+    kinds = pycolmap.TwoViewGeometryConfiguration
+    geometry = pycolmap.TwoViewGeometry()
+    geometry.config = kinds.CALIBRATED if found["model"] == "essential" and found["rotation"] else kinds.UNCALIBRATED
+    geometry.F = _HALF_A_PIXEL.T @ np.array(found["matrix"]) @ _HALF_A_PIXEL
+    if geometry.config == kinds.CALIBRATED:
+        rotation, t = np.array(found["rotation"]), np.array(found["translation"])
+        geometry.cam2_from_cam1 = pycolmap.Rigid3d(pycolmap.Rotation3d(rotation), t)
+        geometry.E = np.array([[0, -t[2], t[1]], [t[2], 0, -t[0]], [-t[1], t[0], 0]]) @ rotation
+    geometry.inlier_matches = np.ascontiguousarray(pairs, np.uint32)
+    return geometry
 
 
 def _matches(store: Store) -> Iterator[tuple[int, int, NDArray[Any]]]:

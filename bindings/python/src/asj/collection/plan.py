@@ -13,13 +13,15 @@ _TILE = 16  # images along a side of a tile of pairs: a process keeps that many 
 
 @dataclass(frozen=True)
 class Plan:
-    """The work: images by name below a folder, pairs of names, options of detector and matcher."""
+    """The work: images by name below a folder, pairs of names, options of detector and matcher, the geometry."""
 
     folder: Path
     images: list[str]
     pairs: list[tuple[str, str]]
     detector: dict[str, str] = field(default_factory=dict)
     matcher: dict[str, str] = field(default_factory=dict)
+    geometry: str = "none"
+    focal: str = "exif"  # where cameras are known from; "estimate", "none", or a number of pixels
 
 
 def find_images(folder: Path) -> list[str]:

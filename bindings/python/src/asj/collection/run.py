@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import concurrent.futures
+import dataclasses
 import multiprocessing
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -96,13 +97,12 @@ def _detect(folder: Path, number: int, name: str, detector: dict[str, str], matc
     return number, detected
 
 
-def _match(folder: Path, number: int, records: list[tuple[str, bytes]], plan_options: tuple[dict[str, str], dict[str, str]]) -> tuple[int, Matched]:
-    detector, matcher = plan_options
+def _match(plan: Plan, number: int, records: list[tuple[str, bytes, float | None]]) -> tuple[int, Matched]:
     try:
-        one, two = (_kept.get(folder / name, data, detector, matcher) for name, data in records)
+        one, two = (_kept.get(plan.folder / name, data, plan.detector, plan.matcher) for name, data, _ in records)
     except Exception as bad:  # an image that was there for detection and is not any more
         return number, Matched(str(bad) or type(bad).__name__, None, None, None)
-    return number, tasks.match_images(one, two, matcher)
+    return number, tasks.match_images(one, two, (records[0][2], records[1][2]), plan)
 
 
 class Processes:
@@ -135,11 +135,12 @@ class Processes:
     def match(self, plan: Plan, store: Store, pairs: list[tuple[int, int, int]]) -> Iterator[tuple[int, Matched]]:
         """One task a pair."""
         names = dict(store.images())
+        without_lists = dataclasses.replace(plan, images=[], pairs=[])  # it goes along with every task
 
         def work() -> Iterator[tuple[Any, ...]]:
             for number, *both in pairs:
-                records = [(names[image], store.features(image).features or b"") for image in both]
-                yield (_match, plan.folder, number, records, (plan.detector, plan.matcher))
+                images = [(names[image], store.features(image)) for image in both]
+                yield _match, without_lists, number, [(name, image.features or b"", image.focal) for name, image in images]
 
         yield from _bounded(self._pool, self.jobs, work())
 
@@ -173,10 +174,10 @@ def _dask_summary(result: tuple[Detected, Features | None]) -> Detected:
     return result[0]
 
 
-def _dask_match(one: tuple[Detected, Features | None], two: tuple[Detected, Features | None], options: dict[str, str]) -> Matched:
+def _dask_match(one: tuple[Detected, Features | None], two: tuple[Detected, Features | None], plan: Plan) -> Matched:
     if one[1] is None or two[1] is None:
         return Matched("an image without junctions", None, None, None)
-    return tasks.match_images(one[1], two[1], options)
+    return tasks.match_images(one[1], two[1], (one[0].focal, two[0].focal), plan)
 
 
 class Dask:
@@ -200,11 +201,12 @@ class Dask:
         """One task a pair; an image whose features are on no worker any more is looked at once more."""
         names = dict(store.images())
         last = {image: position for position, (_, *both) in enumerate(pairs) for image in both}
+        without_lists = dataclasses.replace(plan, images=[], pairs=[])
 
         def work() -> Iterator[tuple[int, Any]]:
             for position, (number, *both) in enumerate(pairs):
                 one, two = (self._feature(plan, image, names[image]) for image in both)
-                yield number, self.client.submit(_dask_match, one, two, plan.matcher, pure=False, retries=2)
+                yield number, self.client.submit(_dask_match, one, two, without_lists, pure=False, retries=2)
                 for image in both:
                     if last[image] == position:
                         del self._features[image]

@@ -164,6 +164,7 @@ def _about(plan: Plan) -> dict[str, str]:
         "version": __version__,
         "detector": json.dumps(plan.detector, sort_keys=True),
         "matcher": json.dumps(plan.matcher, sort_keys=True),
+        "geometry": json.dumps([plan.geometry, plan.focal]),
     }
 
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import json
 from collections import OrderedDict
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +15,9 @@ from numpy.typing import NDArray
 
 from .. import context, errors, images
 from ..features import DescribedFeatures, Features, detect
+from ..geometry import Geometry
 from ..matches import Matches, match
+from .plan import Plan
 
 _KEPT = 512 << 20  # bytes of features that a process keeps in memory: a hundred photographs of a megapixel
 
@@ -55,13 +59,32 @@ def detect_image(path: Path, detector: dict[str, str], matcher: dict[str, str]) 
         return Detected(_line(bad), 0, 0, None, None), None
 
 
-def match_images(one: Features, two: Features, options: dict[str, str]) -> Matched:
-    """The matches of two images."""
+def match_images(one: Features, two: Features, focals: tuple[float | None, float | None], plan: Plan) -> Matched:
+    """The matches of two images, and what relates them, where it is asked for. focals: from EXIF data, px."""
     try:
-        found = match(one, two, **_keywords(options))
-        return Matched(None, found.matches.tobytes(), line_indices(found).tobytes(), None)
+        found = match(one, two, **_keywords(plan.matcher), **_cameras(focals, plan))
+        return Matched(None, found.matches.tobytes(), line_indices(found).tobytes(), _as_json(found.geometry))
     except (errors.Error, MemoryError) as bad:
         return Matched(_line(bad), None, None, None)
+
+
+def _cameras(focals: tuple[float | None, float | None], plan: Plan) -> dict[str, Any]:
+    """Keywords of match(). A focal length that only one of both has is of no use."""
+    if plan.geometry in ("none", "fundamental", "homography"):
+        return {"geometry": plan.geometry}
+    known = plan.focal == "exif" and None not in focals
+    if plan.focal == "estimate" or (plan.geometry == "essential" and plan.focal == "exif" and not known):
+        return {"geometry": plan.geometry, "find_focal": True}
+    if plan.focal in ("exif", "none"):
+        return {"geometry": plan.geometry, "camera1": focals[0] if known else None, "camera2": focals[1] if known else None}
+    return {"geometry": plan.geometry, "camera1": float(plan.focal)}
+
+
+def _as_json(geometry: Geometry | None) -> str | None:
+    if geometry is None:
+        return None
+    values = dataclasses.asdict(geometry)
+    return json.dumps({key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in values.items()})
 
 
 class Kept:

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: BSD-2-Clause
+"""Collections with geometry: focal lengths from EXIF data, poses and fundamental matrices in the COLMAP database."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from asj.__main__ import main
+from asj.images import focal_length
+from numpy.typing import NDArray
+
+EXAMPLES = Path(__file__).parent.parent / "examples"
+DIAGONAL = 43.26661530556787
+
+
+def exif(**values: Any) -> Any:
+    """EXIF data with some of the tags of a lens."""
+    from PIL import Image
+
+    tags = {"film": 0xA405, "mm": 0x920A, "per_unit": 0xA20E, "unit": 0xA210, "width": 0xA002, "height": 0xA003}
+    made = Image.Exif()
+    made.get_ifd(0x8769).update({tags[key]: value for key, value in values.items()})
+    return made
+
+
+@pytest.fixture
+def rooms(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, list[Any]]:
+    """Three views of a room with 28 mm in their EXIF data (518 px; the truth is 520), and a fourth without. The cameras."""
+    from PIL import Image
+
+    monkeypatch.syspath_prepend(str(EXAMPLES))
+    import room
+
+    folder = tmp_path / "rooms"
+    folder.mkdir()
+    views = room.walk(6)[:4]
+    for number, view in enumerate(views):
+        picture = Image.fromarray(room.render(room.make(1), view, samples=4, seed=number))
+        data = exif(film=28, width=640, height=480) if number < 3 else Image.Exif()
+        picture.save(folder / f"{number}.jpg", quality=95, exif=data)
+    return folder, views
+
+
+def angle(cosine: float) -> float:
+    return float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
+
+
+def pose_error(rotation: NDArray[Any], translation: NDArray[Any], one: Any, two: Any) -> float:
+    turn = two.rotation @ one.rotation.T
+    move = two.rotation @ (one.position - two.position)
+    cosine = abs(translation @ move) / np.linalg.norm(translation) / np.linalg.norm(move)
+    return max(angle((np.trace(rotation.T @ turn) - 1) / 2), angle(cosine))
+
+
+def test_focal_lengths(tmp_path: Path) -> None:
+    from PIL import Image
+
+    def focal(size: tuple[int, int], **values: Any) -> float | None:
+        Image.new("L", size).save(tmp_path / "x.jpg", exif=exif(**values))
+        return focal_length(tmp_path / "x.jpg")
+
+    assert focal((40, 30)) is None
+    assert focal((40, 30), film=35) == pytest.approx(35 * 50 / DIAGONAL)
+    assert focal((30, 40), film=35, width=4000, height=3000, mm=5, per_unit=1.0, unit=2) == pytest.approx(35 * 50 / DIAGONAL)
+    assert focal((40, 30), mm=5, per_unit=800.0, unit=4, width=4000, height=3000) == pytest.approx(40)
+    assert focal((40, 30), mm=5, per_unit=2032 / 10, unit=2) == pytest.approx(40)
+    assert focal((40, 30), film=35, width=4000, height=2250) is None  # cut
+    assert focal((40, 30), film=1) is None
+    assert focal((40, 30), mm=5, per_unit=800.0, unit=9) is None
+    (tmp_path / "bad.jpg").write_bytes(b"no image")
+    assert focal_length(tmp_path / "bad.jpg") is None
+
+
+def from_lines(matrix: NDArray[Any], one: NDArray[Any], two: NDArray[Any]) -> NDArray[Any]:
+    """Distances in px of the second image."""
+    lines = np.c_[one, np.ones(len(one))] @ matrix.T
+    distances: NDArray[Any] = np.abs((lines * np.c_[two, np.ones(len(two))]).sum(axis=1)) / np.hypot(lines[:, 0], lines[:, 1])
+    return distances
+
+
+def test_poses_reach_colmap(rooms: tuple[Path, list[Any]], tmp_path: Path) -> None:
+    pycolmap = pytest.importorskip("pycolmap")
+    folder, views = rooms
+    listed = tmp_path / "pairs.txt"
+    listed.write_text("0.jpg 2.jpg\n2.jpg 1.jpg\n2.jpg 3.jpg\n")  # one of them the other way round; one without a focal length
+    scene = tmp_path / "scene.db"
+    words = ["collect", str(folder), "--pairs", str(listed), "--colmap", str(scene), "--quiet", "--geometry", "auto", "--jobs", "1"]
+    assert main([*words, "--no-verify"]) == 0
+    with sqlite3.connect(scene) as connection:
+        known = connection.execute("SELECT prior_focal_length FROM cameras ORDER BY camera_id").fetchall()
+    assert known == [(1,), (1,), (1,), (0,)]
+    database = pycolmap.Database.open(scene)
+    images = [database.read_image_with_name(f"{number}.jpg") for number in range(4)]
+    points = [database.read_keypoints(image.image_id)[:, :2] for image in images]
+    assert database.read_camera(images[0].camera_id).focal_length == pytest.approx(28 * 800 / DIAGONAL)
+    assert database.read_camera(images[3].camera_id).focal_length == 1.2 * 640
+    for one, two in ((0, 2), (2, 1)):
+        found = database.read_two_view_geometry(images[one].image_id, images[two].image_id)
+        first, second = (points[view][found.inlier_matches[:, side]] for side, view in ((0, one), (1, two)))
+        assert len(first) > 30 and np.median(from_lines(found.F, first, second)) < 1
+        assert found.config == pycolmap.TwoViewGeometryConfiguration.CALIBRATED
+        pose = found.cam2_from_cam1
+        assert pose_error(pose.rotation.matrix(), pose.translation, views[one], views[two]) < 1
+    assert not database.exists_two_view_geometry(images[2].image_id, images[3].image_id)
+    database.close()
+    with sqlite3.connect(tmp_path / "scene.db.work") as connection:
+        stored = [json.loads(text) for (text,) in connection.execute("SELECT geometry FROM pairs ORDER BY id")]
+    assert [(one["status"], one["model"]) for one in stored] == [("accepted", "essential")] * 2 + [("accepted", "homography")]
+    assert stored[0]["focal"][0] == pytest.approx(28 * 800 / DIAGONAL) and stored[2]["focal"] == [0, 0]
+    scene.unlink()
+    assert main([*words, "--resume"]) == 0  # with COLMAP's verification, for what is not there
+    database = pycolmap.Database.open(scene)
+    pose = database.read_two_view_geometry(images[0].image_id, images[2].image_id).cam2_from_cam1
+    assert pose_error(pose.rotation.matrix(), pose.translation, views[0], views[2]) < 1
+    assert len(database.read_two_view_geometry(images[2].image_id, images[3].image_id).inlier_matches) > 30
+    database.close()
+
+
+def test_fundamental_matrix_in_colmaps_pixels() -> None:
+    pycolmap = pytest.importorskip("pycolmap")
+    from asj.collection import colmap
+
+    random = np.random.default_rng(3)
+    matrix = np.array([[0, -1e-3, 0.2], [1e-3, 0, -0.4], [-0.2, 0.4, 0]])  # [t]x: every point moves along a line through (400, 200)
+    one = random.uniform(0, 500, (20, 2))
+    two = one + random.uniform(0.1, 0.4, (20, 1)) * ([400, 200] - one)
+    assert from_lines(matrix, one, two).max() < 1e-9
+    found = {"model": "fundamental", "matrix": matrix.tolist(), "rotation": None, "translation": None}
+    geometry = colmap._geometry(pycolmap, found, np.zeros((0, 2), np.uint32))
+    assert geometry.config == pycolmap.TwoViewGeometryConfiguration.UNCALIBRATED
+    assert from_lines(geometry.F, one + 0.5, two + 0.5).max() < 1e-9
+
+
+def test_bad_use(rooms: tuple[Path, list[Any]], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def says(words: list[str], why: str) -> None:
+        assert main(["collect", str(rooms[0]), "--limap", str(tmp_path / "limap"), *words]) == 2
+        assert why in capsys.readouterr().err
+
+    says(["--geometry", "auto", "--focal", "-5"], "not a length")
+    says(["--geometry", "auto", "--focal", "nan"], "not a length")
+    says(["--focal", "600"], "changes nothing")
+    says(["--geometry", "essential", "--focal", "none"], "needs focal lengths")
