@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 import warnings
 from concurrent.futures import ThreadPoolExecutor
@@ -97,6 +98,28 @@ def test_files_of_features(tmp_path: Path, pair: tuple[asj.Features, asj.Feature
     with pytest.raises(FileNotFoundError):
         pair[0].save(tmp_path / "nowhere" / "one.asjf")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.asjf", "one.asjf"]
+    mask = os.umask(0o022)
+    pair[0].save(tmp_path / "bad.asjf")
+    os.umask(mask)
+    assert (tmp_path / "bad.asjf").stat().st_mode & 0o777 == 0o644 and (tmp_path / "bad.asjf").read_bytes() == data
+
+
+def test_features_into_what_is_no_file(tmp_path: Path, pair: tuple[asj.Features, asj.Features]) -> None:
+    """A link and a pipe stay what they are."""
+    (tmp_path / "link").symlink_to("one.asjf")
+    pair[0].save(tmp_path / "link")
+    assert (tmp_path / "link").is_symlink() and not (tmp_path / "one.asjf").is_symlink()
+    os.mkfifo(tmp_path / "pipe")
+    with ThreadPoolExecutor(1) as threads:
+        read = threads.submit((tmp_path / "pipe").read_bytes)
+        pair[0].save(tmp_path / "pipe")
+        assert read.result(10) == (tmp_path / "one.asjf").read_bytes()
+    assert (tmp_path / "pipe").is_fifo()
+
+
+def test_images_are_no_features(pair: tuple[asj.Features, asj.Features]) -> None:
+    with pytest.raises(asj.ArgumentError, match="features are wanted, not ndarray"):
+        asj.match(pair[0], np.zeros((30, 40), np.uint8))  # type: ignore[arg-type]
 
 
 def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:

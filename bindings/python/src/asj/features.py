@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +15,7 @@ from ._native import ffi, lib
 from .context import Context, current
 from .errors import FormatError, ImageError
 from .options import DETECTOR, MATCHER
+from .output import whole_file
 
 
 class Features:
@@ -77,15 +77,8 @@ class Features:
         size = lib.asj_features_save(handle, ffi.NULL, 0)
         data = ffi.new("char[]", size)
         lib.asj_features_save(handle, data, size)
-        target = Path(path)
-        with tempfile.NamedTemporaryFile(dir=target.parent, prefix=f".{target.name}-", delete=False) as file:
-            try:
-                file.write(ffi.buffer(data))
-                file.close()
-                os.replace(file.name, target)
-            except BaseException:
-                os.unlink(file.name)
-                raise
+        with whole_file(Path(path)) as file:
+            file.write_bytes(ffi.buffer(data))
 
     def __reduce__(self) -> Any:
         return _restore, (self.image, self._view.pointer.white, self.junctions.tobytes(), self.edges.tobytes(), self.options, self.preset)

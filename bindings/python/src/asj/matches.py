@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from . import arrays
 from ._native import ffi, lib
 from .context import Context, current
+from .errors import ArgumentError
 from .features import Features, detect  # noqa: F401 (detect: the example of match())
 from .geometry import Camera, Geometry
 from .geometry import fill as fill_geometry
@@ -142,6 +143,8 @@ def match(
     [30.0, 20.0]
     """
     for features in (features1, features2):
+        if not isinstance(features, Features):
+            raise ArgumentError(f"features are wanted, not {type(features).__name__}: asj.match(asj.detect(image1), asj.detect(image2))")
         if features.preset == "default" and preset != "paper":
             warnings.warn('features of asj.detect(preset="default") give fewer matches; use preset="match"', stacklevel=2)
             break

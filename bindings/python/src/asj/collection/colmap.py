@@ -23,8 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import arrays
+from ..output import whole_file
 from . import locations
-from .output import whole_file
 from .store import Store
 
 

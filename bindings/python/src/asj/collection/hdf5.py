@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import arrays
-from .output import whole_file
+from ..output import whole_file
 from .store import Store
 
 

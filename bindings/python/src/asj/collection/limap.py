@@ -14,7 +14,7 @@ import numpy as np
 
 from .. import arrays
 from ..features import segments_of
-from .output import whole_file
+from ..output import whole_file
 from .store import Store
 
 
