@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from asj.__main__ import main
 from asj.collection import Plan, Store, StoreError, all_pairs, find_images, read_pairs
+from PIL import Image
 
 MODULE = [sys.executable, "-m", "asj", "collect"]
 
@@ -112,6 +113,19 @@ def test_colmap(done: Path, photographs: Path, tmp_path: Path) -> None:
     moved = two[matches[:, 1], :2] - one[matches[:, 0], :2]
     assert one.shape[1] == 6 and len(matches) > 20 and np.mean(np.linalg.norm(moved - (6, 4), axis=1) < 1.5) > 0.9
     assert len(database.read_two_view_geometry(first, second).inlier_matches) > 15
+    database.close()
+
+
+def test_image_without_junctions(tmp_path: Path) -> None:
+    """Blank walls are in every output, with nothing in them."""
+    pycolmap, _ = pytest.importorskip("pycolmap"), pytest.importorskip("h5py")
+    (tmp_path / "walls").mkdir()
+    for name in ("a", "b"):
+        Image.fromarray(np.full((90, 120), 128, np.uint8)).save(tmp_path / "walls" / f"{name}.png")
+    words = ["--colmap", str(tmp_path / "walls.db"), "--hdf5", str(tmp_path / "h5"), "--limap", str(tmp_path / "limap")]
+    assert main(["collect", str(tmp_path / "walls"), *words, "--jobs", "1", "--quiet"]) == 0
+    database = pycolmap.Database.open(tmp_path / "walls.db")
+    assert database.num_images() == 2 and database.num_keypoints() == 0
     database.close()
 
 

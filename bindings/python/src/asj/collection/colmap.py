@@ -126,7 +126,7 @@ def key_points(junctions: NDArray[Any]) -> NDArray[np.float32]:
     angle = branches["angle"]
     opening = np.abs(np.sin(angle[:, :, None] - angle[:, None, :]))
     opening[~(used[:, :, None] & used[:, None, :])] = -1
-    best = opening.reshape(len(junctions), -1).argmax(axis=1)
+    best = opening.reshape(len(junctions), branches.shape[1] ** 2).argmax(axis=1)
     rows = np.arange(len(junctions))
     first, second = best // branches.shape[1], best % branches.shape[1]
     result = np.empty((len(junctions), 6), np.float32)
