@@ -164,6 +164,20 @@ static inline __m512i whole_part(__m512 v)
     return _mm512_mask_sub_epi32(whole, above, whole, _mm512_set1_epi32(1));
 }
 
+/* Weights of 16 samples at (x, y); *across: their gradients along n. */
+static inline __m512 sample_weights(const uint16_t *gray, int32_t stride, __m512 x, __m512 y, __m512 ux, __m512 uy, __m512 *across)
+{
+    const __m512i ix = whole_part(x), iy = whole_part(y);
+    const __m512 part = _mm512_sub_ps(x, _mm512_cvtepi32_ps(ix)), low = _mm512_sub_ps(y, _mm512_cvtepi32_ps(iy));
+    const __m512i right = _mm512_cvttps_epi32(_mm512_mul_ps(part, _mm512_set1_ps(4096.0f)));
+    const __m512i at = _mm512_add_epi32(_mm512_mullo_epi32(iy, _mm512_set1_epi32(stride)), ix);
+    __m512 gx, gy;
+    sample_sixteen(gray, stride, at, right, low, &gx, &gy);
+    const __m512 along = _mm512_add_ps(_mm512_mul_ps(gx, ux), _mm512_mul_ps(gy, uy));
+    *across = _mm512_sub_ps(_mm512_mul_ps(gy, ux), _mm512_mul_ps(gx, uy));
+    return _mm512_max_ps(_mm512_sub_ps(_mm512_abs_ps(*across), _mm512_abs_ps(along)), _mm512_setzero_ps());
+}
+
 /* Samples k .. k + 15 of a profile, those past its end like the last. */
 static inline void profile_sixteen(const asj_frame *frame, const asj_line_profile *profile, int32_t k, asj_profile_sums *sums)
 {
@@ -181,15 +195,8 @@ static inline void profile_sixteen(const asj_frame *frame, const asj_line_profil
     for (int32_t i = 0; i < profile->offsets; i++) {
         const __m512 offset = _mm512_set1_ps(profile->offset[i]), s = _mm512_add_ps(middle, offset);
         const __m512 x = _mm512_sub_ps(x0, _mm512_mul_ps(s, uy)), y = _mm512_add_ps(y0, _mm512_mul_ps(s, ux));
-        const __m512i ix = whole_part(x), iy = whole_part(y);
-        const __m512 part = _mm512_sub_ps(x, _mm512_cvtepi32_ps(ix)), low = _mm512_sub_ps(y, _mm512_cvtepi32_ps(iy));
-        const __m512i right = _mm512_cvttps_epi32(_mm512_mul_ps(part, _mm512_set1_ps(4096.0f)));
-        const __m512i at = _mm512_add_epi32(_mm512_mullo_epi32(iy, _mm512_set1_epi32(stride)), ix);
-        __m512 gx, gy;
-        sample_sixteen(gray, stride, at, right, low, &gx, &gy);
-        const __m512 across = _mm512_sub_ps(_mm512_mul_ps(gy, ux), _mm512_mul_ps(gx, uy));
-        const __m512 along = _mm512_add_ps(_mm512_mul_ps(gx, ux), _mm512_mul_ps(gy, uy));
-        const __m512 w = _mm512_max_ps(_mm512_sub_ps(_mm512_abs_ps(across), _mm512_abs_ps(along)), zero);
+        __m512 across;
+        const __m512 w = sample_weights(gray, stride, x, y, ux, uy, &across);
         const __m512 moment = _mm512_mul_ps(w, offset);
         const __mmask16 is_up = _mm512_cmp_ps_mask(across, zero, _CMP_GT_OQ), is_down = (__mmask16)~is_up;
         up = _mm512_mask_add_ps(up, is_up, up, w);
@@ -201,6 +208,47 @@ static inline void profile_sixteen(const asj_frame *frame, const asj_line_profil
     _mm512_storeu_ps(sums->w[1] + k, up);
     _mm512_storeu_ps(sums->moment[0] + k, down_moment);
     _mm512_storeu_ps(sums->moment[1] + k, up_moment);
+}
+
+/* A profile of at most 16 samples, those at all offsets one after the other in the lanes: first fits have nine, and each offset for
+ * itself would leave half of the lanes without work. */
+static inline void profile_short(const asj_frame *frame, const asj_line_profile *profile, asj_profile_sums *sums)
+{
+    const __m512 zero = _mm512_setzero_ps(), ux = _mm512_set1_ps(profile->ux), uy = _mm512_set1_ps(profile->uy);
+    const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    const int32_t stride = (int32_t)frame->stride, count = profile->count, all = count * profile->offsets;
+    const uint16_t *gray = frame->gray + profile->y * frame->stride + profile->x;
+    const __m512 offsets = _mm512_maskz_loadu_ps((__mmask16)((1 << ASJ_PROFILE_OFFSETS) - 1), profile->offset);
+    const int32_t inverse = 65536 / count + 1; /* number / count = number inverse >> 16 up to 16 ASJ_PROFILE_OFFSETS */
+    float weights[16 * ASJ_PROFILE_OFFSETS + 16]; /* negative where the gradient points along -n */
+    for (int32_t first = 0; first < all; first += 16) {
+        const __m512i number = _mm512_min_epi32(_mm512_add_epi32(_mm512_set1_epi32(first), lane), _mm512_set1_epi32(all - 1));
+        const __m512i i = _mm512_srli_epi32(_mm512_mullo_epi32(number, _mm512_set1_epi32(inverse)), 16);
+        const __m512 index = _mm512_cvtepi32_ps(_mm512_sub_epi32(number, _mm512_mullo_epi32(i, _mm512_set1_epi32(count))));
+        const __m512 t = _mm512_add_ps(_mm512_set1_ps(profile->first), _mm512_mul_ps(index, _mm512_set1_ps(profile->step)));
+        const __m512 middle = _mm512_add_ps(_mm512_set1_ps(profile->a), _mm512_mul_ps(_mm512_set1_ps(profile->b), t));
+        const __m512 s = _mm512_add_ps(middle, _mm512_permutexvar_ps(i, offsets));
+        const __m512 x0 = _mm512_add_ps(_mm512_set1_ps(profile->origin_x), _mm512_mul_ps(t, ux));
+        const __m512 y0 = _mm512_add_ps(_mm512_set1_ps(profile->origin_y), _mm512_mul_ps(t, uy));
+        __m512 across;
+        const __m512 w = sample_weights(gray, stride, _mm512_sub_ps(x0, _mm512_mul_ps(s, uy)),
+                                        _mm512_add_ps(y0, _mm512_mul_ps(s, ux)), ux, uy, &across);
+        const __mmask16 is_down = _mm512_cmp_ps_mask(across, zero, _CMP_LE_OQ);
+        _mm512_storeu_ps(weights + first, _mm512_mask_sub_ps(w, is_down, zero, w));
+    }
+    __m512 up = zero, down = zero, up_moment = zero, down_moment = zero;
+    for (int32_t i = 0; i < profile->offsets; i++) {
+        const __m512 w = _mm512_loadu_ps(weights + i * count), offset = _mm512_set1_ps(profile->offset[i]);
+        const __m512 is_up = _mm512_max_ps(w, zero), is_down = _mm512_max_ps(_mm512_sub_ps(zero, w), zero);
+        up = _mm512_add_ps(up, is_up);
+        down = _mm512_add_ps(down, is_down);
+        up_moment = _mm512_add_ps(up_moment, _mm512_mul_ps(is_up, offset));
+        down_moment = _mm512_add_ps(down_moment, _mm512_mul_ps(is_down, offset));
+    }
+    _mm512_storeu_ps(sums->w[0], down);
+    _mm512_storeu_ps(sums->w[1], up);
+    _mm512_storeu_ps(sums->moment[0], down_moment);
+    _mm512_storeu_ps(sums->moment[1], up_moment);
 }
 
 /* As total_profile() of line_sums.c. */
@@ -234,6 +282,11 @@ static void line_profile_avx512(const asj_frame *frame, const asj_line_profile *
 {
     const int32_t lanes = ASJ_LINE_LANES;
     const int whole = asj_line_profile_inside(frame, profile, 0, profile->count);
+    if (whole && frame->stride <= 30000 && profile->count <= lanes) {
+        profile_short(frame, profile, sums);
+        total_profile(profile->count, sums);
+        return;
+    }
     for (int32_t k = 0; k < profile->count; k += lanes) {
         const int32_t to = k + lanes < profile->count ? k + lanes : profile->count;
         if (frame->stride > 30000 || (!whole && !asj_line_profile_inside(frame, profile, k, to))) /* indices stay below 2^31 */
