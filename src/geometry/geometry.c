@@ -12,11 +12,11 @@
  * volume of their parameters is paid for in the evidence, so a homography wins where a plane explains as much as parallax would,
  * although it has more parameters: it says where a match must lie along the line, too.
  *
- * Ambiguous: another geometry, of whatever kind, whose log evidence is at least NEARLY of the best one's, and whose matches
- * contradict those of the best one: CONTRARY of them give another partner to a place that is matched. Things that repeat do that,
- * shifted by a period or turned. The evidence itself would be surer (odds of a hundred are 5 nats of a hundred or two), but what
- * repeats is matched more or less well for reasons that the model does not know, and all its places together: of rendered rooms
- * with tiled floors, wrong geometries have up to twice the log evidence of the right one.
+ * Ambiguous: another geometry, of whatever kind, whose log evidence is at least NEARLY of the best one's or within APART of it, and
+ * whose matches contradict those of the best one: CONTRARY of them give another partner to a place that is matched. Things that
+ * repeat do that, shifted by a period or turned. The evidence itself would be surer (odds of a hundred are 5 nats of a hundred or
+ * two), but what repeats is matched more or less well for reasons that the model does not know, and all its places together: of
+ * rendered rooms with tiled floors, wrong geometries have up to twice the log evidence of the right one.
  *
  * A pose is one that is known to within POSE_SD, with all other motions counted as likely as their evidence says: all on one plane
  * there are two (Hartley and Zisserman, 13.4), and near that everything between. */
@@ -34,6 +34,7 @@
 
 #define MOST_KINDS 3
 #define NEARLY 0.5
+#define APART 8.0 /* decades */
 #define CONTRARY 0.4
 /* Nats that a score loses at least on the way to an evidence: volume of the parameters, near places. Of 69 pairs of unrelated
  * images 46 stay below; of 46 accepted ones none is within 8 nats of it. */
@@ -192,7 +193,8 @@ static double log10_nfa(const estimation *e, const asj_model *m)
 /* --- answer ------------------------------------------------------------------------------------------------------------------ */
 
 /* How much of the second geometry's matches contradicts the first one's: it gives another partner to a place that the first one has
- * matched, in either image. As a part of all of them. taken: scratch, probability of the first one by place. */
+ * matched, in either image, and that the first one does not hold for nearly as likely (near places have two). As a part of all of
+ * them. taken: scratch, probability of the first one by place. */
 static double contradiction(estimation *e, const asj_model *second)
 {
     const double *mine = e->scratch.probability;
@@ -205,7 +207,7 @@ static double contradiction(estimation *e, const asj_model *second)
     }
     for (int32_t k = 0; k < e->set.count; k++) {
         const double first = taken[0][e->set.list[k].place1] - mine[k], other = taken[1][e->set.list[k].place2] - mine[k];
-        against += e->other[k] * fmin(1, fmax(first, other));
+        against += e->other[k] * fmax(0, fmin(1, fmax(first, other)) - mine[k]);
         all += e->other[k];
     }
     for (int32_t v = 0; v < 2; v++)
@@ -349,7 +351,8 @@ static void answer(estimation *e, double *probabilities, asj_geometry *result)
     if (open_focal && e->options->model == ASJ_GEOMETRY_ESSENTIAL)
         determined = 0;
     result->status = !determined ? ASJ_GEOMETRY_DEGENERATE : ASJ_GEOMETRY_ACCEPTED;
-    if (second >= 0 && result->second_log10_nfa <= NEARLY * to_compare(e, m))
+    const double compared = to_compare(e, m);
+    if (second >= 0 && result->second_log10_nfa <= fmax(NEARLY * compared, compared + APART))
         result->status = ASJ_GEOMETRY_AMBIGUOUS;
     for (int32_t k = 0; k < e->set.count && probabilities; k++)
         probabilities[e->set.list[k].source] = e->scratch.probability[k];

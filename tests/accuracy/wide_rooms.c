@@ -23,8 +23,8 @@
 #define MOST 10000
 #define NEAR 4.0 /* px */
 
-static const double least_right = 0.45; /* of --check: share of all pairs */
-static const int most_wrong = 1, most_far_off = 0;
+static const double least_right = 0.50; /* of --check: share of all pairs */
+static const int most_wrong = 0, most_far_off = 0;
 
 typedef struct settings {
     int check, held_out, unrelated, no_cameras, find_focal;
