@@ -105,8 +105,8 @@ static void settle(asj_context *context, const job *j, uint64_t seed, int32_t mo
     }
 }
 
-asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const asj_camera cameras[2], uint64_t seed, int32_t settled,
-                              asj_model *finalists, int32_t *count)
+asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const asj_camera cameras[2], uint64_t seed,
+                              int32_t settled, asj_model *finalists, int32_t *count)
 {
     asj_memory *memory = &context->memory;
     const int32_t threads = context->threads;

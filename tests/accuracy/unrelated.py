@@ -4,8 +4,8 @@
 
     unrelated.py ASJ_CLI PAIRS [--limit N] [--every K] [--same NAME,NAME] [-- OPTIONS OF MATCH]
 
-PAIRS holds folders with 1.png, 2.png and truth.json (K1 and K2, 3 x 3, where the cameras are known). Each image of a folder is paired
-with those of the folders after it, but for folders named by --same, which show one scene. Cameras are given where both are known,
+PAIRS holds folders with 1.png, 2.png and truth.json (K1 and K2, 3 x 3, where the cameras are known). Each image of a folder is
+paired with those of the folders after it, but for folders named by --same, which show one scene. Cameras are given where both are known,
 unless the options of match name a focal length. Prints what was accepted, and how large the evidence was in the others.
 """
 

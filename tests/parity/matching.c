@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The whole matcher in every variant, or with --devices on every OpenCL device: the same matches, bit for bit; on some rooms from
- * features that were made there and are matched there, or matched by the reference (asj_match_features()). Rooms always; pairs of photographs (FOLDER/<pair>/1.png and 2.png) when a folder is named on the command line or by ASJ_PAIRS:
+ * features that were made there and are matched there, or matched by the reference (asj_match_features()). Rooms always; pairs
+ * of photographs (FOLDER/<pair>/1.png and 2.png) when a folder is named on the command line or by ASJ_PAIRS:
  *     match-parity [--devices] [FOLDER]
  * Exit status as parity. */
 #include "render.h"
