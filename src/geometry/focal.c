@@ -34,7 +34,7 @@
 #define FEWEST 5 /* steps within LESS of the best */
 #define LESS 10.0
 #define CLOSE 2.0
-#define KNOWN 0.12
+#define KNOWN 0.1
 #define ROUNDS 5
 
 typedef struct profile {

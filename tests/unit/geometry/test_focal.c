@@ -113,7 +113,7 @@ static void focal_lengths_are_found(void **state)
         const asj_geometry g = estimate(context, &s, &o);
         assert_int_equal(g.status, ASJ_GEOMETRY_ACCEPTED);
         assert_int_equal(g.model, ASJ_GEOMETRY_ESSENTIAL);
-        assert_true(g.focal_sd > 0 && g.focal_sd < 0.12 && g.focal[0] == g.focal[1]);
+        assert_true(g.focal_sd > 0 && g.focal_sd < 0.1 && g.focal[0] == g.focal[1]);
         unit_near("focal length, in standard deviations", i, focal[i], log(g.focal[0] / focal[i]) / g.focal_sd, 0, 3);
         double rest[9];
         asj_multiply3_transposed(g.rotation, s.rotation, rest);
@@ -139,7 +139,7 @@ static void what_leaves_it_open_has_none(void **state)
             const asj_geometry g = estimate(context, &s, &o);
             assert_true(g.focal[0] == 0 && g.focal_sd == 0 && !g.has_pose);
             if (model == ASJ_GEOMETRY_ESSENTIAL)
-                assert_int_equal(g.status, ASJ_GEOMETRY_DEGENERATE);
+                assert_true(g.status == ASJ_GEOMETRY_DEGENERATE || (i == 1 && g.status == ASJ_GEOMETRY_CHANCE));
             else
                 assert_true(g.status == ASJ_GEOMETRY_ACCEPTED && g.model != ASJ_GEOMETRY_ESSENTIAL);
         }
