@@ -5,8 +5,8 @@
     unrelated.py ASJ_CLI PAIRS [--limit N] [--every K] [--same NAME,NAME] [-- OPTIONS OF MATCH]
 
 PAIRS holds folders with 1.png, 2.png and truth.json (K1 and K2, 3 x 3, where the cameras are known). Each image of a folder is
-paired with those of the folders after it, but for folders named by --same, which show one scene. Cameras are given where both are known,
-unless the options of match name a focal length. Prints what was accepted, and how large the evidence was in the others.
+paired with those of the folders after it, but for folders named by --same, which show one scene. Cameras are given where both are
+known, unless the options of match name a focal length. Prints what was accepted or ambiguous; exit code 1 when any was accepted.
 """
 
 import argparse
@@ -32,7 +32,7 @@ def main():
     parser.add_argument("pairs", type=pathlib.Path)
     parser.add_argument("--limit", type=int)
     parser.add_argument("--every", type=int, default=1)
-    parser.add_argument("--same", default="LePoint2,LePoint3")
+    parser.add_argument("--same", default="LePoint2,LePoint3,evd_mag")
     words = sys.argv[1:]
     cut = words.index("--") if "--" in words else len(words)
     given = parser.parse_args(words[:cut])

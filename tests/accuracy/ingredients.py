@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-2-Clause
+"""What each ingredient of the two-view geometry is worth: the table of README.md here.
+
+    ingredients.py [--seeds N] [--only WORD] PAIRS
+
+PAIRS holds folders with 1.png, 2.png and truth.json (K1, K2, pose [R | t], F). Each row leaves something out or takes something
+else; error of a pair: the larger one of rotation and direction of translation, 180 degrees where no pose is told. Needs the Python
+package, numpy and OpenCV (its five-point RANSAC, for rows without a geometry of ours).
+"""
+
+import argparse
+import json
+import pathlib
+import sys
+
+import asj
+import cv2
+import numpy as np
+from asj import matches as of_matches
+from asj._native import ffi, lib
+from asj.context import current
+from asj.options import MATCHER
+
+LOOSE = {"ratio": 1, "mutual": 0, "minimum_support": 0.5, "verify_agreement": 0, "guided_rounds": 0, "shortlist": 16}
+ROWS = [
+    ("matches of today, five-point RANSAC", {}, None),
+    ("loose options, five-point RANSAC", LOOSE, None),
+    ("points alone (no direction, no scale), no vanishing points", {}, {"angle_sd": 45, "scale_sd": 1, "no_directions": 1}),
+    ("points and directions", {}, {"scale_sd": 1, "no_directions": 1}),
+    ("points, directions and scales", {}, {"no_directions": 1}),
+    ("and vanishing points: as it is", {}, {}),
+    ("as it is, 250 samples instead of 1000", {}, {"samples": 250}),
+    ("as it is, 4000 samples", {}, {"samples": 4000}),
+    ("as it is, lists of 32 instead of 16", {"shortlist": 32}, {}),
+    ("as it is, SIFT descriptors of the patches", {"descriptor": "sift"}, {}),
+    ("as it is, focal length not known", {}, {"find_focal": 1}),
+]
+
+
+def turn(cosine):
+    return float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
+
+
+def error(rotation, translation, truth):
+    direction = abs(translation @ truth[:, 3]) / np.linalg.norm(translation) / np.linalg.norm(truth[:, 3])
+    return max(turn((np.trace(rotation.T @ truth[:, :3]) - 1) / 2), turn(direction))
+
+
+def area(errors, limit):
+    """Percent: mean recall up to `limit` degrees; the recall rises linearly from error to error."""
+    sorted_errors = np.r_[0, np.sort(errors)]
+    recall = np.arange(len(sorted_errors)) / len(errors)
+    below = np.searchsorted(sorted_errors, limit)
+    x, y = np.r_[sorted_errors[:below], limit], np.r_[recall[:below], recall[below - 1]]
+    return 100 * float(((x[1:] - x[:-1]) * (y[1:] + y[:-1]) / 2).sum()) / limit
+
+
+def match(features, cameras, options, geometry, seed):
+    record = MATCHER.fill("default", options)
+    if geometry is not None:
+        record.geometry.model = lib.ASJ_GEOMETRY_AUTO
+        record.geometry.seed = seed
+        for key, value in geometry.items():
+            if key == "no_directions":
+                record.geometry.directions[0][0] = 1e-300  # given, and no frame
+            else:
+                setattr(record.geometry, key, value)
+        for place, matrix in zip(record.geometry.cameras, cameras):
+            if not geometry.get("find_focal"):
+                place.fx, place.fy, place.cx, place.cy = matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2]
+    place = ffi.new("asj_match_result **")
+    context = current()
+    one, two = (f.described(record, context) for f in features)
+    context.call(lib.asj_match_features, one, two, record, place)
+    return of_matches.Matches(ffi.gc(place[0], of_matches._free), *features)
+
+
+def ransac(found, cameras, seed):
+    if len(found) < 6:
+        return None
+    rays = [cv2.undistortPoints(points.astype(np.float64)[:, None], matrix, None)[:, 0]
+            for points, matrix in zip((found.xy1, found.xy2), cameras)]
+    cv2.setRNGSeed(seed)
+    essential, mask = cv2.findEssentialMat(rays[0], rays[1], np.eye(3), cv2.RANSAC, 0.9999, 1.5 / cameras[0][0, 0], 10000)
+    if essential is None or essential.shape != (3, 3):
+        return None
+    _, rotation, translation, _ = cv2.recoverPose(essential, rays[0], rays[1], np.eye(3), mask=mask)
+    return rotation, translation[:, 0]
+
+
+def right(found, fundamental):
+    points = [np.c_[xy, np.ones(len(xy))] for xy in (found.xy1.astype(float), found.xy2.astype(float))]
+    lines = [points[1] @ fundamental, points[0] @ fundamental.T]
+    off = np.abs((lines[1] * points[1]).sum(axis=1))
+    return int((off / np.minimum(*(np.hypot(line[:, 0], line[:, 1]) for line in lines)) < 10).sum()) if len(found) else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("pairs", type=pathlib.Path)
+    parser.add_argument("--seeds", type=int, default=2)
+    parser.add_argument("--only", default="")
+    given = parser.parse_args()
+    folders = [path for path in sorted(given.pairs.iterdir()) if "pose" in json.loads((path / "truth.json").read_text())]
+    truths = [json.loads((folder / "truth.json").read_text()) for folder in folders]
+    features = [[asj.detect(asj.read_image(folder / f"{k}.png")) for k in (1, 2)] for folder in folders]
+    print("| what | AUC 5 / 10 / 20 | poses told, of these beyond 10 degrees | right within 10 px of all matches |")
+    print("|---|---|---|---|")
+    for name, options, geometry in ROWS:
+        if given.only not in name:
+            continue
+        errors, told, wrong, good, total = [], 0, 0, 0, 0
+        for seed in range(1, given.seeds + 1):
+            for both, truth in zip(features, truths):
+                cameras = [np.array(truth[key]) for key in ("K1", "K2")]
+                found = match(both, cameras, options, geometry, seed)
+                of_pair = found.geometry
+                pose = ransac(found, cameras, seed) if of_pair is None else None
+                if of_pair and of_pair.rotation is not None:
+                    pose = of_pair.rotation, of_pair.translation
+                errors.append(error(*pose, np.array(truth["pose"])) if pose else 180.0)
+                told += pose is not None
+                wrong += pose is not None and errors[-1] > 10
+                good += right(found, np.array(truth["F"]))
+                total += len(found)
+        n = given.seeds
+        areas = " / ".join(f"{area(errors, limit):.1f}" for limit in (5, 10, 20))
+        print(f"| {name} | {areas} | {told / n:g} of {len(folders)}, {wrong / n:g} | {good / n:g} of {total / n:g} |", flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
