@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Branches vote for vanishing points. */
+#ifndef ASJ_SRC_GEOMETRY_VANISHING_VOTE_H
+#define ASJ_SRC_GEOMETRY_VANISHING_VOTE_H
+
+#include <asj/vanishing.h>
+
+#include <stddef.h>
+
+#define ASJ_VOTE_LEVELS 3    /* tolerances */
+#define ASJ_VOTE_POINTS 6    /* looked at before right angles */
+#define ASJ_VOTE_LINES 300   /* that take part, at most */
+
+typedef struct asj_vote_line {
+    double l[3];      /* unit normal and distance, in the coordinates of the vote */
+    double mx, my;    /* middle */
+    double sd;        /* rad */
+    double length;    /* px */
+    double angle;     /* px coordinates, [0, pi) */
+    double x, y, ex, ey; /* px: both ends */
+    uint32_t source;
+    int32_t taken;
+} asj_vote_line;
+
+typedef struct asj_vote {
+    double v[3];
+    double log_nfa;
+    int32_t votes, level; /* index of the tolerance */
+} asj_vote;
+
+typedef struct asj_vote_search {
+    asj_vote_line *lines;
+    int32_t count;
+    double *tail;     /* log binomial tails of the level at hand, by k */
+    int32_t members[ASJ_VOTE_LEVELS];
+} asj_vote_search;
+
+/* The branches that take part, the longest first; `lines` has room for all branches. Returns how many. */
+int32_t asj_vanishing_lines(const asj_junction *junctions, size_t count, const asj_camera *camera, asj_vote_line *lines);
+
+/* Does the branch vote for v at that level? */
+int32_t asj_line_votes_for(const asj_vote_line *one, const double v[3], int32_t level);
+
+/* The votes that v has, at the level where they are least likely by chance. */
+asj_vote asj_judge_point(const asj_vote_search *s, const double v[3]);
+
+/* The points with a log NFA of at most `most`, the surest first; room for ASJ_VOTE_POINTS. Returns how many. */
+int32_t asj_vote_points(asj_vote_search *s, double most, asj_vote *points);
+
+#endif
