@@ -70,7 +70,8 @@ def run(folder: Path, work: Path, workers: int, reach: int) -> None:
         seconds = time.monotonic() - begin
         after = client.run(state)
     spent = sum(after[w][1] - before[w][1] for w in after)
-    print(f"{workers} workers: {summary.images} images, {summary.pairs} pairs, {summary.failed_images + summary.failed_pairs} failed: "
+    failed = summary.failed_images + summary.failed_pairs
+    print(f"{workers} workers: {summary.images} images, {summary.pairs} pairs, {failed} failed: "
           f"{seconds:.0f} s, {summary.images / seconds:.1f} images/s; {spent:.0f} s of processor time, "
           f"{summary.images / spent * workers:.1f} images a second of {workers} processors")
     for n, worker in enumerate(after, 1):

@@ -144,7 +144,8 @@ def match(
     """
     for features in (features1, features2):
         if not isinstance(features, Features):
-            raise ArgumentError(f"features are wanted, not {type(features).__name__}: asj.match(asj.detect(image1), asj.detect(image2))")
+            what = type(features).__name__
+            raise ArgumentError(f"features are wanted, not {what}: asj.match(asj.detect(image1), asj.detect(image2))")
         if features.preset == "default" and preset != "paper":
             warnings.warn('features of asj.detect(preset="default") give fewer matches; use preset="match"', stacklevel=2)
             break
