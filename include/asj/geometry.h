@@ -105,6 +105,7 @@ typedef struct asj_geometry {
  * point
  *                      that is not finite; model essential without cameras
  * ASJ_ERROR_LIMIT      more than 2^24 candidates or places
+ * ASJ_ERROR_CANCELLED  the progress callback, which is called every 50 ms, wants to stop
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
                                          const asj_geometry_options *options, double *probabilities, asj_geometry *result);

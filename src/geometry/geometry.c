@@ -28,6 +28,7 @@
 #include "posterior.h"
 #include "search.h"
 #include "small_matrix.h"
+#include "stop.h"
 
 #include <math.h>
 #include <string.h>
@@ -373,10 +374,13 @@ asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candid
     estimation *e = asj_allocate_zero(&context->memory, 1, sizeof *e);
     if (!e)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the geometry");
+    asj_watch watch;
+    asj_watch_start(&watch, context, ASJ_STAGE_ASSIGN);
     e->context = context;
     e->options = options;
     e->focal_at = -1;
     status = asj_pairs_create(context, candidates, count, options, &e->set);
+    e->set.watch = &watch;
     for (size_t k = 0; k < count && probabilities; k++)
         probabilities[k] = 0;
     if (status == ASJ_OK && options->model != ASJ_GEOMETRY_NONE) {
@@ -386,6 +390,8 @@ asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candid
             e->other = asj_allocate(&context->memory, (size_t)e->set.count, sizeof *e->other);
             status = e->other && asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch)
                          ? search_all(e) : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the geometry");
+            if (status == ASJ_OK)
+                status = asj_watch_end(&watch);
             if (status == ASJ_OK)
                 answer(e, probabilities, &found);
         }

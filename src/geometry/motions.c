@@ -9,6 +9,7 @@
 #include "planes.h"
 #include "posterior.h"
 #include "ranking.h"
+#include "stop.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -54,8 +55,11 @@ static void refine_some(const void *data, const asj_part *part)
     asj_adjust_scratch *s = &j->scratch[part->thread];
     for (int64_t n = part->first; n < part->end; n++) {
         asj_model *model = &j->m->starts[n];
-        asj_adjust(j->set, model, FEW_ROUNDS, s);
-        model->evidence = asj_log_evidence(j->set, model, s);
+        model->evidence = -HUGE_VAL;
+        if (!asj_pairs_stop(j->set, part)) {
+            asj_adjust(j->set, model, FEW_ROUNDS, s);
+            model->evidence = asj_log_evidence(j->set, model, s);
+        }
         j->m->order[n] = (asj_ranked){model->evidence, (int32_t)n};
     }
 }
@@ -64,7 +68,7 @@ static void add_planes_to_some(const void *data, const asj_part *part)
 {
     const job *j = data;
     asj_adjust_scratch *s = &j->scratch[part->thread];
-    for (int64_t n = part->first; n < part->end; n++) {
+    for (int64_t n = part->first; n < part->end && !asj_pairs_stop(j->set, part); n++) {
         asj_model *model = &j->m->picked[n];
         asj_add_planes(j->set, model, s);
         asj_model last = *model;

@@ -16,6 +16,7 @@
 #include "evidence.h"
 #include "manhattan.h"
 #include "small_matrix.h"
+#include "stop.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -182,7 +183,7 @@ static void draw_some(const void *data, const asj_part *part)
                 d->at[i] += scale * c->root[i * MOTION + k] * y[k];
         }
         d->log_weight = -HUGE_VAL;
-        if (move(j->model, c, d->at, &moved))
+        if (!asj_pairs_stop(j->set, part) && move(j->model, c, d->at, &moved))
             d->log_weight = log_target(j->set, &moved, &j->scratch[part->thread]) - log_density(c, d->at);
     }
 }

@@ -15,6 +15,7 @@
 #include "minimal.h"
 #include "ranking.h"
 #include "small_matrix.h"
+#include "stop.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -131,7 +132,8 @@ static void sample_some(const void *data, const asj_part *part)
     const job *j = data;
     for (int64_t n = part->first; n < part->end; n++) {
         asj_model m = {.kind = ASJ_GEOMETRY_NONE};
-        const int32_t good = sample(j->set, j->w->sum, j->first, j->search, (uint64_t)n, &m);
+        const int32_t good =
+            !asj_pairs_stop(j->set, part) && sample(j->set, j->w->sum, j->first, j->search, (uint64_t)n, &m);
         const double score = good ? asj_score(j->set, j->first, &m.view, LOOSE, &j->w->scratch[part->thread].score) : -HUGE_VAL;
         j->w->order[n] = (asj_ranked){score, (int32_t)n};
     }
@@ -145,7 +147,8 @@ static void score_some(const void *data, const asj_part *part)
         asj_ranked *r = &j->w->order[n];
         asj_model *m = &j->models[n];
         memset(m, 0, sizeof *m);
-        if (r->score > -HUGE_VAL && sample(j->set, j->w->sum, j->first, j->search, (uint64_t)r->index, m))
+        if (r->score > -HUGE_VAL && !asj_pairs_stop(j->set, part) &&
+            sample(j->set, j->w->sum, j->first, j->search, (uint64_t)r->index, m))
             r->score = asj_score(j->set, j->set->count, &m->view, LOOSE, &j->w->scratch[part->thread].score);
         r->index = (int32_t)n;
     }
@@ -179,7 +182,7 @@ static void sample_around(const void *data, const asj_part *part)
         for (int64_t k = 0; k < LOCAL; k++) {
             asj_model *m = &j->models[j->count + n * LOCAL + k];
             const uint64_t stream = ((uint64_t)j->rounds + 1) << 32 | (uint64_t)(n * LOCAL + k);
-            const int32_t good = sample(j->set, sum, first, j->search, stream, m);
+            const int32_t good = !asj_pairs_stop(j->set, part) && sample(j->set, sum, first, j->search, stream, m);
             m->score = good ? asj_score(j->set, first, &m->view, LOOSE, &scratch->score) : -HUGE_VAL;
         }
     }
@@ -202,7 +205,8 @@ static void adjust_each(const void *data, const asj_part *part)
 {
     const job *j = data;
     for (int64_t n = part->first; n < part->end; n++) {
-        asj_adjust(j->set, &j->models[n], j->rounds, &j->w->scratch[part->thread]);
+        if (!asj_pairs_stop(j->set, part))
+            asj_adjust(j->set, &j->models[n], j->rounds, &j->w->scratch[part->thread]);
         j->w->order[n] = (asj_ranked){j->models[n].score, (int32_t)n};
     }
 }
@@ -221,7 +225,8 @@ static void judge_some(const void *data, const asj_part *part)
 {
     const job *j = data;
     for (int64_t n = part->first; n < part->end; n++) {
-        j->models[n].evidence = asj_log_evidence(j->set, &j->models[n], &j->w->scratch[part->thread]);
+        j->models[n].evidence = asj_pairs_stop(j->set, part)
+                                    ? -HUGE_VAL : asj_log_evidence(j->set, &j->models[n], &j->w->scratch[part->thread]);
         j->w->order[n] = (asj_ranked){j->models[n].evidence, (int32_t)n};
     }
 }
