@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
 # What other sanitizers see, in short: threads (contexts in threads, OpenCL that starts in many at once), memory that nobody has
-# written (the core alone), and some seconds of libFuzzer for each harness. Sourced by test.sh; needs clang.
+# written (the core alone), and libFuzzer for each harness. Sourced by test.sh; needs clang.
 
 # sanitized FOLDER "TARGET..." OPTION...: only these targets, by clang.
 sanitized() {
@@ -30,20 +30,36 @@ with_memory_sanitizer() {
     done
 }
 
-# with_fuzzer SECONDS, for each harness
+# fuzz_one SECONDS HARNESS: leaves one line of what it did.
+fuzz_one() {
+    mkdir -p "$root/build-fuzz/found-$2"
+    logged "fuzz-$2" "$root/build-fuzz/tests/fuzz/fuzz-$2" -max_total_time="$1" -max_len=4096 -timeout=300 -rss_limit_mb=4096 \
+        -artifact_prefix="$root/build-fuzz/finding-$2-" "$root/build-fuzz/found-$2" "$root/tests/fuzz/corpus/$2" || return 1
+    sed -n "s/^Done \([0-9]*\) runs in \([0-9]*\).*/fuzz-$2: \1 executions in \2 s/p" "$logs/fuzz-$2.log"
+}
+
+# with_fuzzer SECONDS [HARNESS...], for each harness, two at a time. What it finds is in build-fuzz/finding-*.
 with_fuzzer() {
-    harnesses='arguments detect match geometry features'
+    seconds=$1
+    shift
+    harnesses=${*:-arguments detect match geometry features image junctions probe}
     targets=
     for harness in $harnesses; do
         targets="$targets tests/fuzz/fuzz-$harness"
     done
     sanitized build-fuzz "$targets" -Dfuzz=enabled -Db_sanitize=address,undefined -Dthreads=disabled -Dopencl=disabled \
-        -Dc_args='-fsanitize=fuzzer-no-link -fno-sanitize-recover=undefined' || return 1
-    for harness in $harnesses; do
-        mkdir -p "$root/build-fuzz/found-$harness"
-        logged "fuzz-$harness" "$root/build-fuzz/tests/fuzz/fuzz-$harness" -max_total_time="$1" -max_len=4096 -timeout=60 \
-            -artifact_prefix="$root/build-fuzz/finding-" "$root/build-fuzz/found-$harness" "$root/tests/fuzz/corpus/$harness" ||
-            return 1
-        sed -n "s/^Done \([0-9]*\) runs in \([0-9]*\).*/fuzz-$harness: \1 executions in \2 s/p" "$logs/fuzz-$harness.log"
+        -Dio=enabled -Dc_args='-fsanitize=fuzzer-no-link -fno-sanitize-recover=undefined' || return 1
+    state_of_fuzzers=0
+    set -- $harnesses
+    while [ "$#" -gt 0 ]; do
+        fuzz_one "$seconds" "$1" &
+        first=$!
+        shift
+        if [ "$#" -gt 0 ]; then
+            fuzz_one "$seconds" "$1" || state_of_fuzzers=1
+            shift
+        fi
+        wait "$first" || state_of_fuzzers=1
     done
+    return $state_of_fuzzers
 }

@@ -14,8 +14,8 @@ usage: sh scripts/test.sh [--all]
 Installs what is missing (apt-get), builds everything in build-test/ and runs all tests.
 --all, or CI=true in the environment, takes warnings as errors, and also checks the style of the sources, builds with clang, runs
 the tests under the address and undefined-behaviour sanitizers and in builds with fewer parts, a few programs under the thread and
-the memory sanitizer, runs the tests of the core for 64-bit ARM under emulation, compares results with those of other machines, and
-uses an installed library from other programs.
+the memory sanitizer, some seconds of fuzzers, runs the tests of the core for 64-bit ARM under emulation, compares results with
+those of other machines, and uses an installed library from other programs.
 Exit code: 0 everything passed, 1 something failed, 2 wrong usage, 3 packages are missing and cannot be installed here.
 END
 }
@@ -95,14 +95,14 @@ core_alone() {
 with_clang() {
     CC=clang CXX=clang++
     export CC CXX
-    build_and_test build-clang "$quick --no-suite opencl --no-suite fails" \
+    build_and_test build-clang "$quick --no-suite opencl --no-suite device-operations --no-suite device-images --no-suite fails" \
         -Dauto_features=enabled --werror
 }
 
 # Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code. Without the tests that must
-# fail, which need no sanitizer.
+# fail, which need no sanitizer, and without whole images on devices.
 with_sanitizers() {
-    build_and_test build-sanitize "$quick --no-suite fails --timeout-multiplier 4" \
+    build_and_test build-sanitize "$quick --no-suite fails --no-suite device-images --timeout-multiplier 4" \
         -Dauto_features=enabled --buildtype=debugoptimized -Db_sanitize=address,undefined -Dc_args=-fno-sanitize-recover=undefined \
         -Dcpp_args=-fno-sanitize-recover=undefined &&
         logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2
@@ -156,13 +156,14 @@ more_checks() {
     step python python_package
     step sanitizers with_sanitizers
     step fewer-parts fewer_parts
-    step no-cli build build-no-cli -Dcli=disabled -Dtests=disabled --werror
+    step no-cli build build-no-cli -Dcli=disabled -Dtests=disabled --werror -Doptimization=0 # it need not run
     step core core_alone
     step install sh "$root/scripts/install_check.sh"
     step aarch64 on_aarch64
     step machines on_machines
     step threads with_thread_sanitizer
     step memory with_memory_sanitizer
+    step fuzzers with_fuzzer 10 arguments match features image junctions probe # the seeds of the others take longer
     step clang with_clang
 }
 
