@@ -13,10 +13,11 @@
  * although it has more parameters: it says where a match must lie along the line, too.
  *
  * Ambiguous: another geometry, of whatever kind, whose log evidence is at least NEARLY of the best one's or within APART of it, and
- * whose matches contradict those of the best one: CONTRARY of them give another partner to a place that is matched. Things that
- * repeat do that, shifted by a period or turned. The evidence itself would be surer (odds of a hundred are 5 nats of a hundred or
- * two), but what repeats is matched more or less well for reasons that the model does not know, and all its places together: of
- * rendered rooms with tiled floors, wrong geometries have up to twice the log evidence of the right one.
+ * whose matches contradict those of the best one: CONTRARY of them, or CONTRARY_ALIKE where it has as much evidence and is another
+ * motion, give another partner to a place that is matched. Things that repeat do that, shifted by a period or turned. The evidence
+ * itself would be surer (odds of a hundred are 5 nats of a hundred or two), but what repeats is matched more or less well for
+ * reasons that the model does not know, and all its places together: of rendered rooms with tiled floors, wrong geometries have up
+ * to twice the log evidence of the right one.
  *
  * A pose is one that is known to within POSE_SD, with all other motions counted as likely as their evidence says: all on one plane
  * there are two (Hartley and Zisserman, 13.4), and near that everything between. */
@@ -37,6 +38,8 @@
 #define NEARLY 0.5
 #define APART 8.0 /* decades */
 #define CONTRARY 0.4
+#define CONTRARY_ALIKE 0.15 /* of a rival with as much evidence */
+#define SIMILAR_MOTION (6 * ASJ_DEGREE)
 /* Nats that a score loses at least on the way to an evidence: volume of the parameters, near places. Of 69 pairs of unrelated
  * images 46 stay below; of 46 accepted ones none is within 8 nats of it. */
 #define GIVE_UP 17.0
@@ -216,14 +219,41 @@ static double contradiction(estimation *e, const asj_model *second)
     return all > 0 ? against / all : 0;
 }
 
+/* What a rival is compared with: of a motion that stands for a whole region (posterior.c) the best of it, as the rivals are. */
+static double to_compare(const estimation *e, const asj_model *m)
+{
+    asj_model peak = *m;
+    peak.evidence = m->settled ? fmin(m->peak, m->evidence) : m->evidence;
+    return log10_nfa(e, &peak);
+}
+
+/* How much contradiction makes a rival: CONTRARY, and less where its evidence, `share` of the best one's, comes near: where things
+ * repeat, a wrong geometry shares many matches with the right one. Nearly the same motion is no rival for that. */
+static double least_contradiction(const asj_model *best, const asj_model *rival, double share)
+{
+    if (best->kind == ASJ_GEOMETRY_ESSENTIAL && rival->kind == ASJ_GEOMETRY_ESSENTIAL) {
+        double turn[9];
+        asj_multiply3_transposed(rival->rotation, best->rotation, turn);
+        const double along = fabs(asj_dot3(rival->translation, best->translation));
+        if (asj_rotation_angle(turn) < SIMILAR_MOTION && along > cos(SIMILAR_MOTION))
+            return CONTRARY;
+    }
+    const double nearness = fmin(1, fmax(0, (share - NEARLY) / (1 - NEARLY)));
+    return CONTRARY + (CONTRARY_ALIKE - CONTRARY) * nearness;
+}
+
 /* The largest evidence of a geometry that contradicts the one whose probabilities are in scratch; -1 = none. */
 static int32_t second_of(estimation *e, int32_t best)
 {
     int32_t second = -1;
-    for (int32_t n = 0; n < e->count; n++)
-        if (n != best && (second < 0 || e->finalists[n].evidence > e->finalists[second].evidence) &&
-            contradiction(e, &e->finalists[n]) > CONTRARY)
+    const asj_model *m = &e->finalists[best];
+    for (int32_t n = 0; n < e->count; n++) {
+        const asj_model *rival = &e->finalists[n];
+        if (n == best || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
+            continue;
+        if (contradiction(e, rival) > least_contradiction(m, rival, log10_nfa(e, rival) / to_compare(e, m)))
             second = n;
+    }
     return second;
 }
 
@@ -304,14 +334,6 @@ static int32_t instead_of(const estimation *e, int32_t best)
 {
     const int32_t flat = best_of(e, ASJ_GEOMETRY_HOMOGRAPHY);
     return flat >= 0 && e->finalists[flat].evidence > ALMOST * e->finalists[best].evidence ? flat : best;
-}
-
-/* What a rival is compared with: of a motion that stands for a whole region (posterior.c) the best of it, as the rivals are. */
-static double to_compare(const estimation *e, const asj_model *m)
-{
-    asj_model peak = *m;
-    peak.evidence = m->settled ? fmin(m->peak, m->evidence) : m->evidence;
-    return log10_nfa(e, &peak);
 }
 
 /* A plane, or a camera that only turns, explains as much with any focal length: one that was found is believed where the motion
