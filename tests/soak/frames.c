@@ -134,7 +134,7 @@ static int stream(const asj_image *pictures, long frames)
         if (n % PICTURES != 0)
             continue;
         asj_context_memory(context, &now, NULL);
-        if (n >= WARM && (now > before || h.live > live))
+        if (n > WARM && (now > before || h.live > live))
             return fail("memory grows", n);
         if (n == WARM) {
             resident = most_memory();
