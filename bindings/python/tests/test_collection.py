@@ -96,9 +96,39 @@ def test_dask_with_a_lost_worker(done: Path, photographs: Path, tmp_path: Path) 
                 killed.append(pids[0])
                 __import__("os").kill(pids[0], 9)
 
-        summary = collect(plan, store, Dask(client), kill_one)
+        workers = Dask(client)
+        workers.portion = 2
+        summary = collect(plan, store, workers, kill_one)
     assert killed and summary.failed_images == 1
     assert content(tmp_path / "dask.work") == content(done)
+
+
+def test_dask_keeps_features_until_the_last_pair(photographs: Path, tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    from asj.collection import collect
+    from asj.collection.plan import sequential_pairs
+    from asj.collection.run import Dask
+
+    names = find_images(photographs)
+    plan = Plan(photographs, names, sequential_pairs(names, 1), {"preset": "match"}, {"preset": "default"})
+    kept: list[int] = []
+    with (
+        distributed.Client(processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None) as client,
+        Store.create(tmp_path / "flat.work", plan) as store,
+    ):
+        workers = Dask(client)
+        workers.portion = 2
+        told: list[tuple[str, int, int]] = []
+
+        def count(what: str, number: int, total: int, left: float) -> None:
+            assert left >= 0
+            told.append((what, number, total))
+            kept.append(len(workers._features))
+
+        summary = collect(plan, store, workers, count)
+    assert (summary.images, summary.failed_images, summary.skipped_pairs) == (6, 1, 2)
+    assert max(kept) <= 3  # of six: the last one of a portion, and the two of the next
+    assert [t for t in told if t[0] == "images"][-1] == ("images", 6, 6) and told[-1][1:] == (3, 3)
 
 
 def test_colmap(done: Path, photographs: Path, tmp_path: Path) -> None:

@@ -43,6 +43,8 @@ class Summary:
 class Workers(Protocol):
     """Who does the work. Results come in any order, each once."""
 
+    portion: int  # images that are looked at before their pairs are matched
+
     def close(self) -> None:
         """The work is done, or will not be."""
 
@@ -56,29 +58,42 @@ class Workers(Protocol):
 def collect(plan: Plan, store: Store, workers: Workers, report: Report | None = None) -> Summary:
     """Does what is waiting in the store. A call that was killed is gone on with by the next one."""
     begin = time.monotonic()
+    images = store.waiting_images()
+    of_images, of_pairs = _Progress("images", report, len(images)), _Progress("pairs", report, 0)
     try:
-        images = store.waiting_images()
-        for number, detected in _reported("images", workers.detect(plan, images), len(images), report):
-            store.save_image(number, detected)
-        pairs = store.waiting_pairs()
-        for number, matched in _reported("pairs", workers.match(plan, store, pairs), len(pairs), report):
-            store.save_pair(number, matched)
+        for first in range(0, max(1, len(images)), workers.portion):
+            for number, detected in of_images.over(workers.detect(plan, images[first : first + workers.portion])):
+                store.save_image(number, detected)
+            of_pairs.total = of_pairs.done + store.pairs_to_do()
+            for number, matched in of_pairs.over(workers.match(plan, store, store.waiting_pairs())):
+                store.save_pair(number, matched)
     finally:
         workers.close()
-    of_images, of_pairs = store.counts("images"), store.counts("pairs")
+    all_images, all_pairs = store.counts("images"), store.counts("pairs")
     return Summary(
-        sum(of_images.values()), of_images.get("failed", 0), sum(of_pairs.values()), of_pairs.get("failed", 0),
-        of_pairs.get("waiting", 0), time.monotonic() - begin, store.failures(),
+        sum(all_images.values()), all_images.get("failed", 0), sum(all_pairs.values()), all_pairs.get("failed", 0),
+        all_pairs.get("waiting", 0), time.monotonic() - begin, store.failures(),
     )  # fmt: skip
 
 
-def _reported(what: str, results: Iterable[Any], total: int, report: Report | None) -> Iterator[Any]:
-    begin = time.monotonic()
-    for done, result in enumerate(results, 1):
-        yield result
-        if report:
-            report(what, done, total, (time.monotonic() - begin) / done * (total - done))
+class _Progress:
+    """Tells how far one kind of work is, which comes in portions."""
 
+    def __init__(self, what: str, report: Report | None, total: int) -> None:
+        self.what, self.report, self.total, self.done, self.seconds = what, report, total, 0, 0.0
+
+    def over(self, results: Iterable[Any]) -> Iterator[Any]:
+        """The same results, each told of when it has been taken."""
+        begin = time.monotonic()
+        for result in results:
+            yield result
+            self.done += 1
+            self.seconds, begin = self.seconds + time.monotonic() - begin, time.monotonic()
+            if self.report:
+                self.report(self.what, self.done, self.total, self.seconds / self.done * (self.total - self.done))
+
+
+_PORTION = 32  # images for each process or thread of a worker: few are done at the end of a portion while the others wait
 
 # ---- processes of this machine ----
 
@@ -111,7 +126,7 @@ class Processes:
     def __init__(self, jobs: int, threads: int = 1) -> None:
         if jobs < 1:
             raise ValueError(f"jobs is {jobs}: 1 or more")
-        self.jobs, self.threads = jobs, threads
+        self.jobs, self.threads, self.portion = jobs, threads, _PORTION * jobs
         self._executor: concurrent.futures.ProcessPoolExecutor | None = None
 
     def _pool(self) -> concurrent.futures.ProcessPoolExecutor:
@@ -181,10 +196,12 @@ def _dask_match(one: tuple[Detected, Features | None], two: tuple[Detected, Feat
 
 
 class Dask:
-    """Workers of a Dask cluster, which must see the images under the same paths. Features stay where they were made."""
+    """Workers of a Dask cluster, which must see the images under the same paths. Features stay where they were made until the last
+    pair of their image is done."""
 
     def __init__(self, client: Any) -> None:
         self.client = client
+        self.portion = _PORTION * max(1, sum(client.nthreads().values()))
         self._features: dict[int, Any] = {}
 
     def close(self) -> None:
@@ -199,8 +216,8 @@ class Dask:
 
     def match(self, plan: Plan, store: Store, pairs: list[tuple[int, int, int]]) -> Iterator[tuple[int, Matched]]:
         """One task a pair; an image whose features are on no worker any more is looked at once more."""
-        names = dict(store.images())
-        last = {image: position for position, (_, *both) in enumerate(pairs) for image in both}
+        names, later = dict(store.images()), store.images_wanted_later()
+        last = {image: position for position, (_, *both) in enumerate(pairs) for image in both if image not in later}
         without_lists = dataclasses.replace(plan, images=[], pairs=[])
 
         def work() -> Iterator[tuple[int, Any]]:
@@ -208,10 +225,11 @@ class Dask:
                 one, two = (self._feature(plan, image, names[image]) for image in both)
                 yield number, self.client.submit(_dask_match, one, two, without_lists, pure=False, retries=2)
                 for image in both:
-                    if last[image] == position:
+                    if last.get(image) == position:
                         del self._features[image]
 
         yield from self._results(work())
+        self._features = {image: future for image, future in self._features.items() if image in later}
 
     def _feature(self, plan: Plan, number: int, name: str) -> Any:
         if number not in self._features:

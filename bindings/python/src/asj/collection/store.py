@@ -103,6 +103,22 @@ class Store:
             "WHERE p.state = 'waiting' AND a.state = 'done' AND b.state = 'done' ORDER BY p.id"
         ).fetchall()
 
+    def pairs_to_do(self) -> int:
+        """How many have no result yet, without those of images that failed."""
+        count: int = self._connection.execute(
+            "SELECT COUNT(*) FROM pairs p JOIN images a ON a.id = image1 JOIN images b ON b.id = image2 "
+            "WHERE p.state = 'waiting' AND a.state <> 'failed' AND b.state <> 'failed'"
+        ).fetchone()[0]
+        return count
+
+    def images_wanted_later(self) -> set[int]:
+        """Those that have a result, and a pair with an image that has none yet."""
+        rows = self._connection.execute(
+            "SELECT image1 FROM pairs p JOIN images b ON b.id = image2 WHERE p.state = 'waiting' AND b.state = 'waiting' "
+            "UNION SELECT image2 FROM pairs p JOIN images a ON a.id = image1 WHERE p.state = 'waiting' AND a.state = 'waiting'"
+        )
+        return {image for (image,) in rows}
+
     def save_image(self, number: int, result: Detected) -> None:
         """The result of one image, in a transaction of its own."""
         with self._connection:
