@@ -94,18 +94,22 @@ def test_poses_reach_colmap(rooms: tuple[Path, list[Any]], tmp_path: Path) -> No
     with sqlite3.connect(scene) as connection:
         known = connection.execute("SELECT prior_focal_length FROM cameras ORDER BY camera_id").fetchall()
     assert known == [(1,), (1,), (1,), (0,)]
+    with sqlite3.connect(tmp_path / "scene.db.work") as connection:
+        stored = [json.loads(row[0]) for row in connection.execute("SELECT geometry FROM pairs ORDER BY id")]
     database = pycolmap.Database.open(scene)
     images = [database.read_image_with_name(f"{number}.jpg") for number in range(4)]
     points = [database.read_keypoints(image.image_id)[:, :2] for image in images]
     assert database.read_camera(images[0].camera_id).focal_length == pytest.approx(28 * 800 / DIAGONAL)
     assert database.read_camera(images[3].camera_id).focal_length == 1.2 * 640
-    for one, two in ((0, 2), (2, 1)):
+    for (one, two), ours in zip(((0, 2), (2, 1)), stored):
         found = database.read_two_view_geometry(images[one].image_id, images[two].image_id)
         first, second = (points[view][found.inlier_matches[:, side]] for side, view in ((0, one), (1, two)))
         assert len(first) > 30 and np.median(from_lines(found.F, first, second)) < 1
         assert found.config == pycolmap.TwoViewGeometryConfiguration.CALIBRATED
         pose = found.cam2_from_cam1
-        assert pose_error(pose.rotation.matrix(), pose.translation, views[one], views[two]) < 1
+        assert np.allclose(pose.rotation.matrix(), np.reshape(ours["rotation"], (3, 3)), atol=1e-6)
+        assert np.allclose(np.cross(pose.translation, ours["translation"]), 0, atol=1e-6) and pose.translation @ ours["translation"] > 0
+        assert pose_error(pose.rotation.matrix(), pose.translation, views[one], views[two]) < 3
     assert not database.exists_two_view_geometry(images[2].image_id, images[3].image_id)
     database.close()
     with sqlite3.connect(tmp_path / "scene.db.work") as connection:
