@@ -44,7 +44,7 @@
  * images 46 stay below; of 46 accepted ones none is within 8 nats of it. */
 #define GIVE_UP 17.0
 #define ALMOST 0.8
-#define POSE_SD (4.0 * ASJ_DEGREE)
+#define POSE_SD (2.2 * ASJ_DEGREE)
 #define LOOSE_DIRECTION (30 * ASJ_DEGREE) /* a translation known worse than this is none */
 
 /* One call. */
