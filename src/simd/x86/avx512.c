@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Compiled with -mavx512f -mavx512bw; called only where the processor has it. */
+#ifdef __GNUC__
+#pragma GCC diagnostic ignored "-Wsign-conversion" /* without optimisation gathers are macros of gcc's, whose casts warn here */
+#endif
 #include "avx512_vectors.h" /* before kernels.h */
 #include "simd/kernels.h"
 #include "lines512.h"

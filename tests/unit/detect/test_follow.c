@@ -17,6 +17,7 @@ static uint8_t *draw(void)
         synth_add_rectangle(&scene, (synth_point){20.0 + 45 * n, HEIGHT - 30.0}, 15, 60, 0.2, 90);
     }
     uint8_t *pixels = synth_photograph(&scene, 0.8, 1, 7);
+    synth_scene_free(&scene);
     assert_non_null(pixels);
     for (int x = 0; x < WIDTH; x++)
         pixels[x] = pixels[(HEIGHT - 1) * WIDTH + x] = 250;
