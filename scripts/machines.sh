@@ -81,7 +81,7 @@ try_windows() {
     echo "windows: builds, exports $(grep -c '' "$work/exported") functions"
     wine=$(command -v wine wine64 | head -n 1)
     if [ -n "$wine" ]; then
-        env WINEDEBUG=-all "WINEPREFIX=$work/wine" "$wine" "$folder/src/machine.exe" < /dev/null 2>&1 | tr -d '\r' \
+        env WINEDEBUG=-all "WINEPREFIX=$work/wine" "$wine" "$folder/src/machine.exe" < /dev/null 2> "$work/wine.log" | tr -d '\r' \
             > "$work/windows.txt"
         machines="$machines windows"
     else
