@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj-cli match --plot: formats, sizes, and what is drawn where. */
 #include "files.h"
+#include "plot_pixels.h"
 #include "program.h"
 
 #include <asj/io.h>
@@ -14,31 +15,6 @@
 
 #include <cmocka.h>
 
-static asj_image_file *read_plot(const char *path)
-{
-    char message[512] = "";
-    asj_image_file *file = NULL;
-    if (asj_image_file_read(path, 0, &file, message, sizeof message) != ASJ_OK)
-        fail_msg("%s", message);
-    assert_int_equal(file->image.format, ASJ_FORMAT_RGB8);
-    return file;
-}
-
-static const unsigned char *pixel(const asj_image_file *plot, int x, int y)
-{
-    assert_in_range(x, 0, plot->image.width - 1);
-    assert_in_range(y, 0, plot->image.height - 1);
-    return (const unsigned char *)plot->image.data + 3 * ((ptrdiff_t)y * plot->image.width + x);
-}
-
-static int is_colored(const unsigned char *color)
-{
-    int low = color[0] < color[1] ? color[0] : color[1], high = color[0] > color[1] ? color[0] : color[1];
-    low = color[2] < low ? color[2] : low;
-    high = color[2] > high ? color[2] : high;
-    return high - low > 60;
-}
-
 static int is_near(const unsigned char *color, const int wanted[3])
 {
     return abs(color[0] - wanted[0]) <= 3 && abs(color[1] - wanted[1]) <= 3 && abs(color[2] - wanted[2]) <= 3;
@@ -50,7 +26,7 @@ enum { SCALE = 8 };
 static const unsigned char *pixel_of(const asj_image_file *plot, int second, double x, double y)
 {
     int left = second ? plot->image.width - SCALE * SCENE_WIDTH : 0;
-    return pixel(plot, left + (int)(SCALE * (x + 0.5)), (int)(SCALE * (y + 0.5)));
+    return plot_pixel(plot, left + (int)(SCALE * (x + 0.5)), (int)(SCALE * (y + 0.5)));
 }
 
 /* Reads places of the first match of a CSV file: columns x1 .. by2. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj-cli detect --plot: formats, sizes, and what is drawn where. */
 #include "files.h"
+#include "plot_pixels.h"
 #include "program.h"
 
 #include <asj/io.h>
@@ -17,34 +18,9 @@
 #include <math.h>
 #include <sys/stat.h>
 
-static asj_image_file *read_plot(const char *path)
-{
-    char message[512] = "";
-    asj_image_file *file = NULL;
-    if (asj_image_file_read(path, 0, &file, message, sizeof message) != ASJ_OK)
-        fail_msg("%s", message);
-    assert_int_equal(file->image.format, ASJ_FORMAT_RGB8);
-    return file;
-}
-
-static const unsigned char *pixel(const asj_image_file *plot, int x, int y)
-{
-    assert_in_range(x, 0, plot->image.width - 1);
-    assert_in_range(y, 0, plot->image.height - 1);
-    return (const unsigned char *)plot->image.data + 3 * ((ptrdiff_t)y * plot->image.width + x);
-}
-
 static int is_gray(const unsigned char *color, int value)
 {
     return abs(color[0] - value) <= 1 && abs(color[1] - value) <= 1 && abs(color[2] - value) <= 1;
-}
-
-static int is_colored(const unsigned char *color)
-{
-    int low = color[0] < color[1] ? color[0] : color[1], high = color[0] > color[1] ? color[0] : color[1];
-    low = color[2] < low ? color[2] : low;
-    high = color[2] > high ? color[2] : high;
-    return high - low > 60;
 }
 
 enum { SCALE = 6 };
@@ -61,7 +37,7 @@ static void expect_branch(const asj_image_file *plot, const asj_junction *juncti
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
         double x = (double)junction->x + places[i].along * cosine - places[i].beside * sine;
         double y = (double)junction->y + places[i].along * sine + places[i].beside * cosine;
-        const unsigned char *color = pixel(plot, (int)(SCALE * (x + 0.5)), (int)(SCALE * (y + 0.5)));
+        const unsigned char *color = plot_pixel(plot, (int)(SCALE * (x + 0.5)), (int)(SCALE * (y + 0.5)));
         assert_true(places[i].colored ? is_colored(color) : is_gray(color, 255));
     }
 }
@@ -80,7 +56,7 @@ static void junctions_are_drawn_where_they_are(void **state)
     for (uint32_t i = 0; i < found->junction_count; i++) {
         const asj_junction *junction = &found->junctions[i];
         double x = (double)junction->x + 0.5, y = (double)junction->y + 0.5;
-        assert_true(is_gray(pixel(plot, (int)(SCALE * x), (int)(SCALE * y)), 26)); /* the dot */
+        assert_true(is_gray(plot_pixel(plot, (int)(SCALE * x), (int)(SCALE * y)), 26)); /* the dot */
         assert_int_equal(junction->branch_count, 2);
         for (int32_t b = 0; b < junction->branch_count; b++)
             expect_branch(plot, junction, &junction->branches[b]);
@@ -95,7 +71,7 @@ static void the_photograph_is_pale_and_gray(void **state)
     expect_code(run_cli("detect", "-q", "--plot", "photo.png", "--plot-scale", "1", "scene.png", NULL), 0);
     asj_image_file *plot = read_plot("photo.png");
     assert_int_equal(plot->image.width, SCENE_WIDTH);
-    const unsigned char *outside = pixel(plot, 10, 10), *inside = pixel(plot, SCENE_WIDTH / 2, SCENE_HEIGHT / 2);
+    const unsigned char *outside = plot_pixel(plot, 10, 10), *inside = plot_pixel(plot, SCENE_WIDTH / 2, SCENE_HEIGHT / 2);
     assert_true(is_gray(outside, outside[0]));
     assert_true(is_gray(inside, inside[0]));
     assert_true(outside[0] > 80 + 50 && inside[0] > outside[0] + 30);
@@ -113,7 +89,7 @@ static void the_photograph_keeps_its_colors_on_request(void **state)
     assert_int_equal(asj_png_write("red.png", &image, NULL, 0), ASJ_OK);
     expect_code(run_cli("detect", "-q", "--plot", "c.png", "--plot-background", "color", "--plot-scale", "1", "red.png", NULL), 0);
     asj_image_file *plot = read_plot("c.png");
-    const unsigned char *color = pixel(plot, 20, 20);
+    const unsigned char *color = plot_pixel(plot, 20, 20);
     assert_true(color[0] > 200 && color[1] < 160 && color[2] == color[1]);
     asj_image_file_free(&plot);
 }

@@ -150,17 +150,6 @@ static void named_photographs(run_state *state, int count, char **paths)
 #endif
 }
 
-static int report(run_state *state)
-{
-    for (int32_t i = 1; i < state->list.count; i++)
-        if (state->list.targets[i].context)
-            printf("%-9s %ld images\n", state->list.targets[i].name, state->list.targets[i].compared);
-    if (state->junctions == 0)
-        state->failed = 1;
-    printf("%zu junctions, %s\n", state->junctions, state->failed ? "FAILED" : "all equal");
-    return state->failed;
-}
-
 int main(int argc, char **argv)
 {
     static run_state state;
@@ -172,7 +161,7 @@ int main(int argc, char **argv)
     if (count > 0) {
         settings(&state);
         named_photographs(&state, argc - 1 - devices, argv + 1 + devices);
-        status = report(&state);
+        status = targets_report(&state.list, "images", state.junctions, "junctions", state.failed);
     }
     targets_close(&state.list);
     return status;

@@ -231,17 +231,6 @@ static void named_photographs(run_state *state, const char *folder)
 #endif
 }
 
-static int report(run_state *state)
-{
-    for (int32_t i = 1; i < state->list.count; i++)
-        if (state->list.targets[i].context)
-            printf("%-9s %ld comparisons\n", state->list.targets[i].name, state->list.targets[i].compared);
-    if (state->matches == 0)
-        state->failed = 1;
-    printf("%zu matches, %s\n", state->matches, state->failed ? "FAILED" : "all equal");
-    return state->failed;
-}
-
 int main(int argc, char **argv)
 {
     static run_state state;
@@ -253,7 +242,7 @@ int main(int argc, char **argv)
     if (count > 0) {
         rooms(&state);
         named_photographs(&state, argc > 1 + devices ? argv[1 + devices] : NULL);
-        status = report(&state);
+        status = targets_report(&state.list, "comparisons", state.matches, "matches", state.failed);
     }
     targets_close(&state.list);
     return status;

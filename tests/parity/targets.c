@@ -114,6 +114,16 @@ int targets_missing(const target_list *list)
     return fail ? 1 : 77;
 }
 
+int targets_report(const target_list *list, const char *things, size_t count, const char *found, int failed)
+{
+    for (int32_t i = 1; i < list->count; i++)
+        if (list->targets[i].context)
+            printf("%-9s %ld %s\n", list->targets[i].name, list->targets[i].compared, things);
+    const int bad = failed || count == 0;
+    printf("%zu %s, %s\n", count, found, bad ? "FAILED" : "all equal");
+    return bad;
+}
+
 void target_prepare(target *t, ptrdiff_t stride)
 {
 #ifdef ASJ_HAVE_OPENCL
