@@ -100,9 +100,9 @@ with_clang() {
 }
 
 # Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code. Without the tests that must
-# fail, which need no sanitizer, and without whole images on devices.
+# fail, which need no sanitizer, without whole images on devices, and without the benchmarks.
 with_sanitizers() {
-    build_and_test build-sanitize "$quick --no-suite fails --no-suite device-images --timeout-multiplier 4" \
+    build_and_test build-sanitize "$quick --no-suite fails --no-suite device-images --no-suite benchmark --timeout-multiplier 4" \
         -Dauto_features=enabled --buildtype=debugoptimized -Db_sanitize=address,undefined -Dc_args=-fno-sanitize-recover=undefined \
         -Dcpp_args=-fno-sanitize-recover=undefined &&
         logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2

@@ -2,7 +2,8 @@
 /* The whole matcher in every variant, or with --devices on every OpenCL device: the same matches, bit for bit; on some rooms from
  * features that were made there and are matched there, or matched by the reference (asj_match_features()). Rooms always; pairs
  * of photographs (FOLDER/<pair>/1.png and 2.png) when a folder is named on the command line or by ASJ_PAIRS:
- *     match-parity [--devices] [FOLDER]
+ *     match-parity [--devices | --quick] [FOLDER]
+ * --quick: two rooms in place of eight with the defaults.
  * Exit status as parity. */
 #include "render.h"
 #include "room.h"
@@ -165,11 +166,11 @@ static void room(run_state *state, uint64_t seed)
     free(pixels[1]);
 }
 
-static void rooms(run_state *state)
+static void rooms(run_state *state, int quick)
 {
     asj_match_options_init(&state->options);
     state->setting = "default";
-    for (uint64_t seed = 0; seed < 8; seed++)
+    for (uint64_t seed = 0; seed < (quick ? 2 : 8); seed++)
         room(state, seed);
     state->options.patch_size = 12;
     state->options.shortlist = 9;
@@ -234,14 +235,15 @@ static void named_photographs(run_state *state, const char *folder)
 int main(int argc, char **argv)
 {
     static run_state state;
-    const int devices = argc > 1 && strcmp(argv[1], "--devices") == 0;
+    const int devices = argc > 1 && strcmp(argv[1], "--devices") == 0, quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+    const int words = devices || quick;
     const int32_t count = targets_open(devices, &state.list);
     int status = 1;
     if (count == 0)
         status = targets_missing(&state.list);
     if (count > 0) {
-        rooms(&state);
-        named_photographs(&state, argc > 1 + devices ? argv[1 + devices] : NULL);
+        rooms(&state, quick);
+        named_photographs(&state, argc > 1 + words ? argv[1 + words] : NULL);
         status = targets_report(&state.list, "comparisons", state.matches, "matches", state.failed);
     }
     targets_close(&state.list);

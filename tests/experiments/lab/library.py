@@ -38,6 +38,13 @@ ISOTROPIC_DEFAULT = Detector("isotropic stage, default preset", (), True)
 ISOTROPIC_PAPER = Detector("isotropic stage, paper preset", ("--preset", "paper"), True)
 
 
+def isotropic_up_to(bound):
+    """The isotropic stage of the paper preset with radii up to `bound` px."""
+    return Detector("isotropic stage, paper preset, radii to %d px" % bound,
+                    ("--preset", "paper", "isotropic_radii=3-%d" % bound), True)
+
+
+
 def _wait(process, limit):
     """(exit code, seconds of processor time: what runs beside it does not count); kills it after `limit` seconds"""
     timer = threading.Timer(limit, process.kill) if limit is not None else None

@@ -11,9 +11,11 @@ from ..report import Part
 
 OURS, PAPER = "default, ASJ", "paper preset, ASJ"
 APART, PAPER_APART = "default, L-junctions, ASJ", "paper preset, L-junctions, ASJ"
-ACJ, STAGE = "ACJ detector (isotropic junctions of the paper preset)", "isotropic stage of the default, ACJ"
+ACJ, STAGE = "isotropic stage of the paper preset, radii 3 to 10 px, ACJ", "isotropic stage of the default, ACJ"
+BOUNDS = (12, 20, 30)   # px; the paper: "recommended to be set as in the range of [12, 30]"
+ACJ_UP_TO = {bound: "ACJ detector, radii 3 to %d px, ACJ" % bound for bound in BOUNDS}
 LIKE, LIKE_STAGE = "default, location and angles alone", "isotropic stage of the default, location and angles alone"
-RIVALS = (PAPER, ACJ, STAGE)
+RIVALS = (PAPER, *ACJ_UP_TO.values(), ACJ, STAGE)
 BY_CHANCE = (OURS, PAPER, ACJ, STAGE)   # rows for which chance is measured too
 
 
@@ -42,6 +44,7 @@ def methods(session):
         OURS: Method(criteria.ASJ, library.DEFAULT),
         PAPER: Method(criteria.ASJ, library.PAPER),
         ACJ: Method(criteria.ACJ, library.ISOTROPIC_PAPER),
+        **{name: Method(criteria.ACJ, library.isotropic_up_to(bound)) for bound, name in ACJ_UP_TO.items()},
         STAGE: Method(criteria.ACJ, library.ISOTROPIC_DEFAULT),
         LIKE: Method(criteria.ANGLES, library.DEFAULT),
         LIKE_STAGE: Method(criteria.ANGLES, library.ISOTROPIC_DEFAULT),
@@ -144,7 +147,8 @@ TEXT = (
     "ASJ are whole junctions, branches followed to their ends; the authors' program prints L-junctions, so those rows are its "
     "like. "
     "The paper compares ASJ with the ACJ detector: its counterpart is the paper preset before branches are followed, with the "
-    "candidates of that preset (near line segments). The default preset has an isotropic stage of its own, with sub-pixel lines "
+    "candidates of that preset (near line segments). ACJ needs an upper bound of its scales, which its authors, says the paper, "
+    "recommend between 12 and 30 px; the paper preset itself stops at 10. The default preset has an isotropic stage of its own, with sub-pixel lines "
     "that the ACJ detector lacks; it is shown beside, at the image's own size. A detector that is there as files has rows where "
     "its files are: beside the photographs, only for the views of known homographies.")
 WHY = (
@@ -187,9 +191,9 @@ def _above(rates, factors, ours, theirs):
 def _compare(part):
     """At which zoom factors below 1 the default preset repeats more than its rivals, and the paper preset than the ACJ detector."""
     rates, factors = part.numbers["zoom"]["percent"], part.numbers["zoom"]["levels"]
-    if PAPER in rates and ACJ in rates:
+    for name in [n for n in (*ACJ_UP_TO.values(), ACJ) if n in rates and PAPER in rates]:
         part.findings.append("Repeatability of the paper preset (ASJ criterion) above %s at every zoom below 1: %s." % (
-            ACJ, _above(rates, factors, PAPER, ACJ)))
+            name, _above(rates, factors, PAPER, name)))
     for name in [n for n in RIVALS if n in rates and OURS in rates]:
         part.findings.append("Repeatability of the default preset (ASJ criterion) above %s at every zoom below 1: %s." % (
             name, _above(rates, factors, OURS, name)))
