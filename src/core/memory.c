@@ -218,8 +218,8 @@ asj_status asj_grow(asj_memory *memory, void **block, size_t *capacity, size_t c
         return ASJ_OK;
     size_t wanted = *capacity + *capacity / 2;
     if (wanted < count)
-        wanted = count;
-    void *larger = asj_allocate_list(memory, wanted, size);
+        wanted = memory->open && count <= SIZE_MAX / 2 ? count + count / 2 : count; /* as asj_allocate_list() */
+    void *larger = asj_allocate(memory, wanted, size);
     if (!larger)
         return ASJ_ERROR_MEMORY;
     if (keep)

@@ -20,6 +20,7 @@ static asj_status run_octave(asj_detection_run *run)
         {asj_step_gradient, ASJ_STAGE_GRADIENT, 0.05},     /* step 1 */
         {asj_step_candidates, ASJ_STAGE_CANDIDATES, 0.50}, /* step 2 */
         {asj_step_isotropic, ASJ_STAGE_ISOTROPIC, 0.70},   /* step 3 */
+        {asj_step_guess, ASJ_STAGE_LOCATE, 0.75},
         {asj_step_locate, ASJ_STAGE_LOCATE, 0.80},
         {asj_step_scan, ASJ_STAGE_SCAN, 0.90},             /* step 4 */
         {asj_step_orient, ASJ_STAGE_REFINE, 0.92},         /* step 5 */

@@ -2,7 +2,6 @@
 /* Tables, planes and scratch of a pass; loops over its hypotheses; what it tells the caller while it works. */
 #include "detection_run.h"
 #include "detect_options.h"
-#include "octaves.h"
 #include "core/watch.h"
 
 #include <math.h>
@@ -114,6 +113,7 @@ void asj_detection_run_end(asj_detection_run *run)
     asj_memory *memory = &run->context->memory;
     asj_detection_run_clear(run);
     asj_release(memory, run->edges);
+    asj_release(memory, run->evidence);
     asj_release(memory, run->candidates);
     asj_release(memory, run->all);
     asj_release(memory, run->scratch.memory);
@@ -123,10 +123,27 @@ void asj_detection_run_clear(asj_detection_run *run)
 {
     asj_memory *memory = &run->context->memory;
     asj_release(memory, run->isotropic);
+    asj_release(memory, run->guesses);
     asj_release(memory, run->hypotheses);
     run->isotropic = NULL;
+    run->guesses = NULL;
     run->hypotheses = NULL;
     run->candidate_count = run->isotropic_count = run->hypothesis_count = 0;
+    run->guess_count = run->guess_capacity = run->hypothesis_capacity = 0;
+}
+
+asj_status asj_detection_run_known(const asj_detection_run *run, asj_octave_known *known)
+{
+    const int32_t width = run->image->width, height = run->image->height;
+    *known = (asj_octave_known){.finer = NULL};
+    if (run->all_count == 0)
+        return ASJ_OK;
+    const size_t count = asj_octave_grid_cells(run->all_count, width, height);
+    int32_t *cells = asj_allocate_list(&run->context->memory, count, sizeof *cells);
+    if (!cells)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu cells", count);
+    *known = asj_octave_known_start(run->all, run->all_count, run->octave, run->options->minimum_opening, width, height, cells);
+    return ASJ_OK;
 }
 
 size_t asj_detection_run_room(size_t count)

@@ -3,7 +3,9 @@
 #ifndef ASJ_SRC_DETECTION_RUN_H
 #define ASJ_SRC_DETECTION_RUN_H
 
-#include "hypothesis.h"
+#include "edge_evidence.h"
+#include "guess.h"
+#include "octaves.h"
 #include "scan.h"
 #include "scan_cache.h"
 
@@ -41,10 +43,15 @@ typedef struct asj_detection_run {
     size_t candidate_count;
     asj_isotropic_junction *isotropic; /* step 3 */
     size_t isotropic_count;
-    asj_hypothesis *hypotheses;      /* from the location on */
+    asj_guess *guesses;              /* of these; from the location on there are hypotheses */
+    size_t guess_count, guess_capacity;
+    asj_hypothesis *hypotheses;
+    size_t hypothesis_capacity;
     size_t hypothesis_count;
     asj_hypothesis *all;             /* of the octaves that are done, in pixels of the image */
     size_t all_count, all_capacity;
+    asj_evidence *evidence;          /* of branches of all octaves, by asj_hypothesis_branch.evidence */
+    size_t evidence_count, evidence_capacity;
     asj_edge *edges;                 /* between hypotheses */
     size_t edge_count;
     size_t candidate_total, isotropic_total; /* and how many they had */
@@ -66,6 +73,9 @@ typedef struct asj_detection_run {
 asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context, const asj_image *image,
                                    const asj_detect_options *options, const void *output);
 void asj_detection_run_end(asj_detection_run *run);
+
+/* What the octaves that are done know; the caller releases known->grid.heads. */
+asj_status asj_detection_run_known(const asj_detection_run *run, asj_octave_known *known);
 
 /* Numbers of tests and an empty cache for the size of the frame. */
 asj_status asj_detection_run_set_size(asj_detection_run *run);

@@ -13,9 +13,8 @@
 #define STRIP_START 0.5 /* px: a strip begins behind this (strip.c), so that parts which follow each other share no pixel */
 
 static void measure(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                    const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
+                    const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, asj_evidence *evidence)
 {
-    asj_evidence *evidence = &branch->evidence;
     const double ux = cos(branch->angle), uy = sin(branch->angle), part = branch->length / ASJ_EVIDENCE_PARTS;
     double gamma = 0, along = 0, across = 0;
     int32_t pixels = 0;
@@ -34,10 +33,10 @@ static void measure(const asj_context *context, const asj_frame *frame, const as
 }
 
 void asj_edge_evidence_measure(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                               asj_hypothesis *hypothesis)
+                               const asj_hypothesis *hypothesis, asj_evidence *evidence)
 {
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        measure(context, frame, options, hypothesis, &hypothesis->branches[i]);
+        measure(context, frame, options, hypothesis, &hypothesis->branches[i], &evidence[hypothesis->branches[i].evidence]);
 }
 
 double asj_edge_evidence_log_nfa(const asj_context *context, const asj_evidence *evidence, double distance, double log_tests)

@@ -13,7 +13,6 @@
  * other side was not found must not keep apart what both ends say is one. Then the same without that condition among branches
  * that are left: where a scan has overshot a corner, only the other branch knows where the edge ends. */
 #include "edges.h"
-#include "edge_evidence.h"
 #include "strip.h"
 #include "core/angle.h"
 
@@ -33,6 +32,7 @@
 typedef struct graph {
     asj_watch *watch;
     const asj_context *context;
+    const asj_evidence *evidence;
     const asj_hypothesis *hypotheses;
     int32_t *heads, *next; /* junctions by cell */
     int32_t *nearest;      /* of each branch: junction * ASJ_MAX_BRANCHES + branch of what it may be joined with, -1 = none */
@@ -108,7 +108,8 @@ static int goes_on(const asj_hypothesis *hypothesis, double angle)
 
 static double log_nfa(const graph *g, const asj_hypothesis_branch *branch, double distance)
 {
-    return asj_edge_evidence_log_nfa(g->context, &branch->evidence, distance / (1 << branch->octave), g->log_tests[branch->octave]);
+    return asj_edge_evidence_log_nfa(g->context, &g->evidence[branch->evidence], distance / (1 << branch->octave),
+                                     g->log_tests[branch->octave]);
 }
 
 /* Of the two branches those that reach the other junction tell what lies between; the surer one of both. */
@@ -239,9 +240,9 @@ static asj_edge edge_of(const graph *g, int32_t own, int32_t other)
 }
 
 size_t asj_edges_join(asj_watch *watch, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves,
-                      asj_hypothesis *hypotheses, size_t count, int32_t *scratch, asj_edge *edges)
+                      const asj_evidence *evidence, asj_hypothesis *hypotheses, size_t count, int32_t *scratch, asj_edge *edges)
 {
-    graph g = {.watch = watch, .context = watch->context, .hypotheses = hypotheses, .heads = scratch,
+    graph g = {.watch = watch, .context = watch->context, .evidence = evidence, .hypotheses = hypotheses, .heads = scratch,
                .columns = (int32_t)columns_of(width), .rows = (int32_t)columns_of(height)};
     size_t found = 0;
     start(&g, options, width, height, octaves);

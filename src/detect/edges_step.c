@@ -24,8 +24,8 @@ asj_status asj_step_join(asj_detection_run *run)
     asj_watch watch;
     asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
     if (scratch && run->edges) {
-        run->edge_count = asj_edges_join(&watch, run->options, width, height, range.end - range.first, run->hypotheses, count,
-                                         scratch, run->edges);
+        run->edge_count = asj_edges_join(&watch, run->options, width, height, range.end - range.first, run->evidence,
+                                         run->hypotheses, count, scratch, run->edges);
         status = asj_watch_end(&watch);
     } else
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for edges between %zu junctions", count);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Ends over an image: what the planes of an octave say of every branch that is left. */
-#include "edge_evidence.h"
 #include "end_kind.h"
 #include "ends.h"
 #include "steps.h"
@@ -19,9 +18,24 @@ static void measure_some(const void *data, const asj_part *part)
     const job *j = data;
     const asj_detection_run *run = j->run;
     for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++) {
-        asj_edge_evidence_measure(run->context, run->frame, run->options, &run->hypotheses[i]);
+        asj_edge_evidence_measure(run->context, run->frame, run->options, &run->hypotheses[i], run->evidence);
         asj_end_kinds(run->frame, j->rays, run->options, &run->hypotheses[i]);
     }
+}
+
+/* Room for the evidence of every branch, behind that of other octaves. */
+static asj_status number_branches(asj_detection_run *run)
+{
+    size_t total = run->evidence_count;
+    for (size_t i = 0; i < run->hypothesis_count; i++)
+        for (int32_t b = 0; b < run->hypotheses[i].branch_count; b++)
+            run->hypotheses[i].branches[b].evidence = (int32_t)total++;
+    void *list = run->evidence;
+    const asj_status status = asj_grow(&run->context->memory, &list, &run->evidence_capacity, asj_detection_run_room(total),
+                                       sizeof *run->evidence, run->evidence_count);
+    run->evidence = list;
+    run->evidence_count = status == ASJ_OK ? total : 0;
+    return status == ASJ_OK ? status : asj_fail(run->context, status, "no memory for %zu branches", total);
 }
 
 static asj_status measure_all(asj_detection_run *run)
@@ -56,7 +70,9 @@ static asj_status look_for_junctions(asj_detection_run *run, ends_work work)
 /* Ends at junctions need no look at the picture. */
 asj_status asj_step_ends(asj_detection_run *run)
 {
-    const asj_status status = look_for_junctions(run, asj_ends_mark);
+    asj_status status = look_for_junctions(run, asj_ends_mark);
+    if (status == ASJ_OK)
+        status = number_branches(run);
     return status == ASJ_OK ? measure_all(run) : status;
 }
 

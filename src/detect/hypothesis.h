@@ -13,15 +13,6 @@ typedef struct asj_scanned_ray {
     double angle; /* rad */
 } asj_scanned_ray;
 
-/* What the strip along a whole branch says, in parts of equal length (edge_evidence.c). */
-#define ASJ_EVIDENCE_PARTS 8
-typedef struct asj_evidence {
-    double length;                     /* px of its octave: of all parts; 0 = not measured */
-    double gamma[ASJ_EVIDENCE_PARTS];  /* sum of gamma up to the end of each part */
-    int32_t pixels[ASJ_EVIDENCE_PARTS];
-    double alike;                      /* pixels that are as good as one (strip.c) */
-} asj_evidence;
-
 typedef struct asj_hypothesis_branch {
     double angle;            /* rad, outwards */
     double length;           /* px; 0 before the scan */
@@ -34,10 +25,10 @@ typedef struct asj_hypothesis_branch {
     double apart;            /* px between the two edges of a thin line, 0 = one edge */
     double width;            /* px of its octave: standard deviation of the edge's blur (edge_width.c); 0 = sharp or not known */
     int32_t octave;          /* that found it */
+    int32_t evidence;        /* where what its strip says stands in asj_detection_run.evidence, once that is measured */
     double end_variance;     /* px^2 of the end along the branch; 0 = not known */
     int32_t end;             /* ASJ_BRANCH_END_... */
     double contrast_end;     /* px: where the edge ends by its contrast (end_profile.c); 0 = as the scan says */
-    asj_evidence evidence;
 } asj_hypothesis_branch;
 
 typedef struct asj_hypothesis {

@@ -214,32 +214,37 @@ static int adds_nothing(const asj_hypothesis *hypothesis, int located, const asj
     return 1;
 }
 
-static int is_known(const asj_octave_grid *grid, const asj_hypothesis *finer, const asj_hypothesis *hypothesis, int located)
+static int is_at_finer(const asj_octave_known *known, const asj_hypothesis *hypothesis, int located)
 {
-    const asj_octave_cells w = asj_octave_grid_around(grid, hypothesis, NEAR * scale_of(hypothesis->octave));
+    const asj_octave_grid *grid = &known->grid;
+    const asj_hypothesis *finer = known->finer;
+    const double reach = NEAR * scale_of(hypothesis->octave);
+    const asj_octave_cells w = asj_octave_grid_around(grid, hypothesis, reach);
     for (int32_t row = w.top; row <= w.bottom; row++)
         for (int32_t column = w.left; column <= w.right; column++)
             for (int32_t i = grid->heads[row * grid->columns + column]; i >= 0; i = grid->next[i])
-                if (hypot(finer[i].x - hypothesis->x, finer[i].y - hypothesis->y) <= NEAR * scale_of(hypothesis->octave) &&
+                if (hypot(finer[i].x - hypothesis->x, finer[i].y - hypothesis->y) <= reach &&
                     share_direction(hypothesis, &finer[i]) && adds_nothing(hypothesis, located, &finer[i]))
                     return 1;
     return 0;
 }
 
-size_t asj_octaves_drop_known(asj_hypothesis *hypotheses, size_t count, int32_t octave, int known, const asj_hypothesis *finer,
-                              size_t finer_count, const asj_detect_options *options, int32_t width, int32_t height, int32_t *cells)
+asj_octave_known asj_octave_known_start(const asj_hypothesis *finer, size_t count, int32_t octave, double minimum_opening,
+                                        int32_t width, int32_t height, int32_t *cells)
 {
-    asj_octave_grid grid = asj_octave_grid_start(width, height, cells);
-    size_t kept = 0;
-    for (size_t i = 0; i < finer_count; i++)
+    asj_octave_known known = {asj_octave_grid_start(width, height, cells), finer, octave, minimum_opening};
+    for (size_t i = 0; i < count; i++)
         if (softness(&finer[i]) <= SHARP)
-            asj_octave_grid_add(&grid, finer, i);
-    for (size_t i = 0; i < count; i++) {
-        asj_hypothesis mapped = hypotheses[i];
-        asj_octaves_map(&mapped, octave);
-        if (!is_known(&grid, finer, &mapped, known == ASJ_KNOWN_LINES) &&
-            !(known > ASJ_KNOWN_PIXEL && asj_octave_ghost(&grid, finer, &mapped, options->minimum_opening)))
-            hypotheses[kept++] = hypotheses[i];
-    }
-    return kept;
+            asj_octave_grid_add(&known.grid, finer, i);
+    return known;
+}
+
+int asj_octave_is_known(const asj_octave_known *known, const asj_hypothesis *hypothesis, int what)
+{
+    if (!known->finer)
+        return 0;
+    asj_hypothesis mapped = *hypothesis;
+    asj_octaves_map(&mapped, known->octave);
+    return is_at_finer(known, &mapped, what == ASJ_KNOWN_LINES) ||
+           (what > ASJ_KNOWN_PIXEL && asj_octave_ghost(&known->grid, known->finer, &mapped, known->minimum_opening));
 }

@@ -24,10 +24,21 @@ size_t asj_octaves_merge(asj_hypothesis *hypotheses, size_t count, const asj_det
 /* What is known of hypotheses by now: a pixel and directions; the lines, roughly; the lines and the widths of their edges. */
 enum { ASJ_KNOWN_PIXEL, ASJ_KNOWN_ROUGHLY, ASJ_KNOWN_LINES };
 
-/* Of hypotheses in pixels of `octave`, drops those that would not survive the merge and could add nothing: which lie at a sharp one
- * of `finer`, in pixels of the image, and have its directions only, or no soft ones else once widths are known; and ghosts, once
- * lines are. Returns how many stay; `cells` as above, for finer_count. */
-size_t asj_octaves_drop_known(asj_hypothesis *hypotheses, size_t count, int32_t octave, int known, const asj_hypothesis *finer,
-                              size_t finer_count, const asj_detect_options *options, int32_t width, int32_t height, int32_t *cells);
+/* What finer octaves have located well is not followed again by coarser ones. */
+typedef struct asj_octave_known {
+    asj_octave_grid grid;         /* of the sharp ones of `finer` */
+    const asj_hypothesis *finer;  /* in pixels of the image; NULL = none */
+    int32_t octave;               /* the coarser one */
+    double minimum_opening;
+} asj_octave_known;
+
+/* `cells` as above, for `count`. */
+asj_octave_known asj_octave_known_start(const asj_hypothesis *finer, size_t count, int32_t octave, double minimum_opening,
+                                        int32_t width, int32_t height, int32_t *cells);
+
+/* Whether a hypothesis in pixels of the coarser octave would not survive the merge and could add nothing: one that lies at a sharp
+ * finer one and has its directions only, or no soft ones else once widths are known; and a ghost, once lines are. `what`:
+ * ASJ_KNOWN_... */
+int asj_octave_is_known(const asj_octave_known *known, const asj_hypothesis *hypothesis, int what);
 
 #endif

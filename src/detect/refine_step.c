@@ -32,6 +32,6 @@ asj_status asj_step_refine(asj_detection_run *run)
     if (status == ASJ_OK)
         status = asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "validated");
     if (status == ASJ_OK)
-        status = asj_suppress_all(run, ASJ_SUPPRESS_CLOSE);
+        status = asj_suppress_all(run);
     return status == ASJ_OK ? asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "junctions") : status;
 }

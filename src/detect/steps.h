@@ -11,7 +11,8 @@ asj_status asj_step_halve(asj_detection_run *run);      /* gradient_step.c: -> g
 asj_status asj_step_gradient(asj_detection_run *run);   /* step 1 (gradient_step.c): -> gradient planes */
 asj_status asj_step_candidates(asj_detection_run *run); /* step 2 (candidates_step.c): planes -> candidates */
 asj_status asj_step_isotropic(asj_detection_run *run);  /* step 3 (isotropic_step.c): candidates -> isotropic junctions */
-asj_status asj_step_locate(asj_detection_run *run);     /* locate_step.c: isotropic junctions -> hypotheses */
+asj_status asj_step_guess(asj_detection_run *run);      /* guess_step.c: isotropic junctions -> guesses */
+asj_status asj_step_locate(asj_detection_run *run);     /* locate_step.c: guesses -> hypotheses */
 asj_status asj_step_scan(asj_detection_run *run);       /* step 4 (scan_step.c): lengths where they are not known */
 asj_status asj_step_orient(asj_detection_run *run);     /* step 5 (refine_step.c): orientations, to scan along again */
 asj_status asj_step_search(asj_detection_run *run);     /* the same as in the paper (search_step.c), with their lengths */

@@ -5,20 +5,14 @@
 
 #include "detection_run.h"
 
-enum {
-    ASJ_SUPPRESS_TWINS = 0, /* only those of which each branch is one of the other's too: guesses of one corner */
-    ASJ_SUPPRESS_CLOSE = 1  /* all within max(3, 0.35 r) px of a more meaningful one of radius r */
-};
-
-/* Drops rejected hypotheses and those that the rule names. Sorts by meaningfulness, ties by place. Returns how many stay, at the
- * front. `cells` is scratch of asj_suppress_cells() elements. */
-size_t asj_suppress(asj_hypothesis *hypotheses, size_t count, int32_t rule, int32_t width, int32_t height, int32_t *cells);
-size_t asj_suppress_cells(size_t count, int32_t width, int32_t height);
+/* Drops rejected hypotheses and all within max(3, 0.35 r) px of a more meaningful one of radius r. Sorts by meaningfulness, ties by
+ * place. Returns how many stay, at the front. `cells` is scratch of asj_close_grid_cells() elements. */
+size_t asj_suppress(asj_hypothesis *hypotheses, size_t count, int32_t width, int32_t height, int32_t *cells);
 
 /* Sorts by meaningfulness, ties by place. */
 void asj_suppress_sort(asj_hypothesis *hypotheses, size_t count);
 
 /* The same for those of a run. */
-asj_status asj_suppress_all(asj_detection_run *run, int32_t rule);
+asj_status asj_suppress_all(asj_detection_run *run);
 
 #endif

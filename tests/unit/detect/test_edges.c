@@ -16,17 +16,24 @@ typedef struct drawing {
     size_t count, edge_count;
 } drawing;
 
+/* Of all branches of all drawings, one behind the other. */
+static asj_evidence evidence[4096];
+static int32_t evidence_count;
+
 /* A branch with an edge beyond doubt under it, or with `gamma` for each of its 3 pixels across. */
 static void add_branch(asj_hypothesis *h, double angle, double length, double gamma)
 {
     asj_hypothesis_branch *branch = &h->branches[h->branch_count++];
     branch->angle = angle < 0 ? angle + 2 * UNIT_PI : angle;
-    branch->length = branch->evidence.length = length;
-    branch->evidence.alike = 1;
+    assert_in_range(evidence_count, 0, 4095);
+    branch->evidence = evidence_count++;
+    asj_evidence *e = &evidence[branch->evidence];
+    branch->length = e->length = length;
+    e->alike = 1;
     branch->end = ASJ_BRANCH_END_FADED;
     for (int32_t i = 0; i < ASJ_EVIDENCE_PARTS; i++) {
-        branch->evidence.pixels[i] = (int32_t)(3 * length * (i + 1) / ASJ_EVIDENCE_PARTS);
-        branch->evidence.gamma[i] = gamma * branch->evidence.pixels[i];
+        e->pixels[i] = (int32_t)(3 * length * (i + 1) / ASJ_EVIDENCE_PARTS);
+        e->gamma[i] = gamma * e->pixels[i];
     }
 }
 
@@ -50,7 +57,7 @@ static void join(drawing *d)
     asj_detect_options_init(&options);
     asj_watch watch;
     asj_watch_start(&watch, context, ASJ_STAGE_REFINE);
-    d->edge_count = asj_edges_join(&watch, &options, 640, 480, 1, d->list, d->count, scratch, d->edges);
+    d->edge_count = asj_edges_join(&watch, &options, 640, 480, 1, evidence, d->list, d->count, scratch, d->edges);
     asj_context_free(&context);
     free(scratch);
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+#include "detect/close_grid.h"
 #include "detect/suppress.h"
 #include "unit_test.h"
 
@@ -49,9 +50,9 @@ static void test_close(void **state)
             hypotheses[i].log_nfa = -floor(synth_random_between(&random, 0, 30));
         }
         memcpy(copy, hypotheses, sizeof copy);
-        int32_t *cells = malloc(asj_suppress_cells(count, width, height) * sizeof *cells);
+        int32_t *cells = malloc(asj_close_grid_cells(count, width, height) * sizeof *cells);
         assert_non_null(cells);
-        const size_t kept = asj_suppress(hypotheses, count, ASJ_SUPPRESS_CLOSE, width, height, cells);
+        const size_t kept = asj_suppress(hypotheses, count, width, height, cells);
         assert_int_equal(kept, naive_suppress(copy, count, expected));
         for (size_t i = 0; i < kept; i++)
             assert_memory_equal(&hypotheses[i], &expected[i], sizeof hypotheses[i]);
@@ -62,28 +63,39 @@ static void test_close(void **state)
 /* Guesses of one corner: each branch is one of the other's too. */
 static void test_twins(void **state)
 {
-    asj_hypothesis pair[2];
+    asj_hypothesis pair[2], back;
+    asj_guess guesses[2];
     int32_t cells[400];
     (void)state;
-    assert_true(asj_suppress_cells(2, 60, 60) <= 400);
+    assert_true(asj_close_grid_cells(2, 60, 60) <= 400);
     for (int n = 0; n < 64; n++) {
         const double distance = n & 1 ? 1.4 : 1.6, turn = (n & 2 ? 9 : 11) * UNIT_PI / 180, moved = n & 4 ? 1.4 : 1.6;
         const int fewer = n >> 3 & 1, order = n >> 4 & 1, seam = n >> 5;
         memset(pair, 0, sizeof pair);
         for (int i = 0; i < 2; i++) {
             asj_hypothesis *h = &pair[i];
-            h->x = h->x0 = 30 + i * distance;
+            h->x0 = 30;
             h->y = h->y0 = 30;
             h->radius = 7;
+            h->first = 2 + i;
             h->log_nfa = i == order ? -20 : -10;
             h->branch_count = 3 - i * fewer;
-            for (int b = 0; b < h->branch_count; b++)
-                h->branches[(b + i) % h->branch_count].angle = fmod((seam ? 6.2 : 1) + 2 * b + i * turn, 2 * UNIT_PI);
+            for (int b = 0; b < h->branch_count; b++) {
+                asj_hypothesis_branch *branch = &h->branches[(b + i) % h->branch_count];
+                branch->angle = fmod((seam ? 6.2 : 1) + 2 * b + i * turn, 2 * UNIT_PI);
+                branch->offset = b - 0.7;
+                branch->apart = b;
+                branch->strength = b + 3.25;
+            }
         }
-        pair[order].x0 += moved;
+        pair[order].x = 30 + moved; /* both, so that they are as far apart as before */
+        pair[!order].x = 30 + moved + (order ? -distance : distance);
         const int twins = distance < 1.5 && turn < 10 * UNIT_PI / 180 && moved < 1.5 && !fewer;
-        assert_int_equal(asj_suppress(pair, 2, ASJ_SUPPRESS_TWINS, 60, 60, cells), twins ? 1 : 2);
-        assert_true(pair[0].log_nfa == -20);
+        for (int i = 0; i < 2; i++)
+            guesses[i] = asj_guess_of(&pair[i]);
+        assert_int_equal(asj_guess_drop_twins(guesses, 2, 60, 60, cells), twins ? 1 : 2);
+        asj_guess_restore(&guesses[0], &back); /* all that guesses change */
+        assert_memory_equal(&back, &pair[order], sizeof back);
     }
 }
 
