@@ -34,19 +34,26 @@ rule run
   command = \$runner ./\$in > \$out
 END
 
-# machine NAME COMPILER RUNNER FLAG...: one more machine; what it prints will stand in $work/NAME.txt.
+# machine NAME FORM COMPILER RUNNER FLAG...: one more machine, with operations in that form (reference or vectors); what it prints
+# will stand in $work/NAME.txt.
 machine() {
-    name=$1 compiler=$2 runner=$3
-    shift 3
+    name=$1 form=$2 compiler=$3 runner=$4
+    shift 4
     if ! command -v "$compiler" > /dev/null || ! command -v "${runner%% *}" > /dev/null; then
         echo "$name: skipped (no $compiler, or no ${runner%% *})"
         return
     fi
-    objects=
-    for source in $sources; do
+    objects= vectors=
+    if [ "$form" = vectors ]; then
+        vectors=$root/src/simd/gnu/vectors.c
+        set -- "$@" -DASJ_HAVE_VECTORS
+    fi
+    for source in $sources $vectors; do
         object=$name/$(echo "${source#"$root"/}" | tr '/' '_').o
         objects="$objects $object"
-        printf 'build %s: compile %s\n  compiler = %s\n  flags = %s\n' "$object" "$source" "$compiler" "$*"
+        flags=$*
+        [ "$source" != "$vectors" ] || flags="$* -O3 -fno-math-errno -Wno-psabi" # as src/simd/meson.build gives
+        printf 'build %s: compile %s\n  compiler = %s\n  flags = %s\n' "$object" "$source" "$compiler" "$flags"
     done >> "$work/build.ninja"
     printf 'build %s/machine: link %s\n  compiler = %s\n  flags = %s\nbuild %s.txt: run %s/machine\n  runner = %s\n' \
         "$name" "$objects" "$compiler" "$*" "$name" "$name" "$runner" >> "$work/build.ninja"
@@ -89,16 +96,18 @@ try_windows() {
     fi
 }
 
-machine here cc env
-machine s390x s390x-linux-gnu-gcc 'qemu-s390x -L /usr/s390x-linux-gnu' -fexcess-precision=fast
-machine i686 i686-linux-gnu-gcc 'qemu-i386 -L /usr/i686-linux-gnu' -msse2 -mfpmath=sse
-machine musl musl-gcc env -static
+machine here reference cc env
+machine s390x vectors s390x-linux-gnu-gcc 'qemu-s390x -L /usr/s390x-linux-gnu' -fexcess-precision=fast
+machine i686 reference i686-linux-gnu-gcc 'qemu-i386 -L /usr/i686-linux-gnu' -msse2 -mfpmath=sse
+machine musl vectors musl-gcc env -static
 if [ "$all" = --all ]; then
-    machine armhf arm-linux-gnueabihf-gcc 'qemu-arm -L /usr/arm-linux-gnueabihf'
-    machine aarch64 aarch64-linux-gnu-gcc 'qemu-aarch64 -L /usr/aarch64-linux-gnu'
+    machine armhf vectors arm-linux-gnueabihf-gcc 'qemu-arm -L /usr/arm-linux-gnueabihf'
+    machine aarch64 vectors aarch64-linux-gnu-gcc 'qemu-aarch64 -L /usr/aarch64-linux-gnu'
+    machine i686-vectors vectors i686-linux-gnu-gcc 'qemu-i386 -L /usr/i686-linux-gnu' -msse2 -mfpmath=sse
+    machine s390x-reference reference s390x-linux-gnu-gcc 'qemu-s390x -L /usr/s390x-linux-gnu' -fexcess-precision=fast
     # without the options that meson.build gives there: said, and no fault
-    machine i686-other i686-linux-gnu-gcc 'qemu-i386 -L /usr/i686-linux-gnu'
-    machine s390x-other s390x-linux-gnu-gcc 'qemu-s390x -L /usr/s390x-linux-gnu'
+    machine i686-other reference i686-linux-gnu-gcc 'qemu-i386 -L /usr/i686-linux-gnu'
+    machine s390x-other reference s390x-linux-gnu-gcc 'qemu-s390x -L /usr/s390x-linux-gnu'
 fi
 if ! ninja -C "$work" -k 0 > "$work/log" 2>&1; then
     grep -vE '^\[[0-9]' "$work/log" | tail -n 40

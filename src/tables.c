@@ -3,7 +3,8 @@
 #include "tables.h"
 #include "simd/variants.h"
 
-/* The build says which forms it holds: ASJ_HAVE_SSE2, ASJ_HAVE_AVX2, ASJ_HAVE_AVX512, ASJ_HAVE_NEON. */
+/* The build says which forms it holds: ASJ_HAVE_SSE2, ASJ_HAVE_AVX2, ASJ_HAVE_AVX512, ASJ_HAVE_NEON,
+ * ASJ_HAVE_VECTORS. */
 
 static void fill_reference(asj_tables *t)
 {
@@ -42,6 +43,9 @@ int asj_tables_has(int32_t simd)
 #endif
 #ifdef ASJ_HAVE_NEON
     case ASJ_SIMD_NEON:
+#endif
+#ifdef ASJ_HAVE_VECTORS
+    case ASJ_SIMD_VECTORS:
 #endif
         return 1;
     default:
@@ -97,6 +101,9 @@ static void fill_form(int32_t simd, const asj_ops *ops)
 #ifdef ASJ_HAVE_NEON
     case ASJ_SIMD_NEON: asj_fill_neon(ops); break;
 #endif
+#ifdef ASJ_HAVE_VECTORS
+    case ASJ_SIMD_VECTORS: asj_fill_vectors(ops); break;
+#endif
     default: break;
     }
 }
@@ -113,8 +120,10 @@ int asj_tables_fill(int32_t simd, asj_tables *tables)
 
 int32_t asj_tables_best(void)
 {
+    static const int32_t worst_first[] = {ASJ_SIMD_REFERENCE, ASJ_SIMD_VECTORS, ASJ_SIMD_SSE2,
+                                          ASJ_SIMD_AVX2,      ASJ_SIMD_AVX512,  ASJ_SIMD_NEON};
     int32_t best = ASJ_SIMD_REFERENCE;
-    for (int32_t simd = 0; simd < ASJ_SIMD_COUNT; simd++)
-        best = asj_tables_runs(simd) ? simd : best;
+    for (size_t i = 0; i < sizeof worst_first / sizeof *worst_first; i++)
+        best = asj_tables_runs(worst_first[i]) ? worst_first[i] : best;
     return best;
 }

@@ -25,7 +25,8 @@ enum {
     ASJ_SIMD_AVX2 = 3,
     ASJ_SIMD_AVX512 = 4,    /* F, BW and VL */
     ASJ_SIMD_NEON = 5,      /* 64-bit ARM */
-    ASJ_SIMD_COUNT = 6
+    ASJ_SIMD_VECTORS = 6,   /* any processor: what gcc or clang make of vectors, for those that have no form of their own */
+    ASJ_SIMD_COUNT = 7
 };
 
 /* "auto", "reference", "sse2", ...; "unknown" outside the range. A static string. */

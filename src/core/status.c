@@ -34,7 +34,7 @@ const char *asj_stage_name(int32_t stage)
 
 const char *asj_simd_name(int32_t simd)
 {
-    static const char *const names[ASJ_SIMD_COUNT] = {"auto", "reference", "sse2", "avx2", "avx512", "neon"};
+    static const char *const names[ASJ_SIMD_COUNT] = {"auto", "reference", "sse2", "avx2", "avx512", "neon", "vectors"};
     return simd >= 0 && simd < ASJ_SIMD_COUNT ? names[simd] : "unknown";
 }
 

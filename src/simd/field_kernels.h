@@ -243,8 +243,8 @@ static void split_row(const int16_t *row, int32_t count, int16_t *even, int16_t 
 {
     for (int32_t i = 0; i < count; i += V_LANES) {
         const vec a = v_load(row + 2 * i), b = v_load(row + 2 * i + V_LANES);
-        v_store(even + i, v_in_order(v_pack_low(a, b)));
-        v_store(odd + i, v_in_order(v_pack_high(a, b)));
+        v_store(even + i, v_in_order(v_even(a, b)));
+        v_store(odd + i, v_in_order(v_odd(a, b)));
     }
 }
 

@@ -53,7 +53,7 @@ static void gradient_normalise(const asj_gradient_row *row, const uint16_t *norm
                                int16_t *gx, int16_t *gy)
 {
     const asj_gradient_factors factors = asj_gradient_set_factors(5, row->window_rows, row->epsilon);
-    const vec bytes = v_set1_32(1 | 256 << 16), limit = v_set1((int16_t)factors.limit);
+    const vec bytes = v_interleave_low(v_set1(1), v_set1(256)), limit = v_set1((int16_t)factors.limit);
     const vec epsilon = v_set1_32((int32_t)factors.epsilon), numerator = v_set1_32((int32_t)factors.numerator);
     const float number = (float)factors.numerator;
     const int32_t width = row->width;
@@ -63,9 +63,9 @@ static void gradient_normalise(const asj_gradient_row *row, const uint16_t *norm
         const vec sum_low = sum5(low + x), sum_high = sum5(high + x), norm = v_load(norms + x);
         const vec least_low = v_low(norm, limit), least_high = v_high_unsigned(norm, limit);
         const vec a = v_max32(v_add32(v_pairs(v_interleave_low(sum_low, sum_high), bytes), epsilon),
-                              v_shift_right32_8(v_interleave_low(least_low, least_high)));
+                              v_shift_right32_8(v_join_low(least_low, least_high)));
         const vec b = v_max32(v_add32(v_pairs(v_interleave_high(sum_low, sum_high), bytes), epsilon),
-                              v_shift_right32_8(v_interleave_high(least_low, least_high)));
+                              v_shift_right32_8(v_join_high(least_low, least_high)));
         const vec scale_a = quotient32(number, numerator, a), scale_b = quotient32(number, numerator, b);
         const vec scale_low = v_pack_low(scale_a, scale_b), scale_high = v_pack_high(scale_a, scale_b);
         v_store(gx + x, scaled(dx, scale_low, scale_high));

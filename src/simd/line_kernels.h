@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Sums over the pixels of a band in vectors of four floats, for instruction sets of 128 bits: names as in the reference,
- * line_sums.c. Written with the vector types that gcc and clang have for any processor. */
+ * line_sums.c. Written with the vector types that gcc and clang have for any processor; include the vectors of 128 bits first. */
 #ifndef ASJ_SRC_SIMD_LINE_KERNELS_H
 #define ASJ_SRC_SIMD_LINE_KERNELS_H
 
@@ -13,6 +13,7 @@
 typedef float floats __attribute__((vector_size(16)));
 typedef int32_t ints __attribute__((vector_size(16)));
 typedef int16_t shorts __attribute__((vector_size(16)));
+typedef uint32_t unsigned_ints __attribute__((vector_size(16)));
 
 typedef struct lane_sums {
     floats w, x, y, xx, xy, yy;
@@ -133,17 +134,6 @@ static void line_sums(const asj_frame *frame, const asj_line_band *band, asj_lin
     sums[1] = total_sums(sides[1]);
 }
 
-/* Pairs of numbers times pairs of weights, added up. */
-static inline ints weighted(shorts pairs, shorts weights)
-{
-#if defined(__SSE2__)
-    return (ints)_mm_madd_epi16((__m128i)pairs, (__m128i)weights);
-#elif defined(__ARM_NEON) && defined(__aarch64__)
-    const int16x8_t a = (int16x8_t)pairs, b = (int16x8_t)weights;
-    return (ints)vpaddq_s32(vmull_s16(vget_low_s16(a), vget_low_s16(b)), vmull_high_s16(a, b));
-#endif
-}
-
 /* Two neighbours at each of four places. */
 static inline shorts pairs_at(const uint16_t *const p[4], ptrdiff_t offset)
 {
@@ -153,11 +143,33 @@ static inline shorts pairs_at(const uint16_t *const p[4], ptrdiff_t offset)
     return (shorts)(ints){words[0], words[1], words[2], words[3]};
 }
 
-/* The second of each pair of a and the first of that of b. */
+/* The second of each pair of a and the first of that of b; pairs of these numbers below 2^15. */
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
 static inline shorts between(shorts a, shorts b)
 {
-    typedef uint32_t words __attribute__((vector_size(16)));
-    return (shorts)((words)a >> 16 | (words)b << 16);
+    return (shorts)((unsigned_ints)a << 16 | (unsigned_ints)b >> 16);
+}
+
+static inline shorts pairs_of(ints first, ints second)
+{
+    return (shorts)(first << 16 | second);
+}
+#else
+static inline shorts between(shorts a, shorts b)
+{
+    return (shorts)((unsigned_ints)a >> 16 | (unsigned_ints)b << 16);
+}
+
+static inline shorts pairs_of(ints first, ints second)
+{
+    return (shorts)(first | second << 16);
+}
+#endif
+
+/* Pairs of numbers times pairs of weights, added up. */
+static inline ints weighted(shorts pairs, shorts weights)
+{
+    return (ints)v_pairs((vec)pairs, (vec)weights);
 }
 
 /* Central differences at the four pixels around four samples, bilinear; p[i]: the upper left one of sample i. */
@@ -166,7 +178,7 @@ static inline void sample_four(const uint16_t *const p[4], ptrdiff_t stride, int
     const shorts above = pairs_at(p, -stride), below = pairs_at(p, 2 * stride);
     const shorts left0 = pairs_at(p, -1), right0 = pairs_at(p, 1);
     const shorts left1 = pairs_at(p, stride - 1), right1 = pairs_at(p, stride + 1);
-    const shorts weights = (shorts)((4096 - right) | right << 16);
+    const shorts weights = pairs_of(4096 - right, right);
     const ints x0 = weighted(right0 - left0, weights), x1 = weighted(right1 - left1, weights);
     const ints y0 = weighted(between(left1, right1) - above, weights), y1 = weighted(below - between(left0, right0), weights);
     *gx = as_floats(x0) + low * as_floats(x1 - x0);

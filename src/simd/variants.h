@@ -5,6 +5,7 @@
 
 #include "core/ops.h"
 
+void asj_fill_vectors(const asj_ops *ops);
 void asj_fill_sse2(const asj_ops *ops);
 void asj_fill_avx2(const asj_ops *ops);
 void asj_fill_avx512(const asj_ops *ops); /* on top of asj_fill_avx2() */

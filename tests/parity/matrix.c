@@ -84,12 +84,12 @@ int matrix_list(void)
         return 1;
     printf("%-20s", "operation");
     for (int32_t simd = ASJ_SIMD_REFERENCE + 1; simd <= ASJ_SIMD_COUNT; simd++)
-        printf(" %-6s", simd == ASJ_SIMD_COUNT ? "opencl" : asj_simd_name(simd));
+        printf(" %-7s", simd == ASJ_SIMD_COUNT ? "opencl" : asj_simd_name(simd));
     printf("\n");
     for (size_t i = 0; i < SLOTS; i++) {
         printf("%-20s", slots[i].name);
         for (int32_t simd = ASJ_SIMD_REFERENCE + 1; simd <= ASJ_SIMD_COUNT; simd++)
-            printf(" %-6s", cell(forms, there, simd, i));
+            printf(" %-7s", cell(forms, there, simd, i));
         printf("\n");
     }
     return 0;

@@ -70,6 +70,9 @@ static inline vec v_max32(vec a, vec b) { return _mm512_max_epi32(a, b); }
 static inline vec v_shift_right32_8(vec a) { return _mm512_srli_epi32(a, 8); }
 /* -1 where below zero, else 0 */
 static inline vec v_negative32(vec a) { return _mm512_srai_epi32(a, 31); }
+/* numbers of 32 bits with these lower and higher halves, as v_interleave_ arranges lanes */
+static inline vec v_join_low(vec low, vec high) { return v_interleave_low(low, high); }
+static inline vec v_join_high(vec low, vec high) { return v_interleave_high(low, high); }
 /* the lower halves of all lanes, the higher ones; in the order that v_interleave_ takes apart */
 static inline vec v_pack_low(vec a, vec b)
 {
@@ -77,6 +80,9 @@ static inline vec v_pack_low(vec a, vec b)
     return _mm512_packus_epi32(_mm512_and_si512(a, half), _mm512_and_si512(b, half));
 }
 static inline vec v_pack_high(vec a, vec b) { return _mm512_packs_epi32(_mm512_srai_epi32(a, 16), _mm512_srai_epi32(b, 16)); }
+/* the same of even and odd lanes */
+static inline vec v_even(vec a, vec b) { return v_pack_low(a, b); }
+static inline vec v_odd(vec a, vec b) { return v_pack_high(a, b); }
 /* such a pack of a and b as they came from memory, put into memory's order */
 static inline vec v_in_order(vec packed)
 {

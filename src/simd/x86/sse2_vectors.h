@@ -74,12 +74,18 @@ static inline vec v_max32(vec a, vec b)
 static inline vec v_shift_right32_8(vec a) { return _mm_srli_epi32(a, 8); }
 /* -1 where below zero, else 0 */
 static inline vec v_negative32(vec a) { return _mm_srai_epi32(a, 31); }
+/* numbers of 32 bits with these lower and higher halves, as v_interleave_ arranges lanes */
+static inline vec v_join_low(vec low, vec high) { return v_interleave_low(low, high); }
+static inline vec v_join_high(vec low, vec high) { return v_interleave_high(low, high); }
 /* the lower halves of all lanes, the higher ones; in the order that v_interleave_ takes apart */
 static inline vec v_pack_low(vec a, vec b)
 {
     return _mm_packs_epi32(_mm_srai_epi32(_mm_slli_epi32(a, 16), 16), _mm_srai_epi32(_mm_slli_epi32(b, 16), 16));
 }
 static inline vec v_pack_high(vec a, vec b) { return _mm_packs_epi32(_mm_srai_epi32(a, 16), _mm_srai_epi32(b, 16)); }
+/* the same of even and odd lanes */
+static inline vec v_even(vec a, vec b) { return v_pack_low(a, b); }
+static inline vec v_odd(vec a, vec b) { return v_pack_high(a, b); }
 /* such a pack of a and b as they came from memory, put into memory's order */
 static inline vec v_in_order(vec packed) { return packed; }
 /* whole parts of sqrt(a) + more, of a / b, in single precision */

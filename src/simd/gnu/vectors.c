@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* For every processor that gcc and clang compile for and that has no form of its own. */
+#include "gnu_vectors.h" /* before kernels.h */
+#include "simd/kernels.h"
+#include "simd/line_kernels.h"
+#include "simd/variants.h"
+
+void asj_fill_vectors(const asj_ops *ops)
+{
+    fill_kernels(ops);
+    fill_lines(ops);
+}
