@@ -139,6 +139,15 @@ static int32_t least_sum(const asj_isotropic_radius *entry, int32_t k, double lo
     return low > most ? INT32_MAX : low;
 }
 
+/* Sectors of as many pixels have the same least sums. */
+static int is_first_of_size(const asj_sectors *s, int32_t k)
+{
+    int32_t first = 0;
+    while (s->size[first] != s->size[k])
+        first++;
+    return first == k;
+}
+
 /* M branches of which the weakest has sum t are meaningful when ln #J(M) + sum of ln F(t; J_i) <= ln epsilon. One of the M terms
  * is at most their mean, so t is at least the least sum, over the sectors, with ln F <= (ln epsilon - ln #J(M)) / M. A branch below
  * all these for M = 2, 3, .. cannot be among meaningful ones. A millionth is for rounding. */
@@ -151,6 +160,8 @@ static void set_least(const asj_isotropic *test, asj_isotropic_radius *entry)
         if (m > test->max_branches || test->log_tests[m] == -HUGE_VAL)
             continue;
         for (int32_t k = 0; k < s->count; k++) {
+            if (!is_first_of_size(s, k))
+                continue;
             const int32_t sum = least_sum(entry, k, (test->log_epsilon - test->log_tests[m]) / m + 1e-6);
             entry->least_sum[m] = sum < entry->least_sum[m] ? sum : entry->least_sum[m];
         }
