@@ -3,6 +3,7 @@
 #include "neon_vectors.h" /* before kernels.h */
 #include "simd/kernels.h"
 #include "simd/line_kernels.h"
+#include "simd/sample_kernels.h"
 #include "core/image.h"
 #include "simd/variants.h"
 
@@ -34,5 +35,6 @@ void asj_fill_neon(const asj_ops *ops)
 {
     fill_kernels(ops);
     fill_lines(ops);
+    fill_samples(ops);
     ops->image->luma = image_luma_neon;
 }

@@ -3,10 +3,12 @@
 #include "sse2_vectors.h" /* before kernels.h */
 #include "simd/kernels.h"
 #include "simd/line_kernels.h"
+#include "simd/sample_kernels.h"
 #include "simd/variants.h"
 
 void asj_fill_sse2(const asj_ops *ops)
 {
     fill_kernels(ops);
     fill_lines(ops);
+    fill_samples(ops);
 }
