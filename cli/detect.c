@@ -5,6 +5,7 @@
 #include "interrupt.h"
 #include "message.h"
 #include "outputs.h"
+#include "platform.h"
 #include "timing.h"
 
 #include <asj/detect.h>

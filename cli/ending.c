@@ -1,19 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* What the ending of a name promises, and what is written. */
-#define _POSIX_C_SOURCE 200809L
 #include "ending.h"
 #include "message.h"
 #include "parse.h"
+#include "platform.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-
-static int is_special(const char *name)
-{
-    struct stat facts;
-    return strcmp(name, "-") == 0 || (stat(name, &facts) == 0 && !S_ISREG(facts.st_mode));
-}
 
 static void list_formats(const char *const *formats, char *text, size_t size)
 {
@@ -25,11 +18,10 @@ static void list_formats(const char *const *formats, char *text, size_t size)
 
 int cli_check_ending(const char *command, const char *what, const char *name, const char *format, const char *const *formats)
 {
-    const char *slash = name ? strrchr(name, '/') : NULL;
-    const char *base = slash ? slash + 1 : name;
+    const char *base = name ? cli_base_name(name) : NULL;
     const char *dot = base ? strrchr(base, '.') : NULL;
     char ending[8] = "", list[64];
-    if (format || !dot || dot == base || is_special(name))
+    if (format || !dot || dot == base || strcmp(name, "-") == 0 || cli_is_special(name))
         return CLI_SUCCESS;
     for (size_t i = 0; i + 1 < sizeof ending && dot[1 + i]; i++)
         ending[i] = (char)(dot[1 + i] >= 'A' && dot[1 + i] <= 'Z' ? dot[1 + i] - 'A' + 'a' : dot[1 + i]);

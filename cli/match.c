@@ -6,6 +6,7 @@
 #include "match_cameras.h"
 #include "match_input.h"
 #include "message.h"
+#include "platform.h"
 #include "timing.h"
 
 #include <stdio.h>

@@ -2,6 +2,7 @@
 /* An image and its junctions, or its features, for match. */
 #include "match_input.h"
 #include "message.h"
+#include "platform.h"
 
 #include <math.h>
 #include <stdio.h>

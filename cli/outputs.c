@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Names of result files, and which of them would collide. */
-#define _POSIX_C_SOURCE 200809L
 #include "outputs.h"
 #include "message.h"
+#include "platform.h"
 
 #include <asj/io.h>
 
@@ -10,13 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-/* A file that exists: equal for every name of the same file. */
-typedef struct identity {
-    dev_t device;
-    ino_t inode;
-} identity;
 
 void cli_outputs_free(cli_outputs *outputs)
 {
@@ -40,10 +33,10 @@ static char *copy(const char *text)
 static char *name_in(const char *folder, const char *image, const char *extension)
 {
     size_t end = strlen(image);
-    while (end > 0 && image[end - 1] == '/')
+    while (end > 0 && cli_is_separator(image[end - 1]))
         end--;
     size_t start = end;
-    while (start > 0 && image[start - 1] != '/')
+    while (start > 0 && !cli_is_separator(image[start - 1]))
         start--;
     size_t dot = end;
     while (dot > start && image[dot - 1] != '.')
@@ -101,10 +94,10 @@ static int find_targets(cli_planned *outputs, size_t count)
 
 static int compare_identity(const void *a, const void *b)
 {
-    const identity *p = a, *q = b;
+    const cli_identity *p = a, *q = b;
     if (p->device != q->device)
         return p->device < q->device ? -1 : 1;
-    return p->inode == q->inode ? 0 : p->inode < q->inode ? -1 : 1;
+    return p->number == q->number ? 0 : p->number < q->number ? -1 : 1;
 }
 
 static size_t list_planned(const cli_detect_arguments *arguments, const cli_outputs *outputs, cli_planned *list)
@@ -119,39 +112,34 @@ static size_t list_planned(const cli_detect_arguments *arguments, const cli_outp
     return n;
 }
 
-static size_t identify(const char *const *paths, size_t count, identity *list)
+static size_t identify(const char *const *paths, size_t count, cli_identity *list)
 {
-    struct stat facts;
     size_t n = 0;
     for (size_t i = 0; i < count; i++)
-        if (stat(paths[i], &facts) == 0 && S_ISREG(facts.st_mode))
-            list[n++] = (identity){facts.st_dev, facts.st_ino};
+        n += (size_t)cli_identify(paths[i], &list[n]);
     qsort(list, n, sizeof *list, compare_identity);
     return n;
 }
 
-static int check_against(const char *command, const cli_planned *outputs, size_t output_count, const identity *inputs,
+static int check_against(const char *command, const cli_planned *outputs, size_t output_count, const cli_identity *inputs,
                          size_t input_count)
 {
-    struct stat facts;
+    cli_identity existing;
     for (size_t i = 1; i < output_count; i++)
         if (strcmp(outputs[i - 1].target, outputs[i].target) == 0)
             return cli_usage_error(command, "%s: would be written twice, for %s and for %s", outputs[i].path,
                                    outputs[i - 1].purpose, outputs[i].purpose);
-    for (size_t i = 0; i < output_count; i++) {
-        if (stat(outputs[i].path, &facts) != 0)
-            continue;
-        identity existing = {facts.st_dev, facts.st_ino};
-        if (input_count > 0 && bsearch(&existing, inputs, input_count, sizeof *inputs, compare_identity))
+    for (size_t i = 0; i < output_count; i++)
+        if (input_count > 0 && cli_identify(outputs[i].path, &existing) &&
+            bsearch(&existing, inputs, input_count, sizeof *inputs, compare_identity))
             return cli_usage_error(command, "%s: is an input file, and would be overwritten", outputs[i].path);
-    }
     return CLI_SUCCESS;
 }
 
 int cli_check_collisions(const char *command, cli_planned *outputs, size_t output_count, const char *const *inputs,
                          size_t input_count)
 {
-    identity *list = calloc(input_count + 1, sizeof *list);
+    cli_identity *list = calloc(input_count + 1, sizeof *list);
     int result = CLI_FAILED;
     if (!list || !find_targets(outputs, output_count)) {
         cli_error("out of memory");
@@ -169,22 +157,23 @@ int cli_check_collisions(const char *command, cli_planned *outputs, size_t outpu
 /* Makes the folder, and those above it, where they are missing. */
 static int make_folder(const char *path)
 {
-    struct stat facts;
     char *part = copy(path);
     if (!part) {
         cli_error("out of memory");
         return CLI_FAILED;
     }
     errno = 0;
-    for (char *end = part; *end; end++)
-        if (*end == '/' && end > part) {
+    for (char *end = part; *end; end++) {
+        const char separator = *end;
+        if (cli_is_separator(separator) && end > part) {
             *end = '\0';
-            mkdir(part, 0777);
-            *end = '/';
+            cli_make_one_folder(part);
+            *end = separator;
         }
-    const int made = mkdir(part, 0777) == 0 || errno == EEXIST, error = errno;
+    }
+    const int made = cli_make_one_folder(part) == 0 || errno == EEXIST, error = errno;
     free(part);
-    if (stat(path, &facts) == 0 && S_ISDIR(facts.st_mode))
+    if (cli_is_folder(path))
         return CLI_SUCCESS;
     cli_file_error(path, made ? "not a folder" : strerror(error));
     return CLI_FAILED;

@@ -3,6 +3,7 @@
 #include "plot_format.h"
 #include "message.h"
 #include "parse.h"
+#include "platform.h"
 
 #include <string.h>
 
@@ -29,7 +30,7 @@ int cli_plot_format_of_name(const char *command, const char *name, int32_t *form
     if (!cli_plot_available())
         return cli_usage_error(command, "--plot: this build cannot plot (it was made without cairo)");
     const char *dot = strrchr(name, '.');
-    *format = dot && dot != name && dot[-1] != '/' ? cli_plot_format_of_word(dot + 1) : -1;
+    *format = dot && dot != name && !cli_is_separator(dot[-1]) ? cli_plot_format_of_word(dot + 1) : -1;
     if (*format < 0)
         return cli_usage_error(command, "--plot: the name '%s' does not end in .png, .svg or .pdf", name);
     return CLI_SUCCESS;

@@ -1,29 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* A line of progress, on terminals only. */
-#define _POSIX_C_SOURCE 200809L
 #include "progress.h"
 #include "interrupt.h"
+#include "platform.h"
 
 #include <asj/context.h>
 
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 enum { REDRAW_MS = 100, NAME_WIDTH = 40 };
-
-double cli_now_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
 
 void cli_progress_init(cli_progress *progress, int quiet, size_t image_count)
 {
     memset(progress, 0, sizeof *progress);
-    progress->enabled = !quiet && isatty(STDERR_FILENO);
+    progress->enabled = !quiet && cli_is_terminal();
     progress->image_count = image_count;
     progress->name = "";
     progress->last_drawn = cli_now_ms();
@@ -31,9 +22,9 @@ void cli_progress_init(cli_progress *progress, int quiet, size_t image_count)
 
 void cli_progress_next(cli_progress *progress, size_t image, const char *name)
 {
-    const char *slash = strrchr(name, '/');
+    const char *base = cli_base_name(name);
     progress->image = image;
-    progress->name = slash && slash[1] ? slash + 1 : name;
+    progress->name = *base ? base : name;
 }
 
 static void draw(cli_progress *progress, int32_t stage, double done)

@@ -24,7 +24,4 @@ int32_t cli_progress_report(cli_progress *progress, int32_t stage, double done);
 /* Removes the line; to be called before anything else is printed. */
 void cli_progress_clear(cli_progress *progress);
 
-/* Milliseconds on a clock that never goes back. */
-double cli_now_ms(void);
-
 #endif

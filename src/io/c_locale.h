@@ -9,6 +9,7 @@
 
 typedef struct asj_c_locale {
     void *c, *before;
+    int own; /* Windows: whether the thread had a locale of its own */
 } asj_c_locale;
 
 /* ASJ_OK: asj_c_locale_end() afterwards, in the same thread. ASJ_ERROR_MEMORY */

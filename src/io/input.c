@@ -9,7 +9,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { HEAD_BYTES = 65536 }; /* what the check sees */
+#ifdef _WIN32 /* bytes as they are, and not for children */
+#include <io.h>
+#define OPEN_FLAGS (O_RDONLY | O_BINARY | O_NOINHERIT)
+#else
+#define OPEN_FLAGS (O_RDONLY | O_CLOEXEC | O_NOCTTY)
+#endif
+
+enum { HEAD_BYTES = 65536, READ_AT_ONCE = 1 << 30 }; /* what the check sees; Windows reads no 2 GiB in one call */
 
 /* Makes room for more bytes than the input holds. */
 static asj_status grow(asj_input *input, size_t *capacity, const asj_message *message)
@@ -30,9 +37,11 @@ static asj_status grow(asj_input *input, size_t *capacity, const asj_message *me
 /* Fills the buffer from where it ends. *ended: the file has no more. */
 static asj_status read_some(int file, size_t capacity, asj_input *input, int *ended, const asj_message *message)
 {
+    const size_t room = capacity - input->size;
+    const unsigned wanted = room < READ_AT_ONCE ? (unsigned)room : READ_AT_ONCE;
     ssize_t got;
     do
-        got = read(file, input->bytes + input->size, capacity - input->size);
+        got = read(file, input->bytes + input->size, wanted);
     while (got < 0 && errno == EINTR);
     if (got < 0)
         return asj_message_errno(message, errno, "cannot read");
@@ -70,7 +79,7 @@ asj_status asj_input_read(asj_input *input, asj_input_check *check, const asj_me
     static const asj_input none = {0};
     struct stat info;
     asj_status status;
-    int file = open(message->path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+    int file = open(message->path, OPEN_FLAGS);
 
     *input = none;
     if (file < 0)

@@ -42,7 +42,11 @@ asj_status asj_message_fail(const asj_message *message, asj_status status, const
 asj_status asj_message_errno(const asj_message *message, int error, const char *action)
 {
     char text[128];
+#ifdef _WIN32
+    if (strerror_s(text, sizeof text, error))
+#else
     if (strerror_r(error, text, sizeof text))
+#endif
         snprintf(text, sizeof text, "error %d", error);
     return asj_message_fail(message, error == ENOMEM ? ASJ_ERROR_MEMORY : ASJ_ERROR_FILE, "%s: %s", action, text);
 }

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Places of output files where there is POSIX. */
+#define _XOPEN_SOURCE 700
+#include "place.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char *copy_text(const char *text)
+{
+    size_t size = strlen(text) + 1;
+    char *copy = malloc(size);
+    if (copy)
+        memcpy(copy, text, size);
+    return copy;
+}
+
+/* -1, or the number of the open file that a path stands for. Opening /dev/stdout anew would start again at the beginning of a file
+ * that the shell has opened for appending, so the open file itself is used. */
+static int open_file_of_path(const char *path)
+{
+    static const char prefix[] = "/dev/fd/";
+    if (!strcmp(path, "-") || !strcmp(path, "/dev/stdout"))
+        return STDOUT_FILENO;
+    if (!strcmp(path, "/dev/stderr"))
+        return STDERR_FILENO;
+    if (!strncmp(path, prefix, sizeof prefix - 1)) {
+        char *end;
+        long number = strtol(path + sizeof prefix - 1, &end, 10);
+        if (end != path + sizeof prefix - 1 && !*end && number >= 0 && number < INT_MAX)
+            return (int)number;
+    }
+    return -1;
+}
+
+/* The folder of `path` and then `name`; `name` alone when it begins at the root. */
+static char *beside(const char *path, const char *name)
+{
+    const char *slash = strrchr(path, '/');
+    size_t folder = slash && name[0] != '/' ? (size_t)(slash - path) + 1 : 0, size = folder + strlen(name) + 1;
+    char *joined = malloc(size);
+    if (joined) {
+        memcpy(joined, path, folder);
+        memcpy(joined + folder, name, size - folder);
+    }
+    return joined;
+}
+
+/* A path whose last part is no symbolic link: the links of `path` followed to the end, which need not exist. */
+static char *follow_links(const char *path)
+{
+    enum { MOST_LINKS = 40, MOST_BYTES = 4096 };
+    char *at = copy_text(path), name[MOST_BYTES];
+    int i;
+
+    for (i = 0; at && i < MOST_LINKS; i++) {
+        ssize_t length = readlink(at, name, sizeof name - 1);
+        char *next;
+        if (length < 0)
+            return at;
+        name[length] = '\0';
+        next = beside(at, name);
+        free(at);
+        at = next;
+    }
+    free(at);
+    errno = i == MOST_LINKS ? ELOOP : ENOMEM;
+    return NULL;
+}
+
+/* Creates a file of a new name beside the target. open() and not mkstemp(): it gives the permissions that the umask of the process
+ * asks for, and the umask cannot be read without changing it. */
+static int create_temporary(asj_place *place)
+{
+    const char *slash = strrchr(place->target, '/');
+    size_t folder = slash ? (size_t)(slash - place->target) + 1 : 0;
+    size_t size = folder + 64;
+    unsigned number;
+    int file, error;
+
+    place->temporary = malloc(size);
+    if (!place->temporary)
+        return -1;
+    memcpy(place->temporary, place->target, folder);
+    for (number = 0; number < 10000; number++) {
+        snprintf(place->temporary + folder, size - folder, ".asj-%ld-%u.tmp", (long)getpid(), number);
+        file = open(place->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file >= 0)
+            return file;
+        if (errno != EEXIST)
+            break;
+    }
+    error = errno;
+    free(place->temporary); /* not ours: never to be removed */
+    place->temporary = NULL;
+    errno = error;
+    return -1;
+}
+
+/* -1 with errno set when that fails. */
+static int open_path(asj_place *place, const char *path)
+{
+    struct stat info;
+    int file = open_file_of_path(path);
+
+    if (file >= 0) {
+        if (file == STDOUT_FILENO)
+            fflush(stdout);
+        return fcntl(file, F_DUPFD_CLOEXEC, 3);
+    }
+    if (stat(path, &info)) {
+        if (errno != ENOENT)
+            return -1;
+        place->target = follow_links(path); /* to where a link will point */
+        return place->target ? create_temporary(place) : -1;
+    }
+    if (S_ISDIR(info.st_mode)) {
+        errno = EISDIR;
+        return -1;
+    }
+    if (!S_ISREG(info.st_mode))
+        return open(path, O_WRONLY | O_CLOEXEC);
+    if (faccessat(AT_FDCWD, path, W_OK, AT_EACCESS)) /* a rename would replace even a protected file */
+        return -1;
+    place->target = realpath(path, NULL);
+    file = place->target ? create_temporary(place) : -1;
+    if (file >= 0 && fchmod(file, info.st_mode & 0777))
+        errno = 0; /* some file systems know no permissions: the file itself matters more */
+    return file;
+}
+
+FILE *asj_place_open(asj_place *place, const char *path)
+{
+    const int file = open_path(place, path);
+    FILE *stream = file >= 0 ? fdopen(file, "wb") : NULL;
+    if (file >= 0 && !stream) {
+        const int error = errno;
+        close(file);
+        errno = error;
+    }
+    return stream;
+}
+
+int asj_place_keep(asj_place *place)
+{
+    if (!place->temporary)
+        return 0;
+    if (rename(place->temporary, place->target))
+        return errno;
+    free(place->temporary); /* it has the final name now */
+    place->temporary = NULL;
+    return 0;
+}
+
+void asj_place_free(asj_place *place)
+{
+    if (place->temporary)
+        unlink(place->temporary);
+    free(place->temporary);
+    free(place->target);
+}
+
+asj_status asj_place_resolve(const char *path, char *target, size_t target_size)
+{
+    char *file, *folder = NULL, *absolute = NULL;
+    const char *slash, *name;
+    int length = -1;
+
+    file = follow_links(path);
+    if (!file)
+        return errno == ENOMEM ? ASJ_ERROR_MEMORY : ASJ_ERROR_FILE;
+    slash = strrchr(file, '/');
+    name = slash ? slash + 1 : file;
+    folder = slash ? copy_text(file) : copy_text(".");
+    if (folder && slash)
+        folder[slash - file + 1] = '\0';
+    absolute = folder ? realpath(folder, NULL) : NULL;
+    if (absolute)
+        length = snprintf(target, target_size, "%s/%s", absolute, name);
+    free(absolute);
+    free(folder);
+    free(file);
+    return length >= 0 && (size_t)length < target_size ? ASJ_OK : ASJ_ERROR_FILE;
+}
