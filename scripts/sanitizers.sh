@@ -24,7 +24,7 @@ with_memory_sanitizer() {
     sanitized build-msan 'tests/soak/frames tests/fuzz/replay-detect tests/fuzz/replay-match tests/fuzz/replay-geometry' \
         -Db_sanitize=memory -Dthreads=enabled -Dopencl=disabled || return 1
     logged msan-frames "$root/build-msan/tests/soak/frames" 40 || return 1
-    for harness in detect:30 match:300 geometry:0; do
+    for harness in detect:200 match:300 geometry:20; do
         logged "msan-${harness%:*}" "$root/build-msan/tests/fuzz/replay-${harness%:*}" "$root/tests/fuzz/corpus/${harness%:*}" \
             "${harness#*:}" || return 1
     done

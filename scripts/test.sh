@@ -163,7 +163,7 @@ more_checks() {
     step machines on_machines
     step threads with_thread_sanitizer
     step memory with_memory_sanitizer
-    step fuzzers with_fuzzer 10 arguments match features image junctions probe # the seeds of the others take longer
+    step fuzzers with_fuzzer 10
     step clang with_clang
 }
 

@@ -67,8 +67,7 @@ source_lists() {
     [ ! -e "$work/apt/parts/sources.list" ] || mv "$work/apt/parts/sources.list" "$work/apt/parts/own.list"
 }
 
-# windows_libraries: libpng and jansson, which Debian has no MinGW form of, from their sources into $work/libraries. Jansson writes
-# numbers by the printf of C99, not by that of Windows, which rounds ties away from zero.
+# windows_libraries: libpng and jansson, which Debian has no MinGW form of, from their sources into $work/libraries.
 windows_libraries() {
     [ ! -e "$work/libraries/done" ] || return 0
     source_lists || return 1
@@ -79,7 +78,6 @@ set(CMAKE_C_COMPILER $windows_compiler)
 set(CMAKE_RC_COMPILER x86_64-w64-mingw32-windres)
 set(CMAKE_FIND_ROOT_PATH /usr/x86_64-w64-mingw32)
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
-set(CMAKE_C_FLAGS -D__USE_MINGW_ANSI_STDIO=1)
 END
     (
         cd "$work/apt" && apt-get $lists update && apt-get $lists source --tar-only libpng1.6 jansson || exit 1

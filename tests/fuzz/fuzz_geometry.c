@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 40, SIDE = 400 };
+enum { MOST = 16, SIDE = 400 };
 
 static void camera_of(fuzz_bytes *bytes, asj_camera *camera)
 {
