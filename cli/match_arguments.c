@@ -48,8 +48,8 @@ static const cli_option output_options[] = {
     {FORMAT, 'f', "format", "csv|json", "csv: one line a match; json: everything. Default: by the end of FILE, else csv"},
     {LINES, 0, "lines", NULL, "line segments: csv has them in place of the matches, json beside them; a plot shows them"},
     {LINE_ENDS, 0, "line-ends", "cut|inner|both",
-     "line segments whose far ends are known at least so well: both branches end there; on one of them the end is a corner further "
-     "inside (inner, the default); all, the longer one cut to fit"},
+     "line segments whose far ends are known at least so well: both branches end there, as the matches around see it; on one of "
+     "them the end is a corner further inside (inner, the default); all, the longer one cut to fit"},
 };
 
 static const cli_option input_options[] = {

@@ -64,7 +64,8 @@ typedef struct asj_match_options {
     double verify_distance;      /* px at which such a neighbour counts by half. 10 .. 10000; 100 */
     double verify_agreement;     /* mean agreement with them that a match needs. 0 .. 1; 0.28; paper 0 */
     /* line segments */
-    double end_tolerance;        /* branch ends correspond when lengths agree within this part. 0.01 .. 1; 0.12 */
+    double end_tolerance;        /* lengths of branches that explain each other agree within this part, and ends that
+                                  * correspond within a sixth of it, or 4 px. 0.01 .. 1; 0.12 */
     double reserved[20];         /* zero */
     /* two-view geometry; not among the options with a key. model: none, the default, and then the rest of it does not matter. Sizes
      * of the images are filled in */
@@ -80,10 +81,12 @@ ASJ_API asj_status asj_match_options_set(asj_match_options *options, const char 
                                          char *message, size_t message_size);
 ASJ_API asj_status asj_match_options_get(const asj_match_options *options, const char *key, char *text, size_t text_size);
 
-/* What is known about the end of a matched branch. */
+/* What is known about the end of a matched branch. Two ends correspond when the maps of the matches around put either of them
+ * within 4 px (or a part of the length: end_tolerance) of the other, 3 px when what is at them differs; the border of an image
+ * corresponds to nothing. */
 enum {
-    ASJ_END_CUT = 0,   /* the lengths differ: the longer branch was cut where the map puts the end of the shorter one */
-    ASJ_END_INNER = 1, /* a junction on the longer branch corresponds to the other's end */
+    ASJ_END_CUT = 0,   /* they do not: the longer branch was cut where the matches around put the end of the shorter one */
+    ASJ_END_INNER = 1, /* a junction on one of the branches, or on each, corresponds to the other's end */
     ASJ_END_BOTH = 2   /* both branches' own ends correspond */
 };
 
@@ -95,7 +98,7 @@ typedef struct asj_junction_match {
     float x1, y1;           /* px: junction in image 1, as detected */
     float x2, y2;           /* px: where the aligned map puts it in image 2; as detected when it was not aligned */
     float ax1, ay1, bx1, by1; /* ends of the parts of both branches that correspond, image 1 */
-    float ax2, ay2, bx2, by2; /* image 2, moved along with x2, y2 */
+    float ax2, ay2, bx2, by2; /* image 2 */
     int32_t end_a, end_b;   /* ASJ_END_... */
     float distance;         /* of the patches; see compare.c. The smaller the better */
     float ratio;            /* how much worse the second best at another place is; HUGE_VAL when there is none */
@@ -164,10 +167,10 @@ typedef struct asj_segment_match {
 } asj_segment_match;
 
 /* The matches as line-segment matches: the two branches of each match, then the other branches of the same two junctions that
- * the map takes to each other; those whose far ends correspond at least as `minimum_end` says (ASJ_END_...). A pair found
- * from both its ends comes once. Writes at most `capacity` of them and returns how many there are in all (ASJ_MAX_BRANCHES x
- * match_count at most). Time: proportional to the matches (20 000: 25 ms); for a result that the caller has put together or copied,
- * to their square (20 000: 7 s). */
+ * the map takes to each other; those whose far ends correspond at least as `minimum_end` says (ASJ_END_...); what is at the ends of
+ * those other branches is not asked. A pair found from both its ends comes once. Writes at most `capacity` of them and returns how
+ * many there are in all (ASJ_MAX_BRANCHES x match_count at most). Time: proportional to the matches (20 000: 25 ms); for a result
+ * that the caller has put together or copied, to their square (20 000: 7 s). */
 ASJ_API size_t asj_match_segments(const asj_match_result *result, int32_t minimum_end,
                                   asj_segment_match *segments, size_t capacity);
 

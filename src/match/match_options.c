@@ -68,7 +68,7 @@ static const asj_option_info rows[] = {
                 "mean agreement with the matches around, each counted 0 to 1, that a match needs"),
 
     NUMBER(SEGMENTS, ADVANCED, end_tolerance, "", 0.01, 1, 0.12, 0.12, 0.12,
-           "branch ends correspond when their lengths agree within this part"),
+           "lengths of branches that explain each other agree within this part, ends that correspond within a sixth, or 4 px"),
 };
 static const asj_option_table table = {rows, sizeof rows / sizeof *rows, sizeof(asj_match_options)};
 

@@ -12,7 +12,7 @@ typedef struct result {
     asj_memory memory;
     asj_junction_match *matches, *rejected;
     asj_l_junction *l1, *l2;
-    asj_place *places; /* of `count` matches */
+    asj_place *places[2]; /* of `count` matches, in image 1 and image 2 */
     uint32_t count;
 } result;
 
@@ -24,13 +24,12 @@ static void refined_location(const asj_candidate *c, const asj_l_junction *l2, d
     *y = (double)l2->y + c->move2[1] - (c->map.to[2] * c->move1[0] + c->map.to[3] * c->move1[1]);
 }
 
+/* All but the ends of the branches. */
 static void fill(const asj_match_run *run, const asj_choice *choice, asj_junction_match *m)
 {
     const asj_candidate *c = &run->candidates.list[choice->candidate];
     const asj_l_junction *l1 = asj_match_run_l(run, c, 0), *l2 = asj_match_run_l(run, c, 1);
-    const double *u1 = run->image[0]->l_junctions.direction + 4 * (size_t)c->i;
-    const double *u2 = run->image[1]->l_junctions.direction + 4 * (size_t)c->j, *t = c->map.to;
-    const asj_common_end a = asj_find_common_end(run, c, 0), b = asj_find_common_end(run, c, 1);
+    const double *t = c->map.to;
     double x, y;
     refined_location(c, l2, &x, &y);
     memset(m, 0, sizeof *m);
@@ -45,21 +44,50 @@ static void fill(const asj_match_run *run, const asj_choice *choice, asj_junctio
     m->y1 = l1->y;
     m->x2 = (float)x;
     m->y2 = (float)y;
-    m->ax1 = (float)((double)l1->x + a.length1 * u1[0]);
-    m->ay1 = (float)((double)l1->y + a.length1 * u1[1]);
-    m->bx1 = (float)((double)l1->x + b.length1 * u1[2]);
-    m->by1 = (float)((double)l1->y + b.length1 * u1[3]);
-    m->ax2 = (float)(x + a.length2 * u2[0]);
-    m->ay2 = (float)(y + a.length2 * u2[1]);
-    m->bx2 = (float)(x + b.length2 * u2[2]);
-    m->by2 = (float)(y + b.length2 * u2[3]);
-    m->end_a = a.kind;
-    m->end_b = b.kind;
     m->distance = sqrtf(c->distance2);
     m->ratio = choice->ratio;
     m->similarity = c->similarity;
     m->support = c->support;
     m->probability = choice->probability;
+}
+
+/* The end of branch a (0) or b (1) that both images show, at `from` (x, y) in image 1 and `to` in image 2. Returns its kind. */
+static int32_t find_end(const asj_match_run *run, const asj_around *around, const asj_junction_match *m, int32_t branch,
+                        float from[2], float to[2])
+{
+    const asj_l_junctions *in[2] = {&run->image[0]->l_junctions, &run->image[1]->l_junctions};
+    const uint32_t l[2] = {m->l1, m->l2};
+    const asj_lengths *lengths[2];
+    asj_matched_branch line = {.match = m};
+    for (int32_t side = 0; side < 2; side++) {
+        const double *u = in[side]->direction + 4 * (size_t)l[side] + 2 * branch;
+        lengths[side] = &in[side]->lengths[2 * (size_t)l[side] + (size_t)branch];
+        line.x[side] = (double)in[side]->l[l[side]].x;
+        line.y[side] = (double)in[side]->l[l[side]].y;
+        line.ux[side] = u[0];
+        line.uy[side] = u[1];
+    }
+    const asj_common_end end = asj_find_common_end(around, &line, lengths, run->options->end_tolerance);
+    from[0] = (float)(line.x[0] + end.length[0] * line.ux[0]);
+    from[1] = (float)(line.y[0] + end.length[0] * line.uy[0]);
+    to[0] = (float)(line.x[1] + end.length[1] * line.ux[1]);
+    to[1] = (float)(line.y[1] + end.length[1] * line.uy[1]);
+    return end.kind;
+}
+
+static void fill_ends(const asj_match_run *run, const asj_around *around, asj_junction_match *m)
+{
+    float from[4], to[4];
+    m->end_a = find_end(run, around, m, 0, from, to);
+    m->end_b = find_end(run, around, m, 1, from + 2, to + 2);
+    m->ax1 = from[0];
+    m->ay1 = from[1];
+    m->bx1 = from[2];
+    m->by1 = from[3];
+    m->ax2 = to[0];
+    m->ay2 = to[1];
+    m->bx2 = to[2];
+    m->by2 = to[3];
 }
 
 static int by_distance(const void *left, const void *right)
@@ -91,6 +119,17 @@ static asj_junction_match *list_of(const asj_match_run *run, asj_memory *memory,
     return list;
 }
 
+/* The ends of all, as the chosen matches see them. */
+static void find_ends(const asj_match_run *run, result *r)
+{
+    const asj_around all = {r->matches, r->count, {r->places[0], r->places[1]}, r->count};
+    const asj_around *around = run->options->neighbours > 0 ? &all : NULL;
+    for (uint32_t k = 0; k < r->count; k++)
+        fill_ends(run, around, &r->matches[k]);
+    for (size_t k = 0; k < run->rejected.count; k++)
+        fill_ends(run, around, &r->rejected[k]);
+}
+
 asj_match_result *asj_match_result_create(const asj_match_run *run)
 {
     asj_memory memory = {.allocator = run->context->memory.allocator};
@@ -105,13 +144,16 @@ asj_match_result *asj_match_result_create(const asj_match_run *run)
     r->l1 = copy(&memory, in1);
     r->l2 = copy(&memory, in2);
     asj_match_result *shown = &r->shown;
-    r->places = asj_allocate(&memory, count, sizeof *r->places);
-    if (!r->matches || !r->rejected || !r->l1 || !r->l2 || !r->places) {
+    for (int32_t side = 0; side < 2; side++)
+        r->places[side] = asj_allocate(&memory, count, sizeof *r->places[side]);
+    if (!r->matches || !r->rejected || !r->l1 || !r->l2 || !r->places[0] || !r->places[1]) {
         asj_match_result_free(&shown);
         return NULL;
     }
     r->count = (uint32_t)count;
-    asj_places_sort(r->places, r->matches, r->count);
+    for (int32_t side = 0; side < 2; side++)
+        asj_places_sort(r->places[side], r->matches, r->count, side);
+    find_ends(run, r);
     shown->rejected = run->rejected.count ? r->rejected : NULL;
     shown->rejected_count = run->rejected.count;
     shown->matches = count ? r->matches : NULL;
@@ -125,13 +167,16 @@ asj_match_result *asj_match_result_create(const asj_match_run *run)
     return shown;
 }
 
-const asj_place *asj_match_result_places(const asj_match_result *shown, uint32_t *count)
+asj_around asj_match_result_around(const asj_match_result *shown)
 {
     const result *r = (const result *)shown;
-    if (shown->own != (uint64_t)(uintptr_t)r || shown->matches != r->matches || shown->match_count > r->count)
-        return NULL;
-    *count = r->count;
-    return r->places;
+    asj_around around = {shown->matches, shown->match_count, {NULL, NULL}, 0};
+    if (shown->own == (uint64_t)(uintptr_t)r && shown->matches == r->matches && shown->match_count <= r->count) {
+        around.places[0] = r->places[0];
+        around.places[1] = r->places[1];
+        around.place_count = r->count;
+    }
+    return around;
 }
 
 void asj_match_result_free(asj_match_result **pointer)
@@ -144,7 +189,8 @@ void asj_match_result_free(asj_match_result **pointer)
     asj_release(&memory, r->rejected);
     asj_release(&memory, r->l1);
     asj_release(&memory, r->l2);
-    asj_release(&memory, r->places);
+    asj_release(&memory, r->places[0]);
+    asj_release(&memory, r->places[1]);
     asj_release(&memory, r);
     *pointer = NULL;
 }

@@ -3,15 +3,15 @@
 #ifndef ASJ_SRC_MATCH_RESULT_H
 #define ASJ_SRC_MATCH_RESULT_H
 
+#include "around.h"
 #include "match_run.h"
-#include "places.h"
 
 /* Turns the choices into a result, smallest distance first. NULL when out of memory. The result does not depend on the context
  * afterwards. */
 asj_match_result *asj_match_result_create(const asj_match_run *run);
 
-/* Where the matches are, as many as *count; NULL for a result that the caller has put together or copied, and for one whose
+/* The matches, and where they are; without places for a result that the caller has put together or copied, and for one whose
  * matches are no longer those of the call. */
-const asj_place *asj_match_result_places(const asj_match_result *shown, uint32_t *count);
+asj_around asj_match_result_around(const asj_match_result *shown);
 
 #endif

@@ -24,10 +24,11 @@ static int by_place(const void *left, const void *right)
     return p->match < q->match ? -1 : p->match > q->match;
 }
 
-void asj_places_sort(asj_place *places, const asj_junction_match *matches, uint32_t count)
+void asj_places_sort(asj_place *places, const asj_junction_match *matches, uint32_t count, int32_t side)
 {
     for (uint32_t k = 0; k < count; k++)
-        places[k] = (asj_place){band_of((double)matches[k].y1), matches[k].x1, k};
+        places[k] = side ? (asj_place){band_of((double)matches[k].y2), matches[k].x2, k}
+                         : (asj_place){band_of((double)matches[k].y1), matches[k].x1, k};
     if (count > 1)
         qsort(places, count, sizeof *places, by_place);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Matches by their place in image 1, so that those near a point are found without looking at all. */
+/* Matches by their place in one of the images, so that those near a point are found without looking at all. */
 #ifndef ASJ_SRC_PLACES_H
 #define ASJ_SRC_PLACES_H
 
@@ -12,8 +12,8 @@ typedef struct asj_place {
     uint32_t match;
 } asj_place;
 
-/* Writes the place of each match, by bands and by x in each. */
-void asj_places_sort(asj_place *places, const asj_junction_match *matches, uint32_t count);
+/* Writes the place of each match in image 1 (side 0) or 2, by bands and by x in each. */
+void asj_places_sort(asj_place *places, const asj_junction_match *matches, uint32_t count, int32_t side);
 
 typedef struct asj_place_walk {
     const asj_place *places;

@@ -2,7 +2,8 @@
 /* Matches as segment matches.
  *
  * A match says which junctions are one point, so their other branches correspond as well: each to the one that the map turns it
- * towards. Their ends are judged like those of the two that made the match, by their own lengths.
+ * towards. Their ends are judged like those of the two that made the match (segments.c), by their own lengths; what is at them is
+ * not asked.
  *
  * An edge between two matched junctions is found from both its ends. Such duplicates are pairs whose ends lie together in both
  * images; the one with the better known end stays, of equals the first. A pair that is a part of another is no duplicate: it
@@ -10,6 +11,7 @@
 #include "segment_matches.h"
 
 #include "match_result.h"
+#include "segments.h"
 
 #include <math.h>
 
@@ -18,6 +20,13 @@
 #define SAME_END 4.0           /* px, or .. */
 #define SAME_END_SHARE 0.05    /* .. this part of the length */
 #define SLOTS ASJ_MAX_BRANCHES /* segment pairs of one match: its branches a and b, then others */
+
+/* What segments are looked for among. */
+typedef struct search {
+    const asj_match_result *result;
+    const asj_around *around;
+    int32_t minimum_end;
+} search;
 
 /* Branches of one junction, as its L-junctions name them: ends relative to the location. */
 typedef struct bundle {
@@ -68,28 +77,31 @@ static int32_t along(const bundle *b, double x, double y)
 }
 
 /* The pair of branch k of b1 and what corresponds to it in b2; 0 when nothing does. */
-static int pair_up(const asj_junction_match *m, uint32_t index, const bundle *b1, const bundle *b2, int32_t k, asj_segment_match *s)
+static int pair_up(const search *in, const asj_junction_match *m, const bundle *b1, const bundle *b2, int32_t k,
+                   asj_segment_match *s)
 {
     const double x1 = b1->x[k], y1 = b1->y[k], x = m->affine[0] * x1 + m->affine[1] * y1, y = m->affine[3] * x1 + m->affine[4] * y1;
     const int32_t partner = along(b2, x, y);
     if (partner < 0 || along(b1, x1, y1) != k)
         return 0;
-    const double x2 = b2->x[partner], y2 = b2->y[partner], mapped = sqrt(x * x + y * y), own = sqrt(x2 * x2 + y2 * y2);
-    double part1 = 1, part2 = 1;
-    const int cut = mapped > own * (1 + END_TOLERANCE) || own > mapped * (1 + END_TOLERANCE);
-    if (cut && mapped > own)
-        part1 = own / mapped;
-    else if (cut)
-        part2 = mapped / own;
-    *s = (asj_segment_match){index, cut ? ASJ_END_CUT : ASJ_END_BOTH,
-                             m->x1, m->y1, (float)((double)m->x1 + part1 * x1), (float)((double)m->y1 + part1 * y1),
-                             m->x2, m->y2, (float)((double)m->x2 + part2 * x2), (float)((double)m->y2 + part2 * y2)};
+    const double x2 = b2->x[partner], y2 = b2->y[partner], l1 = sqrt(x1 * x1 + y1 * y1), l2 = sqrt(x2 * x2 + y2 * y2);
+    const asj_l_junction *j1 = &in->result->l_junctions1[m->l1], *j2 = &in->result->l_junctions2[m->l2];
+    const asj_matched_branch line = {m, {(double)j1->x, (double)j2->x}, {(double)j1->y, (double)j2->y}, {x1 / l1, x2 / l2},
+                                     {y1 / l1, y2 / l2}};
+    const asj_lengths own[2] = {{1, {(float)l1}, ASJ_BRANCH_END_UNKNOWN}, {1, {(float)l2}, ASJ_BRANCH_END_UNKNOWN}};
+    const asj_lengths *lengths[2] = {&own[0], &own[1]};
+    const asj_common_end end = asj_find_common_end(in->around, &line, lengths, END_TOLERANCE);
+    *s = (asj_segment_match){(uint32_t)(m - in->result->matches), end.kind, m->x1, m->y1,
+                             (float)(line.x[0] + end.length[0] * line.ux[0]), (float)(line.y[0] + end.length[0] * line.uy[0]),
+                             m->x2, m->y2,
+                             (float)(line.x[1] + end.length[1] * line.ux[1]), (float)(line.y[1] + end.length[1] * line.uy[1])};
     return 1;
 }
 
 /* Pair number `slot` of match `index`; 0 when there is none. */
-static int segment_of(const asj_match_result *result, uint32_t index, int32_t slot, asj_segment_match *s)
+static int segment_of(const search *in, uint32_t index, int32_t slot, asj_segment_match *s)
 {
+    const asj_match_result *result = in->result;
     const asj_junction_match *m = &result->matches[index];
     if (slot < 2) {
         *s = slot == 0
@@ -104,7 +116,7 @@ static int segment_of(const asj_match_result *result, uint32_t index, int32_t sl
     collect(result->l_junctions2, result->l_junction_count2, m->l2, &b2);
     for (int32_t k = 0; k < ASJ_MAX_BRANCHES; k++)
         if (b1.known[k] && --slot < 2)
-            return pair_up(m, index, &b1, &b2, k, s);
+            return pair_up(in, m, &b1, &b2, k, s);
     return 0;
 }
 
@@ -139,14 +151,6 @@ static surroundings around(const asj_segment_match *s)
     return (surroundings){{s->x1, s->ex1}, {s->y1, s->ey1}, share * l1 > least ? share * l1 : least};
 }
 
-/* What segments are looked for among. */
-typedef struct search {
-    const asj_match_result *result;
-    const asj_place *places;
-    uint32_t place_count;
-    int32_t minimum_end;
-} search;
-
 /* Has match k the same pair as s with a better known end, or an equally known one that comes first? */
 static int match_has(const search *in, uint32_t k, const surroundings *at, const asj_segment_match *s, int32_t slot)
 {
@@ -155,7 +159,7 @@ static int match_has(const search *in, uint32_t k, const surroundings *at, const
         return 0;
     for (int32_t n = 0; n < SLOTS; n++) {
         asj_segment_match t;
-        if ((k == s->match && n == slot) || !segment_of(in->result, k, n, &t) || t.end < in->minimum_end)
+        if ((k == s->match && n == slot) || !segment_of(in, k, n, &t) || t.end < in->minimum_end)
             continue;
         const int before = k < s->match || (k == s->match && n < slot);
         if ((t.end > s->end || (t.end == s->end && before)) && same(s, &t))
@@ -167,14 +171,14 @@ static int match_has(const search *in, uint32_t k, const surroundings *at, const
 static int duplicate(const search *in, const asj_segment_match *s, int32_t slot)
 {
     const surroundings at = around(s);
-    if (!in->places) {
+    if (!in->around->places[0]) {
         for (uint32_t k = 0; k < in->result->match_count; k++)
             if (match_has(in, k, &at, s, slot))
                 return 1;
         return 0;
     }
     for (int32_t end = 0; end < 2; end++) {
-        asj_place_walk walk = asj_places_near(in->places, in->place_count, at.x[end], at.y[end], sqrt(at.near2));
+        asj_place_walk walk = asj_places_near(in->around->places[0], in->around->place_count, at.x[end], at.y[end], sqrt(at.near2));
         for (uint32_t k; asj_places_next(&walk, &k);)
             if (k < in->result->match_count && match_has(in, k, &at, s, slot))
                 return 1;
@@ -182,15 +186,15 @@ static int duplicate(const search *in, const asj_segment_match *s, int32_t slot)
     return 0;
 }
 
-size_t asj_segment_matches(const asj_match_result *result, const asj_place *places, uint32_t place_count, int32_t minimum_end,
+size_t asj_segment_matches(const asj_match_result *result, const asj_around *around, int32_t minimum_end,
                            asj_segment_match *segments, size_t capacity)
 {
-    const search in = {result, places, place_count, minimum_end};
+    const search in = {result, around, minimum_end};
     size_t count = 0;
-    for (uint32_t k = 0; result && k < result->match_count; k++)
+    for (uint32_t k = 0; k < result->match_count; k++)
         for (int32_t n = 0; n < SLOTS; n++) {
             asj_segment_match s;
-            if (!segment_of(result, k, n, &s) || s.end < minimum_end || duplicate(&in, &s, n))
+            if (!segment_of(&in, k, n, &s) || s.end < minimum_end || duplicate(&in, &s, n))
                 continue;
             if (segments && count < capacity)
                 segments[count] = s;
@@ -201,7 +205,8 @@ size_t asj_segment_matches(const asj_match_result *result, const asj_place *plac
 
 size_t asj_match_segments(const asj_match_result *result, int32_t minimum_end, asj_segment_match *segments, size_t capacity)
 {
-    uint32_t place_count = 0;
-    const asj_place *places = result ? asj_match_result_places(result, &place_count) : NULL;
-    return asj_segment_matches(result, places, place_count, minimum_end, segments, capacity);
+    if (!result)
+        return 0;
+    const asj_around around = asj_match_result_around(result);
+    return asj_segment_matches(result, &around, minimum_end, segments, capacity);
 }

@@ -3,11 +3,11 @@
 #ifndef ASJ_SRC_SEGMENT_MATCHES_H
 #define ASJ_SRC_SEGMENT_MATCHES_H
 
-#include "places.h"
+#include "around.h"
 
-/* asj_match_segments() with the places of the result's matches, which may be more than it has now; without them (NULL) every
- * segment is compared with every match. */
-size_t asj_segment_matches(const asj_match_result *result, const asj_place *places, uint32_t place_count, int32_t minimum_end,
+/* asj_match_segments(). `around` holds the result's matches; its places may be of more than these; without them every segment is
+ * compared with every match. */
+size_t asj_segment_matches(const asj_match_result *result, const asj_around *around, int32_t minimum_end,
                            asj_segment_match *segments, size_t capacity);
 
 #endif

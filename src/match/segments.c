@@ -1,51 +1,74 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 7, line segments: which parts of two matched branches correspond, and the matches as segment matches.
+/* Step 7, line segments: which parts of two matched branches correspond.
  *
  * A branch ends where the scan lost it: at a corner, behind something, or where contrast gave out. Only ends at the same scene
- * point make a segment match. With s = |A u| the magnification of the refined map along the branch (u its unit vector in image
- * 1), lengths l1 and l2 agree when s l1 and l2 differ by a factor of at most 1 + end_tolerance. Of all combinations of the
- * branches' length hypotheses that agree, the longest is taken; own lengths agree only where what is at the ends does not speak
- * against it. When none agrees, the longer branch is cut where the map puts the other's end: the part that both images show. */
+ * point make a segment match. The matches around (around.c) say where an end lies in the other image; ends agree when that is near
+ * the other's end there, along the branch and across, in both images: NEAR px, or a sixth of end_tolerance of the length, and three
+ * quarters of that when what is at the ends differs. Of all combinations of the branches' length hypotheses that agree, the longest
+ * is taken. When none agrees, the longer branch is cut where the other's end is put: the part that both images show.
+ *
+ * Of segments of rendered rooms 1 to 12 that end so, 98.8 % (both) and 97.3 % (inner) are right, and 79.8 % of those cut; by the
+ * lengths under the match's own map, within end_tolerance, 96.3, 70.3 and 56.4 % were. */
 #include "segments.h"
 
 #include <math.h>
 
-/* Whether another edge is at an end. */
-static int is_met(int32_t end)
+#define NEAR 4.0          /* px */
+#define SHARE (1.0 / 6)   /* of end_tolerance */
+#define OTHER_KIND 0.75
+
+/* How far ends of these kinds may lie apart, as a part of what ends of one kind may. The border of the image is no place of the
+ * scene. */
+static double leeway(int32_t one, int32_t other)
 {
-    return end == ASJ_BRANCH_END_JUNCTION || end == ASJ_BRANCH_END_CROSSING || end == ASJ_BRANCH_END_OCCLUSION;
+    if (one == ASJ_BRANCH_END_BORDER || other == ASJ_BRANCH_END_BORDER)
+        return 0;
+    return one == other || one == ASJ_BRANCH_END_UNKNOWN || other == ASJ_BRANCH_END_UNKNOWN ? 1 : OTHER_KIND;
 }
 
-/* Whether two ends may be one place of the scene. Of equal kinds they may. A crossing is a junction that was not found in one of
- * the images, and so may an occlusion be, which is a T. Where one edge fades or leaves the picture and the other does not, that
- * they are equally long is chance: of such segments of sixteen pairs of photographs 33 to 73 % were right, of others 80 to 92 %.
- * */
-static int may_correspond(int32_t one, int32_t other)
+/* What is at the end of hypothesis m: all but the first are junctions. */
+static int32_t kind_of(const asj_lengths *lengths, int32_t m)
 {
-    return one == other || (is_met(one) && is_met(other)) || one == ASJ_BRANCH_END_UNKNOWN || other == ASJ_BRANCH_END_UNKNOWN;
+    return m == 0 ? lengths->end : ASJ_BRANCH_END_JUNCTION;
 }
 
-asj_common_end asj_find_common_end(const asj_match_run *run, const asj_candidate *c, int32_t branch)
+/* Does `length` lie where the end of the other image is put, within `part` of the limit? */
+static int agrees(const asj_line_place *put, double length, double part, double tolerance)
 {
-    const asj_l_junctions *in1 = &run->image[0]->l_junctions, *in2 = &run->image[1]->l_junctions;
-    const asj_lengths *h1 = &in1->lengths[2 * (size_t)c->i + (size_t)branch];
-    const asj_lengths *h2 = &in2->lengths[2 * (size_t)c->j + (size_t)branch];
-    const double *u = in1->direction + 4 * (size_t)c->i + 2 * branch;
-    const double x = c->map.to[0] * u[0] + c->map.to[1] * u[1], y = c->map.to[2] * u[0] + c->map.to[3] * u[1];
-    const double scale = sqrt(x * x + y * y), most = 1 + run->options->end_tolerance;
-    asj_common_end end = {0, 0, ASJ_END_CUT};
-    double longest = 0;
+    const double most = part * fmax(NEAR, SHARE * tolerance * length), d = put->along - length;
+    return d * d + put->off * put->off <= most * most && part > 0;
+}
+
+/* The part that both images show. The branch of image 0 is the longer one when its end lies farther beyond the other's, as a
+ * part of the lengths, than the other's beyond it. */
+static asj_common_end cut(const double length[2], const asj_line_place put[2])
+{
+    const double beyond = (put[0].along - length[1]) / length[1] - (put[1].along - length[0]) / length[0];
+    const int32_t whole = beyond > 0 ? 1 : 0, other = 1 - whole;
+    asj_common_end end = {{length[0], length[1]}, ASJ_END_CUT};
+    end.length[other] = fmin(fmax(put[whole].along, fmin(1, length[other])), length[other]);
+    return end;
+}
+
+asj_common_end asj_find_common_end(const asj_around *around, const asj_matched_branch *branch, const asj_lengths *const lengths[2],
+                                   double tolerance)
+{
+    const asj_lengths *h1 = lengths[0], *h2 = lengths[1];
+    asj_line_place put[2][ASJ_MAX_HYPOTHESES];
+    asj_common_end end = {{0, 0}, ASJ_END_CUT};
+    for (int32_t side = 0; side < 2; side++)
+        for (int32_t m = 0; m < lengths[side]->count; m++)
+            put[side][m] = asj_around_place(around, branch, side, (double)lengths[side]->length[m]);
     for (int32_t m = 0; m < h1->count; m++)
         for (int32_t n = 0; n < h2->count; n++) {
-            const double l1 = (double)h1->length[m], l2 = (double)h2->length[n], mapped = scale * l1;
-            const double shorter = mapped < l2 ? mapped : l2, longer = mapped < l2 ? l2 : mapped;
-            if (longer > shorter * most || shorter <= longest || (m == 0 && n == 0 && !may_correspond(h1->end, h2->end)))
-                continue;
-            longest = shorter;
-            end = (asj_common_end){l1, l2, m == 0 && n == 0 ? ASJ_END_BOTH : ASJ_END_INNER};
+            const double l1 = (double)h1->length[m], l2 = (double)h2->length[n], part = leeway(kind_of(h1, m), kind_of(h2, n));
+            if (l1 * l2 > end.length[0] * end.length[1] && agrees(&put[0][m], l2, part, tolerance) &&
+                agrees(&put[1][n], l1, part, tolerance))
+                end = (asj_common_end){{l1, l2}, m == 0 && n == 0 ? ASJ_END_BOTH : ASJ_END_INNER};
         }
-    if (longest > 0)
+    if (end.kind != ASJ_END_CUT || h1->count == 0 || h2->count == 0)
         return end;
-    const double l1 = (double)h1->length[0], l2 = (double)h2->length[0];
-    return scale * l1 > l2 ? (asj_common_end){l2 / scale, l2, ASJ_END_CUT} : (asj_common_end){l1, scale * l1, ASJ_END_CUT};
+    const double own[2] = {(double)h1->length[0], (double)h2->length[0]};
+    const asj_line_place first[2] = {put[0][0], put[1][0]};
+    return cut(own, first);
 }

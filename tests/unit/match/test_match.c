@@ -98,15 +98,16 @@ static void segments_do_not_depend_on_places(asj_match_result *r)
     const asj_match_result copy = *r;
     asj_segment_match segments[ASJ_MAX_BRANCHES * CORNERS], others[ASJ_MAX_BRANCHES * CORNERS];
     const size_t room = sizeof segments / sizeof *segments, count = asj_match_segments(r, ASJ_END_CUT, segments, room);
-    uint32_t places = 0;
-    assert_non_null(asj_match_result_places(r, &places));
-    assert_int_equal(places, r->match_count);
-    assert_null(asj_match_result_places(&copy, &places));
+    const asj_around around = asj_match_result_around(r);
+    assert_non_null(around.places[0]);
+    assert_non_null(around.places[1]);
+    assert_int_equal(around.place_count, r->match_count);
+    assert_null(asj_match_result_around(&copy).places[0]);
     assert_true(count > r->match_count && count <= room);
     assert_int_equal(asj_match_segments(&copy, ASJ_END_CUT, others, room), count);
     assert_memory_equal(segments, others, count * sizeof *segments);
     r->matches = own + 1;
-    assert_null(asj_match_result_places(r, &places));
+    assert_null(asj_match_result_around(r).places[0]);
     r->matches = own;
 }
 
@@ -360,7 +361,17 @@ static void segments_of_other_branches(void **state)
     matches[1].bx2 = 80;
     result.match_count = 2;
     assert_int_equal(asj_match_segments(&result, ASJ_END_BOTH, NULL, 0), 4);
+    matches[1] = matches[0]; /* another one, at the upper end of the cut branch, that sees the scene half as large along it */
+    matches[1].y1 = 20;
+    matches[1].y2 = 45;
+    matches[1].affine[4] = 0.5;
+    result.l_junction_count2 = 3;
+    assert_true(asj_match_segments(&result, ASJ_END_CUT, s, 2 * ASJ_MAX_BRANCHES) > 4);
+    assert_int_equal(s[3].end, ASJ_END_CUT);
+    assert_true(s[3].ey1 > 13 && s[3].ey1 < 17); /* where the two put the end at 40: 30 by itself, 10 by the nearer one */
+    unit_near("up", 3, 0, (double)s[3].ey2, 40, 1e-4);
     matches[1] = matches[0];
+    result.l_junction_count2 = 1;
     assert_int_equal(asj_match_segments(&result, ASJ_END_BOTH, NULL, 0), 2);
 }
 

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Line segments of thousands of matches: none is lost, none is there twice, and the time is proportional to their number. */
+/* Line segments of thousands of matches: none is lost, none is there twice, and the time is proportional to their number. Where the
+ * matches around put the ends of branches, and which of them correspond. */
 #include "unit_test.h"
 
 #include "match/segment_matches.h"
+#include "match/segments.h"
 
 #include <time.h>
 
@@ -15,7 +17,7 @@ enum { SIDE = 70, MOST_SIDE = 140, STEP = 40, COUNT = SIDE * SIDE, MOST = MOST_S
 #endif
 
 static asj_junction_match matches[MOST];
-static asj_place places[MOST];
+static asj_place places[2][MOST];
 static asj_segment_match segments[2 * MOST], others[2 * MOST];
 
 /* A grid: branch a ends at the right neighbour, branch b at the lower one, so that a segment between two corners is seen from its
@@ -56,8 +58,10 @@ static void time_is_proportional(void **state)
     (void)state;
     fill(MOST_SIDE);
     const clock_t start = clock();
-    asj_places_sort(places, matches, MOST);
-    const size_t count = asj_segment_matches(&result, places, MOST, ASJ_END_CUT, segments, 2 * MOST);
+    for (int32_t side = 0; side < 2; side++)
+        asj_places_sort(places[side], matches, MOST, side);
+    const asj_around around = {matches, MOST, {places[0], places[1]}, MOST};
+    const size_t count = asj_segment_matches(&result, &around, ASJ_END_CUT, segments, 2 * MOST);
     const double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
     assert_int_equal(count, 2 * MOST - 1);
     if (seconds > MOST_SECONDS)
@@ -89,18 +93,82 @@ static void places_change_nothing(void **state)
         m->by1 = m->by2 = to[2];
         m->end_a = m->end_b = k % 7 ? ASJ_END_INNER : ASJ_END_BOTH;
     }
-    asj_places_sort(places, matches, 2000);
+    for (int32_t side = 0; side < 2; side++)
+        asj_places_sort(places[side], matches, 2000, side);
     for (result.match_count = 2000; result.match_count > 0; result.match_count /= 5) {
-        const size_t count = asj_segment_matches(&result, NULL, 0, ASJ_END_CUT, others, 2 * MOST);
+        const asj_around none = {matches, result.match_count, {NULL, NULL}, 0};
+        const asj_around all = {matches, result.match_count, {places[0], places[1]}, 2000};
+        const size_t count = asj_segment_matches(&result, &none, ASJ_END_CUT, others, 2 * MOST);
         assert_true(result.match_count < 2000 || count < 2 * 2000 - 300);
-        assert_int_equal(asj_segment_matches(&result, places, 2000, ASJ_END_CUT, segments, 2 * MOST), count);
+        assert_int_equal(asj_segment_matches(&result, &all, ASJ_END_CUT, segments, 2 * MOST), count);
         assert_memory_equal(segments, others, count * sizeof *segments);
     }
+}
+
+/* ---- ends ---- */
+
+/* A wall seen obliquely: x2 = 2 x / (1 + x / 400), y2 = y / (1 + x / 400). */
+static void on_the_wall(double x, double y, double *x2, double *y2)
+{
+    const double w = 1 + x / 400;
+    *x2 = 2 * x / w;
+    *y2 = y / w;
+}
+
+/* The match at (x, y), with the derivatives of the wall for its map. */
+static asj_junction_match on_wall(double x, double y)
+{
+    const double w = 1 + x / 400, by_x = 2 / (w * w), y_by_x = -y / (400 * w * w);
+    double x2, y2;
+    on_the_wall(x, y, &x2, &y2);
+    return (asj_junction_match){.x1 = (float)x, .y1 = (float)y, .x2 = (float)x2, .y2 = (float)y2,
+                                .affine = {by_x, 0, x2 - by_x * x, y_by_x, 1 / w, y2 - y_by_x * x - y / w}};
+}
+
+/* A branch of the match at the origin along x, `one` px long in image 1 and `other` px in image 2. */
+static asj_common_end end_of(const asj_around *around, float one, int32_t one_kind, float other, int32_t other_kind)
+{
+    const asj_matched_branch branch = {&matches[0], {0, 0}, {0, 0}, {1, 1}, {0, 0}};
+    const asj_lengths lengths[2] = {{1, {one}, one_kind}, {1, {other}, other_kind}};
+    const asj_lengths *both[2] = {&lengths[0], &lengths[1]};
+    return asj_find_common_end(around, &branch, both, 0.12);
+}
+
+/* Its own map is 40 px off at 100 px; two matches near there know better, and one on another surface hardly counts. */
+static void matches_around_put_ends(void **state)
+{
+    const asj_matched_branch branch = {&matches[0], {0, 0}, {0, 0}, {1, 1}, {0, 0}};
+    const asj_around around = {matches, 4, {NULL, NULL}, 0};
+    const int32_t junction = ASJ_BRANCH_END_JUNCTION, faded = ASJ_BRANCH_END_FADED, border = ASJ_BRANCH_END_BORDER;
+    (void)state;
+    matches[0] = on_wall(0, 0);
+    matches[1] = on_wall(100, 10);
+    matches[2] = on_wall(95, -12);
+    matches[3] = on_wall(100, -5);
+    matches[3].affine[5] += 60; /* on another surface */
+    unit_near("alone", 0, 0, asj_around_place(NULL, &branch, 0, 100).along, 200, 1e-6);
+    unit_near("around", 0, 0, asj_around_place(&around, &branch, 0, 100).along, 160, 1);
+    unit_near("off", 0, 0, asj_around_place(&around, &branch, 0, 100).off, 0, 0.5);
+    unit_near("back", 0, 0, asj_around_place(&around, &branch, 1, 160).along, 100, 1);
+    assert_int_equal(end_of(&around, 100, junction, 160, junction).kind, ASJ_END_BOTH);
+    assert_int_equal(end_of(NULL, 100, junction, 160, junction).kind, ASJ_END_CUT);
+    assert_int_equal(end_of(&around, 100, junction, 163, junction).kind, ASJ_END_BOTH);
+    assert_int_equal(end_of(&around, 100, junction, 170, junction).kind, ASJ_END_CUT);
+    assert_int_equal(end_of(&around, 100, junction, 160, faded).kind, ASJ_END_BOTH);
+    assert_int_equal(end_of(&around, 100, junction, 163.8f, faded).kind, ASJ_END_CUT); /* of another kind, less is allowed */
+    assert_int_equal(end_of(&around, 100, border, 160, border).kind, ASJ_END_CUT);
+    const asj_common_end longer = end_of(&around, 100, junction, 240, junction);
+    const asj_common_end shorter = end_of(&around, 180, faded, 160, junction);
+    unit_near("cut in image 2", 0, 0, longer.length[1], 160, 1);
+    unit_near("whole in image 1", 0, 0, longer.length[0], 100, 0);
+    unit_near("cut in image 1", 0, 0, shorter.length[0], 100, 1);
+    unit_near("whole in image 2", 0, 0, shorter.length[1], 160, 0);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(thousands_of_matches), cmocka_unit_test(time_is_proportional),
-                                       cmocka_unit_test(places_change_nothing)};
+                                       cmocka_unit_test(places_change_nothing),
+                                       cmocka_unit_test(matches_around_put_ends)};
     return cmocka_run_group_tests_name("segments", tests, NULL, NULL);
 }

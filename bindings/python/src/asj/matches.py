@@ -110,7 +110,7 @@ class Matches:
         """Line segments that match, each edge once: (S, 2, 2) in the first image, (S, 2, 2) in the second, (S,) index of the match.
 
         ends   what must be known of the far ends: "both" (both branches' own ends correspond), "inner" (or a junction on the longer
-               one does), "cut" (or the longer one was cut where the map puts the end of the shorter one)
+               one does), "cut" (or the longer one was cut where the matches around put the end of the shorter one)
         """
         if ends not in _ENDS:
             raise ValueError(f"ends is {ends!r}: one of {', '.join(_ENDS)}")
