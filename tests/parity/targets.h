@@ -38,8 +38,8 @@ void targets_close(target_list *list);
 /* What an exit status says when there is nothing to compare: 77, or 1 when a device is required (ASJ_REQUIRE_OPENCL). */
 int targets_missing(const target_list *list);
 
-/* Prints how many `things` were compared on every target, and the verdict on what was `found` in all. Returns the exit status: 1 when
- * something has failed or nothing was found. */
+/* Prints how many `things` were compared on every target, and the verdict on what was `found` in all. Returns the exit status: 1
+ * when something has failed or nothing was found. */
 int targets_report(const target_list *list, const char *things, size_t count, const char *found, int failed);
 
 /* Before an operation on planes of `stride` samples a row whose contents the target has not seen. */
