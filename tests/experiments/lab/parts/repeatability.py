@@ -150,7 +150,8 @@ TEXT = (
     "candidates of that preset (near line segments). ACJ needs an upper bound of its scales, which its authors, says the paper, "
     "recommend between 12 and 30 px; the paper preset itself stops at 10. The default preset has an "
     "isotropic stage of its own, with sub-pixel lines that the ACJ detector lacks; it is shown beside, at the image's "
-    "own size. A detector that is there as files has rows where its files are: beside the photographs, only for the views of known homographies.")
+    "own size. A detector that is there as files has rows where its files are: beside the photographs, only for the "
+    "views of known homographies.")
 WHY = (
     "The ACJ criterion asks little near 1: isotropic scales end at the largest radius tested (14 px in the default preset, 10 px "
     "in the paper's), where |s r1 - r2| stays below 3 px down to a zoom of 0.79 and 0.7. There isotropic junctions are judged by "
