@@ -53,7 +53,8 @@ typedef struct asj_geometry_options {
     int32_t widths[2], heights[2]; /* px of the images; must be given */
     double epsilon;          /* accepted is what chance brings at most so often, in pairs of unrelated images: 1e-12 .. 1;
                               * 1e-7 */
-    double location_sd;      /* px: error of a location. 0.1 .. 10; 1.5 */
+    double location_sd;      /* px: error of a location, of the fifth that is worst; others are a half or a quarter as large, and so
+                              * with the next two. 0.1 .. 10; 1.5 */
     double angle_sd;         /* deg: error of a map's rotation. 1 .. 45; 9 */
     double scale_sd;         /* error of the log of a map's scale. 0.02 .. 1; 0.22 */
     double directions[2][9]; /* of image 1 and image 2: three directions of the scene at right angles to each other, in camera

@@ -23,9 +23,9 @@ typedef struct equations {
     double right[ASJ_MODEL_PARAMETERS];
 } equations;
 
-/* Adds the residuals and derivatives of one candidate's part. */
+/* Adds the residuals and derivatives of one candidate's part. fine: likelihood.c. */
 static void add_part(const asj_pairs *set, const asj_pair *c, int32_t part, const asj_model *model, const asj_model_slopes *slopes,
-                     double weight, equations *e)
+                     int32_t fine, double weight, equations *e)
 {
     asj_residuals at;
     double slope[ASJ_PART_PARAMETERS][6];
@@ -34,6 +34,8 @@ static void add_part(const asj_pairs *set, const asj_pair *c, int32_t part, cons
     if (rows == 0)
         return;
     weight /= 1 + at.square / TAIL;
+    if (fine)
+        weight *= asj_size_weight(at.square, asj_part_is_planar(&model->view, part));
     for (int32_t i = 0; i < slopes->count[part]; i++) {
         double *row = e->normal + (ptrdiff_t)used[i] * n;
         for (int32_t k = 0; k <= i; k++) {
@@ -55,7 +57,7 @@ static void add_candidate(const asj_pairs *set, const asj_pair *c, const asj_mod
     const double sum = asj_likelihood_ratio(&model->view, set, c, peaks, parts);
     for (int32_t k = 0; k <= model->view.plane_count && sum > 0; k++)
         if (weight * parts[k] > LEAST * sum)
-            add_part(set, c, k, model, slopes, weight * parts[k] / sum, e);
+            add_part(set, c, k, model, slopes, peaks->fine, weight * parts[k] / sum, e);
 }
 
 static int32_t set_up(const asj_pairs *set, const asj_model *model, const double *probability, double loose, equations *e)
@@ -208,4 +210,24 @@ int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_
     s->sorted = asj_allocate(memory, most, sizeof *s->sorted);
     s->best = asj_allocate(memory, most, sizeof *s->best);
     return good && s->score.near && s->probability && s->shares && s->sorted && s->best;
+}
+
+void asj_adjust_scratches_free(asj_memory *memory, asj_adjust_scratch *scratches, int32_t threads)
+{
+    for (int32_t t = 0; scratches && t < threads; t++)
+        asj_adjust_scratch_free(memory, &scratches[t]);
+    asj_release(memory, scratches);
+}
+
+asj_adjust_scratch *asj_adjust_scratches_create(asj_memory *memory, const asj_pairs *set, int32_t threads)
+{
+    asj_adjust_scratch *scratches = asj_allocate_zero(memory, (size_t)threads, sizeof *scratches);
+    int32_t good = scratches != NULL;
+    for (int32_t t = 0; t < threads && good; t++)
+        good = asj_adjust_scratch_create(memory, set, &scratches[t]);
+    if (!good) {
+        asj_adjust_scratches_free(memory, scratches, threads);
+        return NULL;
+    }
+    return scratches;
 }

@@ -24,6 +24,10 @@ typedef struct asj_adjust_scratch {
 int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_adjust_scratch *scratch);
 void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *scratch);
 
+/* One for each of so many threads; NULL without memory. */
+asj_adjust_scratch *asj_adjust_scratches_create(asj_memory *memory, const asj_pairs *set, int32_t threads);
+void asj_adjust_scratches_free(asj_memory *memory, asj_adjust_scratch *scratches, int32_t threads);
+
 /* Moves the model to where the candidates want it, in so many rounds: adjust.c. Its score is that of all candidates then. */
 void asj_adjust(const asj_pairs *set, asj_model *model, int32_t rounds, asj_adjust_scratch *scratch);
 

@@ -233,18 +233,14 @@ asj_status asj_find_focal(asj_context *context, const asj_pairs *set, const asj_
     memset(found, 0, sizeof *found);
     found->model.evidence = -HUGE_VAL;
     if (p)
-        p->scratch = asj_allocate_zero(memory, (size_t)context->threads, sizeof *p->scratch);
-    int32_t good = p && p->scratch;
-    for (int32_t t = 0; t < context->threads && good; t++)
-        good = asj_adjust_scratch_create(memory, set, &p->scratch[t]);
+        p->scratch = asj_adjust_scratches_create(memory, set, context->threads);
+    const int32_t good = p && p->scratch;
     if (!good)
         status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the focal length");
     if (status == ASJ_OK)
         status = find(context, set, search, flat, count, p, found);
-    for (int32_t t = 0; p && p->scratch && t < context->threads; t++)
-        asj_adjust_scratch_free(memory, &p->scratch[t]);
     if (p)
-        asj_release(memory, p->scratch);
+        asj_adjust_scratches_free(memory, p->scratch, context->threads);
     asj_release(memory, p);
     return status;
 }

@@ -5,6 +5,7 @@
  *   search.c      samples (minimal.c, five_point.c), scores (likelihood.c), refinement (adjust.c)
  *   motions.c     essential matrices with planes (planes.c), and what the candidates allow around them (posterior.c)
  *   focal.c       the same for a row of focal lengths, where none is known and it is asked for
+ *   rivals.c      what explains as much without the candidates of the best one
  *   evidence.c    how often chance brings as much
  *   model.c       what moves when a geometry moves
  *
@@ -17,7 +18,7 @@
  * motion, give another partner to a place that is matched. Things that repeat do that, shifted by a period or turned. The evidence
  * itself would be surer (odds of a hundred are 5 nats of a hundred or two), but what repeats is matched more or less well for
  * reasons that the model does not know, and all its places together: of rendered rooms with tiled floors, wrong geometries have up
- * to twice the log evidence of the right one.
+ * to 1.6 times the log evidence of the best one that contradicts them, and with fewer than FEW matches more than that.
  *
  * A pose is one that is known to within POSE_SD, with all other motions counted as likely as their evidence says: all on one plane
  * there are two (Hartley and Zisserman, 13.4), and near that everything between. */
@@ -27,6 +28,7 @@
 #include "motions.h"
 #include "pairs.h"
 #include "posterior.h"
+#include "rivals.h"
 #include "search.h"
 #include "small_matrix.h"
 #include "stop.h"
@@ -35,8 +37,11 @@
 #include <string.h>
 
 #define MOST_KINDS 3
-#define NEARLY 0.5
+#define NEARLY 0.55
 #define APART 8.0 /* decades */
+#define FEW 15.0 /* matches */
+#define NEARLY_OF_FEW 0.3
+#define APART_OF_FEW 13.0
 #define CONTRARY 0.4
 #define CONTRARY_ALIKE 0.15 /* of a rival with as much evidence */
 #define SIMILAR_MOTION (6 * ASJ_DEGREE)
@@ -44,7 +49,7 @@
  * images 46 stay below; of 46 accepted ones none is within 8 nats of it. */
 #define GIVE_UP 17.0
 #define ALMOST 0.8
-#define POSE_SD (2.2 * ASJ_DEGREE)
+#define POSE_SD (4 * ASJ_DEGREE)
 #define LOOSE_DIRECTION (30 * ASJ_DEGREE) /* a translation known worse than this is none */
 
 /* One call. */
@@ -52,7 +57,7 @@ typedef struct estimation {
     asj_context *context;
     const asj_geometry_options *options;
     asj_pairs set;
-    asj_model finalists[MOST_KINDS * ASJ_FINALISTS];
+    asj_model finalists[2 * MOST_KINDS * ASJ_FINALISTS]; /* and their rivals */
     int32_t count;
     asj_adjust_scratch scratch;
     double *other; /* probabilities under a second geometry */
@@ -127,7 +132,7 @@ static asj_status check(asj_context *context, const asj_geometry_options *o)
 static asj_search plan(const estimation *e, int32_t kind)
 {
     const asj_geometry_options *o = e->options;
-    asj_search search = {kind, o->samples, o->seed, {o->cameras[0], o->cameras[1]}, GIVE_UP - log(o->epsilon)};
+    asj_search search = {kind, o->samples, o->seed, {o->cameras[0], o->cameras[1]}, GIVE_UP - log(o->epsilon), NULL};
     for (int32_t v = 0; v < 2; v++)
         if (!known(&search.cameras[v])) {
             const double longer = o->widths[v] > o->heights[v] ? o->widths[v] : o->heights[v];
@@ -173,17 +178,30 @@ static asj_status search_focal(estimation *e)
     return status;
 }
 
+/* What is searched: the kind with epipolar lines, ASJ_GEOMETRY_NONE for none; and homographies? */
+static int32_t epipolar_kind(const asj_geometry_options *o)
+{
+    const int32_t best = known(&o->cameras[0]) && known(&o->cameras[1]) ? ASJ_GEOMETRY_ESSENTIAL : ASJ_GEOMETRY_FUNDAMENTAL;
+    if (o->model == ASJ_GEOMETRY_AUTO)
+        return best;
+    return o->model == ASJ_GEOMETRY_FUNDAMENTAL || o->model == best ? o->model : ASJ_GEOMETRY_NONE;
+}
+
+static int32_t with_homographies(const asj_geometry_options *o)
+{
+    return o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_HOMOGRAPHY;
+}
+
 static asj_status search_all(estimation *e)
 {
     const asj_geometry_options *o = e->options;
-    const int32_t epipolar = known(&o->cameras[0]) && known(&o->cameras[1]) ? ASJ_GEOMETRY_ESSENTIAL : ASJ_GEOMETRY_FUNDAMENTAL;
+    const int32_t epipolar = epipolar_kind(o);
     asj_status status = ASJ_OK;
-    if (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_FUNDAMENTAL || o->model == epipolar)
-        status = search_kind(e, o->model == ASJ_GEOMETRY_AUTO ? epipolar : o->model);
-    if (status == ASJ_OK && (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_HOMOGRAPHY))
+    if (epipolar != ASJ_GEOMETRY_NONE)
+        status = search_kind(e, epipolar);
+    if (status == ASJ_OK && with_homographies(o))
         status = search_kind(e, ASJ_GEOMETRY_HOMOGRAPHY);
-    if (status == ASJ_OK && epipolar == ASJ_GEOMETRY_ESSENTIAL &&
-        (o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_ESSENTIAL))
+    if (status == ASJ_OK && epipolar == ASJ_GEOMETRY_ESSENTIAL)
         status = asj_refine_motions(e->context, &e->set, o->cameras, o->seed, ASJ_SETTLED, e->finalists, &e->count);
     return status == ASJ_OK && o->find_focal ? search_focal(e) : status;
 }
@@ -192,6 +210,30 @@ static double log10_nfa(const estimation *e, const asj_model *m)
 {
     const double tried = e->options->model != ASJ_GEOMETRY_AUTO ? 1 : e->options->find_focal ? MOST_KINDS : MOST_KINDS - 1;
     return (log(tried) - m->evidence) / log(10);
+}
+
+static int32_t is_chance(const estimation *e, int32_t number)
+{
+    return number < 0 || log10_nfa(e, &e->finalists[number]) > log10(e->options->epsilon);
+}
+
+/* Only what is about to be accepted needs them. */
+static asj_status search_rivals(estimation *e)
+{
+    const int32_t best = best_of(e, ASJ_GEOMETRY_AUTO), epipolar = epipolar_kind(e->options);
+    asj_search kinds[2];
+    int32_t kind_count = 0, more = 0;
+    if (is_chance(e, best))
+        return ASJ_OK;
+    if (epipolar != ASJ_GEOMETRY_NONE)
+        kinds[kind_count++] = plan(e, epipolar);
+    if (with_homographies(e->options))
+        kinds[kind_count++] = plan(e, ASJ_GEOMETRY_HOMOGRAPHY);
+    const asj_camera *cameras = epipolar == ASJ_GEOMETRY_ESSENTIAL ? e->options->cameras : NULL;
+    const asj_status status = asj_find_rivals(e->context, &e->set, kinds, kind_count, cameras, &e->finalists[best],
+                                              e->finalists + e->count, &more);
+    e->count += more;
+    return status;
 }
 
 /* --- answer ------------------------------------------------------------------------------------------------------------------ */
@@ -255,6 +297,13 @@ static int32_t second_of(estimation *e, int32_t best)
             second = n;
     }
     return second;
+}
+
+/* May the second one be the right one as well? nfa: log10, of the best one. */
+static int32_t is_near(double nfa, double second, double matches)
+{
+    const int32_t few = matches < FEW;
+    return second <= fmax((few ? NEARLY_OF_FEW : NEARLY) * nfa, nfa + (few ? APART_OF_FEW : APART));
 }
 
 /* Covariance of rotation and translation, 6 x 6, from that of the five parameters of model.c; the largest standard deviation of a
@@ -328,8 +377,8 @@ static void set_matrix(const asj_model *m, asj_geometry *result)
         result->matrix[k] = m->view.matrix[k] / sqrt(sum);
 }
 
-/* A camera that only turns obeys a homography, and an essential matrix with any translation and a plane far away: the homography
- * says what there is to say. */
+/* A camera that only turns obeys a homography, and an essential matrix with any translation and a plane far away: where the motion
+ * is not known well enough to be told, the homography says what there is to say. */
 static int32_t instead_of(const estimation *e, int32_t best)
 {
     const int32_t flat = best_of(e, ASJ_GEOMETRY_HOMOGRAPHY);
@@ -353,7 +402,7 @@ static void answer(estimation *e, double *probabilities, asj_geometry *result)
     const int32_t essential = best_of(e, ASJ_GEOMETRY_ESSENTIAL); /* a plane's pose comes from here, too */
     if (essential >= 0 && is_believed(e, essential, best) && log10_nfa(e, &e->finalists[essential]) <= least)
         determined = set_pose(e, essential, result);
-    if (!determined)
+    if (best == essential && !result->has_pose)
         best = instead_of(e, best);
     determined = determined || best != essential;
     const asj_model *m = &e->finalists[best];
@@ -374,8 +423,7 @@ static void answer(estimation *e, double *probabilities, asj_geometry *result)
     if (open_focal && e->options->model == ASJ_GEOMETRY_ESSENTIAL)
         determined = 0;
     result->status = !determined ? ASJ_GEOMETRY_DEGENERATE : ASJ_GEOMETRY_ACCEPTED;
-    const double compared = to_compare(e, m);
-    if (second >= 0 && result->second_log10_nfa <= fmax(NEARLY * compared, compared + APART))
+    if (second >= 0 && is_near(to_compare(e, m), result->second_log10_nfa, result->inliers))
         result->status = ASJ_GEOMETRY_AMBIGUOUS;
     for (int32_t k = 0; k < e->set.count && probabilities; k++)
         probabilities[e->set.list[k].source] = e->scratch.probability[k];
@@ -412,6 +460,8 @@ asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candid
             e->other = asj_allocate(&context->memory, (size_t)e->set.count, sizeof *e->other);
             status = e->other && asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch)
                          ? search_all(e) : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the geometry");
+            if (status == ASJ_OK)
+                status = search_rivals(e);
             if (status == ASJ_OK)
                 status = asj_watch_end(&watch);
             if (status == ASJ_OK)

@@ -28,6 +28,16 @@
  * What is right lies in front of both cameras; of the points of an epipolar line half do. So the ratio is multiplied by 2 - BEHIND
  * or by BEHIND, and by 1 where rays are so nearly parallel that locations do not tell.
  *
+ * How large errors are differs from image to image and from corner to corner: of matches in rendered rooms half lie within .3 px of
+ * their epipolar lines and a twentieth beyond 2 px, in frames of a video half within .9 px. So a right candidate has one of SIZES
+ * sizes of errors, all its standard deviations divided by 1, 2 and 4 (a scale mixture of normal distributions: Andrews and Mallows
+ * 1974): with d residuals of square q and the shares w_k,
+ *
+ *     likelihood ~ sum w_k 2^(kd) exp(-4^k q / 2),     -2 d log(likelihood) / dq = sum of 4^k, each weighed by its part of the sum,
+ *
+ * so that exact matches speak the louder where there are any, and none is believed to be exact. Where standard deviations are
+ * loosened, geometries are still some way off, and the largest size stands for all.
+ *
  * A place has rivals, at most one of which is right; p_c the priors, LR_c the ratios:
  *
  *     score = sum over the places of log(1 - sum p_c + sum p_c LR_c),
@@ -49,6 +59,12 @@
 #define WIDEST 3.0 /* largest `loose` */
 #define ON_PLANES 0.75
 #define BEHIND 0.1
+#define SIZES 3
+#define SHARE_1 0.2 /* of the largest errors, .. */
+#define SHARE_2 0.4
+#define SHARE_4 0.4 /* .. and of those a quarter as large */
+
+static const double size_peaks[2][SIZES] = {{SHARE_1, SHARE_2 * 8, SHARE_4 * 64}, {SHARE_1, SHARE_2 * 64, SHARE_4 * 4096}};
 
 void asj_epipolar_residuals(const double f[9], const asj_pairs *set, const asj_pair *c, asj_residuals *r)
 {
@@ -117,14 +133,32 @@ asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, d
     const double sd = loose * set->location_sd, normal = sqrt(2 * ASJ_PI);
     const double shape = 2 * ASJ_PI / (normal * loose * set->angle_sd) * SCALE_WIDTH / (normal * loose * set->scale_sd);
     const double shear = SHEAR_WIDTH * SHEAR_WIDTH / (2 * ASJ_PI * loose * ASJ_SHEAR_SD * loose * ASJ_SHEAR_SD);
-    const double line = log(2 * set->spread / (normal * sd) * shape);
-    const double plane = log(set->area / (2 * ASJ_PI * sd * sd) * shape * shear);
-    asj_peaks peaks = {view->planar ? plane : line, plane, loose};
+    const double line = 2 * set->spread / (normal * sd) * shape;
+    const double plane = set->area / (2 * ASJ_PI * sd * sd) * shape * shear;
+    asj_peaks peaks = {view->planar ? plane : line, plane, loose, !(loose > 1), 0};
     if (!view->planar && view->plane_count > 0) {
-        peaks.first += log(1 - ON_PLANES);
-        peaks.plane += log(ON_PLANES / view->plane_count);
+        peaks.first *= 1 - ON_PLANES;
+        peaks.plane *= ON_PLANES / view->plane_count;
     }
     return peaks;
+}
+
+/* exp(-q / 2) of each size, times its peak. */
+static void sizes_of(double square, int32_t planar, double sizes[SIZES])
+{
+    const double e = exp(-0.5 * square), e2 = e * e, e4 = e2 * e2, e8 = e4 * e4, e16 = e8 * e8;
+    const double *peak = size_peaks[planar];
+    sizes[0] = peak[0] * e;
+    sizes[1] = peak[1] * e4;
+    sizes[2] = peak[2] * e16;
+}
+
+double asj_size_weight(double square, int32_t planar)
+{
+    double s[SIZES];
+    sizes_of(square, planar, s);
+    const double sum = s[0] + s[1] + s[2];
+    return sum > 0 ? (s[0] + 4 * s[1] + 16 * s[2]) / sum : 1;
 }
 
 /* The factor that being in front of both cameras is worth: see above. d1 and d2, the depths, as in asj_in_front() of model.c. */
@@ -158,7 +192,10 @@ double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, cons
             asj_part_residuals(view, k, set, c, &r);
         const double square = r.square * tighter;
         if (square < (planar ? FAR_PLANAR : FAR)) {
-            ratio = exp((k > 0 ? peaks->plane : peaks->first) - 0.5 * square);
+            double s[SIZES];
+            if (peaks->fine)
+                sizes_of(square, planar, s);
+            ratio = (k > 0 ? peaks->plane : peaks->first) * (peaks->fine ? s[0] + s[1] + s[2] : exp(-0.5 * square));
             if (!planar && view->has_motion)
                 ratio *= side_factor(view, c);
         }

@@ -23,11 +23,13 @@ static inline int32_t asj_part_is_planar(const asj_two_view *view, int32_t part)
 }
 void asj_part_residuals(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *pair, asj_residuals *r);
 
-/* Logarithm of the largest likelihood ratio of the parts, where all residuals are zero, with their shares; standard deviations
- * times `loose`. */
+/* The largest likelihood ratio of the parts, where all residuals are zero and of the largest size, with their shares; standard
+ * deviations times `loose`. */
 typedef struct asj_peaks {
     double first, plane; /* of part 0 and of the planes */
     double loose;
+    int32_t fine;        /* residuals have several sizes: where `loose` is 1 */
+    int32_t reserved;
 } asj_peaks;
 asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, double loose);
 
@@ -37,6 +39,9 @@ double asj_far_limit(const asj_pairs *set, const asj_two_view *view, double loos
 /* Likelihood if right over likelihood if wrong; parts: NULL, or what each part has of it. */
 double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, const asj_pair *pair, const asj_peaks *peaks,
                             double *parts);
+
+/* What a residual of this square weighs in a least-squares step, where it has several sizes (asj_peaks.fine). */
+double asj_size_weight(double square, int32_t planar);
 
 /* Scratch for a score: place by place, and a list of those touched. */
 typedef struct asj_score_scratch {

@@ -115,10 +115,8 @@ asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const 
     asj_memory *memory = &context->memory;
     const int32_t threads = context->threads;
     motions *m = asj_allocate_zero(memory, 1, sizeof *m);
-    asj_adjust_scratch *scratch = asj_allocate_zero(memory, (size_t)threads, sizeof *scratch);
-    int32_t good = m && scratch;
-    for (int32_t t = 0; t < threads && good; t++)
-        good = asj_adjust_scratch_create(memory, set, &scratch[t]);
+    asj_adjust_scratch *scratch = asj_adjust_scratches_create(memory, set, threads);
+    const int32_t good = m && scratch;
     if (good) {
         const job j = {set, scratch, m};
         collect(set, cameras, finalists, count, m);
@@ -127,9 +125,7 @@ asj_status asj_refine_motions(asj_context *context, const asj_pairs *set, const 
         memcpy(finalists + *count, m->picked, (size_t)m->count * sizeof *m->picked);
         *count += m->count;
     }
-    for (int32_t t = 0; scratch && t < threads; t++)
-        asj_adjust_scratch_free(memory, &scratch[t]);
-    asj_release(memory, scratch);
+    asj_adjust_scratches_free(memory, scratch, threads);
     asj_release(memory, m);
     return good ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the motions of %d candidates", (int)set->count);
 }

@@ -1,14 +1,20 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* What the candidates allow, as a whole. Around a motion the score is rugged: each candidate that comes or goes makes a peak of its
  * own, a degree or two apart, and which of them a search climbs is luck. Their integral and their mean are not. They are taken by
- * importance sampling in rounds (population Monte Carlo; Cappe, Guillin, Marin and Robert 2004): motions are drawn from normal
- * distributions around the last mean, weighed by exp(score) over the density that they were drawn from, and mean and covariance of
- * the weighed ones are those of the next round. The mean weight, with the flat density of motions as the prior, is the evidence
- * (evidence.c), now of the whole region; the covariance is that of the pose.
+ * adaptive importance sampling: motions are drawn in rounds from normal distributions around the last mean (population Monte Carlo;
+ * Cappe, Guillin, Marin and Robert 2004), and all draws of all rounds count, each weighed by its target over the mean of the
+ * densities of all rounds (Cornuet, Marin, Mira and Robert 2012). Draws of one round alone, of which a dozen weigh anything, spread
+ * less in five dimensions than the candidates allow.
+ *
+ * The mean of exp(score) over that density, with the flat density of motions as the prior, is the evidence (evidence.c), now of the
+ * whole region. Mean and covariance of the pose are those of exp(TEMPER score): candidates of one wall, one border or one kind of
+ * corner err together, and a product of likelihoods that takes them for independent is too sharp. Raised to a power below 1 it
+ * spreads as widely as poses err (composite likelihoods: Pauli, Racugno and Ventura 2011; Ribatet, Cooley and Davison 2012). TEMPER
+ * is from rendered rooms: tests/accuracy/README.md.
  *
  * Drawn are the five parameters of the motion (model.c). Planes follow as the equations of adjust.c say, n' = -H_nn^-1 H_nm m', and
- * are integrated over by Laplace's method. Standard deviations of a round: those of the last one, times 1, 2 and 4 in turn, which
- * the density has all three of, so that what lies farther out is found and nothing weighs without bound. */
+ * are integrated over by Laplace's method. Standard deviations of a round: those of the draws so far, times the SPREADS in turn,
+ * which the density has all of, so that what lies farther out is found and nothing weighs without bound. */
 #include "posterior.h"
 #include "core/angle.h"
 #include "core/threads.h"
@@ -24,12 +30,17 @@
 
 #define DRAWS 120
 #define ROUNDS 3
+#define ALL (ROUNDS * DRAWS)
+#define SPREADS 3
+#define TEMPER 0.5
 #define MOTION 5
 #define LEAST_SD 1e-3 /* rad */
 #define MOST_SD 0.3      /* rad */
 #define WITHIN 4.0       /* standard deviations */
 #define MOST_TURN 0.6    /* rad */
-#define LEAST_WEIGHT 1e-3
+#define LEAST_WEIGHT 0.01
+
+static const double spreads[SPREADS] = {0.8, 1.2, 2};
 
 /* Where motions are drawn from. */
 typedef struct cloud {
@@ -41,7 +52,8 @@ typedef struct cloud {
 
 typedef struct draw {
     double at[MOTION];
-    double log_weight;
+    double score; /* log of what is integrated */
+    double log_density;
 } draw;
 
 static void normal_numbers(uint64_t seed, uint64_t stream, uint64_t number, double out[MOTION + 1])
@@ -54,7 +66,7 @@ static void normal_numbers(uint64_t seed, uint64_t stream, uint64_t number, doub
     }
 }
 
-/* Log of the density of the three normal distributions together, at x = mean + L y. */
+/* Log of the density of the normal distributions of a round together, at x = mean + L y. */
 static double log_density(const cloud *c, const double x[MOTION])
 {
     double y[MOTION], square = 0, sum = 0;
@@ -65,11 +77,11 @@ static double log_density(const cloud *c, const double x[MOTION])
         y[i] /= c->root[i * MOTION + i];
         square += y[i] * y[i];
     }
-    for (int32_t k = 0; k < 3; k++) {
-        const double scale = 1 << k;
-        sum += exp(-0.5 * square / (scale * scale)) / (scale * scale * scale * scale * scale);
+    for (int32_t k = 0; k < SPREADS; k++) {
+        const double s = spreads[k];
+        sum += exp(-0.5 * square / (s * s)) / (s * s * s * s * s);
     }
-    return log(sum / 3) - 0.5 * MOTION * log(2 * ASJ_PI) - c->log_root;
+    return sum > 0 ? log(sum / SPREADS) - 0.5 * MOTION * log(2 * ASJ_PI) - c->log_root : -HUGE_VAL;
 }
 
 /* Of a combination of the parameters. */
@@ -175,51 +187,105 @@ static void draw_some(const void *data, const asj_part *part)
         draw *d = &j->draws[n];
         double y[MOTION + 1];
         asj_model moved;
-        const double scale = n == 0 ? 0 : 1 << n % 3;
+        const double scale = n == 0 ? 0 : spreads[n % SPREADS];
         normal_numbers(j->seed, j->stream, (uint64_t)n, y);
         for (int32_t i = 0; i < MOTION; i++) {
             d->at[i] = c->mean[i];
             for (int32_t k = 0; k <= i; k++)
                 d->at[i] += scale * c->root[i * MOTION + k] * y[k];
         }
-        d->log_weight = -HUGE_VAL;
+        d->score = -HUGE_VAL;
         if (!asj_pairs_stop(j->set, part) && move(j->model, c, d->at, &moved))
-            d->log_weight = log_target(j->set, &moved, &j->scratch[part->thread]) - log_density(c, d->at);
+            d->score = log_target(j->set, &moved, &j->scratch[part->thread]);
     }
 }
 
-/* Mean and covariance of the draws; the log of their mean weight. */
-static double summarise(const draw draws[DRAWS], double mean[MOTION], double covariance[MOTION * MOTION])
+/* The log density of each draw: the mean of those of the rounds so far. */
+static void set_densities(const cloud *clouds, int32_t rounds, draw *draws, int32_t count)
 {
-    double largest = -HUGE_VAL, sum = 0;
-    for (int32_t n = 0; n < DRAWS; n++)
-        largest = fmax(largest, draws[n].log_weight);
+    for (int32_t n = 0; n < count; n++) {
+        double each[ROUNDS], largest = -HUGE_VAL, sum = 0;
+        for (int32_t r = 0; r < rounds; r++) {
+            each[r] = log_density(&clouds[r], draws[n].at);
+            largest = fmax(largest, each[r]);
+        }
+        for (int32_t r = 0; r < rounds && largest > -HUGE_VAL; r++)
+            sum += exp(each[r] - largest);
+        draws[n].log_density = sum > 0 ? largest + log(sum / rounds) : HUGE_VAL; /* HUGE_VAL: too far away to count */
+    }
+}
+
+/* Weights exp(temper score) over density of the draws, the largest 1; *sum of them. Returns the log of the factor that has been
+ * taken out, -HUGE_VAL when there are none. */
+static double weigh(const draw *draws, int32_t count, double temper, double *weights, double *sum)
+{
+    double largest = -HUGE_VAL;
+    *sum = 0;
+    for (int32_t n = 0; n < count; n++)
+        largest = fmax(largest, temper * draws[n].score - draws[n].log_density);
+    for (int32_t n = 0; n < count && largest > -HUGE_VAL; n++) {
+        weights[n] = exp(temper * draws[n].score - draws[n].log_density - largest);
+        *sum += weights[n];
+    }
+    return largest;
+}
+
+/* Mean and covariance of the draws; 0 when they weigh nothing. */
+static int32_t summarise(const draw *draws, int32_t count, double mean[MOTION], double covariance[MOTION * MOTION])
+{
+    double weights[ALL], sum;
     memset(mean, 0, MOTION * sizeof *mean);
     memset(covariance, 0, MOTION * MOTION * sizeof *covariance);
-    if (!(largest > -HUGE_VAL))
-        return -HUGE_VAL;
-    for (int32_t n = 0; n < DRAWS; n++) {
-        const double weight = exp(draws[n].log_weight - largest);
-        sum += weight;
+    if (!(weigh(draws, count, TEMPER, weights, &sum) > -HUGE_VAL))
+        return 0;
+    for (int32_t n = 0; n < count; n++)
         for (int32_t k = 0; k < MOTION; k++)
-            mean[k] += weight * draws[n].at[k];
-    }
-    for (int32_t k = 0; k < MOTION; k++)
-        mean[k] /= sum;
-    for (int32_t n = 0; n < DRAWS; n++) {
-        const double weight = exp(draws[n].log_weight - largest) / sum;
+            mean[k] += weights[n] / sum * draws[n].at[k];
+    for (int32_t n = 0; n < count; n++)
         for (int32_t i = 0; i < MOTION; i++)
             for (int32_t k = 0; k < MOTION; k++)
-                covariance[i * MOTION + k] += weight * (draws[n].at[i] - mean[i]) * (draws[n].at[k] - mean[k]);
+                covariance[i * MOTION + k] += weights[n] / sum * (draws[n].at[i] - mean[i]) * (draws[n].at[k] - mean[k]);
+    return 1;
+}
+
+/* The log of the integral of exp(score). */
+static double log_integral(const draw *draws, int32_t count)
+{
+    double weights[ALL], sum;
+    const double factor = weigh(draws, count, 1, weights, &sum);
+    return factor > -HUGE_VAL ? factor + log(sum / count) : -HUGE_VAL;
+}
+
+/* Draws all rounds; *last: mean and root of all of them. 0 when there is nothing to draw. */
+static int32_t draw_rounds(asj_context *context, job *j, cloud *last, double covariance[MOTION * MOTION])
+{
+    cloud clouds[ROUNDS];
+    for (int32_t round = 0; round < ROUNDS; round++) {
+        const int32_t count = (round + 1) * DRAWS;
+        clouds[round] = *last;
+        const job of_round = {j->set, j->model, &clouds[round], j->seed, (uint64_t)round, j->scratch, j->draws + round * DRAWS};
+        asj_parallel(context, context->threads, DRAWS, 8, draw_some, &of_round);
+        set_densities(clouds, round + 1, j->draws, count);
+        if (!summarise(j->draws, count, last->mean, covariance) || !set_root(covariance, last))
+            return 0;
     }
-    return largest + log(sum / DRAWS);
+    return 1;
+}
+
+/* The cloud of Laplace's approximation as wide as TEMPER makes it. */
+static void widen(cloud *c)
+{
+    for (int32_t k = 0; k < MOTION * MOTION; k++)
+        c->root[k] /= sqrt(TEMPER);
+    c->log_root -= 0.5 * MOTION * log(TEMPER);
 }
 
 void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_adjust_scratch *scratch, asj_model *model)
 {
-    draw draws[DRAWS];
+    draw draws[ALL];
     cloud c;
-    double log_planes, covariance[MOTION * MOTION], log_mean = -HUGE_VAL;
+    asj_model moved;
+    double log_planes, covariance[MOTION * MOTION];
     if (model->kind != ASJ_GEOMETRY_ESSENTIAL || !start(set, model, &scratch[0], &c, &log_planes))
         return;
     if (largest_sd(model->covariance) > MOST_SD) { /* a direction that nothing determines has no middle */
@@ -227,16 +293,11 @@ void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_a
         model->settled = 1;
         return;
     }
-    for (uint64_t round = 0; round < ROUNDS; round++) {
-        const job j = {set, model, &c, seed, round, scratch, draws};
-        asj_parallel(context, context->threads, DRAWS, 8, draw_some, &j);
-        log_mean = summarise(draws, c.mean, covariance);
-        if (!(log_mean > -HUGE_VAL) || !set_root(covariance, &c))
-            return;
-    }
-    asj_model moved;
-    if (!move(model, &c, c.mean, &moved))
+    widen(&c);
+    job j = {set, model, NULL, seed, 0, scratch, draws};
+    if (!draw_rounds(context, &j, &c, covariance) || !move(model, &c, c.mean, &moved))
         return;
+    const double log_mean = log_integral(draws, ALL);
     double volume = log_planes;
     for (int32_t p = 0; p < MOTION; p++)
         volume += asj_log_volume(model, p) - 0.5 * log(2 * ASJ_PI);
@@ -288,7 +349,7 @@ double asj_motion_covariance(const asj_model *models, int32_t count, int32_t bes
     memcpy(covariance, m->covariance, sizeof m->covariance);
     for (int32_t n = 0; n < count; n++) {
         const asj_model *o = &models[n];
-        const double weight = exp(o->evidence - m->evidence);
+        const double weight = exp(TEMPER * (o->evidence - (o->settled ? m->evidence : fmin(m->peak, m->evidence))));
         if (n == best || o->kind != m->kind || !(weight > LEAST_WEIGHT) || asj_is_within(m, o))
             continue;
         if (!difference(m, o, at))

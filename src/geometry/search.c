@@ -160,7 +160,7 @@ static int32_t draw_samples(const asj_pairs *set, const asj_search *search, work
     const int32_t first = set->count < PRESELECTED ? set->count : PRESELECTED, samples = samples_of(search);
     const int32_t most = samples < SHORT ? samples : SHORT;
     for (int32_t k = 0; k < first; k++)
-        w->sum[k] = (k > 0 ? w->sum[k - 1] : 0) + set->list[k].prior;
+        w->sum[k] = (k > 0 ? w->sum[k - 1] : 0) + set->list[k].prior * (search->weights ? search->weights[k] : 1);
     const job j = {.set = set, .search = search, .w = w, .models = w->models, .first = first};
     asj_parallel(w->context, w->context->threads, samples, 8, sample_some, &j);
     qsort(w->order, (size_t)samples, sizeof *w->order, asj_by_score);
@@ -275,15 +275,11 @@ asj_status asj_geometry_search(asj_context *context, const asj_pairs *set, const
     w.starts = asj_allocate_zero(memory, STARTS, sizeof *w.starts);
     w.order = asj_allocate(memory, samples, sizeof *w.order);
     w.sum = asj_allocate(memory, PRESELECTED, sizeof *w.sum);
-    w.scratch = asj_allocate_zero(memory, (size_t)threads, sizeof *w.scratch);
-    int32_t good = w.models && w.starts && w.order && w.sum && w.scratch;
-    for (int32_t t = 0; t < threads && good; t++)
-        good = asj_adjust_scratch_create(memory, set, &w.scratch[t]);
+    w.scratch = asj_adjust_scratches_create(memory, set, threads);
+    const int32_t good = w.models && w.starts && w.order && w.sum && w.scratch;
     if (good && set->count >= 2)
         *count = run(set, search, &w, finalists);
-    for (int32_t t = 0; w.scratch && t < threads; t++)
-        asj_adjust_scratch_free(memory, &w.scratch[t]);
-    asj_release(memory, w.scratch);
+    asj_adjust_scratches_free(memory, w.scratch, threads);
     asj_release(memory, w.sum);
     asj_release(memory, w.order);
     asj_release(memory, w.starts);

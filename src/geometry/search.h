@@ -13,6 +13,7 @@ typedef struct asj_search {
     uint64_t seed;
     asj_camera cameras[2];
     double least; /* nats: when no geometry reaches this score at first sight, there is none */
+    const double *weights; /* NULL, or how much of its prior each candidate is drawn by */
 } asj_search;
 
 /* The best geometries of the kind, refined, the best score first; finalists has room for ASJ_FINALISTS. *count may be 0. */

@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#ifndef ASJ_SRC_GEOMETRY_RIVALS_H
+#define ASJ_SRC_GEOMETRY_RIVALS_H
+
+#include "search.h"
+
+/* Geometries that explain the images without the candidates of `best`: rivals.c. One search for each kind in `kinds`, kind_count of
+ * them; cameras: NULL, or where essential matrices are searched. `rivals` has room for (1 + kind_count) ASJ_FINALISTS. */
+asj_status asj_find_rivals(asj_context *context, asj_pairs *set, const asj_search *kinds, int32_t kind_count,
+                           const asj_camera *cameras, const asj_model *best, asj_model *rivals, int32_t *count);
+
+#endif
