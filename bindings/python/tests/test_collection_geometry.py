@@ -109,7 +109,7 @@ def test_poses_reach_colmap(rooms: tuple[Path, list[Any]], tmp_path: Path) -> No
         pose = found.cam2_from_cam1
         assert np.allclose(pose.rotation.matrix(), np.reshape(ours["rotation"], (3, 3)), atol=1e-6)
         assert np.allclose(np.cross(pose.translation, ours["translation"]), 0, atol=1e-6) and pose.translation @ ours["translation"] > 0
-        assert pose_error(pose.rotation.matrix(), pose.translation, views[one], views[two]) < 3
+        assert pose_error(pose.rotation.matrix(), pose.translation, views[one], views[two]) < 1
     assert not database.exists_two_view_geometry(images[2].image_id, images[3].image_id)
     database.close()
     with sqlite3.connect(tmp_path / "scene.db.work") as connection:
