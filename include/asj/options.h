@@ -99,7 +99,8 @@ typedef struct asj_detect_options {
                                    * where the scan loses it, which depends on noise. 0 .. 0.9; 0 */
     int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`.
                                    * 1; paper 0; match 0 */
-    int32_t reserved_integer;     /* zero */
+    int32_t octave_union;         /* 1 = every octave keeps what it finds, though a finer one has found the same corner: for the
+                                   * matcher, which takes each corner once. 0; match 1 */
     double reserved[19];          /* zero */
 } asj_detect_options;
 

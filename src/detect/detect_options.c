@@ -26,6 +26,8 @@ static const asj_option_info rows[] = {
     INTEGER(OCTAVES, COMMON, octaves, "", 1, 16, 16, 1, 1,
             "how often the image is looked at, each time at half the size, as far as it allows; more finds softer corners"),
     INTEGER(OCTAVES, COMMON, first_octave, "", 0, 15, 0, 0, 0, "sizes that are left out: 1 = begin at half the image's size"),
+    SWITCH(OCTAVES, ADVANCED, octave_union, 0, 0, 1,
+           "every octave keeps what it finds, though a finer one has found the same corner; for matching"),
 
     NUMBER(GRADIENT, COMMON, gradient_epsilon, "grey/px", 0.05, 16, 0.4, 0.05, 0.4,
            "gradient below which a surface counts as flat; raise it against compression noise"),

@@ -136,7 +136,7 @@ asj_status asj_detection_run_known(const asj_detection_run *run, asj_octave_know
 {
     const int32_t width = run->image->width, height = run->image->height;
     *known = (asj_octave_known){.finer = NULL};
-    if (run->all_count == 0)
+    if (run->all_count == 0 || run->options->octave_union)
         return ASJ_OK;
     const size_t count = asj_octave_grid_cells(run->all_count, width, height);
     int32_t *cells = asj_allocate_list(&run->context->memory, count, sizeof *cells);

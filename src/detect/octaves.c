@@ -14,7 +14,9 @@
  * asks of coarse octaves, which have few pixels, as much as of the image itself.)
  *
  * Junctions of two octaves are one when they are closer than NEAR px of the coarser octave and have a direction in common. The one
- * that stays gets the other's branches that were too soft for its own octave to see. Ghosts go: octave_ghosts.c. */
+ * that stays gets the other's branches that were too soft for its own octave to see. Ghosts go: octave_ghosts.c.
+ *
+ * With octave_union nothing of this is done: each octave's junctions are listed. */
 #include "octaves.h"
 #include "octave_ghosts.h"
 #include "core/angle.h"

@@ -81,9 +81,10 @@ asj_status asj_step_merge_octaves(asj_detection_run *run)
     run->isotropic_count = run->isotropic_total;
     run->all = NULL;
     run->all_count = run->all_capacity = 0;
-    if (run->options->octaves > 1)
+    const int one_list = run->options->octaves > 1 && !run->options->octave_union;
+    if (one_list)
         status = confirm_all(run);
-    if (status == ASJ_OK && run->options->octaves > 1)
+    if (status == ASJ_OK && one_list)
         status = merge(run);
     if (status != ASJ_OK)
         return status;

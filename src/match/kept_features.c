@@ -39,6 +39,7 @@ static size_t list_pieces(const asj_features *features, piece *list)
     PIECE(of_image.l_junctions.l_of_location, l->count);
     PIECE(of_image.l_junctions.location_x, l->location_count);
     PIECE(of_image.l_junctions.location_y, l->location_count);
+    PIECE(of_image.l_junctions.octave, l->count);
     PIECE(of_image.l_junctions.t_junction, l->count);
     if (l->neighbour_limit > 0) {
         PIECE(of_image.l_junctions.neighbour, (size_t)l->location_count * l->neighbour_limit);

@@ -265,6 +265,18 @@ static asj_status make_frames(asj_context *context, const asj_match_options *opt
     return ASJ_OK;
 }
 
+static asj_status set_octaves(asj_context *context, const asj_junction_list *input, asj_l_junctions *all)
+{
+    all->octave = asj_allocate(&context->memory, all->count, sizeof *all->octave);
+    if (!all->octave)
+        return no_memory(context);
+    for (uint32_t i = 0; i < all->count; i++) {
+        const int32_t octave = input->list[all->l[i].junction].octave;
+        all->octave[i] = (uint8_t)(octave < 0 ? 0 : octave > ASJ_COARSEST ? ASJ_COARSEST : octave);
+    }
+    return ASJ_OK;
+}
+
 static void set_ends(const asj_junction_list *input, asj_l_junctions *all)
 {
     for (uint32_t i = 0; i < all->count; i++) {
@@ -366,7 +378,9 @@ asj_status asj_l_junctions_create(asj_context *context, const asj_match_options 
     if (!all->l)
         return no_memory(context);
     all->count = (uint32_t)asj_decompose(input->list, input->count, options->minimum_opening, all->l, total);
-    status = find_locations(context, all);
+    status = set_octaves(context, input, all);
+    if (status == ASJ_OK)
+        status = find_locations(context, all);
     if (status == ASJ_OK)
         status = find_neighbours(context, options, all);
     if (status == ASJ_OK)
@@ -382,7 +396,7 @@ void asj_l_junctions_free(asj_memory *memory, asj_l_junctions *all)
 {
     void *blocks[] = {all->l, all->lengths, all->direction, all->first_frame, all->frames, all->location,
                       all->location_x, all->location_y, all->neighbour, all->neighbour_count,
-                      all->first_of_location, all->l_of_location, all->t_junction};
+                      all->first_of_location, all->l_of_location, all->octave, all->t_junction};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         asj_release(memory, blocks[i]);
     memset(all, 0, sizeof *all);

@@ -9,6 +9,7 @@
 #include <asj/match.h>
 
 #define ASJ_MAX_HYPOTHESES 4
+#define ASJ_COARSEST 15 /* octave; coarser ones count as this one */
 
 /* Lengths that a branch may have, its own first, then falling. */
 typedef struct asj_lengths {
@@ -33,6 +34,7 @@ typedef struct asj_l_junctions {
     uint32_t *first_of_location;
     uint32_t *l_of_location;
     double *location_x, *location_y;
+    uint8_t *octave;             /* of each L-junction: that located it, 0 .. ASJ_COARSEST */
     uint8_t *t_junction;         /* of each L-junction: is it part of a T? One of its branches goes on beyond the location */
     uint32_t *neighbour;         /* [k * location .. + neighbour_count[location]]: nearest other locations, nearest first */
     uint32_t *neighbour_count;

@@ -15,6 +15,7 @@
  *   guided.c         matches propose matches near them; once more from align.c on
  *   verify.c         each match is judged by the matches around it
  *   two_view.c       the geometry of the pair, when asked for: candidates once more, a longer list (prior.c, ../geometry/)
+ *   same_corner.c    one match for each corner that several octaves list
  *   match_result.c   what the caller sees; segments.c: which ends of the branches correspond
  *
  * Up to the consensus every aligned candidate is there, several for a location; a step that needs all of them stands before
@@ -28,6 +29,7 @@
 #include "match_options.h"
 #include "match_result.h"
 #include "related.h"
+#include "same_corner.h"
 #include "shortlist.h"
 #include "support.h"
 #include "two_view.h"
@@ -93,6 +95,7 @@ static asj_status run_steps(asj_match_run *run, stop_watch *watch)
     };
     static const step last = {ASJ_STAGE_ASSIGN, 0.95, asj_verify};
     static const step geometry = {ASJ_STAGE_ASSIGN, 0.96, asj_apply_geometry};
+    static const step corners = {ASJ_STAGE_ASSIGN, 0.99, asj_same_corner};
     int32_t related;
     asj_status status = asj_progress(run->context, ASJ_STAGE_DISTANCES, 0.15);
     if (status == ASJ_OK)
@@ -111,7 +114,9 @@ static asj_status run_steps(asj_match_run *run, stop_watch *watch)
     }
     if (status == ASJ_OK)
         status = run_step(run, &last, watch);
-    return status == ASJ_OK ? run_step(run, &geometry, watch) : status;
+    if (status == ASJ_OK)
+        status = run_step(run, &geometry, watch);
+    return status == ASJ_OK ? run_step(run, &corners, watch) : status;
 }
 
 static asj_status finish(const asj_match_run *run, stop_watch *watch, asj_match_result **result)

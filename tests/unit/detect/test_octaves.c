@@ -178,6 +178,35 @@ static void test_soft_corners(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* A sharp corner is listed once, or, with octave_union, by every octave that has found it; each says its own octave. */
+static void test_union(void **state)
+{
+    static const double angles[] = {0.2, 1.8}, grays[] = {160, -1};
+    unit_counter counter;
+    asj_context *context = unit_context(&counter, 1);
+    asj_detect_options options;
+    synth_scene scene;
+    (void)state;
+    synth_scene_init(&scene, 240, 240, 100);
+    synth_add_star(&scene, (synth_point){120.3, 119.6}, angles, grays, 2, 80);
+    uint8_t *pixels = unit_picture(&scene, 0.9, 1, 3);
+    const asj_image image = unit_gray8(pixels, 240, 240);
+    asj_detect_options_init(&options);
+    for (options.octave_union = 0; options.octave_union < 2; options.octave_union++) {
+        int32_t there[3] = {0, 0, 0};
+        asj_detection *found = NULL;
+        assert_int_equal(asj_detect(context, &image, &options, &found), ASJ_OK);
+        for (uint32_t j = 0; j < found->junction_count; j++)
+            if (hypot(found->junctions[j].x - 120.3, found->junctions[j].y - 119.6) < 3)
+                there[found->junctions[j].octave]++;
+        assert_int_equal(there[0], 1);
+        assert_int_equal(there[1], options.octave_union);
+        asj_detection_free(&found);
+    }
+    free(pixels);
+    unit_context_free(&counter, &context);
+}
+
 /* Sharp corners, and junctions of more than two branches, are left as they are. */
 static void test_bent_corner_leaves(void **state)
 {
@@ -271,7 +300,7 @@ int main(void)
         cmocka_unit_test(test_others_stay),    cmocka_unit_test(test_soft_branch_joins),
         cmocka_unit_test(test_widths),         cmocka_unit_test(test_ghosts),
         cmocka_unit_test(test_soft_corners),   cmocka_unit_test(test_bent_corner_leaves),
-        cmocka_unit_test(test_confirm),
+        cmocka_unit_test(test_confirm),        cmocka_unit_test(test_union),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

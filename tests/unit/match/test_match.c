@@ -164,6 +164,45 @@ static void paper_preset_and_sift_work_too(void **state)
     free(b.pixels);
 }
 
+/* Every corner again as a coarse octave would have it, 3 px off: still one match for each, between fine ones. Where image 2 has the
+ * coarse ones alone they match; and junctions that are all of one coarse octave match as those of the image itself do. */
+static void corners_of_several_octaves_match_once(void **state)
+{
+    const unit_fixture *fixture = *state;
+    scene a, b;
+    scene_make(identity, 1, &a);
+    scene_make(oblique, 1, &b);
+    asj_junction both[2 * CORNERS], coarse[CORNERS];
+    size_t count = 0;
+    for (size_t n = 0; n < b.count; n++) {
+        coarse[n] = b.junctions[n];
+        coarse[n].octave = 1;
+        both[count++] = b.junctions[n];
+        both[count] = coarse[n];
+        both[count].x += 3;
+        both[count++].octave = 1;
+    }
+    asj_match_result *alone = match(fixture->context, &a, &b, NULL), *r = NULL;
+    assert_int_equal(asj_match(fixture->context, &a.image, a.junctions, a.count, &b.image, both, count, NULL, &r), ASJ_OK);
+    assert_true(r->match_count + 2 >= alone->match_count && r->match_count <= alone->match_count);
+    for (uint32_t n = 0; n < r->match_count; n++)
+        assert_int_equal(both[r->matches[n].junction2].octave, 0);
+    asj_match_result_free(&r);
+    assert_int_equal(asj_match(fixture->context, &a.image, a.junctions, a.count, &b.image, coarse, b.count, NULL, &r), ASJ_OK);
+    assert_true(r->match_count + 2 >= alone->match_count);
+    asj_match_result_free(&r);
+    memcpy(both, a.junctions, a.count * sizeof *both);
+    for (size_t n = 0; n < a.count; n++)
+        both[n].octave = 1;
+    assert_int_equal(asj_match(fixture->context, &a.image, both, a.count, &b.image, coarse, b.count, NULL, &r), ASJ_OK);
+    assert_int_equal(r->match_count, alone->match_count);
+    assert_memory_equal(r->matches, alone->matches, r->match_count * sizeof *r->matches);
+    asj_match_result_free(&r);
+    asj_match_result_free(&alone);
+    free(a.pixels);
+    free(b.pixels);
+}
+
 static void a_wrong_picture_gives_nothing(void **state)
 {
     const unit_fixture *fixture = *state;
@@ -438,6 +477,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finds_the_corners_of_an_oblique_copy),
         cmocka_unit_test(paper_preset_and_sift_work_too),
+        cmocka_unit_test(corners_of_several_octaves_match_once),
         cmocka_unit_test(a_wrong_picture_gives_nothing),
         cmocka_unit_test(swapping_the_images_swaps_the_matches),
         cmocka_unit_test(threads_change_nothing),

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Junctions of several octaves (option octave_union of the detector). Corners that the fine octave sees in one image and a coarse
+ * one in the other, those out of focus, and those in few pixels find partners that way. But most corners are then listed two or
+ * three times, and that changes two things.
+ *
+ * Support. A neighbouring corner that is listed k times supports k times, and a match that is one of k has k chances to be
+ * supported: so 1 + AGAIN (k - 1) times the usual support is asked for, k the mean of all. And coarse junctions look more alike:
+ * those of octave o need 1 + o / 3 times as much. Asked at the end only: what has little support still is good for proposing
+ * matches near it.
+ *
+ * One match for each corner. Locations of different octaves nearer than `separation` are the same corner, as they are for the ratio
+ * test (assign.c); of their matches that of the finest octave stays, which knows the place best. Lists of one octave are left as
+ * they are. */
+#include "same_corner.h"
+#include "consensus.h"
+
+#include <string.h>
+
+#define AGAIN 2.0
+#define COARSE (1.0 / 3)
+
+static int32_t octave_at(const asj_l_junctions *all, uint32_t location)
+{
+    return all->octave[all->l_of_location[all->first_of_location[location]]];
+}
+
+/* How often a corner is listed, on average: 1 and the number of other octaves that have a location within `separation` px of it. */
+static double crowding_of(const asj_l_junctions *all, double separation)
+{
+    size_t total = 0;
+    for (uint32_t p = 0; p < all->location_count; p++) {
+        const double x = all->location_x[p], y = all->location_y[p], most = x + separation;
+        uint32_t octaves = 1u << octave_at(all, p);
+        for (uint32_t q = asj_first_location(all, x - separation); q < all->location_count && all->location_x[q] <= most; q++) {
+            const double dx = all->location_x[q] - x, dy = all->location_y[q] - y;
+            if (dx * dx + dy * dy <= separation * separation)
+                octaves |= 1u << octave_at(all, q);
+        }
+        for (; octaves; octaves &= octaves - 1)
+            total++;
+    }
+    return all->location_count ? (double)total / all->location_count : 1;
+}
+
+/* The coarser octave of the two that a candidate matches. */
+static int32_t octave_of(const asj_match_run *run, const asj_candidate *c)
+{
+    const int32_t one = run->image[0]->l_junctions.octave[c->i], other = run->image[1]->l_junctions.octave[c->j];
+    return one > other ? one : other;
+}
+
+/* The support that a choice needs, as a part of what it would need were all junctions of one octave. */
+static double needs(const asj_match_run *run, const asj_candidate *c, double crowding)
+{
+    return (1 + AGAIN * (crowding - 1)) * (1 + COARSE * octave_of(run, c));
+}
+
+/* --- one match for each corner ----------------------------------------------------------------------------------------------- */
+
+static int nearer(const asj_l_junction *a, const asj_l_junction *b, double distance)
+{
+    const double dx = (double)a->x - (double)b->x, dy = (double)a->y - (double)b->y;
+    return dx * dx + dy * dy < distance * distance;
+}
+
+/* Does `other` stand for the corner of `c`? */
+static int stands_for(const asj_match_run *run, const asj_candidate *other, const asj_candidate *c)
+{
+    const int32_t mine = octave_of(run, c), theirs = octave_of(run, other);
+    const double separation = run->options->separation;
+    return theirs < mine && (nearer(asj_match_run_l(run, c, 0), asj_match_run_l(run, other, 0), separation) ||
+                             nearer(asj_match_run_l(run, c, 1), asj_match_run_l(run, other, 1), separation));
+}
+
+static int has_octaves(const asj_match_run *run)
+{
+    for (int32_t side = 0; side < 2; side++)
+        for (uint32_t l = 1; l < run->image[side]->l_junctions.count; l++)
+            if (run->image[side]->l_junctions.octave[l] != run->image[side]->l_junctions.octave[0])
+                return 1;
+    return 0;
+}
+
+/* Leaves the choices that are not gone. */
+static void keep(asj_choices *choices, const uint8_t *gone)
+{
+    size_t kept = 0;
+    for (size_t n = 0; n < choices->count; n++)
+        if (!gone[n])
+            choices->list[kept++] = choices->list[n];
+    choices->count = kept;
+}
+
+asj_status asj_same_corner(asj_match_run *run)
+{
+    asj_choices *choices = &run->choices;
+    const asj_candidate *list = run->candidates.list;
+    if (!has_octaves(run) || choices->count == 0)
+        return ASJ_OK;
+    uint8_t *gone = asj_allocate_zero(&run->context->memory, choices->count, 1);
+    if (!gone)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu matches", choices->count);
+    const double separation = run->options->separation, needed = (double)asj_needed_support(run);
+    const double crowding = 0.5 * (crowding_of(&run->image[0]->l_junctions, separation) +
+                                   crowding_of(&run->image[1]->l_junctions, separation));
+    for (size_t n = 0; n < choices->count; n++) {
+        const asj_candidate *c = &list[choices->list[n].candidate];
+        gone[n] = (double)c->support < needed * needs(run, c, crowding);
+    }
+    keep(choices, gone);
+    memset(gone, 0, choices->count);
+    for (size_t n = 0; n < choices->count; n++)
+        for (size_t m = 0; m < choices->count && !gone[n]; m++)
+            gone[n] = (uint8_t)stands_for(run, &list[choices->list[m].candidate], &list[choices->list[n].candidate]);
+    keep(choices, gone);
+    asj_release(&run->context->memory, gone);
+    return ASJ_OK;
+}
