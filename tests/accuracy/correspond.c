@@ -33,18 +33,27 @@ static int has_branch(const asj_branch *branch, const asj_junction *to, double s
     return 0;
 }
 
+int correspond_fault(const asj_junction *a, const asj_junction *b, double scale)
+{
+    int fault = a->branch_count == b->branch_count ? CORRESPOND_AGREES : CORRESPOND_BRANCHES;
+    for (int32_t i = 0; i < a->branch_count && fault == CORRESPOND_AGREES; i++)
+        fault = has_branch(&a->branches[i], b, scale, 1, 0) ? fault : CORRESPOND_ANGLES;
+    for (int32_t i = 0; i < a->branch_count && fault == CORRESPOND_AGREES; i++)
+        fault = has_branch(&a->branches[i], b, scale, 0, 1) ? fault : CORRESPOND_LENGTHS;
+    return fault;
+}
+
 static int agree(const asj_junction *a, const asj_junction *b, double scale, int criterion)
 {
     if (criterion == CORRESPOND_PLACE)
         return 1;
+    if (criterion == CORRESPOND_WHOLE)
+        return correspond_fault(a, b, scale) == CORRESPOND_AGREES;
     if (a->branch_count != b->branch_count)
         return 0;
-    for (int32_t i = 0; i < a->branch_count; i++) {
-        const int both = has_branch(&a->branches[i], b, scale, 1, 1);
-        const int apart = has_branch(&a->branches[i], b, scale, 1, 0) && has_branch(&a->branches[i], b, scale, 0, 1);
-        if (criterion == CORRESPOND_PAIRED ? !both : !apart)
+    for (int32_t i = 0; i < a->branch_count; i++)
+        if (!has_branch(&a->branches[i], b, scale, 1, 1))
             return 0;
-    }
     return 1;
 }
 

@@ -17,6 +17,9 @@ enum {
     CORRESPOND_PLACE   /* the location alone */
 };
 
+/* Why junctions at one place do not correspond by the paper's criterion: what is asked first counts. */
+enum { CORRESPOND_AGREES, CORRESPOND_BRANCHES, CORRESPOND_ANGLES, CORRESPOND_LENGTHS, CORRESPOND_FAULTS };
+
 typedef struct correspond_list {
     const asj_junction *junctions;
     uint32_t count;
@@ -29,6 +32,9 @@ typedef struct correspond_map {
 
 /* Of a copy scaled about the image's corner, so that pixels' areas map. */
 correspond_map correspond_scaling(double sx, double sy);
+
+/* CORRESPOND_...: the fault of junction b of a copy that is `scale` times as large, seen as junction a. */
+int correspond_fault(const asj_junction *a, const asj_junction *b, double scale);
 
 /* Number of correspondences, or -1 (memory). partner[i]: the junction of the copy that is junction i, or UINT32_MAX; NULL = not
  * asked for. */

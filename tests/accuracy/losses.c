@@ -6,8 +6,9 @@
  * Junctions are detected in each image and in copies of it that hardly differ (small_changes.h). Those that are not found again
  * (correspond.h, by location) are followed through the dumps of the copy, in the octave that located them: the step after the last
  * one that left something within NEAR px of the place has lost it. What is near may be another junction, so the counts are right on
- * the whole and not one by one. "merge": lost when octaves become one list; "moved": something stays, 3 px and more away. Without
- * an image: a rendered room. --check: exit 1 when fewer are found again there than stands below. */
+ * the whole and not one by one. "merge": lost when octaves become one list; "moved": something stays, 3 px and more away. Of those
+ * found again that the paper's criterion does not take, what is wrong is counted. Without an image: a rendered room. --check:
+ * exit 1 when fewer are found again there than stands below. */
 #include "correspond.h"
 #include "render.h"
 #include "room.h"
@@ -48,6 +49,7 @@ typedef struct tally {
     uint32_t junctions;
     int32_t place[CHANGES], whole[CHANGES];
     int32_t lost[ENDS][CHANGES];
+    int32_t fault[CORRESPOND_FAULTS][CHANGES]; /* of what is found again */
 } tally;
 
 typedef struct session {
@@ -132,7 +134,9 @@ static int compare(session *s, const asj_detection *image, const asj_detection *
     const int32_t whole = correspond(&a, &b, map, CORRESPOND_WHOLE, NULL);
     for (uint32_t i = 0; place >= 0 && i < a.count; i++) {
         const asj_junction *j = &a.junctions[i];
-        if (partner[i] == UINT32_MAX) {
+        if (partner[i] != UINT32_MAX) {
+            s->all.fault[correspond_fault(j, &b.junctions[partner[i]], 0.5 * (map->sx + map->sy))][change]++;
+        } else {
             const double x = (double)j->x * map->sx + map->tx, y = (double)j->y * map->sy + map->ty;
             s->all.lost[find_step(s, copy, j->octave, x, y)][change]++;
         }
@@ -193,7 +197,15 @@ static void print(const tally *t)
     printf("\n%-22s", "paper's criterion, %");
     for (int c = 0; c < CHANGES; c++)
         printf("%10.1f", share(t->whole[c], t->junctions));
-    printf("\nlost of %u by\n", (unsigned)t->junctions);
+    static const char *const faults[CORRESPOND_FAULTS] = {"", "number of branches", "angles", "lengths"};
+    printf("\nfound again, but for\n");
+    for (int fault = 1; fault < CORRESPOND_FAULTS; fault++) {
+        printf("  %-20s", faults[fault]);
+        for (int c = 0; c < CHANGES; c++)
+            printf("%10d", (int)t->fault[fault][c]);
+        printf("\n");
+    }
+    printf("lost of %u by\n", (unsigned)t->junctions);
     for (int step = 0; step < ENDS; step++) {
         printf("  %-20s", step == MERGE ? "merge" : step == MOVED ? "moved" : steps[step]);
         for (int c = 0; c < CHANGES; c++)
