@@ -14,6 +14,7 @@ typedef float floats __attribute__((vector_size(16)));
 typedef int32_t ints __attribute__((vector_size(16)));
 typedef int16_t shorts __attribute__((vector_size(16)));
 typedef uint32_t unsigned_ints __attribute__((vector_size(16)));
+typedef uint64_t fours __attribute__((vector_size(16))); /* of 16 bits */
 
 typedef struct lane_sums {
     floats w, x, y, xx, xy, yy;
@@ -65,13 +66,14 @@ static inline asj_line_sums total_sums(const lane_sums list[FOURS])
 #undef TOTAL
 }
 
-/* Four grey values of a minus those of b. */
+/* Four grey values of a minus those of b: these are below 2^15. */
 static inline floats difference(const uint16_t *a, const uint16_t *b)
 {
-    int16_t p[4], q[4];
-    memcpy(p, a, sizeof p);
-    memcpy(q, b, sizeof q);
-    return as_floats((ints){p[0], p[1], p[2], p[3]} - (ints){q[0], q[1], q[2], q[3]});
+    uint64_t p, q;
+    memcpy(&p, a, sizeof p);
+    memcpy(&q, b, sizeof q);
+    const vec d = v_sub((vec)(fours){p, 0}, (vec)(fours){q, 0});
+    return as_floats((ints)v_join_low(d, v_greater(v_zero(), d)));
 }
 
 /* Of four columns while their rows are walked along: sums of w, w y, w y^2. */
@@ -116,7 +118,7 @@ static inline void sum_columns(const asj_frame *frame, const asj_line_band *band
         const floats gx = difference(p + 1, p - 1), gy = difference(p + stride, p - stride);
         const floats across = gy * ux - gx * uy, along = gx * ux + gy * uy, dy = floats_of((float)row - band->middle_y);
         const ints inside = valid & (dy >= first) & (dy <= last), is_up = across > zero;
-        const floats w = where(inside, larger_of(magnitude(across) - magnitude(along), zero));
+        const floats excess = magnitude(across) - magnitude(along), w = where(inside & (excess > zero), excess);
         add_lanes(&up, where(is_up, w), dy);
         add_lanes(&down, where(~is_up, w), dy);
     }
@@ -172,12 +174,25 @@ static inline ints weighted(shorts pairs, shorts weights)
     return (ints)v_pairs((vec)pairs, (vec)weights);
 }
 
+/* Four neighbours at each of four places: the first two of each, and the others. */
+static inline void fours_at(const uint16_t *const p[4], ptrdiff_t offset, shorts *first, shorts *second)
+{
+    uint64_t words[4];
+    for (int i = 0; i < 4; i++)
+        memcpy(&words[i], p[i] + offset, sizeof words[i]);
+    const vec a = (vec)(fours){words[0], words[1]}, b = (vec)(fours){words[2], words[3]};
+    const vec even = v_interleave32_low(a, b), odd = v_interleave32_high(a, b); /* of places 0 and 2, of 1 and 3 */
+    *first = (shorts)v_interleave32_low(even, odd);
+    *second = (shorts)v_interleave32_high(even, odd);
+}
+
 /* Central differences at the four pixels around four samples, bilinear; p[i]: the upper left one of sample i. */
 static inline void sample_four(const uint16_t *const p[4], ptrdiff_t stride, ints right, floats low, floats *gx, floats *gy)
 {
     const shorts above = pairs_at(p, -stride), below = pairs_at(p, 2 * stride);
-    const shorts left0 = pairs_at(p, -1), right0 = pairs_at(p, 1);
-    const shorts left1 = pairs_at(p, stride - 1), right1 = pairs_at(p, stride + 1);
+    shorts left0, right0, left1, right1;
+    fours_at(p, -1, &left0, &right0);
+    fours_at(p, stride - 1, &left1, &right1);
     const shorts weights = pairs_of(4096 - right, right);
     const ints x0 = weighted(right0 - left0, weights), x1 = weighted(right1 - left1, weights);
     const ints y0 = weighted(between(left1, right1) - above, weights), y1 = weighted(below - between(left0, right0), weights);
@@ -210,7 +225,7 @@ static inline void profile_four(const asj_frame *frame, const asj_line_profile *
         floats gx, gy;
         sample_four(p, frame->stride, right, y - as_floats(iy), &gx, &gy);
         const floats across = gy * ux - gx * uy, along = gx * ux + gy * uy;
-        const floats w = larger_of(magnitude(across) - magnitude(along), zero), moment = w * offset;
+        const floats excess = magnitude(across) - magnitude(along), w = where(excess > zero, excess), moment = w * offset;
         const ints is_up = across > zero;
         up += where(is_up, w);
         down += where(~is_up, w);
