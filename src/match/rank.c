@@ -87,7 +87,9 @@ static void multiply_tile(const table *t, uint32_t i, uint32_t first, uint32_t e
         offer(list, t->limit, scores[j], j);
 }
 
-static void multiply_row(const table *t, uint32_t i, int32_t *scores)
+/* Rows first_row .. end_row - 1, a tile of all of them before the next: its bounds and patches stay in the cache. `scores`: of the
+ * first row. */
+static void multiply_rows(const table *t, uint32_t first_row, uint32_t end_row, int32_t *scores)
 {
     const asj_l_junctions *c2 = &t->image2->l_junctions;
     for (uint32_t first = 0, end; first < c2->count; first = end) {
@@ -95,7 +97,8 @@ static void multiply_row(const table *t, uint32_t i, int32_t *scores)
         const uint32_t most = wanted < MOST_FRAMES ? wanted : MOST_FRAMES;
         for (end = first + 1; end < c2->count && c2->first_frame[end + 1] - start <= most; end++)
             ;
-        multiply_tile(t, i, first, end, scores);
+        for (uint32_t i = first_row; i < end_row; i++)
+            multiply_tile(t, i, first, end, scores + (size_t)(i - first_row) * c2->count);
     }
 }
 
@@ -171,8 +174,13 @@ static void score_rows(const void *data, const asj_part *part)
 {
     const job *j = data;
     const int64_t count2 = j->t->image2->l_junctions.count;
+    if (products_do(j->t->run->options)) {
+        multiply_rows(j->t, (uint32_t)(j->first + part->first), (uint32_t)(j->first + part->end),
+                      j->t->scores + part->first * count2);
+        return;
+    }
     for (int64_t i = part->first; i < part->end; i++)
-        (products_do(j->t->run->options) ? multiply_row : score_row)(j->t, (uint32_t)(j->first + i), j->t->scores + i * count2);
+        score_row(j->t, (uint32_t)(j->first + i), j->t->scores + i * count2);
 }
 
 static void offer_some(const void *data, const asj_part *part)
@@ -191,7 +199,7 @@ static asj_status work(const table *t)
         end = first + (wanted < MOST_ROWS ? wanted : MOST_ROWS);
         end = end < count1 ? end : count1;
         const job j = {t, first, end};
-        asj_parallel(context, context->threads, end - first, 1, score_rows, &j);
+        asj_parallel(context, context->threads, end - first, products_do(t->run->options) ? 0 : 1, score_rows, &j);
         asj_parallel(context, asj_threads_for(context, (end - first) * count2, LEAST_OFFERS), count2, 0, offer_some, &j);
         asj_status status = asj_progress(context, ASJ_STAGE_DISTANCES, 0.2 + 0.4 * (double)end / (double)count1);
         if (status != ASJ_OK)
