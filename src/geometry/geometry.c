@@ -37,7 +37,7 @@
 #include <string.h>
 
 #define MOST_KINDS 3
-#define NEARLY 0.55
+#define NEARLY 0.6
 #define APART 8.0 /* decades */
 #define FEW 15.0 /* matches */
 #define NEARLY_OF_FEW 0.3

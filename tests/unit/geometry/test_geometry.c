@@ -177,6 +177,32 @@ static void a_motion_is_found_among_wrong_candidates(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* What a pose is out by, over what is told: of three numbers of the rotation the root of the mean square is 1 when the covariance is
+ * the errors'. Errors of locations and maps are those of make(), not those that the options tell. */
+static void errors_are_as_large_as_told(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    scene *s = malloc(sizeof *s);
+    double sum = 0, largest = 0;
+    const int pairs = 10;
+    for (int n = 0; n < pairs; n++) {
+        make(s, SOLID, 25, (uint64_t)(200 + n));
+        asj_geometry_options o = options_for(ASJ_GEOMETRY_ESSENTIAL, 1);
+        o.samples = 300;
+        const asj_geometry g = estimate(context, s, &o, NULL);
+        assert_true(g.status == ASJ_GEOMETRY_ACCEPTED && g.has_pose);
+        const double error = turn_error(&g, s) * UNIT_PI / 180, told = sqrt(g.covariance[0] + g.covariance[7] + g.covariance[14]);
+        sum += error * error / (told * told);
+        largest = fmax(largest, error / told);
+    }
+    unit_near("root of the mean square, over what is told", 0, 0, sqrt(sum / pairs), 0.75, 0.5);
+    assert_true(largest < 3);
+    free(s);
+    unit_context_free(&counter, &context);
+}
+
 static void planes_and_turns_are_homographies(void **state)
 {
     (void)state;
@@ -368,7 +394,8 @@ static void every_allocation_may_fail(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_motion_is_found_among_wrong_candidates), cmocka_unit_test(planes_and_turns_are_homographies),
+        cmocka_unit_test(a_motion_is_found_among_wrong_candidates), cmocka_unit_test(errors_are_as_large_as_told),
+        cmocka_unit_test(planes_and_turns_are_homographies),
         cmocka_unit_test(too_little_is_no_geometry), cmocka_unit_test(chance_is_not_accepted),
         cmocka_unit_test(threads_and_order_change_nothing), cmocka_unit_test(bad_input_is_refused),
         cmocka_unit_test(every_allocation_may_fail),
