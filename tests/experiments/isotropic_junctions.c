@@ -31,6 +31,8 @@ static asj_status run_steps(asj_detection_run *run)
         status = asj_step_candidates(run);
     if (status == ASJ_OK)
         status = asj_step_isotropic(run);
+    if (status == ASJ_OK)
+        status = asj_step_guess(run);
     return status == ASJ_OK ? asj_step_locate(run) : status;
 }
 
