@@ -14,7 +14,7 @@ usage: sh scripts/test.sh [--all]
 Installs what is missing (apt-get), builds everything in build-test/ and runs all tests.
 --all, or CI=true in the environment, takes warnings as errors, and also checks the style of the sources, builds with clang, runs
 the tests under the address and undefined-behaviour sanitizers and in builds with fewer parts, a few programs under the thread and
-the memory sanitizer, some seconds of fuzzers, runs the tests of the core for 64-bit ARM under emulation, compares results with
+the memory sanitizer, a minute of each fuzzer, runs the tests of the core for 64-bit ARM under emulation, compares results with
 those of other machines, and uses an installed library from other programs.
 Exit code: 0 everything passed, 1 something failed, 2 wrong usage, 3 packages are missing and cannot be installed here.
 END
@@ -153,6 +153,7 @@ on_machines() {
 
 more_checks() {
     step style sh "$root/scripts/style.sh"
+    step fuzzers-begin start_fuzzers 60 # beside all that follows
     step python python_package
     step sanitizers with_sanitizers
     step fewer-parts fewer_parts
@@ -163,8 +164,8 @@ more_checks() {
     step machines on_machines
     step threads with_thread_sanitizer
     step memory with_memory_sanitizer
-    step fuzzers with_fuzzer 10
     step clang with_clang
+    step fuzzers finish_fuzzers
 }
 
 everything=${CI-}

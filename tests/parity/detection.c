@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The whole detector in every variant, or with --devices on every OpenCL device: the same junctions, bit for bit. Scenes always;
  * photographs (PNG files, or folders of them) when named on the command line or found below ASJ_PAIRS:
- *     detection-parity [--devices] [FILE|FOLDER...]
+ *     detection-parity [--devices | --quick] [FILE|FOLDER...]
+ * --quick: two scenes of each kind in place of six with the defaults.
  * Exit status as parity. */
 #include "render.h"
 #include "scenes.h"
@@ -115,11 +116,11 @@ static void photographs(run_state *state, int count, char **paths)
 }
 #endif
 
-static void settings(run_state *state)
+static void settings(run_state *state, int quick)
 {
     asj_detect_options_init(&state->options);
     state->setting = "default";
-    scenes(state, state->list.devices ? 50 : 6);
+    scenes(state, state->list.devices ? 50 : quick ? 2 : 6);
     asj_detect_options_preset(&state->options, ASJ_PRESET_PAPER);
     state->setting = "paper";
     scenes(state, 1);
@@ -153,14 +154,15 @@ static void named_photographs(run_state *state, int count, char **paths)
 int main(int argc, char **argv)
 {
     static run_state state;
-    const int devices = argc > 1 && strcmp(argv[1], "--devices") == 0;
+    const int devices = argc > 1 && strcmp(argv[1], "--devices") == 0, quick = argc > 1 && strcmp(argv[1], "--quick") == 0;
+    const int words = devices || quick;
     const int32_t count = targets_open(devices, &state.list);
     int status = 1;
     if (count == 0)
         status = targets_missing(&state.list);
     if (count > 0) {
-        settings(&state);
-        named_photographs(&state, argc - 1 - devices, argv + 1 + devices);
+        settings(&state, quick);
+        named_photographs(&state, argc - 1 - words, argv + 1 + words);
         status = targets_report(&state.list, "images", state.junctions, "junctions", state.failed);
     }
     targets_close(&state.list);
