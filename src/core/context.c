@@ -84,6 +84,7 @@ asj_status asj_progress(asj_context *context, int32_t stage, double done)
         return ASJ_OK;
     if (done > context->progress)
         context->progress = done;
+    context->asked_ms = asj_clock_ms();
     if (context->options.progress(context->options.progress_user, stage, context->progress) == 0)
         return ASJ_OK;
     return asj_fail(context, ASJ_ERROR_CANCELLED, "cancelled by the caller during %s", asj_stage_name(stage));

@@ -36,6 +36,7 @@ struct asj_context {
     asj_kept tables;              /* tables.h: what the operations above point to */
     asj_kept detector;            /* detect/detect.h: scratch and tables of the detector */
     double progress;              /* last value reported */
+    double asked_ms;              /* when the caller was last asked whether to go on */
     int32_t device_failures;      /* backend.h */
     char message[512];
 };

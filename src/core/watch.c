@@ -9,7 +9,7 @@ void asj_watch_start(asj_watch *watch, asj_context *context, int32_t stage)
     watch->context = context;
     watch->stage = stage;
     watch->stopped = 0;
-    watch->next_ms = asj_clock_ms() + PAUSE;
+    watch->next_ms = context->asked_ms + PAUSE; /* not from now on: many short loops in a row would never ask */
 }
 
 int asj_watch_stops(asj_watch *watch, const asj_part *part)

@@ -141,11 +141,30 @@ static void test_cancel(void **state)
     int asked = 0;
     f->context->options.progress = stop_at_once;
     f->context->options.progress_user = &asked;
+    f->context->asked_ms = asj_clock_ms();
     asj_watch_start(&s.watch, f->context, ASJ_STAGE_SCAN);
     asj_parallel(f->context, 3, 2000, 1, wait_each, &data); /* over a second if nobody stops it */
     assert_int_equal(asj_watch_end(&s.watch), ASJ_ERROR_CANCELLED);
     assert_int_equal(asked, 1);
     assert_in_range(s.begun, 2, 1000);
+    f->context->options.progress = NULL;
+}
+
+/* None of them lasts until the caller is to be asked, all together do. */
+static void test_cancel_between(void **state)
+{
+    unit_fixture *f = *state;
+    stopping s = {.begun = 0}, *data = &s;
+    int asked = 0, loops = 0;
+    f->context->options.progress = stop_at_once;
+    f->context->options.progress_user = &asked;
+    f->context->asked_ms = asj_clock_ms();
+    do {
+        asj_watch_start(&s.watch, f->context, ASJ_STAGE_SCAN);
+        asj_parallel(f->context, 1, 5, 1, wait_each, &data);
+    } while (asj_watch_end(&s.watch) == ASJ_OK && ++loops < 100);
+    assert_in_range(loops, 1, 99);
+    assert_int_equal(asked, 1);
     f->context->options.progress = NULL;
 }
 
@@ -357,6 +376,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         MORE_TESTS cmocka_unit_test(test_all_once), cmocka_unit_test(test_worth), cmocka_unit_test(test_nested),
         cmocka_unit_test(test_cancel),
+        cmocka_unit_test(test_cancel_between),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }
