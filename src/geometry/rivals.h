@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
+/* Other geometries that explain the same images. */
 #ifndef ASJ_SRC_GEOMETRY_RIVALS_H
 #define ASJ_SRC_GEOMETRY_RIVALS_H
 

@@ -14,10 +14,11 @@
 
 #include <math.h>
 
-#define RADIUS 150.0   /* px: farther matches say nothing */
-#define NEIGHBOURS 16  /* nearest to the place */
-#define NEAR 20.0      /* px */
-#define OFF 2.0        /* px */
+#define RADIUS 150.0 /* px: farther matches say nothing */
+#define FIRST_RADIUS (RADIUS / 8)
+#define NEIGHBOURS 16 /* nearest to the place */
+#define NEAR 20.0 /* px */
+#define OFF 2.0 /* px */
 #define OFF_SHARE 0.03
 
 typedef struct sum {
@@ -54,6 +55,18 @@ static void offer(asj_nearest *list, const asj_around *around, uint32_t k, const
         asj_nearest_offer(list, k, square);
 }
 
+/* The places within `radius` px in both coordinates, and some around them. */
+static void offer_square(asj_nearest *list, const asj_around *around, const asj_junction_match *own, int32_t side, double x,
+                         double y, double radius)
+{
+    asj_place_walk walk = asj_places_near(around->places[side], around->place_count, (float)x, (float)y, radius);
+    for (uint32_t k; asj_places_next(&walk, &k);)
+        if (k < around->count)
+            offer(list, around, k, own, side, x, y);
+}
+
+/* Where there are many matches, the nearest ones are found in a square that is smaller than RADIUS: it holds all that are within
+ * its own radius. */
 static void find(asj_nearest *list, const asj_around *around, const asj_junction_match *own, int32_t side, double x, double y)
 {
     if (!around->places[side]) {
@@ -61,10 +74,12 @@ static void find(asj_nearest *list, const asj_around *around, const asj_junction
             offer(list, around, k, own, side, x, y);
         return;
     }
-    asj_place_walk walk = asj_places_near(around->places[side], around->place_count, (float)x, (float)y, RADIUS);
-    for (uint32_t k; asj_places_next(&walk, &k);)
-        if (k < around->count)
-            offer(list, around, k, own, side, x, y);
+    for (double radius = FIRST_RADIUS; radius <= RADIUS; radius *= 2) {
+        list->count = 0;
+        offer_square(list, around, own, side, x, y, radius);
+        if (list->count == list->limit && list->square[list->limit - 1] <= radius * radius)
+            return;
+    }
 }
 
 asj_line_place asj_around_place(const asj_around *around, const asj_matched_branch *branch, int32_t side, double length)

@@ -121,9 +121,10 @@ static asj_status run_steps(asj_match_run *run, stop_watch *watch)
 
 static asj_status finish(const asj_match_run *run, stop_watch *watch, asj_match_result **result)
 {
-    asj_match_result *found = asj_match_result_create(run);
-    if (!found)
-        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu matches", run->choices.count);
+    asj_match_result *found = NULL;
+    const asj_status status = asj_match_result_create(run, &found);
+    if (status != ASJ_OK)
+        return status;
     stop(watch, ASJ_STAGE_ASSIGN);
     memcpy(found->stage_ms, watch->stage_ms, sizeof watch->stage_ms);
     for (int32_t s = 0; s < ASJ_STAGE_COUNT; s++)

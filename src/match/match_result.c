@@ -2,6 +2,7 @@
 /* Chosen candidates as the caller sees them. */
 #include "match_result.h"
 #include "segments.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -120,51 +121,64 @@ static asj_junction_match *list_of(const asj_match_run *run, asj_memory *memory,
 }
 
 /* The ends of all, as the chosen matches see them. */
-static void find_ends(const asj_match_run *run, result *r)
+static asj_status find_ends(const asj_match_run *run, result *r)
 {
     const asj_around all = {r->matches, r->count, {r->places[0], r->places[1]}, r->count};
     const asj_around *around = run->options->neighbours > 0 ? &all : NULL;
-    for (uint32_t k = 0; k < r->count; k++)
+    asj_watch watch;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_ASSIGN);
+    for (uint32_t k = 0; k < r->count && !asj_watch_stops(&watch, NULL); k++)
         fill_ends(run, around, &r->matches[k]);
-    for (size_t k = 0; k < run->rejected.count; k++)
+    for (size_t k = 0; k < run->rejected.count && !asj_watch_stops(&watch, NULL); k++)
         fill_ends(run, around, &r->rejected[k]);
+    return asj_watch_end(&watch);
 }
 
-asj_match_result *asj_match_result_create(const asj_match_run *run)
+/* What the caller sees of it. */
+static void show(const asj_match_run *run, result *r)
 {
-    asj_memory memory = {.allocator = run->context->memory.allocator};
     const asj_l_junctions *in1 = &run->image[0]->l_junctions, *in2 = &run->image[1]->l_junctions;
-    const size_t count = run->choices.count;
-    result *r = asj_allocate_zero(&memory, 1, sizeof *r);
-    if (!r)
-        return NULL;
-    r->memory = memory;
-    r->matches = list_of(run, &memory, &run->choices);
-    r->rejected = list_of(run, &memory, &run->rejected);
-    r->l1 = copy(&memory, in1);
-    r->l2 = copy(&memory, in2);
     asj_match_result *shown = &r->shown;
-    for (int32_t side = 0; side < 2; side++)
-        r->places[side] = asj_allocate(&memory, count, sizeof *r->places[side]);
-    if (!r->matches || !r->rejected || !r->l1 || !r->l2 || !r->places[0] || !r->places[1]) {
-        asj_match_result_free(&shown);
-        return NULL;
-    }
-    r->count = (uint32_t)count;
-    for (int32_t side = 0; side < 2; side++)
-        asj_places_sort(r->places[side], r->matches, r->count, side);
-    find_ends(run, r);
     shown->rejected = run->rejected.count ? r->rejected : NULL;
     shown->rejected_count = run->rejected.count;
-    shown->matches = count ? r->matches : NULL;
-    shown->match_count = (uint32_t)count;
+    shown->matches = r->count ? r->matches : NULL;
+    shown->match_count = r->count;
     shown->l_junctions1 = in1->count ? r->l1 : NULL;
     shown->l_junctions2 = in2->count ? r->l2 : NULL;
     shown->l_junction_count1 = in1->count;
     shown->l_junction_count2 = in2->count;
     shown->geometry = run->geometry;
     shown->own = (uint64_t)(uintptr_t)r;
-    return shown;
+}
+
+asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **shown)
+{
+    asj_memory memory = {.allocator = run->context->memory.allocator};
+    const size_t count = run->choices.count;
+    result *r = asj_allocate_zero(&memory, 1, sizeof *r);
+    if (!r)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for a result");
+    *shown = &r->shown;
+    r->memory = memory;
+    r->count = (uint32_t)count;
+    r->matches = list_of(run, &memory, &run->choices);
+    r->rejected = list_of(run, &memory, &run->rejected);
+    r->l1 = copy(&memory, &run->image[0]->l_junctions);
+    r->l2 = copy(&memory, &run->image[1]->l_junctions);
+    for (int32_t side = 0; side < 2; side++)
+        r->places[side] = asj_allocate(&memory, count, sizeof *r->places[side]);
+    if (!r->matches || !r->rejected || !r->l1 || !r->l2 || !r->places[0] || !r->places[1]) {
+        asj_match_result_free(shown);
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu matches", count);
+    }
+    for (int32_t side = 0; side < 2; side++)
+        asj_places_sort(r->places[side], r->matches, r->count, side);
+    const asj_status status = find_ends(run, r);
+    if (status == ASJ_OK)
+        show(run, r);
+    else
+        asj_match_result_free(shown);
+    return status;
 }
 
 asj_around asj_match_result_around(const asj_match_result *shown)

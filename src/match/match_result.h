@@ -6,9 +6,9 @@
 #include "around.h"
 #include "match_run.h"
 
-/* Turns the choices into a result, smallest distance first. NULL when out of memory. The result does not depend on the context
- * afterwards. */
-asj_match_result *asj_match_result_create(const asj_match_run *run);
+/* Turns the choices into a result, smallest distance first; on failure it is NULL. The result does not depend on the context
+ * afterwards. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED. */
+asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **shown);
 
 /* The matches, and where they are; without places for a result that the caller has put together or copied, and for one whose
  * matches are no longer those of the call. */

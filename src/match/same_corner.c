@@ -13,6 +13,7 @@
  * they are. */
 #include "same_corner.h"
 #include "consensus.h"
+#include "core/watch.h"
 
 #include <string.h>
 
@@ -91,28 +92,44 @@ static void keep(asj_choices *choices, const uint8_t *gone)
     choices->count = kept;
 }
 
-asj_status asj_same_corner(asj_match_run *run)
+/* Leaves the choices that have the support which their octaves need. */
+static void keep_supported(asj_match_run *run, uint8_t *gone)
 {
     asj_choices *choices = &run->choices;
-    const asj_candidate *list = run->candidates.list;
-    if (!has_octaves(run) || choices->count == 0)
-        return ASJ_OK;
-    uint8_t *gone = asj_allocate_zero(&run->context->memory, choices->count, 1);
-    if (!gone)
-        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu matches", choices->count);
     const double separation = run->options->separation, needed = (double)asj_needed_support(run);
     const double crowding = 0.5 * (crowding_of(&run->image[0]->l_junctions, separation) +
                                    crowding_of(&run->image[1]->l_junctions, separation));
     for (size_t n = 0; n < choices->count; n++) {
-        const asj_candidate *c = &list[choices->list[n].candidate];
+        const asj_candidate *c = &run->candidates.list[choices->list[n].candidate];
         gone[n] = (double)c->support < needed * needs(run, c, crowding);
     }
     keep(choices, gone);
+}
+
+/* Leaves one choice a corner. */
+static asj_status keep_finest(asj_match_run *run, uint8_t *gone)
+{
+    asj_choices *choices = &run->choices;
+    const asj_candidate *list = run->candidates.list;
+    asj_watch watch;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_ASSIGN);
     memset(gone, 0, choices->count);
-    for (size_t n = 0; n < choices->count; n++)
+    for (size_t n = 0; n < choices->count && !asj_watch_stops(&watch, NULL); n++)
         for (size_t m = 0; m < choices->count && !gone[n]; m++)
             gone[n] = (uint8_t)stands_for(run, &list[choices->list[m].candidate], &list[choices->list[n].candidate]);
     keep(choices, gone);
+    return asj_watch_end(&watch);
+}
+
+asj_status asj_same_corner(asj_match_run *run)
+{
+    if (!has_octaves(run) || run->choices.count == 0)
+        return ASJ_OK;
+    uint8_t *gone = asj_allocate_zero(&run->context->memory, run->choices.count, 1);
+    if (!gone)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu matches", run->choices.count);
+    keep_supported(run, gone);
+    const asj_status status = keep_finest(run, gone);
     asj_release(&run->context->memory, gone);
-    return ASJ_OK;
+    return status;
 }

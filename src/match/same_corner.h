@@ -6,7 +6,7 @@
 #include "match_run.h"
 
 /* Of choices of different octaves, those stay that have the support which these need, and of those at one corner, in either image,
- * the finest. ASJ_ERROR_MEMORY. */
+ * the finest. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED. */
 asj_status asj_same_corner(asj_match_run *run);
 
 #endif

@@ -19,6 +19,7 @@
 #define END_TOLERANCE 0.12     /* as the option's default */
 #define SAME_END 4.0           /* px, or .. */
 #define SAME_END_SHARE 0.05    /* .. this part of the length */
+#define ROUNDING 1e-6          /* of a coordinate: more than single precision is off */
 #define SLOTS ASJ_MAX_BRANCHES /* segment pairs of one match: its branches a and b, then others */
 
 /* What segments are looked for among. */
@@ -76,9 +77,15 @@ static int32_t along(const bundle *b, double x, double y)
     return found;
 }
 
-/* The pair of branch k of b1 and what corresponds to it in b2; 0 when nothing does. */
+/* A branch of a match that is not one of its two, in both images, and its lengths as detected. */
+typedef struct other_branch {
+    asj_matched_branch line;
+    double length[2];
+} other_branch;
+
+/* Branch k of b1 and what corresponds to it in b2; 0 when nothing does. */
 static int pair_up(const search *in, const asj_junction_match *m, const bundle *b1, const bundle *b2, int32_t k,
-                   asj_segment_match *s)
+                   other_branch *other)
 {
     const double x1 = b1->x[k], y1 = b1->y[k], x = m->affine[0] * x1 + m->affine[1] * y1, y = m->affine[3] * x1 + m->affine[4] * y1;
     const int32_t partner = along(b2, x, y);
@@ -88,27 +95,14 @@ static int pair_up(const search *in, const asj_junction_match *m, const bundle *
     const asj_l_junction *j1 = &in->result->l_junctions1[m->l1], *j2 = &in->result->l_junctions2[m->l2];
     const asj_matched_branch line = {m, {(double)j1->x, (double)j2->x}, {(double)j1->y, (double)j2->y}, {x1 / l1, x2 / l2},
                                      {y1 / l1, y2 / l2}};
-    const asj_lengths own[2] = {{1, {(float)l1}, ASJ_BRANCH_END_UNKNOWN}, {1, {(float)l2}, ASJ_BRANCH_END_UNKNOWN}};
-    const asj_lengths *lengths[2] = {&own[0], &own[1]};
-    const asj_common_end end = asj_find_common_end(in->around, &line, lengths, END_TOLERANCE);
-    *s = (asj_segment_match){(uint32_t)(m - in->result->matches), end.kind, m->x1, m->y1,
-                             (float)(line.x[0] + end.length[0] * line.ux[0]), (float)(line.y[0] + end.length[0] * line.uy[0]),
-                             m->x2, m->y2,
-                             (float)(line.x[1] + end.length[1] * line.ux[1]), (float)(line.y[1] + end.length[1] * line.uy[1])};
+    *other = (other_branch){line, {l1, l2}};
     return 1;
 }
 
-/* Pair number `slot` of match `index`; 0 when there is none. */
-static int segment_of(const search *in, uint32_t index, int32_t slot, asj_segment_match *s)
+/* The branch of slot 2 or later of a match; 0 when there is none. */
+static int other_branch_of(const search *in, const asj_junction_match *m, int32_t slot, other_branch *other)
 {
     const asj_match_result *result = in->result;
-    const asj_junction_match *m = &result->matches[index];
-    if (slot < 2) {
-        *s = slot == 0
-            ? (asj_segment_match){index, m->end_a, m->x1, m->y1, m->ax1, m->ay1, m->x2, m->y2, m->ax2, m->ay2}
-            : (asj_segment_match){index, m->end_b, m->x1, m->y1, m->bx1, m->by1, m->x2, m->y2, m->bx2, m->by2};
-        return 1;
-    }
     if (m->l1 >= result->l_junction_count1 || m->l2 >= result->l_junction_count2)
         return 0;
     bundle b1, b2;
@@ -116,8 +110,33 @@ static int segment_of(const search *in, uint32_t index, int32_t slot, asj_segmen
     collect(result->l_junctions2, result->l_junction_count2, m->l2, &b2);
     for (int32_t k = 0; k < ASJ_MAX_BRANCHES; k++)
         if (b1.known[k] && --slot < 2)
-            return pair_up(in, m, &b1, &b2, k, s);
+            return pair_up(in, m, &b1, &b2, k, other);
     return 0;
+}
+
+/* As a segment, to the end that both images show. */
+static asj_segment_match segment_along(const search *in, const other_branch *other)
+{
+    const asj_matched_branch *line = &other->line;
+    const asj_junction_match *m = line->match;
+    const asj_lengths own[2] = {{1, {(float)other->length[0]}, ASJ_BRANCH_END_UNKNOWN},
+                                {1, {(float)other->length[1]}, ASJ_BRANCH_END_UNKNOWN}};
+    const asj_lengths *lengths[2] = {&own[0], &own[1]};
+    const asj_common_end end = asj_find_common_end(in->around, line, lengths, END_TOLERANCE);
+    double x[2], y[2];
+    for (int32_t side = 0; side < 2; side++) {
+        x[side] = line->x[side] + end.length[side] * line->ux[side];
+        y[side] = line->y[side] + end.length[side] * line->uy[side];
+    }
+    return (asj_segment_match){(uint32_t)(m - in->result->matches), end.kind, m->x1, m->y1, (float)x[0], (float)y[0],
+                               m->x2, m->y2, (float)x[1], (float)y[1]};
+}
+
+/* Pair number 0 or 1 of match `index`, which is m: its branch a or b. */
+static asj_segment_match matched_segment(const asj_junction_match *m, uint32_t index, int32_t slot)
+{
+    return slot == 0 ? (asj_segment_match){index, m->end_a, m->x1, m->y1, m->ax1, m->ay1, m->x2, m->y2, m->ax2, m->ay2}
+                     : (asj_segment_match){index, m->end_b, m->x1, m->y1, m->bx1, m->by1, m->x2, m->y2, m->bx2, m->by2};
 }
 
 static double distance2(float x1, float y1, float x2, float y2)
@@ -151,6 +170,34 @@ static surroundings around(const asj_segment_match *s)
     return (surroundings){{s->x1, s->ex1}, {s->y1, s->ey1}, share * l1 > least ? share * l1 : least};
 }
 
+/* May a segment from m's location along this line of image 1 be the same? One end of s lies at the location, and then the other
+ * not farther off the line. To find where the segment ends takes a hundred times as long as this. */
+static int may_be_same(const surroundings *at, const asj_junction_match *m, const asj_matched_branch *line)
+{
+    const double off_most = sqrt(at->near2) + ROUNDING * (1 + fabs(line->x[0]) + fabs(line->y[0]));
+    for (int32_t end = 0; end < 2; end++) {
+        const double dx = (double)at->x[1 - end] - line->x[0], dy = (double)at->y[1 - end] - line->y[0];
+        if (distance2(at->x[end], at->y[end], m->x1, m->y1) <= at->near2 && fabs(dy * line->ux[0] - dx * line->uy[0]) <= off_most)
+            return 1;
+    }
+    return 0;
+}
+
+/* Pair number `slot` of match k; 0 when there is none, or, with surroundings, when it cannot be the segment whose they are. */
+static int segment_of(const search *in, uint32_t k, int32_t slot, const surroundings *at, asj_segment_match *s)
+{
+    const asj_junction_match *m = &in->result->matches[k];
+    other_branch other;
+    if (slot < 2) {
+        *s = matched_segment(m, k, slot);
+        return 1;
+    }
+    if (!other_branch_of(in, m, slot, &other) || (at && !may_be_same(at, m, &other.line)))
+        return 0;
+    *s = segment_along(in, &other);
+    return 1;
+}
+
 /* Has match k the same pair as s with a better known end, or an equally known one that comes first? */
 static int match_has(const search *in, uint32_t k, const surroundings *at, const asj_segment_match *s, int32_t slot)
 {
@@ -159,7 +206,7 @@ static int match_has(const search *in, uint32_t k, const surroundings *at, const
         return 0;
     for (int32_t n = 0; n < SLOTS; n++) {
         asj_segment_match t;
-        if ((k == s->match && n == slot) || !segment_of(in, k, n, &t) || t.end < in->minimum_end)
+        if ((k == s->match && n == slot) || !segment_of(in, k, n, at, &t) || t.end < in->minimum_end)
             continue;
         const int before = k < s->match || (k == s->match && n < slot);
         if ((t.end > s->end || (t.end == s->end && before)) && same(s, &t))
@@ -194,7 +241,7 @@ size_t asj_segment_matches(const asj_match_result *result, const asj_around *aro
     for (uint32_t k = 0; k < result->match_count; k++)
         for (int32_t n = 0; n < SLOTS; n++) {
             asj_segment_match s;
-            if (!segment_of(&in, k, n, &s) || s.end < minimum_end || duplicate(&in, &s, n))
+            if (!segment_of(&in, k, n, NULL, &s) || s.end < minimum_end || duplicate(&in, &s, n))
                 continue;
             if (segments && count < capacity)
                 segments[count] = s;
