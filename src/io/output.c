@@ -5,6 +5,7 @@
 
 #include "message.h"
 #include "place.h"
+#include "place_system.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -29,7 +30,7 @@ asj_status asj_output_target(const char *path, char *target, size_t target_size)
 {
     if (!path || !target || !target_size)
         return ASJ_ERROR_ARGUMENT;
-    return asj_place_resolve(path, target, target_size);
+    return asj_system_resolve(path, target, target_size);
 }
 
 asj_status asj_output_begin(const char *path, asj_output **output, char *text, size_t text_size)

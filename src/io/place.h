@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Where an output is written, in two forms: place_posix.c, and place_windows.c for Windows. */
+/* Where an output is written: place.c over one of two systems, place_posix.c and place_windows.c. */
 #ifndef ASJ_IO_PLACE_H
 #define ASJ_IO_PLACE_H
 
-#include <asj/status.h>
-
-#include <stddef.h>
 #include <stdio.h>
 
 typedef struct asj_place {
@@ -22,8 +19,5 @@ int asj_place_keep(asj_place *place);
 
 /* What was not kept is removed. */
 void asj_place_free(asj_place *place);
-
-/* asj_output_target() with arguments that were looked at. */
-asj_status asj_place_resolve(const char *path, char *target, size_t target_size);
 
 #endif

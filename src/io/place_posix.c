@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Places of output files where there is POSIX. */
+/* Where an output is written, where there is POSIX. */
 #define _XOPEN_SOURCE 700
-#include "place.h"
+#include "place_system.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -74,37 +74,7 @@ static char *follow_links(const char *path)
     return NULL;
 }
 
-/* Creates a file of a new name beside the target. open() and not mkstemp(): it gives the permissions that the umask of the process
- * asks for, and the umask cannot be read without changing it. */
-static int create_temporary(asj_place *place)
-{
-    const char *slash = strrchr(place->target, '/');
-    size_t folder = slash ? (size_t)(slash - place->target) + 1 : 0;
-    size_t size = folder + 64;
-    unsigned number;
-    int file, error;
-
-    place->temporary = malloc(size);
-    if (!place->temporary)
-        return -1;
-    memcpy(place->temporary, place->target, folder);
-    for (number = 0; number < 10000; number++) {
-        snprintf(place->temporary + folder, size - folder, ".asj-%ld-%u.tmp", (long)getpid(), number);
-        file = open(place->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file >= 0)
-            return file;
-        if (errno != EEXIST)
-            break;
-    }
-    error = errno;
-    free(place->temporary); /* not ours: never to be removed */
-    place->temporary = NULL;
-    errno = error;
-    return -1;
-}
-
-/* -1 with errno set when that fails. */
-static int open_path(asj_place *place, const char *path)
+int asj_system_open(const char *path, char **target)
 {
     struct stat info;
     int file = open_file_of_path(path);
@@ -117,8 +87,8 @@ static int open_path(asj_place *place, const char *path)
     if (stat(path, &info)) {
         if (errno != ENOENT)
             return -1;
-        place->target = follow_links(path); /* to where a link will point */
-        return place->target ? create_temporary(place) : -1;
+        *target = follow_links(path); /* to where a link will point */
+        return -1;
     }
     if (S_ISDIR(info.st_mode)) {
         errno = EISDIR;
@@ -128,45 +98,56 @@ static int open_path(asj_place *place, const char *path)
         return open(path, O_WRONLY | O_CLOEXEC);
     if (faccessat(AT_FDCWD, path, W_OK, AT_EACCESS)) /* a rename would replace even a protected file */
         return -1;
-    place->target = realpath(path, NULL);
-    file = place->target ? create_temporary(place) : -1;
-    if (file >= 0 && fchmod(file, info.st_mode & 0777))
+    *target = realpath(path, NULL);
+    return -1;
+}
+
+void asj_system_permit(int file, const char *as)
+{
+    struct stat info;
+    if (!stat(as, &info) && fchmod(file, info.st_mode & 0777))
         errno = 0; /* some file systems know no permissions: the file itself matters more */
-    return file;
 }
 
-FILE *asj_place_open(asj_place *place, const char *path)
+/* Not mkstemp(): open() gives the permissions that the umask of the process asks for, and the umask cannot be read without
+ * changing it. */
+int asj_system_create(const char *path)
 {
-    const int file = open_path(place, path);
-    FILE *stream = file >= 0 ? fdopen(file, "wb") : NULL;
-    if (file >= 0 && !stream) {
-        const int error = errno;
-        close(file);
-        errno = error;
-    }
-    return stream;
+    return open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
 }
 
-int asj_place_keep(asj_place *place)
+int asj_system_replace(const char *from, const char *to)
 {
-    if (!place->temporary)
-        return 0;
-    if (rename(place->temporary, place->target))
-        return errno;
-    free(place->temporary); /* it has the final name now */
-    place->temporary = NULL;
-    return 0;
+    return rename(from, to);
 }
 
-void asj_place_free(asj_place *place)
+int asj_system_remove(const char *path)
 {
-    if (place->temporary)
-        unlink(place->temporary);
-    free(place->temporary);
-    free(place->target);
+    return unlink(path);
 }
 
-asj_status asj_place_resolve(const char *path, char *target, size_t target_size)
+int asj_system_close(int file)
+{
+    return close(file);
+}
+
+FILE *asj_system_stream(int file)
+{
+    return fdopen(file, "wb");
+}
+
+long asj_system_process(void)
+{
+    return (long)getpid();
+}
+
+size_t asj_system_folder(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+asj_status asj_system_resolve(const char *path, char *target, size_t target_size)
 {
     char *file, *folder = NULL, *absolute = NULL;
     const char *slash, *name;

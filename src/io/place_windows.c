@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Places of output files where there is Windows. Symbolic links are rare there and not followed; the folder gives permissions. */
-#include "place.h"
+/* Where an output is written, where there is Windows. Symbolic links are rare there and not followed; the folder gives
+ * permissions. */
+#include "place_system.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -13,42 +14,7 @@
 
 enum { STANDARD_OUTPUT = 1, RAW = _O_BINARY | _O_NOINHERIT };
 
-/* The number of bytes of the folder that `path` begins with, the separator included. */
-static size_t folder_length(const char *path)
-{
-    size_t length = strlen(path);
-    while (length > 0 && !strchr("/\\:", path[length - 1]))
-        length--;
-    return length;
-}
-
-/* Creates a file of a new name beside the target. */
-static int create_temporary(asj_place *place)
-{
-    const size_t folder = folder_length(place->target), size = folder + 64;
-    int error;
-
-    place->temporary = malloc(size);
-    if (!place->temporary)
-        return -1;
-    memcpy(place->temporary, place->target, folder);
-    for (unsigned number = 0; number < 10000; number++) {
-        snprintf(place->temporary + folder, size - folder, ".asj-%d-%u.tmp", _getpid(), number);
-        const int file = _open(place->temporary, _O_WRONLY | _O_CREAT | _O_EXCL | RAW, _S_IREAD | _S_IWRITE);
-        if (file >= 0)
-            return file;
-        if (errno != EEXIST)
-            break;
-    }
-    error = errno;
-    free(place->temporary); /* not ours: never to be removed */
-    place->temporary = NULL;
-    errno = error;
-    return -1;
-}
-
-/* -1 with errno set when that fails. */
-static int open_path(asj_place *place, const char *path)
+int asj_system_open(const char *path, char **target)
 {
     if (strcmp(path, "-") == 0) {
         fflush(stdout);
@@ -68,45 +34,61 @@ static int open_path(asj_place *place, const char *path)
             errno = EISDIR;
         return -1;
     }
-    place->target = _fullpath(NULL, path, 0);
-    return place->target ? create_temporary(place) : -1;
+    *target = _fullpath(NULL, path, 0);
+    return -1;
 }
 
-FILE *asj_place_open(asj_place *place, const char *path)
+void asj_system_permit(int file, const char *as)
 {
-    const int file = open_path(place, path);
-    FILE *stream = file >= 0 ? _fdopen(file, "wb") : NULL;
-    if (file >= 0 && !stream) {
-        const int error = errno;
-        _close(file);
-        errno = error;
-    }
-    return stream;
+    (void)file;
+    (void)as;
 }
 
-int asj_place_keep(asj_place *place)
+int asj_system_create(const char *path)
 {
-    if (!place->temporary)
+    return _open(path, _O_WRONLY | _O_CREAT | _O_EXCL | RAW, _S_IREAD | _S_IWRITE);
+}
+
+int asj_system_replace(const char *from, const char *to)
+{
+    if (MoveFileExA(from, to, MOVEFILE_REPLACE_EXISTING))
         return 0;
-    if (!MoveFileExA(place->temporary, place->target, MOVEFILE_REPLACE_EXISTING))
-        return EACCES; /* in use by another program, as a rule */
-    free(place->temporary); /* it has the final name now */
-    place->temporary = NULL;
-    return 0;
+    errno = EACCES; /* in use by another program, as a rule */
+    return -1;
 }
 
-void asj_place_free(asj_place *place)
+int asj_system_remove(const char *path)
 {
-    if (place->temporary)
-        _unlink(place->temporary);
-    free(place->temporary);
-    free(place->target);
+    return _unlink(path);
 }
 
-asj_status asj_place_resolve(const char *path, char *target, size_t target_size)
+int asj_system_close(int file)
+{
+    return _close(file);
+}
+
+FILE *asj_system_stream(int file)
+{
+    return _fdopen(file, "wb");
+}
+
+long asj_system_process(void)
+{
+    return _getpid();
+}
+
+size_t asj_system_folder(const char *path)
+{
+    size_t length = strlen(path);
+    while (length > 0 && !strchr("/\\:", path[length - 1]))
+        length--;
+    return length;
+}
+
+asj_status asj_system_resolve(const char *path, char *target, size_t target_size)
 {
     char *absolute = _fullpath(NULL, path, 0);
-    const size_t size = absolute ? strlen(absolute) + 1 : 0, folder = absolute ? folder_length(absolute) : 0;
+    const size_t size = absolute ? strlen(absolute) + 1 : 0, folder = absolute ? asj_system_folder(absolute) : 0;
     asj_status status = ASJ_ERROR_FILE;
     if (!absolute)
         return ASJ_ERROR_MEMORY;
