@@ -95,7 +95,8 @@ typedef void (*asj_dump_callback)(void *user, const asj_dump *dump);
  * the thread that calls the library. The library checks what it gets: entries may be damaged, cut, or of another device.
  * `key` is a short text of letters, digits, '-', '_' and '.', different for every device, driver and source.
  * get  returns the size of the entry, 0 when there is none, and copies the entry when it fits into `capacity` bytes
- * put  stores `size` bytes, or does not: failures are no concern of the library */
+ * put  stores `size` bytes, or does not: failures are no concern of the library. Not called for PoCL, which has a store of its own
+ *      and would compile everything twice */
 typedef struct asj_kernel_cache {
     size_t (*get)(void *user, const char *key, void *data, size_t capacity);
     void (*put)(void *user, const char *key, const void *data, size_t size);

@@ -119,12 +119,12 @@ static asj_status build_from_source(asj_context *context, int32_t number)
     return ASJ_OK;
 }
 
-/* What cannot be stored is compiled again next time. */
+/* What cannot be stored is compiled again next time; by a driver that keeps what it compiles, that is a matter of its own. */
 static void store(asj_context *context, int32_t number)
 {
     struct asj_cl *cl = context->cl;
     size_t size = 0;
-    if (!context->options.kernel_cache.put ||
+    if (!context->options.kernel_cache.put || cl->keeps_programs ||
         cl->api.GetProgramInfo(cl->programs[number], CL_PROGRAM_BINARY_SIZES, sizeof size, &size, NULL) != CL_SUCCESS || size == 0)
         return;
     unsigned char *binary = asj_allocate(&context->memory, size, 1);

@@ -18,6 +18,7 @@ struct asj_cl {
     asj_cl_limits limits;
     char name[128];         /* of the device */
     char identity[1024];    /* device, platform, driver, options: what a compiled program depends on beside its source */
+    int keeps_programs;     /* the driver has a store of its own, and asking it for binaries costs more than ours saves */
     cl_program *programs;   /* asj_cl_source_count; NULL = not built yet */
     cl_kernel *kernels;     /* asj_cl_kernel_count; NULL = the program is not built yet */
     asj_cl_time *times;     /* asj_cl_kernel_count and the transfers (command.c); NULL = not measured */
