@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 2 on a device: candidates for junctions, as in field.c. Two forms with the same results: field_pixels, a work item for
  * each pixel of the rows that have candidates, for devices with thousands of them; field_tiles, a work item for a tile of the
- * image, for processors: there the planes of sector_plan.h, which neighbours share, save most of the work. Planes of the frame
- * and the table: contract.h. */
+ * image, for processors: there the planes of sector_plan.h, which neighbours share, save most of the work. Both look only at
+ * pixels that may be candidates, every step-th of every step-th row. Planes of the frame and the table: contract.h. */
 
 typedef struct field_table {
     __global const int *families, *offsets, *boundaries, *extras, *sectors;
@@ -37,14 +37,13 @@ static int has_pair(ulong sectors, int count, ulong partners)
     return found != 0;
 }
 
-/* Of LANES pixels those that are inside the image and in columns with candidates. */
-static uint thin(uint mask, int inside, int step)
+/* Of LANES pixels those that are inside the image. */
+static uint inside_only(uint mask, int inside)
 {
-    mask &= inside < LANES ? (1u << max(inside, 0)) - 1 : 0xffffu;
-    return step > 1 ? mask & 0x5555u : mask;
+    return mask & (inside < LANES ? (1u << max(inside, 0)) - 1 : 0xffffu);
 }
 
-/* ---- field_pixels: a work-group takes get_local_size() pixels, along the row a multiple of LANES ---- */
+/* ---- field_pixels: a work-group takes get_local_size() pixels that may be candidates, along the row a multiple of LANES ---- */
 
 static int strength(__local const ushort *slot, int step, __global const int *sector)
 {
@@ -94,11 +93,11 @@ __kernel void field_pixels(__global const short *gradient_x, __global const shor
                            __local short2 *gradient, __local ushort *slots, __local uchar *found)
 {
     const field_table t = open_table(&sizes, table);
-    const int columns = (int)get_local_size(0), rows = (int)get_local_size(1), items = columns * rows;
-    const int item = (int)(get_local_id(1) * get_local_size(0) + get_local_id(0));
-    const int pitch = columns + 2 * sizes.radius, area = pitch * ((rows - 1) * sizes.step + 1 + 2 * sizes.radius);
-    const int aligned = (top + sizes.step - 1) / sizes.step * sizes.step;
-    const int left = (int)get_group_id(0) * columns, first = aligned + (int)get_group_id(1) * rows * sizes.step;
+    const int columns = (int)get_local_size(0), rows = (int)get_local_size(1), items = columns * rows, step = sizes.step;
+    const int item = (int)(get_local_id(1) * get_local_size(0) + get_local_id(0)), per_mask = LANES / step;
+    const int pitch = (columns - 1) * step + 1 + 2 * sizes.radius, area = pitch * ((rows - 1) * step + 1 + 2 * sizes.radius);
+    const int aligned = (top + step - 1) / step * step;
+    const int left = (int)get_group_id(0) * columns * step, first = aligned + (int)get_group_id(1) * rows * step;
     for (int i = item; i < area; i += items) {
         const int x = left - sizes.radius + i % pitch, y = first - sizes.radius + i / pitch;
         const int inside = x < width + sizes.radius && y < bottom + sizes.radius;
@@ -106,24 +105,24 @@ __kernel void field_pixels(__global const short *gradient_x, __global const shor
         gradient[i] = inside ? (short2)(gradient_x[at], gradient_y[at]) : (short2)(0, 0);
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    fill_slots(&sizes, &t,
-               gradient + ((int)get_local_id(1) * sizes.step + sizes.radius) * pitch + (int)get_local_id(0) + sizes.radius, pitch,
-               slots + item, items);
+    const int column = (int)get_local_id(0), across = column * step, down = (int)get_local_id(1) * step;
+    fill_slots(&sizes, &t, gradient + (down + sizes.radius) * pitch + across + sizes.radius, pitch, slots + item, items);
     found[item] = (uchar)has_pair(find_peaks(&sizes, t.sectors, slots + item, items), sizes.sectors, make_partners(&sizes));
     barrier(CLK_LOCAL_MEM_FENCE);
-    const int x = left + (int)get_local_id(0), y = first + (int)get_local_id(1) * sizes.step;
-    if (x % LANES == 0 && x < width) {
+    const int x = left + across, y = first + down;
+    if (column % per_mask == 0 && x < width) {
         uint mask = 0;
-        for (int i = 0; i < LANES; i++)
-            mask |= (uint)found[item + i] << i;
+        for (int i = 0; i < per_mask; i++)
+            mask |= (uint)found[item + i] << i * step;
         __global ushort *to = masks + x / LANES;
-        for (int row = y == aligned ? top : y; row < min(y + sizes.step, bottom); row++)
-            to[(size_t)(row - top) * (size_t)blocks] = (ushort)(row == y ? thin(mask, width - x, sizes.step) : 0);
+        for (int row = y == aligned ? top : y; row < min(y + step, bottom); row++)
+            to[(size_t)(row - top) * (size_t)blocks] = (ushort)(row == y ? inside_only(mask, width - x) : 0);
     }
 }
 
-/* ---- field_tiles: a work item takes FIELD_TILE x tile_rows pixels, FIELD_GROUP vectors of a row at once; it is the whole
- * work-group ---- */
+/* ---- field_tiles: a work item takes FIELD_TILE x tile_rows pixels, FIELD_GROUP vectors of candidates at once; it is the whole
+ * work-group. Where candidates are two apart, planes hold a row's even columns, then the odd ones, `odd` vectors farther on: what
+ * neighbouring candidates need is always next to each other ---- */
 
 /* 16 numbers from anywhere. */
 struct __attribute__((packed)) anywhere {
@@ -135,22 +134,35 @@ static ushort16 load(__local const ushort *from)
     return ((__local const struct anywhere *)from)->numbers;
 }
 
-/* The planes of src/detect/sector_plan.h for one row of pixels, in vectors. */
-static void gamma_planes(__global const int *family, int families, __global const short *gx, __global const short *gy, int width,
-                         int plane_stride, __local ushort16 *planes)
+/* The planes of src/detect/sector_plan.h for a vector of pixels. */
+static void gamma_vectors(short16 x, short16 y, __global const int *family, int families, int plane_stride,
+                          __local ushort16 *planes)
 {
     for (int f = 0; f < families; f++, family += 2, planes += 4 * plane_stride) {
         const short16 a = (short)family[0], b = (short)family[1];
-        for (int i = 0; i < width; i++) {
-            const short16 x = vload16(i, gx), y = vload16(i, gy);
-            const short16 xa = high_product(x, a), xb = high_product(x, b);
-            const ushort16 cross = magnitude(xb - high_product(y, a)), dot = magnitude(xa - high_product(y, -b));
-            const ushort16 steep_cross = magnitude(xa - high_product(y, b)), steep_dot = magnitude(xb - high_product(y, -a));
-            planes[i] = excess(cross, dot);
-            planes[plane_stride + i] = excess(dot, cross);
-            planes[2 * plane_stride + i] = excess(steep_cross, steep_dot);
-            planes[3 * plane_stride + i] = excess(steep_dot, steep_cross);
-        }
+        const short16 xa = high_product(x, a), xb = high_product(x, b);
+        const ushort16 cross = magnitude(xb - high_product(y, a)), dot = magnitude(xa - high_product(y, -b));
+        const ushort16 steep_cross = magnitude(xa - high_product(y, b)), steep_dot = magnitude(xb - high_product(y, -a));
+        planes[0] = excess(cross, dot);
+        planes[plane_stride] = excess(dot, cross);
+        planes[2 * plane_stride] = excess(steep_cross, steep_dot);
+        planes[3 * plane_stride] = excess(steep_dot, steep_cross);
+    }
+}
+
+/* Those of one row: `width` vectors in a row, or half as many of each kind, odd columns `odd` vectors after even ones. */
+static void gamma_planes(__global const int *family, int families, __global const short *gx, __global const short *gy, int width,
+                         int odd, int plane_stride, __local ushort16 *planes)
+{
+    for (int i = 0; odd == 0 && i < width; i++)
+        gamma_vectors(vload16(i, gx), vload16(i, gy), family, families, plane_stride, planes + i);
+    for (int i = 0; odd > 0 && 2 * i < width; i++) {
+        const short16 x = vload16(2 * i, gx), right_x = vload16(2 * i + 1, gx);
+        const short16 y = vload16(2 * i, gy), right_y = vload16(2 * i + 1, gy);
+        gamma_vectors((short16)(x.even, right_x.even), (short16)(y.even, right_y.even), family, families, plane_stride,
+                      planes + i);
+        gamma_vectors((short16)(x.odd, right_x.odd), (short16)(y.odd, right_y.odd), family, families, plane_stride,
+                      planes + odd + i);
     }
 }
 
@@ -254,44 +266,57 @@ static uint find_candidates(const field_sizes *s, __global const int *sector, __
     return mask;
 }
 
+/* Eight bits in even places. */
+static uint spread(uint bits)
+{
+    bits = (bits | bits << 4) & 0x0f0fu;
+    bits = (bits | bits << 2) & 0x3333u;
+    return (bits | bits << 1) & 0x5555u;
+}
+
 __kernel void field_tiles(__global const short *gradient_x, __global const short *gradient_y, int width, int stride, int base,
                           int top, int bottom, int blocks, __global const int *table, field_sizes sizes, __global ushort *masks,
                           int tile_rows, int plane_stride, __local ushort16 *planes, __local ushort16 *slots,
                           __local short16 *strengths)
 {
     const field_table t = open_table(&sizes, table);
-    const int radius = sizes.radius, depth = 2 * radius + 1, row_size = 4 * sizes.families * plane_stride;
+    const int radius = sizes.radius, depth = 2 * radius + 1, row_size = 4 * sizes.families * plane_stride, step = sizes.step;
+    const int odd = step > 1 ? plane_stride / 2 : 0, margin = (radius + step - 1) / step * step;
     const int left = FIELD_TILE * (int)get_global_id(0), right = min(left + FIELD_TILE, blocks * LANES);
-    const int reach = (right - left + 2 * radius + LANES - 1) / LANES;
+    const int reach = (right - left + 2 * margin + LANES - 1) / LANES;
     const int first = top + tile_rows * (int)get_global_id(1), last = min(first + tile_rows, bottom);
     const ulong partners = make_partners(&sizes);
     int at[FIELD_MAX_OFFSETS];
     for (int y = first - radius; y < last + radius; y++) {
-        const size_t from = (size_t)(y - base) * (size_t)stride + (size_t)(left - radius + MARGIN);
+        const size_t from = (size_t)(y - base) * (size_t)stride + (size_t)(left - margin + MARGIN);
         const int centre = y - radius;
-        gamma_planes(t.families, sizes.families, gradient_x + from, gradient_y + from, reach, plane_stride,
+        gamma_planes(t.families, sizes.families, gradient_x + from, gradient_y + from, reach, odd, plane_stride,
                      planes + (y + depth) % depth * row_size);
         if (centre < first)
             continue;
         __global ushort *to = masks + (size_t)(centre - top) * (size_t)blocks + (size_t)(left / LANES);
-        if (centre % sizes.step != 0) {
+        if (centre % step != 0) {
             for (int i = 0; i < (right - left) / LANES; i++)
                 to[i] = 0;
             continue;
         }
         for (int i = 0; i < sizes.offsets; i++) {
             __global const int *o = t.offsets + FIELD_OFFSET_INTS * i;
-            at[i] = ((centre + o[OFFSET_DY] + depth) % depth * row_size + o[OFFSET_PLANE] * plane_stride) * LANES +
-                    o[OFFSET_DX] + radius;
+            const int column = o[OFFSET_DX] + margin, plane = o[OFFSET_PLANE] * plane_stride + column % step * odd;
+            at[i] = ((centre + o[OFFSET_DY] + depth) % depth * row_size + plane) * LANES + column / step;
         }
-        for (int x = left; x < right; x += FIELD_GROUP * LANES, to += FIELD_GROUP) {
-            const int runs = min(FIELD_GROUP, (right - x) / LANES);
-            group_slots(&sizes, &t, (__local const ushort *)planes + x - left, at, slots);
+        for (int x = left; x < right; x += FIELD_GROUP * LANES * step) {
+            group_slots(&sizes, &t, (__local const ushort *)planes + (x - left) / step, at, slots);
             const int interesting = group_strengths(&sizes, t.sectors, slots, strengths);
-            for (int v = 0; v < runs; v++) {
+            for (int v = 0; v < FIELD_GROUP; v++) {
                 __local const short16 *z = strengths + sizes.suppress * FIELD_GROUP + v;
                 const uint mask = interesting ? find_candidates(&sizes, t.sectors, z, partners) : 0;
-                to[v] = (ushort)thin(mask, width - x - v * LANES, sizes.step);
+                for (int part = 0; part < step; part++) {
+                    const int place = x + (v * step + part) * LANES;
+                    const uint bits = step > 1 ? spread(mask >> 8 * part & 255) : mask;
+                    if (place < right)
+                        to[(place - left) / LANES] = (ushort)inside_only(bits, width - place);
+                }
             }
         }
     }

@@ -71,10 +71,11 @@ typedef struct launch {
         ASJ_CL_INT(l->frame->blocks), ASJ_CL_BUFFER(&detect->field_table.buffer), ASJ_CL_STRUCT(&l->sizes, sizeof l->sizes),     \
         ASJ_CL_BUFFER(&detect->masks)
 
-/* Vectors. */
+/* Vectors of a plane: a row of a tile and what is around it, or its even columns and then as many odd ones. */
 static int32_t plane_stride(const field_sizes *s)
 {
-    return (FIELD_TILE + 2 * s->radius + ASJ_LANES - 1) / ASJ_LANES;
+    const int32_t margin = (s->radius + s->step - 1) / s->step;
+    return s->step * ((FIELD_TILE / s->step + 2 * margin + ASJ_LANES - 1) / ASJ_LANES);
 }
 
 /* Bytes of local memory of a tile: planes of all rows in reach, slots, strengths. */
@@ -96,11 +97,11 @@ static asj_status run_tiles(asj_context *context, struct asj_cl_detect *detect, 
     return asj_cl_run(context, "field_tiles", 2, global, local, ASJ_CL_ARGUMENTS(arguments));
 }
 
-/* Bytes of local memory of columns x rows pixels: gradient, slots, results. */
+/* Bytes of local memory of columns x rows pixels, `step` apart: gradient, slots, results. */
 static void pixel_memory(const field_sizes *s, size_t columns, size_t rows, size_t bytes[3])
 {
-    const size_t around = 2 * (size_t)s->radius;
-    bytes[0] = (columns + around) * ((rows - 1) * (size_t)s->step + 1 + around) * 2 * sizeof(int16_t);
+    const size_t around = 2 * (size_t)s->radius + 1, step = (size_t)s->step;
+    bytes[0] = ((columns - 1) * step + around) * ((rows - 1) * step + around) * 2 * sizeof(int16_t);
     bytes[1] = columns * rows * (size_t)s->slots * sizeof(uint16_t);
     bytes[2] = columns * rows;
 }
@@ -120,7 +121,7 @@ static asj_status run_pixels(asj_context *context, struct asj_cl_detect *detect,
             break;
     }
     const int32_t step = l->sizes.step, first = (l->top + step - 1) / step; /* at least one work-group, which clears the rest */
-    const size_t *local = sizes[choice], columns = (size_t)l->frame->width;
+    const size_t *local = sizes[choice], columns = ((size_t)l->frame->width + (size_t)step - 1) / (size_t)step;
     const size_t rows = (size_t)((l->bottom + step - 1) / step - first) + (l->bottom <= first * step);
     const size_t global[2] = {(columns + local[0] - 1) / local[0] * local[0], (rows + local[1] - 1) / local[1] * local[1]};
     const asj_cl_argument arguments[] = {COMMON_ARGUMENTS, ASJ_CL_LOCAL(bytes[0]), ASJ_CL_LOCAL(bytes[1]), ASJ_CL_LOCAL(bytes[2])};
