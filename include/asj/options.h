@@ -74,7 +74,8 @@ typedef struct asj_detect_options {
     int32_t disjoint_sectors;     /* 1 = the sectors of a junction do not overlap: its branches are 2 Delta apart, not Delta.
                                    * 0; paper 1 */
     int32_t max_branches;         /* branches tested together. 2 .. 5; 5 */
-    int32_t more_branches_win;    /* 1 = among junctions closer than half a radius the one with more branches stays. 0; paper 1 */
+    int32_t more_branches_win;    /* 1 = among junctions no farther apart than isotropic_apart the one with the most branches stays,
+                                   * not the most meaningful one. 0 */
     double epsilon;               /* NFA allowed for a junction, and for a branch (steps 3 and 5). 1e-30 .. 1e6; 1; match 1e4 */
     /* step 4: branch lengths */
     double scan_epsilon;          /* NFA at which a step along a ray still belongs to the branch. 1e-6 .. 1e3; 1; match 10 */
@@ -101,7 +102,11 @@ typedef struct asj_detect_options {
                                    * 1; paper 0; match 0 */
     int32_t octave_union;         /* 1 = every octave keeps what it finds, though a finer one has found the same corner: for the
                                    * matcher, which takes each corner once. 0; match 1 */
-    double reserved[19];          /* zero */
+    int32_t all_meaningful_branches; /* step 3: 1 = a junction has all branches of which two alike would be a meaningful junction;
+                                   * 0 = as many as make it most meaningful. 0; paper 1 */
+    int32_t isotropic_apart;      /* step 3: px, of junctions no farther apart the most meaningful one stays; 0 = half its radius.
+                                   * 0 .. 15; 2; paper 0 */
+    double reserved[18];          /* zero */
 } asj_detect_options;
 
 enum { ASJ_SEEDS_FIELD = 0, ASJ_SEEDS_SEGMENTS = 1 };

@@ -56,8 +56,11 @@ static const asj_option_info rows[] = {
             "radii in a row at which a junction must be meaningful"),
     SWITCH(ISOTROPIC, ADVANCED, disjoint_sectors, 0, 1, 0, "the branches of an isotropic junction do not share pixels"),
     INTEGER(ISOTROPIC, ADVANCED, max_branches, "", 2, ASJ_MAX_BRANCHES, 5, 5, 5, "most branches of a junction"),
-    SWITCH(ISOTROPIC, ADVANCED, more_branches_win, 0, 1, 0,
-           "of junctions closer than half a radius keep the one with more branches"),
+    SWITCH(ISOTROPIC, ADVANCED, all_meaningful_branches, 0, 1, 0,
+           "a junction has all branches that are meaningful by themselves"),
+    INTEGER(ISOTROPIC, ADVANCED, isotropic_apart, "px", 0, 15, 2, 0, 2,
+            "nearest that two isotropic junctions may be; 0 = half the radius"),
+    SWITCH(ISOTROPIC, ADVANCED, more_branches_win, 0, 0, 0, "of nearer ones keep the one with the most branches"),
 
     NUMBER(SCAN, ADVANCED, scan_epsilon, "NFA", 1e-6, 1e3, 1, 1, 10, "false alarms allowed for one step of a ray"),
     INTEGER(SCAN, ADVANCED, scan_start, "px", 0, 30, 3, 0, 0, "first radius of a ray; 0 = the junction's isotropic scale"),

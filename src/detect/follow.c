@@ -66,10 +66,9 @@ static int is_meaningful(const asj_detection_run *run, const asj_hypothesis *hyp
 
 static void follow_branch(const asj_detection_run *run, const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
 {
-    const double least = 0.5 * (run->test->log_epsilon - run->test->log_tests[2]);
     for (int32_t r = (int32_t)hypothesis->radius + 1; r <= LARGEST; r += r < 2 * GROWTH ? 1 : r / GROWTH) {
         const sector s = strongest(run, hypothesis, branch->angle, r);
-        if (log_tail(run, s.sum, s.pixels) > least)
+        if (log_tail(run, s.sum, s.pixels) > run->test->log_alone)
             break;
         branch->angle = s.angle;
     }

@@ -40,6 +40,8 @@ typedef struct asj_isotropic {
     asj_isotropic_radius radii[ASJ_MAX_RADIUS + 1];
     double log_tests[ASJ_MAX_BRANCHES + 1]; /* ln #J(M) */
     double log_epsilon;
+    double log_alone;     /* ln F of a branch that is meaningful: two like it are a meaningful junction */
+    int32_t all_meaningful; /* such branches all belong to a junction */
     int32_t max_branches;
     int32_t persistence;  /* radii in a row at which a junction is meaningful, at least */
     double *tail_tables[128]; /* by number of pixels; shared by the radii */

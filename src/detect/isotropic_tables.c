@@ -102,6 +102,7 @@ asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *
     measure_scratch(test);
     test->max_branches = options->max_branches;
     test->persistence = options->isotropic_persistence;
+    test->all_meaningful = options->all_meaningful_branches;
     test->log_epsilon = log(options->epsilon);
     if (status != ASJ_OK)
         return asj_fail(context, status, "no memory for the tables of the isotropic test");
@@ -179,6 +180,7 @@ void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, in
     for (int32_t m = 2; m <= ASJ_MAX_BRANCHES; m++)
         test->log_tests[m] = asj_nfa_log_junction_tests(width, height, options->isotropic_radii, options->sector_width, m) +
                              log(octaves);
+    test->log_alone = 0.5 * (test->log_epsilon - test->log_tests[2]);
     for (int32_t r = 0; r < test->radius_count; r++)
         set_least(test, &test->radii[r]);
 }

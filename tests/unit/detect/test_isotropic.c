@@ -200,6 +200,71 @@ static void test_nfa(void **state)
     asj_detect_options_init(&f->options);
 }
 
+static int has_branch(const asj_isotropic_junction *junction, const asj_sectors *s, int32_t sector)
+{
+    int found = 0;
+    for (int32_t i = 0; i < junction->branch_count; i++)
+        found += unit_turn(junction->angle[i] * UNIT_PI / 32768, 2 * UNIT_PI * sector / s->count) < 1e-3;
+    return found;
+}
+
+/* all_meaningful_branches: of the five strongest branches those with #J(2) F(omega; J)^2 <= epsilon, unless they make no junction.
+ * Returns 1 when they are others than the most meaningful ones. Tables of tails are good to 0.01. */
+static int check_all_meaningful(const fixture *f, const asj_isotropic_junction *most, const asj_isotropic_junction *all)
+{
+    const asj_sectors *s = &tested.radii[0].sectors;
+    const double tests = asj_nfa_log_junction_tests(f->frame.width, f->frame.height, f->options.isotropic_radii,
+                                                    f->options.sector_width, 2);
+    peak peaks[MOST], alone[5];
+    const int32_t found = naive_peaks(&f->frame, s, f->options.sector_width, all->x, all->y, peaks);
+    int32_t count = 0;
+    assert_true(all->radius == most->radius && all->log_nfa == most->log_nfa);
+    for (int32_t i = 0; i < found && i < 5; i++) {
+        const double log_tail = asj_nfa_log_sector_tail(asj_nfa_of(f->context), peaks[i].omega, s->size[peaks[i].sector]);
+        const double log_nfa = tests + 2 * log_tail - log(f->options.epsilon);
+        if (fabs(log_nfa) < 0.02)
+            return 0;
+        if (log_nfa < 0)
+            alone[count++] = peaks[i];
+    }
+    if (count < 2 || (count == 2 && sector_opening(s, alone) > UNIT_PI - 2 * f->options.sector_width / s->radius + 1e-9)) {
+        assert_memory_equal(all, most, sizeof *all);
+        return 0;
+    }
+    assert_int_equal(all->branch_count, count);
+    for (int32_t i = 0; i < count; i++)
+        assert_int_equal(has_branch(all, s, alone[i].sector), 1);
+    return memcmp(all, most, sizeof *all) != 0;
+}
+
+static void test_all_meaningful(void **state)
+{
+    enum { BLOCKS = 5, ROWS = 80 };
+    static asj_isotropic_junction found[2][ROWS][BLOCKS * ASJ_LANES];
+    fixture *f = *state;
+    int others = 0, more = 0;
+    assert_true(f->frame.width >= BLOCKS * ASJ_LANES && f->frame.height == ROWS);
+    f->options.epsilon = 1e4; /* weak branches too */
+    for (int32_t all = 0; all < 2; all++) {
+        f->options.all_meaningful_branches = all;
+        make(f, 1u << 6, 5);
+        uint16_t *scratch = malloc(tested.scratch * sizeof *scratch);
+        assert_non_null(scratch);
+        for (int32_t y = 0; y < ROWS; y++)
+            for (int32_t b = 0; b < BLOCKS; b++)
+                asj_isotropic_block(&tested, &f->frame, b * ASJ_LANES, y, 0xffff, scratch, &found[all][y][b * ASJ_LANES]);
+        free(scratch);
+    }
+    for (int32_t y = 0; y < ROWS; y++)
+        for (int32_t x = 0; x < BLOCKS * ASJ_LANES; x++)
+            if (found[0][y][x].branch_count && check_all_meaningful(f, &found[0][y][x], &found[1][y][x])) {
+                others++;
+                more += found[1][y][x].branch_count > found[0][y][x].branch_count;
+            }
+    assert_true(more > 10 && others > more);
+    asj_detect_options_init(&f->options);
+}
+
 /* Bands of rows at once: the records of their runs one after the other. */
 static void test_band(void **state)
 {
@@ -283,9 +348,9 @@ static int before(const asj_isotropic_junction *p, const asj_isotropic_junction 
     return p->y != q->y ? p->y < q->y : p->x < q->x;
 }
 
-static int close_to(const asj_isotropic_junction *kept, const asj_isotropic_junction *other, int more_branches_win)
+static int close_to(const asj_isotropic_junction *kept, const asj_isotropic_junction *other, int32_t apart)
 {
-    const double radius = more_branches_win ? 0.5 * kept->radius : 2;
+    const double radius = apart ? apart : 0.5 * kept->radius;
     return hypot(kept->x - other->x, kept->y - other->y) <= radius + 1e-12;
 }
 
@@ -302,17 +367,18 @@ static void sort_rows(asj_isotropic_junction *list, size_t count)
 }
 
 /* Greedy by definition: the best one that is left stays, what is near it goes. */
-static size_t naive_thin(asj_isotropic_junction *list, size_t count, int more_branches_win, asj_isotropic_junction *kept)
+static size_t naive_thin(asj_isotropic_junction *list, size_t count, const asj_detect_options *options,
+                         asj_isotropic_junction *kept)
 {
     size_t n = 0;
     while (count > 0) {
         size_t first = 0, left = 0;
         for (size_t i = 1; i < count; i++)
-            if (before(&list[i], &list[first], more_branches_win))
+            if (before(&list[i], &list[first], options->more_branches_win))
                 first = i;
         kept[n] = list[first];
         for (size_t i = 0; i < count; i++)
-            if (!close_to(&kept[n], &list[i], more_branches_win))
+            if (!close_to(&kept[n], &list[i], options->isotropic_apart))
                 list[left++] = list[i];
         count = left;
         n++;
@@ -335,6 +401,7 @@ static void test_thin(void **state)
         void *scratch = malloc(asj_isotropic_thin_scratch(count, width, height));
         assert_non_null(scratch);
         f->options.more_branches_win = round % 2;
+        f->options.isotropic_apart = round / 2 % 4;
         memset(list, 0, sizeof list);
         for (size_t i = 0; i < count; i++) {
             list[i].x = (uint16_t)synth_random_between(&random, 0, width);
@@ -349,7 +416,7 @@ static void test_thin(void **state)
         sort_rows(list, count);
         memcpy(copy, list, sizeof copy);
         const size_t kept = asj_isotropic_thin(list, count, &f->options, width, height, scratch);
-        assert_int_equal(kept, naive_thin(copy, count, f->options.more_branches_win, expected));
+        assert_int_equal(kept, naive_thin(copy, count, &f->options, expected));
         for (size_t i = 0; i < kept; i++)
             assert_true(list[i].x == expected[i].x && list[i].y == expected[i].y && list[i].log_nfa == expected[i].log_nfa);
         free(scratch);
@@ -361,6 +428,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_nfa),
+        cmocka_unit_test(test_all_meaningful),
         cmocka_unit_test(test_band),
         cmocka_unit_test(test_tables),
         cmocka_unit_test(test_out_of_memory),
