@@ -10,34 +10,76 @@
 #include "nfa.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, double dx, double dy, double distance, asj_search_sum *s)
+/* What a pixel (dx, dy) from p is to the sector, decided without roots but near its outline: there, and only there, rounding might
+ * decide otherwise than the definition does,  d = |(dx, dy)| <= length and  (dx, dy).u >= d cos(tau / length). */
+typedef struct outline {
+    double ux, uy, length;
+    double cosine, tangent; /* of tau / length; tangent 0 when the sector is so wide that only the definition is asked */
+    double surely;          /* length^2, less what rounding may do */
+} outline;
+
+#define SLACK 1e-9  /* px: far more than rounding makes of the products below */
+#define WIDE 1.4    /* rad */
+#define NARROW 8    /* px: a sector of this length goes by 22 degrees to either side at most, so that no side is across */
+
+static int is_inside(const outline *o, int32_t dx, int32_t dy)
+{
+    const double along = dx * o->ux + dy * o->uy, across = fabs(dy * o->ux - dx * o->uy), edge = along * o->tangent;
+    const double square = (double)dx * dx + (double)dy * dy;
+    if (o->tangent > 0 && across > edge + SLACK)
+        return 0;
+    if (o->tangent > 0 && across < edge - SLACK && square < o->surely)
+        return 1;
+    const double distance = sqrt(square);
+    return distance > 0 && distance <= o->length && along >= o->cosine * distance;
+}
+
+/* gamma = (|g x d| - |g . d|) / |d| where that is positive; the numerator is a whole number. */
+static void add_pixel(const asj_frame *frame, int32_t x, int32_t y, int32_t dx, int32_t dy, asj_search_sum *s)
 {
     if (x < 0 || y < 0 || x >= frame->width || y >= frame->height)
         return;
-    const double gx = frame->gradient_x[y * frame->stride + x], gy = frame->gradient_y[y * frame->stride + x];
-    const double gamma = (fabs(gy * dx - gx * dy) - fabs(gx * dx + gy * dy)) / distance;
-    s->gamma += gamma > 0 ? gamma / ASJ_GRADIENT_ONE : 0;
+    const int32_t gx = frame->gradient_x[y * frame->stride + x], gy = frame->gradient_y[y * frame->stride + x];
+    const int32_t numerator = abs(gy * dx - gx * dy) - abs(gx * dx + gy * dy);
+    if (numerator > 0)
+        s->gamma += numerator / sqrt((double)dx * dx + (double)dy * dy) / ASJ_GRADIENT_ONE;
     s->pixels++;
+}
+
+/* Where the sector's sides are, across the axis that the branch is longer on, one px along it. */
+typedef struct opening {
+    double from, to;
+} opening;
+
+/* tan(atan(slope) -+ half). Short ones are wide: everything around is looked at, on every step. */
+static opening opening_of(double slope, double half, double length)
+{
+    if (length < NARROW)
+        return (opening){-2 * length, 2 * length};
+    const double middle = atan(slope);
+    return (opening){tan(middle - half), tan(middle + half)};
 }
 
 /* Walks along the axis (x or y) that the branch is longer on, and across it over the few pixels that can be inside. */
 asj_search_sum asj_search_omega(const asj_frame *frame, double x, double y, double angle, double length, double tau)
 {
-    const double ux = cos(angle), uy = sin(angle), limit = cos(tau / length);
+    const double half = tau / length;
+    const outline o = {cos(angle), sin(angle), length, cos(half), half < WIDE ? tan(half) : 0, length * length * (1 - 1e-12)};
     const int32_t px = (int32_t)lrint(x), py = (int32_t)lrint(y), steps = (int32_t)ceil(length);
-    const int along_x = fabs(ux) >= fabs(uy);
-    const int32_t sign = (along_x ? ux : uy) < 0 ? -1 : 1;
-    const double slope = along_x ? uy / fabs(ux) : ux / fabs(uy); /* across for one step along */
+    const int along_x = fabs(o.ux) >= fabs(o.uy);
+    const int32_t sign = (along_x ? o.ux : o.uy) < 0 ? -1 : 1;
+    const double slope = along_x ? o.uy / fabs(o.ux) : o.ux / fabs(o.uy); /* across for one step along */
+    const opening across = opening_of(slope, half, length);
     asj_search_sum s = {0, 0};
     for (int32_t i = 0; i <= steps; i++) {
-        /* tan grows faster than its tangent: half as much again, and everything when the sector is wide */
-        const double spread = length < 8 ? 2 * length : i * 1.5 * tau / length * (1 + slope * slope) + 1.5;
-        for (int32_t j = (int32_t)floor(i * slope - spread); j <= (int32_t)ceil(i * slope + spread); j++) {
+        const double step = length < NARROW ? 1 : i;
+        const int32_t last = (int32_t)floor(step * across.to + SLACK);
+        for (int32_t j = (int32_t)ceil(step * across.from - SLACK); j <= last; j++) {
             const int32_t dx = along_x ? sign * i : j, dy = along_x ? j : sign * i;
-            const double distance = sqrt(dx * dx + dy * dy), along = dx * ux + dy * uy;
-            if (distance > 0 && distance <= length && along >= limit * distance)
-                add_pixel(frame, px + dx, py + dy, dx, dy, distance, &s);
+            if (is_inside(&o, dx, dy))
+                add_pixel(frame, px + dx, py + dy, dx, dy, &s);
         }
     }
     return s;
