@@ -44,19 +44,18 @@ void asj_end_rays_make(asj_end_rays *rays)
     }
 }
 
-/* Mean of gamma from (x, y) along (ux, uy). */
+/* Mean of gamma from (x, y) along (ux, uy). Outside the image the gradient is zero; its margin is wider than a ray is long. */
 static double edge_along(const asj_frame *frame, double x, double y, double ux, double uy)
 {
     double sum = 0;
     for (int32_t r = NEAR; r <= FAR; r++) {
         const int32_t px = asj_strip_floor(x + r * ux + 0.5), py = asj_strip_floor(y + r * uy + 0.5);
-        if (px < 0 || py < 0 || px >= frame->width || py >= frame->height)
-            continue;
         const ptrdiff_t at = py * frame->stride + px;
         const double gx = frame->gradient_x[at], gy = frame->gradient_y[at];
-        sum += fmax(fabs(gy * ux - gx * uy) - fabs(gx * ux + gy * uy), 0);
+        const double gamma = fabs(gy * ux - gx * uy) - fabs(gx * ux + gy * uy);
+        sum += gamma + fabs(gamma); /* twice what is above 0, without a jump that cannot be foreseen */
     }
-    return sum / ((FAR - NEAR + 1) * ASJ_GRADIENT_ONE);
+    return 0.5 * sum / ((FAR - NEAR + 1) * ASJ_GRADIENT_ONE);
 }
 
 /* An end, and the direction in which its branch comes there. */

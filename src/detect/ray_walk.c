@@ -77,8 +77,8 @@ static void closest(const asj_field_branch *list, uint16_t angle, int32_t *forwa
 {
     int32_t nearest = INT32_MAX, nearest_axis = INT32_MAX; /* 4 x distance + index */
     for (int32_t i = 0; i < ASJ_FIELD_BRANCHES; i++) {
-        const int32_t turn = (uint16_t)(list[i].angle - angle), none = list[i].strength ? 0 : 1 << 20;
-        const int32_t distance = turn > 32768 ? 65536 - turn : turn, axis = distance > 16384 ? 32768 - distance : distance;
+        const int32_t turn = (int16_t)(list[i].angle - angle), none = list[i].strength ? 0 : 1 << 20;
+        const int32_t distance = abs(turn), axis = 16384 - abs(16384 - distance);
         const int32_t order = (distance | none) * ASJ_FIELD_BRANCHES + i, axis_order = (axis | none) * ASJ_FIELD_BRANCHES + i;
         nearest = order < nearest ? order : nearest;
         nearest_axis = axis_order < nearest_axis ? axis_order : nearest_axis;
@@ -99,7 +99,7 @@ asj_arc_sums asj_ray_walk_sums(const asj_scan *scan, const asj_ray_walk *walk, c
         const int32_t gamma = junctionness(scan, list[forward], &samples[i], &ahead);
         sums.forward += gamma;
         sums.ahead += ahead ? gamma : 0;
-        sums.axial += junctionness(scan, list[axial], &samples[i], &ignored);
+        sums.axial += axial == forward ? gamma : junctionness(scan, list[axial], &samples[i], &ignored);
     }
     sums.axial = scan->axial ? sums.axial : 0;
     return sums;
