@@ -231,6 +231,7 @@ void asj_cl_fill(const asj_ops *ops)
 {
     ops->gradient->planes = asj_cl_gradient;
     ops->field->rows = asj_cl_field_rows;
+    ops->field->branches = asj_cl_field_branches;
     ops->isotropic->rows = asj_cl_isotropic_rows;
     ops->scan->rays = asj_cl_scan_rays;
     ops->describe->frames = asj_cl_describe_frames;

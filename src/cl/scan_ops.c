@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 4 on the device (kernels/ray_scan.cl). What is known of the image's local junctions is kept until the gradient changes, so
- * that the second scan of an image finds what the first one computed. An image that is not on the device as a whole is left to the
- * CPU. */
+/* Step 4 and the local field on the device (kernels/ray_scan.cl). What is known of the image's local junctions is kept until the
+ * gradient changes, so that the second scan of an image finds what the first one computed. Scans of an image that is not on the
+ * device as a whole are left to the CPU. */
 #include "kernels/contract.h"
 #include "detect.h"
 #include "overrides.h"
@@ -183,34 +183,106 @@ static asj_status make_room(asj_context *context, struct asj_cl_scan *state, siz
 }
 
 #define COMPUTE_ARGUMENTS                                                                                                     \
-    ASJ_CL_BUFFER(&detect->gradient_x), ASJ_CL_BUFFER(&detect->gradient_y), ASJ_CL_INT(frame->stride),                        \
-        ASJ_CL_INT(detect->first), ASJ_CL_INT(frame->blocks), ASJ_CL_BUFFER(&state->field.buffer),                            \
-        ASJ_CL_STRUCT(&sizes, sizeof sizes), ASJ_CL_BUFFER(&state->entries), ASJ_CL_INT(state->done), ASJ_CL_INT(count),      \
-        ASJ_CL_BUFFER(&state->branches), ASJ_CL_BUFFER(&state->known)
+    ASJ_CL_BUFFER(&detect->gradient_x), ASJ_CL_BUFFER(&detect->gradient_y), ASJ_CL_INT(frame->stride), ASJ_CL_INT(base),      \
+        ASJ_CL_INT(frame->blocks), ASJ_CL_BUFFER(&state->field.buffer), ASJ_CL_STRUCT(&sizes, sizeof sizes),                  \
+        ASJ_CL_BUFFER(&state->entries), ASJ_CL_INT(first), ASJ_CL_INT(end), ASJ_CL_BUFFER(&state->branches),                  \
+        ASJ_CL_BUFFER(&state->known)
 
-/* All entries up to `count` that have no branches yet. */
-static asj_status compute(asj_context *context, struct asj_cl_scan *state, const asj_field *field, const asj_frame *frame,
-                          uint32_t count)
+/* Entries first .. end - 1. `base`: the row of the image that the planes begin with, from the one that run 0 is in. */
+static asj_status run_entries(asj_context *context, struct asj_cl_scan *state, const asj_field *field, const asj_frame *frame,
+                              int32_t base, uint32_t first, uint32_t end)
 {
     const struct asj_cl_detect *detect = context->cl->detect;
-    asj_status status = make_room(context, state, count, (size_t)frame->blocks * (size_t)frame->height);
-    if (status != ASJ_OK)
-        return status;
     const scan_sizes sizes = {.radius = field->sectors.radius, .sectors = field->sectors.count, .suppress = field->suppress,
                               .offsets = field->sectors.offset_count, .plain_slots = field->plan.plain_count,
                               .slots = field->plan.slot_count};
-    const size_t entries = count - state->done, pixels = 64, memory = pixels * (size_t)sizes.slots * sizeof(uint16_t);
+    const size_t entries = end - first, pixels = 64, memory = pixels * (size_t)sizes.slots * sizeof(uint16_t);
     const asj_cl_argument runs[] = {COMPUTE_ARGUMENTS}, by_pixels[] = {COMPUTE_ARGUMENTS, ASJ_CL_LOCAL(memory)};
     const asj_cl_limits *limits = asj_cl_get_limits(context);
     const int by_pixel = limits->type != ASJ_DEVICE_CPU && memory <= limits->local_memory;
     const size_t local = by_pixel ? pixels : GROUP, items = by_pixel ? entries * ASJ_LANES : entries;
     const size_t global = (items + local - 1) / local * local;
-    status = by_pixel ? asj_cl_run(context, "scan_pixels", 1, &global, &local, ASJ_CL_ARGUMENTS(by_pixels))
-                      : asj_cl_run(context, "scan_runs", 1, &global, &local, ASJ_CL_ARGUMENTS(runs));
+    return by_pixel ? asj_cl_run(context, "scan_pixels", 1, &global, &local, ASJ_CL_ARGUMENTS(by_pixels))
+                    : asj_cl_run(context, "scan_runs", 1, &global, &local, ASJ_CL_ARGUMENTS(runs));
+}
+
+/* All entries up to `count` that have no branches yet. */
+static asj_status compute(asj_context *context, struct asj_cl_scan *state, const asj_field *field, const asj_frame *frame,
+                          uint32_t count)
+{
+    asj_status status = make_room(context, state, count, (size_t)frame->blocks * (size_t)frame->height);
+    if (status == ASJ_OK)
+        status = run_entries(context, state, field, frame, context->cl->detect->first, state->done, count);
     if (status == ASJ_OK)
         state->done = count;
     return status;
 }
+
+/* ---- local junctions everywhere: rows of runs, all asked for in order ---- */
+
+static asj_status list_runs(asj_context *context, struct asj_cl_scan *state, size_t runs)
+{
+    asj_status status = asj_cl_host_reserve(context, &state->host_rays, runs * sizeof(uint32_t));
+    uint32_t *entries = state->host_rays.memory;
+    for (size_t i = 0; i < runs && status == ASJ_OK; i++)
+        entries[i] = (uint32_t)i;
+    if (status == ASJ_OK)
+        status = asj_cl_reserve(context, &state->entries, runs * sizeof(uint32_t));
+    return status == ASJ_OK ? asj_cl_write(context, &state->entries, 0, entries, runs * sizeof(uint32_t)) : status;
+}
+
+/* Rows that fit at once. */
+static asj_status make_branches(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
+                                asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
+{
+    const size_t rows = (size_t)(bottom - top), runs = (size_t)frame->blocks * rows, pixel = sizeof *branches;
+    struct asj_cl_scan *state;
+    int32_t changed;
+    asj_status status = get(context, &state);
+    if (status != ASJ_OK)
+        return status;
+    state->generation = 0; /* the rays' entries go */
+    status = asj_cl_planes_need(context, frame, top, bottom);
+    if (status == ASJ_OK)
+        status = load_field(context, &state->field, field, &changed);
+    if (status == ASJ_OK)
+        status = list_runs(context, state, runs);
+    if (status == ASJ_OK)
+        status = asj_cl_reserve(context, &state->known, runs * sizeof(uint32_t));
+    if (status == ASJ_OK)
+        status = asj_cl_reserve(context, &state->branches, runs * ASJ_LANES * pixel);
+    if (status == ASJ_OK)
+        status = run_entries(context, state, field, frame, context->cl->detect->first - top, 0, (uint32_t)runs);
+    if (status == ASJ_OK)
+        status = asj_cl_read_rows(context, &state->branches, 0, (size_t)frame->blocks * ASJ_LANES * pixel, branches,
+                                  (size_t)frame->width * pixel, (size_t)frame->width * pixel, rows);
+    return status;
+}
+
+/* Rows of local junctions that the device has room for. */
+static int32_t branches_rows(const asj_context *context, const asj_frame *frame)
+{
+    const asj_cl_limits *limits = asj_cl_get_limits(context);
+    const uint64_t share = limits->global_memory / 4, most = share < limits->largest_buffer ? share : limits->largest_buffer;
+    const uint64_t rows = most / ((uint64_t)frame->blocks * ASJ_LANES * ASJ_FIELD_BRANCHES * sizeof(uint32_t));
+    const int32_t planes = asj_cl_plane_rows(context, frame) - 2 * ASJ_MARGIN;
+    return rows < (uint64_t)(planes > 0 ? planes : 0) ? (int32_t)rows : planes;
+}
+
+asj_status asj_cl_field_branches(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
+                                 const asj_scratch *scratch, asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
+{
+    const int32_t band = branches_rows(context, frame);
+    asj_status status = ASJ_OK;
+    if (band < 1)
+        return asj_field_branches(context, field, frame, top, bottom, scratch, branches);
+    for (int32_t y = top; y < bottom && status == ASJ_OK; y += band)
+        status = make_branches(context, field, frame, y, bottom - y < band ? bottom : y + band,
+                               branches + (size_t)(y - top) * (size_t)frame->width);
+    return status;
+}
+
+/* ---- walking ---- */
 
 /* Walks as far as all rays can; counts: entries, rays that go on. */
 static asj_status walk(asj_context *context, struct asj_cl_scan *state, const scan_image *image, size_t count, uint32_t counts[2])

@@ -313,4 +313,38 @@ asj_status asj_field_rows(asj_context *context, const asj_field *field, const as
     return ASJ_OK;
 }
 
-const asj_field_ops asj_field_reference = {.rows = asj_field_rows, .tile = asj_field_tile, .pixels = asj_field_pixels};
+typedef struct branches_job {
+    asj_context *context;
+    const asj_field *field;
+    const asj_frame *frame;
+    int32_t top;
+    const asj_scratch *scratch;
+    asj_field_branch (*branches)[ASJ_FIELD_BRANCHES];
+} branches_job;
+
+static void find_branches(const void *data, const asj_part *part)
+{
+    enum { AT_ONCE = 2 * ASJ_FIELD_BATCH };
+    const branches_job *j = data;
+    const int32_t width = j->frame->width;
+    asj_pixel pixels[AT_ONCE];
+    for (int64_t row = part->first; row < part->end; row++)
+        for (int32_t first = 0; first < width; first += AT_ONCE) {
+            const int32_t count = width - first < AT_ONCE ? width - first : AT_ONCE;
+            for (int32_t i = 0; i < count; i++)
+                pixels[i] = (asj_pixel){first + i, j->top + (int32_t)row};
+            j->context->ops->field->pixels(j->field, j->frame, pixels, count, asj_thread_scratch(j->scratch, part),
+                                           j->branches + (size_t)row * (size_t)width + first);
+        }
+}
+
+asj_status asj_field_branches(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
+                              const asj_scratch *scratch, asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
+{
+    const branches_job j = {context, field, frame, top, scratch, branches};
+    asj_parallel(context, context->threads, bottom - top, 4, find_branches, &j);
+    return ASJ_OK;
+}
+
+const asj_field_ops asj_field_reference = {
+    .rows = asj_field_rows, .branches = asj_field_branches, .tile = asj_field_tile, .pixels = asj_field_pixels};

@@ -72,6 +72,11 @@ void asj_field_tile(const asj_field *field, const asj_frame *frame, const asj_ti
 asj_status asj_field_rows(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
                           const asj_scratch *scratch, uint16_t *masks);
 
+/* The branches at all pixels of rows top .. bottom - 1, by all threads of the context: those of pixel (x, y) at
+ * branches[(y - top) * width + x]. A device may fail. */
+asj_status asj_field_branches(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
+                              const asj_scratch *scratch, asj_field_branch (*branches)[ASJ_FIELD_BRANCHES]);
+
 /* ---- for the vector forms of the above ---- */
 
 /* Pixels that a vector form of asj_field_pixels() may work on at once; the scratch has room for them. */
@@ -107,11 +112,15 @@ void asj_field_thin(const asj_field *field, const asj_frame *frame, int32_t run,
 /* Elements of a plane of a tile's row (sector_plan.h) whose columns are candidate_step apart. */
 size_t asj_field_plane_stride(const asj_field *field);
 
-/* Operations (core/ops.h): step 2 of a band of rows, which a device replaces, and its parts for a tile and for single pixels. */
+/* Operations (core/ops.h): step 2 of a band of rows and the whole field of one, which a device replaces, and their parts for a tile
+ * and for single pixels. */
 typedef struct asj_field_ops {
     /* asj_field_rows() */
     asj_status (*rows)(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
                        const asj_scratch *scratch, uint16_t *masks);
+    /* asj_field_branches() */
+    asj_status (*branches)(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
+                           const asj_scratch *scratch, asj_field_branch (*branches)[ASJ_FIELD_BRANCHES]);
     /* asj_field_tile() */
     void (*tile)(const asj_field *field, const asj_frame *frame, const asj_tile *tile, uint16_t *scratch, uint16_t *masks);
     /* asj_field_pixels() */

@@ -22,47 +22,41 @@ static asj_local_branch local_branch(const asj_detection_run *run, asj_field_bra
     return out;
 }
 
-static void field_row(const asj_detection_run *run, int32_t y, uint16_t *scratch, asj_local_branch *out)
-{
-    enum { PART = 2 * ASJ_FIELD_BATCH };
-    const asj_frame *frame = run->frame;
-    asj_field_branch found[PART][ASJ_FIELD_BRANCHES];
-    asj_pixel pixels[PART];
-    for (int32_t first = 0; first < frame->width; first += PART) {
-        const int32_t count = frame->width - first < PART ? frame->width - first : PART;
-        for (int32_t i = 0; i < count; i++)
-            pixels[i] = (asj_pixel){first + i, y};
-        run->context->ops->field->pixels(run->field, frame, pixels, count, scratch, found);
-        for (int32_t i = 0; i < count; i++)
-            for (int b = 0; b < ASJ_FIELD_BRANCHES; b++)
-                *out++ = local_branch(run, found[i][b]);
-    }
-}
-
 typedef struct job {
     const asj_detection_run *run;
-    int32_t top;
+    asj_field_branch (*found)[ASJ_FIELD_BRANCHES]; /* of a group of rows */
     asj_local_branch *branches;
 } job;
 
-static void do_rows(const void *data, const asj_part *part)
+static void tell_rows(const void *data, const asj_part *part)
 {
     const job *j = data;
-    for (int64_t y = j->top + part->first; y < j->top + part->end; y++)
-        field_row(j->run, (int32_t)y, asj_thread_scratch(&j->run->scratch, part),
-                  j->branches + (size_t)y * (size_t)j->run->frame->width * ASJ_FIELD_BRANCHES);
+    const int64_t width = j->run->frame->width;
+    for (int64_t i = part->first * width; i < part->end * width; i++)
+        for (int b = 0; b < ASJ_FIELD_BRANCHES; b++)
+            j->branches[i * ASJ_FIELD_BRANCHES + b] = local_branch(j->run, j->found[i][b]);
 }
 
 static asj_status field_rows(const asj_detection_run *run, asj_local_branch *branches)
 {
-    const int32_t height = run->frame->height;
+    asj_context *context = run->context;
+    const asj_frame *frame = run->frame;
+    const int32_t height = frame->height, most = height < ASJ_ROW_GROUP ? height : ASJ_ROW_GROUP;
+    const size_t row = (size_t)frame->width;
+    asj_field_branch (*found)[ASJ_FIELD_BRANCHES] = asj_allocate(&context->memory, (size_t)most * row, sizeof *found);
+    if (!found)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the local junctions of %zu pixels", (size_t)most * row);
     asj_status status = asj_detection_run_progress(run, ASJ_STAGE_GRADIENT, 0.05);
     for (int32_t top = 0; status == ASJ_OK && top < height; top += ASJ_ROW_GROUP) {
         const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
-        const job j = {run, top, branches};
-        asj_parallel(run->context, run->context->threads, bottom - top, 4, do_rows, &j);
+        status = context->ops->field->branches(context, run->field, frame, top, bottom, &run->scratch, found);
+        if (status != ASJ_OK)
+            break;
+        const job j = {run, found, branches + (size_t)top * row * ASJ_FIELD_BRANCHES};
+        asj_parallel(context, context->threads, bottom - top, 4, tell_rows, &j);
         status = asj_detection_run_progress(run, ASJ_STAGE_CANDIDATES, (double)bottom / height);
     }
+    asj_release(&context->memory, found);
     return status;
 }
 

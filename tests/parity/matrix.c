@@ -24,7 +24,7 @@ static const struct {
     SLOT(image, luma),
     SLOT(pyramid, blur_row), SLOT(pyramid, sample),
     SLOT(gradient, planes), SLOT(gradient, slide), SLOT(gradient, normalise),
-    SLOT(field, rows), SLOT(field, tile), SLOT(field, pixels),
+    SLOT(field, rows), SLOT(field, branches), SLOT(field, tile), SLOT(field, pixels),
     SLOT(isotropic, rows), SLOT(isotropic, band),
     SLOT(line, sums), SLOT(line, profile),
     SLOT(scan, rays),

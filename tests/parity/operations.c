@@ -177,6 +177,20 @@ static asj_status run_field_rows(asj_context *context, const subject *s, uint16_
     return context->ops->field->rows(context, &s->field, &s->frame, top / 2, s->frame.height, &whole, output);
 }
 
+static size_t branches_size(const subject *s)
+{
+    return (size_t)s->frame.width * (size_t)s->frame.height * ASJ_FIELD_BRANCHES * sizeof(asj_field_branch);
+}
+
+/* Rows from `top` on. */
+static asj_status run_branches(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    int32_t x, top;
+    choose(s, &x, &top);
+    const asj_scratch whole = {scratch, s->scratch_size};
+    return context->ops->field->branches(context, &s->field, &s->frame, top / 2, s->frame.height, &whole, output);
+}
+
 static size_t records_size(const subject *s)
 {
     return (size_t)s->frame.width * (size_t)s->frame.height * sizeof(asj_isotropic_junction);
@@ -329,6 +343,7 @@ const operation operations[] = {
     {"gate", 0, gate_size, one_run, NULL, run_gate},
     {"field tile", 0, tile_size, tile_pixels, NULL, run_tiles},
     {"field rows", 1, tile_size, tile_pixels, gradient_bytes, run_field_rows},
+    {"branches", 1, branches_size, tile_pixels, NULL, run_branches},
     {"isotropic rows", 1, records_size, all_pixels, gradient_bytes, run_isotropic_rows},
     {"rays", 1, rays_size, all_pixels, NULL, run_rays},
     {"patches", 1, patches_size, all_pixels, patches_bytes, run_patches},

@@ -352,6 +352,51 @@ static void test_memory(void **state)
     assert_in_range(n, 10, 1999);
 }
 
+/* ---- the local field ---- */
+
+/* How often a kernel has run since the measurement began. */
+static uint64_t runs_of(const asj_context *context, const char *kernel)
+{
+    asj_cl_time times[64];
+    const int32_t count = asj_cl_get_times(context, times, 64);
+    uint64_t runs = 0;
+    for (int32_t i = 0; i < count && i < 64; i++)
+        runs += strcmp(times[i].name, kernel) == 0 ? times[i].runs : 0;
+    return runs;
+}
+
+/* Computed there, at once or in as many bands as the device's memory asks for, and the same as on the CPU. */
+static void test_local_field(void **state)
+{
+    enum { WIDTH = 70, HEIGHT = 90 };
+    static asj_local_branch here[WIDTH * HEIGHT][ASJ_FIELD_BRANCHES], there[WIDTH * HEIGHT][ASJ_FIELD_BRANCHES];
+    static uint8_t pixels[WIDTH * HEIGHT];
+    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0};
+    asj_context_options options;
+    asj_context *cpu = NULL;
+    (void)state;
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        pixels[i] = (uint8_t)(30 + 3 * (i * 7 % 5) + (i % WIDTH > 31 ? 90 : 0) + (i / WIDTH > 40 ? 60 : 0));
+    asj_context_options_init(&options);
+    options.backend = ASJ_BACKEND_CPU;
+    assert_int_equal(asj_context_create(&options, &cpu), ASJ_OK);
+    assert_int_equal(asj_local_field(cpu, &image, NULL, here[0]), ASJ_OK);
+    asj_context_free(&cpu);
+
+    asj_context *context = open_device();
+    const char *kernel = asj_cl_get_limits(context)->type == ASJ_DEVICE_CPU ? "scan_runs" : "scan_pixels";
+    for (int bands = 1; bands <= 2; bands++) {
+        memset(there, 0, sizeof there);
+        if (bands == 2) /* a quarter of it holds the branches of 50 rows */
+            context->cl->limits.global_memory = (uint64_t)4 * 50 * 80 * ASJ_FIELD_BRANCHES * sizeof(uint32_t);
+        assert_int_equal(asj_cl_profile(context, 1), ASJ_OK);
+        assert_int_equal(asj_local_field(context, &image, NULL, there[0]), ASJ_OK);
+        assert_int_equal(runs_of(context, kernel), bands);
+        assert_memory_equal(here, there, sizeof here);
+    }
+    unit_context_free(&counter, &context);
+}
+
 /* ---- back to the CPU ---- */
 
 static asj_status fail_gradient(asj_context *context, asj_frame *frame, const asj_detect_options *options)
@@ -416,7 +461,7 @@ int main(void)
         cmocka_unit_test(test_open), cmocka_unit_test(test_store),    cmocka_unit_test(test_driver_store),
         cmocka_unit_test(test_transfers),
         cmocka_unit_test(test_runs), cmocka_unit_test(test_failures), cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_restart),
+        cmocka_unit_test(test_local_field), cmocka_unit_test(test_restart),
     };
     asj_device_list *list = NULL;
     uint32_t usable = 0;
