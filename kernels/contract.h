@@ -106,7 +106,7 @@ typedef struct scan_ray {
     shared_int looked;     /* last step that is to be looked at by itself */
     shared_int forward, axial;
     shared_int forward_failures, ahead_passes, ahead_failures, axial_failures;
-    shared_int padding;
+    shared_int passed;     /* how far there is an edge for sure, when the end of the band has come before that of the edge */
 } scan_ray;
 
 typedef struct scan_image {
@@ -114,6 +114,7 @@ typedef struct scan_image {
     shared_int ahead;        /* steps that a ray asks for, beside a quarter of its length */
     shared_int edge;         /* least sum of gamma of a row under which there is an edge, 2^-24 */
     shared_int stride, base; /* of the planes */
+    shared_int low, high;    /* the band of rows that rays are walked in, high not included; run 0 is in row `low` */
 } scan_image;
 
 /* ---- patch.cl ---- */

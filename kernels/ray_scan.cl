@@ -7,6 +7,9 @@
  * asked[] is touched by atomic operations only, known[] (1 + entry, 0 = not known) written when entries are computed only, so
  * nothing is read while it is written. The order of the entries differs from time to time, the results do not.
  *
+ * An image that the device has no room for is worked on in bands of rows, which overlap by more than a step needs. A ray that comes
+ * to the end of the band waits for another one.
+ *
  * Planes and tables: contract.h. */
 
 /* ---- local junctions ---- */
@@ -228,12 +231,16 @@ static sample place(const scan_ray *ray, const scan_angles *angles, int r, int d
     return at;
 }
 
-/* The run of a sample; -1 outside the image. */
+enum { OUTSIDE = -1, AWAY = -2 }; /* of the image; of the band */
+
+/* The run of a sample, or one of these. */
 static int run_at(const scan_image *image, const sample *at)
 {
     if (at->x < 0 || at->y < 0 || at->x >= image->width || at->y >= image->height)
-        return -1;
-    return (int)at->y * image->blocks + (int)at->x / LANES;
+        return OUTSIDE;
+    if (at->y < image->low || at->y >= image->high)
+        return AWAY;
+    return ((int)at->y - image->low) * image->blocks + (int)at->x / LANES;
 }
 
 /* gamma~ of a branch seen from the ray; *ahead: whether it points along the ray. */
@@ -260,7 +267,7 @@ static uint closest(uint4 list, int angle, int turn)
     return folded.s3 < least ? list.s3 : best;
 }
 
-/* Sums over the arc at radius r: forward, ahead, axial. Returns 0 when a run is not known. */
+/* Sums over the arc at radius r: forward, ahead, axial. Returns 0 when a run is not known, AWAY when one is in another band. */
 static int arc_sums(const scan_image *image, const scan_angles *angles, const scan_ray *ray, int r, __global const uint *known,
                     __global const uint *branches, int4 *sums)
 {
@@ -269,7 +276,9 @@ static int arc_sums(const scan_image *image, const scan_angles *angles, const sc
         const sample at = place(ray, angles, r, d);
         const int run = run_at(image, &at);
         int ahead;
-        if (run < 0)
+        if (run == AWAY)
+            return AWAY;
+        if (run == OUTSIDE)
             continue;
         const uint entry = known[run];
         if (entry == 0)
@@ -306,7 +315,7 @@ static int step(const scan_image *image, scan_ray *ray, int radius, int4 sums)
            (ray->ahead_failures <= image->bridge && ray->axial_failures <= image->tolerance);
 }
 
-/* Whether there is an edge along the ray at a radius. */
+/* Whether there is an edge along the ray at a radius; AWAY: that is for another band. */
 static int has_edge(const scan_image *image, const scan_ray *ray, int r, __global const short *gradient_x,
                     __global const short *gradient_y)
 {
@@ -316,6 +325,8 @@ static int has_edge(const scan_image *image, const scan_ray *ray, int r, __globa
     int sum = 0;
     if (x >> 16 < 0 || y >> 16 < 0 || x >> 16 >= image->width || y >> 16 >= image->height)
         return 0;
+    if (y >> 16 < image->low || y >> 16 >= image->high)
+        return AWAY;
     for (int d = -1; d <= 1; d++) {
         const int row = (int)((y + d * across_y) >> 16) - image->base, column = (int)((x + d * across_x) >> 16) + MARGIN;
         const size_t at = (size_t)row * (size_t)image->stride + (size_t)column;
@@ -325,21 +336,26 @@ static int has_edge(const scan_image *image, const scan_ray *ray, int r, __globa
     return sum >= image->edge;
 }
 
-/* Passes over the steps that have an edge under them beyond doubt. */
-static void pass_over(const scan_image *image, scan_ray *ray, __global const short *gradient_x, __global const short *gradient_y)
+/* Passes over the steps that have an edge under them beyond doubt. Returns 0 when another band has the rest of them. */
+static int pass_over(const scan_image *image, scan_ray *ray, __global const short *gradient_x, __global const short *gradient_y)
 {
-    int end = ray->radius;
-    while (has_edge(image, ray, end, gradient_x, gradient_y))
+    int end = max(ray->radius, ray->passed), edge;
+    while ((edge = has_edge(image, ray, end, gradient_x, gradient_y)) > 0)
         end++;
+    ray->passed = edge == AWAY ? end : 0;
+    if (edge == AWAY)
+        return 0;
     if (end - ray->radius <= SCAN_PLAIN)
-        return;
+        return 1;
     ray->forward = end - SCAN_PLAIN - 1;
     ray->axial = image->axial ? ray->forward : 0;
     ray->ahead_failures = 0;
     ray->radius = end - SCAN_PLAIN;
+    return 1;
 }
 
-/* One step or a stride, as in src/detect/scan.c; returns 0 when a run that it needs is not known. */
+/* One step or a stride, as in src/detect/ray_walk.c; returns 0 when a run that it needs is not known, AWAY when the rest is for
+ * another band. */
 static int advance(const scan_image *image, const scan_angles *angles, scan_ray *ray, __global const short *gradient_x,
                    __global const short *gradient_y, __global const uint *known, __global const uint *branches)
 {
@@ -347,11 +363,13 @@ static int advance(const scan_image *image, const scan_angles *angles, scan_ray 
     int4 sums;
     if (ray->radius > ray->looked && image->tolerance > 0 && ray->forward_failures == 0 &&
         (!image->axial || ray->axial_failures == 0)) {
-        pass_over(image, ray, gradient_x, gradient_y);
+        if (!pass_over(image, ray, gradient_x, gradient_y))
+            return AWAY;
         stride = SCAN_STRIDE;
     }
-    if (!arc_sums(image, angles, ray, ray->radius + stride - 1, known, branches, &sums))
-        return 0;
+    const int summed = arc_sums(image, angles, ray, ray->radius + stride - 1, known, branches, &sums);
+    if (summed != 1)
+        return summed;
     if (stride > 1) {
         ray->looked = ray->radius + stride - 1;
         stride = sums.s1 >= image->threshold && (!image->axial || sums.s2 >= image->threshold) ? stride : 0;
@@ -362,7 +380,7 @@ static int advance(const scan_image *image, const scan_angles *angles, scan_ray 
     return 1;
 }
 
-/* counts: entries; rays that go on. */
+/* counts: entries; rays that go on; rays that wait for another band. */
 __kernel void scan_walk(__global const short *gradient_x, __global const short *gradient_y, scan_image image,
                         __global const int2 *angle_table, __global scan_ray *rays, int count, __global const uint *known,
                         __global const uint *branches, volatile __global uint *asked, __global uint *entries,
@@ -375,12 +393,15 @@ __kernel void scan_walk(__global const short *gradient_x, __global const short *
     scan_ray ray = rays[number];
     if (ray.radius == 0)
         return;
-    while (ray.radius && advance(&image, &angles, &ray, gradient_x, gradient_y, known, branches))
-        ;
+    int advanced = 1;
+    while (ray.radius && advanced == 1)
+        advanced = advance(&image, &angles, &ray, gradient_x, gradient_y, known, branches);
     rays[number] = ray;
     if (ray.radius == 0)
         return;
-    atomic_inc(counts + 1);
+    atomic_inc(counts + (advanced == AWAY ? 2 : 1));
+    if (advanced == AWAY)
+        return;
     for (int r = ray.radius, last = r + r / 4 + image.ahead; r < last; r++)
         for (int d = -image.half_width; d <= image.half_width; d++) {
             const sample at = place(&ray, &angles, r, d);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 4 and the local field on the device (kernels/ray_scan.cl). What is known of the image's local junctions is kept until the
- * gradient changes, so that the second scan of an image finds what the first one computed. Scans of an image that is not on the
- * device as a whole are left to the CPU. */
+ * gradient changes, so that the second scan of an image finds what the first one computed. An image that the device has no room for
+ * is scanned in bands of rows, which overlap: down, up, and again until no ray waits. */
 #include "kernels/contract.h"
 #include "detect.h"
 #include "overrides.h"
@@ -16,11 +16,17 @@
 
 #define GROUP 16 /* work items: small groups share the work evenly, as rays differ in length */
 
+/* Rows that bands have in common. A step needs the edge from its radius to 4 px farther on, and the arc 3 px on, which reaches
+ * 3 px to either side: 9 rows with rounding. */
+#define OVERLAP 12
+#define SWEEPS 8 /* one down and one up bring every ray to its end: this is for none that waits without end */
+
 struct asj_cl_scan {
     asj_cl_table field, angles;
     asj_cl_buffer rays, known, asked, entries, branches, counts;
     asj_cl_host_buffer host_rays;
-    uint64_t generation;    /* of the gradient that all this belongs to */
+    uint64_t generation;    /* of the gradient that all this belongs to, */
+    int32_t low, high;      /* and the rows */
     uint32_t done;          /* entries with branches */
     uint32_t capacity;      /* entries that there is room for */
 };
@@ -150,7 +156,7 @@ static asj_status fetch_rays(asj_context *context, const asj_scan *scan, struct 
 
 static asj_status forget(asj_context *context, struct asj_cl_scan *state, size_t runs)
 {
-    const uint32_t none[2] = {0, 0};
+    const uint32_t none[3] = {0, 0, 0};
     state->done = 0;
     asj_status status = asj_cl_reserve(context, &state->known, runs * sizeof(uint32_t));
     if (status == ASJ_OK)
@@ -206,13 +212,19 @@ static asj_status run_entries(asj_context *context, struct asj_cl_scan *state, c
                     : asj_cl_run(context, "scan_runs", 1, &global, &local, ASJ_CL_ARGUMENTS(runs));
 }
 
+/* Runs of the rows that rays are walked in. */
+static size_t runs_of(const struct asj_cl_scan *state, const asj_frame *frame)
+{
+    return (size_t)frame->blocks * (size_t)(state->high - state->low);
+}
+
 /* All entries up to `count` that have no branches yet. */
 static asj_status compute(asj_context *context, struct asj_cl_scan *state, const asj_field *field, const asj_frame *frame,
                           uint32_t count)
 {
-    asj_status status = make_room(context, state, count, (size_t)frame->blocks * (size_t)frame->height);
+    asj_status status = make_room(context, state, count, runs_of(state, frame));
     if (status == ASJ_OK)
-        status = run_entries(context, state, field, frame, context->cl->detect->first, state->done, count);
+        status = run_entries(context, state, field, frame, context->cl->detect->first - state->low, state->done, count);
     if (status == ASJ_OK)
         state->done = count;
     return status;
@@ -284,8 +296,8 @@ asj_status asj_cl_field_branches(asj_context *context, const asj_field *field, c
 
 /* ---- walking ---- */
 
-/* Walks as far as all rays can; counts: entries, rays that go on. */
-static asj_status walk(asj_context *context, struct asj_cl_scan *state, const scan_image *image, size_t count, uint32_t counts[2])
+/* Walks as far as all rays can; counts: entries, rays that go on, rays that wait for another band. */
+static asj_status walk(asj_context *context, struct asj_cl_scan *state, const scan_image *image, size_t count, uint32_t counts[3])
 {
     const size_t local = GROUP, global = (count + local - 1) / local * local;
     const struct asj_cl_detect *detect = context->cl->detect;
@@ -294,65 +306,92 @@ static asj_status walk(asj_context *context, struct asj_cl_scan *state, const sc
         ASJ_CL_BUFFER(&state->angles.buffer), ASJ_CL_BUFFER(&state->rays), ASJ_CL_INT(count), ASJ_CL_BUFFER(&state->known),
         ASJ_CL_BUFFER(&state->branches), ASJ_CL_BUFFER(&state->asked), ASJ_CL_BUFFER(&state->entries),
         ASJ_CL_BUFFER(&state->counts)};
-    asj_status status = asj_cl_zero(context, &state->counts, sizeof(uint32_t), sizeof(uint32_t));
+    asj_status status = asj_cl_zero(context, &state->counts, sizeof(uint32_t), 2 * sizeof(uint32_t));
     if (status == ASJ_OK)
         status = asj_cl_run(context, "scan_walk", 1, &global, &local, ASJ_CL_ARGUMENTS(arguments));
-    return status == ASJ_OK ? asj_cl_read(context, &state->counts, 0, counts, 2 * sizeof *counts) : status;
+    return status == ASJ_OK ? asj_cl_read(context, &state->counts, 0, counts, 3 * sizeof *counts) : status;
 }
 
-/* Tables, and what is known already. */
-static asj_status prepare(asj_context *context, struct asj_cl_scan *state, const asj_scan *scan, const asj_frame *frame)
+/* Planes and tables for a band, and what is known already. */
+static asj_status prepare(asj_context *context, struct asj_cl_scan *state, const asj_scan *scan, const asj_frame *frame,
+                          int32_t low, int32_t high)
 {
     int32_t changed = 0;
-    asj_status status = asj_cl_planes_need(context, frame, 0, frame->height);
+    asj_status status = asj_cl_planes_need(context, frame, low, high);
     if (status == ASJ_OK)
         status = load_angles(context, &state->angles, scan);
     if (status == ASJ_OK)
         status = load_field(context, &state->field, scan->field, &changed);
-    if (status != ASJ_OK || (!changed && state->generation == context->cl->detect->generation))
+    if (status != ASJ_OK || (!changed && state->generation == context->cl->detect->generation && state->low == low &&
+                             state->high == high))
         return status;
     state->generation = 0;
-    status = forget(context, state, (size_t)frame->blocks * (size_t)frame->height);
+    state->low = low;
+    state->high = high;
+    status = forget(context, state, runs_of(state, frame));
     if (status == ASJ_OK)
-        status = make_room(context, state, 1, (size_t)frame->blocks * (size_t)frame->height);
+        status = make_room(context, state, 1, runs_of(state, frame));
     if (status == ASJ_OK)
         state->generation = context->cl->detect->generation;
     return status;
 }
 
-/* Whether the device has room for all runs of the image, to be on the safe side. */
-static int fits(const asj_context *context, const asj_frame *frame)
+/* Walks all rays to their ends, or to that of the band; *waiting: how many wait for another one. */
+static asj_status scan_band(asj_context *context, struct asj_cl_scan *state, const asj_scan *scan, const asj_frame *frame,
+                            int32_t low, int32_t high, size_t count, uint32_t *waiting)
 {
-    const asj_cl_limits *limits = asj_cl_get_limits(context);
-    const uint64_t bytes = (uint64_t)frame->blocks * (uint64_t)frame->height * ASJ_LANES * ASJ_FIELD_BRANCHES * sizeof(uint32_t);
-    return asj_cl_plane_rows(context, frame) == frame->height + 2 * ASJ_MARGIN && bytes <= limits->largest_buffer &&
-           bytes <= limits->global_memory / 4;
-}
-
-asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count)
-{
-    struct asj_cl_scan *state;
-    uint32_t counts[2] = {0, 1};
-    if (count == 0 || count > INT32_MAX / 2 || !fits(context, frame))
-        return count == 0 ? ASJ_OK : asj_scan_rays(context, scan, frame, rays, count);
-    asj_status status = get(context, &state);
-    if (status == ASJ_OK)
-        status = prepare(context, state, scan, frame);
-    if (status == ASJ_OK)
-        status = send_rays(context, state, rays, count);
+    uint32_t counts[3] = {0, 1, 0};
+    asj_watch watch;
+    asj_status status = prepare(context, state, scan, frame, low, high);
     const scan_image image = {
         .width = frame->width, .height = frame->height, .blocks = frame->blocks, .half_width = scan->half_width,
         .tolerance = scan->tolerance, .axial = scan->axial, .bridge = scan->axial ? scan->field->sectors.radius : -1,
         .threshold = scan->threshold, .ahead = asj_cl_get_limits(context)->type == ASJ_DEVICE_CPU ? 4 : 32, .edge = ASJ_SCAN_EDGE,
-        .stride = (int32_t)frame->stride, .base = status == ASJ_OK ? context->cl->detect->first : 0};
-    asj_watch watch;
+        .stride = (int32_t)frame->stride, .base = status == ASJ_OK ? context->cl->detect->first : 0, .low = low, .high = high};
     asj_watch_start(&watch, context, ASJ_STAGE_SCAN);
     while (status == ASJ_OK && counts[1] > 0) {
         status = asj_watch_stops(&watch, NULL) ? asj_watch_end(&watch) : walk(context, state, &image, count, counts);
         if (status == ASJ_OK && counts[0] > state->done)
             status = compute(context, state, scan->field, frame, counts[0]);
     }
-    if (status != ASJ_OK && state)
+    *waiting = counts[2];
+    return status;
+}
+
+/* Bands of `rows` rows, from top to bottom, back, and so on. */
+static asj_status scan_bands(asj_context *context, struct asj_cl_scan *state, const asj_scan *scan, const asj_frame *frame,
+                             int32_t rows, size_t count, uint32_t *waiting)
+{
+    const int32_t step = rows - OVERLAP, bands = frame->height > rows ? (frame->height - rows + step - 1) / step + 1 : 1;
+    asj_status status = ASJ_OK;
+    *waiting = 1;
+    for (int32_t sweep = 0; sweep < SWEEPS && *waiting > 0; sweep++)
+        for (int32_t i = 0; i < bands && *waiting > 0 && status == ASJ_OK; i++) {
+            const int32_t low = (sweep % 2 ? bands - 1 - i : i) * step;
+            const int32_t high = frame->height - low < rows ? frame->height : low + rows;
+            status = scan_band(context, state, scan, frame, low, high, count, waiting);
+        }
+    return status;
+}
+
+asj_status asj_cl_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count)
+{
+    const int32_t rows = branches_rows(context, frame);
+    struct asj_cl_scan *state;
+    uint32_t waiting;
+    if (count == 0)
+        return ASJ_OK;
+    if (count > INT32_MAX / 2 || (rows < frame->height && rows <= OVERLAP))
+        return asj_scan_rays(context, scan, frame, rays, count);
+    asj_status status = get(context, &state);
+    if (status != ASJ_OK)
+        return status;
+    status = send_rays(context, state, rays, count);
+    if (status == ASJ_OK)
+        status = scan_bands(context, state, scan, frame, rows, count, &waiting);
+    if (status != ASJ_OK)
         state->generation = 0; /* whatever there is may be half done */
+    else if (waiting > 0)
+        return asj_scan_rays(context, scan, frame, rays, count);
     return status == ASJ_OK ? fetch_rays(context, scan, state, rays, count) : status;
 }

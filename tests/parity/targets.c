@@ -130,8 +130,8 @@ void target_prepare(target *t, ptrdiff_t stride)
     if (t->form == FORM_NONE)
         return;
     asj_cl_planes_forget(t->context);
-    if (t->form == FORM_BANDS) /* seven rows and what is around them, in an eighth of the memory */
-        t->context->cl->limits.global_memory = 8 * (7 + 2 * ASJ_MARGIN + 1) * (uint64_t)stride * sizeof(int16_t);
+    if (t->form == FORM_BANDS) /* seventeen rows and what is around them, in an eighth of the memory; bands of rays share twelve */
+        t->context->cl->limits.global_memory = 8 * (17 + 2 * ASJ_MARGIN + 1) * (uint64_t)stride * sizeof(int16_t);
 #else
     (void)t;
     (void)stride;

@@ -397,6 +397,59 @@ static void test_local_field(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* ---- images larger than the device ---- */
+
+enum { LARGE_WIDTH = 200, LARGE_HEIGHT = 300 };
+
+/* Tiles of two grey levels, a little turned, so that edges run through many bands. */
+static void draw_tiles(uint8_t *pixels)
+{
+    for (int y = 0; y < LARGE_HEIGHT; y++)
+        for (int x = 0; x < LARGE_WIDTH; x++) {
+            const int right = (4 * x + y + 700) / 360, down = (4 * y - x + 700) / 520;
+            pixels[y * LARGE_WIDTH + x] = (uint8_t)((right + down) % 2 ? 190 + (3 * x + 5 * y) % 7 : 60 + (2 * x + 7 * y) % 5);
+        }
+}
+
+/* Rays are walked on the device, in as many bands of rows as its memory asks for, and the same as on the CPU. */
+static void test_bands_of_rays(void **state)
+{
+    static uint8_t pixels[LARGE_WIDTH * LARGE_HEIGHT];
+    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, LARGE_WIDTH, LARGE_HEIGHT, 0, 0};
+    asj_detect_options detect;
+    asj_context_options options;
+    asj_context *cpu = NULL;
+    asj_detection *here = NULL, *there = NULL;
+    uint64_t whole = 0;
+    (void)state;
+    draw_tiles(pixels);
+    asj_detect_options_init(&detect);
+    detect.octaves = 1;
+    asj_context_options_init(&options);
+    options.backend = ASJ_BACKEND_CPU;
+    assert_int_equal(asj_context_create(&options, &cpu), ASJ_OK);
+    assert_int_equal(asj_detect(cpu, &image, &detect, &here), ASJ_OK);
+    assert_in_range(here->junction_count, 8, 100);
+
+    asj_context *context = open_device();
+    for (int bands = 0; bands < 2; bands++) {
+        if (bands) /* an eighth of it holds a plane of 40 rows and the margins */
+            context->cl->limits.global_memory = (uint64_t)8 * (40 + 2 * ASJ_MARGIN + 1) * 272 * sizeof(int16_t);
+        assert_int_equal(asj_cl_profile(context, 1), ASJ_OK);
+        assert_int_equal(asj_detect_into(context, &image, &detect, &there), ASJ_OK);
+        assert_int_equal(there->junction_count, here->junction_count);
+        assert_memory_equal(there->junctions, here->junctions, here->junction_count * sizeof *here->junctions);
+        if (bands)
+            assert_true(runs_of(context, "scan_walk") > whole + 20); /* 14 bands, down and up */
+        whole = runs_of(context, "scan_walk");
+        assert_true(whole >= 2);
+    }
+    asj_detection_free(&there);
+    asj_detection_free(&here);
+    asj_context_free(&cpu);
+    unit_context_free(&counter, &context);
+}
+
 /* ---- back to the CPU ---- */
 
 static asj_status fail_gradient(asj_context *context, asj_frame *frame, const asj_detect_options *options)
@@ -461,7 +514,7 @@ int main(void)
         cmocka_unit_test(test_open), cmocka_unit_test(test_store),    cmocka_unit_test(test_driver_store),
         cmocka_unit_test(test_transfers),
         cmocka_unit_test(test_runs), cmocka_unit_test(test_failures), cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_local_field), cmocka_unit_test(test_restart),
+        cmocka_unit_test(test_local_field), cmocka_unit_test(test_bands_of_rays), cmocka_unit_test(test_restart),
     };
     asj_device_list *list = NULL;
     uint32_t usable = 0;
