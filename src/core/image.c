@@ -47,13 +47,14 @@ asj_status asj_image_check(asj_context *context, const asj_image *image)
     return ASJ_OK;
 }
 
+/* What is in it is read by nobody: planes are written before, and what is around them here and with them. */
 static asj_status prepare_memory(asj_context *context, asj_frame *frame, size_t count)
 {
     if (frame->capacity >= count)
         return ASJ_OK;
     asj_release(&context->memory, frame->memory);
     frame->capacity = 0;
-    frame->memory = asj_allocate_zero(&context->memory, count, sizeof *frame->memory);
+    frame->memory = asj_allocate(&context->memory, count, sizeof *frame->memory);
     if (!frame->memory)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for planes of %zu samples", count);
     frame->capacity = count;
