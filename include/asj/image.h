@@ -9,7 +9,8 @@ extern "C" {
 #endif
 
 /* Pixel formats. Channels are interleaved; 16-bit samples and floats are in the machine's byte order.
- * Colour is reduced to luma as (77 R + 150 G + 29 B + 128) >> 8 (BT.601 weights in 8 bits); alpha is ignored. */
+ * Colour is reduced to luma as (77 R + 150 G + 29 B + 128) >> 8 (BT.601 weights in 8 bits); alpha is ignored. Only a
+ * match with a geometry (match.h) and features look at the colours themselves. */
 enum {
     ASJ_FORMAT_GRAY8 = 1,
     ASJ_FORMAT_GRAY16 = 2,

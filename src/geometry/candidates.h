@@ -12,7 +12,7 @@ typedef struct asj_pair {
     double prior;            /* probability that it is right, before any geometry */
     uint32_t place1, place2; /* from 0 */
     uint32_t source;         /* index in the caller's list */
-    uint32_t reserved;
+    float colour;            /* how well colours agree: estimate.h */
 } asj_pair;
 
 #define ASJ_ROTATIONS 24

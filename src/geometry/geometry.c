@@ -20,9 +20,13 @@
  * reasons that the model does not know, and all its places together: of rendered rooms with tiled floors, wrong geometries have up
  * to 1.6 times the log evidence of the best one that contradicts them, and with fewer than FEW matches more than that.
  *
+ * Where images have colours, these say of rivals which one is wrong (colour_vote.c).
+ *
  * A pose is one that is known to within POSE_SD, with all other motions counted as likely as their evidence says: all on one plane
  * there are two (Hartley and Zisserman, 13.4), and near that everything between. */
 #include "core/angle.h"
+#include "colour_vote.h"
+#include "estimate.h"
 #include "evidence.h"
 #include "focal.h"
 #include "motions.h"
@@ -61,6 +65,7 @@ typedef struct estimation {
     int32_t count;
     asj_adjust_scratch scratch;
     double *other; /* probabilities under a second geometry */
+    double *vote;  /* colour_vote.c */
     asj_focal focal;
     int32_t focal_at; /* where the finalist with the found focal length stands; -1 = there is none */
 } estimation;
@@ -284,7 +289,8 @@ static double least_contradiction(const asj_model *best, const asj_model *rival,
     return CONTRARY + (CONTRARY_ALIKE - CONTRARY) * nearness;
 }
 
-/* The largest evidence of a geometry that contradicts the one whose probabilities are in scratch; -1 = none. */
+/* The largest evidence of a geometry that contradicts the one whose probabilities are in scratch, and that the colours do not
+ * contradict; -1 = none. */
 static int32_t second_of(estimation *e, int32_t best)
 {
     int32_t second = -1;
@@ -293,7 +299,8 @@ static int32_t second_of(estimation *e, int32_t best)
         const asj_model *rival = &e->finalists[n];
         if (n == best || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
             continue;
-        if (contradiction(e, rival) > least_contradiction(m, rival, log10_nfa(e, rival) / to_compare(e, m)))
+        if (contradiction(e, rival) > least_contradiction(m, rival, log10_nfa(e, rival) / to_compare(e, m)) &&
+            !asj_colours_contradict(&e->set, e->scratch.probability, e->other, e->vote))
             second = n;
     }
     return second;
@@ -432,6 +439,13 @@ static void answer(estimation *e, double *probabilities, asj_geometry *result)
 asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
                                  const asj_geometry_options *options, double *probabilities, asj_geometry *result)
 {
+    return asj_estimate_with_colours(context, candidates, count, NULL, options, probabilities, result);
+}
+
+asj_status asj_estimate_with_colours(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
+                                     const double *colours, const asj_geometry_options *options, double *probabilities,
+                                     asj_geometry *result)
+{
     if (!context)
         return ASJ_ERROR_ARGUMENT;
     if (!options || !result || (!candidates && count > 0))
@@ -449,7 +463,7 @@ asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candid
     e->context = context;
     e->options = options;
     e->focal_at = -1;
-    status = asj_pairs_create(context, candidates, count, options, &e->set);
+    status = asj_pairs_create(context, candidates, count, colours, options, &e->set);
     e->set.watch = &watch;
     for (size_t k = 0; k < count && probabilities; k++)
         probabilities[k] = 0;
@@ -458,7 +472,9 @@ asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candid
             found.status = ASJ_GEOMETRY_TOO_FEW;
         } else {
             e->other = asj_allocate(&context->memory, (size_t)e->set.count, sizeof *e->other);
-            status = e->other && asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch)
+            const int32_t places = e->set.place_count[0] > e->set.place_count[1] ? e->set.place_count[0] : e->set.place_count[1];
+            e->vote = asj_allocate(&context->memory, (size_t)places, 4 * sizeof *e->vote);
+            status = e->other && e->vote && asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch)
                          ? search_all(e) : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the geometry");
             if (status == ASJ_OK)
                 status = search_rivals(e);
@@ -470,6 +486,7 @@ asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candid
     }
     asj_adjust_scratch_free(&context->memory, &e->scratch);
     asj_release(&context->memory, e->other);
+    asj_release(&context->memory, e->vote);
     asj_pairs_free(&context->memory, &e->set);
     asj_release(&context->memory, e);
     if (status == ASJ_OK)

@@ -98,7 +98,7 @@ static void set_scales(const asj_geometry_options *options, asj_pairs *set)
     set->area = sqrt(w1 * h1) * sqrt(w2 * h2);
 }
 
-asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
+asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *candidates, size_t count, const double *colours,
                             const asj_geometry_options *options, asj_pairs *set)
 {
     memset(set, 0, sizeof *set);
@@ -114,7 +114,7 @@ asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *
         if (c->place1 >= MOST_COUNT || c->place2 >= MOST_COUNT)
             return asj_fail(context, ASJ_ERROR_LIMIT, "candidate %zu has a place beyond %d", k, MOST_COUNT);
         set->list[k] = (asj_pair){c->x1, c->y1, c->x2, c->y2, {c->affine[0], c->affine[1], c->affine[2], c->affine[3]},
-                                  c->probability, c->place1, c->place2, (uint32_t)k, 0};
+                                  c->probability, c->place1, c->place2, (uint32_t)k, colours ? (float)colours[k] : 0};
     }
     if (count > 1)
         qsort(set->list, count, sizeof *set->list, likelier);

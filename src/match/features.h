@@ -4,6 +4,7 @@
 #ifndef ASJ_SRC_MATCH_FEATURES_H
 #define ASJ_SRC_MATCH_FEATURES_H
 
+#include "colour.h"
 #include "core/pyramid.h"
 #include "l_junctions.h"
 
@@ -13,6 +14,7 @@ typedef struct asj_image_features {
     int16_t *patches;        /* canonical: `length` numbers for each frame, unit vectors unless option normalise is no;
                               * induced: for each L-junction */
     uint8_t *usable;         /* of each of them: its patch lies in the image */
+    asj_colour *colours;     /* of each L-junction; NULL: the image has none, or nobody will ask */
     uint64_t device_copy;    /* names what the device of the context that described them keeps of them; 0 = nothing. It lasts for
                               * the call: features that are kept have none (kept_features.c), as they may be matched anywhere */
 } asj_image_features;

@@ -2,7 +2,7 @@
 /* Features as bytes: what .asjf files hold (asj-formats(5)).
  *
  *      0  8 bytes        0x89 A S J F CR LF 0x1a: tells a file that was sent as text
- *      8  u32            version of the format: 1
+ *      8  u32            version of the format: 1, or 2 where there are colours
  *     12  u32            CRC-32 of all that follows
  *     16  u64            size of the whole
  *     24  u32, u32       width and height of the image, px
@@ -12,6 +12,7 @@
  *         junctions      x, y, scale, log10_nfa, location_sd: five floats; u32 number of branches; u32 octave; for each branch
  *                        angle, length, strength, log10_nfa, angle_sd, width, length_sd: seven floats; u32 end
  *         u16            the image after the blur, in 1/128 of a grey level, row by row
+ *         u16            version 2: the colours of each L-junction, red, green and blue of six regions (colour.h)
  *
  * All numbers with the least significant byte first, floats as IEEE 754.
  *
@@ -28,6 +29,8 @@
 #include <string.h>
 
 #define VERSION 1
+#define VERSION_WITH_COLOURS 2
+#define COLOUR_BYTES (2 * 3 * ASJ_COLOUR_REGIONS)
 #define HEADER 40
 #define CHECKED 16          /* the checksum is of the bytes from here on */
 #define JUNCTION_BYTES 28
@@ -88,6 +91,13 @@ static void put_plane(uint8_t *to, const asj_pyramid *pyramid)
             asj_put_u16(to, pyramid->plane[0][y * stride + x]);
 }
 
+static void put_colours(uint8_t *to, const asj_image_features *of_image)
+{
+    for (uint32_t n = 0; of_image->colours && n < of_image->l_junctions.count; n++)
+        for (int32_t k = 0; k < 3 * ASJ_COLOUR_REGIONS; k++, to += 2)
+            asj_put_u16(to, of_image->colours[n].level[k / 3][k % 3]);
+}
+
 size_t asj_features_save(const asj_features *features, void *bytes, size_t capacity)
 {
     if (!features)
@@ -97,11 +107,13 @@ size_t asj_features_save(const asj_features *features, void *bytes, size_t capac
     size_t size = HEADER + text + JUNCTION_BYTES * (size_t)features->junction_count + 2 * pixels;
     for (uint32_t n = 0; n < features->junction_count; n++)
         size += BRANCH_BYTES * (size_t)features->junctions[n].branch_count;
+    if (features->of_image.colours)
+        size += COLOUR_BYTES * (size_t)features->of_image.l_junctions.count;
     if (!bytes || capacity < size)
         return size;
     uint8_t *start = bytes, *to = start + HEADER + text;
     memcpy(start, magic, sizeof magic);
-    asj_put_u32(start + 8, VERSION);
+    asj_put_u32(start + 8, features->of_image.colours ? VERSION_WITH_COLOURS : VERSION);
     asj_put_u64(start + 16, size);
     asj_put_u32(start + 24, (uint32_t)pyramid->width[0]);
     asj_put_u32(start + 28, (uint32_t)pyramid->height[0]);
@@ -111,6 +123,7 @@ size_t asj_features_save(const asj_features *features, void *bytes, size_t capac
     for (uint32_t n = 0; n < features->junction_count; n++)
         to = put_junction(to, &features->junctions[n]);
     put_plane(to, pyramid);
+    put_colours(to + 2 * pixels, &features->of_image);
     asj_put_u32(start + 12, asj_crc32(start + CHECKED, size - CHECKED));
     return size;
 }
@@ -123,7 +136,7 @@ typedef struct reader {
     const uint8_t *next;
     size_t left;
     int32_t width, height;
-    uint32_t text, count;
+    uint32_t text, count, version;
 } reader;
 
 static asj_status damaged(const reader *r, const char *what)
@@ -139,9 +152,10 @@ static asj_status read_header(reader *r)
         return asj_fail(r->context, ASJ_ERROR_FORMAT, "these are no features (.asjf)");
     if (size < HEADER)
         return damaged(r, "the header is truncated");
-    if (asj_get_u32(start + 8) != VERSION)
-        return asj_fail(r->context, ASJ_ERROR_UNSUPPORTED, "the features are of version %lu, and this library reads version %d",
-                        (unsigned long)asj_get_u32(start + 8), VERSION);
+    r->version = asj_get_u32(start + 8);
+    if (r->version != VERSION && r->version != VERSION_WITH_COLOURS)
+        return asj_fail(r->context, ASJ_ERROR_UNSUPPORTED, "the features are of version %lu, and this library reads %d and %d",
+                        (unsigned long)r->version, VERSION, VERSION_WITH_COLOURS);
     if (asj_get_u64(start + 16) != size)
         return asj_fail(r->context, ASJ_ERROR_FORMAT, "the features are damaged: %zu bytes where there should be %llu", size,
                         (unsigned long long)asj_get_u64(start + 16));
@@ -231,8 +245,10 @@ static asj_status read_junction(reader *r, asj_junction *j)
 static asj_status read_plane(reader *r, asj_pyramid *pyramid)
 {
     const size_t width = (size_t)r->width, stride = width + 1;
-    if (r->left != 2 * width * (size_t)r->height)
+    const size_t bytes = 2 * width * (size_t)r->height;
+    if (r->left < bytes || (r->version == VERSION && r->left > bytes))
         return damaged(r, "the pixels are not all there, or there are more");
+    r->left -= bytes;
     const asj_status status = asj_pyramid_allocate(r->context, r->width, r->height, pyramid);
     uint32_t most = 0;
     for (size_t y = 0; y < (size_t)r->height && status == ASJ_OK; y++)
@@ -248,6 +264,27 @@ static asj_status read_plane(reader *r, asj_pyramid *pyramid)
     return status;
 }
 
+/* What is left. */
+static asj_status read_colours(reader *r, asj_image_features *made)
+{
+    const uint32_t count = made->l_junctions.count;
+    uint32_t most = 0;
+    if (r->version != VERSION_WITH_COLOURS)
+        return ASJ_OK;
+    if (r->left != COLOUR_BYTES * (size_t)count)
+        return damaged(r, "the colours are not all there, or there are more");
+    made->colours = asj_allocate(&r->context->memory, count, sizeof *made->colours);
+    if (!made->colours)
+        return asj_fail(r->context, ASJ_ERROR_MEMORY, "no memory for the colours of %lu L-junctions", (unsigned long)count);
+    for (uint32_t n = 0; n < count; n++)
+        for (int32_t k = 0; k < 3 * ASJ_COLOUR_REGIONS; k++, r->next += 2) {
+            const uint32_t level = asj_get_u16(r->next);
+            most = level > most ? level : most;
+            made->colours[n].level[k / 3][k % 3] = (uint16_t)level;
+        }
+    return most > ASJ_GRAY_MAX ? damaged(r, "a colour is brighter than white") : ASJ_OK;
+}
+
 static asj_status make(reader *r, const asj_match_options *options, const asj_junction *junctions, asj_image_features *made)
 {
     const asj_junction_list list = {junctions, r->count, r->width, r->height, 1};
@@ -256,6 +293,8 @@ static asj_status make(reader *r, const asj_match_options *options, const asj_ju
         status = damaged(r, "a junction that cannot be");
     if (status == ASJ_OK)
         status = read_plane(r, &made->pyramid);
+    if (status == ASJ_OK)
+        status = read_colours(r, made);
     return status == ASJ_OK ? asj_image_features_describe(r->context, options, made) : status;
 }
 

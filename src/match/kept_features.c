@@ -47,6 +47,8 @@ static size_t list_pieces(const asj_features *features, piece *list)
     }
     PIECE(of_image.patches, patches * (size_t)asj_patch_length(&features->options));
     PIECE(of_image.usable, patches);
+    if (features->of_image.colours)
+        PIECE(of_image.colours, l->count);
     for (int32_t level = 0; level < pyramid->levels; level++)
         list[n++] = (piece){offsetof(asj_features, of_image.pyramid.plane) + (size_t)level * sizeof(uint16_t *),
                             ((size_t)pyramid->width[level] + 1) * ((size_t)pyramid->height[level] + 1) * sizeof(uint16_t)};
@@ -106,7 +108,9 @@ static asj_status create(asj_context *context, const asj_image *image, const asj
         status = asj_image_features_create(context, options, image, junctions, count, 1, &made);
     if (status != ASJ_OK)
         return status;
-    status = asj_features_keep(context, options, junctions, count, &made, features);
+    status = asj_colours_create(context, image, &made.l_junctions, &made.colours);
+    if (status == ASJ_OK)
+        status = asj_features_keep(context, options, junctions, count, &made, features);
     asj_image_features_free(&context->memory, &made);
     if (status == ASJ_OK && (status = asj_progress(context, ASJ_STAGE_PATCHES, 1)) != ASJ_OK)
         asj_features_free(features);

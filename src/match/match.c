@@ -4,6 +4,7 @@
  * Of each image (image_features.c):
  *   l_junctions.c    junctions -> ordered L-junctions with frames
  *   describe.c       patches in those frames                     (patch.c, sift.c; paper: patch_induced.c)
+ *   colour.c         colours around them                         for the geometry only
  *
  * Of the pair, the list below:
  *   related.c        unless the images have nothing in common
@@ -14,7 +15,8 @@
  *   assign.c         ratio test, mutual check: matches
  *   guided.c         matches propose matches near them; once more from align.c on
  *   verify.c         each match is judged by the matches around it
- *   two_view.c       the geometry of the pair, when asked for: candidates once more, a longer list (prior.c, ../geometry/)
+ *   two_view.c       the geometry of the pair, when asked for: candidates once more, a longer list (prior.c, colour_prior.c,
+ *                    ../geometry/)
  *   same_corner.c    one match for each corner that several octaves list
  *   match_result.c   what the caller sees; segments.c: which ends of the branches correspond
  *
@@ -171,6 +173,8 @@ static asj_status match(asj_context *context, const asj_match_options *options, 
     for (int32_t n = 0; n < 2 && status == ASJ_OK; n++)
         status = asj_image_features_create(context, options, sources[n].image, sources[n].junctions, sources[n].count, n + 1,
                                            &features[n]);
+    for (int32_t n = 0; n < 2 && status == ASJ_OK && options->geometry.model != ASJ_GEOMETRY_NONE; n++)
+        status = asj_colours_create(context, sources[n].image, &features[n].l_junctions, &features[n].colours);
     stop(&watch, ASJ_STAGE_PATCHES);
     if (status == ASJ_OK)
         status = match_features(context, options, both, &watch, result);

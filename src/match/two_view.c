@@ -18,6 +18,7 @@
 #include "align.h"
 #include "core/angle.h"
 #include "consensus.h"
+#include "geometry/estimate.h"
 #include "prior.h"
 #include "shortlist.h"
 #include "support.h"
@@ -41,6 +42,7 @@ typedef struct wide_run {
     asj_match_run run;
     asj_geometry_candidate *given;
     double *probability;
+    double *colours;    /* how well those of each candidate agree */
     uint32_t *place[2]; /* of each location */
 } wide_run;
 
@@ -144,12 +146,13 @@ static asj_status estimate(asj_match_run *run, wide_run *w)
     const size_t count = w->run.candidates.count;
     w->given = asj_allocate(memory, count, sizeof *w->given);
     w->probability = asj_allocate(memory, count, sizeof *w->probability);
+    w->colours = asj_allocate(memory, count, sizeof *w->colours);
     for (int32_t side = 0; side < 2; side++)
         w->place[side] = asj_allocate(memory, run->image[side]->l_junctions.location_count, sizeof *w->place[side]);
-    if (!w->given || !w->probability || !w->place[0] || !w->place[1])
+    if (!w->given || !w->probability || !w->colours || !w->place[0] || !w->place[1])
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the geometry of %zu candidates", count);
     asj_geometry_options options = run->options->geometry;
-    asj_status status = asj_candidate_priors(&w->run, w->probability);
+    asj_status status = asj_candidate_priors(&w->run, w->probability, w->colours);
     if (status == ASJ_OK)
         status = complete_options(run, &options);
     if (status != ASJ_OK)
@@ -163,10 +166,12 @@ static asj_status estimate(asj_match_run *run, wide_run *w)
         if (!(area > 1e-3 && area < 1e3))
             continue;
         w->given[kept] = candidate_for_geometry(w, c, w->probability[k]);
+        w->colours[kept] = w->colours[k];
         w->run.candidates.list[kept++] = *c;
     }
     w->run.candidates.count = kept;
-    return asj_geometry_estimate(run->context, w->given, kept, &options, w->probability, &run->geometry);
+    const double *colours = run->image[0]->colours && run->image[1]->colours ? w->colours : NULL;
+    return asj_estimate_with_colours(run->context, w->given, kept, colours, &options, w->probability, &run->geometry);
 }
 
 /* --- matches that are there -------------------------------------------------------------------------------------------------- */
@@ -317,6 +322,7 @@ asj_status asj_apply_geometry(asj_match_run *run)
     asj_support_free(memory, &w.run.support);
     asj_release(memory, w.given);
     asj_release(memory, w.probability);
+    asj_release(memory, w.colours);
     asj_release(memory, w.place[0]);
     asj_release(memory, w.place[1]);
     return status;
