@@ -4,7 +4,7 @@
  * Preset match, measured on photographs (tests/accuracy/match_pairs.c): what the detector does for precision costs the matcher half
  * of its matches and gains it nothing, because a chance junction has no partner that agrees with its neighbours. So: weaker
  * candidates at every pixel, no strip test, corners that the line fit moves far (a blurred corner, a short branch) stay, and a
- * branch is as long as its junction's scale at least, whatever lies between. */
+ * branch is as long as its junction's scale at least, whatever lies between; and branches end where the scan loses them. */
 #include "detect_options.h"
 
 #define OPTIONS_TYPE asj_detect_options
@@ -82,10 +82,10 @@ static const asj_option_info rows[] = {
     NUMBER(REFINE, ADVANCED, strip_length, "px", 10, 1000, 60, 60, 60, "length of that strip at most"),
     NUMBER(REFINE, ADVANCED, near_strength, "sd", -10, 10, 0, -10, -10,
            "strength that a branch needs in its first 6 px: it must reach the junction"),
-    NUMBER(REFINE, ADVANCED, snap_distance, "px", 0, 30, 8, 0, 8,
+    NUMBER(REFINE, ADVANCED, snap_distance, "px", 0, 30, 4, 0, 8,
            "a branch that ends this close to a junction on its line ends at it"),
-    NUMBER(REFINE, ADVANCED, end_contrast, "", 0, 0.9, 0, 0, 0,
-           "an edge that fades ends where it has this share of its contrast left; 0 = where noise has it"),
+    NUMBER(REFINE, ADVANCED, end_contrast, "", 0, 0.9, 0.15, 0, 0,
+           "an edge ends where it has this share of its own contrast left; 0 = where noise has it"),
 };
 static const asj_option_table table = {rows, sizeof rows / sizeof *rows, sizeof(asj_detect_options)};
 

@@ -118,30 +118,36 @@ static double variance_of(const asj_end_profile *profile)
     return FADE_SD * FADE_SD + walk * walk;
 }
 
-/* Only where an edge fades, or the picture ends, contrast says more than the scan: elsewhere other edges are in the way. */
-static void measure(const asj_frame *frame, const asj_end_rays *rays, const asj_detect_options *options,
-                    const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
+void asj_ends_by_contrast(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
-    branch->end = kind_of(frame, rays, hypothesis, branch);
-    branch->end_variance = END_SD * END_SD;
+    for (int32_t i = 0; i < hypothesis->branch_count && options->end_contrast > 0; i++) {
+        asj_hypothesis_branch *branch = &hypothesis->branches[i];
+        const asj_end_profile profile = asj_end_profile_of(frame, hypothesis, branch, options->end_contrast);
+        branch->end_variance = END_SD * END_SD;
+        if (profile.end <= 0)
+            continue;
+        branch->length = profile.end;
+        branch->end_variance = variance_of(&profile);
+    }
+}
+
+/* Of ends that are the scan's: where an edge fades, its contrast tells how sure the end is. */
+static double scan_variance(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+{
     if (branch->end != ASJ_BRANCH_END_FADED && branch->end != ASJ_BRANCH_END_BORDER)
-        return;
-    const double share = options->end_contrast > 0 ? options->end_contrast : SHARE;
-    const asj_end_profile profile = asj_end_profile_of(frame, hypothesis, branch, share);
-    const double off = options->end_contrast > 0 ? 0 : profile.end - branch->length;
-    if (profile.end <= 0)
-        return;
-    branch->end_variance = variance_of(&profile) + off * off;
-    if (options->end_contrast <= 0)
-        return;
-    asj_hypothesis_branch moved = *branch;
-    branch->contrast_end = moved.length = profile.end;
-    branch->end = profile.at_border ? ASJ_BRANCH_END_BORDER : kind_of(frame, rays, hypothesis, &moved);
+        return END_SD * END_SD;
+    const asj_end_profile profile = asj_end_profile_of(frame, hypothesis, branch, SHARE);
+    const double off = profile.end - branch->length;
+    return profile.end > 0 ? variance_of(&profile) + off * off : END_SD * END_SD;
 }
 
 void asj_end_kinds(const asj_frame *frame, const asj_end_rays *rays, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        if (hypothesis->branches[i].end != ASJ_BRANCH_END_JUNCTION)
-            measure(frame, rays, options, hypothesis, &hypothesis->branches[i]);
+        if (hypothesis->branches[i].end != ASJ_BRANCH_END_JUNCTION) {
+            asj_hypothesis_branch *branch = &hypothesis->branches[i];
+            branch->end = kind_of(frame, rays, hypothesis, branch);
+            if (options->end_contrast <= 0)
+                branch->end_variance = scan_variance(frame, hypothesis, branch);
+        }
 }

@@ -14,8 +14,10 @@ typedef struct asj_end_rays {
 
 void asj_end_rays_make(asj_end_rays *rays);
 
-/* Sets the kind of every end that is not marked as a junction, with its uncertainty, and where the edge ends by its contrast if the
- * options ask for that. */
+/* Ends all branches where their contrast has gone (end_profile.c), if the options ask for that, with its uncertainty. */
+void asj_ends_by_contrast(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis);
+
+/* Sets the kind of every end that is not marked as a junction, and the uncertainty of those that the scan found. */
 void asj_end_kinds(const asj_frame *frame, const asj_end_rays *rays, const asj_detect_options *options, asj_hypothesis *hypothesis);
 
 #endif

@@ -7,10 +7,9 @@
 #include "hypothesis.h"
 
 typedef struct asj_end_profile {
-    double end;    /* px from the junction: where the contrast falls below the share for good; 0 = it is never above */
-    double fading; /* px over which it falls from three quarters to one quarter around there */
-    double noise;  /* of the contrast at one pixel along the edge, over the branch's own contrast: standard deviation */
-    int at_border; /* 1 = the image ends first */
+    double end;    /* px from the junction: where the edge has lost all but the share of its contrast; 0 = it has none */
+    double fading; /* px over which the contrast that it has left falls from three quarters to one quarter around there */
+    double noise;  /* of the contrast at one pixel along the edge, over the contrast at its end: standard deviation */
 } asj_end_profile;
 
 /* `share` of the branch's own contrast, 0 .. 1. */

@@ -9,9 +9,8 @@
 /* Marks the branches that asj_ends_snap() would find a junction at the end of; what is at the others is still to be seen. */
 void asj_ends_mark(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order, asj_watch *watch);
 
-/* Moves the ends of branches onto junctions that lie on their line within `reach` px of the end, tells which end at one, and takes
- * the end by contrast of others that have one. Both: `order` is scratch for `count` elements; they leave off when the watch stops;
- * NULL = none. */
+/* Moves the ends of branches onto junctions that lie on their line within `reach` px of the end, and tells which end at one. px of
+ * the branch's octave. Both: `order` is scratch for `count` elements; they leave off when the watch stops; NULL = none. */
 void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order, asj_watch *watch);
 
 #endif

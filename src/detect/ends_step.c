@@ -68,9 +68,16 @@ static asj_status look_for_junctions(asj_detection_run *run, ends_work work)
 }
 
 /* Ends at junctions need no look at the picture. */
+static void end_by_contrast(const asj_detection_run *run, asj_hypothesis *hypothesis)
+{
+    asj_ends_by_contrast(run->frame, run->options, hypothesis);
+}
+
 asj_status asj_step_ends(asj_detection_run *run)
 {
-    asj_status status = look_for_junctions(run, asj_ends_mark);
+    asj_status status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, end_by_contrast);
+    if (status == ASJ_OK)
+        status = look_for_junctions(run, asj_ends_mark);
     if (status == ASJ_OK)
         status = number_branches(run);
     return status == ASJ_OK ? measure_all(run) : status;

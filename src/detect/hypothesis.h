@@ -28,7 +28,6 @@ typedef struct asj_hypothesis_branch {
     int32_t evidence;        /* where what its strip says stands in asj_detection_run.evidence, once that is measured */
     double end_variance;     /* px^2 of the end along the branch; 0 = not known */
     int32_t end;             /* ASJ_BRANCH_END_... */
-    double contrast_end;     /* px: where the edge ends by its contrast (end_profile.c); 0 = as the scan says */
 } asj_hypothesis_branch;
 
 typedef struct asj_hypothesis {

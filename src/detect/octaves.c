@@ -73,7 +73,6 @@ void asj_octaves_map(asj_hypothesis *hypothesis, int32_t octave)
         branch->offset *= scale;
         branch->offset_variance *= scale * scale;
         branch->end_variance *= scale * scale;
-        branch->contrast_end *= scale;
         branch->apart *= scale;
     }
 }
@@ -177,7 +176,6 @@ static void join(const asj_hypothesis *coarse, double merge_angle, asj_hypothesi
         const double ux = cos(branch.angle), uy = sin(branch.angle);
         branch.offset -= dy * ux - dx * uy;
         branch.length -= dx * ux + dy * uy;
-        branch.contrast_end = branch.contrast_end > 0 ? fmax(branch.contrast_end - (dx * ux + dy * uy), 1) : 0;
         if (branch.width * scale > SHARP * scale_of(hypothesis->octave) && fabs(branch.offset) <= JOINED_OFF * scale &&
             branch.length > 0 && points_elsewhere(hypothesis, &branch, least))
             insert_by_angle(hypothesis, &branch);

@@ -174,11 +174,19 @@ static void test_prepare(void **state)
     assert_int_equal(asj_prepare(context, NULL, 133, 97), ASJ_OK);
     asj_context_memory(context, &after, NULL);
     assert_true(after > before);
-    const long calls = counter.calls;
+    long calls = counter.calls;
     assert_int_equal(asj_prepare(context, NULL, 133, 97), ASJ_OK); /* what the first one made is kept, its result apart */
     asj_context_memory(context, &before, NULL);
-    assert_true(after == before);
-    assert_in_range(counter.calls - calls, 1, 5); /* the picture, the result and its lists */
+    assert_true(before - after < after / 50); /* kept blocks fit other requests too, so one more may be wanted: once */
+    assert_in_range(counter.calls - calls, 1, 6); /* the picture, the result and its lists */
+    for (int i = 0; i < 3; i++) {
+        calls = counter.calls;
+        assert_int_equal(asj_prepare(context, NULL, 133, 97), ASJ_OK);
+        asj_context_memory(context, &after, NULL);
+        assert_true(after <= before);
+        assert_in_range(counter.calls - calls, 1, 5);
+        before = after;
+    }
     unit_context_free(&counter, &context);
 }
 

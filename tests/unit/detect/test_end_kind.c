@@ -14,6 +14,8 @@ static int32_t kind_at_middle(const unit_fixture *f, synth_scene *scene, double 
     asj_frame frame;
     asj_end_rays rays;
     asj_hypothesis h;
+    asj_detect_options options = f->options;
+    options.end_contrast = 0;
     memset(&h, 0, sizeof h);
     h.branch_count = 1;
     h.branches[0].angle = angle < 0 ? angle + 2 * UNIT_PI : angle;
@@ -22,9 +24,9 @@ static int32_t kind_at_middle(const unit_fixture *f, synth_scene *scene, double 
     h.y = SIZE / 2.0 + (off - 70) * sin(angle);
     unit_frame_of(f->context, scene, 0.8, 2, &f->options, &frame);
     asj_end_rays_make(&rays);
-    asj_end_kinds(&frame, &rays, &f->options, &h);
+    asj_end_kinds(&frame, &rays, &options, &h);
     asj_frame_free(&f->context->memory, &frame);
-    assert_true(h.branches[0].contrast_end == 0 && h.branches[0].length == 70 && h.branches[0].end_variance > 0);
+    assert_true(h.branches[0].length == 70 && h.branches[0].end_variance > 0);
     return h.branches[0].end;
 }
 
@@ -84,30 +86,77 @@ static void test_border(void **state)
     h.branch_count = 2;
     h.x = h.y = 100;
     h.branches[0].length = 96; /* to the right, 3 px before the border */
-    h.branches[1].length = 60; /* down */
+    h.branches[1].length = 90; /* down, as much as the end may lie behind the scan's */
     h.branches[1].angle = UNIT_PI / 2;
     synth_scene_init(&scene, SIZE, SIZE, 110);
     synth_add_rectangle(&scene, (synth_point){100, 100}, 150, 150, 0, 180);
     unit_frame_of(f->context, &scene, 0.8, 2, &f->options, &frame);
     asj_end_rays_make(&rays);
     asj_detect_options options = f->options;
+    options.end_contrast = 0;
+    asj_ends_by_contrast(&frame, &options, &h);
+    assert_true(h.branches[0].length == 96 && h.branches[1].length == 90);
     asj_end_kinds(&frame, &rays, &options, &h);
     assert_int_equal(h.branches[0].end, ASJ_BRANCH_END_BORDER);
     assert_int_equal(h.branches[1].end, ASJ_BRANCH_END_FADED);
-    options.end_contrast = 0.5; /* by contrast both reach the border */
-    asj_end_kinds(&frame, &rays, &options, &h);
-    for (int b = 0; b < 2; b++) {
-        assert_int_equal(h.branches[b].end, ASJ_BRANCH_END_BORDER);
-        unit_near("border", b, 0, h.branches[b].contrast_end, 99, 1);
+    for (options.end_contrast = 0.1; options.end_contrast < 0.8; options.end_contrast += 0.2) { /* by contrast both reach it */
+        asj_ends_by_contrast(&frame, &options, &h);
+        asj_end_kinds(&frame, &rays, &options, &h);
+        for (int b = 0; b < 2; b++) {
+            assert_int_equal(h.branches[b].end, ASJ_BRANCH_END_BORDER);
+            unit_near("border", b, 0, h.branches[b].length, 99, 1);
+            assert_true(h.branches[b].end_variance > 0 && h.branches[b].end_variance < 1);
+            h.branches[b].length = 92;
+        }
     }
     h.branches[0].end = ASJ_BRANCH_END_JUNCTION; /* is left alone */
-    h.branches[0].contrast_end = 7;
+    h.branches[0].end_variance = 7;
     asj_end_kinds(&frame, &rays, &options, &h);
-    assert_true(h.branches[0].end == ASJ_BRANCH_END_JUNCTION && h.branches[0].contrast_end == 7);
+    options.end_contrast = 0;
+    asj_end_kinds(&frame, &rays, &options, &h);
+    assert_true(h.branches[0].end == ASJ_BRANCH_END_JUNCTION && h.branches[0].end_variance == 7);
     asj_frame_free(&f->context->memory, &frame);
 }
 
-/* ---- edges that fade ---- */
+/* ---- edges that break off, and edges that fade ---- */
+
+/* An edge of contrast `first` for 60 px, then of `then` for `part` px, then none: where its end is found by `share`. */
+static double end_after(const unit_fixture *f, double first, double then, double part, double scanned, double share)
+{
+    synth_scene scene;
+    asj_frame frame;
+    asj_hypothesis h;
+    memset(&h, 0, sizeof h);
+    h.x = 40;
+    h.y = 90;
+    h.branch_count = 1;
+    h.branches[0].length = scanned;
+    synth_scene_init(&scene, SIZE, SIZE, 100);
+    synth_add_rectangle(&scene, (synth_point){40, 90}, 60, 80, 0, 100 + first);
+    if (part > 0)
+        synth_add_rectangle(&scene, (synth_point){100, 90}, part, 80, 0, 100 + then);
+    unit_frame_of(f->context, &scene, 0.8, 1, &f->options, &frame);
+    const double end = asj_end_profile_of(&frame, &h, &h.branches[0], share).end;
+    asj_frame_free(&f->context->memory, &frame);
+    return end;
+}
+
+/* The edge ends at the corner wherever the scan has left it, within reach; it goes on as a weaker one that has the share, also as a
+ * short one; not as one that has less, nor over a gap that is longer than what follows. */
+static void test_break(void **state)
+{
+    const unit_fixture *f = *state;
+    for (double scanned = 52.5; scanned <= 80; scanned += 2.5)
+        unit_near("corner", scanned, 0, end_after(f, 60, 0, 0, scanned, 0.15), 60, 1.5);
+    unit_near("scan too short", 0, 0, end_after(f, 60, 0, 0, 30, 0.15), 38, 1);
+    for (double part = 15; part <= 40; part += 5) {
+        unit_near("weaker", part, 0, end_after(f, 80, 30, part, 60 + part, 0.15), 60 + part, 1.5);
+        unit_near("from weak to strong", part, 0, end_after(f, 30, 80, part, 60 + part, 0.15), 60 + part, 1.5);
+        unit_near("other side", part, 0, end_after(f, 60, -40, part, 60 + part, 0.15), 60 + part, 1.5);
+        unit_near("too weak", part, 0, end_after(f, 90, 6, part, 60 + part, 0.15), 60, 1.5);
+        unit_near("too weak for half", part, 0, end_after(f, 90, 30, part, 60 + part, 0.5), 60, 1.5);
+    }
+}
 
 /* A bright corner whose upper side keeps its contrast for `plain` px and loses it over `fading` px. */
 static void add_fading(synth_scene *scene, double contrast, double plain, double fading)
@@ -128,7 +177,6 @@ static void test_half_contrast(void **state)
     asj_detect_options options = f->options;
     double sum = 0;
     int moved = 0;
-    options.end_contrast = 0.5;
     for (size_t c = 0; c < UNIT_COUNT(contrasts); c++)
         for (double fading = 60; fading <= 100; fading += 20) { /* steeper ramps have edges of their own */
             synth_scene scene;
@@ -138,7 +186,8 @@ static void test_half_contrast(void **state)
             uint8_t *pixels = unit_picture(&scene, 1, noises[c], 10 * c + (uint64_t)fading);
             const asj_image image = unit_gray8(pixels, 240, SIZE);
             for (int by_contrast = 0; by_contrast < 2; by_contrast++) {
-                assert_int_equal(asj_detect(f->context, &image, by_contrast ? &options : NULL, &found), ASJ_OK);
+                options.end_contrast = by_contrast ? 0.5 : 0;
+                assert_int_equal(asj_detect(f->context, &image, &options, &found), ASJ_OK);
                 for (uint32_t i = 0; i < found->junction_count; i++)
                     for (int32_t b = 0; b < found->junctions[i].branch_count; b++) {
                         const asj_junction *j = &found->junctions[i];
@@ -170,14 +219,14 @@ static void test_profile(void **state)
     h.x = 50;
     h.y = 90;
     h.branch_count = 1;
-    h.branches[0].length = 70;
+    h.branches[0].length = 125;
     add_fading(&scene, 60, 60, 80);
     unit_frame_of(f->context, &scene, 0.8, 1, &f->options, &frame);
     for (double share = 0.25; share < 0.8; share += 0.25) {
         const asj_end_profile p = asj_end_profile_of(&frame, &h, &h.branches[0], share);
         unit_near("share", share, 0, p.end, 60 + 80 * (1 - share), 3);
-        unit_near("fading", share, 0, p.fading, 40, 8);
-        assert_false(p.at_border);
+        const double left = share + 11 / 80.0; /* the contrast at the end: the upper quartile of that of the last 14 px */
+        unit_near("fading", share, 0, p.fading, 80 * (fmax(0.75 * left, share) - 0.25 * left), 5);
     }
     asj_frame_free(&f->context->memory, &frame);
     synth_scene_init(&scene, SIZE, SIZE, 100);
@@ -192,7 +241,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kinds),         cmocka_unit_test(test_faded),   cmocka_unit_test(test_border),
-        cmocka_unit_test(test_half_contrast), cmocka_unit_test(test_profile),
+        cmocka_unit_test(test_break),         cmocka_unit_test(test_half_contrast), cmocka_unit_test(test_profile),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }
