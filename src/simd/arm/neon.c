@@ -2,6 +2,8 @@
 /* Part of every 64-bit ARM processor. */
 #include "neon_vectors.h" /* before kernels.h */
 #include "simd/kernels.h"
+#include "simd/disc_kernels.h"
+#include "simd/gate_kernels.h"
 #include "simd/line_kernels.h"
 #include "simd/sample_kernels.h"
 #include "core/image.h"
@@ -36,5 +38,7 @@ void asj_fill_neon(const asj_ops *ops)
     fill_kernels(ops);
     fill_lines(ops);
     fill_samples(ops);
+    fill_discs(ops);
+    fill_gate(ops);
     ops->image->luma = image_luma_neon;
 }
