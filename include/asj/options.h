@@ -66,7 +66,7 @@ typedef struct asj_detect_options {
     int32_t seeds;                /* ASJ_SEEDS_...: where candidates come from; field; paper segments. With segments the two
                                    * options before this mean nothing, with field the next three */
     double segment_epsilon;       /* NFA allowed for a line segment. 1e-6 .. 1e12; 1e6; paper 1e7 */
-    double seed_gap;              /* px between two segments that nearly meet, from where they would. 0 .. 50; 12 */
+    double seed_gap;              /* px between two segments that nearly meet, from where they would. 0 .. 50; 12; paper 10 */
     int32_t seed_radius;          /* px around such a place, and around the ends of such segments. 0 .. 10; 3 */
     /* step 3: isotropic junctions */
     uint32_t isotropic_radii;     /* bit r set = radius r is tested, 3 .. 30; 7,14; paper 3-10 */

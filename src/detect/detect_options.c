@@ -44,7 +44,7 @@ static const asj_option_info rows[] = {
     CHOICE(CANDIDATES, ADVANCED, seeds, 1, ASJ_SEEDS_FIELD, ASJ_SEEDS_SEGMENTS, ASJ_SEEDS_FIELD, sources,
            "where candidates come from: local junctions, or line segments that nearly meet"),
     NUMBER(CANDIDATES, ADVANCED, segment_epsilon, "NFA", 1e-6, 1e12, 1e6, 1e7, 1e6, "false alarms allowed for a line segment"),
-    NUMBER(CANDIDATES, ADVANCED, seed_gap, "px", 0, 50, 12, 12, 12, "distance between two segments that nearly meet, at most"),
+    NUMBER(CANDIDATES, ADVANCED, seed_gap, "px", 0, 50, 12, 10, 12, "distance between two segments that nearly meet, at most"),
     INTEGER(CANDIDATES, ADVANCED, seed_radius, "px", 0, 10, 3, 3, 3,
             "candidates lie this close to where segments nearly meet, or end then"),
 

@@ -11,6 +11,10 @@
  *   - the end of a segment, no farther than `gap` from another one;
  * where both open by at least 20 degrees, and all pixels within seed_radius of a seed are candidates.
  *
+ * The gap is 10 px in preset paper: a corner that two segments farther apart would make is seldom there in the next picture. With
+ * 12 px .82 of the authors' places are found instead of .80, but .59 instead of .62 of ours are near theirs, and of the L-junctions
+ * 23.8 instead of 24.6 % repeat under zoom by 0.7. In rendered rooms the two differ by 1 % at most.
+ *
  * The segments' own number of false alarms may be large (option segment_epsilon): a false segment costs the time for a few
  * candidates, no more, and small things have short segments. */
 #include "seeds.h"
