@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 
-from . import criteria, images, junctions, library, matches, pairs, score
+from . import criteria, images, junctions, library, matches, pairs, score, tables
 
 
 class Wrong(Exception):
@@ -56,6 +56,14 @@ def _check_score(lib):
             ["1.0", "0.0", "nan"])
 
 
+def _check_tables():
+    right = {"correct": 1, "total": 2, "seconds": 0.0}
+    cells = {("a", "one"): right, ("a", "two"): dict(right, correct=0), ("b", "two"): right}
+    _expect("a sentence on the pairs of two", tables.like("Points", ("a", "b"), ("one", "two"), cells),
+            "Points, 1 pairs that all have, average accuracy: a 0.0 % (0 / 2); b 50.0 % (1 / 2).")
+    _expect("nobody has some pairs alone", tables.like("Points", ("a",), ("one", "two"), cells), None)
+
+
 def _check_repeatability(session):
     """criteria.py and images.py against tests/accuracy/repeatability.c."""
     pair = session.rendered[0]
@@ -90,6 +98,7 @@ def _check_rooms(session):
 def run(session):
     _check_criteria()
     _check_score(session.library)
+    _check_tables()
     _check_repeatability(session)
     _check_rooms(session)
     print("the measures agree with those of tests/accuracy", flush=True)

@@ -12,7 +12,7 @@ import cv2
 from . import checks, images, jobs, library, pairs, report
 
 # The parts' shares of the time; what one leaves over goes to those after it.
-SHARES = {"noise": 200, "repeatability": 200, "scale": 15, "points": 520, "lines": 25, "agreement": 10, "figures": 20,
+SHARES = {"noise": 200, "repeatability": 200, "scale": 15, "points": 520, "lines": 25, "agreement": 25, "figures": 20,
           "ablation": 600}
 
 

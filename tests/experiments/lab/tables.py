@@ -25,6 +25,16 @@ def finding(what, methods, names, cells):
     return "%s, average accuracy: %s." % (what, "; ".join(parts))
 
 
+def like(what, methods, names, cells):
+    """One sentence: what every method makes of the pairs that a method has which has some of the pairs alone, or None."""
+    known = {m: {n for n in names if (m, n) in cells} for m in methods}
+    partly = [shared for shared in known.values() if shared and len(shared) < len(names)]
+    if not partly:
+        return None
+    shared = [n for n in names if all(n in some for some in partly)]
+    return finding("%s, %d pairs that all have" % (what, len(shared)), methods, shared, cells) if shared else None
+
+
 def accuracy_rows(methods, names, cells):
     """(header, rows): method, average accuracy, correct / total, seconds a pair, then every pair.
     cells: (method, pair) -> counts"""

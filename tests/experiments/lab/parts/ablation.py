@@ -16,7 +16,8 @@ POINTS = ("accuracy", "repeatability", "lines accuracy", "recall", "precision", 
 SHARES = ("correct", "lines correct")                                                      # these in percent
 TIMES = ("seconds", "detection")
 NOTICEABLE_POINTS, NOTICEABLE_SHARE, NOTICEABLE_TIME = 0.5, 0.01, 0.2
-NEEDS_BACK = {"neighbours": ("minimum_support",)}  # nobody asked, no support
+NEEDS_BACK = {"neighbours": ("minimum_support",),            # nobody asked, no support
+              "isotropic_persistence": ("isotropic_radii",)}  # three in a row are more than there are
 SYNTHETIC = {"recall": "recall", "precision": "precision", "lengths": "<=3"}
 
 
@@ -34,6 +35,10 @@ def _together(departure, departures):
 
 def _is_default(configuration):
     return not configuration[2]
+
+
+def _is_paper(configuration):
+    return configuration[:2] == ("path", None)
 
 
 def _ends(configurations):
@@ -187,8 +192,9 @@ def run(session):
     if session.quick:
         detector, matcher = (_ends(c) for c in (detector, matcher))
     jobs = session.jobs("ablation")
-    # the two defaults, single options set back, the paths from their ends: what is near the paper takes longest
-    for rank in (_is_default, lambda c: c[0] == "back", lambda c: c[0] == "path" and not _is_default(c)):
+    # the two defaults and paper presets, single options set back, the paths from their ends: what is near the paper takes longest
+    ranks = (_is_default, _is_paper, lambda c: c[0] == "back", lambda c: c[0] == "path" and not _is_default(c) and not _is_paper(c))
+    for rank in ranks:
         for kind, d, words in filter(rank, reversed(detector)):
             _add_detector(session, jobs, kind, d, words, pictures, few)
         for kind, d, words in filter(rank, reversed(matcher)):

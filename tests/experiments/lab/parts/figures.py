@@ -6,12 +6,12 @@ from .. import drawing, junctions, library, methods, pairs, peer_points, score
 from ..library import Failure
 from ..report import Part
 
-MOST_DRAWN = 600   # the surest: more would hide the photograph
+MOST_DRAWN = 2000   # files of others stand in no order: of more, a part of the picture would be empty
 
 
 def _detections(session, picture, given):
     """The photograph with the junctions of the default preset, of the paper preset, and of those that stand in files:
-    (JPEG bytes, {name: how many})"""
+    (JPEG bytes, {name: how many places})"""
     path = picture.original()
     found = {d.name: session.library.detect(d, path) for d in (library.DEFAULT, library.PAPER)}
     found.update({name: junctions.read_asj(file) for name, file in given.items()})
@@ -20,7 +20,7 @@ def _detections(session, picture, given):
         canvas.append(drawing.pale(path))
         for i in range(min(len(each), MOST_DRAWN)):
             drawing.junction(canvas[-1], each, i, drawing.RED)
-    return drawing.encode(drawing.beside(canvas)), {name: len(each) for name, each in found.items()}
+    return drawing.encode(drawing.beside(canvas)), {name: len(np.unique(each.place, axis=0)) for name, each in found.items()}
 
 
 def _junction_matches(session, pair, clean):
@@ -104,4 +104,5 @@ def run(session):
 def _figure_of_junctions(part, session, picture, given):
     data, counts = _detections(session, picture, given)
     part.numbers[picture.key] = counts
-    part.picture(data, "jpeg", "%s, from the left: %s" % (picture.key, "; ".join("%s, %d" % item for item in counts.items())))
+    part.picture(data, "jpeg", "%s, places, from the left: %s" % (
+        picture.key, "; ".join("%s, %d" % item for item in counts.items())))

@@ -6,7 +6,7 @@ import numpy as np
 
 from .. import matches, methods, peer_lines, score
 from ..report import Part
-from ..tables import accuracy_rows, finding
+from ..tables import accuracy_rows, finding, like
 
 MERGED = "libasj, merged lines (--lines)"
 BRANCHES = "%s, branches of the matches"
@@ -72,7 +72,8 @@ def run(session):
             part.heading(title)
             chosen = [p.name for p in chosen]
             part.table(*accuracy_rows(names, chosen, cells))
-            part.findings.append(finding("Line segments, " + title.lower(), names, chosen, cells))
+            what = "Line segments, " + title.lower()
+            part.findings += filter(None, [sentence(what, names, chosen, cells) for sentence in (finding, like)])
     part.numbers = {"cells": [dict(c, method=m, pair=p) for (m, p), c in cells.items()]}
     part.account(jobs)
     return part

@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import methods, pairs, peer_points, score
 from ..report import Part
-from ..tables import accuracy_rows, finding
+from ..tables import accuracy_rows, finding, like
 
 
 def _score(limit, session, method, pair):
@@ -48,7 +48,8 @@ def run(session):
             part.heading(title)
             header, rows = accuracy_rows(names, chosen, cells)
             part.table(header, rows, best=_best(rows))
-            part.findings.append(finding("Key-points, " + title.lower(), names, chosen, cells))
+            what = "Key-points, " + title.lower()
+            part.findings += filter(None, [sentence(what, names, chosen, cells) for sentence in (finding, like)])
     part.numbers = {"cells": [dict(c, method=m, pair=p) for (m, p), c in cells.items()]}
     unjudged = [p.name for p in session.pairs if p not in judged]
     if unjudged:

@@ -15,6 +15,7 @@ ACJ, STAGE = "isotropic stage of the paper preset, radii 3 to 10 px, ACJ", "isot
 BOUNDS = (12, 20, 30)   # px; the paper: "recommended to be set as in the range of [12, 30]"
 ACJ_UP_TO = {bound: "ACJ detector, radii 3 to %d px, ACJ" % bound for bound in BOUNDS}
 LIKE, LIKE_STAGE = "default, location and angles alone", "isotropic stage of the default, location and angles alone"
+LIKE_PAPER = "paper preset, location and angles alone"
 RIVALS = (PAPER, *ACJ_UP_TO.values(), ACJ, STAGE)
 BY_CHANCE = (OURS, PAPER, ACJ, STAGE)   # rows for which chance is measured too
 
@@ -47,10 +48,12 @@ def methods(session):
         **{name: Method(criteria.ACJ, library.isotropic_up_to(bound)) for bound, name in ACJ_UP_TO.items()},
         STAGE: Method(criteria.ACJ, library.ISOTROPIC_DEFAULT),
         LIKE: Method(criteria.ANGLES, library.DEFAULT),
+        LIKE_PAPER: Method(criteria.ANGLES, library.PAPER),
         LIKE_STAGE: Method(criteria.ANGLES, library.ISOTROPIC_DEFAULT),
         APART: Method(criteria.ASJ, library.DEFAULT, apart=True),
         PAPER_APART: Method(criteria.ASJ, library.PAPER, apart=True),
         "default, location alone": Method(criteria.PLACE, library.DEFAULT),
+        "paper preset, location alone": Method(criteria.PLACE, library.PAPER),
     }
     for name, folder in session.arguments.detector:
         out["%s, L-junctions, ASJ" % name] = Method(criteria.ASJ, folder=folder, name=name, apart=True)
@@ -117,6 +120,9 @@ def _report_kind(part, cells, kind, levels, names, unit, head=""):
     complete = {n: [p for p in pictures if all((kind, v, n, p) in cells for v in levels)] for n in names}
     names = [n for n in names if complete[n]]
     whole = [p for p in pictures if all(p in complete[n] for n in names)]
+    if not whole:
+        part.text("Under %s nothing was measured whole: see what was left out." % kind)
+        return None
     rates = {n: [_mean([cells[kind, v, n, p] for p in whole]) for v in levels] for n in names}
     part.numbers[kind] = {"levels": levels, "percent": rates, "pictures": whole}
     part.table([head or "%% repeated: %s, %s" % (kind, unit)] + ["%g" % v for v in levels],
@@ -162,22 +168,25 @@ def run(session):
     part = Part("Repeatability against ACJ")
     part.text(*TEXT)
     all_methods, jobs = methods(session), session.jobs("repeatability")
+    _add_homographies(session, jobs, all_methods)   # first: few, and the only ones with other detectors' files
     _add_changes(session, jobs, all_methods)
-    _add_homographies(session, jobs, all_methods)
     cells = {k: c for k, c in jobs.run().items() if c}
     part.heading("Zoom: the paper's figure")
     zoom = _report_kind(part, cells, "zoom", list(images.FACTORS), all_methods, "factor")
-    part.chart(charts.curves([zoom], height=4.6))
+    if zoom:
+        part.chart(charts.curves([zoom], height=4.6))
     part.heading("By chance")
     part.text("The same after the junctions of the copy were moved around by half the image (mean of three ways): what their "
               "number and the usual directions of walls make by chance.")
     _report_kind(part, cells, "chance", [f for f in images.FACTORS if f < 1], BY_CHANCE, "factor", "% by chance: zoom, factor")
-    _compare(part)
+    if zoom:
+        _compare(part)
     part.heading("Blur, noise, compression, gain")
     panels = [_report_kind(part, cells, kind, list(levels), all_methods, unit)
               for kind, (levels, _, unit) in images.CHANGES.items()]
-    part.chart(charts.curves(panels[:2], height=3.8))
-    part.chart(charts.curves(panels[2:], height=3.8))
+    for some in (panels[:2], panels[2:]):
+        if any(some):
+            part.chart(charts.curves([p for p in some if p], height=3.8))
     _report_homographies(part, cells, all_methods)
     part.numbers["cells"] = [dict(c, change=k[0], level=k[1], method=k[2], picture=k[3]) for k, c in cells.items()]
     part.account(jobs)
@@ -192,9 +201,10 @@ def _above(rates, factors, ours, theirs):
 def _compare(part):
     """At which zoom factors below 1 the default preset repeats more than its rivals, and the paper preset than the ACJ detector."""
     rates, factors = part.numbers["zoom"]["percent"], part.numbers["zoom"]["levels"]
-    for name in [n for n in (*ACJ_UP_TO.values(), ACJ) if n in rates and PAPER in rates]:
-        part.findings.append("Repeatability of the paper preset (ASJ criterion) above %s at every zoom below 1: %s." % (
-            name, _above(rates, factors, PAPER, name)))
+    for ours, what in ((PAPER, "the paper preset"), (PAPER_APART, "the paper preset's L-junctions")):
+        for name in [n for n in (*ACJ_UP_TO.values(), ACJ) if n in rates and ours in rates]:
+            part.findings.append("Repeatability of %s (ASJ criterion) above %s at every zoom below 1: %s." % (
+                what, name, _above(rates, factors, ours, name)))
     for name in [n for n in RIVALS if n in rates and OURS in rates]:
         part.findings.append("Repeatability of the default preset (ASJ criterion) above %s at every zoom below 1: %s." % (
             name, _above(rates, factors, OURS, name)))
