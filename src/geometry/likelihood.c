@@ -66,33 +66,34 @@
 
 static const double size_peaks[2][SIZES] = {{SHARE_1, SHARE_2 * 8, SHARE_4 * 64}, {SHARE_1, SHARE_2 * 64, SHARE_4 * 4096}};
 
-void asj_epipolar_residuals(const double f[9], const asj_pairs *set, const asj_pair *c, asj_residuals *r)
+/* The square is HUGE_VAL also where one residual alone is too large for a ratio above 0 with standard deviations times `loose`. */
+static void epipolar_residuals(const double f[9], const asj_pairs *set, const asj_pair *c, double loose, asj_residuals *r)
 {
     const double n2x = f[0] * c->x1 + f[1] * c->y1 + f[2], n2y = f[3] * c->x1 + f[4] * c->y1 + f[5];
     const double n1x = f[0] * c->x2 + f[3] * c->y2 + f[6], n1y = f[1] * c->x2 + f[4] * c->y2 + f[7];
     const double e = c->x2 * n2x + c->y2 * n2y + f[6] * c->x1 + f[7] * c->y1 + f[8];
     const double s1 = n1x * n1x + n1y * n1y, s2 = n2x * n2x + n2y * n2y, least = s1 < s2 ? s1 : s2;
-    const double sd = set->location_sd;
+    const double sd = set->location_sd, most = FAR * loose * loose;
     r->square = HUGE_VAL;
-    if (!(e * e <= FAR * WIDEST * WIDEST * sd * sd * least) || !(least > 0))
+    if (!(e * e <= most * sd * sd * least) || !(least > 0))
         return;
     const double mx = c->affine[0] * n2x + c->affine[2] * n2y, my = c->affine[1] * n2x + c->affine[3] * n2y;
-    const double s = mx * mx + my * my, cosine = -(mx * n1x + my * n1y);
-    if (!(cosine > 0))
+    const double s = mx * mx + my * my, cosine = -(mx * n1x + my * n1y), sine = my * n1x - mx * n1y;
+    if (!(cosine > 0) || sine * sine > most * s * s1 * set->angle_sd * set->angle_sd)
         return;
     r->value[0] = e / (sqrt(least) * sd);
-    r->value[1] = (my * n1x - mx * n1y) / (sqrt(s * s1) * set->angle_sd);
+    r->value[1] = sine / (sqrt(s * s1) * set->angle_sd);
     r->value[2] = 0.5 * log(s / s1) / set->scale_sd;
     r->square = r->value[0] * r->value[0] + r->value[1] * r->value[1] + r->value[2] * r->value[2];
 }
 
-void asj_planar_residuals(const double h[9], const asj_pairs *set, const asj_pair *c, asj_residuals *r)
+static void planar_residuals(const double h[9], const asj_pairs *set, const asj_pair *c, double loose, asj_residuals *r)
 {
     const double w = h[6] * c->x1 + h[7] * c->y1 + h[8], x = (h[0] * c->x1 + h[1] * c->y1 + h[2]) / w;
     const double y = (h[3] * c->x1 + h[4] * c->y1 + h[5]) / w, dx = c->x2 - x, dy = c->y2 - y;
     const double sd = set->location_sd;
     r->square = HUGE_VAL;
-    if (!(w > 0) || !(dx * dx + dy * dy <= FAR_PLANAR * WIDEST * WIDEST * sd * sd))
+    if (!(w > 0) || !(dx * dx + dy * dy <= FAR_PLANAR * loose * loose * sd * sd))
         return;
     /* J and B = J^-1 A */
     const double j0 = (h[0] - x * h[6]) / w, j1 = (h[1] - x * h[7]) / w, j2 = (h[3] - y * h[6]) / w, j3 = (h[4] - y * h[7]) / w;
@@ -118,14 +119,30 @@ void asj_planar_residuals(const double h[9], const asj_pairs *set, const asj_pai
         r->square += r->value[k] * r->value[k];
 }
 
-void asj_part_residuals(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *c, asj_residuals *r)
+void asj_epipolar_residuals(const double f[9], const asj_pairs *set, const asj_pair *c, asj_residuals *r)
+{
+    epipolar_residuals(f, set, c, WIDEST, r);
+}
+
+void asj_planar_residuals(const double h[9], const asj_pairs *set, const asj_pair *c, asj_residuals *r)
+{
+    planar_residuals(h, set, c, WIDEST, r);
+}
+
+static void part_residuals(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *c, double loose,
+                           asj_residuals *r)
 {
     if (part > 0)
-        asj_planar_residuals(view->planes[part - 1], set, c, r);
+        planar_residuals(view->planes[part - 1], set, c, loose, r);
     else if (view->planar)
-        asj_planar_residuals(view->matrix, set, c, r);
+        planar_residuals(view->matrix, set, c, loose, r);
     else
-        asj_epipolar_residuals(view->matrix, set, c, r);
+        epipolar_residuals(view->matrix, set, c, loose, r);
+}
+
+void asj_part_residuals(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *c, asj_residuals *r)
+{
+    part_residuals(view, part, set, c, WIDEST, r);
 }
 
 asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, double loose)
@@ -189,7 +206,7 @@ double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, cons
         double ratio = 0;
         r.square = HUGE_VAL;
         if (!front || front[0] * c->x1 + front[1] * c->y1 + front[2] > 0)
-            asj_part_residuals(view, k, set, c, &r);
+            part_residuals(view, k, set, c, peaks->loose, &r);
         const double square = r.square * tighter;
         if (square < (planar ? FAR_PLANAR : FAR)) {
             double s[SIZES];

@@ -8,8 +8,12 @@
 #include "polynomial.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <string.h>
 
 #define STEPS 60
+#define TURN_ERROR 1e-5 /* of where a derivative is 0: only what lies between counts */
+#define ROOT_ERROR 1e-13
 
 static double value(const double *c, int32_t degree, double x)
 {
@@ -19,11 +23,15 @@ static double value(const double *c, int32_t degree, double x)
     return sum;
 }
 
-static double slope(const double *c, int32_t degree, double x)
+/* The value, and the slope. */
+static double value_and_slope(const double *c, int32_t degree, double x, double *slope)
 {
-    double sum = degree * c[degree];
-    for (int32_t k = degree - 1; k >= 1; k--)
-        sum = sum * x + k * c[k];
+    double sum = c[degree], along = 0;
+    for (int32_t k = degree - 1; k >= 0; k--) {
+        along = along * x + sum;
+        sum = sum * x + c[k];
+    }
+    *slope = along;
     return sum;
 }
 
@@ -32,14 +40,15 @@ static double bracketed(const double *c, int32_t degree, double low, double high
 {
     double x = 0.5 * (low + high);
     for (int32_t step = 0; step < STEPS && high - low > error; step++) {
-        const double y = value(c, degree, x);
+        double slope;
+        const double y = value_and_slope(c, degree, x, &slope);
         if (y == 0)
             return x;
         if ((y > 0) == (at_low > 0))
             low = x;
         else
             high = x;
-        const double newton = x - y / slope(c, degree, x);
+        const double newton = x - y / slope;
         const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
         if (fabs(next - x) < error)
             return next;
@@ -51,15 +60,14 @@ static double bracketed(const double *c, int32_t degree, double low, double high
 /* Roots in [-1, 1], rising. */
 static int32_t roots_inside(const double *c, int32_t degree, double *roots)
 {
-    double derived[ASJ_POLYNOMIAL_DEGREE + 1], turns[ASJ_POLYNOMIAL_DEGREE + 2];
+    double all[ASJ_POLYNOMIAL_DEGREE + 1][ASJ_POLYNOMIAL_DEGREE + 1], turns[ASJ_POLYNOMIAL_DEGREE + 2];
     int32_t count = 0;
+    memcpy(all[degree], c, (size_t)(degree + 1) * sizeof *c);
+    for (int32_t n = degree - 1; n >= 1; n--)
+        for (int32_t k = 0; k <= n; k++)
+            all[n][k] = (k + 1) * all[n + 1][k + 1];
     for (int32_t n = 1; n <= degree; n++) { /* the derivative of order degree - n, a polynomial of degree n */
-        const int32_t order = degree - n;
-        for (int32_t k = 0; k <= n; k++) {
-            derived[k] = c[k + order];
-            for (int32_t j = 1; j <= order; j++)
-                derived[k] *= k + j;
-        }
+        const double *derived = all[n];
         turns[0] = -1;
         for (int32_t k = 0; k < count; k++)
             turns[k + 1] = roots[k];
@@ -70,7 +78,7 @@ static int32_t roots_inside(const double *c, int32_t degree, double *roots)
         for (int32_t k = 0; k < intervals; k++) {
             const double high = value(derived, n, turns[k + 1]);
             if ((low > 0 && high <= 0) || (low < 0 && high >= 0))
-                roots[count++] = bracketed(derived, n, turns[k], turns[k + 1], low, n < degree ? 1e-9 : 1e-15);
+                roots[count++] = bracketed(derived, n, turns[k], turns[k + 1], low, n < degree ? TURN_ERROR : ROOT_ERROR);
             low = high;
         }
     }

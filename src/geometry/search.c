@@ -6,8 +6,8 @@
  * them on all candidates; and the best of these that differ are refined a little. What they make likely is then sampled in its
  * turn, AROUND times ("local optimisation", Chum, Matas and Kittler 2003). Where the best of the first ones is as poor as in images
  * that have nothing in common, nothing more is looked for. Sample n draws its numbers from stream n, so that threads change
- * nothing. Fewer STARTS and CENTRES find the same best one, but miss its
- * rivals: of unrelated rooms with tiled floors, one in 29 was accepted with 8 and 4. */
+ * nothing. Before rivals were looked for by themselves (rivals.c), fewer STARTS and CENTRES missed them: of unrelated rooms with
+ * tiled floors, one in 29 was accepted with 8 and 4. */
 #include "search.h"
 #include "core/threads.h"
 #include "counter_random.h"
@@ -21,17 +21,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PRESELECTED 1200
-#define SHORT 200
-#define STARTS 24
+#define PRESELECTED 600
+#define SHORT 100
+#define STARTS 16
 #define CENTRES 10
-#define LOCAL 60
+#define LOCAL 40
 #define AROUND 2
 #define WIDEST 3.0
 #define FEW_ROUNDS 3
 #define ROUNDS 5
 #define LOOSE 2.0
 #define TRIES 20
+#define FLAT_SAMPLES 2
 
 /* --- samples ----------------------------------------------------------------------------------------------------------------- */
 
@@ -103,7 +104,7 @@ static int32_t sample(const asj_pairs *set, const double *sum, int32_t count, co
 /* Those of homographies cost least, and most of them are given up at once. */
 static int32_t samples_of(const asj_search *search)
 {
-    return search->kind == ASJ_GEOMETRY_HOMOGRAPHY ? 4 * search->samples : search->samples;
+    return search->kind == ASJ_GEOMETRY_HOMOGRAPHY ? FLAT_SAMPLES * search->samples : search->samples;
 }
 
 /* --- all of it --------------------------------------------------------------------------------------------------------------- */
