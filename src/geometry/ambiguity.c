@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Ambiguous: another geometry, of whatever kind, whose log evidence is at least NEARLY of the best one's or within APART of it, and
+ * whose matches contradict those of the best one: CONTRARY of them, or CONTRARY_ALIKE where it has as much evidence and is another
+ * motion, give another partner to a place that is matched. Things that repeat do that, shifted by a period or turned. The evidence
+ * itself would be surer (odds of a hundred are 5 nats of a hundred or two), but what repeats is matched more or less well for
+ * reasons that the model does not know, and all its places together: of rendered rooms with tiled floors, wrong geometries have up
+ * to 1.6 times the log evidence of the best one that contradicts them, and with fewer than FEW matches more than that.
+ *
+ * Where images have colours, these say of rivals which one is wrong (colour_vote.c). */
+#include "ambiguity.h"
+#include "core/angle.h"
+#include "colour_vote.h"
+#include "likelihood.h"
+#include "small_matrix.h"
+
+#include <math.h>
+#include <string.h>
+
+#define NEARLY 0.6
+#define APART 8.0 /* decades */
+#define FEW 15.0 /* matches */
+#define NEARLY_OF_FEW 0.3
+#define APART_OF_FEW 13.0
+#define CONTRARY 0.4
+#define CONTRARY_ALIKE 0.15 /* of a rival with as much evidence */
+#define SIMILAR_MOTION (6 * ASJ_DEGREE)
+
+/* How much of the second geometry's matches contradicts the first one's: it gives another partner to a place that the first one has
+ * matched, in either image, and that the first one does not hold for nearly as likely (near places have two). As a part of all of
+ * them. taken: scratch, probability of the first one by place. */
+static double contradiction(asj_estimation *e, const asj_model *second)
+{
+    const double *mine = e->scratch.probability;
+    double *const *taken = e->scratch.score.sum;
+    double against = 0, all = 0;
+    asj_probabilities(&e->set, &second->view, 1, &e->scratch.score, e->other);
+    for (int32_t k = 0; k < e->set.count; k++) {
+        taken[0][e->set.list[k].place1] += mine[k];
+        taken[1][e->set.list[k].place2] += mine[k];
+    }
+    for (int32_t k = 0; k < e->set.count; k++) {
+        const double first = taken[0][e->set.list[k].place1] - mine[k], other = taken[1][e->set.list[k].place2] - mine[k];
+        against += e->other[k] * fmax(0, fmin(1, fmax(first, other)) - mine[k]);
+        all += e->other[k];
+    }
+    for (int32_t v = 0; v < 2; v++)
+        memset(taken[v], 0, (size_t)e->set.place_count[v] * sizeof *taken[v]);
+    return all > 0 ? against / all : 0;
+}
+
+/* What a rival is compared with: of a motion that stands for a whole region (posterior.c) the best of it, as the rivals are. */
+static double to_compare(const asj_estimation *e, const asj_model *m)
+{
+    asj_model peak = *m;
+    peak.evidence = m->settled ? fmin(m->peak, m->evidence) : m->evidence;
+    return asj_estimation_log10_nfa(e, &peak);
+}
+
+/* How much contradiction makes a rival: CONTRARY, and less where its evidence, `share` of the best one's, comes near: where things
+ * repeat, a wrong geometry shares many matches with the right one. Nearly the same motion is no rival for that. */
+static double least_contradiction(const asj_model *best, const asj_model *rival, double share)
+{
+    if (best->kind == ASJ_GEOMETRY_ESSENTIAL && rival->kind == ASJ_GEOMETRY_ESSENTIAL) {
+        double turn[9];
+        asj_multiply3_transposed(rival->rotation, best->rotation, turn);
+        const double along = fabs(asj_dot3(rival->translation, best->translation));
+        if (asj_rotation_angle(turn) < SIMILAR_MOTION && along > cos(SIMILAR_MOTION))
+            return CONTRARY;
+    }
+    const double nearness = fmin(1, fmax(0, (share - NEARLY) / (1 - NEARLY)));
+    return CONTRARY + (CONTRARY_ALIKE - CONTRARY) * nearness;
+}
+
+int32_t asj_find_rival(asj_estimation *e, int32_t best)
+{
+    int32_t second = -1;
+    const asj_model *m = &e->finalists[best];
+    for (int32_t n = 0; n < e->count; n++) {
+        const asj_model *rival = &e->finalists[n];
+        if (n == best || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
+            continue;
+        if (contradiction(e, rival) > least_contradiction(m, rival, asj_estimation_log10_nfa(e, rival) / to_compare(e, m)) &&
+            !asj_colours_contradict(&e->set, e->scratch.probability, e->other, e->vote))
+            second = n;
+    }
+    return second;
+}
+
+int32_t asj_is_ambiguous(const asj_estimation *e, int32_t best, int32_t rival, double inliers)
+{
+    const double nfa = to_compare(e, &e->finalists[best]), second = asj_estimation_log10_nfa(e, &e->finalists[rival]);
+    const int32_t few = inliers < FEW;
+    return second <= fmax((few ? NEARLY_OF_FEW : NEARLY) * nfa, nfa + (few ? APART_OF_FEW : APART));
+}

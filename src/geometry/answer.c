@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* What an estimation says in the end.
+ *
+ * Which kind: the one with the larger evidence. Likelihood ratios of both kinds are taken against the same background, and the
+ * volume of their parameters is paid for in the evidence, so a homography wins where a plane explains as much as parallax would,
+ * although it has more parameters: it says where a match must lie along the line, too.
+ *
+ * A pose is one that is known to within POSE_SD, with all other motions counted as likely as their evidence says: all on one plane
+ * there are two (Hartley and Zisserman, 13.4), and near that everything between. */
+#include "answer.h"
+#include "ambiguity.h"
+#include "core/angle.h"
+#include "likelihood.h"
+#include "motions.h"
+#include "posterior.h"
+#include "small_matrix.h"
+
+#include <math.h>
+#include <string.h>
+
+#define ALMOST 0.8
+#define POSE_SD (4 * ASJ_DEGREE)
+#define LOOSE_DIRECTION (30 * ASJ_DEGREE) /* a translation known worse than this is none */
+
+/* Covariance of rotation and translation, 6 x 6, from that of the five parameters of model.c; the largest standard deviation of a
+ * combination of them. */
+static double set_covariance(const asj_estimation *e, int32_t best, double covariance[36])
+{
+    double five[25], frame[6][5] = {{0}}, axis[3], other[3];
+    const double sd = asj_motion_covariance(e->finalists, e->count, best, five);
+    asj_translation_axes(e->finalists[best].translation, axis, other);
+    for (int32_t k = 0; k < 3; k++) {
+        frame[k][k] = 1;
+        frame[3 + k][3] = axis[k];
+        frame[3 + k][4] = other[k];
+    }
+    for (int32_t i = 0; i < 6; i++)
+        for (int32_t j = 0; j < 6; j++) {
+            covariance[6 * i + j] = 0;
+            for (int32_t p = 0; p < 5; p++)
+                for (int32_t q = 0; q < 5; q++)
+                    covariance[6 * i + j] += frame[i][p] * five[5 * p + q] * frame[j][q];
+        }
+    return sd;
+}
+
+/* What is not known of the focal length moves the motion, too: the covariance grows by d d' with d the motion's difference when the
+ * focal length is a standard deviation longer. Its length, rad. */
+static double add_focal(const asj_focal *focal, asj_geometry *result)
+{
+    const double *d = focal->along;
+    for (int32_t i = 0; i < 36; i++)
+        result->covariance[i] += d[i / 6] * d[i % 6];
+    result->focal_sd = focal->sd;
+    return sqrt(asj_dot3(d, d) + asj_dot3(d + 3, d + 3));
+}
+
+static void clear_pose(asj_geometry *result)
+{
+    result->has_pose = 0;
+    result->focal[0] = result->focal[1] = result->focal_sd = 0;
+    memset(result->rotation, 0, sizeof result->rotation);
+    memset(result->translation, 0, sizeof result->translation);
+    memset(result->covariance, 0, sizeof result->covariance);
+}
+
+/* Rotation and translation of an essential matrix. 0 when nothing determines its translation. */
+static int32_t set_pose(asj_estimation *e, int32_t number, asj_geometry *result)
+{
+    asj_model *m = &e->finalists[number];
+    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
+    if (m->view.plane_count == 0 && !(asj_choose_motion(&e->set, e->scratch.probability, m) > -HUGE_VAL))
+        return 0;
+    double sd = set_covariance(e, number, result->covariance);
+    if (number == e->focal_at && e->focal.is_known)
+        sd = hypot(sd, add_focal(&e->focal, result));
+    memcpy(result->rotation, m->rotation, sizeof result->rotation);
+    memcpy(result->translation, m->translation, sizeof result->translation);
+    result->focal[0] = m->cameras[0].fx;
+    result->focal[1] = m->cameras[1].fx;
+    result->has_pose = sd < POSE_SD;
+    if (number == e->focal_at && (sd >= LOOSE_DIRECTION || !e->focal.is_known)) /* a motion that is none tells no focal length */
+        clear_pose(result);
+    return sd < LOOSE_DIRECTION;
+}
+
+static void set_matrix(const asj_model *m, asj_geometry *result)
+{
+    double sum = 0;
+    for (int32_t k = 0; k < 9; k++)
+        sum += m->view.matrix[k] * m->view.matrix[k];
+    for (int32_t k = 0; k < 9; k++)
+        result->matrix[k] = m->view.matrix[k] / sqrt(sum);
+}
+
+/* A camera that only turns obeys a homography, and an essential matrix with any translation and a plane far away: where the motion
+ * is not known well enough to be told, the homography says what there is to say. */
+static int32_t instead_of(const asj_estimation *e, int32_t best)
+{
+    const int32_t flat = asj_estimation_best(e, ASJ_GEOMETRY_HOMOGRAPHY);
+    return flat >= 0 && e->finalists[flat].evidence > ALMOST * e->finalists[best].evidence ? flat : best;
+}
+
+/* A plane, or a camera that only turns, explains as much with any focal length: one that was found is believed where the motion
+ * explains about as much as anything else. */
+static int32_t is_believed(const asj_estimation *e, int32_t essential, int32_t best)
+{
+    return essential != e->focal_at || e->finalists[essential].evidence > ALMOST * e->finalists[best].evidence;
+}
+
+void asj_answer(asj_estimation *e, double *probabilities, asj_geometry *result)
+{
+    int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO), determined = 1;
+    const double least = log10(e->options->epsilon);
+    result->status = ASJ_GEOMETRY_CHANCE;
+    if (best < 0)
+        return;
+    const int32_t essential = asj_estimation_best(e, ASJ_GEOMETRY_ESSENTIAL); /* a plane's pose comes from here, too */
+    if (essential >= 0 && is_believed(e, essential, best) && asj_estimation_log10_nfa(e, &e->finalists[essential]) <= least)
+        determined = set_pose(e, essential, result);
+    if (best == essential && !result->has_pose)
+        best = instead_of(e, best);
+    determined = determined || best != essential;
+    const asj_model *m = &e->finalists[best];
+    const int32_t open_focal = best == e->focal_at && !e->focal.is_known;
+    result->model = open_focal ? ASJ_GEOMETRY_FUNDAMENTAL : m->kind;
+    result->log10_nfa = asj_estimation_log10_nfa(e, m);
+    set_matrix(m, result);
+    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
+    for (int32_t k = 0; k < e->set.count; k++)
+        result->inliers += e->scratch.probability[k];
+    const int32_t second = asj_find_rival(e, best);
+    if (second >= 0) {
+        result->has_second = 1;
+        result->second_log10_nfa = asj_estimation_log10_nfa(e, &e->finalists[second]);
+    }
+    if (result->log10_nfa > least)
+        return;
+    if (open_focal && e->options->model == ASJ_GEOMETRY_ESSENTIAL)
+        determined = 0;
+    result->status = !determined ? ASJ_GEOMETRY_DEGENERATE : ASJ_GEOMETRY_ACCEPTED;
+    if (second >= 0 && asj_is_ambiguous(e, best, second, result->inliers))
+        result->status = ASJ_GEOMETRY_AMBIGUOUS;
+    for (int32_t k = 0; k < e->set.count && probabilities; k++)
+        probabilities[e->set.list[k].source] = e->scratch.probability[k];
+}

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* One estimation, which its steps hand on (geometry.c lists them). */
+#ifndef ASJ_SRC_GEOMETRY_ESTIMATION_H
+#define ASJ_SRC_GEOMETRY_ESTIMATION_H
+
+#include "adjust.h"
+#include "focal.h"
+#include "search.h"
+
+#define ASJ_MOST_KINDS 3
+
+/* One call. */
+typedef struct asj_estimation {
+    asj_context *context;
+    const asj_geometry_options *options;
+    asj_pairs set;
+    asj_model finalists[2 * ASJ_MOST_KINDS * ASJ_FINALISTS]; /* and their rivals */
+    int32_t count;
+    asj_adjust_scratch scratch;
+    double *other; /* probabilities under a second geometry */
+    double *vote;  /* colour_vote.c */
+    asj_focal focal;
+    int32_t focal_at; /* where the finalist with the found focal length stands; -1 = there is none */
+} asj_estimation;
+
+/* The finalist with the largest evidence, of a kind or of any (ASJ_GEOMETRY_AUTO); -1 when there is none. */
+int32_t asj_estimation_best(const asj_estimation *e, int32_t kind);
+
+/* log10 of how many such geometries chance brings. */
+double asj_estimation_log10_nfa(const asj_estimation *e, const asj_model *m);
+
+#endif

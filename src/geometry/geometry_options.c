@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Options of the geometry, and the names of its models and answers. */
+#include "geometry_options.h"
+
+#include <math.h>
+#include <string.h>
+
+void asj_geometry_options_init(asj_geometry_options *options)
+{
+    if (!options)
+        return;
+    memset(options, 0, sizeof *options);
+    options->model = ASJ_GEOMETRY_AUTO;
+    options->samples = 1000;
+    options->seed = 1;
+    options->epsilon = 1e-7;
+    options->location_sd = 1.5;
+    options->angle_sd = 9;
+    options->scale_sd = 0.22;
+}
+
+static int32_t within(double value, double low, double high)
+{
+    return value >= low && value <= high;
+}
+
+int32_t asj_camera_is_known(const asj_camera *c)
+{
+    return c->fx > 0;
+}
+
+int32_t asj_cameras_are_known(const asj_geometry_options *options)
+{
+    return asj_camera_is_known(&options->cameras[0]) && asj_camera_is_known(&options->cameras[1]);
+}
+
+static asj_status check_camera(asj_context *context, const asj_camera *c, int32_t number)
+{
+    if (c->fx == 0 && c->fy == 0 && isfinite(c->cx) && isfinite(c->cy))
+        return ASJ_OK;
+    if (!within(c->fx, 1, 1e7) || !within(c->fy, 1, 1e7) || !within(fabs(c->cx), 0, 1e7) || !within(fabs(c->cy), 0, 1e7))
+        return asj_fail(context, ASJ_ERROR_OPTION, "camera %d cannot be: fx %g, fy %g, cx %g, cy %g", (int)number,
+                        c->fx, c->fy, c->cx, c->cy);
+    return ASJ_OK;
+}
+
+asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_options *o)
+{
+    for (int32_t v = 0; v < 2; v++) {
+        const asj_status status = check_camera(context, &o->cameras[v], v + 1);
+        if (status != ASJ_OK)
+            return status;
+        if (o->widths[v] < 1 || o->heights[v] < 1)
+            return asj_fail(context, ASJ_ERROR_OPTION, "image %d has no size", (int)v + 1);
+    }
+    if (o->model < ASJ_GEOMETRY_NONE || o->model > ASJ_GEOMETRY_HOMOGRAPHY)
+        return asj_fail(context, ASJ_ERROR_OPTION, "no such geometry: %d", (int)o->model);
+    if (o->find_focal < 0 || o->find_focal > 1)
+        return asj_fail(context, ASJ_ERROR_OPTION, "find_focal is %d, not 0 or 1", (int)o->find_focal);
+    if (o->find_focal && (asj_camera_is_known(&o->cameras[0]) || asj_camera_is_known(&o->cameras[1])))
+        return asj_fail(context, ASJ_ERROR_OPTION, "find_focal: the focal length of a camera is given");
+    if (o->find_focal && o->model > ASJ_GEOMETRY_ESSENTIAL)
+        return asj_fail(context, ASJ_ERROR_OPTION, "find_focal: only model auto and essential have a focal length");
+    if (o->model == ASJ_GEOMETRY_ESSENTIAL && !o->find_focal && !asj_cameras_are_known(o))
+        return asj_fail(context, ASJ_ERROR_OPTION, "an essential matrix needs both cameras");
+    if (o->samples < 1 || o->samples > 100000 || !within(o->epsilon, 1e-12, 1) || !within(o->location_sd, 0.1, 10) ||
+        !within(o->angle_sd, 1, 45) || !within(o->scale_sd, 0.02, 1))
+        return asj_fail(context, ASJ_ERROR_OPTION, "samples, epsilon or a standard deviation of the geometry is out of range");
+    return ASJ_OK;
+}
+
+const char *asj_geometry_model_name(int32_t model)
+{
+    static const char *const names[] = {"none", "auto", "essential", "fundamental", "homography"};
+    return model >= ASJ_GEOMETRY_NONE && model <= ASJ_GEOMETRY_HOMOGRAPHY ? names[model] : "unknown";
+}
+
+const char *asj_geometry_status_name(int32_t status)
+{
+    static const char *const names[] = {"not asked", "accepted", "chance", "too few", "ambiguous", "degenerate"};
+    return status >= ASJ_GEOMETRY_NOT_ASKED && status <= ASJ_GEOMETRY_DEGENERATE ? names[status] : "unknown";
+}

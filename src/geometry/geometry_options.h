@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Options of the geometry. */
+#ifndef ASJ_SRC_GEOMETRY_OPTIONS_H
+#define ASJ_SRC_GEOMETRY_OPTIONS_H
+
+#include "core/context.h"
+
+#include <asj/geometry.h>
+
+/* ASJ_ERROR_OPTION, with a message. */
+asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_options *options);
+
+int32_t asj_camera_is_known(const asj_camera *camera);
+int32_t asj_cameras_are_known(const asj_geometry_options *options); /* both */
+
+#endif
