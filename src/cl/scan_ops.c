@@ -243,6 +243,17 @@ static asj_status list_runs(asj_context *context, struct asj_cl_scan *state, siz
     return status == ASJ_OK ? asj_cl_write(context, &state->entries, 0, entries, runs * sizeof(uint32_t)) : status;
 }
 
+/* The device writes words, whatever the order of the bytes in them. */
+static void unpack(asj_field_branch *branches, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint32_t word;
+        memcpy(&word, &branches[i], sizeof word);
+        branches[i].angle = (uint16_t)word;
+        branches[i].strength = (uint16_t)(word >> 16);
+    }
+}
+
 /* Rows that fit at once. */
 static asj_status make_branches(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
                                 asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
@@ -253,7 +264,8 @@ static asj_status make_branches(asj_context *context, const asj_field *field, co
     asj_status status = get(context, &state);
     if (status != ASJ_OK)
         return status;
-    state->generation = 0; /* the rays' entries go */
+    state->generation = 0; /* the rays' entries go, .. */
+    state->capacity = 0;   /* .. and buffers may be gone when one of them cannot be made */
     status = asj_cl_planes_need(context, frame, top, bottom);
     if (status == ASJ_OK)
         status = load_field(context, &state->field, field, &changed);
@@ -268,6 +280,8 @@ static asj_status make_branches(asj_context *context, const asj_field *field, co
     if (status == ASJ_OK)
         status = asj_cl_read_rows(context, &state->branches, 0, (size_t)frame->blocks * ASJ_LANES * pixel, branches,
                                   (size_t)frame->width * pixel, (size_t)frame->width * pixel, rows);
+    if (status == ASJ_OK)
+        unpack(branches[0], rows * (size_t)frame->width * ASJ_FIELD_BRANCHES);
     return status;
 }
 

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define WORK_FIELD (WORK_WIDTH * WORK_HEIGHT * ASJ_FIELD_BRANCHES)
+
 int work_images_make(work_images *images)
 {
     for (int v = 0; v < 2; v++) {
@@ -47,6 +49,7 @@ void work_forget(work_answer *a)
 {
     for (int v = 0; v < 2; v++)
         free(a->junctions[v]);
+    free(a->field);
     free(a->matches);
     memset(a, 0, sizeof *a);
 }
@@ -66,11 +69,22 @@ static asj_status detect(asj_context *context, const work_images *images, int v,
     return status;
 }
 
+/* Between two detections, since it shares buffers with them. */
+static asj_status find_field(asj_context *context, const work_images *images, work_answer *a)
+{
+    a->field = calloc(WORK_FIELD, sizeof *a->field);
+    if (!a->field)
+        exit(99);
+    return asj_local_field(context, &images->of[0], NULL, a->field);
+}
+
 asj_status work_run(asj_context *context, const work_images *images, work_answer *a)
 {
     asj_match_result *found = NULL;
     memset(a, 0, sizeof *a);
     asj_status status = detect(context, images, 0, a);
+    if (status == ASJ_OK)
+        status = find_field(context, images, a);
     if (status == ASJ_OK)
         status = detect(context, images, 1, a);
     if (status == ASJ_OK)
@@ -89,6 +103,8 @@ int work_same(const work_answer *a, const work_answer *b)
     for (int v = 0; v < 2; v++)
         if (a->counts[v] != b->counts[v] || memcmp(a->junctions[v], b->junctions[v], a->counts[v] * sizeof(asj_junction)) != 0)
             return 0;
+    if (!a->field != !b->field || (a->field && memcmp(a->field, b->field, WORK_FIELD * sizeof *a->field) != 0))
+        return 0;
     return a->match_count == b->match_count && memcmp(a->matches, b->matches, a->match_count * sizeof *a->matches) == 0;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* What these tests let a device do: two small images, a detection in each, a match. */
+/* What these tests let a device do: two small images, a detection in each, the local junctions of one, a match. */
 #ifndef ASJ_TESTS_OPENCL_WORK_H
 #define ASJ_TESTS_OPENCL_WORK_H
 
@@ -14,6 +14,7 @@ typedef struct work_images {
 
 typedef struct work_answer {
     asj_junction *junctions[2];
+    asj_local_branch *field; /* of the first image; NULL = the call did not come so far */
     asj_junction_match *matches;
     size_t counts[2], match_count;
     int32_t backend;
