@@ -120,7 +120,7 @@ typedef struct asj_match_result {
     double stage_ms[16];               /* by ASJ_STAGE_... */
     uint64_t candidates;               /* pairs that were aligned or compared by the pair's own map */
     asj_geometry geometry;             /* status not asked where options->geometry.model is none */
-    uint64_t own;                      /* the library's; 0 in a result that the caller puts together */
+    uint64_t own;                      /* the library's; 0 in a result that the caller puts together or copies */
     const asj_junction_match *rejected;/* matches that there would be without the geometry, and that it contradicts; smallest
                                         * distance first */
     uint64_t rejected_count;

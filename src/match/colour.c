@@ -10,7 +10,7 @@
  * Sums of whole numbers at places that are rounded once: the same on every machine. Neither exposure nor white balance is known
  * here: what two images differ in as a whole is seen when they are compared. */
 #include "colour.h"
-#include "core/threads.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -22,7 +22,7 @@
 #define INNERMOST 6.0 /* px: of a sector */
 #define RINGS 4
 #define RING 3.0      /* px between them */
-#define CUT 255
+#define CUT 255       /* or the level that means white */
 #define LEAST_SHARE 3 /* a region is seen when a third of its samples counts */
 #define LEVEL_ONE 128
 #define LARGEST_OCTAVE 4
@@ -32,6 +32,7 @@ typedef struct picture {
     const uint8_t *data;
     ptrdiff_t stride;
     int32_t width, height, step, red;
+    int32_t cut; /* from this level on a channel is cut */
 } picture;
 
 typedef struct sums {
@@ -45,6 +46,7 @@ static int32_t picture_of(const asj_image *image, picture *p)
         return 0;
     p->step = format == ASJ_FORMAT_RGB8 || format == ASJ_FORMAT_BGR8 ? 3 : 4;
     p->red = format == ASJ_FORMAT_RGB8 || format == ASJ_FORMAT_RGBA8 ? 0 : 2;
+    p->cut = image->white > 0 && image->white < CUT ? (int32_t)ceilf(image->white) : CUT;
     p->data = image->data;
     p->width = image->width;
     p->height = image->height;
@@ -57,9 +59,10 @@ static void add(const picture *p, double x, double y, sums *s)
     s->tried++;
     if (!(x > -0.5 && y > -0.5 && x < p->width - 0.5 && y < p->height - 0.5))
         return;
-    const uint8_t *pixel = p->data + (ptrdiff_t)lrint(y) * p->stride + (ptrdiff_t)lrint(x) * p->step;
+    const int32_t column = (int32_t)fmin(x + 0.5, p->width - 1), row = (int32_t)fmin(y + 0.5, p->height - 1);
+    const uint8_t *pixel = p->data + row * p->stride + (ptrdiff_t)column * p->step;
     const uint8_t red = pixel[p->red], green = pixel[1], blue = pixel[2 - p->red];
-    if (red == CUT || green == CUT || blue == CUT)
+    if (red >= p->cut || green >= p->cut || blue >= p->cut)
         return;
     s->channel[0] += red;
     s->channel[1] += green;
@@ -143,12 +146,13 @@ typedef struct job {
     const picture *picture;
     const asj_l_junctions *l_junctions;
     asj_colour *colours;
+    asj_watch *watch;
 } job;
 
 static void look_around_some(const void *data, const asj_part *part)
 {
     const job *j = data;
-    for (int64_t n = part->first; n < part->end; n++)
+    for (int64_t n = part->first; n < part->end && !asj_watch_stops(j->watch, part); n++)
         look_around(j->picture, j->l_junctions, n, &j->colours[n]);
 }
 
@@ -174,11 +178,13 @@ asj_status asj_colours_create(asj_context *context, const asj_image *image, cons
     if (!made)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the colours of %lu L-junctions",
                         (unsigned long)l_junctions->count);
-    const job j = {&p, l_junctions, made};
+    asj_watch watch;
+    asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
+    const job j = {&p, l_junctions, made, &watch};
     asj_parallel(context, asj_threads_for(context, l_junctions->count, 256), l_junctions->count, 0, look_around_some, &j);
-    if (is_grey(made, l_junctions->count))
+    if (watch.stopped || is_grey(made, l_junctions->count))
         asj_release(&context->memory, made);
     else
         *colours = made;
-    return ASJ_OK;
+    return asj_watch_end(&watch);
 }

@@ -16,7 +16,7 @@ typedef struct asj_colour {
 } asj_colour;
 
 /* One for each L-junction; *colours stays NULL when the image has no colour: a format without, or grey wherever it is looked at.
- * ASJ_ERROR_MEMORY. */
+ * ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED. */
 asj_status asj_colours_create(asj_context *context, const asj_image *image, const asj_l_junctions *l_junctions,
                               asj_colour **colours);
 

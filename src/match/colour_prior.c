@@ -68,7 +68,8 @@ static double median_difference(const asj_match_run *run, const chroma *const li
             const double difference = c.in2->value[r][channel] - c.in1->value[r][channel];
             if (!is_common(&c, r) || !(fabs(difference) < WIDTH))
                 continue;
-            bins[(int32_t)((difference + WIDTH) / (2 * WIDTH) * BINS)] += probability[k];
+            const int32_t at = (int32_t)((difference + WIDTH) / (2 * WIDTH) * BINS);
+            bins[at < BINS ? at : BINS - 1] += probability[k]; /* rounding */
             all += probability[k];
         }
     }

@@ -17,6 +17,7 @@
  * video frames, grey walls; 1.3 to 2.8: good ones with coloured things). */
 #include "prior.h"
 #include "colour_prior.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -64,10 +65,10 @@ static double shifted(const asj_match_run *run, const double *z, double shift, d
     return total;
 }
 
-static void bring_to_sum(const asj_match_run *run, const double *z, double *const sums[2], double *p)
+static void bring_to_sum(const asj_match_run *run, const double *z, double *const sums[2], asj_watch *watch, double *p)
 {
     double low = -15, high = 15;
-    for (int32_t step = 0; step < STEPS; step++) {
+    for (int32_t step = 0; step < STEPS && !asj_watch_stops(watch, NULL); step++) {
         const double middle = 0.5 * (low + high);
         if (shifted(run, z, middle, sums, p) < EXPECTED)
             low = middle;
@@ -94,42 +95,46 @@ static void logits(const asj_match_run *run, const float *best1, const float *be
 typedef struct priors {
     double *z1, *z2, *other, *sums[2];
     float *best[2];
+    asj_watch watch;
 } priors;
 
-static void mean_of_models(const asj_match_run *run, const priors *p, double *prior)
+static void mean_of_models(const asj_match_run *run, priors *p, double *prior)
 {
-    bring_to_sum(run, p->z1, p->sums, prior);
-    bring_to_sum(run, p->z2, p->sums, p->other);
+    bring_to_sum(run, p->z1, p->sums, &p->watch, prior);
+    bring_to_sum(run, p->z2, p->sums, &p->watch, p->other);
     for (size_t k = 0; k < run->candidates.count; k++)
         prior[k] = 0.5 * (prior[k] + p->other[k]);
 }
 
-static asj_status set_priors(const asj_match_run *run, const priors *p, double *prior, double *colours)
+static asj_status set_priors(const asj_match_run *run, priors *p, double *prior, double *colours)
 {
     logits(run, p->best[0], p->best[1], p->z1, p->z2);
+    asj_watch_start(&p->watch, run->context, ASJ_STAGE_ASSIGN);
     mean_of_models(run, p, prior);
-    if (!run->image[0]->colours || !run->image[1]->colours)
-        return ASJ_OK;
+    if (!run->image[0]->colours || !run->image[1]->colours || p->watch.stopped)
+        return asj_watch_end(&p->watch);
     const asj_status status = asj_colour_agreement(run, prior, colours);
     for (size_t k = 0; k < run->candidates.count; k++) {
         p->z1[k] += COLOUR_1 * colours[k];
         p->z2[k] += COLOUR_2 * colours[k];
     }
     mean_of_models(run, p, prior);
-    return status;
+    return status == ASJ_OK ? asj_watch_end(&p->watch) : status;
 }
 
 asj_status asj_candidate_priors(const asj_match_run *run, double *prior, double *colours)
 {
     asj_memory *memory = &run->context->memory;
     const size_t count = run->candidates.count;
-    double *z = asj_allocate(memory, count, 3 * sizeof *z);
-    priors p = {z, z + count, z + 2 * count, {NULL, NULL}, {best_distances(run, 0), best_distances(run, 1)}};
+    priors p = {.best = {best_distances(run, 0), best_distances(run, 1)}};
+    p.z1 = asj_allocate(memory, count, sizeof *p.z1);
+    p.z2 = asj_allocate(memory, count, sizeof *p.z2);
+    p.other = asj_allocate(memory, count, sizeof *p.other);
     for (int32_t side = 0; side < 2; side++)
         p.sums[side] = asj_allocate(memory, run->image[side]->l_junctions.location_count, sizeof *p.sums[side]);
     asj_status status = ASJ_OK;
     memset(colours, 0, count * sizeof *colours);
-    if (!p.best[0] || !p.best[1] || !z || !p.sums[0] || !p.sums[1])
+    if (!p.best[0] || !p.best[1] || !p.z1 || !p.z2 || !p.other || !p.sums[0] || !p.sums[1])
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the priors of %zu candidates", count);
     else if (count > 0)
         status = set_priors(run, &p, prior, colours);
@@ -137,6 +142,8 @@ asj_status asj_candidate_priors(const asj_match_run *run, double *prior, double 
         asj_release(memory, p.best[side]);
         asj_release(memory, p.sums[side]);
     }
-    asj_release(memory, z);
+    asj_release(memory, p.z1);
+    asj_release(memory, p.z2);
+    asj_release(memory, p.other);
     return status;
 }

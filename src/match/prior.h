@@ -6,7 +6,7 @@
 #include "match_run.h"
 
 /* One number for each candidate of the run: see prior.c. colours: how well its colours agree (colour_prior.c); 0 where images have
- * none. */
+ * none. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED. */
 asj_status asj_candidate_priors(const asj_match_run *run, double *prior, double *colours);
 
 #endif

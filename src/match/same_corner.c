@@ -26,10 +26,10 @@ static int32_t octave_at(const asj_l_junctions *all, uint32_t location)
 }
 
 /* How often a corner is listed, on average: 1 and the number of other octaves that have a location within `separation` px of it. */
-static double crowding_of(const asj_l_junctions *all, double separation)
+static double crowding_of(const asj_l_junctions *all, double separation, asj_watch *watch)
 {
     size_t total = 0;
-    for (uint32_t p = 0; p < all->location_count; p++) {
+    for (uint32_t p = 0; p < all->location_count && !asj_watch_stops(watch, NULL); p++) {
         const double x = all->location_x[p], y = all->location_y[p], most = x + separation;
         uint32_t octaves = 1u << octave_at(all, p);
         for (uint32_t q = asj_first_location(all, x - separation); q < all->location_count && all->location_x[q] <= most; q++) {
@@ -93,12 +93,12 @@ static void keep(asj_choices *choices, const uint8_t *gone)
 }
 
 /* Leaves the choices that have the support which their octaves need. */
-static void keep_supported(asj_match_run *run, uint8_t *gone)
+static void keep_supported(asj_match_run *run, uint8_t *gone, asj_watch *watch)
 {
     asj_choices *choices = &run->choices;
     const double separation = run->options->separation, needed = (double)asj_needed_support(run);
-    const double crowding = 0.5 * (crowding_of(&run->image[0]->l_junctions, separation) +
-                                   crowding_of(&run->image[1]->l_junctions, separation));
+    const double crowding = 0.5 * (crowding_of(&run->image[0]->l_junctions, separation, watch) +
+                                   crowding_of(&run->image[1]->l_junctions, separation, watch));
     for (size_t n = 0; n < choices->count; n++) {
         const asj_candidate *c = &run->candidates.list[choices->list[n].candidate];
         gone[n] = (double)c->support < needed * needs(run, c, crowding);
@@ -107,18 +107,15 @@ static void keep_supported(asj_match_run *run, uint8_t *gone)
 }
 
 /* Leaves one choice a corner. */
-static asj_status keep_finest(asj_match_run *run, uint8_t *gone)
+static void keep_finest(asj_match_run *run, uint8_t *gone, asj_watch *watch)
 {
     asj_choices *choices = &run->choices;
     const asj_candidate *list = run->candidates.list;
-    asj_watch watch;
-    asj_watch_start(&watch, run->context, ASJ_STAGE_ASSIGN);
     memset(gone, 0, choices->count);
-    for (size_t n = 0; n < choices->count && !asj_watch_stops(&watch, NULL); n++)
+    for (size_t n = 0; n < choices->count && !asj_watch_stops(watch, NULL); n++)
         for (size_t m = 0; m < choices->count && !gone[n]; m++)
             gone[n] = (uint8_t)stands_for(run, &list[choices->list[m].candidate], &list[choices->list[n].candidate]);
     keep(choices, gone);
-    return asj_watch_end(&watch);
 }
 
 asj_status asj_same_corner(asj_match_run *run)
@@ -128,8 +125,10 @@ asj_status asj_same_corner(asj_match_run *run)
     uint8_t *gone = asj_allocate_zero(&run->context->memory, run->choices.count, 1);
     if (!gone)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu matches", run->choices.count);
-    keep_supported(run, gone);
-    const asj_status status = keep_finest(run, gone);
+    asj_watch watch;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_ASSIGN);
+    keep_supported(run, gone, &watch);
+    keep_finest(run, gone, &watch);
     asj_release(&run->context->memory, gone);
-    return status;
+    return asj_watch_end(&watch);
 }
