@@ -16,7 +16,7 @@ enum {
     ASJ_BRANCH_END_UNKNOWN = 0,   /* not looked at: junctions from files that do not say it */
     ASJ_BRANCH_END_JUNCTION = 1,  /* another junction of the list */
     ASJ_BRANCH_END_CROSSING = 2,  /* edges that go on or turn away there, and no junction of the list */
-    ASJ_BRANCH_END_FADED = 3,     /* nothing: the edge gets too weak to be told */
+    ASJ_BRANCH_END_FADED = 3,     /* nothing: the edge gets too weak, against itself (end_contrast) or noise */
     ASJ_BRANCH_END_OCCLUSION = 4, /* an edge that passes by in one line, which may hide the rest */
     ASJ_BRANCH_END_BORDER = 5     /* the border of the image */
 };

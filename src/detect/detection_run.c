@@ -53,7 +53,7 @@ asj_status asj_detection_run_set_size(asj_detection_run *run)
     const asj_frame *frame = run->frame;
     if (frame->width != detector->width || frame->height != detector->height || frame->octaves != detector->octaves) {
         asj_isotropic_set_size(run->options, frame->width, frame->height, frame->octaves, &detector->isotropic);
-        asj_scan_set_size(context, run->options, frame->width, frame->height, &detector->scan);
+        asj_scan_set_size(run->options, frame->width, frame->height, &detector->scan);
         detector->width = frame->width;
         detector->height = frame->height;
         detector->octaves = frame->octaves;

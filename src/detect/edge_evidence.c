@@ -39,7 +39,7 @@ void asj_edge_evidence_measure(const asj_context *context, const asj_frame *fram
         measure(context, frame, options, hypothesis, &hypothesis->branches[i], &evidence[hypothesis->branches[i].evidence]);
 }
 
-double asj_edge_evidence_log_nfa(const asj_context *context, const asj_evidence *evidence, double distance, double log_tests)
+double asj_edge_evidence_log_nfa(const asj_evidence *evidence, double distance, double log_tests)
 {
     if (evidence->length <= 0)
         return HUGE_VAL;
@@ -51,5 +51,5 @@ double asj_edge_evidence_log_nfa(const asj_context *context, const asj_evidence 
     if (pixels == 0)
         return HUGE_VAL;
     const double gamma = before + share * (evidence->gamma[part] - before);
-    return log_tests + asj_nfa_log_sector_tail(asj_nfa_of(context), gamma, pixels) / evidence->alike;
+    return log_tests + asj_nfa_log_sector_tail(asj_nfa_tables(), gamma, pixels) / evidence->alike;
 }

@@ -21,6 +21,6 @@ void asj_edge_evidence_measure(const asj_context *context, const asj_frame *fram
 
 /* ln NFA of the strip from the junction `distance` px along the branch, all in pixels of the octave that found it; what lies beyond
  * the branch has not been looked at and counts for nothing. `log_tests`: asj_strip_log_tests() of that octave. */
-double asj_edge_evidence_log_nfa(const asj_context *context, const asj_evidence *evidence, double distance, double log_tests);
+double asj_edge_evidence_log_nfa(const asj_evidence *evidence, double distance, double log_tests);
 
 #endif

@@ -24,14 +24,13 @@
 #define TURN (15 * ASJ_DEGREE) /* default of merge_angle: closer branches would be one */
 #define END_NEAR 4.0   /* px of the branch's octave, or .. */
 #define END_SURE 3.0   /* .. standard uncertainties of the end, .. */
-#define END_MOST 8.0   /* .. but no more than this, the default of snap_distance: where an edge fades they may be fifty pixels */
+#define END_MOST 8.0   /* .. but no more than this: where an edge fades they may be fifty pixels */
 #define LEAST 3.0      /* px */
 #define LN_10 2.302585092994046
 #define CELL 32        /* px of the grid in which junctions on the way are looked for */
 
 typedef struct graph {
     asj_watch *watch;
-    const asj_context *context;
     const asj_evidence *evidence;
     const asj_hypothesis *hypotheses;
     int32_t *heads, *next; /* junctions by cell */
@@ -108,7 +107,7 @@ static int goes_on(const asj_hypothesis *hypothesis, double angle)
 
 static double log_nfa(const graph *g, const asj_hypothesis_branch *branch, double distance)
 {
-    return asj_edge_evidence_log_nfa(g->context, &g->evidence[branch->evidence], distance / (1 << branch->octave),
+    return asj_edge_evidence_log_nfa(&g->evidence[branch->evidence], distance / (1 << branch->octave),
                                      g->log_tests[branch->octave]);
 }
 
@@ -242,7 +241,7 @@ static asj_edge edge_of(const graph *g, int32_t own, int32_t other)
 size_t asj_edges_join(asj_watch *watch, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves,
                       const asj_evidence *evidence, asj_hypothesis *hypotheses, size_t count, int32_t *scratch, asj_edge *edges)
 {
-    graph g = {.watch = watch, .context = watch->context, .evidence = evidence, .hypotheses = hypotheses, .heads = scratch,
+    graph g = {.watch = watch, .evidence = evidence, .hypotheses = hypotheses, .heads = scratch,
                .columns = (int32_t)columns_of(width), .rows = (int32_t)columns_of(height)};
     size_t found = 0;
     start(&g, options, width, height, octaves);

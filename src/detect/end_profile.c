@@ -32,6 +32,7 @@
 #define BEYOND 8    /* px */
 #define AROUND 16   /* px */
 #define LAST 14     /* px */
+#define MOST_FADING 100 /* px to either side */
 #define SMOOTH 2    /* px to either side */
 #define WIDTH (2 * SMOOTH + 1)
 #define FIRST 3     /* px: what is nearer to the junction has other edges in it */
@@ -194,9 +195,9 @@ static double noise_of(const profile *p, int32_t length)
 static double fading_around(const profile *p, int32_t end, double high, double low)
 {
     int32_t before = end, after = end;
-    while (before > FIRST && contrast(p, before) < high)
+    while (before > FIRST && before > end - MOST_FADING && contrast(p, before) < high)
         before--;
-    while (contrast(p, after) > low)
+    while (after < end + MOST_FADING && contrast(p, after) > low)
         after++;
     return after - before;
 }

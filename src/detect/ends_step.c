@@ -3,6 +3,7 @@
 #include "end_kind.h"
 #include "ends.h"
 #include "steps.h"
+#include "validate.h"
 #include "core/threads.h"
 #include "core/watch.h"
 
@@ -67,15 +68,30 @@ static asj_status look_for_junctions(asj_detection_run *run, ends_work work)
     return asj_watch_end(&watch);
 }
 
-/* Ends at junctions need no look at the picture. */
 static void end_by_contrast(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
     asj_ends_by_contrast(run->frame, run->options, hypothesis);
+    asj_validate_lengths(run->options, hypothesis);
 }
+
+static void leave_out_rejected(asj_detection_run *run)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < run->hypothesis_count; i++)
+        if (run->hypotheses[i].branch_count > 0) {
+            if (kept != i)
+                run->hypotheses[kept] = run->hypotheses[i];
+            kept++;
+        }
+    run->hypothesis_count = kept;
+}
+
+/* Ends at junctions come first: what is there needs no look at the picture. */
 
 asj_status asj_step_ends(asj_detection_run *run)
 {
     asj_status status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, end_by_contrast);
+    leave_out_rejected(run);
     if (status == ASJ_OK)
         status = look_for_junctions(run, asj_ends_mark);
     if (status == ASJ_OK)

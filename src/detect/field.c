@@ -31,12 +31,12 @@
 #define LEAST_RUNS 128 /* for a thread: about 25 us */
 
 /* Sectors of as many pixels have the same one. */
-static uint16_t strength_of_tail(const asj_context *context, const asj_sectors *s, int32_t k, double log_p, const uint16_t *before)
+static uint16_t strength_of_tail(const asj_sectors *s, int32_t k, double log_p, const uint16_t *before)
 {
     for (int32_t i = 0; i < k; i++)
         if (s->size[i] == s->size[k])
             return before[i];
-    const double sum = ceil(asj_nfa_sector_threshold(asj_nfa_of(context), log_p, s->size[k]) * (1 << s->gamma_bits));
+    const double sum = ceil(asj_nfa_sector_threshold(asj_nfa_tables(), log_p, s->size[k]) * (1 << s->gamma_bits));
     const uint16_t strength = asj_sector_strength(s, k, (uint16_t)(sum < 65535 ? sum : 65535));
     return strength > 0 ? strength : 1;
 }
@@ -71,7 +71,7 @@ asj_status asj_field_create(asj_context *context, const asj_detect_options *opti
     const double log_p = log(options->field_epsilon / s->count);
     const uint16_t wanted = (uint16_t)lrint(options->candidate_strength * ASJ_STRENGTH_ONE);
     for (int32_t k = 0; k < s->count; k++) {
-        field->keep[k] = strength_of_tail(context, s, k, log_p < 0 ? log_p : 0, field->keep);
+        field->keep[k] = strength_of_tail(s, k, log_p < 0 ? log_p : 0, field->keep);
         field->candidate[k] = field->keep[k] > wanted ? field->keep[k] : wanted;
     }
     const double per_radian = s->count / ASJ_TWO_PI;

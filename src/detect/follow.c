@@ -45,9 +45,9 @@ static sector strongest(const asj_detection_run *run, const asj_hypothesis *hypo
 }
 
 /* ln F(t; J); a sector outside of the image says nothing. */
-static double log_tail(const asj_detection_run *run, double t, int32_t pixels)
+static double log_tail(double t, int32_t pixels)
 {
-    return pixels > 0 ? asj_nfa_log_sector_tail(asj_nfa_of(run->context), t, pixels) : 0;
+    return pixels > 0 ? asj_nfa_log_sector_tail(asj_nfa_tables(), t, pixels) : 0;
 }
 
 /* Whether the branches are meaningful together at radius r. */
@@ -60,7 +60,7 @@ static int is_meaningful(const asj_detection_run *run, const asj_hypothesis *hyp
         weakest = fmin(weakest, sectors[b].sum);
     }
     for (int32_t b = 0; b < hypothesis->branch_count; b++)
-        log_nfa += log_tail(run, weakest, sectors[b].pixels);
+        log_nfa += log_tail(weakest, sectors[b].pixels);
     return log_nfa <= run->test->log_epsilon;
 }
 
@@ -68,7 +68,7 @@ static void follow_branch(const asj_detection_run *run, const asj_hypothesis *hy
 {
     for (int32_t r = (int32_t)hypothesis->radius + 1; r <= LARGEST; r += r < 2 * GROWTH ? 1 : r / GROWTH) {
         const sector s = strongest(run, hypothesis, branch->angle, r);
-        if (log_tail(run, s.sum, s.pixels) > run->test->log_alone)
+        if (log_tail(s.sum, s.pixels) > run->test->log_alone)
             break;
         branch->angle = s.angle;
     }

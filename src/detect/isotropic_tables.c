@@ -16,7 +16,7 @@ static asj_status make_tails(asj_context *context, asj_isotropic *test, int32_t 
     if (!table)
         return ASJ_ERROR_MEMORY;
     for (size_t i = 0; i < entries; i++)
-        table[i] = asj_nfa_log_sector_tail(asj_nfa_of(context), (double)i / ASJ_ISOTROPIC_TAIL_STEPS, pixels);
+        table[i] = asj_nfa_log_sector_tail(asj_nfa_tables(), (double)i / ASJ_ISOTROPIC_TAIL_STEPS, pixels);
     test->tail_tables[pixels] = table;
     return ASJ_OK;
 }

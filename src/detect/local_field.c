@@ -7,6 +7,9 @@
 
 #include <math.h>
 
+#define MOST_PIXELS ((size_t)1 << 20) /* at once, .. */
+#define LEAST_ROWS 8                   /* .. in rows of any width */
+
 static asj_local_branch local_branch(const asj_detection_run *run, asj_field_branch branch)
 {
     const asj_sectors *s = &run->field->sectors;
@@ -18,7 +21,7 @@ static asj_local_branch local_branch(const asj_detection_run *run, asj_field_bra
     const double sum = n * ASJ_GAMMA_MEAN + strength * ASJ_GAMMA_SD * sqrt(n);
     out.angle = (float)(branch.angle * (ASJ_TWO_PI / 65536));
     out.strength = (float)strength;
-    out.log10_nfa = (float)((log(s->count) + asj_nfa_log_sector_tail(asj_nfa_of(run->context), sum, n)) / log(10));
+    out.log10_nfa = (float)((log(s->count) + asj_nfa_log_sector_tail(asj_nfa_tables(), sum, n)) / log(10));
     return out;
 }
 
@@ -41,14 +44,18 @@ static asj_status field_rows(const asj_detection_run *run, asj_local_branch *bra
 {
     asj_context *context = run->context;
     const asj_frame *frame = run->frame;
-    const int32_t height = frame->height, most = height < ASJ_ROW_GROUP ? height : ASJ_ROW_GROUP;
+    const int32_t height = frame->height;
     const size_t row = (size_t)frame->width;
+    int32_t group = ASJ_ROW_GROUP; /* rows */
+    while (group > LEAST_ROWS && (size_t)group * row > MOST_PIXELS)
+        group /= 2;
+    const int32_t most = height < group ? height : group;
     asj_field_branch (*found)[ASJ_FIELD_BRANCHES] = asj_allocate(&context->memory, (size_t)most * row, sizeof *found);
     if (!found)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the local junctions of %zu pixels", (size_t)most * row);
     asj_status status = asj_detection_run_progress(run, ASJ_STAGE_GRADIENT, 0.05);
-    for (int32_t top = 0; status == ASJ_OK && top < height; top += ASJ_ROW_GROUP) {
-        const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
+    for (int32_t top = 0; status == ASJ_OK && top < height; top += group) {
+        const int32_t bottom = height - top < group ? height : top + group;
         status = context->ops->field->branches(context, run->field, frame, top, bottom, &run->scratch, found);
         if (status != ASJ_OK)
             break;

@@ -77,8 +77,7 @@ double asj_nfa_log_junction_tests(int32_t width, int32_t height, uint32_t radii,
     return width < 1 || height < 1 || !(sum > 0) ? -HUGE_VAL : log((double)width) + log((double)height) + log(sum);
 }
 
-const asj_nfa *asj_nfa_of(const asj_context *context)
+const asj_nfa *asj_nfa_tables(void)
 {
-    (void)context;
     return &asj_nfa_stored;
 }

@@ -7,7 +7,7 @@
 #include "null_model.h"
 
 /* The tables; the same for all contexts. */
-const asj_nfa *asj_nfa_of(const asj_context *context);
+const asj_nfa *asj_nfa_tables(void);
 
 /* Smallest t with ln F(t; n) <= log_p (bisection on asj_nfa_log_sector_tail(); log_p <= 0). */
 double asj_nfa_sector_threshold(const asj_nfa *nfa, double log_p, int32_t n);

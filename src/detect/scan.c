@@ -15,11 +15,11 @@
 #include <math.h>
 #include <string.h>
 
-void asj_scan_set_size(const asj_context *context, const asj_detect_options *options, int32_t width, int32_t height, asj_scan *scan)
+void asj_scan_set_size(const asj_detect_options *options, int32_t width, int32_t height, asj_scan *scan)
 {
     const double log_tests = 0.5 * log((double)width * height);
     const double log_p = fmin(log(options->scan_epsilon) - log_tests, 0);
-    const double threshold = asj_nfa_arc_threshold(asj_nfa_of(context), log_p, 2 * options->arc_half_width + 1);
+    const double threshold = asj_nfa_arc_threshold(asj_nfa_tables(), log_p, 2 * options->arc_half_width + 1);
     scan->threshold = (int32_t)fmax(1, ceil(threshold * ASJ_STRENGTH_ONE));
 }
 

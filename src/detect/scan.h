@@ -10,8 +10,7 @@ void asj_scan_prepare(const asj_detect_options *options, const asj_field *field,
                       asj_scan *scan);
 
 /* Sets the number of tests for an image of this size, and the threshold that follows from it. */
-void asj_scan_set_size(const asj_context *context, const asj_detect_options *options, int32_t width, int32_t height,
-                       asj_scan *scan);
+void asj_scan_set_size(const asj_detect_options *options, int32_t width, int32_t height, asj_scan *scan);
 
 /* Follows `count` rays. */
 asj_status asj_scan_rays(asj_context *context, const asj_scan *scan, const asj_frame *frame, asj_ray *rays, size_t count);

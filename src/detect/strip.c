@@ -119,23 +119,23 @@ static double log_number_of_tests(const asj_frame *frame)
     return asj_strip_log_tests(frame->width, frame->height, frame->octaves);
 }
 
-static double log_nfa(const asj_context *context, const asj_frame *frame, double gamma, int32_t pixels)
+static double log_nfa(const asj_frame *frame, double gamma, int32_t pixels)
 {
-    return pixels ? log_number_of_tests(frame) + asj_nfa_log_sector_tail(asj_nfa_of(context), gamma, pixels) : HUGE_VAL;
+    return pixels ? log_number_of_tests(frame) + asj_nfa_log_sector_tail(asj_nfa_tables(), gamma, pixels) : HUGE_VAL;
 }
 
 int asj_strip_passes(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                      const asj_strip_line *line, double shorter, double limit)
 {
     const asj_strip_sums s = add_up(context, frame, options, line, shorter);
-    return log_nfa(context, frame, s.gamma, s.pixels) <= limit || log_nfa(context, frame, s.near_gamma, s.near_pixels) <= limit;
+    return log_nfa(frame, s.gamma, s.pixels) <= limit || log_nfa(frame, s.near_gamma, s.near_pixels) <= limit;
 }
 
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          const asj_strip_line *line)
 {
     const asj_strip_sums s = add_up(context, frame, options, line, NEAR);
-    asj_strip strip = {log_nfa(context, frame, s.gamma, s.pixels), s.nn > 0 ? s.uu / s.nn : 0, 0, 1};
+    asj_strip strip = {log_nfa(frame, s.gamma, s.pixels), s.nn > 0 ? s.uu / s.nn : 0, 0, 1};
     if (s.near_pixels > 0)
         strip.near_strength = (s.near_gamma - s.near_pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(s.near_pixels));
     if (s.near_pixels > 0 && s.gamma > 0)

@@ -148,3 +148,15 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
         hypothesis->branches[j] = moved;
     }
 }
+
+void asj_validate_lengths(const asj_detect_options *options, asj_hypothesis *hypothesis)
+{
+    int keep[ASJ_MAX_BRANCHES];
+    if (options->minimum_length <= 0)
+        return;
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        keep[i] = hypothesis->branches[i].length >= options->minimum_length;
+    asj_hypothesis_select(hypothesis, keep);
+    if (!asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE))
+        hypothesis->branch_count = 0;
+}

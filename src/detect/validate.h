@@ -15,4 +15,7 @@ void asj_reject_early(const asj_context *context, const asj_frame *frame, const 
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                   asj_hypothesis *hypothesis);
 
+/* The same for lengths alone, which have changed since. */
+void asj_validate_lengths(const asj_detect_options *options, asj_hypothesis *hypothesis);
+
 #endif

@@ -79,7 +79,7 @@ static int prepare(experiment *e)
         asj_field_create(e->context, &e->options, &e->field) != ASJ_OK)
         return fail(asj_context_message(e->context));
     asj_scan_prepare(&e->options, &e->field, &e->cache, &e->scan);
-    asj_scan_set_size(e->context, &e->options, SIDE, SIDE, &e->scan);
+    asj_scan_set_size(&e->options, SIDE, SIDE, &e->scan);
     return 0;
 }
 
@@ -140,7 +140,7 @@ static int count_steps(experiment *e)
         asj_scan scan;
         options.scan_epsilon = epsilons[k];
         asj_scan_prepare(&options, &e->field, &e->cache, &scan);
-        asj_scan_set_size(e->context, &options, SIDE, SIDE, &scan);
+        asj_scan_set_size(&options, SIDE, SIDE, &scan);
         for (int32_t i = 0; i < RAYS; i++)
             e->rays[i].start = options.scan_start > 0 ? options.scan_start : 3;
         if (asj_scan_rays(e->context, &scan, &e->frame, e->rays, RAYS) != ASJ_OK)

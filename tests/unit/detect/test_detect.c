@@ -320,6 +320,39 @@ static void test_threads(void **state)
         }
 }
 
+/* No branch is shorter, wherever it ends in the end: ends come after branches have been validated. */
+static void test_minimum_length(void **state)
+{
+    enum { LENGTH = 40, PICTURES = 3 };
+    fixture *f = *state;
+    uint32_t shorter = 0, branches = 0;
+    for (int32_t kind = 0; kind < PICTURES; kind++)
+        for (int32_t least = 0; least <= LENGTH; least += LENGTH) {
+            int32_t width, height;
+            uint8_t *pixels = some_picture(kind, &width, &height);
+            const asj_image image = unit_gray8(pixels, width, height);
+            asj_detection *found = NULL;
+            asj_detect_options options;
+            asj_detect_options_init(&options);
+            options.minimum_length = least;
+            options.octaves = 1;
+            options.snap_distance = 0;
+            assert_int_equal(asj_detect(f->context, &image, &options, &found), ASJ_OK);
+            for (uint32_t i = 0; i < found->junction_count; i++) {
+                assert_true(found->junctions[i].branch_count >= 2);
+                for (int32_t b = 0; b < found->junctions[i].branch_count; b++) {
+                    const float length = found->junctions[i].branches[b].length;
+                    assert_true(length >= (float)least);
+                    shorter += least == 0 && length < LENGTH;
+                    branches += least > 0;
+                }
+            }
+            asj_detection_free(&found);
+            free(pixels);
+        }
+    assert_true(shorter > 10 && branches > 10);
+}
+
 /* A second time, and after images of other sizes and calls that failed: the same bits. */
 static void test_reuse(void **state)
 {
@@ -570,6 +603,7 @@ int main(void)
         cmocka_unit_test(test_tiny_and_flat),
         cmocka_unit_test(test_noise),  cmocka_unit_test(test_borders),   cmocka_unit_test(test_threads),
         cmocka_unit_test(test_reuse),  cmocka_unit_test(test_quarter_turn), cmocka_unit_test(test_formats),
+        cmocka_unit_test(test_minimum_length),
         cmocka_unit_test(test_radii),
         cmocka_unit_test(test_arguments), cmocka_unit_test(test_bad_options), cmocka_unit_test(test_extreme_options),
     };

@@ -46,11 +46,11 @@ static int is_peak(const asj_field *field, const int32_t z[MOST], int32_t k)
 }
 
 /* K F(omega; J) <= epsilon, with the sum that a strength stands for. */
-static double log_local_nfa(const fixture *f, const asj_field *field, int32_t k, double strength)
+static double log_local_nfa(const asj_field *field, int32_t k, double strength)
 {
     const int32_t n = field->sectors.size[k];
     const double sum = n * ASJ_GAMMA_MEAN + strength / ASJ_STRENGTH_ONE * ASJ_GAMMA_SD * sqrt(n);
-    return log(field->sectors.count) + asj_nfa_log_sector_tail(asj_nfa_of(f->context), sum, n);
+    return log(field->sectors.count) + asj_nfa_log_sector_tail(asj_nfa_tables(), sum, n);
 }
 
 static void make_field(fixture *f, asj_field *field)
@@ -70,8 +70,8 @@ static void test_threshold(void **state)
             f->options.field_epsilon = epsilons[e];
             make_field(f, &field);
             for (int32_t k = 0; k < field.sectors.count; k++) {
-                assert_true(log_local_nfa(f, &field, k, field.keep[k] - 2) > log(epsilons[e]));
-                assert_true(log_local_nfa(f, &field, k, field.keep[k] + 2) < log(epsilons[e]));
+                assert_true(log_local_nfa(&field, k, field.keep[k] - 2) > log(epsilons[e]));
+                assert_true(log_local_nfa(&field, k, field.keep[k] + 2) < log(epsilons[e]));
             }
             asj_field_free(&f->context->memory, &field);
         }
@@ -312,7 +312,7 @@ static void test_public(void **state)
                 assert_true(got.angle >= 0 && (double)got.angle < 2 * UNIT_PI);
                 if (expected.strength) { /* the sector nearest to the angle; J of its neighbour may differ */
                     const int32_t k = (int32_t)lrint(expected.angle * field.sectors.count / 65536.0) % field.sectors.count;
-                    unit_near("log10 NFA", i, b, got.log10_nfa, log_local_nfa(f, &field, k, expected.strength) / log(10), 1e-4);
+                    unit_near("log10 NFA", i, b, got.log10_nfa, log_local_nfa(&field, k, expected.strength) / log(10), 1e-4);
                     assert_true(got.log10_nfa <= 0.05f);
                 }
             }

@@ -80,7 +80,7 @@ static double naive_nfa(const fixture *f, const asj_sectors *s, const peak *peak
     double log_nfa = asj_nfa_log_junction_tests(f->frame.width, f->frame.height, f->options.isotropic_radii,
                                                 f->options.sector_width, m);
     for (int32_t i = 0; i < m; i++)
-        log_nfa += asj_nfa_log_sector_tail(asj_nfa_of(f->context), peaks[m - 1].omega, s->size[peaks[i].sector]);
+        log_nfa += asj_nfa_log_sector_tail(asj_nfa_tables(), peaks[m - 1].omega, s->size[peaks[i].sector]);
     return log_nfa;
 }
 
@@ -220,7 +220,7 @@ static int check_all_meaningful(const fixture *f, const asj_isotropic_junction *
     int32_t count = 0;
     assert_true(all->radius == most->radius && all->log_nfa == most->log_nfa);
     for (int32_t i = 0; i < found && i < 5; i++) {
-        const double log_tail = asj_nfa_log_sector_tail(asj_nfa_of(f->context), peaks[i].omega, s->size[peaks[i].sector]);
+        const double log_tail = asj_nfa_log_sector_tail(asj_nfa_tables(), peaks[i].omega, s->size[peaks[i].sector]);
         const double log_nfa = tests + 2 * log_tail - log(f->options.epsilon);
         if (fabs(log_nfa) < 0.02)
             return 0;

@@ -27,7 +27,7 @@ typedef struct fixture {
 static int set_up(void **state)
 {
     static fixture f;
-    f.nfa = asj_nfa_of(NULL);
+    f.nfa = asj_nfa_tables();
     *state = &f;
     return 0;
 }

@@ -60,7 +60,7 @@ static void take_picture(fixture *f, synth_scene *scene, double noise)
     unit_frame_of(f->context, scene, 1, noise, &f->options, &f->frame);
     assert_int_equal(asj_field_create(f->context, &f->options, &f->field), ASJ_OK);
     asj_scan_prepare(&f->options, &f->field, &f->cache, &f->scan);
-    asj_scan_set_size(f->context, &f->options, f->frame.width, f->frame.height, &f->scan);
+    asj_scan_set_size(&f->options, f->frame.width, f->frame.height, &f->scan);
     uint16_t *scratch = malloc(asj_field_scratch(&f->field) * sizeof *scratch);
     const int32_t stride = f->frame.blocks * ASJ_LANES;
     f->all = malloc((size_t)(stride * f->frame.height) * sizeof *f->all);
@@ -196,7 +196,7 @@ static void naive_both(const fixture *f, const asj_ray *ray, double threshold, i
 static double threshold_of(const fixture *f)
 {
     const double log_p = log(f->options.scan_epsilon) - 0.5 * log((double)f->frame.width * f->frame.height);
-    return asj_nfa_arc_threshold(asj_nfa_of(f->context), fmin(log_p, 0), 2 * f->options.arc_half_width + 1);
+    return asj_nfa_arc_threshold(asj_nfa_tables(), fmin(log_p, 0), 2 * f->options.arc_half_width + 1);
 }
 
 static void test_threshold(void **state)

@@ -37,7 +37,7 @@ static asj_strip naive(const fixture *f, double x, double y, double angle, doubl
     if (pixels == 0)
         return out;
     out.log_nfa = 1.5 * log((double)f->frame.width * f->frame.height) +
-                  asj_nfa_log_sector_tail(asj_nfa_of(f->context), omega, pixels);
+                  asj_nfa_log_sector_tail(asj_nfa_tables(), omega, pixels);
     if (near_pixels > 0)
         out.near_strength = (near - near_pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(near_pixels));
     return out;
