@@ -94,7 +94,8 @@ def measure(name: str, threads: int, runs: int, load: int, paths: list[str]) -> 
     busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(load)]
     try:
         command = [sys.executable, __file__, "--child", name, "--threads", str(threads), "--runs", str(runs), *paths]
-        return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
+        alone = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # numpy's threads look for work for a while once it is imported
+        return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE, env=alone).stdout)
     finally:
         for process in busy:
             process.send_signal(signal.SIGKILL)
