@@ -86,8 +86,7 @@ static void leave_out_rejected(asj_detection_run *run)
     run->hypothesis_count = kept;
 }
 
-/* Ends at junctions come first: what is there needs no look at the picture. */
-
+/* Ends at junctions are told first: what is at them needs no look at the picture. */
 asj_status asj_step_ends(asj_detection_run *run)
 {
     asj_status status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, end_by_contrast);

@@ -71,7 +71,7 @@ static double least_contradiction(const asj_model *best, const asj_model *rival,
     return CONTRARY + (CONTRARY_ALIKE - CONTRARY) * nearness;
 }
 
-int32_t asj_find_rival(asj_estimation *e, int32_t best)
+int32_t asj_strongest_rival(asj_estimation *e, int32_t best)
 {
     int32_t second = -1;
     const asj_model *m = &e->finalists[best];

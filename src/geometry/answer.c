@@ -129,7 +129,7 @@ void asj_answer(asj_estimation *e, double *probabilities, asj_geometry *result)
     asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
     for (int32_t k = 0; k < e->set.count; k++)
         result->inliers += e->scratch.probability[k];
-    const int32_t second = asj_find_rival(e, best);
+    const int32_t second = asj_strongest_rival(e, best);
     if (second >= 0) {
         result->has_second = 1;
         result->second_log10_nfa = asj_estimation_log10_nfa(e, &e->finalists[second]);

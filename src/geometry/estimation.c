@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* What the finalists of an estimation come to. The evidence of one is that of all kinds that were tried. */
+/* The best finalist, and how often chance brings one: NFA = kinds that were tried x exp(-evidence). */
 #include "estimation.h"
 
 #include <math.h>

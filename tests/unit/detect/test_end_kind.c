@@ -120,17 +120,24 @@ static void test_border(void **state)
 
 /* ---- edges that break off, and edges that fade ---- */
 
+/* A branch along y = 90, to the right. */
+static asj_hypothesis branch_from(double x, double length)
+{
+    asj_hypothesis h;
+    memset(&h, 0, sizeof h);
+    h.x = x;
+    h.y = 90;
+    h.branch_count = 1;
+    h.branches[0].length = length;
+    return h;
+}
+
 /* An edge of contrast `first` for 60 px, then of `then` for `part` px, then none: where its end is found by `share`. */
 static double end_after(const unit_fixture *f, double first, double then, double part, double scanned, double share)
 {
     synth_scene scene;
     asj_frame frame;
-    asj_hypothesis h;
-    memset(&h, 0, sizeof h);
-    h.x = 40;
-    h.y = 90;
-    h.branch_count = 1;
-    h.branches[0].length = scanned;
+    const asj_hypothesis h = branch_from(40, scanned);
     synth_scene_init(&scene, SIZE, SIZE, 100);
     synth_add_rectangle(&scene, (synth_point){40, 90}, 60, 80, 0, 100 + first);
     if (part > 0)
@@ -214,12 +221,7 @@ static void test_profile(void **state)
     const unit_fixture *f = *state;
     synth_scene scene;
     asj_frame frame;
-    asj_hypothesis h;
-    memset(&h, 0, sizeof h);
-    h.x = 50;
-    h.y = 90;
-    h.branch_count = 1;
-    h.branches[0].length = 125;
+    asj_hypothesis h = branch_from(50, 125);
     add_fading(&scene, 60, 60, 80);
     unit_frame_of(f->context, &scene, 0.8, 1, &f->options, &frame);
     for (double share = 0.25; share < 0.8; share += 0.25) {
