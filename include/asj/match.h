@@ -104,7 +104,8 @@ typedef struct asj_junction_match {
     float ratio;            /* how much worse the second best at another place is; HUGE_VAL when there is none */
     float similarity;       /* correlation of the aligned discs, -1 .. 1; 0 when not aligned */
     float support;          /* neighbouring matches that agree, each counted 0 to 1 */
-    float probability;      /* that the match is right, given the geometry, where one was accepted, and its rivals; else 0 */
+    float probability;      /* that the match is right, given the geometry, where one was accepted, and its rivals; else 0.
+                             * Off the plane of a homography it is low, and the match stays: there are other planes */
     float reserved;         /* zero */
 } asj_junction_match;
 

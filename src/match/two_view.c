@@ -13,9 +13,10 @@
  *   - a candidate comes when its probability is LEAST_PROBABILITY at least, and both its locations are free; where there are
  *     MANY_MATCHES already, only when it is SURE_PROBABILITY at least. (On photographs that are none of the wide pairs three of
  *     four newcomers below that are right, and 45 of 47 above.)
- * Each match receives its probability. */
+ * Each match receives its probability; so that there is one, the matches are among the candidates whatever their rank. */
 #include "two_view.h"
 #include "align.h"
+#include "compare.h"
 #include "core/angle.h"
 #include "consensus.h"
 #include "geometry/estimate.h"
@@ -46,9 +47,39 @@ typedef struct wide_run {
     uint32_t *place[2]; /* of each location */
 } wide_run;
 
-static asj_status wide_candidates(wide_run *w)
+/* The matches are candidates too, wherever they rank: guided ones (guided.c) stand in no list, and each needs its probability. */
+static asj_status add_matches(const asj_match_run *run, wide_run *w)
+{
+    asj_candidates *wide = &w->run.candidates;
+    void *list = wide->list;
+    asj_candidates matches = {asj_allocate_zero(&run->context->memory, run->choices.count, sizeof *matches.list), 0, 0};
+    asj_status status = ASJ_ERROR_MEMORY;
+    if (matches.list) {
+        for (; matches.count < run->choices.count; matches.count++) {
+            const asj_candidate *c = &run->candidates.list[run->choices.list[matches.count].candidate];
+            matches.list[matches.count].i = c->i;
+            matches.list[matches.count].j = c->j;
+        }
+        status = asj_compare_and_drop(&w->run, &matches);
+        if (status == ASJ_OK)
+            status = asj_grow(&run->context->memory, &list, &wide->capacity, wide->count + matches.count, sizeof *matches.list,
+                              wide->count);
+    }
+    if (status == ASJ_OK && matches.count > 0) {
+        wide->list = list;
+        memcpy(wide->list + wide->count, matches.list, matches.count * sizeof *matches.list);
+        wide->count += matches.count;
+        asj_candidates_sort(wide);
+    }
+    asj_release(&run->context->memory, matches.list);
+    return status == ASJ_ERROR_MEMORY ? asj_fail(run->context, status, "no memory for the matches' geometry") : status;
+}
+
+static asj_status wide_candidates(const asj_match_run *run, wide_run *w)
 {
     asj_status status = asj_shortlist(&w->run);
+    if (status == ASJ_OK)
+        status = add_matches(run, w);
     if (status == ASJ_OK && w->options.align_iterations > 0)
         status = asj_align_candidates(&w->run, 0);
     if (status == ASJ_OK)
@@ -313,7 +344,7 @@ asj_status asj_apply_geometry(asj_match_run *run)
     wide_run w = {.options = *run->options};
     w.options.shortlist = w.options.shortlist > WIDE_SHORTLIST ? w.options.shortlist : WIDE_SHORTLIST;
     w.run = (asj_match_run){.context = run->context, .options = &w.options, .image = {run->image[0], run->image[1]}};
-    asj_status status = wide_candidates(&w);
+    asj_status status = wide_candidates(run, &w);
     if (status == ASJ_OK)
         status = estimate(run, &w);
     if (status == ASJ_OK && run->geometry.status == ASJ_GEOMETRY_ACCEPTED)

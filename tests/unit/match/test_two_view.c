@@ -102,7 +102,7 @@ static void the_pose_is_that_of_the_cameras(void **state)
         assert_true(g->log10_nfa < -10);
         uint32_t right = 0;
         for (uint32_t k = 0; k < result->match_count; k++) {
-            assert_true(result->matches[k].probability >= 0 && result->matches[k].probability <= 1);
+            assert_true(result->matches[k].probability > 0 && result->matches[k].probability <= 1); /* each is judged */
             right += from_line(f, &result->matches[k]) < 4;
         }
         assert_true(result->match_count >= 15 && 10 * right >= 9 * result->match_count);

@@ -93,7 +93,7 @@ class Matches:
 
     @property
     def probability(self) -> NDArray[np.float32]:
-        """(K,) that the match is right, given the geometry; 0 where none was accepted."""
+        """(K,) that the match is right, given the geometry; 0 where none was accepted, low off the plane of a homography."""
         return np.asarray(self.matches["probability"])
 
     @property
