@@ -11,7 +11,8 @@ usage: sh scripts/demo.sh [IMAGE...]
 
 Installs what is missing (apt-get), builds asj-cli in build/, and finds the junctions of the photographs given, or of a room that
 it renders itself. Writes to out/: NAME.csv with the junctions and NAME.plot.png with the junctions drawn over the picture.
-Of the room it renders two views, and finds the corners that they have in common: room-matches.csv, room-matches.png.
+The room's two views are room-1.png and room-2.png. Without photographs it finds the corners that they have in common, too:
+room-matches.csv, room-matches.png.
 "Right" counts what is where the room's own geometry puts it, within 3 px.
 Exit code: 0 done, 1 something failed, 2 wrong usage, 3 packages are missing and cannot be installed here.
 END
@@ -81,16 +82,12 @@ configure build -Dio=enabled -Dcli=enabled -Dcairo=enabled -Dopencv=enabled -Dte
 out=out
 [ "$PWD" = "$root" ] || out=$root/out
 cd "$root" || exit 1
-if [ "$photographs" = 0 ]; then
-    logged build meson compile -C build asj-cli sample-room || exit 1
-    build/tests/synth/sample-room out/room || fail 'cannot render the sample room'
-    for view in 1 2; do
-        cp "out/room/$view.png" "out/room-$view.png" || exit 1
-    done
-    set -- out/room-1.png out/room-2.png
-else
-    logged build meson compile -C build asj-cli || exit 1
-fi
+logged build meson compile -C build programs sample-room || exit 1
+build/tests/synth/sample-room out/room || fail 'cannot render the sample room'
+for view in 1 2; do
+    cp "out/room/$view.png" "out/room-$view.png" || exit 1
+done
+[ "$photographs" != 0 ] || set -- out/room-1.png out/room-2.png
 
 for image in "$@"; do
     result_of "$image"

@@ -28,7 +28,8 @@ use_from() { # NAME: programs against what is installed there
         rm -rf "$work/cmake-build"
         cmake -S "$work/cmake" -B "$work/cmake-build" -DCMAKE_PREFIX_PATH="$prefix" > "$work/log" 2>&1 &&
             cmake --build "$work/cmake-build" >> "$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
-        [ "$("$work/cmake-build/core")" = "$version" ] && [ "$("$work/cmake-build/both")" = "$version" ]
+        [ "$(env -u LD_LIBRARY_PATH "$work/cmake-build/core")" = "$version" ]
+        [ "$(env -u LD_LIBRARY_PATH "$work/cmake-build/both")" = "$version" ]
     fi
     core="$(pkg-config --cflags asj) $work/core.c -o $work/core $(pkg-config $static --libs asj)"
     both="$(pkg-config --cflags asj-io) $work/both.c -o $work/both $(pkg-config $static --libs asj-io)"

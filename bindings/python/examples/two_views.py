@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Two views of a room: junctions, matches, line segments and the camera's motion, step by step. Writes the pictures of README.md into
-the folder given (default: here): two_views.py [FOLDER]   (needs asj[images,plot])
+the folder given (default: where you are): two_views.py [FOLDER]   (needs asj[images,plot])
 """
 
 # %% Two pictures of a rendered room. Any arrays of HxW or HxWx3 do; asj.read_image("photo.jpg") reads files.
@@ -13,7 +13,7 @@ import numpy as np
 import room
 
 matplotlib.use("Agg")
-folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent
+folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path()
 things, cameras = room.make(seed=2), room.walk(7)
 image1, image2 = room.render(things, cameras[1], seed=1), room.render(things, cameras[4], seed=4)
 

@@ -55,6 +55,14 @@ def test_image_types(same: Any) -> None:
     assert corners(asj.detect(same(square()), preset="default")) == CORNERS
 
 
+def test_floats_need_a_white() -> None:
+    bright = square().astype(float)
+    with pytest.raises(asj.ImageError, match="white=255"):
+        asj.detect(bright)
+    assert corners(asj.detect(bright, white=255, preset="default")) == CORNERS
+    assert corners(asj.detect(bright / 255 * 1.1, preset="default")) == CORNERS
+
+
 def test_part_of_the_image() -> None:
     left = [corner for corner in CORNERS if corner[0] < 200]
     allowed = np.zeros((200, 200), bool)

@@ -125,9 +125,9 @@ def _check_outputs(arguments: argparse.Namespace) -> Path:
     if not outputs:
         raise ValueError("no output: name --colmap, --hdf5 or --limap")
     if arguments.colmap:
-        import pycolmap  # noqa: F401
+        errors.extra("pycolmap", "colmap")
     if arguments.hdf5:
-        import h5py  # noqa: F401
+        errors.extra("h5py", "hdf5")
     for path in outputs:
         if not path.absolute().parent.is_dir():
             raise FileNotFoundError(f"{path}: there is no folder {path.absolute().parent}")
@@ -142,9 +142,7 @@ def _collect(arguments: argparse.Namespace) -> int:
     open_store = collection.Store.resume if arguments.resume and place.exists() else collection.Store.create
     with open_store(place, plan) as store:
         if arguments.dask:
-            from distributed import Client
-
-            with Client(arguments.dask) as client:
+            with errors.extra("distributed", "dask").Client(arguments.dask) as client:
                 summary = collection.collect(plan, store, Dask(client), progress)
         else:
             summary = collection.collect(plan, store, Processes(arguments.jobs), progress)

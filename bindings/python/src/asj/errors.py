@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import importlib
+from typing import Any
+
 from ._native import ffi, lib
 
 
@@ -52,6 +55,14 @@ _CLASSES: dict[int, type[Error]] = {
     lib.ASJ_ERROR_DEVICE: DeviceError,
     lib.ASJ_ERROR_FORMAT: FormatError,
 }
+
+
+def extra(module: str, name: str) -> Any:
+    """A module that only a part of the package needs; says how to install it where it is missing."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as missing:
+        raise ImportError(f"this needs {module.partition('.')[0]}: pip install 'asj[{name}]'") from missing
 
 
 def text(pointer: object) -> str:

@@ -14,6 +14,7 @@ from ._native import ffi, lib
 from .errors import ImageError
 
 _GRAY = {"uint8": lib.ASJ_FORMAT_GRAY8, "uint16": lib.ASJ_FORMAT_GRAY16, "float32": lib.ASJ_FORMAT_GRAY_FLOAT}
+FLOATS_UP_TO = 2  # what overshoots 1.0 a little, resampled or sharpened, may
 _COLOUR = {3: lib.ASJ_FORMAT_RGB8, 4: lib.ASJ_FORMAT_RGBA8}
 
 
@@ -30,7 +31,8 @@ class View:
 def view(image: ArrayLike, white: float = 0.0) -> View:
     """HxW of uint8, uint16 or float (1.0 is white), or HxWx3 or HxWx4 of uint8, uint16 or float in the order red, green, blue.
 
-    `white` is the value that means white, if it is not the type's: 1023 for a 10-bit camera in uint16.
+    `white` is the value that means white, if it is not the type's: 1023 for a 10-bit camera in uint16. Floats far above 1 are refused
+    without it: most of them would be cut.
     """
     pixels = np.asarray(image)
     if pixels.dtype == np.bool_:
@@ -41,6 +43,8 @@ def view(image: ArrayLike, white: float = 0.0) -> View:
         pixels = pixels.astype(pixels.dtype.newbyteorder("="))
     if pixels.dtype.name not in _GRAY:
         raise ImageError(f"an image of type {pixels.dtype.name}: uint8, uint16 or float")
+    if pixels.dtype.kind == "f" and white == 0 and pixels.size and pixels.max() > FLOATS_UP_TO:
+        raise ImageError(f"floats up to {pixels.max():g}: white=255, or what is white here (white=1 cuts them)")
     if pixels.ndim == 3 and pixels.shape[2] == 1:
         pixels = pixels[:, :, 0]
     if pixels.ndim == 3 and pixels.shape[2] in _COLOUR and pixels.dtype != np.uint8:

@@ -8,17 +8,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .errors import extra
 from .features import Features
 from .matches import Matches
+
+# The colours of asj-cli's plots: lightness falls all the way (cli/plot_color.c).
+_RAMP = ("#f4b00c", "#fb8b09", "#f9653b", "#e44a65", "#c63983", "#a1309a", "#772ba7", "#4a27a8", "#08259b")
+_SURE = 100  # -log10 NFA
 
 
 def _axes(axes: Any, width: float, height: float) -> Any:
     if axes is not None:
         return axes
-    import matplotlib.pyplot as plt
-
-    _, axes = plt.subplots(figsize=(width / 100, height / 100), dpi=100)
-    return axes
+    figure = extra("matplotlib.pyplot", "plot").figure(figsize=(width / 100, height / 100), dpi=100)
+    return figure.add_axes((0, 0, 1, 1))  # a pixel of the image is one of the figure
 
 
 def _show(axes: Any, image: ArrayLike) -> None:
@@ -29,23 +32,26 @@ def _show(axes: Any, image: ArrayLike) -> None:
 
 
 def plot(image: ArrayLike, features: Features, axes: Any = None) -> Any:
-    """Junctions as dots and branches to their ends over the image, blue = surest. Returns matplotlib's axes."""
-    from matplotlib.collections import LineCollection
+    """Junctions as dots and branches to their ends over the image, from orange (barely) to dark blue (log10 NFA of -100 and less).
 
+    Returns matplotlib's axes.
+    """
+    colours = extra("matplotlib.colors", "plot").LinearSegmentedColormap.from_list("asj", _RAMP)
     pixels = np.asarray(image)
     axes = _axes(axes, pixels.shape[1], pixels.shape[0])
     _show(axes, pixels)
-    sure = np.clip(-features.log10_nfa / 30, 0, 1)
-    lines = LineCollection(list(features.segments), array=sure[features.branches["junction"]], cmap="turbo_r", linewidths=1, clim=(0, 1))
-    axes.add_collection(lines)
-    axes.scatter(features.xy[:, 0], features.xy[:, 1], s=9, c=sure, cmap="turbo_r", vmin=0, vmax=1)
+    sure = -features.log10_nfa
+    collection = extra("matplotlib.collections", "plot").LineCollection
+    axes.add_collection(
+        collection(list(features.segments), array=sure[features.branches["junction"]], cmap=colours, linewidths=1, clim=(0, _SURE))
+    )
+    axes.scatter(features.xy[:, 0], features.xy[:, 1], s=9, c=sure, cmap=colours, vmin=0, vmax=_SURE)
     return axes
 
 
 def plot_matches(image1: ArrayLike, image2: ArrayLike, matches: Matches, axes: Any = None) -> Any:
     """Both images side by side with their matched corners in the same colours. Returns matplotlib's axes."""
-    from matplotlib.collections import LineCollection
-
+    collection = extra("matplotlib.collections", "plot").LineCollection
     one, two = (_colour(image) for image in (image1, image2))
     canvas = np.full((max(len(one), len(two)), one.shape[1] + two.shape[1], 3), 255, np.uint8)
     canvas[: len(one), : one.shape[1]] = one
@@ -58,7 +64,7 @@ def plot_matches(image1: ArrayLike, image2: ArrayLike, matches: Matches, axes: A
         centre = np.stack([matches.matches["x" + side], matches.matches["y" + side]], 1) + offset
         for end in "ab":
             tip = np.stack([matches.matches[f"{end}x{side}"], matches.matches[f"{end}y{side}"]], 1) + offset
-            axes.add_collection(LineCollection(list(np.stack([centre, tip], 1)), array=colour, cmap="hsv", linewidths=1.2))
+            axes.add_collection(collection(list(np.stack([centre, tip], 1)), array=colour, cmap="hsv", linewidths=1.2))
         axes.scatter(centre[:, 0], centre[:, 1], s=9, c=colour, cmap="hsv")
     return axes
 

@@ -41,7 +41,7 @@ class Store:
     def create(cls, path: Path, plan: Plan) -> Store:
         """A new store with all work waiting."""
         if path.exists():
-            raise StoreError(f"{path} is there already: go on with it (--resume), or remove it")
+            raise StoreError(f"{path} is there already: go on with it, or write its outputs again (--resume), or remove it")
         connection = _connect(path)
         numbers = {name: number for number, name in enumerate(plan.images, 1)}
         with connection:
