@@ -20,8 +20,8 @@
  * Chosen on 24 photographs and their copies (zoom, shift, blur, noise, compression, gain): BLOCK to LAST are one plateau, but
  * LAST >= 16 ends branches before last pieces as short as that. */
 #include "end_profile.h"
-#include "gray_at.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,40 +34,52 @@
 #define LAST 14     /* px */
 #define MOST_FADING 100 /* px to either side */
 #define SMOOTH 2    /* px to either side */
-#define WIDTH (2 * SMOOTH + 1)
 #define FIRST 3     /* px: what is nearer to the junction has other edges in it */
 #define NOTHING 1.0 /* square of 1/ASJ_GRAY_ONE grey levels */
 #define TURNS 12    /* of the power iteration: directions that far apart are told, and no other matters */
+
+#define ROWS (BLOCKS * BLOCK + BEYOND + SMOOTH) /* across the branch, that are held at once */
+#define MORE 8                                  /* that are read ahead beyond them */
+#define LEVEL (SAMPLES * 256.0)                 /* of a sample that is held: 1/ASJ_GRAY_ONE grey levels */
+#define OUTSIDE (ASJ_GRAY_BORDER - 2)           /* px: samples reach no farther than that from the middle of their row */
 
 /* A branch, and what its edge looks like. */
 typedef struct profile {
     const asj_frame *frame;
     double x, y, ux, uy, offset;
     double section[SAMPLES];
-    int32_t count; /* blocks */
+    int32_t count;                /* blocks */
     double blocks[BLOCKS][SAMPLES];
-    int32_t kept; /* samples from FIRST on that have been read */
-    double levels[BLOCKS * BLOCK][SAMPLES];
+    int32_t from, held, ends;     /* rows t = from .. from + held - 1 have been read; `ends`: the next one is outside */
+    int32_t levels[ROWS][SAMPLES]; /* the grey levels across the branch less their mean, in 1/LEVEL */
+    double parts[ROWS];           /* of them along the section, once it is known */
 } profile;
 
-/* The grey levels across the branch, less their mean, t px from the junction. 0 outside the image. */
-static int read_levels(const profile *p, int32_t t, double levels[SAMPLES])
+/* Bilinear in 1/256 px at a place in 1/65536 px, in 1/256 levels. */
+static int32_t level_at(const asj_frame *frame, int64_t x, int64_t y)
 {
-    const double x = p->x + t * p->ux, y = p->y + t * p->uy;
-    double mean = 0;
-    if (t >= FIRST && t < FIRST + p->kept) {
-        memcpy(levels, p->levels[t - FIRST], sizeof p->levels[0]);
-        return 1;
-    }
+    const uint16_t *upper = frame->gray + (ptrdiff_t)(y >> 16) * frame->stride + (ptrdiff_t)(x >> 16);
+    const uint16_t *lower = upper + frame->stride;
+    const int32_t wx = (int32_t)(x >> 8 & 255), wy = (int32_t)(y >> 8 & 255);
+    const int32_t above = (256 - wx) * upper[0] + wx * upper[1], below = (256 - wx) * lower[0] + wx * lower[1];
+    return ((256 - wy) * (above >> 1) + wy * (below >> 1)) >> 7;
+}
+
+/* The row t px from the junction. The image's border is repeated around it as far as samples reach. 0 outside the image. */
+static int read_row(const profile *p, int32_t t, int32_t levels[SAMPLES])
+{
+    const double x = p->x + t * p->ux, y = p->y + t * p->uy, first = p->offset - HALF;
     if (!(x >= 0 && y >= 0 && x <= p->frame->width - 1 && y <= p->frame->height - 1))
         return 0;
-    for (int32_t i = 0; i < SAMPLES; i++) {
-        const double s = p->offset + (i - HALF);
-        levels[i] = asj_gray_at(p->frame, x - s * p->uy, y + s * p->ux);
-        mean += levels[i] / SAMPLES;
-    }
+    const int64_t step_x = (int64_t)(-65536 * p->uy), step_y = (int64_t)(65536 * p->ux);
+    /* whole numbers from a corner that lies before all samples: none is negative, and none rounded up */
+    int64_t at_x = (int64_t)(65536 * (x - first * p->uy + ASJ_GRAY_BORDER)) - ((int64_t)ASJ_GRAY_BORDER << 16);
+    int64_t at_y = (int64_t)(65536 * (y + first * p->ux + ASJ_GRAY_BORDER)) - ((int64_t)ASJ_GRAY_BORDER << 16);
+    int32_t sum = 0;
+    for (int32_t i = 0; i < SAMPLES; i++, at_x += step_x, at_y += step_y)
+        sum += levels[i] = level_at(p->frame, at_x, at_y);
     for (int32_t i = 0; i < SAMPLES; i++)
-        levels[i] -= mean;
+        levels[i] = SAMPLES * levels[i] - sum;
     return 1;
 }
 
@@ -79,22 +91,56 @@ static double product(const double *a, const double *b)
     return sum;
 }
 
-/* Reads the blocks' means: the last may be shorter; the only one is. */
-static void read_blocks(profile *p, int32_t length)
+/* Rows up to t = `last`, as far as there is room for them and the image goes. */
+static void read_rows(profile *p, int32_t last)
+{
+    while (p->held < ROWS && p->from + p->held <= last && !p->ends) {
+        p->ends = !read_row(p, p->from + p->held, p->levels[p->held]);
+        p->held += !p->ends;
+    }
+}
+
+/* Their parts along the section, from number `first` on. */
+static void project(profile *p, int32_t first)
+{
+    for (int32_t k = first; k < p->held; k++) {
+        double sum = 0;
+        for (int32_t i = 0; i < SAMPLES; i++)
+            sum += p->levels[k][i] * p->section[i];
+        p->parts[k] = sum / LEVEL;
+    }
+}
+
+/* Makes rows around t be held, if there are such. */
+static void hold(profile *p, int32_t t)
+{
+    const int32_t before = t - SMOOTH > FIRST ? t - SMOOTH : FIRST, after = t + SMOOTH;
+    const int32_t held = p->held;
+    if (before >= p->from && (after < p->from + held || p->ends))
+        return;
+    if (before < p->from || after >= p->from + ROWS) {
+        p->from = before - ROWS / 2 > FIRST ? before - ROWS / 2 : FIRST;
+        p->held = p->ends = 0;
+        read_rows(p, after + MORE);
+        project(p, 0);
+        return;
+    }
+    read_rows(p, after + MORE);
+    project(p, held);
+}
+
+/* The blocks' means: the last may be shorter; the only one is. */
+static void find_blocks(profile *p, int32_t length)
 {
     const int32_t wanted = length > FIRST + 1 ? length - FIRST : 1, size = wanted < BLOCK ? wanted : BLOCK;
-    p->count = p->kept = 0;
-    for (int32_t end = FIRST + size; end <= FIRST + wanted && p->count < BLOCKS; end += size) {
-        double *mean = p->blocks[p->count];
-        memset(mean, 0, SAMPLES * sizeof *mean);
-        for (int32_t t = end - size; t < end; t++) {
-            double *levels = p->levels[p->kept];
-            if (!read_levels(p, t, levels))
-                return;
-            p->kept++;
+    p->count = 0;
+    for (int32_t end = size; end <= wanted && end <= p->held && p->count < BLOCKS; end += size) {
+        int32_t sums[SAMPLES] = {0};
+        for (int32_t k = end - size; k < end; k++)
             for (int32_t i = 0; i < SAMPLES; i++)
-                mean[i] += levels[i] / size;
-        }
+                sums[i] += p->levels[k][i];
+        for (int32_t i = 0; i < SAMPLES; i++)
+            p->blocks[p->count][i] = sums[i] / (LEVEL * size);
         p->count++;
     }
 }
@@ -139,101 +185,92 @@ static double own_contrast(const profile *p)
     return blocks[(3 * p->count) / 4];
 }
 
-/* A place that walks along the branch. */
-typedef struct place {
-    const profile *p;
-    int32_t t, last, inside; /* samples up to `last` have been read, the last that there is when not inside */
-    double parts[WIDTH];     /* of the samples around t, by t modulo WIDTH */
-} place;
-
-static place start_at(const profile *p, int32_t t)
+/* a(t); negative: there is no such row. */
+static double contrast_at(profile *p, int32_t t)
 {
-    place at = {p, t, t - SMOOTH - 1 < FIRST ? FIRST - 1 : t - SMOOTH - 1, 1, {0}};
-    return at;
-}
-
-/* a(t); reads what it needs. Negative: there is no such sample. */
-static double contrast_at(place *at)
-{
-    const int32_t wanted = at->t + SMOOTH;
-    while (at->inside && at->last < wanted) {
-        double levels[SAMPLES];
-        at->inside = read_levels(at->p, at->last + 1, levels);
-        if (at->inside)
-            at->parts[++at->last % WIDTH] = product(levels, at->p->section);
-    }
-    if (at->t > at->last)
-        return -1;
-    const int32_t first = at->t - SMOOTH > FIRST ? at->t - SMOOTH : FIRST, last = wanted < at->last ? wanted : at->last;
+    hold(p, t);
+    const int32_t end = p->from + p->held, first = t - SMOOTH > FIRST ? t - SMOOTH : FIRST;
+    const int32_t last = t + SMOOTH < end ? t + SMOOTH : end - 1;
     double sum = 0;
-    for (int32_t t = first; t <= last; t++)
-        sum += at->parts[t % WIDTH];
+    if (t >= end)
+        return -1;
+    for (int32_t k = first - p->from; k <= last - p->from; k++)
+        sum += p->parts[k];
     return fabs(sum) / (last - first + 1);
 }
 
-/* Contrast at one t, away from a walk. */
-static double contrast(const profile *p, int32_t t)
-{
-    place at = start_at(p, t);
-    return contrast_at(&at);
-}
-
-/* Half of the mean square of the difference of neighbours: noise, and nothing of what changes slowly. */
+/* Half of the mean square of the difference of neighbours: noise, and nothing of what changes slowly. Of rows that are held. */
 static double noise_of(const profile *p, int32_t length)
 {
-    double levels[SAMPLES], before = 0, sum = 0;
-    int32_t count = 0;
-    for (int32_t t = FIRST; t < length && t < FIRST + BLOCKS * BLOCK && read_levels(p, t, levels); t++, count++) {
-        const double next = product(levels, p->section);
-        sum += count > 0 ? (next - before) * (next - before) : 0;
-        before = next;
-    }
+    const int32_t wanted = length < FIRST + BLOCKS * BLOCK ? length - FIRST : BLOCKS * BLOCK;
+    const int32_t count = wanted < p->held ? wanted : p->held;
+    double sum = 0;
+    for (int32_t k = 1; k < count; k++)
+        sum += (p->parts[k] - p->parts[k - 1]) * (p->parts[k] - p->parts[k - 1]);
     return count > 1 ? sqrt(0.5 * sum / (count - 1)) : 0;
 }
 
 /* px around t = end in which the contrast lies between the two levels. */
-static double fading_around(const profile *p, int32_t end, double high, double low)
+static double fading_around(profile *p, int32_t end, double high, double low)
 {
     int32_t before = end, after = end;
-    while (before > FIRST && before > end - MOST_FADING && contrast(p, before) < high)
+    while (before > FIRST && before > end - MOST_FADING && contrast_at(p, before) < high)
         before--;
-    while (after < end + MOST_FADING && contrast(p, after) > low)
+    while (after < end + MOST_FADING && contrast_at(p, after) > low)
         after++;
     return after - before;
 }
 
 /* The change point between contrast `own` and nothing, where `share` of it is left, from `first` to `last`; -1 = nothing all the
  * way. */
-static int32_t change_point(const profile *p, double own, double share, int32_t first, int32_t last)
+static int32_t change_point(profile *p, double own, double share, int32_t first, int32_t last)
 {
     const double limit = fmin(share, 1 - share);
     double sum = 0, most = 0;
     int32_t end = -1;
-    place at = start_at(p, first);
-    for (; at.t <= last; at.t++) {
-        const double a = contrast_at(&at);
+    for (int32_t t = first; t <= last; t++) {
+        const double a = contrast_at(p, t), more = a / own - share;
         if (a < 0)
             break;
-        sum += fmin(fmax(a / own - share, -limit), limit);
+        sum += more < -limit ? -limit : more > limit ? limit : more;
         if (sum > most) {
             most = sum;
-            end = at.t;
+            end = t;
         }
     }
     return end;
 }
 
 /* Where the edge that reaches to t = end breaks off. *own: its contrast there. */
-static int32_t break_before(const profile *p, int32_t end, double *own)
+static int32_t break_before(profile *p, int32_t end, double *own)
 {
     double before[LAST + 1];
     int32_t count = 0;
-    place at = start_at(p, end - LAST > FIRST ? end - LAST : FIRST);
-    for (; at.t <= end; at.t++)
-        before[count++] = contrast_at(&at);
+    for (int32_t t = end - LAST > FIRST ? end - LAST : FIRST; t <= end; t++)
+        before[count++] = contrast_at(p, t);
     qsort(before, (size_t)count, sizeof *before, rising);
     *own = before[(3 * count) / 4];
     return *own > 0 ? change_point(p, *own, 0.5, end - AROUND > FIRST ? end - AROUND : FIRST, end) : -1;
+}
+
+/* Reads the part that says what the edge looks like; 0 when it has no contrast. */
+static int start(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, int32_t length,
+                 profile *p)
+{
+    p->frame = frame;
+    p->x = hypothesis->x;
+    p->y = hypothesis->y;
+    p->ux = cos(branch->angle);
+    p->uy = sin(branch->angle);
+    p->offset = fmin(fmax(branch->offset, HALF - OUTSIDE), OUTSIDE - HALF);
+    p->from = FIRST;
+    p->held = p->ends = 0;
+    read_rows(p, (length > FIRST ? length : FIRST) + BEYOND + SMOOTH);
+    find_blocks(p, length);
+    if (p->count < 1 || !find_section(p))
+        return 0;
+    project(p, 0);
+    return 1;
 }
 
 asj_end_profile asj_end_profile_of(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch,
@@ -242,24 +279,18 @@ asj_end_profile asj_end_profile_of(const asj_frame *frame, const asj_hypothesis 
     asj_end_profile result = {0, 0, 0};
     const int32_t length = (int32_t)lrint(branch->length);
     profile p;
-    p.frame = frame;
-    p.x = hypothesis->x;
-    p.y = hypothesis->y;
-    p.ux = cos(branch->angle);
-    p.uy = sin(branch->angle);
-    p.offset = branch->offset;
-    read_blocks(&p, length);
-    if (p.count < 1 || !find_section(&p))
+    if (!start(frame, hypothesis, branch, length, &p))
         return result;
     double own = own_contrast(&p);
     if (!(own > 0)) /* flat but for a block or two: no contrast to take a share of */
         return result;
+    const double noise = noise_of(&p, length);
     const int32_t reach = change_point(&p, own, share, FIRST, length + BEYOND);
     const int32_t end = reach < 0 ? -1 : break_before(&p, reach, &own);
     if (end < 0)
         return result;
     result.end = end + 0.5;
-    result.noise = noise_of(&p, length) / own;
+    result.noise = noise / own;
     result.fading = fading_around(&p, end, 0.75 * own, 0.25 * own);
     return result;
 }
