@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Between steps 3 and 4, over an image: guesses become hypotheses with sub-pixel locations, by the line fits and the strips along
- * them. A chunk of guesses at a time, of which a quarter stays. */
+ * them. A chunk of guesses at a time, of which a quarter stays.
+ *
+ * The most meaningful come first, as suppression has it (suppress.c). So what stays of the chunks before suppresses whatever comes
+ * within its reach, and a guess well within that is not worth a fit. */
 #include "edge_width.h"
 #include "locate.h"
 #include "octaves.h"
@@ -10,7 +13,10 @@
 #include "core/threads.h"
 #include "core/watch.h"
 
-#define AT_ONCE 256 /* guesses in a chunk */
+#define AT_ONCE 64 /* guesses in a chunk */
+
+/* A guess is seldom farther from the fitted location than this share of max_move: 1 px by default. */
+#define GUESS_ERROR 0.4
 
 /* Guesses that are shared out. */
 typedef struct job {
@@ -49,20 +55,45 @@ static asj_status keep(asj_detection_run *run, const asj_hypothesis *chunk, size
     return ASJ_OK;
 }
 
-static asj_status locate_chunks(asj_detection_run *run, asj_hypothesis *chunk)
+/* The next chunk begins at guess `first`: those from *next on that nothing hides move there. Returns how many. */
+static int64_t pick(const asj_detection_run *run, const asj_close_grid *apart, size_t first, size_t *next)
+{
+    const double spare = GUESS_ERROR * run->options->max_move;
+    size_t end = first;
+    for (; *next < run->guess_count && end - first < AT_ONCE; (*next)++) {
+        const asj_guess guess = run->guesses[*next];
+        if (!asj_suppress_hides(run->hypotheses, apart, guess.x, guess.y, spare))
+            run->guesses[end++] = guess;
+    }
+    return (int64_t)(end - first);
+}
+
+/* The hypotheses from `first` on that nothing suppresses go to the grid. */
+static void mark(const asj_detection_run *run, size_t first, asj_close_grid *apart)
+{
+    for (size_t i = first; i < run->hypothesis_count; i++) {
+        const double x = run->hypotheses[i].x, y = run->hypotheses[i].y;
+        if (!asj_suppress_hides(run->hypotheses, apart, x, y, 0))
+            asj_close_grid_add(apart, asj_close_grid_cell(apart, x, y), i);
+    }
+}
+
+static asj_status locate_chunks(asj_detection_run *run, asj_close_grid *apart, asj_hypothesis *chunk)
 {
     asj_context *context = run->context;
     asj_status status = keep(run, NULL, 0);
     asj_watch watch;
     asj_watch_start(&watch, context, ASJ_STAGE_LOCATE);
-    for (size_t first = 0; first < run->guess_count && status == ASJ_OK; first += AT_ONCE) {
-        const size_t left = run->guess_count - first;
-        const int64_t count = (int64_t)(left < AT_ONCE ? left : AT_ONCE);
+    for (size_t first = 0, next = 0; next < run->guess_count && status == ASJ_OK; first = next) {
+        const int64_t count = pick(run, apart, first, &next);
+        const size_t known = run->hypothesis_count;
         const job j = {run, run->guesses + first, chunk, &watch};
         asj_parallel(context, asj_threads_for(context, count, ASJ_LEAST_JUNCTIONS), count, ASJ_JUNCTIONS_AT_ONCE, locate_some, &j);
         status = asj_watch_end(&watch);
         if (status == ASJ_OK)
             status = keep(run, chunk, (size_t)count);
+        if (status == ASJ_OK)
+            mark(run, known, apart);
     }
     return status;
 }
@@ -70,10 +101,17 @@ static asj_status locate_chunks(asj_detection_run *run, asj_hypothesis *chunk)
 static asj_status locate_all(asj_detection_run *run)
 {
     asj_memory *memory = &run->context->memory;
+    const asj_frame *frame = run->frame;
+    const size_t count = asj_close_grid_cells(run->guess_count, frame->width, frame->height);
     asj_hypothesis *chunk = asj_allocate(memory, AT_ONCE, sizeof *chunk);
-    if (!chunk)
-        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %d junctions", AT_ONCE);
-    const asj_status status = locate_chunks(run, chunk);
+    int32_t *cells = asj_allocate_list(memory, count, sizeof *cells);
+    asj_status status;
+    if (chunk && cells) {
+        asj_close_grid apart = asj_close_grid_start(frame->width, frame->height, cells);
+        status = locate_chunks(run, &apart, chunk);
+    } else
+        status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %d junctions", AT_ONCE);
+    asj_release(memory, cells);
     asj_release(memory, chunk);
     asj_release(memory, run->guesses);
     run->guesses = NULL;

@@ -30,14 +30,15 @@ void asj_suppress_sort(asj_hypothesis *hypotheses, size_t count)
         qsort(hypotheses, count, sizeof *hypotheses, by_meaning);
 }
 
-static int suppressed(const asj_hypothesis *hypotheses, const asj_hypothesis *hypothesis, const asj_close_grid *grid, int64_t cell)
+int asj_suppress_hides(const asj_hypothesis *hypotheses, const asj_close_grid *grid, double x, double y, double spare)
 {
+    const int64_t cell = asj_close_grid_cell(grid, x, y);
     for (int dy = -1; dy <= 1; dy++)
         for (int dx = -1; dx <= 1; dx++)
             for (int32_t i = grid->heads[cell + dy * grid->columns + dx]; i >= 0; i = grid->next[i]) {
-                const double radius = fmax(LEAST_CLOSE, ASJ_CLOSE_SHARE * hypotheses[i].radius);
-                const double x = hypotheses[i].x - hypothesis->x, y = hypotheses[i].y - hypothesis->y;
-                if (x * x + y * y < radius * radius)
+                const double radius = fmax(LEAST_CLOSE, ASJ_CLOSE_SHARE * hypotheses[i].radius) - spare;
+                const double across = hypotheses[i].x - x, down = hypotheses[i].y - y;
+                if (radius > 0 && across * across + down * down < radius * radius)
                     return 1;
             }
     return 0;
@@ -52,12 +53,12 @@ size_t asj_suppress(asj_hypothesis *hypotheses, size_t count, int32_t width, int
             hypotheses[valid++] = hypotheses[i];
     asj_suppress_sort(hypotheses, valid);
     for (size_t i = 0; i < valid; i++) {
-        const int64_t cell = asj_close_grid_cell(&grid, hypotheses[i].x, hypotheses[i].y);
-        if (suppressed(hypotheses, &hypotheses[i], &grid, cell))
+        if (asj_suppress_hides(hypotheses, &grid, hypotheses[i].x, hypotheses[i].y, 0))
             continue;
         if (kept < i)
             hypotheses[kept] = hypotheses[i];
-        asj_close_grid_add(&grid, cell, kept++);
+        asj_close_grid_add(&grid, asj_close_grid_cell(&grid, hypotheses[kept].x, hypotheses[kept].y), kept);
+        kept++;
     }
     return kept;
 }
