@@ -5,6 +5,8 @@
 #include "seeds.h"
 #include "steps.h"
 
+#define AT_ONCE (1 << 20) /* px */
+
 static size_t count_bits(const uint16_t *masks, size_t count)
 {
     size_t bits = 0;
@@ -31,18 +33,23 @@ static asj_status dump(const asj_detection_run *run)
     return ASJ_OK;
 }
 
-/* Where the local field has two strong branches. */
+/* Rows between which progress is reported: whole groups, of about a megapixel, so that threads seldom wait for each other. */
+static int32_t rows_at_once(const asj_frame *frame)
+{
+    const int32_t groups = AT_ONCE / (ASJ_ROW_GROUP * frame->width);
+    return (groups > 1 ? groups : 1) * ASJ_ROW_GROUP;
+}
+
+/* Where the local field has two strong branches. Rows outside of a region are cleared by asj_region_clear_candidates(). */
 static asj_status find_in_field(asj_detection_run *run)
 {
     asj_context *context = run->context;
-    const int32_t height = run->frame->height;
+    const int32_t height = run->frame->height, rows = rows_at_once(run->frame);
     int32_t first, end;
     asj_status status = ASJ_OK;
     asj_region_rows(run, &first, &end);
-    for (int32_t top = 0; top < height && status == ASJ_OK; top += ASJ_ROW_GROUP) {
-        const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
-        if (bottom <= first || top >= end)
-            continue; /* asj_region_clear_candidates() clears them */
+    for (int32_t top = first - first % ASJ_ROW_GROUP; top < end && status == ASJ_OK; top += rows) {
+        const int32_t bottom = end - top < rows ? end : top + rows;
         status = context->ops->field->rows(context, run->field, run->frame, top, bottom, &run->scratch, run->candidates);
         if (status == ASJ_OK)
             status = asj_detection_run_progress(run, ASJ_STAGE_CANDIDATES, 0.05 + 0.45 * bottom / height);

@@ -185,7 +185,7 @@ void asj_isotropic_band(const asj_isotropic *test, const asj_frame *frame, int32
 
 /* Bands with enough candidates to be worth a thread, and enough of them for all threads to end together. */
 #define LEAST_CANDIDATES 64
-#define BANDS_PER_THREAD 4
+#define BANDS_PER_THREAD 8
 
 typedef struct job {
     asj_context *context;

@@ -3,6 +3,8 @@
 #include "isotropic_thin.h"
 #include "steps.h"
 
+#define ROWS (2 * ASJ_ROW_GROUP) /* in a group: more make threads wait less for each other, and take more memory */
+
 /* What is found while groups of rows are tested. */
 typedef struct lists {
     void *records; /* asj_isotropic_junction: one for each candidate of a group */
@@ -27,7 +29,7 @@ static void count_candidates(const asj_detection_run *run, int32_t top, int32_t 
 static asj_status test_group(asj_detection_run *run, int32_t top, int32_t bottom, lists *l)
 {
     asj_context *context = run->context;
-    size_t starts[ASJ_ROW_GROUP + 1];
+    size_t starts[ROWS + 1];
     count_candidates(run, top, bottom, starts);
     const asj_candidate_rows rows = {top, bottom, run->candidates, starts};
     const size_t total = starts[bottom - top], most = run->isotropic_count + total, size = sizeof(asj_isotropic_junction);
@@ -54,8 +56,8 @@ static asj_status test_candidates(asj_detection_run *run)
     const int32_t height = run->frame->height;
     asj_status status = ASJ_OK;
     lists l = {0};
-    for (int32_t top = 0; top < height && status == ASJ_OK; top += ASJ_ROW_GROUP) {
-        const int32_t bottom = height - top < ASJ_ROW_GROUP ? height : top + ASJ_ROW_GROUP;
+    for (int32_t top = 0; top < height && status == ASJ_OK; top += ROWS) {
+        const int32_t bottom = height - top < ROWS ? height : top + ROWS;
         status = test_group(run, top, bottom, &l);
         if (status == ASJ_OK)
             status = asj_detection_run_progress(run, ASJ_STAGE_ISOTROPIC, 0.5 + 0.2 * bottom / height);
