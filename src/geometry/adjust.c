@@ -81,7 +81,7 @@ static int32_t set_up(const asj_pairs *set, const asj_model *model, const double
 static void add_prior(const asj_pairs *set, const asj_model *model, equations *e)
 {
     double information, w[3];
-    if (model->kind != ASJ_GEOMETRY_ESSENTIAL || !asj_nearest_rotation(set, model->rotation, w))
+    if (model->kind != ASJ_GEOMETRY_ESSENTIAL || asj_nearest_rotation(set, model->rotation, w) < 0)
         return;
     asj_rotation_prior(set, model->rotation, &information);
     for (int32_t k = 0; k < 3; k++) {

@@ -6,11 +6,15 @@
  * reasons that the model does not know, and all its places together: of rendered rooms with tiled floors, wrong geometries have up
  * to 1.6 times the log evidence of the best one that contradicts them, and with fewer than FEW matches more than that.
  *
- * Where images have colours, these say of rivals which one is wrong (colour_vote.c). */
+ * Where images have colours, these say of rivals which one is wrong (colour_vote.c), and that may be the one with most evidence: a
+ * floor of tiles, turned by 90 degrees or shifted so that more of it is seen twice, has up to three times the log evidence of the
+ * right geometry. What colours contradict in favour of another geometry that is not chance either is struck out, and that one is
+ * followed as the best one would have been (motions.c). */
 #include "ambiguity.h"
 #include "core/angle.h"
 #include "colour_vote.h"
 #include "likelihood.h"
+#include "motions.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -24,6 +28,8 @@
 #define CONTRARY 0.4
 #define CONTRARY_ALIKE 0.15 /* of a rival with as much evidence */
 #define SIMILAR_MOTION (6 * ASJ_DEGREE)
+#define DOUBT 0.6
+#define MOST_STRUCK 4 /* times that the best one changes */
 
 /* How much of the second geometry's matches contradicts the first one's: it gives another partner to a place that the first one has
  * matched, in either image, and that the first one does not hold for nearly as likely (near places have two). As a part of all of
@@ -71,24 +77,88 @@ static double least_contradiction(const asj_model *best, const asj_model *rival,
     return CONTRARY + (CONTRARY_ALIKE - CONTRARY) * nearness;
 }
 
-int32_t asj_strongest_rival(asj_estimation *e, int32_t best)
+/* Are the colours rather for the rival, whose probabilities are in e->other? */
+static int32_t are_colours_for(const asj_estimation *e)
+{
+    return e->set.has_colours && asj_colours_against(&e->set, e->other, e->scratch.probability, e->vote) > DOUBT;
+}
+
+int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
 {
     int32_t second = -1;
     const asj_model *m = &e->finalists[best];
     for (int32_t n = 0; n < e->count; n++) {
         const asj_model *rival = &e->finalists[n];
-        if (n == best || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
+        if (n == best || !(rival->evidence > -HUGE_VAL) || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
             continue;
-        if (contradiction(e, rival) > least_contradiction(m, rival, asj_estimation_log10_nfa(e, rival) / to_compare(e, m)) &&
-            !asj_colours_contradict(&e->set, e->scratch.probability, e->other, e->vote))
+        const double contrary = contradiction(e, rival), share = asj_estimation_log10_nfa(e, rival) / to_compare(e, m);
+        const int32_t doubtful = are_colours_for(e);
+        if (contrary > (doubtful ? CONTRARY_ALIKE : least_contradiction(m, rival, share)) &&
+            !(asj_colours_against(&e->set, e->scratch.probability, e->other, e->vote) > 1)) {
             second = n;
+            *doubt = doubtful;
+        }
     }
     return second;
 }
 
-int32_t asj_is_ambiguous(const asj_estimation *e, int32_t best, int32_t rival, double inliers)
+int32_t asj_is_ambiguous(const asj_estimation *e, int32_t best, int32_t rival, int32_t doubt, double inliers)
 {
     const double nfa = to_compare(e, &e->finalists[best]), second = asj_estimation_log10_nfa(e, &e->finalists[rival]);
-    const int32_t few = inliers < FEW;
+    const int32_t few = doubt || inliers < FEW;
     return second <= fmax((few ? NEARLY_OF_FEW : NEARLY) * nfa, nfa + (few ? APART_OF_FEW : APART));
+}
+
+/* The one with most evidence in favour of which the colours contradict number `best`, whose probabilities are `mine`; -1: none. */
+static int32_t preferred_to(asj_estimation *e, int32_t best, const double *mine)
+{
+    const double least = log10(e->options->epsilon);
+    int32_t found = -1;
+    for (int32_t n = 0; n < e->count; n++) {
+        const asj_model *m = &e->finalists[n];
+        if (n == best || (found >= 0 && m->evidence <= e->finalists[found].evidence) || asj_estimation_log10_nfa(e, m) > least)
+            continue;
+        asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->other);
+        if (asj_colours_against(&e->set, e->other, mine, e->vote) > 1)
+            found = n;
+    }
+    return found;
+}
+
+/* All with more evidence than number `chosen` that the colours contradict in its favour. */
+static void strike(asj_estimation *e, int32_t chosen)
+{
+    const asj_model *c = &e->finalists[chosen];
+    asj_probabilities(&e->set, &c->view, 1, &e->scratch.score, e->scratch.probability);
+    for (int32_t n = 0; n < e->count; n++) {
+        asj_model *m = &e->finalists[n];
+        if (!(m->evidence > c->evidence))
+            continue;
+        asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->other);
+        if (asj_colours_against(&e->set, e->scratch.probability, e->other, e->vote) > 1)
+            m->evidence = m->peak = -HUGE_VAL;
+    }
+}
+
+asj_status asj_strike_out(asj_estimation *e)
+{
+    asj_status status = ASJ_OK;
+    for (int32_t round = 0; round < MOST_STRUCK && status == ASJ_OK && e->set.has_colours; round++) {
+        const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO);
+        if (best < 0 || asj_estimation_log10_nfa(e, &e->finalists[best]) > log10(e->options->epsilon))
+            break;
+        asj_probabilities(&e->set, &e->finalists[best].view, 1, &e->scratch.score, e->scratch.probability);
+        const int32_t chosen = preferred_to(e, best, e->scratch.probability);
+        if (chosen < 0)
+            break;
+        asj_model followed = e->finalists[chosen];
+        int32_t count = 1;
+        strike(e, chosen);
+        if (followed.kind != ASJ_GEOMETRY_ESSENTIAL || chosen == e->focal_at)
+            continue;
+        status = asj_refine_motions(e->context, &e->set, followed.cameras, e->options->seed, 1, &followed, &count);
+        if (status == ASJ_OK && count == 1 && followed.evidence > e->finalists[chosen].evidence)
+            e->finalists[chosen] = followed;
+    }
+    return status;
 }

@@ -5,11 +5,15 @@
 
 #include "estimation.h"
 
+/* Takes the evidence from geometries that the colours contradict in favour of others: what is best then is the answer. Errors:
+ * memory. */
+asj_status asj_strike_out(asj_estimation *e);
+
 /* The finalist with the largest evidence that contradicts number `best`, whose probabilities are in scratch, and that the colours
- * do not contradict; -1 = none. */
-int32_t asj_strongest_rival(asj_estimation *e, int32_t best);
+ * do not contradict; -1 = none. *doubt: 1 when they are rather for it. */
+int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt);
 
 /* May the rival be the right one as well? inliers: of the best one. */
-int32_t asj_is_ambiguous(const asj_estimation *e, int32_t best, int32_t rival, double inliers);
+int32_t asj_is_ambiguous(const asj_estimation *e, int32_t best, int32_t rival, int32_t doubt, double inliers);
 
 #endif

@@ -129,7 +129,8 @@ void asj_answer(asj_estimation *e, double *probabilities, asj_geometry *result)
     asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
     for (int32_t k = 0; k < e->set.count; k++)
         result->inliers += e->scratch.probability[k];
-    const int32_t second = asj_strongest_rival(e, best);
+    int32_t doubt = 0;
+    const int32_t second = asj_strongest_rival(e, best, &doubt);
     if (second >= 0) {
         result->has_second = 1;
         result->second_log10_nfa = asj_estimation_log10_nfa(e, &e->finalists[second]);
@@ -139,7 +140,7 @@ void asj_answer(asj_estimation *e, double *probabilities, asj_geometry *result)
     if (open_focal && e->options->model == ASJ_GEOMETRY_ESSENTIAL)
         determined = 0;
     result->status = !determined ? ASJ_GEOMETRY_DEGENERATE : ASJ_GEOMETRY_ACCEPTED;
-    if (second >= 0 && asj_is_ambiguous(e, best, second, result->inliers))
+    if (second >= 0 && asj_is_ambiguous(e, best, second, doubt, result->inliers))
         result->status = ASJ_GEOMETRY_AMBIGUOUS;
     for (int32_t k = 0; k < e->set.count && probabilities; k++)
         probabilities[e->set.list[k].source] = e->scratch.probability[k];

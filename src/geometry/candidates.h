@@ -31,7 +31,7 @@ typedef struct asj_pairs {
     double area;             /* px^2: .. or anywhere in the image */
     double rotations[ASJ_ROTATIONS][9]; /* manhattan.c */
     int32_t rotation_count;  /* 0 or ASJ_ROTATIONS */
-    int32_t reserved;
+    int32_t has_colours;
     double middle[2][2];     /* px: of image 1 and image 2 */
     float *at;               /* near.c: all x1, all y1, x2, y2, from the middles */
     double farthest[4];      /* the largest of each */

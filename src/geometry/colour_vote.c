@@ -60,7 +60,7 @@ static void add(const asj_pairs *set, int32_t side, const double *room, vote *v)
     }
 }
 
-int32_t asj_colours_contradict(const asj_pairs *set, const double *first, const double *second, double *room)
+double asj_colours_against(const asj_pairs *set, const double *first, const double *second, double *room)
 {
     vote v = {0, 0, 0};
     for (int32_t side = 0; side < 2; side++) {
@@ -68,5 +68,7 @@ int32_t asj_colours_contradict(const asj_pairs *set, const double *first, const 
         add(set, side, room, &v);
     }
     /* a place of one image meets one of the other: each is there twice */
-    return v.sum > 2 * LEAST_SUM && v.sum > LEAST_MEAN * v.weight && v.sum > LEAST_T * sqrt(2 * v.square);
+    if (!(v.sum > 0))
+        return 0;
+    return fmin(v.sum / (2 * LEAST_SUM), v.sum / fmax(LEAST_MEAN * v.weight, LEAST_T * sqrt(2 * v.square)));
 }

@@ -7,9 +7,10 @@
  *   focal.c       the same for a row of focal lengths, where none is known and it is asked for
  *   rivals.c      what explains as much without the candidates of the best one
  *   evidence.c    how often chance brings as much
- *   ambiguity.c   whether one of these may be right as well
+ *   ambiguity.c   which of these the colours contradict; whether one may be right as well
  *   answer.c      which kind, and what is told of it
  *   model.c       what moves when a geometry moves */
+#include "ambiguity.h"
 #include "answer.h"
 #include "estimate.h"
 #include "estimation.h"
@@ -160,6 +161,8 @@ asj_status asj_estimate_with_colours(asj_context *context, const asj_geometry_ca
                          ? search_all(e) : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the geometry");
             if (status == ASJ_OK)
                 status = search_rivals(e);
+            if (status == ASJ_OK)
+                status = asj_strike_out(e);
             if (status == ASJ_OK)
                 status = asj_watch_end(&watch);
             if (status == ASJ_OK)

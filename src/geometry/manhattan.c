@@ -41,7 +41,7 @@ void asj_manhattan_rotations(const double directions[2][9], asj_pairs *set)
 int32_t asj_nearest_rotation(const asj_pairs *set, const double rotation[9], double w[3])
 {
     double least = NEAR;
-    int32_t found = 0;
+    int32_t found = -1;
     for (int32_t k = 0; k < set->rotation_count; k++) {
         double turn[9];
         asj_multiply3_transposed(set->rotations[k], rotation, turn);
@@ -56,7 +56,7 @@ int32_t asj_nearest_rotation(const asj_pairs *set, const double rotation[9], dou
         w[1] = factor * (turn[2] - turn[6]);
         w[2] = factor * (turn[3] - turn[1]);
         least = angle;
-        found = 1;
+        found = k;
     }
     return found;
 }
@@ -67,7 +67,7 @@ double asj_rotation_prior(const asj_pairs *set, const double rotation[9], double
     *information = 0;
     if (set->rotation_count == 0)
         return 0;
-    if (!asj_nearest_rotation(set, rotation, w))
+    if (asj_nearest_rotation(set, rotation, w) < 0)
         return log(0.5);
     const double top = 8 * ASJ_PI * ASJ_PI / ASJ_ROTATIONS * pow(2 * ASJ_PI * SD * SD, -1.5);
     const double near = top * exp(-0.5 * asj_dot3(w, w) / (SD * SD));

@@ -8,7 +8,7 @@
 /* Fills set->rotations from three directions at right angles of each image (rows); none when one of them is zero. */
 void asj_manhattan_rotations(const double directions[2][9], asj_pairs *set);
 
-/* The rotation w with exp([w]x) R = the nearest of set->rotations; 0 when none is near enough to say anything. */
+/* Which of set->rotations is nearest, and the rotation w with exp([w]x) R = it; -1 when none is near enough to say anything. */
 int32_t asj_nearest_rotation(const asj_pairs *set, const double rotation[9], double w[3]);
 
 /* Log of the density of rotations at R over the flat one; *information: what it adds to that of each of the three angles. 0 and 0

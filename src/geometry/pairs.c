@@ -121,6 +121,7 @@ asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *
     set->count = (int32_t)(count < ASJ_MOST_PAIRS ? count : ASJ_MOST_PAIRS);
     while (set->count > 0 && !(set->list[set->count - 1].prior > 0))
         set->count--;
+    set->has_colours = colours != NULL;
     set_scales(options, set);
     asj_manhattan_rotations(options->directions, set);
     for (int32_t v = 0; v < 2; v++) {

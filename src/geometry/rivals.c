@@ -8,6 +8,7 @@
  * again, and the best of that becomes what the candidates allow around it (posterior.c). */
 #include "rivals.h"
 #include "evidence.h"
+#include "manhattan.h"
 #include "motions.h"
 #include "posterior.h"
 
@@ -54,6 +55,21 @@ static void judge(asj_context *context, const asj_pairs *set, uint64_t seed, asj
         asj_settle(context, set, seed, scratch, &rivals[best]);
 }
 
+/* Rooms look alike when they are turned by 90 degrees (tiles do so exactly), and variants of one such turn fill the lists: so the
+ * best geometry of every other rotation that the images' directions allow is looked for by itself. `search` is of essential
+ * matrices. */
+static asj_status find_turned(asj_context *context, const asj_pairs *set, const asj_search *search, const asj_camera *cameras,
+                              const asj_model *best, asj_model *rivals, int32_t *count)
+{
+    double w[3];
+    *count = 0;
+    if (set->rotation_count == 0)
+        return ASJ_OK;
+    const int32_t except = best->kind == ASJ_GEOMETRY_ESSENTIAL ? asj_nearest_rotation(set, best->rotation, w) : -1;
+    const asj_status status = asj_geometry_search_turned(context, set, search, except, rivals, count);
+    return status == ASJ_OK ? asj_refine_motions(context, set, cameras, search->seed, 0, rivals, count) : status;
+}
+
 asj_status asj_find_rivals(asj_context *context, asj_pairs *set, const asj_search *kinds, int32_t kind_count,
                            const asj_camera *cameras, const asj_model *best, asj_model *rivals, int32_t *count)
 {
@@ -75,6 +91,11 @@ asj_status asj_find_rivals(asj_context *context, asj_pairs *set, const asj_searc
         if (status == ASJ_OK && cameras)
             status = asj_refine_motions(context, set, cameras, kinds[0].seed, 0, rivals, count);
         unmask(set, kept);
+    }
+    if (status == ASJ_OK && cameras) {
+        int32_t more = 0;
+        status = find_turned(context, set, &kinds[0], cameras, best, rivals + *count, &more);
+        *count += more;
     }
     if (status == ASJ_OK)
         judge(context, set, kinds[0].seed, scratch, rivals, *count);

@@ -6,7 +6,8 @@
 #include "search.h"
 
 /* Geometries that explain the images without the candidates of `best`: rivals.c. One search for each kind in `kinds`, kind_count of
- * them; cameras: NULL, or where essential matrices are searched. `rivals` has room for (1 + kind_count) ASJ_FINALISTS. */
+ * them; cameras: NULL, or where essential matrices are searched. `rivals` has room for (1 + kind_count) ASJ_FINALISTS +
+ * ASJ_TURNED. */
 asj_status asj_find_rivals(asj_context *context, asj_pairs *set, const asj_search *kinds, int32_t kind_count,
                            const asj_camera *cameras, const asj_model *best, asj_model *rivals, int32_t *count);
 

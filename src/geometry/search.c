@@ -12,10 +12,12 @@
 #include "core/threads.h"
 #include "counter_random.h"
 #include "evidence.h"
+#include "manhattan.h"
 #include "minimal.h"
 #include "ranking.h"
 #include "small_matrix.h"
 #include "stop.h"
+#include "turned.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,6 +35,7 @@
 #define LOOSE 2.0
 #define TRIES 20
 #define FLAT_SAMPLES 2
+#define TURNED 16
 
 /* --- samples ----------------------------------------------------------------------------------------------------------------- */
 
@@ -85,15 +88,19 @@ static int32_t guess(const asj_pairs *set, const asj_pair *const pairs[2], const
     return 1;
 }
 
-static int32_t sample(const asj_pairs *set, const double *sum, int32_t count, const asj_search *search, uint64_t stream,
-                      asj_model *model)
+/* turned: NULL in samples around a geometry with the rotation `near` (-1: not known). */
+static int32_t sample(const asj_pairs *set, const double *sum, int32_t count, const asj_search *search, const asj_turned *turned,
+                      int32_t near, uint64_t stream, asj_model *model)
 {
     const asj_pair *pairs[3];
-    const int32_t wanted = search->kind == ASJ_GEOMETRY_FUNDAMENTAL && stream % 4 == 3 ? 3 : 2;
+    const int32_t by_vote = turned && turned->count > 0 && stream % 2 == 1;
+    const int32_t wanted = by_vote ? 1 : search->kind == ASJ_GEOMETRY_FUNDAMENTAL && stream % 4 == 3 ? 3 : 2;
     if (!(sum[count - 1] > 0) || !draw_some(set, sum, count, search->seed, stream, wanted, pairs))
         return 0;
-    if (search->kind == ASJ_GEOMETRY_ESSENTIAL && set->rotation_count > 0 && stream % 2 == 1)
-        return asj_translation_from_two(pairs, set->rotations[stream / 2 % ASJ_ROTATIONS], search->cameras, model);
+    if (by_vote)
+        return asj_translation_by_vote(set, turned, (int32_t)(stream / 2 % ASJ_ROTATIONS), pairs[0], search->cameras, model);
+    if (search->kind == ASJ_GEOMETRY_ESSENTIAL && near >= 0 && stream % 2 == 1)
+        return asj_translation_from_two(pairs, set->rotations[near], search->cameras, model);
     if (search->kind == ASJ_GEOMETRY_ESSENTIAL)
         return asj_essential_from_two(set, pairs, search->cameras, model);
     if (search->kind == ASJ_GEOMETRY_HOMOGRAPHY)
@@ -115,6 +122,7 @@ typedef struct work {
     asj_model *models, *starts;
     asj_ranked *order;
     double *sum;
+    asj_turned turned;           /* count 0: no rotation is likely */
     asj_adjust_scratch *scratch; /* for each thread */
 } work;
 
@@ -134,7 +142,7 @@ static void sample_some(const void *data, const asj_part *part)
     for (int64_t n = part->first; n < part->end; n++) {
         asj_model m = {.kind = ASJ_GEOMETRY_NONE};
         const int32_t good =
-            !asj_pairs_stop(j->set, part) && sample(j->set, j->w->sum, j->first, j->search, (uint64_t)n, &m);
+            !asj_pairs_stop(j->set, part) && sample(j->set, j->w->sum, j->first, j->search, &j->w->turned, -1, (uint64_t)n, &m);
         const double score = good ? asj_score(j->set, j->first, &m.view, LOOSE, &j->w->scratch[part->thread].score) : -HUGE_VAL;
         j->w->order[n] = (asj_ranked){score, (int32_t)n};
     }
@@ -149,10 +157,16 @@ static void score_some(const void *data, const asj_part *part)
         asj_model *m = &j->models[n];
         memset(m, 0, sizeof *m);
         if (r->score > -HUGE_VAL && !asj_pairs_stop(j->set, part) &&
-            sample(j->set, j->w->sum, j->first, j->search, (uint64_t)r->index, m))
+            sample(j->set, j->w->sum, j->first, j->search, &j->w->turned, -1, (uint64_t)r->index, m))
             r->score = asj_score(j->set, j->set->count, &m->view, LOOSE, &j->w->scratch[part->thread].score);
         r->index = (int32_t)n;
     }
+}
+
+static void set_sums(const asj_pairs *set, const asj_search *search, int32_t count, double *sum)
+{
+    for (int32_t k = 0; k < count; k++)
+        sum[k] = (k > 0 ? sum[k - 1] : 0) + set->list[k].prior * (search->weights ? search->weights[k] : 1);
 }
 
 /* Leaves the best in w->models, in the order of w->order; how many. */
@@ -160,8 +174,7 @@ static int32_t draw_samples(const asj_pairs *set, const asj_search *search, work
 {
     const int32_t first = set->count < PRESELECTED ? set->count : PRESELECTED, samples = samples_of(search);
     const int32_t most = samples < SHORT ? samples : SHORT;
-    for (int32_t k = 0; k < first; k++)
-        w->sum[k] = (k > 0 ? w->sum[k - 1] : 0) + set->list[k].prior * (search->weights ? search->weights[k] : 1);
+    set_sums(set, search, first, w->sum);
     const job j = {.set = set, .search = search, .w = w, .models = w->models, .first = first};
     asj_parallel(w->context, w->context->threads, samples, 8, sample_some, &j);
     qsort(w->order, (size_t)samples, sizeof *w->order, asj_by_score);
@@ -177,13 +190,16 @@ static void sample_around(const void *data, const asj_part *part)
     asj_adjust_scratch *scratch = &j->w->scratch[part->thread];
     double *sum = scratch->probability;
     for (int64_t n = part->first; n < part->end; n++) {
+        double w[3];
+        const int32_t has_rotation = j->models[n].kind == ASJ_GEOMETRY_ESSENTIAL;
+        const int32_t near = has_rotation ? asj_nearest_rotation(j->set, j->models[n].rotation, w) : -1;
         asj_probabilities(j->set, &j->models[n].view, WIDEST, &scratch->score, sum);
         for (int32_t k = 1; k < first; k++)
             sum[k] += sum[k - 1];
         for (int64_t k = 0; k < LOCAL; k++) {
             asj_model *m = &j->models[j->count + n * LOCAL + k];
             const uint64_t stream = ((uint64_t)j->rounds + 1) << 32 | (uint64_t)(n * LOCAL + k);
-            const int32_t good = !asj_pairs_stop(j->set, part) && sample(j->set, sum, first, j->search, stream, m);
+            const int32_t good = !asj_pairs_stop(j->set, part) && sample(j->set, sum, first, j->search, NULL, near, stream, m);
             m->score = good ? asj_score(j->set, first, &m->view, LOOSE, &scratch->score) : -HUGE_VAL;
         }
     }
@@ -263,8 +279,39 @@ static int32_t run(const asj_pairs *set, const asj_search *search, work *w, asj_
     return count;
 }
 
-asj_status asj_geometry_search(asj_context *context, const asj_pairs *set, const asj_search *search, asj_model *finalists,
-                               int32_t *count)
+/* For every rotation the best of TURNED samples, in w->models; -HUGE_VAL where there is none. */
+static void turn_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t r = part->first; r < part->end; r++) {
+        asj_model *best = &j->models[r];
+        best->score = -HUGE_VAL;
+        for (int64_t k = 0; k < TURNED && r != j->count && !asj_pairs_stop(j->set, part); k++) {
+            asj_model m = {.kind = ASJ_GEOMETRY_NONE};
+            const uint64_t stream = (uint64_t)(2 * (ASJ_ROTATIONS * k + r) + 1); /* sample() reads the rotation off it */
+            if (!sample(j->set, j->w->sum, j->first, j->search, &j->w->turned, -1, stream, &m))
+                continue;
+            m.score = asj_score(j->set, j->first, &m.view, LOOSE, &j->w->scratch[part->thread].score);
+            if (m.score > best->score)
+                *best = m;
+        }
+        j->w->order[r] = (asj_ranked){best->score, (int32_t)r};
+    }
+}
+
+static int32_t run_turned(const asj_pairs *set, const asj_search *search, work *w, int32_t except, asj_model *finalists)
+{
+    const int32_t first = w->turned.count;
+    set_sums(set, search, first, w->sum);
+    const job j = {.set = set, .search = search, .w = w, .models = w->models, .first = first, .count = except};
+    asj_parallel(w->context, w->context->threads, ASJ_ROTATIONS, 1, turn_some, &j);
+    qsort(w->order, ASJ_ROTATIONS, sizeof *w->order, asj_by_score);
+    const int32_t count = asj_pick(w->models, w->order, ASJ_ROTATIONS, ASJ_TURNED, w->starts);
+    return adjust_some(set, w, w->starts, count, ROUNDS, ASJ_TURNED, finalists);
+}
+
+static asj_status search_some(asj_context *context, const asj_pairs *set, const asj_search *search, int32_t turned, int32_t except,
+                              asj_model *finalists, int32_t *count)
 {
     asj_memory *memory = &context->memory;
     const int32_t threads = context->threads;
@@ -277,13 +324,29 @@ asj_status asj_geometry_search(asj_context *context, const asj_pairs *set, const
     w.order = asj_allocate(memory, samples, sizeof *w.order);
     w.sum = asj_allocate(memory, PRESELECTED, sizeof *w.sum);
     w.scratch = asj_adjust_scratches_create(memory, set, threads);
-    const int32_t good = w.models && w.starts && w.order && w.sum && w.scratch;
+    int32_t good = w.models && w.starts && w.order && w.sum && w.scratch;
+    if (search->kind == ASJ_GEOMETRY_ESSENTIAL && set->rotation_count > 0 && good)
+        good = asj_turned_create(memory, set, set->count < PRESELECTED ? set->count : PRESELECTED, search->weights, search->cameras,
+                                 &w.turned);
     if (good && set->count >= 2)
-        *count = run(set, search, &w, finalists);
+        *count = turned ? run_turned(set, search, &w, except, finalists) : run(set, search, &w, finalists);
     asj_adjust_scratches_free(memory, w.scratch, threads);
+    asj_turned_free(memory, &w.turned);
     asj_release(memory, w.sum);
     asj_release(memory, w.order);
     asj_release(memory, w.starts);
     asj_release(memory, w.models);
     return good ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the geometry of %d candidates", (int)set->count);
+}
+
+asj_status asj_geometry_search(asj_context *context, const asj_pairs *set, const asj_search *search, asj_model *finalists,
+                               int32_t *count)
+{
+    return search_some(context, set, search, 0, 0, finalists, count);
+}
+
+asj_status asj_geometry_search_turned(asj_context *context, const asj_pairs *set, const asj_search *search, int32_t except,
+                                      asj_model *finalists, int32_t *count)
+{
+    return search_some(context, set, search, 1, except, finalists, count);
 }

@@ -6,6 +6,7 @@
 #include "adjust.h"
 
 #define ASJ_FINALISTS 15
+#define ASJ_TURNED 8
 
 typedef struct asj_search {
     int32_t kind;
@@ -19,5 +20,10 @@ typedef struct asj_search {
 /* The best geometries of the kind, refined, the best score first; finalists has room for ASJ_FINALISTS. *count may be 0. */
 asj_status asj_geometry_search(asj_context *context, const asj_pairs *set, const asj_search *search, asj_model *finalists,
                                int32_t *count);
+
+/* The same, unjudged, of the essential matrices with one of set->rotations, which must be there, but for number `except` (-1:
+ * none): the best of each, so that none crowds out the others; finalists has room for ASJ_TURNED. */
+asj_status asj_geometry_search_turned(asj_context *context, const asj_pairs *set, const asj_search *search, int32_t except,
+                                      asj_model *finalists, int32_t *count);
 
 #endif

@@ -7,6 +7,7 @@
 #include "geometry/planes.h"
 #include "geometry/polynomial.h"
 #include "geometry/small_matrix.h"
+#include "geometry/turned.h"
 
 /* --- matrices ---------------------------------------------------------------------------------------------------------------- */
 
@@ -407,6 +408,50 @@ static void a_homography_gives_its_motions(void **state)
     }
 }
 
+#define CROWD 300
+
+/* One right candidate in ten, and a rotation that is known: the others vote for the translation. Where rays are parallel nothing is
+ * told. */
+static void a_vote_gives_the_translation(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_memory memory = unit_memory(&counter);
+    synth_random random;
+    int good = 0;
+    synth_random_seed(&random, 21);
+    for (int i = 0; i < 50; i++) {
+        const motion m = random_motion(&random), other = random_motion(&random);
+        static asj_pair list[CROWD];
+        asj_pairs set = {.list = list, .count = CROWD, .rotation_count = 2};
+        asj_turned turned;
+        asj_model model;
+        memcpy(set.rotations[0], other.rotation, sizeof other.rotation);
+        memcpy(set.rotations[1], m.rotation, sizeof m.rotation);
+        for (int k = 0; k < CROWD; k++) {
+            const asj_pair there = random_patch(&random, &m, 0);
+            list[k] = random_patch(&random, &m, 0);
+            list[k].prior = 0.02;
+            if (k % 10 != 0) { /* somewhere else in image 2 */
+                list[k].x2 = there.x2;
+                list[k].y2 = there.y2;
+            }
+        }
+        assert_true(asj_turned_create(&memory, &set, CROWD, NULL, cameras, &turned));
+        memset(&model, 0, sizeof model);
+        for (int k = 0; k < CROWD; k += 10) {
+            const int told = asj_translation_by_vote(&set, &turned, 1, &list[k], cameras, &model);
+            good += told && asj_dot3(model.translation, m.translation) > cos(0.03);
+        }
+        unit_near("rotation", i, 0, model.rotation[1], m.rotation[1], 0);
+        for (int k = 0; k < 3 * CROWD; k++)
+            turned.normal[3 * CROWD + k] = 0;
+        assert_false(asj_translation_by_vote(&set, &turned, 1, &list[0], cameras, &model));
+        asj_turned_free(&memory, &turned);
+    }
+    assert_true(good >= 1450); /* of 1500 */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -416,6 +461,7 @@ int main(void)
         cmocka_unit_test(five_points_give_the_motion), cmocka_unit_test(right_candidates_have_no_residuals),
         cmocka_unit_test(two_candidates_give_the_motion), cmocka_unit_test(three_candidates_give_the_fundamental_matrix),
         cmocka_unit_test(two_candidates_give_the_homography), cmocka_unit_test(a_homography_gives_its_motions),
+        cmocka_unit_test(a_vote_gives_the_translation),
     };
     return cmocka_run_group_tests_name("solvers", tests, NULL, NULL);
 }
