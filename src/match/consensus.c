@@ -109,7 +109,7 @@ static void rate(const asj_match_run *run, half halves[2], float *scratch, float
 /* How many neighbours of one image are asked, but at least one: a match that stands alone has no support. */
 static uint32_t asked(const asj_l_junctions *l_junctions, uint32_t limit)
 {
-    const uint32_t others = l_junctions->location_count > 2 ? l_junctions->location_count - 1 : 1;
+    const uint32_t others = l_junctions->home_locations > 2 ? l_junctions->home_locations - 1 : 1;
     return others < limit ? others : limit;
 }
 

@@ -8,7 +8,7 @@
  *
  * Matches are unique by location, and "another location" in the ratio test means farther than `separation`.
  * Neighbours of a location are the nearest others farther than `separation`, so that a cluster of duplicates is no neighbour of
- * itself. */
+ * itself. Guests (same_corner.c) are nobody's neighbours and lengthen no branch, so that others are as they are without them. */
 #include "l_junctions.h"
 #include "nearest.h"
 #include "core/angle.h"
@@ -101,6 +101,8 @@ static asj_status find_locations(asj_context *context, asj_l_junctions *all)
     }
     all->location_count = locations;
     all->first_of_location[locations] = all->count;
+    for (uint32_t p = 0; p < locations; p++)
+        all->home_locations += (uint32_t)!asj_is_guest_location(all, p);
     asj_release(memory, positions);
     return ASJ_OK;
 }
@@ -130,7 +132,7 @@ static uint32_t find_nearest(const asj_l_junctions *all, uint32_t location, doub
         const double dx = all->location_x[q] - x, dy = all->location_y[q] - y, square = dx * dx + dy * dy;
         if (asj_nearest_beyond(&list, dx * dx))
             break;
-        if (square > least)
+        if (square > least && !asj_is_guest_location(all, q))
             asj_nearest_offer(&list, q, square);
     }
     return list.count;
@@ -183,7 +185,8 @@ static void find_lengths(const asj_l_junctions *all, double x, double y, const d
         for (uint32_t q = first; q < all->location_count && all->location_x[q] <= most; q++) {
             double dx = all->location_x[q] - x, dy = all->location_y[q] - y;
             double along = dx * u[0] + dy * u[1];
-            if (along >= LEAST_START && along <= before && along > best && fabs(dx * u[1] - dy * u[0]) < RAY_DISTANCE)
+            if (along >= LEAST_START && along <= before && along > best && fabs(dx * u[1] - dy * u[0]) < RAY_DISTANCE &&
+                !asj_is_guest_location(all, q))
                 best = along;
         }
         if (best <= 0)
@@ -267,13 +270,17 @@ static asj_status make_frames(asj_context *context, const asj_match_options *opt
 
 static asj_status set_octaves(asj_context *context, const asj_junction_list *input, asj_l_junctions *all)
 {
+    uint32_t counts[ASJ_COARSEST + 1] = {0};
     all->octave = asj_allocate(&context->memory, all->count, sizeof *all->octave);
     if (!all->octave)
         return no_memory(context);
     for (uint32_t i = 0; i < all->count; i++) {
         const int32_t octave = input->list[all->l[i].junction].octave;
         all->octave[i] = (uint8_t)(octave < 0 ? 0 : octave > ASJ_COARSEST ? ASJ_COARSEST : octave);
+        counts[all->octave[i]]++;
     }
+    for (int32_t octave = 1; octave <= ASJ_COARSEST; octave++)
+        all->home = counts[octave] > counts[all->home] ? octave : all->home;
     return ASJ_OK;
 }
 

@@ -35,8 +35,11 @@ typedef struct asj_l_junctions {
     uint32_t *l_of_location;
     double *location_x, *location_y;
     uint8_t *octave;             /* of each L-junction: that located it, 0 .. ASJ_COARSEST */
+    int32_t home;                /* the octave of most L-junctions; others are guests (same_corner.c) */
+    uint32_t home_locations;     /* locations of that octave */
     uint8_t *t_junction;         /* of each L-junction: is it part of a T? One of its branches goes on beyond the location */
-    uint32_t *neighbour;         /* [k * location .. + neighbour_count[location]]: nearest other locations, nearest first */
+    uint32_t *neighbour;         /* [k * location .. + neighbour_count[location]]: nearest other locations that are no guests',
+                                  * nearest first */
     uint32_t *neighbour_count;
     uint32_t neighbour_limit;    /* k */
 } asj_l_junctions;
@@ -54,6 +57,17 @@ typedef struct asj_junction_list {
 asj_status asj_l_junctions_create(asj_context *context, const asj_match_options *options, const asj_junction_list *input,
                                   asj_l_junctions *l_junctions);
 void asj_l_junctions_free(asj_memory *memory, asj_l_junctions *l_junctions);
+
+/* L-junctions of another octave than most: they neither support nor lengthen others. */
+static inline int asj_is_guest(const asj_l_junctions *all, uint32_t l)
+{
+    return all->octave[l] != all->home;
+}
+
+static inline int asj_is_guest_location(const asj_l_junctions *all, uint32_t location)
+{
+    return asj_is_guest(all, all->l_of_location[all->first_of_location[location]]);
+}
 
 /* The first location that is not left of x. */
 uint32_t asj_first_location(const asj_l_junctions *l_junctions, double x);

@@ -13,8 +13,8 @@
 #include "related.h"
 #include "align.h"
 #include "consensus.h"
-#include "describe.h"
 #include "shortlist.h"
+#include "subset.h"
 #include "support.h"
 
 #include <stdlib.h>
@@ -22,56 +22,6 @@
 
 #define SUREST 800 /* candidates of which support is asked; with 400 photographs of one place reach half of what they do so */
 #define FEW 100    /* L-junctions: fewer take no time, and too little can agree */
-
-/* Features with the first frame of each L-junction only; everything else is shared. */
-typedef struct part {
-    asj_image_features features;
-    asj_affine_frame *frames;
-    uint32_t *first_frame;
-    int16_t *patches;
-    uint8_t *usable;
-} part;
-
-static asj_status part_create(const asj_match_run *run, int32_t side, part *p)
-{
-    asj_memory *memory = &run->context->memory;
-    const asj_image_features *all = run->image[side];
-    const asj_l_junctions *l = &all->l_junctions;
-    const size_t length = (size_t)asj_patch_length(run->options);
-    p->frames = asj_allocate(memory, l->count, sizeof *p->frames);
-    p->first_frame = asj_allocate(memory, (size_t)l->count + 1, sizeof *p->first_frame);
-    p->patches = asj_allocate(memory, (size_t)l->count * length, sizeof *p->patches);
-    p->usable = asj_allocate(memory, l->count, sizeof *p->usable);
-    if (!p->frames || !p->first_frame || !p->patches || !p->usable)
-        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for a part of %u L-junctions", (unsigned)l->count);
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < l->count; i++) {
-        const uint32_t f = l->first_frame[i];
-        p->first_frame[i] = count;
-        if (f == l->first_frame[i + 1])
-            continue;
-        p->frames[count] = l->frames[f];
-        p->usable[count] = all->usable[f];
-        memcpy(p->patches + (size_t)count++ * length, all->patches + (size_t)f * length, length * sizeof *p->patches);
-    }
-    p->first_frame[l->count] = count;
-    p->features = *all;
-    p->features.device_copy = 0;
-    p->features.patches = p->patches;
-    p->features.usable = p->usable;
-    p->features.l_junctions.frames = p->frames;
-    p->features.l_junctions.first_frame = p->first_frame;
-    p->features.l_junctions.frame_count = count;
-    return ASJ_OK;
-}
-
-static void part_free(asj_memory *memory, part *p)
-{
-    asj_release(memory, p->frames);
-    asj_release(memory, p->first_frame);
-    asj_release(memory, p->patches);
-    asj_release(memory, p->usable);
-}
 
 static int rising(const void *left, const void *right)
 {
@@ -133,7 +83,7 @@ static int32_t asked(const asj_match_run *run)
 asj_status asj_related(const asj_match_run *run, int32_t *related)
 {
     asj_memory *memory = &run->context->memory;
-    part parts[2];
+    asj_subset parts[2];
     asj_match_options options = *run->options;
     asj_match_run some = {.context = run->context, .options = &options, .image = {&parts[0].features, &parts[1].features}};
     *related = 1;
@@ -141,14 +91,14 @@ asj_status asj_related(const asj_match_run *run, int32_t *related)
         return ASJ_OK;
     options.shortlist = 1;
     memset(parts, 0, sizeof parts);
-    asj_status status = part_create(run, 0, &parts[0]);
+    asj_status status = asj_subset_create(run, 0, 1, &parts[0]);
     if (status == ASJ_OK)
-        status = part_create(run, 1, &parts[1]);
+        status = asj_subset_create(run, 1, 1, &parts[1]);
     if (status == ASJ_OK)
         status = look(&some, related);
     asj_release(memory, some.candidates.list);
     asj_support_free(memory, &some.support);
-    part_free(memory, &parts[0]);
-    part_free(memory, &parts[1]);
+    asj_subset_free(memory, &parts[0]);
+    asj_subset_free(memory, &parts[1]);
     return status;
 }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Junctions of several octaves (option octave_union of the detector). Corners that the fine octave sees in one image and a coarse
  * one in the other, those out of focus, and those in few pixels find partners that way. But most corners are then listed two or
- * three times, and that changes two things.
+ * three times, and coarse ones look more alike. So those of the octave that most are of are matched first, as if there were no
+ * others (shortlist.c, l_junctions.c); the guided pass then proposes the others, which are guests, where accepted matches put them.
+ * Only guests that were proposed are compared, and they support nobody. What is left for here:
  *
- * Support. A neighbouring corner that is listed k times supports k times, and a match that is one of k has k chances to be
- * supported: so 1 + AGAIN (k - 1) times the usual support is asked for, k the mean of all. And coarse junctions look more alike:
- * those of octave o need 1 + o / 3 times as much. Asked at the end only: what has little support still is good for proposing
- * matches near it.
+ * Support. A match of octave o needs 1 + o times the usual support: the place of a coarse corner is known that much worse. Asked at
+ * the end only: what has little support still is good for proposing matches near it.
  *
  * One match for each corner. Locations of different octaves nearer than `separation` are the same corner, as they are for the ratio
  * test (assign.c); of their matches that of the finest octave stays, which knows the place best. Lists of one octave are left as
@@ -17,43 +17,11 @@
 
 #include <string.h>
 
-#define AGAIN 2.0
-#define COARSE (1.0 / 3)
-
-static int32_t octave_at(const asj_l_junctions *all, uint32_t location)
-{
-    return all->octave[all->l_of_location[all->first_of_location[location]]];
-}
-
-/* How often a corner is listed, on average: 1 and the number of other octaves that have a location within `separation` px of it. */
-static double crowding_of(const asj_l_junctions *all, double separation, asj_watch *watch)
-{
-    size_t total = 0;
-    for (uint32_t p = 0; p < all->location_count && !asj_watch_stops(watch, NULL); p++) {
-        const double x = all->location_x[p], y = all->location_y[p], most = x + separation;
-        uint32_t octaves = 1u << octave_at(all, p);
-        for (uint32_t q = asj_first_location(all, x - separation); q < all->location_count && all->location_x[q] <= most; q++) {
-            const double dx = all->location_x[q] - x, dy = all->location_y[q] - y;
-            if (dx * dx + dy * dy <= separation * separation)
-                octaves |= 1u << octave_at(all, q);
-        }
-        for (; octaves; octaves &= octaves - 1)
-            total++;
-    }
-    return all->location_count ? (double)total / all->location_count : 1;
-}
-
 /* The coarser octave of the two that a candidate matches. */
 static int32_t octave_of(const asj_match_run *run, const asj_candidate *c)
 {
     const int32_t one = run->image[0]->l_junctions.octave[c->i], other = run->image[1]->l_junctions.octave[c->j];
     return one > other ? one : other;
-}
-
-/* The support that a choice needs, as a part of what it would need were all junctions of one octave. */
-static double needs(const asj_match_run *run, const asj_candidate *c, double crowding)
-{
-    return (1 + AGAIN * (crowding - 1)) * (1 + COARSE * octave_of(run, c));
 }
 
 /* --- one match for each corner ----------------------------------------------------------------------------------------------- */
@@ -93,15 +61,13 @@ static void keep(asj_choices *choices, const uint8_t *gone)
 }
 
 /* Leaves the choices that have the support which their octaves need. */
-static void keep_supported(asj_match_run *run, uint8_t *gone, asj_watch *watch)
+static void keep_supported(asj_match_run *run, uint8_t *gone)
 {
     asj_choices *choices = &run->choices;
-    const double separation = run->options->separation, needed = (double)asj_needed_support(run);
-    const double crowding = 0.5 * (crowding_of(&run->image[0]->l_junctions, separation, watch) +
-                                   crowding_of(&run->image[1]->l_junctions, separation, watch));
+    const float needed = asj_needed_support(run);
     for (size_t n = 0; n < choices->count; n++) {
         const asj_candidate *c = &run->candidates.list[choices->list[n].candidate];
-        gone[n] = (double)c->support < needed * needs(run, c, crowding);
+        gone[n] = c->support < needed * (float)(1 + octave_of(run, c));
     }
     keep(choices, gone);
 }
@@ -127,7 +93,7 @@ asj_status asj_same_corner(asj_match_run *run)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu matches", run->choices.count);
     asj_watch watch;
     asj_watch_start(&watch, run->context, ASJ_STAGE_ASSIGN);
-    keep_supported(run, gone, &watch);
+    keep_supported(run, gone);
     keep_finest(run, gone, &watch);
     asj_release(&run->context->memory, gone);
     return asj_watch_end(&watch);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 7, short lists: the candidates are the union of the best partners of every L-junction of either image (rank.c). Ties go to
- * the smaller index, so the list depends on nothing but the input. */
+/* Step 7, short lists: the candidates are the union of the best partners of every L-junction of either image (rank.c), guests left
+ * out (same_corner.c). Ties go to the smaller index, so the list depends on nothing but the input. */
 #include "shortlist.h"
+#include "subset.h"
 
 #include <string.h>
 
@@ -35,6 +36,38 @@ static asj_status collect(asj_match_run *run, const asj_partner *rows, const asj
     return ASJ_OK;
 }
 
+/* Are there guests that would be compared? */
+static int has_guests(const asj_match_run *run)
+{
+    for (int32_t side = 0; side < 2 && run->options->patches == ASJ_PATCHES_CANONICAL; side++) {
+        const asj_l_junctions *all = &run->image[side]->l_junctions;
+        for (uint32_t i = 0; i < all->count; i++)
+            if (asj_is_guest(all, i) && all->first_frame[i] < all->first_frame[i + 1])
+                return 1;
+    }
+    return 0;
+}
+
+/* The best partners, guests left out. */
+static asj_status find_partners(const asj_match_run *run, asj_partner *rows, asj_partner *columns)
+{
+    asj_subset hosts[2];
+    if (!has_guests(run))
+        return run->context->ops->rank->partners(run, rows, columns);
+    memset(hosts, 0, sizeof hosts);
+    asj_match_run among = *run;
+    asj_status status = ASJ_OK;
+    for (int32_t side = 0; side < 2 && status == ASJ_OK; side++) {
+        status = asj_subset_create(run, side, 0, &hosts[side]);
+        among.image[side] = &hosts[side].features;
+    }
+    if (status == ASJ_OK)
+        status = run->context->ops->rank->partners(&among, rows, columns);
+    for (int32_t side = 0; side < 2; side++)
+        asj_subset_free(&run->context->memory, &hosts[side]);
+    return status;
+}
+
 asj_status asj_shortlist(asj_match_run *run)
 {
     asj_memory *memory = &run->context->memory;
@@ -49,7 +82,7 @@ asj_status asj_shortlist(asj_match_run *run)
     } else {
         clear(rows, count1 * limit);
         clear(columns, count2 * limit);
-        status = run->context->ops->rank->partners(run, rows, columns);
+        status = find_partners(run, rows, columns);
         if (status == ASJ_OK)
             status = collect(run, rows, columns);
         if (status == ASJ_OK)

@@ -157,8 +157,8 @@ static void needed_support_falls_with_the_locations(void **state)
     const uint32_t counts[][2] = {{100, 100}, {41, 100}, {21, 100}, {11, 21}, {1, 1}, {0, 0}};
     const double asked[] = {1, 1, 0.75, 0.375, 0.025, 0.025};
     for (size_t n = 0; n < UNIT_COUNT(counts); n++) {
-        image[0].l_junctions.location_count = counts[n][0];
-        image[1].l_junctions.location_count = counts[n][1];
+        image[0].l_junctions.home_locations = counts[n][0];
+        image[1].l_junctions.home_locations = counts[n][1];
         unit_near("needed", (double)n, 0, (double)asj_needed_support(&run), 2 * asked[n], 1e-6);
     }
     options.neighbours = 0;

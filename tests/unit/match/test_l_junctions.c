@@ -158,12 +158,58 @@ static void t_junctions_have_one_branch_that_goes_on(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Fewer junctions of a coarse octave between the others are nobody's neighbours and lengthen no branch: others are as without. */
+static void guests_change_nothing(void **state)
+{
+    (void)state;
+    enum { GUESTS = COUNT - 10 };
+    asj_junction alone[COUNT], guests[COUNT], both[COUNT + GUESTS];
+    asj_match_options options;
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_l_junctions all, some;
+    asj_match_options_init(&options);
+    scatter(8, alone);
+    scatter(9, guests);
+    for (int32_t k = 0; k < COUNT; k++)
+        both[k < GUESTS ? 2 * k : k + GUESTS] = alone[k];
+    for (int32_t k = 0; k < GUESTS; k++) {
+        guests[k].x += 1; /* off the lattice: no location is shared */
+        guests[k].octave = 1;
+        both[2 * k + 1] = guests[k];
+    }
+    const asj_junction_list input = {alone, COUNT, SIDE, SIDE, 1}, crowd = {both, COUNT + GUESTS, SIDE, SIDE, 1};
+    assert_int_equal(asj_l_junctions_create(context, &options, &input, &some), ASJ_OK);
+    assert_int_equal(asj_l_junctions_create(context, &options, &crowd, &all), ASJ_OK);
+    assert_int_equal(all.home, 0);
+    assert_int_equal(all.home_locations, some.location_count);
+    for (uint32_t k = 0, l = 0; k < some.count; k++, l++) {
+        while (asj_is_guest(&all, l))
+            l++;
+        const uint32_t p = some.location[k], q = all.location[l];
+        for (uint32_t b = 0; b < 2; b++) {
+            assert_int_equal(all.lengths[2 * l + b].count, some.lengths[2 * k + b].count);
+            for (int32_t n = 0; n < some.lengths[2 * k + b].count; n++)
+                assert_true(all.lengths[2 * l + b].length[n] == some.lengths[2 * k + b].length[n]);
+        }
+        assert_int_equal(all.neighbour_count[q], some.neighbour_count[p]);
+        for (uint32_t n = 0; n < some.neighbour_count[p]; n++) {
+            const uint32_t mine = some.neighbour[p * some.neighbour_limit + n], theirs = all.neighbour[q * all.neighbour_limit + n];
+            assert_true(all.location_x[theirs] == some.location_x[mine] && all.location_y[theirs] == some.location_y[mine]);
+        }
+    }
+    asj_l_junctions_free(&context->memory, &some);
+    asj_l_junctions_free(&context->memory, &all);
+    unit_context_free(&counter, &context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(neighbours_are_the_nearest),
         cmocka_unit_test(lengths_are_those_of_junctions_on_the_branch),
         cmocka_unit_test(t_junctions_have_one_branch_that_goes_on),
+        cmocka_unit_test(guests_change_nothing),
     };
     return cmocka_run_group_tests_name("l_junctions", tests, NULL, NULL);
 }

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "subset.h"
+#include "describe.h"
+
+#include <string.h>
+
+/* How many frames of L-junction i are in it. */
+static uint32_t frames_of(const asj_l_junctions *l, uint32_t i, int32_t first_only)
+{
+    const uint32_t all = l->first_frame[i + 1] - l->first_frame[i];
+    return asj_is_guest(l, i) ? 0 : first_only && all > 1 ? 1 : all;
+}
+
+static void fill(const asj_image_features *all, int32_t first_only, size_t length, asj_subset *s)
+{
+    const asj_l_junctions *l = &all->l_junctions;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < l->count; i++) {
+        const uint32_t f = l->first_frame[i], some = frames_of(l, i, first_only);
+        s->first_frame[i] = count;
+        memcpy(s->frames + count, l->frames + f, some * sizeof *s->frames);
+        memcpy(s->usable + count, all->usable + f, some);
+        memcpy(s->patches + (size_t)count * length, all->patches + (size_t)f * length, some * length * sizeof *s->patches);
+        count += some;
+    }
+    s->first_frame[l->count] = count;
+}
+
+asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t first_only, asj_subset *s)
+{
+    asj_memory *memory = &run->context->memory;
+    const asj_image_features *all = run->image[side];
+    const asj_l_junctions *l = &all->l_junctions;
+    const size_t length = (size_t)asj_patch_length(run->options);
+    size_t count = 0;
+    for (uint32_t i = 0; i < l->count; i++)
+        count += frames_of(l, i, first_only);
+    s->frames = asj_allocate(memory, count, sizeof *s->frames);
+    s->first_frame = asj_allocate(memory, (size_t)l->count + 1, sizeof *s->first_frame);
+    s->patches = asj_allocate(memory, count * length, sizeof *s->patches);
+    s->usable = asj_allocate(memory, count, sizeof *s->usable);
+    if (!s->frames || !s->first_frame || !s->patches || !s->usable)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for a part of %u L-junctions", (unsigned)l->count);
+    fill(all, first_only, length, s);
+    s->features = *all;
+    s->features.device_copy = 0;
+    s->features.patches = s->patches;
+    s->features.usable = s->usable;
+    s->features.l_junctions.frames = s->frames;
+    s->features.l_junctions.first_frame = s->first_frame;
+    s->features.l_junctions.frame_count = (uint32_t)count;
+    return ASJ_OK;
+}
+
+void asj_subset_free(asj_memory *memory, asj_subset *s)
+{
+    asj_release(memory, s->frames);
+    asj_release(memory, s->first_frame);
+    asj_release(memory, s->patches);
+    asj_release(memory, s->usable);
+}
