@@ -155,7 +155,7 @@ static int32_t vote(const double *first_colour, const double *second_colour, int
             second[2 * k + n] = n == 1 ? 0.8 : 0;
         }
     const asj_pairs set = {.list = list, .count = 2 * places, .place_count = {places, places}};
-    return asj_colours_contradict(&set, first, second, room);
+    return asj_colours_against(&set, first, second, room) > 1;
 }
 
 static void many_places_decide(void **state)
