@@ -84,6 +84,8 @@ static int write_results(run *r, const char *image, const cli_output *output, co
     if (output->plot && !cli_interrupted()) {
         asj_status status = cli_plot_write(output->plot, arguments->plot_format, pixels, detection, &arguments->style, message,
                                            sizeof message);
+        if (status == ASJ_ERROR_CANCELLED)
+            return CLI_FAILED;
         if (status != ASJ_OK)
             result = cli_session_fail(&r->session, output->plot, message, status);
     }

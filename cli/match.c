@@ -24,6 +24,7 @@ typedef struct run {
     asj_segment_match *segments; /* with --lines */
     size_t segment_count;
     const char *at;              /* the file in hand, for the message after an interrupt */
+    int finished;                /* everything is written */
 } run;
 
 static int read_inputs(run *r)
@@ -132,6 +133,8 @@ static int write_plot(run *r)
     if (!content.images[0]->data || !content.images[1]->data)
         style.background = CLI_PLOT_WHITE; /* features are no photograph */
     asj_status status = cli_plot_match(arguments->plot, arguments->plot_format, &content, &style, message, sizeof message);
+    if (status == ASJ_ERROR_CANCELLED)
+        return CLI_FAILED;
     return status == ASJ_OK ? CLI_SUCCESS : cli_session_fail(&r->session, arguments->plot, message, status);
 }
 
@@ -141,8 +144,10 @@ static int write_results(run *r)
     int result = CLI_SUCCESS;
     if (arguments->output || !arguments->plot)
         result = write_matches(r, arguments->output ? arguments->output : "-");
-    if (arguments->plot && !cli_interrupted() && write_plot(r) != CLI_SUCCESS)
+    r->at = arguments->plot;
+    if (arguments->plot && (cli_interrupted() || write_plot(r) != CLI_SUCCESS))
         result = CLI_FAILED;
+    r->finished = result == CLI_SUCCESS;
     return result;
 }
 
@@ -226,7 +231,7 @@ int cli_match(int argc, char **argv)
     if (result == CLI_SUCCESS) {
         r.arguments = &arguments;
         result = run_all(&r);
-        if (cli_interrupted()) {
+        if (cli_interrupted() && !r.finished) {
             cli_progress_clear(&r.session.progress);
             cli_error("interrupted at %s", r.at ? r.at : arguments.images[0]);
             result = 128 + cli_interrupted();

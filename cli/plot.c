@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The plot of detect: branches over the photograph, then the junctions as dots. */
 #include "plot.h"
+#include "interrupt.h"
 #include "plot_color.h"
 #include "plot_photo.h"
 #include "plot_surface.h"
@@ -212,5 +213,5 @@ asj_status cli_plot_write(const char *path, int32_t format, const asj_image *ima
     drawing d = {.image = image, .detection = detection, .style = style};
     lay_out(image, style->scale, &d.layout);
     return cli_plot_file(path, format, d.layout.width, d.layout.image_height + d.layout.legend_height,
-                         &(cli_plot_content){draw, annotate, &d}, message, message_size);
+                         &(cli_plot_content){draw, annotate, &d, cli_interrupted}, message, message_size);
 }

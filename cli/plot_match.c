@@ -4,6 +4,7 @@
  * match in the wrong place stands out among neighbours of other colours. Branch b is darker than branch a. What a geometry rejected
  * is grey, below everything else. */
 #include "plot_match.h"
+#include "interrupt.h"
 #include "plot_color.h"
 #include "plot_epipolar.h"
 #include "plot_photo.h"
@@ -17,6 +18,7 @@
 #define LEGEND_HEIGHT 2.4 /* in font sizes */
 #define DARKER 0.55       /* share of the colour that branch b keeps */
 #define SCREEN 1.5        /* width to height that `auto` aims at */
+#define LARGEST_AREA 6.4e7
 
 /* A match as it is drawn: in each image a place, where the line ends, and one or two strokes. */
 typedef struct pair {
@@ -141,6 +143,10 @@ static double choose_scale(const drawing *d)
         return d->style->scale;
     double natural = cli_plot_natural_scale((int32_t)largest(p->width, q->width), (int32_t)largest(p->height, q->height));
     double side = d->beside ? (double)p->width + q->width : (double)p->height + q->height;
+    const double areas = (double)p->width * p->height + (double)q->width * q->height;
+    const double area = side * largest(d->beside ? p->height : p->width, d->beside ? q->height : q->width);
+    /* a long one beside a high one: mostly nothing */
+    natural = fmin(natural, sqrt(fmax(LARGEST_AREA, 2 * areas) / area));
     return fmin(natural, 0.95 * CLI_PLOT_LARGEST_SIDE / side); /* the rest is for the gap and the legend */
 }
 
@@ -354,8 +360,8 @@ asj_status cli_plot_match(const char *path, int32_t format, const cli_plot_match
     lay_out(&d);
     asj_status status = ASJ_ERROR_MEMORY;
     if (make_pairs(&d))
-        status = cli_plot_file(path, format, d.width, d.height + d.legend_height, &(cli_plot_content){draw, annotate, &d}, message,
-                               message_size);
+        status = cli_plot_file(path, format, d.width, d.height + d.legend_height,
+                               &(cli_plot_content){draw, annotate, &d, cli_interrupted}, message, message_size);
     free(d.pairs);
     return status;
 }

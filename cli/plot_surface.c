@@ -19,12 +19,15 @@ typedef struct stream {
     asj_output *output;
     unsigned char kept[KEPT];
     size_t keep, count; /* how many bytes to keep back, and how many there are */
+    int (*stopped)(void);
 } stream;
 
 static cairo_status_t write_stream(void *user, const unsigned char *data, unsigned size)
 {
     stream *s = user;
     asj_status status = ASJ_OK;
+    if (s->stopped && s->stopped())
+        return CAIRO_STATUS_WRITE_ERROR;
     for (; s->keep > 0 && size > 0 && status == ASJ_OK; data++, size--) {
         if (size > KEPT && s->count == 0) { /* in one piece what is not the end in any case */
             status = asj_output_write(s->output, data, size - KEPT);
@@ -91,7 +94,8 @@ static cairo_surface_t *create_surface(stream *output, int32_t format, int32_t w
 
 static cairo_status_t draw_on(asj_output *output, int32_t format, int32_t width, int32_t height, const cli_plot_content *content)
 {
-    stream to = {.output = output, .keep = format == CLI_PLOT_SVG && content->annotate ? KEPT : 0};
+    stream to = {.output = output, .keep = format == CLI_PLOT_SVG && content->annotate ? KEPT : 0,
+                 .stopped = content->stopped};
     cairo_surface_t *surface = create_surface(&to, format, width, height);
     cairo_t *cairo = cairo_create(surface);
     content->draw(cairo, content->user);
@@ -121,6 +125,11 @@ asj_status cli_plot_file(const char *path, int32_t format, int32_t width, int32_
     if (status != ASJ_OK)
         return status;
     cairo_status_t drawn = draw_on(output, format, width, height, content);
+    if (content->stopped && content->stopped()) {
+        asj_output_abort(&output);
+        snprintf(message, message_size, "interrupted");
+        return ASJ_ERROR_CANCELLED;
+    }
     /* after a write error committing fails too, and says why */
     if (drawn == CAIRO_STATUS_SUCCESS || drawn == CAIRO_STATUS_WRITE_ERROR)
         return asj_output_commit(&output, message, message_size);

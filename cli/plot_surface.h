@@ -10,6 +10,7 @@ typedef struct cli_plot_content {
     void (*draw)(cairo_t *cairo, void *user);
     void (*annotate)(asj_output *output, void *user); /* elements of SVG above the drawing: titles; NULL = none */
     void *user;
+    int (*stopped)(void);                             /* 1 = the file is no longer wanted; NULL = never */
 } cli_plot_content;
 
 /* Writes a plot file of width x height units (pixels of a PNG, points of a PDF); the file appears whole or not at all. format:

@@ -144,7 +144,9 @@ ASJ_API void asj_context_options_init(asj_context_options *options);
  * allocates nothing but its result. What several calls in a row had no use for is given back.
  * Threads, one less than `threads`, are made by the first call that is worth them; when the system gives fewer, these do. They
  * sleep when there is no call, block all signals, and end in asj_context_free(). The child of a fork() that did not come in the
- * middle of a call may go on with a context that has no device, and makes threads of its own. */
+ * middle of a call may go on with a context that has no device, and makes threads of its own.
+ * The functions in the options may not use the context that calls them. Log, progress, dump and kernel cache that try get
+ * ASJ_ERROR_ARGUMENT, and asj_context_free() leaves it alone; allocator and parallel are not watched. */
 typedef struct asj_context asj_context;
 
 /* Makes a context. `options` NULL = the defaults. On success the caller owns *context until asj_context_free().

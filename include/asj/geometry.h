@@ -103,8 +103,8 @@ typedef struct asj_geometry {
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a candidate that is not finite, lies 10^6 px away, mirrors or collapses, or a probability
  *                      outside 0 .. 1
  * ASJ_ERROR_OPTION     an option outside its range; a camera with a focal length that is negative or not finite, or a principal
- * point
- *                      that is not finite; model essential without cameras
+ *                      point that is not finite; directions that are not three of length 1 at right angles; model essential
+ *                      without cameras
  * ASJ_ERROR_LIMIT      more than 2^24 candidates or places
  * ASJ_ERROR_CANCELLED  the progress callback, which is called every 50 ms, wants to stop
  * ASJ_ERROR_MEMORY */

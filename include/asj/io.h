@@ -133,7 +133,9 @@ typedef struct asj_detection_report {
 
 /* Writes junctions as asj_output_begin() and asj_output_commit() do.
  * ASJ_ERROR_ARGUMENT  a NULL pointer, no such file format, or a detection that no reader would take: NaN or infinity, a
- *                     branch_count beyond ASJ_MAX_BRANCHES, an L-junction or edge of a junction or branch that is not there
+ *                     branch_count beyond ASJ_MAX_BRANCHES, a negative scale or length, an octave that is not 0 .. 15, an
+ *                     L-junction or edge of a junction or branch that is not there. (Readers of JSON refuse a location far
+ *                     outside of the image, too, and edges of branches that stand in no order of angle.)
  * ASJ_ERROR_FILE      cannot create, disk full, cannot rename
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_detection_report *report,

@@ -143,12 +143,13 @@ typedef struct asj_match_result {
  * result           on success *result belongs to the caller until asj_match_result_free()
  *
  * Each location takes part in one match at most. The result does not depend on the number of threads, and swapping the images
- * swaps the matches. Memory: the patches (patch_size^2 x 2 bytes for each frame) and short lists. Time: all pairs of L-junctions
- * are looked at, so twice as many in either image take four times as long (2 000 junctions of five branches at one point, 20 000
- * L-junctions that all look alike: some ten seconds). The caller is asked every 50 ms whether to go on.
+ * swaps the matches where they are mutual. Memory: the patches (patch_size^2 x 2 bytes for each frame) and short lists. Time: all
+ * pairs of L-junctions are looked at, so twice as many in either image take four times as long (2 000 junctions of five branches at
+ * one point, 20 000 L-junctions that all look alike: some ten seconds). The caller is asked every 50 ms whether to go on.
  *
- * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that is not finite, lies more than ASJ_MAX_OUTSIDE px outside its image, has a
- *                      wrong branch count or a negative length
+ * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that lies more than ASJ_MAX_OUTSIDE px outside its image, has a wrong branch
+ *                      count, an octave that is not 0 .. 15, an angle that is not finite, a length that is negative or not finite,
+ *                      or an end of no known kind
  * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED   as asj_detect()
  * ASJ_ERROR_LIMIT      also when more than 2^24 pairs of candidate matches agree: images that repeat themselves, options far
  *                      looser than the defaults */

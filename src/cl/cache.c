@@ -76,6 +76,15 @@ const uint8_t *asj_cl_cache_unpack(const char *identity, const asj_cl_source *so
     return entry + start;
 }
 
+static size_t get(asj_context *context, const char *key, void *entry, size_t capacity)
+{
+    const asj_kernel_cache *cache = &context->options.kernel_cache;
+    context->in_hook++;
+    const size_t size = cache->get(cache->user, key, entry, capacity);
+    context->in_hook--;
+    return size;
+}
+
 uint8_t *asj_cl_cache_get(asj_context *context, const asj_cl_source *source, size_t *entry_size)
 {
     const asj_kernel_cache *cache = &context->options.kernel_cache;
@@ -83,11 +92,11 @@ uint8_t *asj_cl_cache_get(asj_context *context, const asj_cl_source *source, siz
     if (!cache->get)
         return NULL;
     asj_cl_cache_key(context->cl->identity, source, key);
-    const size_t size = cache->get(cache->user, key, NULL, 0);
+    const size_t size = get(context, key, NULL, 0);
     if (size == 0 || size > LARGEST_ENTRY)
         return NULL;
     uint8_t *entry = asj_allocate(&context->memory, size, 1);
-    if (entry && cache->get(cache->user, key, entry, size) != size) { /* it has changed in between */
+    if (entry && get(context, key, entry, size) != size) { /* it has changed in between */
         asj_release(&context->memory, entry);
         entry = NULL;
     }
@@ -108,6 +117,8 @@ void asj_cl_cache_put(asj_context *context, const asj_cl_source *source, const v
         return;
     asj_cl_cache_key(identity, source, key);
     asj_cl_cache_pack(identity, source, binary, binary_size, entry);
+    context->in_hook++;
     cache->put(cache->user, key, entry, size);
+    context->in_hook--;
     asj_release(&context->memory, entry);
 }

@@ -20,6 +20,8 @@ void asj_context_free(asj_context **pointer)
     if (!pointer || !*pointer)
         return;
     asj_context *context = *pointer;
+    if (context->in_hook)
+        return;
     if (context->cl)
         context->device->free(context);
     asj_kept_free(&context->memory, &context->pool);
@@ -54,6 +56,16 @@ void asj_context_memory(const asj_context *context, uint64_t *now, uint64_t *pea
         *peak = context ? context->memory.peak : 0;
 }
 
+asj_status asj_enter(asj_context *context)
+{
+    if (!context)
+        return ASJ_ERROR_ARGUMENT;
+    if (!context->in_hook)
+        return ASJ_OK;
+    snprintf(context->message, sizeof context->message, "a hook calls with the context that called it");
+    return ASJ_ERROR_ARGUMENT;
+}
+
 asj_status asj_fail(asj_context *context, asj_status status, const char *format, ...)
 {
     va_list arguments;
@@ -75,7 +87,9 @@ void asj_log(asj_context *context, int32_t level, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
+    context->in_hook++;
     context->options.log(context->options.log_user, level, line);
+    context->in_hook--;
 }
 
 asj_status asj_progress(asj_context *context, int32_t stage, double done)
@@ -85,9 +99,21 @@ asj_status asj_progress(asj_context *context, int32_t stage, double done)
     if (done > context->progress)
         context->progress = done;
     context->asked_ms = asj_clock_ms();
-    if (context->options.progress(context->options.progress_user, stage, context->progress) == 0)
+    context->in_hook++;
+    const int32_t stop = context->options.progress(context->options.progress_user, stage, context->progress);
+    context->in_hook--;
+    if (!stop)
         return ASJ_OK;
     return asj_fail(context, ASJ_ERROR_CANCELLED, "cancelled by the caller during %s", asj_stage_name(stage));
+}
+
+void asj_dump_out(asj_context *context, const asj_dump *dump)
+{
+    if (!context->options.dump)
+        return;
+    context->in_hook++;
+    context->options.dump(context->options.dump_user, dump);
+    context->in_hook--;
 }
 
 double asj_clock_ms(void)

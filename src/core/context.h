@@ -37,6 +37,7 @@ struct asj_context {
     asj_kept detector;            /* detect/detect.h: scratch and tables of the detector */
     double progress;              /* last value reported */
     double asked_ms;              /* when the caller was last asked whether to go on */
+    int32_t in_hook;              /* > 0 while a function of the caller's runs (log, progress, dump, kernel cache) */
     int32_t device_failures;      /* backend.h */
     char message[512];
 };
@@ -54,6 +55,10 @@ void asj_kept_free(asj_memory *memory, asj_kept *kept);
 #define ASJ_PRINTF(text, first)
 #endif
 
+/* How a public function begins. ASJ_ERROR_ARGUMENT without a context, and when a hook calls while the call that it belongs to is
+ * not done: that has the context's memory. The hook is not called about it. */
+asj_status asj_enter(asj_context *context);
+
 /* Stores the message of asj_context_message() and logs it as an error, unless the call may go on without the device; returns
  * `status`, so that a failing function can end with
  * `return asj_fail(context, ASJ_ERROR_IMAGE, "stride %td is shorter than a row", stride);` */
@@ -62,6 +67,8 @@ asj_status asj_fail(asj_context *context, asj_status status, const char *format,
 
 void asj_log(asj_context *context, int32_t level, const char *format, ...)
     ASJ_PRINTF(3, 4);
+
+void asj_dump_out(asj_context *context, const asj_dump *dump);
 
 /* Reports progress; ASJ_ERROR_CANCELLED when the caller wants to stop. */
 asj_status asj_progress(asj_context *context, int32_t stage, double done);

@@ -105,7 +105,7 @@ asj_status asj_detect_region(asj_context *context, const asj_image *image, const
     asj_status status;
     if (result && *result)
         asj_result_clear(*result);
-    if (!context)
+    if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
     asj_backend_begin(context);
     do

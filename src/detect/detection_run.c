@@ -189,20 +189,16 @@ void asj_detection_run_time(asj_detection_run *run, int32_t stage)
 void asj_detection_run_dump_plane(const asj_detection_run *run, int32_t kind, const char *name, const void *data, double unit)
 {
     const asj_frame *frame = run->frame;
-    const asj_context_options *options = &run->context->options;
     const asj_dump dump = {ASJ_STAGE_GRADIENT, kind, name, data, frame->width, frame->height, frame->stride, 0, unit};
-    if (options->dump)
-        options->dump(options->dump_user, &dump);
+    asj_dump_out(run->context, &dump);
 }
 
 void asj_detection_run_dump_points(const asj_detection_run *run, int32_t stage, const char *name, size_t count,
                                    const int32_t *points)
 {
     const asj_frame *frame = run->frame;
-    const asj_context_options *options = &run->context->options;
     const asj_dump dump = {stage, ASJ_DUMP_POINTS, name, points, frame->width, frame->height, 0, count, 1};
-    if (options->dump)
-        options->dump(options->dump_user, &dump);
+    asj_dump_out(run->context, &dump);
 }
 
 asj_status asj_detection_run_dump_hypotheses(const asj_detection_run *run, int32_t stage, const char *name)

@@ -86,7 +86,7 @@ asj_status asj_local_field(asj_context *context, const asj_image *image, const a
                            asj_local_branch *branches)
 {
     asj_status status;
-    if (!context)
+    if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
     asj_backend_begin(context);
     do

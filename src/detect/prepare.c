@@ -44,7 +44,7 @@ asj_status asj_prepare(asj_context *context, const asj_detect_options *options, 
 {
     const uint8_t pixel = 0;
     asj_image image = {&pixel, ASJ_FORMAT_GRAY8, width, height, 0, 0};
-    if (!context)
+    if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
     asj_status status = asj_image_check(context, &image);
     if (status == ASJ_OK)

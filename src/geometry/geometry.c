@@ -129,7 +129,7 @@ asj_status asj_estimate_with_colours(asj_context *context, const asj_geometry_ca
                                      const double *colours, const asj_geometry_options *options, double *probabilities,
                                      asj_geometry *result)
 {
-    if (!context)
+    if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
     if (!options || !result || (!candidates && count > 0))
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "the candidates, the options or the result is NULL");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Options of the geometry, and the names of its models and answers. */
 #include "geometry_options.h"
+#include "small_matrix.h"
 
 #include <math.h>
 #include <string.h>
@@ -44,6 +45,21 @@ static asj_status check_camera(asj_context *context, const asj_camera *c, int32_
     return ASJ_OK;
 }
 
+/* None, or three of length 1 at right angles. */
+static int directions_are_sound(const double d[9])
+{
+    double most = 0, wrong = 0;
+    for (int32_t k = 0; k < 9; k++) {
+        if (!within(fabs(d[k]), 0, 2))
+            return 0;
+        most = fmax(most, fabs(d[k]));
+    }
+    for (int32_t i = 0; i < 3; i++)
+        for (int32_t k = 0; k <= i; k++)
+            wrong = fmax(wrong, fabs(asj_dot3(d + 3 * i, d + 3 * k) - (i == k)));
+    return most == 0 || wrong < 1e-3;
+}
+
 asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_options *o)
 {
     for (int32_t v = 0; v < 2; v++) {
@@ -52,6 +68,8 @@ asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_o
             return status;
         if (o->widths[v] < 1 || o->heights[v] < 1)
             return asj_fail(context, ASJ_ERROR_OPTION, "image %d has no size", (int)v + 1);
+        if (!directions_are_sound(o->directions[v]))
+            return asj_fail(context, ASJ_ERROR_OPTION, "the directions of image %d are not three at right angles", (int)v + 1);
     }
     if (o->model < ASJ_GEOMETRY_NONE || o->model > ASJ_GEOMETRY_HOMOGRAPHY)
         return asj_fail(context, ASJ_ERROR_OPTION, "no such geometry: %d", (int)o->model);

@@ -230,7 +230,7 @@ static asj_status check(asj_context *context, const asj_junction *junctions, siz
 asj_status asj_find_vanishing_points(asj_context *context, const asj_junction *junctions, size_t count,
                                      const asj_vanishing_options *options, asj_vanishing_points *result)
 {
-    if (!context)
+    if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
     if (!options || !result || (!junctions && count > 0))
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "the junctions, the options or the result is NULL");

@@ -9,6 +9,7 @@
 
 /* Most junctions of a file. */
 #define ASJ_JUNCTIONS_MAX (1u << 24)
+#define ASJ_LARGEST_OCTAVE 15
 #define ASJ_EDGES_MAX (5 * ASJ_JUNCTIONS_MAX / 2) /* no branch is part of two */
 
 typedef struct asj_junction_list {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Junction files: checks what is to be written, opens the output, calls the writer of the format. */
 #include "junction_graph.h"
+#include "junction_list.h"
 #include "junction_output.h"
 
 #include <math.h>
@@ -10,11 +11,15 @@ static int is_sound(const asj_junction *junction)
     int32_t b;
     if (junction->branch_count < 0 || junction->branch_count > ASJ_MAX_BRANCHES)
         return 0;
+    if (junction->scale < 0 || junction->octave < 0 || junction->octave > ASJ_LARGEST_OCTAVE)
+        return 0;
     if (!isfinite(junction->x) || !isfinite(junction->y) || !isfinite(junction->scale) || !isfinite(junction->log10_nfa) ||
         !isfinite(junction->location_sd))
         return 0;
     for (b = 0; b < junction->branch_count; b++) {
         const asj_branch *branch = &junction->branches[b];
+        if (branch->length < 0)
+            return 0;
         if (!isfinite(branch->angle) || !isfinite(branch->length) || !isfinite(branch->strength) || !isfinite(branch->log10_nfa) ||
             !isfinite(branch->angle_sd) || !isfinite(branch->width) || !isfinite(branch->length_sd))
             return 0;
@@ -38,7 +43,8 @@ static asj_status check(const asj_detection *detection, const asj_message *messa
     for (i = 0; i < detection->junction_count; i++)
         if (!is_sound(&detection->junctions[i]))
             return asj_message_fail(message, ASJ_ERROR_ARGUMENT,
-                                    "not written: junction %lu has NaN, infinity or a wrong number of branches", (unsigned long)i);
+                                    "not written: junction %lu has NaN, infinity, a wrong number of branches, an octave or a "
+                                    "length that cannot be", (unsigned long)i);
     for (i = 0; i < detection->l_junction_count; i++)
         if (!is_sound_pair(detection, &detection->l_junctions[i]))
             return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: L-junction %lu has NaN, infinity or a wrong index",

@@ -329,7 +329,7 @@ asj_status asj_features_load(asj_context *context, const void *bytes, size_t siz
 {
     if (features)
         *features = NULL;
-    if (!context)
+    if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
     if (!bytes || !features)
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "the bytes or the result is NULL");

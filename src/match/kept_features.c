@@ -124,7 +124,7 @@ asj_status asj_features_create(asj_context *context, const asj_image *image, con
     char message[256];
     if (features)
         *features = NULL;
-    if (!context)
+    if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
     if (!image || !features || (!junctions && count > 0))
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "the image, the junctions or the result is NULL");

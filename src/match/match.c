@@ -191,7 +191,7 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
     char message[256];
     if (result)
         *result = NULL;
-    if (!context)
+    if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
     if (!image1 || !image2 || !result || (!junctions1 && count1 > 0) || (!junctions2 && count2 > 0))
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "an image, the junctions or the result is NULL");
@@ -244,7 +244,7 @@ asj_status asj_match_features(asj_context *context, const asj_features *features
     const asj_features *kept[2] = {features1, features2};
     if (result)
         *result = NULL;
-    if (!context)
+    if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
     if (!features1 || !features2 || !result)
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "features or the result are NULL");

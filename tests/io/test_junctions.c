@@ -357,23 +357,26 @@ static void a_name_that_is_no_utf8(void **state)
 
 static void unsound_detections_are_not_written(void **state)
 {
-    asj_junction bad[6];
+    asj_junction bad[8];
     asj_detection wrong = detection;
     asj_edge edge;
     const char *path = in_folder("never");
     size_t i;
     (void)state;
-    for (i = 0; i < 6; i++)
+    for (i = 0; i < 8; i++)
         bad[i] = junctions[1];
     bad[0].x = 0.0f / (float)(random_state & 0);
     bad[1].branches[1].length = 3e38f * (10.0f + random_float(0, 1));
     bad[2].branch_count = 6;
     bad[3].branch_count = -1;
     bad[4].location_sd = -bad[1].branches[1].length;
+    bad[5].octave = 31;
+    bad[6].branches[0].length = -1;
+    bad[7].scale = -1;
     wrong.junction_count = 1;
     wrong.l_junction_count = wrong.edge_count = 0;
     report.detection = &wrong;
-    for (i = 0; i < 5; i++) {
+    for (i = 0; i < 8; i++) {
         wrong.junctions = &bad[i];
         assert_int_equal(asj_junctions_write(path, ASJ_FILE_JSON, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
         assert_non_null(strstr(message, "junction 0"));

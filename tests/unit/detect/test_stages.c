@@ -169,6 +169,75 @@ static void test_cancel_field(void **state)
     memset(&f->watcher, 0, sizeof f->watcher);
 }
 
+/* A hook that calls with the context that called it gets an error, and the call goes on as if nothing had been. */
+typedef struct intruder {
+    asj_context *context;
+    asj_image image;
+    int calls, refused, logged;
+} intruder;
+
+static void intrude(intruder *who)
+{
+    asj_detection *found = NULL;
+    asj_detect_options options;
+    asj_context *same = who->context;
+    asj_detect_options_init(&options);
+    options.isotropic_radii = 1u << 5;
+    who->calls += 2;
+    who->refused += asj_detect(same, &who->image, &options, &found) == ASJ_ERROR_ARGUMENT && !found;
+    who->refused += asj_prepare(same, &options, 640, 480) == ASJ_ERROR_ARGUMENT;
+    asj_context_free(&same);
+}
+
+static int32_t intrude_by_progress(void *user, int32_t stage, double done)
+{
+    intrude(user);
+    return stage < 0 || done < 0;
+}
+
+static void intrude_by_log(void *user, int32_t level, const char *line)
+{
+    intruder *who = user;
+    (void)level;
+    who->logged += line[0] != 0;
+    if (who->context)
+        intrude(who);
+}
+
+static void intrude_by_dump(void *user, const asj_dump *dump)
+{
+    (void)dump;
+    intrude(user);
+}
+
+static void test_calls_of_hooks(void **state)
+{
+    fixture *f = *state;
+    asj_detection *alone = NULL, *found = NULL;
+    asj_context_options options;
+    intruder who = {NULL, {f->pixels, ASJ_FORMAT_GRAY8, f->image.width - 9, f->image.height - 9, 0, f->image.width}, 0, 0, 0};
+    assert_int_equal(asj_detect(f->context, &f->image, NULL, &alone), ASJ_OK);
+    asj_context_options_init(&options);
+    options.allocator = (asj_allocator){unit_allocate, unit_release, &f->counter};
+    options.log = intrude_by_log;
+    options.progress = intrude_by_progress;
+    options.dump = intrude_by_dump;
+    options.log_level = ASJ_LOG_DEBUG;
+    options.log_user = options.progress_user = options.dump_user = &who;
+    assert_int_equal(asj_context_create(&options, &who.context), ASJ_OK);
+    assert_int_equal(asj_detect(who.context, &f->image, NULL, &found), ASJ_OK);
+    assert_in_range(who.calls, 40, 1000);
+    assert_int_equal(who.refused, who.calls);
+    assert_int_equal(found->junction_count, alone->junction_count);
+    assert_memory_equal(found->junctions, alone->junctions, found->junction_count * sizeof *found->junctions);
+    asj_detection_free(&found);
+    assert_int_equal(asj_detect(who.context, NULL, NULL, &found), ASJ_ERROR_ARGUMENT); /* logged, which calls again */
+    assert_in_range(who.logged, 1, 1000);
+    asj_detection_free(&alone);
+    asj_context_free(&who.context);
+    assert_null(who.context);
+}
+
 /* All that context.h names, in the order of the steps of one octave, with as many points as the result says. */
 static void test_dumps(void **state)
 {
@@ -260,7 +329,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_progress), cmocka_unit_test(test_cancel), cmocka_unit_test(test_cancel_field),
         cmocka_unit_test(test_dumps),    cmocka_unit_test(test_octave_dumps), cmocka_unit_test(test_times),
-        cmocka_unit_test(test_counts),
+        cmocka_unit_test(test_counts),   cmocka_unit_test(test_calls_of_hooks),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

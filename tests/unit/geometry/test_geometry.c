@@ -350,6 +350,14 @@ static void bad_input_is_refused(void **state)
     asj_geometry_options o = options_for(ASJ_GEOMETRY_AUTO, 1);
     o.cameras[1].cx = NAN;
     assert_int_equal(asj_geometry_estimate(context, s->candidates, s->count, &o, NULL, &g), ASJ_ERROR_OPTION);
+    const double bad_directions[4] = {NAN, HUGE_VAL, 1e308, 2};
+    for (int k = 0; k < 4; k++) {
+        o = options_for(ASJ_GEOMETRY_AUTO, 1);
+        o.directions[k % 2][0] = o.directions[k % 2][4] = o.directions[k % 2][8] = bad_directions[k];
+        assert_int_equal(asj_geometry_estimate(context, s->candidates, s->count, &o, NULL, &g), ASJ_ERROR_OPTION);
+    }
+    o.directions[1][0] = o.directions[1][4] = o.directions[1][8] = 1;
+    assert_int_equal(asj_geometry_estimate(context, s->candidates, s->count, &o, NULL, &g), ASJ_OK);
     o = options_for(ASJ_GEOMETRY_ESSENTIAL, 0);
     assert_int_equal(asj_geometry_estimate(context, s->candidates, s->count, &o, NULL, &g), ASJ_ERROR_OPTION);
     o = options_for(99, 1);
