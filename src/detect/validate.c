@@ -2,9 +2,7 @@
 /* Validation. A branch is reported when it is long enough, its line passes the junction, the strip along it is meaningful (strip.c)
  * and reaches the junction, and no better branch points the same way; a junction, when two of its branches open. */
 #include "validate.h"
-#include "bent_corner.h"
 #include "core/angle.h"
-#include "locate.h"
 #include "strip.h"
 
 #include <math.h>
@@ -28,16 +26,6 @@
  * edges may be blurred noise, and true ones are sharper in the next octave. */
 #define SOFT 0.9     /* px */
 #define SOFT_END 4.0
-
-/* Hysteresis. A scan that goes beyond an edge drowns what is clear in its beginning, and where exactly it ends a tenth of a grey
- * level may decide. So at a junction that has a branch beyond doubt (log10 NFA of SURE or less) one that misses the limit is looked
- * at again without its end: parts of it, each SHORTER of the one before, while they are longer than LEAST_PART. The number of tests
- * counts all ends. Soft edges of coarse octaves are those of SOFT_END, which has done that. Blurred noise, where a short part is
- * often lucky, has no sure branches: without that condition it makes seven times as many junctions. */
-#define LN_10 2.302585092994046
-#define SURE (-10.0)
-#define SHORTER 0.8
-#define LEAST_PART 7.0 /* px */
 
 /* A sharp edge that reaches the junction is there what it is farther on. Coarse octaves, in which little noise is left, ask for
  * this share of it: 0.8 to 1.2 are found at corners, 0 to 0.4 where edges only seem to meet. */
@@ -117,75 +105,22 @@ void asj_reject_early(const asj_context *context, const asj_frame *frame, const 
     hypothesis->branch_count = opens ? hypothesis->branch_count : 0;
 }
 
-/* The strip along a branch whose length is that of `line`, with pixels alike for what they are. */
-static double strip_log_nfa(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                            const asj_strip_line *line, double width)
-{
-    const asj_strip strip = asj_strip_test(context, frame, options, line);
-    return asj_strip_correlated(frame, &strip, width);
-}
-
-/* The least of parts of the branch: see SHORTER. */
-static double log_nfa_of_parts(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                               const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
-{
-    asj_strip_line part = {hypothesis->x, hypothesis->y, branch->angle, fmin(branch->length, options->strip_length)};
-    double least = branch->log_nfa;
-    while ((part.length *= SHORTER) > LEAST_PART)
-        least = fmin(least, strip_log_nfa(context, frame, options, &part, branch->width));
-    return least;
-}
-
-/* Sets the branch's number of false alarms; returns whether the branch is to be kept. With `again` its parts count too. */
+/* Sets the branch's number of false alarms; returns whether the branch is to be kept. */
 static int judge(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                 const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch, int again)
+                 const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
 {
     const double log_epsilon = log(options->epsilon);
-    const int soft = frame->octave > 0 && branch->width > SOFT;
     asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
     const asj_strip strip = asj_strip_test(context, frame, options, &line);
     branch->log_nfa = options->strip_test ? asj_strip_correlated(frame, &strip, branch->width) : strip.log_nfa;
-    if (options->strip_test && branch->log_nfa > log_epsilon && soft) {
+    if (options->strip_test && branch->log_nfa > log_epsilon && frame->octave > 0 && branch->width > SOFT) {
         line.length -= SOFT_END * branch->width;
-        branch->log_nfa = fmin(branch->log_nfa, strip_log_nfa(context, frame, options, &line, branch->width));
+        const asj_strip shorter = asj_strip_test(context, frame, options, &line);
+        branch->log_nfa = fmin(branch->log_nfa, asj_strip_correlated(frame, &shorter, branch->width));
     }
-    if (again && branch->log_nfa > log_epsilon && !soft)
-        branch->log_nfa = log_nfa_of_parts(context, frame, options, hypothesis, branch);
     return branch->length >= options->minimum_length && branch->length > 0 && fabs(branch->offset) <= LARGEST_OFFSET &&
            (!options->strip_test || branch->log_nfa <= log_epsilon) && reaches(frame, options, branch, &strip) &&
            !(options->ignore_frame && on_frame(frame, hypothesis, branch));
-}
-
-/* keep[b]: whether the branch is to be kept. */
-static void judge_all(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
-                      asj_hypothesis *hypothesis, int *keep)
-{
-    int sure = 0;
-    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
-        keep[i] = judge(context, frame, options, hypothesis, &hypothesis->branches[i], 0);
-        sure |= keep[i] && options->strip_test && hypothesis->branches[i].log_nfa <= SURE * LN_10;
-    }
-    for (int32_t i = 0; i < hypothesis->branch_count && sure; i++)
-        if (!keep[i])
-            keep[i] = judge(context, frame, options, hypothesis, &hypothesis->branches[i], 1);
-}
-
-static int has_moved_far(const asj_detect_options *options, const asj_hypothesis *hypothesis)
-{
-    return hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0) > 2 * options->max_move;
-}
-
-/* Where the branches that are left meet: one that was none should not say where the junction is. Not those that blur bends, since
- * it is too late to know by how much (bent_corner.c); nor where the strip does not judge: what goes there are twins and frames. */
-static void meet_again(const asj_detect_options *options, asj_hypothesis *hypothesis)
-{
-    const asj_hypothesis before = *hypothesis;
-    int bent = 0;
-    for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        bent |= hypothesis->branches[i].width > ASJ_BENT_FROM;
-    if (options->strip_test && options->refinement == ASJ_REFINE_LINE_FIT && !bent &&
-        (!asj_locate_meet(hypothesis) || has_moved_far(options, hypothesis)))
-        *hypothesis = before;
 }
 
 /* Lines over whole branches may move the junction as far again as those of the first fit (locate.c); what moves farther has drifted
@@ -193,20 +128,18 @@ static void meet_again(const asj_detect_options *options, asj_hypothesis *hypoth
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];
-    const int32_t count = hypothesis->branch_count;
-    if (has_moved_far(options, hypothesis)) {
+    if (hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0) > 2 * options->max_move) {
         hypothesis->branch_count = 0;
         return;
     }
-    judge_all(context, frame, options, hypothesis, keep);
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        keep[i] = judge(context, frame, options, hypothesis, &hypothesis->branches[i]);
     merge(options, hypothesis, keep);
     asj_hypothesis_select(hypothesis, keep);
     if (!asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE)) {
         hypothesis->branch_count = 0;
         return;
     }
-    if (hypothesis->branch_count < count)
-        meet_again(options, hypothesis);
     for (int32_t i = 1; i < hypothesis->branch_count; i++) {
         asj_hypothesis_branch moved = hypothesis->branches[i];
         int32_t j = i;
