@@ -2,7 +2,9 @@
 /* Validation. A branch is reported when it is long enough, its line passes the junction, the strip along it is meaningful (strip.c)
  * and reaches the junction, and no better branch points the same way; a junction, when two of its branches open. */
 #include "validate.h"
+#include "bent_corner.h"
 #include "core/angle.h"
+#include "locate.h"
 #include "strip.h"
 
 #include <math.h>
@@ -123,16 +125,35 @@ static int judge(const asj_context *context, const asj_frame *frame, const asj_d
            !(options->ignore_frame && on_frame(frame, hypothesis, branch));
 }
 
+static int has_moved_far(const asj_detect_options *options, const asj_hypothesis *hypothesis)
+{
+    return hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0) > 2 * options->max_move;
+}
+
+/* Where the branches that are left meet: one that was none should not say where the junction is. Not those that blur bends, since
+ * it is too late to know by how much (bent_corner.c); nor where the strip does not judge: what goes there are twins and frames. */
+static void meet_again(const asj_detect_options *options, asj_hypothesis *hypothesis)
+{
+    const asj_hypothesis before = *hypothesis;
+    int bent = 0;
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        bent |= hypothesis->branches[i].width > ASJ_BENT_FROM;
+    if (options->strip_test && options->refinement == ASJ_REFINE_LINE_FIT && !bent &&
+        (!asj_locate_meet(hypothesis) || has_moved_far(options, hypothesis)))
+        *hypothesis = before;
+}
+
 /* Lines over whole branches may move the junction as far again as those of the first fit (locate.c); what moves farther has drifted
  * to another edge. */
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];
-    if (hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0) > 2 * options->max_move) {
+    const int32_t count = hypothesis->branch_count;
+    if (has_moved_far(options, hypothesis)) {
         hypothesis->branch_count = 0;
         return;
     }
-    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+    for (int32_t i = 0; i < count; i++)
         keep[i] = judge(context, frame, options, hypothesis, &hypothesis->branches[i]);
     merge(options, hypothesis, keep);
     asj_hypothesis_select(hypothesis, keep);
@@ -140,6 +161,8 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
         hypothesis->branch_count = 0;
         return;
     }
+    if (hypothesis->branch_count < count)
+        meet_again(options, hypothesis);
     for (int32_t i = 1; i < hypothesis->branch_count; i++) {
         asj_hypothesis_branch moved = hypothesis->branches[i];
         int32_t j = i;
