@@ -15,6 +15,7 @@
  *   assign.c         ratio test, mutual check: matches
  *   guided.c         matches propose matches near them; once more from align.c on
  *   verify.c         each match is judged by the matches around it
+ *   epipolar.c       and by the fundamental matrix of all            (../geometry/)
  *   two_view.c       the geometry of the pair, when asked for: candidates once more, a longer list (prior.c, colour_prior.c,
  *                    ../geometry/)
  *   same_corner.c    one match for each corner that several octaves list
@@ -26,6 +27,7 @@
 #include "assign.h"
 #include "consensus.h"
 #include "core/backend.h"
+#include "epipolar.h"
 #include "guided.h"
 #include "kept_features.h"
 #include "match_options.h"
@@ -95,7 +97,10 @@ static asj_status run_steps(asj_match_run *run, stop_watch *watch)
         {ASJ_STAGE_ASSIGN, 0.92, asj_consensus},
         {ASJ_STAGE_ASSIGN, 0.94, asj_assign},
     };
-    static const step last = {ASJ_STAGE_ASSIGN, 0.95, asj_verify};
+    static const step last[] = {
+        {ASJ_STAGE_ASSIGN, 0.95, asj_verify},
+        {ASJ_STAGE_ASSIGN, 0.955, asj_verify_epipolar},
+    };
     static const step geometry = {ASJ_STAGE_ASSIGN, 0.96, asj_apply_geometry};
     static const step corners = {ASJ_STAGE_ASSIGN, 0.99, asj_same_corner};
     int32_t related;
@@ -115,7 +120,7 @@ static asj_status run_steps(asj_match_run *run, stop_watch *watch)
             status = run_list(run, again, sizeof again / sizeof *again, watch);
     }
     if (status == ASJ_OK)
-        status = run_step(run, &last, watch);
+        status = run_list(run, last, sizeof last / sizeof *last, watch);
     if (status == ASJ_OK)
         status = run_step(run, &geometry, watch);
     return status == ASJ_OK ? run_step(run, &corners, watch) : status;

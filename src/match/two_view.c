@@ -102,15 +102,22 @@ static void cluster(const asj_l_junctions *in, uint32_t *place)
     }
 }
 
-/* Location in image 1 as detected, in image 2 where the aligned map puts it, as match_result.c has them. */
-static asj_geometry_candidate candidate_for_geometry(const wide_run *w, const asj_candidate *c, double prior)
+asj_geometry_candidate asj_candidate_for_geometry(const asj_match_run *run, const asj_candidate *c, double prior)
 {
-    const asj_l_junction *l1 = asj_match_run_l(&w->run, c, 0), *l2 = asj_match_run_l(&w->run, c, 1);
+    const asj_l_junction *l1 = asj_match_run_l(run, c, 0), *l2 = asj_match_run_l(run, c, 1);
     const double *t = c->map.to;
-    const asj_geometry_candidate g = {
-        w->place[0][w->run.image[0]->l_junctions.location[c->i]], w->place[1][w->run.image[1]->l_junctions.location[c->j]],
+    return (asj_geometry_candidate){
+        run->image[0]->l_junctions.location[c->i], run->image[1]->l_junctions.location[c->j],
         (double)l1->x, (double)l1->y, (double)l2->x + c->move2[0] - (t[0] * c->move1[0] + t[1] * c->move1[1]),
         (double)l2->y + c->move2[1] - (t[2] * c->move1[0] + t[3] * c->move1[1]), {t[0], t[1], t[2], t[3]}, prior};
+}
+
+/* With the places of clusters. */
+static asj_geometry_candidate clustered(const wide_run *w, const asj_candidate *c, double prior)
+{
+    asj_geometry_candidate g = asj_candidate_for_geometry(&w->run, c, prior);
+    g.place1 = w->place[0][g.place1];
+    g.place2 = w->place[1][g.place2];
     return g;
 }
 
@@ -196,7 +203,7 @@ static asj_status estimate(asj_match_run *run, wide_run *w)
         const double *t = c->map.to, area = t[0] * t[3] - t[1] * t[2];
         if (!(area > 1e-3 && area < 1e3))
             continue;
-        w->given[kept] = candidate_for_geometry(w, c, w->probability[k]);
+        w->given[kept] = clustered(w, c, w->probability[k]);
         w->colours[kept] = w->colours[k];
         w->run.candidates.list[kept++] = *c;
     }
@@ -207,8 +214,7 @@ static asj_status estimate(asj_match_run *run, wide_run *w)
 
 /* --- matches that are there -------------------------------------------------------------------------------------------------- */
 
-/* px from the epipolar lines, the larger of both images; 0 for a homography. */
-static double distance_from_line(const asj_geometry *g, double x1, double y1, double x2, double y2)
+double asj_distance_from_line(const asj_geometry *g, double x1, double y1, double x2, double y2)
 {
     const double *f = g->matrix;
     const double n2x = f[0] * x1 + f[1] * y1 + f[2], n2y = f[3] * x1 + f[4] * y1 + f[5];
@@ -244,8 +250,8 @@ static asj_status filter(asj_match_run *run, const wide_run *w)
     for (int32_t pass = 0; pass < 2; pass++) {
         for (size_t n = 0; n < choices->count; n++) {
             const asj_candidate *c = &run->candidates.list[choices->list[n].candidate];
-            const asj_geometry_candidate at = candidate_for_geometry(w, c, 0);
-            const int32_t far = distance_from_line(&run->geometry, at.x1, at.y1, at.x2, at.y2) > FARTHEST;
+            const asj_geometry_candidate at = clustered(w, c, 0);
+            const int32_t far = asj_distance_from_line(&run->geometry, at.x1, at.y1, at.x2, at.y2) > FARTHEST;
             if (pass == 0) {
                 against += (size_t)far;
             } else if (!far || 2 * against > choices->count) {

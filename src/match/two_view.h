@@ -8,4 +8,11 @@
 /* Nothing when options->geometry.model is none: see two_view.c. */
 asj_status asj_apply_geometry(asj_match_run *run);
 
+/* A candidate as the geometry sees it, its locations as places: in image 1 as detected, in image 2 where the aligned map puts it,
+ * as match_result.c has them. */
+asj_geometry_candidate asj_candidate_for_geometry(const asj_match_run *run, const asj_candidate *c, double prior);
+
+/* px from the epipolar lines, the larger of both images; 0 for a homography. */
+double asj_distance_from_line(const asj_geometry *g, double x1, double y1, double x2, double y2);
+
 #endif
