@@ -54,6 +54,10 @@ static void add_candidate(const asj_pairs *set, const asj_pair *c, const asj_mod
                           const asj_peaks *peaks, double weight, equations *e)
 {
     double parts[ASJ_MOST_PARTS];
+    if (model->view.plane_count == 0) {
+        add_part(set, c, 0, model, slopes, peaks->fine, weight, e);
+        return;
+    }
     const double sum = asj_likelihood_ratio(&model->view, set, c, peaks, parts);
     for (int32_t k = 0; k <= model->view.plane_count && sum > 0; k++)
         if (weight * parts[k] > LEAST * sum)

@@ -23,6 +23,7 @@ typedef struct asj_pairs {
     int32_t count;
     int32_t place_count[2];
     double *prior[2];        /* of each place: sum over its candidates, below 1 */
+    double *log_rest[2];     /* of each place: log(1 - prior) */
     double empty[2];         /* sum over the places of log(1 - prior): the score of a geometry that nothing fits */
     double location_sd;      /* px */
     double angle_sd;         /* rad */

@@ -66,7 +66,8 @@
 
 static const double size_peaks[2][SIZES] = {{SHARE_1, SHARE_2 * 8, SHARE_4 * 64}, {SHARE_1, SHARE_2 * 64, SHARE_4 * 4096}};
 
-/* The square is HUGE_VAL also where one residual alone is too large for a ratio above 0 with standard deviations times `loose`. */
+/* The square is HUGE_VAL also where some of the residuals are too large for a ratio above 0 with standard deviations times `loose`:
+ * those that cost least are looked at first. */
 static void epipolar_residuals(const double f[9], const asj_pairs *set, const asj_pair *c, double loose, asj_residuals *r)
 {
     const double n2x = f[0] * c->x1 + f[1] * c->y1 + f[2], n2y = f[3] * c->x1 + f[4] * c->y1 + f[5];
@@ -83,6 +84,8 @@ static void epipolar_residuals(const double f[9], const asj_pairs *set, const as
         return;
     r->value[0] = e / (sqrt(least) * sd);
     r->value[1] = sine / (sqrt(s * s1) * set->angle_sd);
+    if (r->value[0] * r->value[0] + r->value[1] * r->value[1] > most)
+        return;
     r->value[2] = 0.5 * log(s / s1) / set->scale_sd;
     r->square = r->value[0] * r->value[0] + r->value[1] * r->value[1] + r->value[2] * r->value[2];
 }
@@ -93,7 +96,8 @@ static void planar_residuals(const double h[9], const asj_pairs *set, const asj_
     const double y = (h[3] * c->x1 + h[4] * c->y1 + h[5]) / w, dx = c->x2 - x, dy = c->y2 - y;
     const double sd = set->location_sd;
     r->square = HUGE_VAL;
-    if (!(w > 0) || !(dx * dx + dy * dy <= FAR_PLANAR * loose * loose * sd * sd))
+    const double most = FAR_PLANAR * loose * loose;
+    if (!(w > 0) || !(dx * dx + dy * dy <= most * sd * sd))
         return;
     /* J and B = J^-1 A */
     const double j0 = (h[0] - x * h[6]) / w, j1 = (h[1] - x * h[7]) / w, j2 = (h[3] - y * h[6]) / w, j3 = (h[4] - y * h[7]) / w;
@@ -110,10 +114,12 @@ static void planar_residuals(const double h[9], const asj_pairs *set, const asj_
     const double scale = sqrt(area);
     r->value[0] = (back ? ex : dx) / sd;
     r->value[1] = (back ? ey : dy) / sd;
-    r->value[2] = atan2(b2 - b1, b0 + b3) / set->angle_sd;
-    r->value[3] = log(scale) / set->scale_sd;
     r->value[4] = 0.5 * (b0 - b3) / (scale * ASJ_SHEAR_SD);
     r->value[5] = 0.5 * (b1 + b2) / (scale * ASJ_SHEAR_SD);
+    if (r->value[0] * r->value[0] + r->value[1] * r->value[1] + r->value[4] * r->value[4] + r->value[5] * r->value[5] > most)
+        return;
+    r->value[2] = atan2(b2 - b1, b0 + b3) / set->angle_sd;
+    r->value[3] = log(scale) / set->scale_sd;
     r->square = 0;
     for (int32_t k = 0; k < 6; k++)
         r->square += r->value[k] * r->value[k];
@@ -264,7 +270,7 @@ double asj_score(const asj_pairs *set, int32_t count, const asj_two_view *view, 
     for (int32_t v = 0; v < 2; v++)
         for (int32_t k = 0; k < touched[v]; k++) {
             const uint32_t place = scratch->touched[v][k];
-            score[v] += log(1 - set->prior[v][place] + scratch->sum[v][place]) - log(1 - set->prior[v][place]);
+            score[v] += log(1 - set->prior[v][place] + scratch->sum[v][place]) - set->log_rest[v][place];
             scratch->sum[v][place] = 0;
         }
     for (int32_t v = 0; v < 2; v++)

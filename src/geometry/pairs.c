@@ -55,7 +55,9 @@ static asj_status number_places(asj_context *context, asj_pairs *set, int32_t si
     asj_release(&context->memory, number);
     set->place_count[side] = (int32_t)next;
     set->prior[side] = asj_allocate_zero(&context->memory, next, sizeof *set->prior[side]);
-    return set->prior[side] ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu places", (unsigned long)next);
+    set->log_rest[side] = asj_allocate_zero(&context->memory, next, sizeof *set->log_rest[side]);
+    return set->prior[side] && set->log_rest[side]
+               ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu places", (unsigned long)next);
 }
 
 static void sum_priors(asj_pairs *set)
@@ -80,7 +82,7 @@ static void limit_priors(asj_pairs *set)
     for (int32_t v = 0; v < 2; v++) {
         set->empty[v] = 0;
         for (int32_t p = 0; p < set->place_count[v]; p++)
-            set->empty[v] += log(1 - set->prior[v][p]);
+            set->empty[v] += set->log_rest[v][p] = log(1 - set->prior[v][p]);
     }
 }
 
@@ -138,7 +140,9 @@ void asj_pairs_free(asj_memory *memory, asj_pairs *set)
 {
     asj_release(memory, set->list);
     asj_release(memory, set->at);
-    asj_release(memory, set->prior[0]);
-    asj_release(memory, set->prior[1]);
+    for (int32_t v = 0; v < 2; v++) {
+        asj_release(memory, set->prior[v]);
+        asj_release(memory, set->log_rest[v]);
+    }
     memset(set, 0, sizeof *set);
 }

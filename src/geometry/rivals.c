@@ -15,6 +15,7 @@
 #include <math.h>
 #include <string.h>
 
+#define FOLLOWED 0.2 /* of the evidence of the best one: less makes nothing ambiguous (ambiguity.c) */
 #define ELSEWHERE 0.1 /* how much a place counts that is not matched */
 
 /* Priors without what the best one explains (kept: the former ones), and how much each candidate is to be drawn. */
@@ -42,16 +43,17 @@ static void unmask(asj_pairs *set, const double *kept)
         set->list[k].prior = kept[k];
 }
 
-/* Evidence from all candidates. scratch: one for each thread. */
-static void judge(asj_context *context, const asj_pairs *set, uint64_t seed, asj_adjust_scratch *scratch, asj_model *rivals,
-                  int32_t count)
+/* Evidence from all candidates; the best one is followed unless it is far from being as good as `least`. scratch: one for each
+ * thread. */
+static void judge(asj_context *context, const asj_pairs *set, uint64_t seed, asj_adjust_scratch *scratch, double least,
+                  asj_model *rivals, int32_t count)
 {
     int32_t best = 0;
     for (int32_t k = 0; k < count; k++) {
         rivals[k].evidence = asj_log_evidence(set, &rivals[k], &scratch[0]);
         best = rivals[k].evidence > rivals[best].evidence ? k : best;
     }
-    if (count > 0)
+    if (count > 0 && rivals[best].evidence > least)
         asj_settle(context, set, seed, scratch, &rivals[best]);
 }
 
@@ -98,7 +100,7 @@ asj_status asj_find_rivals(asj_context *context, asj_pairs *set, const asj_searc
         *count += more;
     }
     if (status == ASJ_OK)
-        judge(context, set, kinds[0].seed, scratch, rivals, *count);
+        judge(context, set, kinds[0].seed, scratch, FOLLOWED * best->evidence, rivals, *count);
     asj_adjust_scratches_free(memory, scratch, context->threads);
     asj_release(memory, kept);
     return status;
