@@ -145,7 +145,9 @@ typedef struct asj_match_result {
  * Each location takes part in one match at most. The result does not depend on the number of threads, and swapping the images
  * swaps the matches where they are mutual. Memory: the patches (patch_size^2 x 2 bytes for each frame) and short lists. Time: all
  * pairs of L-junctions are looked at, so twice as many in either image take four times as long (2 000 junctions of five branches at
- * one point, 20 000 L-junctions that all look alike: some ten seconds). The caller is asked every 50 ms whether to go on.
+ * one point, 20 000 L-junctions that all look alike: some ten seconds). With a geometry, four times as many candidates are aligned
+ * for it, and it takes a share of its own: two frames of a video (624 x 460) with cameras took 1.72 s of processor time in place of
+ * 0.35 s, one thread of a busy two-core Xeon. The caller is asked every 50 ms whether to go on.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that lies more than ASJ_MAX_OUTSIDE px outside its image, has a wrong branch
  *                      count, an octave that is not 0 .. 15, an angle that is not finite, a length that is negative or not finite,
