@@ -140,6 +140,26 @@ def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:
             asj.match(*pair, geometry="auto", camera1=wrong)
 
 
+def test_geometry_with_colours(scene: Scene, tmp_path: Path) -> None:
+    """Tints of things are seen, in numpy arrays too, and a redder light in the other image is none of them."""
+    tints = np.random.default_rng(3).uniform(0.6, 1.0, (256, 3))
+
+    def tinted(picture: Scene, light: tuple[float, float, float] = (1, 1, 1)) -> Scene:
+        return np.clip(picture[..., None] * tints[(picture // 4) * 4] * light, 0, 255).astype(np.uint8)
+
+    grey = [asj.detect(picture) for picture in (scene, panels(shift=(6, 4)))]
+    coloured = [asj.detect(tinted(scene)), asj.detect(tinted(panels(shift=(6, 4)), (1, 0.9, 0.8)))]
+    for name, features in zip("gc", (grey[0], coloured[0])):
+        features.save(tmp_path / name)
+    colours, junctions = 36, min(len(grey[0].junctions), len(coloured[0].junctions))
+    assert (tmp_path / "c").stat().st_size > (tmp_path / "g").stat().st_size + colours * junctions // 2
+    for other in (grey[1], coloured[1]):
+        found = asj.match(coloured[0], other, geometry="homography")
+        assert found.geometry and found.geometry.log10_nfa < -7 and (found.probability > 0.5).mean() > 0.8
+        moved = found.geometry.matrix @ (100, 50, 1)
+        assert np.allclose(moved[:2] / moved[2], (106, 54), atol=0.5)
+
+
 def test_warning_about_features_for_looking(scene: Scene, pair: tuple[asj.Features, asj.Features]) -> None:
     with pytest.warns(UserWarning, match='preset="match"'):
         asj.match(asj.detect(scene, preset="default"), pair[1])
