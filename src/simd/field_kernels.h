@@ -16,12 +16,14 @@ typedef char tiles_are_whole_groups[ASJ_FIELD_TILE % GROUP_PIXELS == 0 ? 1 : -1]
 static void rank_by_strength(const asj_field *field, const int16_t *z, ranking *ranked)
 {
     const int32_t count = field->sectors.count, together = field->suppress + 1;
+    peak_walk walk = start_peaks(z, V_LANES, field->suppress);
     start_ranking(ranked, ASJ_FIELD_BRANCHES, v_zero());
     for (int32_t k = 0; k < count;) {
-        vec strength = v_zero(), sector = v_zero();
+        vec strength = v_zero(), sector = v_zero(), here;
         for (const int32_t end = count - k < together ? count : k + together; k < end; k++) {
-            const vec is_peak = peak(z + k * V_LANES, V_LANES, field->suppress, v_set1_32(field->limits[k][2]));
-            strength = v_or(strength, v_and(is_peak, v_load(z + k * V_LANES)));
+            const vec below = v_set1_32(field->limits[k][2]);
+            const vec is_peak = next_peak(&walk, z + k * V_LANES, V_LANES, field->suppress, below, &here);
+            strength = v_or(strength, v_and(is_peak, here));
             sector = v_or(sector, v_and(is_peak, v_set1((int16_t)k)));
         }
         insert_peaks(ranked, ASJ_FIELD_BRANCHES, strength, sector);
@@ -185,11 +187,13 @@ static uint32_t find_candidates(const tile *t, int v)
     const int32_t count = field->sectors.count;
     const int16_t *here = t->z + field->suppress * GROUP_PIXELS + v * V_LANES;
     uint16_t words[4][V_LANES];
-    vec seen = v_zero(), twice = seen;
+    peak_walk walk = start_peaks(here, GROUP_PIXELS, field->suppress);
+    vec seen = v_zero(), twice = seen, ignored;
     for (int32_t word = 0, k = 0; word < 4; word++) {
         vec bits = v_zero(), bit = v_set1(1);
         for (const int32_t end = k + 16 < count ? k + 16 : count; k < end; k++, here += GROUP_PIXELS) {
-            const vec is_peak = peak(here, GROUP_PIXELS, field->suppress, v_set1_32(field->limits[k][3]));
+            const vec below = v_set1_32(field->limits[k][3]);
+            const vec is_peak = next_peak(&walk, here, GROUP_PIXELS, field->suppress, below, &ignored);
             twice = v_or(twice, v_and(seen, is_peak));
             seen = v_or(seen, is_peak);
             bits = v_or(bits, v_and(is_peak, bit));

@@ -16,11 +16,13 @@ static void rank_by_sum(const asj_isotropic_radius *entry, int32_t most, const u
     const asj_sector_plan *plan = &entry->plan;
     const int32_t count = entry->sectors.count, together = entry->suppress + 1;
     const vec none = v_set1(INT16_MIN);
+    peak_walk walk = start_peaks(z, V_LANES, entry->suppress);
     start_ranking(ranked, most, none);
     for (int32_t k = 0; k < count;) {
-        vec sum = v_zero(), sector = v_zero();
+        vec sum = v_zero(), sector = v_zero(), ignored;
         for (const int32_t end = count - k < together ? count : k + together; k < end; k++) {
-            const vec is_peak = peak(z + k * V_LANES, V_LANES, entry->suppress, v_set1((int16_t)(entry->least[k] - 1)));
+            const vec below = v_set1((int16_t)(entry->least[k] - 1));
+            const vec is_peak = next_peak(&walk, z + k * V_LANES, V_LANES, entry->suppress, below, &ignored);
             const vec high = v_load(slots + plan->high[k] * V_LANES), low = v_load(slots + plan->low[k] * V_LANES);
             sum = v_or(sum, v_and(is_peak, v_sub(high, low)));
             sector = v_or(sector, v_and(is_peak, v_set1((int16_t)k)));

@@ -29,4 +29,30 @@ static inline vec peak(const int16_t *here, ptrdiff_t row, int32_t reach, vec be
     return v_greater_but(z, before, after, z);
 }
 
+/* The same from one sector to the next, for the reach of 2 that all radii have with the default sector width: what neighbours
+ * share stays in registers. */
+typedef struct peak_walk {
+    vec last, before, here, next; /* strengths of the sectors k - 1, k, k + 1; the larger of k - 2 and k - 1 */
+} peak_walk;
+
+static inline peak_walk start_peaks(const int16_t *here, ptrdiff_t row, int32_t reach)
+{
+    const vec last = v_load(here - (reach == 2 ? row : 0)), far = v_load(here - (reach == 2 ? 2 * row : 0));
+    return (peak_walk){last, v_max(last, far), v_load(here), v_load(here + row)};
+}
+
+/* peak() of the sector at `here`, and its strength; w goes on to the next one. */
+static inline vec next_peak(peak_walk *w, const int16_t *here, ptrdiff_t row, int32_t reach, vec below, vec *strength)
+{
+    *strength = w->here;
+    if (reach != 2) {
+        w->here = v_load(here + row);
+        return peak(here, row, reach, below);
+    }
+    const vec far = v_load(here + 2 * row);
+    const vec is_peak = v_greater_but(w->here, v_max(below, w->before), v_max(w->next, far), w->here);
+    *w = (peak_walk){w->here, v_max(w->last, w->here), w->next, far};
+    return is_peak;
+}
+
 #endif
