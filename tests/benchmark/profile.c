@@ -274,15 +274,17 @@ static int profile(asj_context *context, const asj_image *image, const asj_detec
 int profile_print(const asj_image *image, const asj_detect_options *options, int32_t threads, int32_t runs)
 {
     machine_limits limits;
+    asj_detect_options one = *options; /* octave: what is counted is that of an image of one size */
+    one.octaves = 1;
     asj_context *context = measure_context(threads);
     int result = -1;
     if (context && machine_measure(context, &limits) == 0) {
-        printf("libasj %s, sample room %d x %d, %d thread%s, operations: %s\n", asj_version_string(), (int)image->width,
+        printf("libasj %s, sample room %d x %d, one octave, %d thread%s, operations: %s\n", asj_version_string(), (int)image->width,
                (int)image->height, (int)asj_context_threads(context), asj_context_threads(context) == 1 ? "" : "s",
                context->ops->name);
         printf("limits: %.1f GB/s copied (read and written), %.0f G op/s on 16-bit numbers, %.0f G op/s in double precision"
                " (vectors of %d bytes)\n", limits.bytes * 1e-9, limits.whole * 1e-9, limits.floating * 1e-9, (int)limits.width);
-        result = profile(context, image, options, runs, &limits);
+        result = profile(context, image, &one, runs, &limits);
     }
     if (result != 0)
         fprintf(stderr, "detection: %s\n", context ? asj_context_message(context) : "no memory");
