@@ -60,6 +60,28 @@ static void test_close(void **state)
     }
 }
 
+/* What one junction hides, with and without px to spare: within 3 px of a small one, 0.35 radii of a large one. */
+static void test_hides(void **state)
+{
+    static const double radii[] = {7, 14, 30}, spares[] = {0, 1, 2, 4};
+    int32_t cells[400];
+    (void)state;
+    assert_true(asj_close_grid_cells(1, 60, 60) <= 400);
+    for (int n = 0; n < 12; n++) {
+        const asj_hypothesis one = {.x = 33.2, .y = 21.7, .radius = radii[n % 3], .branch_count = 2};
+        const double spare = spares[n / 3], reach = fmax(3, 0.35 * one.radius) - spare;
+        asj_close_grid grid = asj_close_grid_start(60, 60, cells);
+        assert_false(asj_suppress_hides(&one, &grid, one.x, one.y, spare));
+        asj_close_grid_add(&grid, asj_close_grid_cell(&grid, one.x, one.y), 0);
+        assert_int_equal(asj_suppress_hides(&one, &grid, one.x, one.y, spare), reach > 0);
+        for (int turn = 0; turn < 8 && reach > 0; turn++) {
+            const double ux = cos(turn * UNIT_PI / 4), uy = sin(turn * UNIT_PI / 4);
+            assert_true(asj_suppress_hides(&one, &grid, one.x + (reach - 0.01) * ux, one.y + (reach - 0.01) * uy, spare));
+            assert_false(asj_suppress_hides(&one, &grid, one.x + (reach + 0.01) * ux, one.y + (reach + 0.01) * uy, spare));
+        }
+    }
+}
+
 /* Guesses of one corner: each branch is one of the other's too. */
 static void test_twins(void **state)
 {
@@ -102,7 +124,7 @@ static void test_twins(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_close),
+        cmocka_unit_test(test_close), cmocka_unit_test(test_hides),
         cmocka_unit_test(test_twins),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
