@@ -60,7 +60,8 @@ typedef struct asj_match_options {
     double separation;           /* px: what is nearer is the same place; "another place" lies farther. 0 .. 100; 6; paper 0 */
     int32_t mutual;              /* 1 = each must be the other's best. 1; paper 0 */
     /* verification by the matches around */
-    int32_t verify_neighbours;   /* nearest matches, in either image, asked about a match; 0 = none. 0 .. 64; 16; paper 0 */
+    int32_t verify_neighbours;   /* nearest matches, in either image, asked about a match; 0 = none, and the epipolar lines of 20
+                                  * matches and more are not asked either (src/match/epipolar.c). 0 .. 64; 16; paper 0 */
     double verify_distance;      /* px at which such a neighbour counts by half. 10 .. 10000; 100 */
     double verify_agreement;     /* mean agreement with them that a match needs. 0 .. 1; 0.28; paper 0 */
     /* line segments */
@@ -143,15 +144,15 @@ typedef struct asj_match_result {
  * result           on success *result belongs to the caller until asj_match_result_free()
  *
  * Each location takes part in one match at most. The result does not depend on the number of threads, and swapping the images
- * swaps the matches where they are mutual. Memory: the patches (patch_size^2 x 2 bytes for each frame) and short lists. Time: all
- * pairs of L-junctions are looked at, so twice as many in either image take four times as long (2 000 junctions of five branches at
- * one point, 20 000 L-junctions that all look alike: some ten seconds). With a geometry, four times as many candidates are aligned
- * for it, and it takes a share of its own: two frames of a video (624 x 460) with cameras took 1.72 s of processor time in place of
- * 0.35 s, one thread of a busy two-core Xeon. The caller is asked every 50 ms whether to go on.
+ * swaps matches that are mutual, but for some at the limit of the epipolar test, whose samples go by their order. Memory: the
+ * patches (patch_size^2 x 2 bytes for each frame) and short lists. Time: all pairs of L-junctions are looked at, so twice as many
+ * in either image take four times as long (2 000 junctions of five branches at one point, 20 000 L-junctions that all look alike:
+ * some ten seconds). With a geometry, four times as many candidates are aligned for it, and it takes a share of its own: two frames
+ * of a video with 1150 L-junctions each and their focal length took 1.5 s in place of 0.2 s (one thread of a two-core Xeon; 0.9 s
+ * with two). The caller is asked every 50 ms whether to go on.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that lies more than ASJ_MAX_OUTSIDE px outside its image, has a wrong branch
- *                      count, an octave that is not 0 .. 15, an angle that is not finite, a length that is negative or not finite,
- *                      or an end of no known kind
+ *                      count, an angle that is not finite, a length that is negative or not finite, or an end of no known kind
  * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED   as asj_detect()
  * ASJ_ERROR_LIMIT      also when more than 2^24 pairs of candidate matches agree: images that repeat themselves, options far
  *                      looser than the defaults */

@@ -138,8 +138,12 @@ static void meet_again(const asj_detect_options *options, asj_hypothesis *hypoth
     int bent = 0;
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         bent |= hypothesis->branches[i].width > ASJ_BENT_FROM;
-    if (options->strip_test && options->refinement == ASJ_REFINE_LINE_FIT && !bent &&
-        (!asj_locate_meet(hypothesis) || has_moved_far(options, hypothesis)))
+    if (!options->strip_test || options->refinement != ASJ_REFINE_LINE_FIT || bent)
+        return;
+    int worse = !asj_locate_meet(hypothesis) || has_moved_far(options, hypothesis);
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        worse |= fabs(hypothesis->branches[i].offset) > LARGEST_OFFSET;
+    if (worse)
         *hypothesis = before;
 }
 

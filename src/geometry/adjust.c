@@ -54,7 +54,7 @@ static void add_candidate(const asj_pairs *set, const asj_pair *c, const asj_mod
                           const asj_peaks *peaks, double weight, equations *e)
 {
     double parts[ASJ_MOST_PARTS];
-    if (model->view.plane_count == 0) {
+    if (model->view.plane_count == 0) { /* one part: its share is 1, whatever the ratio; equations weigh it by its residuals */
         add_part(set, c, 0, model, slopes, peaks->fine, weight, e);
         return;
     }

@@ -19,7 +19,6 @@
 #include <string.h>
 
 #define MOST_L_JUNCTIONS 0x1000000 /* frames, up to sixteen for each, are numbered in 32 bits */
-#define LARGEST_OCTAVE 15
 #define MOST_OUTSIDE ((float)ASJ_MAX_OUTSIDE) /* px: where branches meet may lie a little outside the image */
 #define LEAST_LENGTH 3.0     /* px: a shorter branch has no direction worth a frame */
 #define RAY_DISTANCE 3.0     /* px */
@@ -42,8 +41,6 @@ static asj_status check(asj_context *context, const asj_junction_list *input)
         if (j->branch_count < 0 || j->branch_count > ASJ_MAX_BRANCHES)
             return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d has %d branches", n, which,
                             (int)j->branch_count);
-        if (j->octave < 0 || j->octave > LARGEST_OCTAVE)
-            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d is of octave %d", n, which, (int)j->octave);
         for (int32_t b = 0; b < j->branch_count; b++) {
             const asj_branch *branch = &j->branches[b];
             if (branch->end < 0 || branch->end > ASJ_BRANCH_END_BORDER)

@@ -61,7 +61,7 @@ static const asj_option_info rows[] = {
     SWITCH(ASSIGNMENT, COMMON, mutual, 1, 0, 1, "two junctions match only if each is the other's best"),
 
     RENAMED_INTEGER("witnesses", VERIFICATION, ADVANCED, verify_neighbours, "", 0, 64, 16, 0, 16,
-                 "nearest matches that are asked whether they agree with a match; 0 = none are asked"),
+                 "nearest matches that are asked whether they agree with a match; 0 = none, nor epipolar lines"),
     RENAMED_NUMBER("witness_distance", VERIFICATION, ADVANCED, verify_distance, "px", 10, 10000, 100, 100, 100,
                 "distance at which such a neighbour counts by half"),
     RENAMED_NUMBER("minimum_agreement", VERIFICATION, COMMON, verify_agreement, "", 0, 1, 0.28, 0, 0.28,

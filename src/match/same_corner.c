@@ -3,7 +3,8 @@
  * one in the other, those out of focus, and those in few pixels find partners that way. But most corners are then listed two or
  * three times, and coarse ones look more alike. So those of the octave that most are of are matched first, as if there were no
  * others (shortlist.c, l_junctions.c); the guided pass then proposes the others, which are guests, where accepted matches put them.
- * Only guests that were proposed are compared, and they support nobody. What is left for here:
+ * Only guests that were proposed are compared (with canonical patches; of induced ones, preset paper's, all are), and they support
+ * nobody. What is left for here:
  *
  * Support. A match of octave o needs 1 + o times the usual support: the place of a coarse corner is known that much worse. Asked at
  * the end only: what has little support still is good for proposing matches near it.

@@ -13,7 +13,8 @@
  *   - a candidate comes when its probability is LEAST_PROBABILITY at least, and both its locations are free; where there are
  *     MANY_MATCHES already, only when it is SURE_PROBABILITY at least. (On photographs that are none of the wide pairs three of
  *     four newcomers below that are right, and 45 of 47 above.)
- * Each match receives its probability; so that there is one, the matches are among the candidates whatever their rank. */
+ * Each match receives its probability; so that there is one, the matches are among the candidates whatever their rank. (0 has one
+ * whose map keeps hardly any area, or that is not among the likeliest that the geometry looks at.) */
 #include "two_view.h"
 #include "align.h"
 #include "compare.h"
@@ -200,8 +201,7 @@ static asj_status estimate(asj_match_run *run, wide_run *w)
     size_t kept = 0;
     for (size_t k = 0; k < count; k++) { /* a map that hardly keeps any area is no map */
         const asj_candidate *c = &w->run.candidates.list[k];
-        const double *t = c->map.to, area = t[0] * t[3] - t[1] * t[2];
-        if (!(area > 1e-3 && area < 1e3))
+        if (!asj_keeps_area(c))
             continue;
         w->given[kept] = clustered(w, c, w->probability[k]);
         w->colours[kept] = w->colours[k];
@@ -213,6 +213,12 @@ static asj_status estimate(asj_match_run *run, wide_run *w)
 }
 
 /* --- matches that are there -------------------------------------------------------------------------------------------------- */
+
+int asj_keeps_area(const asj_candidate *c)
+{
+    const double *t = c->map.to, area = t[0] * t[3] - t[1] * t[2];
+    return area > 1e-3 && area < 1e3;
+}
 
 double asj_distance_from_line(const asj_geometry *g, double x1, double y1, double x2, double y2)
 {

@@ -12,6 +12,9 @@ asj_status asj_apply_geometry(asj_match_run *run);
  * as match_result.c has them. */
 asj_geometry_candidate asj_candidate_for_geometry(const asj_match_run *run, const asj_candidate *c, double prior);
 
+/* A map that hardly keeps any area, or makes thousandfold, is no map, and the geometry takes none. */
+int asj_keeps_area(const asj_candidate *c);
+
 /* px from the epipolar lines, the larger of both images; 0 for a homography. */
 double asj_distance_from_line(const asj_geometry *g, double x1, double y1, double x2, double y2);
 

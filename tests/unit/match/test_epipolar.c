@@ -7,6 +7,7 @@ enum { SIDE = 8, COUNT = SIDE * SIDE };
 
 static asj_l_junction l[2][COUNT];
 static uint32_t locations[COUNT];
+static uint8_t octaves[COUNT];
 static asj_candidate candidates[COUNT];
 static asj_choice choices[COUNT];
 
@@ -31,6 +32,9 @@ static void place(int32_t k)
     choices[k] = (asj_choice){(uint32_t)k, 2, 0};
 }
 
+/* The map of match 3 keeps no area. */
+static int32_t collapse;
+
 /* Every `each`-th match is moved by 9 px down in image 2, away from its line. Returns how many stay; *moved: of those. */
 static size_t stay(int32_t count, int32_t each, int32_t neighbours, int32_t *moved)
 {
@@ -45,9 +49,12 @@ static size_t stay(int32_t count, int32_t each, int32_t neighbours, int32_t *mov
         place(k);
         l[1][k].y += each && k % each == 0 ? 9 : 0;
     }
+    if (collapse)
+        candidates[3].map = (asj_linear){{1e-4, 0, 0, 1e-4}, {1e4, 0, 0, 1e4}};
     for (int32_t side = 0; side < 2; side++) {
         image[side].l_junctions.l = l[side];
         image[side].l_junctions.location = locations;
+        image[side].l_junctions.octave = octaves;
         image[side].l_junctions.count = image[side].l_junctions.location_count = COUNT;
         image[side].pyramid.width[0] = 640;
         image[side].pyramid.height[0] = 480;
@@ -71,6 +78,34 @@ static void what_leaves_its_line_goes(void **state)
     assert_int_equal(moved, 0);
 }
 
+static void what_is_known_less_may_lie_farther(void **state)
+{
+    int32_t moved;
+    (void)state;
+    octaves[9] = 2; /* 16 px */
+    assert_int_equal(stay(COUNT, 9, 16, &moved), COUNT - 7);
+    assert_int_equal(moved, 1);
+    octaves[9] = 0;
+}
+
+/* A third of them moves together: no scene that stands still. */
+static void many_are_believed(void **state)
+{
+    int32_t moved;
+    (void)state;
+    assert_int_equal(stay(COUNT, 3, 16, &moved), COUNT);
+    assert_int_equal(moved, (COUNT + 2) / 3);
+}
+
+static void a_map_without_area_is_not_asked(void **state)
+{
+    int32_t moved;
+    (void)state;
+    collapse = 1;
+    assert_int_equal(stay(COUNT, 9, 16, &moved), COUNT - 8);
+    collapse = 0;
+}
+
 static void few_matches_say_nothing(void **state)
 {
     int32_t moved;
@@ -84,6 +119,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_leaves_its_line_goes),
+        cmocka_unit_test(what_is_known_less_may_lie_farther),
+        cmocka_unit_test(many_are_believed),
+        cmocka_unit_test(a_map_without_area_is_not_asked),
         cmocka_unit_test(few_matches_say_nothing),
     };
     return cmocka_run_group_tests_name("epipolar", tests, NULL, NULL);
