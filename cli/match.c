@@ -144,7 +144,8 @@ static int write_results(run *r)
     int result = CLI_SUCCESS;
     if (arguments->output || !arguments->plot)
         result = write_matches(r, arguments->output ? arguments->output : "-");
-    r->at = arguments->plot;
+    if (arguments->plot)
+        r->at = arguments->plot;
     if (arguments->plot && (cli_interrupted() || write_plot(r) != CLI_SUCCESS))
         result = CLI_FAILED;
     r->finished = result == CLI_SUCCESS;

@@ -252,11 +252,14 @@ static int check_files(const cli_match_arguments *arguments)
 /* Options of the detector when it has nothing to do. */
 static int check_detector(const cli_match_arguments *arguments)
 {
+    int known[2]; /* junctions, which come from a file of their own or with features */
     for (int v = 0; v < 2; v++)
-        if (arguments->junctions[v] && (arguments->regions[v].mask || arguments->regions[v].width > 0))
+        known[v] = arguments->junctions[v] || asj_features_probe(arguments->images[v]);
+    for (int v = 0; v < 2; v++)
+        if (known[v] && (arguments->regions[v].mask || arguments->regions[v].width > 0))
             return cli_usage_error("match", "--%s%d changes nothing: the junctions of that image come from a file",
                                    arguments->regions[v].mask ? "mask" : "region", v + 1);
-    if (!arguments->junctions[0] || !arguments->junctions[1])
+    if (!known[0] || !known[1])
         return CLI_SUCCESS;
     if (arguments->detect_settings.count > 0)
         return cli_usage_error("match", "%s changes nothing: the junctions of both images come from files",

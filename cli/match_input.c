@@ -56,28 +56,13 @@ static void warn_of_few(cli_session *session, const char *path, const asj_juncti
              "finds what match needs", path);
 }
 
-/* What would change the detection of an image that is not there. */
-static const char *useless(const cli_match_arguments *arguments, int v)
-{
-    const cli_region *region = &arguments->regions[v];
-    if (arguments->junctions[v])
-        return arguments->junctions[v];
-    if (region->mask)
-        return v == 0 ? "--mask1" : "--mask2";
-    if (region->width > 0)
-        return v == 0 ? "--region1" : "--region2";
-    if (!asj_features_probe(arguments->images[1 - v]) && !arguments->junctions[1 - v])
-        return NULL; /* the rest is for the other image */
-    return arguments->detect_settings.count > 0 ? arguments->detect_settings.list[0].key : NULL;
-}
-
-static int read_features(cli_session *session, const cli_match_arguments *arguments, int v, cli_match_input *input)
+static int read_features(cli_session *session, cli_match_input *input, const char *junctions)
 {
     char message[MESSAGE_SIZE] = "";
     asj_features_info info;
-    const char *name = useless(arguments, v);
-    if (name)
-        return cli_usage_error("match", "%s changes nothing: %s is a file of features, which has its junctions", name, input->name);
+    if (junctions)
+        return cli_usage_error("match", "%s changes nothing: %s is a file of features, which has its junctions", junctions,
+                               input->name);
     const asj_status status = asj_features_read(session->context, input->name, &input->features, message, sizeof message);
     if (status != ASJ_OK)
         return status == ASJ_ERROR_CANCELLED ? CLI_FAILED : cli_session_fail(session, input->name, message, status);
@@ -94,7 +79,7 @@ int cli_match_input_read(cli_session *session, const cli_match_arguments *argume
     double start = cli_now_ms();
     input->name = arguments->images[v];
     if (asj_features_probe(input->name)) {
-        const int result = read_features(session, arguments, v, input);
+        const int result = read_features(session, input, path);
         input->read_ms = cli_now_ms() - start;
         return result;
     }

@@ -68,6 +68,7 @@ asj_status asj_fail(asj_context *context, asj_status status, const char *format,
 void asj_log(asj_context *context, int32_t level, const char *format, ...)
     ASJ_PRINTF(3, 4);
 
+/* Hands a dump to the caller, who may want none. */
 void asj_dump_out(asj_context *context, const asj_dump *dump);
 
 /* Reports progress; ASJ_ERROR_CANCELLED when the caller wants to stop. */

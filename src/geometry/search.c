@@ -132,7 +132,7 @@ typedef struct job {
     const asj_search *search;
     work *w;
     asj_model *models;
-    int32_t first, count, rounds;
+    int32_t first, count, rounds, except;
 } job;
 
 /* Sample n, made again whenever it is wanted: keeping all of them would take more time. */
@@ -211,7 +211,7 @@ static int32_t draw_around(const asj_pairs *set, const asj_search *search, work 
                            int32_t round)
 {
     const int32_t first = set->count < PRESELECTED ? set->count : PRESELECTED;
-    const job j = {set, search, w, models, first, count, round};
+    const job j = {set, search, w, models, first, count, round, -1};
     asj_parallel(w->context, w->context->threads, count, 1, sample_around, &j);
     for (int32_t n = 0; n < count; n++) /* in the same measure as the samples */
         models[n].score = asj_score(set, first, &models[n].view, LOOSE, &w->scratch[0].score);
@@ -286,7 +286,7 @@ static void turn_some(const void *data, const asj_part *part)
     for (int64_t r = part->first; r < part->end; r++) {
         asj_model *best = &j->models[r];
         best->score = -HUGE_VAL;
-        for (int64_t k = 0; k < TURNED && r != j->count && !asj_pairs_stop(j->set, part); k++) {
+        for (int64_t k = 0; k < TURNED && r != j->except && !asj_pairs_stop(j->set, part); k++) {
             asj_model m = {.kind = ASJ_GEOMETRY_NONE};
             const uint64_t stream = (uint64_t)(2 * (ASJ_ROTATIONS * k + r) + 1); /* sample() reads the rotation off it */
             if (!sample(j->set, j->w->sum, j->first, j->search, &j->w->turned, -1, stream, &m))
@@ -303,7 +303,7 @@ static int32_t run_turned(const asj_pairs *set, const asj_search *search, work *
 {
     const int32_t first = w->turned.count;
     set_sums(set, search, first, w->sum);
-    const job j = {.set = set, .search = search, .w = w, .models = w->models, .first = first, .count = except};
+    const job j = {.set = set, .search = search, .w = w, .models = w->models, .first = first, .except = except};
     asj_parallel(w->context, w->context->threads, ASJ_ROTATIONS, 1, turn_some, &j);
     qsort(w->order, ASJ_ROTATIONS, sizeof *w->order, asj_by_score);
     const int32_t count = asj_pick(w->models, w->order, ASJ_ROTATIONS, ASJ_TURNED, w->starts);

@@ -3,6 +3,7 @@
 #include "candidate.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static int by_pair(const void *left, const void *right)
 {
@@ -21,4 +22,18 @@ void asj_candidates_sort(asj_candidates *candidates)
         if (kept == 0 || by_pair(&candidates->list[k], &candidates->list[kept - 1]) != 0)
             candidates->list[kept++] = candidates->list[k];
     candidates->count = kept;
+}
+
+asj_status asj_candidates_append(asj_context *context, asj_candidates *candidates, const asj_candidates *fresh)
+{
+    void *list = candidates->list;
+    const size_t count = candidates->count + fresh->count, size = sizeof *candidates->list;
+    const asj_status status = asj_grow(&context->memory, &list, &candidates->capacity, count, size, candidates->count);
+    if (status != ASJ_OK)
+        return asj_fail(context, status, "no memory for %zu candidates", count);
+    candidates->list = list;
+    if (fresh->count)
+        memcpy(candidates->list + candidates->count, fresh->list, fresh->count * size);
+    candidates->count = count;
+    return ASJ_OK;
 }

@@ -4,6 +4,7 @@
 #define ASJ_SRC_CANDIDATE_H
 
 #include "affine.h"
+#include "core/context.h"
 
 #include <stddef.h>
 
@@ -41,6 +42,9 @@ static inline const double *asj_candidate_map(const asj_candidate *c, int32_t si
 
 /* Sorts by i, then j; keeps one of equal pairs. */
 void asj_candidates_sort(asj_candidates *candidates);
+
+/* Adds the fresh ones behind the others, unsorted. */
+asj_status asj_candidates_append(asj_context *context, asj_candidates *candidates, const asj_candidates *fresh);
 
 /* A candidate at a neighbour location that agrees. */
 typedef struct asj_supporter {

@@ -46,7 +46,7 @@ static asj_status estimate(const asj_match_run *run, asj_geometry_candidate *giv
     return asj_geometry_estimate(run->context, asked, count, &options, NULL, geometry);
 }
 
-/* How well the place of a choice is known: px, in the image that knows less. */
+/* How far from its line a choice may lie: px, of the image that knows its place less well. */
 static double farthest(const asj_match_run *run, const asj_candidate *c)
 {
     double most = 0;

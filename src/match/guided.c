@@ -177,21 +177,12 @@ static void set_guides(const asj_match_run *run, int32_t side, guides *all)
 static asj_status append(asj_match_run *run, asj_candidates *fresh)
 {
     asj_candidates *candidates = &run->candidates;
-    void *list = candidates->list;
     const size_t before = candidates->count;
     asj_candidates_sort(fresh);
     asj_status status = asj_compare_and_drop(run, fresh);
-    if (status != ASJ_OK)
-        return status;
-    status = asj_grow(&run->context->memory, &list, &candidates->capacity, before + fresh->count, sizeof *candidates->list,
-                      before);
-    if (status != ASJ_OK)
-        return asj_fail(run->context, status, "no memory for %zu candidates", before + fresh->count);
-    candidates->list = list;
-    if (fresh->count)
-        memcpy(candidates->list + before, fresh->list, fresh->count * sizeof *fresh->list);
-    candidates->count = before + fresh->count;
-    if (run->options->align_iterations > 0)
+    if (status == ASJ_OK)
+        status = asj_candidates_append(run->context, candidates, fresh);
+    if (status == ASJ_OK && run->options->align_iterations > 0)
         status = asj_align_candidates(run, before);
     if (status == ASJ_OK)
         asj_candidates_sort(candidates);

@@ -13,8 +13,8 @@
  *   - a candidate comes when its probability is LEAST_PROBABILITY at least, and both its locations are free; where there are
  *     MANY_MATCHES already, only when it is SURE_PROBABILITY at least. (On photographs that are none of the wide pairs three of
  *     four newcomers below that are right, and 45 of 47 above.)
- * Each match receives its probability; so that there is one, the matches are among the candidates whatever their rank. (0 has one
- * whose map keeps hardly any area, or that is not among the likeliest that the geometry looks at.) */
+ * Each match receives its probability; so that there is one, the matches are among the candidates whatever their rank. It is 0
+ * where a map keeps hardly any area, and beyond the likeliest candidates, which are all that a geometry looks at (pairs.c). */
 #include "two_view.h"
 #include "align.h"
 #include "compare.h"
@@ -51,29 +51,22 @@ typedef struct wide_run {
 /* The matches are candidates too, wherever they rank: guided ones (guided.c) stand in no list, and each needs its probability. */
 static asj_status add_matches(const asj_match_run *run, wide_run *w)
 {
-    asj_candidates *wide = &w->run.candidates;
-    void *list = wide->list;
-    asj_candidates matches = {asj_allocate_zero(&run->context->memory, run->choices.count, sizeof *matches.list), 0, 0};
-    asj_status status = ASJ_ERROR_MEMORY;
-    if (matches.list) {
-        for (; matches.count < run->choices.count; matches.count++) {
-            const asj_candidate *c = &run->candidates.list[run->choices.list[matches.count].candidate];
-            matches.list[matches.count].i = c->i;
-            matches.list[matches.count].j = c->j;
-        }
-        status = asj_compare_and_drop(&w->run, &matches);
-        if (status == ASJ_OK)
-            status = asj_grow(&run->context->memory, &list, &wide->capacity, wide->count + matches.count, sizeof *matches.list,
-                              wide->count);
+    asj_memory *memory = &run->context->memory;
+    asj_candidates matches = {asj_allocate_zero(memory, run->choices.count, sizeof *matches.list), 0, 0};
+    if (!matches.list)
+        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu matches", run->choices.count);
+    for (; matches.count < run->choices.count; matches.count++) {
+        const asj_candidate *c = &run->candidates.list[run->choices.list[matches.count].candidate];
+        matches.list[matches.count].i = c->i;
+        matches.list[matches.count].j = c->j;
     }
-    if (status == ASJ_OK && matches.count > 0) {
-        wide->list = list;
-        memcpy(wide->list + wide->count, matches.list, matches.count * sizeof *matches.list);
-        wide->count += matches.count;
-        asj_candidates_sort(wide);
-    }
-    asj_release(&run->context->memory, matches.list);
-    return status == ASJ_ERROR_MEMORY ? asj_fail(run->context, status, "no memory for the matches' geometry") : status;
+    asj_status status = asj_compare_and_drop(&w->run, &matches);
+    if (status == ASJ_OK)
+        status = asj_candidates_append(run->context, &w->run.candidates, &matches);
+    if (status == ASJ_OK)
+        asj_candidates_sort(&w->run.candidates);
+    asj_release(memory, matches.list);
+    return status;
 }
 
 static asj_status wide_candidates(const asj_match_run *run, wide_run *w)

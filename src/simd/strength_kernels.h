@@ -32,7 +32,7 @@ static inline vec peak(const int16_t *here, ptrdiff_t row, int32_t reach, vec be
 /* The same from one sector to the next, for the reach of 2 that all radii have with the default sector width: what neighbours
  * share stays in registers. */
 typedef struct peak_walk {
-    vec last, before, here, next; /* strengths of the sectors k - 1, k, k + 1; the larger of k - 2 and k - 1 */
+    vec last, before, here, next; /* strengths of sector k - 1, the larger of k - 2 and k - 1, of k, of k + 1 */
 } peak_walk;
 
 static inline peak_walk start_peaks(const int16_t *here, ptrdiff_t row, int32_t reach)

@@ -224,11 +224,14 @@ static void bad_features_are_refused(void **state)
     const outcome *result = run_cli("match", "-o", "never.csv", "--junctions1", "good.asj", "good.asjf", "second.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "good.asj changes nothing: good.asjf is a file of features");
-    static const char *const useless[][2] = {{"--mask1", "nowhere.png"}, {"--region2", "0,0,5,5"}, {"--epsilon", "5"}};
+    static const char *const useless[][3] = {{"--mask1", "nowhere.png", "--mask1 changes nothing: the junctions of that image"},
+                                             {"--region2", "0,0,5,5", "--region2 changes nothing: the junctions of that image"},
+                                             {"--epsilon", "5", "epsilon changes nothing: the junctions of both images"},
+                                             {"--detect-preset", "paper", "--detect-preset changes nothing"}};
     for (size_t i = 0; i < sizeof useless / sizeof useless[0]; i++) {
         result = run_cli("match", "-o", "never.csv", useless[i][0], useless[i][1], "good.asjf", "good.asjf", NULL);
         expect_code(result, 2);
-        expect_in(result, result->err, "changes nothing: good.asjf is a file of features");
+        expect_in(result, result->err, useless[i][2]);
     }
 }
 
