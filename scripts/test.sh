@@ -24,6 +24,7 @@ passed=0
 failed=0
 skipped=0
 broken= # names of the steps that failed
+bad_ends= # what the tests that failed have printed last
 
 # step NAME COMMAND...: goes on when the command fails, and remembers.
 step() {
@@ -42,6 +43,20 @@ results() {
     grep -cE "\"result\": \"($2)\"" "$1"
 }
 
+# what_failed RECORD: the tests that failed, and the ends of what they have printed.
+what_failed() {
+    python3 - "$1" << 'END'
+import json, sys
+
+for line in open(sys.argv[1], encoding="utf-8", errors="replace"):
+    test = json.loads(line)
+    if test["result"] not in ("OK", "EXPECTEDFAIL", "SKIP"):
+        print("%s: %s after %.0f s, exit code %s" % (test["name"], test["result"], test["duration"], test["returncode"]))
+        for stream in ("stdout", "stderr"):
+            print(*("    " + text for text in test.get(stream, "").splitlines()[-40:]), sep="\n")
+END
+}
+
 # run_tests FOLDER [ARGUMENT...]: meson's tests; adds what meson has recorded of them, a line of JSON each, to the sums.
 run_tests() {
     folder=$root/$1
@@ -57,6 +72,10 @@ run_tests() {
     passed=$((passed + good))
     skipped=$((skipped + left_out))
     failed=$((failed + all - good - left_out))
+    what_failed "$record" > "$logs/failed-tests.log"
+    [ ! -s "$logs/failed-tests.log" ] || bad_ends="$bad_ends
+In $folder/:
+$(cat "$logs/failed-tests.log")"
     # and the reason that the test has printed
     sed -n 's/^{"name": "\([^"]*\)".*"result": "SKIP".*/skipped: \1&/p' "$record" |
         sed 's/{"name".*SKIPPED: \([^"\\]*\).*/: \1/; s/{"name".*//'
@@ -198,5 +217,6 @@ fi
 say
 say "$(($(date +%s) - start_of_all)) s in all; logs are in out/log/ and build-test/meson-logs/"
 say "$passed passed, $failed failed, $skipped skipped"
+[ -z "$bad_ends" ] || say "$bad_ends" # once more: of a long output often only the end is kept
 [ -z "$broken" ] || fail "FAILED:$broken"
 say 'Everything passed.'
