@@ -124,6 +124,8 @@ static int take_plot(void *target, int id, const char *text)
 {
     static const char *const colors[] = {"nfa", "branch", "edge", NULL};
     cli_detect_arguments *arguments = target;
+    if (id != PLOT)
+        arguments->plot_option = plot_options[id - PLOT].name;
     switch (id) {
     case PLOT:
         arguments->plot = text;
@@ -167,7 +169,7 @@ static asj_status set_option(void *options, const char *key, const char *text, c
 static int check_plot(cli_detect_arguments *arguments)
 {
     if (!arguments->plot)
-        return CLI_SUCCESS;
+        return cli_plot_check_without("detect", arguments->plot_option);
     const char *word = arguments->plot;
     if (!arguments->out_dir || !cli_plot_available())
         return cli_plot_format_of_name("detect", word, &arguments->plot_format);
@@ -183,6 +185,8 @@ static int check(cli_detect_arguments *arguments)
         return cli_usage_error("detect", "which image?");
     if (arguments->output && arguments->out_dir)
         return cli_usage_error("detect", "--output and --out-dir exclude each other");
+    if (arguments->out_dir && !*arguments->out_dir)
+        return cli_usage_error("detect", "--out-dir: an empty path names no folder (. is this one)");
     if (arguments->image_count > 1 && !arguments->out_dir)
         return cli_usage_error("detect", "%zu images need --out-dir DIR for their results", arguments->image_count);
     for (size_t i = 0; i < arguments->image_count; i++)

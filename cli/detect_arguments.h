@@ -26,6 +26,7 @@ typedef struct cli_detect_arguments {
     const char *plot;      /* a file, or with out_dir a format; NULL = none */
     int32_t plot_format;   /* CLI_PLOT_... */
     cli_plot_style style;
+    const char *plot_option; /* the name of one that says how the plot looks; NULL = none was given */
     char **images;         /* inside argv */
     size_t image_count;
 } cli_detect_arguments;

@@ -163,6 +163,8 @@ static int take_plot(void *target, int id, const char *text)
     int32_t answer;
     static const char *const layouts[] = {"auto", "beside", "below", NULL}; /* in the order of CLI_LAYOUT_... */
     cli_match_arguments *arguments = target;
+    if (id != PLOT)
+        arguments->plot_option = plot_options[id - PLOT].name;
     switch (id) {
     case PLOT: arguments->plot = text; break;
     case PLOT_BACKGROUND: return cli_plot_take_background("match", text, &arguments->style.background);
@@ -269,6 +271,18 @@ static int check_detector(const cli_match_arguments *arguments)
     return CLI_SUCCESS;
 }
 
+/* Options that say how something looks which nobody has asked for. */
+static int check_results(cli_match_arguments *arguments)
+{
+    if (arguments->minimum_end >= 0 && !arguments->lines)
+        return cli_usage_error("match", "--line-ends changes nothing without --lines");
+    if (arguments->minimum_end < 0)
+        arguments->minimum_end = ASJ_END_INNER;
+    if (!arguments->plot)
+        return cli_plot_check_without("match", arguments->plot_option);
+    return cli_plot_format_of_name("match", arguments->plot, &arguments->plot_format);
+}
+
 /* Cameras without a geometry that uses them; match_cameras.c looks for the other way round. */
 static int check_geometry(const cli_match_arguments *arguments)
 {
@@ -298,8 +312,8 @@ static int check(cli_match_arguments *arguments, char **operands, int operand_co
         result = check_detector(arguments);
     if (result == CLI_SUCCESS)
         result = check_geometry(arguments);
-    if (result == CLI_SUCCESS && arguments->plot)
-        result = cli_plot_format_of_name("match", arguments->plot, &arguments->plot_format);
+    if (result == CLI_SUCCESS)
+        result = check_results(arguments);
     return result == CLI_SUCCESS ? check_files(arguments) : result;
 }
 
@@ -309,7 +323,7 @@ static void start(cli_match_arguments *arguments)
     cli_common_init(&arguments->common);
     arguments->detect_preset = arguments->match_preset = -1;
     arguments->preset = ASJ_PRESET_MATCH;
-    arguments->minimum_end = ASJ_END_INNER;
+    arguments->minimum_end = -1;
 }
 
 int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *arguments)

@@ -30,10 +30,11 @@ typedef struct cli_match_arguments {
     int32_t focal_from;       /* CLI_FOCAL_... */
     double focal;             /* px, CLI_FOCAL_GIVEN */
     int lines;
-    int32_t minimum_end;      /* ASJ_END_... */
+    int32_t minimum_end;      /* ASJ_END_...; -1 until all options are read = inner */
     const char *plot;         /* a file; NULL = none */
     int32_t plot_format;      /* CLI_PLOT_... */
     cli_plot_match_style style;
+    const char *plot_option;  /* the name of one that says how the plot looks; NULL = none was given */
     const char *images[2];
 } cli_match_arguments;
 

@@ -53,3 +53,8 @@ int cli_plot_take_scale(const char *command, const char *text, double *scale)
                                CLI_PLOT_MAX_SCALE);
     return CLI_SUCCESS;
 }
+
+int cli_plot_check_without(const char *command, const char *option)
+{
+    return option ? cli_usage_error(command, "--%s changes nothing without --plot", option) : CLI_SUCCESS;
+}

@@ -25,4 +25,7 @@ int cli_plot_format_of_name(const char *command, const char *name, int32_t *form
 int cli_plot_take_background(const char *command, const char *text, int32_t *background);
 int cli_plot_take_scale(const char *command, const char *text, double *scale);
 
+/* CLI_USAGE after saying that this option changes nothing without a plot; CLI_SUCCESS for NULL. */
+int cli_plot_check_without(const char *command, const char *option);
+
 #endif
