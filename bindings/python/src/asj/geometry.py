@@ -63,10 +63,10 @@ def fill(options: Any, model: str, cameras: Sequence[Camera | None], sizes: Sequ
     options.geometry.find_focal = int(find_focal)
     for place, camera, (width, height) in zip(options.geometry.cameras, cameras, sizes):
         if camera is not None:
-            place.fx, place.fy, place.cx, place.cy = _numbers(camera, width, height)
+            place.fx, place.fy, place.cx, place.cy = numbers(camera, width, height)
 
 
-def _numbers(camera: ArrayLike, width: int, height: int) -> tuple[float, float, float, float]:
+def numbers(camera: ArrayLike, width: int, height: int) -> tuple[float, float, float, float]:
     """Focal lengths and principal point of a matrix K, of (fx, fy, cx, cy), or of a focal length alone."""
     values = np.asarray(camera, np.float64)
     if values.shape == (3, 3):
