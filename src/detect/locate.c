@@ -4,7 +4,7 @@
  *
  * The same fits unmask what the isotropic test takes for junctions along single edges, where the sectors of a thick or bent edge
  * seem to open: after the fit the branches are parallel, or meet far away. A junction is rejected when
- *   - no two branches open by at least minimum_opening and at most pi minus that,
+ *   - no two branches open by at least minimum_opening (with some slack) and at most pi minus that,
  *   - the smallest singular direction of the lines is not determined (determinant of the weighted normal matrix), or
  *   - it moves farther than max_move, or somewhat more at sharp corners. */
 #include "locate.h"
@@ -34,8 +34,12 @@
 #define GUESS_TURN 8.0
 #define GUESS_MOVE 1.0
 
-#define PLAIN 50      /* deg: corners that open by this much are found with the default of max_move, 2.5 px, however turned */
-#define SHARP_MOVE 5.0 /* px: for 26 degrees with that default; max_move of preset match, which stays as it is */
+/* deg: a fit over a few px makes sharp corners up to so much sharper, since each side's band holds a little of the other. Lines
+ * over whole branches are asked for all of minimum_opening (validate.c). */
+#define FIT_TURN 4.0
+
+#define PLAIN 55      /* deg: corners that open by this much are found with the default of max_move, 2.5 px, however turned */
+#define SHARP_MOVE 6.5 /* px: the most, for 23 degrees with that default. Of twelve wedges of 26 degrees 5 finds 6, 6.5 finds 10 */
 
 static void get_lines(const asj_hypothesis *hypothesis, asj_rough_line *lines)
 {
@@ -141,10 +145,12 @@ static int have_opening(const asj_rough_line *lines, int32_t count, double least
  * joins what is too close: so the isotropic test sees a sharp corner farther inside than others. max_move is meant for openings of
  * PLAIN degrees and more; of sharper ones the apex may be where the sides are as far apart as there,
  * d tan(phi / 2) = max_move tan(PLAIN / 2), at most SHARP_MOVE. The best opening of any two lines counts;
- * tan(phi / 2) = sin phi / (1 + cos phi). */
+ * tan(phi / 2) = sin phi / (1 + cos phi). Where the strip does not judge what comes of it, max_move is all. */
 static double most_move(const asj_detect_options *options, const asj_rough_line *lines, int32_t count)
 {
     double widest = 0;
+    if (!options->strip_test)
+        return options->max_move;
     for (int32_t i = 0; i < count; i++)
         for (int32_t j = i + 1; j < count; j++) {
             const double sine = fabs(lines[i].ux * lines[j].uy - lines[i].uy * lines[j].ux);
@@ -153,6 +159,13 @@ static double most_move(const asj_detect_options *options, const asj_rough_line 
         }
     const double sharp = options->max_move * tan(0.5 * PLAIN * ASJ_DEGREE);
     return fmax(options->max_move, sharp < widest * SHARP_MOVE ? sharp / widest : SHARP_MOVE);
+}
+
+double asj_locate_most_move(const asj_detect_options *options, const asj_hypothesis *hypothesis)
+{
+    asj_rough_line lines[ASJ_MAX_BRANCHES];
+    get_lines(hypothesis, lines);
+    return most_move(options, lines, hypothesis->branch_count);
 }
 
 /* Whether the lines make a junction near its pixel, and where. */
@@ -208,6 +221,7 @@ void asj_locate_guess(const asj_context *context, const asj_frame *frame, const 
 void asj_locate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
     const asj_line_range fine = {fit_first(hypothesis), fit_end(hypothesis), {SECOND_WIDTH, FIT_WIDTH, 0}, 2};
+    const double least = fmax(options->minimum_opening - (options->strip_test ? FIT_TURN : 0), 0) * ASJ_DEGREE;
     asj_rough_line lines[ASJ_MAX_BRANCHES];
     if (options->refinement != ASJ_REFINE_LINE_FIT)
         return;
@@ -216,7 +230,7 @@ void asj_locate(const asj_context *context, const asj_frame *frame, const asj_de
     move(hypothesis, lines, hypothesis->x0 - hypothesis->x, hypothesis->y0 - hypothesis->y);
     fit_branches(context, frame, &fine, hypothesis);
     get_lines(hypothesis, lines);
-    if (!asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE) || !asj_locate_meet(hypothesis) ||
+    if (!asj_hypothesis_has_opening(hypothesis, least) || !asj_locate_meet(hypothesis) ||
         hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0) > most_move(options, lines, hypothesis->branch_count))
         hypothesis->branch_count = 0;
 }

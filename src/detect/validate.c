@@ -127,7 +127,8 @@ static int judge(const asj_context *context, const asj_frame *frame, const asj_d
 
 static int has_moved_far(const asj_detect_options *options, const asj_hypothesis *hypothesis)
 {
-    return hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0) > 2 * options->max_move;
+    const double moved = hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0);
+    return moved > options->max_move + asj_locate_most_move(options, hypothesis);
 }
 
 /* Where the branches that are left meet: one that was none should not say where the junction is. Not those that blur bends, since
@@ -147,8 +148,8 @@ static void meet_again(const asj_detect_options *options, asj_hypothesis *hypoth
         *hypothesis = before;
 }
 
-/* Lines over whole branches may move the junction as far again as those of the first fit (locate.c); what moves farther has drifted
- * to another edge. */
+/* Lines over whole branches may move the junction by max_move again after those of the first fit (locate.c); what moves farther has
+ * drifted to another edge. */
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];

@@ -137,7 +137,7 @@ static void test_shapes(void **state)
 static void test_sharp(void **state)
 {
     const fixture *f = *state;
-    for (int degrees = 36; degrees <= 48; degrees += 4)
+    for (int degrees = 28; degrees <= 48; degrees += 4)
         for (int n = 0; n < 6; n++) {
             const double turn = 1.05 * n + 0.1, opening = degrees * UNIT_PI / 180;
             const double x = 100.3 - 35 * cos(turn + opening / 2), y = 99.6 - 35 * sin(turn + opening / 2);
