@@ -15,6 +15,7 @@
 #include "edges.h"
 #include "strip.h"
 #include "core/angle.h"
+#include "core/threads.h"
 
 #include <math.h>
 #include <string.h>
@@ -28,6 +29,7 @@
 #define LEAST 3.0      /* px */
 #define LN_10 2.302585092994046
 #define CELL 32        /* px of the grid in which junctions on the way are looked for */
+#define LEAST_JUNCTIONS 32 /* for a thread: one takes about 1 us */
 
 typedef struct graph {
     asj_watch *watch;
@@ -143,9 +145,10 @@ static int32_t comes_back(const graph *g, const way *w, int32_t index, double *d
     for (int32_t i = 0; i < to->branch_count; i++) {
         const asj_hypothesis_branch *branch = &to->branches[i];
         const double turn = asj_angle_distance(branch->angle, back);
+        if (turn > least || is_joined(g, index, i) || !covers(w->along, branch, t))
+            continue;
         const double back_off = fabs(dy * cos(branch->angle) - dx * sin(branch->angle));
-        if (turn > least || is_joined(g, index, i) || back_off > off_tolerance(branch, t) || !covers(w->along, branch, t) ||
-            between(g, w->along, branch, t) > g->log_epsilon)
+        if (back_off > off_tolerance(branch, t) || between(g, w->along, branch, t) > g->log_epsilon)
             continue;
         least = turn;
         found = i;
@@ -206,12 +209,19 @@ static void start(graph *g, const asj_detect_options *options, int32_t width, in
         g->log_tests[o] = asj_strip_log_tests(width >> o > 0 ? width >> o : 1, height >> o > 0 ? height >> o : 1, octaves);
 }
 
+static void find_some(const void *data, const asj_part *part)
+{
+    const graph *g = data;
+    for (int64_t i = part->first; i < part->end && !asj_watch_stops(g->watch, part); i++)
+        for (int32_t b = 0; b < g->hypotheses[i].branch_count; b++)
+            g->nearest[i * ASJ_MAX_BRANCHES + b] = is_joined(g, (int32_t)i, b) ? -1 : find_nearest(g, (size_t)i, b);
+}
+
 static void find_all(graph *g, size_t count, int must_divide)
 {
+    const asj_context *context = g->watch->context;
     g->must_divide = must_divide;
-    for (size_t i = 0; i < count && !asj_watch_stops(g->watch, NULL); i++)
-        for (int32_t b = 0; b < g->hypotheses[i].branch_count; b++)
-            g->nearest[i * ASJ_MAX_BRANCHES + (size_t)b] = is_joined(g, (int32_t)i, b) ? -1 : find_nearest(g, i, b);
+    asj_parallel(context, asj_threads_for(context, (int64_t)count, LEAST_JUNCTIONS), (int64_t)count, 0, find_some, g);
 }
 
 /* Joins branches that are the nearest of each other. */

@@ -89,22 +89,40 @@ static asj_status guess_all(asj_detection_run *run, const asj_octave_known *know
     return status;
 }
 
-static asj_status drop_twins(asj_detection_run *run, const asj_octave_known *known)
+/* Guesses of what finer octaves have located become none. */
+static void reject_known(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    asj_hypothesis hypothesis;
+    for (int64_t i = part->first; i < part->end; i++) {
+        asj_guess_restore(&j->guesses[i], &hypothesis);
+        if (asj_octave_is_known(j->known, &hypothesis, ASJ_KNOWN_ROUGHLY))
+            j->guesses[i].branch_count = 0;
+    }
+}
+
+static void drop_known(asj_detection_run *run, const asj_octave_known *known)
+{
+    const int64_t count = (int64_t)run->guess_count;
+    const job j = {.run = run, .known = known, .guesses = run->guesses};
+    if (!known->finer)
+        return;
+    asj_parallel(run->context, asj_threads_for(run->context, count, LEAST_GUESSES), count, 0, reject_known, &j);
+    run->guess_count = 0;
+    for (int64_t i = 0; i < count; i++)
+        if (run->guesses[i].branch_count > 0)
+            run->guesses[run->guess_count++] = run->guesses[i];
+}
+
+static asj_status drop_twins(asj_detection_run *run)
 {
     const asj_frame *frame = run->frame;
     const size_t count = asj_close_grid_cells(run->guess_count, frame->width, frame->height);
     int32_t *cells = asj_allocate_list(&run->context->memory, count, sizeof *cells);
     if (!cells)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu cells", count);
-    const size_t left = asj_guess_drop_twins(run->guesses, run->guess_count, frame->width, frame->height, cells);
+    run->guess_count = asj_guess_drop_twins(run->guesses, run->guess_count, frame->width, frame->height, cells);
     asj_release(&run->context->memory, cells);
-    run->guess_count = 0;
-    for (size_t i = 0; i < left; i++) {
-        asj_hypothesis hypothesis;
-        asj_guess_restore(&run->guesses[i], &hypothesis);
-        if (!asj_octave_is_known(known, &hypothesis, ASJ_KNOWN_ROUGHLY))
-            run->guesses[run->guess_count++] = run->guesses[i];
-    }
     return ASJ_OK;
 }
 
@@ -152,7 +170,9 @@ asj_status asj_step_guess(asj_detection_run *run)
     if (status == ASJ_OK && dumps)
         status = dump_guesses(run, "guessed");
     if (status == ASJ_OK)
-        status = drop_twins(run, &known);
+        status = drop_twins(run);
+    if (status == ASJ_OK)
+        drop_known(run, &known);
     if (status == ASJ_OK && dumps)
         status = dump_guesses(run, "distinct");
     asj_release(&run->context->memory, known.grid.heads);

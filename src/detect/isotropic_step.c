@@ -17,13 +17,8 @@ static void count_candidates(const asj_detection_run *run, int32_t top, int32_t 
 {
     const int32_t blocks = run->frame->blocks;
     starts[0] = 0;
-    for (int32_t y = top; y < bottom; y++) {
-        size_t bits = 0;
-        for (int32_t b = 0; b < blocks; b++)
-            for (uint32_t mask = run->candidates[(ptrdiff_t)y * blocks + b]; mask; mask &= mask - 1)
-                bits++;
-        starts[y - top + 1] = starts[y - top] + bits;
-    }
+    for (int32_t y = top; y < bottom; y++)
+        starts[y - top + 1] = starts[y - top] + asj_candidates_count(run->candidates + (ptrdiff_t)y * blocks, (size_t)blocks);
 }
 
 static asj_status test_group(asj_detection_run *run, int32_t top, int32_t bottom, lists *l)

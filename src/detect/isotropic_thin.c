@@ -37,24 +37,46 @@ static int by_branches(const void *a, const void *b)
     return by_meaning(a, b);
 }
 
-/* Marks the disc around a junction in the bit map. */
-static void take(uint8_t *taken, int32_t width, int32_t height, int32_t x, int32_t y, double radius)
+/* Rows of a disc, from its middle one on: half of their pixels, without the middle one. */
+typedef struct disc {
+    double radius;
+    int32_t reach, half[ASJ_MAX_RADIUS + 1];
+} disc;
+
+static void set_disc(disc *d, double radius)
 {
-    const size_t row_bytes = ((size_t)width + 7) / 8;
-    const int32_t reach = (int32_t)radius, top = y > reach ? y - reach : 0, bottom = y + reach < height ? y + reach : height - 1;
-    for (int32_t row = top; row <= bottom; row++) {
+    if (d->radius == radius)
+        return;
+    d->radius = radius;
+    d->reach = radius < ASJ_MAX_RADIUS ? (int32_t)radius : ASJ_MAX_RADIUS;
+    for (int32_t row = 0; row <= d->reach; row++) {
         int32_t half = 0;
-        while ((half + 1) * (half + 1) + (row - y) * (row - y) <= radius * radius)
+        while ((half + 1) * (half + 1) + row * row <= radius * radius)
             half++;
-        const int32_t right = x + half < width ? x + half : width - 1;
-        for (int32_t column = x > half ? x - half : 0; column <= right; column++)
-            taken[(size_t)row * row_bytes + (size_t)(column / 8)] |= (uint8_t)(1 << column % 8);
+        d->half[row] = half;
     }
 }
 
-/* A junction's place in the list and its log_nfa as a float, turned into a whole number in the same order. */
+/* Marks the disc around a junction in the bit map, whose rows end with whole bytes: bits beyond the image mean nothing. */
+static void take(uint8_t *taken, int32_t width, int32_t height, int32_t x, int32_t y, const disc *d)
+{
+    const size_t row_bytes = ((size_t)width + 7) / 8;
+    const int32_t top = y > d->reach ? y - d->reach : 0, bottom = y + d->reach < height ? y + d->reach : height - 1;
+    for (int32_t row = top; row <= bottom; row++) {
+        const int32_t half = d->half[row < y ? y - row : row - y];
+        const int32_t left = x > half ? x - half : 0, right = x + half < width ? x + half : width - 1;
+        uint8_t *bytes = taken + (size_t)row * row_bytes;
+        for (int32_t byte = left / 8; byte <= right / 8; byte++) {
+            const int32_t from = byte == left / 8 ? left % 8 : 0, to = byte == right / 8 ? right % 8 : 7;
+            bytes[byte] |= (uint8_t)((2u << to) - (1u << from));
+        }
+    }
+}
+
+/* A junction's place in the list and its log_nfa as a float, turned into a whole number in the same order; and its pixel. */
 typedef struct rank {
     uint32_t key, index;
+    uint16_t x, y;
 } rank;
 
 static uint32_t key_of(double log_nfa)
@@ -109,21 +131,23 @@ size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const
     rank *ranks = scratch, *spare = ranks + count;
     uint8_t *stays = (uint8_t *)(void *)(spare + count), *taken = stays + count;
     const double apart = options->isotropic_apart;
+    disc around = {.radius = -1};
     size_t kept = 0;
     if (count == 0)
         return 0;
     if (options->more_branches_win)
         qsort(junctions, count, sizeof *junctions, by_branches);
     for (size_t i = 0; i < count; i++)
-        ranks[i] = (rank){key_of(junctions[i].log_nfa), (uint32_t)i};
+        ranks[i] = (rank){key_of(junctions[i].log_nfa), (uint32_t)i, junctions[i].x, junctions[i].y};
     const rank *order = options->more_branches_win ? ranks : sort_ranks(junctions, ranks, spare, count);
     memset(stays, 0, count + row_bytes * (size_t)height);
     for (size_t i = 0; i < count; i++) {
-        const asj_isotropic_junction *junction = &junctions[order[i].index];
-        if (taken[junction->y * row_bytes + junction->x / 8] >> junction->x % 8 & 1)
+        const rank *r = &order[i];
+        if (taken[r->y * row_bytes + r->x / 8] >> r->x % 8 & 1)
             continue;
-        take(taken, width, height, junction->x, junction->y, apart > 0 ? apart : 0.5 * junction->radius);
-        stays[order[i].index] = 1;
+        set_disc(&around, apart > 0 ? apart : 0.5 * junctions[r->index].radius);
+        take(taken, width, height, r->x, r->y, &around);
+        stays[r->index] = 1;
     }
     for (size_t i = 0; i < count; i++)
         if (stays[i])

@@ -118,18 +118,35 @@ static asj_status locate_all(asj_detection_run *run)
     return status;
 }
 
+typedef struct known_job {
+    const asj_detection_run *run;
+    const asj_octave_known *known;
+} known_job;
+
+static void reject_known(const void *data, const asj_part *part)
+{
+    const known_job *j = data;
+    for (int64_t i = part->first; i < part->end; i++) {
+        asj_hypothesis *hypothesis = &j->run->hypotheses[i];
+        asj_edge_widths(j->run->frame, hypothesis);
+        if (asj_octave_is_known(j->known, hypothesis, ASJ_KNOWN_LINES))
+            hypothesis->branch_count = 0;
+    }
+}
+
 static asj_status drop_known(asj_detection_run *run)
 {
     asj_octave_known known;
     const asj_status status = asj_detection_run_known(run, &known);
+    const int64_t count = (int64_t)run->hypothesis_count;
     size_t kept = 0;
     if (status != ASJ_OK || !known.finer)
         return status;
-    for (size_t i = 0; i < run->hypothesis_count; i++) {
-        asj_edge_widths(run->frame, &run->hypotheses[i]);
-        if (!asj_octave_is_known(&known, &run->hypotheses[i], ASJ_KNOWN_LINES))
+    const known_job j = {run, &known};
+    asj_parallel(run->context, asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS), count, 0, reject_known, &j);
+    for (size_t i = 0; i < run->hypothesis_count; i++)
+        if (run->hypotheses[i].branch_count > 0)
             run->hypotheses[kept++] = run->hypotheses[i];
-    }
     run->hypothesis_count = kept;
     asj_release(&run->context->memory, known.grid.heads);
     return ASJ_OK;

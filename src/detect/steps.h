@@ -10,6 +10,7 @@ asj_status asj_step_load(asj_detection_run *run);       /* gradient_step.c: imag
 asj_status asj_step_halve(asj_detection_run *run);      /* gradient_step.c: -> grey plane of the next octave */
 asj_status asj_step_gradient(asj_detection_run *run);   /* step 1 (gradient_step.c): -> gradient planes */
 asj_status asj_step_candidates(asj_detection_run *run); /* step 2 (candidates_step.c): planes -> candidates */
+size_t asj_candidates_count(const uint16_t *masks, size_t count); /* bits in a list of masks */
 asj_status asj_step_isotropic(asj_detection_run *run);  /* step 3 (isotropic_step.c): candidates -> isotropic junctions */
 asj_status asj_step_guess(asj_detection_run *run);      /* guess_step.c: isotropic junctions -> guesses */
 asj_status asj_step_locate(asj_detection_run *run);     /* locate_step.c: guesses -> hypotheses */
