@@ -146,14 +146,13 @@ static void test_cancel(void **state)
     asj_parallel(f->context, 3, 2000, 1, wait_each, &data); /* over a second if nobody stops it */
     assert_int_equal(asj_watch_end(&s.watch), ASJ_ERROR_CANCELLED);
     assert_int_equal(asked, 1);
-    assert_in_range(s.begun, 2, 1000);
+    assert_in_range(s.begun, 1, 1000); /* 1 where no other thread was given the processor in time */
     f->context->options.progress = NULL;
 }
 
-/* None of them lasts until the caller is to be asked, all together do. */
-static void test_cancel_between(void **state)
+/* How many loops of 10 ms, one after the other, are done before the caller is asked and stops them; 100 = never. */
+static int loops_until_stopped(unit_fixture *f)
 {
-    unit_fixture *f = *state;
     stopping s = {.begun = 0}, *data = &s;
     int asked = 0, loops = 0;
     f->context->options.progress = stop_at_once;
@@ -163,9 +162,18 @@ static void test_cancel_between(void **state)
         asj_watch_start(&s.watch, f->context, ASJ_STAGE_SCAN);
         asj_parallel(f->context, 1, 5, 1, wait_each, &data);
     } while (asj_watch_end(&s.watch) == ASJ_OK && ++loops < 100);
-    assert_in_range(loops, 1, 99);
-    assert_int_equal(asked, 1);
     f->context->options.progress = NULL;
+    return asked == 1 ? loops : 100;
+}
+
+/* None of them lasts until the caller is to be asked, all together do. On a machine that has other work one may: then once more. */
+static void test_cancel_between(void **state)
+{
+    unit_fixture *f = *state;
+    int loops = 0;
+    for (int attempt = 0; attempt < 100 && loops == 0; attempt++)
+        loops = loops_until_stopped(f);
+    assert_in_range(loops, 1, 99);
 }
 
 /* ---- what only a build with threads has ---- */
