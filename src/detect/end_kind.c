@@ -122,7 +122,7 @@ void asj_ends_by_contrast(const asj_frame *frame, const asj_detect_options *opti
 {
     for (int32_t i = 0; i < hypothesis->branch_count && options->end_contrast > 0; i++) {
         asj_hypothesis_branch *branch = &hypothesis->branches[i];
-        const asj_end_profile profile = asj_end_profile_of(frame, hypothesis, branch, options->end_contrast);
+        const asj_end_profile profile = asj_end_profile_of(frame, hypothesis, branch, options->end_contrast, 1);
         branch->end_variance = END_SD * END_SD;
         if (profile.end <= 0)
             continue;
@@ -136,7 +136,7 @@ static double scan_variance(const asj_frame *frame, const asj_hypothesis *hypoth
 {
     if (branch->end != ASJ_BRANCH_END_FADED && branch->end != ASJ_BRANCH_END_BORDER)
         return END_SD * END_SD;
-    const asj_end_profile profile = asj_end_profile_of(frame, hypothesis, branch, SHARE);
+    const asj_end_profile profile = asj_end_profile_of(frame, hypothesis, branch, SHARE, 0);
     const double off = profile.end - branch->length;
     return profile.end > 0 ? variance_of(&profile) + off * off : END_SD * END_SD;
 }

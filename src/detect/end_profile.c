@@ -17,8 +17,14 @@
  *      where what lies beside it changes.
  *   2. Over the last AROUND px of that, with f = 1/2 and c that of the last LAST px: where exactly it breaks off. Of what fades
  *      slowly nothing has broken off there, and the end stays.
+ *   3. What the scan has followed beyond may be an edge all the same, of less than that share: a tile nearly as grey as the next.
+ *      Where it is faint and uneven its end is a matter of chance. But the edge goes on when the rest is at least STEADY_LEAST px
+ *      long, its own contrast, as above, at least STEADY grey levels, and up to the change point with f = 1/2 as strong all along:
+ *      at nine tenths of the places at least EVEN of what it is at the best tenth.
  * Chosen on 24 photographs and their copies (zoom, shift, blur, noise, compression, gain): BLOCK to LAST are one plateau, but
- * LAST >= 16 ends branches before last pieces as short as that. */
+ * LAST >= 16 ends branches before last pieces as short as that. With step 3 random tiles have .899 of their lengths right and
+ * without it .854; a share of .05 or less would do the same, but 2 in 100 junctions of the photographs would not repeat any more,
+ * of which step 3 costs none. */
 #include "end_profile.h"
 
 #include <math.h>
@@ -33,6 +39,10 @@
 #define AROUND 16   /* px */
 #define LAST 14     /* px */
 #define MOST_FADING 100 /* px to either side */
+#define STEADY 4.0        /* grey levels */
+#define STEADY_LEAST 12   /* px */
+#define STEADY_MOST 512   /* px: looked at, at most */
+#define EVEN 0.6
 #define SMOOTH 2    /* px to either side */
 #define FIRST 3     /* px: what is nearer to the junction has other edges in it */
 #define NOTHING 1.0 /* square of 1/ASJ_GRAY_ONE grey levels */
@@ -253,6 +263,39 @@ static int32_t break_before(profile *p, int32_t end, double *own)
     return *own > 0 ? change_point(p, *own, 0.5, end - AROUND > FIRST ? end - AROUND : FIRST, end) : -1;
 }
 
+/* The contrast from t = first to last in rising order, as far as there are rows. Returns how many. */
+static int32_t sorted_contrast(profile *p, int32_t first, int32_t last, double values[STEADY_MOST])
+{
+    int32_t count = 0;
+    for (int32_t t = first; t <= last && count < STEADY_MOST; t++) {
+        const double a = contrast_at(p, t);
+        if (a < 0)
+            break;
+        values[count++] = a;
+    }
+    if (count > 1)
+        qsort(values, (size_t)count, sizeof *values, rising);
+    return count;
+}
+
+/* Where a weaker edge ends that goes on behind t = end and is as strong all along; `end` when there is none. *own: the contrast
+ * there. */
+static int32_t end_of_steady(profile *p, int32_t end, int32_t length, double *own)
+{
+    const int32_t first = end + 2 * SMOOTH; /* samples of what ends are no part of it */
+    double values[STEADY_MOST];
+    int32_t count = sorted_contrast(p, first, length - SMOOTH - 1, values);
+    if (count < STEADY_LEAST || values[(3 * count) / 4] < STEADY * ASJ_GRAY_ONE)
+        return end;
+    const double weaker = values[(3 * count) / 4];
+    const int32_t last = change_point(p, weaker, 0.5, first, length + BEYOND);
+    count = sorted_contrast(p, first, last - SMOOTH, values);
+    if (count < STEADY_LEAST || values[count / 10] < EVEN * values[count - 1 - count / 10])
+        return end;
+    *own = weaker;
+    return last;
+}
+
 /* Reads the part that says what the edge looks like; 0 when it has no contrast. */
 static int start(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, int32_t length,
                  profile *p)
@@ -274,7 +317,7 @@ static int start(const asj_frame *frame, const asj_hypothesis *hypothesis, const
 }
 
 asj_end_profile asj_end_profile_of(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch,
-                                   double share)
+                                   double share, int steady)
 {
     asj_end_profile result = {0, 0, 0};
     const int32_t length = (int32_t)lrint(branch->length);
@@ -286,9 +329,11 @@ asj_end_profile asj_end_profile_of(const asj_frame *frame, const asj_hypothesis 
         return result;
     const double noise = noise_of(&p, length);
     const int32_t reach = change_point(&p, own, share, FIRST, length + BEYOND);
-    const int32_t end = reach < 0 ? -1 : break_before(&p, reach, &own);
+    int32_t end = reach < 0 ? -1 : break_before(&p, reach, &own);
     if (end < 0)
         return result;
+    if (steady && length - end >= STEADY_LEAST)
+        end = end_of_steady(&p, end, length, &own);
     result.end = end + 0.5;
     result.noise = noise / own;
     result.fading = fading_around(&p, end, 0.75 * own, 0.25 * own);

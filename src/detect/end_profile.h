@@ -12,8 +12,8 @@ typedef struct asj_end_profile {
     double noise;  /* of the contrast at one pixel along the edge, over the contrast at its end: standard deviation */
 } asj_end_profile;
 
-/* `share` of the branch's own contrast, 0 .. 1. */
+/* `share` of the branch's own contrast, 0 .. 1. `steady`: an edge with less than that goes on where it is as strong all along. */
 asj_end_profile asj_end_profile_of(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch,
-                                   double share);
+                                   double share, int steady);
 
 #endif

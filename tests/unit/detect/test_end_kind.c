@@ -133,7 +133,7 @@ static asj_hypothesis branch_from(double x, double length)
 }
 
 /* An edge of contrast `first` for 60 px, then of `then` for `part` px, then none: where its end is found by `share`. */
-static double end_after(const unit_fixture *f, double first, double then, double part, double scanned, double share)
+static double end_of(const unit_fixture *f, double first, double then, double part, double scanned, double share, int steady)
 {
     synth_scene scene;
     asj_frame frame;
@@ -143,9 +143,14 @@ static double end_after(const unit_fixture *f, double first, double then, double
     if (part > 0)
         synth_add_rectangle(&scene, (synth_point){100, 90}, part, 80, 0, 100 + then);
     unit_frame_of(f->context, &scene, 0.8, 1, &f->options, &frame);
-    const double end = asj_end_profile_of(&frame, &h, &h.branches[0], share).end;
+    const double end = asj_end_profile_of(&frame, &h, &h.branches[0], share, steady).end;
     asj_frame_free(&f->context->memory, &frame);
     return end;
+}
+
+static double end_after(const unit_fixture *f, double first, double then, double part, double scanned, double share)
+{
+    return end_of(f, first, then, part, scanned, share, 0);
 }
 
 /* The edge ends at the corner wherever the scan has left it, within reach; it goes on as a weaker one that has the share, also as a
@@ -163,6 +168,19 @@ static void test_break(void **state)
         unit_near("too weak", part, 0, end_after(f, 90, 6, part, 60 + part, 0.15), 60, 1.5);
         unit_near("too weak for half", part, 0, end_after(f, 90, 30, part, 60 + part, 0.5), 60, 1.5);
     }
+}
+
+/* A weaker edge that is as strong all along is followed to its own end; not one too faint or too short to tell. */
+static void test_steady(void **state)
+{
+    const unit_fixture *f = *state;
+    for (double part = 24; part <= 60; part += 4) {
+        for (double scanned = 56 + part; scanned <= 64 + part; scanned += 4)
+            unit_near("goes on", part, scanned, end_of(f, 90, 7, part, scanned, 0.15, 1), 60 + part, 2);
+        unit_near("too faint", part, 0, end_of(f, 90, 2, part, 60 + part, 0.15, 1), 60, 1.5);
+    }
+    unit_near("too short", 0, 0, end_of(f, 90, 7, 10, 70, 0.15, 1), 60, 1.5);
+    unit_near("nothing behind", 0, 0, end_of(f, 60, 0, 0, 90, 0.15, 1), 60, 1.5);
 }
 
 /* A bright corner whose upper side keeps its contrast for `plain` px and loses it over `fading` px. */
@@ -225,7 +243,7 @@ static void test_profile(void **state)
     add_fading(&scene, 60, 60, 80);
     unit_frame_of(f->context, &scene, 0.8, 1, &f->options, &frame);
     for (double share = 0.25; share < 0.8; share += 0.25) {
-        const asj_end_profile p = asj_end_profile_of(&frame, &h, &h.branches[0], share);
+        const asj_end_profile p = asj_end_profile_of(&frame, &h, &h.branches[0], share, 0);
         unit_near("share", share, 0, p.end, 60 + 80 * (1 - share), 3);
         const double left = share + 11 / 80.0; /* the contrast at the end: the upper quartile of that of the last 14 px */
         unit_near("fading", share, 0, p.fading, 80 * (fmax(0.75 * left, share) - 0.25 * left), 5);
@@ -233,17 +251,18 @@ static void test_profile(void **state)
     asj_frame_free(&f->context->memory, &frame);
     synth_scene_init(&scene, SIZE, SIZE, 100);
     unit_frame_of(f->context, &scene, 0, 0, &f->options, &frame);
-    assert_true(asj_end_profile_of(&frame, &h, &h.branches[0], 0.5).end == 0);
+    assert_true(asj_end_profile_of(&frame, &h, &h.branches[0], 0.5, 0).end == 0);
     h.x = -5; /* outside */
-    assert_true(asj_end_profile_of(&frame, &h, &h.branches[0], 0.5).end == 0);
+    assert_true(asj_end_profile_of(&frame, &h, &h.branches[0], 0.5, 0).end == 0);
     asj_frame_free(&f->context->memory, &frame);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_kinds),         cmocka_unit_test(test_faded),   cmocka_unit_test(test_border),
-        cmocka_unit_test(test_break),         cmocka_unit_test(test_half_contrast), cmocka_unit_test(test_profile),
+        cmocka_unit_test(test_kinds), cmocka_unit_test(test_faded),         cmocka_unit_test(test_border),
+        cmocka_unit_test(test_break), cmocka_unit_test(test_steady),        cmocka_unit_test(test_half_contrast),
+        cmocka_unit_test(test_profile),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }

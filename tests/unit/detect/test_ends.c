@@ -84,8 +84,38 @@ static void test_off(void **state)
     unit_near("variance", 0, 0, hypotheses[0].branches[0].end_variance, 0.05, 1e-12);
 }
 
+/* Where the end comes to after the branch was snapped to a corner 6 px behind it, whose branches these are. */
+static double snapped(double reach, double back, double other, double log_nfa)
+{
+    asj_hypothesis hypotheses[2];
+    const asj_hypothesis *order[2];
+    memset(hypotheses, 0, sizeof hypotheses);
+    hypotheses[0].branch_count = 1;
+    hypotheses[0].branches[0].length = 26;
+    hypotheses[1].x = 20;
+    hypotheses[1].branch_count = 2;
+    hypotheses[1].branches[0].angle = back;
+    hypotheses[1].branches[1].angle = other;
+    hypotheses[1].branches[0].log_nfa = -400;
+    hypotheses[1].branches[1].log_nfa = log_nfa;
+    asj_ends_snap(hypotheses, 2, reach, order, NULL);
+    return hypotheses[0].branches[0].length;
+}
+
+/* A corner beyond doubt has a wider reach, if the branch comes back from it and none goes on. */
+static void test_sure(void **state)
+{
+    (void)state;
+    assert_true(snapped(4, UNIT_PI, 0.4, -300) == 20);
+    assert_true(snapped(4, UNIT_PI, 0.2, -300) == 26); /* goes on */
+    assert_true(snapped(4, 2.5, 0.4, -300) == 26);     /* does not come back */
+    assert_true(snapped(4, UNIT_PI, 0.4, -100) == 26); /* not sure */
+    assert_true(snapped(0, UNIT_PI, 0.4, -300) == 26); /* off */
+    assert_true(snapped(8, UNIT_PI, 0.2, -100) == 20);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_random), cmocka_unit_test(test_off)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_random), cmocka_unit_test(test_off), cmocka_unit_test(test_sure)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
