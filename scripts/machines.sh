@@ -27,7 +27,7 @@ cc -std=c99 -O2 -ffp-contract=off -Iinclude -Isrc src/detect/nfa_store.c src/det
     -o "$work/nfa-store" -lm && "$work/nfa-store" > "$work/nfa_stored.new" || exit 1
 cmp -s "$work/nfa_stored.new" "$work/nfa_stored.c" || mv "$work/nfa_stored.new" "$work/nfa_stored.c"
 detect=$(find "$root/src/detect" -name '*.c' ! -name 'nfa_store.c' ! -name 'nfa_fill_*.c' ! -name 'nfa_gauss.c')
-core=$(ls "$root"/src/*.c "$root"/src/core/*.c "$root"/src/geometry/*.c "$root"/src/match/*.c)
+core=$(ls "$root"/src/*.c "$root"/src/core/*.c "$root"/src/segments/*.c "$root"/src/geometry/*.c "$root"/src/match/*.c)
 sources="$detect $core $work/nfa_stored.c $root/tests/machines/machine.c"
 
 options="-std=c99 -O2 -ffp-contract=off -Wno-unknown-pragmas -I$root/include -I$root/src -I$root/src/detect"

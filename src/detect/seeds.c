@@ -141,7 +141,7 @@ asj_status asj_seeds_mark(asj_context *context, const asj_frame *frame, const as
     asj_line_segment *segments;
     size_t count;
     memset(masks, 0, (size_t)frame->blocks * (size_t)frame->height * sizeof *masks);
-    asj_status status = asj_line_segments_find(context, frame, options->segment_epsilon, &segments, &count);
+    asj_status status = asj_line_segments_find(context, frame, ASJ_STAGE_CANDIDATES, options->segment_epsilon, &segments, &count);
     if (status == ASJ_OK)
         mark_pairs(&m, segments, count, options->seed_gap);
     asj_release(&context->memory, segments);

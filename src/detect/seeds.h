@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_SEEDS_H
 #define ASJ_SRC_SEEDS_H
 
-#include "line_segments.h"
+#include "segments/line_segments.h"
 
 /* Fills `masks`, one bit for each pixel of the frame: run b of row y at [y * frame->blocks + b]. A pixel is a candidate when one of
  * the image's line segments, or two of them, put a seed within options->seed_radius of it (seeds.c). */

@@ -81,17 +81,11 @@ static int32_t set_up(const asj_pairs *set, const asj_model *model, const double
     return 1;
 }
 
-/* The prior of rotations pulls towards the nearest of those that are likely. */
+/* The prior of rotations pulls towards the likeliest of them. */
 static void add_prior(const asj_pairs *set, const asj_model *model, equations *e)
 {
-    double information, w[3];
-    if (model->kind != ASJ_GEOMETRY_ESSENTIAL || asj_nearest_rotation(set, model->rotation, w) < 0)
-        return;
-    asj_rotation_prior(set, model->rotation, &information);
-    for (int32_t k = 0; k < 3; k++) {
-        e->normal[k * (model->parameters + 1)] += information;
-        e->right[k] += information * w[k];
-    }
+    if (model->kind == ASJ_GEOMETRY_ESSENTIAL)
+        asj_add_rotation_prior(set, model->rotation, model->parameters, e->normal, e->right);
 }
 
 void asj_information(const asj_pairs *set, const asj_model *model, const double *probability, double *information)

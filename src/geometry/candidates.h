@@ -15,7 +15,12 @@ typedef struct asj_pair {
     float colour;            /* how well colours agree: estimate.h */
 } asj_pair;
 
-#define ASJ_ROTATIONS 24
+/* A rotation that the images' directions make likely: manhattan.c. */
+typedef struct asj_likely_rotation {
+    double matrix[9];
+    double precision[9]; /* rad^-2: inverse covariance of w with exp([w]x) matrix the true one */
+    double log_top;      /* of its density at its middle over the flat one */
+} asj_likely_rotation;
 
 /* Candidates, the likeliest first, and what is known beforehand. */
 typedef struct asj_pairs {
@@ -30,8 +35,8 @@ typedef struct asj_pairs {
     double scale_sd;         /* of half the log of a ratio of squares */
     double spread;           /* px: wrong partners lie anywhere within this distance from an epipolar line */
     double area;             /* px^2: .. or anywhere in the image */
-    double rotations[ASJ_ROTATIONS][9]; /* manhattan.c */
-    int32_t rotation_count;  /* 0 or ASJ_ROTATIONS */
+    asj_likely_rotation *rotations;
+    int32_t rotation_count;
     int32_t has_colours;
     double middle[2][2];     /* px: of image 1 and image 2 */
     float *at;               /* near.c: all x1, all y1, x2, y2, from the middles */

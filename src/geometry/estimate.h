@@ -3,13 +3,20 @@
 #ifndef ASJ_SRC_GEOMETRY_ESTIMATE_H
 #define ASJ_SRC_GEOMETRY_ESTIMATE_H
 
+#include "directions.h"
+
 #include <asj/geometry.h>
 
-/* asj_geometry_estimate(), and what colours say of geometries that contradict each other (colour_vote.c). colours: of each
- * candidate, how well they agree, as a logarithm, 0 where nothing is known; their priors have it already. NULL = images without
- * colours. */
-asj_status asj_estimate_with_colours(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
-                                     const double *colours, const asj_geometry_options *options, double *probabilities,
-                                     asj_geometry *result);
+/* What images tell beside their candidates. */
+typedef struct asj_geometry_hints {
+    const double *colours;             /* of each candidate, how well they agree, as a logarithm, 0 where nothing is known; their
+                                        * priors have it already (colour_vote.c). NULL = images without colours */
+    asj_directions_list directions[2]; /* of each image's edges, count 0 = none; options->directions are taken before them */
+} asj_geometry_hints;
+
+/* asj_geometry_estimate() with that; hints may be NULL. */
+asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
+                                   const asj_geometry_hints *hints, const asj_geometry_options *options, double *probabilities,
+                                   asj_geometry *result);
 
 #endif

@@ -135,7 +135,6 @@ double asj_score_apart(const asj_pairs *set, const asj_two_view *view, asj_adjus
 double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch)
 {
     double information[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], none[ASJ_MODEL_PARAMETERS] = {0}, log_determinant, volume = 0;
-    double pull;
     const int32_t n = model->parameters;
     asj_probabilities(set, &model->view, 1, &scratch->score, scratch->probability);
     asj_information(set, model, scratch->probability, information);
@@ -144,7 +143,7 @@ double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust
         volume += asj_log_volume(model, p);
     }
     if (model->kind == ASJ_GEOMETRY_ESSENTIAL)
-        volume += asj_rotation_prior(set, model->rotation, &pull);
+        volume += asj_rotation_prior(set, model->rotation);
     if (!asj_cholesky_solve(information, n, none, &log_determinant))
         return -HUGE_VAL;
     return asj_score_apart(set, &model->view, scratch) + volume - 0.5 * log_determinant;

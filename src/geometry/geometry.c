@@ -122,12 +122,12 @@ static asj_status search_rivals(asj_estimation *e)
 asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
                                  const asj_geometry_options *options, double *probabilities, asj_geometry *result)
 {
-    return asj_estimate_with_colours(context, candidates, count, NULL, options, probabilities, result);
+    return asj_estimate_with_hints(context, candidates, count, NULL, options, probabilities, result);
 }
 
-asj_status asj_estimate_with_colours(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
-                                     const double *colours, const asj_geometry_options *options, double *probabilities,
-                                     asj_geometry *result)
+asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
+                                   const asj_geometry_hints *hints, const asj_geometry_options *options, double *probabilities,
+                                   asj_geometry *result)
 {
     if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
@@ -146,7 +146,7 @@ asj_status asj_estimate_with_colours(asj_context *context, const asj_geometry_ca
     e->context = context;
     e->options = options;
     e->focal_at = -1;
-    status = asj_pairs_create(context, candidates, count, colours, options, &e->set);
+    status = asj_pairs_create(context, candidates, count, hints, options, &e->set);
     e->set.watch = &watch;
     for (size_t k = 0; k < count && probabilities; k++)
         probabilities[k] = 0;

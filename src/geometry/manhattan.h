@@ -3,16 +3,23 @@
 #ifndef ASJ_SRC_GEOMETRY_MANHATTAN_H
 #define ASJ_SRC_GEOMETRY_MANHATTAN_H
 
+#include "directions.h"
 #include "likelihood.h"
 
-/* Fills set->rotations from three directions at right angles of each image (rows); none when one of them is zero. */
-void asj_manhattan_rotations(const double directions[2][9], asj_pairs *set);
+/* Makes set->rotations, none when one image has no directions. 0: no memory. */
+int32_t asj_manhattan_rotations(asj_memory *memory, const asj_directions_list directions[2], asj_pairs *set);
 
-/* Which of set->rotations is nearest, and the rotation w with exp([w]x) R = it; -1 when none is near enough to say anything. */
+/* Directions that a caller gives (rows), as exact as those of images are; none when they are zero. */
+void asj_directions_given(const double directions[9], asj_directions_list *list);
+
+/* Which of set->rotations is the likeliest at R, and the rotation w with exp([w]x) R = it; -1 when none is near enough to say
+ * anything. */
 int32_t asj_nearest_rotation(const asj_pairs *set, const double rotation[9], double w[3]);
 
-/* Log of the density of rotations at R over the flat one; *information: what it adds to that of each of the three angles. 0 and 0
- * without rotations. */
-double asj_rotation_prior(const asj_pairs *set, const double rotation[9], double *information);
+/* Log of the density of rotations at R over the flat one; 0 without rotations. */
+double asj_rotation_prior(const asj_pairs *set, const double rotation[9]);
+
+/* The pull of the likeliest one: adds to the normal equations of the turn w (rows of n parameters). */
+void asj_add_rotation_prior(const asj_pairs *set, const double rotation[9], int32_t n, double *normal, double *right);
 
 #endif

@@ -100,9 +100,22 @@ static void set_scales(const asj_geometry_options *options, asj_pairs *set)
     set->area = sqrt(w1 * h1) * sqrt(w2 * h2);
 }
 
-asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *candidates, size_t count, const double *colours,
-                            const asj_geometry_options *options, asj_pairs *set)
+/* The caller's directions, or else the images'. */
+static asj_status set_rotations(asj_context *context, const asj_geometry_options *options, const asj_geometry_hints *hints,
+                                asj_pairs *set)
 {
+    asj_directions_list given[2];
+    for (int32_t v = 0; v < 2; v++)
+        asj_directions_given(options->directions[v], &given[v]);
+    const int32_t from_caller = given[0].count > 0 || given[1].count > 0 || !hints;
+    return asj_manhattan_rotations(&context->memory, from_caller ? given : hints->directions, set)
+               ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the rotations of the geometry");
+}
+
+asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
+                            const asj_geometry_hints *hints, const asj_geometry_options *options, asj_pairs *set)
+{
+    const double *colours = hints ? hints->colours : NULL;
     memset(set, 0, sizeof *set);
     if (count > MOST_COUNT)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%zu candidates are more than %d", count, MOST_COUNT);
@@ -125,7 +138,8 @@ asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *
         set->count--;
     set->has_colours = colours != NULL;
     set_scales(options, set);
-    asj_manhattan_rotations(options->directions, set);
+    if (set_rotations(context, options, hints, set) != ASJ_OK)
+        return ASJ_ERROR_MEMORY;
     for (int32_t v = 0; v < 2; v++) {
         const asj_status status = number_places(context, set, v);
         if (status != ASJ_OK)
@@ -140,6 +154,7 @@ void asj_pairs_free(asj_memory *memory, asj_pairs *set)
 {
     asj_release(memory, set->list);
     asj_release(memory, set->at);
+    asj_release(memory, set->rotations);
     for (int32_t v = 0; v < 2; v++) {
         asj_release(memory, set->prior[v]);
         asj_release(memory, set->log_rest[v]);

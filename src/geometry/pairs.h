@@ -3,15 +3,14 @@
 #define ASJ_SRC_GEOMETRY_PAIRS_H
 
 #include "core/context.h"
+#include "estimate.h"
 #include "likelihood.h"
 
-#include <asj/geometry.h>
-
 /* Checks the candidates and brings them into order, the likeliest ASJ_MOST_PAIRS: places from 0 on, priors of a place at most 0.9
- * in sum. colours: estimate.h; may be NULL. set is to be freed, whatever is returned. */
+ * in sum. hints may be NULL. set is to be freed, whatever is returned. */
 #define ASJ_MOST_PAIRS 3000
-asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *candidates, size_t count, const double *colours,
-                            const asj_geometry_options *options, asj_pairs *set);
+asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
+                            const asj_geometry_hints *hints, const asj_geometry_options *options, asj_pairs *set);
 void asj_pairs_free(asj_memory *memory, asj_pairs *set);
 
 #endif

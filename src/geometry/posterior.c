@@ -165,8 +165,7 @@ static int32_t move(const asj_model *model, const cloud *c, const double at[MOTI
 
 static double log_target(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch)
 {
-    double information;
-    return asj_score_apart(set, &model->view, scratch) + asj_rotation_prior(set, model->rotation, &information);
+    return asj_score_apart(set, &model->view, scratch) + asj_rotation_prior(set, model->rotation);
 }
 
 /* What a loop over draws works on. */

@@ -8,7 +8,6 @@
  * again, and the best of that becomes what the candidates allow around it (posterior.c). */
 #include "rivals.h"
 #include "evidence.h"
-#include "manhattan.h"
 #include "motions.h"
 #include "posterior.h"
 
@@ -63,11 +62,10 @@ static void judge(asj_context *context, const asj_pairs *set, uint64_t seed, asj
 static asj_status find_turned(asj_context *context, const asj_pairs *set, const asj_search *search, const asj_camera *cameras,
                               const asj_model *best, asj_model *rivals, int32_t *count)
 {
-    double w[3];
     *count = 0;
     if (set->rotation_count == 0)
         return ASJ_OK;
-    const int32_t except = best->kind == ASJ_GEOMETRY_ESSENTIAL ? asj_nearest_rotation(set, best->rotation, w) : -1;
+    const double *except = best->kind == ASJ_GEOMETRY_ESSENTIAL ? best->rotation : NULL;
     const asj_status status = asj_geometry_search_turned(context, set, search, except, rivals, count);
     return status == ASJ_OK ? asj_refine_motions(context, set, cameras, search->seed, 0, rivals, count) : status;
 }

@@ -9,6 +9,7 @@
  * nothing. Before rivals were looked for by themselves (rivals.c), fewer STARTS and CENTRES missed them: of unrelated rooms with
  * tiled floors, one in 29 was accepted with 8 and 4. */
 #include "search.h"
+#include "core/angle.h"
 #include "core/threads.h"
 #include "counter_random.h"
 #include "evidence.h"
@@ -36,6 +37,7 @@
 #define TRIES 20
 #define FLAT_SAMPLES 2
 #define TURNED 16
+#define KNOWN_TURN (10 * ASJ_DEGREE)
 
 /* --- samples ----------------------------------------------------------------------------------------------------------------- */
 
@@ -97,10 +99,12 @@ static int32_t sample(const asj_pairs *set, const double *sum, int32_t count, co
     const int32_t wanted = by_vote ? 1 : search->kind == ASJ_GEOMETRY_FUNDAMENTAL && stream % 4 == 3 ? 3 : 2;
     if (!(sum[count - 1] > 0) || !draw_some(set, sum, count, search->seed, stream, wanted, pairs))
         return 0;
-    if (by_vote)
-        return asj_translation_by_vote(set, turned, (int32_t)(stream / 2 % ASJ_ROTATIONS), pairs[0], search->cameras, model);
+    if (by_vote) {
+        const int32_t rotation = (int32_t)(stream / 2 % (uint64_t)set->rotation_count);
+        return asj_translation_by_vote(set, turned, rotation, pairs[0], search->cameras, model);
+    }
     if (search->kind == ASJ_GEOMETRY_ESSENTIAL && near >= 0 && stream % 2 == 1)
-        return asj_translation_from_two(pairs, set->rotations[near], search->cameras, model);
+        return asj_translation_from_two(pairs, set->rotations[near].matrix, search->cameras, model);
     if (search->kind == ASJ_GEOMETRY_ESSENTIAL)
         return asj_essential_from_two(set, pairs, search->cameras, model);
     if (search->kind == ASJ_GEOMETRY_HOMOGRAPHY)
@@ -132,7 +136,8 @@ typedef struct job {
     const asj_search *search;
     work *w;
     asj_model *models;
-    int32_t first, count, rounds, except;
+    int32_t first, count, rounds;
+    const double *except; /* a rotation near which none is looked for; NULL: everywhere */
 } job;
 
 /* Sample n, made again whenever it is wanted: keeping all of them would take more time. */
@@ -211,7 +216,7 @@ static int32_t draw_around(const asj_pairs *set, const asj_search *search, work 
                            int32_t round)
 {
     const int32_t first = set->count < PRESELECTED ? set->count : PRESELECTED;
-    const job j = {set, search, w, models, first, count, round, -1};
+    const job j = {set, search, w, models, first, count, round, NULL};
     asj_parallel(w->context, w->context->threads, count, 1, sample_around, &j);
     for (int32_t n = 0; n < count; n++) /* in the same measure as the samples */
         models[n].score = asj_score(set, first, &models[n].view, LOOSE, &w->scratch[0].score);
@@ -279,6 +284,11 @@ static int32_t run(const asj_pairs *set, const asj_search *search, work *w, asj_
     return count;
 }
 
+static int32_t are_near(const double a[9], const double b[9])
+{
+    return asj_dot3(a, b) + asj_dot3(a + 3, b + 3) + asj_dot3(a + 6, b + 6) > 1 + 2 * cos(KNOWN_TURN);
+}
+
 /* For every rotation the best of TURNED samples, in w->models; -HUGE_VAL where there is none. */
 static void turn_some(const void *data, const asj_part *part)
 {
@@ -286,9 +296,10 @@ static void turn_some(const void *data, const asj_part *part)
     for (int64_t r = part->first; r < part->end; r++) {
         asj_model *best = &j->models[r];
         best->score = -HUGE_VAL;
-        for (int64_t k = 0; k < TURNED && r != j->except && !asj_pairs_stop(j->set, part); k++) {
+        const int32_t known = j->except && are_near(j->except, j->set->rotations[r].matrix);
+        for (int64_t k = 0; k < TURNED && !known && !asj_pairs_stop(j->set, part); k++) {
             asj_model m = {.kind = ASJ_GEOMETRY_NONE};
-            const uint64_t stream = (uint64_t)(2 * (ASJ_ROTATIONS * k + r) + 1); /* sample() reads the rotation off it */
+            const uint64_t stream = (uint64_t)(2 * (j->set->rotation_count * k + r) + 1); /* sample() reads the rotation off it */
             if (!sample(j->set, j->w->sum, j->first, j->search, &j->w->turned, -1, stream, &m))
                 continue;
             m.score = asj_score(j->set, j->first, &m.view, LOOSE, &j->w->scratch[part->thread].score);
@@ -299,19 +310,19 @@ static void turn_some(const void *data, const asj_part *part)
     }
 }
 
-static int32_t run_turned(const asj_pairs *set, const asj_search *search, work *w, int32_t except, asj_model *finalists)
+static int32_t run_turned(const asj_pairs *set, const asj_search *search, work *w, const double *except, asj_model *finalists)
 {
     const int32_t first = w->turned.count;
     set_sums(set, search, first, w->sum);
     const job j = {.set = set, .search = search, .w = w, .models = w->models, .first = first, .except = except};
-    asj_parallel(w->context, w->context->threads, ASJ_ROTATIONS, 1, turn_some, &j);
-    qsort(w->order, ASJ_ROTATIONS, sizeof *w->order, asj_by_score);
-    const int32_t count = asj_pick(w->models, w->order, ASJ_ROTATIONS, ASJ_TURNED, w->starts);
+    asj_parallel(w->context, w->context->threads, set->rotation_count, 1, turn_some, &j);
+    qsort(w->order, (size_t)set->rotation_count, sizeof *w->order, asj_by_score);
+    const int32_t count = asj_pick(w->models, w->order, set->rotation_count, ASJ_TURNED, w->starts);
     return adjust_some(set, w, w->starts, count, ROUNDS, ASJ_TURNED, finalists);
 }
 
-static asj_status search_some(asj_context *context, const asj_pairs *set, const asj_search *search, int32_t turned, int32_t except,
-                              asj_model *finalists, int32_t *count)
+static asj_status search_some(asj_context *context, const asj_pairs *set, const asj_search *search, int32_t turned,
+                              const double *except, asj_model *finalists, int32_t *count)
 {
     asj_memory *memory = &context->memory;
     const int32_t threads = context->threads;
@@ -342,10 +353,10 @@ static asj_status search_some(asj_context *context, const asj_pairs *set, const 
 asj_status asj_geometry_search(asj_context *context, const asj_pairs *set, const asj_search *search, asj_model *finalists,
                                int32_t *count)
 {
-    return search_some(context, set, search, 0, 0, finalists, count);
+    return search_some(context, set, search, 0, NULL, finalists, count);
 }
 
-asj_status asj_geometry_search_turned(asj_context *context, const asj_pairs *set, const asj_search *search, int32_t except,
+asj_status asj_geometry_search_turned(asj_context *context, const asj_pairs *set, const asj_search *search, const double *except,
                                       asj_model *finalists, int32_t *count)
 {
     return search_some(context, set, search, 1, except, finalists, count);

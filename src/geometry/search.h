@@ -21,9 +21,9 @@ typedef struct asj_search {
 asj_status asj_geometry_search(asj_context *context, const asj_pairs *set, const asj_search *search, asj_model *finalists,
                                int32_t *count);
 
-/* The same, unjudged, of the essential matrices with one of set->rotations, which must be there, but for number `except` (-1:
+/* The same, unjudged, of the essential matrices with one of set->rotations, which must be there, but for those near `except` (NULL:
  * none): the best of each, so that none crowds out the others; finalists has room for ASJ_TURNED. */
-asj_status asj_geometry_search_turned(asj_context *context, const asj_pairs *set, const asj_search *search, int32_t except,
+asj_status asj_geometry_search_turned(asj_context *context, const asj_pairs *set, const asj_search *search, const double *except,
                                       asj_model *finalists, int32_t *count);
 
 #endif

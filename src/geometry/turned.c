@@ -48,7 +48,7 @@ int32_t asj_turned_create(asj_memory *memory, const asj_pairs *set, int32_t coun
         for (int32_t r = 0; r < set->rotation_count; r++) {
             float *normal = turned->normal + 3 * (ptrdiff_t)count * r + k;
             double rotated[3], n[3];
-            asj_apply3(set->rotations[r], y1, rotated);
+            asj_apply3(set->rotations[r].matrix, y1, rotated);
             asj_cross3(rotated, y2, n);
             const double factor = 1 / (CLEAR * sqrt(asj_dot3(y1, y1) * asj_dot3(y2, y2)));
             for (int32_t i = 0; i < 3; i++)
@@ -129,12 +129,12 @@ int32_t asj_translation_by_vote(const asj_pairs *set, const asj_turned *turned, 
         return 0;
     asj_ray(&cameras[0], pair->x1, pair->y1, rays[0]);
     asj_ray(&cameras[1], pair->x2, pair->y2, rays[1]);
-    if (asj_in_front(set->rotations[rotation], model->translation, rays[0], rays[1]) < 0)
+    if (asj_in_front(set->rotations[rotation].matrix, model->translation, rays[0], rays[1]) < 0)
         for (int32_t k = 0; k < 3; k++)
             model->translation[k] = -model->translation[k];
     model->kind = ASJ_GEOMETRY_ESSENTIAL;
     model->parameters = 5;
-    memcpy(model->rotation, set->rotations[rotation], sizeof model->rotation);
+    memcpy(model->rotation, set->rotations[rotation].matrix, sizeof model->rotation);
     memcpy(model->cameras, cameras, sizeof model->cameras);
     return asj_model_complete(model);
 }

@@ -74,11 +74,24 @@ static void place(asj_vote_line *one, const asj_camera *k)
     one->my = 0.5 * (y + ey);
 }
 
+/* Leaves the longest one of each line, the longest first. Returns how many. */
+static int32_t keep(asj_vote_line *lines, size_t all, const asj_camera *camera)
+{
+    int32_t kept = 0;
+    if (all > 1)
+        qsort(lines, all, sizeof *lines, longer);
+    for (size_t i = 0; i < all && kept < ASJ_VOTE_LINES; i++)
+        if (!is_known(lines, kept, &lines[i])) {
+            lines[kept] = lines[i];
+            place(&lines[kept++], camera);
+        }
+    return kept;
+}
+
 /* All branches that are known well, the longest of each line. Returns how many. */
 int32_t asj_vanishing_lines(const asj_junction *junctions, size_t count, const asj_camera *camera, asj_vote_line *lines)
 {
     size_t all = 0;
-    int32_t kept = 0;
     for (size_t i = 0; i < count; i++)
         for (int32_t b = 0; b < junctions[i].branch_count; b++) {
             const asj_branch *branch = &junctions[i].branches[b];
@@ -97,14 +110,30 @@ int32_t asj_vanishing_lines(const asj_junction *junctions, size_t count, const a
             one->sd = fmax(sd, 0.1 * ASJ_DEGREE);
             one->source = (uint32_t)all++;
         }
-    if (all > 1)
-        qsort(lines, all, sizeof *lines, longer);
-    for (size_t i = 0; i < all && kept < ASJ_VOTE_LINES; i++)
-        if (!is_known(lines, kept, &lines[i])) {
-            lines[kept] = lines[i];
-            place(&lines[kept++], camera);
-        }
-    return kept;
+    return keep(lines, all, camera);
+}
+
+int32_t asj_vote_lines(const asj_straight_edge *edges, size_t count, double shortest, const asj_camera *camera,
+                       asj_vote_line *lines)
+{
+    size_t all = 0;
+    for (size_t i = 0; i < count; i++) {
+        const asj_straight_edge *e = &edges[i];
+        const double length = hypot(e->x2 - e->x1, e->y2 - e->y1), angle = atan2(e->y2 - e->y1, e->x2 - e->x1);
+        if (!(length >= shortest) || !(length > 0))
+            continue;
+        asj_vote_line *one = &lines[all];
+        memset(one, 0, sizeof *one);
+        one->x = e->x1;
+        one->y = e->y1;
+        one->ex = e->x2;
+        one->ey = e->y2;
+        one->angle = angle < 0 ? angle + ASJ_PI : angle;
+        one->length = length;
+        one->sd = ACROSS / length;
+        one->source = (uint32_t)all++;
+    }
+    return keep(lines, all, camera);
 }
 
 /* --- the vote ---------------------------------------------------------------------------------------------------------------- */

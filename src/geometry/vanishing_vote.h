@@ -11,6 +11,11 @@
 #define ASJ_VOTE_POINTS 6    /* looked at before right angles */
 #define ASJ_VOTE_LINES 300   /* that take part, at most */
 
+/* A straight edge of the image, px. */
+typedef struct asj_straight_edge {
+    double x1, y1, x2, y2;
+} asj_straight_edge;
+
 typedef struct asj_vote_line {
     double l[3];      /* unit normal and distance, in the coordinates of the vote */
     double mx, my;    /* middle */
@@ -37,6 +42,10 @@ typedef struct asj_vote_search {
 
 /* The branches that take part, the longest first; `lines` has room for all branches. Returns how many. */
 int32_t asj_vanishing_lines(const asj_junction *junctions, size_t count, const asj_camera *camera, asj_vote_line *lines);
+
+/* The edges of at least `shortest` px, in the same way. */
+int32_t asj_vote_lines(const asj_straight_edge *edges, size_t count, double shortest, const asj_camera *camera,
+                       asj_vote_line *lines);
 
 /* Does the branch vote for v at that level? */
 int32_t asj_line_votes_for(const asj_vote_line *one, const double v[3], int32_t level);

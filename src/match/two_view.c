@@ -18,14 +18,12 @@
 #include "two_view.h"
 #include "align.h"
 #include "compare.h"
-#include "core/angle.h"
 #include "consensus.h"
 #include "geometry/estimate.h"
 #include "prior.h"
+#include "room_directions.h"
 #include "shortlist.h"
 #include "support.h"
-
-#include <asj/vanishing.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -115,48 +113,8 @@ static asj_geometry_candidate clustered(const wide_run *w, const asj_candidate *
     return g;
 }
 
-/* The three directions of the scene in one image, from the branches of its L-junctions; zero when there are not two. Their angles
- * carry no uncertainty here: vanishing.c takes it from their lengths. */
-static asj_status find_directions(asj_context *context, const asj_image_features *image, const asj_camera *camera,
-                                  double *directions)
-{
-    const asj_l_junctions *in = &image->l_junctions;
-    asj_vanishing_options options;
-    asj_vanishing_points found;
-    asj_junction *list = asj_allocate_zero(&context->memory, in->count, sizeof *list);
-    if (!list)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the directions of %lu L-junctions", (unsigned long)in->count);
-    for (uint32_t k = 0; k < in->count; k++) {
-        const asj_l_junction *l = &in->l[k];
-        const double to[2][2] = {{(double)l->ax - (double)l->x, (double)l->ay - (double)l->y},
-                                 {(double)l->bx - (double)l->x, (double)l->by - (double)l->y}};
-        list[k].x = l->x;
-        list[k].y = l->y;
-        list[k].branch_count = 2;
-        for (int32_t b = 0; b < 2; b++) {
-            const double angle = atan2(to[b][1], to[b][0]);
-            list[k].branches[b].angle = (float)(angle < 0 ? angle + ASJ_TWO_PI : angle);
-            list[k].branches[b].length = (float)sqrt(to[b][0] * to[b][0] + to[b][1] * to[b][1]);
-        }
-    }
-    asj_vanishing_options_init(&options);
-    options.camera = *camera;
-    options.width = image->pyramid.width[0];
-    options.height = image->pyramid.height[0];
-    const asj_status status = asj_find_vanishing_points(context, list, in->count, &options, &found);
-    asj_release(&context->memory, list);
-    if (status != ASJ_OK || found.count < 2)
-        return status;
-    const double *d = found.points[0].direction, *e = found.points[1].direction;
-    memcpy(directions, d, 3 * sizeof *d);
-    memcpy(directions + 3, e, 3 * sizeof *e);
-    for (int32_t k = 0; k < 3; k++)
-        directions[6 + k] = d[(k + 1) % 3] * e[(k + 2) % 3] - d[(k + 2) % 3] * e[(k + 1) % 3];
-    return ASJ_OK;
-}
-
 /* Sizes and, where both cameras are known, directions of both images, unless the caller gave some. */
-static asj_status complete_options(asj_match_run *run, asj_geometry_options *options)
+static asj_status complete_options(asj_match_run *run, asj_geometry_options *options, asj_geometry_hints *hints)
 {
     asj_status status = ASJ_OK;
     double given = 0;
@@ -168,7 +126,7 @@ static asj_status complete_options(asj_match_run *run, asj_geometry_options *opt
     }
     for (int32_t side = 0; side < 2 && given == 0 && status == ASJ_OK; side++)
         if (options->cameras[0].fx > 0 && options->cameras[1].fx > 0)
-            status = find_directions(run->context, run->image[side], &options->cameras[side], options->directions[side]);
+            status = asj_room_directions(run->context, run->image[side], &options->cameras[side], &hints->directions[side]);
     return status;
 }
 
@@ -184,9 +142,10 @@ static asj_status estimate(asj_match_run *run, wide_run *w)
     if (!w->given || !w->probability || !w->colours || !w->place[0] || !w->place[1])
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the geometry of %zu candidates", count);
     asj_geometry_options options = run->options->geometry;
+    asj_geometry_hints hints = {.colours = NULL};
     asj_status status = asj_candidate_priors(&w->run, w->probability, w->colours);
     if (status == ASJ_OK)
-        status = complete_options(run, &options);
+        status = complete_options(run, &options, &hints);
     if (status != ASJ_OK)
         return status;
     for (int32_t side = 0; side < 2; side++)
@@ -201,8 +160,8 @@ static asj_status estimate(asj_match_run *run, wide_run *w)
         w->run.candidates.list[kept++] = *c;
     }
     w->run.candidates.count = kept;
-    const double *colours = run->image[0]->colours && run->image[1]->colours ? w->colours : NULL;
-    return asj_estimate_with_colours(run->context, w->given, kept, colours, &options, w->probability, &run->geometry);
+    hints.colours = run->image[0]->colours && run->image[1]->colours ? w->colours : NULL;
+    return asj_estimate_with_hints(run->context, w->given, kept, &hints, &options, w->probability, &run->geometry);
 }
 
 /* --- matches that are there -------------------------------------------------------------------------------------------------- */

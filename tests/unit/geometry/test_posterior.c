@@ -106,7 +106,7 @@ static void reference(const asj_pairs *set, const asj_model *model, asj_adjust_s
     }
     assert_true(asj_cholesky_solve(root, MOTION, none, NULL)); /* its lower triangle now */
     for (int n = 0; n < DRAWS; n++) {
-        double y[MOTION], square = 0, pull;
+        double y[MOTION], square = 0;
         asj_model moved;
         for (int k = 0; k < MOTION; k++) {
             y[k] = normal(&random);
@@ -118,7 +118,7 @@ static void reference(const asj_pairs *set, const asj_model *model, asj_adjust_s
                 at[n][i] += root[5 * i + k] * y[k];
         }
         assert_true(asj_model_move(model, at[n], &moved));
-        const double score = asj_score_apart(set, &moved.view, scratch) + asj_rotation_prior(set, moved.rotation, &pull);
+        const double score = asj_score_apart(set, &moved.view, scratch) + asj_rotation_prior(set, moved.rotation);
         weights[n] = TEMPER * score + 0.5 * square;
         largest = fmax(largest, weights[n]);
     }

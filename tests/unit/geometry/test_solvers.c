@@ -423,11 +423,12 @@ static void a_vote_gives_the_translation(void **state)
     for (int i = 0; i < 50; i++) {
         const motion m = random_motion(&random), other = random_motion(&random);
         static asj_pair list[CROWD];
-        asj_pairs set = {.list = list, .count = CROWD, .rotation_count = 2};
+        asj_likely_rotation rotations[2];
+        asj_pairs set = {.list = list, .count = CROWD, .rotations = rotations, .rotation_count = 2};
         asj_turned turned;
         asj_model model;
-        memcpy(set.rotations[0], other.rotation, sizeof other.rotation);
-        memcpy(set.rotations[1], m.rotation, sizeof m.rotation);
+        memcpy(rotations[0].matrix, other.rotation, sizeof other.rotation);
+        memcpy(rotations[1].matrix, m.rotation, sizeof m.rotation);
         for (int k = 0; k < CROWD; k++) {
             const asj_pair there = random_patch(&random, &m, 0);
             list[k] = random_patch(&random, &m, 0);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Line segments and their parts, against plain formulas, pictures whose edges are known, and noise. */
-#include "detect/line_segments.h"
-#include "detect/line_segments_nfa.h"
-#include "detect/line_segments_region.h"
+#include "segments/line_segments.h"
+#include "segments/line_segments_nfa.h"
+#include "segments/line_segments_region.h"
 #include "unit_test.h"
 
 typedef unit_fixture fixture;
@@ -227,7 +227,7 @@ static asj_line_segment *find(const fixture *f, const uint8_t *pixels, int32_t w
     asj_frame frame;
     asj_line_segment *segments = NULL;
     load(f, pixels, width, height, &frame);
-    assert_int_equal(asj_line_segments_find(f->context, &frame, 1, &segments, count), ASJ_OK);
+    assert_int_equal(asj_line_segments_find(f->context, &frame, ASJ_STAGE_CANDIDATES, 1, &segments, count), ASJ_OK);
     asj_frame_free(&f->context->memory, &frame);
     return segments;
 }
@@ -325,7 +325,7 @@ static void test_memory(void **state)
         size_t count = 1;
         const long live = f->counter.live;
         f->counter.fail_at = f->counter.calls + n;
-        status = asj_line_segments_find(f->context, &frame, 1, &segments, &count);
+        status = asj_line_segments_find(f->context, &frame, ASJ_STAGE_CANDIDATES, 1, &segments, &count);
         f->counter.fail_at = 0;
         assert_true(status == ASJ_OK ? count == 4 : status == ASJ_ERROR_MEMORY && !segments && count == 0);
         if (status != ASJ_OK)

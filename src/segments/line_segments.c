@@ -98,14 +98,14 @@ static asj_status test_region(search *s, int32_t seed)
     return status;
 }
 
-static asj_status test_all(search *s)
+static asj_status test_all(search *s, int32_t stage)
 {
     asj_status status = ASJ_OK;
     asj_watch watch;
     s->log_tests = asj_segment_log_tests(s->levels.width, s->levels.height);
     s->least = (int32_t)ceil(fmax((s->log_tests - s->log_epsilon) / -log(PRECISION), 2));
     memset(s->region.used, 0, (size_t)s->levels.width * (size_t)s->levels.height);
-    asj_watch_start(&watch, s->context, ASJ_STAGE_CANDIDATES);
+    asj_watch_start(&watch, s->context, stage);
     for (int32_t i = 0; i < s->levels.order_count && status == ASJ_OK; i++) {
         if (s->region.used[s->levels.order[i]])
             continue;
@@ -114,8 +114,8 @@ static asj_status test_all(search *s)
     return status;
 }
 
-asj_status asj_line_segments_find(asj_context *context, const asj_frame *frame, double epsilon, asj_line_segment **segments,
-                                  size_t *count)
+asj_status asj_line_segments_find(asj_context *context, const asj_frame *frame, int32_t stage, double epsilon,
+                                  asj_line_segment **segments, size_t *count)
 {
     asj_memory *memory = &context->memory;
     search s;
@@ -132,7 +132,7 @@ asj_status asj_line_segments_find(asj_context *context, const asj_frame *frame, 
     s.log_epsilon = log(epsilon);
     s.region.samples = asj_allocate(memory, samples, sizeof *s.region.samples);
     s.region.used = asj_allocate(memory, samples, sizeof *s.region.used);
-    status = s.region.samples && s.region.used ? test_all(&s) : ASJ_ERROR_MEMORY;
+    status = s.region.samples && s.region.used ? test_all(&s, stage) : ASJ_ERROR_MEMORY;
     if (status == ASJ_OK) {
         *segments = s.list;
         *count = s.count;

@@ -1,0 +1,284 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The directions of a room ("Manhattan frame": Coughlan and Yuille 1999) from its straight edges, with a camera that is known.
+ *
+ * vanishing_vote.c asks of each direction by itself whether chance brings as many edges; in a photograph of a room, with a dozen
+ * edges along each of its directions among two hundred others, two of the three are seldom that sure. All three together are: with
+ * axes d_1, d_2, d_3 and the angle a_k between an edge and the vanishing point of d_k, seen from the edge's middle, the likelihood
+ * ratio of an edge is
+ *
+ *     r = 1 - w + w / 3 sum over k of pi N(a_k; 0, s^2),     s^2 = ACROSS^2 / length^2 + BENT^2,
+ *
+ * N the normal density and 1 / pi the flat one: right edges err by what they are out across, and by what is not quite at right
+ * angles (walls, lenses). How many edges belong to the directions, w, is one of SHARES, each as likely: score = log of the mean
+ * over them of the product of all r.
+ *
+ * Search: vanishing points that pairs of the PAIRED longest edges define; those MOST_POINTS of them that explain most, more than
+ * APART from each other, are one axis, and the other two are turned around it in steps; the best STARTS of all that, more than
+ * DIFFERENT from each other, are refined: expectation and maximisation as in adjust.c, over the turn of the three axes. Their
+ * covariance is the inverse of the information matrix.
+ *
+ * A set of directions costs little when it is wrong (manhattan.c), and a room with a desk across has two of them: the best
+ * BEST_KEPT are kept. */
+#include "directions.h"
+#include "core/angle.h"
+#include "core/context.h"
+#include "small_matrix.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SHORTEST 0.045 /* of the longer side: an edge that is looked at, and .. */
+#define LEAST_EDGES 6
+#define MOST_EDGES 200
+#define ACROSS 0.4 /* px */
+#define BENT (1.0 * ASJ_DEGREE)
+#define PAIRED 40
+#define MOST_POINTS 20
+#define APART (1.5 * ASJ_DEGREE)
+#define STEPS 60
+#define STARTS 6
+#define DIFFERENT (4 * ASJ_DEGREE)
+#define SAME (3 * ASJ_DEGREE)
+#define ROUNDS 8
+#define BEST_KEPT 2
+#define FAR 16.0 /* squared residual beyond which an edge counts as none of an axis */
+#define SHARES 3
+
+static const double shares[SHARES] = {0.1, 0.3, 0.6};
+
+typedef struct scene {
+    const asj_vote_line *lines;
+    int32_t count;
+    double precision[MOST_EDGES], peak[MOST_EDGES]; /* 1 / s^2; pi / (sqrt(2 pi) s) */
+} scene;
+
+typedef struct ranked {
+    double score;
+    double axes[9];
+} ranked;
+
+/* Density of the edge's direction under an axis over the flat one; the angle is as good as its sine where it counts. */
+static double ratio(const scene *s, int32_t k, const double d[3])
+{
+    const asj_vote_line *one = &s->lines[k];
+    const double dx = d[0] - d[2] * one->mx, dy = d[1] - d[2] * one->my, at = asj_dot3(one->l, d);
+    const double square = at * at * s->precision[k], size2 = dx * dx + dy * dy;
+    return square < FAR * size2 ? s->peak[k] * exp(-0.5 * square / size2) : 0;
+}
+
+/* Log of the mean over the shares: `near`, of each, the sum of log(1 + w / (1 - w) mean ratio). */
+static double over_shares(const double near[SHARES], int32_t count)
+{
+    double each[SHARES], largest = -HUGE_VAL, sum = 0;
+    for (int32_t i = 0; i < SHARES; i++) {
+        each[i] = near[i] + count * log(1 - shares[i]);
+        largest = fmax(largest, each[i]);
+    }
+    for (int32_t i = 0; i < SHARES; i++)
+        sum += exp(each[i] - largest);
+    return largest + log(sum / SHARES);
+}
+
+static double score_of(const scene *s, const double *axes, int32_t axis_count)
+{
+    double near[SHARES] = {0};
+    for (int32_t k = 0; k < s->count; k++) {
+        double sum = 0;
+        for (int32_t a = 0; a < axis_count; a++)
+            sum += ratio(s, k, axes + 3 * a);
+        for (int32_t i = 0; i < SHARES && sum > 0; i++)
+            near[i] += log(1 + shares[i] / (1 - shares[i]) * sum / 3);
+    }
+    return over_shares(near, s->count);
+}
+
+static int better(const void *left, const void *right)
+{
+    const ranked *p = left, *q = right;
+    if (p->score != q->score)
+        return p->score > q->score ? -1 : 1;
+    for (int32_t k = 0; k < 9; k++)
+        if (p->axes[k] != q->axes[k])
+            return p->axes[k] > q->axes[k] ? -1 : 1;
+    return 0;
+}
+
+/* Cosine of the least turn that takes one set of directions to the other, whatever their names: the largest trace over the signed
+ * permutations, which takes the largest products in absolute value. (Those with determinant -1 are the same directions.) */
+static int32_t are_same(const double a[9], const double b[9], double angle)
+{
+    static const int32_t order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    double most = 0;
+    for (int32_t n = 0; n < 6; n++) {
+        double trace = 0;
+        for (int32_t k = 0; k < 3; k++)
+            trace += fabs(asj_dot3(a + 3 * k, b + 3 * order[n][k]));
+        most = fmax(most, trace);
+    }
+    return 0.5 * (most - 1) > cos(angle);
+}
+
+/* --- search ------------------------------------------------------------------------------------------------------------------ */
+
+/* Points of pairs of edges, the best first and apart from each other, in points[]. axes[0 .. 2]: the direction. */
+static int32_t find_points(const scene *s, ranked *all, ranked points[MOST_POINTS])
+{
+    const int32_t paired = s->count < PAIRED ? s->count : PAIRED;
+    int32_t count = 0, kept = 0;
+    for (int32_t i = 0; i < paired; i++)
+        for (int32_t k = 0; k < i; k++) {
+            ranked *r = &all[count];
+            memset(r, 0, sizeof *r);
+            asj_cross3(s->lines[i].l, s->lines[k].l, r->axes);
+            if (!asj_normalise3(r->axes))
+                continue;
+            r->score = score_of(s, r->axes, 1);
+            count++;
+        }
+    if (count > 1)
+        qsort(all, (size_t)count, sizeof *all, better);
+    for (int32_t n = 0; n < count && kept < MOST_POINTS; n++) {
+        int32_t fresh = 1;
+        for (int32_t k = 0; k < kept && fresh; k++)
+            fresh = fabs(asj_dot3(points[k].axes, all[n].axes)) < cos(APART);
+        if (fresh)
+            points[kept++] = all[n];
+    }
+    return kept;
+}
+
+/* All turns about the point's direction. */
+static void turn_about(const scene *s, const double first[3], ranked *turned)
+{
+    const double e[3] = {fabs(first[0]) < 0.6, fabs(first[0]) >= 0.6, 0};
+    double a[3], b[3];
+    asj_cross3(first, e, a);
+    asj_normalise3(a);
+    asj_cross3(first, a, b);
+    for (int32_t n = 0; n < STEPS; n++) {
+        const double angle = n * (ASJ_PI / 2 / STEPS), c = cos(angle), d = sin(angle);
+        ranked *r = &turned[n];
+        memcpy(r->axes, first, 3 * sizeof *first);
+        for (int32_t k = 0; k < 3; k++) {
+            r->axes[3 + k] = c * a[k] + d * b[k];
+            r->axes[6 + k] = -d * a[k] + c * b[k];
+        }
+        r->score = score_of(s, r->axes, 3);
+    }
+}
+
+/* --- refinement -------------------------------------------------------------------------------------------------------------- */
+
+/* Normal equations of the turn w, axes <- exp([w]x) axes, where an edge's sine moves by (d x l)'w. */
+static void set_up(const scene *s, const double axes[9], double normal[9], double right[3])
+{
+    const double share = shares[SHARES - 1];
+    memset(normal, 0, 9 * sizeof *normal);
+    memset(right, 0, 3 * sizeof *right);
+    for (int32_t k = 0; k < s->count; k++) {
+        double each[3], sum = 0;
+        for (int32_t a = 0; a < 3; a++)
+            sum += each[a] = share / 3 * ratio(s, k, axes + 3 * a);
+        for (int32_t a = 0; a < 3; a++) {
+            const asj_vote_line *one = &s->lines[k];
+            const double *d = axes + 3 * a, dx = d[0] - d[2] * one->mx, dy = d[1] - d[2] * one->my;
+            const double weight = each[a] / (1 - share + sum) * s->precision[k] / (dx * dx + dy * dy);
+            double slope[3];
+            if (!(each[a] > 0))
+                continue;
+            asj_cross3(d, one->l, slope);
+            for (int32_t i = 0; i < 3; i++) {
+                right[i] -= weight * slope[i] * asj_dot3(one->l, d);
+                for (int32_t j = 0; j < 3; j++)
+                    normal[3 * i + j] += weight * slope[i] * slope[j];
+            }
+        }
+    }
+    for (int32_t i = 0; i < 3; i++)
+        normal[4 * i] += 1; /* rad^-2: nothing is known worse than this */
+}
+
+static void refine(const scene *s, ranked *r)
+{
+    double normal[9], right[3], turn[9];
+    for (int32_t round = 0; round < ROUNDS; round++) {
+        ranked next = *r;
+        set_up(s, r->axes, normal, right);
+        if (!asj_cholesky_solve(normal, 3, right, NULL))
+            return;
+        asj_rotation_of(right, turn);
+        for (int32_t a = 0; a < 3; a++)
+            asj_apply3(turn, r->axes + 3 * a, next.axes + 3 * a);
+        next.score = score_of(s, next.axes, 3);
+        if (!(next.score > r->score))
+            return;
+        *r = next;
+    }
+}
+
+void asj_directions_add(asj_directions_list *found, const asj_directions *more)
+{
+    for (int32_t k = 0; k < found->count; k++)
+        if (are_same(found->list[k].axes, more->axes, SAME))
+            return;
+    if (found->count < ASJ_MOST_DIRECTIONS)
+        found->list[found->count++] = *more;
+}
+
+static void search(const scene *s, ranked *all, asj_directions_list *found)
+{
+    ranked points[MOST_POINTS], starts[STARTS];
+    const int32_t point_count = find_points(s, all, points);
+    int32_t kept = 0;
+    for (int32_t k = 0; k < point_count; k++)
+        turn_about(s, points[k].axes, all + (size_t)k * STEPS);
+    if (point_count > 0)
+        qsort(all, (size_t)point_count * STEPS, sizeof *all, better);
+    for (int32_t n = 0; n < point_count * STEPS && kept < STARTS; n++) {
+        int32_t fresh = 1;
+        for (int32_t k = 0; k < kept && fresh; k++)
+            fresh = !are_same(starts[k].axes, all[n].axes, DIFFERENT);
+        if (fresh)
+            starts[kept++] = all[n];
+    }
+    for (int32_t k = 0; k < kept; k++)
+        refine(s, &starts[k]);
+    if (kept > 1)
+        qsort(starts, (size_t)kept, sizeof *starts, better);
+    for (int32_t k = 0; k < kept && found->count < BEST_KEPT; k++) {
+        asj_directions next;
+        double normal[9], right[3];
+        memcpy(next.axes, starts[k].axes, sizeof next.axes);
+        next.score = starts[k].score;
+        set_up(s, next.axes, normal, right);
+        if (next.score > 0 && asj_invert3(normal, next.covariance))
+            asj_directions_add(found, &next);
+    }
+}
+
+int32_t asj_find_directions(asj_memory *memory, const asj_straight_edge *edges, size_t count, const asj_camera *camera,
+                            double longer, asj_directions_list *found)
+{
+    found->count = 0;
+    const size_t paired = PAIRED * (PAIRED - 1) / 2, turned = MOST_POINTS * STEPS;
+    asj_vote_line *lines = asj_allocate(memory, count, sizeof *lines);
+    ranked *all = asj_allocate(memory, paired > turned ? paired : turned, sizeof *all);
+    const int32_t good = lines && all;
+    if (good) {
+        scene s;
+        s.lines = lines;
+        s.count = asj_vote_lines(edges, count, SHORTEST * longer, camera, lines);
+        s.count = s.count < MOST_EDGES ? s.count : MOST_EDGES;
+        for (int32_t k = 0; k < s.count; k++) {
+            const double sd = hypot(ACROSS / lines[k].length, BENT);
+            s.precision[k] = 1 / (sd * sd);
+            s.peak[k] = ASJ_PI / (sqrt(2 * ASJ_PI) * sd);
+        }
+        if (s.count >= LEAST_EDGES)
+            search(&s, all, found);
+    }
+    asj_release(memory, all);
+    asj_release(memory, lines);
+    return good;
+}

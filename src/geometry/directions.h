@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Three directions of the scene at right angles to each other, from the straight edges of one image. */
+#ifndef ASJ_SRC_GEOMETRY_DIRECTIONS_H
+#define ASJ_SRC_GEOMETRY_DIRECTIONS_H
+
+#include "vanishing_vote.h"
+#include "core/memory.h"
+
+#define ASJ_MOST_DIRECTIONS 4
+
+typedef struct asj_directions {
+    double axes[9];       /* rows: directions in camera coordinates */
+    double covariance[9]; /* rad^2: of w with exp([w]x) axis the true ones */
+    double score;         /* log of likelihood with them over likelihood without any */
+} asj_directions;
+
+typedef struct asj_directions_list {
+    asj_directions list[ASJ_MOST_DIRECTIONS];
+    int32_t count;
+} asj_directions_list;
+
+/* The sets of directions that explain the edges best, the best first; count 0 when there are too few edges. `longer`: longer side
+ * of the image, px. 0: no memory. */
+int32_t asj_find_directions(asj_memory *memory, const asj_straight_edge *edges, size_t count, const asj_camera *camera,
+                            double longer, asj_directions_list *found);
+
+/* Adds one set of directions, unless it is there already but for their names, or there is no room. */
+void asj_directions_add(asj_directions_list *found, const asj_directions *more);
+
+#endif

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Three directions at right angles from straight edges: synthetic edges of known directions among others, none from too few, and
+ * the density of rotations that they make likely. */
+#include "unit_test.h"
+
+#include "geometry/directions.h"
+#include "geometry/manhattan.h"
+#include "geometry/small_matrix.h"
+
+#define WIDTH 640
+#define HEIGHT 480
+#define DEGREE (UNIT_PI / 180)
+#define MOST 200
+
+static const asj_camera camera = {560, 560, 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1)};
+
+static double normal(synth_random *random)
+{
+    const double u = synth_random_between(random, 1e-12, 1);
+    return sqrt(-2 * log(u)) * cos(2 * UNIT_PI * synth_random_between(random, 0, 1));
+}
+
+static void random_rotation(synth_random *random, double rotation[9])
+{
+    double w[3];
+    for (int k = 0; k < 3; k++)
+        w[k] = synth_random_between(random, -1, 1);
+    asj_rotation_of(w, rotation);
+}
+
+/* An edge of `length` px from a random place towards the vanishing point of d, its ends out by `across` px. */
+static asj_straight_edge edge_along(synth_random *random, const double d[3], double length, double across)
+{
+    const double x = synth_random_between(random, 60, WIDTH - 60), y = synth_random_between(random, 60, HEIGHT - 60);
+    const double dx = camera.fx * d[0] + (camera.cx - x) * d[2], dy = camera.fy * d[1] + (camera.cy - y) * d[2];
+    const double size = hypot(dx, dy), e = across * normal(random), f = across * normal(random);
+    const double ux = dx / size, uy = dy / size;
+    return (asj_straight_edge){x - e * uy, y + e * ux, x + length * ux - f * uy, y + length * uy + f * ux};
+}
+
+static asj_straight_edge any_edge(synth_random *random)
+{
+    const double angle = synth_random_between(random, 0, 2 * UNIT_PI), length = synth_random_between(random, 35, 90);
+    const double x = synth_random_between(random, 60, WIDTH - 60), y = synth_random_between(random, 60, HEIGHT - 60);
+    return (asj_straight_edge){x, y, x + length * cos(angle), y + length * sin(angle)};
+}
+
+/* rad; whatever the directions are called. */
+static double apart(const double a[9], const double b[9])
+{
+    static const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    double most = 0;
+    for (int n = 0; n < 6; n++) {
+        double trace = 0;
+        for (int k = 0; k < 3; k++)
+            trace += fabs(asj_dot3(a + 3 * k, b + 3 * order[n][k]));
+        most = fmax(most, trace);
+    }
+    return acos(fmin(1, 0.5 * (most - 1)));
+}
+
+/* A third of 120 edges in the directions, fourteen along each, as no vanishing point by itself would be sure. */
+static void directions_among_other_edges(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_memory memory = unit_memory(&counter);
+    synth_random random;
+    int good = 0;
+    double square = 0;
+    synth_random_seed(&random, 5);
+    for (int i = 0; i < 20; i++) {
+        asj_straight_edge edges[120];
+        asj_directions_list found, again;
+        double axes[9];
+        random_rotation(&random, axes);
+        for (int k = 0; k < 120; k++)
+            edges[k] = k >= 42 ? any_edge(&random)
+                               : edge_along(&random, axes + 3 * (k % 3), synth_random_between(&random, 35, 110), 0.4);
+        assert_true(asj_find_directions(&memory, edges, 120, &camera, WIDTH, &found));
+        assert_true(asj_find_directions(&memory, edges, 120, &camera, WIDTH, &again));
+        assert_memory_equal(&found, &again, sizeof found);
+        assert_in_range(found.count, 1, 2);
+        const double off = apart(found.list[0].axes, axes);
+        good += off < 1.5 * DEGREE;
+        const double *covariance = found.list[0].covariance;
+        if (off < 1.5 * DEGREE)
+            square += off * off / (covariance[0] + covariance[4] + covariance[8]);
+        for (int a = 0; a < 3; a++)
+            unit_near("right angles", i, a, asj_dot3(found.list[0].axes + 3 * a, found.list[0].axes + 3 * ((a + 1) % 3)), 0, 1e-9);
+    }
+    assert_in_range(good, 18, 20);
+    unit_near("variance over the one told", 0, 0, square / good, 0.75, 0.75); /* at most 1.5 */
+}
+
+static void too_few_have_none(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_memory memory = unit_memory(&counter);
+    synth_random random;
+    asj_straight_edge edges[40];
+    asj_directions_list found;
+    synth_random_seed(&random, 6);
+    assert_true(asj_find_directions(&memory, NULL, 0, &camera, WIDTH, &found));
+    assert_int_equal(found.count, 0);
+    for (int k = 0; k < 40; k++) { /* short ones */
+        edges[k] = any_edge(&random);
+        edges[k].x2 = edges[k].x1 + 0.1 * (edges[k].x2 - edges[k].x1);
+        edges[k].y2 = edges[k].y1 + 0.1 * (edges[k].y2 - edges[k].y1);
+    }
+    assert_true(asj_find_directions(&memory, edges, 40, &camera, WIDTH, &found));
+    assert_int_equal(found.count, 0);
+    for (int k = 0; k < 40; k++)
+        edges[k] = (asj_straight_edge){100, 100, 200, 150}; /* one line */
+    assert_true(asj_find_directions(&memory, edges, 40, &camera, WIDTH, &found));
+    assert_int_equal(found.count, 0);
+    counter.fail_at = counter.calls + 1;
+    assert_false(asj_find_directions(&memory, edges, 40, &camera, WIDTH, &found));
+}
+
+static void one_set_is_added_once(void **state)
+{
+    (void)state;
+    asj_directions_list list = {.count = 0};
+    asj_directions one = {.axes = {1, 0, 0, 0, 1, 0, 0, 0, 1}}, renamed = {.axes = {0, 0, 1, -1, 0, 0, 0, 1, 0}}, other = one;
+    const double w[3] = {0.2, 0.1, 0};
+    asj_rotation_of(w, other.axes);
+    asj_directions_add(&list, &one);
+    asj_directions_add(&list, &renamed);
+    assert_int_equal(list.count, 1);
+    asj_directions_add(&list, &other);
+    assert_int_equal(list.count, 2);
+    for (int k = 0; k < 9; k++) {
+        const double turn[3] = {0, 0.08 * k, 0.3};
+        asj_rotation_of(turn, other.axes);
+        asj_directions_add(&list, &other);
+    }
+    assert_int_equal(list.count, ASJ_MOST_DIRECTIONS);
+}
+
+/* The density has mass one: its mean over rotations drawn from the flat one, near one of its middles and times their part of
+ * all. */
+static void rotations_have_a_density(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_memory memory = unit_memory(&counter);
+    synth_random random;
+    asj_directions_list both[2] = {{.count = 1}, {.count = 1}};
+    asj_pairs set = {.count = 0};
+    double truth[9], w[3], sum = 0;
+    synth_random_seed(&random, 8);
+    random_rotation(&random, both[0].list[0].axes);
+    random_rotation(&random, truth);
+    asj_multiply3_transposed(both[0].list[0].axes, truth, both[1].list[0].axes); /* D2 = D1 R' */
+    for (int v = 0; v < 2; v++)
+        for (int k = 0; k < 3; k++)
+            both[v].list[0].covariance[4 * k] = 1e-6 * (1 + 10 * k);
+    assert_true(asj_manhattan_rotations(&memory, both, &set));
+    assert_int_equal(set.rotation_count, 24);
+    assert_in_range(asj_nearest_rotation(&set, truth, w), 0, 23);
+    unit_near("the right one", 0, 0, sqrt(asj_dot3(w, w)), 0, 1e-6);
+    const int draws = 20000;
+    const double half = 0.105; /* rad: beyond that no rotation counts */
+    for (int n = 0; n < draws; n++) {
+        double turn[9], moved[9];
+        for (int k = 0; k < 3; k++)
+            w[k] = synth_random_between(&random, -half, half);
+        asj_rotation_of(w, turn);
+        asj_multiply3(turn, truth, moved);
+        sum += 2 * (exp(asj_rotation_prior(&set, moved)) - 0.5);
+    }
+    unit_near("mass of one of 24", 0, 0, sum / draws * pow(2 * half, 3) / (8 * UNIT_PI * UNIT_PI) * 24, 1, 0.08);
+    set.rotation_count = 0;
+    unit_near("none", 0, 0, asj_rotation_prior(&set, truth), 0, 0);
+    asj_release(&memory, set.rotations);
+    both[1].count = 0;
+    assert_true(asj_manhattan_rotations(&memory, both, &set));
+    assert_int_equal(set.rotation_count, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(directions_among_other_edges), cmocka_unit_test(too_few_have_none),
+        cmocka_unit_test(one_set_is_added_once), cmocka_unit_test(rotations_have_a_density)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
