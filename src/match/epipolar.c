@@ -5,11 +5,10 @@
  * few px along both when the viewpoint moves, and everything around them agrees with that. But where matches are many, they tell
  * the fundamental matrix to a fraction of a pixel, and a slide that leaves the epipolar line shows. It is estimated from the
  * choices alone (../geometry/), each PRIOR likely, with few samples, since nearly all are right. A choice goes when it is farther
- * than FARTHEST px from its epipolar line in either image, or OF_SIDE of the longer side, since lenses bend lines in proportion to
- * the image; twice as far for each octave that located it. (4 px, 8 samples and 20 matches: rendered rooms and sixteen pairs of
- * photographs with sides of up to 1600 px.) Choices whose maps keep hardly any area (two_view.c) are not asked. Nothing goes when
- * choices are fewer than LEAST_MATCHES, when no matrix is accepted, or when it contradicts more than MOST_AGAINST of them: things
- * that move by themselves, lenses that bend lines.
+ * from its epipolar line in either image than asj_farthest_from_line() allows. (8 samples and 20 matches: rendered rooms and
+ * sixteen pairs of photographs.) Choices whose maps keep hardly any area (two_view.c) are not asked. Nothing goes when choices are
+ * fewer than LEAST_MATCHES, when no matrix is accepted, or when it contradicts more than MOST_AGAINST of them: things that move by
+ * themselves, lenses that bend lines.
  *
  * A plane leaves the matrix open; then any of those that its matches allow does. */
 #include "epipolar.h"
@@ -20,8 +19,6 @@
 #define LEAST_MATCHES 20
 #define SAMPLES 8
 #define PRIOR 0.9
-#define FARTHEST 4.0 /* px */
-#define OF_SIDE 0.0025
 #define MOST_AGAINST 0.25
 
 /* given: of all choices. asked: room for those of them that are asked. */
@@ -46,24 +43,11 @@ static asj_status estimate(const asj_match_run *run, asj_geometry_candidate *giv
     return asj_geometry_estimate(run->context, asked, count, &options, NULL, geometry);
 }
 
-/* How far from its line a choice may lie: px, of the image that knows its place less well. */
-static double farthest(const asj_match_run *run, const asj_candidate *c)
-{
-    double most = 0;
-    for (int32_t side = 0; side < 2; side++) {
-        const asj_image_features *image = run->image[side];
-        const int32_t width = image->pyramid.width[0], height = image->pyramid.height[0];
-        const int32_t octave = image->l_junctions.octave[asj_candidate_l(c, side)];
-        most = fmax(most, ldexp(fmax(FARTHEST, OF_SIDE * (width > height ? width : height)), octave));
-    }
-    return most;
-}
-
 static int is_far(const asj_match_run *run, size_t n, const asj_geometry *geometry, const asj_geometry_candidate *given)
 {
     const asj_geometry_candidate *g = &given[n];
     return asj_distance_from_line(geometry, g->x1, g->y1, g->x2, g->y2) >
-           farthest(run, &run->candidates.list[run->choices.list[n].candidate]);
+           asj_farthest_from_line(run, &run->candidates.list[run->choices.list[n].candidate]);
 }
 
 static void drop_far(asj_match_run *run, const asj_geometry *geometry, const asj_geometry_candidate *given)

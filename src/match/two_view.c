@@ -7,9 +7,11 @@
  * place there.
  *
  * Where a geometry is accepted, and no other one contradicts it:
- *   - a match that is there already goes when an epipolar geometry contradicts it: a location farther than FARTHEST px from its
- *     line. (A homography contradicts nothing: there are other planes.) But a geometry that contradicts more than half of the
- *     matches is not believed against them;
+ *   - a match that is there already goes when an epipolar geometry contradicts it: a location farther from its line than FARTHEST
+ *     px, or OF_SIDE of the longer side, since lenses bend lines in proportion to the image; twice as far for each octave that
+ *     located it. (Rendered rooms and sixteen pairs of photographs with sides of up to 1600 px; epipolar.c asks the same.) A
+ *     homography contradicts nothing: there are other planes. And a geometry that contradicts more than half of the matches is not
+ *     believed against them;
  *   - a candidate comes when its probability is LEAST_PROBABILITY at least, and both its locations are free; where there are
  *     MANY_MATCHES already, only when it is SURE_PROBABILITY at least. (On photographs that are none of the wide pairs three of
  *     four newcomers below that are right, and 45 of 47 above.)
@@ -30,8 +32,9 @@
 #include <string.h>
 
 #define WIDE_SHORTLIST 16
-#define CLUSTER 5.0  /* px */
-#define FARTHEST 4.0 /* px */
+#define CLUSTER 5.0    /* px */
+#define FARTHEST 4.0   /* px, and .. */
+#define OF_SIDE 0.0025 /* .. of the longer side */
 #define LEAST_PROBABILITY 0.5
 #define SURE_PROBABILITY 0.99
 #define MANY_MATCHES 20
@@ -182,6 +185,18 @@ double asj_distance_from_line(const asj_geometry *g, double x1, double y1, doubl
     return g->model == ASJ_GEOMETRY_HOMOGRAPHY ? 0 : least > 0 ? e / sqrt(least) : HUGE_VAL;
 }
 
+double asj_farthest_from_line(const asj_match_run *run, const asj_candidate *c)
+{
+    double most = 0;
+    for (int32_t side = 0; side < 2; side++) {
+        const asj_image_features *image = run->image[side];
+        const int32_t width = image->pyramid.width[0], height = image->pyramid.height[0];
+        const int32_t octave = image->l_junctions.octave[asj_candidate_l(c, side)];
+        most = fmax(most, ldexp(fmax(FARTHEST, OF_SIDE * (width > height ? width : height)), octave));
+    }
+    return most;
+}
+
 static int by_pair(const void *left, const void *right)
 {
     const asj_candidate *p = left, *q = right;
@@ -209,7 +224,8 @@ static asj_status filter(asj_match_run *run, const wide_run *w)
         for (size_t n = 0; n < choices->count; n++) {
             const asj_candidate *c = &run->candidates.list[choices->list[n].candidate];
             const asj_geometry_candidate at = clustered(w, c, 0);
-            const int32_t far = asj_distance_from_line(&run->geometry, at.x1, at.y1, at.x2, at.y2) > FARTHEST;
+            const double off = asj_distance_from_line(&run->geometry, at.x1, at.y1, at.x2, at.y2);
+            const int32_t far = off > asj_farthest_from_line(run, c);
             if (pass == 0) {
                 against += (size_t)far;
             } else if (!far || 2 * against > choices->count) {
