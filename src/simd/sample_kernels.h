@@ -38,9 +38,10 @@ static inline ints times(ints a, ints b)
     return (ints)((unsigned_ints)a * (unsigned_ints)b);
 }
 
-static inline ints sample_positions(const level_sampler *s, floats x, floats y)
+/* At whole numbers of 1/256 px within the limits. */
+static inline ints sample_places(const level_sampler *s, ints ix, ints iy)
 {
-    const ints ix = place_of(s, x, s->right), iy = place_of(s, y, s->bottom), wx = ix & 255, wy = iy & 255;
+    const ints wx = ix & 255, wy = iy & 255;
     const ints at = times(iy >> 8, s->strides) + (ix >> 8);
     const shorts weights = pairs_of(256 - wx, wx);
     const uint16_t *p[4];
@@ -48,6 +49,11 @@ static inline ints sample_positions(const level_sampler *s, floats x, floats y)
         p[lane] = s->plane + at[lane];
     const ints upper = weighted(pairs_at(p, 0), weights), lower = weighted(pairs_at(p, s->stride), weights);
     return (times(upper >> 1, 256 - wy) + times(lower >> 1, wy) + (1 << 14)) >> 15;
+}
+
+static inline ints sample_positions(const level_sampler *s, floats x, floats y)
+{
+    return sample_places(s, place_of(s, x, s->right), place_of(s, y, s->bottom));
 }
 
 static int32_t pyramid_sample(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,

@@ -87,6 +87,11 @@ static inline vec v_pairs(vec a, vec b)
 static inline int32_t v_sum32(vec v) { return vaddvq_s32(to32(v)); }
 /* the lower halves of products */
 static inline vec v_low32(vec a, vec b) { return from32(vmulq_s32(to32(a), to32(b))); }
+/* the lower 32 bits of each 64, multiplied */
+static inline vec v_products32(vec a, vec b)
+{
+    return vreinterpretq_s16_u64(vmull_u32(vmovn_u64(vreinterpretq_u64_s16(a)), vmovn_u64(vreinterpretq_u64_s16(b))));
+}
 static inline vec v_max32(vec a, vec b) { return from32(vmaxq_s32(to32(a), to32(b))); }
 static inline vec v_shift_right32_8(vec a) { return vreinterpretq_s16_u32(vshrq_n_u32(vreinterpretq_u32_s16(a), 8)); }
 /* -1 where below zero, else 0 */

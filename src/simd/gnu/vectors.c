@@ -5,6 +5,7 @@
 #include "simd/disc_kernels.h"
 #include "simd/gate_kernels.h"
 #include "simd/line_kernels.h"
+#include "simd/patch_kernels.h"
 #include "simd/sample_kernels.h"
 #include "simd/variants.h"
 
@@ -15,4 +16,5 @@ void asj_fill_vectors(const asj_ops *ops)
     fill_samples(ops);
     fill_discs(ops);
     fill_gate(ops);
+    fill_patches(ops);
 }

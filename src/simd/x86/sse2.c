@@ -5,6 +5,8 @@
 #include "simd/disc_kernels.h"
 #include "simd/gate_kernels.h"
 #include "simd/line_kernels.h"
+#include "simd/normal_kernels.h"
+#include "simd/patch_kernels.h"
 #include "simd/sample_kernels.h"
 #include "simd/variants.h"
 
@@ -15,4 +17,6 @@ void asj_fill_sse2(const asj_ops *ops)
     fill_samples(ops);
     fill_discs(ops);
     fill_gate(ops);
+    fill_patches(ops);
+    fill_normal(ops);
 }

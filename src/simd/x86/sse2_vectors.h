@@ -66,6 +66,8 @@ static inline vec v_low32(vec a, vec b)
     const vec even = _mm_mul_epu32(a, b), odd = _mm_mul_epu32(_mm_srli_epi64(a, 32), _mm_srli_epi64(b, 32));
     return _mm_or_si128(_mm_and_si128(even, _mm_set1_epi64x(0xffffffff)), _mm_slli_epi64(odd, 32));
 }
+/* the lower 32 bits of each 64, multiplied */
+static inline vec v_products32(vec a, vec b) { return _mm_mul_epu32(a, b); }
 static inline vec v_max32(vec a, vec b)
 {
     const vec greater = _mm_cmpgt_epi32(a, b);
