@@ -76,7 +76,7 @@ static void clear_margins(const asj_frame *frame, int16_t *rows)
 }
 
 /* Gray levels stand last: asj_frame_halve() reads those of the larger image when the planes of the smaller one have been set up. */
-asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t width, int32_t height)
+asj_status asj_frame_prepare_gray(asj_context *context, asj_frame *frame, int32_t width, int32_t height)
 {
     frame->width = width;
     frame->height = height;
@@ -93,8 +93,16 @@ asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t wid
     frame->gradient_x = frame->memory + origin;
     frame->gradient_y = frame->gradient_x + padded;
     frame->gray = (uint16_t *)frame->memory + 2 * padded + ASJ_GRAY_MARGIN + ASJ_GRAY_BORDER * stride;
+    return ASJ_OK;
+}
+
+asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t width, int32_t height)
+{
+    const asj_status status = asj_frame_prepare_gray(context, frame, width, height);
+    if (status != ASJ_OK)
+        return status;
     clear_margins(frame, frame->memory);
-    clear_margins(frame, frame->memory + padded);
+    clear_margins(frame, frame->memory + (frame->gradient_y - frame->gradient_x));
     return ASJ_OK;
 }
 

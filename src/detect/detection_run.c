@@ -170,7 +170,7 @@ asj_status asj_detection_run_each(asj_detection_run *run, int32_t stage, int32_t
     asj_watch watch;
     const job j = {run, &watch, work};
     asj_watch_start(&watch, run->context, stage);
-    asj_parallel(run->context, asj_threads_for(run->context, count, least), count, least / 2, work_on_some, &j);
+    asj_parallel(run->context, asj_threads_for(run->context, count, least), count, ASJ_JUNCTIONS_AT_ONCE, work_on_some, &j);
     return asj_watch_end(&watch);
 }
 

@@ -64,9 +64,10 @@ typedef struct asj_detection_run {
 /* Rows are worked on in groups, between which progress is reported. */
 #define ASJ_ROW_GROUP 128
 
-/* Junctions that a thread needs to be worth waking in steps that fit lines: about 40 us. */
-#define ASJ_LEAST_JUNCTIONS 4
-#define ASJ_JUNCTIONS_AT_ONCE 2
+/* Junctions that a thread needs to be worth waking in steps that fit lines: 20 us and more. One at a time, as long branches take
+ * ten times as long as short ones. */
+#define ASJ_LEAST_JUNCTIONS 2
+#define ASJ_JUNCTIONS_AT_ONCE 1
 
 /* Checks the arguments of a public function that writes to `output`, makes the tables for the options (NULL = default) and the
  * planes for the image. Whatever the result, asj_detection_run_end() releases what the run holds. */

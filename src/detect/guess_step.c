@@ -13,7 +13,7 @@
 #include <math.h>
 
 #define AT_ONCE 1024                            /* junctions in a chunk */
-#define LEAST_GUESSES (4 * ASJ_LEAST_JUNCTIONS) /* for a thread: a guess takes a quarter of a fit */
+#define LEAST_GUESSES (8 * ASJ_LEAST_JUNCTIONS) /* for a thread: a guess takes a quarter of a fit */
 
 /* Junctions that are shared out, and their guesses. */
 typedef struct job {

@@ -52,10 +52,10 @@ static double scale_of(const asj_hypothesis_branch *branch)
     return (double)(1 << branch->octave);
 }
 
-static double contrast_at(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, double t,
-                          double across)
+/* (ux, uy): the branch's direction. */
+static double contrast_at(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, double ux,
+                          double uy, double t, double across)
 {
-    const double ux = cos(branch->angle), uy = sin(branch->angle);
     const double x = hypothesis->x + t * ux - branch->offset * uy, y = hypothesis->y + t * uy + branch->offset * ux;
     const double right = asj_gray_at(frame, x - across * uy, y + across * ux);
     const double left = asj_gray_at(frame, x + across * uy, y - across * ux);
@@ -65,10 +65,11 @@ static double contrast_at(const asj_frame *frame, const asj_hypothesis *hypothes
 static contrast measure(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch,
                         const stretch *at)
 {
+    const double ux = cos(branch->angle), uy = sin(branch->angle);
     contrast c = {0, 0, 0};
     double squares = 0;
     for (double t = at->first; t <= at->last; t += 1, c.samples++) {
-        const double value = contrast_at(frame, hypothesis, branch, t, at->across);
+        const double value = contrast_at(frame, hypothesis, branch, ux, uy, t, at->across);
         c.mean += value;
         squares += value * value;
     }

@@ -52,7 +52,7 @@ static void confirm(const asj_detection_run *run, asj_hypothesis *hypothesis)
 /* With the image's own grey plane, made again. */
 static asj_status confirm_all(asj_detection_run *run)
 {
-    asj_status status = asj_frame_prepare(run->context, run->frame, run->image->width, run->image->height);
+    asj_status status = asj_frame_prepare_gray(run->context, run->frame, run->image->width, run->image->height);
     if (status == ASJ_OK)
         status = asj_step_load(run);
     return status == ASJ_OK ? asj_detection_run_each(run, ASJ_STAGE_REFINE, LEAST_CONFIRMED, confirm) : status;
