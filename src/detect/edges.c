@@ -18,6 +18,7 @@
 #include "core/threads.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define OFF_LINE 2.0   /* px of the branch's octave: as branches snap (ends.c) */
@@ -174,7 +175,7 @@ static int32_t look_in(const graph *g, const way *w, int32_t cell, double *neare
 }
 
 /* The nearest junction on the way of a branch that it may be joined with; -1 = none. At t along the way all junctions up to
- * t + CELL / 2 lie in the cells around. */
+ * t + CELL / 2 lie in the cells around, of which those around the place before have been looked at. */
 static int32_t find_nearest(const graph *g, size_t junction, int32_t branch)
 {
     const asj_hypothesis *from = &g->hypotheses[junction];
@@ -182,15 +183,18 @@ static int32_t find_nearest(const graph *g, size_t junction, int32_t branch)
     const way w = {junction, branch, from, along, cos(along->angle), sin(along->angle)};
     const double last = 2 * along->length + end_tolerance(along);
     double nearest = HUGE_VAL;
-    int32_t found = -1;
+    int32_t found = -1, column_before = -2, row_before = -2;
     for (double t = 0; t < last + CELL && nearest > t - CELL / 2; t += CELL) {
         const double x = from->x + t * w.ux, y = from->y + t * w.uy;
         if (x < -CELL || y < -CELL || x > g->columns * CELL || y > g->rows * CELL)
             break;
         const int32_t column = cell_of(x, g->columns), row = cell_of(y, g->rows);
-        for (int32_t dy = -1; dy <= 1; dy++)
-            for (int32_t dx = -1; dx <= 1; dx++)
-                found = look_in(g, &w, (row + dy) * g->columns + column + dx, &nearest, found);
+        for (int32_t y_cell = row - 1; y_cell <= row + 1; y_cell++)
+            for (int32_t x_cell = column - 1; x_cell <= column + 1; x_cell++)
+                if (abs(y_cell - row_before) > 1 || abs(x_cell - column_before) > 1)
+                    found = look_in(g, &w, y_cell * g->columns + x_cell, &nearest, found);
+        column_before = column;
+        row_before = row;
     }
     return found;
 }

@@ -37,10 +37,14 @@ static int by_branches(const void *a, const void *b)
     return by_meaning(a, b);
 }
 
+#define MOST_REACH 24 /* px: a row of a disc fits into 56 bits from any bit on. Radii are at most 15 */
+#define MOST_BYTES 7
+
 /* Rows of a disc, from its middle one on: half of their pixels, without the middle one. */
 typedef struct disc {
     double radius;
-    int32_t reach, half[ASJ_MAX_RADIUS + 1];
+    int32_t bytes; /* that a row may touch */
+    int32_t reach, half[MOST_REACH + 1];
 } disc;
 
 static void set_disc(disc *d, double radius)
@@ -48,7 +52,8 @@ static void set_disc(disc *d, double radius)
     if (d->radius == radius)
         return;
     d->radius = radius;
-    d->reach = radius < ASJ_MAX_RADIUS ? (int32_t)radius : ASJ_MAX_RADIUS;
+    d->reach = radius < MOST_REACH ? (int32_t)radius : MOST_REACH;
+    d->bytes = (2 * d->reach + 1 + 7 + 7) / 8;
     for (int32_t row = 0; row <= d->reach; row++) {
         int32_t half = 0;
         while ((half + 1) * (half + 1) + row * row <= radius * radius)
@@ -57,7 +62,7 @@ static void set_disc(disc *d, double radius)
     }
 }
 
-/* Marks the disc around a junction in the bit map, whose rows end with whole bytes: bits beyond the image mean nothing. */
+/* Marks the disc around a junction in the bit map, behind which there is room for MOST_BYTES more. */
 static void take(uint8_t *taken, int32_t width, int32_t height, int32_t x, int32_t y, const disc *d)
 {
     const size_t row_bytes = ((size_t)width + 7) / 8;
@@ -65,11 +70,10 @@ static void take(uint8_t *taken, int32_t width, int32_t height, int32_t x, int32
     for (int32_t row = top; row <= bottom; row++) {
         const int32_t half = d->half[row < y ? y - row : row - y];
         const int32_t left = x > half ? x - half : 0, right = x + half < width ? x + half : width - 1;
-        uint8_t *bytes = taken + (size_t)row * row_bytes;
-        for (int32_t byte = left / 8; byte <= right / 8; byte++) {
-            const int32_t from = byte == left / 8 ? left % 8 : 0, to = byte == right / 8 ? right % 8 : 7;
-            bytes[byte] |= (uint8_t)((2u << to) - (1u << from));
-        }
+        const uint64_t bits = (((uint64_t)2 << (right - left)) - 1) << left % 8;
+        uint8_t *bytes = taken + (size_t)row * row_bytes + left / 8;
+        for (int32_t byte = 0; byte < d->bytes; byte++)
+            bytes[byte] |= (uint8_t)(bits >> 8 * byte);
     }
 }
 
@@ -121,7 +125,7 @@ static rank *sort_ranks(const asj_isotropic_junction *junctions, rank *ranks, ra
 
 size_t asj_isotropic_thin_scratch(size_t count, int32_t width, int32_t height)
 {
-    return count * (2 * sizeof(rank) + 1) + ((size_t)width + 7) / 8 * (size_t)height;
+    return count * (2 * sizeof(rank) + 1) + ((size_t)width + 7) / 8 * (size_t)height + MOST_BYTES;
 }
 
 size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const asj_detect_options *options,
@@ -140,7 +144,7 @@ size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const
     for (size_t i = 0; i < count; i++)
         ranks[i] = (rank){key_of(junctions[i].log_nfa), (uint32_t)i, junctions[i].x, junctions[i].y};
     const rank *order = options->more_branches_win ? ranks : sort_ranks(junctions, ranks, spare, count);
-    memset(stays, 0, count + row_bytes * (size_t)height);
+    memset(stays, 0, count + row_bytes * (size_t)height + MOST_BYTES);
     for (size_t i = 0; i < count; i++) {
         const rank *r = &order[i];
         if (taken[r->y * row_bytes + r->x / 8] >> r->x % 8 & 1)
