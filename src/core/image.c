@@ -263,8 +263,8 @@ asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_imag
 
 const asj_image_ops asj_image_reference = {.luma = asj_image_luma};
 
-/* Rows move to the front of the same memory: row y is written when rows 2 y and 2 y + 1 have been read, and stands before them,
- * since the new stride is no longer than the old one. So do the rows that repeat the first one. */
+/* Rows move to the front of the same memory. The planes of the gradient stand before them and are half as high and no wider now,
+ * so that all rows are written before the first one that is read: in any order, by any thread. */
 static void halve_row(const uint16_t *upper, const uint16_t *lower, int32_t width, uint16_t *to)
 {
     for (int32_t x = 0; x < width; x++)
@@ -275,33 +275,28 @@ static void halve_row(const uint16_t *upper, const uint16_t *lower, int32_t widt
 typedef struct halve_job {
     const uint16_t *from;
     ptrdiff_t stride; /* of `from` */
-    asj_frame *frame;
-    int32_t top;
+    const asj_frame *frame;
 } halve_job;
 
 static void halve_rows(const void *data, const asj_part *part)
 {
     const halve_job *j = data;
-    for (int64_t y = j->top + part->first; y < j->top + part->end; y++)
+    for (int64_t y = part->first; y < part->end; y++)
         halve_row(j->from + 2 * y * j->stride, j->from + (2 * y + 1) * j->stride, j->frame->width,
                   j->frame->gray + y * j->frame->stride);
 }
 
-/* A row is written where its half, rounded up, was read at the latest: rows before `top` being done, as many again may be done in
- * any order. */
 asj_status asj_frame_halve(asj_context *context, asj_frame *frame)
 {
-    halve_job j = {frame->gray, frame->stride, frame, 0};
+    const halve_job j = {frame->gray, frame->stride, frame};
     const int32_t octave = frame->octave + 1, octaves = frame->octaves;
     asj_status status = asj_frame_prepare(context, frame, frame->width / 2, frame->height / 2);
     if (status != ASJ_OK)
         return status;
     frame->octave = octave;
     frame->octaves = octaves;
-    for (int32_t bottom = 1; j.top < frame->height; j.top = bottom, bottom = 2 * bottom) {
-        const int32_t count = (bottom < frame->height ? bottom : frame->height) - j.top;
-        asj_parallel(context, asj_threads_for(context, (int64_t)frame->width * count, LEAST_HALVED), count, 0, halve_rows, &j);
-    }
+    const int64_t pixels = (int64_t)frame->width * frame->height;
+    asj_parallel(context, asj_threads_for(context, pixels, LEAST_HALVED), frame->height, 0, halve_rows, &j);
     repeat_rows(frame);
     return ASJ_OK;
 }
