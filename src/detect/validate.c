@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Validation. A branch is reported when it is long enough, its line passes the junction, the strip along it is meaningful (strip.c)
- * and reaches the junction, and no better branch points the same way; a junction, when two of its branches open. */
+ * and reaches the junction, and no better branch points the same way; a junction, when two of its branches open. In coarse octaves
+ * two branches may be meaningful together. */
 #include "validate.h"
 #include "bent_corner.h"
 #include "core/angle.h"
@@ -32,6 +33,23 @@
 /* A sharp edge that reaches the junction is there what it is farther on. Coarse octaves, in which little noise is left, ask for
  * this share of it: 0.8 to 1.2 are found at corners, 0 to 0.4 where edges only seem to meet. */
 #define LEAST_SHARE 0.45
+
+/* Two branches together. Where both are short and weak neither strip may be meaningful by itself, though a junction of both is one
+ * place with two ends: of two strips with tails F_i, F_j there are NM (sqrt(NM))^2 octaves tests, so
+ *     NFA = (NM)^2 octaves F_i F_j = NFA_i NFA_j / (NM octaves),      NFA_i = (NM)^(3/2) octaves F_i (strip.c).
+ * Two that open are kept if that is at most epsilon / exp(PAIR_LOG), and either NFA is at most epsilon sqrt(NM): given the place,
+ * that many tests are left. The directions of two are not the same test any more: PAIR_LOG stands for them (a hundred). Only
+ * of sharp edges in coarse octaves, where little noise is left and short branches are long edges. Corners of 5 grey levels in noise
+ * of 2 (tests/accuracy): recall .628 -> .820, precision .997 -> .996. With soft edges too, at blur 5 and 25 grey levels, precision
+ * falls from .955 to .928. */
+#define PAIR_LOG (2 * 2.302585092994046)
+
+enum { NOT_AT_ALL, WITH_OTHERS, ALONE };
+
+static double log_places(const asj_frame *frame)
+{
+    return log((double)frame->width * frame->height);
+}
 
 /* Whether the branch reaches the junction. */
 static int reaches(const asj_frame *frame, const asj_detect_options *options, const asj_hypothesis_branch *branch,
@@ -107,7 +125,7 @@ void asj_reject_early(const asj_context *context, const asj_frame *frame, const 
     hypothesis->branch_count = opens ? hypothesis->branch_count : 0;
 }
 
-/* Sets the branch's number of false alarms; returns whether the branch is to be kept. */
+/* Sets the branch's number of false alarms; returns whether the branch is to be kept: ALONE, or only WITH_OTHERS. */
 static int judge(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                  const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
 {
@@ -120,9 +138,34 @@ static int judge(const asj_context *context, const asj_frame *frame, const asj_d
         const asj_strip shorter = asj_strip_test(context, frame, options, &line);
         branch->log_nfa = fmin(branch->log_nfa, asj_strip_correlated(frame, &shorter, branch->width));
     }
-    return branch->length >= options->minimum_length && branch->length > 0 && fabs(branch->offset) <= LARGEST_OFFSET &&
-           (!options->strip_test || branch->log_nfa <= log_epsilon) && reaches(frame, options, branch, &strip) &&
-           !(options->ignore_frame && on_frame(frame, hypothesis, branch));
+    if (branch->length < options->minimum_length || branch->length <= 0 || fabs(branch->offset) > LARGEST_OFFSET ||
+        !reaches(frame, options, branch, &strip) || (options->ignore_frame && on_frame(frame, hypothesis, branch)))
+        return NOT_AT_ALL;
+    if (!options->strip_test || branch->log_nfa <= log_epsilon)
+        return ALONE;
+    const int pairs = frame->octave > 0 && branch->width <= SOFT;
+    return pairs && branch->log_nfa <= log_epsilon + 0.5 * log_places(frame) ? WITH_OTHERS : NOT_AT_ALL;
+}
+
+/* keep[i] = 0 or 1, from what judge() says: of the branches that are meaningful only WITH_OTHERS those that are so with another
+ * one that opens. */
+static void judge_pairs(const asj_frame *frame, const asj_detect_options *options, const asj_hypothesis *hypothesis, int *keep)
+{
+    const double limit = log(options->epsilon) + log(frame->octaves) + log_places(frame) - PAIR_LOG;
+    const double least = options->minimum_opening * ASJ_DEGREE;
+    const int32_t count = hypothesis->branch_count;
+    int verdict[ASJ_MAX_BRANCHES];
+    for (int32_t i = 0; i < count; i++) {
+        verdict[i] = keep[i];
+        keep[i] = verdict[i] == ALONE;
+    }
+    for (int32_t i = 0; i < count; i++)
+        for (int32_t j = 0; j < count && !keep[i]; j++) {
+            const asj_hypothesis_branch *a = &hypothesis->branches[i], *b = &hypothesis->branches[j];
+            const double turn = asj_angle_distance(a->angle, b->angle);
+            keep[i] = verdict[i] == WITH_OTHERS && verdict[j] != NOT_AT_ALL && turn >= least && turn <= ASJ_PI - least &&
+                      a->log_nfa + b->log_nfa <= limit;
+        }
 }
 
 static int has_moved_far(const asj_detect_options *options, const asj_hypothesis *hypothesis)
@@ -160,6 +203,7 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
     }
     for (int32_t i = 0; i < count; i++)
         keep[i] = judge(context, frame, options, hypothesis, &hypothesis->branches[i]);
+    judge_pairs(frame, options, hypothesis, keep);
     merge(options, hypothesis, keep);
     asj_hypothesis_select(hypothesis, keep);
     if (!asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE)) {

@@ -50,7 +50,7 @@ static const row rows[] = {
     {"b3.0-n2-c25", PARALLELOGRAMS, 3.0, 2, 25, 0, 0, 0, 0, 0, 0},
     {"b5.0-n2-c25", PARALLELOGRAMS, 5.0, 2, 25, 0, 0, 0, 0, 0, 0},
     {"weak-n2-c8", PARALLELOGRAMS, 1.0, 2, 8, 0, 0, 0, 0, 0, 0},
-    {"weak-n2-c5", PARALLELOGRAMS, 1.0, 2, 5, 0, 0, 0, 0, 0, 0},
+    {"weak-n2-c5", PARALLELOGRAMS, 1.0, 2, 5, .75, .98, 0, 0, 0, 0},
     {"checkerboard-n1", CHECKERBOARD, 1.0, 1, 100, 0, 0, 0, 0, 0, .95},
     {"checkerboard-n4", CHECKERBOARD, 1.0, 4, 100, 0, 0, 0, 0, 0, .95},
     {"random-tiles-n1", RANDOM_TILES, 1.0, 1, 0, 0, 0, 0, 0, 0, 0},
