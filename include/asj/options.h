@@ -48,7 +48,7 @@ typedef struct asj_option_info {
 typedef struct asj_detect_options {
     /* octaves: the whole detector on the image, on its half, on its quarter, .. */
     int32_t octaves;              /* how many at most, from first_octave on, as long as 48 px of either side are left. 1 .. 16;
-                                   * default 16; paper 1; match 1 */
+                                   * default 16; paper 1; match 4 */
     int32_t first_octave;         /* 0 = the image itself, 1 = its half, ..: large photographs may begin there. 0 .. 15; 0 */
     /* step 1: normalised gradient */
     double gradient_epsilon;      /* grey levels (0..255) per pixel added to the local mean of the gradient norm; what is much
@@ -102,8 +102,8 @@ typedef struct asj_detect_options {
                                    * paper 0; match 0 */
     int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`.
                                    * 1; paper 0; match 0 */
-    int32_t octave_union;         /* 1 = every octave keeps what it finds, though a finer one has found the same corner: for the
-                                   * matcher, which takes each corner once. 0; match 1 */
+    int32_t octave_union;         /* 1 = every octave is a detector of its own and keeps what it finds, though a finer one has found
+                                   * the same corner: for the matcher, which takes each corner once. 0; match 1 */
     int32_t all_meaningful_branches; /* step 3: 1 = a junction has all branches of which two alike would be a meaningful junction;
                                    * 0 = as many as make it most meaningful. 0; paper 1 */
     int32_t isotropic_apart;      /* step 3: px, of junctions no farther apart the most meaningful one stays; 0 = half its radius.

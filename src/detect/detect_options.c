@@ -23,7 +23,7 @@ static const char *const refinements[] = {"line_fit", "search", NULL};
 
 /* ..., range, default, paper, match, help */
 static const asj_option_info rows[] = {
-    INTEGER(OCTAVES, COMMON, octaves, "", 1, 16, 16, 1, 1,
+    INTEGER(OCTAVES, COMMON, octaves, "", 1, 16, 16, 1, 4,
             "how often the image is looked at, each time at half the size, as far as it allows; more finds softer corners"),
     INTEGER(OCTAVES, COMMON, first_octave, "", 0, 15, 0, 0, 0, "sizes that are left out: 1 = begin at half the image's size"),
     SWITCH(OCTAVES, ADVANCED, octave_union, 0, 0, 1,

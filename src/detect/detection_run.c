@@ -82,8 +82,7 @@ static asj_status prepare(asj_detection_run *run)
     status = asj_frame_prepare(run->context, run->frame, run->image->width, run->image->height);
     if (status != ASJ_OK)
         return status;
-    const asj_octave_range range = asj_octaves_of(run->options, run->image->width, run->image->height);
-    run->frame->octaves = range.end - range.first;
+    run->frame->octaves = asj_octaves_sharing(run->options, run->image->width, run->image->height);
     status = asj_detection_run_set_size(run);
     return status == ASJ_OK ? make_scratch(run) : status;
 }

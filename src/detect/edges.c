@@ -39,6 +39,7 @@ typedef struct graph {
     int32_t *heads, *next; /* junctions by cell */
     int32_t *nearest;      /* of each branch: junction * ASJ_MAX_BRANCHES + branch of what it may be joined with, -1 = none */
     int32_t *joined;       /* the same of what it is joined with */
+    int own_octave;        /* whether those of other octaves count as not there */
     int must_divide;       /* whether junctions on the way count only if they divide the edge */
     int32_t columns, rows;
     double log_epsilon, log_tests[ASJ_MAX_OCTAVES];
@@ -164,7 +165,8 @@ static int32_t look_in(const graph *g, const way *w, int32_t cell, double *neare
     for (int32_t i = g->heads[cell]; i >= 0; i = g->next[i]) {
         const asj_hypothesis *to = &g->hypotheses[i];
         double distance;
-        const int32_t branch = (size_t)i == w->junction ? -1 : comes_back(g, w, i, &distance);
+        const int is_known = !g->own_octave || to->octave == w->from->octave;
+        const int32_t branch = (size_t)i == w->junction || !is_known ? -1 : comes_back(g, w, i, &distance);
         if (branch >= 0 && distance < *nearest &&
             (!g->must_divide || ends_at(w->along, distance) || goes_on(to, w->along->angle))) {
             *nearest = distance;
@@ -209,6 +211,7 @@ static void mark_end(asj_hypothesis *from, int32_t branch, const asj_hypothesis 
 static void start(graph *g, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves)
 {
     g->log_epsilon = log(options->epsilon);
+    g->own_octave = options->octave_union;
     for (int32_t o = 0; o < ASJ_MAX_OCTAVES; o++)
         g->log_tests[o] = asj_strip_log_tests(width >> o > 0 ? width >> o : 1, height >> o > 0 ? height >> o : 1, octaves);
 }

@@ -17,15 +17,15 @@ asj_status asj_step_join(asj_detection_run *run)
     asj_memory *memory = &run->context->memory;
     const int32_t width = run->image->width, height = run->image->height;
     const size_t count = run->hypothesis_count, most = asj_detection_run_room(count_branches(run) / 2);
-    const asj_octave_range range = asj_octaves_of(run->options, width, height);
+    const int32_t octaves = asj_octaves_sharing(run->options, width, height);
     int32_t *scratch = asj_allocate_list(memory, asj_edges_scratch(asj_detection_run_room(count), width, height), sizeof *scratch);
     run->edges = asj_allocate_list(memory, most, sizeof *run->edges);
     asj_status status = ASJ_OK;
     asj_watch watch;
     asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
     if (scratch && run->edges) {
-        run->edge_count = asj_edges_join(&watch, run->options, width, height, range.end - range.first, run->evidence,
-                                         run->hypotheses, count, scratch, run->edges);
+        run->edge_count = asj_edges_join(&watch, run->options, width, height, octaves, run->evidence, run->hypotheses,
+                                         count, scratch, run->edges);
         status = asj_watch_end(&watch);
     } else
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for edges between %zu junctions", count);

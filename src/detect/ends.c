@@ -61,9 +61,10 @@ static int surely_ends(const asj_hypothesis *junction, double angle)
 }
 
 /* The junction on the line of a branch nearest to its end, less than `reach` px away, of those at which it `surely` ends or of all;
- * NULL = none. *distance: px to it. */
+ * NULL = none. *distance: px to it. With own_octave only junctions of the hypothesis' own octave count. */
 static const asj_hypothesis *find_end(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, double reach,
-                                      int surely, const asj_hypothesis *const *order, size_t count, double *distance)
+                                      int surely, int own_octave, const asj_hypothesis *const *order, size_t count,
+                                      double *distance)
 {
     const double ux = cos(branch->angle), uy = sin(branch->angle), end_y = hypothesis->y + branch->length * uy;
     const double off_line = OFF_LINE * (1 << branch->octave), around = reach + off_line;
@@ -72,6 +73,8 @@ static const asj_hypothesis *find_end(const asj_hypothesis *hypothesis, const as
     for (size_t i = lower_bound(order, count, end_y - around); i < count && order[i]->y <= end_y + around; i++) {
         const double dx = order[i]->x - hypothesis->x, dy = order[i]->y - hypothesis->y;
         const double t = dx * ux + dy * uy, off = fabs(dy * ux - dx * uy);
+        if (own_octave && order[i]->octave != hypothesis->octave)
+            continue;
         if (order[i] != hypothesis && t > 0 && off <= off_line && fabs(t - branch->length) < best &&
             (!surely || surely_ends(order[i], branch->angle))) {
             best = fabs(t - branch->length);
@@ -97,20 +100,22 @@ void asj_ends_mark(asj_hypothesis *hypotheses, size_t count, double reach, const
     for (size_t i = 0; i < count && !(watch && asj_watch_stops(watch, NULL)); i++)
         for (int32_t b = 0; b < hypotheses[i].branch_count; b++) {
             asj_hypothesis_branch *branch = &hypotheses[i].branches[b];
-            if (find_end(&hypotheses[i], branch, fmax(reach, AT_END), 0, order, count, &distance))
+            if (find_end(&hypotheses[i], branch, fmax(reach, AT_END), 0, 0, order, count, &distance))
                 branch->end = ASJ_BRANCH_END_JUNCTION;
         }
 }
 
-static void snap(const asj_hypothesis *hypothesis, double reach, const asj_hypothesis *const *order, size_t count,
+static void snap(const asj_hypothesis *hypothesis, double reach, int own_octave, const asj_hypothesis *const *order, size_t count,
                  asj_hypothesis_branch *branch)
 {
     const double scale = 1 << branch->octave;
     const int surely = reach > 0 && reach < SURE_REACH;
     double distance = 0;
-    const asj_hypothesis *end = surely ? find_end(hypothesis, branch, scale * SURE_REACH, 1, order, count, &distance) : NULL;
+    const asj_hypothesis *end = NULL;
+    if (surely)
+        end = find_end(hypothesis, branch, scale * SURE_REACH, 1, own_octave, order, count, &distance);
     reach = end ? SURE_REACH : reach;
-    end = end ? end : find_end(hypothesis, branch, scale * fmax(reach, AT_END), 0, order, count, &distance);
+    end = end ? end : find_end(hypothesis, branch, scale * fmax(reach, AT_END), 0, own_octave, order, count, &distance);
     if (!end) {
         branch->end = branch->end == ASJ_BRANCH_END_JUNCTION ? ASJ_BRANCH_END_UNKNOWN : branch->end; /* of another octave, gone */
         return;
@@ -122,10 +127,11 @@ static void snap(const asj_hypothesis *hypothesis, double reach, const asj_hypot
     branch->end_variance = hypothesis->location_variance + end->location_variance;
 }
 
-void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order, asj_watch *watch)
+void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, int own_octave, const asj_hypothesis **order,
+                   asj_watch *watch)
 {
     sort_by_row(hypotheses, count, order);
     for (size_t i = 0; i < count && !(watch && asj_watch_stops(watch, NULL)); i++)
         for (int32_t b = 0; b < hypotheses[i].branch_count; b++)
-            snap(&hypotheses[i], reach, order, count, &hypotheses[i].branches[b]);
+            snap(&hypotheses[i], reach, own_octave, order, count, &hypotheses[i].branches[b]);
 }

@@ -10,7 +10,9 @@
 void asj_ends_mark(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order, asj_watch *watch);
 
 /* Moves the ends of branches onto junctions that lie on their line within `reach` px of the end, and tells which end at one. px of
- * the branch's octave. Both: `order` is scratch for `count` elements; they leave off when the watch stops; NULL = none. */
-void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order, asj_watch *watch);
+ * the branch's octave. With own_octave those of other octaves are none. Both: `order` is scratch for `count` elements; they leave
+ * off when the watch stops; NULL = none. */
+void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, int own_octave, const asj_hypothesis **order,
+                   asj_watch *watch);
 
 #endif

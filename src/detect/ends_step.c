@@ -52,10 +52,8 @@ static asj_status measure_all(asj_detection_run *run)
     return asj_watch_end(&watch);
 }
 
-/* asj_ends_mark() or asj_ends_snap(). */
-typedef void (*ends_work)(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order, asj_watch *watch);
-
-static asj_status look_for_junctions(asj_detection_run *run, ends_work work)
+/* asj_ends_mark(), or at the end asj_ends_snap(). */
+static asj_status look_for_junctions(asj_detection_run *run, int at_the_end)
 {
     const size_t count = run->hypothesis_count;
     const asj_hypothesis **order = asj_allocate_list(&run->context->memory, asj_detection_run_room(count), sizeof *order);
@@ -63,7 +61,10 @@ static asj_status look_for_junctions(asj_detection_run *run, ends_work work)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", count);
     asj_watch watch;
     asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
-    work(run->hypotheses, count, run->options->snap_distance, order, &watch);
+    if (at_the_end)
+        asj_ends_snap(run->hypotheses, count, run->options->snap_distance, run->options->octave_union, order, &watch);
+    else
+        asj_ends_mark(run->hypotheses, count, run->options->snap_distance, order, &watch);
     asj_release(&run->context->memory, order);
     return asj_watch_end(&watch);
 }
@@ -92,7 +93,7 @@ asj_status asj_step_ends(asj_detection_run *run)
     asj_status status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, end_by_contrast);
     leave_out_rejected(run);
     if (status == ASJ_OK)
-        status = look_for_junctions(run, asj_ends_mark);
+        status = look_for_junctions(run, 0);
     if (status == ASJ_OK)
         status = number_branches(run);
     return status == ASJ_OK ? measure_all(run) : status;
@@ -100,5 +101,5 @@ asj_status asj_step_ends(asj_detection_run *run)
 
 asj_status asj_step_snap(asj_detection_run *run)
 {
-    return look_for_junctions(run, asj_ends_snap);
+    return look_for_junctions(run, 1);
 }

@@ -16,7 +16,8 @@
  * Junctions of two octaves are one when they are closer than NEAR px of the coarser octave and have a direction in common. The one
  * that stays gets the other's branches that were too soft for its own octave to see. Ghosts go: octave_ghosts.c.
  *
- * With octave_union nothing of this is done: each octave's junctions are listed. */
+ * With octave_union nothing of this is done: each octave is a detector of its own, with its own false alarms, whose branches end at
+ * its own junctions, and all junctions are listed. So the list without coarser octaves is a part of the list with them. */
 #include "octaves.h"
 #include "octave_ghosts.h"
 #include "core/angle.h"
@@ -75,6 +76,12 @@ void asj_octaves_map(asj_hypothesis *hypothesis, int32_t octave)
         branch->end_variance *= scale * scale;
         branch->apart *= scale;
     }
+}
+
+int32_t asj_octaves_sharing(const asj_detect_options *options, int32_t width, int32_t height)
+{
+    const asj_octave_range range = asj_octaves_of(options, width, height);
+    return options->octave_union ? 1 : range.end - range.first;
 }
 
 /* Of the two sharpest branches the less sharp one, px of the octave: two make a junction. */

@@ -13,6 +13,9 @@ typedef struct asj_octave_range {
 
 asj_octave_range asj_octaves_of(const asj_detect_options *options, int32_t width, int32_t height);
 
+/* How many octaves share the false alarms, and find each other's junctions. */
+int32_t asj_octaves_sharing(const asj_detect_options *options, int32_t width, int32_t height);
+
 /* From the pixels of an octave to those of the image; the hypothesis and its branches belong to that octave from then on. */
 void asj_octaves_map(asj_hypothesis *hypothesis, int32_t octave);
 

@@ -15,15 +15,15 @@
 #include "two_view.h"
 
 #include <math.h>
+#include <string.h>
 
 #define LEAST_MATCHES 20
 #define SAMPLES 8
 #define PRIOR 0.9
 #define MOST_AGAINST 0.25
 
-/* given: of all choices. asked: room for those of them that are asked. */
-static asj_status estimate(const asj_match_run *run, asj_geometry_candidate *given, asj_geometry_candidate *asked,
-                           asj_geometry *geometry)
+/* asked: room for all choices. */
+static asj_status estimate(const asj_match_run *run, asj_geometry_candidate *asked, asj_geometry *geometry)
 {
     asj_geometry_options options;
     size_t count = 0;
@@ -36,32 +36,44 @@ static asj_status estimate(const asj_match_run *run, asj_geometry_candidate *giv
     }
     for (size_t n = 0; n < run->choices.count; n++) {
         const asj_candidate *c = &run->candidates.list[run->choices.list[n].candidate];
-        given[n] = asj_candidate_for_geometry(run, c, PRIOR);
         if (asj_keeps_area(c))
-            asked[count++] = given[n];
+            asked[count++] = asj_candidate_for_geometry(run, c, PRIOR);
     }
     return asj_geometry_estimate(run->context, asked, count, &options, NULL, geometry);
 }
 
-static int is_far(const asj_match_run *run, size_t n, const asj_geometry *geometry, const asj_geometry_candidate *given)
+static int is_far(const asj_match_run *run, const asj_geometry *geometry, size_t n)
 {
-    const asj_geometry_candidate *g = &given[n];
-    return asj_distance_from_line(geometry, g->x1, g->y1, g->x2, g->y2) >
-           asj_farthest_from_line(run, &run->candidates.list[run->choices.list[n].candidate]);
+    const asj_candidate *c = &run->candidates.list[run->choices.list[n].candidate];
+    const asj_geometry_candidate g = asj_candidate_for_geometry(run, c, PRIOR);
+    return asj_distance_from_line(geometry, g.x1, g.y1, g.x2, g.y2) > asj_farthest_from_line(run);
 }
 
-static void drop_far(asj_match_run *run, const asj_geometry *geometry, const asj_geometry_candidate *given)
+static void drop_far(asj_match_run *run, const asj_geometry *geometry, size_t first)
 {
     asj_choices *choices = &run->choices;
-    size_t against = 0, kept = 0;
-    for (size_t n = 0; n < choices->count; n++)
-        against += (size_t)is_far(run, n, geometry, given);
-    if ((double)against > MOST_AGAINST * (double)choices->count)
-        return;
-    for (size_t n = 0; n < choices->count; n++)
-        if (!is_far(run, n, geometry, given)) /* kept <= n: what is asked about is not yet overwritten */
+    size_t kept = first;
+    for (size_t n = first; n < choices->count; n++)
+        if (!is_far(run, geometry, n)) /* kept <= n: what is asked about is not yet overwritten */
             choices->list[kept++] = choices->list[n];
     choices->count = kept;
+}
+
+/* Of all choices: does it contradict few enough to be believed? */
+static int is_believed(const asj_match_run *run, const asj_geometry *geometry)
+{
+    size_t against = 0;
+    for (size_t n = 0; n < run->choices.count; n++)
+        against += (size_t)is_far(run, geometry, n);
+    return (double)against <= MOST_AGAINST * (double)run->choices.count;
+}
+
+void asj_drop_off_lines(asj_match_run *run, size_t first)
+{
+    asj_geometry geometry = {.model = ASJ_GEOMETRY_FUNDAMENTAL};
+    memcpy(geometry.matrix, run->epipolar, sizeof geometry.matrix);
+    if (run->has_epipolar)
+        drop_far(run, &geometry, first);
 }
 
 asj_status asj_verify_epipolar(asj_match_run *run)
@@ -69,12 +81,15 @@ asj_status asj_verify_epipolar(asj_match_run *run)
     if (run->options->verify_neighbours == 0 || run->choices.count < LEAST_MATCHES)
         return ASJ_OK;
     asj_geometry geometry;
-    asj_geometry_candidate *given = asj_allocate(&run->context->memory, run->choices.count, 2 * sizeof *given);
-    if (!given)
+    asj_geometry_candidate *asked = asj_allocate(&run->context->memory, run->choices.count, sizeof *asked);
+    if (!asked)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to verify %zu matches", run->choices.count);
-    const asj_status status = estimate(run, given, given + run->choices.count, &geometry);
-    if (status == ASJ_OK && geometry.status == ASJ_GEOMETRY_ACCEPTED)
-        drop_far(run, &geometry, given);
-    asj_release(&run->context->memory, given);
+    const asj_status status = estimate(run, asked, &geometry);
+    if (status == ASJ_OK && geometry.status == ASJ_GEOMETRY_ACCEPTED && is_believed(run, &geometry)) {
+        run->has_epipolar = 1;
+        memcpy(run->epipolar, geometry.matrix, sizeof run->epipolar);
+        drop_far(run, &geometry, 0);
+    }
+    asj_release(&run->context->memory, asked);
     return status;
 }

@@ -8,4 +8,7 @@
 /* Drops choices that the fundamental matrix of all of them contradicts. */
 asj_status asj_verify_epipolar(asj_match_run *run);
 
+/* Drops the choices from number `first` on that do. */
+void asj_drop_off_lines(asj_match_run *run, size_t first);
+
 #endif

@@ -63,6 +63,17 @@ static void propose(proposals *p, uint32_t partner)
         p->partner[p->count++] = partner;
 }
 
+/* May L-junction l of image `side` be paired with k of the other? Guests (guests.c) when their turn comes, where nothing is matched
+ * yet. */
+static int may_propose(const asj_match_run *run, int32_t side, uint32_t l, uint32_t k)
+{
+    const asj_l_junctions *mine = &run->image[side]->l_junctions, *others = &run->image[1 - side]->l_junctions;
+    const int of_guests = asj_is_guest(mine, l) || asj_is_guest(others, k);
+    if (!run->taken[0])
+        return !of_guests;
+    return of_guests && !run->taken[side][mine->location[l]] && !run->taken[1 - side][others->location[k]];
+}
+
 /* What guide g proposes for L-junction l of image `side`. */
 static void ask(const asj_match_run *run, int32_t side, uint32_t l, const guide *g, proposals *p)
 {
@@ -82,7 +93,7 @@ static void ask(const asj_match_run *run, int32_t side, uint32_t l, const guide 
         for (uint32_t m = others->first_of_location[q]; m < others->first_of_location[q + 1]; m++) {
             const uint32_t k = others->l_of_location[m];
             const double *v = others->direction + 4 * (size_t)k;
-            if (turns(g->map, u, v) && turns(g->map, u + 2, v + 2))
+            if (may_propose(run, side, l, k) && turns(g->map, u, v) && turns(g->map, u + 2, v + 2))
                 propose(p, k);
         }
     }

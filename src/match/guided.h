@@ -5,7 +5,8 @@
 
 #include "match_run.h"
 
-/* Appends the pairs that chosen matches propose and that are not candidates yet: compared, aligned, in order. */
+/* Appends the pairs that chosen matches propose and that are not candidates yet: compared, aligned, in order. Of guests
+ * where the run says what is taken, else of the others. */
 asj_status asj_guided(asj_match_run *run);
 
 #endif

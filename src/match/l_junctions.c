@@ -8,7 +8,7 @@
  *
  * Matches are unique by location, and "another location" in the ratio test means farther than `separation`.
  * Neighbours of a location are the nearest others farther than `separation`, so that a cluster of duplicates is no neighbour of
- * itself. Guests (same_corner.c) are nobody's neighbours and lengthen no branch, so that others are as they are without them. */
+ * itself. Guests (guests.c) are nobody's neighbours and lengthen no branch, so that others are as they are without them. */
 #include "l_junctions.h"
 #include "nearest.h"
 #include "core/angle.h"
@@ -26,6 +26,7 @@
 #define LEAST_BEFORE_END 8.0 /* px */
 #define LEAST_APART 4.0      /* px */
 #define LEAST_LOCATIONS 32   /* for a thread */
+#define LEAST_SHARE 2        /* of the octave with most L-junctions: one in so many is enough; a soft picture has few fine ones */
 #define OPPOSITE (-0.978147601) /* cosine of 180 - 12 degrees: half the least opening of branches, and less */
 #define WITHIN 0.2095 /* rad: 12 degrees and a little more */
 
@@ -273,7 +274,7 @@ static asj_status make_frames(asj_context *context, const asj_match_options *opt
 
 static asj_status set_octaves(asj_context *context, const asj_junction_list *input, asj_l_junctions *all)
 {
-    uint32_t counts[ASJ_COARSEST + 1] = {0};
+    uint32_t counts[ASJ_COARSEST + 1] = {0}, most = 0;
     all->octave = asj_allocate(&context->memory, all->count, sizeof *all->octave);
     if (!all->octave)
         return no_memory(context);
@@ -282,8 +283,10 @@ static asj_status set_octaves(asj_context *context, const asj_junction_list *inp
         all->octave[i] = (uint8_t)(octave < 0 ? 0 : octave > ASJ_COARSEST ? ASJ_COARSEST : octave);
         counts[all->octave[i]]++;
     }
-    for (int32_t octave = 1; octave <= ASJ_COARSEST; octave++)
-        all->home = counts[octave] > counts[all->home] ? octave : all->home;
+    for (int32_t octave = 0; octave <= ASJ_COARSEST; octave++)
+        most = counts[octave] > most ? counts[octave] : most;
+    while (LEAST_SHARE * counts[all->home] < most)
+        all->home++;
     return ASJ_OK;
 }
 

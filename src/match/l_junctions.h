@@ -35,7 +35,7 @@ typedef struct asj_l_junctions {
     uint32_t *l_of_location;
     double *location_x, *location_y;
     uint8_t *octave;             /* of each L-junction: that located it, 0 .. ASJ_COARSEST */
-    int32_t home;                /* the octave of most L-junctions; others are guests (same_corner.c) */
+    int32_t home;                /* the finest octave of at least half as many as any; others are guests (guests.c) */
     uint32_t home_locations;     /* locations of that octave */
     uint8_t *t_junction;         /* of each L-junction: is it part of a T? One of its branches goes on beyond the location */
     uint32_t *neighbour;         /* [k * location .. + neighbour_count[location]]: nearest other locations that are no guests',
@@ -58,7 +58,7 @@ asj_status asj_l_junctions_create(asj_context *context, const asj_match_options 
                                   asj_l_junctions *l_junctions);
 void asj_l_junctions_free(asj_memory *memory, asj_l_junctions *l_junctions);
 
-/* L-junctions of another octave than most: they neither support nor lengthen others. */
+/* L-junctions of another octave than home: they neither support nor lengthen others. */
 static inline int asj_is_guest(const asj_l_junctions *all, uint32_t l)
 {
     return all->octave[l] != all->home;

@@ -18,6 +18,7 @@
  *   epipolar.c       and by the fundamental matrix of all            (../geometry/)
  *   two_view.c       the geometry of the pair, when asked for: candidates once more, a longer list (prior.c, colour_prior.c,
  *                    ../geometry/)
+ *   guests.c         matches of junctions of other octaves, which those propose; once more from align.c to epipolar.c
  *   same_corner.c    one match for each corner that several octaves list
  *   match_result.c   what the caller sees; segments.c: which ends of the branches correspond
  *
@@ -28,6 +29,7 @@
 #include "consensus.h"
 #include "core/backend.h"
 #include "epipolar.h"
+#include "guests.h"
 #include "guided.h"
 #include "kept_features.h"
 #include "match_options.h"
@@ -65,6 +67,11 @@ static asj_status align(asj_match_run *run)
     return run->options->align_iterations > 0 ? asj_align_candidates(run, 0) : ASJ_OK;
 }
 
+static asj_status verify(asj_match_run *run)
+{
+    return asj_verify(run, 0);
+}
+
 static asj_status run_step(asj_match_run *run, const step *s, stop_watch *watch)
 {
     asj_status status = asj_progress(run->context, s->stage, s->done);
@@ -98,10 +105,11 @@ static asj_status run_steps(asj_match_run *run, stop_watch *watch)
         {ASJ_STAGE_ASSIGN, 0.94, asj_assign},
     };
     static const step last[] = {
-        {ASJ_STAGE_ASSIGN, 0.95, asj_verify},
+        {ASJ_STAGE_ASSIGN, 0.95, verify},
         {ASJ_STAGE_ASSIGN, 0.955, asj_verify_epipolar},
     };
     static const step geometry = {ASJ_STAGE_ASSIGN, 0.96, asj_apply_geometry};
+    static const step guests = {ASJ_STAGE_ALIGN, 0.98, asj_match_guests};
     static const step corners = {ASJ_STAGE_ASSIGN, 0.99, asj_same_corner};
     int32_t related;
     asj_status status = asj_progress(run->context, ASJ_STAGE_DISTANCES, 0.15);
@@ -123,6 +131,8 @@ static asj_status run_steps(asj_match_run *run, stop_watch *watch)
         status = run_list(run, last, sizeof last / sizeof *last, watch);
     if (status == ASJ_OK)
         status = run_step(run, &geometry, watch);
+    if (status == ASJ_OK)
+        status = run_step(run, &guests, watch);
     return status == ASJ_OK ? run_step(run, &corners, watch) : status;
 }
 

@@ -15,12 +15,21 @@ typedef struct asj_match_run {
     asj_choices choices;       /* assign.c; room for every location of image 1 */
     asj_geometry geometry;     /* two_view.c */
     asj_choices rejected;      /* two_view.c: what were choices before */
+    const uint8_t *taken[2];   /* guests.c: locations that are matched already; NULL: guests are not proposed */
+    int32_t has_epipolar;      /* epipolar.c: is the fundamental matrix of all choices known, */
+    double epipolar[9];        /* .. by rows: x2' F x1 = 0 */
 } asj_match_run;
 
 /* L-junction of a candidate in image `side` (0 or 1). */
 static inline const asj_l_junction *asj_match_run_l(const asj_match_run *run, const asj_candidate *c, int32_t side)
 {
     return &run->image[side]->l_junctions.l[asj_candidate_l(c, side)];
+}
+
+/* Does it match a guest (guests.c)? */
+static inline int asj_is_of_guests(const asj_match_run *run, const asj_candidate *c)
+{
+    return asj_is_guest(&run->image[0]->l_junctions, c->i) || asj_is_guest(&run->image[1]->l_junctions, c->j);
 }
 
 #endif

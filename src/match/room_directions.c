@@ -50,34 +50,40 @@ static asj_status from_segments(asj_context *context, const asj_pyramid *pyramid
     return good ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the directions of %lu edges", (unsigned long)count);
 }
 
-/* The branches of the L-junctions. Their angles carry no uncertainty here: vanishing.c takes it from their lengths. */
+/* The branches of the L-junctions that are no guests. Their angles carry no uncertainty here: vanishing.c takes it from their
+ * lengths. */
 static asj_status from_branches(asj_context *context, const asj_image_features *image, const asj_camera *camera,
                                 asj_directions_list *found)
 {
     const asj_l_junctions *in = &image->l_junctions;
     asj_vanishing_options options;
     asj_vanishing_points points;
+    size_t count = 0;
     asj_junction *list = asj_allocate_zero(&context->memory, in->count, sizeof *list);
     if (!list)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the directions of %lu L-junctions", (unsigned long)in->count);
     for (uint32_t k = 0; k < in->count; k++) {
         const asj_l_junction *l = &in->l[k];
+        asj_junction *of_two = &list[count];
+        if (asj_is_guest(in, k))
+            continue;
         const double to[2][2] = {{(double)l->ax - (double)l->x, (double)l->ay - (double)l->y},
                                  {(double)l->bx - (double)l->x, (double)l->by - (double)l->y}};
-        list[k].x = l->x;
-        list[k].y = l->y;
-        list[k].branch_count = 2;
+        of_two->x = l->x;
+        of_two->y = l->y;
+        of_two->branch_count = 2;
         for (int32_t b = 0; b < 2; b++) {
             const double angle = atan2(to[b][1], to[b][0]);
-            list[k].branches[b].angle = (float)(angle < 0 ? angle + ASJ_TWO_PI : angle);
-            list[k].branches[b].length = (float)sqrt(to[b][0] * to[b][0] + to[b][1] * to[b][1]);
+            of_two->branches[b].angle = (float)(angle < 0 ? angle + ASJ_TWO_PI : angle);
+            of_two->branches[b].length = (float)sqrt(to[b][0] * to[b][0] + to[b][1] * to[b][1]);
         }
+        count++;
     }
     asj_vanishing_options_init(&options);
     options.camera = *camera;
     options.width = image->pyramid.width[0];
     options.height = image->pyramid.height[0];
-    const asj_status status = asj_find_vanishing_points(context, list, in->count, &options, &points);
+    const asj_status status = asj_find_vanishing_points(context, list, count, &options, &points);
     asj_release(&context->memory, list);
     if (status != ASJ_OK || points.count < 2)
         return status;

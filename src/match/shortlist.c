@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 7, short lists: the candidates are the union of the best partners of every L-junction of either image (rank.c), guests left
- * out (same_corner.c). Ties go to the smaller index, so the list depends on nothing but the input. */
+ * out (guests.c). Ties go to the smaller index, so the list depends on nothing but the input. */
 #include "shortlist.h"
 #include "subset.h"
 

@@ -8,10 +8,11 @@
  *
  * Where a geometry is accepted, and no other one contradicts it:
  *   - a match that is there already goes when an epipolar geometry contradicts it: a location farther from its line than FARTHEST
- *     px, or OF_SIDE of the longer side, since lenses bend lines in proportion to the image; twice as far for each octave that
- *     located it. (Rendered rooms and sixteen pairs of photographs with sides of up to 1600 px; epipolar.c asks the same.) A
- *     homography contradicts nothing: there are other planes. And a geometry that contradicts more than half of the matches is not
- *     believed against them;
+ *     px, or OF_SIDE of the longer side, since lenses bend lines in proportion to the image; twice as far for each octave where
+ *     L-junctions of the image itself are few. Guests (guests.c) may lie no farther off than others: their places are known less
+ *     well, but the alignment finds the same place in the other image as well as it does of others. (Rendered rooms and sixteen
+ *     pairs of photographs with sides of up to 1600 px; epipolar.c asks the same.) A homography contradicts nothing: there are
+ *     other planes. And a geometry that contradicts more than half of the matches is not believed against them;
  *   - a candidate comes when its probability is LEAST_PROBABILITY at least, and both its locations are free; where there are
  *     MANY_MATCHES already, only when it is SURE_PROBABILITY at least. (On photographs that are none of the wide pairs three of
  *     four newcomers below that are right, and 45 of 47 above.)
@@ -82,14 +83,14 @@ static asj_status wide_candidates(const asj_match_run *run, wide_run *w)
     return status == ASJ_OK ? asj_consensus(&w->run) : status;
 }
 
-/* Locations come in order of x, so near ones are looked for backwards. */
+/* Locations come in order of x, so near ones are looked for backwards. Guests (guests.c) have no candidates here. */
 static void cluster(const asj_l_junctions *in, uint32_t *place)
 {
     for (uint32_t p = 0; p < in->location_count; p++) {
         place[p] = p;
         for (uint32_t q = p; q-- > 0 && in->location_x[p] - in->location_x[q] < CLUSTER;) {
             const double dx = in->location_x[p] - in->location_x[q], dy = in->location_y[p] - in->location_y[q];
-            if (dx * dx + dy * dy < CLUSTER * CLUSTER) {
+            if (dx * dx + dy * dy < CLUSTER * CLUSTER && !asj_is_guest_location(in, q)) {
                 place[p] = place[q];
                 break;
             }
@@ -185,14 +186,13 @@ double asj_distance_from_line(const asj_geometry *g, double x1, double y1, doubl
     return g->model == ASJ_GEOMETRY_HOMOGRAPHY ? 0 : least > 0 ? e / sqrt(least) : HUGE_VAL;
 }
 
-double asj_farthest_from_line(const asj_match_run *run, const asj_candidate *c)
+double asj_farthest_from_line(const asj_match_run *run)
 {
     double most = 0;
     for (int32_t side = 0; side < 2; side++) {
         const asj_image_features *image = run->image[side];
         const int32_t width = image->pyramid.width[0], height = image->pyramid.height[0];
-        const int32_t octave = image->l_junctions.octave[asj_candidate_l(c, side)];
-        most = fmax(most, ldexp(fmax(FARTHEST, OF_SIDE * (width > height ? width : height)), octave));
+        most = fmax(most, ldexp(fmax(FARTHEST, OF_SIDE * (width > height ? width : height)), image->l_junctions.home));
     }
     return most;
 }
@@ -225,7 +225,7 @@ static asj_status filter(asj_match_run *run, const wide_run *w)
             const asj_candidate *c = &run->candidates.list[choices->list[n].candidate];
             const asj_geometry_candidate at = clustered(w, c, 0);
             const double off = asj_distance_from_line(&run->geometry, at.x1, at.y1, at.x2, at.y2);
-            const int32_t far = off > asj_farthest_from_line(run, c);
+            const int32_t far = off > asj_farthest_from_line(run);
             if (pass == 0) {
                 against += (size_t)far;
             } else if (!far || 2 * against > choices->count) {

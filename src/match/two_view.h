@@ -18,7 +18,7 @@ int asj_keeps_area(const asj_candidate *c);
 /* px from the epipolar lines, the larger of both images; 0 for a homography. */
 double asj_distance_from_line(const asj_geometry *g, double x1, double y1, double x2, double y2);
 
-/* How far from its epipolar line a match may lie, px, of the image that knows its place less well. */
-double asj_farthest_from_line(const asj_match_run *run, const asj_candidate *c);
+/* How far from its epipolar line a match may lie, px, of the image that knows places less well. */
+double asj_farthest_from_line(const asj_match_run *run);
 
 #endif

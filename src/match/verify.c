@@ -41,6 +41,7 @@ typedef struct trial {
     suspect *suspects; /* as many as choices */
     double *agreed;
     asj_watch *watch;
+    size_t fixed; /* as many choices, the first ones, stay; if there are any the others are judged by these alone */
 } trial;
 
 static const asj_candidate *candidate_of(const trial *t, size_t n)
@@ -62,7 +63,8 @@ static void find_nearest(const trial *t, size_t self, int32_t side, asj_nearest 
 {
     const suspect *all = t->suspects;
     const double least = t->run->options->separation * t->run->options->separation;
-    for (size_t n = 0; n < t->run->choices.count; n++) {
+    const size_t asked = t->fixed ? t->fixed : t->run->choices.count;
+    for (size_t n = 0; n < asked; n++) {
         const double dx = all[n].x[side] - all[self].x[side], dy = all[n].y[side] - all[self].y[side];
         const double square = dx * dx + dy * dy;
         if (n != self && all[n].stays && square > least)
@@ -94,33 +96,37 @@ static double agreement(const trial *t, size_t self)
 static void agree_some(const void *data, const asj_part *part)
 {
     const trial *t = data;
-    for (int64_t n = part->first; n < part->end && !asj_watch_stops(t->watch, part); n++)
-        t->agreed[n] = agreement(t, (size_t)n);
+    for (int64_t n = part->first; n < part->end && !asj_watch_stops(t->watch, part); n++) {
+        const size_t self = t->fixed + (size_t)n;
+        t->agreed[self] = agreement(t, self);
+    }
 }
 
 static asj_status try_all(const trial *t)
 {
-    const int64_t count = (int64_t)t->run->choices.count;
-    for (int64_t n = 0; n < count; n++)
-        t->suspects[n] = suspect_of(t, (size_t)n);
+    const size_t all = t->run->choices.count;
+    const int64_t count = (int64_t)(all - t->fixed);
+    for (size_t n = 0; n < all; n++)
+        t->suspects[n] = suspect_of(t, n);
     asj_watch_start(t->watch, t->run->context, ASJ_STAGE_ASSIGN);
     for (int round = 0; round < ROUNDS && !t->watch->stopped; round++) {
         asj_parallel(t->run->context, asj_threads_for(t->run->context, count, LEAST_MATCHES), count, 0, agree_some, t);
-        for (int64_t n = 0; n < count; n++)
+        for (size_t n = t->fixed; n < all; n++)
             t->suspects[n].stays = t->agreed[n] >= t->suspects[n].needs;
     }
     return asj_watch_end(t->watch);
 }
 
-asj_status asj_verify(asj_match_run *run)
+asj_status asj_verify(asj_match_run *run, size_t fixed)
 {
     asj_choices *choices = &run->choices;
     const size_t all = choices->count;
-    if (run->options->verify_neighbours == 0 || all == 0)
+    if (run->options->verify_neighbours == 0 || all == fixed)
         return ASJ_OK;
     asj_memory *memory = &run->context->memory;
     asj_watch watch;
-    const trial t = {run, asj_allocate(memory, all, sizeof *t.suspects), asj_allocate(memory, all, sizeof *t.agreed), &watch};
+    const trial t = {run, asj_allocate(memory, all, sizeof *t.suspects), asj_allocate(memory, all, sizeof *t.agreed), &watch,
+                     fixed};
     asj_status status = ASJ_OK;
     if (!t.suspects || !t.agreed) {
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to verify %zu matches", all);

@@ -5,7 +5,8 @@
 
 #include "match_run.h"
 
-/* Drops choices that the choices around them contradict; the order of the others stays. */
-asj_status asj_verify(asj_match_run *run);
+/* Drops choices that the choices around them contradict; the order of the others stays. The first `fixed` of them stay, and if
+ * there are any the others are judged by these alone. */
+asj_status asj_verify(asj_match_run *run, size_t fixed);
 
 #endif

@@ -320,6 +320,39 @@ static void test_threads(void **state)
         }
 }
 
+/* Octaves that are listed each for itself change nothing of each other. */
+static void test_octave_union(void **state)
+{
+    enum { PICTURES = 3 };
+    fixture *f = *state;
+    uint32_t coarse = 0;
+    for (int32_t kind = 0; kind < PICTURES; kind++) {
+        int32_t width, height;
+        uint8_t *pixels = some_picture(kind, &width, &height);
+        const asj_image image = unit_gray8(pixels, width, height);
+        asj_detection *one = NULL, *all = NULL;
+        asj_detect_options options;
+        assert_int_equal(asj_detect_options_preset(&options, ASJ_PRESET_MATCH), ASJ_OK);
+        assert_true(options.octaves > 1 && options.octave_union);
+        assert_int_equal(asj_detect(f->context, &image, &options, &all), ASJ_OK);
+        options.octaves = 1;
+        assert_int_equal(asj_detect(f->context, &image, &options, &one), ASJ_OK);
+        uint32_t next = 0;
+        for (uint32_t i = 0; i < all->junction_count; i++) {
+            coarse += all->junctions[i].octave > 0;
+            if (all->junctions[i].octave > 0)
+                continue;
+            assert_true(next < one->junction_count);
+            assert_memory_equal(&all->junctions[i], &one->junctions[next++], sizeof *one->junctions);
+        }
+        assert_int_equal(next, one->junction_count);
+        asj_detection_free(&one);
+        asj_detection_free(&all);
+        free(pixels);
+    }
+    assert_true(coarse > 20);
+}
+
 /* No branch is shorter, wherever it ends in the end: ends come after branches have been validated. */
 static void test_minimum_length(void **state)
 {
@@ -603,6 +636,7 @@ int main(void)
         cmocka_unit_test(test_tiny_and_flat),
         cmocka_unit_test(test_noise),  cmocka_unit_test(test_borders),   cmocka_unit_test(test_threads),
         cmocka_unit_test(test_reuse),  cmocka_unit_test(test_quarter_turn), cmocka_unit_test(test_formats),
+        cmocka_unit_test(test_octave_union),
         cmocka_unit_test(test_minimum_length),
         cmocka_unit_test(test_radii),
         cmocka_unit_test(test_arguments), cmocka_unit_test(test_bad_options), cmocka_unit_test(test_extreme_options),

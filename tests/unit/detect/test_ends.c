@@ -44,7 +44,7 @@ static void test_random(void **state)
             }
         }
         memcpy(before, hypotheses, sizeof before);
-        asj_ends_snap(hypotheses, count, reach, order, NULL);
+        asj_ends_snap(hypotheses, count, reach, 0, order, NULL);
         for (size_t i = 0; i < count; i++)
             for (int32_t b = 0; b < hypotheses[i].branch_count; b++) {
                 unit_near("length", (double)i, b, hypotheses[i].branches[b].length,
@@ -73,13 +73,13 @@ static void test_off(void **state)
     hypotheses[1].location_variance = 0.03;
     hypotheses[1].x = 26;
     memcpy(before, hypotheses, sizeof before);
-    asj_ends_snap(hypotheses, 2, 0, order, NULL);
+    asj_ends_snap(hypotheses, 2, 0, 0, order, NULL);
     assert_memory_equal(hypotheses, before, sizeof before);
     hypotheses[1].x = 21; /* so near that it is what is there */
-    asj_ends_snap(hypotheses, 2, 0, order, NULL);
+    asj_ends_snap(hypotheses, 2, 0, 0, order, NULL);
     assert_true(hypotheses[0].branches[0].length == 20 && hypotheses[0].branches[0].end == ASJ_BRANCH_END_JUNCTION);
-    asj_ends_snap(hypotheses, 0, 5, NULL, NULL);
-    asj_ends_snap(hypotheses, 2, 5, order, NULL);
+    asj_ends_snap(hypotheses, 0, 5, 0, NULL, NULL);
+    asj_ends_snap(hypotheses, 2, 5, 0, order, NULL);
     assert_true(hypotheses[0].branches[0].length == 21);
     unit_near("variance", 0, 0, hypotheses[0].branches[0].end_variance, 0.05, 1e-12);
 }
@@ -98,7 +98,7 @@ static double snapped(double reach, double back, double other, double log_nfa)
     hypotheses[1].branches[1].angle = other;
     hypotheses[1].branches[0].log_nfa = -400;
     hypotheses[1].branches[1].log_nfa = log_nfa;
-    asj_ends_snap(hypotheses, 2, reach, order, NULL);
+    asj_ends_snap(hypotheses, 2, reach, 0, order, NULL);
     return hypotheses[0].branches[0].length;
 }
 

@@ -8,6 +8,8 @@ enum { SIDE = 8, COUNT = SIDE * SIDE };
 static asj_l_junction l[2][COUNT];
 static uint32_t locations[COUNT];
 static uint8_t octaves[COUNT];
+static int32_t home;
+static size_t later; /* so many of the choices come after the test */
 static asj_candidate candidates[COUNT];
 static asj_choice choices[COUNT];
 
@@ -55,13 +57,18 @@ static size_t stay(int32_t count, int32_t each, int32_t neighbours, int32_t *mov
         image[side].l_junctions.l = l[side];
         image[side].l_junctions.location = locations;
         image[side].l_junctions.octave = octaves;
+        image[side].l_junctions.home = home;
         image[side].l_junctions.count = image[side].l_junctions.location_count = COUNT;
         image[side].pyramid.width[0] = 640;
         image[side].pyramid.height[0] = 480;
     }
     asj_match_run run = {.context = context, .options = &options, .image = {&image[0], &image[1]},
-                         .candidates = {candidates, COUNT, COUNT}, .choices = {choices, (size_t)count}};
+                         .candidates = {candidates, COUNT, COUNT}, .choices = {choices, (size_t)count - later}};
     assert_int_equal(asj_verify_epipolar(&run), ASJ_OK);
+    const size_t accepted = run.choices.count;
+    for (size_t n = (size_t)count - later; n < (size_t)count; n++)
+        choices[run.choices.count++] = (asj_choice){(uint32_t)n, 2, 0};
+    asj_drop_off_lines(&run, accepted);
     *moved = 0;
     for (size_t n = 0; n < run.choices.count; n++)
         *moved += each && (int32_t)choices[n].candidate % each == 0;
@@ -82,10 +89,25 @@ static void what_is_known_less_may_lie_farther(void **state)
 {
     int32_t moved;
     (void)state;
-    octaves[9] = 2; /* 16 px */
-    assert_int_equal(stay(COUNT, 9, 16, &moved), COUNT - 7);
-    assert_int_equal(moved, 1);
+    octaves[9] = 2; /* of a guest, which is aligned as others are */
+    assert_int_equal(stay(COUNT, 9, 16, &moved), COUNT - 8);
+    home = 2; /* 16 px */
+    assert_int_equal(stay(COUNT, 9, 16, &moved), COUNT);
+    assert_int_equal(moved, 8);
     octaves[9] = 0;
+    home = 0;
+}
+
+static void those_that_come_later_go_by_the_same_lines(void **state)
+{
+    int32_t moved;
+    (void)state;
+    later = COUNT / 2;
+    assert_int_equal(stay(COUNT, 9, 16, &moved), COUNT - 8);
+    assert_int_equal(moved, 0);
+    later = COUNT - 19; /* so few are asked that there is no matrix */
+    assert_int_equal(stay(COUNT, 9, 16, &moved), COUNT);
+    later = 0;
 }
 
 /* A third of them moves together: no scene that stands still. */
@@ -120,6 +142,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_leaves_its_line_goes),
         cmocka_unit_test(what_is_known_less_may_lie_farther),
+        cmocka_unit_test(those_that_come_later_go_by_the_same_lines),
         cmocka_unit_test(many_are_believed),
         cmocka_unit_test(a_map_without_area_is_not_asked),
         cmocka_unit_test(few_matches_say_nothing),

@@ -14,6 +14,7 @@ typedef struct stage {
     asj_candidate list[MOST];
     asj_choice choices[MOST];
     asj_match_options options;
+    size_t fixed;
 } stage;
 
 static void add(stage *s, double x, double y, double move_x, double move_y, int32_t branches)
@@ -52,7 +53,7 @@ static size_t verify(asj_context *context, stage *s)
     assert_int_equal(count, s->count);
     asj_match_run run = {.context = context, .options = &s->options, .image = {&s->image[0], &s->image[1]},
                          .candidates = {s->list, s->count, MOST}, .choices = {s->choices, count}};
-    assert_int_equal(asj_verify(&run), ASJ_OK);
+    assert_int_equal(asj_verify(&run, s->fixed), ASJ_OK);
     for (int v = 0; v < 2; v++)
         asj_l_junctions_free(&context->memory, &s->image[v].l_junctions);
     return run.choices.count;
@@ -121,6 +122,28 @@ static void far_neighbours_say_little(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Three that agree among themselves, as above, but what they say of each other does not count. */
+static void fixed_ones_judge_alone(void **state)
+{
+    (void)state;
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    static stage s;
+    grid(&s, 12);
+    add(&s, 180, 140, 70, -50, 2); /* wrong, and stays: it is fixed */
+    for (int32_t k = 0; k < 3; k++)
+        add(&s, 120 + 40 * k, 200, 60, 60, 2);
+    add(&s, 260, 140, 0, 0, 2);
+    s.options.verify_agreement = 0.25;
+    s.fixed = 13;
+    assert_int_equal(verify(context, &s), 14);
+    for (size_t n = 0; n < 14; n++)
+        assert_int_equal(s.choices[n].candidate, n < 13 ? n : 16);
+    s.fixed = 17;
+    assert_int_equal(verify(context, &s), 17);
+    unit_context_free(&counter, &context);
+}
+
 static void without_memory_it_says_so(void **state)
 {
     (void)state;
@@ -131,7 +154,7 @@ static void without_memory_it_says_so(void **state)
     asj_match_options_init(&options);
     asj_match_run run = {.context = context, .options = &options, .choices = {&choice, 1}};
     counter.fail_at = counter.calls + 1;
-    assert_int_equal(asj_verify(&run), ASJ_ERROR_MEMORY);
+    assert_int_equal(asj_verify(&run, 0), ASJ_ERROR_MEMORY);
     counter.fail_at = 0;
     unit_context_free(&counter, &context);
 }
@@ -142,6 +165,7 @@ int main(void)
         cmocka_unit_test(what_is_contradicted_goes),
         cmocka_unit_test(a_t_needs_more),
         cmocka_unit_test(far_neighbours_say_little),
+        cmocka_unit_test(fixed_ones_judge_alone),
         cmocka_unit_test(without_memory_it_says_so),
     };
     return cmocka_run_group_tests_name("verify", tests, NULL, NULL);
