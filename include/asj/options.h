@@ -96,7 +96,7 @@ typedef struct asj_detect_options {
     double near_strength;         /* standard deviations that a branch needs in its first 6 px. -10 .. 10; 0;
                                    * paper -10; match -10 */
     double snap_distance;         /* px of its octave: a branch that ends this close to a junction on its line ends there; if not 0,
-                                   * from 8 px at a corner beyond doubt. 0 .. 30; 4; paper 0; match 8 */
+                                   * from 4 px in coarse octaves and 8 at corners beyond doubt. 0 .. 30; 2; paper 0; match 8 */
     double end_contrast;          /* an edge ends where it has this share of its own contrast left, or breaks off, unless it goes on
                                    * as strong all along; 0 = where the scan loses it, which depends on noise. 0 .. 0.9; 0.15;
                                    * paper 0; match 0 */

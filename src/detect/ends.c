@@ -3,15 +3,16 @@
  * at acute corners, and with the scan's own ends (end_contrast = 0) at all corners, since the local junctions there hold several
  * branches, and which one is closest to the ray is a matter of noise. The corner itself is located to a few tenths of a pixel. So
  * when a junction lies on the line of a branch (within OFF_LINE px) and within snap_distance of its end, that is where the branch
- * ends; px of the branch's octave both. A wide reach makes ends depend on whether the junction was found: on 24 photographs and
- * their copies (zoom, shift, blur, noise, compression, gain) 45.8 % of the junctions repeat with 8 px, 47.7 with 4, 48.6 with 3, by
- * the paper's criterion, while 4 px are what ends at rounded corners of rendered scenes need. The paper has no such step
- * (snap_distance = 0); there such ends are only told to be at a junction.
+ * ends; px of the branch's octave both, and in coarse octaves, where ends are known worse, COARSE_REACH at least. The paper has no
+ * such step (snap_distance = 0); there such ends are only told to be at a junction.
  *
- * A junction that is beyond doubt is found in every copy, and where a branch of its own comes back and none goes on, the edge ends
- * at it: another branch that leaves it at a small angle is what carried the end beyond. So the end moves onto such a junction from
- * up to SURE_REACH px away. Stars and the rendered room (tests/accuracy): .912 and .870 of the lengths right without it, .937 and
- * .880 with it; on the photographs as many junctions repeat. If all junctions counted as sure it would be 2 in 100 less. */
+ * A wide reach makes ends depend on whether the junction was found: on 24 photographs and their copies (zoom, shift, blur, noise,
+ * compression, gain) 45.8 % of the junctions repeat with 8 px, 47.7 with 4, 48.6 with 3, by the paper's criterion. A junction that
+ * is beyond doubt is found in every copy, though, and where a branch of its own comes back and none goes on, the edge ends at it:
+ * another branch that leaves it at a small angle is what carried the end beyond. So at such a junction the reach grows from
+ * snap_distance to SURE_REACH as log10 NFA of the second of its branches, best first, goes from DOUBTFUL to SURE. Against one reach
+ * of 4 px, and 8 from -60 on, with snap_distance = 2: 45.8 % of the junctions of six photographs repeat at zoom 0.9 and 53.9 with
+ * noise (44.3 and 49.9), of eighteen more 34.6 and 50.0 (34.0 and 49.2); .877 of the rendered room's lengths are right (.880). */
 #include "ends.h"
 #include "core/angle.h"
 
@@ -20,8 +21,10 @@
 
 #define OFF_LINE 2.0 /* px */
 #define AT_END 4.0   /* px: a junction so near is what is at the end, whether the end moves or not */
-#define SURE_REACH 8.0 /* px */
-#define SURE_LOG_NFA (-60 * 2.302585092994046) /* natural logarithm: of the second of its branches, best first */
+#define COARSE_REACH 4.0 /* px */
+#define SURE_REACH 8.0   /* px */
+#define DOUBTFUL (-30 * 2.302585092994046) /* natural logarithms */
+#define SURE (-60 * 2.302585092994046)
 #define TURN (15 * ASJ_DEGREE) /* default of merge_angle: closer branches would be one */
 
 static int by_row(const void *a, const void *b)
@@ -46,38 +49,57 @@ static size_t lower_bound(const asj_hypothesis *const *order, size_t count, doub
     return low;
 }
 
-/* Whether an edge that comes at this angle surely ends at the junction. */
-static int surely_ends(const asj_hypothesis *junction, double angle)
+/* Whether an edge that comes at this angle ends at the junction: a branch comes back, and none goes on. */
+static int ends_at(const asj_hypothesis *junction, double angle)
 {
-    int sure = 0, back = 0;
+    int back = 0;
     for (int32_t i = 0; i < junction->branch_count; i++) {
-        const asj_hypothesis_branch *branch = &junction->branches[i];
-        if (asj_angle_distance(branch->angle, angle) <= TURN)
+        if (asj_angle_distance(junction->branches[i].angle, angle) <= TURN)
             return 0;
-        back |= asj_angle_distance(branch->angle, angle + ASJ_PI) <= TURN;
-        sure += branch->log_nfa <= SURE_LOG_NFA;
+        back |= asj_angle_distance(junction->branches[i].angle, angle + ASJ_PI) <= TURN;
     }
-    return back && sure >= 2;
+    return back;
 }
 
-/* The junction on the line of a branch nearest to its end, less than `reach` px away, of those at which it `surely` ends or of all;
- * NULL = none. *distance: px to it. With own_octave only junctions of the hypothesis' own octave count. */
-static const asj_hypothesis *find_end(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, double reach,
-                                      int surely, int own_octave, const asj_hypothesis *const *order, size_t count,
-                                      double *distance)
+/* ln NFA of the second of its branches, best first. */
+static double second_log_nfa(const asj_hypothesis *junction)
+{
+    double first = HUGE_VAL, second = HUGE_VAL;
+    for (int32_t i = 0; i < junction->branch_count; i++) {
+        const double log_nfa = junction->branches[i].log_nfa;
+        second = log_nfa < first ? first : fmin(second, log_nfa);
+        first = fmin(first, log_nfa);
+    }
+    return second;
+}
+
+/* px from which the end of an edge that comes at this angle moves onto the junction; `base`: onto any. */
+static double reach_of(const asj_hypothesis *junction, double angle, double base)
+{
+    if (!(base > 0 && base < SURE_REACH) || !ends_at(junction, angle))
+        return base;
+    const double sure = (DOUBTFUL - second_log_nfa(junction)) / (DOUBTFUL - SURE);
+    return base + (SURE_REACH - base) * fmin(fmax(sure, 0), 1);
+}
+
+/* The junction on the line of a branch nearest to its end, less than `reach` px of its octave away, or farther from those that are
+ * `sure`; NULL = none. *distance: px to it. With own_octave those of other octaves are none. */
+static const asj_hypothesis *find_end(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, double reach, int sure,
+                                      int own_octave, const asj_hypothesis *const *order, size_t count, double *distance)
 {
     const double ux = cos(branch->angle), uy = sin(branch->angle), end_y = hypothesis->y + branch->length * uy;
-    const double off_line = OFF_LINE * (1 << branch->octave), around = reach + off_line;
+    const double scale = 1 << branch->octave, off_line = OFF_LINE * scale;
+    const double around = scale * (sure ? fmax(reach, SURE_REACH) : reach) + off_line;
     const asj_hypothesis *found = NULL;
-    double best = reach;
+    double best = HUGE_VAL;
     for (size_t i = lower_bound(order, count, end_y - around); i < count && order[i]->y <= end_y + around; i++) {
         const double dx = order[i]->x - hypothesis->x, dy = order[i]->y - hypothesis->y;
-        const double t = dx * ux + dy * uy, off = fabs(dy * ux - dx * uy);
+        const double t = dx * ux + dy * uy, off = fabs(dy * ux - dx * uy), away = fabs(t - branch->length);
         if (own_octave && order[i]->octave != hypothesis->octave)
             continue;
-        if (order[i] != hypothesis && t > 0 && off <= off_line && fabs(t - branch->length) < best &&
-            (!surely || surely_ends(order[i], branch->angle))) {
-            best = fabs(t - branch->length);
+        if (order[i] != hypothesis && t > 0 && off <= off_line && away < best &&
+            away < scale * (sure ? reach_of(order[i], branch->angle, reach) : reach)) {
+            best = away;
             *distance = t;
             found = order[i];
         }
@@ -108,23 +130,18 @@ void asj_ends_mark(asj_hypothesis *hypotheses, size_t count, double reach, const
 static void snap(const asj_hypothesis *hypothesis, double reach, int own_octave, const asj_hypothesis *const *order, size_t count,
                  asj_hypothesis_branch *branch)
 {
-    const double scale = 1 << branch->octave;
-    const int surely = reach > 0 && reach < SURE_REACH;
+    const double base = branch->octave > 0 && reach > 0 ? fmax(reach, COARSE_REACH) : reach;
     double distance = 0;
-    const asj_hypothesis *end = NULL;
-    if (surely)
-        end = find_end(hypothesis, branch, scale * SURE_REACH, 1, own_octave, order, count, &distance);
-    reach = end ? SURE_REACH : reach;
-    end = end ? end : find_end(hypothesis, branch, scale * fmax(reach, AT_END), 0, own_octave, order, count, &distance);
-    if (!end) {
-        branch->end = branch->end == ASJ_BRANCH_END_JUNCTION ? ASJ_BRANCH_END_UNKNOWN : branch->end; /* of another octave, gone */
-        return;
+    const asj_hypothesis *end = find_end(hypothesis, branch, base, 1, own_octave, order, count, &distance);
+    if (end) {
+        branch->end = ASJ_BRANCH_END_JUNCTION;
+        branch->length = distance;
+        branch->end_variance = hypothesis->location_variance + end->location_variance;
+    } else if (find_end(hypothesis, branch, AT_END, 0, own_octave, order, count, &distance)) {
+        branch->end = ASJ_BRANCH_END_JUNCTION;
+    } else if (branch->end == ASJ_BRANCH_END_JUNCTION) {
+        branch->end = ASJ_BRANCH_END_UNKNOWN; /* of another octave, gone */
     }
-    branch->end = ASJ_BRANCH_END_JUNCTION;
-    if (fabs(distance - branch->length) >= scale * reach)
-        return;
-    branch->length = distance;
-    branch->end_variance = hypothesis->location_variance + end->location_variance;
 }
 
 void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, int own_octave, const asj_hypothesis **order,

@@ -107,9 +107,11 @@ static void test_sure(void **state)
 {
     (void)state;
     assert_true(snapped(4, UNIT_PI, 0.4, -300) == 20);
+    assert_true(snapped(2, UNIT_PI, 0.4, -125) == 20); /* 10^-54.3 reaches 6.9 px far */
+    assert_true(snapped(2, UNIT_PI, 0.4, -110) == 26); /* 10^-47.8 5.6 */
     assert_true(snapped(4, UNIT_PI, 0.2, -300) == 26); /* goes on */
     assert_true(snapped(4, 2.5, 0.4, -300) == 26);     /* does not come back */
-    assert_true(snapped(4, UNIT_PI, 0.4, -100) == 26); /* not sure */
+    assert_true(snapped(4, UNIT_PI, 0.4, -69) == 26);  /* not sure */
     assert_true(snapped(0, UNIT_PI, 0.4, -300) == 26); /* off */
     assert_true(snapped(8, UNIT_PI, 0.2, -100) == 20);
 }
