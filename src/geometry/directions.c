@@ -260,7 +260,7 @@ static void search(const scene *s, ranked *all, asj_directions_list *found)
 int32_t asj_find_directions(asj_memory *memory, const asj_straight_edge *edges, size_t count, const asj_camera *camera,
                             double longer, asj_directions_list *found)
 {
-    found->count = 0;
+    memset(found, 0, sizeof *found);
     const size_t paired = PAIRED * (PAIRED - 1) / 2, turned = MOST_POINTS * STEPS;
     asj_vote_line *lines = asj_allocate(memory, count, sizeof *lines);
     ranked *all = asj_allocate(memory, paired > turned ? paired : turned, sizeof *all);
