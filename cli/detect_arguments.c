@@ -76,7 +76,7 @@ static const cli_option plot_options[] = {
 static const cli_option preset_options[] = {
     {PRESET, 0, "preset", "default|paper|match",
      "start from these values of the options below, wherever this stands: our recommendation, the paper to the letter, or what "
-     "'asj-cli match' detects: weaker junctions too (the default for asjf)"},
+     "'asj-cli match' detects: weaker junctions too (the default for asjf; asj has no octaves but the first)"},
     {FOR, 0, "for", "matching", "the same as --preset match"},
 };
 
@@ -251,6 +251,8 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
     arguments->image_count = (size_t)(argc - first);
     choose_preset(arguments);
     asj_detect_options_preset(&arguments->options, arguments->preset);
+    if (arguments->options.octave_union && strcmp(cli_detect_extension(arguments), "asj") == 0)
+        arguments->options.octaves = 1; /* the file does not say octaves, and the matcher must know which junctions are coarse */
     result = cli_settings_apply(&arguments->settings, "detect", arguments->common.quiet, &arguments->options, set_option);
     return result == CLI_SUCCESS ? check(arguments) : result;
 }

@@ -180,7 +180,7 @@ static void print_hint(const run *r)
     else if (status == ASJ_GEOMETRY_AMBIGUOUS)
         cli_note("hint: several geometries explain the views as well: things that repeat");
     else if (status == ASJ_GEOMETRY_DEGENERATE)
-        cli_note("hint: what matches leaves the motion open: a plane, or a camera that only turned; try --geometry auto");
+        cli_note("hint: what matches leaves the motion open: few of them, a plane, or a camera that only turned");
     else if (status != ASJ_GEOMETRY_ACCEPTED)
         cli_note("hint: nothing in common stands out from chance (geometry: %s)%s", asj_geometry_status_name(status),
                  r->geometry.cameras[0].fx > 0 || r->geometry.find_focal ? "" : "; cameras or --focal estimate would help");

@@ -76,7 +76,8 @@ typedef struct asj_detect_options {
     int32_t max_branches;         /* branches tested together. 2 .. 5; 5 */
     int32_t more_branches_win;    /* 1 = among junctions no farther apart than isotropic_apart the one with the most branches stays,
                                    * not the most meaningful one. 0 */
-    double epsilon;               /* NFA allowed for a junction, and for a branch (steps 3 and 5). 1e-30 .. 1e6; 1; match 1e4 */
+    double epsilon;               /* NFA allowed for a junction, and for a branch (steps 3 and 5), in coarse octaves for a branch or
+                                   * two that open together. 1e-30 .. 1e6; 1; match 1e4 */
     /* step 4: branch lengths */
     double scan_epsilon;          /* NFA at which a step along a ray still belongs to the branch. 1e-6 .. 1e3; 1; match 10 */
     int32_t scan_start;           /* px: first radius looked at; 0 = the junction's isotropic scale. 0 .. 30; 3; paper 0; match 0 */
@@ -89,7 +90,8 @@ typedef struct asj_detect_options {
     double minimum_length;        /* px: shorter branches are dropped. 0 .. 1000; 0 */
     int32_t refinement;           /* ASJ_REFINE_...: line fits, or the paper's search; line_fit; paper search */
     int32_t ignore_frame;         /* 1 = drop branches that run along the border of the image, within 2.5 px. 1; paper 0 */
-    double max_move;              /* px a junction may move while it is located by line fits. 0.5 .. 10; 2.5; match 5 */
+    double max_move;              /* px a junction may move while it is located by line fits; with strip_test sharp corners up to
+                                   * 6.5. 0.5 .. 10; 2.5; match 5 */
     double merge_angle;           /* deg: of two branches closer than this one stays. 0 .. 60; 15; paper 0 */
     double strip_half_width;      /* px. 0.5 .. 4; 1.5 */
     double strip_length;          /* px from the junction that the strip test looks at. 10 .. 1000; 60 */
@@ -100,8 +102,8 @@ typedef struct asj_detect_options {
     double end_contrast;          /* an edge ends where it has this share of its own contrast left, or breaks off, unless it goes on
                                    * as strong all along; 0 = where the scan loses it, which depends on noise. 0 .. 0.9; 0.15;
                                    * paper 0; match 0 */
-    int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`.
-                                   * 1; paper 0; match 0 */
+    int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`, in coarse
+                                   * octaves alone or together with another one. 1; paper 0; match 0 */
     int32_t octave_union;         /* 1 = every octave is a detector of its own and keeps what it finds, though a finer one has found
                                    * the same corner: for the matcher, which takes each corner once. 0; match 1 */
     int32_t all_meaningful_branches; /* step 3: 1 = a junction has all branches of which two alike would be a meaningful junction;

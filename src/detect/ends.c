@@ -127,13 +127,18 @@ void asj_ends_mark(asj_hypothesis *hypotheses, size_t count, double reach, const
         }
 }
 
-static void snap(const asj_hypothesis *hypothesis, double reach, int own_octave, const asj_hypothesis *const *order, size_t count,
-                 asj_hypothesis_branch *branch)
+/* No branch becomes shorter than minimum_length, nor, where ends move from farther than snap_distance says, than half of what it
+ * was: what is so near is no end of it. */
+static void snap(const asj_hypothesis *hypothesis, const asj_detect_options *options, const asj_hypothesis *const *order,
+                 size_t count, asj_hypothesis_branch *branch)
 {
+    const double reach = options->snap_distance, half = reach < SURE_REACH ? 0.5 * branch->length : 0;
+    const double least = fmax(options->minimum_length, half);
+    const int own_octave = options->octave_union;
     const double base = branch->octave > 0 && reach > 0 ? fmax(reach, COARSE_REACH) : reach;
     double distance = 0;
     const asj_hypothesis *end = find_end(hypothesis, branch, base, 1, own_octave, order, count, &distance);
-    if (end) {
+    if (end && distance >= least) {
         branch->end = ASJ_BRANCH_END_JUNCTION;
         branch->length = distance;
         branch->end_variance = hypothesis->location_variance + end->location_variance;
@@ -144,11 +149,11 @@ static void snap(const asj_hypothesis *hypothesis, double reach, int own_octave,
     }
 }
 
-void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, int own_octave, const asj_hypothesis **order,
+void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, const asj_detect_options *options, const asj_hypothesis **order,
                    asj_watch *watch)
 {
     sort_by_row(hypotheses, count, order);
     for (size_t i = 0; i < count && !(watch && asj_watch_stops(watch, NULL)); i++)
         for (int32_t b = 0; b < hypotheses[i].branch_count; b++)
-            snap(&hypotheses[i], reach, own_octave, order, count, &hypotheses[i].branches[b]);
+            snap(&hypotheses[i], options, order, count, &hypotheses[i].branches[b]);
 }

@@ -6,13 +6,15 @@
 #include "core/watch.h"
 #include "hypothesis.h"
 
+#include <asj/options.h>
+
 /* Marks the branches that asj_ends_snap() would find a junction at the end of; what is at the others is still to be seen. */
 void asj_ends_mark(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order, asj_watch *watch);
 
-/* Moves the ends of branches onto junctions that lie on their line within `reach` px of the end, and tells which end at one. px of
- * the branch's octave. With own_octave those of other octaves are none. Both: `order` is scratch for `count` elements; they leave
- * off when the watch stops; NULL = none. */
-void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, double reach, int own_octave, const asj_hypothesis **order,
+/* Moves the ends of branches onto junctions that lie on their line within snap_distance of the end, or somewhat farther (ends.c),
+ * and tells which end at one. With octave_union junctions of other octaves are none. Both: `order` is scratch for `count` elements;
+ * they leave off when the watch stops; NULL = none. */
+void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, const asj_detect_options *options, const asj_hypothesis **order,
                    asj_watch *watch);
 
 #endif

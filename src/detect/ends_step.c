@@ -62,7 +62,7 @@ static asj_status look_for_junctions(asj_detection_run *run, int at_the_end)
     asj_watch watch;
     asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
     if (at_the_end)
-        asj_ends_snap(run->hypotheses, count, run->options->snap_distance, run->options->octave_union, order, &watch);
+        asj_ends_snap(run->hypotheses, count, run->options, order, &watch);
     else
         asj_ends_mark(run->hypotheses, count, run->options->snap_distance, order, &watch);
     asj_release(&run->context->memory, order);

@@ -20,7 +20,8 @@ asj_status asj_step_orient(asj_detection_run *run)
 
 static void refine(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
-    if (run->frame->octaves > 1) /* soft edges are looked for: how soft? */
+    const int coarse = run->frame->octave > 0 && !run->options->octave_union;
+    if (run->frame->octaves > 1 || coarse) /* soft edges are looked for: how soft? */
         asj_edge_widths(run->frame, hypothesis);
     asj_refine(run->context, run->frame, run->options, hypothesis);
     asj_validate(run->context, run->frame, run->options, hypothesis);

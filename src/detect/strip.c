@@ -8,7 +8,8 @@
  *
  * Departure: the paper accepts a branch by the NFA of the scan itself. That one is a good stopping rule and no guarantee: local
  * branches are maxima over orientations and neighbouring arcs share pixels, so in noise a step passes with probability 0.19 instead
- * of 1/256. The strip's NFA bounds the false detections at every epsilon (tests/accuracy/noise.c).
+ * of 1/256. The strip's NFA bounds the false detections at every epsilon (tests/accuracy/noise.c). In coarse octaves two branches
+ * may be meaningful together (validate.c).
  *
  * The strip also knows whether the branch reaches the junction: the strength of its first NEAR pixels. A branch whose edge only
  * starts some pixels away, across a rim or a gap, has less there than noise would have.

@@ -37,11 +37,12 @@
 /* Two branches together. Where both are short and weak neither strip may be meaningful by itself, though a junction of both is one
  * place with two ends: of two strips with tails F_i, F_j there are NM (sqrt(NM))^2 octaves tests, so
  *     NFA = (NM)^2 octaves F_i F_j = NFA_i NFA_j / (NM octaves),      NFA_i = (NM)^(3/2) octaves F_i (strip.c).
- * Two that open are kept if that is at most epsilon / exp(PAIR_LOG), and either NFA is at most epsilon sqrt(NM): given the place,
- * that many tests are left. The directions of two are not the same test any more: PAIR_LOG stands for them (a hundred). Only
- * of sharp edges in coarse octaves, where little noise is left and short branches are long edges. Corners of 5 grey levels in noise
- * of 2 (tests/accuracy): recall .628 -> .820, precision .997 -> .996. With soft edges too, at blur 5 and 25 grey levels, precision
- * falls from .955 to .928. */
+ * Two that open are kept if that is at most epsilon / exp(PAIR_LOG), and either NFA is at most epsilon sqrt(NM), a limit of its
+ * own, below what the place would allow each when it is given (epsilon NM octaves), so that no sure branch carries what is none.
+ * The directions of two are not the same test any more: PAIR_LOG stands for them (a hundred). Only of sharp edges in coarse
+ * octaves, where little noise is left and short branches are long edges. Corners of 5 grey levels in noise of 2 (tests/accuracy):
+ * recall .628 -> .820, precision .997 -> .996. With soft edges too, at blur 5 and 25 grey levels, precision falls from .955 to
+ * .928. */
 #define PAIR_LOG (2 * 2.302585092994046)
 
 enum { NOT_AT_ALL, WITH_OTHERS, ALONE };

@@ -15,7 +15,8 @@
  * Search: vanishing points that pairs of the PAIRED longest edges define; those MOST_POINTS of them that explain most, more than
  * APART from each other, are one axis, and the other two are turned around it in steps; the best STARTS of all that, more than
  * DIFFERENT from each other, are refined: expectation and maximisation as in adjust.c, over the turn of the three axes. Their
- * covariance is the inverse of the information matrix.
+ * covariance is the inverse of the information matrix, both with the largest share. Edges of one direction alone have sets too,
+ * with the other two axes where a few of them happen to point.
  *
  * A set of directions costs little when it is wrong (manhattan.c), and a room with a desk across has two of them: the best
  * BEST_KEPT are kept. */

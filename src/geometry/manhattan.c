@@ -14,8 +14,8 @@
  *
  *     q(R) / flat = 1/2 + 1/2 (8 pi^2 / N) sum over N of (2 pi)^(-3/2) det(C)^(-1/2) exp(-w' C^-1 w / 2),
  *
- * w from R to each. It is fixed before any candidate is looked at, so the evidence (evidence.c) holds, and directions that are
- * wrong cost no more than log 2. */
+ * w from R to each, those farther than NEAR left out: directions that are known badly lose by it. It is fixed before any candidate
+ * is looked at, so the evidence (evidence.c) holds, and directions that are wrong cost no more than log 2. */
 #include "manhattan.h"
 #include "core/angle.h"
 #include "core/context.h"

@@ -71,13 +71,22 @@ static asj_status look(asj_match_run *run, int32_t *related)
     return ASJ_OK;
 }
 
+/* Those that are no guests (guests.c): the others are not asked about. */
+static uint32_t count_home(const asj_l_junctions *l_junctions)
+{
+    uint32_t count = 0;
+    for (uint32_t n = 0; n < l_junctions->count; n++)
+        count += l_junctions->octave[n] == l_junctions->home;
+    return count;
+}
+
 /* Is it worth asking? */
 static int32_t asked(const asj_match_run *run)
 {
     const asj_match_options *options = run->options;
     return options->related_support > 0 && options->geometry.model == ASJ_GEOMETRY_NONE &&
            options->patches == ASJ_PATCHES_CANONICAL && options->neighbours > 0 && options->minimum_support > 0 &&
-           run->image[0]->l_junctions.count >= FEW && run->image[1]->l_junctions.count >= FEW;
+           count_home(&run->image[0]->l_junctions) >= FEW && count_home(&run->image[1]->l_junctions) >= FEW;
 }
 
 asj_status asj_related(const asj_match_run *run, int32_t *related)

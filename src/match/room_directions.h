@@ -6,7 +6,8 @@
 #include "geometry/directions.h"
 #include "image_features.h"
 
-/* Sets of three directions at right angles, the surest first; count 0 when there are none. */
+/* Sets of three directions at right angles: those of line segments, the surest first, then that of the branches. count 0 when there
+ * are none. */
 asj_status asj_room_directions(asj_context *context, const asj_image_features *image, const asj_camera *camera,
                                asj_directions_list *found);
 

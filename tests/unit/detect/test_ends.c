@@ -5,7 +5,16 @@
 
 enum { COUNT = 120 };
 
-/* Of the junctions ahead, at most 2 px off the line and less than `reach` px from the end, the one nearest to the end. */
+static void snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order)
+{
+    asj_detect_options options;
+    asj_detect_options_init(&options);
+    options.snap_distance = reach;
+    asj_ends_snap(hypotheses, count, &options, order, NULL);
+}
+
+/* Of the junctions ahead, at most 2 px off the line and less than `reach` px from the end, the one nearest to the end, but for
+ * those that would halve the branch where the reach is less than 8 px. */
 static double naive_length(const asj_hypothesis *hypotheses, size_t count, size_t self, const asj_hypothesis_branch *branch,
                            double reach)
 {
@@ -18,7 +27,7 @@ static double naive_length(const asj_hypothesis *hypotheses, size_t count, size_
             length = t;
         }
     }
-    return length;
+    return reach < 8 && length < 0.5 * branch->length ? branch->length : length;
 }
 
 static void test_random(void **state)
@@ -44,7 +53,7 @@ static void test_random(void **state)
             }
         }
         memcpy(before, hypotheses, sizeof before);
-        asj_ends_snap(hypotheses, count, reach, 0, order, NULL);
+        snap(hypotheses, count, reach, order);
         for (size_t i = 0; i < count; i++)
             for (int32_t b = 0; b < hypotheses[i].branch_count; b++) {
                 unit_near("length", (double)i, b, hypotheses[i].branches[b].length,
@@ -73,13 +82,13 @@ static void test_off(void **state)
     hypotheses[1].location_variance = 0.03;
     hypotheses[1].x = 26;
     memcpy(before, hypotheses, sizeof before);
-    asj_ends_snap(hypotheses, 2, 0, 0, order, NULL);
+    snap(hypotheses, 2, 0, order);
     assert_memory_equal(hypotheses, before, sizeof before);
     hypotheses[1].x = 21; /* so near that it is what is there */
-    asj_ends_snap(hypotheses, 2, 0, 0, order, NULL);
+    snap(hypotheses, 2, 0, order);
     assert_true(hypotheses[0].branches[0].length == 20 && hypotheses[0].branches[0].end == ASJ_BRANCH_END_JUNCTION);
-    asj_ends_snap(hypotheses, 0, 5, 0, NULL, NULL);
-    asj_ends_snap(hypotheses, 2, 5, 0, order, NULL);
+    snap(hypotheses, 0, 5, NULL);
+    snap(hypotheses, 2, 5, order);
     assert_true(hypotheses[0].branches[0].length == 21);
     unit_near("variance", 0, 0, hypotheses[0].branches[0].end_variance, 0.05, 1e-12);
 }
@@ -98,7 +107,7 @@ static double snapped(double reach, double back, double other, double log_nfa)
     hypotheses[1].branches[1].angle = other;
     hypotheses[1].branches[0].log_nfa = -400;
     hypotheses[1].branches[1].log_nfa = log_nfa;
-    asj_ends_snap(hypotheses, 2, reach, 0, order, NULL);
+    snap(hypotheses, 2, reach, order);
     return hypotheses[0].branches[0].length;
 }
 
@@ -116,8 +125,30 @@ static void test_sure(void **state)
     assert_true(snapped(8, UNIT_PI, 0.2, -100) == 20);
 }
 
+/* 20 px from the junction, 26 px long: not where that is too short. */
+static void test_minimum_length(void **state)
+{
+    asj_hypothesis hypotheses[2];
+    const asj_hypothesis *order[2];
+    asj_detect_options options;
+    (void)state;
+    asj_detect_options_init(&options);
+    options.snap_distance = 10;
+    memset(hypotheses, 0, sizeof hypotheses);
+    hypotheses[0].branch_count = 1;
+    hypotheses[0].branches[0].length = 26;
+    hypotheses[1].x = 20;
+    options.minimum_length = 21;
+    asj_ends_snap(hypotheses, 2, &options, order, NULL);
+    assert_true(hypotheses[0].branches[0].length == 26);
+    options.minimum_length = 20;
+    asj_ends_snap(hypotheses, 2, &options, order, NULL);
+    assert_true(hypotheses[0].branches[0].length == 20);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_random), cmocka_unit_test(test_off), cmocka_unit_test(test_sure)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_random), cmocka_unit_test(test_off), cmocka_unit_test(test_sure),
+                                       cmocka_unit_test(test_minimum_length)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
