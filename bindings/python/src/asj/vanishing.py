@@ -45,9 +45,9 @@ def vanishing_points(
               directions determine it
     epsilon   how many chance directions an image without any may show on average
 
-    >>> import numpy as np
+    >>> import asj, numpy as np
     >>> flat = np.full((60, 80), 90, np.uint8)
-    >>> len(vanishing_points(asj.detect(flat)))
+    >>> len(asj.vanishing_points(asj.detect(flat)))
     0
     """
     options, result = ffi.new("asj_vanishing_options *"), ffi.new("asj_vanishing_points *")
