@@ -105,8 +105,9 @@ static int better(const void *left, const void *right)
     return 0;
 }
 
-/* Cosine of the least turn that takes one set of directions to the other, whatever their names: the largest trace over the signed
- * permutations, which takes the largest products in absolute value. (Those with determinant -1 are the same directions.) */
+/* Is the least turn that takes one set of directions to the other, whatever their names, less than `angle`? The largest trace over
+ * the signed permutations tells, which takes the largest products in absolute value. (Those with determinant -1 are the same
+ * directions.) */
 static int32_t are_same(const double a[9], const double b[9], double angle)
 {
     static const int32_t order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};

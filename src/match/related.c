@@ -76,7 +76,7 @@ static uint32_t count_home(const asj_l_junctions *l_junctions)
 {
     uint32_t count = 0;
     for (uint32_t n = 0; n < l_junctions->count; n++)
-        count += l_junctions->octave[n] == l_junctions->home;
+        count += !asj_is_guest(l_junctions, n);
     return count;
 }
 

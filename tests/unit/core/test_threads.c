@@ -134,20 +134,30 @@ static int32_t stop_at_once(void *user, int32_t stage, double done)
     return 1;
 }
 
-static void test_cancel(void **state)
+/* How many of 2000 items are begun before the caller is asked and stops the loop, which would take over a second. */
+static int32_t begun_until_stopped(unit_fixture *f)
 {
-    unit_fixture *f = *state;
     stopping s = {.begun = 0}, *data = &s;
     int asked = 0;
     f->context->options.progress = stop_at_once;
     f->context->options.progress_user = &asked;
     f->context->asked_ms = asj_clock_ms();
     asj_watch_start(&s.watch, f->context, ASJ_STAGE_SCAN);
-    asj_parallel(f->context, 3, 2000, 1, wait_each, &data); /* over a second if nobody stops it */
+    asj_parallel(f->context, 3, 2000, 1, wait_each, &data);
+    f->context->options.progress = NULL;
     assert_int_equal(asj_watch_end(&s.watch), ASJ_ERROR_CANCELLED);
     assert_int_equal(asked, 1);
-    assert_in_range(s.begun, 1, 1000); /* 1 where no other thread was given the processor in time */
-    f->context->options.progress = NULL;
+    return s.begun;
+}
+
+/* On a machine that has other work the first item may last until the caller is to be asked: then once more. */
+static void test_cancel(void **state)
+{
+    unit_fixture *f = *state;
+    int32_t begun = 0;
+    for (int attempt = 0; attempt < 100 && begun < 2; attempt++)
+        begun = begun_until_stopped(f);
+    assert_in_range(begun, 2, 1000);
 }
 
 /* How many loops of 10 ms, one after the other, are done before the caller is asked and stops them; 100 = never. */

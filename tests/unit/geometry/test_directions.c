@@ -10,7 +10,6 @@
 #define WIDTH 640
 #define HEIGHT 480
 #define DEGREE (UNIT_PI / 180)
-#define MOST 200
 
 static const asj_camera camera = {560, 560, 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1)};
 
