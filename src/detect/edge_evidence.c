@@ -28,8 +28,7 @@ static void measure(const asj_context *context, const asj_frame *frame, const as
         along += sums.uu;
         across += sums.nn;
     }
-    const asj_strip whole = {0, across > 0 ? along / across : 0, 0, 1};
-    evidence->alike = options->strip_test ? asj_strip_alike(&whole, branch->width) : 1;
+    evidence->alike = options->strip_test ? asj_strip_alike(across > 0 ? along / across : 0, branch->width) : 1;
 }
 
 void asj_edge_evidence_measure(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,

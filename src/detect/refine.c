@@ -11,6 +11,7 @@
 #include "bent_corner.h"
 #include "line_fit.h"
 #include "locate.h"
+#include "tilt.h"
 
 #include <math.h>
 
@@ -125,9 +126,12 @@ static void find_line(const asj_context *context, const asj_frame *frame, const 
     asj_rough_line_keep(&line, branch);
 }
 
-void asj_orient(const asj_context *context, const asj_frame *frame, asj_hypothesis *hypothesis)
+void asj_orient(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
-    for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        find_line(context, frame, hypothesis, &hypothesis->branches[i]);
+    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
+        asj_hypothesis_branch *branch = &hypothesis->branches[i];
+        find_line(context, frame, hypothesis, branch);
+        asj_turn_to_edge(context, frame, options, hypothesis, first_px(branch), fmin(last_px(branch), NEAR_PART / 2), branch);
+    }
     asj_locate_meet(hypothesis);
 }

@@ -9,7 +9,7 @@
  * moves to where the new lines meet. */
 void asj_refine(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis);
 
-/* The same with quick fits (asj_line_guess), good enough to scan along. */
-void asj_orient(const asj_context *context, const asj_frame *frame, asj_hypothesis *hypothesis);
+/* The same with quick fits (asj_line_guess), good enough to scan along; branches that cross edges are turned to them (tilt.c). */
+void asj_orient(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis);
 
 #endif

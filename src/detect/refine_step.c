@@ -8,7 +8,7 @@
 
 static void orient(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
-    asj_orient(run->context, run->frame, hypothesis);
+    asj_orient(run->context, run->frame, run->options, hypothesis);
 }
 
 asj_status asj_step_orient(asj_detection_run *run)

@@ -38,7 +38,7 @@
 #define NEAR 6 /* px: the part of the strip next to the junction */
 
 typedef struct lanes {
-    double gamma[ASJ_STRIP_LANES], uu[ASJ_STRIP_LANES], nn[ASJ_STRIP_LANES], near_gamma[ASJ_STRIP_LANES];
+    double gamma[ASJ_STRIP_LANES], uu[ASJ_STRIP_LANES], un[ASJ_STRIP_LANES], nn[ASJ_STRIP_LANES], near_gamma[ASJ_STRIP_LANES];
     int32_t pixels, near_pixels; /* of all lanes */
 } lanes;
 
@@ -56,6 +56,7 @@ static inline void add_pixel(const asj_strip_walk *walk, double dx, double dy, d
     const double along = gx * ux + gy * uy, across = gy * ux - gx * uy, gamma = fmax(fabs(across) - fabs(along), 0);
     to->gamma[lane] += gamma;
     to->uu[lane] += along * along;
+    to->un[lane] += along * across;
     to->nn[lane] += across * across;
     to->pixels++;
     if (t <= walk->near) {
@@ -79,8 +80,8 @@ void asj_strip_sums_of(const asj_frame *frame, const asj_strip_walk *walk, asj_s
                       &list);
         }
     }
-    *sums = (asj_strip_sums){total(list.gamma), total(list.uu), total(list.nn), total(list.near_gamma), list.pixels,
-                             list.near_pixels};
+    *sums = (asj_strip_sums){total(list.gamma), total(list.uu), total(list.un), total(list.nn), total(list.near_gamma),
+                             list.pixels, list.near_pixels};
 }
 
 asj_strip_sums asj_strip_add_up(const asj_context *context, const asj_frame *frame, const asj_strip_line *line, double half_width,
@@ -136,7 +137,7 @@ asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, con
                          const asj_strip_line *line)
 {
     const asj_strip_sums s = add_up(context, frame, options, line, NEAR);
-    asj_strip strip = {log_nfa(frame, s.gamma, s.pixels), s.nn > 0 ? s.uu / s.nn : 0, 0, 1};
+    asj_strip strip = {log_nfa(frame, s.gamma, s.pixels), s.nn > 0 ? s.uu / s.nn : 0, 0, 1, s};
     if (s.near_pixels > 0)
         strip.near_strength = (s.near_gamma - s.near_pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(s.near_pixels));
     if (s.near_pixels > 0 && s.gamma > 0)
@@ -146,14 +147,14 @@ asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, con
 
 const asj_strip_ops asj_strip_reference = {.sums = asj_strip_sums_of};
 
-double asj_strip_alike(const asj_strip *strip, double width)
+double asj_strip_alike(double waver, double width)
 {
-    const double relative = strip->waver / NOISE_WAVER;
+    const double relative = waver / NOISE_WAVER;
     return 1 + ALIKE * fmax(width - INDEPENDENT_WIDTH, 0) * relative * relative;
 }
 
 double asj_strip_correlated(const asj_frame *frame, const asj_strip *strip, double width)
 {
-    const double log_tests = log_number_of_tests(frame), alike = asj_strip_alike(strip, width);
+    const double log_tests = log_number_of_tests(frame), alike = asj_strip_alike(strip->waver, width);
     return alike > 1 && strip->log_nfa < log_tests ? log_tests + (strip->log_nfa - log_tests) / alike : strip->log_nfa;
 }

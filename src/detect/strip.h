@@ -5,11 +5,19 @@
 
 #include "core/image.h"
 
+/* Over the pixels of a strip: the sum of gamma in 1/1024, those of the squares of the gradient's components
+ * along (uu) and across (nn) and of their product (un), that of gamma of the part next to the junction, numbers of pixels. */
+typedef struct asj_strip_sums {
+    double gamma, uu, un, nn, near_gamma;
+    int32_t pixels, near_pixels;
+} asj_strip_sums;
+
 typedef struct asj_strip {
     double log_nfa;       /* natural logarithm of the number of false alarms */
     double waver;         /* mean square of the gradient along the branch over that across it: 0 = an edge without noise */
     double near_strength; /* standard deviations above the null model in the part next to the junction */
     double near_share;    /* gamma of a pixel in that part, of the mean over the whole strip */
+    asj_strip_sums sums;
 } asj_strip;
 
 /* Where a strip lies. */
@@ -22,8 +30,8 @@ typedef struct asj_strip_line {
 /* ln NFA of a strip whose pixels are not independent: see strip.c. `width` of its edge, px. */
 double asj_strip_correlated(const asj_frame *frame, const asj_strip *strip, double width);
 
-/* How many of its pixels are as good as one. */
-double asj_strip_alike(const asj_strip *strip, double width);
+/* How many of the pixels of a strip are as good as one. */
+double asj_strip_alike(double waver, double width);
 
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          const asj_strip_line *line);
@@ -45,13 +53,6 @@ typedef struct asj_strip_walk {
     int32_t along_x;
     int32_t first, last;     /* steps along */
 } asj_strip_walk;
-
-/* Over the pixels of a strip: the sum of gamma in 1/1024, those of the squares of the gradient's components
- * along and across, that of gamma of the part next to the junction, numbers of pixels. */
-typedef struct asj_strip_sums {
-    double gamma, uu, nn, near_gamma;
-    int32_t pixels, near_pixels;
-} asj_strip_sums;
 
 /* The sums of any strip, however long; gamma in standard units. `near` px: see asj_strip_walk. */
 asj_strip_sums asj_strip_add_up(const asj_context *context, const asj_frame *frame, const asj_strip_line *line, double half_width,

@@ -32,7 +32,7 @@ static inline void add_strip(const asj_frame *frame, const asj_strip_walk *walk,
     const __m256d ux = _mm256_set1_pd(walk->ux), uy = _mm256_set1_pd(walk->uy), sign = _mm256_set1_pd(-0.0);
     const __m256d lane = _mm256_setr_pd(0, 1, 2, 3), zero = _mm256_setzero_pd();
     const ptrdiff_t step = along_x ? frame->stride : 1, stride = along_x ? 1 : frame->stride;
-    __m256d gamma_sum = zero, uu = zero, nn = zero, near_sum = zero;
+    __m256d gamma_sum = zero, uu = zero, un = zero, nn = zero, near_sum = zero;
     int32_t pixels = 0, near_pixels = 0;
     for (int32_t i = walk->first; i <= walk->last; i++) {
         int32_t first, last;
@@ -55,14 +55,15 @@ static inline void add_strip(const asj_frame *frame, const asj_strip_walk *walk,
             const __m256d gamma = _mm256_max_pd(_mm256_sub_pd(_mm256_andnot_pd(sign, across), _mm256_andnot_pd(sign, along)), zero);
             gamma_sum = masked_sum(gamma_sum, in, gamma);
             uu = masked_sum(uu, in, _mm256_mul_pd(along, along));
+            un = masked_sum(un, in, _mm256_mul_pd(along, across));
             nn = masked_sum(nn, in, _mm256_mul_pd(across, across));
             near_sum = masked_sum(near_sum, near, gamma);
             pixels += __builtin_popcount((unsigned)_mm256_movemask_pd(in));
             near_pixels += __builtin_popcount((unsigned)_mm256_movemask_pd(near));
         }
     }
-    *sums = (asj_strip_sums){total_of_four(gamma_sum), total_of_four(uu), total_of_four(nn), total_of_four(near_sum), pixels,
-                             near_pixels};
+    *sums = (asj_strip_sums){total_of_four(gamma_sum), total_of_four(uu), total_of_four(un), total_of_four(nn), total_of_four(near_sum),
+                             pixels, near_pixels};
 }
 
 static void strip_sums_avx2(const asj_frame *frame, const asj_strip_walk *walk, asj_strip_sums *sums)

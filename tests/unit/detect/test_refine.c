@@ -101,7 +101,7 @@ static void test_orient(void **state)
     const fixture *f = *state;
     for (int n = 0; n < 16; n++) {
         asj_hypothesis hypothesis = corner_hypothesis(corner_x + 0.5 * cos(n), corner_y + 0.5 * sin(n), n % 2 ? 0.035 : -0.035);
-        asj_orient(f->context, &f->frame, &hypothesis);
+        asj_orient(f->context, &f->frame, &f->options, &hypothesis);
         unit_near("distance", n, 0, hypot(hypothesis.x - corner_x, hypothesis.y - corner_y), 0, 0.3);
         for (int b = 0; b < 2; b++) {
             unit_near("angle", n, b, unit_turn(hypothesis.branches[b].angle, angles[b]), 0, 0.5 * UNIT_PI / 180);

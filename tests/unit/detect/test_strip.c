@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Strips: NFA over the unique pixels, and strength next to the junction, against their definitions. */
 #include "detect/nfa.h"
+#include "detect/gradient.h"
 #include "detect/strip.h"
 #include "core/context.h"
 #include "unit_test.h"
@@ -32,6 +33,10 @@ static asj_strip naive(const fixture *f, double x, double y, double angle, doubl
             pixels++;
             near += t <= 6 ? unit_gamma(gx, gy, angle) : 0;
             near_pixels += t <= 6;
+            const double along = gx * cos(angle) + gy * sin(angle), across = gy * cos(angle) - gx * sin(angle);
+            out.sums.uu += along * along;
+            out.sums.un += along * across;
+            out.sums.nn += across * across;
         }
     out.log_nfa = HUGE_VAL;
     if (pixels == 0)
@@ -68,6 +73,10 @@ static void test_random(void **state)
         }
         unit_near("ln NFA", x, y, got.log_nfa, expected.log_nfa, 1e-6);
         unit_near("near strength", x, y, got.near_strength, expected.near_strength, 1e-6);
+        const double one = 1.0 / ASJ_GRADIENT_ONE / ASJ_GRADIENT_ONE;
+        unit_near("uu", x, y, got.sums.uu * one, expected.sums.uu, 1e-6);
+        unit_near("un", x, y, got.sums.un * one, expected.sums.un, 1e-6);
+        unit_near("nn", x, y, got.sums.nn * one, expected.sums.nn, 1e-6);
     }
     asj_detect_options_init(&f->options);
 }
