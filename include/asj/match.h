@@ -133,9 +133,9 @@ typedef struct asj_match_result {
  *
  * With options->geometry.model the two-view geometry is estimated as well, from many more candidates than become matches
  * (geometry.h; src/match/two_view.c). Where one is accepted, matches that contradict it go, and others that it makes likely come;
- * where none is, the matches are those that there are without. Junctions of other octaves than the first have no part in either
- * (src/match/guests.c). Where both images have colours, these count there, too: things that repeat often differ in hue alone.
- * Exposure and white balance may differ.
+ * where none is, the matches are those that there are without. Junctions of other octaves than the finest are no candidates
+ * (src/match/guests.c), but their matches go and come as others do. Where both images have colours, these count there, too: things
+ * that repeat often differ in hue alone. Exposure and white balance may differ.
  *
  * image1, image2   views; only read, and only during the call
  * junctions1, 2    from asj_detect() or a file; may be NULL when the count is 0. Junctions with branches that differ in

@@ -113,7 +113,7 @@ static int32_t is_believed(const asj_estimation *e, int32_t essential, int32_t b
     return essential != e->focal_at || e->finalists[essential].evidence > ALMOST * e->finalists[best].evidence;
 }
 
-void asj_answer(asj_estimation *e, double *probabilities, asj_geometry *result)
+void asj_answer(asj_estimation *e, double *probabilities, asj_judge *judge, asj_geometry *result)
 {
     int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO), determined = 1;
     const double least = log10(e->options->epsilon);
@@ -149,6 +149,8 @@ void asj_answer(asj_estimation *e, double *probabilities, asj_geometry *result)
     result->status = !determined ? ASJ_GEOMETRY_DEGENERATE : ASJ_GEOMETRY_ACCEPTED;
     if (second >= 0 && asj_is_ambiguous(e, best, second, doubt, result->inliers))
         result->status = ASJ_GEOMETRY_AMBIGUOUS;
+    if (judge && result->status == ASJ_GEOMETRY_ACCEPTED)
+        *judge = asj_judge_create(&m->view, &e->set);
     for (int32_t k = 0; k < e->set.count && probabilities; k++)
         probabilities[e->set.list[k].source] = e->scratch.probability[k];
 }

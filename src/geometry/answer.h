@@ -4,8 +4,9 @@
 #define ASJ_SRC_GEOMETRY_ANSWER_H
 
 #include "estimation.h"
+#include "judge.h"
 
-/* probabilities: of the caller's candidates, or NULL. */
-void asj_answer(asj_estimation *e, double *probabilities, asj_geometry *result);
+/* probabilities: of the caller's candidates, or NULL. judge: NULL, or written where the geometry is accepted. */
+void asj_answer(asj_estimation *e, double *probabilities, asj_judge *judge, asj_geometry *result);
 
 #endif

@@ -4,6 +4,7 @@
 #define ASJ_SRC_GEOMETRY_ESTIMATE_H
 
 #include "directions.h"
+#include "judge.h"
 
 #include <asj/geometry.h>
 
@@ -14,9 +15,9 @@ typedef struct asj_geometry_hints {
     asj_directions_list directions[2]; /* of each image's edges, count 0 = none; options->directions are taken before them */
 } asj_geometry_hints;
 
-/* asj_geometry_estimate() with that; hints may be NULL. */
+/* asj_geometry_estimate() with that; hints and judge may be NULL. judge: written where the geometry is accepted. */
 asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
                                    const asj_geometry_hints *hints, const asj_geometry_options *options, double *probabilities,
-                                   asj_geometry *result);
+                                   asj_judge *judge, asj_geometry *result);
 
 #endif

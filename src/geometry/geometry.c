@@ -122,12 +122,12 @@ static asj_status search_rivals(asj_estimation *e)
 asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
                                  const asj_geometry_options *options, double *probabilities, asj_geometry *result)
 {
-    return asj_estimate_with_hints(context, candidates, count, NULL, options, probabilities, result);
+    return asj_estimate_with_hints(context, candidates, count, NULL, options, probabilities, NULL, result);
 }
 
 asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
                                    const asj_geometry_hints *hints, const asj_geometry_options *options, double *probabilities,
-                                   asj_geometry *result)
+                                   asj_judge *judge, asj_geometry *result)
 {
     if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
@@ -166,7 +166,7 @@ asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_cand
             if (status == ASJ_OK)
                 status = asj_watch_end(&watch);
             if (status == ASJ_OK)
-                asj_answer(e, probabilities, &found);
+                asj_answer(e, probabilities, judge, &found);
         }
     }
     asj_adjust_scratch_free(&context->memory, &e->scratch);

@@ -6,13 +6,13 @@
  * the fundamental matrix to a fraction of a pixel, and a slide that leaves the epipolar line shows. It is estimated from the
  * choices alone (../geometry/), each PRIOR likely, with few samples, since nearly all are right. A choice goes when it is farther
  * from its epipolar line in either image than asj_farthest_from_line() allows. (8 samples and 20 matches: rendered rooms and
- * sixteen pairs of photographs.) Choices whose maps keep hardly any area (two_view.c) are not asked. Nothing goes when choices are
+ * sixteen pairs of photographs.) Choices whose maps keep hardly any area are not asked. Nothing goes when choices are
  * fewer than LEAST_MATCHES, when no matrix is accepted, or when it contradicts more than MOST_AGAINST of them: things that move by
  * themselves, lenses that bend lines.
  *
  * A plane leaves the matrix open; then any of those that its matches allow does. */
 #include "epipolar.h"
-#include "two_view.h"
+#include "geometry_candidate.h"
 
 #include <math.h>
 #include <string.h>

@@ -14,9 +14,7 @@
  *
  * Where nothing else matches, guests do not either: alike among themselves, they agree too easily. Sixteen pairs of photographs,
  * one octave and four: 713 of 734 right, 830 of 851; matched with the others in the guided pass, as before, they were 838 of 884
- * and took good ones away. Rooms 1 to 12: 1460 of 1481, 1650 of 1699.
- *
- * With a geometry there are none: each match has its probability there, which is that of a candidate (two_view.c). */
+ * and took good ones away. Rooms 1 to 12: 1460 of 1481, 1650 of 1699. */
 #include "guests.h"
 #include "assign.h"
 #include "consensus.h"
@@ -57,6 +55,13 @@ static asj_status start(const asj_match_run *run, asj_match_run *guests, uint8_t
     return ASJ_OK;
 }
 
+/* Is it one of the accepted matches, guests among them where this is not the first time? */
+static int is_accepted(const asj_match_run *guests, const asj_candidate *c)
+{
+    return guests->taken[0][guests->image[0]->l_junctions.location[c->i]] ||
+           guests->taken[1][guests->image[1]->l_junctions.location[c->j]];
+}
+
 /* The chosen guests go behind the accepted matches. */
 static asj_status add_chosen(asj_match_run *run, const asj_match_run *guests)
 {
@@ -64,7 +69,7 @@ static asj_status add_chosen(asj_match_run *run, const asj_match_run *guests)
     for (size_t n = 0; n < guests->choices.count && run->choices.count < room; n++) {
         const asj_candidate *c = &guests->candidates.list[guests->choices.list[n].candidate];
         const asj_candidates one = {guests->candidates.list + guests->choices.list[n].candidate, 1, 1};
-        if (!asj_is_of_guests(run, c))
+        if (!asj_is_of_guests(run, c) || is_accepted(guests, c))
             continue;
         const size_t index = run->candidates.count;
         const asj_status status = asj_candidates_append(run->context, &run->candidates, &one);
@@ -111,7 +116,7 @@ asj_status asj_match_guests(asj_match_run *run)
 {
     const size_t accepted = run->choices.count;
     if (accepted == 0 || run->options->patches != ASJ_PATCHES_CANONICAL || run->options->neighbours == 0 ||
-        run->options->guided_rounds == 0 || run->options->geometry.model != ASJ_GEOMETRY_NONE)
+        run->options->guided_rounds == 0)
         return ASJ_OK;
     asj_status status = add_guests(run);
     if (status == ASJ_OK)

@@ -16,10 +16,11 @@
  *   guided.c         matches propose matches near them; once more from align.c on
  *   verify.c         each match is judged by the matches around it
  *   epipolar.c       and by the fundamental matrix of all            (../geometry/)
- *   two_view.c       the geometry of the pair, when asked for: candidates once more, a longer list (prior.c, colour_prior.c,
- *                    ../geometry/)
  *   guests.c         matches of junctions of other octaves, which those propose; once more from align.c to epipolar.c
  *   same_corner.c    one match for each corner that several octaves list
+ *   two_view.c       the geometry of the pair, when asked for: candidates once more, a longer list (prior.c, colour_prior.c,
+ *                    ../geometry/)
+ *   verdict.c        where one is accepted: which matches go, and which come; then guests.c and same_corner.c once more
  *   match_result.c   what the caller sees; segments.c: which ends of the branches correspond
  *
  * Up to the consensus every aligned candidate is there, several for a location; a step that needs all of them stands before
@@ -39,6 +40,7 @@
 #include "shortlist.h"
 #include "support.h"
 #include "two_view.h"
+#include "verdict.h"
 #include "verify.h"
 
 #include <string.h>
@@ -72,6 +74,11 @@ static asj_status verify(asj_match_run *run)
     return asj_verify(run, 0);
 }
 
+static asj_status one_a_corner(asj_match_run *run)
+{
+    return asj_same_corner(run, 0);
+}
+
 static asj_status run_step(asj_match_run *run, const step *s, stop_watch *watch)
 {
     asj_status status = asj_progress(run->context, s->stage, s->done);
@@ -89,7 +96,8 @@ static asj_status run_list(asj_match_run *run, const step *list, size_t count, s
     return status;
 }
 
-static asj_status run_steps(asj_match_run *run, stop_watch *watch)
+/* Without a geometry: what looks, and what is around, say. */
+static asj_status match_plainly(asj_match_run *run, stop_watch *watch)
 {
     static const step first[] = {
         {ASJ_STAGE_DISTANCES, 0.20, asj_shortlist},
@@ -107,18 +115,10 @@ static asj_status run_steps(asj_match_run *run, stop_watch *watch)
     static const step last[] = {
         {ASJ_STAGE_ASSIGN, 0.95, verify},
         {ASJ_STAGE_ASSIGN, 0.955, asj_verify_epipolar},
+        {ASJ_STAGE_ALIGN, 0.96, asj_match_guests},
+        {ASJ_STAGE_ASSIGN, 0.965, one_a_corner},
     };
-    static const step geometry = {ASJ_STAGE_ASSIGN, 0.96, asj_apply_geometry};
-    static const step guests = {ASJ_STAGE_ALIGN, 0.98, asj_match_guests};
-    static const step corners = {ASJ_STAGE_ASSIGN, 0.99, asj_same_corner};
-    int32_t related;
-    asj_status status = asj_progress(run->context, ASJ_STAGE_DISTANCES, 0.15);
-    if (status == ASJ_OK)
-        status = asj_related(run, &related);
-    stop(watch, ASJ_STAGE_DISTANCES);
-    if (status != ASJ_OK || !related)
-        return status;
-    status = run_list(run, first, sizeof first / sizeof *first, watch);
+    asj_status status = run_list(run, first, sizeof first / sizeof *first, watch);
     for (int32_t round = 0; round < run->options->guided_rounds && run->options->neighbours > 0 && status == ASJ_OK; round++) {
         const size_t before = run->candidates.count;
         status = run_step(run, &guided, watch);
@@ -129,11 +129,51 @@ static asj_status run_steps(asj_match_run *run, stop_watch *watch)
     }
     if (status == ASJ_OK)
         status = run_list(run, last, sizeof last / sizeof *last, watch);
-    if (status == ASJ_OK)
-        status = run_step(run, &geometry, watch);
-    if (status == ASJ_OK)
-        status = run_step(run, &guests, watch);
-    return status == ASJ_OK ? run_step(run, &corners, watch) : status;
+    return status;
+}
+
+static asj_status look_whether_related(const asj_match_run *run, stop_watch *watch, int32_t *related)
+{
+    const asj_status status = asj_related(run, related);
+    stop(watch, ASJ_STAGE_DISTANCES);
+    return status;
+}
+
+/* The geometry; where none is accepted the matches stay those that there are without. */
+static asj_status match_by_geometry(asj_match_run *run, stop_watch *watch)
+{
+    static const step geometry = {ASJ_STAGE_ASSIGN, 0.97, asj_apply_geometry};
+    static const step guests = {ASJ_STAGE_ALIGN, 0.98, asj_match_guests};
+    const size_t before = run->choices.count;
+    int32_t related = 1;
+    asj_status status = run_step(run, &geometry, watch);
+    if (status == ASJ_OK && run->geometry.status != ASJ_GEOMETRY_ACCEPTED) {
+        if (before > 0)
+            status = look_whether_related(run, watch, &related);
+        run->choices.count = related ? before : 0;
+        return status;
+    }
+    const size_t after = run->choices.count;
+    if (status != ASJ_OK || after + run->rejected.count == before)
+        return status;
+    status = run_step(run, &guests, watch); /* which the newcomers propose */
+    if (status == ASJ_OK) {
+        asj_judge_guests(run, after);
+        status = asj_same_corner(run, after);
+    }
+    return status;
+}
+
+static asj_status run_steps(asj_match_run *run, stop_watch *watch)
+{
+    const int32_t with_geometry = run->options->geometry.model != ASJ_GEOMETRY_NONE;
+    int32_t related = 1;
+    asj_status status = asj_progress(run->context, ASJ_STAGE_DISTANCES, 0.15);
+    if (status == ASJ_OK && !with_geometry)
+        status = look_whether_related(run, watch, &related);
+    if (status == ASJ_OK && related)
+        status = match_plainly(run, watch);
+    return status == ASJ_OK && with_geometry ? match_by_geometry(run, watch) : status;
 }
 
 static asj_status finish(const asj_match_run *run, stop_watch *watch, asj_match_result **result)

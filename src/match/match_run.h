@@ -5,6 +5,7 @@
 
 #include "candidate.h"
 #include "features.h"
+#include "geometry/judge.h"
 
 typedef struct asj_match_run {
     asj_context *context;
@@ -14,6 +15,8 @@ typedef struct asj_match_run {
     asj_support support;       /* support.c: who agrees with whom */
     asj_choices choices;       /* assign.c; room for every location of image 1 */
     asj_geometry geometry;     /* two_view.c */
+    asj_judge judge;           /* two_view.c: what was accepted, for matches that were no candidates of it */
+    int32_t lines_hold;        /* verdict.c: is what lies off its epipolar lines wrong? */
     asj_choices rejected;      /* two_view.c: what were choices before */
     const uint8_t *taken[2];   /* guests.c: locations that are matched already; NULL: guests are not proposed */
     int32_t has_epipolar;      /* epipolar.c: is the fundamental matrix of all choices known, */

@@ -5,7 +5,8 @@
  * much worse.
  *
  * One match for each corner. Locations of different octaves nearer than `separation` are the same corner, as they are for the ratio
- * test (assign.c); of their matches that of no guest stays, or else that of the finest octave, which knows the place best. */
+ * test (assign.c); of their matches that of no guest stays, or else that of the finest octave, which knows the place best. Choices
+ * of before stay in any case. */
 #include "same_corner.h"
 #include "consensus.h"
 #include "core/watch.h"
@@ -30,19 +31,25 @@ static int nearer(const asj_l_junction *a, const asj_l_junction *b, double dista
     return dx * dx + dy * dy < distance * distance;
 }
 
-/* Does `other` stand for the corner of `c`, which is a guest's? */
-static int stands_for(const asj_match_run *run, const asj_candidate *other, const asj_candidate *c)
+static const asj_candidate *chosen(const asj_match_run *run, size_t n)
 {
-    const int comes_first = !asj_is_of_guests(run, other) || octave_of(run, other) < octave_of(run, c);
+    return &run->candidates.list[run->choices.list[n].candidate];
+}
+
+/* Does choice m stand for the corner of choice n, which is a guest's? The first `before` were there before. */
+static int stands_for(const asj_match_run *run, size_t before, size_t m, size_t n)
+{
+    const asj_candidate *other = chosen(run, m), *c = chosen(run, n);
+    const int comes_first = m < before || !asj_is_of_guests(run, other) || octave_of(run, other) < octave_of(run, c);
     const double separation = run->options->separation;
     return comes_first && (nearer(asj_match_run_l(run, c, 0), asj_match_run_l(run, other, 0), separation) ||
                            nearer(asj_match_run_l(run, c, 1), asj_match_run_l(run, other, 1), separation));
 }
 
-static int has_guests(const asj_match_run *run)
+static int has_guests(const asj_match_run *run, size_t first)
 {
-    for (size_t n = 0; n < run->choices.count; n++)
-        if (asj_is_of_guests(run, &run->candidates.list[run->choices.list[n].candidate]))
+    for (size_t n = first; n < run->choices.count; n++)
+        if (asj_is_of_guests(run, chosen(run, n)))
             return 1;
     return 0;
 }
@@ -58,41 +65,39 @@ static void keep(asj_choices *choices, const uint8_t *gone)
 }
 
 /* Leaves out guests that have less support than their octaves need. */
-static void keep_supported(asj_match_run *run, uint8_t *gone)
+static void keep_supported(asj_match_run *run, size_t first, uint8_t *gone)
 {
     asj_choices *choices = &run->choices;
     const float needed = asj_needed_support(run);
-    for (size_t n = 0; n < choices->count; n++) {
-        const asj_candidate *c = &run->candidates.list[choices->list[n].candidate];
+    for (size_t n = first; n < choices->count; n++) {
+        const asj_candidate *c = chosen(run, n);
         gone[n] = asj_is_of_guests(run, c) && c->support < needed * (float)(1 + MORE_SUPPORT * octave_of(run, c));
     }
     keep(choices, gone);
 }
 
 /* Leaves one choice a corner. */
-static void keep_finest(asj_match_run *run, uint8_t *gone, asj_watch *watch)
+static void keep_finest(asj_match_run *run, size_t first, uint8_t *gone, asj_watch *watch)
 {
     asj_choices *choices = &run->choices;
-    const asj_candidate *list = run->candidates.list;
     memset(gone, 0, choices->count);
-    for (size_t n = 0; n < choices->count && !asj_watch_stops(watch, NULL); n++)
+    for (size_t n = first; n < choices->count && !asj_watch_stops(watch, NULL); n++)
         for (size_t m = 0; m < choices->count && !gone[n]; m++)
-            gone[n] = (uint8_t)(asj_is_of_guests(run, &list[choices->list[n].candidate]) &&
-                                stands_for(run, &list[choices->list[m].candidate], &list[choices->list[n].candidate]));
+            gone[n] = (uint8_t)(asj_is_of_guests(run, chosen(run, n)) && stands_for(run, first, m, n));
     keep(choices, gone);
 }
 
-asj_status asj_same_corner(asj_match_run *run)
+asj_status asj_same_corner(asj_match_run *run, size_t first)
 {
-    if (!has_guests(run))
+    if (!has_guests(run, first))
         return ASJ_OK;
     uint8_t *gone = asj_allocate_zero(&run->context->memory, run->choices.count, 1);
     if (!gone)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu matches", run->choices.count);
     asj_watch watch;
     asj_watch_start(&watch, run->context, ASJ_STAGE_ASSIGN);
-    keep_supported(run, gone);
-    keep_finest(run, gone, &watch);
+    keep_supported(run, first, gone);
+    keep_finest(run, first, gone, &watch);
     asj_release(&run->context->memory, gone);
     return asj_watch_end(&watch);
 }

@@ -5,8 +5,8 @@
 
 #include "match_run.h"
 
-/* Of choices of different octaves, those stay that have the support which these need, and of those at one corner, in either image,
- * the finest. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED. */
-asj_status asj_same_corner(asj_match_run *run);
+/* Of choices of different octaves, from number `first` on, those stay that have the support which these need, and of those at one
+ * corner, in either image, the finest; those before it stay. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED. */
+asj_status asj_same_corner(asj_match_run *run, size_t first);
 
 #endif

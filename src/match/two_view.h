@@ -5,20 +5,7 @@
 
 #include "match_run.h"
 
-/* Nothing when options->geometry.model is none: see two_view.c. */
+/* Estimates it; where one is accepted it decides (verdict.h). */
 asj_status asj_apply_geometry(asj_match_run *run);
-
-/* A candidate as the geometry sees it, its locations as places: in image 1 as detected, in image 2 where the aligned map puts it,
- * as match_result.c has them. */
-asj_geometry_candidate asj_candidate_for_geometry(const asj_match_run *run, const asj_candidate *c, double prior);
-
-/* A map that hardly keeps any area, or makes thousandfold, is no map, and the geometry takes none. */
-int asj_keeps_area(const asj_candidate *c);
-
-/* px from the epipolar lines, the larger of both images; 0 for a homography. */
-double asj_distance_from_line(const asj_geometry *g, double x1, double y1, double x2, double y2);
-
-/* How far from its epipolar line a match may lie, px, of the image that knows places less well. */
-double asj_farthest_from_line(const asj_match_run *run);
 
 #endif

@@ -2,6 +2,7 @@
 /* asj_geometry_estimate(): known motions among wrong candidates, what is degenerate, what is bad, what is chance. */
 #include "unit_test.h"
 
+#include "geometry/estimate.h"
 #include "geometry/small_matrix.h"
 
 #include <asj/geometry.h>
@@ -172,6 +173,38 @@ static void a_motion_is_found_among_wrong_candidates(void **state)
         assert_int_equal(f.status, ASJ_GEOMETRY_ACCEPTED);
         assert_int_equal(f.model, ASJ_GEOMETRY_FUNDAMENTAL);
         assert_false(f.has_pose);
+    }
+    free(s);
+    unit_context_free(&counter, &context);
+}
+
+/* A match that has no rivals is as likely by itself as among the candidates, and what is on no line is wrong. */
+static void what_was_accepted_judges_others(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    scene *s = malloc(sizeof *s);
+    double probabilities[MOST];
+    for (int32_t model = ASJ_GEOMETRY_ESSENTIAL; model <= ASJ_GEOMETRY_HOMOGRAPHY; model++) {
+        const asj_geometry_options o = options_for(model, 1);
+        asj_geometry g;
+        asj_judge judge;
+        make(s, model == ASJ_GEOMETRY_HOMOGRAPHY ? PLANE : SOLID, 40, 1);
+        s->count = s->right;
+        assert_int_equal(asj_estimate_with_hints(context, s->candidates, s->count, NULL, &o, probabilities, &judge, &g), ASJ_OK);
+        assert_int_equal(g.status, ASJ_GEOMETRY_ACCEPTED);
+        for (uint32_t k = 0; k < s->count; k++) {
+            asj_geometry_candidate c = s->candidates[k];
+            unit_near("probability", model, k, asj_judge_probability(&judge, &c), probabilities[k], 1e-12);
+            c.probability = 0.9;
+            assert_true(asj_judge_probability(&judge, &c) >= probabilities[k]);
+            c.x2 += 100;
+            c.y2 += 100;
+            assert_true(asj_judge_probability(&judge, &c) < 0.9);
+            c.probability = 0;
+            assert_true(asj_judge_probability(&judge, &c) == 0);
+        }
     }
     free(s);
     unit_context_free(&counter, &context);
@@ -414,6 +447,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_motion_is_found_among_wrong_candidates), cmocka_unit_test(errors_are_as_large_as_told),
+        cmocka_unit_test(what_was_accepted_judges_others),
         cmocka_unit_test(planes_and_turns_are_homographies),
         cmocka_unit_test(too_little_is_no_geometry), cmocka_unit_test(chance_is_not_accepted),
         cmocka_unit_test(threads_and_order_change_nothing), cmocka_unit_test(bad_input_is_refused),

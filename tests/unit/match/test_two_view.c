@@ -10,6 +10,8 @@
 
 #define SEED 6 /* a furnished room, 33 degrees */
 #define REJECTING 3
+#define WITH_GUESTS 22
+#define AMBIGUOUS 30 /* without cameras */
 
 typedef struct views {
     synth_wide_pair pair;
@@ -120,6 +122,55 @@ static uint64_t count_of(const asj_junction_match *list, uint64_t count, const a
     return found;
 }
 
+static int is_of(const views *v, const asj_junction_match *m, int32_t octave)
+{
+    return v->found[0]->junctions[m->junction1].octave == octave && v->found[1]->junctions[m->junction2].octave == octave;
+}
+
+/* Of matches in one of whose images a coarser octave than the finest has found the corner. */
+static uint32_t count_guests(const views *v, const asj_match_result *r)
+{
+    uint32_t guests = 0;
+    for (uint32_t k = 0; k < r->match_count; k++)
+        guests += !is_of(v, &r->matches[k], 0);
+    return guests;
+}
+
+/* Guests are judged, too: what lies on its line to a pixel is likely right. All is the same with any number of threads. */
+static void guests_are_judged(void **state)
+{
+    (void)state;
+    views v;
+    double f[9];
+    unit_counter counters[2] = {{0}, {0}};
+    asj_context *contexts[2] = {unit_context(&counters[0], 1), unit_context(&counters[1], 3)};
+    asj_match_result *results[2] = {NULL, NULL};
+    make(contexts[0], WITH_GUESTS, &v);
+    for (int k = 0; k < 2; k++) {
+        const asj_match_options options = with_cameras(&v);
+        assert_int_equal(match(contexts[k], &v, &v, &options, &results[k]), ASJ_OK);
+        assert_int_equal(results[k]->geometry.status, ASJ_GEOMETRY_ACCEPTED);
+    }
+    const asj_match_result *r = results[0];
+    memcpy(f, r->geometry.matrix, sizeof f);
+    assert_true(count_guests(&v, r) >= 2);
+    for (uint32_t k = 0; k < r->match_count; k++) {
+        const asj_junction_match *m = &r->matches[k];
+        assert_true(m->probability >= 0 && m->probability <= 1);
+        if (!is_of(&v, m, 0) && from_line(f, m) < 1)
+            assert_true(m->probability > 0.5f);
+        for (uint32_t q = 0; q < k; q++)
+            assert_true(r->matches[q].l1 != m->l1 && r->matches[q].l2 != m->l2); /* each once */
+    }
+    assert_int_equal(results[1]->match_count, r->match_count);
+    assert_memory_equal(results[1]->matches, r->matches, r->match_count * sizeof *r->matches);
+    asj_match_result_free(&results[0]);
+    asj_match_result_free(&results[1]);
+    release(&v);
+    unit_context_free(&counters[0], &contexts[0]);
+    unit_context_free(&counters[1], &contexts[1]);
+}
+
 /* Every match that there is without the geometry is either there with it or among the rejected ones, which lie off their lines. */
 static void what_goes_is_told(void **state)
 {
@@ -148,6 +199,31 @@ static void what_goes_is_told(void **state)
             assert_true(from_line(with->geometry.matrix, m) > 3);
     }
     assert_int_equal(told, with->rejected_count);
+    asj_match_result_free(&with);
+    asj_match_result_free(&without);
+    release(&v);
+    unit_context_free(&counter, &context);
+}
+
+/* Matches of all octaves. */
+static void what_is_ambiguous_changes_nothing(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_match_result *without = NULL, *with = NULL;
+    views v;
+    make(context, AMBIGUOUS, &v);
+    asj_match_options options = with_cameras(&v);
+    memset(options.geometry.cameras, 0, sizeof options.geometry.cameras);
+    assert_int_equal(match(context, &v, &v, &options, &with), ASJ_OK);
+    assert_int_equal(with->geometry.status, ASJ_GEOMETRY_AMBIGUOUS);
+    options.geometry.model = ASJ_GEOMETRY_NONE;
+    assert_int_equal(match(context, &v, &v, &options, &without), ASJ_OK);
+    assert_int_equal(with->match_count, without->match_count);
+    assert_true(count_guests(&v, without) >= 2);
+    assert_memory_equal(with->matches, without->matches, with->match_count * sizeof *with->matches);
+    assert_int_equal(with->rejected_count, 0);
     asj_match_result_free(&with);
     asj_match_result_free(&without);
     release(&v);
@@ -188,7 +264,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_pose_is_that_of_the_cameras), cmocka_unit_test(what_goes_is_told),
-        cmocka_unit_test(what_is_not_accepted_changes_nothing),
+        cmocka_unit_test(what_is_not_accepted_changes_nothing), cmocka_unit_test(what_is_ambiguous_changes_nothing),
+        cmocka_unit_test(guests_are_judged),
     };
     return cmocka_run_group_tests_name("two views", tests, NULL, NULL);
 }

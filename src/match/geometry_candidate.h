@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Candidates as the geometry sees them, and their epipolar lines. */
+#ifndef ASJ_SRC_MATCH_GEOMETRY_CANDIDATE_H
+#define ASJ_SRC_MATCH_GEOMETRY_CANDIDATE_H
+
+#include "match_run.h"
+
+/* A candidate as the geometry sees it, its locations as places: in image 1 as detected, in image 2 where the aligned map puts it,
+ * as match_result.c has them. */
+asj_geometry_candidate asj_candidate_for_geometry(const asj_match_run *run, const asj_candidate *c, double prior);
+
+/* A map that hardly keeps any area, or makes thousandfold, is no map, and the geometry takes none. */
+int asj_keeps_area(const asj_candidate *c);
+
+/* px from the epipolar lines, the larger of both images; 0 for a homography. */
+double asj_distance_from_line(const asj_geometry *g, double x1, double y1, double x2, double y2);
+
+/* How far from its epipolar line a match may lie, px, of the image that knows places less well. */
+double asj_farthest_from_line(const asj_match_run *run);
+
+#endif
