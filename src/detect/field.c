@@ -95,172 +95,89 @@ size_t asj_field_plane_stride(const asj_field *field)
     return (size_t)(ASJ_FIELD_TILE + 2 * field->sectors.radius + 31) / 32 * 32;
 }
 
-/* For a block: prefix sums, strengths, peaks, pairs. For a tile: a ring of gamma planes, a row of the gradient, slots, strengths.
- * For pixels in vectors: gamma in runs, slots, strengths. */
+/* For one pixel: gamma in runs, prefix sums, strengths. For pixels in vectors, which need more than that: gamma in runs, slots,
+ * strengths of as many as there are lanes. For a tile: a ring of gamma planes, a row of the gradient, slots, strengths. */
 size_t asj_field_scratch(const asj_field *field)
 {
     const size_t count = (size_t)field->sectors.count, depth = 2 * (size_t)field->sectors.radius + 1;
-    const size_t block = asj_sector_scratch(&field->sectors) + 3 * count * ASJ_LANES;
     const size_t stride = asj_field_plane_stride(field), step = (size_t)field->step;
     const size_t ring = depth * 4 * (size_t)field->plan.family_count * stride * step;
     const size_t lists = (size_t)field->plan.slot_count + count + 2 * (size_t)field->suppress;
     const size_t tile = ring + 2 * stride * step + lists * ASJ_FIELD_TILE;
     const size_t pixels = ((size_t)field->runs.count * ASJ_SECTOR_RUN + lists) * ASJ_FIELD_BATCH;
-    const size_t most = block > tile ? block : tile;
-    return ((most > pixels ? most : pixels) + 31) / 32 * 32;
+    return ((tile > pixels ? tile : pixels) + 31) / 32 * 32;
 }
 
-/* Loops over ASJ_LANES are written so that compilers turn them into a few vector instructions: 16-bit values, strengths below 2^15
- * so that they can be compared as signed numbers, no branches. */
-
-/* Turns sums into strengths, in place. */
-static void strengths(const asj_sectors *s, int16_t *restrict sums)
-{
-    for (int32_t k = 0; k < s->count; k++) {
-        int16_t *z = sums + (size_t)k * ASJ_LANES;
-        const uint16_t mean = s->mean[k], scale = s->scale[k];
-        for (int i = 0; i < ASJ_LANES; i++) {
-            uint16_t sum = (uint16_t)z[i];
-            uint16_t excess = (uint16_t)((sum > mean ? sum : mean) - mean);
-            z[i] = (int16_t)(uint16_t)((uint32_t)excess * scale >> 16);
-        }
-    }
-}
-
-/* peaks[k][i] = -1 where sector k of pixel i reaches least[k] and is the largest of its neighbourhood, else 0. Of equal neighbours
- * the first one counts. */
-static void find_peaks(const asj_field *field, const int16_t *z, const uint16_t *least, int16_t *peaks)
-{
-    const int32_t count = field->sectors.count;
-    for (int32_t k = 0; k < count; k++) {
-        const int16_t *restrict here = z + (size_t)k * ASJ_LANES;
-        int16_t *restrict peak = peaks + (size_t)k * ASJ_LANES;
-        const int16_t threshold = (int16_t)(least[k] - 1);
-        int16_t before[ASJ_LANES], after[ASJ_LANES];
-        for (int i = 0; i < ASJ_LANES; i++)
-            before[i] = threshold;
-        memset(after, 0, sizeof after);
-        for (int32_t d = 1; d <= field->suppress; d++) {
-            const int16_t *left = z + (size_t)(k >= d ? k - d : k + count - d) * ASJ_LANES;
-            const int16_t *right = z + (size_t)(k + d < count ? k + d : k + d - count) * ASJ_LANES;
-            for (int i = 0; i < ASJ_LANES; i++) {
-                before[i] = before[i] > left[i] ? before[i] : left[i];
-                after[i] = after[i] > right[i] ? after[i] : right[i];
-            }
-        }
-        for (int i = 0; i < ASJ_LANES; i++)
-            peak[i] = (int16_t)-((here[i] > before[i]) & (here[i] >= after[i]));
-    }
-}
-
-/* Where they stand in the scratch: sector k of pixel i at [k * ASJ_LANES + i]. */
-typedef struct evaluation {
-    int16_t *z, *peaks;
-} evaluation;
-
-/* Strengths and peaks at ASJ_LANES pixels. */
-static evaluation evaluate(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, const uint16_t *least,
-                           uint16_t *scratch)
+/* Strengths of all sectors at a pixel, in the scratch. */
+static const uint16_t *find_strengths(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch)
 {
     const asj_sectors *s = &field->sectors;
     const ptrdiff_t at = y * frame->stride + x;
-    int16_t *z = (int16_t *)(scratch + asj_sector_scratch(s)), *peaks = z + (size_t)s->count * ASJ_LANES;
-    asj_sector_sums(s, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, (uint16_t *)z);
-    strengths(s, z);
-    find_peaks(field, z, least, peaks);
-    return (evaluation){z, peaks};
+    uint16_t *gamma = scratch, *prefix = gamma + field->runs.count * ASJ_SECTOR_RUN, *z = prefix + s->offset_count + 1;
+    asj_sector_gammas(&field->runs, frame->gradient_x + at, frame->gradient_y + at, frame->stride, gamma);
+    asj_sector_sums(s, field->place, gamma, prefix, z);
+    for (int32_t k = 0; k < s->count; k++)
+        z[k] = asj_sector_strength(s, k, z[k]);
+    return z;
 }
 
-static int any_lane(const int16_t *lanes)
+/* Whether sector k is the largest of its neighbourhood. Of equal neighbours the first one counts. */
+static int is_largest(const asj_field *field, const uint16_t *z, int32_t k)
 {
-    int16_t any = 0;
-    for (int i = 0; i < ASJ_LANES; i++)
-        any |= lanes[i];
-    return any != 0;
+    const int32_t count = field->sectors.count;
+    for (int32_t d = 1; d <= field->suppress; d++) {
+        const int32_t left = k >= d ? k - d : k - d + count, right = k + d < count ? k + d : k + d - count;
+        if (z[left] >= z[k] || z[right] > z[k])
+            return 0;
+    }
+    return 1;
 }
 
-void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
-                     asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES])
+/* The sectors that reach `least` and are the largest of their neighbourhoods, in order. Returns how many there are. */
+static int32_t find_peaks(const asj_field *field, const uint16_t *z, const uint16_t *least, int32_t peaks[ASJ_FIELD_MAX_SECTORS])
 {
-    const asj_sectors *s = &field->sectors;
-    const evaluation e = evaluate(field, frame, x, y, field->keep, scratch);
-    const int16_t *z = e.z, *peaks = e.peaks;
-    memset(branches, 0, ASJ_LANES * sizeof *branches);
-    for (int32_t k = 0; k < s->count; k++) {
-        const int16_t *before = z + (size_t)(k > 0 ? k - 1 : s->count - 1) * ASJ_LANES;
-        const int16_t *after = z + (size_t)(k + 1 < s->count ? k + 1 : 0) * ASJ_LANES;
-        const int16_t *here = z + (size_t)k * ASJ_LANES, *peak = peaks + (size_t)k * ASJ_LANES;
-        if (!any_lane(peak))
-            continue;
-        for (int i = 0; i < ASJ_LANES; i++)
-            if (peak[i]) {
-                const int32_t shift = asj_field_shift(65536 / s->count, before[i], here[i], after[i]);
-                asj_field_insert(branches[i], (asj_field_branch){(uint16_t)(65536 * k / s->count + shift), (uint16_t)here[i]});
-            }
+    int32_t found = 0;
+    for (int32_t k = 0; k < field->sectors.count; k++)
+        if (z[k] >= least[k] && is_largest(field, z, k))
+            peaks[found++] = k;
+    return found;
+}
+
+void asj_field_pixel(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
+                     asj_field_branch branches[ASJ_FIELD_BRANCHES])
+{
+    const int32_t count = field->sectors.count;
+    const uint16_t *z = find_strengths(field, frame, x, y, scratch);
+    int32_t peaks[ASJ_FIELD_MAX_SECTORS];
+    const int32_t found = find_peaks(field, z, field->keep, peaks);
+    memset(branches, 0, ASJ_FIELD_BRANCHES * sizeof *branches);
+    for (int32_t i = 0; i < found; i++) {
+        const int32_t k = peaks[i], before = z[k > 0 ? k - 1 : count - 1], after = z[k + 1 < count ? k + 1 : 0];
+        const int32_t angle = 65536 * k / count + asj_field_shift(65536 / count, before, z[k], after);
+        asj_field_insert(branches, (asj_field_branch){(uint16_t)angle, z[k]});
     }
 }
 
 void asj_field_pixels(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,
                       asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
 {
-    asj_field_branch run[ASJ_LANES][ASJ_FIELD_BRANCHES];
-    for (int32_t i = 0, block = -1, row = -1; i < count; i++) {
-        const int32_t x = pixels[i].x, y = pixels[i].y;
-        if (x / ASJ_LANES != block || y != row) {
-            block = x / ASJ_LANES;
-            row = y;
-            asj_field_block(field, frame, block * ASJ_LANES, row, scratch, run);
-        }
-        memcpy(branches[i], run[x % ASJ_LANES], sizeof run[0]);
-    }
+    for (int32_t i = 0; i < count; i++)
+        asj_field_pixel(field, frame, pixels[i].x, pixels[i].y, scratch, branches[i]);
 }
 
-/* out[k] = in[k] | in[k + shift], circularly. */
-static void or_shifted(const int16_t *restrict in, int16_t *restrict out, int32_t count, int32_t shift)
-{
-    const size_t direct = (size_t)(count - shift) * ASJ_LANES, moved = (size_t)shift * ASJ_LANES;
-    for (size_t i = 0; i < direct; i++)
-        out[i] = in[i] | in[i + moved];
-    for (size_t i = 0; i < moved; i++)
-        out[direct + i] = in[direct + i] | in[i];
-}
-
-uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch)
+int asj_field_is_candidate(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch)
 {
     const int32_t count = field->sectors.count;
-    const evaluation e = evaluate(field, frame, x, y, field->candidate, scratch);
-    int16_t *z = e.z, *peaks = e.peaks;
-    int16_t some[ASJ_LANES] = {0};
-    for (int32_t k = 0; k < count; k++)
-        for (int i = 0; i < ASJ_LANES; i++)
-            some[i] |= peaks[(size_t)k * ASJ_LANES + (size_t)i];
-    if (!any_lane(some))
-        return 0;
-
-    /* A pair (k, k + d) counts for apart <= d <= count / 2 - apart. The union of all peaks k + d in that range is built by
-     * doubling: `from`[k] holds the union over [k, k + width). The strengths are not needed any more: their place serves too. */
-    const int32_t target = count / 2 - 2 * field->apart + 1;
-    int32_t width = 1;
-    int16_t *from = peaks, *spare = z, *to = peaks + (size_t)count * ASJ_LANES;
-    while (width < target) {
-        int32_t shift = 2 * width <= target ? width : target - width;
-        or_shifted(from, to, count, shift);
-        width += shift;
-        from = to;
-        to = spare;
-        spare = from;
-    }
-    int16_t found[ASJ_LANES] = {0};
-    for (int32_t k = 0; k < count; k++) {
-        const int16_t *peak = peaks + (size_t)k * ASJ_LANES;
-        const int16_t *partners = from + (size_t)((k + field->apart) % count) * ASJ_LANES;
-        for (int i = 0; i < ASJ_LANES; i++)
-            found[i] |= peak[i] & partners[i];
-    }
-    uint32_t mask = 0;
-    for (int i = 0; i < ASJ_LANES; i++)
-        mask |= (found[i] ? 1u : 0u) << i;
-    return mask;
+    const uint16_t *z = find_strengths(field, frame, x, y, scratch);
+    int32_t peaks[ASJ_FIELD_MAX_SECTORS];
+    const int32_t found = find_peaks(field, z, field->candidate, peaks);
+    for (int32_t i = 0; i < found; i++)
+        for (int32_t j = i + 1; j < found; j++) {
+            const int32_t ahead = peaks[j] - peaks[i], opening = ahead < count - ahead ? ahead : count - ahead;
+            if (opening >= field->apart && opening <= count / 2 - field->apart)
+                return 1;
+        }
+    return 0;
 }
 
 void asj_field_thin(const asj_field *field, const asj_frame *frame, int32_t run, int32_t runs, uint16_t *masks)
@@ -276,13 +193,13 @@ void asj_field_thin(const asj_field *field, const asj_frame *frame, int32_t run,
 
 void asj_field_tile(const asj_field *field, const asj_frame *frame, const asj_tile *tile, uint16_t *scratch, uint16_t *masks)
 {
+    const int32_t left = tile->run * ASJ_LANES, end = left + tile->runs * ASJ_LANES;
     for (int32_t y = tile->top; y < tile->bottom; y++) {
-        uint16_t *row = masks + (ptrdiff_t)y * frame->blocks + tile->run;
-        for (int32_t b = 0; b < tile->runs; b++)
-            row[b] = asj_field_has_candidates(field, y)
-                         ? (uint16_t)asj_field_candidates(field, frame, (tile->run + b) * ASJ_LANES, y, scratch)
-                         : 0;
-        asj_field_thin(field, frame, tile->run, tile->runs, row);
+        uint16_t *row = masks + (ptrdiff_t)y * frame->blocks;
+        memset(row + tile->run, 0, (size_t)tile->runs * sizeof *row);
+        for (int32_t x = left; asj_field_has_candidates(field, y) && x < end && x < frame->width; x += field->step)
+            if (asj_field_is_candidate(field, frame, x, y, scratch))
+                row[x / ASJ_LANES] = (uint16_t)(row[x / ASJ_LANES] | 1u << x % ASJ_LANES);
     }
 }
 

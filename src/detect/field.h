@@ -41,9 +41,9 @@ void asj_field_free(asj_memory *memory, asj_field *field);
 /* Elements of uint16_t that the functions below need as scratch. */
 size_t asj_field_scratch(const asj_field *field);
 
-/* The branches at ASJ_LANES pixels from (x, y) on, strongest first. */
-void asj_field_block(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
-                     asj_field_branch branches[ASJ_LANES][ASJ_FIELD_BRANCHES]);
+/* The branches at a pixel, strongest first. */
+void asj_field_pixel(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
+                     asj_field_branch branches[ASJ_FIELD_BRANCHES]);
 
 /* A pixel of the image. */
 typedef struct asj_pixel {
@@ -54,9 +54,8 @@ typedef struct asj_pixel {
 void asj_field_pixels(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,
                       asj_field_branch (*branches)[ASJ_FIELD_BRANCHES]);
 
-/* Candidates for junctions among these pixels: bit i is set when pixel x + i has two strong branches that are neither parallel nor
- * opposite. */
-uint32_t asj_field_candidates(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch);
+/* Whether a pixel is a candidate for a junction: it has two strong branches that are neither parallel nor opposite. */
+int asj_field_is_candidate(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch);
 
 /* Part of an image: `runs` runs of ASJ_LANES pixels from run `run` on, in rows top .. bottom - 1. */
 typedef struct asj_tile {

@@ -53,7 +53,7 @@ static int32_t find_peaks(const asj_isotropic_radius *entry, const uint16_t *sum
     uint16_t z[MAX_SECTORS];
     int32_t found = 0;
     for (int32_t k = 0; k < s->count; k++)
-        z[k] = asj_sector_strength(s, k, sums[(size_t)k * ASJ_LANES]);
+        z[k] = asj_sector_strength(s, k, sums[k]);
     for (int32_t k = 0; k < s->count; k++) {
         int largest = z[k] > ASJ_STRENGTH_ONE;
         for (int32_t d = 1; largest && d <= entry->suppress; d++) {
@@ -62,7 +62,7 @@ static int32_t find_peaks(const asj_isotropic_radius *entry, const uint16_t *sum
             largest = z[k] > z[left] && z[k] >= z[right];
         }
         if (largest)
-            found = insert(peaks, found, most, (asj_isotropic_peak){k, sums[(size_t)k * ASJ_LANES], z[k]});
+            found = insert(peaks, found, most, (asj_isotropic_peak){k, sums[k], z[k]});
     }
     return found;
 }
@@ -146,27 +146,22 @@ int asj_isotropic_persists(const asj_isotropic *test, const asj_isotropic_juncti
     return junction->branch_count > 0 && (test->persistence <= 1 || runs != 0);
 }
 
-void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int32_t x, int32_t y, uint32_t candidates,
-                         uint16_t *scratch, asj_isotropic_junction *junctions)
+void asj_isotropic_pixel(const asj_isotropic *test, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
+                         asj_isotropic_junction *junction)
 {
     const ptrdiff_t at = y * frame->stride + x;
-    int32_t count = 0;
-    for (int32_t i = 0; i < ASJ_LANES; i++)
-        if (candidates >> i & 1) {
-            memset(&junctions[count], 0, sizeof *junctions);
-            junctions[count].x = (uint16_t)(x + i);
-            junctions[count++].y = (uint16_t)y;
-        }
+    memset(junction, 0, sizeof *junction);
+    junction->x = (uint16_t)x;
+    junction->y = (uint16_t)y;
     for (int32_t r = test->radius_count - 1; r >= 0; r--) {
         const asj_isotropic_radius *entry = &test->radii[r];
-        uint16_t *sums = scratch + asj_sector_scratch(&entry->sectors);
-        asj_sector_sums(&entry->sectors, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, sums);
-        for (int32_t i = 0, slot = 0; i < ASJ_LANES; i++)
-            if (candidates >> i & 1) {
-                asj_isotropic_peak peaks[ASJ_MAX_BRANCHES];
-                const int32_t found = find_peaks(entry, sums + i, test->max_branches, peaks);
-                asj_isotropic_judge(test, entry, peaks, found, &junctions[slot++]);
-            }
+        const asj_sector_runs *runs = &test->radii[entry->source].runs;
+        uint16_t *prefix = scratch + runs->count * ASJ_SECTOR_RUN, *sums = prefix + entry->sectors.offset_count + 1;
+        asj_isotropic_peak peaks[ASJ_MAX_BRANCHES];
+        if (entry->source == r)
+            asj_sector_gammas(runs, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch);
+        asj_sector_sums(&entry->sectors, entry->place, scratch, prefix, sums);
+        asj_isotropic_judge(test, entry, peaks, find_peaks(entry, sums, test->max_branches, peaks), junction);
     }
 }
 
@@ -175,11 +170,10 @@ void asj_isotropic_band(const asj_isotropic *test, const asj_frame *frame, int32
 {
     for (int32_t y = top; y < bottom; y++)
         for (int32_t b = 0; b < frame->blocks; b++) {
-            const uint32_t candidates = masks[(ptrdiff_t)y * frame->blocks + b];
-            if (candidates)
-                asj_isotropic_block(test, frame, b * ASJ_LANES, y, candidates, scratch, junctions);
-            for (uint32_t rest = candidates; rest; rest &= rest - 1)
-                junctions++;
+            uint32_t candidates = masks[(ptrdiff_t)y * frame->blocks + b];
+            for (int32_t x = b * ASJ_LANES; candidates; candidates >>= 1, x++)
+                if (candidates & 1)
+                    asj_isotropic_pixel(test, frame, x, y, scratch, junctions++);
         }
 }
 

@@ -45,7 +45,7 @@ typedef struct asj_isotropic {
     int32_t max_branches;
     int32_t persistence;  /* radii in a row at which a junction is meaningful, at least */
     double *tail_tables[128]; /* by number of pixels; shared by the radii */
-    size_t scratch;           /* elements of uint16_t for asj_isotropic_block() and asj_isotropic_band() */
+    size_t scratch;           /* elements of uint16_t for asj_isotropic_pixel() and asj_isotropic_band() */
 } asj_isotropic;
 
 asj_status asj_isotropic_create(asj_context *context, const asj_detect_options *options, asj_isotropic *test);
@@ -58,12 +58,11 @@ void asj_isotropic_set_size(const asj_detect_options *options, int32_t width, in
 /* Whether a junction that was tested is one: meaningful, at enough radii in a row. */
 int asj_isotropic_persists(const asj_isotropic *test, const asj_isotropic_junction *junction);
 
-/* Tests the pixels x + i, bit i of `candidates` set; writes one record for each such bit, in order. A candidate that no radius
- * makes meaningful has branch_count 0. */
-void asj_isotropic_block(const asj_isotropic *test, const asj_frame *frame, int32_t x, int32_t y, uint32_t candidates,
-                         uint16_t *scratch, asj_isotropic_junction *junctions);
+/* Tests a pixel. A candidate that no radius makes meaningful has branch_count 0. */
+void asj_isotropic_pixel(const asj_isotropic *test, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch,
+                         asj_isotropic_junction *junction);
 
-/* The same for rows top .. bottom - 1, whose candidates are those of the whole image's `masks`. Records in order of y, then x. */
+/* Tests the candidates of rows top .. bottom - 1, bits of the whole image's `masks`. Records in order of y, then x. */
 void asj_isotropic_band(const asj_isotropic *test, const asj_frame *frame, int32_t top, int32_t bottom, const uint16_t *masks,
                         uint16_t *scratch, asj_isotropic_junction *junctions);
 

@@ -51,23 +51,20 @@ static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t
     return status;
 }
 
-/* In blocks: prefix sums, sums. In bands: gamma in runs, which may be those of a larger radius, then slots and strengths. */
+/* Gamma in runs, which may be those of a larger radius; then slots and strengths, of as many pixels as a vector form has lanes. One
+ * pixel needs less than that: gamma, prefix sums, sums. */
 static void measure_scratch(asj_isotropic *test)
 {
     size_t offsets = 0, rest = 0;
-    test->scratch = 0;
     for (int32_t r = 0; r < test->radius_count; r++) {
         const asj_isotropic_radius *entry = &test->radii[r];
         const size_t count = (size_t)entry->sectors.count;
-        const size_t block = asj_sector_scratch(&entry->sectors) + count * ASJ_LANES;
         const size_t slots = (size_t)entry->plan.slot_count + count + 2 * (size_t)entry->suppress;
-        test->scratch = block > test->scratch ? block : test->scratch;
         const size_t in_runs = (size_t)entry->runs.count * ASJ_SECTOR_RUN;
         offsets = in_runs > offsets ? in_runs : offsets;
         rest = slots > rest ? slots : rest;
     }
-    const size_t row = (offsets + rest) * ASJ_ISOTROPIC_LANES;
-    test->scratch = row > test->scratch ? row : test->scratch;
+    test->scratch = (offsets + rest) * ASJ_ISOTROPIC_LANES;
 }
 
 /* Finds for each radius whose gammas it can share, and where they are there. */

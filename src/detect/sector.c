@@ -184,53 +184,16 @@ void asj_sectors_free(asj_memory *memory, asj_sectors *s)
     memset(s, 0, sizeof *s);
 }
 
-size_t asj_sector_scratch(const asj_sectors *s)
+void asj_sector_sums(const asj_sectors *s, const int16_t *place, const uint16_t *gamma, uint16_t *prefix, uint16_t *sums)
 {
-    return ((size_t)s->offset_count + 1) * ASJ_LANES;
-}
-
-/* The high half of a 16 x 16 bit product. */
-static inline int16_t high_product(int16_t a, int16_t b)
-{
-    return (int16_t)((int32_t)a * b >> 16);
-}
-
-/* prefix[i + 1] = prefix[i] + gamma at offset i, at ASJ_LANES pixels. */
-static inline void add_offset(const int16_t *restrict gx, const int16_t *restrict gy, asj_direction u,
-                              const uint16_t *restrict before, uint16_t *restrict after)
-{
-    for (int i = 0; i < ASJ_LANES; i++) {
-        int16_t cross = (int16_t)(high_product(gx[i], u.y) - high_product(gy[i], u.cross_x));
-        int16_t dot = (int16_t)(high_product(gx[i], u.x) - high_product(gy[i], u.dot_y));
-        cross = (int16_t)(cross < 0 ? -cross : cross);
-        dot = (int16_t)(dot < 0 ? -dot : dot);
-        int16_t gamma = (int16_t)(cross - dot);
-        after[i] = (uint16_t)(before[i] + (gamma > 0 ? gamma : 0));
-    }
-}
-
-void asj_sector_sums(const asj_sectors *s, const int16_t *gx, const int16_t *gy, ptrdiff_t stride,
-                     uint16_t *prefix, uint16_t *sums)
-{
-    memset(prefix, 0, ASJ_LANES * sizeof *prefix);
+    uint16_t total = 0;
     for (int32_t i = 0; i < s->offset_count; i++) {
-        ptrdiff_t at = s->dy[i] * stride + s->dx[i];
-        uint16_t *here = prefix + (size_t)i * ASJ_LANES;
-        add_offset(gx + at, gy + at, asj_sector_direction(s, i), here, here + ASJ_LANES);
+        prefix[i] = total;
+        total = (uint16_t)(total + gamma[place[i]]);
     }
-    const uint16_t *total = prefix + (size_t)s->offset_count * ASJ_LANES;
+    prefix[s->offset_count] = total;
     for (int32_t k = 0; k < s->count; k++) {
-        int32_t end = s->first[k] + s->size[k];
-        const uint16_t *low = prefix + (size_t)s->first[k] * ASJ_LANES;
-        uint16_t *sum = sums + (size_t)k * ASJ_LANES;
-        if (end <= s->offset_count) {
-            const uint16_t *high = prefix + (size_t)end * ASJ_LANES;
-            for (int i = 0; i < ASJ_LANES; i++)
-                sum[i] = (uint16_t)(high[i] - low[i]);
-        } else {
-            const uint16_t *rest = prefix + (size_t)(end - s->offset_count) * ASJ_LANES;
-            for (int i = 0; i < ASJ_LANES; i++)
-                sum[i] = (uint16_t)(total[i] - low[i] + rest[i]);
-        }
+        const int32_t first = s->first[k], end = first + s->size[k], past = end - s->offset_count;
+        sums[k] = (uint16_t)(past > 0 ? total - prefix[first] + prefix[past] : prefix[end] - prefix[first]);
     }
 }

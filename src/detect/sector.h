@@ -29,12 +29,9 @@ typedef struct asj_sectors {
 asj_status asj_sectors_create(asj_memory *memory, int32_t radius, double tau, asj_sectors *sectors);
 void asj_sectors_free(asj_memory *memory, asj_sectors *sectors);
 
-/* Elements of uint16_t that asj_sector_sums() needs as scratch. */
-size_t asj_sector_scratch(const asj_sectors *sectors);
-
-/* sums[k * ASJ_LANES + i] = junction-ness of sector k at the i-th of ASJ_LANES pixels in a row, the first at (gx, gy). */
-void asj_sector_sums(const asj_sectors *sectors, const int16_t *gx, const int16_t *gy, ptrdiff_t stride,
-                     uint16_t *scratch, uint16_t *sums);
+/* sums[k] = junction-ness of sector k at a pixel. gamma[place[i]]: that of offset i (asj_sector_gammas()). `prefix`: scratch, one
+ * element more than there are offsets. */
+void asj_sector_sums(const asj_sectors *sectors, const int16_t *place, const uint16_t *gamma, uint16_t *prefix, uint16_t *sums);
 
 /* The factors of gamma for an offset, with high halves of products:
  *     gamma = max(|gx y - gy cross_x| - |gx x - gy dot_y|, 0)

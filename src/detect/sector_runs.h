@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The offsets of a radius in the order of the image: what vector forms load at pixels that are no neighbours. */
+/* The offsets of a radius in the order of the image, and gamma at all of them around one pixel. */
 #ifndef ASJ_SRC_SECTOR_RUNS_H
 #define ASJ_SRC_SECTOR_RUNS_H
 
@@ -22,5 +22,8 @@ void asj_sector_runs_free(asj_memory *memory, asj_sector_runs *runs);
 /* Where each offset of these sectors, whose radius is that of the runs or smaller, stands in them: run * ASJ_SECTOR_RUN + number in
  * the run. */
 void asj_sector_runs_places(const asj_sector_runs *runs, const asj_sectors *sectors, int16_t *places);
+
+/* gamma at each offset of all runs around the pixel at (gx, gy); 0 where there is no direction. */
+void asj_sector_gammas(const asj_sector_runs *runs, const int16_t *gx, const int16_t *gy, ptrdiff_t stride, uint16_t *gamma);
 
 #endif

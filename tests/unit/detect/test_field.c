@@ -16,20 +16,19 @@ static int set_up(void **state)
     return unit_set_up_scene(state, &scene, 1, 4);
 }
 
-enum { MOST = ASJ_FIELD_MAX_SECTORS };
+enum { MOST = ASJ_FIELD_MAX_SECTORS, MOST_RUNS = 3 * (2 * ASJ_FIELD_MAX_RADIUS + 1) };
 
 /* z_k of all sectors of a pixel from the library's sums, which test_sector.c checks, in whole numbers of 1/256. */
 static void strengths_at(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, int32_t z[MOST])
 {
     const asj_sectors *s = &field->sectors;
-    uint16_t *scratch = malloc(asj_sector_scratch(s) * sizeof *scratch);
-    uint16_t sums[MOST * ASJ_LANES];
+    uint16_t gamma[MOST_RUNS * ASJ_SECTOR_RUN], prefix[ASJ_FIELD_MAX_OFFSETS + 1], sums[MOST];
     const ptrdiff_t at = y * frame->stride + x;
-    assert_non_null(scratch);
-    asj_sector_sums(s, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, sums);
+    assert_true(field->runs.count <= MOST_RUNS && s->offset_count <= ASJ_FIELD_MAX_OFFSETS);
+    asj_sector_gammas(&field->runs, frame->gradient_x + at, frame->gradient_y + at, frame->stride, gamma);
+    asj_sector_sums(s, field->place, gamma, prefix, sums);
     for (int32_t k = 0; k < s->count; k++)
-        z[k] = asj_sector_strength(s, k, sums[k * ASJ_LANES]);
-    free(scratch);
+        z[k] = asj_sector_strength(s, k, sums[k]);
 }
 
 /* Larger than all sectors within Delta before it, and no smaller than those after it. */
@@ -161,11 +160,10 @@ static void test_branches(void **state)
         uint16_t *scratch = malloc(asj_field_scratch(&field) * sizeof *scratch);
         assert_non_null(scratch);
         for (int32_t y = 0; y < f->frame.height; y += 3)
-            for (int32_t x = 0; x < f->frame.width; x += ASJ_LANES) {
-                asj_field_branch found[ASJ_LANES][ASJ_FIELD_BRANCHES];
-                asj_field_block(&field, &f->frame, x, y, scratch, found);
-                for (int32_t i = 0; i < ASJ_LANES && x + i < f->frame.width; i++)
-                    check_pixel(&field, &f->frame, x + i, y, found[i]);
+            for (int32_t x = 0; x < f->frame.width; x++) {
+                asj_field_branch found[ASJ_FIELD_BRANCHES];
+                asj_field_pixel(&field, &f->frame, x, y, scratch, found);
+                check_pixel(&field, &f->frame, x, y, found);
             }
         free(scratch);
         asj_field_free(&f->context->memory, &field);
@@ -202,15 +200,13 @@ static void test_candidates(void **state)
             uint16_t *scratch = malloc(asj_field_scratch(&field) * sizeof *scratch);
             assert_non_null(scratch);
             for (int32_t y = 0; y < f->frame.height; y += 2)
-                for (int32_t x = 0; x < f->frame.width; x += ASJ_LANES) {
-                    const uint32_t mask = asj_field_candidates(&field, &f->frame, x, y, scratch);
-                    for (int32_t i = 0; i < ASJ_LANES && x + i < f->frame.width; i++) {
-                        int32_t z[MOST];
-                        strengths_at(&field, &f->frame, x + i, y, z);
-                        if (naive_candidate(&field, z) != (int)(mask >> i & 1))
-                            fail_msg("(%d, %d), radius %d: candidate %d", (int)(x + i), (int)y, (int)radius, (int)(mask >> i & 1));
-                        total += (int)(mask >> i & 1);
-                    }
+                for (int32_t x = 0; x < f->frame.width; x++) {
+                    const int found = asj_field_is_candidate(&field, &f->frame, x, y, scratch);
+                    int32_t z[MOST];
+                    strengths_at(&field, &f->frame, x, y, z);
+                    if (naive_candidate(&field, z) != found)
+                        fail_msg("(%d, %d), radius %d: candidate %d", (int)x, (int)y, (int)radius, found);
+                    total += found;
                 }
             free(scratch);
             asj_field_free(&f->context->memory, &field);
@@ -265,15 +261,15 @@ static void test_edge_direction(void **state)
         const double angle = 0.02 + n * UNIT_PI / 36;
         synth_scene scene;
         asj_frame frame;
-        asj_field_branch found[ASJ_LANES][ASJ_FIELD_BRANCHES];
+        asj_field_branch found[ASJ_FIELD_BRANCHES];
         unit_half_plane(&scene, 65, (synth_point){32, 32}, angle, 90, 150);
         unit_frame_of(f->context, &scene, 1, 0, NULL, &frame);
-        asj_field_block(&field, &frame, 32, 32, scratch, found);
+        asj_field_pixel(&field, &frame, 32, 32, scratch, found);
         for (int i = 0; i < 2; i++) {
-            assert_true(found[0][i].strength > 5 * ASJ_STRENGTH_ONE);
-            unit_near("direction", n, i, unit_turn(2 * angle, found[0][i].angle * UNIT_PI / 16384) / 2, 0, 0.5 * step);
+            assert_true(found[i].strength > 5 * ASJ_STRENGTH_ONE);
+            unit_near("direction", n, i, unit_turn(2 * angle, found[i].angle * UNIT_PI / 16384) / 2, 0, 0.5 * step);
         }
-        assert_true(unit_turn(found[0][0].angle * UNIT_PI / 32768, found[0][1].angle * UNIT_PI / 32768) > 3);
+        assert_true(unit_turn(found[0].angle * UNIT_PI / 32768, found[1].angle * UNIT_PI / 32768) > 3);
         asj_frame_free(&f->context->memory, &frame);
     }
     free(scratch);
@@ -302,10 +298,10 @@ static void test_public(void **state)
         assert_int_equal(asj_local_field(f->context, &image, NULL, all), ASJ_OK);
         unit_frame(f->context, &image, NULL, &frame);
         for (int32_t i = 0; i < width * height; i++) {
-            asj_field_branch found[ASJ_LANES][ASJ_FIELD_BRANCHES];
-            asj_field_block(&field, &frame, i % width / ASJ_LANES * ASJ_LANES, i / width, scratch, found);
+            asj_field_branch found[ASJ_FIELD_BRANCHES];
+            asj_field_pixel(&field, &frame, i % width, i / width, scratch, found);
             for (int32_t b = 0; b < ASJ_FIELD_BRANCHES; b++) {
-                const asj_field_branch expected = found[i % width % ASJ_LANES][b];
+                const asj_field_branch expected = found[b];
                 const asj_local_branch got = all[i * ASJ_FIELD_BRANCHES + b];
                 unit_near("strength", i, b, got.strength, expected.strength / (double)ASJ_STRENGTH_ONE, 1e-5);
                 unit_near("angle", i, b, got.angle, expected.strength ? expected.angle * UNIT_PI / 32768 : 0, 1e-5);

@@ -67,8 +67,8 @@ static void take_picture(fixture *f, synth_scene *scene, double noise)
     assert_non_null(scratch);
     assert_non_null(f->all);
     for (int32_t y = 0; y < f->frame.height; y++)
-        for (int32_t x = 0; x < f->frame.width; x += ASJ_LANES)
-            asj_field_block(&f->field, &f->frame, x, y, scratch, &f->all[y * stride + x]);
+        for (int32_t x = 0; x < stride; x++)
+            asj_field_pixel(&f->field, &f->frame, x, y, scratch, f->all[y * stride + x]);
     free(scratch);
 }
 

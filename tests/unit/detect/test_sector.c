@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Sectors: geometry against the definition and the check values of the design, sums and strengths against trigonometry. */
-#include "detect/sector.h"
+#include "detect/sector_runs.h"
 #include "detect/nfa.h"
 #include "unit_test.h"
 
@@ -160,26 +160,57 @@ static double naive_strength(double sum, int32_t pixels)
     return fmax(0, (sum - pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(pixels)));
 }
 
-/* All lanes at one place; each gamma may be off by two units, each strength by its rounding to 1/256 too. */
-static void check_block(const asj_frame *frame, int32_t x, int32_t y, const asj_sectors *s, double tau)
+enum { MOST = 188 }; /* floor(2 pi 30) */
+
+/* Sectors with their offsets in runs. */
+typedef struct disc {
+    asj_memory *memory;
+    const asj_sectors *sectors;
+    asj_sector_runs runs;
+    int16_t *place;
+} disc;
+
+static disc open_disc(asj_memory *memory, const asj_sectors *s)
 {
-    uint16_t *scratch = malloc(asj_sector_scratch(s) * sizeof *scratch);
-    uint16_t *sums = malloc((size_t)s->count * ASJ_LANES * sizeof *sums);
+    disc d = {memory, s, {0}, malloc((size_t)s->offset_count * sizeof(int16_t))};
+    assert_non_null(d.place);
+    assert_int_equal(asj_sector_runs_create(memory, s, &d.runs), ASJ_OK);
+    asj_sector_runs_places(&d.runs, s, d.place);
+    return d;
+}
+
+static void close_disc(disc *d)
+{
+    asj_sector_runs_free(d->memory, &d->runs);
+    free(d->place);
+}
+
+/* The library's sums of all sectors at a pixel. */
+static void sums_at(const disc *d, const int16_t *gx, const int16_t *gy, ptrdiff_t stride, uint16_t *sums)
+{
+    uint16_t *gamma = malloc((size_t)d->runs.count * ASJ_SECTOR_RUN * sizeof *gamma);
+    uint16_t *prefix = malloc(((size_t)d->sectors->offset_count + 1) * sizeof *prefix);
+    assert_true(gamma && prefix);
+    asj_sector_gammas(&d->runs, gx, gy, stride, gamma);
+    asj_sector_sums(d->sectors, d->place, gamma, prefix, sums);
+    free(prefix);
+    free(gamma);
+}
+
+/* Each gamma may be off by two units, each strength by its rounding to 1/256 too. */
+static void check_pixel(const asj_frame *frame, int32_t x, int32_t y, const disc *d, double tau)
+{
+    uint16_t sums[MOST];
+    const asj_sectors *s = d->sectors;
     const ptrdiff_t at = y * frame->stride + x;
     const double unit = 1.0 / (1 << s->gamma_bits);
-    assert_non_null(scratch);
-    assert_non_null(sums);
-    asj_sector_sums(s, frame->gradient_x + at, frame->gradient_y + at, frame->stride, scratch, sums);
-    for (int32_t k = 0; k < s->count; k++)
-        for (int32_t i = 0; i < ASJ_LANES && x + i < frame->width; i++) {
-            const double expected = naive_sum(frame, x + i, y, s, k, tau), error = 2.1 * unit * s->size[k];
-            const uint16_t sum = sums[k * ASJ_LANES + i];
-            unit_near("sum", x + i, k, sum * unit, expected, error);
-            unit_near("strength", x + i, k, asj_sector_strength(s, k, sum) / (double)ASJ_STRENGTH_ONE,
-                      naive_strength(expected, s->size[k]), error / (ASJ_GAMMA_SD * sqrt(s->size[k])) + 2.0 / ASJ_STRENGTH_ONE);
-        }
-    free(sums);
-    free(scratch);
+    sums_at(d, frame->gradient_x + at, frame->gradient_y + at, frame->stride, sums);
+    for (int32_t k = 0; k < s->count; k++) {
+        const double expected = naive_sum(frame, x, y, s, k, tau), error = 2.1 * unit * s->size[k];
+        unit_near("sum", x, k, sums[k] * unit, expected, error);
+        unit_near("strength", x, k, asj_sector_strength(s, k, sums[k]) / (double)ASJ_STRENGTH_ONE,
+                  naive_strength(expected, s->size[k]), error / (ASJ_GAMMA_SD * sqrt(s->size[k])) + 2.0 / ASJ_STRENGTH_ONE);
+    }
 }
 
 /* Also where the sector reaches outside the image: the gradient is zero there and J is not changed. */
@@ -202,9 +233,11 @@ static void test_sums(void **state)
             asj_memory memory;
             asj_sectors s;
             make(&sector_counter, &memory, radii[r], widths[w], &s);
+            disc d = open_disc(&memory, &s);
             for (size_t p = 0; p < UNIT_COUNT(places); p++)
-                if (radii[r] < 30 || p == 4)
-                    check_block(&frame, places[p][0], places[p][1], &s, widths[w]);
+                for (int32_t x = places[p][0]; (radii[r] < 30 || p == 4) && x < places[p][0] + 16 && x < frame.width; x++)
+                    check_pixel(&frame, x, places[p][1], &d, widths[w]);
+            close_disc(&d);
             drop(&sector_counter, &memory, &s);
         }
     asj_frame_free(&context->memory, &frame);
@@ -223,22 +256,19 @@ static void test_saturation(void **state)
         asj_memory memory;
         asj_sectors s;
         make(&counter, &memory, radius, 3, &s);
-        uint16_t *scratch = malloc(asj_sector_scratch(&s) * sizeof *scratch);
-        uint16_t *sums = malloc((size_t)s.count * ASJ_LANES * sizeof *sums);
-        assert_non_null(scratch);
-        assert_non_null(sums);
-        for (int32_t i = 0; i < SIZE; i++) { /* across the line to the centre of lane 0: gamma is |g| */
+        uint16_t sums[MOST];
+        for (int32_t i = 0; i < SIZE; i++) { /* across the line to the centre: gamma is |g| */
             const int32_t dx = i % SIDE - 40, dy = i / SIDE - 40;
             const double length = dx || dy ? hypot(dx, dy) : 1;
             gx[i] = (int16_t)lrint(-largest * dy / length);
             gy[i] = (int16_t)lrint(largest * dx / length);
         }
-        asj_sector_sums(&s, gx + 40 * SIDE + 40, gy + 40 * SIDE + 40, SIDE, scratch, sums);
+        disc d = open_disc(&memory, &s);
+        sums_at(&d, gx + 40 * SIDE + 40, gy + 40 * SIDE + 40, SIDE, sums);
+        close_disc(&d);
         for (int32_t k = 0; k < s.count; k++)
-            unit_near("largest sum", radius, k, (double)sums[k * ASJ_LANES] / (1 << s.gamma_bits),
+            unit_near("largest sum", radius, k, (double)sums[k] / (1 << s.gamma_bits),
                       s.size[k] * (double)largest / ASJ_GRADIENT_ONE, s.size[k] * 2.1 / (1 << s.gamma_bits));
-        free(sums);
-        free(scratch);
         drop(&counter, &memory, &s);
     }
 }
@@ -271,18 +301,15 @@ static double edge_strength(asj_context *context, const asj_sectors *s, double a
     const asj_image image = unit_gray8(pixels, SIZE, SIZE);
     unit_frame(context, &image, &options, &frame);
     const ptrdiff_t at = MIDDLE * frame.stride + MIDDLE;
-    uint16_t *scratch = malloc(asj_sector_scratch(s) * sizeof *scratch);
-    uint16_t *sums = malloc((size_t)s->count * ASJ_LANES * sizeof *sums);
-    assert_non_null(scratch);
-    assert_non_null(sums);
-    asj_sector_sums(s, frame.gradient_x + at, frame.gradient_y + at, frame.stride, scratch, sums);
+    uint16_t sums[MOST];
+    disc d = open_disc(&context->memory, s);
+    sums_at(&d, frame.gradient_x + at, frame.gradient_y + at, frame.stride, sums);
+    close_disc(&d);
     for (int32_t k = 0; k < s->count; k++) {
-        const uint16_t strength = asj_sector_strength(s, k, sums[k * ASJ_LANES]);
+        const uint16_t strength = asj_sector_strength(s, k, sums[k]);
         if (unit_turn(2 * sector_angle(s, k), 2 * angle) <= 2 * 2.0 / s->radius && strength > best)
             best = strength;
     }
-    free(sums);
-    free(scratch);
     asj_frame_free(&context->memory, &frame);
     return best / (double)ASJ_STRENGTH_ONE;
 }
