@@ -95,19 +95,35 @@ static int32_t clamp(int32_t value, int32_t size)
     return value < 0 ? 0 : value > size ? size : value;
 }
 
-/* Row y of the octave: bits of candidates with nothing of `line` (NULL = all of it) near, or outside left .. right - 1, go. */
-static void clear_row(const asj_detection_run *run, int32_t y, int32_t left, int32_t right, const uint8_t *line)
+static void clear_bit(uint16_t *bits, int32_t x)
 {
-    uint16_t *bits = run->candidates + (ptrdiff_t)y * run->frame->blocks;
+    bits[x / ASJ_LANES] = (uint16_t)(bits[x / ASJ_LANES] & ~(1u << x % ASJ_LANES));
+}
+
+/* Bits of candidates with nothing of `line` near go. */
+static void clear_far(const asj_detection_run *run, const uint8_t *line, uint16_t *bits)
+{
     const int32_t width = run->image->width, reach = reach_of(run), octave = run->octave;
     int32_t last = -1; /* the last pixel of the image that is allowed, of those before `next` */
     for (int32_t x = 0, next = 0; x < run->frame->width; x++) {
         const int32_t first = clamp((x - reach) * (1 << octave), width), end = clamp((x + reach + 1) * (1 << octave), width);
-        for (; line && next < end; next++)
+        for (; next < end; next++)
             last = line[next] ? next : last;
-        if (x < left || x >= right || (line && last < first))
-            bits[x / ASJ_LANES] = (uint16_t)(bits[x / ASJ_LANES] & ~(1u << x % ASJ_LANES));
+        if (last < first)
+            clear_bit(bits, x);
     }
+}
+
+/* Row y of the octave: bits of candidates outside left .. right - 1, or with nothing of `line` (NULL = all of it) near, go. */
+static void clear_row(const asj_detection_run *run, int32_t y, int32_t left, int32_t right, const uint8_t *line)
+{
+    uint16_t *bits = run->candidates + (ptrdiff_t)y * run->frame->blocks;
+    for (int32_t x = 0; x < left; x++)
+        clear_bit(bits, x);
+    for (int32_t x = right; x < run->frame->width; x++)
+        clear_bit(bits, x);
+    if (line)
+        clear_far(run, line, bits);
 }
 
 asj_status asj_region_clear_candidates(asj_detection_run *run)
