@@ -178,16 +178,21 @@ static void count_members(asj_vote_search *s)
     }
 }
 
-/* Votes for the point at all levels; the surest. */
+/* Votes for the point at all levels; the surest. Most lines are far from the point, and their sine need not be known: its square is
+ * above that of the largest tolerance by more than rounding makes of it. */
 asj_vote asj_judge_point(const asj_vote_search *s, const double v[3])
 {
+    const double widest = sin(tau[ASJ_VOTE_LEVELS - 1]), far2 = 1.000001 * widest * widest;
     asj_vote best = {{v[0], v[1], v[2]}, HUGE_VAL, 0, 0};
     int32_t votes[ASJ_VOTE_LEVELS] = {0};
     for (int32_t k = 0; k < s->count; k++) {
         const asj_vote_line *one = &s->lines[k];
-        const double sin_of = one->taken ? 1 : sine(one, v);
+        const double dx = v[0] - v[2] * one->mx, dy = v[1] - v[2] * one->my, at = asj_dot3(one->l, v);
+        if (at * at > far2 * (dx * dx + dy * dy) || one->taken)
+            continue;
+        const double sin_of = sine(one, v);
         for (int32_t level = 0; level < ASJ_VOTE_LEVELS; level++)
-            votes[level] += !one->taken && one->sd <= tau[level] && sin_of <= sin(tau[level]);
+            votes[level] += one->sd <= tau[level] && sin_of <= sin(tau[level]);
     }
     for (int32_t level = 0; level < ASJ_VOTE_LEVELS; level++) {
         const double nfa = log_nfa(s, level, votes[level]);

@@ -14,7 +14,8 @@
  * Pixels are areas: working pixel i covers the image's (i .. i + 1) / 0.8 - 1/2, so its centre is (i + 1/2) / 0.8 - 1/2. Samples
  * stand half a working pixel further (asj_levels_place()). Outside the image its border pixels repeat.
  *
- * The Gaussian's taps are whole numbers in 1/4096 that sum to one; sums of at most 4096 x 255 x 128 fit 32 bits. */
+ * The Gaussian's taps are whole numbers in 1/4096 that sum to one; sums of at most 4096 x 255 x 128 fit 32 bits. Factors are handed
+ * to compilers as signed 16-bit numbers, which they multiply several at once: no grey value is above 255 x 128. */
 #include "line_segments_levels.h"
 
 #include <math.h>
@@ -42,7 +43,7 @@ static int32_t pixel_before(int32_t i, double *rest)
     return eighths / 8;
 }
 
-static void make_taps(int32_t taps[PHASES][TAPS])
+static void make_taps(int16_t taps[PHASES][TAPS])
 {
     for (int32_t phase = 0; phase < PHASES; phase++) {
         double weights[TAPS], total = 0, rest;
@@ -54,10 +55,10 @@ static void make_taps(int32_t taps[PHASES][TAPS])
             total += weights[k];
         }
         for (int32_t k = 0; k < TAPS; k++) {
-            taps[phase][k] = (int32_t)(ONE * weights[k] / total + 0.5);
+            taps[phase][k] = (int16_t)(ONE * weights[k] / total + 0.5);
             sum += taps[phase][k];
         }
-        taps[phase][REACH] += ONE - sum;
+        taps[phase][REACH] = (int16_t)(taps[phase][REACH] + ONE - sum);
     }
 }
 
@@ -66,24 +67,43 @@ static int32_t inside(int32_t i, int32_t size)
     return i < 0 ? 0 : i < size ? i : size - 1;
 }
 
-/* One row of the reduced image: down the columns first, then along the row. */
-static void reduce_row(const asj_frame *frame, int32_t y, int32_t width, int32_t taps[PHASES][TAPS], uint16_t *column,
-                       uint16_t *out)
+static uint16_t weighted(const int16_t taps[TAPS], const uint16_t *values)
 {
-    double rest;
-    const int32_t top = pixel_before(y, &rest) - REACH, *down = taps[y % PHASES];
+    int32_t sum = ONE / 2;
+    for (int32_t k = 0; k < TAPS; k++)
+        sum += taps[k] * (int16_t)values[k];
+    return (uint16_t)(sum / ONE);
+}
+
+static void weigh_columns(const asj_frame *frame, int32_t top, const int16_t taps[TAPS], uint16_t *restrict column)
+{
+    const uint16_t *rows[TAPS];
+    for (int32_t k = 0; k < TAPS; k++)
+        rows[k] = frame->gray + inside(top + k, frame->height) * frame->stride;
     for (int32_t x = 0; x < frame->width; x++) {
         int32_t sum = ONE / 2;
         for (int32_t k = 0; k < TAPS; k++)
-            sum += down[k] * frame->gray[inside(top + k, frame->height) * frame->stride + x];
+            sum += taps[k] * (int16_t)rows[k][x];
         column[x] = (uint16_t)(sum / ONE);
     }
+}
+
+/* One row of the reduced image: down the columns first, then along the row. */
+static void reduce_row(const asj_frame *frame, int32_t y, int32_t width, int16_t taps[PHASES][TAPS], uint16_t *column,
+                       uint16_t *out)
+{
+    double rest;
+    weigh_columns(frame, pixel_before(y, &rest) - REACH, taps[y % PHASES], column);
     for (int32_t x = 0; x < width; x++) {
-        const int32_t left = pixel_before(x, &rest) - REACH, *along = taps[x % PHASES];
-        int32_t sum = ONE / 2;
+        const int32_t left = pixel_before(x, &rest) - REACH;
+        uint16_t values[TAPS];
+        if (left >= 0 && left + TAPS <= frame->width) {
+            out[x] = weighted(taps[x % PHASES], column + left);
+            continue;
+        }
         for (int32_t k = 0; k < TAPS; k++)
-            sum += along[k] * column[inside(left + k, frame->width)];
-        out[x] = (uint16_t)(sum / ONE);
+            values[k] = column[inside(left + k, frame->width)];
+        out[x] = weighted(taps[x % PHASES], values);
     }
 }
 
@@ -126,7 +146,7 @@ static void sort_samples(asj_levels *levels)
 
 static void fill(const asj_frame *frame, uint16_t *rows[3], asj_levels *levels)
 {
-    int32_t taps[PHASES][TAPS];
+    int16_t taps[PHASES][TAPS];
     make_taps(taps);
     uint16_t *above = rows[0], *below = rows[1];
     reduce_row(frame, 0, levels->width + 1, taps, rows[2], above);
