@@ -17,7 +17,8 @@
 
 #define ROUNDING 1e-6 /* 8 roundings of 2^-24 and as much again */
 #define SLACK 1e-3
-#define BLOCK 128
+#define BLOCK 128   /* candidates, */
+#define AT_ONCE 8   /* of which so many are passed over at once: divides BLOCK */
 
 int32_t asj_near_prepare(asj_memory *memory, asj_pairs *set)
 {
@@ -122,9 +123,15 @@ int32_t asj_near(const asj_pairs *set, int32_t count, const asj_two_view *view, 
     for (int32_t first = 0; first < count; first += BLOCK) {
         const int32_t some = count - first < BLOCK ? count - first : BLOCK;
         (view->planar ? near_places : near_lines)(&p, at[0] + first, at[1] + first, at[2] + first, at[3] + first, some, is_near);
-        for (int32_t k = 0; k < some; k++) {
-            near[found] = (uint32_t)(first + k);
-            found += is_near[k];
+        for (int32_t k = some; k % AT_ONCE != 0; k++)
+            is_near[k] = 0;
+        for (int32_t group = 0; group < some; group += AT_ONCE) {
+            int32_t any = 0; /* mostly none */
+            for (int32_t k = group; k < group + AT_ONCE; k++)
+                any |= is_near[k];
+            for (int32_t k = group; any && k < group + AT_ONCE; k++)
+                if (is_near[k])
+                    near[found++] = (uint32_t)(first + k);
         }
     }
     return found;

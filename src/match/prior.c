@@ -24,7 +24,8 @@
 
 #define EXPECTED 15.0
 #define MOST 0.9
-#define STEPS 40 /* of bisection, on [-15, 15] */
+#define STEPS 40   /* of bisection, on [-15, 15] */
+#define DOUBT 1e-9 /* a sum of a million numbers in a double is out by a tenth of that at most */
 #define COLOUR_1 0.6
 #define COLOUR_2 1.2
 
@@ -42,40 +43,68 @@ static float *best_distances(const asj_match_run *run, int32_t side)
     return best;
 }
 
-/* Probabilities of the logits z + shift, limited by location; their sum. */
-static double shifted(const asj_match_run *run, const double *z, double shift, double *const sums[2], double *p)
+/* What a call works on: numbers of each candidate, and of each location. */
+typedef struct priors {
+    double *z1, *z2, *other, *odds, *sums[2];
+    uint32_t *place[2]; /* locations of the candidates, side by side */
+    float *best[2];
+    asj_watch watch;
+} priors;
+
+/* The probabilities of the candidates, limited by location; their sum. */
+static double limit(const asj_match_run *run, const priors *p, double *probability)
 {
-    const asj_candidate *list = run->candidates.list;
+    const size_t count = run->candidates.count;
     double total = 0;
     for (int32_t side = 0; side < 2; side++) {
-        const uint32_t *location = run->image[side]->l_junctions.location;
-        memset(sums[side], 0, run->image[side]->l_junctions.location_count * sizeof *sums[side]);
-        for (size_t k = 0; k < run->candidates.count; k++) {
-            if (side == 0)
-                p[k] = 1 / (1 + exp(-(z[k] + shift)));
-            sums[side][location[asj_candidate_l(&list[k], side)]] += p[k];
-        }
-        for (size_t k = 0; k < run->candidates.count; k++) {
-            const double sum = sums[side][location[asj_candidate_l(&list[k], side)]];
-            p[k] *= sum > MOST ? MOST / sum : 1;
-        }
+        const uint32_t *place = p->place[side];
+        double *sums = p->sums[side];
+        memset(sums, 0, run->image[side]->l_junctions.location_count * sizeof *sums);
+        for (size_t k = 0; k < count; k++)
+            sums[place[k]] += probability[k];
+        for (size_t k = 0; k < count; k++)
+            if (sums[place[k]] > MOST)
+                probability[k] *= MOST / sums[place[k]];
     }
-    for (size_t k = 0; k < run->candidates.count; k++)
-        total += p[k];
+    for (size_t k = 0; k < count; k++)
+        total += probability[k];
     return total;
 }
 
-static void bring_to_sum(const asj_match_run *run, const double *z, double *const sums[2], asj_watch *watch, double *p)
+/* Of the logits z + shift. */
+static double shifted(const asj_match_run *run, const priors *p, const double *z, double shift, double *probability)
+{
+    for (size_t k = 0; k < run->candidates.count; k++)
+        probability[k] = 1 / (1 + exp(-(z[k] + shift)));
+    return limit(run, p, probability);
+}
+
+/* The same but for rounding, from the odds exp(-z): one exponential instead of one for each candidate. */
+static double nearly_shifted(const asj_match_run *run, const priors *p, double shift, double *probability)
+{
+    const double factor = exp(-shift);
+    for (size_t k = 0; k < run->candidates.count; k++)
+        probability[k] = 1 / (1 + p->odds[k] * factor);
+    return limit(run, p, probability);
+}
+
+/* Where rounding could decide on which side of EXPECTED a sum is, it is computed as the last one will be. */
+static void bring_to_sum(const asj_match_run *run, priors *p, const double *z, double *probability)
 {
     double low = -15, high = 15;
-    for (int32_t step = 0; step < STEPS && !asj_watch_stops(watch, NULL); step++) {
+    for (size_t k = 0; k < run->candidates.count; k++)
+        p->odds[k] = exp(-z[k]);
+    for (int32_t step = 0; step < STEPS && !asj_watch_stops(&p->watch, NULL); step++) {
         const double middle = 0.5 * (low + high);
-        if (shifted(run, z, middle, sums, p) < EXPECTED)
+        double sum = nearly_shifted(run, p, middle, probability);
+        if (!(fabs(sum - EXPECTED) > DOUBT * EXPECTED))
+            sum = shifted(run, p, z, middle, probability);
+        if (sum < EXPECTED)
             low = middle;
         else
             high = middle;
     }
-    shifted(run, z, low, sums, p);
+    shifted(run, p, z, low, probability);
 }
 
 static void logits(const asj_match_run *run, const float *best1, const float *best2, double *z1, double *z2)
@@ -91,23 +120,19 @@ static void logits(const asj_match_run *run, const float *best1, const float *be
     }
 }
 
-/* What a call works on: numbers of each candidate, and of each location. */
-typedef struct priors {
-    double *z1, *z2, *other, *sums[2];
-    float *best[2];
-    asj_watch watch;
-} priors;
-
 static void mean_of_models(const asj_match_run *run, priors *p, double *prior)
 {
-    bring_to_sum(run, p->z1, p->sums, &p->watch, prior);
-    bring_to_sum(run, p->z2, p->sums, &p->watch, p->other);
+    bring_to_sum(run, p, p->z1, prior);
+    bring_to_sum(run, p, p->z2, p->other);
     for (size_t k = 0; k < run->candidates.count; k++)
         prior[k] = 0.5 * (prior[k] + p->other[k]);
 }
 
 static asj_status set_priors(const asj_match_run *run, priors *p, double *prior, double *colours)
 {
+    for (int32_t side = 0; side < 2; side++)
+        for (size_t k = 0; k < run->candidates.count; k++)
+            p->place[side][k] = run->image[side]->l_junctions.location[asj_candidate_l(&run->candidates.list[k], side)];
     logits(run, p->best[0], p->best[1], p->z1, p->z2);
     asj_watch_start(&p->watch, run->context, ASJ_STAGE_ASSIGN);
     mean_of_models(run, p, prior);
@@ -130,20 +155,26 @@ asj_status asj_candidate_priors(const asj_match_run *run, double *prior, double 
     p.z1 = asj_allocate(memory, count, sizeof *p.z1);
     p.z2 = asj_allocate(memory, count, sizeof *p.z2);
     p.other = asj_allocate(memory, count, sizeof *p.other);
-    for (int32_t side = 0; side < 2; side++)
+    p.odds = asj_allocate(memory, count, sizeof *p.odds);
+    for (int32_t side = 0; side < 2; side++) {
         p.sums[side] = asj_allocate(memory, run->image[side]->l_junctions.location_count, sizeof *p.sums[side]);
+        p.place[side] = asj_allocate(memory, count, sizeof *p.place[side]);
+    }
     asj_status status = ASJ_OK;
     memset(colours, 0, count * sizeof *colours);
-    if (!p.best[0] || !p.best[1] || !p.z1 || !p.z2 || !p.other || !p.sums[0] || !p.sums[1])
+    if (!p.best[0] || !p.best[1] || !p.z1 || !p.z2 || !p.other || !p.odds || !p.sums[0] || !p.sums[1] ||
+        !p.place[0] || !p.place[1])
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the priors of %zu candidates", count);
     else if (count > 0)
         status = set_priors(run, &p, prior, colours);
     for (int32_t side = 0; side < 2; side++) {
         asj_release(memory, p.best[side]);
         asj_release(memory, p.sums[side]);
+        asj_release(memory, p.place[side]);
     }
     asj_release(memory, p.z1);
     asj_release(memory, p.z2);
     asj_release(memory, p.other);
+    asj_release(memory, p.odds);
     return status;
 }
