@@ -11,6 +11,7 @@
 #define SEED 6 /* a furnished room, 33 degrees */
 #define REJECTING 3
 #define WITH_GUESTS 22
+#define SHIFTED 7
 #define AMBIGUOUS 30 /* without cameras */
 
 typedef struct views {
@@ -230,6 +231,35 @@ static void what_is_ambiguous_changes_nothing(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Tiles: without the geometry all matches are shifted by a period. With it those go, though they are more than those that stay. */
+static void what_has_another_partner_goes(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_match_result *results[2] = {NULL, NULL};
+    views v;
+    double f[9];
+    uint32_t right[2] = {0, 0};
+    make(context, SHIFTED, &v);
+    synth_fundamental(&v.pair.cameras[0], &v.pair.cameras[1], f);
+    asj_match_options options = with_cameras(&v);
+    for (int k = 0; k < 2; k++) {
+        options.geometry.model = k ? ASJ_GEOMETRY_AUTO : ASJ_GEOMETRY_NONE;
+        assert_int_equal(match(context, &v, &v, &options, &results[k]), ASJ_OK);
+        for (uint32_t n = 0; n < results[k]->match_count; n++)
+            right[k] += from_line(f, &results[k]->matches[n]) < 4;
+    }
+    assert_true(results[0]->match_count >= 10 && 2 * right[0] < results[0]->match_count);
+    assert_int_equal(results[1]->geometry.status, ASJ_GEOMETRY_ACCEPTED);
+    assert_true(2 * results[1]->rejected_count > results[0]->match_count);
+    assert_true(right[1] >= 10 && 10 * right[1] >= 9 * results[1]->match_count);
+    asj_match_result_free(&results[0]);
+    asj_match_result_free(&results[1]);
+    release(&v);
+    unit_context_free(&counter, &context);
+}
+
 static void what_is_not_accepted_changes_nothing(void **state)
 {
     (void)state;
@@ -265,7 +295,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_pose_is_that_of_the_cameras), cmocka_unit_test(what_goes_is_told),
         cmocka_unit_test(what_is_not_accepted_changes_nothing), cmocka_unit_test(what_is_ambiguous_changes_nothing),
-        cmocka_unit_test(guests_are_judged),
+        cmocka_unit_test(guests_are_judged), cmocka_unit_test(what_has_another_partner_goes),
     };
     return cmocka_run_group_tests_name("two views", tests, NULL, NULL);
 }
