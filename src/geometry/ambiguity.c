@@ -18,6 +18,7 @@
 #include "small_matrix.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #define NEARLY 0.6
@@ -27,30 +28,50 @@
 #define APART_OF_FEW 13.0
 #define CONTRARY 0.4
 #define CONTRARY_ALIKE 0.15 /* of a rival with as much evidence */
+#define SAME_THING 8.0 /* px */
+#define HELD 3
+#define LEAST_HELD 1e-3
 #define SIMILAR_MOTION (6 * ASJ_DEGREE)
 #define DOUBT 0.6
 #define MOST_STRUCK 4 /* times that the best one changes */
 
+/* Raises e->elsewhere[k] to how probable it is under the geometry of the probabilities `mine` that the place of candidate k in
+ * image `side` is matched with something else: with a point farther than SAME_THING from the candidate's own. */
+static void find_elsewhere(const asj_estimation *e, int32_t side, const double *mine)
+{
+    double *const held = e->vote; /* of a place: probability, and the same times x and y of what it is matched with */
+    memset(held, 0, HELD * (size_t)e->set.place_count[side] * sizeof *held);
+    for (int32_t pass = 0; pass < 2; pass++)
+        for (int32_t k = 0; k < e->set.count; k++) {
+            const asj_pair *c = &e->set.list[k];
+            double *at = held + HELD * (ptrdiff_t)(side == 0 ? c->place1 : c->place2);
+            const double x = side == 0 ? c->x2 : c->x1, y = side == 0 ? c->y2 : c->y1;
+            if (pass == 0) {
+                at[0] += mine[k];
+                at[1] += mine[k] * x;
+                at[2] += mine[k] * y;
+            } else if (at[0] - mine[k] > LEAST_HELD) {
+                const double rest = at[0] - mine[k], dx = (at[1] - mine[k] * x) / rest - x, dy = (at[2] - mine[k] * y) / rest - y;
+                if (dx * dx + dy * dy > SAME_THING * SAME_THING)
+                    e->elsewhere[k] = fmax(e->elsewhere[k], rest);
+            }
+        }
+}
+
 /* How much of the second geometry's matches contradicts the first one's: it gives another partner to a place that the first one has
- * matched, in either image, and that the first one does not hold for nearly as likely (near places have two). As a part of all of
- * them. taken: scratch, probability of the first one by place. */
+ * matched, in either image, and that the first one does not hold for nearly as likely. As a part of all of them. A partner within
+ * SAME_THING is no other one: a corner of a frame has the frame's inner corner beside it, and a motion that is a little off takes
+ * the one for the other. (229 pairs of rendered rooms, two seeds: 289 accepted with 0 px, 309 with 8, 315 with 10; of 97 unrelated
+ * pairs, four seeds, none with 10 and 5 of 388 with 12.) */
 static double contradiction(asj_estimation *e, const asj_model *second)
 {
     const double *mine = e->scratch.probability;
-    double *const *taken = e->scratch.score.sum;
     double against = 0, all = 0;
     asj_probabilities(&e->set, &second->view, 1, &e->scratch.score, e->other);
     for (int32_t k = 0; k < e->set.count; k++) {
-        taken[0][e->set.list[k].place1] += mine[k];
-        taken[1][e->set.list[k].place2] += mine[k];
-    }
-    for (int32_t k = 0; k < e->set.count; k++) {
-        const double first = taken[0][e->set.list[k].place1] - mine[k], other = taken[1][e->set.list[k].place2] - mine[k];
-        against += e->other[k] * fmax(0, fmin(1, fmax(first, other)) - mine[k]);
+        against += e->other[k] * fmax(0, fmin(1, e->elsewhere[k]) - mine[k]);
         all += e->other[k];
     }
-    for (int32_t v = 0; v < 2; v++)
-        memset(taken[v], 0, (size_t)e->set.place_count[v] * sizeof *taken[v]);
     return all > 0 ? against / all : 0;
 }
 
@@ -87,6 +108,9 @@ int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
 {
     int32_t second = -1;
     const asj_model *m = &e->finalists[best];
+    memset(e->elsewhere, 0, (size_t)e->set.count * sizeof *e->elsewhere);
+    for (int32_t side = 0; side < 2; side++)
+        find_elsewhere(e, side, e->scratch.probability);
     for (int32_t n = 0; n < e->count; n++) {
         const asj_model *rival = &e->finalists[n];
         if (n == best || !(rival->evidence > -HUGE_VAL) || (second >= 0 && rival->evidence <= e->finalists[second].evidence))

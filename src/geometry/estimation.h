@@ -18,7 +18,8 @@ typedef struct asj_estimation {
     int32_t count;
     asj_adjust_scratch scratch;
     double *other; /* probabilities under a second geometry */
-    double *vote;  /* colour_vote.c */
+    double *elsewhere; /* ambiguity.c: of each candidate, how sure its places are matched with something else */
+    double *vote;  /* colour_vote.c, ambiguity.c: four numbers of each place */
     asj_focal focal;
     int32_t focal_at; /* where the finalist with the found focal length stands; -1 = there is none */
 } asj_estimation;

@@ -155,9 +155,10 @@ asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_cand
             found.status = ASJ_GEOMETRY_TOO_FEW;
         } else {
             e->other = asj_allocate(&context->memory, (size_t)e->set.count, sizeof *e->other);
+            e->elsewhere = asj_allocate(&context->memory, (size_t)e->set.count, sizeof *e->elsewhere);
             const int32_t places = e->set.place_count[0] > e->set.place_count[1] ? e->set.place_count[0] : e->set.place_count[1];
             e->vote = asj_allocate(&context->memory, (size_t)places, 4 * sizeof *e->vote);
-            status = e->other && e->vote && asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch)
+            status = e->other && e->elsewhere && e->vote && asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch)
                          ? search_all(e) : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the geometry");
             if (status == ASJ_OK)
                 status = search_rivals(e);
@@ -171,6 +172,7 @@ asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_cand
     }
     asj_adjust_scratch_free(&context->memory, &e->scratch);
     asj_release(&context->memory, e->other);
+    asj_release(&context->memory, e->elsewhere);
     asj_release(&context->memory, e->vote);
     asj_pairs_free(&context->memory, &e->set);
     asj_release(&context->memory, e);
