@@ -118,6 +118,11 @@ void asj_detection_run_end(asj_detection_run *run)
     asj_release(memory, run->scratch.memory);
 }
 
+int asj_detection_run_is_coarse(const asj_detection_run *run)
+{
+    return run->frame->octave > 0 && !run->options->octave_union;
+}
+
 void asj_detection_run_clear(asj_detection_run *run)
 {
     asj_memory *memory = &run->context->memory;

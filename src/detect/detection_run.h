@@ -81,6 +81,9 @@ asj_status asj_detection_run_known(const asj_detection_run *run, asj_octave_know
 /* Numbers of tests and an empty cache for the size of the frame. */
 asj_status asj_detection_run_set_size(asj_detection_run *run);
 
+/* Whether this is an octave that soft edges are left to by finer ones. */
+int asj_detection_run_is_coarse(const asj_detection_run *run);
+
 /* Releases what steps 3 to 5 have found; the candidates' memory serves the next octave. */
 void asj_detection_run_clear(asj_detection_run *run);
 

@@ -28,7 +28,8 @@ static void measure(const asj_context *context, const asj_frame *frame, const as
         along += sums.uu;
         across += sums.nn;
     }
-    evidence->alike = options->strip_test ? asj_strip_alike(across > 0 ? along / across : 0, branch->width) : 1;
+    const double waver = across > 0 ? along / across : 0;
+    evidence->alike = options->strip_test ? asj_strip_alike(waver, branch->width, hypothesis->explained) : 1;
 }
 
 void asj_edge_evidence_measure(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,

@@ -131,6 +131,19 @@ void asj_ends_by_contrast(const asj_frame *frame, const asj_detect_options *opti
     }
 }
 
+void asj_ends_of_short(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
+{
+    const double shortest = options->field_radius + 1;
+    for (int32_t i = 0; i < hypothesis->branch_count && options->end_contrast > 0; i++) {
+        asj_hypothesis_branch branch = hypothesis->branches[i];
+        if (branch.length >= shortest)
+            continue;
+        branch.length = shortest;
+        const asj_end_profile profile = asj_end_profile_of(frame, hypothesis, &branch, options->end_contrast, 0);
+        hypothesis->branches[i].length = fmax(hypothesis->branches[i].length, profile.end);
+    }
+}
+
 /* Of ends that are the scan's: where an edge fades, its contrast tells how sure the end is. */
 static double scan_variance(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
 {

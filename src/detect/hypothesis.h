@@ -37,6 +37,7 @@ typedef struct asj_hypothesis {
     double log_nfa;            /* natural logarithm, of that test */
     double first;              /* px along the branches: where lines are fitted from, once they are guessed */
     double location_variance;  /* px^2, mean of both axes */
+    double explained;          /* share of the gradient around that a blurred corner explains (blurred_corner.c); 0 = none */
     int32_t octave;            /* that located it: 0 = the image itself, 1 = the image halved, .. */
     int32_t branch_count;      /* 0 = rejected */
     asj_hypothesis_branch branches[ASJ_MAX_BRANCHES];

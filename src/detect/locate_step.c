@@ -4,6 +4,7 @@
  *
  * The most meaningful come first, as suppression has it (suppress.c). So what stays of the chunks before suppresses whatever comes
  * within its reach, and a guess well within that is not worth a fit. */
+#include "blurred_corner.h"
 #include "edge_width.h"
 #include "locate.h"
 #include "octaves.h"
@@ -13,10 +14,15 @@
 #include "core/threads.h"
 #include "core/watch.h"
 
+#include <math.h>
+
 #define AT_ONCE 64 /* guesses in a chunk */
 
 /* A guess is seldom farther from the fitted location than this share of max_move: 1 px by default. */
 #define GUESS_ERROR 0.4
+
+/* px of a coarse octave: a soft corner that is found with certainty may be so much farther from where the isotropic test saw it. */
+#define SOFT_MOVE 1.0
 
 /* Guesses that are shared out. */
 typedef struct job {
@@ -26,6 +32,20 @@ typedef struct job {
     asj_watch *watch;
 } job;
 
+/* Fits of lines to soft edges as short as a few of their widths follow what bends the ends, and may find no junction. */
+static void look_for_soft(const asj_detection_run *run, const asj_guess *guess, asj_hypothesis *hypothesis)
+{
+    asj_hypothesis soft;
+    if (hypothesis->branch_count > 0 || guess->branch_count != 2)
+        return;
+    asj_guess_restore(guess, &soft);
+    asj_edge_widths(run->frame, &soft);
+    asj_blurred_corner(run->frame, &soft);
+    if (asj_blurred_corner_is_sure(&soft) &&
+        hypot(soft.x - soft.x0, soft.y - soft.y0) <= asj_locate_most_move(run->options, &soft) + SOFT_MOVE)
+        *hypothesis = soft;
+}
+
 static void locate_some(const void *data, const asj_part *part)
 {
     const job *j = data;
@@ -34,6 +54,8 @@ static void locate_some(const void *data, const asj_part *part)
         asj_guess_restore(&j->guesses[i], &j->hypotheses[i]);
         asj_locate(run->context, run->frame, run->options, &j->hypotheses[i]);
         asj_reject_early(run->context, run->frame, run->options, &j->hypotheses[i]);
+        if (asj_detection_run_is_coarse(run))
+            look_for_soft(run, &j->guesses[i], &j->hypotheses[i]);
     }
 }
 

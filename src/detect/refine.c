@@ -8,7 +8,7 @@
  *
  * search: the paper's way (search.c). */
 #include "refine.h"
-#include "bent_corner.h"
+#include "blurred_corner.h"
 #include "line_fit.h"
 #include "locate.h"
 #include "tilt.h"
@@ -32,8 +32,7 @@
 #define LEFT_OUT_LAST 3.0
 #define LEAST_LAST 8.0
 
-/* The same of edges wider than ASJ_BENT_FROM, in their widths: what their own corner bends is known (bent_corner.c) and counts from
- * two on; what bends the other end is not known. */
+/* The same of edges wider than ASJ_SOFT_FROM, in their widths, from which their corner is then sought (blurred_corner.c). */
 #define SOFT_FIRST 2.0
 #define SOFT_LAST 4.0
 #define SOFT_SHARE 0.25 /* of the branch, at most */
@@ -42,12 +41,12 @@
 static double first_px(const asj_hypothesis_branch *branch)
 {
     const double first = fmin(LEFT_OUT_FIRST, 0.25 * branch->length + 0.5);
-    return branch->width > ASJ_BENT_FROM ? fmin(first, SOFT_FIRST * branch->width) : first;
+    return branch->width > ASJ_SOFT_FROM ? fmin(first, SOFT_FIRST * branch->width) : first;
 }
 
 static double last_px(const asj_hypothesis_branch *branch)
 {
-    const int soft = branch->width > ASJ_BENT_FROM;
+    const int soft = branch->width > ASJ_SOFT_FROM;
     const double far = soft ? fmin(SOFT_LAST * branch->width, SOFT_SHARE * branch->length) : 0;
     const double left_out = fmax(LEFT_OUT_LAST, far);
     return fmax(branch->length - left_out, soft ? fmin(LEAST_LAST, first_px(branch) + SOFT_LEAST) : LEAST_LAST);
@@ -58,7 +57,7 @@ static double last_px(const asj_hypothesis_branch *branch)
  * moves the line significantly where it passes the junction, the edge is bent (lenses do that): then the shorter part is
  * believed. */
 static void follow_line(const asj_context *context, const asj_frame *frame, const asj_hypothesis *hypothesis,
-                        asj_hypothesis_branch *branch, asj_fitted_part *part)
+                        asj_hypothesis_branch *branch)
 {
     const double first = first_px(branch), end = last_px(branch);
     asj_hypothesis_branch longer = *branch;
@@ -73,36 +72,19 @@ static void follow_line(const asj_context *context, const asj_frame *frame, cons
             (reach > NEAR_PART && fabs(longer.offset - branch->offset) > BENT * sqrt(branch->offset_variance)))
             return;
         *branch = longer;
-        *part = (asj_fitted_part){first, last, HALF_WIDTH};
         if (reach >= end)
             return;
     }
-}
-
-/* The parts were fitted from (x, y) on. */
-static void unbend(asj_fitted_part *parts, double x, double y, asj_hypothesis *hypothesis)
-{
-    const double dx = hypothesis->x - x, dy = hypothesis->y - y;
-    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
-        const double along = dx * cos(hypothesis->branches[i].angle) + dy * sin(hypothesis->branches[i].angle);
-        if (!(parts[i].last > parts[i].first))
-            return;
-        parts[i].first -= along;
-        parts[i].last -= along;
-    }
-    asj_bent_corner(parts, hypothesis);
 }
 
 void asj_refine(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
     if (options->refinement == ASJ_REFINE_SEARCH)
         return; /* that is done (search_step.c) */
-    asj_fitted_part parts[ASJ_MAX_BRANCHES] = {{0, 0, 0}};
-    const double x = hypothesis->x, y = hypothesis->y;
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        follow_line(context, frame, hypothesis, &hypothesis->branches[i], &parts[i]);
-    if (asj_locate_meet(hypothesis))
-        unbend(parts, x, y, hypothesis);
+        follow_line(context, frame, hypothesis, &hypothesis->branches[i]);
+    asj_locate_meet(hypothesis);
+    asj_blurred_corner(frame, hypothesis);
 }
 
 /* The line over the whole branch, roughly: guessed over parts that grow from one at whose end it is known to a pixel, and once more

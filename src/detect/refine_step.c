@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 5 over an image: orientations to scan along again, and at the end orientations, locations and validation. */
 #include "refine.h"
+#include "blurred_corner.h"
 #include "edge_width.h"
+#include "end_kind.h"
 #include "steps.h"
 #include "suppress.h"
 #include "validate.h"
@@ -9,6 +11,10 @@
 static void orient(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
     asj_orient(run->context, run->frame, run->options, hypothesis);
+    if (!asj_detection_run_is_coarse(run))
+        return;
+    asj_edge_widths(run->frame, hypothesis);
+    asj_blurred_corner(run->frame, hypothesis);
 }
 
 asj_status asj_step_orient(asj_detection_run *run)
@@ -20,10 +26,11 @@ asj_status asj_step_orient(asj_detection_run *run)
 
 static void refine(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
-    const int coarse = run->frame->octave > 0 && !run->options->octave_union;
-    if (run->frame->octaves > 1 || coarse) /* soft edges are looked for: how soft? */
+    if (run->frame->octaves > 1 || asj_detection_run_is_coarse(run)) /* soft edges are looked for: how soft? */
         asj_edge_widths(run->frame, hypothesis);
     asj_refine(run->context, run->frame, run->options, hypothesis);
+    if (asj_blurred_corner_is_sure(hypothesis))
+        asj_ends_of_short(run->frame, run->options, hypothesis);
     asj_validate(run->context, run->frame, run->options, hypothesis);
 }
 

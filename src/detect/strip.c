@@ -23,7 +23,9 @@
  * edges, 0.08 along edges of 60 grey levels blurred by 5 px. With
  *     c = 1 + ALIKE max(w - INDEPENDENT_WIDTH, 0) (q / NOISE_WAVER)^2
  * pixels as good as one, sum and number of pixels are both to be divided by c, and that divides the exponent of the tail: ln F / c.
- * Chosen on blurred noise and on soft corners: a tenth of the false junctions in the one, the others stay. */
+ * Chosen on blurred noise and on soft corners: a tenth of the false junctions in the one, the others stay. Near its ends a clean
+ * soft edge wavers, too, and a short one is all ends. Where a blurred corner has been fitted (blurred_corner.c) what that leaves of
+ * the gradient's squares tells noise better: NOISE_LEFT stands for NOISE_WAVER then, and the smaller c holds. */
 #include "strip.h"
 #include "gradient.h"
 #include "nfa.h"
@@ -34,6 +36,7 @@
 #define ALIKE 0.8
 #define INDEPENDENT_WIDTH 0.6 /* px */
 #define NOISE_WAVER 0.15
+#define NOISE_LEFT 0.05
 
 #define NEAR 6 /* px: the part of the strip next to the junction */
 
@@ -147,14 +150,14 @@ asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, con
 
 const asj_strip_ops asj_strip_reference = {.sums = asj_strip_sums_of};
 
-double asj_strip_alike(double waver, double width)
+double asj_strip_alike(double waver, double width, double explained)
 {
-    const double relative = waver / NOISE_WAVER;
+    const double relative = fmin(waver / NOISE_WAVER, explained > 0 ? (1 - explained) / NOISE_LEFT : HUGE_VAL);
     return 1 + ALIKE * fmax(width - INDEPENDENT_WIDTH, 0) * relative * relative;
 }
 
-double asj_strip_correlated(const asj_frame *frame, const asj_strip *strip, double width)
+double asj_strip_correlated(const asj_frame *frame, const asj_strip *strip, double width, double explained)
 {
-    const double log_tests = log_number_of_tests(frame), alike = asj_strip_alike(strip->waver, width);
+    const double log_tests = log_number_of_tests(frame), alike = asj_strip_alike(strip->waver, width, explained);
     return alike > 1 && strip->log_nfa < log_tests ? log_tests + (strip->log_nfa - log_tests) / alike : strip->log_nfa;
 }

@@ -27,11 +27,11 @@ typedef struct asj_strip_line {
     double length; /* px; no more than strip_length counts */
 } asj_strip_line;
 
-/* ln NFA of a strip whose pixels are not independent: see strip.c. `width` of its edge, px. */
-double asj_strip_correlated(const asj_frame *frame, const asj_strip *strip, double width);
+/* ln NFA of a strip whose pixels are not independent: see strip.c. `width` of its edge, px; `explained` of its hypothesis. */
+double asj_strip_correlated(const asj_frame *frame, const asj_strip *strip, double width, double explained);
 
 /* How many of the pixels of a strip are as good as one. */
-double asj_strip_alike(double waver, double width);
+double asj_strip_alike(double waver, double width, double explained);
 
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          const asj_strip_line *line);

@@ -3,7 +3,7 @@
  * reaches the junction and follows an edge instead of crossing some (tilt.c), and no better branch points the same way; a junction, when two of its branches open. In coarse octaves
  * two branches may be meaningful together. */
 #include "validate.h"
-#include "bent_corner.h"
+#include "blurred_corner.h"
 #include "core/angle.h"
 #include "locate.h"
 #include "strip.h"
@@ -43,7 +43,7 @@
  * The directions of two are not the same test any more: PAIR_LOG stands for them (a hundred). Only of sharp edges in coarse
  * octaves, where little noise is left and short branches are long edges. Corners of 5 grey levels in noise of 2 (tests/accuracy):
  * recall .628 -> .820, precision .997 -> .996. With soft edges too, at blur 5 and 25 grey levels, precision falls from .955 to
- * .928. */
+ * .928; but where a blurred corner explains what is there it stays. */
 #define PAIR_LOG (2 * 2.302585092994046)
 
 enum { NOT_AT_ALL, WITH_OTHERS, ALONE };
@@ -131,21 +131,21 @@ void asj_reject_early(const asj_context *context, const asj_frame *frame, const 
 static int judge(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                  const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
 {
-    const double log_epsilon = log(options->epsilon);
+    const double log_epsilon = log(options->epsilon), explained = hypothesis->explained;
     asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
     const asj_strip strip = asj_strip_test(context, frame, options, &line);
-    branch->log_nfa = options->strip_test ? asj_strip_correlated(frame, &strip, branch->width) : strip.log_nfa;
+    branch->log_nfa = options->strip_test ? asj_strip_correlated(frame, &strip, branch->width, explained) : strip.log_nfa;
     if (options->strip_test && branch->log_nfa > log_epsilon && frame->octave > 0 && branch->width > SOFT) {
         line.length -= SOFT_END * branch->width;
         const asj_strip shorter = asj_strip_test(context, frame, options, &line);
-        branch->log_nfa = fmin(branch->log_nfa, asj_strip_correlated(frame, &shorter, branch->width));
+        branch->log_nfa = fmin(branch->log_nfa, asj_strip_correlated(frame, &shorter, branch->width, explained));
     }
     if (branch->length < options->minimum_length || branch->length <= 0 || fabs(branch->offset) > LARGEST_OFFSET ||
         !reaches(frame, options, branch, &strip) || asj_is_tilted(options, &strip.sums) || (options->ignore_frame && on_frame(frame, hypothesis, branch)))
         return NOT_AT_ALL;
     if (!options->strip_test || branch->log_nfa <= log_epsilon)
         return ALONE;
-    const int pairs = frame->octave > 0 && branch->width <= SOFT;
+    const int pairs = frame->octave > 0 && (branch->width <= SOFT || asj_blurred_corner_is_sure(hypothesis));
     return pairs && branch->log_nfa <= log_epsilon + 0.5 * log_places(frame) ? WITH_OTHERS : NOT_AT_ALL;
 }
 
@@ -176,17 +176,21 @@ static int has_moved_far(const asj_detect_options *options, const asj_hypothesis
     return moved > options->max_move + asj_locate_most_move(options, hypothesis);
 }
 
-/* Where the branches that are left meet: one that was none should not say where the junction is. Not those that blur bends, since
- * it is too late to know by how much (bent_corner.c); nor where the strip does not judge: what goes there are twins and frames. */
-static void meet_again(const asj_detect_options *options, asj_hypothesis *hypothesis)
+/* Where the branches that are left meet: one that was none should not say where the junction is. Of soft ones the lines do not say
+ * it. Not where the strip does not judge: what goes there are twins and frames. */
+static void meet_again(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
     const asj_hypothesis before = *hypothesis;
-    int bent = 0;
+    int soft = 0, worse = 0;
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        bent |= hypothesis->branches[i].width > ASJ_BENT_FROM;
-    if (!options->strip_test || options->refinement != ASJ_REFINE_LINE_FIT || bent)
+        soft |= hypothesis->branches[i].width > ASJ_SOFT_FROM;
+    if (!options->strip_test || options->refinement != ASJ_REFINE_LINE_FIT)
         return;
-    int worse = !asj_locate_meet(hypothesis) || has_moved_far(options, hypothesis);
+    if (soft)
+        asj_blurred_corner(frame, hypothesis);
+    else
+        worse = !asj_locate_meet(hypothesis);
+    worse |= has_moved_far(options, hypothesis);
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         worse |= fabs(hypothesis->branches[i].offset) > LARGEST_OFFSET;
     if (worse)
@@ -213,7 +217,7 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
         return;
     }
     if (hypothesis->branch_count < count)
-        meet_again(options, hypothesis);
+        meet_again(frame, options, hypothesis);
     for (int32_t i = 1; i < hypothesis->branch_count; i++) {
         asj_hypothesis_branch moved = hypothesis->branches[i];
         int32_t j = i;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Octaves: where their pixels are, which of two junctions stays, what joins; and the widths of edges that decide. */
-#include "detect/bent_corner.h"
 #include "detect/edge_width.h"
 #include "detect/octave_confirm.h"
 #include "detect/octaves.h"
@@ -207,27 +206,6 @@ static void test_union(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* Sharp corners, and junctions of more than two branches, are left as they are. */
-static void test_bent_corner_leaves(void **state)
-{
-    const asj_fitted_part parts[ASJ_MAX_BRANCHES] = {{3, 20, 1.6}, {3, 20, 1.6}, {3, 20, 1.6}};
-    asj_hypothesis sharp = corner(50, 50, 0.9), soft = corner(50, 50, 2), three = soft;
-    (void)state;
-    three.branch_count = 3;
-    three.branches[2].angle = 4;
-    three.branches[2].width = 2;
-    for (int b = 0; b < 3; b++)
-        sharp.branches[b].offset_variance = soft.branches[b].offset_variance = three.branches[b].offset_variance = 0.01;
-    const asj_hypothesis before = sharp, three_before = three;
-    asj_bent_corner(parts, &sharp);
-    assert_memory_equal(&sharp, &before, sizeof sharp);
-    asj_bent_corner(parts, &three);
-    assert_memory_equal(&three, &three_before, sizeof three);
-    asj_bent_corner(parts, &soft); /* a right corner's edges bend inwards: the true corner is outside, on the diagonal */
-    unit_near("diagonal", 0, 0, soft.x, soft.y, 1e-6);
-    assert_true(fabs(soft.x - 50) > 0.05 && fabs(soft.x - 50) < 2);
-}
-
 /* A step blurred by 0.6 to 3 px, on its line and half a pixel beside it. Of sharp ones no more is known than that they are. */
 static void test_widths(void **state)
 {
@@ -299,8 +277,8 @@ int main(void)
         cmocka_unit_test(test_finest_sharp_one_stays), cmocka_unit_test(test_soft_one_gives_way),
         cmocka_unit_test(test_others_stay),    cmocka_unit_test(test_soft_branch_joins),
         cmocka_unit_test(test_widths),         cmocka_unit_test(test_ghosts),
-        cmocka_unit_test(test_soft_corners),   cmocka_unit_test(test_bent_corner_leaves),
-        cmocka_unit_test(test_confirm),        cmocka_unit_test(test_union),
+        cmocka_unit_test(test_soft_corners),   cmocka_unit_test(test_confirm),
+        cmocka_unit_test(test_union),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
