@@ -19,7 +19,6 @@
 #include "field.h"
 #include "nfa.h"
 #include "core/angle.h"
-#include "core/threads.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,9 +26,6 @@
 /* rad (20 degrees): chosen below minimum_opening (25), since a local branch is off by a few degrees. Larger loses corners that open
  * little, smaller takes the two sectors along a thick or bent edge for two branches. */
 #define APART 0.35
-
-#define LEAST_RUNS 128 /* for a thread: about 25 us */
-#define BAND 128       /* rows of a tile; each has 2 radii more to fill planes with */
 
 /* Sectors of as many pixels have the same one. */
 static uint16_t strength_of_tail(const asj_sectors *s, int32_t k, double log_p, const uint16_t *before)
@@ -96,7 +92,8 @@ size_t asj_field_plane_stride(const asj_field *field)
 }
 
 /* For one pixel: gamma in runs, prefix sums, strengths. For pixels in vectors, which need more than that: gamma in runs, slots,
- * strengths of as many as there are lanes. For a tile: a ring of gamma planes, a row of the gradient, slots, strengths. */
+ * strengths of as many as there are lanes. For a tile in vectors, which needs more than the reference: a ring of gamma planes, a
+ * row of the gradient, slots, strengths. */
 size_t asj_field_scratch(const asj_field *field)
 {
     const size_t count = (size_t)field->sectors.count, depth = 2 * (size_t)field->sectors.radius + 1;
@@ -165,10 +162,9 @@ void asj_field_pixels(const asj_field *field, const asj_frame *frame, const asj_
         asj_field_pixel(field, frame, pixels[i].x, pixels[i].y, scratch, branches[i]);
 }
 
-int asj_field_is_candidate(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch)
+int asj_field_is_candidate(const asj_field *field, const uint16_t *z)
 {
     const int32_t count = field->sectors.count;
-    const uint16_t *z = find_strengths(field, frame, x, y, scratch);
     int32_t peaks[ASJ_FIELD_MAX_SECTORS];
     const int32_t found = find_peaks(field, z, field->candidate, peaks);
     for (int32_t i = 0; i < found; i++)
@@ -190,85 +186,3 @@ void asj_field_thin(const asj_field *field, const asj_frame *frame, int32_t run,
         masks[b] = (uint16_t)(masks[b] & columns);
     }
 }
-
-void asj_field_tile(const asj_field *field, const asj_frame *frame, const asj_tile *tile, uint16_t *scratch, uint16_t *masks)
-{
-    const int32_t left = tile->run * ASJ_LANES, end = left + tile->runs * ASJ_LANES;
-    for (int32_t y = tile->top; y < tile->bottom; y++) {
-        uint16_t *row = masks + (ptrdiff_t)y * frame->blocks;
-        memset(row + tile->run, 0, (size_t)tile->runs * sizeof *row);
-        for (int32_t x = left; asj_field_has_candidates(field, y) && x < end && x < frame->width; x += field->step)
-            if (asj_field_is_candidate(field, frame, x, y, scratch))
-                row[x / ASJ_LANES] = (uint16_t)(row[x / ASJ_LANES] | 1u << x % ASJ_LANES);
-    }
-}
-
-typedef struct job {
-    asj_context *context;
-    const asj_field *field;
-    const asj_frame *frame;
-    int32_t top, bottom, per_tile, across; /* `across` tiles beside each other */
-    const asj_scratch *scratch;
-    uint16_t *masks;
-} job;
-
-static void do_tiles(const void *data, const asj_part *part)
-{
-    const job *j = data;
-    for (int64_t i = part->first; i < part->end; i++) {
-        const int32_t run = (int32_t)(i % j->across) * j->per_tile, left = j->frame->blocks - run;
-        const int32_t top = j->top + (int32_t)(i / j->across) * BAND, below = j->bottom - top;
-        const asj_tile tile = {run, left < j->per_tile ? left : j->per_tile, top, top + (below < BAND ? below : BAND)};
-        j->context->ops->field->tile(j->field, j->frame, &tile, asj_thread_scratch(j->scratch, part), j->masks);
-    }
-}
-
-asj_status asj_field_rows(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
-                          const asj_scratch *scratch, uint16_t *masks)
-{
-    const int32_t threads = asj_threads_for(context, (int64_t)frame->blocks * (bottom - top), LEAST_RUNS);
-    const int32_t bands = (bottom - top + BAND - 1) / BAND, largest = field->step * ASJ_FIELD_TILE / ASJ_LANES;
-    /* tiles are half as wide where there are so few that threads would wait for the last one */
-    const int32_t many = 8 * threads * largest;
-    const int32_t per_tile = threads == 1 || frame->blocks * bands >= many ? largest : largest / 2;
-    const int32_t across = (frame->blocks + per_tile - 1) / per_tile;
-    const job j = {context, field, frame, top, bottom, per_tile, across, scratch, masks};
-    asj_parallel(context, threads, (int64_t)across * bands, 1, do_tiles, &j);
-    return ASJ_OK;
-}
-
-typedef struct branches_job {
-    asj_context *context;
-    const asj_field *field;
-    const asj_frame *frame;
-    int32_t top;
-    const asj_scratch *scratch;
-    asj_field_branch (*branches)[ASJ_FIELD_BRANCHES];
-} branches_job;
-
-static void find_branches(const void *data, const asj_part *part)
-{
-    enum { AT_ONCE = 2 * ASJ_FIELD_BATCH };
-    const branches_job *j = data;
-    const int32_t width = j->frame->width;
-    asj_pixel pixels[AT_ONCE];
-    for (int64_t row = part->first; row < part->end; row++)
-        for (int32_t first = 0; first < width; first += AT_ONCE) {
-            const int32_t count = width - first < AT_ONCE ? width - first : AT_ONCE;
-            for (int32_t i = 0; i < count; i++)
-                pixels[i] = (asj_pixel){first + i, j->top + (int32_t)row};
-            j->context->ops->field->pixels(j->field, j->frame, pixels, count, asj_thread_scratch(j->scratch, part),
-                                           j->branches + (size_t)row * (size_t)width + first);
-        }
-}
-
-asj_status asj_field_branches(asj_context *context, const asj_field *field, const asj_frame *frame, int32_t top, int32_t bottom,
-                              const asj_scratch *scratch, asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
-{
-    const branches_job j = {context, field, frame, top, scratch, branches};
-    asj_parallel(context, context->threads, bottom - top, 4, find_branches, &j);
-    return ASJ_OK;
-}
-
-const asj_field_ops asj_field_reference = {
-    .rows = asj_field_rows, .branches = asj_field_branches, .tile = asj_field_tile, .pixels = asj_field_pixels};

@@ -54,8 +54,9 @@ typedef struct asj_pixel {
 void asj_field_pixels(const asj_field *field, const asj_frame *frame, const asj_pixel *pixels, int32_t count, uint16_t *scratch,
                       asj_field_branch (*branches)[ASJ_FIELD_BRANCHES]);
 
-/* Whether a pixel is a candidate for a junction: it has two strong branches that are neither parallel nor opposite. */
-int asj_field_is_candidate(const asj_field *field, const asj_frame *frame, int32_t x, int32_t y, uint16_t *scratch);
+/* Whether a pixel with these strengths of all sectors is a candidate for a junction: it has two strong branches that are neither
+ * parallel nor opposite. */
+int asj_field_is_candidate(const asj_field *field, const uint16_t *strengths);
 
 /* Part of an image: `runs` runs of ASJ_LANES pixels from run `run` on, in rows top .. bottom - 1. */
 typedef struct asj_tile {
@@ -63,7 +64,7 @@ typedef struct asj_tile {
     int32_t top, bottom;
 } asj_tile;
 
-/* The same for a tile of at most candidate_step * ASJ_FIELD_TILE columns; candidates of run b of row y go to
+/* Candidates in a tile of at most candidate_step * ASJ_FIELD_TILE columns (field_tile.c); those of run b of row y go to
  * masks[y * frame->blocks + b]. Pixels outside the image are none, nor those that asj_field_thin() clears. */
 void asj_field_tile(const asj_field *field, const asj_frame *frame, const asj_tile *tile, uint16_t *scratch, uint16_t *masks);
 

@@ -48,11 +48,11 @@ static inline int32_t integer_sqrt(int32_t s)
     return root;
 }
 
-/* floor(a / b) for whole numbers below 2^32: the quotient in double precision is within 2^-53 of itself of the true one, which is
- * at least 2^-32 of itself away from the next whole number unless it is one. */
-static inline uint32_t quotient(uint32_t a, uint32_t b)
+/* floor(a / b) for whole numbers below 2^31: the quotient in double precision is within 2^-53 of itself of the true one, which is
+ * at least 2^-31 of itself away from the next whole number unless it is one. */
+static inline int32_t quotient(int32_t a, int32_t b)
 {
-    return (uint32_t)((double)a / (double)b);
+    return (int32_t)((double)a / (double)b);
 }
 
 void asj_gradient_slide(const asj_gradient_row *row, uint16_t *norms, uint16_t *low, uint16_t *high)
@@ -72,25 +72,37 @@ asj_gradient_factors asj_gradient_set_factors(int32_t columns, int32_t rows, uin
     return (asj_gradient_factors){(uint32_t)(ASJ_GRADIENT_ONE / SIGMA_0 * count + 0.5) << 16, count * epsilon, count * limit};
 }
 
+/* Factors: those of the pixel's window. */
+static inline void normalise(const asj_gradient_row *row, int32_t x, const asj_gradient_factors *factors, const uint16_t *norms,
+                             const uint16_t *low, const uint16_t *high, int16_t *gx, int16_t *gy)
+{
+    const int32_t dx = row->gray[x + 1] - row->gray[x - 1], dy = row->below[x] - row->above[x];
+    uint32_t denominator = factors->epsilon;
+    for (int32_t i = -2; i <= 2; i++)
+        denominator += low[x + i] + 256u * high[x + i];
+    const uint32_t least = norms[x] * factors->limit >> 8;
+    const int32_t scale = quotient((int32_t)factors->numerator, (int32_t)(denominator > least ? denominator : least));
+    gx[x] = (int16_t)((dx * scale + 32768) >> 16);
+    gy[x] = (int16_t)((dy * scale + 32768) >> 16);
+}
+
 void asj_gradient_pixel(const asj_gradient_row *row, int32_t x, const uint16_t *norms, const uint16_t *low, const uint16_t *high,
                         int16_t *gx, int16_t *gy)
 {
     const int32_t columns = (x + 2 < row->width ? x + 2 : row->width - 1) - (x > 2 ? x - 2 : 0) + 1;
     const asj_gradient_factors factors = asj_gradient_set_factors(columns, row->window_rows, row->epsilon);
-    const int32_t dx = row->gray[x + 1] - row->gray[x - 1], dy = row->below[x] - row->above[x];
-    uint32_t denominator = factors.epsilon;
-    for (int32_t i = x - 2; i <= x + 2; i++)
-        denominator += low[i] + 256u * high[i];
-    const uint32_t least = norms[x] * factors.limit >> 8;
-    const int32_t scale = (int32_t)quotient(factors.numerator, denominator > least ? denominator : least);
-    gx[x] = (int16_t)((dx * scale + 32768) >> 16);
-    gy[x] = (int16_t)((dy * scale + 32768) >> 16);
+    normalise(row, x, &factors, norms, low, high, gx, gy);
 }
 
 void asj_gradient_normalise(const asj_gradient_row *row, const uint16_t *norms, const uint16_t *low, const uint16_t *high,
                             int16_t *gx, int16_t *gy)
 {
-    for (int32_t x = 0; x < row->width; x++)
+    const asj_gradient_factors inside = asj_gradient_set_factors(5, row->window_rows, row->epsilon);
+    for (int32_t x = 0; x < row->width && x < 2; x++)
+        asj_gradient_pixel(row, x, norms, low, high, gx, gy);
+    for (int32_t x = 2; x < row->width - 2; x++)
+        normalise(row, x, &inside, norms, low, high, gx, gy);
+    for (int32_t x = row->width - 2 > 2 ? row->width - 2 : 2; x < row->width; x++)
         asj_gradient_pixel(row, x, norms, low, high, gx, gy);
 }
 

@@ -126,7 +126,7 @@ void asj_line_sums_of(const asj_frame *frame, const asj_line_band *band, asj_lin
 }
 
 /* Central differences at the four pixels around the sample, bilinear: along x in whole numbers (1/4096 px), along y in float. */
-static void sample(const uint16_t *const row[4], const int32_t column[4], int32_t right, float low, float *gx, float *gy)
+static inline void sample(const uint16_t *const row[4], const int32_t column[4], int32_t right, float low, float *gx, float *gy)
 {
 #define I(i, j) (int32_t)row[i][column[j]]
     const int32_t left = 4096 - right;
@@ -144,8 +144,9 @@ static inline int32_t clamp(int32_t value, int32_t last)
     return value < 0 ? 0 : value > last ? last : value;
 }
 
-/* At (x, y) from the profile's pixel; outside the image its border counts. */
-static void sample_at(const asj_frame *frame, const asj_line_profile *profile, float x, float y, float *gx, float *gy)
+/* At (x, y) from the profile's pixel; outside the image its border counts. `inside`: all four columns and rows are there. */
+static inline void sample_at(const asj_frame *frame, const asj_line_profile *profile, int inside, float x, float y, float *gx,
+                             float *gy)
 {
     const int32_t right = frame->width - 1, bottom = frame->height - 1;
     int32_t column[4], ix = (int32_t)x, iy = (int32_t)y;
@@ -153,34 +154,44 @@ static void sample_at(const asj_frame *frame, const asj_line_profile *profile, f
     ix -= (float)ix > x;
     iy -= (float)iy > y;
     for (int32_t i = 0; i < 4; i++) {
-        column[i] = clamp(profile->x + ix - 1 + i, right);
-        row[i] = frame->gray + (ptrdiff_t)clamp(profile->y + iy - 1 + i, bottom) * frame->stride;
+        const int32_t at_x = profile->x + ix - 1 + i, at_y = profile->y + iy - 1 + i;
+        column[i] = inside ? at_x : clamp(at_x, right);
+        row[i] = frame->gray + (ptrdiff_t)(inside ? at_y : clamp(at_y, bottom)) * frame->stride;
     }
     sample(row, column, (int32_t)((x - (float)ix) * 4096.0f), y - (float)iy, gx, gy);
+}
+
+static inline void sum_across(const asj_frame *frame, const asj_line_profile *profile, int inside, int32_t k,
+                              asj_profile_sums *sums)
+{
+    const float ux = profile->ux, uy = profile->uy;
+    const float t = profile->first + (float)k * profile->step, middle = profile->a + profile->b * t;
+    float w[2] = {0, 0}, moment[2] = {0, 0};
+    for (int32_t i = 0; i < profile->offsets; i++) {
+        const float s = middle + profile->offset[i];
+        float gx, gy;
+        sample_at(frame, profile, inside, profile->origin_x + t * ux - s * uy, profile->origin_y + t * uy + s * ux, &gx, &gy);
+        const float across = gy * ux - gx * uy, weight = fabsf(across) - fabsf(gx * ux + gy * uy);
+        if (weight > 0) {
+            w[across > 0] += weight;
+            moment[across > 0] += weight * profile->offset[i];
+        }
+    }
+    for (int32_t i = 0; i < 2; i++) {
+        sums->w[i][k] = w[i];
+        sums->moment[i][k] = moment[i];
+    }
 }
 
 void asj_line_profile_part(const asj_frame *frame, const asj_line_profile *profile, int32_t from, int32_t to,
                            asj_profile_sums *sums)
 {
-    const float ux = profile->ux, uy = profile->uy;
-    for (int32_t k = from; k < to; k++) {
-        const float t = profile->first + (float)k * profile->step, middle = profile->a + profile->b * t;
-        float w[2] = {0, 0}, moment[2] = {0, 0};
-        for (int32_t i = 0; i < profile->offsets; i++) {
-            const float s = middle + profile->offset[i];
-            float gx, gy;
-            sample_at(frame, profile, profile->origin_x + t * ux - s * uy, profile->origin_y + t * uy + s * ux, &gx, &gy);
-            const float across = gy * ux - gx * uy, weight = fabsf(across) - fabsf(gx * ux + gy * uy);
-            if (weight > 0) {
-                w[across > 0] += weight;
-                moment[across > 0] += weight * profile->offset[i];
-            }
-        }
-        for (int32_t i = 0; i < 2; i++) {
-            sums->w[i][k] = w[i];
-            sums->moment[i][k] = moment[i];
-        }
-    }
+    if (asj_line_profile_inside(frame, profile, from, to))
+        for (int32_t k = from; k < to; k++)
+            sum_across(frame, profile, 1, k, sums);
+    else
+        for (int32_t k = from; k < to; k++)
+            sum_across(frame, profile, 0, k, sums);
 }
 
 static void total_profile(int32_t count, int32_t side, asj_profile_sums *sums)

@@ -186,14 +186,15 @@ void asj_sectors_free(asj_memory *memory, asj_sectors *s)
 
 void asj_sector_sums(const asj_sectors *s, const int16_t *place, const uint16_t *gamma, uint16_t *prefix, uint16_t *sums)
 {
+    const int32_t count = s->offset_count;
     uint16_t total = 0;
-    for (int32_t i = 0; i < s->offset_count; i++) {
+    for (int32_t i = 0; i < count; i++) {
         prefix[i] = total;
         total = (uint16_t)(total + gamma[place[i]]);
     }
-    prefix[s->offset_count] = total;
+    prefix[count] = total;
     for (int32_t k = 0; k < s->count; k++) {
-        const int32_t first = s->first[k], end = first + s->size[k], past = end - s->offset_count;
-        sums[k] = (uint16_t)(past > 0 ? total - prefix[first] + prefix[past] : prefix[end] - prefix[first]);
+        const int32_t first = s->first[k], end = first + s->size[k], past = end - count;
+        sums[k] = (uint16_t)(past > 0 ? prefix[count] - prefix[first] + prefix[past] : prefix[end] - prefix[first]);
     }
 }

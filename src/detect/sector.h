@@ -49,6 +49,20 @@ static inline asj_direction asj_sector_direction(const asj_sectors *sectors, int
     return (asj_direction){x, y, (int16_t)(sign * x), (int16_t)(-sign * y)};
 }
 
+static inline int16_t asj_high_product(int16_t a, int16_t b)
+{
+    return (int16_t)((int32_t)a * b >> 16);
+}
+
+/* gamma of a pixel with this gradient, whose offset has that direction. */
+static inline uint16_t asj_sector_gamma(asj_direction u, int16_t gx, int16_t gy)
+{
+    const int16_t cross = (int16_t)(asj_high_product(gx, u.y) - asj_high_product(gy, u.cross_x)), back = (int16_t)-cross;
+    const int16_t dot = (int16_t)(asj_high_product(gx, u.x) - asj_high_product(gy, u.dot_y)), other = (int16_t)-dot;
+    const int16_t gamma = (int16_t)((cross > back ? cross : back) - (dot > other ? dot : other));
+    return (uint16_t)(gamma > 0 ? gamma : 0);
+}
+
 /* Strength of a sum: standard deviations above the mean of the null model, 0 below the mean. */
 static inline uint16_t asj_sector_strength(const asj_sectors *sectors, int32_t k, uint16_t sum)
 {

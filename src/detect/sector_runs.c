@@ -69,27 +69,16 @@ void asj_sector_runs_places(const asj_sector_runs *runs, const asj_sectors *sect
         places[i] = find_place(runs, sectors->dx[i], sectors->dy[i]);
 }
 
-/* The high half of a 16 x 16 bit product. */
-static inline int16_t high_product(int16_t a, int16_t b)
-{
-    return (int16_t)((int32_t)a * b >> 16);
-}
-
 /* Results go to an array that nothing else may overlap: compilers then make a few vector instructions of the inner loop. */
 void asj_sector_gammas(const asj_sector_runs *runs, const int16_t *gx, const int16_t *gy, ptrdiff_t stride, uint16_t *gamma)
 {
     for (int32_t r = 0; r < runs->count; r++, gamma += ASJ_SECTOR_RUN) {
         const ptrdiff_t at = runs->dy[r] * stride + runs->dx[r];
         int16_t(*const factors)[ASJ_SECTOR_RUN] = runs->factors + 4 * r;
-        int16_t run[ASJ_SECTOR_RUN];
+        uint16_t run[ASJ_SECTOR_RUN];
         for (int i = 0; i < ASJ_SECTOR_RUN; i++) {
-            const int16_t x = gx[at + i], y = gy[at + i];
-            int16_t cross = (int16_t)(high_product(x, factors[1][i]) - high_product(y, factors[2][i]));
-            int16_t dot = (int16_t)(high_product(x, factors[0][i]) - high_product(y, factors[3][i]));
-            cross = (int16_t)(cross < 0 ? -cross : cross);
-            dot = (int16_t)(dot < 0 ? -dot : dot);
-            const int16_t more = (int16_t)(cross - dot);
-            run[i] = (int16_t)(more > 0 ? more : 0);
+            const asj_direction u = {factors[0][i], factors[1][i], factors[2][i], factors[3][i]};
+            run[i] = asj_sector_gamma(u, gx[at + i], gy[at + i]);
         }
         memcpy(gamma, run, sizeof run);
     }

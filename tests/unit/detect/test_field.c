@@ -188,20 +188,25 @@ static void test_candidates(void **state)
 {
     static const double strengths[] = {0, 2.5, 3.5};
     fixture *f = *state;
+    uint16_t *masks = malloc((size_t)f->frame.blocks * (size_t)f->frame.height * sizeof *masks);
     int total = 0;
+    assert_non_null(masks);
     for (int32_t radius = 3; radius <= 9; radius += 2)
         for (size_t s = 0; s < UNIT_COUNT(strengths); s++) {
             asj_field field;
             f->options.field_radius = radius;
             f->options.candidate_strength = strengths[s];
+            f->options.candidate_step = s == 2 ? 1 : 2;
             make_field(f, &field);
             for (int32_t k = 0; k < field.sectors.count; k++)
                 assert_int_equal(field.candidate[k], fmax(field.keep[k], strengths[s] * ASJ_STRENGTH_ONE));
             uint16_t *scratch = malloc(asj_field_scratch(&field) * sizeof *scratch);
             assert_non_null(scratch);
-            for (int32_t y = 0; y < f->frame.height; y += 2)
-                for (int32_t x = 0; x < f->frame.width; x++) {
-                    const int found = asj_field_is_candidate(&field, &f->frame, x, y, scratch);
+            const asj_tile whole = {0, f->frame.blocks, 0, f->frame.height};
+            asj_field_tile(&field, &f->frame, &whole, scratch, masks);
+            for (int32_t y = 0; y < f->frame.height; y += field.step)
+                for (int32_t x = 0; x < f->frame.width; x += field.step) {
+                    const int found = masks[y * f->frame.blocks + x / ASJ_LANES] >> x % ASJ_LANES & 1;
                     int32_t z[MOST];
                     strengths_at(&field, &f->frame, x, y, z);
                     if (naive_candidate(&field, z) != found)
@@ -211,6 +216,7 @@ static void test_candidates(void **state)
             free(scratch);
             asj_field_free(&f->context->memory, &field);
         }
+    free(masks);
     assert_in_range(total, 100, 4000); /* there was something to compare */
     asj_detect_options_init(&f->options);
 }
