@@ -51,6 +51,22 @@ typedef struct priors {
     asj_watch watch;
 } priors;
 
+/* Sums of the probabilities by location. Neighbours are mostly of one location of the first image. */
+static void add_up(const uint32_t *place, const double *probability, size_t count, double *sums)
+{
+    uint32_t at = place[0];
+    double sum = 0;
+    for (size_t k = 0; k < count; k++) {
+        if (place[k] != at) {
+            sums[at] = sum;
+            at = place[k];
+            sum = sums[at];
+        }
+        sum += probability[k];
+    }
+    sums[at] = sum;
+}
+
 /* The probabilities of the candidates, limited by location; their sum. */
 static double limit(const asj_match_run *run, const priors *p, double *probability)
 {
@@ -60,8 +76,7 @@ static double limit(const asj_match_run *run, const priors *p, double *probabili
         const uint32_t *place = p->place[side];
         double *sums = p->sums[side];
         memset(sums, 0, run->image[side]->l_junctions.location_count * sizeof *sums);
-        for (size_t k = 0; k < count; k++)
-            sums[place[k]] += probability[k];
+        add_up(place, probability, count, sums);
         for (size_t k = 0; k < count; k++)
             if (sums[place[k]] > MOST)
                 probability[k] *= MOST / sums[place[k]];
