@@ -12,7 +12,7 @@
 #define REJECTING 3
 #define WITH_GUESTS 22
 #define SHIFTED 7
-#define AMBIGUOUS 30 /* without cameras */
+#define AMBIGUOUS 21 /* without cameras */
 
 typedef struct views {
     synth_wide_pair pair;
