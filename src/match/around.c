@@ -93,5 +93,6 @@ asj_line_place asj_around_place(const asj_around *around, const asj_matched_bran
         find(&list, around, branch->match, side, x, y);
     for (uint32_t k = 0; k < list.count; k++)
         add(&s, &around->matches[index[k]], branch, side, x, y);
-    return s.weight > 0 ? (asj_line_place){s.along / s.weight, s.off / s.weight} : (asj_line_place){length, 0};
+    return s.weight > 0 ? (asj_line_place){s.along / s.weight, s.off / s.weight, sqrt(1 / sqrt(s.weight))}
+                        : (asj_line_place){length, 0, HUGE_VAL};
 }

@@ -19,9 +19,10 @@ typedef struct asj_matched_branch {
     double x[2], y[2], ux[2], uy[2];
 } asj_matched_branch;
 
-/* A place beside the line of a branch: px from the junction along it, and px off it. */
+/* A place beside the line of a branch: px from the junction along it, and px off it. `from`: px that a single match would be away
+ * which knew the place as well. */
 typedef struct asj_line_place {
-    double along, off;
+    double along, off, from;
 } asj_line_place;
 
 /* In the other image, the place that lies `length` px along the branch in image `side` (0, 1). `around` may be NULL: then the match

@@ -5,10 +5,14 @@
  * point make a segment match. The matches around (around.c) say where an end lies in the other image; ends agree when that is near
  * the other's end there, along the branch and across, in both images: NEAR px, or a sixth of end_tolerance of the length, and three
  * quarters of that when what is at the ends differs. Of all combinations of the branches' length hypotheses that agree, the longest
- * is taken. When none agrees, the longer branch is cut where the other's end is put: the part that both images show.
+ * is taken. When none agrees, the longer branch is cut where the other's end is put: the part that both images show. That is put by
+ * matches, whose error grows with the square of the distance. An end by a cut is no end of the edge anyway, and so it comes nearer,
+ * until it is known as well as FARTHEST px from a single match.
  *
- * Of segments of rendered rooms 1 to 12 that end so, 98.8 % (both) and 97.3 % (inner) are right, and 79.8 % of those cut; by the
- * lengths under the match's own map, within end_tolerance, 96.3, 70.3 and 56.4 % were. */
+ * Of segments of rendered rooms 1 to 12 that end so, 98.8 % (both) and 97.3 % (inner) are right, and 79.8 % of those cut where
+ * the other's end is put; by the lengths under the match's own map, within end_tolerance, 96.3, 70.3 and 56.4 % were. Of all
+ * segments of rooms 1 to 8, cut ones among them, 89.1 % are right where the end does not come nearer, with FARTHEST = 60, 45, 35,
+ * 28 90.7, 92.6, 93.4, 93.7 %. */
 #include "segments.h"
 
 #include <math.h>
@@ -16,6 +20,8 @@
 #define NEAR 4.0          /* px */
 #define SHARE (1.0 / 6)   /* of end_tolerance */
 #define OTHER_KIND 0.75
+#define FARTHEST 35.0 /* px */
+#define PARTS 10      /* of the branch: it comes nearer by one after the other */
 
 /* How far ends of these kinds may lie apart, as a part of what ends of one kind may. The border of the image is no place of the
  * scene. */
@@ -39,14 +45,20 @@ static int agrees(const asj_line_place *put, double length, double part, double 
     return d * d + put->off * put->off <= most * most && part > 0;
 }
 
-/* The part that both images show. The branch of image 0 is the longer one when its end lies farther beyond the other's, as a
- * part of the lengths, than the other's beyond it. */
-static asj_common_end cut(const double length[2], const asj_line_place put[2])
+/* The part that both images show, no farther than is known where it lies in the other image. The branch of image 0 is the longer
+ * one when its end lies farther beyond the other's, as a part of the lengths, than the other's beyond it. */
+static asj_common_end cut(const asj_around *around, const asj_matched_branch *branch, const double length[2],
+                          const asj_line_place put[2])
 {
     const double beyond = (put[0].along - length[1]) / length[1] - (put[1].along - length[0]) / length[0];
     const int32_t whole = beyond > 0 ? 1 : 0, other = 1 - whole;
     asj_common_end end = {{length[0], length[1]}, ASJ_END_CUT};
-    end.length[other] = fmin(fmax(put[whole].along, fmin(1, length[other])), length[other]);
+    asj_line_place at = put[whole];
+    for (int32_t part = PARTS - 1; part > 0 && at.from > FARTHEST; part--) {
+        end.length[whole] = length[whole] * part / PARTS;
+        at = asj_around_place(around, branch, whole, end.length[whole]);
+    }
+    end.length[other] = fmin(fmax(at.along, fmin(1, length[other])), length[other]);
     return end;
 }
 
@@ -70,5 +82,5 @@ asj_common_end asj_find_common_end(const asj_around *around, const asj_matched_b
         return end;
     const double own[2] = {(double)h1->length[0], (double)h2->length[0]};
     const asj_line_place first[2] = {put[0][0], put[1][0]};
-    return cut(own, first);
+    return cut(around, branch, own, first);
 }
