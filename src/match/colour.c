@@ -156,10 +156,11 @@ static void look_around_some(const void *data, const asj_part *part)
         look_around(j->picture, j->l_junctions, n, &j->colours[n]);
 }
 
-static int32_t is_grey(const asj_colour *colours, uint32_t count)
+/* Guests (guests.c) are no candidates of a geometry, and are not asked. */
+static int32_t is_grey(const asj_colour *colours, const asj_l_junctions *in)
 {
-    for (uint32_t n = 0; n < count; n++)
-        for (int32_t r = 0; r < ASJ_COLOUR_REGIONS; r++) {
+    for (uint32_t n = 0; n < in->count; n++)
+        for (int32_t r = 0; r < ASJ_COLOUR_REGIONS && !asj_is_guest(in, n); r++) {
             const uint16_t *level = colours[n].level[r];
             if (level[0] != level[1] || level[1] != level[2])
                 return 0;
@@ -182,7 +183,7 @@ asj_status asj_colours_create(asj_context *context, const asj_image *image, cons
     asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
     const job j = {&p, l_junctions, made, &watch};
     asj_parallel(context, asj_threads_for(context, l_junctions->count, 256), l_junctions->count, 0, look_around_some, &j);
-    if (watch.stopped || is_grey(made, l_junctions->count))
+    if (watch.stopped || is_grey(made, l_junctions))
         asj_release(&context->memory, made);
     else
         *colours = made;

@@ -136,6 +136,36 @@ static void what_cannot_be_seen(void **state)
     assert_false(colour_of(context, &image, &corner, &colour)); /* grey in a format that has colours */
 }
 
+/* The left half is grey. What another octave has found in the right one is no candidate of a geometry, and is not asked. */
+static void guests_do_not_say_that_there_are_colours(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    static uint8_t pixels[3 * SIDE * SIDE];
+    asj_match_options options;
+    asj_junction corners[3];
+    asj_match_options_init(&options);
+    for (int32_t k = 0; k < 3 * SIDE * SIDE; k++)
+        pixels[k] = (uint8_t)(100 + (k / 3 % SIDE >= SIDE / 2 ? 40 * (k % 3) : 0));
+    for (int32_t k = 0; k < 3; k++)
+        corners[k] = corner_at(k == 2 ? 60 : 15, 20.0F + 20 * (float)k, 0, (float)(UNIT_PI / 2), 8);
+    const asj_image image = {pixels, ASJ_FORMAT_RGB8, SIDE, SIDE, 0, 0};
+    for (int32_t octave = 0; octave < 2; octave++) {
+        asj_l_junctions made;
+        asj_colour *found = NULL;
+        memset(&made, 0, sizeof made);
+        corners[2].octave = octave;
+        const asj_junction_list list = {corners, 3, SIDE, SIDE, 1};
+        assert_int_equal(asj_l_junctions_create(context, &options, &list, &made), ASJ_OK);
+        assert_int_equal(asj_colours_create(context, &image, &made, &found), ASJ_OK);
+        assert_int_equal(found != NULL, octave == 0);
+        asj_release(&context->memory, found);
+        asj_l_junctions_free(&context->memory, &made);
+    }
+    unit_context_free(&counter, &context);
+}
+
 /* --- what a vote needs ------------------------------------------------------------------------------------------------------- */
 
 #define PLACES 24
@@ -425,6 +455,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(regions_are_where_they_should_be), cmocka_unit_test(what_cannot_be_seen),
         cmocka_unit_test(many_places_decide),               cmocka_unit_test(tiles_that_differ_in_hue_alone),
+        cmocka_unit_test(guests_do_not_say_that_there_are_colours),
         cmocka_unit_test(grey_images_as_before),            cmocka_unit_test(colours_are_kept),
         cmocka_unit_test(every_allocation_may_fail),
     };
