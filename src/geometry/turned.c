@@ -64,16 +64,17 @@ void asj_turned_free(asj_memory *memory, asj_turned *turned)
     asj_release(memory, turned->weight);
 }
 
-/* The bin of each of `count` normals, and how much of its vote. */
+/* The bin of each of `count` normals, and how much of its vote. Choices are between constants: which it will be cannot be foreseen,
+ * and compilers make vectors of the loop then. */
 static void find_bins(const float *x, const float *y, const float *z, int32_t count, const float a[3], const float b[3],
                       int32_t *bins, float *part)
 {
     const float a0 = a[0], a1 = a[1], a2 = a[2], b0 = b[0], b1 = b[1], b2 = b[2];
     for (int32_t k = 0; k < count; k++) {
         const float p = x[k] * a0 + y[k] * a1 + z[k] * a2, q = x[k] * b0 + y[k] * b1 + z[k] * b2;
-        const float s = fabsf(p), c = p > 0 ? -q : q, size = s + fabsf(c); /* (c, s) = +- (q, -p), s >= 0 */
-        const float d = s / (size + 1e-20F), turn = c < 0 ? 2 - d : d;
-        bins[k] = (int32_t)(turn * (0.5F * BINS));
+        const float s = fabsf(p), c = q * (p > 0 ? -1.0F : 1.0F), size = s + fabsf(q); /* (c, s) = +- (q, -p), s >= 0 */
+        const float d = s / (size + 1e-20F), start = c < 0 ? 2.0F : 0.0F, way = c < 0 ? -1.0F : 1.0F; /* the turn: d or 2 - d */
+        bins[k] = (int32_t)((start + way * d) * (0.5F * BINS));
         part[k] = size < 1 ? size : 1;
     }
 }
