@@ -43,7 +43,8 @@ typedef struct asj_match_options {
     double smoothing;            /* px: standard deviation of the blur before anything is sampled. 0 .. 2; 0.8; paper 0 */
     /* unrelated images */
     double related_support;      /* images whose likeliest candidates agree less than this have nothing in common and are answered
-                                  * at once, without matches; 0 = none are. Not asked with a geometry. 0 .. 64; 0.14; paper 0 */
+                                  * at once, without matches; 0 = none are. With a geometry asked only where none is accepted.
+                                  * 0 .. 64; 0.14; paper 0 */
     /* short list, and alignment of its pairs */
     int32_t shortlist;           /* best candidates kept for each L-junction of either image. 1 .. 32; 4; paper 16 */
     int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map; 0 = none. 0 .. 30; 6; paper 0 */

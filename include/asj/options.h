@@ -110,8 +110,8 @@ typedef struct asj_detect_options {
                                    * 0 = as many as make it most meaningful. 0; paper 1 */
     int32_t isotropic_apart;      /* step 3: px, of junctions no farther apart the most meaningful one stays; 0 = half its radius.
                                    * 0 .. 15; 2; paper 0 */
-    double most_tilt;             /* step 5: deg, a branch that crosses the edges in its strip at a larger angle is turned to them, or is
-                                   * none; 0 = not asked. 0 .. 45; 6; paper 0; match 0 */
+    double most_tilt;             /* step 5: deg, a branch that crosses the edges in its strip at a larger angle is turned to them,
+                                   * or is none; 0 = not asked. 0 .. 45; 6; paper 0; match 0 */
     double reserved[17];          /* zero */
 } asj_detect_options;
 

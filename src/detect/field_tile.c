@@ -123,11 +123,11 @@ void asj_field_tile(const asj_field *field, const asj_frame *frame, const asj_ti
     for (int32_t y = tile->top - radius; y < tile->bottom + radius; y++) {
         const ptrdiff_t at = y * frame->stride + tile->run * ASJ_LANES - w.margin;
         const int32_t centre = y - radius;
-        uint16_t *bits = masks + (ptrdiff_t)centre * frame->blocks + tile->run;
         split(&w, frame->gradient_x + at, row_of(&w, y));
         split(&w, frame->gradient_y + at, row_of(&w, y) + (size_t)field->step * w.stride);
         if (centre < tile->top)
             continue;
+        uint16_t *bits = masks + (ptrdiff_t)centre * frame->blocks + tile->run;
         memset(bits, 0, (size_t)tile->runs * sizeof *bits);
         if (asj_field_has_candidates(field, centre))
             find_row(&w, centre, bits);

@@ -79,6 +79,7 @@ static void follow_line(const asj_context *context, const asj_frame *frame, cons
 
 void asj_refine(const asj_context *context, const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
+    hypothesis->explained = 0;
     if (options->refinement == ASJ_REFINE_SEARCH)
         return; /* that is done (search_step.c) */
     for (int32_t i = 0; i < hypothesis->branch_count; i++)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Validation. A branch is reported when it is long enough, its line passes the junction, the strip along it is meaningful (strip.c),
- * reaches the junction and follows an edge instead of crossing some (tilt.c), and no better branch points the same way; a junction, when two of its branches open. In coarse octaves
- * two branches may be meaningful together. */
+/* Validation. A branch is reported when it is long enough, its line passes the junction, the strip along it is meaningful
+ * (strip.c), reaches the junction and follows an edge instead of crossing some (tilt.c), and no better branch points the same way;
+ * a junction, when two of its branches open. In coarse octaves two branches may be meaningful together. */
 #include "validate.h"
 #include "blurred_corner.h"
 #include "core/angle.h"
@@ -141,7 +141,8 @@ static int judge(const asj_context *context, const asj_frame *frame, const asj_d
         branch->log_nfa = fmin(branch->log_nfa, asj_strip_correlated(frame, &shorter, branch->width, explained));
     }
     if (branch->length < options->minimum_length || branch->length <= 0 || fabs(branch->offset) > LARGEST_OFFSET ||
-        !reaches(frame, options, branch, &strip) || asj_is_tilted(options, &strip.sums) || (options->ignore_frame && on_frame(frame, hypothesis, branch)))
+        !reaches(frame, options, branch, &strip) || asj_is_tilted(options, &strip.sums) ||
+        (options->ignore_frame && on_frame(frame, hypothesis, branch)))
         return NOT_AT_ALL;
     if (!options->strip_test || branch->log_nfa <= log_epsilon)
         return ALONE;

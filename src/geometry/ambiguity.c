@@ -36,7 +36,8 @@
 #define MOST_STRUCK 4 /* times that the best one changes: in 198 pairs of rooms once in six, never twice */
 
 /* Raises e->elsewhere[k] to how probable it is under the geometry of the probabilities `mine` that the place of candidate k in
- * image `side` is matched with something else: with a point farther than SAME_THING from the candidate's own. */
+ * image `side` is matched with something else: the mean of all else that it is matched with
+ * lies farther than SAME_THING from the candidate's own point. */
 static void find_elsewhere(const asj_estimation *e, int32_t side, const double *mine)
 {
     double *const held = e->vote; /* of a place: probability, and the same times x and y of what it is matched with */

@@ -19,8 +19,8 @@ typedef struct asj_matched_branch {
     double x[2], y[2], ux[2], uy[2];
 } asj_matched_branch;
 
-/* A place beside the line of a branch: px from the junction along it, and px off it. `from`: px that a single match would be away
- * which knew the place as well. */
+/* A place beside the line of a branch: px from the junction along it, and px off it. `from`: px,
+ * sqrt(d^2 + NEAR^2) of a single match at a distance of d that would know the place as well (around.c). */
 typedef struct asj_line_place {
     double along, off, from;
 } asj_line_place;

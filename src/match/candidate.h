@@ -72,7 +72,7 @@ typedef struct asj_support {
 typedef struct asj_choice {
     uint32_t candidate; /* index into the list */
     float ratio;        /* score over that of the best at another location; HUGE_VALF when there is none */
-    float probability;  /* two_view.c */
+    float probability;  /* verdict.c */
 } asj_choice;
 
 typedef struct asj_choices {

@@ -13,8 +13,8 @@
  *   - same_corner.c leaves one match for each corner.
  *
  * Where nothing else matches, guests do not either: alike among themselves, they agree too easily. Sixteen pairs of photographs,
- * one octave and four: 713 of 734 right, 830 of 851; matched with the others in the guided pass, as before, they were 838 of 884
- * and took good ones away. Rooms 1 to 12: 1460 of 1481, 1650 of 1699. */
+ * one octave and four: 713 of 734 right, 830 of 851; matched with the others in the guided pass, they are 838 of 884 and take
+ * good ones away. Rooms 1 to 12: 1460 of 1481, 1650 of 1699. */
 #include "guests.h"
 #include "assign.h"
 #include "consensus.h"

@@ -17,7 +17,7 @@ typedef struct asj_match_run {
     asj_geometry geometry;     /* two_view.c */
     asj_judge judge;           /* two_view.c: what was accepted, for matches that were no candidates of it */
     int32_t lines_hold;        /* verdict.c: is what lies off its epipolar lines wrong? */
-    asj_choices rejected;      /* two_view.c: what were choices before */
+    asj_choices rejected;      /* verdict.c: what were choices before */
     const uint8_t *taken[2];   /* guests.c: locations that are matched already; NULL: guests are not proposed */
     int32_t has_epipolar;      /* epipolar.c: is the fundamental matrix of all choices known, */
     double epipolar[9];        /* .. by rows: x2' F x1 = 0 */
@@ -27,6 +27,12 @@ typedef struct asj_match_run {
 static inline const asj_l_junction *asj_match_run_l(const asj_match_run *run, const asj_candidate *c, int32_t side)
 {
     return &run->image[side]->l_junctions.l[asj_candidate_l(c, side)];
+}
+
+/* The candidate of choice n. */
+static inline const asj_candidate *asj_chosen(const asj_match_run *run, size_t n)
+{
+    return &run->candidates.list[run->choices.list[n].candidate];
 }
 
 /* Does it match a guest (guests.c)? */

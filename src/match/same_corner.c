@@ -5,8 +5,8 @@
  * much worse.
  *
  * One match for each corner. Locations of different octaves nearer than `separation` are the same corner, as they are for the ratio
- * test (assign.c); of their matches that of no guest stays, or else that of the finest octave, which knows the place best. Choices
- * of before stay in any case. */
+ * test (assign.c); of their matches that of no guest stays, or else that of the finest octave, which knows the place best. The
+ * first `before` choices stay in any case. */
 #include "same_corner.h"
 #include "consensus.h"
 #include "core/watch.h"
@@ -31,15 +31,10 @@ static int nearer(const asj_l_junction *a, const asj_l_junction *b, double dista
     return dx * dx + dy * dy < distance * distance;
 }
 
-static const asj_candidate *chosen(const asj_match_run *run, size_t n)
-{
-    return &run->candidates.list[run->choices.list[n].candidate];
-}
-
-/* Does choice m stand for the corner of choice n, which is a guest's? The first `before` were there before. */
+/* Does choice m stand for the corner of choice n, which is a guest's? The first `before` stay. */
 static int stands_for(const asj_match_run *run, size_t before, size_t m, size_t n)
 {
-    const asj_candidate *other = chosen(run, m), *c = chosen(run, n);
+    const asj_candidate *other = asj_chosen(run, m), *c = asj_chosen(run, n);
     const int comes_first = m < before || !asj_is_of_guests(run, other) || octave_of(run, other) < octave_of(run, c);
     const double separation = run->options->separation;
     return comes_first && (nearer(asj_match_run_l(run, c, 0), asj_match_run_l(run, other, 0), separation) ||
@@ -49,7 +44,7 @@ static int stands_for(const asj_match_run *run, size_t before, size_t m, size_t 
 static int has_guests(const asj_match_run *run, size_t first)
 {
     for (size_t n = first; n < run->choices.count; n++)
-        if (asj_is_of_guests(run, chosen(run, n)))
+        if (asj_is_of_guests(run, asj_chosen(run, n)))
             return 1;
     return 0;
 }
@@ -70,7 +65,7 @@ static void keep_supported(asj_match_run *run, size_t first, uint8_t *gone)
     asj_choices *choices = &run->choices;
     const float needed = asj_needed_support(run);
     for (size_t n = first; n < choices->count; n++) {
-        const asj_candidate *c = chosen(run, n);
+        const asj_candidate *c = asj_chosen(run, n);
         gone[n] = asj_is_of_guests(run, c) && c->support < needed * (float)(1 + MORE_SUPPORT * octave_of(run, c));
     }
     keep(choices, gone);
@@ -83,7 +78,7 @@ static void keep_finest(asj_match_run *run, size_t first, uint8_t *gone, asj_wat
     memset(gone, 0, choices->count);
     for (size_t n = first; n < choices->count && !asj_watch_stops(watch, NULL); n++)
         for (size_t m = 0; m < choices->count && !gone[n]; m++)
-            gone[n] = (uint8_t)(asj_is_of_guests(run, chosen(run, n)) && stands_for(run, first, m, n));
+            gone[n] = (uint8_t)(asj_is_of_guests(run, asj_chosen(run, n)) && stands_for(run, first, m, n));
     keep(choices, gone);
 }
 

@@ -12,8 +12,8 @@
  *     MANY_MATCHES already, only when it is SURE_PROBABILITY at least. (On photographs that are none of the wide pairs three of
  *     four newcomers below that are right, and 45 of 47 above.)
  *   - Newcomers go by the fundamental matrix of the matches that were there, too, where there is one (epipolar.c), no more than
- *     half of them went, and no cameras tell more. (Rooms 1 to 40: 61 of 71 newcomers right, 60 of 67 with that. Rooms seen from
- *     far apart, with cameras: 680 of 758, 657 of 732.)
+ *     half of them went, and no cameras tell more; guests that newcomers propose go by it in any case. (Rooms 1 to 40: 61 of 71
+ *     newcomers right, 60 of 67 with that. Rooms seen from far apart, with cameras: 680 of 758, 657 of 732.)
  *   - Guests (guests.c) are no candidates, but matches as others are: contradicted ones go, and what the newcomers propose comes if
  *     the geometry does not contradict it.
  *
@@ -103,11 +103,6 @@ static double probability_of(const asj_match_run *run, const asj_wide_run *w, co
     return probability > 0 ? probability : probability_by_itself(run, c);
 }
 
-static const asj_candidate *chosen(const asj_match_run *run, size_t n)
-{
-    return &run->candidates.list[run->choices.list[n].candidate];
-}
-
 static int32_t is_off_line(const asj_match_run *run, const asj_candidate *c)
 {
     const asj_geometry_candidate at = asj_candidate_for_geometry(run, c, 0);
@@ -119,7 +114,7 @@ static int32_t are_lines_believed(const asj_match_run *run)
 {
     double against = 0;
     for (size_t n = 0; n < run->choices.count; n++)
-        against += !asj_is_of_guests(run, chosen(run, n)) && is_off_line(run, chosen(run, n));
+        against += !asj_is_of_guests(run, asj_chosen(run, n)) && is_off_line(run, asj_chosen(run, n));
     return against <= run->geometry.inliers;
 }
 
@@ -132,7 +127,7 @@ static asj_status filter(asj_match_run *run, const asj_wide_run *w, const likely
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the geometry");
     run->lines_hold = are_lines_believed(run);
     for (size_t n = 0; n < choices->count; n++) {
-        const asj_candidate *c = chosen(run, n);
+        const asj_candidate *c = asj_chosen(run, n);
         const double probability = probability_of(run, w, c);
         asj_choice choice = choices->list[n];
         const int32_t hopeless = probability < 1 - SURE_PROBABILITY && asj_keeps_area(c);
@@ -148,13 +143,23 @@ static asj_status filter(asj_match_run *run, const asj_wide_run *w, const likely
     return ASJ_OK;
 }
 
+static int32_t was_rejected(const asj_match_run *run, const asj_candidate *c)
+{
+    for (size_t n = 0; n < run->rejected.count; n++) {
+        const asj_candidate *gone = &run->candidates.list[run->rejected.list[n].candidate];
+        if (gone->i == c->i && gone->j == c->j)
+            return 1;
+    }
+    return 0;
+}
+
 void asj_judge_guests(asj_match_run *run, size_t first)
 {
     asj_choices *choices = &run->choices;
     size_t kept = first;
     for (size_t n = first; n < choices->count; n++) {
-        const asj_candidate *c = chosen(run, n);
-        if (run->lines_hold && is_off_line(run, c))
+        const asj_candidate *c = asj_chosen(run, n);
+        if ((run->lines_hold && is_off_line(run, c)) || was_rejected(run, c))
             continue;
         choices->list[kept] = choices->list[n];
         choices->list[kept++].probability = (float)probability_by_itself(run, c);
@@ -191,7 +196,7 @@ static void take_around(const asj_match_run *run, const asj_wide_run *w, int32_t
 static void take_places(const asj_match_run *run, const asj_wide_run *w, uint8_t *const taken[2])
 {
     for (size_t n = 0; n < run->choices.count; n++) {
-        const asj_candidate *c = chosen(run, n);
+        const asj_candidate *c = asj_chosen(run, n);
         for (int32_t side = 0; side < 2; side++) {
             const uint32_t location = run->image[side]->l_junctions.location[asj_candidate_l(c, side)];
             taken[side][w->place[side][location]] = 1;

@@ -62,8 +62,8 @@ static inline void add_strip(const asj_frame *frame, const asj_strip_walk *walk,
             near_pixels += __builtin_popcount((unsigned)_mm256_movemask_pd(near));
         }
     }
-    *sums = (asj_strip_sums){total_of_four(gamma_sum), total_of_four(uu), total_of_four(un), total_of_four(nn), total_of_four(near_sum),
-                             pixels, near_pixels};
+    *sums = (asj_strip_sums){total_of_four(gamma_sum), total_of_four(uu), total_of_four(un), total_of_four(nn),
+                             total_of_four(near_sum), pixels, near_pixels};
 }
 
 static void strip_sums_avx2(const asj_frame *frame, const asj_strip_walk *walk, asj_strip_sums *sums)

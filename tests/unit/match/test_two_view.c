@@ -158,6 +158,7 @@ static void guests_are_judged(void **state)
     for (uint32_t k = 0; k < r->match_count; k++) {
         const asj_junction_match *m = &r->matches[k];
         assert_true(m->probability >= 0 && m->probability <= 1);
+        assert_int_equal(count_of(r->rejected, r->rejected_count, m), 0);
         if (!is_of(&v, m, 0) && from_line(f, m) < 1)
             assert_true(m->probability > 0.5f);
         for (uint32_t q = 0; q < k; q++)
@@ -172,7 +173,8 @@ static void guests_are_judged(void **state)
     unit_context_free(&counters[1], &contexts[1]);
 }
 
-/* Every match that there is without the geometry is either there with it or among the rejected ones, which lie off their lines. */
+/* Every match that there is without the geometry is either there with it or among the rejected ones; in this room all those lie off
+ * their lines. */
 static void what_goes_is_told(void **state)
 {
     (void)state;
