@@ -28,5 +28,6 @@ int cli_take_camera(const char *command, const char *name, const char *text, asj
             return CLI_SUCCESS;
         }
     }
-    return cli_usage_error(command, "--%s: '%s' is not FX,FY,CX,CY in px, with focal lengths of 1 and more", name, text);
+    return cli_usage_error(command, "--%s: '%s' is not FX,FY,CX,CY in px, with focal lengths of 1 to %g", name, text,
+                           (double)CLI_LONGEST_FOCAL);
 }

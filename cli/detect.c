@@ -92,13 +92,14 @@ static int write_results(run *r, const char *image, const cli_output *output, co
     return result;
 }
 
-static void print_summary(const char *image, const cli_output *output, const asj_detection *detection)
+static void print_summary(const char *image, const cli_output *output, const asj_detect_options *options,
+                          const asj_detection *detection)
 {
     const char *junctions = output->junctions && strcmp(output->junctions, "-") != 0 ? output->junctions : NULL;
     cli_note("%s: %lu junction%s%s%s%s%s", image, (unsigned long)detection->junction_count,
              detection->junction_count == 1 ? "" : "s", junctions || output->plot ? " -> " : "", junctions ? junctions : "",
              junctions && output->plot ? ", " : "", output->plot ? output->plot : "");
-    if (detection->junction_count == 0)
+    if (detection->junction_count == 0 && (options->epsilon < 100 || options->candidate_strength > 2))
         cli_note("%s: weaker corners are found with --epsilon 100 --candidate-strength 2", image);
 }
 
@@ -117,7 +118,7 @@ static int detect_pixels(run *r, const char *image, const cli_output *output, co
     double write_ms = cli_now_ms() - start;
     cli_progress_clear(&r->session.progress);
     if (result == CLI_SUCCESS && !r->arguments->common.quiet)
-        print_summary(image, output, detection);
+        print_summary(image, output, &r->arguments->options, detection);
     if (result == CLI_SUCCESS && r->arguments->common.time) {
         cli_timing_detection(image, r->session.context, detection);
         cli_timing_files(r->read_ms, write_ms);

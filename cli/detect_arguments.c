@@ -76,7 +76,8 @@ static const cli_option plot_options[] = {
 static const cli_option preset_options[] = {
     {PRESET, 0, "preset", "default|paper|match",
      "start from these values of the options below, wherever this stands: our recommendation, the paper to the letter, or what "
-     "'asj-cli match' detects: weaker junctions too (the default for asjf; asj has no octaves but the first)"},
+     "'asj-cli match' detects: weaker junctions too (the default for asjf; without coarse octaves for asj, which cannot "
+     "tell them)"},
     {FOR, 0, "for", "matching", "the same as --preset match"},
 };
 

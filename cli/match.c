@@ -164,6 +164,23 @@ static void print_summary(const run *r)
              file && arguments->plot ? ", " : "", arguments->plot ? arguments->plot : "");
 }
 
+static void print_geometry(const run *r)
+{
+    const asj_geometry *g = &r->result->geometry;
+    if (g->status == ASJ_GEOMETRY_ACCEPTED)
+        cli_note("geometry: %s, log10 NFA %.1f%s", asj_geometry_model_name(g->model), g->log10_nfa,
+                 g->model == ASJ_GEOMETRY_HOMOGRAPHY ? "; matches off its plane stay, less probable" : "");
+    else if (g->status != ASJ_GEOMETRY_NOT_ASKED && r->result->match_count > 0)
+        cli_note("geometry: none (%s); the matches are those that there are without", asj_geometry_status_name(g->status));
+}
+
+/* Could a focal length be told? */
+static int without_focal(const asj_geometry_options *geometry)
+{
+    return geometry->cameras[0].fx <= 0 && !geometry->find_focal &&
+           (geometry->model == ASJ_GEOMETRY_AUTO || geometry->model == ASJ_GEOMETRY_ESSENTIAL);
+}
+
 /* Why there are none, as far as it can be told, and what to try. */
 static void print_hint(const run *r)
 {
@@ -183,7 +200,7 @@ static void print_hint(const run *r)
         cli_note("hint: what matches leaves the motion open: few of them, a plane, or a camera that only turned");
     else if (status != ASJ_GEOMETRY_ACCEPTED)
         cli_note("hint: nothing in common stands out from chance (geometry: %s)%s", asj_geometry_status_name(status),
-                 r->geometry.cameras[0].fx > 0 || r->geometry.find_focal ? "" : "; cameras or --focal estimate would help");
+                 without_focal(&r->geometry) ? "; cameras or --focal estimate may help" : "");
 }
 
 static void print_times(const run *r, double write_ms)
@@ -217,6 +234,7 @@ static int run_all(run *r)
     cli_progress_clear(&r->session.progress);
     if (result == CLI_SUCCESS && !r->arguments->common.quiet) {
         print_summary(r);
+        print_geometry(r);
         print_hint(r);
     }
     if (result == CLI_SUCCESS && r->arguments->common.time)

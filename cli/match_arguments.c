@@ -34,7 +34,7 @@ static const char conclusion[] =
     "\n"
     "NFA: expected number of false alarms in an image of noise.\n"
     "\n"
-    "Exit status: 0 done (no match is a result too), 1 failed and nothing written, 2 wrong usage, 130 interrupted.\n"
+    "Exit status: 0 done (no match is a result too), 1 failed (no file is half written), 2 wrong usage, 130 interrupted.\n"
     "More: man asj-cli; file formats: man asj-formats\n";
 
 enum {
@@ -48,8 +48,8 @@ static const cli_option output_options[] = {
     {FORMAT, 'f', "format", "csv|json", "csv: one line a match; json: everything. Default: by the end of FILE, else csv"},
     {LINES, 0, "lines", NULL, "line segments: csv has them in place of the matches, json beside them; a plot shows them"},
     {LINE_ENDS, 0, "line-ends", "cut|inner|both",
-     "line segments whose far ends are known at least so well: both branches end there, as the matches around see it; on one of "
-     "them the end is a corner further inside (inner, the default); all, the longer one cut to fit"},
+     "line segments whose far ends are known at least so well. both: both branches end there, as the matches around see it; "
+     "inner (the default): also where the end of one is a corner further inside the other; cut: all, the longer one cut to fit"},
 };
 
 static const cli_option input_options[] = {
@@ -137,7 +137,8 @@ static int take_focal(const char *text, cli_match_arguments *arguments)
     const int32_t source = cli_find_word(sources, text);
     arguments->focal_from = source < 0 ? CLI_FOCAL_GIVEN : CLI_FOCAL_EXIF + source;
     if (source < 0 && !cli_parse_number(text, 1, CLI_LONGEST_FOCAL, &arguments->focal))
-        return cli_usage_error("match", "--focal: '%s' is not a length in px, 1 and more, or exif, estimate or none", text);
+        return cli_usage_error("match", "--focal: '%s' is not a length in px, 1 to %g, or exif, estimate or none", text,
+                               (double)CLI_LONGEST_FOCAL);
     return CLI_SUCCESS;
 }
 

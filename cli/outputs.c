@@ -196,8 +196,10 @@ int cli_outputs_plan(const cli_detect_arguments *arguments, cli_outputs *outputs
     }
     if (!outputs->of || !list || !inputs || !name_outputs(arguments, outputs))
         cli_error("out of memory");
-    else if (!arguments->out_dir || (result = make_folder(arguments->out_dir)) == CLI_SUCCESS)
+    else
         result = cli_check_collisions("detect", list, list_planned(arguments, outputs, list), inputs, input_count);
+    if (result == CLI_SUCCESS && arguments->out_dir)
+        result = make_folder(arguments->out_dir);
     free(inputs);
     free(list);
     return result;

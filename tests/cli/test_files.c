@@ -59,6 +59,10 @@ static void two_spellings_of_one_output(void **state)
         expect_in(result, result->err, "written twice");
         assert_false(exists("both.svg"));
     }
+    const outcome *twice = run_cli("detect", "--out-dir", "unmade", "scene.png", "./scene.png", NULL);
+    expect_code(twice, 2);
+    expect_in(twice, twice->err, "written twice");
+    assert_false(exists("unmade"));
     assert_non_null(getcwd(absolute, sizeof absolute - 16));
     strcat(absolute, "/both.svg");
     expect_code(run_cli("match", "-o", "same", "--plot", absolute, "first.png", "second.png", NULL), 2);

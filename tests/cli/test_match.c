@@ -366,6 +366,19 @@ static void features_take_the_place_of_images(void **state)
     expect_code(result, 0);
 }
 
+/* What came of the geometry stands on standard error, where one was asked for. */
+static void what_the_geometry_is_is_told(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("match", "--geometry", "fundamental", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "\ngeometry: ");
+    result = run_cli("match", "--geometry", "essential", "--focal", "300", "first.png", "first.png", NULL);
+    expect_in(result, result->err, "geometry: none (degenerate)");
+    assert_null(strstr(run_cli("match", "-q", "--geometry", "fundamental", "first.png", "second.png", NULL)->err, "geometry"));
+    assert_null(strstr(run_cli("match", "first.png", "second.png", NULL)->err, "geometry"));
+}
+
 #ifdef ASJ_IMAGES
 #define LENS ASJ_IMAGES "/lens.png" /* 30 px in its EXIF data */
 #define NO_LENS ASJ_IMAGES "/gray.png"
@@ -584,6 +597,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_preset_match_detects_for_match),
         cmocka_unit_test(the_surest_junctions_give_a_warning),
         cmocka_unit_test(features_take_the_place_of_images),
+        cmocka_unit_test(what_the_geometry_is_is_told),
 #ifdef ASJ_IMAGES
         cmocka_unit_test(focal_lengths_come_from_exif),
 #endif
