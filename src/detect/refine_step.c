@@ -4,6 +4,7 @@
 #include "blurred_corner.h"
 #include "edge_width.h"
 #include "end_kind.h"
+#include "soft_twins.h"
 #include "steps.h"
 #include "suppress.h"
 #include "validate.h"
@@ -41,5 +42,7 @@ asj_status asj_step_refine(asj_detection_run *run)
         status = asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "validated");
     if (status == ASJ_OK)
         status = asj_suppress_all(run);
+    if (status == ASJ_OK)
+        status = asj_drop_soft_twins(run);
     return status == ASJ_OK ? asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "junctions") : status;
 }
