@@ -49,6 +49,11 @@ has_opencl_driver() {
     [ -e /etc/OpenCL/vendors/pocl.icd ] && /sbin/ldconfig -p | grep -q 'libOpenCL\.so\.1'
 }
 
+# What clang's sanitizers are linked with.
+has_clang_runtime() {
+    printf 'int main(void) { return 0; }\n' | clang -x c -fsanitize=memory -o /dev/null -
+}
+
 # A locale with a decimal comma, or the sources that one can be made from.
 has_comma_locale() {
     [ -e /usr/share/i18n/locales/de_DE ] || locale -a | grep -qE '^(de_DE|fr_FR)'
@@ -81,7 +86,10 @@ look_for() {
     for more in "$@"; do
         case $more in
         cmocka) want libcmocka-dev pkg-config --exists cmocka ;;
-        clang) want clang clang --version ;;
+        clang)
+            want clang clang --version
+            want libclang-rt-dev has_clang_runtime
+            ;;
         venv) want python3-venv python3 -c 'import venv, ensurepip' ;;
         opencl) want opencl-headers has_opencl_headers ;;
         pocl) want 'pocl-opencl-icd ocl-icd-libopencl1' has_opencl_driver ;;
