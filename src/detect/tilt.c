@@ -2,7 +2,7 @@
 /* Branches that cross edges instead of following one (not in the paper).
  *
  * Where parallel edges lie a few px from each other, slats of a blind, books on a shelf, keys, a ray that crosses them at a small
- * angle always has one of them in its strip, and gamma, which falls by only a quarter at 10 degrees, takes them for an edge along
+ * angle always has one of them in its strip, and gamma, which falls by only a fifth at 10 degrees, takes them for an edge along
  * it. The gradients tell: on the edge of a branch what they have along it, g_u, is noise, of either sign and independent of what
  * they have across, g_n; on edges that it crosses at an angle phi g_u = g_n tan phi at each. So, over the pixels of the strip
  * (strip.c),

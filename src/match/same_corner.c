@@ -6,7 +6,7 @@
  *
  * One match for each corner. Locations of different octaves nearer than `separation` are the same corner, as they are for the ratio
  * test (assign.c); of their matches that of no guest stays, or else that of the finest octave, which knows the place best. The
- * first `before` choices stay in any case. */
+ * choices before `first` stay in any case. */
 #include "same_corner.h"
 #include "consensus.h"
 #include "core/watch.h"
