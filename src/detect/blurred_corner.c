@@ -14,6 +14,7 @@
  * What the corner explains of the squares of the differences tells it from chance: .99 and more at corners of 25 grey levels in
  * noise of 2, .75 (95 % below .91) at what passes for corners in noise that is blurred by 2 to 8 px. */
 #include "blurred_corner.h"
+#include "blurred_wedge.h"
 #include "core/angle.h"
 #include "edge_width.h"
 
@@ -44,136 +45,36 @@
 #define SURE 0.97        /* at lower ones blurred noise may pass */
 #define LEAST_ERROR 0.03 /* px: systematic */
 
-#define NOTHING 4.0      /* standard deviations from where on a normal distribution is 0 or 1 */
+enum {
+    X = ASJ_WEDGE_X,
+    Y = ASJ_WEDGE_Y,
+    FIRST = ASJ_WEDGE_FIRST,
+    SECOND = ASJ_WEDGE_SECOND,
+    BLUR = ASJ_WEDGE_BLUR,
+    STEP = ASJ_WEDGE_STEP,
+    PARAMETERS = ASJ_WEDGE_PARAMETERS
+};
 
-enum { X, Y, FIRST, SECOND, BLUR, STEP, PARAMETERS };
-
-typedef struct wedge {
-    double p[PARAMETERS];
-} wedge;
-
-/* The pixels that count: a disc, and a band along each edge up to `last`. */
-typedef struct window {
-    double x, y, reach, across;
-    double ux[2], uy[2], last[2];
-} window;
-
-/* Lower triangle of the normal matrix, then its Cholesky factor; the right-hand side; sums over the pixels. */
+/* Lower triangle of the normal matrix, then its Cholesky factor; the right-hand side; sums over the pixels: of the squares of what
+ * the wedge leaves of the differences, of the differences', of the weights. */
 typedef struct equations {
     double matrix[PARAMETERS][PARAMETERS], right[PARAMETERS];
     double error, total, weight;
 } equations;
 
-static double normal(double z)
+/* Of the wedge with step h: what its parameters change is h times what the sums are of, but for h itself. */
+static void set_equations(const asj_wedge_sums *sums, double h, equations *e)
 {
-    return z > NOTHING ? 1 : z < -NOTHING ? 0 : 0.5 * erfc(-0.7071067811865476 * z);
-}
-
-/* Adds one edge's part of g / h at (dx, dy) from the corner, and its derivatives. (ux, uy): along the edge. */
-static void add_edge(const wedge *w, int edge, double ux, double uy, double dx, double dy, double g[2], double d[2][PARAMETERS])
-{
-    const double b = w->p[BLUR], inverse = 1 / (b * b), t = dx * ux + dy * uy, s = dy * ux - dx * uy;
-    if (fabs(s) > NOTHING * b || t < -NOTHING * b)
-        return;
-    const double sign = edge == 0 ? 1 : -1, bell = sign * exp(-0.5 * s * s * inverse), f = bell * normal(t / b);
-    const double along = t > NOTHING * b ? 0 : bell * 0.3989422804014327 * exp(-0.5 * t * t * inverse) / b; /* df / dt */
-    const double across = -f * s * inverse, wider = (f * s * s * inverse - along * t) / b, turned = along * s - across * t;
-    const double n[2] = {-uy, ux}, u[2] = {ux, uy};
-    for (int i = 0; i < 2; i++) {
-        g[i] += f * n[i];
-        d[i][X] -= (along * ux - across * uy) * n[i];
-        d[i][Y] -= (along * uy + across * ux) * n[i];
-        d[i][FIRST + edge] += turned * n[i] - f * u[i];
-        d[i][BLUR] += wider * n[i];
+    const double *with_step = sums->products[STEP];
+    for (int a = 0; a < PARAMETERS; a++) {
+        const double of_a = a == STEP ? 1 : h;
+        e->right[a] = of_a * (sums->seen[a] - h * with_step[a]);
+        for (int b = 0; b <= a; b++)
+            e->matrix[a][b] = of_a * (b == STEP ? 1 : h) * sums->products[a][b];
     }
-}
-
-/* The window is around w. */
-static void add_pixel(const asj_frame *frame, const wedge *w, const window *in, int32_t x, int32_t y, double weight, equations *to)
-{
-    const uint16_t *at = frame->gray + y * frame->stride + x;
-    const double seen[2] = {0.5 * (at[1] - at[-1]), 0.5 * (at[frame->stride] - at[-frame->stride])};
-    double g[2] = {0, 0}, d[2][PARAMETERS];
-    memset(d, 0, sizeof d);
-    for (int edge = 0; edge < 2; edge++)
-        add_edge(w, edge, in->ux[edge], in->uy[edge], x - in->x, y - in->y, g, d);
-    for (int i = 0; i < 2; i++) {
-        const double left = seen[i] - w->p[STEP] * g[i];
-        for (int a = 0; a < STEP; a++)
-            d[i][a] *= w->p[STEP];
-        d[i][STEP] = g[i];
-        to->error += weight * left * left;
-        to->total += weight * seen[i] * seen[i];
-        to->weight += weight;
-        for (int a = 0; a < PARAMETERS; a++) {
-            to->right[a] += weight * d[i][a] * left;
-            for (int b = 0; b <= a; b++)
-                to->matrix[a][b] += weight * d[i][a] * d[i][b];
-        }
-    }
-}
-
-static double disc_weight(const window *in, double dx, double dy)
-{
-    const double rest = 1 - (dx * dx + dy * dy) / (in->reach * in->reach);
-    return rest > 0 ? rest * rest : 0;
-}
-
-static double band_weight(const window *in, int edge, double dx, double dy)
-{
-    const double t = dx * in->ux[edge] + dy * in->uy[edge], s = (dy * in->ux[edge] - dx * in->uy[edge]) / in->across;
-    return t > 0 && t < in->last[edge] && s * s < 1 ? (1 - s * s) * (1 - s * s) : 0;
-}
-
-/* Whole numbers from `from` to `to`, none at the border of an image of `size`, whose pixels have a neighbour on one side only. */
-static void pixels_between(double from, double to, int32_t size, int32_t *first, int32_t *last)
-{
-    *first = (int32_t)ceil(fmin(fmax(from, 1), size));
-    *last = (int32_t)floor(fmax(fmin(to, size - 2), 0));
-}
-
-static void add_disc(const asj_frame *frame, const wedge *w, const window *in, equations *to)
-{
-    int32_t left, right, top, bottom;
-    pixels_between(in->x - in->reach, in->x + in->reach, frame->width, &left, &right);
-    pixels_between(in->y - in->reach, in->y + in->reach, frame->height, &top, &bottom);
-    for (int32_t y = top; y <= bottom; y++)
-        for (int32_t x = left; x <= right; x++) {
-            const double weight = disc_weight(in, x - in->x, y - in->y);
-            if (weight > 0)
-                add_pixel(frame, w, in, x, y, weight, to);
-        }
-}
-
-/* What a band adds to the disc. It is walked by the axis that it is longer on. */
-static void add_band(const asj_frame *frame, const wedge *w, const window *in, int edge, equations *to)
-{
-    const double ux = in->ux[edge], uy = in->uy[edge], last = in->last[edge];
-    const int by_x = fabs(ux) >= fabs(uy);
-    const double along = by_x ? ux : uy, start = by_x ? in->x : in->y, spread = in->across / fabs(along);
-    int32_t first, end, from, until;
-    if (last <= 0)
-        return;
-    pixels_between(start + fmin(last * along, 0) - in->across, start + fmax(last * along, 0) + in->across,
-                   by_x ? frame->width : frame->height, &first, &end);
-    for (int32_t i = first; i <= end; i++) {
-        const double middle = by_x ? in->y + (i - in->x) * uy / ux : in->x + (i - in->y) * ux / uy;
-        pixels_between(middle - spread, middle + spread, by_x ? frame->height : frame->width, &from, &until);
-        for (int32_t j = from; j <= until; j++) {
-            const int32_t x = by_x ? i : j, y = by_x ? j : i;
-            const double weight = band_weight(in, edge, x - in->x, y - in->y) - disc_weight(in, x - in->x, y - in->y);
-            if (weight > 0)
-                add_pixel(frame, w, in, x, y, weight, to);
-        }
-    }
-}
-
-static void add_up(const asj_frame *frame, const wedge *w, const window *in, equations *to)
-{
-    memset(to, 0, sizeof *to);
-    add_disc(frame, w, in, to);
-    for (int edge = 0; edge < 2; edge++)
-        add_band(frame, w, in, edge, to);
+    e->error = sums->total - h * (2 * sums->seen[STEP] - h * with_step[STEP]);
+    e->total = sums->total;
+    e->weight = sums->weight;
 }
 
 /* The Cholesky factor of the matrix in its place; 0 when there is none. */
@@ -218,9 +119,9 @@ static double variance_of(const equations *e, int parameter)
     return e->error / e->weight * column[parameter];
 }
 
-static window window_of(const wedge *w, const double lengths[2], double blur)
+static asj_wedge_window window_of(const asj_wedge *w, const double lengths[2], double blur)
 {
-    window in = {w->p[X], w->p[Y], DISC * blur, ACROSS * blur, {0, 0}, {0, 0}, {0, 0}};
+    asj_wedge_window in = {w->p[X], w->p[Y], DISC * blur, ACROSS * blur, {0, 0}, {0, 0}, {0, 0}};
     for (int i = 0; i < 2; i++) {
         in.ux[i] = cos(w->p[FIRST + i]);
         in.uy[i] = sin(w->p[FIRST + i]);
@@ -230,7 +131,7 @@ static window window_of(const wedge *w, const double lengths[2], double blur)
 }
 
 /* One step; 0 when there is none. *moved: px. */
-static int step(equations *e, double blur, wedge *w, double *moved)
+static int step(equations *e, double blur, asj_wedge *w, double *moved)
 {
     double change[PARAMETERS];
     if (!factorise(e))
@@ -243,29 +144,31 @@ static int step(equations *e, double blur, wedge *w, double *moved)
     return w->p[BLUR] > 0.5 * blur && w->p[BLUR] < 2 * blur;
 }
 
-/* The corner around w, which is near it; 0: there is none. e: of the round before the last step. */
-static int find(const asj_frame *frame, const double lengths[2], wedge *w, equations *e)
+/* The corner around w, which is near it, and whose step the first sums tell; 0: there is none. e: of the round before the last
+ * step. */
+static int find(const asj_frame *frame, const double lengths[2], asj_wedge *w, equations *e)
 {
-    const wedge start = *w;
+    const asj_wedge start = *w;
     const double blur = start.p[BLUR];
-    window in = window_of(w, lengths, blur);
     double moved = HUGE_VAL;
-    add_up(frame, w, &in, e); /* with a step of nothing, it tells the step */
-    if (!(e->matrix[STEP][STEP] > 0))
-        return 0;
-    w->p[STEP] = e->right[STEP] / e->matrix[STEP][STEP];
     for (int round = 0; round < ROUNDS && moved > SETTLED; round++) {
-        add_up(frame, w, &in, e);
+        const asj_wedge_window in = window_of(w, lengths, blur);
+        asj_wedge_sums sums;
+        asj_wedge_add_up(frame, w, &in, &sums);
+        if (!(sums.products[STEP][STEP] > 0))
+            return 0;
+        if (round == 0)
+            w->p[STEP] = sums.seen[STEP] / sums.products[STEP][STEP];
+        set_equations(&sums, w->p[STEP], e);
         if (round >= HOPEFUL && e->error > (1 - HOPELESS) * e->total)
             return 0;
         if (!step(e, blur, w, &moved) || hypot(w->p[X] - start.p[X], w->p[Y] - start.p[Y]) > FARTHEST * blur)
             return 0;
-        in = window_of(w, lengths, blur);
     }
     return moved <= UNSETTLED && e->error < (1 - LEAST_EXPLAINED) * e->total;
 }
 
-static void keep(const wedge *w, const equations *e, int first, asj_hypothesis *hypothesis)
+static void keep(const asj_wedge *w, const equations *e, int first, asj_hypothesis *hypothesis)
 {
     hypothesis->x = w->p[X];
     hypothesis->y = w->p[Y];
@@ -299,7 +202,7 @@ int asj_blurred_corner(const asj_frame *frame, asj_hypothesis *hypothesis)
     for (int whole = 1; whole >= 0 && !asj_blurred_corner_is_sure(hypothesis); whole--) {
         const double most = whole ? HUGE_VAL : SHORT * softer;
         const double lengths[2] = {fmin(branches[first].length, most), fmin(branches[1 - first].length, most)};
-        wedge w = {{start.x, start.y, branches[first].angle, branches[1 - first].angle,
+        asj_wedge w = {{start.x, start.y, branches[first].angle, branches[1 - first].angle,
                     sqrt(sharper * softer + 0.5 * ASJ_EDGE_SAMPLING), 0}};
         equations e;
         if (!whole && (frame->octave == 0 || fmax(branches[0].length, branches[1].length) <= most))
