@@ -9,6 +9,7 @@
 
 #define GROUP (V_LANES > 16 ? 2 : 4) /* vectors worked on at once: as many running sums stay in registers */
 #define GROUP_PIXELS (GROUP * V_LANES)
+#define AHEAD 2 /* rows: how far ahead the gradient is fetched */
 
 typedef char tiles_are_whole_groups[ASJ_FIELD_TILE % GROUP_PIXELS == 0 ? 1 : -1];
 
@@ -242,6 +243,13 @@ static void tile_row(const tile *t, int32_t runs, uint16_t *masks)
     }
 }
 
+/* Rows of a tile are too short for the processor to see what it reads next. */
+static void fetch_row(const int16_t *row, int32_t width)
+{
+    for (int32_t i = 0; i < width; i += 32)
+        __builtin_prefetch(row + i);
+}
+
 /* Takes a row apart: the even ones of 2 `count` numbers, and the odd ones. */
 static void split_row(const int16_t *row, int32_t count, int16_t *even, int16_t *odd)
 {
@@ -303,6 +311,10 @@ static void field_tile(const asj_field *field, const asj_frame *frame, const asj
     const size_t row = t.stride * 4 * (size_t)field->plan.family_count;
     for (int32_t y = top - radius; y < bottom + radius; y++) {
         const ptrdiff_t at = y * frame->stride + run * ASJ_LANES - t.margin;
+        if (y + AHEAD < bottom + radius) {
+            fetch_row(frame->gradient_x + at + AHEAD * frame->stride, width * field->step);
+            fetch_row(frame->gradient_y + at + AHEAD * frame->stride, width * field->step);
+        }
         const int32_t centre = y - radius;
         uint16_t *found = masks + (ptrdiff_t)centre * frame->blocks + run;
         fill_planes(&t, y, frame->gradient_x + at, frame->gradient_y + at, width);
