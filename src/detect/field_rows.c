@@ -6,13 +6,13 @@
 #include "core/threads.h"
 
 #define LEAST_RUNS 128 /* for a thread: about 25 us */
-#define BAND 128       /* rows of a tile; each has 2 radii more to fill planes with */
+#define BAND 128       /* rows of a tile where threads share them; each has 2 radii more to fill planes with */
 
 typedef struct job {
     asj_context *context;
     const asj_field *field;
     const asj_frame *frame;
-    int32_t top, bottom, per_tile, across; /* `across` tiles beside each other */
+    int32_t top, bottom, band, per_tile, across; /* rows of a tile; `across` tiles beside each other */
     const asj_scratch *scratch;
     uint16_t *masks;
 } job;
@@ -22,8 +22,8 @@ static void do_tiles(const void *data, const asj_part *part)
     const job *j = data;
     for (int64_t i = part->first; i < part->end; i++) {
         const int32_t run = (int32_t)(i % j->across) * j->per_tile, left = j->frame->blocks - run;
-        const int32_t top = j->top + (int32_t)(i / j->across) * BAND, below = j->bottom - top;
-        const asj_tile tile = {run, left < j->per_tile ? left : j->per_tile, top, top + (below < BAND ? below : BAND)};
+        const int32_t top = j->top + (int32_t)(i / j->across) * j->band, below = j->bottom - top;
+        const asj_tile tile = {run, left < j->per_tile ? left : j->per_tile, top, top + (below < j->band ? below : j->band)};
         j->context->ops->field->tile(j->field, j->frame, &tile, asj_thread_scratch(j->scratch, part), j->masks);
     }
 }
@@ -32,12 +32,13 @@ asj_status asj_field_rows(asj_context *context, const asj_field *field, const as
                           const asj_scratch *scratch, uint16_t *masks)
 {
     const int32_t threads = asj_threads_for(context, (int64_t)frame->blocks * (bottom - top), LEAST_RUNS);
-    const int32_t bands = (bottom - top + BAND - 1) / BAND, largest = field->step * ASJ_FIELD_TILE / ASJ_LANES;
+    const int32_t rows = bottom - top, band = threads == 1 && rows > 0 ? rows : BAND;
+    const int32_t bands = (rows + band - 1) / band, largest = field->step * ASJ_FIELD_TILE / ASJ_LANES;
     /* tiles are half as wide where there are so few that threads would wait for the last one */
     const int32_t many = 8 * threads * largest;
     const int32_t per_tile = threads == 1 || frame->blocks * bands >= many ? largest : largest / 2;
     const int32_t across = (frame->blocks + per_tile - 1) / per_tile;
-    const job j = {context, field, frame, top, bottom, per_tile, across, scratch, masks};
+    const job j = {context, field, frame, top, bottom, band, per_tile, across, scratch, masks};
     asj_parallel(context, threads, (int64_t)across * bands, 1, do_tiles, &j);
     return ASJ_OK;
 }
