@@ -122,30 +122,37 @@ static void set_factors(asj_sectors *s, int32_t i)
     s->factors[i][3] = twice(u.dot_y);
 }
 
-/* The members of sector k are a circular run; finds where it starts. */
-static void find_run(asj_sectors *s, const offset *list, double half_width, int32_t k)
+/* The members of sector k are a circular run: finds where it starts, looking from offset `from` on, and how long it is. */
+static void find_run(asj_sectors *s, const offset *list, double half_width, int32_t k, int32_t from)
 {
     const double theta = ASJ_TWO_PI * k / s->count;
+    const int32_t end = from + s->offset_count;
+    int32_t first = from;
+    while (first < end && !in_sector(list[first % s->offset_count].angle, theta, half_width))
+        first++;
+    s->first[k] = first % s->offset_count;
     s->size[k] = 0;
-    s->first[k] = 0;
-    for (int32_t i = 0; i < s->offset_count; i++) {
-        if (!in_sector(list[i].angle, theta, half_width))
-            continue;
+    while (s->size[k] < s->offset_count && in_sector(list[(first + s->size[k]) % s->offset_count].angle, theta, half_width))
         s->size[k]++;
-        int32_t before = i > 0 ? i - 1 : s->offset_count - 1;
-        if (!in_sector(list[before].angle, theta, half_width))
-            s->first[k] = i;
+}
+
+/* Sectors start one after the other, the first one at most half a turn before the offset that points along it. */
+static void find_runs(asj_sectors *s, const offset *list, double half_width)
+{
+    int32_t from = s->offset_count / 2;
+    for (int32_t k = 0; k < s->count; k++) {
+        find_run(s, list, half_width, k, from);
+        from = s->first[k];
     }
 }
 
 static void fill(asj_sectors *s, const offset *list, double tau)
 {
     s->largest = 0;
-    for (int32_t k = 0; k < s->count; k++) {
-        find_run(s, list, tau / s->radius, k);
+    find_runs(s, list, tau / s->radius);
+    for (int32_t k = 0; k < s->count; k++)
         if (s->size[k] > s->largest)
             s->largest = s->size[k];
-    }
     s->gamma_bits = 9;
     while (s->largest * (ASJ_GRADIENT_LIMIT * (1 << s->gamma_bits) + 2) > 65535)
         s->gamma_bits--;

@@ -51,24 +51,35 @@ static void assign_planes(const asj_sectors *s, asj_sector_plan *plan)
 
 static int16_t find_slot(const asj_sector_plan *plan, int32_t boundary)
 {
-    int16_t j = 0;
-    while (plan->boundary[j] != boundary)
-        j++;
-    return j;
+    int16_t low = 0, high = (int16_t)(plan->plain_count - 1);
+    while (low < high) {
+        const int16_t middle = (int16_t)((low + high) / 2);
+        if (plan->boundary[middle] < boundary)
+            low = (int16_t)(middle + 1);
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The boundaries in order: those that there are are marked in their list first. */
+static void list_boundaries(const asj_sectors *s, asj_sector_plan *plan)
+{
+    const int32_t n = s->offset_count;
+    plan->boundary[n] = 1;
+    for (int32_t k = 0; k < s->count; k++) {
+        const int32_t end = s->first[k] + s->size[k];
+        plan->boundary[s->first[k]] = plan->boundary[end > n ? end - n : end] = 1;
+    }
+    for (int32_t b = 0; b <= n; b++)
+        if (plan->boundary[b])
+            plan->boundary[plan->plain_count++] = (int16_t)b;
 }
 
 static void assign_slots(const asj_sectors *s, asj_sector_plan *plan)
 {
     const int32_t n = s->offset_count;
-    for (int32_t b = 0; b <= n; b++) {
-        int used = b == n;
-        for (int32_t k = 0; k < s->count && !used; k++) {
-            int32_t end = s->first[k] + s->size[k];
-            used = s->first[k] == b || (end > n ? end - n : end) == b;
-        }
-        if (used)
-            plan->boundary[plan->plain_count++] = (int16_t)b;
-    }
+    list_boundaries(s, plan);
     plan->slot_count = plan->plain_count;
     for (int32_t k = 0; k < s->count; k++) {
         int32_t end = s->first[k] + s->size[k];
