@@ -14,14 +14,15 @@
 #define LARGE_PAGE ((size_t)2 << 20) /* bytes, where pages are 4096 bytes; elsewhere the advice below means nothing */
 
 /* The first touch of a page costs a microsecond or two, a good part of the first image of a process. So large blocks begin where a
- * large page may, and ask for such pages. */
+ * large page may, and ask for such pages; the last one is whole where the block fills half of it. */
 static void *allocate_default(void *user, size_t size)
 {
     (void)user;
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
     void *block = NULL;
-    if (size >= LARGE_PAGE && posix_memalign(&block, LARGE_PAGE, size) == 0) {
-        madvise(block, size / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
+    const size_t large = (size + LARGE_PAGE / 2) / LARGE_PAGE * LARGE_PAGE, whole = size > large ? size : large;
+    if (size >= LARGE_PAGE && size <= SIZE_MAX - LARGE_PAGE && posix_memalign(&block, LARGE_PAGE, whole) == 0) {
+        madvise(block, large, MADV_HUGEPAGE);
         return block;
     }
 #endif
