@@ -4,6 +4,7 @@
 #define ASJ_SRC_ISOTROPIC_H
 
 #include "field.h"
+#include "null_model.h"
 
 #define ASJ_MAX_RADIUS 30
 
@@ -27,7 +28,7 @@ typedef struct asj_isotropic_radius {
     asj_sector_runs runs; /* of a radius that is a source */
     int32_t suppress;     /* sectors to either side over which a branch must be the largest */
     int32_t straight;     /* two branches that are more sectors apart are an edge: by more than pi - 2 Delta */
-    const double **tails; /* for each sector: ln F(i / ASJ_ISOTROPIC_TAIL_STEPS; J_k), i = 0, 1, .. */
+    const double **tails; /* for each sector: ln F(i / ASJ_TAIL_STEPS; J_k), i = 0, 1, .. */
     const double *lowest_tail; /* the lowest of them: that of the sector with the fewest pixels */
     double lowest_end;    /* and the largest sum that such a sector may have: its table ends there */
     int32_t least_sum[ASJ_MAX_BRANCHES + 1]; /* of M branches the weakest has at least this sum, or they are not meaningful */
@@ -44,7 +45,7 @@ typedef struct asj_isotropic {
     int32_t all_meaningful; /* such branches all belong to a junction */
     int32_t max_branches;
     int32_t persistence;  /* radii in a row at which a junction is meaningful, at least */
-    double *tail_tables[128]; /* by number of pixels; shared by the radii */
+    double *tail_tables[128]; /* by number of pixels, of those that are not stored; shared by the radii */
     size_t scratch;           /* elements of uint16_t for asj_isotropic_pixel() and asj_isotropic_band() */
 } asj_isotropic;
 
@@ -88,13 +89,10 @@ typedef struct asj_isotropic_peak {
     uint16_t sum, strength;
 } asj_isotropic_peak;
 
-/* Table entries for a junction-ness of 1; linear interpolation is then good to 0.01 in ln F. */
-#define ASJ_ISOTROPIC_TAIL_STEPS 4
-
 /* ln F at junction-ness t >= 0 from one of the tables. */
 static inline double asj_isotropic_log_tail(const double *table, double t)
 {
-    const double position = t * ASJ_ISOTROPIC_TAIL_STEPS;
+    const double position = t * ASJ_TAIL_STEPS;
     const int32_t i = (int32_t)position;
     const double rest = position - i;
     return table[i] * (1 - rest) + table[i + 1] * rest;

@@ -7,18 +7,17 @@
 #include <math.h>
 #include <string.h>
 
-static asj_status make_tails(asj_context *context, asj_isotropic *test, int32_t pixels)
+/* Of a sector of so many pixels; NULL without memory. */
+static const double *find_tails(asj_context *context, asj_isotropic *test, int32_t pixels)
 {
-    if (test->tail_tables[pixels])
-        return ASJ_OK;
-    size_t entries = (size_t)(pixels * (ASJ_GRADIENT_LIMIT + 0.1) * ASJ_ISOTROPIC_TAIL_STEPS) + 3;
-    double *table = asj_allocate(&context->memory, entries, sizeof *table);
-    if (!table)
-        return ASJ_ERROR_MEMORY;
-    for (size_t i = 0; i < entries; i++)
-        table[i] = asj_nfa_log_sector_tail(asj_nfa_tables(), (double)i / ASJ_ISOTROPIC_TAIL_STEPS, pixels);
-    test->tail_tables[pixels] = table;
-    return ASJ_OK;
+    const double *stored = asj_nfa_tail(asj_nfa_tables(), pixels);
+    if (stored || test->tail_tables[pixels])
+        return stored ? stored : test->tail_tables[pixels];
+    const int32_t length = asj_nfa_tail_length(pixels);
+    double *table = asj_allocate(&context->memory, (size_t)length, sizeof *table);
+    for (int32_t i = 0; table && i < length; i++)
+        table[i] = asj_nfa_log_sector_tail(asj_nfa_tables(), (double)i / ASJ_TAIL_STEPS, pixels);
+    return test->tail_tables[pixels] = table;
 }
 
 static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t radius, double tau, int32_t disjoint)
@@ -40,13 +39,14 @@ static asj_status make_radius(asj_context *context, asj_isotropic *test, int32_t
     if (!entry->least)
         return ASJ_ERROR_MEMORY;
     int32_t fewest = entry->sectors.size[0];
-    for (int32_t k = 0; status == ASJ_OK && k < entry->sectors.count; k++) {
-        status = make_tails(context, test, entry->sectors.size[k]);
-        entry->tails[k] = test->tail_tables[entry->sectors.size[k]];
+    for (int32_t k = 0; k < entry->sectors.count; k++) {
+        entry->tails[k] = find_tails(context, test, entry->sectors.size[k]);
+        if (!entry->tails[k])
+            return ASJ_ERROR_MEMORY;
         if (entry->sectors.size[k] < fewest)
             fewest = entry->sectors.size[k];
     }
-    entry->lowest_tail = test->tail_tables[fewest];
+    entry->lowest_tail = find_tails(context, test, fewest); /* it is there */
     entry->lowest_end = fewest * ASJ_GRADIENT_LIMIT;
     return status;
 }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Tails of sums of gamma, the junction-ness of a pixel (nfa.c): the saddlepoint approximation, and tables for few terms. */
+/* Tails of sums of gamma, the junction-ness of a pixel (nfa.c): the saddlepoint approximation, and tables. */
 #include "nfa_tables.h"
 #include "core/angle.h"
 
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
 
 #define RATE_FROZEN 2 /* cells below which the correction is held, see rate_at() */
 
@@ -65,6 +66,20 @@ static double saddlepoint(const asj_nfa *nfa, double t, int32_t n)
     rate_at(nfa->rate, t / n, &root, &correction);
     double r = many * root + correction / many, tail = log_normal_tail(r);
     return r < 0 ? fmin(tail, log1p(-ldexp(1, -n))) : tail;
+}
+
+/* No gamma is above ASJ_GRADIENT_LIMIT = 3.5, but for rounding; the last node is for interpolation. */
+int32_t asj_nfa_tail_length(int32_t n)
+{
+    return n * 36 * ASJ_TAIL_STEPS / 10 + 3;
+}
+
+const double *asj_nfa_tail(const asj_nfa *nfa, int32_t n)
+{
+    const double *tail = nfa->tails;
+    for (int32_t terms = 1; terms < n; terms++)
+        tail += asj_nfa_tail_length(terms);
+    return n <= ASJ_NFA_TAIL_TERMS ? tail : NULL;
 }
 
 /* Where each value comes from: one term, closed form; up to ASJ_NFA_DIRECT terms, the table, and beyond its end the saddlepoint

@@ -18,6 +18,7 @@ int main(void)
     char name[32];
     asj_nfa_fill_sector(&nfa);
     asj_nfa_fill_arc(&nfa);
+    asj_nfa_fill_tails(&nfa);
     printf("/* Written by nfa_store.c. */\n#include \"detect/nfa_tables.h\"\n\nconst asj_nfa asj_nfa_stored = {\n    .rate = {\n");
     for (int i = 0; i <= ASJ_NFA_RATE_CELLS; i++)
         printf("        {%a, %a, %a, %a},\n", nfa.rate[i].root, nfa.rate[i].root_slope, nfa.rate[i].correction,
@@ -31,6 +32,7 @@ int main(void)
         snprintf(name, sizeof name, "arc[%d]", n);
         print(name, nfa.arc[n], ASJ_NFA_ARC_CELLS + 1);
     }
+    print("tails", nfa.tails, ASJ_NFA_TAILS);
     printf("};\n");
     return fflush(stdout) == 0 && !ferror(stdout) ? 0 : 1;
 }

@@ -10,7 +10,9 @@ enum {
     ASJ_NFA_DIRECT = 6,                         /* sums of up to this many gamma have a table; longer ones use the saddlepoint */
     ASJ_NFA_SECTOR_CELLS = 16 * ASJ_NFA_PER_UNIT,
     ASJ_NFA_RATE_CELLS = 4 * ASJ_NFA_PER_UNIT,  /* saddlepoint: in u = sqrt(t / n) */
-    ASJ_NFA_ARC_CELLS = 12 * ASJ_NFA_PER_UNIT   /* sums of gamma~ */
+    ASJ_NFA_ARC_CELLS = 12 * ASJ_NFA_PER_UNIT,  /* sums of gamma~ */
+    ASJ_NFA_TAIL_TERMS = 32,                    /* tails of sums of up to this many gamma are stored: sectors of radius 14 */
+    ASJ_NFA_TAILS = 7800                        /* room for them */
 };
 #define ASJ_NFA_STEP (1.0 / ASJ_NFA_PER_UNIT)
 
@@ -24,6 +26,7 @@ struct asj_nfa {
     /* ln F(i step; n) and ln G(i step; n); first entries are the limits from above */
     double sector[ASJ_NFA_DIRECT + 1][ASJ_NFA_SECTOR_CELLS + 1];
     double arc[ASJ_MAX_ARC + 1][ASJ_NFA_ARC_CELLS + 1];
+    double tails[ASJ_NFA_TAILS]; /* asj_nfa_tail() of 1, 2, .. terms, one behind the other */
 };
 
 /* Written into the library by the program nfa_store.c. */

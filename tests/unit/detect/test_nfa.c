@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Tails, thresholds and numbers of tests of src/detect/nfa.c against check values, naive evaluations and a simulation. */
+#include "detect/gradient.h"
 #include "detect/nfa.h"
+#include "detect/nfa_tables.h"
 
 #include <float.h>
 #include <math.h>
@@ -346,6 +348,23 @@ static void test_atom(void **state)
     }
 }
 
+/* Stored nodes are the tails at their places, to the last digits of two machines' libm, and reach beyond the largest sum. */
+static void test_stored_tails(void **state)
+{
+    const asj_nfa *nfa = ((fixture *)*state)->nfa;
+    for (int32_t n = 1; n <= ASJ_NFA_TAIL_TERMS; n++) {
+        const double *tail = asj_nfa_tail(nfa, n);
+        const int32_t length = asj_nfa_tail_length(n);
+        assert_true(tail >= nfa->tails && tail + length <= nfa->tails + ASJ_NFA_TAILS);
+        assert_true((double)(length - 2) / ASJ_TAIL_STEPS > n * ASJ_GRADIENT_LIMIT);
+        for (int32_t i = 0; i < length; i++) {
+            const double exact = asj_nfa_log_sector_tail(nfa, (double)i / ASJ_TAIL_STEPS, n);
+            check_near("stored tail", n, (double)i / ASJ_TAIL_STEPS, tail[i], exact, 1e-12 * (1 + fabs(exact)));
+        }
+    }
+    assert_null(asj_nfa_tail(nfa, ASJ_NFA_TAIL_TERMS + 1));
+}
+
 static void test_thresholds_invert(void **state)
 {
     static const int32_t terms[] = {1, 2, 3, 4, 5, 6, 7, 13, 28, 75, 360, 5000};
@@ -409,7 +428,7 @@ int main(void)
         cmocka_unit_test(test_junction_tests), cmocka_unit_test(test_sector_naive),    cmocka_unit_test(test_arc_naive),
         cmocka_unit_test(test_simulation),     cmocka_unit_test(test_monotone),        cmocka_unit_test(test_monotone_in_n),
         cmocka_unit_test(test_seams),          cmocka_unit_test(test_atom),            cmocka_unit_test(test_thresholds_invert),
-        cmocka_unit_test(test_extremes),
+        cmocka_unit_test(test_extremes),       cmocka_unit_test(test_stored_tails),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);
 }
