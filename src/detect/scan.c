@@ -45,6 +45,7 @@ void asj_scan_prepare(const asj_detect_options *options, const asj_field *field,
 
 #define LEAST_RAYS 4 /* for a thread: a ray takes about 5 us */
 #define GROUP 64     /* rays: those that are still on their way ask for enough pixels to fill vectors */
+#define LEAST_GROUP 8
 
 /* Rays that take their steps together, and what these ask for. */
 typedef struct group {
@@ -130,13 +131,22 @@ static size_t take_ray(size_t *next, size_t threads, size_t own, size_t count)
     return count;
 }
 
+/* Rays that a thread has on their way at most. Of a few it leaves half to whoever is done first: some are ten times as long as
+ * others. */
+static int32_t most_at_once(size_t threads, size_t count)
+{
+    const size_t most = count / (2 * threads);
+    return threads == 1 || most >= GROUP ? GROUP : most > LEAST_GROUP ? (int32_t)most : LEAST_GROUP;
+}
+
 /* next[i]: see take_ray(). */
 static void follow_part(const follower *f, const asj_part *part, size_t *next, size_t threads, asj_ray *rays, size_t count)
 {
+    const int32_t most = most_at_once(threads, count);
     group *g = f->rays;
     g->count = g->missing = 0;
     for (int more = 1; more || g->count > 0;) {
-        while (more && g->count < GROUP) {
+        while (more && g->count < most) {
             const size_t i = take_ray(next, threads, f->thread, count);
             more = i < count;
             if (more)
