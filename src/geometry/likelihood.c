@@ -200,28 +200,30 @@ static double side_factor(const asj_two_view *view, const asj_pair *c)
     return first > 0 && second > 0 ? 2 - BEHIND : BEHIND;
 }
 
+double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *c, const asj_peaks *peaks)
+{
+    const int32_t planar = asj_part_is_planar(view, part);
+    const double *front = part > 0 ? view->in_front[part - 1] : NULL;
+    asj_residuals r;
+    r.square = HUGE_VAL;
+    if (!front || front[0] * c->x1 + front[1] * c->y1 + front[2] > 0)
+        part_residuals(view, part, set, c, peaks->loose, &r);
+    const double square = r.square * (1 / (peaks->loose * peaks->loose));
+    if (!(square < (planar ? FAR_PLANAR : FAR)))
+        return 0;
+    double s[SIZES];
+    if (peaks->fine)
+        sizes_of(square, planar, s);
+    const double ratio = (part > 0 ? peaks->plane : peaks->first) * (peaks->fine ? s[0] + s[1] + s[2] : exp(-0.5 * square));
+    return !planar && view->has_motion ? ratio * side_factor(view, c) : ratio;
+}
+
 double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, const asj_pair *c, const asj_peaks *peaks,
                             double *parts)
 {
-    const double tighter = 1 / (peaks->loose * peaks->loose);
     double sum = 0;
     for (int32_t k = 0; k <= view->plane_count; k++) {
-        const int32_t planar = asj_part_is_planar(view, k);
-        const double *front = k > 0 ? view->in_front[k - 1] : NULL;
-        asj_residuals r;
-        double ratio = 0;
-        r.square = HUGE_VAL;
-        if (!front || front[0] * c->x1 + front[1] * c->y1 + front[2] > 0)
-            part_residuals(view, k, set, c, peaks->loose, &r);
-        const double square = r.square * tighter;
-        if (square < (planar ? FAR_PLANAR : FAR)) {
-            double s[SIZES];
-            if (peaks->fine)
-                sizes_of(square, planar, s);
-            ratio = (k > 0 ? peaks->plane : peaks->first) * (peaks->fine ? s[0] + s[1] + s[2] : exp(-0.5 * square));
-            if (!planar && view->has_motion)
-                ratio *= side_factor(view, c);
-        }
+        const double ratio = asj_part_ratio(view, k, set, c, peaks);
         if (parts)
             parts[k] = ratio;
         sum += ratio;

@@ -39,6 +39,8 @@ double asj_far_limit(const asj_pairs *set, const asj_two_view *view, double loos
 /* Likelihood if right over likelihood if wrong; parts: NULL, or what each part has of it. */
 double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, const asj_pair *pair, const asj_peaks *peaks,
                             double *parts);
+/* .. of one of the parts. */
+double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *pair, const asj_peaks *peaks);
 
 /* What a residual of this square weighs in a least-squares step, where it has several sizes (asj_peaks.fine). */
 double asj_size_weight(double square, int32_t planar);

@@ -112,6 +112,8 @@ int32_t asj_motions_of_homography(const asj_pairs *set, const asj_model *homogra
 typedef struct near_one {
     const asj_pair *pair;
     double probability, ratio;
+    double before; /* what it has of the ratio, with one plane more, from all that is there already */
+    double without; /* what it adds to gain_of() where it does not lie on that plane */
 } near_one;
 
 typedef struct neighbourhood {
@@ -194,8 +196,27 @@ static void find_near(const asj_pairs *set, const asj_model *m, asj_adjust_scrat
     near->count = 0;
     for (int32_t k = 0; k < set->count && near->count < MOST_NEAR; k++)
         if (scratch->probability[k] > POSSIBLE)
-            near->list[near->count++] = (near_one){&set->list[k], scratch->probability[k],
-                                                   asj_likelihood_ratio(&m->view, set, &set->list[k], &peaks, NULL)};
+            near->list[near->count++] = (near_one){.pair = &set->list[k], .probability = scratch->probability[k],
+                                                   .ratio = asj_likelihood_ratio(&m->view, set, &set->list[k], &peaks, NULL)};
+}
+
+static double gain(const near_one *o, double ratio)
+{
+    return log(1 + o->probability * (ratio / o->ratio - 1));
+}
+
+/* All hypotheses of one plane more share what the motion and its planes so far say. Returns the peaks of their likelihoods. */
+static asj_peaks prepare_gains(const asj_pairs *set, const asj_model *model, neighbourhood *near)
+{
+    asj_two_view more = model->view;
+    more.plane_count++;
+    const asj_peaks peaks = asj_likelihood_peaks(set, &more, LOOSE);
+    for (int32_t k = 0; k < near->count; k++) {
+        near_one *o = &near->list[k];
+        o->before = asj_likelihood_ratio(&model->view, set, o->pair, &peaks, NULL);
+        o->without = gain(o, o->before);
+    }
+    return peaks;
 }
 
 static int32_t with_plane(const asj_model *model, const double n[3], asj_model *more)
@@ -207,21 +228,21 @@ static int32_t with_plane(const asj_model *model, const double n[3], asj_model *
     return asj_model_complete(more);
 }
 
-/* How much likelier the near candidates are with the plane, roughly: each place by itself. */
-static double gain_of(const asj_pairs *set, const asj_model *more, const neighbourhood *near)
+/* How much likelier the near candidates are with the last plane, roughly: each place by itself. */
+static double gain_of(const asj_pairs *set, const asj_model *more, const asj_peaks *peaks, const neighbourhood *near)
 {
-    const asj_peaks peaks = asj_likelihood_peaks(set, &more->view, LOOSE);
-    double gain = 0;
+    double sum = 0;
     for (int32_t k = 0; k < near->count; k++) {
         const near_one *o = &near->list[k];
-        const double ratio = asj_likelihood_ratio(&more->view, set, o->pair, &peaks, NULL);
-        gain += log(1 + o->probability * (ratio / o->ratio - 1));
+        const double ratio = asj_part_ratio(&more->view, more->view.plane_count, set, o->pair, peaks);
+        sum += ratio > 0 ? gain(o, o->before + ratio) : o->without;
     }
-    return gain;
+    return sum;
 }
 
-static int32_t best_plane(const asj_pairs *set, const asj_model *model, const neighbourhood *near, asj_model *best)
+static int32_t best_plane(const asj_pairs *set, const asj_model *model, neighbourhood *near, asj_model *best)
 {
+    const asj_peaks peaks = prepare_gains(set, model, near);
     double most = 0;
     for (int32_t k = 0, starts = 0; k < near->count && starts < MOST_PLANE_STARTS; k++) {
         if (near->list[k].probability < PROBABLE)
@@ -233,9 +254,9 @@ static int32_t best_plane(const asj_pairs *set, const asj_model *model, const ne
             if (!(way == 0 ? plane_of_one(model, near->list[k].pair, n) : plane_of_three(model, near, k, n)) ||
                 !with_plane(model, n, &more))
                 continue;
-            const double gain = gain_of(set, &more, near);
-            if (gain > most) {
-                most = gain;
+            const double sum = gain_of(set, &more, &peaks, near);
+            if (sum > most) {
+                most = sum;
                 *best = more;
             }
         }
