@@ -190,6 +190,7 @@ void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *s)
     asj_release(memory, s->shares);
     asj_release(memory, s->sorted);
     asj_release(memory, s->best);
+    asj_release(memory, s->spots);
 }
 
 int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_adjust_scratch *s)
@@ -207,7 +208,8 @@ int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_
     s->shares = asj_allocate(memory, most, sizeof *s->shares);
     s->sorted = asj_allocate(memory, most, sizeof *s->sorted);
     s->best = asj_allocate(memory, most, sizeof *s->best);
-    return good && s->score.near && s->probability && s->shares && s->sorted && s->best;
+    s->spots = asj_allocate(memory, 5 * most, sizeof *s->spots);
+    return good && s->score.near && s->probability && s->shares && s->sorted && s->best && s->spots;
 }
 
 void asj_adjust_scratches_free(asj_memory *memory, asj_adjust_scratch *scratches, int32_t threads)

@@ -18,6 +18,7 @@ typedef struct asj_adjust_scratch {
     double *probability;
     asj_share *shares, *sorted;
     double *best;
+    float *spots; /* five a place */
 } asj_adjust_scratch;
 
 /* 0 without memory; to be freed either way. All zero at first. */

@@ -46,6 +46,7 @@
  * independent, each LR has mean 1, so exp(score) has mean 1 for every fixed geometry: that is what evidence.c rests on. */
 #include "likelihood.h"
 #include "core/angle.h"
+#include "elementary.h"
 #include "near.h"
 
 #include <math.h>
@@ -86,7 +87,7 @@ static void epipolar_residuals(const double f[9], const asj_pairs *set, const as
     r->value[1] = sine / (sqrt(s * s1) * set->angle_sd);
     if (r->value[0] * r->value[0] + r->value[1] * r->value[1] > most)
         return;
-    r->value[2] = 0.5 * log(s / s1) / set->scale_sd;
+    r->value[2] = 0.5 * asj_log_normal(s / s1) / set->scale_sd;
     r->square = r->value[0] * r->value[0] + r->value[1] * r->value[1] + r->value[2] * r->value[2];
 }
 
@@ -119,7 +120,7 @@ static void planar_residuals(const double h[9], const asj_pairs *set, const asj_
     if (r->value[0] * r->value[0] + r->value[1] * r->value[1] + r->value[4] * r->value[4] + r->value[5] * r->value[5] > most)
         return;
     r->value[2] = atan2(b2 - b1, b0 + b3) / set->angle_sd;
-    r->value[3] = log(scale) / set->scale_sd;
+    r->value[3] = asj_log_normal(scale) / set->scale_sd;
     r->square = 0;
     for (int32_t k = 0; k < 6; k++)
         r->square += r->value[k] * r->value[k];
@@ -169,7 +170,7 @@ asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, d
 /* exp(-q / 2) of each size, times its peak. */
 static void sizes_of(double square, int32_t planar, double sizes[SIZES])
 {
-    const double e = exp(-0.5 * square), e2 = e * e, e4 = e2 * e2, e8 = e4 * e4, e16 = e8 * e8;
+    const double e = asj_exp_falling(-0.5 * square), e2 = e * e, e4 = e2 * e2, e8 = e4 * e4, e16 = e8 * e8;
     const double *peak = size_peaks[planar];
     sizes[0] = peak[0] * e;
     sizes[1] = peak[1] * e4;
@@ -211,10 +212,12 @@ double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *s
     const double square = r.square * (1 / (peaks->loose * peaks->loose));
     if (!(square < (planar ? FAR_PLANAR : FAR)))
         return 0;
-    double s[SIZES];
+    double s[SIZES] = {0, 0, 0};
     if (peaks->fine)
         sizes_of(square, planar, s);
-    const double ratio = (part > 0 ? peaks->plane : peaks->first) * (peaks->fine ? s[0] + s[1] + s[2] : exp(-0.5 * square));
+    else
+        s[0] = asj_exp_falling(-0.5 * square);
+    const double ratio = (part > 0 ? peaks->plane : peaks->first) * (s[0] + s[1] + s[2]);
     return !planar && view->has_motion ? ratio * side_factor(view, c) : ratio;
 }
 
@@ -231,20 +234,6 @@ double asj_likelihood_ratio(const asj_two_view *view, const asj_pairs *set, cons
     return sum;
 }
 
-/* Is the candidate too far from its epipolar line, or from where a homography puts it, for any ratio above 0? */
-static inline int32_t is_far(const asj_two_view *view, const asj_pair *c, double limit)
-{
-    const double *f = view->matrix;
-    const double n2x = f[0] * c->x1 + f[1] * c->y1 + f[2], n2y = f[3] * c->x1 + f[4] * c->y1 + f[5];
-    if (view->planar) {
-        const double w = f[6] * c->x1 + f[7] * c->y1 + f[8], dx = c->x2 * w - n2x, dy = c->y2 * w - n2y;
-        return dx * dx + dy * dy > limit * w * w;
-    }
-    const double n1x = f[0] * c->x2 + f[3] * c->y2 + f[6], n1y = f[1] * c->x2 + f[4] * c->y2 + f[7];
-    const double e = c->x2 * n2x + c->y2 * n2y + f[6] * c->x1 + f[7] * c->y1 + f[8], e2 = e * e;
-    return e2 > limit * (n1x * n1x + n1y * n1y) || e2 > limit * (n2x * n2x + n2y * n2y);
-}
-
 double asj_far_limit(const asj_pairs *set, const asj_two_view *view, double loose)
 {
     return (view->planar ? FAR_PLANAR : FAR) * loose * loose * set->location_sd * set->location_sd;
@@ -259,7 +248,7 @@ double asj_score(const asj_pairs *set, int32_t count, const asj_two_view *view, 
     const int32_t near = asj_near(set, count, view, limit, scratch->near);
     for (int32_t k = 0; k < near; k++) {
         const asj_pair *c = &set->list[scratch->near[k]];
-        const double ratio = is_far(view, c, limit) ? 0 : asj_likelihood_ratio(view, set, c, &peaks, NULL);
+        const double ratio = asj_likelihood_ratio(view, set, c, &peaks, NULL);
         if (!(ratio > 0))
             continue;
         for (int32_t v = 0; v < 2; v++) {
@@ -272,7 +261,7 @@ double asj_score(const asj_pairs *set, int32_t count, const asj_two_view *view, 
     for (int32_t v = 0; v < 2; v++)
         for (int32_t k = 0; k < touched[v]; k++) {
             const uint32_t place = scratch->touched[v][k];
-            score[v] += log(1 - set->prior[v][place] + scratch->sum[v][place]) - set->log_rest[v][place];
+            score[v] += asj_log_normal(1 - set->prior[v][place] + scratch->sum[v][place]) - set->log_rest[v][place];
             scratch->sum[v][place] = 0;
         }
     for (int32_t v = 0; v < 2; v++)
@@ -290,7 +279,7 @@ void asj_probabilities(const asj_pairs *set, const asj_two_view *view, double lo
     for (int32_t n = 0; n < near; n++) {
         const uint32_t k = scratch->near[n];
         const asj_pair *c = &set->list[k];
-        probability[k] = is_far(view, c, limit) ? 0 : c->prior * asj_likelihood_ratio(view, set, c, &peaks, NULL);
+        probability[k] = c->prior * asj_likelihood_ratio(view, set, c, &peaks, NULL);
         scratch->sum[0][c->place1] += probability[k];
         scratch->sum[1][c->place2] += probability[k];
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Most candidates are far from a geometry, and a hypothesis is judged by thousands of them, so the first look is made in single
- * precision, on coordinates side by side, in loops without a branch, which compilers turn into vectors. Those that may be near are
- * looked at exactly.
+ * precision, on coordinates side by side, in loops without a branch, which compilers turn into vectors, and in image 2 alone. Those
+ * that may be near are looked at exactly.
  *
  * Coordinates are taken from the images' middles. A sum of products in floats is out by less than ROUNDING times the sum of the
  * largest products; call that b for e, the distance times the length n of its normal, and c for each entry of the normal. What is
@@ -93,11 +93,9 @@ static void near_lines(const plan *p, const float *x1, const float *y1, const fl
     const float m0 = p->m[0], m1 = p->m[1], m2 = p->m[2], m3 = p->m[3], m4 = p->m[4], m5 = p->m[5], m6 = p->m[6], m7 = p->m[7];
     const float m8 = p->m[8], factor = p->factor, extra = p->extra;
     for (int32_t k = 0; k < count; k++) {
-        const float n2x = m0 * x1[k] + m1 * y1[k] + m2, n2y = m3 * x1[k] + m4 * y1[k] + m5;
-        const float n1x = m0 * x2[k] + m3 * y2[k] + m6, n1y = m1 * x2[k] + m4 * y2[k] + m7;
-        const float e = x2[k] * n2x + y2[k] * n2y + m6 * x1[k] + m7 * y1[k] + m8, e2 = e * e;
-        const int32_t in1 = e2 <= factor * (n1x * n1x + n1y * n1y) + extra;
-        near[k] = in1 & (e2 <= factor * (n2x * n2x + n2y * n2y) + extra);
+        const float n2x = m0 * x1[k] + m1 * y1[k] + m2, n2y = m3 * x1[k] + m4 * y1[k] + m5, n2z = m6 * x1[k] + m7 * y1[k] + m8;
+        const float e = x2[k] * n2x + y2[k] * n2y + n2z;
+        near[k] = e * e <= factor * (n2x * n2x + n2y * n2y) + extra;
     }
 }
 
@@ -111,6 +109,21 @@ static void near_places(const plan *p, const float *x1, const float *y1, const f
         const float dx = x2[k] * w - (m0 * x1[k] + m1 * y1[k] + m2), dy = y2[k] * w - (m3 * x1[k] + m4 * y1[k] + m5);
         near[k] = dx * dx + dy * dy <= factor * (w * w) + extra;
     }
+}
+
+/* Exactly. */
+static inline int32_t is_far(const asj_two_view *view, const asj_pair *c, double limit)
+{
+    const double *f = view->matrix;
+    const double n2x = f[0] * c->x1 + f[1] * c->y1 + f[2], n2y = f[3] * c->x1 + f[4] * c->y1 + f[5];
+    const double n2z = f[6] * c->x1 + f[7] * c->y1 + f[8];
+    if (view->planar) {
+        const double dx = c->x2 * n2z - n2x, dy = c->y2 * n2z - n2y;
+        return dx * dx + dy * dy > limit * n2z * n2z;
+    }
+    const double n1x = f[0] * c->x2 + f[3] * c->y2 + f[6], n1y = f[1] * c->x2 + f[4] * c->y2 + f[7];
+    const double e = c->x2 * n2x + c->y2 * n2y + n2z, e2 = e * e;
+    return e2 > limit * (n1x * n1x + n1y * n1y) || e2 > limit * (n2x * n2x + n2y * n2y);
 }
 
 int32_t asj_near(const asj_pairs *set, int32_t count, const asj_two_view *view, double limit, uint32_t *near)
@@ -130,7 +143,7 @@ int32_t asj_near(const asj_pairs *set, int32_t count, const asj_two_view *view, 
             for (int32_t k = group; k < group + AT_ONCE; k++)
                 any |= is_near[k];
             for (int32_t k = group; any && k < group + AT_ONCE; k++)
-                if (is_near[k])
+                if (is_near[k] && !is_far(view, &set->list[first + k], limit))
                     near[found++] = (uint32_t)(first + k);
         }
     }

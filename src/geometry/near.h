@@ -9,9 +9,8 @@
 /* Fills set->at from the list; 0 without memory. Freed with asj_release(). */
 int32_t asj_near_prepare(asj_memory *memory, asj_pairs *set);
 
-/* Indices, rising, of those of the first `count` candidates that are not surely farther than sqrt(limit) px from their epipolar
- * lines (both images) or from where the homography puts them. Never leaves out one that is nearer; `near` has room for count + 1.
- * Returns how many. */
+/* Indices, rising, of those of the first `count` candidates that are within sqrt(limit) px of their epipolar lines (both images) or
+ * of where the homography puts them; `near` has room for count + 1. Returns how many. */
 int32_t asj_near(const asj_pairs *set, int32_t count, const asj_two_view *view, double limit, uint32_t *near);
 
 #endif

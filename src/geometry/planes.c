@@ -15,6 +15,7 @@
  * ones. The plane that raises the likelihood of the candidates near the motion most is refined together with the motion (adjust.c)
  * and stays if the evidence has risen. */
 #include "planes.h"
+#include "elementary.h"
 #include "evidence.h"
 #include "small_matrix.h"
 
@@ -202,7 +203,7 @@ static void find_near(const asj_pairs *set, const asj_model *m, asj_adjust_scrat
 
 static double gain(const near_one *o, double ratio)
 {
-    return log(1 + o->probability * (ratio / o->ratio - 1));
+    return asj_log_normal(1 + o->probability * (ratio / o->ratio - 1));
 }
 
 /* All hypotheses of one plane more share what the motion and its planes so far say. Returns the peaks of their likelihoods. */

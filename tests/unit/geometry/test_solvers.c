@@ -1,13 +1,31 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Small matrices, roots of polynomials, and minimal solvers against motions that are known. */
+/* Elementary functions, small matrices, roots of polynomials, and minimal solvers against motions that are known. */
 #include "unit_test.h"
 
+#include "geometry/elementary.h"
 #include "geometry/five_point.h"
 #include "geometry/minimal.h"
 #include "geometry/planes.h"
 #include "geometry/polynomial.h"
 #include "geometry/small_matrix.h"
 #include "geometry/turned.h"
+
+static void exp_and_log_are_those_of_the_library(void **state)
+{
+    (void)state;
+    synth_random random;
+    synth_random_seed(&random, 2);
+    for (int i = 0; i < 20000; i++) {
+        const double x = -pow(10, synth_random_between(&random, -12, 2.83)), y = exp(synth_random_between(&random, -1, 1) * -x);
+        const double log_y = log(y);
+        unit_near("exp", i, 0, asj_exp_falling(x) / exp(x), 1, 2e-14);
+        unit_near("log", i, 0, asj_log_normal(y), log_y, 4e-15 * fabs(log_y));
+    }
+    unit_near("exp of 0", 0, 0, asj_exp_falling(0), 1, 0);
+    unit_near("log of 1", 0, 0, asj_log_normal(1), 0, 0);
+    unit_near("exp far out", 0, 0, asj_exp_falling(-1e9), 0, 0);
+    unit_near("exp of minus infinity", 0, 0, asj_exp_falling(-HUGE_VAL), 0, 0);
+}
 
 /* --- matrices ---------------------------------------------------------------------------------------------------------------- */
 
@@ -456,8 +474,8 @@ static void a_vote_gives_the_translation(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(singular_values_rebuild), cmocka_unit_test(rotations_and_their_angles),
-        cmocka_unit_test(the_least_vector_is_an_eigenvector),
+        cmocka_unit_test(exp_and_log_are_those_of_the_library), cmocka_unit_test(singular_values_rebuild),
+        cmocka_unit_test(rotations_and_their_angles), cmocka_unit_test(the_least_vector_is_an_eigenvector),
         cmocka_unit_test(systems_are_solved_or_refused), cmocka_unit_test(roots_of_products),
         cmocka_unit_test(five_points_give_the_motion), cmocka_unit_test(right_candidates_have_no_residuals),
         cmocka_unit_test(two_candidates_give_the_motion), cmocka_unit_test(three_candidates_give_the_fundamental_matrix),
