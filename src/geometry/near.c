@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Most candidates are far from a geometry, and a hypothesis is judged by thousands of them, so the first look is made in single
  * precision, on coordinates side by side, in loops without a branch, which compilers turn into vectors, and in image 2 alone. Those
- * that may be near are looked at exactly.
+ * that may be near are looked at exactly, here or where likelihoods are taken.
  *
  * Coordinates are taken from the images' middles. A sum of products in floats is out by less than ROUNDING times the sum of the
  * largest products; call that b for e, the distance times the length n of its normal, and c for each entry of the normal. What is
@@ -111,16 +111,12 @@ static void near_places(const plan *p, const float *x1, const float *y1, const f
     }
 }
 
-/* Exactly. */
+/* Exactly. Likelihoods ask the same of what has no planes (likelihood.c), but what lies on a plane must also be near its line. */
 static inline int32_t is_far(const asj_two_view *view, const asj_pair *c, double limit)
 {
     const double *f = view->matrix;
     const double n2x = f[0] * c->x1 + f[1] * c->y1 + f[2], n2y = f[3] * c->x1 + f[4] * c->y1 + f[5];
     const double n2z = f[6] * c->x1 + f[7] * c->y1 + f[8];
-    if (view->planar) {
-        const double dx = c->x2 * n2z - n2x, dy = c->y2 * n2z - n2y;
-        return dx * dx + dy * dy > limit * n2z * n2z;
-    }
     const double n1x = f[0] * c->x2 + f[3] * c->y2 + f[6], n1y = f[1] * c->x2 + f[4] * c->y2 + f[7];
     const double e = c->x2 * n2x + c->y2 * n2y + n2z, e2 = e * e;
     return e2 > limit * (n1x * n1x + n1y * n1y) || e2 > limit * (n2x * n2x + n2y * n2y);
@@ -130,6 +126,7 @@ int32_t asj_near(const asj_pairs *set, int32_t count, const asj_two_view *view, 
 {
     const plan p = plan_of(set, view, limit);
     const float *at[4];
+    const int32_t exactly = view->plane_count > 0;
     int32_t found = 0, is_near[BLOCK];
     for (ptrdiff_t n = 0; n < 4; n++)
         at[n] = set->at + n * set->count;
@@ -143,7 +140,7 @@ int32_t asj_near(const asj_pairs *set, int32_t count, const asj_two_view *view, 
             for (int32_t k = group; k < group + AT_ONCE; k++)
                 any |= is_near[k];
             for (int32_t k = group; any && k < group + AT_ONCE; k++)
-                if (is_near[k] && !is_far(view, &set->list[first + k], limit))
+                if (is_near[k] && !(exactly && is_far(view, &set->list[first + k], limit)))
                     near[found++] = (uint32_t)(first + k);
         }
     }

@@ -10,7 +10,8 @@
 int32_t asj_near_prepare(asj_memory *memory, asj_pairs *set);
 
 /* Indices, rising, of those of the first `count` candidates that are within sqrt(limit) px of their epipolar lines (both images) or
- * of where the homography puts them; `near` has room for count + 1. Returns how many. */
+ * of where the homography puts them, and where the geometry has no planes of others that may be; `near` has room for count + 1.
+ * Returns how many. */
 int32_t asj_near(const asj_pairs *set, int32_t count, const asj_two_view *view, double limit, uint32_t *near);
 
 #endif

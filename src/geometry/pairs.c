@@ -3,6 +3,7 @@
  * (up to 30 000) give the same poses within what the seed changes. */
 #include "pairs.h"
 #include "core/angle.h"
+#include "elementary.h"
 #include "manhattan.h"
 #include "near.h"
 
@@ -12,6 +13,7 @@
 
 #define FARTHEST 1e6       /* px */
 #define MOST_COUNT 0x1000000
+#define DIGIT 11 /* bits */
 #define MOST_OF_PLACE 0.9  /* nothing is sure before geometry */
 
 static int32_t usable(const asj_geometry_candidate *c)
@@ -112,28 +114,65 @@ static asj_status set_rotations(asj_context *context, const asj_geometry_options
                ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the rotations of the geometry");
 }
 
-asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
-                            const asj_geometry_hints *hints, const asj_geometry_options *options, asj_pairs *set)
+static asj_status check_candidates(asj_context *context, const asj_geometry_candidate *candidates, size_t count)
 {
-    const double *colours = hints ? hints->colours : NULL;
-    memset(set, 0, sizeof *set);
     if (count > MOST_COUNT)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%zu candidates are more than %d", count, MOST_COUNT);
-    set->list = asj_allocate_zero(&context->memory, count, sizeof *set->list);
-    if (!set->list)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
     for (size_t k = 0; k < count; k++) {
         const asj_geometry_candidate *c = &candidates[k];
         if (!usable(c))
             return asj_fail(context, ASJ_ERROR_ARGUMENT, "candidate %zu has numbers that cannot be", k);
         if (c->place1 >= MOST_COUNT || c->place2 >= MOST_COUNT)
             return asj_fail(context, ASJ_ERROR_LIMIT, "candidate %zu has a place beyond %d", k, MOST_COUNT);
-        set->list[k] = (asj_pair){c->x1, c->y1, c->x2, c->y2, {c->affine[0], c->affine[1], c->affine[2], c->affine[3]},
+    }
+    return ASJ_OK;
+}
+
+/* A probability that ASJ_MOST_PAIRS candidates have or exceed, and hardly any more: so few need be sorted. Bits of positive numbers
+ * rise with them; DIGIT at a time, the candidates of each value are counted. */
+static double least_probability(const asj_geometry_candidate *candidates, size_t count)
+{
+    uint64_t least = 0;
+    size_t above = 0; /* candidates that exceed it for sure */
+    for (int32_t shift = 64 - 1 - DIGIT; shift >= 64 - 1 - 3 * DIGIT && count > ASJ_MOST_PAIRS; shift -= DIGIT) {
+        uint32_t number[1 << DIGIT] = {0};
+        uint64_t digit = (1 << DIGIT) - 1;
+        for (size_t k = 0; k < count; k++) {
+            const double p = candidates[k].probability;
+            const uint64_t bits = p > 0 ? asj_bits_of(p) : 0;
+            if (bits >> (shift + DIGIT) == least >> (shift + DIGIT))
+                number[bits >> shift & ((1 << DIGIT) - 1)]++;
+        }
+        for (; digit > 0 && above + number[digit] < ASJ_MOST_PAIRS; digit--)
+            above += number[digit];
+        least |= digit << shift;
+    }
+    return asj_double_of(least);
+}
+
+asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
+                            const asj_geometry_hints *hints, const asj_geometry_options *options, asj_pairs *set)
+{
+    const double *colours = hints ? hints->colours : NULL;
+    memset(set, 0, sizeof *set);
+    const asj_status usable_all = check_candidates(context, candidates, count);
+    if (usable_all != ASJ_OK)
+        return usable_all;
+    set->list = asj_allocate_zero(&context->memory, count, sizeof *set->list);
+    if (!set->list)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", count);
+    const double least = least_probability(candidates, count);
+    size_t kept = 0;
+    for (size_t k = 0; k < count; k++) {
+        const asj_geometry_candidate *c = &candidates[k];
+        if (c->probability < least)
+            continue;
+        set->list[kept++] = (asj_pair){c->x1, c->y1, c->x2, c->y2, {c->affine[0], c->affine[1], c->affine[2], c->affine[3]},
                                   c->probability, c->place1, c->place2, (uint32_t)k, colours ? (float)colours[k] : 0};
     }
-    if (count > 1)
-        qsort(set->list, count, sizeof *set->list, likelier);
-    set->count = (int32_t)(count < ASJ_MOST_PAIRS ? count : ASJ_MOST_PAIRS);
+    if (kept > 1)
+        qsort(set->list, kept, sizeof *set->list, likelier);
+    set->count = (int32_t)(kept < ASJ_MOST_PAIRS ? kept : ASJ_MOST_PAIRS);
     while (set->count > 0 && !(set->list[set->count - 1].prior > 0))
         set->count--;
     set->has_colours = colours != NULL;

@@ -7,9 +7,11 @@
  * the places that the best one has matched, since a rival gives them other partners. What is found is judged by all candidates
  * again, and the best of that becomes what the candidates allow around it (posterior.c). */
 #include "rivals.h"
+#include "core/threads.h"
 #include "evidence.h"
 #include "motions.h"
 #include "posterior.h"
+#include "stop.h"
 
 #include <math.h>
 #include <string.h>
@@ -42,16 +44,31 @@ static void unmask(asj_pairs *set, const double *kept)
         set->list[k].prior = kept[k];
 }
 
+/* What a loop over rivals works on. */
+typedef struct job {
+    const asj_pairs *set;
+    asj_adjust_scratch *scratch; /* for each thread */
+    asj_model *rivals;
+} job;
+
+static void judge_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t n = part->first; n < part->end; n++)
+        j->rivals[n].evidence = asj_pairs_stop(j->set, part)
+                                    ? -HUGE_VAL : asj_log_evidence(j->set, &j->rivals[n], &j->scratch[part->thread]);
+}
+
 /* Evidence from all candidates; the best one is followed unless it is far from being as good as `least`. scratch: one for each
  * thread. */
 static void judge(asj_context *context, const asj_pairs *set, uint64_t seed, asj_adjust_scratch *scratch, double least,
                   asj_model *rivals, int32_t count)
 {
+    const job j = {set, scratch, rivals};
     int32_t best = 0;
-    for (int32_t k = 0; k < count; k++) {
-        rivals[k].evidence = asj_log_evidence(set, &rivals[k], &scratch[0]);
+    asj_parallel(context, context->threads, count, 1, judge_some, &j);
+    for (int32_t k = 0; k < count; k++)
         best = rivals[k].evidence > rivals[best].evidence ? k : best;
-    }
     if (count > 0 && rivals[best].evidence > least)
         asj_settle(context, set, seed, scratch, &rivals[best]);
 }
