@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Real roots by the derivative's roots.
+/* Real roots by Bernstein coefficients (Lane and Riesenfeld, "Bounds on a polynomial", BIT 1981).
  *
- * Between two neighbouring roots of p' the polynomial p rises or falls all the way, so there is one root where the signs at both
- * ends differ, and none where they are equal. So: the roots in [-1, 1] of the derivative of order n - 1, which is a line, then
- * those of the one before it, up to p. The roots outside [-1, 1] are 1 / those of the reversed polynomial. Each is found by
- * Newton's steps kept in its interval by bisection. Nothing is random, nothing depends on a start. */
+ * On [0, 1] a polynomial is a mean of its Bernstein coefficients with positive weights that depend on x, so it has no more roots
+ * there than its coefficients change their sign, or an even number less: none for no change, one for one change. Where there are
+ * more changes the interval is halved; de Casteljau's means give the coefficients of both halves. A root that is alone is found by
+ * Newton's steps kept in its interval by bisection. So are those in [-1, 0], of p(-x), and those outside of [-1, 1], of the
+ * reversed polynomial, whose roots are 1 / those of p. Nothing is random, nothing depends on a start. */
 #include "polynomial.h"
 
 #include <math.h>
@@ -12,16 +13,15 @@
 #include <string.h>
 
 #define STEPS 60
-#define TURN_ERROR 1e-5 /* of where a derivative is 0: only what lies between counts */
+#define DEEPEST 32 /* halvings: two roots nearer than 2^-32 are taken for one that the curve only touches */
 #define ROOT_ERROR 1e-13
 
-static double value(const double *c, int32_t degree, double x)
-{
-    double sum = c[degree];
-    for (int32_t k = degree - 1; k >= 0; k--)
-        sum = sum * x + c[k];
-    return sum;
-}
+/* A piece of [0, 1] and its coefficients. */
+typedef struct piece {
+    double low, high;
+    int32_t depth, reserved;
+    double b[ASJ_POLYNOMIAL_DEGREE + 1];
+} piece;
 
 /* The value, and the slope. */
 static double value_and_slope(const double *c, int32_t degree, double x, double *slope)
@@ -35,11 +35,10 @@ static double value_and_slope(const double *c, int32_t degree, double x, double 
     return sum;
 }
 
-/* The root between `low` and `high`, where the signs differ, to within `error`. */
-static double bracketed(const double *c, int32_t degree, double low, double high, double at_low, double error)
+/* The root between `low` and `high`, where the signs differ, to within ROOT_ERROR; first looked for at x. */
+static double bracketed(const double *c, int32_t degree, double low, double high, double at_low, double x)
 {
-    double x = 0.5 * (low + high);
-    for (int32_t step = 0; step < STEPS && high - low > error; step++) {
+    for (int32_t step = 0; step < STEPS && high - low > ROOT_ERROR; step++) {
         double slope;
         const double y = value_and_slope(c, degree, x, &slope);
         if (y == 0)
@@ -50,38 +49,98 @@ static double bracketed(const double *c, int32_t degree, double low, double high
             high = x;
         const double newton = x - y / slope;
         const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
-        if (fabs(next - x) < error)
+        if (fabs(next - x) < ROOT_ERROR)
             return next;
         x = next;
     }
     return x;
 }
 
+/* c_k x^k = c_k / binomial(n, k) times the sum over i of binomial(i, k) of the i-th Bernstein polynomial: Pascal's sums. */
+static void to_bernstein(const double *c, int32_t degree, double *b)
+{
+    double binomial = 1;
+    for (int32_t k = 0; k <= degree; k++) {
+        b[k] = c[k] / binomial;
+        binomial = binomial * (degree - k) / (k + 1);
+    }
+    for (int32_t round = 1; round <= degree; round++)
+        for (int32_t k = degree; k >= round; k--)
+            b[k] += b[k - 1];
+}
+
+/* The piece becomes its right half. */
+static void halve(piece *p, int32_t degree, piece *left)
+{
+    const double middle = 0.5 * (p->low + p->high);
+    *left = (piece){.low = p->low, .high = middle, .depth = ++p->depth};
+    left->b[0] = p->b[0];
+    for (int32_t round = 1; round <= degree; round++) {
+        for (int32_t k = 0; k <= degree - round; k++)
+            p->b[k] = 0.5 * (p->b[k] + p->b[k + 1]);
+        left->b[round] = p->b[0];
+    }
+    p->low = middle;
+}
+
+static int32_t sign_changes(const double *b, int32_t degree)
+{
+    int32_t changes = 0;
+    double last = 0;
+    for (int32_t k = 0; k <= degree; k++) {
+        changes += last * b[k] < 0;
+        last = b[k] > 0 ? 1 : b[k] < 0 ? -1 : last;
+    }
+    return changes;
+}
+
+/* Where a line from `first` to `last` is 0, as a part of the way. */
+static double chord(double first, double last)
+{
+    return (first < 0) == (last < 0) || first == 0 ? 0.5 : first / (first - last);
+}
+
+/* Roots in (0, 1], rising, and 0 when the polynomial begins with it. */
+static int32_t roots_to_one(const double *c, int32_t degree, double *roots)
+{
+    piece stack[DEEPEST + 2];
+    int32_t count = 0, depth = 1;
+    stack[0] = (piece){.low = 0, .high = 1, .depth = 0};
+    to_bernstein(c, degree, stack[0].b);
+    if (stack[0].b[0] == 0)
+        roots[count++] = 0;
+    while (depth > 0 && count < degree) {
+        piece *p = &stack[depth - 1];
+        const double first = p->b[0], last = p->b[degree];
+        const int32_t changes = sign_changes(p->b, degree);
+        if (changes > (last != 0) && p->depth < DEEPEST) {
+            halve(p, degree, &stack[depth]);
+            depth++;
+            continue;
+        }
+        if (last == 0)
+            roots[count++] = p->high;
+        else if (changes % 2 == 1)
+            roots[count++] = bracketed(c, degree, p->low, p->high, -last, p->low + (p->high - p->low) * chord(first, last));
+        depth--;
+    }
+    return count;
+}
+
 /* Roots in [-1, 1], rising. */
 static int32_t roots_inside(const double *c, int32_t degree, double *roots)
 {
-    double all[ASJ_POLYNOMIAL_DEGREE + 1][ASJ_POLYNOMIAL_DEGREE + 1], turns[ASJ_POLYNOMIAL_DEGREE + 2];
+    double mirrored[ASJ_POLYNOMIAL_DEGREE + 1], found[ASJ_POLYNOMIAL_DEGREE + 1];
+    for (int32_t k = 0; k <= degree; k++)
+        mirrored[k] = k % 2 ? -c[k] : c[k];
+    const int32_t below = roots_to_one(mirrored, degree, found);
     int32_t count = 0;
-    memcpy(all[degree], c, (size_t)(degree + 1) * sizeof *c);
-    for (int32_t n = degree - 1; n >= 1; n--)
-        for (int32_t k = 0; k <= n; k++)
-            all[n][k] = (k + 1) * all[n + 1][k + 1];
-    for (int32_t n = 1; n <= degree; n++) { /* the derivative of order degree - n, a polynomial of degree n */
-        const double *derived = all[n];
-        turns[0] = -1;
-        for (int32_t k = 0; k < count; k++)
-            turns[k + 1] = roots[k];
-        turns[count + 1] = 1;
-        const int32_t intervals = count + 1;
-        double low = value(derived, n, -1);
-        count = 0;
-        for (int32_t k = 0; k < intervals; k++) {
-            const double high = value(derived, n, turns[k + 1]);
-            if ((low > 0 && high <= 0) || (low < 0 && high >= 0))
-                roots[count++] = bracketed(derived, n, turns[k], turns[k + 1], low, n < degree ? TURN_ERROR : ROOT_ERROR);
-            low = high;
-        }
-    }
+    for (int32_t k = below - 1; k >= 0; k--)
+        if (found[k] > 0)
+            roots[count++] = -found[k];
+    const int32_t above = roots_to_one(c, degree, found);
+    for (int32_t k = 0; k < above && count < degree; k++)
+        roots[count++] = found[k];
     return count;
 }
 
