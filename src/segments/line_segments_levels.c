@@ -17,8 +17,10 @@
  * The Gaussian's taps are whole numbers in 1/4096 that sum to one; sums of at most 4096 x 255 x 128 fit 32 bits. Factors are handed
  * to compilers as signed 16-bit numbers, which they multiply several at once: no grey value is above 255 x 128. */
 #include "line_segments_levels.h"
+#include "core/threads.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #define PHASES 4           /* (i + 1/2) / 0.8 - 1/2 has four fractions */
@@ -29,6 +31,7 @@
 #define QUANTISATION 2     /* grey levels */
 #define SINE 0.3826834323650898 /* of 22.5 degrees */
 #define CLASSES 1024
+#define ROWS 32            /* in a part of the loop: one more is reduced for each */
 
 double asj_levels_place(double value)
 {
@@ -89,7 +92,7 @@ static void weigh_columns(const asj_frame *frame, int32_t top, const int16_t tap
 }
 
 /* One row of the reduced image: down the columns first, then along the row. */
-static void reduce_row(const asj_frame *frame, int32_t y, int32_t width, int16_t taps[PHASES][TAPS], uint16_t *column,
+static void reduce_row(const asj_frame *frame, int32_t y, int32_t width, const int16_t (*taps)[TAPS], uint16_t *column,
                        uint16_t *out)
 {
     double rest;
@@ -144,21 +147,29 @@ static void sort_samples(asj_levels *levels)
             levels->order[starts[CLASSES - 1 - (int32_t)(levels->norm[i] * classes)]++] = i;
 }
 
-static void fill(const asj_frame *frame, uint16_t *rows[3], asj_levels *levels)
-{
+/* What a loop over rows works on. */
+typedef struct job {
+    const asj_frame *frame;
+    const asj_levels *levels;
     int16_t taps[PHASES][TAPS];
-    make_taps(taps);
-    uint16_t *above = rows[0], *below = rows[1];
-    reduce_row(frame, 0, levels->width + 1, taps, rows[2], above);
-    for (int32_t y = 0; y < levels->height; y++) {
+    uint16_t *scratch; /* three rows for each thread */
+} job;
+
+static void fill_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    const asj_levels *levels = j->levels;
+    const ptrdiff_t row = j->frame->width;
+    uint16_t *above = j->scratch + 3 * row * part->thread, *below = above + row, *const column = below + row;
+    reduce_row(j->frame, (int32_t)part->first, levels->width + 1, j->taps, column, above);
+    for (int64_t y = part->first; y < part->end; y++) {
         const size_t at = (size_t)y * (size_t)levels->width;
-        reduce_row(frame, y + 1, levels->width + 1, taps, rows[2], below);
+        reduce_row(j->frame, (int32_t)y + 1, levels->width + 1, j->taps, column, below);
         level_row(above, below, levels->width, levels->direction + at, levels->norm + at);
         uint16_t *swap = above;
         above = below;
         below = swap;
     }
-    sort_samples(levels);
 }
 
 asj_status asj_levels_create(asj_context *context, const asj_frame *frame, asj_levels *levels)
@@ -172,12 +183,15 @@ asj_status asj_levels_create(asj_context *context, const asj_frame *frame, asj_l
         return ASJ_OK;
     }
     const size_t count = (size_t)levels->width * (size_t)levels->height, row = (size_t)frame->width;
-    uint16_t *scratch = asj_allocate(memory, 3 * row, sizeof *scratch);
+    uint16_t *scratch = asj_allocate(memory, 3 * row * (size_t)context->threads, sizeof *scratch);
     levels->direction = asj_allocate(memory, count, sizeof *levels->direction);
     levels->norm = asj_allocate(memory, count, sizeof *levels->norm);
     levels->order = asj_allocate(memory, count, sizeof *levels->order);
     if (scratch && levels->direction && levels->norm && levels->order) {
-        fill(frame, (uint16_t *[3]){scratch, scratch + row, scratch + 2 * row}, levels);
+        job j = {.frame = frame, .levels = levels, .scratch = scratch};
+        make_taps(j.taps);
+        asj_parallel(context, context->threads, levels->height, ROWS, fill_some, &j);
+        sort_samples(levels);
         asj_release(memory, scratch);
         return ASJ_OK;
     }
