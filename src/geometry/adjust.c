@@ -23,21 +23,12 @@ typedef struct equations {
     double right[ASJ_MODEL_PARAMETERS];
 } equations;
 
-/* Adds the residuals and derivatives of one candidate's part. fine: likelihood.c. */
-static void add_part(const asj_pairs *set, const asj_pair *c, int32_t part, const asj_model *model, const asj_model_slopes *slopes,
-                     int32_t fine, double weight, equations *e)
+/* Adds the products of derivatives; called with constant `rows`, so that loops over them are written out. */
+static inline void add_products(double slope[ASJ_PART_PARAMETERS][6], const double *value, int32_t rows, double weight,
+                                const int32_t *used, int32_t count, int32_t n, equations *e)
 {
-    asj_residuals at;
-    double slope[ASJ_PART_PARAMETERS][6];
-    const int32_t n = model->parameters, *used = slopes->parameter[part];
-    const int32_t rows = asj_residual_slopes(&model->view, part, set, c, slopes, &at, slope);
-    if (rows == 0)
-        return;
-    weight /= 1 + at.square / TAIL;
-    if (fine)
-        weight *= asj_size_weight(at.square, asj_part_is_planar(&model->view, part));
-    for (int32_t i = 0; i < slopes->count[part]; i++) {
-        double *row = e->normal + (ptrdiff_t)used[i] * n;
+    for (int32_t i = 0; i < count; i++) {
+        double *row = e->normal + (ptrdiff_t)used[i] * n, at_value = 0;
         for (int32_t k = 0; k <= i; k++) {
             double sum = 0;
             for (int32_t r = 0; r < rows; r++)
@@ -45,8 +36,28 @@ static void add_part(const asj_pairs *set, const asj_pair *c, int32_t part, cons
             row[used[k]] += weight * sum;
         }
         for (int32_t r = 0; r < rows; r++)
-            e->right[used[i]] -= weight * slope[i][r] * at.value[r];
+            at_value += slope[i][r] * value[r];
+        e->right[used[i]] -= weight * at_value;
     }
+}
+
+/* Adds the residuals and derivatives of one candidate's part. fine: likelihood.c. */
+static void add_part(const asj_pairs *set, const asj_pair *c, int32_t part, const asj_model *model, const asj_model_slopes *slopes,
+                     int32_t fine, double weight, equations *e)
+{
+    asj_residuals at;
+    double slope[ASJ_PART_PARAMETERS][6];
+    const int32_t n = model->parameters, *used = slopes->parameter[part], count = slopes->count[part];
+    const int32_t rows = asj_residual_slopes(&model->view, part, set, c, slopes, &at, slope);
+    if (rows == 0)
+        return;
+    weight /= 1 + at.square / TAIL;
+    if (fine)
+        weight *= asj_size_weight(at.square, asj_part_is_planar(&model->view, part));
+    if (rows == 3)
+        add_products(slope, at.value, 3, weight, used, count, n, e);
+    else
+        add_products(slope, at.value, 6, weight, used, count, n, e);
 }
 
 /* Adds one candidate: each of its parts as far as it is probable. */

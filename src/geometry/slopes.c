@@ -156,18 +156,19 @@ static void epipolar_slopes(const double f[9], const asj_pairs *set, const asj_p
     const double s1 = n1x * n1x + n1y * n1y, s2 = n2x * n2x + n2y * n2y;
     const double mx = a[0] * n2x + a[2] * n2y, my = a[1] * n2x + a[3] * n2y, s = mx * mx + my * my;
     const int32_t first = s1 < s2;
-    const double least = first ? s1 : s2, root = 1 / sqrt(least), cross = my * n1x - mx * n1y, product = 1 / sqrt(s * s1);
+    const double least = first ? s1 : s2, cross = my * n1x - mx * n1y, over_s = 1 / s, over_s1 = 1 / s1, over_s2 = 1 / s2;
+    const double root = 1 / (sqrt(least) * sd), product = 1 / (sqrt(s * s1) * set->angle_sd), over_scale = 1 / set->scale_sd;
     for (int32_t p = 0; p < count; p++) {
         const double *d = along[p];
         const double d2x = d[0] * x1 + d[1] * y1 + d[2], d2y = d[3] * x1 + d[4] * y1 + d[5];
         const double d1x = d[0] * x2 + d[3] * y2 + d[6], d1y = d[1] * x2 + d[4] * y2 + d[7];
         const double de = x2 * d2x + y2 * d2y + d[6] * x1 + d[7] * y1 + d[8];
         const double ex = a[0] * d2x + a[2] * d2y, ey = a[1] * d2x + a[3] * d2y;
-        const double log_m = (mx * ex + my * ey) / s, log_n1 = (n1x * d1x + n1y * d1y) / s1;
-        const double log_n = first ? log_n1 : (n2x * d2x + n2y * d2y) / s2;
-        slope[p][0] = (de - e * log_n) * root / sd;
-        slope[p][1] = (ey * n1x + my * d1x - ex * n1y - mx * d1y - cross * (log_m + log_n1)) * product / set->angle_sd;
-        slope[p][2] = (log_m - log_n1) / set->scale_sd;
+        const double log_m = (mx * ex + my * ey) * over_s, log_n1 = (n1x * d1x + n1y * d1y) * over_s1;
+        const double log_n = first ? log_n1 : (n2x * d2x + n2y * d2y) * over_s2;
+        slope[p][0] = (de - e * log_n) * root;
+        slope[p][1] = (ey * n1x + my * d1x - ex * n1y - mx * d1y - cross * (log_m + log_n1)) * product;
+        slope[p][2] = (log_m - log_n1) * over_scale;
     }
 }
 
@@ -183,6 +184,8 @@ static void planar_slopes(const double h[9], const asj_pairs *set, const asj_pai
     const double scale = sqrt(b0 * b3 - b1 * b2), sine = b2 - b1, cosine = b0 + b3;
     const double ex = (j3 * dx - j1 * dy) * inverse, ey = (j0 * dy - j2 * dx) * inverse;
     const int32_t back = ex * ex + ey * ey > dx * dx + dy * dy;
+    const double over_sd = 1 / sd, over_scale = 1 / set->scale_sd, over_shear = 0.5 / (scale * ASJ_SHEAR_SD);
+    const double over_angle = 1 / ((sine * sine + cosine * cosine) * set->angle_sd);
     for (int32_t p = 0; p < count; p++) {
         const double *d = along[p], dw = (d[6] * x1 + d[7] * y1 + d[8]) * w;
         const double px = (d[0] * x1 + d[1] * y1 + d[2]) * w - x * dw, py = (d[3] * x1 + d[4] * y1 + d[5]) * w - y * dw;
@@ -192,12 +195,12 @@ static void planar_slopes(const double h[9], const asj_pairs *set, const asj_pai
         const double g0 = (j3 * k0 - j1 * k2) * inverse, g1 = (j3 * k1 - j1 * k3) * inverse;
         const double g2 = (j0 * k2 - j2 * k0) * inverse, g3 = (j0 * k3 - j2 * k1) * inverse, grow = -0.5 * (g0 + g3);
         const double q0 = -(g0 * b0 + g1 * b2), q1 = -(g0 * b1 + g1 * b3), q2 = -(g2 * b0 + g3 * b2), q3 = -(g2 * b1 + g3 * b3);
-        slope[p][0] = (back ? -(j3 * px - j1 * py) * inverse - (g0 * ex + g1 * ey) : -px) / sd;
-        slope[p][1] = (back ? -(j0 * py - j2 * px) * inverse - (g2 * ex + g3 * ey) : -py) / sd;
-        slope[p][2] = (cosine * (q2 - q1) - sine * (q0 + q3)) / ((sine * sine + cosine * cosine) * set->angle_sd);
-        slope[p][3] = grow / set->scale_sd;
-        slope[p][4] = 0.5 * (q0 - q3) / (scale * ASJ_SHEAR_SD) - at->value[4] * grow;
-        slope[p][5] = 0.5 * (q1 + q2) / (scale * ASJ_SHEAR_SD) - at->value[5] * grow;
+        slope[p][0] = (back ? -(j3 * px - j1 * py) * inverse - (g0 * ex + g1 * ey) : -px) * over_sd;
+        slope[p][1] = (back ? -(j0 * py - j2 * px) * inverse - (g2 * ex + g3 * ey) : -py) * over_sd;
+        slope[p][2] = (cosine * (q2 - q1) - sine * (q0 + q3)) * over_angle;
+        slope[p][3] = grow * over_scale;
+        slope[p][4] = (q0 - q3) * over_shear - at->value[4] * grow;
+        slope[p][5] = (q1 + q2) * over_shear - at->value[5] * grow;
     }
 }
 
