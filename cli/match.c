@@ -127,8 +127,12 @@ static int write_plot(run *r)
 {
     const cli_match_arguments *arguments = r->arguments;
     char message[MESSAGE_SIZE] = "";
-    const cli_plot_match_content content = {
-        {&r->inputs[0].pixels, &r->inputs[1].pixels}, r->result, r->segments, r->segment_count};
+    cli_plot_match_content content = {.images = {&r->inputs[0].pixels, &r->inputs[1].pixels},
+                                      .result = r->result,
+                                      .segments = r->segments,
+                                      .segment_count = r->segment_count};
+    for (int v = 0; v < 2; v++)
+        content.junctions[v] = cli_match_input_junctions(&r->inputs[v], &content.junction_counts[v]);
     cli_plot_match_style style = arguments->style;
     if (!content.images[0]->data || !content.images[1]->data)
         style.background = CLI_PLOT_WHITE; /* features are no photograph */

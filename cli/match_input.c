@@ -134,8 +134,8 @@ asj_status cli_match_input_describe(cli_session *session, const cli_match_argume
 
 const asj_junction *cli_match_input_junctions(const cli_match_input *input, size_t *count)
 {
-    *count = input->file ? input->file->junction_count : input->detection->junction_count;
-    return input->file ? input->file->junctions : input->detection->junctions;
+    *count = input->file ? input->file->junction_count : input->detection ? input->detection->junction_count : 0;
+    return input->file ? input->file->junctions : input->detection ? input->detection->junctions : NULL;
 }
 
 void cli_match_input_free(cli_match_input *input)

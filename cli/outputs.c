@@ -136,6 +136,33 @@ static int check_against(const char *command, const cli_planned *outputs, size_t
     return CLI_SUCCESS;
 }
 
+/* Whether the folder that a file is to lie in is there. */
+static int check_folder(const char *path)
+{
+    const size_t length = (size_t)(cli_base_name(path) - path);
+    char *folder = length > 0 ? copy(path) : NULL;
+    if (length > 0 && !folder) {
+        cli_error("out of memory");
+        return CLI_FAILED;
+    }
+    if (folder)
+        folder[length] = '\0';
+    const int there = !folder || cli_is_folder(folder);
+    if (!there)
+        cli_error("%s: cannot create: %s", path, strerror(ENOENT));
+    free(folder);
+    return there ? CLI_SUCCESS : CLI_FAILED;
+}
+
+int cli_check_folders(const cli_planned *outputs, size_t output_count)
+{
+    int result = CLI_SUCCESS;
+    for (size_t i = 0; i < output_count; i++)
+        if (check_folder(outputs[i].path) != CLI_SUCCESS)
+            result = CLI_FAILED;
+    return result;
+}
+
 int cli_check_collisions(const char *command, cli_planned *outputs, size_t output_count, const char *const *inputs,
                          size_t input_count)
 {
@@ -194,12 +221,14 @@ int cli_outputs_plan(const cli_detect_arguments *arguments, cli_outputs *outputs
         inputs[input_count] = arguments->region.mask;
         input_count += arguments->region.mask != NULL;
     }
-    if (!outputs->of || !list || !inputs || !name_outputs(arguments, outputs))
+    if (!outputs->of || !list || !inputs || !name_outputs(arguments, outputs)) {
         cli_error("out of memory");
-    else
-        result = cli_check_collisions("detect", list, list_planned(arguments, outputs, list), inputs, input_count);
-    if (result == CLI_SUCCESS && arguments->out_dir)
-        result = make_folder(arguments->out_dir);
+    } else {
+        const size_t planned = list_planned(arguments, outputs, list);
+        result = cli_check_collisions("detect", list, planned, inputs, input_count);
+        if (result == CLI_SUCCESS)
+            result = arguments->out_dir ? make_folder(arguments->out_dir) : cli_check_folders(list, planned);
+    }
     free(inputs);
     free(list);
     return result;

@@ -16,6 +16,9 @@ typedef struct cli_planned {
 int cli_check_collisions(const char *command, cli_planned *outputs, size_t output_count, const char *const *inputs,
                          size_t input_count);
 
+/* Whether the folders of the files are there, asked before any work. CLI_SUCCESS, or CLI_FAILED after saying which are not. */
+int cli_check_folders(const cli_planned *outputs, size_t output_count);
+
 /* Where the results of one image go; NULL = nowhere. */
 typedef struct cli_output {
     char *junctions; /* "-" = standard output */

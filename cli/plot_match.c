@@ -2,7 +2,7 @@
 /* Every match has one colour for its junctions, branches and line, given in order of place in the first photograph: from left to
  * right when the second one stands beside it, else from top to bottom. So lines that run close together differ in colour, and a
  * match in the wrong place stands out among neighbours of other colours. Branch b is darker than branch a. What a geometry rejected
- * is grey, below everything else. */
+ * is grey, below everything else. Where nothing matches, all junctions stand in grey: was there anything to match? */
 #include "plot_match.h"
 #include "interrupt.h"
 #include "plot_color.h"
@@ -19,6 +19,7 @@
 #define DARKER 0.55       /* share of the colour that branch b keeps */
 #define SCREEN 1.5        /* width to height that `auto` aims at */
 #define LARGEST_AREA 6.4e7
+#define STUB 12.0         /* px that are drawn of a branch where nothing matches */
 
 /* A match as it is drawn: in each image a place, where the line ends, and one or two strokes. */
 typedef struct pair {
@@ -242,6 +243,27 @@ static void draw_rejected(cairo_t *cairo, const drawing *d)
     }
 }
 
+/* Grey, the junctions of one image, with the beginnings of their branches: there are hundreds. */
+static void draw_unmatched(cairo_t *cairo, const drawing *d, int v)
+{
+    cairo_save(cairo);
+    cairo_rectangle(cairo, d->left[v], d->top[v], d->widths[v], d->heights[v]);
+    cairo_clip(cairo);
+    cairo_set_source_rgb(cairo, 0.4, 0.4, 0.4);
+    for (size_t k = 0; k < d->content->junction_counts[v]; k++) {
+        const asj_junction *j = &d->content->junctions[v][k];
+        cairo_set_line_width(cairo, d->line);
+        for (int32_t b = 0; b < j->branch_count; b++) {
+            const double theta = (double)j->branches[b].angle, length = fmin(STUB, (double)j->branches[b].length);
+            const double x = (double)j->x, y = (double)j->y;
+            draw_stroke(cairo, d, v, (double[]){x, y, x + length * cos(theta), y + length * sin(theta)});
+        }
+        cairo_arc(cairo, to_x(d, v, (double)j->x), to_y(d, v, (double)j->y), 1.7 * d->line, 0, FULL_TURN);
+        cairo_fill(cairo);
+    }
+    cairo_restore(cairo);
+}
+
 /* In the colour of the match. */
 static void draw_epipolar_lines(cairo_t *cairo, const drawing *d)
 {
@@ -303,7 +325,10 @@ static void draw_legend(cairo_t *cairo, const drawing *d)
     cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
     if (d->rejected > 0)
         snprintf(rejected, sizeof rejected, "; grey: %lu rejected", (unsigned long)d->rejected);
-    if (d->width >= (d->rejected ? 66 : 56) * d->font && d->count > 1)
+    const unsigned long found[2] = {(unsigned long)d->content->junction_counts[0], (unsigned long)d->content->junction_counts[1]};
+    if (d->count == 0 && found[0] + found[1] > 0 && d->width >= 40 * d->font)
+        snprintf(text, sizeof text, "0 %s%s; grey: the junctions, %lu and %lu", name, rejected, found[0], found[1]);
+    else if (d->width >= (d->rejected ? 66 : 56) * d->font && d->count > 1)
         snprintf(text, sizeof text, "%lu %s   one colour each, by place in the first photograph, %s%s%s", count, name, order,
                  d->content->segments ? "" : "; branch b is darker", rejected);
     else
@@ -318,6 +343,8 @@ static void draw(cairo_t *cairo, void *user)
     cairo_set_source_rgb(cairo, 1, 1, 1);
     cairo_paint(cairo);
     draw_photos(cairo, d);
+    for (int v = 0; v < 2 && d->count == 0; v++)
+        draw_unmatched(cairo, d, v);
     draw_rejected(cairo, d);
     if (d->style->epipolar)
         draw_epipolar_lines(cairo, d);

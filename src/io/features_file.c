@@ -12,9 +12,14 @@
 
 static const unsigned char magic[] = {0x89, 'A', 'S', 'J', 'F'}; /* as much as tells the format; the rest is the library's */
 
+int asj_input_is_features(const asj_input *head)
+{
+    return head->size >= sizeof magic && !memcmp(head->bytes, magic, sizeof magic);
+}
+
 static const char *is_no_features(const asj_input *head)
 {
-    return head->size < sizeof magic || memcmp(head->bytes, magic, sizeof magic) ? "not a file of features (.asjf)" : NULL;
+    return asj_input_is_features(head) ? NULL : "not a file of features (.asjf)";
 }
 
 int32_t asj_features_probe(const char *path)

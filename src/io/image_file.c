@@ -86,6 +86,8 @@ static asj_status wrap(const asj_image_buffer *buffer, asj_image_file **file, co
 
 static const char *is_no_image(const asj_input *head)
 {
+    if (asj_input_is_features(head))
+        return "not an image but a file of features (.asjf), which is for matching";
     return asj_probe_kind(head) == ASJ_KIND_UNKNOWN ? "not an image: its content is of no known image format" : NULL;
 }
 

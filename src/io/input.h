@@ -24,4 +24,7 @@ typedef const char *asj_input_check(const asj_input *head);
  * ASJ_ERROR_MEMORY */
 asj_status asj_input_read(asj_input *input, asj_input_check *check, const asj_message *message);
 
+/* Whether it begins as a file of features (.asjf). */
+int asj_input_is_features(const asj_input *head);
+
 #endif

@@ -224,6 +224,7 @@ static void bad_features_are_refused(void **state)
     }
     expect_refusal(run_cli("match", "-o", "never.csv", "--descriptor", "sift", "good.asjf", "second.png", NULL),
                    "asj-cli: good.asjf, second.png: ", "the features of image 1 were made with descriptor raw, not sift");
+    expect_refusal(run_cli("detect", "-o", "never.json", "good.asjf", NULL), "asj-cli: good.asjf: ", "a file of features");
     const outcome *result = run_cli("match", "-o", "never.csv", "--junctions1", "good.asj", "good.asjf", "second.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "good.asj changes nothing: good.asjf is a file of features");

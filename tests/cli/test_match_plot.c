@@ -197,9 +197,29 @@ static void a_plot_alone_prints_no_matches(void **state)
     expect_code(result, 0);
     expect_empty(result, "standard output", result->out);
     expect_in(result, result->err, " matches -> alone.png");
-    result = run_cli("match", "--plot", "nowhere/plot.png", "first.png", "second.png", NULL);
+    result = run_cli("match", "-o", "before.csv", "--plot", "nowhere/plot.png", "first.png", "second.png", NULL);
     expect_code(result, 1);
-    expect_in(result, result->err, "asj-cli: nowhere/plot.png: ");
+    expect_in(result, result->err, "asj-cli: nowhere/plot.png: cannot create: No such file or directory");
+    assert_false(exists("before.csv")); /* asked before the work */
+}
+
+/* The first junction of the first image is a grey dot. */
+static void junctions_are_drawn_where_nothing_matches(void **state)
+{
+    static const int grey[3] = {102, 102, 102};
+    (void)state;
+    write_constant("flat.png", SCENE_WIDTH, SCENE_HEIGHT);
+    expect_code(run_cli("detect", "-q", "--for", "matching", "-f", "asj", "-o", "first.asj", "first.png", NULL), 0);
+    expect_code(run_cli("match", "-q", "-p", "none.png", "--plot-background", "white", "--plot-scale", "8", "--plot-layout",
+                        "beside", "--junctions1", "first.asj", "first.png", "flat.png", NULL), 0);
+    asj_image_file *plot = read_plot("none.png");
+    asj_junction_file *file = NULL;
+    char message[256];
+    assert_int_equal(asj_junctions_read("first.asj", &file, message, sizeof message), ASJ_OK);
+    assert_true(file->junction_count > 0);
+    assert_true(is_near(pixel_of(plot, 0, (double)file->junctions[0].x, (double)file->junctions[0].y), grey));
+    asj_junction_file_free(&file);
+    asj_image_file_free(&plot);
 }
 
 static void plots_take_the_place_of_no_other_file(void **state)
@@ -241,6 +261,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(plots_are_repeatable),
         cmocka_unit_test(epipolar_lines_are_drawn_on_demand),
         cmocka_unit_test(a_plot_alone_prints_no_matches),
+        cmocka_unit_test(junctions_are_drawn_where_nothing_matches),
         cmocka_unit_test(plots_take_the_place_of_no_other_file),
     };
     const struct CMUnitTest without[] = {cmocka_unit_test(a_build_without_cairo_says_so)};
