@@ -41,7 +41,7 @@ static int read_inputs(run *r)
 static int detect(run *r)
 {
     int result = CLI_SUCCESS;
-    for (int v = 0; v < 2 && result == CLI_SUCCESS; v++) {
+    for (int v = 0; v < 2 && result == CLI_SUCCESS && !(r->arguments->stretch.x > 0); v++) {
         r->at = r->inputs[v].name;
         cli_progress_next(&r->session.progress, (size_t)v, r->at);
         result = cli_match_input_detect(&r->session, r->arguments, v, &r->inputs[v]);
@@ -69,6 +69,13 @@ static asj_status match_images(run *r, const asj_match_options *options)
                      &r->result);
 }
 
+/* From the pixels on, both at once. */
+static asj_status match_stretched(run *r, const asj_match_options *options)
+{
+    return asj_match_images(r->session.context, &r->inputs[0].pixels, &r->inputs[1].pixels, &r->arguments->stretch,
+                            &r->arguments->detect_options, options, &r->result);
+}
+
 static int match(run *r)
 {
     char both[2 * MESSAGE_SIZE];
@@ -77,7 +84,9 @@ static int match(run *r)
     options.geometry = r->geometry;
     r->at = "the matching";
     cli_progress_next(&r->session.progress, STEPS - 1, "matching");
-    asj_status status = features ? match_features(r, &options) : match_images(r, &options);
+    asj_status status = r->arguments->stretch.x > 0 ? match_stretched(r, &options)
+                        : features                  ? match_features(r, &options)
+                                                    : match_images(r, &options);
     if (status == ASJ_OK)
         return CLI_SUCCESS;
     if (status == ASJ_ERROR_OPTION && !features)
@@ -111,7 +120,9 @@ static int write_matches(run *r, const char *path)
     report.lines = arguments->lines;
     report.minimum_end = arguments->minimum_end;
     report.options = &arguments->options;
-    if (r->inputs[0].detection || r->inputs[1].detection)
+    report.stretch[0] = arguments->stretch.x;
+    report.stretch[1] = arguments->stretch.y;
+    if (r->inputs[0].detection || r->inputs[1].detection || arguments->stretch.x > 0)
         report.detect_options = &arguments->detect_options;
     for (int v = 0; v < 2; v++) {
         report.image_names[v] = arguments->images[v];

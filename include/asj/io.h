@@ -152,7 +152,8 @@ typedef struct asj_match_report {
     const char *image_names[2];          /* JSON: NULL = left out */
     const char *junction_names[2];       /* JSON: files that the junctions were read from; NULL = left out */
     int32_t widths[2], heights[2];       /* JSON: of the images; 0 = left out */
-    uint64_t reserved[4];                /* zero */
+    double stretch[2];                   /* JSON: of asj_match_images(), along x and y; 0 = left out */
+    uint64_t reserved[2];                /* zero */
 } asj_match_report;
 
 /* Writes matches as asj_output_begin() and asj_output_commit() do. file_format:

@@ -164,6 +164,29 @@ ASJ_API asj_status asj_match(asj_context *context,
                              const asj_image *image2, const asj_junction *junctions2, size_t count2,
                              const asj_match_options *options, asj_match_result **result);
 
+/* How much longer than it is an image is looked at: 1, 1 = as it is. */
+typedef struct asj_stretch {
+    double x, y; /* factors along either axis, 1 .. ASJ_MOST_STRETCH */
+} asj_stretch;
+#define ASJ_MOST_STRETCH 8
+
+/* From two images to their matches: asj_detect() and asj_match(), on both images stretched. Enlarged twice (2, 2), photographs of
+ * up to some megapixels have about three times the matches, in three to eight times the time; a surface that is seen at a glancing
+ * angle, like a magazine on a table, matches stretched across it (1, 3) where it did not at all (tests/accuracy/README.md).
+ * Everything in the result is in pixels of the images as they are. Numbers of junctions are those of the detector in this call.
+ *
+ * stretch          NULL = as they are
+ * detect_options   NULL = preset `match`
+ * options          NULL = preset `default`; cameras are those of the images as they are
+ *
+ * Memory: the stretched images besides what the two calls need for images of that size.
+ * ASJ_ERROR_OPTION  also for a stretch outside its range, and for one along one axis with geometry.find_focal
+ * ASJ_ERROR_LIMIT   also when a stretched image has more pixels than the library takes
+ * Others as asj_detect() and asj_match() */
+ASJ_API asj_status asj_match_images(asj_context *context, const asj_image *image1, const asj_image *image2,
+                                    const asj_stretch *stretch, const asj_detect_options *detect_options,
+                                    const asj_match_options *options, asj_match_result **result);
+
 /* Frees a result and sets the pointer to NULL. NULL and a pointer to NULL are fine. */
 ASJ_API void asj_match_result_free(asj_match_result **result);
 

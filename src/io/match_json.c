@@ -37,6 +37,15 @@ static void put_options(asj_json_output *json, const asj_match_report *report)
     }
 }
 
+static json_t *numbers(const double *values, int count)
+{
+    json_t *list = json_array();
+    int k;
+    for (k = 0; k < count; k++)
+        json_array_append_new(list, json_real(values[k]));
+    return list;
+}
+
 static void put_head(asj_json_output *json, const asj_match_report *report, const asj_segment_list *segments)
 {
     const asj_match_result *result = report->result;
@@ -48,6 +57,8 @@ static void put_head(asj_json_output *json, const asj_match_report *report, cons
     asj_json_put(json, "{\n\"schema\": ", json_string("asj-matches-1"), 0);
     asj_json_put(json, ",\n\"library\": ", json_pack("{s:s, s:s}", "name", "libasj", "version", asj_version_string()), 0);
     asj_json_put(json, ",\n\"images\": ", json_pack("[o, o]", image_value(report, 0), image_value(report, 1)), 0);
+    if (report->stretch[0] > 0)
+        asj_json_put(json, ",\n\"stretch\": ", numbers(report->stretch, 2), JSON_REAL_PRECISION(15));
     asj_json_put(json, ",\n\"units\": ", json_pack("{s:s, s:s, s:s}", "locations and lengths", "px", "affine",
                  "x2 = h11 x1 + h12 y1 + h13, y2 = h21 x1 + h22 y1 + h23", "times", "ms"), 0);
     asj_json_put(json, ",\n\"backend\": ", json_string(asj_json_backend(result->backend)), 0);
@@ -55,15 +66,6 @@ static void put_head(asj_json_output *json, const asj_match_report *report, cons
     asj_json_put(json, ",\n\"timing\": ",
                  asj_json_timing(result->total_ms, result->stage_ms, ASJ_STAGE_PATCHES, ASJ_STAGE_ASSIGN), JSON_REAL_PRECISION(15));
     asj_json_put(json, ",\n\"counts\": ", counts, 0);
-}
-
-static json_t *numbers(const double *values, int count)
-{
-    json_t *list = json_array();
-    int k;
-    for (k = 0; k < count; k++)
-        json_array_append_new(list, json_real(values[k]));
-    return list;
 }
 
 /* What was accepted, or null; the status says why not. */

@@ -193,6 +193,18 @@ asj_around asj_match_result_around(const asj_match_result *shown)
     return around;
 }
 
+void asj_match_result_unstretch(asj_match_result *shown, const asj_scaling by[2])
+{
+    result *r = (result *)shown;
+    asj_unstretch_matches(r->matches, shown->match_count, by);
+    asj_unstretch_matches(r->rejected, (size_t)shown->rejected_count, by);
+    asj_unstretch_l_junctions(r->l1, shown->l_junction_count1, &by[0]);
+    asj_unstretch_l_junctions(r->l2, shown->l_junction_count2, &by[1]);
+    asj_unstretch_geometry(&shown->geometry, by);
+    for (int32_t side = 0; side < 2; side++)
+        asj_places_sort(r->places[side], r->matches, r->count, side);
+}
+
 void asj_match_result_free(asj_match_result **pointer)
 {
     if (!pointer || !*pointer)

@@ -5,6 +5,7 @@
 
 #include "around.h"
 #include "match_run.h"
+#include "unstretch.h"
 
 /* Turns the choices into a result, smallest distance first; on failure it is NULL. The result does not depend on the context
  * afterwards. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED. */
@@ -13,5 +14,8 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
 /* The matches, and where they are; without places for a result that the caller has put together or copied, and for one whose
  * matches are no longer those of the call. */
 asj_around asj_match_result_around(const asj_match_result *shown);
+
+/* A result of stretched images -> one of the images themselves (unstretch.h). */
+void asj_match_result_unstretch(asj_match_result *shown, const asj_scaling by[2]);
 
 #endif

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Two-view geometry on rendered rooms seen from far apart, whose cameras are known.
  *
- *     wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--first N] [--last N] [--threads N]
+ *     wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--stretch X,Y] [--first N] [--last N]
+ *                [--threads N]
  *
  * Pairs of seeds --first (0) to --last (99): status, model, log10 NFA, pose error (the larger of rotation and direction of
  * translation, degrees) and matches within 4 px of their epipolar lines. Then the area under the curve of recall over error up to
@@ -29,6 +30,7 @@ static const int most_wrong = 0, most_far_off = 0;
 typedef struct settings {
     int check, held_out, unrelated, no_cameras, find_focal;
     long first, last;
+    asj_stretch stretch;
     asj_context *context;
 } settings;
 
@@ -115,7 +117,9 @@ static int match(const settings *set, const synth_wide_pair *first, const synth_
             options.geometry.cameras[v] = (asj_camera){f, f, 0.5 * (SYNTH_WIDE_WIDTH - 1), 0.5 * (SYNTH_WIDE_HEIGHT - 1)};
         failed = detect(set, pairs[v], v, &pixels[v], &images[v], &found[v]);
     }
-    if (!failed)
+    if (!failed && set->stretch.x > 0)
+        failed = asj_match_images(set->context, &images[0], &images[1], &set->stretch, NULL, &options, &result) != ASJ_OK;
+    else if (!failed)
         failed = asj_match(set->context, &images[0], found[0]->junctions, found[0]->junction_count, &images[1], found[1]->junctions,
                            found[1]->junction_count, &options, &result) != ASJ_OK;
     if (!failed)
@@ -199,7 +203,7 @@ static int run(const settings *set)
 int main(int argc, char **argv)
 {
     static const struct option longs[] = {{"check", 0, NULL, 'c'}, {"held-out", 0, NULL, 'h'}, {"unrelated", 0, NULL, 'u'},
-                                          {"no-cameras", 0, NULL, 'n'},
+                                          {"no-cameras", 0, NULL, 'n'}, {"stretch", 1, NULL, 's'},
                                           {"find-focal", 0, NULL, 'o'}, {"first", 1, NULL, 'f'}, {"last", 1, NULL, 'l'},
                                           {"threads", 1, NULL, 't'}, {NULL, 0, NULL, 0}};
     settings set = {.last = 99};
@@ -213,12 +217,13 @@ int main(int argc, char **argv)
         case 'u': set.unrelated = 1; break;
         case 'n': set.no_cameras = 1; break;
         case 'o': set.find_focal = 1; break;
+        case 's': sscanf(optarg, "%lf,%lf", &set.stretch.x, &set.stretch.y); break;
         case 'f': set.first = strtol(optarg, NULL, 10); break;
         case 'l': set.last = strtol(optarg, NULL, 10); break;
         case 't': how.threads = (int32_t)strtol(optarg, NULL, 10); break;
         default:
-            fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--first N] "
-                  "[--last N] [--threads N]\n", stderr);
+            fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--stretch X,Y] "
+                  "[--first N] [--last N] [--threads N]\n", stderr);
             return 2;
         }
     if (asj_context_create(&how, &set.context) != ASJ_OK)

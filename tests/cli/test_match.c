@@ -337,6 +337,55 @@ static void expect_found_again(const outcome *result)
     assert_memory_equal(found.rows, other.rows, found.count * sizeof found.rows[0]);
 }
 
+/* In pixels of the images as they are: junctions of both runs that lie at one place have their partners at one place. */
+static void stretched_images_match_in_their_own_pixels(void **state)
+{
+    static const char *const stretches[] = {"2", "1,1.5"};
+    (void)state;
+    const outcome *result = run_cli("match", "-q", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    parse_csv(result->out, &found);
+    for (size_t s = 0; s < 2; s++) {
+        result = run_cli("match", "-q", "--stretch", stretches[s], "first.png", "second.png", NULL);
+        expect_code(result, 0);
+        parse_csv(result->out, &other);
+        int common = 0;
+        assert_true(other.count > 10);
+        for (size_t k = 0; k < found.count; k++)
+            for (size_t n = 0; n < other.count; n++) {
+                const double *a = found.rows[k], *b = other.rows[n];
+                if (hypot(a[X1] - b[X1], a[Y1] - b[Y1]) > 1)
+                    continue;
+                common++;
+                assert_true(hypot(a[X2] - b[X2], a[Y2] - b[Y2]) < 2.5);
+            }
+        assert_true(common > 10);
+    }
+    expect_code(run_cli("match", "-q", "--stretch", "1,1.5", "-o", "s.json", "--lines", "first.png", "second.png", NULL), 0);
+    size_t size = 0;
+    char *text = read_bytes("s.json", &size);
+    assert_non_null(text);
+    assert_non_null(strstr(text, "\"stretch\": [1.0, 1.5]"));
+    free(text);
+}
+
+static void a_stretch_goes_with_images_alone(void **state)
+{
+    static const char *const wrong[][3] = {{"--junctions1", "x.asj", "junctions or features"}, {"--mask2", "x.png", "--mask2"},
+                                           {"--region1", "0,0,9,9", "--region1"}};
+    (void)state;
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+        const outcome *result = run_cli("match", "--stretch", "2", wrong[k][0], wrong[k][1], "first.png", "second.png", NULL);
+        expect_code(result, 2);
+        expect_in(result, result->err, "--stretch looks at");
+        expect_in(result, result->err, wrong[k][2]);
+    }
+    const outcome *result = run_cli("match", "--stretch", "1,2", "--geometry", "auto", "--focal", "estimate", "first.png",
+                                    "second.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "square pixels");
+}
+
 /* Features take the place of either image or of both, with the same result; the images may be gone. */
 static void features_take_the_place_of_images(void **state)
 {
@@ -596,6 +645,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(junctions_come_from_files),
         cmocka_unit_test(the_preset_match_detects_for_match),
         cmocka_unit_test(the_surest_junctions_give_a_warning),
+        cmocka_unit_test(stretched_images_match_in_their_own_pixels),
+        cmocka_unit_test(a_stretch_goes_with_images_alone),
         cmocka_unit_test(features_take_the_place_of_images),
         cmocka_unit_test(what_the_geometry_is_is_told),
 #ifdef ASJ_IMAGES

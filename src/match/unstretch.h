@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Matches of stretched images (core/stretch.h) in pixels of the images themselves. */
+#ifndef ASJ_SRC_UNSTRETCH_H
+#define ASJ_SRC_UNSTRETCH_H
+
+#include <asj/match.h>
+
+/* A pixel of the image is x by y pixels of the stretched one. */
+typedef struct asj_scaling {
+    double x, y;
+} asj_scaling;
+
+void asj_unstretch_matches(asj_junction_match *matches, size_t count, const asj_scaling by[2]);
+void asj_unstretch_l_junctions(asj_l_junction *list, uint32_t count, const asj_scaling *by);
+void asj_unstretch_geometry(asj_geometry *geometry, const asj_scaling by[2]);
+
+/* The camera of the stretched image. */
+asj_camera asj_stretch_camera(const asj_camera *camera, const asj_scaling *by);
+
+#endif

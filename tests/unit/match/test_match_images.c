@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* From images to matches: as they are it is what the two calls give; stretched, a page that lies flat matches where it did not, and
+ * everything is in pixels of the images. */
+#include "unit_test.h"
+
+#include "match/unstretch.h"
+#include "wide_pair.h"
+
+#include <asj/asj.h>
+
+enum { WIDTH = 420, HEIGHT = 200, PATCHES = 70 };
+
+/* Where a point of the page, -1 .. 1 along both axes, is seen: from low above, turned by `turn` for the second view. */
+static synth_point seen(double u, double v, double turn)
+{
+    const double x = u * cos(turn) - v * sin(turn), y = u * sin(turn) + v * cos(turn);
+    const double w = 1 - 0.12 * y;
+    return (synth_point){0.5 * WIDTH + 145 * x / w, 0.5 * HEIGHT + 33 * y / w};
+}
+
+static double turn_of(int view)
+{
+    return view == 0 ? 0.1 : 0.75;
+}
+
+static uint8_t *page(int view)
+{
+    synth_scene scene;
+    synth_random random;
+    synth_random_seed(&random, 8);
+    synth_scene_init(&scene, WIDTH, HEIGHT, 120);
+    for (int k = 0; k < PATCHES; k++) {
+        const double u = synth_random_between(&random, -0.9, 0.9), v = synth_random_between(&random, -0.9, 0.9);
+        const double a = synth_random_between(&random, 0.08, 0.3), b = synth_random_between(&random, 0.08, 0.3);
+        const double gray = synth_random_between(&random, 30, 220);
+        const synth_point corners[4] = {seen(u - a, v - b, turn_of(view)), seen(u + a, v - b, turn_of(view)),
+                                        seen(u + a, v + b, turn_of(view)), seen(u - a, v + b, turn_of(view))};
+        synth_scene_add(&scene, corners, 4, synth_flat(gray), k);
+    }
+    return unit_picture(&scene, 0.7, 1, 3 + (uint64_t)view);
+}
+
+/* px: how far a match is from what the page says. Newton's method in the page's coordinates. */
+static double error_of(double x1, double y1, double x2, double y2)
+{
+    double u = 0, v = 0;
+    for (int step = 0; step < 60; step++) {
+        const synth_point p = seen(u, v, turn_of(0)), du = seen(u + 1e-6, v, turn_of(0)), dv = seen(u, v + 1e-6, turn_of(0));
+        const double a = (du.x - p.x) * 1e6, b = (dv.x - p.x) * 1e6, c = (du.y - p.y) * 1e6, d = (dv.y - p.y) * 1e6;
+        u += (d * (x1 - p.x) - b * (y1 - p.y)) / (a * d - b * c);
+        v += (a * (y1 - p.y) - c * (x1 - p.x)) / (a * d - b * c);
+    }
+    const synth_point q = seen(u, v, turn_of(1));
+    return hypot(q.x - x2, q.y - y2);
+}
+
+typedef struct pages {
+    uint8_t *pixels[2];
+    asj_image images[2];
+} pages;
+
+static int set_up(void **state)
+{
+    static pages made;
+    for (int view = 0; view < 2; view++) {
+        made.pixels[view] = page(view);
+        made.images[view] = unit_gray8(made.pixels[view], WIDTH, HEIGHT);
+    }
+    *state = &made;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    pages *made = *state;
+    free(made->pixels[0]);
+    free(made->pixels[1]);
+    return 0;
+}
+
+static void expect_equal(const asj_match_result *a, const asj_match_result *b)
+{
+    assert_int_equal(a->match_count, b->match_count);
+    assert_int_equal(a->l_junction_count1, b->l_junction_count1);
+    assert_memory_equal(a->matches, b->matches, a->match_count * sizeof *a->matches);
+    assert_memory_equal(a->l_junctions2, b->l_junctions2, a->l_junction_count2 * sizeof *a->l_junctions2);
+}
+
+/* Without a stretch, with one of 1, and by the two calls. */
+static void as_they_are_it_is_what_two_calls_give(void **state)
+{
+    const pages *p = *state;
+    const asj_stretch one = {1, 1};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_detect_options options;
+    asj_detection *found[2] = {NULL, NULL};
+    asj_match_result *by_two = NULL, *by_one = NULL, *stretched = NULL;
+    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
+    for (int v = 0; v < 2; v++)
+        assert_int_equal(asj_detect(context, &p->images[v], &options, &found[v]), ASJ_OK);
+    assert_int_equal(asj_match(context, &p->images[0], found[0]->junctions, found[0]->junction_count, &p->images[1],
+                               found[1]->junctions, found[1]->junction_count, NULL, &by_two), ASJ_OK);
+    assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], NULL, NULL, NULL, &by_one), ASJ_OK);
+    assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &one, &options, NULL, &stretched), ASJ_OK);
+    expect_equal(by_two, by_one);
+    expect_equal(by_two, stretched);
+    asj_match_result_free(&by_two);
+    asj_match_result_free(&by_one);
+    asj_match_result_free(&stretched);
+    asj_detection_free(&found[0]);
+    asj_detection_free(&found[1]);
+    unit_context_free(&counter, &context);
+}
+
+static uint32_t count_right(const asj_match_result *r)
+{
+    uint32_t right = 0;
+    for (uint32_t k = 0; k < r->match_count; k++) {
+        const asj_junction_match *m = &r->matches[k];
+        right += error_of((double)m->x1, (double)m->y1, (double)m->x2, (double)m->y2) < 3;
+    }
+    return right;
+}
+
+/* The parts of a match agree with each other: the map takes one location to the other, and lists name the same places. */
+static void expect_consistent(const asj_match_result *r)
+{
+    for (uint32_t k = 0; k < r->match_count; k++) {
+        const asj_junction_match *m = &r->matches[k];
+        const double *h = m->affine, x = (double)m->x1, y = (double)m->y1;
+        unit_near("x2", k, 0, (double)m->x2, h[0] * x + h[1] * y + h[2], 1e-3);
+        unit_near("y2", k, 0, (double)m->y2, h[3] * x + h[4] * y + h[5], 1e-3);
+        assert_true(m->l1 < r->l_junction_count1 && m->l2 < r->l_junction_count2);
+        assert_true(m->x1 == r->l_junctions1[m->l1].x && m->y1 == r->l_junctions1[m->l1].y);
+        unit_near("x of the L-junction", k, 0, (double)m->x2, (double)r->l_junctions2[m->l2].x, 9);
+    }
+    const size_t count = asj_match_segments(r, ASJ_END_CUT, NULL, 0);
+    asj_segment_match *segments = calloc(count + 1, sizeof *segments);
+    assert_non_null(segments);
+    assert_int_equal(asj_match_segments(r, ASJ_END_CUT, segments, count), count);
+    assert_true(count >= r->match_count);
+    for (size_t k = 0; k < count; k++)
+        assert_true(segments[k].x1 == r->matches[segments[k].match].x1 && segments[k].y2 == r->matches[segments[k].match].y2);
+    free(segments);
+}
+
+/* Stretched by any factor, along one axis or both; the same with any number of threads. */
+static void a_page_that_lies_flat_matches_when_it_is_stretched(void **state)
+{
+    static const asj_stretch stretches[] = {{1, 3}, {1, 2.5}, {2, 2}};
+    static const uint32_t least[] = {3, 3, 1}; /* times as many as without: across the page it helps most */
+    const pages *p = *state;
+    unit_counter counters[2] = {{0}, {0}};
+    asj_context *contexts[2] = {unit_context(&counters[0], 1), unit_context(&counters[1], 2)};
+    asj_match_result *plain = NULL;
+    assert_int_equal(asj_match_images(contexts[1], &p->images[0], &p->images[1], NULL, NULL, NULL, &plain), ASJ_OK);
+    for (size_t s = 0; s < UNIT_COUNT(stretches); s++) {
+        asj_match_result *results[2] = {NULL, NULL};
+        for (int n = 0; n < 2; n++)
+            assert_int_equal(asj_match_images(contexts[n], &p->images[0], &p->images[1], &stretches[s], NULL, NULL, &results[n]),
+                             ASJ_OK);
+        expect_equal(results[0], results[1]);
+        expect_consistent(results[0]);
+        const uint32_t right = count_right(results[0]);
+        print_message("stretched by %g, %g: %u right of %u; as it is %u of %u\n", stretches[s].x, stretches[s].y, (unsigned)right,
+                      (unsigned)results[0]->match_count, (unsigned)count_right(plain), (unsigned)plain->match_count);
+        assert_true(right >= 20 && right >= least[s] * count_right(plain) && 20 * right >= 17 * results[0]->match_count);
+        asj_match_result_free(&results[0]);
+        asj_match_result_free(&results[1]);
+    }
+    asj_match_result_free(&plain);
+    unit_context_free(&counters[0], &contexts[0]);
+    unit_context_free(&counters[1], &contexts[1]);
+}
+
+/* The homography is that of the page, in pixels of the images. */
+static void a_homography_is_of_the_images_as_they_are(void **state)
+{
+    const pages *p = *state;
+    const asj_stretch stretch = {1, 3};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_match_options options;
+    asj_match_result *r = NULL;
+    asj_match_options_init(&options);
+    options.geometry.model = ASJ_GEOMETRY_HOMOGRAPHY;
+    assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &stretch, NULL, &options, &r), ASJ_OK);
+    assert_int_equal(r->geometry.status, ASJ_GEOMETRY_ACCEPTED);
+    const double *h = r->geometry.matrix;
+    double norm = 0;
+    for (int k = 0; k < 9; k++)
+        norm += h[k] * h[k];
+    unit_near("norm", 0, 0, norm, 1, 1e-9);
+    for (double u = -0.8; u < 0.9; u += 0.4)
+        for (double v = -0.8; v < 0.9; v += 0.4) {
+            const synth_point from = seen(u, v, turn_of(0)), to = seen(u, v, turn_of(1));
+            const double w = h[6] * from.x + h[7] * from.y + h[8];
+            unit_near("x", u, v, (h[0] * from.x + h[1] * from.y + h[2]) / w, to.x, 2);
+            unit_near("y", u, v, (h[3] * from.x + h[4] * from.y + h[5]) / w, to.y, 2);
+        }
+    asj_match_result_free(&r);
+    unit_context_free(&counter, &context);
+}
+
+/* Cameras are those of the images as they are, and so is the fundamental matrix; the pose is that of the cameras. */
+static void a_pose_is_found_in_enlarged_images(void **state)
+{
+    const asj_stretch stretch = {1.5, 1.25};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    synth_wide_pair pair;
+    uint8_t *pixels[2];
+    asj_image images[2];
+    asj_match_options options;
+    asj_match_result *r = NULL;
+    double wanted[9], rotation[9], translation[3], trace = 0, dot = 0;
+    (void)state;
+    assert_int_equal(synth_wide_pair_make(&pair, 6), 0);
+    asj_match_options_init(&options);
+    options.geometry.model = ASJ_GEOMETRY_AUTO;
+    for (int k = 0; k < 2; k++) {
+        const double f = pair.cameras[k].focal;
+        pixels[k] = synth_wide_picture(&pair, k);
+        assert_non_null(pixels[k]);
+        images[k] = (asj_image){pixels[k], ASJ_FORMAT_RGB8, SYNTH_WIDE_WIDTH, SYNTH_WIDE_HEIGHT, 0, 0};
+        options.geometry.cameras[k] = (asj_camera){f, f, 0.5 * (SYNTH_WIDE_WIDTH - 1), 0.5 * (SYNTH_WIDE_HEIGHT - 1)};
+    }
+    assert_int_equal(asj_match_images(context, &images[0], &images[1], &stretch, NULL, &options, &r), ASJ_OK);
+    assert_int_equal(r->geometry.status, ASJ_GEOMETRY_ACCEPTED);
+    assert_true(r->geometry.has_pose);
+    synth_relative_pose(&pair.cameras[0], &pair.cameras[1], rotation, translation);
+    for (int k = 0; k < 9; k++)
+        trace += rotation[k] * r->geometry.rotation[k];
+    for (int k = 0; k < 3; k++)
+        dot += translation[k] * r->geometry.translation[k];
+    unit_near("rotation, deg", 0, 0, acos(fmin(1, 0.5 * (trace - 1))) * 180 / UNIT_PI, 0, 2);
+    unit_near("translation, deg", 0, 0, acos(fmin(1, dot)) * 180 / UNIT_PI, 0, 3);
+    unit_near("focal length", 0, 0, r->geometry.focal[0], pair.cameras[0].focal, 1e-6);
+    synth_fundamental(&pair.cameras[0], &pair.cameras[1], wanted);
+    double between = 0, norm = 0;
+    for (int k = 0; k < 9; k++) {
+        between += wanted[k] * r->geometry.matrix[k];
+        norm += wanted[k] * wanted[k];
+    }
+    unit_near("fundamental matrix", 0, 0, fabs(between) / sqrt(norm), 1, 1e-3);
+    asj_match_result_free(&r);
+    synth_wide_pair_free(&pair);
+    free(pixels[0]);
+    free(pixels[1]);
+    unit_context_free(&counter, &context);
+}
+
+/* H and F of stretched images, taken back, say of points what they said of stretched ones. */
+static void matrices_are_taken_back(void **state)
+{
+    const asj_scaling by[2] = {{2, 3}, {1.25, 1}};
+    const double points[4] = {31.5, 12.25, 80, 7};
+    synth_random random;
+    (void)state;
+    synth_random_seed(&random, 3);
+    for (int32_t model = ASJ_GEOMETRY_FUNDAMENTAL; model <= ASJ_GEOMETRY_HOMOGRAPHY; model++) {
+        asj_geometry g = {.model = model, .focal = {600, 500}};
+        double m[9];
+        for (int k = 0; k < 9; k++)
+            m[k] = g.matrix[k] = synth_random_between(&random, -1, 1);
+        asj_unstretch_geometry(&g, by);
+        const double *t = g.matrix, x1 = points[0], y1 = points[1], x2 = points[2], y2 = points[3];
+        const double sx1 = (x1 + 0.5) * 2 - 0.5, sy1 = (y1 + 0.5) * 3 - 0.5, sx2 = (x2 + 0.5) * 1.25 - 0.5, sy2 = y2;
+        double before[3], after[3];
+        for (int row = 0; row < 3; row++) {
+            before[row] = m[3 * row] * sx1 + m[3 * row + 1] * sy1 + m[3 * row + 2];
+            after[row] = t[3 * row] * x1 + t[3 * row + 1] * y1 + t[3 * row + 2];
+        }
+        if (model == ASJ_GEOMETRY_HOMOGRAPHY) {
+            unit_near("x", 0, 0, (after[0] / after[2] + 0.5) * 1.25 - 0.5, before[0] / before[2], 1e-9);
+            unit_near("y", 0, 0, after[1] / after[2], before[1] / before[2], 1e-9);
+        } else {
+            const double here = x2 * after[0] + y2 * after[1] + after[2], there = sx2 * before[0] + sy2 * before[1] + before[2];
+            unit_near("x2' F x1, with the same factor as the line", 0, 0, here * before[1], there * after[1], 1e-9);
+            unit_near("line", 0, 0, after[0] * before[1], after[1] * before[0] * 1.25, 1e-9);
+        }
+        unit_near("focal length", 0, 0, g.focal[0], 300, 1e-9);
+        unit_near("focal length", 1, 0, g.focal[1], 400, 1e-9);
+    }
+}
+
+static void what_cannot_be_is_refused(void **state)
+{
+    static const asj_stretch outside[] = {{0.5, 1}, {1, 8.5}, {NAN, 1}, {1, -1}, {INFINITY, 2}};
+    const pages *p = *state;
+    const asj_stretch along = {1, 2}, most = {8, 8};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_match_result *r = (asj_match_result *)&counter;
+    asj_match_options options;
+    asj_match_options_init(&options);
+    for (size_t k = 0; k < UNIT_COUNT(outside); k++) {
+        assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &outside[k], NULL, NULL, &r), ASJ_ERROR_OPTION);
+        assert_null(r);
+    }
+    options.geometry.model = ASJ_GEOMETRY_AUTO;
+    options.geometry.find_focal = 1;
+    assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &along, NULL, &options, &r), ASJ_ERROR_OPTION);
+    assert_int_equal(asj_match_images(context, NULL, &p->images[1], NULL, NULL, NULL, &r), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], NULL, NULL, NULL, NULL), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(asj_match_images(NULL, &p->images[0], &p->images[1], NULL, NULL, NULL, &r), ASJ_ERROR_ARGUMENT);
+    const asj_image wide = {p->pixels[0], ASJ_FORMAT_GRAY8, 10000, 8, 0, 0}, empty = {p->pixels[0], ASJ_FORMAT_GRAY8, 0, 8, 0, 0};
+    assert_int_equal(asj_match_images(context, &wide, &p->images[1], &most, NULL, NULL, &r), ASJ_ERROR_LIMIT);
+    assert_int_equal(asj_match_images(context, &p->images[0], &empty, &along, NULL, NULL, &r), ASJ_ERROR_IMAGE);
+    assert_null(r);
+    unit_context_free(&counter, &context);
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    static const uint8_t dark[24 * 20];
+    const asj_image image = unit_gray8(dark, 24, 20);
+    const asj_stretch stretch = {2, 1};
+    int succeeded = 0;
+    (void)state;
+    for (long n = 1; n < 500 && !succeeded; n++) {
+        unit_counter counter = {0};
+        asj_context *poor = unit_context(&counter, 1);
+        asj_match_result *r = NULL;
+        counter.fail_at = counter.calls + n;
+        const asj_status status = asj_match_images(poor, &image, &image, &stretch, NULL, NULL, &r);
+        counter.fail_at = 0;
+        succeeded = status == ASJ_OK;
+        assert_true(succeeded || (status == ASJ_ERROR_MEMORY && !r));
+        asj_match_result_free(&r);
+        unit_context_free(&counter, &poor);
+    }
+    assert_true(succeeded);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(as_they_are_it_is_what_two_calls_give),
+        cmocka_unit_test(a_page_that_lies_flat_matches_when_it_is_stretched),
+        cmocka_unit_test(a_homography_is_of_the_images_as_they_are),
+        cmocka_unit_test(a_pose_is_found_in_enlarged_images),
+        cmocka_unit_test(matrices_are_taken_back),
+        cmocka_unit_test(what_cannot_be_is_refused),
+        cmocka_unit_test(every_allocation_may_fail),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
