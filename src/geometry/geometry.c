@@ -32,7 +32,7 @@
 static asj_search plan(const asj_estimation *e, int32_t kind)
 {
     const asj_geometry_options *o = e->options;
-    asj_search search = {kind, o->samples, o->seed, {o->cameras[0], o->cameras[1]}, GIVE_UP - log(o->epsilon), NULL};
+    asj_search search = {kind, o->samples, o->seed, {o->cameras[0], o->cameras[1]}, GIVE_UP - log(o->epsilon), NULL, 0, 0};
     for (int32_t v = 0; v < 2; v++)
         if (!asj_camera_is_known(&search.cameras[v])) {
             const double longer = o->widths[v] > o->heights[v] ? o->widths[v] : o->heights[v];

@@ -102,6 +102,7 @@ asj_status asj_find_rivals(asj_context *context, asj_pairs *set, const asj_searc
             int32_t more = 0;
             search.weights = kept + set->count;
             search.samples = (search.samples + 1) / 2;
+            search.brief = 1;
             status = asj_geometry_search(context, set, &search, rivals + *count, &more);
             *count += more;
         }

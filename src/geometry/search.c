@@ -7,7 +7,9 @@
  * turn, AROUND times ("local optimisation", Chum, Matas and Kittler 2003). Where the best of the first ones is as poor as in images
  * that have nothing in common, nothing more is looked for. Sample n draws its numbers from stream n, so that threads change
  * nothing. Before rivals were looked for by themselves (rivals.c), fewer STARTS and CENTRES missed them: of unrelated rooms with
- * tiled floors, one in 29 was accepted with 8 and 4. */
+ * tiled floors, one in 29 was accepted with 8 and 4. With rivals looked for, the search of rivals itself does with the BRIEF ones:
+ * 189 pairs, two seeds (tests/accuracy/README.md). AROUND 1, LOCAL 20, FEW_ROUNDS 2, or no second round where the first one finds
+ * nothing better, lose poses in the first search. */
 #include "search.h"
 #include "core/angle.h"
 #include "core/threads.h"
@@ -25,11 +27,14 @@
 #include <string.h>
 
 #define PRESELECTED 600
-#define SHORT 100
+#define SHORT 50
 #define STARTS 16
 #define CENTRES 10
 #define LOCAL 40
 #define AROUND 2
+#define BRIEF_STARTS 8
+#define BRIEF_CENTRES 5
+#define BRIEF_AROUND 1
 #define WIDEST 3.0
 #define FEW_ROUNDS 3
 #define ROUNDS 5
@@ -266,17 +271,18 @@ static void judge(const asj_pairs *set, work *w, asj_model *finalists, int32_t c
 
 static int32_t run(const asj_pairs *set, const asj_search *search, work *w, asj_model *finalists)
 {
+    const int32_t starts = search->brief ? BRIEF_STARTS : STARTS, centres = search->brief ? BRIEF_CENTRES : CENTRES;
     int32_t count = draw_samples(set, search, w);
-    count = asj_pick(w->models, w->order, count, STARTS, w->starts);
-    count = adjust_some(set, w, w->starts, count, FEW_ROUNDS, CENTRES, w->models);
+    count = asj_pick(w->models, w->order, count, starts, w->starts);
+    count = adjust_some(set, w, w->starts, count, FEW_ROUNDS, centres, w->models);
     if (count == 0 || w->models[0].score < search->least)
         return 0;
-    for (int32_t round = 0; round < AROUND; round++) {
-        count = draw_around(set, search, w, w->models, count < CENTRES ? count : CENTRES, round);
+    for (int32_t round = 0; round < (search->brief ? BRIEF_AROUND : AROUND); round++) {
+        count = draw_around(set, search, w, w->models, count < centres ? count : centres, round);
         for (int32_t n = 0; n < count; n++)
             w->order[n] = (asj_ranked){w->models[n].score, n};
         qsort(w->order, (size_t)count, sizeof *w->order, asj_by_score);
-        count = asj_pick(w->models, w->order, count, STARTS, w->starts);
+        count = asj_pick(w->models, w->order, count, starts, w->starts);
         count = adjust_some(set, w, w->starts, count, FEW_ROUNDS, ASJ_FINALISTS, w->models);
     }
     count = adjust_some(set, w, w->models, count, ROUNDS, ASJ_FINALISTS, finalists);
