@@ -8,13 +8,15 @@
  *
  * Where images have colours, these say of rivals which one is wrong (colour_vote.c), and that may be the one with most evidence: a
  * floor of tiles, turned by 90 degrees or shifted so that more of it is seen twice, has up to three times the log evidence of the
- * right geometry. What colours contradict in favour of another geometry that is not chance either is struck out, and that one is
- * followed as the best one would have been (motions.c). */
+ * right geometry. So do the grey levels between the matches (picture_vote.c), in images with and without colours. What they
+ * contradict in favour of another geometry that is not chance either is struck out, and that one is followed as the best one would
+ * have been (motions.c). So are rivals with less evidence: they would make the pose uncertain (answer.c). */
 #include "ambiguity.h"
 #include "core/angle.h"
 #include "colour_vote.h"
 #include "likelihood.h"
 #include "motions.h"
+#include "posterior.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -28,11 +30,14 @@
 #define APART_OF_FEW 13.0
 #define CONTRARY 0.4
 #define CONTRARY_ALIKE 0.15 /* of a rival with as much evidence */
+#define CONTRARY_SEEN 0.3 /* where pictures decide: a motion beside the best one (.17, video frames) has its planes elsewhere */
 #define SAME_THING 8.0 /* px */
 #define HELD 3
 #define LEAST_HELD 1e-3
 #define SIMILAR_MOTION (6 * ASJ_DEGREE)
 #define DOUBT 0.6 /* 229 pairs of rooms, two seeds: with .8 one more is accepted of 309, and its pose is wrong */
+#define OF_FEW 1.5 /* pictures count so much less beside few matches (131 rooms: without, 2 more accepted, one pose wrong) */
+#define OVERRULED 1.3 /* what speaks against the best one, where 1 contradicts another: it has the most evidence for it */
 #define MOST_STRUCK 4 /* times that the best one changes: in 198 pairs of rooms once in six, never twice */
 
 /* Raises e->elsewhere[k] to how probable it is under the geometry of the probabilities `mine` that the place of candidate k in
@@ -99,27 +104,53 @@ static double least_contradiction(const asj_model *best, const asj_model *rival,
     return CONTRARY + (CONTRARY_ALIKE - CONTRARY) * nearness;
 }
 
-/* Are the colours rather for the rival, whose probabilities are in e->other? */
-static int32_t are_colours_for(const asj_estimation *e)
+/* How much colours and pictures (picture_vote.c) speak against the second of two geometries, with these probabilities: above 1 they
+ * contradict it. first_look: of the first one. contrary: how much of the matches contradicts the other one. Of two that have
+ * matched nearly the same, pictures only tell which has its planes where they are. */
+static double against(const asj_estimation *e, const double *first, const double *second, int32_t first_look, double contrary)
 {
-    return e->set.has_colours && asj_colours_against(&e->set, e->other, e->scratch.probability, e->vote) > DOUBT;
+    const double colours = e->set.has_colours ? asj_colours_against(&e->set, first, second, e->vote) : 0;
+    if (!e->pictures || !(contrary > CONTRARY_SEEN))
+        return colours;
+    double inliers = 0;
+    for (int32_t k = 0; k < e->set.count; k++)
+        inliers += e->scratch.probability[k];
+    const double seen = asj_pictures_against(&e->pictures->looks[first_look], &e->pictures->looks[1 - first_look]);
+    return fmax(colours, inliers < FEW ? seen / OF_FEW : seen);
+}
+
+/* Look 0 is of the geometry that others are compared with, 1 of the other. */
+static void look_at(const asj_estimation *e, const asj_model *m, const double *probability, int32_t look)
+{
+    if (e->pictures)
+        asj_pictures_look(e->pictures, &e->set, &m->view, probability, &e->pictures->looks[look]);
+}
+
+/* What the geometry that others are compared with says of places and pictures. */
+static void look_at_best(asj_estimation *e, int32_t best)
+{
+    asj_probabilities(&e->set, &e->finalists[best].view, 1, &e->scratch.score, e->scratch.probability);
+    memset(e->elsewhere, 0, (size_t)e->set.count * sizeof *e->elsewhere);
+    for (int32_t side = 0; side < 2; side++)
+        find_elsewhere(e, side, e->scratch.probability);
+    look_at(e, &e->finalists[best], e->scratch.probability, 0);
 }
 
 int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
 {
     int32_t second = -1;
     const asj_model *m = &e->finalists[best];
-    memset(e->elsewhere, 0, (size_t)e->set.count * sizeof *e->elsewhere);
-    for (int32_t side = 0; side < 2; side++)
-        find_elsewhere(e, side, e->scratch.probability);
+    look_at_best(e, best);
     for (int32_t n = 0; n < e->count; n++) {
         const asj_model *rival = &e->finalists[n];
         if (n == best || !(rival->evidence > -HUGE_VAL) || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
             continue;
         const double contrary = contradiction(e, rival), share = asj_estimation_log10_nfa(e, rival) / to_compare(e, m);
-        const int32_t doubtful = are_colours_for(e);
+        if (contrary > CONTRARY_SEEN)
+            look_at(e, rival, e->other, 1);
+        const int32_t doubtful = against(e, e->other, e->scratch.probability, 1, contrary) > DOUBT;
         if (contrary > (doubtful ? CONTRARY_ALIKE : least_contradiction(m, rival, share)) &&
-            !(asj_colours_against(&e->set, e->scratch.probability, e->other, e->vote) > 1)) {
+            !(against(e, e->scratch.probability, e->other, 0, contrary) > 1)) {
             second = n;
             *doubt = doubtful;
         }
@@ -134,17 +165,20 @@ int32_t asj_is_ambiguous(const asj_estimation *e, int32_t best, int32_t rival, i
     return second <= fmax((few ? NEARLY_OF_FEW : NEARLY) * nfa, nfa + (few ? APART_OF_FEW : APART));
 }
 
-/* The one with most evidence in favour of which the colours contradict number `best`, whose probabilities are `mine`; -1: none. */
-static int32_t preferred_to(asj_estimation *e, int32_t best, const double *mine)
+/* The one with most evidence in favour of which colours or pictures contradict number `best`; -1: none. */
+static int32_t preferred_to(asj_estimation *e, int32_t best)
 {
     const double least = log10(e->options->epsilon);
     int32_t found = -1;
+    look_at_best(e, best);
     for (int32_t n = 0; n < e->count; n++) {
         const asj_model *m = &e->finalists[n];
         if (n == best || (found >= 0 && m->evidence <= e->finalists[found].evidence) || asj_estimation_log10_nfa(e, m) > least)
             continue;
-        asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->other);
-        if (asj_colours_against(&e->set, e->other, mine, e->vote) > 1)
+        const double contrary = contradiction(e, m);
+        if (contrary > CONTRARY_SEEN)
+            look_at(e, m, e->other, 1);
+        if (against(e, e->other, e->scratch.probability, 1, contrary) > OVERRULED)
             found = n;
     }
     return found;
@@ -154,36 +188,91 @@ static int32_t preferred_to(asj_estimation *e, int32_t best, const double *mine)
 static void strike(asj_estimation *e, int32_t chosen)
 {
     const asj_model *c = &e->finalists[chosen];
-    asj_probabilities(&e->set, &c->view, 1, &e->scratch.score, e->scratch.probability);
+    look_at_best(e, chosen);
     for (int32_t n = 0; n < e->count; n++) {
         asj_model *m = &e->finalists[n];
         if (!(m->evidence > c->evidence))
             continue;
-        asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->other);
-        if (asj_colours_against(&e->set, e->scratch.probability, e->other, e->vote) > 1)
+        const double contrary = contradiction(e, m);
+        if (contrary > CONTRARY_SEEN)
+            look_at(e, m, e->other, 1);
+        if (against(e, e->scratch.probability, e->other, 0, contrary) > 1)
             m->evidence = m->peak = -HUGE_VAL;
     }
+}
+
+/* What contradicts the best one and is contradicted by colours or pictures is no other motion that it might be (answer.c). */
+static void strike_rivals(asj_estimation *e)
+{
+    const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO);
+    if (best < 0)
+        return;
+    look_at_best(e, best);
+    for (int32_t n = 0; n < e->count; n++)
+        if (n != best && n != e->focal_at && e->finalists[n].evidence > -HUGE_VAL) {
+            const double contrary = contradiction(e, &e->finalists[n]);
+            if (contrary > CONTRARY_SEEN)
+                look_at(e, &e->finalists[n], e->other, 1);
+            if (contrary > CONTRARY_ALIKE && against(e, e->scratch.probability, e->other, 0, contrary) > 1)
+                e->finalists[n].evidence = e->finalists[n].peak = -HUGE_VAL;
+        }
+}
+
+/* Without that nothing is known of how exact its pose is. */
+static asj_status settle(const asj_estimation *e, asj_model *m)
+{
+    asj_context *context = e->context;
+    asj_adjust_scratch *scratch = asj_adjust_scratches_create(&context->memory, &e->set, context->threads);
+    if (!scratch)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for a second geometry");
+    asj_settle(context, &e->set, e->options->seed, scratch, m);
+    asj_adjust_scratches_free(&context->memory, scratch, context->threads);
+    return ASJ_OK;
+}
+
+/* Number `chosen` instead of the best one, and of all others that it contradicts. *stands: 0 when something else would be the best
+ * then: what is not believed itself contradicts nothing. */
+static asj_status put_in_front(asj_estimation *e, int32_t chosen, int32_t *stands)
+{
+    double evidence[ASJ_MOST_MODELS], peak[ASJ_MOST_MODELS];
+    asj_status status = ASJ_OK;
+    for (int32_t n = 0; n < e->count; n++) {
+        evidence[n] = e->finalists[n].evidence;
+        peak[n] = e->finalists[n].peak;
+    }
+    asj_model followed = e->finalists[chosen];
+    int32_t count = 1;
+    strike(e, chosen);
+    if (followed.kind == ASJ_GEOMETRY_ESSENTIAL && chosen != e->focal_at) {
+        status = asj_refine_motions(e->context, &e->set, followed.cameras, e->options->seed, 1, &followed, &count);
+        if (status == ASJ_OK && count == 1 && followed.evidence > e->finalists[chosen].evidence)
+            e->finalists[chosen] = followed;
+        else if (status == ASJ_OK && !e->finalists[chosen].settled)
+            status = settle(e, &e->finalists[chosen]);
+    }
+    *stands = asj_estimation_best(e, ASJ_GEOMETRY_AUTO) == chosen;
+    for (int32_t n = 0; n < e->count && !*stands; n++)
+        if (n != chosen) {
+            e->finalists[n].evidence = evidence[n];
+            e->finalists[n].peak = peak[n];
+        }
+    return status;
 }
 
 asj_status asj_strike_out(asj_estimation *e)
 {
     asj_status status = ASJ_OK;
-    for (int32_t round = 0; round < MOST_STRUCK && status == ASJ_OK && e->set.has_colours; round++) {
+    int32_t stands = 1;
+    for (int32_t round = 0; round < MOST_STRUCK && stands && status == ASJ_OK && (e->set.has_colours || e->pictures); round++) {
         const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO);
         if (best < 0 || asj_estimation_log10_nfa(e, &e->finalists[best]) > log10(e->options->epsilon))
             break;
-        asj_probabilities(&e->set, &e->finalists[best].view, 1, &e->scratch.score, e->scratch.probability);
-        const int32_t chosen = preferred_to(e, best, e->scratch.probability);
+        const int32_t chosen = preferred_to(e, best);
         if (chosen < 0)
             break;
-        asj_model followed = e->finalists[chosen];
-        int32_t count = 1;
-        strike(e, chosen);
-        if (followed.kind != ASJ_GEOMETRY_ESSENTIAL || chosen == e->focal_at)
-            continue;
-        status = asj_refine_motions(e->context, &e->set, followed.cameras, e->options->seed, 1, &followed, &count);
-        if (status == ASJ_OK && count == 1 && followed.evidence > e->finalists[chosen].evidence)
-            e->finalists[chosen] = followed;
+        status = put_in_front(e, chosen, &stands);
     }
+    if (status == ASJ_OK)
+        strike_rivals(e);
     return status;
 }

@@ -5,6 +5,7 @@
 
 #include "directions.h"
 #include "judge.h"
+#include "core/pyramid.h"
 
 #include <asj/geometry.h>
 
@@ -13,6 +14,7 @@ typedef struct asj_geometry_hints {
     const double *colours;             /* of each candidate, how well they agree, as a logarithm, 0 where nothing is known; their
                                         * priors have it already (colour_vote.c). NULL = images without colours */
     asj_directions_list directions[2]; /* of each image's edges, count 0 = none; options->directions are taken before them */
+    const asj_pyramid *pictures[2];    /* what the images look like (picture_vote.c); NULL = not known */
 } asj_geometry_hints;
 
 /* asj_geometry_estimate() with that; hints and judge may be NULL. judge: written where the geometry is accepted. */

@@ -5,21 +5,24 @@
 
 #include "adjust.h"
 #include "focal.h"
+#include "picture_vote.h"
 #include "search.h"
 
 #define ASJ_MOST_KINDS 3
+#define ASJ_MOST_MODELS (2 * ASJ_MOST_KINDS * ASJ_FINALISTS)
 
 /* One call. */
 typedef struct asj_estimation {
     asj_context *context;
     const asj_geometry_options *options;
     asj_pairs set;
-    asj_model finalists[2 * ASJ_MOST_KINDS * ASJ_FINALISTS]; /* and their rivals */
+    asj_model finalists[ASJ_MOST_MODELS]; /* and their rivals */
     int32_t count;
     asj_adjust_scratch scratch;
     double *other; /* probabilities under a second geometry */
     double *elsewhere; /* ambiguity.c: of each candidate, how sure its places are matched with something else */
     double *vote;  /* colour_vote.c, ambiguity.c: four numbers of each place */
+    asj_pictures *pictures; /* NULL: nobody has shown them */
     asj_focal focal;
     int32_t focal_at; /* where the finalist with the found focal length stands; -1 = there is none */
 } asj_estimation;

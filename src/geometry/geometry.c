@@ -7,7 +7,7 @@
  *   focal.c       the same for a row of focal lengths, where none is known and it is asked for
  *   rivals.c      what explains as much without the candidates of the best one
  *   evidence.c    how often chance brings as much
- *   ambiguity.c   which of these the colours contradict; whether one may be right as well
+ *   ambiguity.c   which of these colours and pictures contradict (colour_vote.c, picture_vote.c); whether one may be right as well
  *   answer.c      which kind, and what is told of it
  *   model.c       what moves when a geometry moves */
 #include "ambiguity.h"
@@ -158,7 +158,10 @@ asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_cand
             e->elsewhere = asj_allocate(&context->memory, (size_t)e->set.count, sizeof *e->elsewhere);
             const int32_t places = e->set.place_count[0] > e->set.place_count[1] ? e->set.place_count[0] : e->set.place_count[1];
             e->vote = asj_allocate(&context->memory, (size_t)places, 4 * sizeof *e->vote);
-            status = e->other && e->elsewhere && e->vote && asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch)
+            const int32_t shown = hints && hints->pictures[0] && hints->pictures[1];
+            e->pictures = shown ? asj_pictures_create(&context->memory, hints->pictures, e->set.count) : NULL;
+            status = e->other && e->elsewhere && e->vote && (e->pictures || !shown) &&
+                             asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch)
                          ? search_all(e) : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the geometry");
             if (status == ASJ_OK)
                 status = search_rivals(e);
@@ -174,6 +177,7 @@ asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_cand
     asj_release(&context->memory, e->other);
     asj_release(&context->memory, e->elsewhere);
     asj_release(&context->memory, e->vote);
+    asj_pictures_free(&context->memory, e->pictures);
     asj_pairs_free(&context->memory, &e->set);
     asj_release(&context->memory, e);
     if (status == ASJ_OK)

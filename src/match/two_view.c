@@ -92,6 +92,7 @@ static asj_status complete_options(asj_match_run *run, asj_geometry_options *opt
     for (int32_t k = 0; k < 18; k++)
         given += fabs(options->directions[k / 9][k % 9]);
     for (int32_t side = 0; side < 2; side++) {
+        hints->pictures[side] = &run->image[side]->pyramid;
         options->widths[side] = run->image[side]->pyramid.width[0];
         options->heights[side] = run->image[side]->pyramid.height[0];
     }

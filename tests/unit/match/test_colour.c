@@ -293,14 +293,21 @@ static double rotation_error(const asj_geometry *g)
     return acos(fmax(-1, fmin(1, (trace - 1) / 2))) * 180 / UNIT_PI;
 }
 
-/* In grey a floor shifted by a tile may be right as well. With colours it is not, and no more so when the second camera has another
- * exposure and white balance still. */
-static void tiles_that_differ_in_hue_alone(void **state)
+static void assert_right(const asj_match_result *result, int32_t which)
+{
+    assert_int_equal(result->geometry.status, ASJ_GEOMETRY_ACCEPTED);
+    assert_true(result->geometry.has_pose);
+    unit_near("rotation, deg", which, 0, rotation_error(&result->geometry), 0, 1);
+}
+
+/* A floor shifted by a tile is as exact. Neither grey levels between the corners (picture_vote.c) nor colours fit it then, and no
+ * more so when the second camera has another exposure and white balance still. */
+static void tiles_of_many_hues(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
     const size_t bytes = 3 * (size_t)SYNTH_WIDE_WIDTH * SYNTH_WIDE_HEIGHT;
     asj_match_result *result = match(context, view_of(tiled.grey[0], ASJ_FORMAT_GRAY8), view_of(tiled.grey[1], ASJ_FORMAT_GRAY8));
-    assert_int_equal(result->geometry.status, ASJ_GEOMETRY_AMBIGUOUS);
+    assert_right(result, 2);
     asj_match_result_free(&result);
     uint8_t *other = malloc(bytes);
     assert_non_null(other);
@@ -309,9 +316,7 @@ static void tiles_that_differ_in_hue_alone(void **state)
         for (size_t k = 0; k < bytes; k++)
             other[k] = light == 0 ? tiled.pixels[1][k] : (uint8_t)(gains[k % 3] * tiled.pixels[1][k] + 0.5);
         result = match(context, view_of(tiled.pixels[0], ASJ_FORMAT_RGB8), view_of(other, ASJ_FORMAT_RGB8));
-        assert_int_equal(result->geometry.status, ASJ_GEOMETRY_ACCEPTED);
-        assert_true(result->geometry.has_pose);
-        unit_near("rotation, deg", light, 0, rotation_error(&result->geometry), 0, 1);
+        assert_right(result, light);
         asj_match_result_free(&result);
     }
     free(other);
@@ -454,7 +459,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(regions_are_where_they_should_be), cmocka_unit_test(what_cannot_be_seen),
-        cmocka_unit_test(many_places_decide),               cmocka_unit_test(tiles_that_differ_in_hue_alone),
+        cmocka_unit_test(many_places_decide),               cmocka_unit_test(tiles_of_many_hues),
         cmocka_unit_test(guests_do_not_say_that_there_are_colours),
         cmocka_unit_test(grey_images_as_before),            cmocka_unit_test(colours_are_kept),
         cmocka_unit_test(every_allocation_may_fail),

@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Two geometries of a wall of tiles, of which the second is shifted: when that is a rival (a partner within 8 px is no other one),
+ * and whether what the tiles look like says which one is wrong. */
+#include "unit_test.h"
+
+#include "geometry/ambiguity.h"
+#include "geometry/estimation.h"
+#include "geometry/pairs.h"
+
+#define TILE 40
+#define WIDTH (16 * TILE)
+#define HEIGHT (12 * TILE)
+#define ACROSS 12 /* corners of tiles that are matched: all but those near the border */
+#define DOWN 8
+#define PLACES (ACROSS * DOWN)
+
+/* Of each corner two candidates: itself, and what lies `shift` px beside it. */
+static void make_candidates(double shift, asj_geometry_candidate list[2 * PLACES])
+{
+    memset(list, 0, 2 * PLACES * sizeof *list);
+    for (uint32_t k = 0; k < 2 * PLACES; k++) {
+        asj_geometry_candidate *c = &list[k];
+        const uint32_t place = k / 2, beside = k % 2;
+        c->x1 = TILE * (2.0 + place % ACROSS);
+        c->y1 = TILE * (2.0 + place / ACROSS);
+        c->x2 = c->x1 + beside * shift;
+        c->y2 = c->y1;
+        c->affine[0] = c->affine[3] = 1;
+        c->place1 = place;
+        c->place2 = beside * PLACES + place;
+        c->probability = 0.3;
+    }
+}
+
+static asj_model shifted_by(double shift)
+{
+    const double matrix[9] = {1, 0, shift, 0, 1, 0, 0, 0, 1};
+    asj_model m;
+    memset(&m, 0, sizeof m);
+    m.kind = ASJ_GEOMETRY_HOMOGRAPHY;
+    m.parameters = 8;
+    m.evidence = 100;
+    m.view.planar = 1;
+    memcpy(m.view.matrix, matrix, sizeof matrix);
+    return m;
+}
+
+/* An estimation that has found both geometries; nobody has shown it the pictures. */
+static asj_estimation *prepare(asj_context *context, double shift, asj_geometry_options *options)
+{
+    asj_geometry_candidate list[2 * PLACES];
+    asj_estimation *e = asj_allocate_zero(&context->memory, 1, sizeof *e);
+    assert_non_null(e);
+    asj_geometry_options_init(options);
+    options->widths[0] = options->widths[1] = WIDTH;
+    options->heights[0] = options->heights[1] = HEIGHT;
+    make_candidates(shift, list);
+    e->context = context;
+    e->options = options;
+    e->focal_at = -1;
+    assert_int_equal(asj_pairs_create(context, list, 2 * PLACES, NULL, options, &e->set), ASJ_OK);
+    assert_true(asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch));
+    e->other = asj_allocate(&context->memory, 2 * PLACES, sizeof *e->other);
+    e->elsewhere = asj_allocate(&context->memory, 2 * PLACES, sizeof *e->elsewhere);
+    e->vote = asj_allocate(&context->memory, 2 * PLACES, 4 * sizeof *e->vote);
+    assert_true(e->other && e->elsewhere && e->vote);
+    e->finalists[e->count++] = shifted_by(0);
+    e->finalists[e->count++] = shifted_by(shift);
+    asj_probabilities(&e->set, &e->finalists[0].view, 1, &e->scratch.score, e->scratch.probability);
+    return e;
+}
+
+static void release(asj_context *context, asj_estimation *e)
+{
+    asj_pictures_free(&context->memory, e->pictures);
+    asj_adjust_scratch_free(&context->memory, &e->scratch);
+    asj_release(&context->memory, e->other);
+    asj_release(&context->memory, e->elsewhere);
+    asj_release(&context->memory, e->vote);
+    asj_pairs_free(&context->memory, &e->set);
+    asj_release(&context->memory, e);
+}
+
+static void test_partner_within_eight_pixels_is_no_other_one(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    static const struct {
+        double shift;
+        int32_t rival;
+    } cases[] = {{6, -1}, {7.9, -1}, {8.1, 1}, {TILE, 1}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        asj_geometry_options options;
+        asj_estimation *e = prepare(context, cases[k].shift, &options);
+        int32_t doubt = 0;
+        assert_int_equal(asj_strongest_rival(e, 0, &doubt), cases[k].rival);
+        assert_int_equal(doubt, 0);
+        if (cases[k].rival >= 0)
+            assert_true(asj_is_ambiguous(e, 0, cases[k].rival, doubt, PLACES));
+        release(context, e);
+    }
+}
+
+/* A wall of tiles whose grey levels differ by up to `contrast`, the second picture with another exposure. */
+static void paint(int32_t which, int32_t contrast, uint8_t *pixels)
+{
+    synth_random random;
+    int32_t grey[WIDTH / TILE * HEIGHT / TILE];
+    synth_random_seed(&random, 7);
+    for (size_t k = 0; k < sizeof grey / sizeof *grey; k++)
+        grey[k] = (int32_t)synth_random_between(&random, 100, 100 + contrast);
+    for (int32_t y = 0; y < HEIGHT; y++)
+        for (int32_t x = 0; x < WIDTH; x++) {
+            const int32_t line = x % TILE < 2 || y % TILE < 2, tile = grey[y / TILE * (WIDTH / TILE) + x / TILE];
+            pixels[y * WIDTH + x] = (uint8_t)((line ? 60 : tile) * (which ? 8 : 10) / 10);
+        }
+}
+
+/* Is the second geometry a rival when the pictures are looked at? Is the first one, when that one is called the best? */
+static void ask(asj_context *context, int32_t contrast, int32_t rivals[2])
+{
+    static uint8_t pixels[2][WIDTH * HEIGHT];
+    asj_pyramid pyramids[2];
+    asj_geometry_options options;
+    asj_estimation *e = prepare(context, TILE, &options);
+    for (int32_t k = 0; k < 2; k++) {
+        const asj_image image = {pixels[k], ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0};
+        paint(k, contrast, pixels[k]);
+        assert_int_equal(asj_pyramid_create(context, &image, 0.8, &pyramids[k]), ASJ_OK);
+    }
+    const asj_pyramid *of[2] = {&pyramids[0], &pyramids[1]};
+    e->pictures = asj_pictures_create(&context->memory, of, e->set.count);
+    assert_non_null(e->pictures);
+    for (int32_t best = 0; best < 2; best++) {
+        int32_t doubt;
+        rivals[best] = asj_strongest_rival(e, best, &doubt);
+    }
+    for (int32_t k = 0; k < 2; k++)
+        asj_pyramid_free(&context->memory, &pyramids[k]);
+    release(context, e);
+}
+
+static void test_pictures_tell_tiles_from_others(void **state)
+{
+    const unit_fixture *f = *state;
+    int32_t rivals[2];
+    ask(f->context, 60, rivals);
+    assert_int_equal(rivals[0], -1); /* what is shifted has other tiles */
+    assert_int_equal(rivals[1], 0);
+}
+
+static void test_pictures_of_like_tiles_say_nothing(void **state)
+{
+    const unit_fixture *f = *state;
+    int32_t rivals[2];
+    ask(f->context, 0, rivals);
+    assert_int_equal(rivals[0], 1);
+    assert_int_equal(rivals[1], 0);
+}
+
+/* The wrong one is in front: the right one takes its place. */
+static void test_wrong_one_in_front_is_struck_out(void **state)
+{
+    static uint8_t pixels[2][WIDTH * HEIGHT];
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_pyramid pyramids[2];
+    asj_geometry_options options;
+    asj_estimation *e = prepare(context, TILE, &options);
+    for (int32_t k = 0; k < 2; k++) {
+        const asj_image image = {pixels[k], ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, 0};
+        paint(k, 60, pixels[k]);
+        assert_int_equal(asj_pyramid_create(context, &image, 0.8, &pyramids[k]), ASJ_OK);
+    }
+    const asj_pyramid *of[2] = {&pyramids[0], &pyramids[1]};
+    e->pictures = asj_pictures_create(&context->memory, of, e->set.count);
+    e->finalists[1].evidence = 130;
+    assert_int_equal(asj_strike_out(e), ASJ_OK);
+    assert_int_equal(asj_estimation_best(e, ASJ_GEOMETRY_AUTO), 0);
+    assert_false(e->finalists[1].evidence > -HUGE_VAL);
+    for (int32_t k = 0; k < 2; k++)
+        asj_pyramid_free(&context->memory, &pyramids[k]);
+    release(context, e);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_partner_within_eight_pixels_is_no_other_one),
+        cmocka_unit_test(test_pictures_tell_tiles_from_others),
+        cmocka_unit_test(test_pictures_of_like_tiles_say_nothing),
+        cmocka_unit_test(test_wrong_one_in_front_is_struck_out),
+    };
+    return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
+}
