@@ -15,7 +15,8 @@ void asj_locate(const asj_context *context, const asj_frame *frame, const asj_de
 double asj_locate_most_move(const asj_detect_options *options, const asj_hypothesis *hypothesis);
 
 /* The least-squares meeting point of the branches' lines becomes the location; the offsets become those from there.
- * Returns 0, and changes nothing, when the lines are too parallel to say where they meet. */
-int asj_locate_meet(asj_hypothesis *hypothesis);
+ * Returns 0, and changes nothing, when the lines are too parallel to say where they meet, or, in coarse octaves and without the
+ * strip test, all but one of them too uncertain. */
+int asj_locate_meet(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis);
 
 #endif

@@ -84,7 +84,7 @@ void asj_refine(const asj_context *context, const asj_frame *frame, const asj_de
         return; /* that is done (search_step.c) */
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         follow_line(context, frame, hypothesis, &hypothesis->branches[i]);
-    asj_locate_meet(hypothesis);
+    asj_locate_meet(frame, options, hypothesis);
     asj_blurred_corner(frame, hypothesis);
 }
 
@@ -116,5 +116,5 @@ void asj_orient(const asj_context *context, const asj_frame *frame, const asj_de
         find_line(context, frame, hypothesis, branch);
         asj_turn_to_edge(context, frame, options, hypothesis, first_px(branch), fmin(last_px(branch), NEAR_PART / 2), branch);
     }
-    asj_locate_meet(hypothesis);
+    asj_locate_meet(frame, options, hypothesis);
 }

@@ -3,6 +3,8 @@
 #include "detect/locate.h"
 #include "unit_test.h"
 
+#include <string.h>
+
 enum { SIZE = 81 };
 
 typedef unit_fixture fixture;
@@ -43,6 +45,16 @@ static double cost(const asj_hypothesis *given, double x, double y)
     return sum;
 }
 
+static int meet(int32_t octave, asj_hypothesis *hypothesis)
+{
+    asj_frame frame;
+    asj_detect_options options;
+    memset(&frame, 0, sizeof frame);
+    frame.octave = octave;
+    asj_detect_options_init(&options);
+    return asj_locate_meet(&frame, &options, hypothesis);
+}
+
 /* No place around has a smaller cost, the offsets are those from the new place, and the variance that of the cost's curvature. */
 static void test_meet(void **state)
 {
@@ -59,7 +71,7 @@ static void test_meet(void **state)
         }
         const asj_hypothesis given = hypothesis_at(40.5, 31.25, 2 + n % 4, angles, offsets, variances);
         asj_hypothesis hypothesis = given;
-        if (!asj_locate_meet(&hypothesis)) {
+        if (!meet(1, &hypothesis)) {
             assert_memory_equal(&hypothesis, &given, sizeof hypothesis);
             continue;
         }
@@ -90,15 +102,26 @@ static void test_parallel(void **state)
     for (double turn = 0; turn < UNIT_PI; turn += 0.01) {
         const double angles[2] = {0.4, 0.4 + turn};
         asj_hypothesis hypothesis = hypothesis_at(10, 10, 2, angles, offsets, variances);
-        const int meets = asj_locate_meet(&hypothesis);
+        const int meets = meet(1, &hypothesis);
         /* det > 0.02 total^2, equal weights: sin^2(turn) / 4 > 0.02 */
         if (fabs(sin(turn) * sin(turn) / 4 - 0.02) > 1e-6)
             assert_int_equal(meets, sin(turn) * sin(turn) / 4 > 0.02);
     }
     asj_hypothesis one = hypothesis_at(10, 10, 1, offsets, offsets, variances);
     asj_hypothesis none = hypothesis_at(10, 10, 0, offsets, offsets, variances);
-    assert_false(asj_locate_meet(&one));
-    assert_false(asj_locate_meet(&none));
+    assert_false(meet(1, &one));
+    assert_false(meet(1, &none));
+}
+
+/* A clear edge and a faint one at a right angle: in the image itself they meet. */
+static void test_clear_and_faint(void **state)
+{
+    static const double angles[2] = {0.4, 0.4 + UNIT_PI / 2}, offsets[2] = {1, -1}, variances[2] = {0.001, 0.06};
+    asj_hypothesis hypothesis = hypothesis_at(10, 10, 2, angles, offsets, variances);
+    (void)state;
+    assert_false(meet(1, &hypothesis));
+    assert_true(meet(0, &hypothesis));
+    unit_near("distance", 0, 0, hypot(hypothesis.x - 10, hypothesis.y - 10), sqrt(2), 1e-9);
 }
 
 /* ---- from isotropic junctions ---- */
@@ -262,6 +285,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_meet),
         cmocka_unit_test(test_parallel),
+        cmocka_unit_test(test_clear_and_faint),
         cmocka_unit_test(test_start),
         cmocka_unit_test(test_isotropic_opening),
         cmocka_unit_test(test_corners),
