@@ -45,6 +45,19 @@ def test_segments(pair: tuple[asj.Features, asj.Features]) -> None:
         found.segments("all")
 
 
+def test_stretched_images(scene: Scene) -> None:
+    second = panels(shift=(6, 4))
+    plain, by_two = asj.match_images(scene, second), asj.match(asj.detect(scene), asj.detect(second))
+    assert np.array_equal(plain.matches, by_two.matches) and plain.features1 is None
+    for stretch in (2, (1.0, 1.5)):
+        found = asj.match_images(scene, second, stretch=stretch)
+        assert len(found) >= 25
+        assert np.mean(np.linalg.norm(found.xy2 - found.xy1 - (6, 4), axis=1) < 1) > 0.9
+        assert np.array_equal(found.xy1[:, 0], found.l_junctions1["x"][found.l_indices[:, 0]])
+    with pytest.raises(asj.OptionError, match="stretch"):
+        asj.match_images(scene, second, stretch=0.5)
+
+
 def test_nothing_in_common(scene: Scene) -> None:
     assert len(asj.match(asj.detect(scene), asj.detect(np.full((50, 60), 9, np.uint8)))) == 0
 

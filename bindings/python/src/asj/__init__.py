@@ -25,7 +25,7 @@ from .errors import (
 from .features import Features, detect, load_features
 from .geometry import Geometry
 from .images import read as read_image
-from .matches import Matches, match
+from .matches import Matches, match, match_images
 from .options import detect_options, match_options
 from .plot import plot, plot_matches
 from .vanishing import VanishingPoints, vanishing_points
@@ -35,5 +35,5 @@ __version__ = errors.text(_lib.asj_version_string())
 __all__ = [
     "ArgumentError", "Cancelled", "Context", "DeviceError", "Error", "Features", "FormatError", "Geometry", "ImageError",
     "LimitError", "Matches", "OptionError", "OutOfMemoryError", "VanishingPoints", "detect", "detect_options", "load_features",
-    "match", "match_options", "plot", "plot_matches", "read_image", "set_current", "vanishing_points",
+    "match", "match_images", "match_options", "plot", "plot_matches", "read_image", "set_current", "vanishing_points",
 ]  # fmt: skip

@@ -7,9 +7,9 @@ import warnings
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from . import arrays
+from . import arrays, images
 from ._native import ffi, lib
 from .context import Context, current
 from .errors import ArgumentError
@@ -17,7 +17,7 @@ from .features import Features, detect  # noqa: F401 (detect: the example of mat
 from .geometry import Camera, Geometry
 from .geometry import fill as fill_geometry
 from .geometry import read as read_geometry
-from .options import MATCHER
+from .options import DETECTOR, MATCHER
 
 _ENDS = {"cut": lib.ASJ_END_CUT, "inner": lib.ASJ_END_INNER, "both": lib.ASJ_END_BOTH}
 
@@ -28,7 +28,11 @@ class Matches:
     #: (K,) records of the library's asj_junction_match
     matches: NDArray[Any]
 
-    def __init__(self, result: Any, features1: Features, features2: Features) -> None:
+    #: what was matched; None where :func:`asj.match_images` found its own junctions
+    features1: Features | None
+    features2: Features | None
+
+    def __init__(self, result: Any, features1: Features | None, features2: Features | None) -> None:
         self._result = result
         self.features1, self.features2 = features1, features2
         self.matches = arrays.view(result.matches, result.match_count, "asj_junction_match", result)
@@ -43,7 +47,7 @@ class Matches:
 
     @property
     def indices(self) -> NDArray[np.uint32]:
-        """(K, 2) indices of the junctions in features1 and features2."""
+        """(K, 2) indices of the junctions in features1 and features2; of no use without these."""
         return np.stack([self.matches["junction1"], self.matches["junction2"]], axis=1)
 
     @property
@@ -157,6 +161,37 @@ def match(
     one, two = features1.described(record, context), features2.described(record, context)
     context.call(lib.asj_match_features, one, two, record, place)
     return Matches(ffi.gc(place[0], _free), features1, features2)
+
+
+def match_images(
+    image1: ArrayLike, image2: ArrayLike, *, stretch: float | tuple[float, float] = 1.0, geometry: str = "none",
+    camera1: Camera | None = None, camera2: Camera | None = None, find_focal: bool = False, context: Context | None = None,
+    **options: object,
+) -> Matches:  # fmt: skip
+    """Detects in both images and matches them, enlarged or stretched before; everything comes in pixels of the images as they are.
+
+    stretch    a factor of 1 to 8, or one for x and one for y. Photographs of up to some megapixels have about three times the matches
+               at 2, in three to eight times the time; what is seen at a glancing angle, like things on a table, matches at (1, 3)
+    options    those of the matcher; the others as for :func:`asj.match`
+
+    >>> import numpy as np
+    >>> random = np.random.default_rng(1)
+    >>> wall = np.kron(random.integers(40, 220, (9, 12)), np.ones((40, 40))).astype(np.uint8)
+    >>> found = match_images(wall[:300, :400], wall[20:320, 30:430], stretch=1.5)
+    >>> np.median(found.xy1 - found.xy2, axis=0).round(1).tolist()
+    [30.0, 20.0]
+    """
+    views = (images.view(image1, 0.0), images.view(image2, 0.0))
+    x, y = stretch if isinstance(stretch, tuple) else (stretch, stretch)
+    factors = ffi.new("asj_stretch *", {"x": float(x), "y": float(y)})
+    record = MATCHER.fill("default", options)
+    cameras = (camera1, camera1 if camera2 is None else camera2)
+    fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in views], find_focal)
+    place = ffi.new("asj_match_result **")
+    (context or current()).call(
+        lib.asj_match_images, views[0].pointer, views[1].pointer, factors, DETECTOR.fill("match", {}), record, place
+    )
+    return Matches(ffi.gc(place[0], _free), None, None)
 
 
 def _free(pointer: Any) -> None:
