@@ -33,7 +33,9 @@ void cli_timing_match(const char *name, const asj_context *context, const asj_ma
 {
     cli_note("%s: %lu and %lu L-junctions, %s", name, (unsigned long)result->l_junction_count1,
              (unsigned long)result->l_junction_count2, backend(context, result->backend));
-    for (int32_t stage = ASJ_STAGE_PATCHES; stage <= ASJ_STAGE_ASSIGN; stage++)
+    /* those of the detector too where it ran in the same call */
+    const int32_t first = result->stage_ms[ASJ_STAGE_GRADIENT] > 0 ? ASJ_STAGE_GRADIENT : ASJ_STAGE_PATCHES;
+    for (int32_t stage = first; stage <= ASJ_STAGE_ASSIGN; stage++)
         print_row(asj_stage_name(stage), result->stage_ms[stage], result->total_ms);
     print_row("matching", result->total_ms, result->total_ms);
 }

@@ -24,6 +24,7 @@ export CCACHE_BASEDIR
 
 # The tables of the null model, as src/detect/meson.build makes them: by the machine that builds.
 cc -std=c99 -O2 -ffp-contract=off -Iinclude -Isrc src/detect/nfa_store.c src/detect/nfa_fill_*.c src/detect/nfa_gauss.c \
+    src/detect/nfa_sector.c \
     -o "$work/nfa-store" -lm && "$work/nfa-store" > "$work/nfa_stored.new" || exit 1
 cmp -s "$work/nfa_stored.new" "$work/nfa_stored.c" || mv "$work/nfa_stored.new" "$work/nfa_stored.c"
 detect=$(find "$root/src/detect" -name '*.c' ! -name 'nfa_store.c' ! -name 'nfa_fill_*.c' ! -name 'nfa_gauss.c')

@@ -15,6 +15,8 @@
 #include <math.h>
 #include <string.h>
 
+#define DETECTION 0.3 /* of the progress, for each image */
+
 /* One of the images. */
 typedef struct view {
     const asj_image *image;
@@ -71,6 +73,20 @@ static asj_status match(asj_context *context, const view v[2], const asj_match_o
     return status;
 }
 
+static void begin_part(asj_context *context, double from, double part)
+{
+    context->progress_from = from;
+    context->progress_part = part;
+}
+
+/* Those of the detections, too. */
+static void add_times(asj_match_result *result, const view v[2], double start)
+{
+    for (int32_t s = 0; s < ASJ_STAGE_COUNT; s++)
+        result->stage_ms[s] += v[0].found->stage_ms[s] + v[1].found->stage_ms[s];
+    result->total_ms = asj_clock_ms() - start;
+}
+
 static asj_status check(asj_context *context, const asj_stretch *stretch, const asj_match_options *options)
 {
     if (!(stretch->x >= 1 && stretch->x <= ASJ_MOST_STRETCH && stretch->y >= 1 && stretch->y <= ASJ_MOST_STRETCH))
@@ -99,18 +115,25 @@ asj_status asj_match_images(asj_context *context, const asj_image *image1, const
     wanted = wanted ? wanted : &as_it_is;
     options = options ? options : &defaults;
     detect_options = detect_options ? detect_options : &for_matching;
-    asj_memory memory = {.allocator = context->memory.allocator};
+    asj_memory *memory = &context->memory;
+    const double start = asj_clock_ms();
     view views[2] = {{.image = image1}, {.image = image2}};
     asj_status status = check(context, wanted, options);
     for (int32_t n = 0; n < 2 && status == ASJ_OK; n++)
-        status = stretch(context, &memory, wanted, &views[n]);
-    for (int32_t n = 0; n < 2 && status == ASJ_OK; n++)
-        status = detect(context, &memory, detect_options, &views[n]);
+        status = stretch(context, memory, wanted, &views[n]);
+    for (int32_t n = 0; n < 2 && status == ASJ_OK; n++) {
+        begin_part(context, n * DETECTION, DETECTION);
+        status = detect(context, memory, detect_options, &views[n]);
+    }
+    begin_part(context, 2 * DETECTION, 1 - 2 * DETECTION);
     if (status == ASJ_OK)
         status = match(context, views, options, result);
+    begin_part(context, 0, 0);
+    if (status == ASJ_OK)
+        add_times(*result, views, start);
     for (int32_t n = 0; n < 2; n++) {
-        asj_release(&memory, views[n].pixels);
-        asj_release(&memory, views[n].junctions);
+        asj_release(memory, views[n].pixels);
+        asj_release(memory, views[n].junctions);
         asj_detection_free(&views[n].found);
     }
     return status;

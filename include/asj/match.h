@@ -173,7 +173,8 @@ typedef struct asj_stretch {
 /* From two images to their matches: asj_detect() and asj_match(), on both images stretched. Enlarged twice (2, 2), photographs of
  * up to some megapixels have about three times the matches, in three to eight times the time; a surface that is seen at a glancing
  * angle, like a magazine on a table, matches stretched across it (1, 3) where it did not at all (tests/accuracy/README.md).
- * Everything in the result is in pixels of the images as they are. Numbers of junctions are those of the detector in this call.
+ * Everything in the result is in pixels of the images as they are. Numbers of junctions are those of the detector in this call,
+ * and the times those of all of it.
  *
  * stretch          NULL = as they are
  * detect_options   NULL = preset `match`

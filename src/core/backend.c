@@ -19,7 +19,7 @@ asj_status asj_backend_prepare(asj_context *context)
 
 void asj_backend_begin(asj_context *context)
 {
-    context->progress = 0;
+    context->progress = context->progress_part > 0 ? context->progress_from : 0;
     asj_memory_open(&context->memory);
 }
 

@@ -96,8 +96,9 @@ asj_status asj_progress(asj_context *context, int32_t stage, double done)
 {
     if (!context->options.progress)
         return ASJ_OK;
-    if (done > context->progress)
-        context->progress = done;
+    const double whole = context->progress_part > 0 ? context->progress_from + context->progress_part * done : done;
+    if (whole > context->progress)
+        context->progress = whole;
     context->asked_ms = asj_clock_ms();
     context->in_hook++;
     const int32_t stop = context->options.progress(context->options.progress_user, stage, context->progress);

@@ -36,6 +36,8 @@ struct asj_context {
     asj_kept tables;              /* tables.h: what the operations above point to */
     asj_kept detector;            /* detect/detect.h: scratch and tables of the detector */
     double progress;              /* last value reported */
+    double progress_from, progress_part; /* where the whole stands when a call begins that is a part of it, and how large that part
+                                          * is; 0, 0: the call is the whole */
     double asked_ms;              /* when the caller was last asked whether to go on */
     int32_t in_hook;              /* > 0 while a function of the caller's runs (log, progress, dump, kernel cache) */
     int32_t device_failures;      /* backend.h */

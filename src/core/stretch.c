@@ -6,7 +6,7 @@
  * of floats, products that are exact in double precision. So the copy is the same on every machine and with any number of
  * threads. */
 #include "stretch.h"
-#include "threads.h"
+#include "watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,6 +27,7 @@ typedef struct job {
     int32_t width;            /* of the copy */
     const tap *columns, *rows;
     char *pixels;
+    asj_watch *watch;
 } job;
 
 static void fill_taps(tap *taps, int32_t wanted, int32_t there, int32_t bytes)
@@ -81,7 +82,7 @@ static void stretch_rows(const void *data, const asj_part *part)
 {
     const job *j = data;
     const int32_t bytes = j->channels * j->sample;
-    for (int64_t y = part->first; y < part->end; y++) {
+    for (int64_t y = part->first; y < part->end && !asj_watch_stops(j->watch, part); y++) {
         const tap *row = &j->rows[y];
         const char *upper = (const char *)j->image->data + row->first * j->stride;
         const char *lower = (const char *)j->image->data + row->second * j->stride;
@@ -109,6 +110,7 @@ asj_status asj_stretch_image(asj_context *context, asj_memory *memory, const asj
                              asj_image *stretched, void **pixels)
 {
     job j = {.image = image, .width = width};
+    asj_watch watch;
     describe(&j, image->format);
     const int32_t bytes = j.channels * j.sample;
     j.stride = image->stride ? image->stride : (ptrdiff_t)image->width * bytes;
@@ -120,16 +122,20 @@ asj_status asj_stretch_image(asj_context *context, asj_memory *memory, const asj
         j.columns = columns;
         j.rows = rows;
         j.pixels = *pixels;
+        asj_watch_start(&watch, context, ASJ_STAGE_GRADIENT);
+        j.watch = &watch;
         asj_parallel(context, asj_threads_for(context, (int64_t)width * height, LEAST_PIXELS), height, 0, stretch_rows, &j);
         *stretched = (asj_image){*pixels, image->format, width, height, image->white, 0};
     }
-    const int good = columns && rows && *pixels;
+    const asj_status status =
+        columns && rows && *pixels ? asj_watch_end(&watch)
+                                   : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for an image of %d x %d pixels", (int)width,
+                                              (int)height);
     asj_release(memory, columns);
     asj_release(memory, rows);
-    if (!good) {
+    if (status != ASJ_OK) {
         asj_release(memory, *pixels);
         *pixels = NULL;
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for an image of %d x %d pixels", (int)width, (int)height);
     }
-    return ASJ_OK;
+    return status;
 }

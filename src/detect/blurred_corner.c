@@ -74,7 +74,7 @@ static void set_equations(const asj_wedge_sums *sums, double h, equations *e)
     }
     e->error = sums->total - h * (2 * sums->seen[STEP] - h * with_step[STEP]);
     e->total = sums->total;
-    e->weight = sums->weight;
+    e->weight = 2 * sums->weight; /* two differences a pixel */
 }
 
 /* The Cholesky factor of the matrix in its place; 0 when there is none. */

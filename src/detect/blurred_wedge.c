@@ -78,7 +78,7 @@ static inline float is_below(float a, float b)
     return 0.5f + copysignf(0.5f, b - a);
 }
 
-/* exp(-z^2 / 2) for |z| < NOTHING, to 2e-6 of itself, and 0 beyond: Taylor's series at an eighth, squared three times. */
+/* exp(-z^2 / 2) for |z| < NOTHING, to 8e-6 of itself, and 0 beyond: Taylor's series at an eighth, squared three times. */
 static inline float bell(float z)
 {
     const float square = z * z, inside = is_below(square, NOTHING * NOTHING), y = -(1.0f / 16) * square * inside;

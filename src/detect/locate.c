@@ -5,7 +5,8 @@
  * The same fits unmask what the isotropic test takes for junctions along single edges, where the sectors of a thick or bent edge
  * seem to open: after the fit the branches are parallel, or meet far away. A junction is rejected when
  *   - no two branches open by at least minimum_opening (with some slack) and at most pi minus that,
- *   - the smallest singular direction of the lines is not determined (determinant of the weighted normal matrix), or
+ *   - the smallest singular direction of the lines is not determined (determinant of the normal matrix, weighted but in the image
+ *     itself, where a clear and a faint edge may meet), or
  *   - it moves farther than max_move, or somewhat more at sharp corners. */
 #include "locate.h"
 #include "core/angle.h"

@@ -18,6 +18,7 @@
 #include "motions.h"
 #include "posterior.h"
 #include "small_matrix.h"
+#include "stop.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -141,7 +142,7 @@ int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
     int32_t second = -1;
     const asj_model *m = &e->finalists[best];
     look_at_best(e, best);
-    for (int32_t n = 0; n < e->count; n++) {
+    for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++) {
         const asj_model *rival = &e->finalists[n];
         if (n == best || !(rival->evidence > -HUGE_VAL) || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
             continue;
@@ -171,7 +172,7 @@ static int32_t preferred_to(asj_estimation *e, int32_t best)
     const double least = log10(e->options->epsilon);
     int32_t found = -1;
     look_at_best(e, best);
-    for (int32_t n = 0; n < e->count; n++) {
+    for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++) {
         const asj_model *m = &e->finalists[n];
         if (n == best || (found >= 0 && m->evidence <= e->finalists[found].evidence) || asj_estimation_log10_nfa(e, m) > least)
             continue;
@@ -184,12 +185,12 @@ static int32_t preferred_to(asj_estimation *e, int32_t best)
     return found;
 }
 
-/* All with more evidence than number `chosen` that the colours contradict in its favour. */
+/* All with more evidence than number `chosen` that colours or pictures contradict in its favour. */
 static void strike(asj_estimation *e, int32_t chosen)
 {
     const asj_model *c = &e->finalists[chosen];
     look_at_best(e, chosen);
-    for (int32_t n = 0; n < e->count; n++) {
+    for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++) {
         asj_model *m = &e->finalists[n];
         if (!(m->evidence > c->evidence))
             continue;
@@ -208,7 +209,7 @@ static void strike_rivals(asj_estimation *e)
     if (best < 0)
         return;
     look_at_best(e, best);
-    for (int32_t n = 0; n < e->count; n++)
+    for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++)
         if (n != best && n != e->focal_at && e->finalists[n].evidence > -HUGE_VAL) {
             const double contrary = contradiction(e, &e->finalists[n]);
             if (contrary > CONTRARY_SEEN)

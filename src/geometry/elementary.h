@@ -3,7 +3,7 @@
  * and with the same bits whatever the C library.
  *
  * exp(x) = 2^k exp(r), k the integer next to x / log 2, |r| <= log(2) / 2 and the series of exp up to r^11 / 11! (the rest is below
- * 7e-15 of it). log 2 has two parts, the first with so few bits that k times it is exact (Cody and Waite 1980).
+ * 9e-15 of it). log 2 has two parts, the first with so few bits that k times it is exact (Cody and Waite 1980).
  *
  * log(x) = k log 2 + log m, m between sqrt(1/2) and sqrt(2), and log m = 2 (f + f^3/3 + f^5/5 ...), f = (m - 1) / (m + 1), up to
  * f^17 / 17 (the rest is below 2e-15). */

@@ -35,7 +35,6 @@
 #define SAMPLES 3        /* along the side of a cell */
 #define BLOCK 2          /* cells along a block */
 #define DARK 4.0         /* grey levels: noise of what is nearly black */
-#define LEVEL_ONE 128.0
 #define FLOOR 0.02       /* of brightness: smaller differences say nothing */
 #define ROUNDS 8
 #define LEAST_SLOPE 0.7
@@ -211,7 +210,7 @@ static int32_t compare_cell(const asj_pictures *pictures, const double h[9], dou
                            SAMPLES * SAMPLES, level);
         for (int32_t n = 0; n < SAMPLES * SAMPLES; n++)
             sum += level[n];
-        grey[side] = log(sum / (SAMPLES * SAMPLES * LEVEL_ONE) + DARK);
+        grey[side] = log(sum / (SAMPLES * SAMPLES * ASJ_GRAY_ONE) + DARK);
     }
     seen->x2 = middle[0];
     seen->y2 = middle[1];

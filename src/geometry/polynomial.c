@@ -14,6 +14,8 @@
 
 #define STEPS 60
 #define DEEPEST 32 /* halvings: two roots nearer than 2^-32 are taken for one that the curve only touches */
+#define SAME_ROOT 1e-12
+#define NOTHING 1e-15 /* of the largest coefficient, which is 1 */
 #define ROOT_ERROR 1e-13
 
 /* A piece of [0, 1] and its coefficients. */
@@ -109,6 +111,8 @@ static int32_t roots_to_one(const double *c, int32_t degree, double *roots)
     to_bernstein(c, degree, stack[0].b);
     if (stack[0].b[0] == 0)
         roots[count++] = 0;
+    if (fabs(stack[0].b[degree]) < NOTHING) /* a root at 1, rounded: else it would be taken for one of those before it */
+        stack[0].b[degree] = 0;
     while (depth > 0 && count < degree) {
         piece *p = &stack[depth - 1];
         const double first = p->b[0], last = p->b[degree];
@@ -144,6 +148,15 @@ static int32_t roots_inside(const double *c, int32_t degree, double *roots)
     return count;
 }
 
+/* A root beside 1 or -1 is found by both passes, which round it differently. */
+static int is_known(const double *roots, int32_t count, double root)
+{
+    for (int32_t k = 0; k < count; k++)
+        if (fabs(roots[k] - root) <= SAME_ROOT)
+            return 1;
+    return 0;
+}
+
 int32_t asj_polynomial_roots(const double *c, int32_t degree, double *roots)
 {
     double scaled[ASJ_POLYNOMIAL_DEGREE + 1], reversed[ASJ_POLYNOMIAL_DEGREE + 1], found[ASJ_POLYNOMIAL_DEGREE], largest = 0;
@@ -158,9 +171,9 @@ int32_t asj_polynomial_roots(const double *c, int32_t degree, double *roots)
         reversed[degree - k] = scaled[k];
     }
     int32_t count = roots_inside(scaled, degree, roots);
-    const int32_t outside = roots_inside(reversed, degree, found);
+    const int32_t inside = count, outside = roots_inside(reversed, degree, found);
     for (int32_t k = 0; k < outside && count < degree; k++)
-        if (fabs(found[k]) > 1e-9 && fabs(found[k]) < 1)
+        if (fabs(found[k]) > 1e-9 && fabs(found[k]) < 1 && !is_known(roots, inside, 1 / found[k]))
             roots[count++] = 1 / found[k];
     return count;
 }

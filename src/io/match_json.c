@@ -49,6 +49,8 @@ static json_t *numbers(const double *values, int count)
 static void put_head(asj_json_output *json, const asj_match_report *report, const asj_segment_list *segments)
 {
     const asj_match_result *result = report->result;
+    /* asj_match_images() detects, too */
+    const int32_t first = result->stage_ms[ASJ_STAGE_GRADIENT] > 0 ? ASJ_STAGE_GRADIENT : ASJ_STAGE_PATCHES;
     json_t *counts = json_pack("{s:I, s:I, s:I, s:I}", "l_junctions1", (json_int_t)result->l_junction_count1, "l_junctions2",
                                (json_int_t)result->l_junction_count2, "candidates", (json_int_t)result->candidates, "matches",
                                (json_int_t)result->match_count);
@@ -64,7 +66,7 @@ static void put_head(asj_json_output *json, const asj_match_report *report, cons
     asj_json_put(json, ",\n\"backend\": ", json_string(asj_json_backend(result->backend)), 0);
     put_options(json, report);
     asj_json_put(json, ",\n\"timing\": ",
-                 asj_json_timing(result->total_ms, result->stage_ms, ASJ_STAGE_PATCHES, ASJ_STAGE_ASSIGN), JSON_REAL_PRECISION(15));
+                 asj_json_timing(result->total_ms, result->stage_ms, first, ASJ_STAGE_ASSIGN), JSON_REAL_PRECISION(15));
     asj_json_put(json, ",\n\"counts\": ", counts, 0);
 }
 

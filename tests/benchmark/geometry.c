@@ -102,6 +102,8 @@ static asj_status make_priors(steps *s)
     }
     s->run.candidates.count = kept;
     s->hints.colours = s->run.image[0]->colours && s->run.image[1]->colours ? s->colours : NULL;
+    for (int32_t v = 0; v < 2; v++)
+        s->hints.pictures[v] = &s->run.image[v]->pyramid;
     return status;
 }
 

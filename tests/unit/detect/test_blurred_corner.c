@@ -71,6 +71,43 @@ static void test_found(void **state)
         }
 }
 
+/* Errors are about as large as they are told to be: over draws of noise the mean square of the angles' errors, and of the
+ * location's along either axis, is half of the variance told. (Differences share pixels, which the variance leaves out.) */
+static void test_errors_are_as_told(void **state)
+{
+    enum { DRAWS = 120 };
+    double square[2] = {0, 0}, told[2] = {0, 0};
+    unit_counter counter;
+    asj_context *context = unit_context(&counter, 1);
+    (void)state;
+    for (uint64_t seed = 1; seed <= DRAWS; seed++) {
+        const double opening = 1.5;
+        synth_scene scene;
+        asj_frame frame;
+        draw(30, opening, &scene);
+        const int32_t width = scene.width, height = scene.height;
+        uint8_t *pixels = unit_picture(&scene, 2, 2, seed);
+        const asj_image image = unit_gray8(pixels, width, height);
+        memset(&frame, 0, sizeof frame);
+        unit_frame(context, &image, NULL, &frame);
+        frame.octave = 1;
+        asj_hypothesis h = start_of(30, opening, 2);
+        assert_int_equal(asj_blurred_corner(&frame, &h), 1);
+        square[0] += (pow(h.x - 30.3, 2) + pow(h.y - 28.6, 2)) / 2;
+        told[0] += h.location_variance;
+        for (int i = 0; i < 2; i++) {
+            square[1] += pow(h.branches[i].angle - 0.2 - i * opening, 2) / 2;
+            told[1] += h.branches[i].angle_variance / 2;
+        }
+        asj_frame_free(&context->memory, &frame);
+        free(pixels);
+    }
+    unit_context_free(&counter, &context);
+    print_message("mean square over variance told: location %.2f, angles %.2f\n", square[0] / told[0], square[1] / told[1]);
+    for (int k = 0; k < 2; k++)
+        assert_true(square[k] > 0.4 * told[k] && square[k] < told[k]);
+}
+
 /* It does not matter which branch comes first. */
 static void test_order(void **state)
 {
@@ -108,6 +145,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_found),
+        cmocka_unit_test(test_errors_are_as_told),
         cmocka_unit_test(test_order),
         cmocka_unit_test(test_left_alone),
     };

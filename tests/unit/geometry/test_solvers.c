@@ -158,6 +158,11 @@ static void roots_of_products(void **state)
             unit_near("root", i, r, nearest, 0, 1e-6);
         }
     }
+    const double around[4] = {1.5, -1, -1.5, 1}; /* (x - 1)(x + 1)(x - 1.5): beside 1 and -1 both halves of the line look */
+    double three[3] = {0, 0, 0};
+    assert_int_equal(asj_polynomial_roots(around, 3, three), 3);
+    unit_near("sum of the roots", 0, 0, three[0] + three[1] + three[2], 1.5, 1e-9);
+    unit_near("their product", 0, 0, three[0] * three[1] * three[2], -1.5, 1e-9);
     const double none[3] = {1, 0, 1}, bad[3] = {1, NAN, 1}, zero[3] = {0, 0, 0};
     double found[2];
     assert_int_equal(asj_polynomial_roots(none, 2, found), 0);

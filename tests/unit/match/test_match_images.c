@@ -312,6 +312,56 @@ static void what_cannot_be_is_refused(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* What the caller is told, and when it says stop. */
+typedef struct listener {
+    double last;
+    int falls, calls, stop_at;
+} listener;
+
+static int32_t listen(void *user, int32_t stage, double done)
+{
+    listener *l = user;
+    (void)stage;
+    l->falls += done < l->last || done > 1;
+    l->last = done;
+    return ++l->calls == l->stop_at;
+}
+
+/* Over the whole call, and never back; stopped anywhere, there is no result and nothing is lost. */
+static void progress_never_falls_and_the_caller_may_stop(void **state)
+{
+    const pages *p = *state;
+    const asj_stretch stretch = {1, 2};
+    listener l = {0};
+    int all = 0;
+    for (int n = 0; n == 0 || n * 9 < all; n++) {
+        unit_counter counter = {0};
+        asj_context_options options;
+        asj_context *context = NULL;
+        asj_match_result *r = NULL;
+        asj_context_options_init(&options);
+        options.allocator = (asj_allocator){unit_allocate, unit_release, &counter};
+        options.threads = 1;
+        options.progress = listen;
+        options.progress_user = &l;
+        l = (listener){.stop_at = n * 9};
+        assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+        const asj_status status = asj_match_images(context, &p->images[0], &p->images[1], &stretch, NULL, NULL, &r);
+        assert_int_equal(l.falls, 0);
+        if (n == 0) {
+            assert_int_equal(status, ASJ_OK);
+            unit_near("at the end", 0, 0, l.last, 1, 1e-9);
+            assert_true(r->stage_ms[ASJ_STAGE_CANDIDATES] > 0 && r->total_ms > r->stage_ms[ASJ_STAGE_CANDIDATES]);
+            all = l.calls;
+        } else {
+            assert_true(status == ASJ_ERROR_CANCELLED || (status == ASJ_OK && l.calls < l.stop_at)); /* the clock asks, too */
+        }
+        asj_match_result_free(&r);
+        unit_context_free(&counter, &context);
+    }
+    assert_true(all > 20);
+}
+
 static void every_allocation_may_fail(void **state)
 {
     static const uint8_t dark[24 * 20];
@@ -343,6 +393,7 @@ int main(void)
         cmocka_unit_test(a_pose_is_found_in_enlarged_images),
         cmocka_unit_test(matrices_are_taken_back),
         cmocka_unit_test(what_cannot_be_is_refused),
+        cmocka_unit_test(progress_never_falls_and_the_caller_may_stop),
         cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
