@@ -48,7 +48,7 @@ def test_segments(pair: tuple[asj.Features, asj.Features]) -> None:
 def test_stretched_images(scene: Scene) -> None:
     second = panels(shift=(6, 4))
     plain, by_two = asj.match_images(scene, second), asj.match(asj.detect(scene), asj.detect(second))
-    assert np.array_equal(plain.matches, by_two.matches) and plain.features1 is None
+    assert np.array_equal(plain.matches, by_two.matches) and not hasattr(plain, "features1")
     for stretch in (2, (1.0, 1.5)):
         found = asj.match_images(scene, second, stretch=stretch)
         assert len(found) >= 25

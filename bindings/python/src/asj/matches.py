@@ -28,13 +28,8 @@ class Matches:
     #: (K,) records of the library's asj_junction_match
     matches: NDArray[Any]
 
-    #: what was matched; None where :func:`asj.match_images` found its own junctions
-    features1: Features | None
-    features2: Features | None
-
-    def __init__(self, result: Any, features1: Features | None, features2: Features | None) -> None:
-        self._result = result
-        self.features1, self.features2 = features1, features2
+    def __init__(self, result: Any, features: tuple[Features, Features] | None) -> None:
+        self._result, self._features = result, features
         self.matches = arrays.view(result.matches, result.match_count, "asj_junction_match", result)
         self._l1 = arrays.view(result.l_junctions1, result.l_junction_count1, "asj_l_junction", result)
         self._l2 = arrays.view(result.l_junctions2, result.l_junction_count2, "asj_l_junction", result)
@@ -44,6 +39,21 @@ class Matches:
 
     def __repr__(self) -> str:
         return f"<asj.Matches: {len(self)}>"
+
+    def _both(self) -> tuple[Features, Features]:
+        if self._features is None:
+            raise AttributeError("matches of asj.match_images() have no features: it finds junctions of its own")
+        return self._features
+
+    @property
+    def features1(self) -> Features:
+        """What was matched, of the first image; matches of :func:`asj.match_images` have none."""
+        return self._both()[0]
+
+    @property
+    def features2(self) -> Features:
+        """The same of the second image."""
+        return self._both()[1]
 
     @property
     def indices(self) -> NDArray[np.uint32]:
@@ -160,7 +170,7 @@ def match(
     place = ffi.new("asj_match_result **")
     one, two = features1.described(record, context), features2.described(record, context)
     context.call(lib.asj_match_features, one, two, record, place)
-    return Matches(ffi.gc(place[0], _free), features1, features2)
+    return Matches(ffi.gc(place[0], _free), (features1, features2))
 
 
 def match_images(
@@ -191,7 +201,7 @@ def match_images(
     (context or current()).call(
         lib.asj_match_images, views[0].pointer, views[1].pointer, factors, DETECTOR.fill("match", {}), record, place
     )
-    return Matches(ffi.gc(place[0], _free), None, None)
+    return Matches(ffi.gc(place[0], _free), None)
 
 
 def _free(pointer: Any) -> None:
