@@ -22,7 +22,7 @@ typedef struct view {
     const asj_image *image;
     asj_image stretched;
     void *pixels;
-    asj_scaling by;
+    asj_stretch by;
     asj_detection *found;
     asj_junction *junctions; /* with octaves that begin at the image's size */
 } view;
@@ -30,7 +30,7 @@ typedef struct view {
 static asj_status stretch(asj_context *context, asj_memory *memory, const asj_stretch *wanted, view *v)
 {
     v->stretched = *v->image;
-    v->by = (asj_scaling){1, 1};
+    v->by = (asj_stretch){1, 1};
     const asj_status status = asj_image_check(context, v->image);
     if (status != ASJ_OK || (wanted->x == 1 && wanted->y == 1))
         return status;
@@ -38,7 +38,7 @@ static asj_status stretch(asj_context *context, asj_memory *memory, const asj_st
     if (width > ASJ_MAX_SIDE || height > ASJ_MAX_SIDE || width * height > ASJ_MAX_PIXELS)
         return asj_fail(context, ASJ_ERROR_LIMIT, "an image of %d x %d pixels cannot be stretched to %.0f x %.0f",
                         (int)v->image->width, (int)v->image->height, width, height);
-    v->by = (asj_scaling){width / v->image->width, height / v->image->height};
+    v->by = (asj_stretch){width / v->image->width, height / v->image->height};
     return asj_stretch_image(context, memory, v->image, (int32_t)width, (int32_t)height, &v->stretched, &v->pixels);
 }
 
@@ -61,7 +61,7 @@ static asj_status detect(asj_context *context, asj_memory *memory, const asj_det
 
 static asj_status match(asj_context *context, const view v[2], const asj_match_options *options, asj_match_result **result)
 {
-    const asj_scaling by[2] = {v[0].by, v[1].by};
+    const asj_stretch by[2] = {v[0].by, v[1].by};
     asj_match_options stretched = *options;
     for (int32_t n = 0; n < 2; n++)
         if (options->geometry.cameras[n].fx > 0)

@@ -137,6 +137,15 @@ static void look_at_best(asj_estimation *e, int32_t best)
     look_at(e, &e->finalists[best], e->scratch.probability, 0);
 }
 
+/* How much of the matches contradicts the other geometry; where pictures decide, they are looked at. */
+static double compare_with(asj_estimation *e, const asj_model *other)
+{
+    const double contrary = contradiction(e, other);
+    if (contrary > CONTRARY_SEEN)
+        look_at(e, other, e->other, 1);
+    return contrary;
+}
+
 int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
 {
     int32_t second = -1;
@@ -146,9 +155,7 @@ int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt)
         const asj_model *rival = &e->finalists[n];
         if (n == best || !(rival->evidence > -HUGE_VAL) || (second >= 0 && rival->evidence <= e->finalists[second].evidence))
             continue;
-        const double contrary = contradiction(e, rival), share = asj_estimation_log10_nfa(e, rival) / to_compare(e, m);
-        if (contrary > CONTRARY_SEEN)
-            look_at(e, rival, e->other, 1);
+        const double contrary = compare_with(e, rival), share = asj_estimation_log10_nfa(e, rival) / to_compare(e, m);
         const int32_t doubtful = against(e, e->other, e->scratch.probability, 1, contrary) > DOUBT;
         if (contrary > (doubtful ? CONTRARY_ALIKE : least_contradiction(m, rival, share)) &&
             !(against(e, e->scratch.probability, e->other, 0, contrary) > 1)) {
@@ -176,9 +183,7 @@ static int32_t preferred_to(asj_estimation *e, int32_t best)
         const asj_model *m = &e->finalists[n];
         if (n == best || (found >= 0 && m->evidence <= e->finalists[found].evidence) || asj_estimation_log10_nfa(e, m) > least)
             continue;
-        const double contrary = contradiction(e, m);
-        if (contrary > CONTRARY_SEEN)
-            look_at(e, m, e->other, 1);
+        const double contrary = compare_with(e, m);
         if (against(e, e->other, e->scratch.probability, 1, contrary) > OVERRULED)
             found = n;
     }
@@ -194,9 +199,7 @@ static void strike(asj_estimation *e, int32_t chosen)
         asj_model *m = &e->finalists[n];
         if (!(m->evidence > c->evidence))
             continue;
-        const double contrary = contradiction(e, m);
-        if (contrary > CONTRARY_SEEN)
-            look_at(e, m, e->other, 1);
+        const double contrary = compare_with(e, m);
         if (against(e, e->scratch.probability, e->other, 0, contrary) > 1)
             m->evidence = m->peak = -HUGE_VAL;
     }
@@ -211,9 +214,7 @@ static void strike_rivals(asj_estimation *e)
     look_at_best(e, best);
     for (int32_t n = 0; n < e->count && !asj_pairs_stop(&e->set, NULL); n++)
         if (n != best && n != e->focal_at && e->finalists[n].evidence > -HUGE_VAL) {
-            const double contrary = contradiction(e, &e->finalists[n]);
-            if (contrary > CONTRARY_SEEN)
-                look_at(e, &e->finalists[n], e->other, 1);
+            const double contrary = compare_with(e, &e->finalists[n]);
             if (contrary > CONTRARY_ALIKE && against(e, e->scratch.probability, e->other, 0, contrary) > 1)
                 e->finalists[n].evidence = e->finalists[n].peak = -HUGE_VAL;
         }

@@ -193,7 +193,7 @@ asj_around asj_match_result_around(const asj_match_result *shown)
     return around;
 }
 
-void asj_match_result_unstretch(asj_match_result *shown, const asj_scaling by[2])
+void asj_match_result_unstretch(asj_match_result *shown, const asj_stretch by[2])
 {
     result *r = (result *)shown;
     asj_unstretch_matches(r->matches, shown->match_count, by);

@@ -16,6 +16,6 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
 asj_around asj_match_result_around(const asj_match_result *shown);
 
 /* A result of stretched images -> one of the images themselves (unstretch.h). */
-void asj_match_result_unstretch(asj_match_result *shown, const asj_scaling by[2]);
+void asj_match_result_unstretch(asj_match_result *shown, const asj_stretch by[2]);
 
 #endif

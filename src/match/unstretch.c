@@ -14,13 +14,13 @@ static double back(double q, double s)
     return (q + 0.5) / s - 0.5;
 }
 
-static void point_back(float *x, float *y, const asj_scaling *by)
+static void point_back(float *x, float *y, const asj_stretch *by)
 {
     *x = (float)back((double)*x, by->x);
     *y = (float)back((double)*y, by->y);
 }
 
-static void map_back(double h[6], const asj_scaling by[2])
+static void map_back(double h[6], const asj_stretch by[2])
 {
     const double c1[2] = {0.5 * (by[0].x - 1), 0.5 * (by[0].y - 1)}, c2[2] = {0.5 * (by[1].x - 1), 0.5 * (by[1].y - 1)};
     for (int32_t row = 0; row < 2; row++) {
@@ -32,7 +32,7 @@ static void map_back(double h[6], const asj_scaling by[2])
     }
 }
 
-void asj_unstretch_matches(asj_junction_match *matches, size_t count, const asj_scaling by[2])
+void asj_unstretch_matches(asj_junction_match *matches, size_t count, const asj_stretch by[2])
 {
     for (size_t k = 0; k < count; k++) {
         asj_junction_match *m = &matches[k];
@@ -46,7 +46,7 @@ void asj_unstretch_matches(asj_junction_match *matches, size_t count, const asj_
     }
 }
 
-void asj_unstretch_l_junctions(asj_l_junction *list, uint32_t count, const asj_scaling *by)
+void asj_unstretch_l_junctions(asj_l_junction *list, uint32_t count, const asj_stretch *by)
 {
     for (uint32_t k = 0; k < count; k++) {
         point_back(&list[k].x, &list[k].y, by);
@@ -56,7 +56,7 @@ void asj_unstretch_l_junctions(asj_l_junction *list, uint32_t count, const asj_s
 }
 
 /* m T: T = [s_x 0 c_x; 0 s_y c_y; 0 0 1] */
-static void times_stretch(double m[9], const asj_scaling *by)
+static void times_stretch(double m[9], const asj_stretch *by)
 {
     for (int32_t row = 0; row < 3; row++) {
         double *a = m + 3 * row;
@@ -67,7 +67,7 @@ static void times_stretch(double m[9], const asj_scaling *by)
 }
 
 /* T^-1 m for a homography, T' m for a fundamental matrix. */
-static void from_the_left(double m[9], const asj_scaling *by, int32_t homography)
+static void from_the_left(double m[9], const asj_stretch *by, int32_t homography)
 {
     const double s[2] = {by->x, by->y}, c[2] = {0.5 * (by->x - 1), 0.5 * (by->y - 1)};
     for (int32_t column = 0; column < 3; column++) {
@@ -79,7 +79,7 @@ static void from_the_left(double m[9], const asj_scaling *by, int32_t homography
     }
 }
 
-void asj_unstretch_geometry(asj_geometry *geometry, const asj_scaling by[2])
+void asj_unstretch_geometry(asj_geometry *geometry, const asj_stretch by[2])
 {
     double *m = geometry->matrix, norm = 0;
     times_stretch(m, &by[0]);
@@ -92,7 +92,7 @@ void asj_unstretch_geometry(asj_geometry *geometry, const asj_scaling by[2])
     geometry->focal[1] /= by[1].x;
 }
 
-asj_camera asj_stretch_camera(const asj_camera *camera, const asj_scaling *by)
+asj_camera asj_stretch_camera(const asj_camera *camera, const asj_stretch *by)
 {
     return (asj_camera){camera->fx * by->x, camera->fy * by->y, (camera->cx + 0.5) * by->x - 0.5, (camera->cy + 0.5) * by->y - 0.5};
 }

@@ -5,16 +5,12 @@
 
 #include <asj/match.h>
 
-/* A pixel of the image is x by y pixels of the stretched one. */
-typedef struct asj_scaling {
-    double x, y;
-} asj_scaling;
-
-void asj_unstretch_matches(asj_junction_match *matches, size_t count, const asj_scaling by[2]);
-void asj_unstretch_l_junctions(asj_l_junction *list, uint32_t count, const asj_scaling *by);
-void asj_unstretch_geometry(asj_geometry *geometry, const asj_scaling by[2]);
+/* A pixel of the image is by->x times by->y pixels of the stretched one. */
+void asj_unstretch_matches(asj_junction_match *matches, size_t count, const asj_stretch by[2]);
+void asj_unstretch_l_junctions(asj_l_junction *list, uint32_t count, const asj_stretch *by);
+void asj_unstretch_geometry(asj_geometry *geometry, const asj_stretch by[2]);
 
 /* The camera of the stretched image. */
-asj_camera asj_stretch_camera(const asj_camera *camera, const asj_scaling *by);
+asj_camera asj_stretch_camera(const asj_camera *camera, const asj_stretch *by);
 
 #endif

@@ -254,7 +254,7 @@ static void a_pose_is_found_in_enlarged_images(void **state)
 /* H and F of stretched images, taken back, say of points what they said of stretched ones. */
 static void matrices_are_taken_back(void **state)
 {
-    const asj_scaling by[2] = {{2, 3}, {1.25, 1}};
+    const asj_stretch by[2] = {{2, 3}, {1.25, 1}};
     const double points[4] = {31.5, 12.25, 80, 7};
     synth_random random;
     (void)state;
