@@ -31,7 +31,7 @@ static const char conclusion[] =
     "NFA: expected number of false alarms in an image of noise.\n"
     "\n"
     "Exit status: 0 all images done, 1 some failed, 2 wrong usage, 130 interrupted.\n"
-    "More: man asj-cli; file formats: man asj-formats\n";
+    "More: man asj-cli; all numbers: man asj-options; file formats: man asj-formats\n";
 
 enum {
     OUTPUT, OUT_DIR, FORMAT, WHOLE, REGION, MASK, VANISHING_POINTS, CAMERA, PLOT, PLOT_COLOR, PLOT_BACKGROUND, PLOT_SCALE,

@@ -41,7 +41,7 @@ static int read_inputs(run *r)
 static int detect(run *r)
 {
     int result = CLI_SUCCESS;
-    for (int v = 0; v < 2 && result == CLI_SUCCESS && !(r->arguments->stretch.x > 0); v++) {
+    for (int v = 0; v < 2 && result == CLI_SUCCESS && !r->arguments->look; v++) {
         r->at = r->inputs[v].name;
         cli_progress_next(&r->session.progress, (size_t)v, r->at);
         result = cli_match_input_detect(&r->session, r->arguments, v, &r->inputs[v]);
@@ -70,7 +70,7 @@ static asj_status match_images(run *r, const asj_match_options *options)
 }
 
 /* From the pixels on, both at once. */
-static asj_status match_stretched(run *r, const asj_match_options *options)
+static asj_status match_looks(run *r, const asj_match_options *options)
 {
     return asj_match_images(r->session.context, &r->inputs[0].pixels, &r->inputs[1].pixels, &r->arguments->stretch,
                             &r->arguments->detect_options, options, &r->result);
@@ -84,9 +84,9 @@ static int match(run *r)
     options.geometry = r->geometry;
     r->at = "the matching";
     cli_progress_next(&r->session.progress, STEPS - 1, "matching");
-    asj_status status = r->arguments->stretch.x > 0 ? match_stretched(r, &options)
-                        : features                  ? match_features(r, &options)
-                                                    : match_images(r, &options);
+    asj_status status = r->arguments->look ? match_looks(r, &options)
+                        : features         ? match_features(r, &options)
+                                           : match_images(r, &options);
     if (status == ASJ_OK)
         return CLI_SUCCESS;
     if (status == ASJ_ERROR_OPTION && !features)
@@ -120,9 +120,9 @@ static int write_matches(run *r, const char *path)
     report.lines = arguments->lines;
     report.minimum_end = arguments->minimum_end;
     report.options = &arguments->options;
-    report.stretch[0] = arguments->stretch.x;
-    report.stretch[1] = arguments->stretch.y;
-    if (r->inputs[0].detection || r->inputs[1].detection || arguments->stretch.x > 0)
+    report.stretch[0] = arguments->look ? r->result->stretch[0] : 0;
+    report.stretch[1] = arguments->look ? r->result->stretch[1] : 0;
+    if (r->inputs[0].detection || r->inputs[1].detection || arguments->look)
         report.detect_options = &arguments->detect_options;
     for (int v = 0; v < 2; v++) {
         report.image_names[v] = arguments->images[v];
@@ -142,8 +142,6 @@ static int write_plot(run *r)
                                       .result = r->result,
                                       .segments = r->segments,
                                       .segment_count = r->segment_count};
-    for (int v = 0; v < 2; v++)
-        content.junctions[v] = cli_match_input_junctions(&r->inputs[v], &content.junction_counts[v]);
     cli_plot_match_style style = arguments->style;
     if (!content.images[0]->data || !content.images[1]->data)
         style.background = CLI_PLOT_WHITE; /* features are no photograph */
@@ -177,6 +175,14 @@ static void print_summary(const run *r)
     cli_note("%s, %s: %lu match%s%s%s%s%s%s", r->inputs[0].name, r->inputs[1].name, (unsigned long)r->result->match_count,
              r->result->match_count == 1 ? "" : "es", lines, file || arguments->plot ? " -> " : "", file ? file : "",
              file && arguments->plot ? ", " : "", arguments->plot ? arguments->plot : "");
+}
+
+/* The caller has not asked for it. */
+static void print_stretch(const run *r)
+{
+    const double *by = r->result->stretch;
+    if (r->arguments->look && r->arguments->stretch.x == 0 && (by[0] > 1 || by[1] > 1))
+        cli_note("looked at stretched by %g,%g: as they are the images have too little in common", by[0], by[1]);
 }
 
 static void print_geometry(const run *r)
@@ -249,6 +255,7 @@ static int run_all(run *r)
     cli_progress_clear(&r->session.progress);
     if (result == CLI_SUCCESS && !r->arguments->common.quiet) {
         print_summary(r);
+        print_stretch(r);
         print_geometry(r);
         print_hint(r);
     }

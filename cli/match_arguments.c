@@ -35,7 +35,7 @@ static const char conclusion[] =
     "NFA: expected number of false alarms in an image of noise.\n"
     "\n"
     "Exit status: 0 done (no match is a result too), 1 failed (no file is half written), 2 wrong usage, 130 interrupted.\n"
-    "More: man asj-cli; file formats: man asj-formats\n";
+    "More: man asj-cli; all numbers: man asj-options; file formats: man asj-formats\n";
 
 enum {
     OUTPUT, FORMAT, LINES, LINE_ENDS, JUNCTIONS_1, JUNCTIONS_2, REGION_1, REGION_2, MASK_1, MASK_2, STRETCH, PLOT,
@@ -59,9 +59,10 @@ static const cli_option input_options[] = {
     {REGION_2, 0, "region2", "X,Y,WIDTH,HEIGHT", "the same for IMAGE2"},
     {MASK_1, 0, "mask1", "FILE", "no junction where this 8-bit gray image, of the size of IMAGE1, is black (0)"},
     {MASK_2, 0, "mask2", "FILE", "the same for IMAGE2"},
-    {STRETCH, 0, "stretch", "N|X,Y",
-     "look at both images enlarged N times (2: about three times the matches, in three to eight times the time), or "
-     "stretched along each axis (1,3: surfaces seen at a glancing angle, like things on a table)"},
+    {STRETCH, 0, "stretch", "N|X,Y|auto",
+     "look at both images enlarged N times (2: about three times the matches, in three to eight times the time; 1: as they "
+     "are), or stretched along each axis (1,3: surfaces seen at a glancing angle, like things on a table). auto: as they are, "
+     "and where nothing comes of it by 1,3 and 3,1; the default of two images with --geometry"},
 };
 
 static const cli_option geometry_options[] = {
@@ -121,17 +122,22 @@ static int take_output(void *target, int id, const char *text)
     return CLI_SUCCESS;
 }
 
-/* N or X,Y */
+/* N, X,Y or auto */
 static int take_stretch(const char *text, cli_match_arguments *arguments)
 {
     char copy[64] = "";
+    arguments->look = arguments->stretch_given = 1;
+    arguments->stretch = (asj_stretch){0, 0};
+    if (strcmp(text, "auto") == 0)
+        return CLI_SUCCESS;
     const char *comma = strchr(text, ',');
     const size_t length = comma ? (size_t)(comma - text) : strlen(text);
     if (length < sizeof copy)
         memcpy(copy, text, length);
-    if (!cli_parse_number(copy, 1, ASJ_MOST_STRETCH, &arguments->stretch.x) ||
-        !cli_parse_number(comma ? comma + 1 : copy, 1, ASJ_MOST_STRETCH, &arguments->stretch.y))
-        return cli_usage_error("match", "--stretch: '%s' is not a factor of 1 to %d, or one for each axis", text, ASJ_MOST_STRETCH);
+    if (!cli_parse_number(copy, ASJ_LEAST_STRETCH, ASJ_MOST_STRETCH, &arguments->stretch.x) ||
+        !cli_parse_number(comma ? comma + 1 : copy, ASJ_LEAST_STRETCH, ASJ_MOST_STRETCH, &arguments->stretch.y))
+        return cli_usage_error("match", "--stretch: '%s' is not a factor of %g to %d, one for each axis, or auto", text,
+                               ASJ_LEAST_STRETCH, ASJ_MOST_STRETCH);
     return CLI_SUCCESS;
 }
 
@@ -291,18 +297,31 @@ static int check_detector(const cli_match_arguments *arguments)
     return CLI_SUCCESS;
 }
 
-/* The detector runs on stretched images as a whole. */
-static int check_stretch(const cli_match_arguments *arguments)
+/* Where a geometry is asked of two images, whole and with what the library knows best, both are looked at together. */
+static int looks_by_itself(const cli_match_arguments *arguments)
 {
-    for (int v = 0; v < 2 && arguments->stretch.x > 0; v++) {
+    int images = 1;
+    for (int v = 0; v < 2; v++)
+        images = images && !arguments->junctions[v] && !arguments->regions[v].mask && arguments->regions[v].width == 0 &&
+                 !asj_features_probe(arguments->images[v]);
+    return images && arguments->geometry != ASJ_GEOMETRY_NONE && arguments->focal_from != CLI_FOCAL_ESTIMATE;
+}
+
+/* The detector runs on stretched images as a whole. */
+static int check_stretch(cli_match_arguments *arguments)
+{
+    if (!arguments->stretch_given)
+        arguments->look = looks_by_itself(arguments);
+    for (int v = 0; v < 2 && arguments->stretch_given; v++) {
         if (arguments->junctions[v] || asj_features_probe(arguments->images[v]))
             return cli_usage_error("match", "--stretch looks at images: it does not go with junctions or features from files");
         if (arguments->regions[v].mask || arguments->regions[v].width > 0)
             return cli_usage_error("match", "--stretch looks at whole images: it does not go with --%s%d",
                                    arguments->regions[v].mask ? "mask" : "region", v + 1);
     }
-    if (arguments->focal_from == CLI_FOCAL_ESTIMATE && arguments->stretch.x != arguments->stretch.y)
-        return cli_usage_error("match", "--focal estimate needs square pixels: it does not go with --stretch along one axis");
+    if (arguments->look && arguments->focal_from == CLI_FOCAL_ESTIMATE &&
+        (arguments->stretch.x != arguments->stretch.y || arguments->stretch.x == 0))
+        return cli_usage_error("match", "--focal estimate needs square pixels, which --stretch along one axis or auto has not");
     return CLI_SUCCESS;
 }
 

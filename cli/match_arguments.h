@@ -25,7 +25,9 @@ typedef struct cli_match_arguments {
     const char *format;       /* "csv", "json"; NULL = by the name of `output` */
     const char *junctions[2]; /* files; NULL = detect */
     cli_region regions[2];    /* where junctions are detected */
-    asj_stretch stretch;      /* 0 = not given */
+    asj_stretch stretch;      /* of both images, if `look` says so; 0 = automatic */
+    int look;                 /* both images are looked at together, for asj_match_images() */
+    int stretch_given;
     int32_t geometry;         /* ASJ_GEOMETRY_... */
     asj_camera cameras[2];    /* fx 0 = not given */
     int32_t focal_from;       /* CLI_FOCAL_... */

@@ -2,7 +2,7 @@
 /* Every match has one colour for its junctions, branches and line, given in order of place in the first photograph: from left to
  * right when the second one stands beside it, else from top to bottom. So lines that run close together differ in colour, and a
  * match in the wrong place stands out among neighbours of other colours. Branch b is darker than branch a. What a geometry rejected
- * is grey, below everything else. Where nothing matches, all junctions stand in grey: was there anything to match? */
+ * is grey, below everything else. Where nothing matches, all L-junctions stand in grey: was there anything to match? */
 #include "plot_match.h"
 #include "interrupt.h"
 #include "plot_color.h"
@@ -243,22 +243,29 @@ static void draw_rejected(cairo_t *cairo, const drawing *d)
     }
 }
 
-/* Grey, the junctions of one image, with the beginnings of their branches: there are hundreds. */
+static double stub_end(double from, double to, double length)
+{
+    return length > STUB ? from + (to - from) * STUB / length : to;
+}
+
+/* Grey, the L-junctions of one image, with the beginnings of their branches: there are hundreds. */
 static void draw_unmatched(cairo_t *cairo, const drawing *d, int v)
 {
     cairo_save(cairo);
     cairo_rectangle(cairo, d->left[v], d->top[v], d->widths[v], d->heights[v]);
     cairo_clip(cairo);
     cairo_set_source_rgb(cairo, 0.4, 0.4, 0.4);
-    for (size_t k = 0; k < d->content->junction_counts[v]; k++) {
-        const asj_junction *j = &d->content->junctions[v][k];
+    const asj_match_result *result = d->content->result;
+    for (uint32_t k = 0; k < (v == 0 ? result->l_junction_count1 : result->l_junction_count2); k++) {
+        const asj_l_junction *l = v == 0 ? &result->l_junctions1[k] : &result->l_junctions2[k];
+        const double x = (double)l->x, y = (double)l->y;
+        const double ends[2][2] = {{(double)l->ax, (double)l->ay}, {(double)l->bx, (double)l->by}};
         cairo_set_line_width(cairo, d->line);
-        for (int32_t b = 0; b < j->branch_count; b++) {
-            const double theta = (double)j->branches[b].angle, length = fmin(STUB, (double)j->branches[b].length);
-            const double x = (double)j->x, y = (double)j->y;
-            draw_stroke(cairo, d, v, (double[]){x, y, x + length * cos(theta), y + length * sin(theta)});
+        for (int32_t b = 0; b < 2; b++) {
+            const double length = hypot(ends[b][0] - x, ends[b][1] - y);
+            draw_stroke(cairo, d, v, (double[]){x, y, stub_end(x, ends[b][0], length), stub_end(y, ends[b][1], length)});
         }
-        cairo_arc(cairo, to_x(d, v, (double)j->x), to_y(d, v, (double)j->y), 1.7 * d->line, 0, FULL_TURN);
+        cairo_arc(cairo, to_x(d, v, x), to_y(d, v, y), 1.7 * d->line, 0, FULL_TURN);
         cairo_fill(cairo);
     }
     cairo_restore(cairo);
@@ -325,9 +332,10 @@ static void draw_legend(cairo_t *cairo, const drawing *d)
     cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
     if (d->rejected > 0)
         snprintf(rejected, sizeof rejected, "; grey: %lu rejected", (unsigned long)d->rejected);
-    const unsigned long found[2] = {(unsigned long)d->content->junction_counts[0], (unsigned long)d->content->junction_counts[1]};
+    const asj_match_result *result = d->content->result;
+    const unsigned long found[2] = {(unsigned long)result->l_junction_count1, (unsigned long)result->l_junction_count2};
     if (d->count == 0 && found[0] + found[1] > 0 && d->width >= 40 * d->font)
-        snprintf(text, sizeof text, "0 %s%s; grey: the junctions, %lu and %lu", name, rejected, found[0], found[1]);
+        snprintf(text, sizeof text, "0 %s%s; grey: the L-junctions, %lu and %lu", name, rejected, found[0], found[1]);
     else if (d->width >= (d->rejected ? 66 : 56) * d->font && d->count > 1)
         snprintf(text, sizeof text, "%lu %s   one colour each, by place in the first photograph, %s%s%s", count, name, order,
                  d->content->segments ? "" : "; branch b is darker", rejected);

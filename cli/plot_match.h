@@ -23,8 +23,6 @@ typedef struct cli_plot_match_content {
     const asj_match_result *result;
     const asj_segment_match *segments; /* drawn instead of the junctions when not NULL */
     size_t segment_count;
-    const asj_junction *junctions[2]; /* of either image, drawn where nothing matches; NULL with a count of 0 = not known */
-    size_t junction_counts[2];
 } cli_plot_match_content;
 
 /* Writes a plot; the file appears whole or not at all. On failure `message` receives a line that names the cause. */

@@ -129,7 +129,7 @@ fi
     install_into static -Ddefault_library=static
 } > "$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
 for file in bin/asj-cli lib/libasj.so lib/libasj-io.so lib/pkgconfig/asj.pc lib/pkgconfig/asj-io.pc lib/cmake/asj/asjConfig.cmake \
-    share/man/man1/asj-cli.1 share/man/man5/asj-formats.5 share/man/man7/asj-paper.7 \
+    share/man/man1/asj-cli.1 share/man/man5/asj-formats.5 share/man/man7/asj-options.7 share/man/man7/asj-paper.7 \
     $(cd "$root/include" && printf 'include/%s ' asj/*.h); do
     [ -s "$work/shared/$file" ] || { echo "not installed: $file"; exit 1; }
 done

@@ -128,7 +128,8 @@ typedef struct asj_match_result {
     const asj_junction_match *rejected;/* matches that there would be without the geometry, and that it contradicts; smallest
                                         * distance first */
     uint64_t rejected_count;
-    uint64_t reserved[4];
+    double stretch[2];                 /* along x and y, how the images were looked at: asj_match_images(); 1, 1 = as they are */
+    uint64_t reserved[2];
 } asj_match_result;
 
 /* Matches the junctions of two images: the pipeline of the paper, step 7.
@@ -164,24 +165,29 @@ ASJ_API asj_status asj_match(asj_context *context,
                              const asj_image *image2, const asj_junction *junctions2, size_t count2,
                              const asj_match_options *options, asj_match_result **result);
 
-/* How much longer than it is an image is looked at: 1, 1 = as it is. */
+/* How much longer than it is an image is looked at: 1, 1 = as it is; 0, 0 = automatically. */
 typedef struct asj_stretch {
-    double x, y; /* factors along either axis, 1 .. ASJ_MOST_STRETCH */
+    double x, y; /* factors along either axis, ASJ_LEAST_STRETCH .. ASJ_MOST_STRETCH */
 } asj_stretch;
+#define ASJ_LEAST_STRETCH 0.5
 #define ASJ_MOST_STRETCH 8
 
 /* From two images to their matches: asj_detect() and asj_match(), on both images stretched. Enlarged twice (2, 2), photographs of
  * up to some megapixels have about three times the matches, in three to eight times the time; a surface that is seen at a glancing
  * angle, like a magazine on a table, matches stretched across it (1, 3) where it did not at all (tests/accuracy/README.md).
  * Everything in the result is in pixels of the images as they are. Numbers of junctions are those of the detector in this call,
- * and the times those of all of it.
+ * and the times those of all of it; result->stretch says how the images were looked at.
  *
- * stretch          NULL = as they are
+ * stretch          NULL = as they are. Automatically (0, 0): as they are, and where that gives fewer than 16 matches, with a
+ *                  geometry asked 16 that one holds together, also stretched by 1, 3 and by 3, 1, unless rivals or a motion that
+ *                  stays open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the answer. What comes of that counts from 16 matches on,
+ *                  and when it is twice as many. A pair that has nothing in common takes 1.4 times as long
+ *                  with a geometry
  * detect_options   NULL = preset `match`
  * options          NULL = preset `default`; cameras are those of the images as they are
  *
  * Memory: the stretched images besides what the two calls need for images of that size.
- * ASJ_ERROR_OPTION  also for a stretch outside its range, and for one along one axis with geometry.find_focal
+ * ASJ_ERROR_OPTION  also for a stretch outside its range, and for one along one axis, or automatically, with geometry.find_focal
  * ASJ_ERROR_LIMIT   also when a stretched image has more pixels than the library takes
  * Others as asj_detect() and asj_match() */
 ASJ_API asj_status asj_match_images(asj_context *context, const asj_image *image1, const asj_image *image2,

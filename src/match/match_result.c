@@ -148,6 +148,7 @@ static void show(const asj_match_run *run, result *r)
     shown->l_junction_count1 = in1->count;
     shown->l_junction_count2 = in2->count;
     shown->geometry = run->geometry;
+    shown->stretch[0] = shown->stretch[1] = 1;
     shown->own = (uint64_t)(uintptr_t)r;
 }
 

@@ -44,15 +44,30 @@ static double crossing(double x, double y)
 }
 
 /* The light at x, y of the picture comes from scale x + left, scale y + top of the scene. */
-static void write_light(const char *path, double (*light)(double x, double y), double scale, double left, double top)
+typedef struct view {
+    double scale, left, top;
+    int rows; /* that are one of the picture: it is so many times less high */
+} view;
+
+static void write_view(const char *path, double (*light)(double x, double y), const view *v)
 {
-    unsigned char *pixels = malloc(SCENE_WIDTH * SCENE_HEIGHT);
+    const int height = SCENE_HEIGHT / v->rows;
+    unsigned char *pixels = malloc((size_t)SCENE_WIDTH * (size_t)height);
     assert_non_null(pixels);
-    for (int y = 0; y < SCENE_HEIGHT; y++)
-        for (int x = 0; x < SCENE_WIDTH; x++)
-            pixels[y * SCENE_WIDTH + x] = (unsigned char)(80 + 100 * light(scale * x + left, scale * y + top) + 0.5);
-    write_gray(path, pixels, SCENE_WIDTH, SCENE_HEIGHT);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < SCENE_WIDTH; x++) {
+            double sum = 0;
+            for (int k = 0; k < v->rows; k++)
+                sum += light(v->scale * x + v->left, v->scale * (v->rows * y + k) + v->top);
+            pixels[y * SCENE_WIDTH + x] = (unsigned char)(80 + 100 * sum / v->rows + 0.5);
+        }
+    write_gray(path, pixels, SCENE_WIDTH, height);
     free(pixels);
+}
+
+static void write_light(const char *path, double (*light)(double x, double y))
+{
+    write_view(path, light, &(view){1, 0, 0, 1});
 }
 
 /* Later rectangles cover earlier ones. */
@@ -75,18 +90,23 @@ static double wall(double x, double y)
 
 void write_views(const char *first, const char *second)
 {
-    write_light(first, wall, 1, 0, 0);
-    write_light(second, wall, 1 / VIEW_SCALE, -VIEW_X / VIEW_SCALE, -VIEW_Y / VIEW_SCALE);
+    write_flat_views(first, second, 1);
+}
+
+void write_flat_views(const char *first, const char *second, int rows)
+{
+    write_view(first, wall, &(view){1, 0, 0, rows});
+    write_view(second, wall, &(view){1 / VIEW_SCALE, -VIEW_X / VIEW_SCALE, -VIEW_Y / VIEW_SCALE, rows});
 }
 
 void write_scene(const char *path)
 {
-    write_light(path, rectangle, 1, 0, 0);
+    write_light(path, rectangle);
 }
 
 void write_crossing(const char *path)
 {
-    write_light(path, crossing, 1, 0, 0);
+    write_light(path, crossing);
 }
 
 void write_constant(const char *path, int width, int height)

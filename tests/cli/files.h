@@ -18,6 +18,7 @@ void write_crossing(const char *path);
 #define VIEW_X (-21.0)
 #define VIEW_Y (-12.0)
 void write_views(const char *first, const char *second);
+void write_flat_views(const char *first, const char *second, int rows); /* so many rows are one, as of a wall seen from below */
 
 /* A PNG of one grey level. */
 void write_constant(const char *path, int width, int height);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The manual page holds a paragraph for every row of the library's option tables, with range and defaults, and no other.
- * `ninja update-manual` (test_manual asj-cli.1 --update) writes these paragraphs anew. */
+ * `ninja update-manual` (test_manual asj-options.7 --update) writes these paragraphs anew. */
 #include <asj/match.h>
 #include <asj/options.h>
 

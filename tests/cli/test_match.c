@@ -369,6 +369,29 @@ static void stretched_images_match_in_their_own_pixels(void **state)
     free(text);
 }
 
+/* As they are where that is enough, stretched where it is not; with a geometry nobody has to ask for it. */
+static void a_glancing_view_is_stretched_by_itself(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("match", "-o", "auto.json", "--geometry", "auto", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    assert_null(strstr(result->err, "looked at stretched"));
+    size_t size = 0;
+    char *text = read_bytes("auto.json", &size);
+    assert_non_null(strstr(text, "\"stretch\": [1.0, 1.0]"));
+    free(text);
+    write_flat_views("flat1.png", "flat2.png", 6);
+    result = run_cli("match", "-q", "--stretch", "1", "--geometry", "auto", "flat1.png", "flat2.png", NULL);
+    expect_code(result, 0);
+    parse_csv(result->out, &found);
+    result = run_cli("match", "-o", "auto.csv", "--geometry", "auto", "flat1.png", "flat2.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "looked at stretched by 1,3");
+    result = run_cli("match", "-q", "--geometry", "auto", "flat1.png", "flat2.png", NULL);
+    parse_csv(result->out, &other);
+    assert_true(other.count >= 16 && found.count < 16);
+}
+
 static void a_stretch_goes_with_images_alone(void **state)
 {
     static const char *const wrong[][3] = {{"--junctions1", "x.asj", "junctions or features"}, {"--mask2", "x.png", "--mask2"},
@@ -646,6 +669,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_preset_match_detects_for_match),
         cmocka_unit_test(the_surest_junctions_give_a_warning),
         cmocka_unit_test(stretched_images_match_in_their_own_pixels),
+        cmocka_unit_test(a_glancing_view_is_stretched_by_itself),
         cmocka_unit_test(a_stretch_goes_with_images_alone),
         cmocka_unit_test(features_take_the_place_of_images),
         cmocka_unit_test(what_the_geometry_is_is_told),

@@ -136,7 +136,7 @@ static const struct {
     {{"detect", "--region", "1,2,3,4,", "scene.png"}, "--region: '1,2,3,4,'"},
     {{"detect", "--region", "1,2,3,99999999999999999999", "scene.png"}, "--region: '"},
     {{"match", "--region2", "", "scene.png", "scene.png"}, "--region2: ''"},
-    {{"match", "--stretch", "0.5", "scene.png", "scene.png"}, "--stretch: '0.5'"},
+    {{"match", "--stretch", "0.4", "scene.png", "scene.png"}, "--stretch: '0.4'"},
     {{"match", "--stretch", "2,9", "scene.png", "scene.png"}, "--stretch: '2,9'"},
     {{"match", "--stretch", "2,", "scene.png", "scene.png"}, "--stretch: '2,'"},
     {{"match", "--stretch", "nan", "scene.png", "scene.png"}, "--stretch: 'nan'"},

@@ -54,8 +54,13 @@ def test_stretched_images(scene: Scene) -> None:
         assert len(found) >= 25
         assert np.mean(np.linalg.norm(found.xy2 - found.xy1 - (6, 4), axis=1) < 1) > 0.9
         assert np.array_equal(found.xy1[:, 0], found.l_junctions1["x"][found.l_indices[:, 0]])
+        assert found.stretch == (stretch if isinstance(stretch, tuple) else (stretch, stretch))
+    found = asj.match_images(scene, second, stretch="auto")
+    assert np.array_equal(plain.matches, found.matches) and found.stretch == (1, 1)
     with pytest.raises(asj.OptionError, match="stretch"):
-        asj.match_images(scene, second, stretch=0.5)
+        asj.match_images(scene, second, stretch=0.4)
+    with pytest.raises(ValueError, match="'much'"):
+        asj.match_images(scene, second, stretch="much")
 
 
 def test_nothing_in_common(scene: Scene) -> None:

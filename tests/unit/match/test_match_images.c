@@ -15,7 +15,7 @@ static synth_point seen(double u, double v, double turn)
 {
     const double x = u * cos(turn) - v * sin(turn), y = u * sin(turn) + v * cos(turn);
     const double w = 1 - 0.12 * y;
-    return (synth_point){0.5 * WIDTH + 145 * x / w, 0.5 * HEIGHT + 33 * y / w};
+    return (synth_point){0.5 * WIDTH + 145 * x / w, 0.5 * HEIGHT + 28 * y / w};
 }
 
 static double turn_of(int view)
@@ -148,7 +148,7 @@ static void expect_consistent(const asj_match_result *r)
 /* Stretched by any factor, along one axis or both; the same with any number of threads. */
 static void a_page_that_lies_flat_matches_when_it_is_stretched(void **state)
 {
-    static const asj_stretch stretches[] = {{1, 3}, {1, 2.5}, {2, 2}};
+    static const asj_stretch stretches[] = {{1, 3}, {1, 2.5}, {1.5, 3}};
     static const uint32_t least[] = {3, 3, 1}; /* times as many as without: across the page it helps most */
     const pages *p = *state;
     unit_counter counters[2] = {{0}, {0}};
@@ -172,6 +172,53 @@ static void a_page_that_lies_flat_matches_when_it_is_stretched(void **state)
     asj_match_result_free(&plain);
     unit_context_free(&counters[0], &contexts[0]);
     unit_context_free(&counters[1], &contexts[1]);
+}
+
+static asj_match_result *look(asj_context *context, const asj_image images[2], const asj_stretch *stretch, int32_t model)
+{
+    asj_match_options options;
+    asj_match_result *r = NULL;
+    asj_match_options_init(&options);
+    options.geometry.model = model;
+    assert_int_equal(asj_match_images(context, &images[0], &images[1], stretch, NULL, &options, &r), ASJ_OK);
+    return r;
+}
+
+/* As they are where that is enough; stretched, as if asked for it, where it is not; nothing new where nothing helps. */
+static void automatically_the_first_look_that_is_enough_counts(void **state)
+{
+    static const asj_stretch automatic = {0, 0}, across = {1, 3};
+    static const int32_t models[] = {ASJ_GEOMETRY_NONE, ASJ_GEOMETRY_AUTO};
+    static uint8_t flat[WIDTH * HEIGHT];
+    const pages *p = *state;
+    const asj_image with_itself[2] = {p->images[0], p->images[0]};
+    const asj_image unlike[2] = {p->images[0], unit_gray8(flat, WIDTH, HEIGHT)};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    for (size_t m = 0; m < UNIT_COUNT(models); m++) {
+        asj_match_result *plain = look(context, p->images, NULL, models[m]), *one = look(context, p->images, &across, models[m]);
+        asj_match_result *found = look(context, p->images, &automatic, models[m]);
+        assert_true(plain->match_count < 16 && plain->stretch[0] == 1 && plain->stretch[1] == 1);
+        assert_true(found->stretch[0] == 1 && found->stretch[1] == 3 && one->stretch[1] == 3);
+        expect_equal(one, found);
+        expect_consistent(found);
+        assert_true(found->stage_ms[ASJ_STAGE_CANDIDATES] > 0 && count_right(found) > 2 * count_right(plain));
+        asj_match_result_free(&plain);
+        asj_match_result_free(&one);
+        asj_match_result_free(&found);
+
+        plain = look(context, with_itself, NULL, models[m]);
+        found = look(context, with_itself, &automatic, models[m]);
+        assert_true(found->match_count >= 16 && found->stretch[0] == 1 && found->stretch[1] == 1);
+        expect_equal(plain, found);
+        asj_match_result_free(&plain);
+        asj_match_result_free(&found);
+
+        found = look(context, unlike, &automatic, models[m]);
+        assert_true(found->match_count == 0 && found->stretch[0] == 1 && found->stretch[1] == 1);
+        asj_match_result_free(&found);
+    }
+    unit_context_free(&counter, &context);
 }
 
 /* The homography is that of the page, in pixels of the images. */
@@ -287,9 +334,9 @@ static void matrices_are_taken_back(void **state)
 
 static void what_cannot_be_is_refused(void **state)
 {
-    static const asj_stretch outside[] = {{0.5, 1}, {1, 8.5}, {NAN, 1}, {1, -1}, {INFINITY, 2}};
+    static const asj_stretch outside[] = {{0.4, 1}, {1, 8.5}, {NAN, 1}, {1, -1}, {INFINITY, 2}, {0, 1}, {3, 0}};
     const pages *p = *state;
-    const asj_stretch along = {1, 2}, most = {8, 8};
+    const asj_stretch along = {1, 2}, most = {8, 8}, automatic = {0, 0};
     unit_counter counter = {0};
     asj_context *context = unit_context(&counter, 1);
     asj_match_result *r = (asj_match_result *)&counter;
@@ -302,6 +349,7 @@ static void what_cannot_be_is_refused(void **state)
     options.geometry.model = ASJ_GEOMETRY_AUTO;
     options.geometry.find_focal = 1;
     assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &along, NULL, &options, &r), ASJ_ERROR_OPTION);
+    assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &automatic, NULL, &options, &r), ASJ_ERROR_OPTION);
     assert_int_equal(asj_match_images(context, NULL, &p->images[1], NULL, NULL, NULL, &r), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], NULL, NULL, NULL, NULL), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_match_images(NULL, &p->images[0], &p->images[1], NULL, NULL, NULL, &r), ASJ_ERROR_ARGUMENT);
@@ -309,6 +357,23 @@ static void what_cannot_be_is_refused(void **state)
     assert_int_equal(asj_match_images(context, &wide, &p->images[1], &most, NULL, NULL, &r), ASJ_ERROR_LIMIT);
     assert_int_equal(asj_match_images(context, &p->images[0], &empty, &along, NULL, NULL, &r), ASJ_ERROR_IMAGE);
     assert_null(r);
+    unit_context_free(&counter, &context);
+}
+
+/* An image that is too long to be stretched is looked at as it is. */
+static void automatically_nothing_is_too_large(void **state)
+{
+    static uint8_t thin[ASJ_MAX_SIDE / 2 * 8];
+    static const asj_stretch automatic = {0, 0}, along = {3, 1};
+    const asj_image images[2] = {unit_gray8(thin, ASJ_MAX_SIDE / 2, 8), unit_gray8(thin, 8, ASJ_MAX_SIDE / 2)};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_match_result *r = NULL;
+    (void)state;
+    assert_int_equal(asj_match_images(context, &images[0], &images[1], &along, NULL, NULL, &r), ASJ_ERROR_LIMIT);
+    assert_int_equal(asj_match_images(context, &images[0], &images[1], &automatic, NULL, NULL, &r), ASJ_OK);
+    assert_true(r->match_count == 0 && r->stretch[0] == 1 && r->stretch[1] == 1);
+    asj_match_result_free(&r);
     unit_context_free(&counter, &context);
 }
 
@@ -330,11 +395,12 @@ static int32_t listen(void *user, int32_t stage, double done)
 /* Over the whole call, and never back; stopped anywhere, there is no result and nothing is lost. */
 static void progress_never_falls_and_the_caller_may_stop(void **state)
 {
+    static const asj_stretch stretches[] = {{1, 2}, {0, 0}};
     const pages *p = *state;
-    const asj_stretch stretch = {1, 2};
     listener l = {0};
     int all = 0;
-    for (int n = 0; n == 0 || n * 9 < all; n++) {
+    for (int n = 0; n < 2 || n * 9 < all; n++) { /* twice to the end */
+        const int whole = n < 2;
         unit_counter counter = {0};
         asj_context_options options;
         asj_context *context = NULL;
@@ -344,11 +410,11 @@ static void progress_never_falls_and_the_caller_may_stop(void **state)
         options.threads = 1;
         options.progress = listen;
         options.progress_user = &l;
-        l = (listener){.stop_at = n * 9};
+        l = (listener){.stop_at = whole ? 0 : n * 9};
         assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
-        const asj_status status = asj_match_images(context, &p->images[0], &p->images[1], &stretch, NULL, NULL, &r);
+        const asj_status status = asj_match_images(context, &p->images[0], &p->images[1], &stretches[n % 2], NULL, NULL, &r);
         assert_int_equal(l.falls, 0);
-        if (n == 0) {
+        if (whole) {
             assert_int_equal(status, ASJ_OK);
             unit_near("at the end", 0, 0, l.last, 1, 1e-9);
             assert_true(r->stage_ms[ASJ_STAGE_CANDIDATES] > 0 && r->total_ms > r->stage_ms[ASJ_STAGE_CANDIDATES]);
@@ -362,19 +428,15 @@ static void progress_never_falls_and_the_caller_may_stop(void **state)
     assert_true(all > 20);
 }
 
-static void every_allocation_may_fail(void **state)
+static void expect_allocations_may_fail(const asj_image *image, const asj_stretch *stretch)
 {
-    static const uint8_t dark[24 * 20];
-    const asj_image image = unit_gray8(dark, 24, 20);
-    const asj_stretch stretch = {2, 1};
     int succeeded = 0;
-    (void)state;
-    for (long n = 1; n < 500 && !succeeded; n++) {
+    for (long n = 1; n < 2000 && !succeeded; n++) {
         unit_counter counter = {0};
         asj_context *poor = unit_context(&counter, 1);
         asj_match_result *r = NULL;
         counter.fail_at = counter.calls + n;
-        const asj_status status = asj_match_images(poor, &image, &image, &stretch, NULL, NULL, &r);
+        const asj_status status = asj_match_images(poor, image, image, stretch, NULL, NULL, &r);
         counter.fail_at = 0;
         succeeded = status == ASJ_OK;
         assert_true(succeeded || (status == ASJ_ERROR_MEMORY && !r));
@@ -384,15 +446,27 @@ static void every_allocation_may_fail(void **state)
     assert_true(succeeded);
 }
 
+static void every_allocation_may_fail(void **state)
+{
+    static const uint8_t dark[24 * 20];
+    static const asj_stretch stretches[] = {{2, 1}, {0, 0}};
+    const asj_image image = unit_gray8(dark, 24, 20);
+    (void)state;
+    for (size_t s = 0; s < UNIT_COUNT(stretches); s++)
+        expect_allocations_may_fail(&image, &stretches[s]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(as_they_are_it_is_what_two_calls_give),
         cmocka_unit_test(a_page_that_lies_flat_matches_when_it_is_stretched),
+        cmocka_unit_test(automatically_the_first_look_that_is_enough_counts),
         cmocka_unit_test(a_homography_is_of_the_images_as_they_are),
         cmocka_unit_test(a_pose_is_found_in_enlarged_images),
         cmocka_unit_test(matrices_are_taken_back),
         cmocka_unit_test(what_cannot_be_is_refused),
+        cmocka_unit_test(automatically_nothing_is_too_large),
         cmocka_unit_test(progress_never_falls_and_the_caller_may_stop),
         cmocka_unit_test(every_allocation_may_fail),
     };

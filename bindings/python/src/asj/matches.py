@@ -111,6 +111,11 @@ class Matches:
         return np.asarray(self.matches["probability"])
 
     @property
+    def stretch(self) -> tuple[float, float]:
+        """How the images were looked at, along x and y: (1, 1) is as they are."""
+        return self._result.stretch[0], self._result.stretch[1]
+
+    @property
     def rejected(self) -> NDArray[Any]:
         """Records of what would match without the geometry, and contradicts it."""
         return arrays.view(self._result.rejected, self._result.rejected_count, "asj_junction_match", self._result)
@@ -174,14 +179,15 @@ def match(
 
 
 def match_images(
-    image1: ArrayLike, image2: ArrayLike, *, stretch: float | tuple[float, float] = 1.0, geometry: str = "none",
+    image1: ArrayLike, image2: ArrayLike, *, stretch: float | tuple[float, float] | str = 1.0, geometry: str = "none",
     camera1: Camera | None = None, camera2: Camera | None = None, find_focal: bool = False, context: Context | None = None,
     **options: object,
 ) -> Matches:  # fmt: skip
     """Detects in both images and matches them, enlarged or stretched before; everything comes in pixels of the images as they are.
 
-    stretch    a factor of 1 to 8, or one for x and one for y. Photographs of up to some megapixels have about three times the matches
-               at 2, in three to eight times the time; what is seen at a glancing angle, like things on a table, matches at (1, 3)
+    stretch    a factor of 0.5 to 8, or one for x and one for y. Photographs of up to some megapixels have about three times the matches
+               at 2, in three to eight times the time; what is seen at a glancing angle, like things on a table, matches at (1, 3).
+               "auto": as they are, and where nothing comes of it at (1, 3) and (3, 1); :attr:`Matches.stretch` tells which it was
     options    those of the matcher; the others as for :func:`asj.match`
 
     >>> import numpy as np
@@ -192,7 +198,10 @@ def match_images(
     [30.0, 20.0]
     """
     views = (images.view(image1, 0.0), images.view(image2, 0.0))
-    x, y = stretch if isinstance(stretch, tuple) else (stretch, stretch)
+    if isinstance(stretch, str) and stretch != "auto":
+        raise ValueError(f"stretch {stretch!r} is no factor, no pair of factors, and not 'auto'")
+    factor = 0.0 if isinstance(stretch, str) else stretch
+    x, y = factor if isinstance(factor, tuple) else (factor, factor)
     factors = ffi.new("asj_stretch *", {"x": float(x), "y": float(y)})
     record = MATCHER.fill("default", options)
     cameras = (camera1, camera1 if camera2 is None else camera2)
