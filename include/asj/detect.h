@@ -39,11 +39,12 @@ typedef struct asj_detection {
  * Time: in proportion to the pixels, to the candidates, and to the length of all branches together: a chessboard of 5 px over a
  * megapixel, where 39 600 junctions have branches over half of the image, takes 16 s. The caller is asked every 50 ms whether to go
  * on.
- * Memory: about 7 bytes per pixel plus 7 MB, more where there is much to find (tests/benchmark/README.md).
+ * Memory: about 7 bytes per pixel, 28 with first_octave -1, plus 7 MB, more where there is much to find
+ * (tests/benchmark/README.md).
  *
  * ASJ_ERROR_ARGUMENT   context, image or result is NULL
  * ASJ_ERROR_IMAGE      data NULL, unknown format, side < 1, stride shorter than a row, NaN or infinity
- * ASJ_ERROR_LIMIT      more than ASJ_MAX_SIDE or ASJ_MAX_PIXELS
+ * ASJ_ERROR_LIMIT      more than ASJ_MAX_SIDE or ASJ_MAX_PIXELS, also of the enlarged image with first_octave -1
  * ASJ_ERROR_OPTION     an option out of range
  * ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED, ASJ_ERROR_DEVICE
  * asj_context_message() then says which and why. Thread safety: one call at a time per context. */

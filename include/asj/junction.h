@@ -43,7 +43,8 @@ typedef struct asj_junction {
     float log10_nfa;        /* log10 NFA of the isotropic junction */
     float location_sd;      /* px: standard uncertainty of x and of y (root mean square of the two); 0 = not known */
     int32_t branch_count;   /* 2 .. ASJ_MAX_BRANCHES */
-    int32_t octave;         /* that located it: 0 = the image itself, or not known, 1 = its half, 2 = its quarter, .. */
+    int32_t octave;         /* that located it: 0 = the image itself, or not known, 1 = its half, 2 = its quarter, .., -1 = enlarged
+                             * twice */
     asj_branch branches[ASJ_MAX_BRANCHES]; /* those beyond branch_count are zero */
 } asj_junction;
 

@@ -49,7 +49,8 @@ typedef struct asj_detect_options {
     /* octaves: the whole detector on the image, on its half, on its quarter, .. */
     int32_t octaves;              /* how many at most, from first_octave on, as long as 48 px of either side are left. 1 .. 16;
                                    * default 16; paper 1; match 4 */
-    int32_t first_octave;         /* 0 = the image itself, 1 = its half, ..: large photographs may begin there. 0 .. 15; 0 */
+    int32_t first_octave;         /* 0 = the image itself, 1 = its half, ..: large photographs may begin there; -1 = the image
+                                   * enlarged twice, which finds corners with branches of few pixels. -1 .. 15; 0 */
     /* step 1: normalised gradient */
     double gradient_epsilon;      /* grey levels (0..255) per pixel added to the local mean of the gradient norm; what is much
                                    * weaker than this is flat. 0.05 .. 16; default 0.4; paper 0.05 */

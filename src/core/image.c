@@ -272,6 +272,13 @@ static void halve_row(const uint16_t *upper, const uint16_t *lower, int32_t widt
     repeat_columns(to, width);
 }
 
+void asj_frame_repeat_border(const asj_frame *frame)
+{
+    for (int32_t y = 0; y < frame->height; y++)
+        repeat_columns(frame->gray + y * frame->stride, frame->width);
+    repeat_rows(frame);
+}
+
 typedef struct halve_job {
     const uint16_t *from;
     ptrdiff_t stride; /* of `from` */

@@ -31,7 +31,7 @@ typedef struct asj_frame {
     int16_t *gradient_y;
     int16_t *memory;              /* what the three planes stand in */
     size_t capacity;              /* elements of it */
-    int32_t octave;               /* how often the image was halved to make it */
+    int32_t octave;               /* how often the image was halved to make it; -1 = it was enlarged twice */
     int32_t octaves;              /* that share the false alarms allowed: 1, or more (octaves.c) */
     void *rows;                   /* scratch of asj_gradient() */
     size_t row_capacity;
@@ -59,6 +59,13 @@ extern const asj_image_ops asj_image_reference;
 /* Halves the grey plane in place: means of 2 x 2 pixels, an odd last column or row left out; gradient planes are to be filled
  * anew. */
 asj_status asj_frame_halve(asj_context *context, asj_frame *frame);
+
+/* Repeats the border of gray. */
+void asj_frame_repeat_border(const asj_frame *frame);
+
+/* Makes room for the image enlarged twice and fills frame->gray from the view: interpolated between the four pixels around, so that
+ * pixel (i, j) is centred at (i / 2 - 1/4, j / 2 - 1/4) of the image. Becomes octave -1. Statuses as asj_frame_load(). */
+asj_status asj_frame_enlarge(asj_context *context, asj_frame *frame, const asj_image *image);
 
 /* Fills frame->gray from the view (asj_frame_prepare() first). Finds NaN and infinity. */
 asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image);

@@ -205,7 +205,7 @@ int asj_blurred_corner(const asj_frame *frame, asj_hypothesis *hypothesis)
         asj_wedge w = {{start.x, start.y, branches[first].angle, branches[1 - first].angle,
                     sqrt(sharper * softer + 0.5 * ASJ_EDGE_SAMPLING), 0}};
         equations e;
-        if (!whole && (frame->octave == 0 || fmax(branches[0].length, branches[1].length) <= most))
+        if (!whole && (frame->octave <= 0 || fmax(branches[0].length, branches[1].length) <= most))
             break;
         if (find(frame, lengths, &w, &e) && (whole || e.error <= (1 - SURE) * e.total))
             keep(&w, &e, first, hypothesis);

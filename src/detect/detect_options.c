@@ -25,7 +25,8 @@ static const char *const refinements[] = {"line_fit", "search", NULL};
 static const asj_option_info rows[] = {
     INTEGER(OCTAVES, COMMON, octaves, "", 1, 16, 16, 1, 4,
             "how often the image is looked at, each time at half the size, as far as it allows; more finds softer corners"),
-    INTEGER(OCTAVES, COMMON, first_octave, "", 0, 15, 0, 0, 0, "sizes that are left out: 1 = begin at half the image's size"),
+    INTEGER(OCTAVES, COMMON, first_octave, "", -1, 15, 0, 0, 0,
+            "sizes left out: 1 = begin at half the image's size; -1 = begin at twice it"),
     SWITCH(OCTAVES, ADVANCED, octave_union, 0, 0, 1,
            "every octave keeps what it finds, though a finer one has found the same corner; for matching"),
 

@@ -79,12 +79,24 @@ static asj_status prepare(asj_detection_run *run)
     run->field = &detector->field;
     run->test = &detector->isotropic;
     run->scan = &detector->scan;
-    status = asj_frame_prepare(run->context, run->frame, run->image->width, run->image->height);
+    run->octave = run->options->first_octave < 0 ? ASJ_FIRST_OCTAVE : 0;
+    status = asj_frame_prepare(run->context, run->frame, asj_octave_size(run->image->width, run->octave),
+                               asj_octave_size(run->image->height, run->octave));
     if (status != ASJ_OK)
         return status;
     run->frame->octaves = asj_octaves_sharing(run->options, run->image->width, run->image->height);
     status = asj_detection_run_set_size(run);
     return status == ASJ_OK ? make_scratch(run) : status;
+}
+
+/* An enlarged image is no larger than images may be. */
+static asj_status check_size(asj_context *context, const asj_detect_options *options, const asj_image *image)
+{
+    if (options->first_octave < 0 && (2 * image->width > ASJ_MAX_SIDE || 2 * image->height > ASJ_MAX_SIDE ||
+                                      4 * (int64_t)image->width * image->height > ASJ_MAX_PIXELS))
+        return asj_fail(context, ASJ_ERROR_LIMIT, "an image of %d x %d pixels is too large for octave -1", (int)image->width,
+                        (int)image->height);
+    return ASJ_OK;
 }
 
 asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context, const asj_image *image,
@@ -104,6 +116,8 @@ asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context,
     if (asj_detect_options_check(run->options, message, sizeof message) != ASJ_OK)
         return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
     asj_status status = asj_image_check(context, image);
+    if (status == ASJ_OK)
+        status = check_size(context, run->options, image);
     return status == ASJ_OK ? prepare(run) : status;
 }
 

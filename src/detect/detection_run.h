@@ -32,7 +32,7 @@ typedef struct asj_detection_run {
     asj_detect_options defaults;     /* what `options` points to when the caller gives none */
     const asj_image *image;
     const asj_region *region;        /* NULL = everywhere */
-    asj_frame *frame;                /* its planes, or those of the image halved `octave` times: step 1 fills them */
+    asj_frame *frame;                /* its planes, or those of the image halved `octave` times: step 1 fills them; -1 = enlarged */
     int32_t octave;
     const asj_field *field;          /* tables of steps 2, .. */
     const asj_isotropic *test;       /* .. 3 .. */

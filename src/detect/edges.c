@@ -42,7 +42,7 @@ typedef struct graph {
     int own_octave;        /* whether those of other octaves count as not there */
     int must_divide;       /* whether junctions on the way count only if they divide the edge */
     int32_t columns, rows;
-    double log_epsilon, log_tests[ASJ_MAX_OCTAVES];
+    double log_epsilon, log_tests[ASJ_MAX_OCTAVES - ASJ_FIRST_OCTAVE]; /* of the first octave, .. */
 } graph;
 
 /* One branch, seen from its junction. */
@@ -82,12 +82,13 @@ static void fill_grid(graph *g, size_t count)
 
 static double end_tolerance(const asj_hypothesis_branch *branch)
 {
-    return fmax(END_NEAR * (1 << branch->octave), fmin(END_SURE * sqrt(branch->end_variance), END_MOST * (1 << branch->octave)));
+    const double scale = asj_octave_scale(branch->octave);
+    return fmax(END_NEAR * scale, fmin(END_SURE * sqrt(branch->end_variance), END_MOST * scale));
 }
 
 static double off_tolerance(const asj_hypothesis_branch *branch, double distance)
 {
-    return fmax(OFF_LINE * (1 << branch->octave), OFF_SHARE * distance);
+    return fmax(OFF_LINE * asj_octave_scale(branch->octave), OFF_SHARE * distance);
 }
 
 static int ends_at(const asj_hypothesis_branch *branch, double distance)
@@ -111,8 +112,8 @@ static int goes_on(const asj_hypothesis *hypothesis, double angle)
 
 static double log_nfa(const graph *g, const asj_hypothesis_branch *branch, double distance)
 {
-    return asj_edge_evidence_log_nfa(&g->evidence[branch->evidence], distance / (1 << branch->octave),
-                                     g->log_tests[branch->octave]);
+    return asj_edge_evidence_log_nfa(&g->evidence[branch->evidence], distance / asj_octave_scale(branch->octave),
+                                     g->log_tests[branch->octave - ASJ_FIRST_OCTAVE]);
 }
 
 /* Of the two branches those that reach the other junction tell what lies between; the surer one of both. */
@@ -212,8 +213,10 @@ static void start(graph *g, const asj_detect_options *options, int32_t width, in
 {
     g->log_epsilon = log(options->epsilon);
     g->own_octave = options->octave_union;
-    for (int32_t o = 0; o < ASJ_MAX_OCTAVES; o++)
-        g->log_tests[o] = asj_strip_log_tests(width >> o > 0 ? width >> o : 1, height >> o > 0 ? height >> o : 1, octaves);
+    for (int32_t o = ASJ_FIRST_OCTAVE; o < ASJ_MAX_OCTAVES; o++) {
+        const int32_t columns = asj_octave_size(width, o), rows = asj_octave_size(height, o);
+        g->log_tests[o - ASJ_FIRST_OCTAVE] = asj_strip_log_tests(columns > 0 ? columns : 1, rows > 0 ? rows : 1, octaves);
+    }
 }
 
 static void find_some(const void *data, const asj_part *part)

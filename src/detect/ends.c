@@ -88,7 +88,7 @@ static const asj_hypothesis *find_end(const asj_hypothesis *hypothesis, const as
                                       int own_octave, const asj_hypothesis *const *order, size_t count, double *distance)
 {
     const double ux = cos(branch->angle), uy = sin(branch->angle), end_y = hypothesis->y + branch->length * uy;
-    const double scale = 1 << branch->octave, off_line = OFF_LINE * scale;
+    const double scale = asj_octave_scale(branch->octave), off_line = OFF_LINE * scale;
     const double around = scale * (sure ? fmax(reach, SURE_REACH) : reach) + off_line;
     const asj_hypothesis *found = NULL;
     double best = HUGE_VAL;

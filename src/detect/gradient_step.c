@@ -4,13 +4,23 @@
 
 asj_status asj_step_load(asj_detection_run *run)
 {
-    return asj_frame_load(run->context, run->frame, run->image);
+    return run->octave < 0 ? asj_frame_enlarge(run->context, run->frame, run->image)
+                           : asj_frame_load(run->context, run->frame, run->image);
+}
+
+/* From the enlarged image to the image itself. */
+static asj_status reduce(asj_detection_run *run)
+{
+    const int32_t octaves = run->frame->octaves;
+    const asj_status status = asj_frame_prepare(run->context, run->frame, run->image->width, run->image->height);
+    run->frame->octaves = octaves;
+    return status == ASJ_OK ? asj_step_load(run) : status;
 }
 
 asj_status asj_step_halve(asj_detection_run *run)
 {
     run->octave++;
-    asj_status status = asj_frame_halve(run->context, run->frame);
+    asj_status status = run->octave > 0 ? asj_frame_halve(run->context, run->frame) : reduce(run);
     return status == ASJ_OK ? asj_detection_run_set_size(run) : status;
 }
 

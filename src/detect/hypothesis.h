@@ -5,7 +5,20 @@
 
 #include "isotropic.h"
 
-#define ASJ_MAX_OCTAVES 16 /* numbers of octaves are below this */
+#define ASJ_MAX_OCTAVES 16 /* numbers of octaves are below this, */
+#define ASJ_FIRST_OCTAVE (-1) /* and not below this: the image enlarged twice */
+
+/* px of the image for one of the octave. */
+static inline double asj_octave_scale(int32_t octave)
+{
+    return octave < 0 ? 0.5 : (double)(1 << octave);
+}
+
+/* px of the octave for so many of the image. */
+static inline int32_t asj_octave_size(int32_t size, int32_t octave)
+{
+    return octave < 0 ? 2 * size : size >> octave;
+}
 
 /* A ray that has been followed along a branch (step 4). */
 typedef struct asj_scanned_ray {
@@ -38,7 +51,7 @@ typedef struct asj_hypothesis {
     double first;              /* px along the branches: where lines are fitted from, once they are guessed */
     double location_variance;  /* px^2, mean of both axes */
     double explained;          /* share of the gradient around that a blurred corner explains (blurred_corner.c); 0 = none */
-    int32_t octave;            /* that located it: 0 = the image itself, 1 = the image halved, .. */
+    int32_t octave;            /* that located it: 0 = the image itself, 1 = the image halved, .., -1 = enlarged twice */
     int32_t branch_count;      /* 0 = rejected */
     asj_hypothesis_branch branches[ASJ_MAX_BRANCHES];
 } asj_hypothesis;

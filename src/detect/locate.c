@@ -99,7 +99,7 @@ static int meet_lines(const asj_rough_line *lines, const double *weights, int32_
 
 int asj_locate_meet(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
-    const int alike = options->strip_test && frame->octave == 0;
+    const int alike = options->strip_test && frame->octave <= 0;
     asj_rough_line lines[ASJ_MAX_BRANCHES];
     double weights[ASJ_MAX_BRANCHES], ones[ASJ_MAX_BRANCHES];
     meeting m;
@@ -232,7 +232,7 @@ void asj_locate_guess(const asj_context *context, const asj_frame *frame, const 
     if (options->refinement != ASJ_REFINE_LINE_FIT)
         return;
     guess_from(context, frame, options, FIRST, hypothesis, &astray);
-    if (!astray || frame->octave == 0)
+    if (!astray || frame->octave <= 0)
         return;
     /* close by, soft edges bend so much that their lines miss the corner: coarse octaves, to which it is left, look farther out */
     *hypothesis = before;

@@ -47,9 +47,16 @@ typedef struct stretch {
     double first, last, across;
 } stretch;
 
+/* px of the image: of the branch's octave one; nothing finer is to be seen in the image than it has itself. */
 static double scale_of(const asj_hypothesis_branch *branch)
 {
-    return (double)(1 << branch->octave);
+    return fmax(asj_octave_scale(branch->octave), 1);
+}
+
+/* px of the image */
+static double width_of(const asj_hypothesis_branch *branch)
+{
+    return branch->width * asj_octave_scale(branch->octave);
 }
 
 /* (ux, uy): the branch's direction. */
@@ -86,7 +93,7 @@ static double begin_of(const asj_hypothesis *hypothesis, int32_t i, double acros
     for (int32_t j = 0; j < hypothesis->branch_count; j++) {
         const asj_hypothesis_branch *other = &hypothesis->branches[j];
         const double turn = asj_angle_distance(hypothesis->branches[i].angle, other->angle);
-        const double away = AWAY * fmax(other->width * scale_of(other), LEAST_WIDTH);
+        const double away = AWAY * fmax(width_of(other), LEAST_WIDTH);
         if (j != i)
             begin = fmax(begin, turn < 0.5 * ASJ_PI ? (away + across * cos(turn)) / sin(turn) : away);
     }
@@ -99,7 +106,7 @@ static int is_sharp(const asj_frame *frame, const asj_hypothesis *hypothesis, co
 {
     const stretch step = {far->first, far->last, STEP};
     double most = 0;
-    if (branch->width * scale_of(branch) <= WIDE)
+    if (width_of(branch) <= WIDE)
         return 0;
     asj_hypothesis_branch edge = *branch;
     edge.apart = 0;
@@ -115,7 +122,7 @@ static int is_there(const asj_frame *frame, const asj_hypothesis *hypothesis, in
 {
     const asj_hypothesis_branch *branch = &hypothesis->branches[i];
     const double scale = scale_of(branch);
-    const double across = branch->apart > 0 ? branch->apart : fmax(LEAST_ACROSS, ACROSS * branch->width * scale);
+    const double across = branch->apart > 0 ? branch->apart : fmax(LEAST_ACROSS, ACROSS * width_of(branch));
     const double begin = begin_of(hypothesis, i, across), near_length = fmax(NEAR_LENGTH * scale, LEAST_NEAR);
     const stretch near = {begin, begin + near_length, across};
     const stretch far = {FAR * scale, fmin(FAR_END * scale, branch->length - LEFT_OUT * scale), across};

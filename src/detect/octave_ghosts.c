@@ -70,7 +70,7 @@ static int has_direction(const asj_hypothesis *hypothesis, double angle, double 
 /* Whether the branch begins at `finer` and not at the junction that it is said to be of. */
 static int begins_at(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, const asj_hypothesis *finer)
 {
-    const double scale = (double)(1 << hypothesis->octave), ux = cos(branch->angle), uy = sin(branch->angle);
+    const double scale = asj_octave_scale(hypothesis->octave), ux = cos(branch->angle), uy = sin(branch->angle);
     const double dx = finer->x - hypothesis->x, dy = finer->y - hypothesis->y;
     const double t = dx * ux + dy * uy, s = dy * ux - dx * uy - branch->offset;
     return t > 0 && t <= BEGINS * scale && fabs(s) <= OFF_LINE * scale + 0.5 * branch->apart &&
@@ -89,7 +89,8 @@ static void drop_begun(const asj_octave_grid *grid, const asj_hypothesis *hypoth
 int asj_octave_ghost(const asj_octave_grid *grid, const asj_hypothesis *hypotheses, const asj_hypothesis *hypothesis,
                      double minimum_opening)
 {
-    const asj_octave_cells near = asj_octave_grid_around(grid, hypothesis, (BEGINS + OFF_LINE) * (1 << hypothesis->octave));
+    const double reach = (BEGINS + OFF_LINE) * asj_octave_scale(hypothesis->octave);
+    const asj_octave_cells near = asj_octave_grid_around(grid, hypothesis, reach);
     asj_hypothesis rest = *hypothesis;
     int keep[ASJ_MAX_BRANCHES];
     for (int32_t b = 0; b < hypothesis->branch_count; b++)

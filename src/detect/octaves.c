@@ -4,6 +4,9 @@
  * wide and the noise half as strong, so the same steps find there what they miss here. Pixel (i, j) of octave o is centred at
  *     x = (i + 0.5) 2^o - 0.5,  y likewise.
  *
+ * Octave -1, when it is asked for, works on the image enlarged twice (core/enlarge.c): the same formula. Corners with branches of
+ * fewer pixels than a sector needs are found there.
+ *
  * Which octave an edge belongs to is decided by its own width (edge_width.c), not by which octave fired first: lines that are
  * fitted to edges wider than the fits look follow noise, and corners of them are off by pixels.
  *   - a branch wider than WIDEST is dropped: a coarser octave sees it, or nothing does (a gradient of light);
@@ -35,11 +38,6 @@
 #define JOINED_APART (20 * ASJ_DEGREE) /* a branch that joins others points elsewhere; merge_angle, if that is more */
 #define JOINED_OFF 1.5            /* px of the coarser octave: its line passes the junction at most so far away */
 
-static double scale_of(int32_t octave)
-{
-    return (double)(1 << octave);
-}
-
 /* How many there are. */
 static int32_t count_octaves(int32_t width, int32_t height)
 {
@@ -55,13 +53,13 @@ asj_octave_range asj_octaves_of(const asj_detect_options *options, int32_t width
     asj_octave_range range = {options->first_octave < count ? options->first_octave : count - 1, 0, 0};
     range.end = count - range.first < options->octaves ? count : range.first + options->octaves;
     for (int32_t o = range.first; o < range.end; o++)
-        range.pixels += (double)(width >> o) * (height >> o);
+        range.pixels += (double)asj_octave_size(width, o) * asj_octave_size(height, o);
     return range;
 }
 
 void asj_octaves_map(asj_hypothesis *hypothesis, int32_t octave)
 {
-    const double scale = scale_of(octave);
+    const double scale = asj_octave_scale(octave);
     hypothesis->octave = octave;
     hypothesis->x = (hypothesis->x + 0.5) * scale - 0.5;
     hypothesis->y = (hypothesis->y + 0.5) * scale - 0.5;
@@ -139,14 +137,15 @@ static int share_direction(const asj_hypothesis *a, const asj_hypothesis *b)
 static int32_t find_same(const asj_octave_grid *grid, const asj_hypothesis *hypotheses, const asj_hypothesis *hypothesis)
 {
     const int32_t coarsest = grid->coarsest > hypothesis->octave ? grid->coarsest : hypothesis->octave;
-    const asj_octave_cells w = asj_octave_grid_around(grid, hypothesis, NEAR * scale_of(coarsest));
+    const asj_octave_cells w = asj_octave_grid_around(grid, hypothesis, NEAR * asj_octave_scale(coarsest));
     double least = HUGE_VAL;
     int32_t found = -1;
     for (int32_t row = w.top; row <= w.bottom; row++)
         for (int32_t column = w.left; column <= w.right; column++)
             for (int32_t i = grid->heads[row * grid->columns + column]; i >= 0; i = grid->next[i]) {
                 const asj_hypothesis *other = &hypotheses[i];
-                const double reach = NEAR * scale_of(other->octave > hypothesis->octave ? other->octave : hypothesis->octave);
+                const int32_t coarser = other->octave > hypothesis->octave ? other->octave : hypothesis->octave;
+                const double reach = NEAR * asj_octave_scale(coarser);
                 const double distance = hypot(other->x - hypothesis->x, other->y - hypothesis->y);
                 if (other->octave != hypothesis->octave && distance <= reach && distance < least &&
                     share_direction(other, hypothesis)) {
@@ -176,14 +175,14 @@ static void insert_by_angle(asj_hypothesis *hypothesis, const asj_hypothesis_bra
 /* Adds the branches of a coarser octave that are too soft for the octave of `hypothesis`. */
 static void join(const asj_hypothesis *coarse, double merge_angle, asj_hypothesis *hypothesis)
 {
-    const double least = fmax(JOINED_APART, merge_angle * ASJ_DEGREE), scale = scale_of(coarse->octave);
+    const double least = fmax(JOINED_APART, merge_angle * ASJ_DEGREE), scale = asj_octave_scale(coarse->octave);
     const double dx = hypothesis->x - coarse->x, dy = hypothesis->y - coarse->y;
     for (int32_t i = 0; i < coarse->branch_count && hypothesis->branch_count < ASJ_MAX_BRANCHES; i++) {
         asj_hypothesis_branch branch = coarse->branches[i];
         const double ux = cos(branch.angle), uy = sin(branch.angle);
         branch.offset -= dy * ux - dx * uy;
         branch.length -= dx * ux + dy * uy;
-        if (branch.width * scale > SHARP * scale_of(hypothesis->octave) && fabs(branch.offset) <= JOINED_OFF * scale &&
+        if (branch.width * scale > SHARP * asj_octave_scale(hypothesis->octave) && fabs(branch.offset) <= JOINED_OFF * scale &&
             branch.length > 0 && points_elsewhere(hypothesis, &branch, least))
             insert_by_angle(hypothesis, &branch);
     }
@@ -213,7 +212,7 @@ size_t asj_octaves_merge(asj_hypothesis *hypotheses, size_t count, const asj_det
 /* Whether join() would take no branch. */
 static int adds_nothing(const asj_hypothesis *hypothesis, int located, const asj_hypothesis *finer)
 {
-    const double relative = scale_of(hypothesis->octave - finer->octave);
+    const double relative = asj_octave_scale(hypothesis->octave - finer->octave);
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         if ((!located || hypothesis->branches[i].width * relative > SHARP) &&
             points_elsewhere(finer, &hypothesis->branches[i], JOINED_APART))
@@ -225,7 +224,7 @@ static int is_at_finer(const asj_octave_known *known, const asj_hypothesis *hypo
 {
     const asj_octave_grid *grid = &known->grid;
     const asj_hypothesis *finer = known->finer;
-    const double reach = NEAR * scale_of(hypothesis->octave);
+    const double reach = NEAR * asj_octave_scale(hypothesis->octave);
     const asj_octave_cells w = asj_octave_grid_around(grid, hypothesis, reach);
     for (int32_t row = w.top; row <= w.bottom; row++)
         for (int32_t column = w.left; column <= w.right; column++)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Hypotheses of several octaves become one list. Octave o works on the image halved o times. */
+/* Hypotheses of several octaves become one list. Octave o works on the image halved o times, octave -1 on
+ * the image enlarged twice. */
 #ifndef ASJ_SRC_OCTAVES_H
 #define ASJ_SRC_OCTAVES_H
 

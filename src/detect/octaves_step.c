@@ -54,7 +54,7 @@ static asj_status confirm_all(asj_detection_run *run)
 {
     asj_status status = asj_frame_prepare_gray(run->context, run->frame, run->image->width, run->image->height);
     if (status == ASJ_OK)
-        status = asj_step_load(run);
+        status = asj_frame_load(run->context, run->frame, run->image);
     return status == ASJ_OK ? asj_detection_run_each(run, ASJ_STAGE_REFINE, LEAST_CONFIRMED, confirm) : status;
 }
 

@@ -4,7 +4,8 @@
  * what it is without a region: what lies outside still speaks for or against a junction inside, and branches reach as far.
  *
  * A junction moves by max_move px of its octave while it is located; so candidates stay up to `reach` = that, rounded up, and one
- * more around the region. Pixel (i, j) of octave o stands for the pixels i 2^o .. (i + 1) 2^o - 1 of the image, j likewise. */
+ * more around the region. Pixel (i, j) of octave o stands for the pixels i 2^o .. (i + 1) 2^o - 1 of the image, j likewise;
+ * of octave -1, for pixel i / 2. */
 #include "region.h"
 
 #include <math.h>
@@ -62,8 +63,8 @@ static int32_t reach_of(const asj_detection_run *run)
 static void octave_range(const asj_detection_run *run, int32_t first, int32_t end, int32_t size, int32_t *from, int32_t *to)
 {
     const int32_t reach = reach_of(run);
-    *from = (first >> run->octave) - reach;
-    *to = ((end - 1) >> run->octave) + 1 + reach;
+    *from = (run->octave < 0 ? 2 * first : first >> run->octave) - reach;
+    *to = (run->octave < 0 ? 2 * end : ((end - 1) >> run->octave) + 1) + reach;
     *from = *from > 0 ? *from : 0;
     *to = *to < size ? *to : size;
     *from = *from < *to ? *from : *to; /* the last pixel of the image may belong to no pixel of the octave */
@@ -100,13 +101,21 @@ static void clear_bit(uint16_t *bits, int32_t x)
     bits[x / ASJ_LANES] = (uint16_t)(bits[x / ASJ_LANES] & ~(1u << x % ASJ_LANES));
 }
 
+/* Pixels *first .. *end - 1 of the image, `size` in all, that lie around pixel i of the octave. */
+static void image_range(const asj_detection_run *run, int32_t i, int32_t size, int32_t *first, int32_t *end)
+{
+    const int32_t reach = reach_of(run), before = i - reach, after = i + reach + 1;
+    *first = clamp(run->octave < 0 ? before / 2 : before * (1 << run->octave), size);
+    *end = clamp(run->octave < 0 ? (after + 1) / 2 : after * (1 << run->octave), size);
+}
+
 /* Bits of candidates with nothing of `line` near go. */
 static void clear_far(const asj_detection_run *run, const uint8_t *line, uint16_t *bits)
 {
-    const int32_t width = run->image->width, reach = reach_of(run), octave = run->octave;
     int32_t last = -1; /* the last pixel of the image that is allowed, of those before `next` */
     for (int32_t x = 0, next = 0; x < run->frame->width; x++) {
-        const int32_t first = clamp((x - reach) * (1 << octave), width), end = clamp((x + reach + 1) * (1 << octave), width);
+        int32_t first, end;
+        image_range(run, x, run->image->width, &first, &end);
         for (; next < end; next++)
             last = line[next] ? next : last;
         if (last < first)
@@ -130,7 +139,6 @@ asj_status asj_region_clear_candidates(asj_detection_run *run)
 {
     const asj_image *mask = run->region->mask;
     const size_t row_size = (size_t)run->frame->blocks * sizeof *run->candidates;
-    const int32_t height = run->image->height, reach = reach_of(run);
     int32_t top, bottom, left, right;
     uint8_t *line = mask ? asj_allocate(&run->context->memory, (size_t)run->image->width, 1) : NULL;
     if (mask && !line)
@@ -143,9 +151,10 @@ asj_status asj_region_clear_candidates(asj_detection_run *run)
             memset(run->candidates + (ptrdiff_t)y * run->frame->blocks, 0, row_size);
             continue;
         }
+        int32_t first, end;
+        image_range(run, y, run->image->height, &first, &end);
         if (mask)
-            gather_rows(mask, clamp((y - reach) * (1 << run->octave), height), clamp((y + reach + 1) * (1 << run->octave), height),
-                        line);
+            gather_rows(mask, first, end, line);
         clear_row(run, y, left, right, line);
     }
     asj_release(&run->context->memory, line);

@@ -33,7 +33,7 @@ static void convert(const asj_hypothesis *hypothesis, asj_junction *out)
         out->branches[i].strength = (float)branch->strength;
         out->branches[i].log10_nfa = (float)(branch->log_nfa / LN_10);
         out->branches[i].angle_sd = (float)sqrt(branch->angle_variance);
-        out->branches[i].width = (float)(branch->width * (1 << branch->octave));
+        out->branches[i].width = (float)(branch->width * asj_octave_scale(branch->octave));
         out->branches[i].length_sd = (float)sqrt(branch->end_variance);
         out->branches[i].end = branch->end;
     }

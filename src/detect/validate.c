@@ -162,7 +162,7 @@ static int judge(const asj_context *context, const asj_frame *frame, const asj_d
         (options->ignore_frame && on_frame(frame, hypothesis, branch)))
         return NOT_AT_ALL;
     if (!options->strip_test || branch->log_nfa <= log_epsilon)
-        return options->strip_test && frame->octave == 0 && strip.near_share < LEAST_IMAGE_SHARE ? IF_OTHERS_OPEN : ALONE;
+        return options->strip_test && frame->octave <= 0 && strip.near_share < LEAST_IMAGE_SHARE ? IF_OTHERS_OPEN : ALONE;
     const int pairs = frame->octave > 0 && (branch->width <= SOFT || asj_blurred_corner_is_sure(hypothesis));
     return pairs && branch->log_nfa <= log_epsilon + 0.5 * log_places(frame) ? WITH_OTHERS : NOT_AT_ALL;
 }
@@ -193,7 +193,7 @@ static void judge_pairs(const asj_frame *frame, const asj_detect_options *option
 
 static int is_unsure(const asj_frame *frame, const asj_detect_options *options, const asj_hypothesis *hypothesis)
 {
-    return options->strip_test && frame->octave == 0 && hypothesis->location_variance > MOST_SD * MOST_SD;
+    return options->strip_test && frame->octave <= 0 && hypothesis->location_variance > MOST_SD * MOST_SD;
 }
 
 static int has_moved_far(const asj_detect_options *options, const asj_hypothesis *hypothesis)

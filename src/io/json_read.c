@@ -166,8 +166,8 @@ static asj_status read_junction(const json_reader *reader, size_t line, const js
 
     if (status != ASJ_OK)
         return status;
-    if (!(octave >= 0 && octave <= ASJ_LARGEST_OCTAVE))
-        return asj_line_fail(reader->message, line, "\"octave\" must be from 0 to %d", ASJ_LARGEST_OCTAVE);
+    if (!(octave >= ASJ_LEAST_OCTAVE && octave <= ASJ_LARGEST_OCTAVE))
+        return asj_line_fail(reader->message, line, "\"octave\" must be from %d to %d", ASJ_LEAST_OCTAVE, ASJ_LARGEST_OCTAVE);
     junction.octave = (int32_t)octave;
     if (count < 2 || count > ASJ_MAX_BRANCHES)
         return asj_line_fail(reader->message, line, "a junction must have \"branches\", 2 to %d of them", ASJ_MAX_BRANCHES);

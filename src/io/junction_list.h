@@ -12,6 +12,7 @@
 #define ASJ_EDGES_MAX (5 * ASJ_JUNCTIONS_MAX / 2) /* no branch is part of two */
 
 /* Of a junction in a file. */
+#define ASJ_LEAST_OCTAVE (-1)
 #define ASJ_LARGEST_OCTAVE 15
 
 typedef struct asj_junction_list {

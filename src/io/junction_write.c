@@ -11,7 +11,7 @@ static int is_sound(const asj_junction *junction)
     int32_t b;
     if (junction->branch_count < 0 || junction->branch_count > ASJ_MAX_BRANCHES)
         return 0;
-    if (junction->scale < 0 || junction->octave < 0 || junction->octave > ASJ_LARGEST_OCTAVE)
+    if (junction->scale < 0 || junction->octave < ASJ_LEAST_OCTAVE || junction->octave > ASJ_LARGEST_OCTAVE)
         return 0;
     if (!isfinite(junction->x) || !isfinite(junction->y) || !isfinite(junction->scale) || !isfinite(junction->log10_nfa) ||
         !isfinite(junction->location_sd))

@@ -55,7 +55,7 @@ static void fill_detection(void)
         junction->scale = i % 2 ? 7.0f : random_float(3, 30);
         junction->log10_nfa = random_float(-500, 0);
         junction->location_sd = random_float(0, 1);
-        junction->octave = (int32_t)(i % 5);
+        junction->octave = (int32_t)(i % 6) - 1;
         count = junction->branch_count = 2 + (int32_t)(i % 4);
         for (b = 0; b < count; b++)
             fill_branch(&junction->branches[b], b, count);
@@ -357,13 +357,13 @@ static void a_name_that_is_no_utf8(void **state)
 
 static void unsound_detections_are_not_written(void **state)
 {
-    asj_junction bad[8];
+    asj_junction bad[9];
     asj_detection wrong = detection;
     asj_edge edge;
     const char *path = in_folder("never");
     size_t i;
     (void)state;
-    for (i = 0; i < 8; i++)
+    for (i = 0; i < 9; i++)
         bad[i] = junctions[1];
     bad[0].x = 0.0f / (float)(random_state & 0);
     bad[1].branches[1].length = 3e38f * (10.0f + random_float(0, 1));
@@ -373,10 +373,11 @@ static void unsound_detections_are_not_written(void **state)
     bad[5].octave = 31;
     bad[6].branches[0].length = -1;
     bad[7].scale = -1;
+    bad[8].octave = -2;
     wrong.junction_count = 1;
     wrong.l_junction_count = wrong.edge_count = 0;
     report.detection = &wrong;
-    for (i = 0; i < 8; i++) {
+    for (i = 0; i < 9; i++) {
         wrong.junctions = &bad[i];
         assert_int_equal(asj_junctions_write(path, ASJ_FILE_JSON, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
         assert_non_null(strstr(message, "junction 0"));

@@ -130,6 +130,10 @@ static void settings(run_state *state, int quick)
     state->setting = "field_radius=5, sector_width=1.5";
     scenes(state, 2);
     asj_detect_options_init(&state->options);
+    state->options.first_octave = -1;
+    state->setting = "first_octave=-1";
+    scenes(state, quick ? 1 : 3);
+    asj_detect_options_init(&state->options);
     state->setting = "default";
 }
 

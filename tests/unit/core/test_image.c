@@ -290,6 +290,44 @@ static void test_prepare(void **state)
     }
 }
 
+/* Bilinear between pixel centres, in whole 1/128 of a grey level; the border goes on, and the gradient's margins are empty. */
+static void test_enlarge(void **state)
+{
+    enum { WIDTH = 19, HEIGHT = 11 };
+    static const int32_t sizes[][2] = {{WIDTH, HEIGHT}, {1, 1}, {3, HEIGHT}, {WIDTH, 2}};
+    fixture *f = *state;
+    uint8_t pixels[WIDTH * HEIGHT];
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        pixels[i] = (uint8_t)(i * 89 % 251);
+    for (size_t k = 0; k < UNIT_COUNT(sizes); k++) {
+        const int32_t w = sizes[k][0], h = sizes[k][1];
+        const asj_image image = unit_gray8(pixels, w, h);
+        f->frame.octaves = 3;
+        assert_int_equal(asj_frame_enlarge(f->context, &f->frame, &image), ASJ_OK);
+        assert_true(f->frame.width == 2 * w && f->frame.height == 2 * h && f->frame.octave == -1 && f->frame.octaves == 3);
+        for (int32_t y = -ASJ_GRAY_BORDER; y < 2 * h + ASJ_GRAY_BORDER; y++)
+            for (int32_t x = -ASJ_GRAY_BORDER; x < 2 * w + ASJ_GRAY_BORDER; x++) {
+                const double u = fmin(fmax(0.5 * fmin(fmax(x, 0), 2 * w - 1) - 0.25, 0), w - 1);
+                const double v = fmin(fmax(0.5 * fmin(fmax(y, 0), 2 * h - 1) - 0.25, 0), h - 1);
+                const int32_t i = (int32_t)u, j = (int32_t)v, right = i + 1 < w ? i + 1 : i, below = j + 1 < h ? j + 1 : j;
+                const double upper = pixels[j * w + i] + (u - i) * (pixels[j * w + right] - pixels[j * w + i]);
+                const double lower = pixels[below * w + i] + (u - i) * (pixels[below * w + right] - pixels[below * w + i]);
+                const double level = upper + (v - j) * (lower - upper);
+                assert_int_equal(gray(f, x, y), floor(level * ASJ_GRAY_ONE + 0.5));
+            }
+        for (int32_t i = 1; i <= ASJ_MARGIN; i++)
+            assert_true(f->frame.gradient_x[-i] == 0 && f->frame.gradient_y[2 * w - 1 + i] == 0 &&
+                        f->frame.gradient_x[-i * f->frame.stride] == 0 &&
+                        f->frame.gradient_x[(2 * h - 1 + i) * f->frame.stride + w] == 0);
+    }
+    f->counter.fail_at = f->counter.calls + 1;
+    const asj_image large = unit_gray8(calloc(300 * 300, 1), 300, 300);
+    assert_non_null(large.data);
+    assert_int_equal(asj_frame_enlarge(f->context, &f->frame, &large), ASJ_ERROR_MEMORY);
+    f->counter.fail_at = 0;
+    free((void *)(uintptr_t)large.data);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -297,7 +335,7 @@ int main(void)
         cmocka_unit_test(test_extreme_white), cmocka_unit_test(test_colour),     cmocka_unit_test(test_strides),
         cmocka_unit_test(test_refused),       cmocka_unit_test(test_short_strides),
         cmocka_unit_test(test_bottom_up), cmocka_unit_test(test_not_finite),
-        cmocka_unit_test(test_prepare),
+        cmocka_unit_test(test_prepare), cmocka_unit_test(test_enlarge),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }

@@ -320,6 +320,82 @@ static void test_threads(void **state)
         }
 }
 
+/* What octave -1 adds to a union is all of its own, and the rest is what there was. */
+static void check_enlarged(asj_context *context, const asj_image *image, const asj_detection *all)
+{
+    asj_detect_options options;
+    asj_detection *more = NULL;
+    uint32_t next = 0;
+    assert_int_equal(asj_detect_options_preset(&options, ASJ_PRESET_MATCH), ASJ_OK);
+    options.first_octave = -1;
+    options.octaves++;
+    assert_int_equal(asj_detect(context, image, &options, &more), ASJ_OK);
+    assert_true(more->junction_count > all->junction_count);
+    for (uint32_t i = 0; i < more->junction_count; i++) {
+        assert_true(more->junctions[i].octave >= -1);
+        if (more->junctions[i].octave < 0)
+            continue;
+        assert_true(next < all->junction_count);
+        assert_memory_equal(&more->junctions[i], &all->junctions[next++], sizeof *all->junctions);
+    }
+    assert_int_equal(next, all->junction_count);
+    asj_detection_free(&more);
+}
+
+/* Squares of `side` px have corners too near to each other for the image itself; those of octave -1 are where they are, within
+ * what they say. */
+static void test_small_squares(void **state)
+{
+    enum { SIDE = 7, FIRST = 20, STEP = 31, COUNT = 6, SIZE = 2 * FIRST + COUNT * STEP };
+    static uint8_t pixels[SIZE * SIZE];
+    fixture *f = *state;
+    const asj_image image = unit_gray8(pixels, SIZE, SIZE);
+    uint32_t found_by[2];
+    for (int32_t y = 0; y < SIZE; y++)
+        for (int32_t x = 0; x < SIZE; x++) {
+            const int32_t i = (x - FIRST) / STEP, j = (y - FIRST) / STEP;
+            const int inside = x >= FIRST && y >= FIRST && i < COUNT && j < COUNT && (x - FIRST) % STEP < SIDE &&
+                               (y - FIRST) % STEP < SIDE;
+            pixels[y * SIZE + x] = inside ? 200 : 60;
+        }
+    for (int32_t first = 0; first >= -1; first--) {
+        asj_detect_options options;
+        asj_detection *found = NULL;
+        asj_detect_options_init(&options);
+        options.first_octave = first;
+        assert_int_equal(asj_detect(f->context, &image, &options, &found), ASJ_OK);
+        assert_true(found->width == SIZE && found->height == SIZE);
+        found_by[-first] = 0;
+        for (uint32_t k = 0; k < found->junction_count; k++) {
+            const asj_junction *c = &found->junctions[k];
+            const double x = fmod((double)c->x - FIRST + 0.5 + 1, STEP) - 1, y = fmod((double)c->y - FIRST + 0.5 + 1, STEP) - 1;
+            const double dx = fmin(fabs(x), fabs(x - SIDE)), dy = fmin(fabs(y), fabs(y - SIDE));
+            found_by[-first] += c->octave == first && c->branch_count == 2 && dx < 0.2 && dy < 0.2;
+            assert_true(c->octave > first || hypot(dx, dy) < 5 * (double)c->location_sd + 0.05);
+        }
+        asj_detection_free(&found);
+    }
+    printf("squares of %d px: %u corners of the image, %u of octave -1, of %d\n", (int)SIDE, (unsigned)found_by[0],
+           (unsigned)found_by[1], 4 * COUNT * COUNT);
+    assert_int_equal(found_by[1], 4 * COUNT * COUNT);
+}
+
+/* An enlarged image has a largest size, too. */
+static void test_enlarged_limit(void **state)
+{
+    fixture *f = *state;
+    asj_detect_options options;
+    asj_detection *found = NULL;
+    const uint8_t pixel = 0;
+    const asj_image wide = {&pixel, ASJ_FORMAT_GRAY8, ASJ_MAX_SIDE / 2 + 1, 1, 0, 0};
+    asj_detect_options_init(&options);
+    options.first_octave = -1;
+    assert_int_equal(asj_detect(f->context, &wide, &options, &found), ASJ_ERROR_LIMIT);
+    assert_null(found);
+    options.first_octave = -2;
+    assert_int_equal(asj_detect(f->context, &wide, &options, &found), ASJ_ERROR_OPTION);
+}
+
 /* Octaves that are listed each for itself change nothing of each other. */
 static void test_octave_union(void **state)
 {
@@ -346,6 +422,7 @@ static void test_octave_union(void **state)
             assert_memory_equal(&all->junctions[i], &one->junctions[next++], sizeof *one->junctions);
         }
         assert_int_equal(next, one->junction_count);
+        check_enlarged(f->context, &image, all);
         asj_detection_free(&one);
         asj_detection_free(&all);
         free(pixels);
@@ -636,7 +713,7 @@ int main(void)
         cmocka_unit_test(test_tiny_and_flat),
         cmocka_unit_test(test_noise),  cmocka_unit_test(test_borders),   cmocka_unit_test(test_threads),
         cmocka_unit_test(test_reuse),  cmocka_unit_test(test_quarter_turn), cmocka_unit_test(test_formats),
-        cmocka_unit_test(test_octave_union),
+        cmocka_unit_test(test_octave_union), cmocka_unit_test(test_small_squares), cmocka_unit_test(test_enlarged_limit),
         cmocka_unit_test(test_minimum_length),
         cmocka_unit_test(test_radii),
         cmocka_unit_test(test_arguments), cmocka_unit_test(test_bad_options), cmocka_unit_test(test_extreme_options),

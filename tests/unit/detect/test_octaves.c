@@ -64,6 +64,16 @@ static void test_range(void **state)
     range = asj_octaves_of(&options, 640, 480);
     assert_int_equal(range.first, 1);
     assert_int_equal(range.end, 3);
+    options.first_octave = -1;
+    range = asj_octaves_of(&options, 640, 480);
+    assert_true(range.first == -1 && range.end == 1 && range.pixels == 640 * 480 * 5);
+    options.octaves = 16;
+    range = asj_octaves_of(&options, 640, 480);
+    assert_true(range.first == -1 && range.end == 4);
+    assert_int_equal(asj_octaves_sharing(&options, 640, 480), 5);
+    range = asj_octaves_of(&options, 1, 1);
+    assert_true(range.first == -1 && range.end == 1);
+    options.octaves = 2;
     options.first_octave = 15; /* the coarsest there is */
     range = asj_octaves_of(&options, 640, 480);
     assert_int_equal(range.first, 3);
@@ -73,7 +83,8 @@ static void test_range(void **state)
     assert_int_equal(range.end, 1);
 }
 
-/* The corner between the first four pixels of level 0 is the centre of pixel 0 of level 1. */
+/* The corner between the first four pixels of level 0 is the centre of pixel 0 of level 1; pixels 0 and 1 of octave -1 lie a
+ * quarter of a pixel to either side of pixel 0. */
 static void test_map(void **state)
 {
     asj_hypothesis h = of_octave(1, 0, 10, 1);
@@ -81,6 +92,10 @@ static void test_map(void **state)
     assert_true(h.x == 0.5 && h.y == 20.5 && h.radius == 14 && h.octave == 1);
     assert_true(h.branches[1].length == 40 && h.branches[1].width == 1 && h.branches[1].octave == 1);
     unit_near("variance", 0, 0, h.location_variance, 0.04, 1e-12);
+    h = of_octave(-1, 0, 11, 1);
+    assert_true(h.x == -0.25 && h.y == 5.25 && h.radius == 3.5 && h.octave == -1);
+    assert_true(h.branches[1].length == 10 && h.branches[1].width == 1 && h.branches[1].octave == -1);
+    unit_near("variance", 0, 0, h.location_variance, 0.0025, 1e-12);
 }
 
 static void test_finest_sharp_one_stays(void **state)
@@ -90,6 +105,9 @@ static void test_finest_sharp_one_stays(void **state)
     assert_int_equal(merge(list, 3), 1);
     assert_int_equal(list[0].octave, 0);
     assert_true(list[0].x == 101);
+    asj_hypothesis enlarged[2] = {of_octave(0, 101, 101, 0.7), of_octave(-1, 202.5, 202.5, 1.4)};
+    assert_int_equal(merge(enlarged, 2), 1);
+    assert_int_equal(enlarged[0].octave, -1);
 }
 
 static void test_soft_one_gives_way(void **state)
@@ -98,6 +116,9 @@ static void test_soft_one_gives_way(void **state)
     (void)state;
     assert_int_equal(merge(list, 2), 1);
     assert_int_equal(list[0].octave, 1);
+    asj_hypothesis enlarged[2] = {of_octave(-1, 202.5, 202.5, 2.0), of_octave(0, 101, 101, 1.0)};
+    assert_int_equal(merge(enlarged, 2), 1);
+    assert_int_equal(enlarged[0].octave, 0);
     assert_int_equal(merge(&alone, 1), 1); /* nothing coarser is there */
     assert_int_equal(merge(&wide, 1), 0);  /* a gradient of light */
 }

@@ -146,6 +146,12 @@ static void test_octaves(void **state)
     asj_detection *none = detect(f, &(asj_region){.x = WIDTH - 1, .y = HEIGHT - 1, .width = 1, .height = 1});
     assert_int_equal(none->junction_count, 0);
     asj_detection_free(&none);
+    asj_detection_free(&f->whole);
+    f->options.first_octave = -1;
+    check(f, &(asj_region){.x = 101, .y = 91, .width = 121, .height = 103}, 4);
+    for (int32_t i = 0; i < WIDTH * HEIGHT; i++)
+        f->mask[i] = (uint8_t)(hypot(i % WIDTH - 150, i / WIDTH - 140) < 80 ? 1 : 0);
+    check(f, &(asj_region){.mask = &f->mask_image}, 4);
 }
 
 static void test_paper(void **state)
