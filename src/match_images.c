@@ -74,6 +74,8 @@ static asj_status try_stretch(search *s, const asj_stretch *stretch, double from
     asj_match_options without = *s->options;
     asj_match_result *found = NULL;
     one_octave.octaves = 1;
+    if (one_octave.first_octave < 0)
+        one_octave.first_octave = 0;
     without.geometry.model = ASJ_GEOMETRY_NONE;
     const asj_status status = look(s, stretch, &one_octave, &without, from, part, &found);
     *hopeful = status == ASJ_OK && found->match_count >= HINT;

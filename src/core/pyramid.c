@@ -213,6 +213,20 @@ asj_status asj_pyramid_create(asj_context *context, const asj_image *image, doub
     return status;
 }
 
+asj_status asj_pyramid_create_enlarged(asj_context *context, const asj_image *image, double smoothing, asj_pyramid *pyramid)
+{
+    asj_frame frame;
+    memset(pyramid, 0, sizeof *pyramid);
+    memset(&frame, 0, sizeof frame);
+    asj_status status = asj_image_check(context, image);
+    if (status == ASJ_OK)
+        status = asj_frame_enlarge(context, &frame, image);
+    if (status == ASJ_OK)
+        status = fill(context, &frame, smoothing, pyramid);
+    asj_frame_free(&context->memory, &frame);
+    return status;
+}
+
 void asj_pyramid_free(asj_memory *memory, asj_pyramid *pyramid)
 {
     for (int32_t l = 0; l < ASJ_PYRAMID_LEVELS; l++)

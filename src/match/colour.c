@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* What colours surround an L-junction: the mean of red, green and blue in six regions, in pixels of the image.
+/* What colours surround an L-junction: the mean of red, green and blue in six regions, in pixels of the image, or
+ * of the image enlarged twice where the L-junctions are (image_features.c).
  *
  *   strips     rows 3 and 4.5 px beside a branch, from where they leave what is near the other branch to 24 px or its end
  *   sectors    on three rays between the branches, and on three opposite, 6 to 15 px away
@@ -33,6 +34,7 @@ typedef struct picture {
     ptrdiff_t stride;
     int32_t width, height, step, red;
     int32_t cut; /* from this level on a channel is cut */
+    double scale; /* px for one of the L-junctions' */
 } picture;
 
 typedef struct sums {
@@ -57,6 +59,8 @@ static int32_t picture_of(const asj_image *image, picture *p)
 static void add(const picture *p, double x, double y, sums *s)
 {
     s->tried++;
+    x = (x + 0.5) * p->scale - 0.5;
+    y = (y + 0.5) * p->scale - 0.5;
     if (!(x > -0.5 && y > -0.5 && x < p->width - 0.5 && y < p->height - 0.5))
         return;
     const int32_t column = (int32_t)fmin(x + 0.5, p->width - 1), row = (int32_t)fmin(y + 0.5, p->height - 1);
@@ -175,6 +179,7 @@ asj_status asj_colours_create(asj_context *context, const asj_image *image, cons
     *colours = NULL;
     if (!picture_of(image, &p))
         return ASJ_OK;
+    p.scale = l_junctions->enlarged ? 0.5 : 1;
     asj_colour *made = asj_allocate(&context->memory, l_junctions->count, sizeof *made);
     if (!made)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the colours of %lu L-junctions",

@@ -2,17 +2,17 @@
 /* Features as bytes: what .asjf files hold (asj-formats(5)).
  *
  *      0  8 bytes        0x89 A S J F CR LF 0x1a: tells a file that was sent as text
- *      8  u32            version of the format: 1, or 2 where there are colours
+ *      8  u32            version of the format: 1, 1 more where there are colours, 2 more where there are junctions of octave -1
  *     12  u32            CRC-32 of all that follows
  *     16  u64            size of the whole
- *     24  u32, u32       width and height of the image, px
+ *     24  u32, u32       width and height of the image below, px: with version 3 and 4 it is enlarged twice
  *     32  u32            bytes of the options' text
  *     36  u32            number of junctions
  *     40  text           options: a line KEY=VALUE for each
- *         junctions      x, y, scale, log10_nfa, location_sd: five floats; u32 number of branches; u32 octave; for each branch
+ *         junctions      x, y, scale, log10_nfa, location_sd: five floats; u32 number of branches; i32 octave; for each branch
  *                        angle, length, strength, log10_nfa, angle_sd, width, length_sd: seven floats; u32 end
  *         u16            the image after the blur, in 1/128 of a grey level, row by row
- *         u16            version 2: the colours of each L-junction, red, green and blue of six regions (colour.h)
+ *         u16            version 2 and 4: the colours of each L-junction, red, green and blue of six regions (colour.h)
  *
  * All numbers with the least significant byte first, floats as IEEE 754.
  *
@@ -28,8 +28,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#define VERSION 1
-#define VERSION_WITH_COLOURS 2
+#define VERSION 1             /* and .. */
+#define WITH_COLOURS 1        /* .. so much more where there are colours, */
+#define ENLARGED 2            /* .. where the image is enlarged */
+#define LATEST_VERSION (VERSION + WITH_COLOURS + ENLARGED)
 #define COLOUR_BYTES (2 * 3 * ASJ_COLOUR_REGIONS)
 #define HEADER 40
 #define CHECKED 16          /* the checksum is of the bytes from here on */
@@ -113,7 +115,8 @@ size_t asj_features_save(const asj_features *features, void *bytes, size_t capac
         return size;
     uint8_t *start = bytes, *to = start + HEADER + text;
     memcpy(start, magic, sizeof magic);
-    asj_put_u32(start + 8, features->of_image.colours ? VERSION_WITH_COLOURS : VERSION);
+    asj_put_u32(start + 8, (uint32_t)(VERSION + (features->of_image.colours ? WITH_COLOURS : 0) +
+                                      (features->of_image.l_junctions.enlarged ? ENLARGED : 0)));
     asj_put_u64(start + 16, size);
     asj_put_u32(start + 24, (uint32_t)pyramid->width[0]);
     asj_put_u32(start + 28, (uint32_t)pyramid->height[0]);
@@ -136,7 +139,8 @@ typedef struct reader {
     const uint8_t *next;
     size_t left;
     int32_t width, height;
-    uint32_t text, count, version;
+    uint32_t text, count;
+    int32_t with_colours, enlarged;
 } reader;
 
 static asj_status damaged(const reader *r, const char *what)
@@ -152,10 +156,12 @@ static asj_status read_header(reader *r)
         return asj_fail(r->context, ASJ_ERROR_FORMAT, "these are no features (.asjf)");
     if (size < HEADER)
         return damaged(r, "the header is truncated");
-    r->version = asj_get_u32(start + 8);
-    if (r->version != VERSION && r->version != VERSION_WITH_COLOURS)
-        return asj_fail(r->context, ASJ_ERROR_UNSUPPORTED, "the features are of version %lu, and this library reads %d and %d",
-                        (unsigned long)r->version, VERSION, VERSION_WITH_COLOURS);
+    const uint32_t version = asj_get_u32(start + 8);
+    if (version < VERSION || version > LATEST_VERSION)
+        return asj_fail(r->context, ASJ_ERROR_UNSUPPORTED, "the features are of version %lu, and this library reads %d to %d",
+                        (unsigned long)version, VERSION, LATEST_VERSION);
+    r->with_colours = ((version - VERSION) & WITH_COLOURS) != 0;
+    r->enlarged = ((version - VERSION) & ENLARGED) != 0;
     if (asj_get_u64(start + 16) != size)
         return asj_fail(r->context, ASJ_ERROR_FORMAT, "the features are damaged: %zu bytes where there should be %llu", size,
                         (unsigned long long)asj_get_u64(start + 16));
@@ -164,6 +170,8 @@ static asj_status read_header(reader *r)
     const uint32_t width = asj_get_u32(start + 24), height = asj_get_u32(start + 28);
     if (width < 1 || height < 1)
         return damaged(r, "an image without pixels");
+    if (r->enlarged && (width % 2 != 0 || height % 2 != 0))
+        return damaged(r, "an enlarged image of half a pixel");
     if (width > ASJ_MAX_SIDE || height > ASJ_MAX_SIDE || (uint64_t)width * height > ASJ_MAX_PIXELS)
         return asj_fail(r->context, ASJ_ERROR_LIMIT, "features of an image of %lu x %lu pixels", (unsigned long)width,
                         (unsigned long)height);
@@ -222,7 +230,8 @@ static asj_status read_junction(reader *r, asj_junction *j)
         return damaged(r, "the junctions are truncated");
     get_floats(r->next, head, 5);
     const uint32_t branches = asj_get_u32(r->next + 20);
-    j->octave = (int32_t)(asj_get_u32(r->next + 24) & 0xff);
+    const uint32_t octave = asj_get_u32(r->next + 24);
+    j->octave = r->enlarged && octave == UINT32_MAX ? -1 : (int32_t)(octave & 0xff);
     r->next += JUNCTION_BYTES;
     r->left -= JUNCTION_BYTES;
     if (branches > ASJ_MAX_BRANCHES || r->left < branches * (size_t)BRANCH_BYTES)
@@ -246,7 +255,7 @@ static asj_status read_plane(reader *r, asj_pyramid *pyramid)
 {
     const size_t width = (size_t)r->width, stride = width + 1;
     const size_t bytes = 2 * width * (size_t)r->height;
-    if (r->left < bytes || (r->version == VERSION && r->left > bytes))
+    if (r->left < bytes || (!r->with_colours && r->left > bytes))
         return damaged(r, "the pixels are not all there, or there are more");
     r->left -= bytes;
     const asj_status status = asj_pyramid_allocate(r->context, r->width, r->height, pyramid);
@@ -269,7 +278,7 @@ static asj_status read_colours(reader *r, asj_image_features *made)
 {
     const uint32_t count = made->l_junctions.count;
     uint32_t most = 0;
-    if (r->version != VERSION_WITH_COLOURS)
+    if (!r->with_colours)
         return ASJ_OK;
     if (r->left != COLOUR_BYTES * (size_t)count)
         return damaged(r, "the colours are not all there, or there are more");
@@ -287,7 +296,8 @@ static asj_status read_colours(reader *r, asj_image_features *made)
 
 static asj_status make(reader *r, const asj_match_options *options, const asj_junction *junctions, asj_image_features *made)
 {
-    const asj_junction_list list = {junctions, r->count, r->width, r->height, 1};
+    const int32_t times = r->enlarged ? 2 : 1;
+    const asj_junction_list list = {junctions, r->count, r->width / times, r->height / times, 1, r->enlarged};
     asj_status status = asj_l_junctions_create(r->context, options, &list, &made->l_junctions);
     if (status == ASJ_ERROR_ARGUMENT)
         status = damaged(r, "a junction that cannot be");

@@ -5,6 +5,9 @@
 
 #include "features.h"
 
+/* Whether features of these junctions are of the image enlarged twice: some are of octave -1. */
+int32_t asj_wants_enlarged(const asj_junction *junctions, size_t count);
+
 /* Makes everything: the L-junctions with their frames, the pyramid, the patches. `which` (1 or 2) is for messages.
  * ASJ_ERROR_IMAGE, ASJ_ERROR_ARGUMENT (see asj_match()), ASJ_ERROR_LIMIT, ASJ_ERROR_MEMORY, ASJ_ERROR_DEVICE. On failure nothing
  * is held. */

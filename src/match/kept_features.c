@@ -29,6 +29,7 @@ static size_t list_pieces(const asj_features *features, piece *list)
     const size_t patches = features->options.patches == ASJ_PATCHES_CANONICAL ? l->frame_count : l->count;
     size_t n = 0;
     PIECE(junctions, features->junction_count);
+    PIECE(l_junctions, l->enlarged ? l->count : 0);
     PIECE(of_image.l_junctions.l, l->count);
     PIECE(of_image.l_junctions.lengths, 2 * (size_t)l->count);
     PIECE(of_image.l_junctions.direction, 4 * (size_t)l->count);
@@ -60,36 +61,51 @@ static size_t aligned(size_t bytes)
     return (bytes + ASJ_ALIGNMENT - 1) / ASJ_ALIGNMENT * ASJ_ALIGNMENT;
 }
 
-asj_status asj_features_keep(asj_context *context, const asj_match_options *options, const asj_junction *junctions, size_t count,
-                             const asj_image_features *made, asj_features **features)
+/* All of it in one block: `start` holds pointers to what is copied. */
+static asj_status copy(asj_context *context, asj_features *start, asj_features **features)
 {
     asj_memory memory = {.allocator = context->memory.allocator};
-    asj_features start = {.options = *options, .junction_count = (uint32_t)count, .of_image = *made};
     piece list[MOST_PIECES];
-    const size_t pieces = list_pieces(&start, list);
-    size_t total = aligned(sizeof start);
-    if (count > UINT32_MAX)
-        return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions are more than features take", count);
+    const size_t pieces = list_pieces(start, list);
+    size_t total = aligned(sizeof *start);
     for (size_t n = 0; n < pieces; n++)
         total += aligned(list[n].bytes);
     char *block = asj_allocate(&memory, total, 1);
     if (!block)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu bytes of features", total);
+    char *next = block + aligned(sizeof *start);
+    for (size_t n = 0; n < pieces; n++) {
+        const void *from;
+        memcpy(&from, (const char *)start + list[n].pointer, sizeof from);
+        if (list[n].bytes > 0)
+            memcpy(next, from, list[n].bytes);
+        memcpy((char *)start + list[n].pointer, &next, sizeof next);
+        next += aligned(list[n].bytes);
+    }
+    start->memory = memory;
+    *features = memcpy(block, start, sizeof *start);
+    return ASJ_OK;
+}
+
+asj_status asj_features_keep(asj_context *context, const asj_match_options *options, const asj_junction *junctions, size_t count,
+                             const asj_image_features *made, asj_features **features)
+{
+    asj_features start = {.options = *options, .junction_count = (uint32_t)count, .of_image = *made};
+    const size_t l_count = made->l_junctions.enlarged ? made->l_junctions.count : 0;
+    if (count > UINT32_MAX)
+        return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions are more than features take", count);
     start.of_image.device_copy = 0;
     start.of_image.pyramid.ops = NULL;
     memcpy(&start.junctions, &junctions, sizeof junctions);
-    char *next = block + aligned(sizeof start);
-    for (size_t n = 0; n < pieces; n++) {
-        const void *from;
-        memcpy(&from, (const char *)&start + list[n].pointer, sizeof from);
-        if (list[n].bytes > 0)
-            memcpy(next, from, list[n].bytes);
-        memcpy((char *)&start + list[n].pointer, &next, sizeof next);
-        next += aligned(list[n].bytes);
-    }
-    start.memory = memory;
-    *features = memcpy(block, &start, sizeof start);
-    return ASJ_OK;
+    start.l_junctions = asj_allocate(&context->memory, l_count, sizeof *start.l_junctions);
+    if (!start.l_junctions)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu L-junctions", l_count);
+    if (l_count > 0)
+        asj_decompose(junctions, count, options->minimum_opening, start.l_junctions, l_count);
+    asj_l_junction *own = start.l_junctions;
+    const asj_status status = copy(context, &start, features);
+    asj_release(&context->memory, own);
+    return status;
 }
 
 asj_image_features asj_features_view(const asj_context *context, const asj_features *features)
@@ -159,12 +175,13 @@ void asj_features_get_info(const asj_features *features, asj_features_info *info
     if (!features)
         return;
     const asj_image_features *of_image = &features->of_image;
-    info->width = of_image->pyramid.width[0];
-    info->height = of_image->pyramid.height[0];
+    const int32_t times = of_image->l_junctions.enlarged ? 2 : 1;
+    info->width = of_image->pyramid.width[0] / times;
+    info->height = of_image->pyramid.height[0] / times;
     info->junction_count = features->junction_count;
     info->junctions = features->junction_count ? features->junctions : NULL;
     info->l_junction_count = of_image->l_junctions.count;
-    info->l_junctions = of_image->l_junctions.count ? of_image->l_junctions.l : NULL;
+    info->l_junctions = of_image->l_junctions.count ? (times > 1 ? features->l_junctions : of_image->l_junctions.l) : NULL;
     info->options = &features->options;
     info->bytes = features->memory.now;
 }

@@ -12,6 +12,7 @@ struct asj_features {
     asj_match_options options;
     asj_junction *junctions;      /* as they were given */
     uint32_t junction_count;
+    asj_l_junction *l_junctions;  /* where those of of_image are of the enlarged image: in pixels of the image itself */
     asj_image_features of_image;  /* its pointers lead into the block that this struct begins */
 };
 

@@ -376,6 +376,17 @@ static asj_status find_t_junctions(asj_context *context, asj_l_junctions *all)
     return ASJ_OK;
 }
 
+/* To pixels of the image enlarged twice (core/enlarge.c). */
+static void enlarge(asj_l_junctions *all)
+{
+    for (uint32_t i = 0; i < all->count; i++) {
+        asj_l_junction *l = &all->l[i];
+        float *const values[] = {&l->x, &l->y, &l->ax, &l->ay, &l->bx, &l->by};
+        for (size_t k = 0; k < sizeof values / sizeof *values; k++)
+            *values[k] = 2 * *values[k] + 0.5f;
+    }
+}
+
 asj_status asj_l_junctions_create(asj_context *context, const asj_match_options *options, const asj_junction_list *input,
                                   asj_l_junctions *all)
 {
@@ -391,6 +402,9 @@ asj_status asj_l_junctions_create(asj_context *context, const asj_match_options 
     if (!all->l)
         return no_memory(context);
     all->count = (uint32_t)asj_decompose(input->list, input->count, options->minimum_opening, all->l, total);
+    all->enlarged = input->enlarged;
+    if (all->enlarged)
+        enlarge(all);
     status = set_octaves(context, input, all);
     if (status == ASJ_OK)
         status = find_locations(context, all);

@@ -19,6 +19,7 @@ typedef struct asj_lengths {
 } asj_lengths;
 
 typedef struct asj_l_junctions {
+    int32_t enlarged;            /* 1: all is in pixels of the image enlarged twice (image_features.c); 0: in its own */
     asj_l_junction *l;           /* as asj_decompose() gives them */
     uint32_t count;
     asj_lengths *lengths;        /* [2 * i] of branch a, [2 * i + 1] of branch b */
@@ -44,12 +45,13 @@ typedef struct asj_l_junctions {
     uint32_t neighbour_limit;    /* k */
 } asj_l_junctions;
 
-/* The junctions of one image, as the caller gives them. */
+/* The junctions of one image, as the caller gives them: in its pixels. */
 typedef struct asj_junction_list {
     const asj_junction *list;
     size_t count;
     int32_t width, height;       /* px: of the image */
     int32_t which;               /* 1 or 2, for messages */
+    int32_t enlarged;            /* 1: L-junctions come in pixels of the image enlarged twice */
 } asj_junction_list;
 
 /* Makes everything from junctions. ASJ_ERROR_ARGUMENT (see asj_match()), ASJ_ERROR_LIMIT, ASJ_ERROR_MEMORY. On failure the caller

@@ -40,6 +40,7 @@
 #include "shortlist.h"
 #include "support.h"
 #include "two_view.h"
+#include "unstretch.h"
 #include "verdict.h"
 #include "verify.h"
 
@@ -192,14 +193,34 @@ static asj_status finish(const asj_match_run *run, stop_watch *watch, asj_match_
     return ASJ_OK;
 }
 
+/* In pixels of the images, where features are of enlarged ones. */
+static asj_stretch stretch_of(const asj_image_features *features)
+{
+    return features->l_junctions.enlarged ? (asj_stretch){2, 2} : (asj_stretch){1, 1};
+}
+
+static asj_match_options options_for(const asj_match_options *options, const asj_stretch by[2])
+{
+    asj_match_options enlarged = *options;
+    for (int32_t n = 0; n < 2; n++)
+        if (options->geometry.cameras[n].fx > 0)
+            enlarged.geometry.cameras[n] = asj_stretch_camera(&options->geometry.cameras[n], &by[n]);
+    return enlarged;
+}
+
 /* From the features of two images to the result. */
 static asj_status match_features(asj_context *context, const asj_match_options *options, const asj_image_features *features[2],
                                  stop_watch *watch, asj_match_result **result)
 {
-    asj_match_run run = {.context = context, .options = options, .image = {features[0], features[1]}};
+    const asj_stretch by[2] = {stretch_of(features[0]), stretch_of(features[1])};
+    const int32_t enlarged = by[0].x > 1 || by[1].x > 1;
+    const asj_match_options of_enlarged = options_for(options, by);
+    asj_match_run run = {.context = context, .options = enlarged ? &of_enlarged : options, .image = {features[0], features[1]}};
     asj_status status = run_steps(&run, watch);
     if (status == ASJ_OK)
         status = finish(&run, watch, result);
+    if (status == ASJ_OK && enlarged)
+        asj_match_result_unstretch(*result, by);
     asj_release(&context->memory, run.candidates.list);
     asj_release(&context->memory, run.choices.list);
     asj_release(&context->memory, run.rejected.list);

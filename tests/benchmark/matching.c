@@ -94,7 +94,7 @@ static void least(double *value, double since)
 static asj_status prepare(asj_context *context, const benchmark_view *s, const settings *set, int32_t which,
                           asj_image_features *features)
 {
-    const asj_junction_list input = {s->list, s->count, WIDTH, HEIGHT, which};
+    const asj_junction_list input = {s->list, s->count, WIDTH, HEIGHT, which, 0};
     asj_status status = asj_l_junctions_create(context, &set->options, &input, &features->l_junctions);
     return status == ASJ_OK ? asj_pyramid_create(context, &s->image, set->options.smoothing, &features->pyramid) : status;
 }

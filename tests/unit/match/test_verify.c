@@ -37,7 +37,7 @@ static size_t verify(asj_context *context, stage *s)
 {
     size_t count = 0;
     for (int v = 0; v < 2; v++) {
-        const asj_junction_list input = {s->junctions[v], s->count, SIDE, SIDE, v + 1};
+        const asj_junction_list input = {s->junctions[v], s->count, SIDE, SIDE, v + 1, 0};
         memset(&s->image[v], 0, sizeof s->image[v]);
         assert_int_equal(asj_l_junctions_create(context, &s->options, &input, &s->image[v].l_junctions), ASJ_OK);
     }
