@@ -37,6 +37,15 @@ static void enlarge_rows(const void *data, const asj_part *part)
     }
 }
 
+asj_status asj_enlarge_check(asj_context *context, const asj_image *image)
+{
+    if (2 * image->width > ASJ_MAX_SIDE || 2 * image->height > ASJ_MAX_SIDE ||
+        4 * (int64_t)image->width * image->height > ASJ_MAX_PIXELS)
+        return asj_fail(context, ASJ_ERROR_LIMIT, "an image of %d x %d pixels is too large for octave -1", (int)image->width,
+                        (int)image->height);
+    return ASJ_OK;
+}
+
 /* The image itself stands where the gradient will, which has nothing to say before. */
 asj_status asj_frame_enlarge(asj_context *context, asj_frame *frame, const asj_image *image)
 {

@@ -60,6 +60,9 @@ extern const asj_image_ops asj_image_reference;
  * anew. */
 asj_status asj_frame_halve(asj_context *context, asj_frame *frame);
 
+/* Whether a view that asj_image_check() has passed may be enlarged twice: ASJ_ERROR_LIMIT where images are not that large. */
+asj_status asj_enlarge_check(asj_context *context, const asj_image *image);
+
 /* Repeats the border of gray. */
 void asj_frame_repeat_border(const asj_frame *frame);
 

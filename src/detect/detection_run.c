@@ -89,16 +89,6 @@ static asj_status prepare(asj_detection_run *run)
     return status == ASJ_OK ? make_scratch(run) : status;
 }
 
-/* An enlarged image is no larger than images may be. */
-static asj_status check_size(asj_context *context, const asj_detect_options *options, const asj_image *image)
-{
-    if (options->first_octave < 0 && (2 * image->width > ASJ_MAX_SIDE || 2 * image->height > ASJ_MAX_SIDE ||
-                                      4 * (int64_t)image->width * image->height > ASJ_MAX_PIXELS))
-        return asj_fail(context, ASJ_ERROR_LIMIT, "an image of %d x %d pixels is too large for octave -1", (int)image->width,
-                        (int)image->height);
-    return ASJ_OK;
-}
-
 asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context, const asj_image *image,
                                    const asj_detect_options *options, const void *output)
 {
@@ -116,8 +106,8 @@ asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context,
     if (asj_detect_options_check(run->options, message, sizeof message) != ASJ_OK)
         return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
     asj_status status = asj_image_check(context, image);
-    if (status == ASJ_OK)
-        status = check_size(context, run->options, image);
+    if (status == ASJ_OK && run->options->first_octave < 0)
+        status = asj_enlarge_check(context, image);
     return status == ASJ_OK ? prepare(run) : status;
 }
 

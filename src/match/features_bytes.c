@@ -2,17 +2,19 @@
 /* Features as bytes: what .asjf files hold (asj-formats(5)).
  *
  *      0  8 bytes        0x89 A S J F CR LF 0x1a: tells a file that was sent as text
- *      8  u32            version of the format: 1, 1 more where there are colours, 2 more where there are junctions of octave -1
+ *      8  u32            version of the format: 1; 1 more where there are colours; 2 more where there are junctions of octave -1,
+ *                        and 4 more where these have colours
  *     12  u32            CRC-32 of all that follows
  *     16  u64            size of the whole
- *     24  u32, u32       width and height of the image below, px: with version 3 and 4 it is enlarged twice
+ *     24  u32, u32       width and height of the image, px
  *     32  u32            bytes of the options' text
  *     36  u32            number of junctions
  *     40  text           options: a line KEY=VALUE for each
  *         junctions      x, y, scale, log10_nfa, location_sd: five floats; u32 number of branches; i32 octave; for each branch
  *                        angle, length, strength, log10_nfa, angle_sd, width, length_sd: seven floats; u32 end
- *         u16            the image after the blur, in 1/128 of a grey level, row by row
- *         u16            version 2 and 4: the colours of each L-junction, red, green and blue of six regions (colour.h)
+ *         u16            the image after the blur, with junctions of octave -1 before it, in 1/128 of a grey level, row by row
+ *         u16            if any: the colours of each L-junction of octave 0 and up, red, green and blue of six regions (colour.h)
+ *         u16            if any: the colours of each L-junction, as the enlarged image has them
  *
  * All numbers with the least significant byte first, floats as IEEE 754.
  *
@@ -29,9 +31,10 @@
 #include <string.h>
 
 #define VERSION 1             /* and .. */
-#define WITH_COLOURS 1        /* .. so much more where there are colours, */
-#define ENLARGED 2            /* .. where the image is enlarged */
-#define LATEST_VERSION (VERSION + WITH_COLOURS + ENLARGED)
+#define COLOURS 1             /* .. so much more where there are colours of the L-junctions of the image itself, */
+#define FINER 2               /* .. junctions of octave -1, */
+#define FINER_COLOURS 4       /* .. and colours of all L-junctions for the enlarged image */
+#define LATEST_VERSION (VERSION + COLOURS + FINER + FINER_COLOURS)
 #define COLOUR_BYTES (2 * 3 * ASJ_COLOUR_REGIONS)
 #define HEADER 40
 #define CHECKED 16          /* the checksum is of the bytes from here on */
@@ -85,19 +88,34 @@ static uint8_t *put_junction(uint8_t *to, const asj_junction *j)
     return to;
 }
 
-static void put_plane(uint8_t *to, const asj_pyramid *pyramid)
+static uint8_t *put_plane(uint8_t *to, const asj_features *features)
 {
-    const size_t width = (size_t)pyramid->width[0], stride = width + 1;
+    const asj_pyramid *pyramid = &features->of_image.pyramid;
+    const size_t width = (size_t)pyramid->width[0], stride = features->finer ? width : width + 1;
+    const uint16_t *plane = features->finer ? features->gray : pyramid->plane[0];
     for (size_t y = 0; y < (size_t)pyramid->height[0]; y++)
         for (size_t x = 0; x < width; x++, to += 2)
-            asj_put_u16(to, pyramid->plane[0][y * stride + x]);
+            asj_put_u16(to, plane[y * stride + x]);
+    return to;
 }
 
-static void put_colours(uint8_t *to, const asj_image_features *of_image)
+static uint8_t *put_colours(uint8_t *to, const asj_image_features *of_image)
 {
     for (uint32_t n = 0; of_image->colours && n < of_image->l_junctions.count; n++)
         for (int32_t k = 0; k < 3 * ASJ_COLOUR_REGIONS; k++, to += 2)
             asj_put_u16(to, of_image->colours[n].level[k / 3][k % 3]);
+    return to;
+}
+
+static size_t colour_bytes(const asj_image_features *of_image)
+{
+    return of_image->colours ? COLOUR_BYTES * (size_t)of_image->l_junctions.count : 0;
+}
+
+static uint32_t version_of(const asj_features *features)
+{
+    return (uint32_t)(VERSION + (features->of_image.colours ? COLOURS : 0) + (features->finer ? FINER : 0) +
+                      (features->enlarged.colours ? FINER_COLOURS : 0));
 }
 
 size_t asj_features_save(const asj_features *features, void *bytes, size_t capacity)
@@ -109,14 +127,12 @@ size_t asj_features_save(const asj_features *features, void *bytes, size_t capac
     size_t size = HEADER + text + JUNCTION_BYTES * (size_t)features->junction_count + 2 * pixels;
     for (uint32_t n = 0; n < features->junction_count; n++)
         size += BRANCH_BYTES * (size_t)features->junctions[n].branch_count;
-    if (features->of_image.colours)
-        size += COLOUR_BYTES * (size_t)features->of_image.l_junctions.count;
+    size += colour_bytes(&features->of_image) + colour_bytes(&features->enlarged);
     if (!bytes || capacity < size)
         return size;
     uint8_t *start = bytes, *to = start + HEADER + text;
     memcpy(start, magic, sizeof magic);
-    asj_put_u32(start + 8, (uint32_t)(VERSION + (features->of_image.colours ? WITH_COLOURS : 0) +
-                                      (features->of_image.l_junctions.enlarged ? ENLARGED : 0)));
+    asj_put_u32(start + 8, version_of(features));
     asj_put_u64(start + 16, size);
     asj_put_u32(start + 24, (uint32_t)pyramid->width[0]);
     asj_put_u32(start + 28, (uint32_t)pyramid->height[0]);
@@ -125,8 +141,9 @@ size_t asj_features_save(const asj_features *features, void *bytes, size_t capac
     put_options(&features->options, start + HEADER);
     for (uint32_t n = 0; n < features->junction_count; n++)
         to = put_junction(to, &features->junctions[n]);
-    put_plane(to, pyramid);
-    put_colours(to + 2 * pixels, &features->of_image);
+    to = put_plane(to, features);
+    to = put_colours(to, &features->of_image);
+    put_colours(to, &features->enlarged);
     asj_put_u32(start + 12, asj_crc32(start + CHECKED, size - CHECKED));
     return size;
 }
@@ -140,7 +157,7 @@ typedef struct reader {
     size_t left;
     int32_t width, height;
     uint32_t text, count;
-    int32_t with_colours, enlarged;
+    int32_t colours, finer, finer_colours;
 } reader;
 
 static asj_status damaged(const reader *r, const char *what)
@@ -157,11 +174,13 @@ static asj_status read_header(reader *r)
     if (size < HEADER)
         return damaged(r, "the header is truncated");
     const uint32_t version = asj_get_u32(start + 8);
-    if (version < VERSION || version > LATEST_VERSION)
+    const uint32_t parts = version - VERSION;
+    if (version < VERSION || version > LATEST_VERSION || (parts & (FINER | FINER_COLOURS)) == FINER_COLOURS)
         return asj_fail(r->context, ASJ_ERROR_UNSUPPORTED, "the features are of version %lu, and this library reads %d to %d",
                         (unsigned long)version, VERSION, LATEST_VERSION);
-    r->with_colours = ((version - VERSION) & WITH_COLOURS) != 0;
-    r->enlarged = ((version - VERSION) & ENLARGED) != 0;
+    r->colours = (parts & COLOURS) != 0;
+    r->finer = (parts & FINER) != 0;
+    r->finer_colours = (parts & FINER_COLOURS) != 0;
     if (asj_get_u64(start + 16) != size)
         return asj_fail(r->context, ASJ_ERROR_FORMAT, "the features are damaged: %zu bytes where there should be %llu", size,
                         (unsigned long long)asj_get_u64(start + 16));
@@ -170,8 +189,6 @@ static asj_status read_header(reader *r)
     const uint32_t width = asj_get_u32(start + 24), height = asj_get_u32(start + 28);
     if (width < 1 || height < 1)
         return damaged(r, "an image without pixels");
-    if (r->enlarged && (width % 2 != 0 || height % 2 != 0))
-        return damaged(r, "an enlarged image of half a pixel");
     if (width > ASJ_MAX_SIDE || height > ASJ_MAX_SIDE || (uint64_t)width * height > ASJ_MAX_PIXELS)
         return asj_fail(r->context, ASJ_ERROR_LIMIT, "features of an image of %lu x %lu pixels", (unsigned long)width,
                         (unsigned long)height);
@@ -231,7 +248,7 @@ static asj_status read_junction(reader *r, asj_junction *j)
     get_floats(r->next, head, 5);
     const uint32_t branches = asj_get_u32(r->next + 20);
     const uint32_t octave = asj_get_u32(r->next + 24);
-    j->octave = r->enlarged && octave == UINT32_MAX ? -1 : (int32_t)(octave & 0xff);
+    j->octave = r->finer && octave == UINT32_MAX ? -1 : (int32_t)(octave & 0xff);
     r->next += JUNCTION_BYTES;
     r->left -= JUNCTION_BYTES;
     if (branches > ASJ_MAX_BRANCHES || r->left < branches * (size_t)BRANCH_BYTES)
@@ -250,37 +267,47 @@ static asj_status read_junction(reader *r, asj_junction *j)
     return ASJ_OK;
 }
 
+/* Rows of `stride` levels. */
+static asj_status read_pixels(reader *r, size_t stride, uint16_t *plane)
+{
+    uint32_t most = 0;
+    for (size_t y = 0; y < (size_t)r->height; y++)
+        for (size_t x = 0; x < (size_t)r->width; x++, r->next += 2) {
+            const uint32_t grey = asj_get_u16(r->next);
+            most = grey > most ? grey : most;
+            plane[y * stride + x] = (uint16_t)grey;
+        }
+    r->left -= 2 * (size_t)r->width * (size_t)r->height;
+    return most > ASJ_GRAY_MAX ? damaged(r, "a pixel is whiter than white") : ASJ_OK;
+}
+
+static asj_status check_pixels(const reader *r)
+{
+    const size_t bytes = 2 * (size_t)r->width * (size_t)r->height;
+    return r->left < bytes || (!r->colours && !r->finer_colours && r->left > bytes)
+               ? damaged(r, "the pixels are not all there, or there are more")
+               : ASJ_OK;
+}
+
 /* Level 0 of the pyramid, and the others from it. */
 static asj_status read_plane(reader *r, asj_pyramid *pyramid)
 {
-    const size_t width = (size_t)r->width, stride = width + 1;
-    const size_t bytes = 2 * width * (size_t)r->height;
-    if (r->left < bytes || (!r->with_colours && r->left > bytes))
-        return damaged(r, "the pixels are not all there, or there are more");
-    r->left -= bytes;
-    const asj_status status = asj_pyramid_allocate(r->context, r->width, r->height, pyramid);
-    uint32_t most = 0;
-    for (size_t y = 0; y < (size_t)r->height && status == ASJ_OK; y++)
-        for (size_t x = 0; x < width; x++, r->next += 2) {
-            const uint32_t grey = asj_get_u16(r->next);
-            most = grey > most ? grey : most;
-            pyramid->plane[0][y * stride + x] = (uint16_t)grey;
-        }
-    if (status == ASJ_OK && most > ASJ_GRAY_MAX)
-        return damaged(r, "a pixel is whiter than white");
+    asj_status status = check_pixels(r);
+    if (status == ASJ_OK)
+        status = asj_pyramid_allocate(r->context, r->width, r->height, pyramid);
+    if (status == ASJ_OK)
+        status = read_pixels(r, (size_t)r->width + 1, pyramid->plane[0]);
     if (status == ASJ_OK)
         asj_pyramid_complete(r->context, pyramid);
     return status;
 }
 
-/* What is left. */
-static asj_status read_colours(reader *r, asj_image_features *made)
+static asj_status read_colours(reader *r, int32_t last, asj_image_features *made)
 {
     const uint32_t count = made->l_junctions.count;
+    const size_t bytes = COLOUR_BYTES * (size_t)count;
     uint32_t most = 0;
-    if (!r->with_colours)
-        return ASJ_OK;
-    if (r->left != COLOUR_BYTES * (size_t)count)
+    if (r->left < bytes || (last && r->left > bytes))
         return damaged(r, "the colours are not all there, or there are more");
     made->colours = asj_allocate(&r->context->memory, count, sizeof *made->colours);
     if (!made->colours)
@@ -291,28 +318,54 @@ static asj_status read_colours(reader *r, asj_image_features *made)
             most = level > most ? level : most;
             made->colours[n].level[k / 3][k % 3] = (uint16_t)level;
         }
+    r->left -= bytes;
     return most > ASJ_GRAY_MAX ? damaged(r, "a colour is brighter than white") : ASJ_OK;
 }
 
-static asj_status make(reader *r, const asj_match_options *options, const asj_junction *junctions, asj_image_features *made)
+static asj_status make_plain(reader *r, const asj_match_options *options, const asj_junction *junctions, asj_image_features *made)
 {
-    const int32_t times = r->enlarged ? 2 : 1;
-    const asj_junction_list list = {junctions, r->count, r->width / times, r->height / times, 1, r->enlarged};
+    const asj_junction_list list = {junctions, r->count, r->width, r->height, 1, 0};
     asj_status status = asj_l_junctions_create(r->context, options, &list, &made->l_junctions);
-    if (status == ASJ_ERROR_ARGUMENT)
-        status = damaged(r, "a junction that cannot be");
     if (status == ASJ_OK)
         status = read_plane(r, &made->pyramid);
-    if (status == ASJ_OK)
-        status = read_colours(r, made);
     return status == ASJ_OK ? asj_image_features_describe(r->context, options, made) : status;
+}
+
+/* From the image as it was: both as they were made. */
+static asj_status make_finer(reader *r, const asj_match_options *options, const asj_junction *junctions, asj_made_features *made)
+{
+    asj_status status = check_pixels(r);
+    if (status != ASJ_OK)
+        return status;
+    made->gray = asj_allocate(&r->context->memory, (size_t)r->width * (size_t)r->height, sizeof *made->gray);
+    if (!made->gray)
+        return asj_fail(r->context, ASJ_ERROR_MEMORY, "no memory for the image of features");
+    status = read_pixels(r, (size_t)r->width, made->gray);
+    const asj_image image = {made->gray, ASJ_FORMAT_GRAY16, r->width, r->height, ASJ_GRAY_MAX, 0}; /* the same levels again */
+    if (status == ASJ_OK)
+        status = asj_image_features_create(r->context, options, &image, junctions, r->count, 1, 0, &made->own);
+    if (status == ASJ_OK)
+        status = asj_image_features_create(r->context, options, &image, junctions, r->count, 1, 1, &made->enlarged);
+    return status;
+}
+
+static asj_status make(reader *r, const asj_match_options *options, const asj_junction *junctions, asj_made_features *made)
+{
+    asj_status status = r->finer ? make_finer(r, options, junctions, made) : make_plain(r, options, junctions, &made->own);
+    if (status == ASJ_ERROR_ARGUMENT)
+        status = damaged(r, "a junction that cannot be");
+    if (status == ASJ_OK && r->colours)
+        status = read_colours(r, !r->finer_colours, &made->own);
+    if (status == ASJ_OK && r->finer_colours)
+        status = read_colours(r, 1, &made->enlarged);
+    return status;
 }
 
 static asj_status load(asj_context *context, const uint8_t *bytes, size_t size, asj_features **features)
 {
     reader r = {.context = context, .next = bytes, .left = size};
     asj_match_options options;
-    asj_image_features made;
+    asj_made_features made;
     memset(&made, 0, sizeof made);
     asj_status status = read_header(&r);
     if (status == ASJ_OK)
@@ -328,7 +381,7 @@ static asj_status load(asj_context *context, const uint8_t *bytes, size_t size, 
         status = make(&r, &options, junctions, &made);
     if (status == ASJ_OK)
         status = asj_features_keep(context, &options, junctions, r.count, &made, features);
-    asj_image_features_free(&context->memory, &made);
+    asj_made_features_free(&context->memory, &made);
     asj_release(&context->memory, junctions);
     if (status == ASJ_OK && (status = asj_progress(context, ASJ_STAGE_PATCHES, 1)) != ASJ_OK)
         asj_features_free(features);

@@ -5,7 +5,9 @@
  * blocks are used again for the next image, and a copy takes a hundredth of the time that making them takes. */
 #include "kept_features.h"
 #include "core/backend.h"
+#include "core/image.h"
 #include "describe.h"
+#include "finer.h"
 #include "match_options.h"
 
 #include <string.h>
@@ -16,44 +18,57 @@ typedef struct piece {
     size_t bytes;
 } piece;
 
-#define MOST_PIECES 32
+#define MOST_PIECES 64
 
+/* Of the features of an image that stand `offset` bytes inside of an asj_features. */
 #define PIECE(member, count) \
-    list[n++] = (piece){offsetof(asj_features, member), (size_t)(count) * sizeof *features->member}
+    list[n++] = (piece){offset + offsetof(asj_image_features, member), (size_t)(count) * sizeof *f->member}
+
+static size_t list_of_image(const asj_image_features *f, size_t offset, const asj_match_options *options, piece *list)
+{
+    const asj_l_junctions *l = &f->l_junctions;
+    const asj_pyramid *pyramid = &f->pyramid;
+    const size_t patches = options->patches == ASJ_PATCHES_CANONICAL ? l->frame_count : l->count;
+    size_t n = 0;
+    PIECE(l_junctions.l, l->count);
+    PIECE(l_junctions.lengths, 2 * (size_t)l->count);
+    PIECE(l_junctions.direction, 4 * (size_t)l->count);
+    PIECE(l_junctions.first_frame, (size_t)l->count + 1);
+    PIECE(l_junctions.frames, l->frame_count);
+    PIECE(l_junctions.location, l->count);
+    PIECE(l_junctions.first_of_location, (size_t)l->location_count + 1);
+    PIECE(l_junctions.l_of_location, l->count);
+    PIECE(l_junctions.location_x, l->location_count);
+    PIECE(l_junctions.location_y, l->location_count);
+    PIECE(l_junctions.octave, l->count);
+    PIECE(l_junctions.t_junction, l->count);
+    if (l->neighbour_limit > 0) {
+        PIECE(l_junctions.neighbour, (size_t)l->location_count * l->neighbour_limit);
+        PIECE(l_junctions.neighbour_count, l->location_count);
+    }
+    PIECE(patches, patches * (size_t)asj_patch_length(options));
+    PIECE(usable, patches);
+    if (f->colours)
+        PIECE(colours, l->count);
+    for (int32_t level = 0; level < pyramid->levels; level++)
+        list[n++] = (piece){offset + offsetof(asj_image_features, pyramid.plane) + (size_t)level * sizeof(uint16_t *),
+                            ((size_t)pyramid->width[level] + 1) * ((size_t)pyramid->height[level] + 1) * sizeof(uint16_t)};
+    return n;
+}
 
 /* All arrays of features, whose counts and options are set. */
 static size_t list_pieces(const asj_features *features, piece *list)
 {
-    const asj_l_junctions *l = &features->of_image.l_junctions;
     const asj_pyramid *pyramid = &features->of_image.pyramid;
-    const size_t patches = features->options.patches == ASJ_PATCHES_CANONICAL ? l->frame_count : l->count;
+    const size_t pixels = (size_t)pyramid->width[0] * (size_t)pyramid->height[0];
     size_t n = 0;
-    PIECE(junctions, features->junction_count);
-    PIECE(l_junctions, l->enlarged ? l->count : 0);
-    PIECE(of_image.l_junctions.l, l->count);
-    PIECE(of_image.l_junctions.lengths, 2 * (size_t)l->count);
-    PIECE(of_image.l_junctions.direction, 4 * (size_t)l->count);
-    PIECE(of_image.l_junctions.first_frame, (size_t)l->count + 1);
-    PIECE(of_image.l_junctions.frames, l->frame_count);
-    PIECE(of_image.l_junctions.location, l->count);
-    PIECE(of_image.l_junctions.first_of_location, (size_t)l->location_count + 1);
-    PIECE(of_image.l_junctions.l_of_location, l->count);
-    PIECE(of_image.l_junctions.location_x, l->location_count);
-    PIECE(of_image.l_junctions.location_y, l->location_count);
-    PIECE(of_image.l_junctions.octave, l->count);
-    PIECE(of_image.l_junctions.t_junction, l->count);
-    if (l->neighbour_limit > 0) {
-        PIECE(of_image.l_junctions.neighbour, (size_t)l->location_count * l->neighbour_limit);
-        PIECE(of_image.l_junctions.neighbour_count, l->location_count);
-    }
-    PIECE(of_image.patches, patches * (size_t)asj_patch_length(&features->options));
-    PIECE(of_image.usable, patches);
-    if (features->of_image.colours)
-        PIECE(of_image.colours, l->count);
-    for (int32_t level = 0; level < pyramid->levels; level++)
-        list[n++] = (piece){offsetof(asj_features, of_image.pyramid.plane) + (size_t)level * sizeof(uint16_t *),
-                            ((size_t)pyramid->width[level] + 1) * ((size_t)pyramid->height[level] + 1) * sizeof(uint16_t)};
-    return n;
+    list[n++] = (piece){offsetof(asj_features, junctions), features->junction_count * sizeof(asj_junction)};
+    n += list_of_image(&features->of_image, offsetof(asj_features, of_image), &features->options, list + n);
+    if (!features->finer)
+        return n;
+    list[n++] = (piece){offsetof(asj_features, l_junctions), features->enlarged.l_junctions.count * sizeof(asj_l_junction)};
+    list[n++] = (piece){offsetof(asj_features, gray), pixels * sizeof(uint16_t)};
+    return n + list_of_image(&features->enlarged, offsetof(asj_features, enlarged), &features->options, list + n);
 }
 
 static size_t aligned(size_t bytes)
@@ -88,46 +103,81 @@ static asj_status copy(asj_context *context, asj_features *start, asj_features *
 }
 
 asj_status asj_features_keep(asj_context *context, const asj_match_options *options, const asj_junction *junctions, size_t count,
-                             const asj_image_features *made, asj_features **features)
+                             const asj_made_features *made, asj_features **features)
 {
-    asj_features start = {.options = *options, .junction_count = (uint32_t)count, .of_image = *made};
-    const size_t l_count = made->l_junctions.enlarged ? made->l_junctions.count : 0;
+    asj_features start = {.options = *options, .junction_count = (uint32_t)count, .finer = made->gray != NULL, .gray = made->gray,
+                          .enlarged = made->enlarged, .of_image = made->own};
+    const size_t l_count = start.finer ? made->enlarged.l_junctions.count : 0;
     if (count > UINT32_MAX)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions are more than features take", count);
-    start.of_image.device_copy = 0;
-    start.of_image.pyramid.ops = NULL;
+    start.of_image.device_copy = start.enlarged.device_copy = 0;
+    start.of_image.pyramid.ops = start.enlarged.pyramid.ops = NULL;
     memcpy(&start.junctions, &junctions, sizeof junctions);
-    start.l_junctions = asj_allocate(&context->memory, l_count, sizeof *start.l_junctions);
-    if (!start.l_junctions)
+    asj_l_junction *l_junctions = asj_allocate(&context->memory, l_count, sizeof *l_junctions);
+    if (!l_junctions)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu L-junctions", l_count);
     if (l_count > 0)
-        asj_decompose(junctions, count, options->minimum_opening, start.l_junctions, l_count);
-    asj_l_junction *own = start.l_junctions;
+        asj_decompose(junctions, count, options->minimum_opening, l_junctions, l_count);
+    start.l_junctions = l_junctions;
     const asj_status status = copy(context, &start, features);
-    asj_release(&context->memory, own);
+    asj_release(&context->memory, l_junctions);
     return status;
 }
 
-asj_image_features asj_features_view(const asj_context *context, const asj_features *features)
+asj_image_features asj_features_view(const asj_context *context, const asj_features *features, int32_t enlarged)
 {
-    asj_image_features view = features->of_image;
+    asj_image_features view = enlarged && features->finer ? features->enlarged : features->of_image;
     view.pyramid.ops = context->ops;
     return view;
+}
+
+void asj_made_features_free(asj_memory *memory, asj_made_features *made)
+{
+    asj_image_features_free(memory, &made->own);
+    asj_image_features_free(memory, &made->enlarged);
+    asj_release(memory, made->gray);
+}
+
+/* The grey levels of the image. */
+static asj_status copy_gray(asj_context *context, const asj_image *image, uint16_t **gray)
+{
+    const size_t width = (size_t)image->width, height = (size_t)image->height;
+    asj_frame frame;
+    memset(&frame, 0, sizeof frame);
+    *gray = asj_allocate(&context->memory, width * height, sizeof **gray);
+    asj_status status = *gray ? asj_frame_prepare_gray(context, &frame, image->width, image->height)
+                              : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the image of features");
+    if (status == ASJ_OK)
+        status = asj_frame_load(context, &frame, image);
+    for (size_t y = 0; y < height && status == ASJ_OK; y++)
+        memcpy(*gray + y * width, frame.gray + (ptrdiff_t)y * frame.stride, width * sizeof **gray);
+    asj_frame_free(&context->memory, &frame);
+    return status;
+}
+
+static asj_status make(asj_context *context, const asj_image *image, const asj_junction *junctions, size_t count, int32_t enlarged,
+                       const asj_match_options *options, asj_image_features *made)
+{
+    const asj_status status = asj_image_features_create(context, options, image, junctions, count, 1, enlarged, made);
+    return status == ASJ_OK ? asj_colours_create(context, image, &made->l_junctions, &made->colours) : status;
 }
 
 static asj_status create(asj_context *context, const asj_image *image, const asj_junction *junctions, size_t count,
                          const asj_match_options *options, asj_features **features)
 {
-    asj_image_features made;
+    const int32_t finer = asj_has_finer(junctions, count);
+    asj_made_features made;
+    memset(&made, 0, sizeof made);
     asj_status status = asj_progress(context, ASJ_STAGE_PATCHES, 0);
     if (status == ASJ_OK)
-        status = asj_image_features_create(context, options, image, junctions, count, 1, &made);
-    if (status != ASJ_OK)
-        return status;
-    status = asj_colours_create(context, image, &made.l_junctions, &made.colours);
+        status = make(context, image, junctions, count, 0, options, &made.own);
+    if (status == ASJ_OK && finer)
+        status = make(context, image, junctions, count, 1, options, &made.enlarged);
+    if (status == ASJ_OK && finer)
+        status = copy_gray(context, image, &made.gray);
     if (status == ASJ_OK)
         status = asj_features_keep(context, options, junctions, count, &made, features);
-    asj_image_features_free(&context->memory, &made);
+    asj_made_features_free(&context->memory, &made);
     if (status == ASJ_OK && (status = asj_progress(context, ASJ_STAGE_PATCHES, 1)) != ASJ_OK)
         asj_features_free(features);
     return status;
@@ -175,13 +225,13 @@ void asj_features_get_info(const asj_features *features, asj_features_info *info
     if (!features)
         return;
     const asj_image_features *of_image = &features->of_image;
-    const int32_t times = of_image->l_junctions.enlarged ? 2 : 1;
-    info->width = of_image->pyramid.width[0] / times;
-    info->height = of_image->pyramid.height[0] / times;
+    const asj_l_junctions *l = features->finer ? &features->enlarged.l_junctions : &of_image->l_junctions;
+    info->width = of_image->pyramid.width[0];
+    info->height = of_image->pyramid.height[0];
     info->junction_count = features->junction_count;
     info->junctions = features->junction_count ? features->junctions : NULL;
-    info->l_junction_count = of_image->l_junctions.count;
-    info->l_junctions = of_image->l_junctions.count ? (times > 1 ? features->l_junctions : of_image->l_junctions.l) : NULL;
+    info->l_junction_count = l->count;
+    info->l_junctions = l->count == 0 ? NULL : features->finer ? features->l_junctions : l->l;
     info->options = &features->options;
     info->bytes = features->memory.now;
 }

@@ -12,16 +12,27 @@ struct asj_features {
     asj_match_options options;
     asj_junction *junctions;      /* as they were given */
     uint32_t junction_count;
-    asj_l_junction *l_junctions;  /* where those of of_image are of the enlarged image: in pixels of the image itself */
-    asj_image_features of_image;  /* its pointers lead into the block that this struct begins */
+    int32_t finer;                /* are there junctions of octave -1? The three below are empty if not */
+    asj_l_junction *l_junctions;  /* all, in pixels of the image */
+    uint16_t *gray;               /* the image, 1/128 of a grey level: what both pyramids are made from */
+    asj_image_features enlarged;  /* of the image enlarged twice, with these junctions */
+    asj_image_features of_image;  /* without them. All pointers lead into the block that this struct begins */
 };
 
-/* A copy of what a context made, in a block of its own. ASJ_ERROR_MEMORY. */
-asj_status asj_features_keep(asj_context *context, const asj_match_options *options, const asj_junction *junctions, size_t count,
-                             const asj_image_features *made, asj_features **features);
+/* What a context made of an image. */
+typedef struct asj_made_features {
+    asj_image_features own, enlarged; /* as below; all zero where there is nothing enlarged */
+    uint16_t *gray;                   /* NULL likewise */
+} asj_made_features;
 
-/* The same features as a context works with them: its own operations, nothing on its device yet. Arrays are shared, so there is
- * nothing to free. */
-asj_image_features asj_features_view(const asj_context *context, const asj_features *features);
+void asj_made_features_free(asj_memory *memory, asj_made_features *made);
+
+/* A copy of it in a block of its own. ASJ_ERROR_MEMORY. */
+asj_status asj_features_keep(asj_context *context, const asj_match_options *options, const asj_junction *junctions, size_t count,
+                             const asj_made_features *made, asj_features **features);
+
+/* The same features as a context works with them, those of the enlarged image if asked for and there: its own
+ * operations, nothing on its device yet. Arrays are shared, so there is nothing to free. */
+asj_image_features asj_features_view(const asj_context *context, const asj_features *features, int32_t enlarged);
 
 #endif

@@ -376,6 +376,15 @@ static asj_status find_t_junctions(asj_context *context, asj_l_junctions *all)
     return ASJ_OK;
 }
 
+uint32_t asj_l_junctions_of_image(const asj_junction *junctions, asj_l_junction *l, uint32_t count)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (junctions[l[i].junction].octave >= 0)
+            l[kept++] = l[i];
+    return kept;
+}
+
 /* To pixels of the image enlarged twice (core/enlarge.c). */
 static void enlarge(asj_l_junctions *all)
 {
@@ -405,6 +414,8 @@ asj_status asj_l_junctions_create(asj_context *context, const asj_match_options 
     all->enlarged = input->enlarged;
     if (all->enlarged)
         enlarge(all);
+    else
+        all->count = asj_l_junctions_of_image(input->list, all->l, all->count);
     status = set_octaves(context, input, all);
     if (status == ASJ_OK)
         status = find_locations(context, all);

@@ -23,6 +23,8 @@
  *   verdict.c        where one is accepted: which matches go, and which come; then guests.c and same_corner.c once more
  *   match_result.c   what the caller sees; segments.c: which ends of the branches correspond
  *
+ * All of this once, and where there are junctions of octave -1 once more with them in the enlarged images: finer.c decides.
+ *
  * Up to the consensus every aligned candidate is there, several for a location; a step that needs all of them stands before
  * assign.c. */
 #include "align.h"
@@ -30,6 +32,7 @@
 #include "consensus.h"
 #include "core/backend.h"
 #include "epipolar.h"
+#include "finer.h"
 #include "guests.h"
 #include "guided.h"
 #include "kept_features.h"
@@ -239,18 +242,28 @@ typedef struct source {
     size_t count;
 } source;
 
-static asj_status match(asj_context *context, const asj_match_options *options, const source sources[2], asj_match_result **result)
+/* Of one image; `enlarged`: of the image enlarged twice, if it has junctions of octave -1. */
+static asj_status make_features(asj_context *context, const asj_match_options *options, const source *s, int32_t n,
+                                int32_t enlarged, asj_image_features *features)
 {
+    const int32_t finer = enlarged && asj_has_finer(s->junctions, s->count);
+    asj_status status = asj_image_features_create(context, options, s->image, s->junctions, s->count, n + 1, finer, features);
+    if (status == ASJ_OK && options->geometry.model != ASJ_GEOMETRY_NONE)
+        status = asj_colours_create(context, s->image, &features->l_junctions, &features->colours);
+    return status;
+}
+
+static asj_status match_sources(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
+                                asj_match_result **result)
+{
+    const source *sources = data;
     asj_image_features features[2];
     const asj_image_features *both[2] = {&features[0], &features[1]};
     stop_watch watch = {.clock = asj_clock_ms()};
     memset(features, 0, sizeof features);
     asj_status status = asj_progress(context, ASJ_STAGE_PATCHES, 0);
     for (int32_t n = 0; n < 2 && status == ASJ_OK; n++)
-        status = asj_image_features_create(context, options, sources[n].image, sources[n].junctions, sources[n].count, n + 1,
-                                           &features[n]);
-    for (int32_t n = 0; n < 2 && status == ASJ_OK && options->geometry.model != ASJ_GEOMETRY_NONE; n++)
-        status = asj_colours_create(context, sources[n].image, &features[n].l_junctions, &features[n].colours);
+        status = make_features(context, options, &sources[n], n, enlarged, &features[n]);
     stop(&watch, ASJ_STAGE_PATCHES);
     if (status == ASJ_OK)
         status = match_features(context, options, both, &watch, result);
@@ -278,18 +291,21 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
     if (asj_match_options_check(options, message, sizeof message) != ASJ_OK)
         return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
     const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
+    const asj_finer_match match = {match_sources, sources, {junctions1, junctions2}, {count1, count2}};
     asj_status status;
     asj_backend_begin(context);
     do
-        status = match(context, options, sources, result);
+        status = asj_match_finer(context, options, &match, result);
     while (asj_backend_retry(context, status));
     return status;
 }
 
-static asj_status match_kept(asj_context *context, const asj_match_options *options, const asj_features *kept[2],
+static asj_status match_kept(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
                              asj_match_result **result)
 {
-    const asj_image_features views[2] = {asj_features_view(context, kept[0]), asj_features_view(context, kept[1])};
+    const asj_features *const *kept = data;
+    const asj_image_features views[2] = {asj_features_view(context, kept[0], enlarged),
+                                         asj_features_view(context, kept[1], enlarged)};
     const asj_image_features *both[2] = {&views[0], &views[1]};
     stop_watch watch = {.clock = asj_clock_ms()};
     return match_features(context, options, both, &watch, result);
@@ -329,9 +345,13 @@ asj_status asj_match_features(asj_context *context, const asj_features *features
     asj_status status = check_options(context, options, kept);
     if (status != ASJ_OK)
         return status;
+    const asj_finer_match match = {match_kept,
+                                   kept,
+                                   {features1->junctions, features2->junctions},
+                                   {features1->junction_count, features2->junction_count}};
     asj_backend_begin(context);
     do
-        status = match_kept(context, options, kept, result);
+        status = asj_match_finer(context, options, &match, result);
     while (asj_backend_retry(context, status));
     return status;
 }

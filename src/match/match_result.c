@@ -206,6 +206,46 @@ void asj_match_result_unstretch(asj_match_result *shown, const asj_stretch by[2]
         asj_places_sort(r->places[side], r->matches, r->count, side);
 }
 
+static void renumber(asj_junction_match *list, size_t count, int32_t side, const uint32_t *number)
+{
+    for (size_t k = 0; k < count; k++) {
+        uint32_t *l = side ? &list[k].l2 : &list[k].l1;
+        *l = number[*l];
+    }
+}
+
+asj_status asj_match_result_number(asj_context *context, asj_match_result *shown, int32_t side, double minimum_opening,
+                                   const asj_junction *junctions, size_t count)
+{
+    result *r = (result *)shown;
+    const size_t total = asj_decompose(junctions, count, minimum_opening, NULL, 0);
+    if (total == (side ? shown->l_junction_count2 : shown->l_junction_count1))
+        return ASJ_OK;
+    asj_l_junction *all = asj_allocate(&r->memory, total, sizeof *all);
+    uint32_t *number = asj_allocate(&context->memory, total, sizeof *number), known = 0;
+    if (!all || !number) {
+        asj_release(&r->memory, all);
+        asj_release(&context->memory, number);
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu L-junctions", total);
+    }
+    asj_decompose(junctions, count, minimum_opening, all, total);
+    for (uint32_t l = 0; l < total; l++)
+        if (junctions[all[l].junction].octave >= 0)
+            number[known++] = l;
+    renumber(r->matches, shown->match_count, side, number);
+    renumber(r->rejected, (size_t)shown->rejected_count, side, number);
+    asj_release(&context->memory, number);
+    asj_release(&r->memory, side ? r->l2 : r->l1);
+    if (side) {
+        shown->l_junctions2 = r->l2 = all;
+        shown->l_junction_count2 = (uint32_t)total;
+    } else {
+        shown->l_junctions1 = r->l1 = all;
+        shown->l_junction_count1 = (uint32_t)total;
+    }
+    return ASJ_OK;
+}
+
 void asj_match_result_free(asj_match_result **pointer)
 {
     if (!pointer || !*pointer)

@@ -15,6 +15,11 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
  * matches are no longer those of the call. */
 asj_around asj_match_result_around(const asj_match_result *shown);
 
+/* Numbers the L-junctions of image 1 (side 0) or 2 as asj_decompose() does those of all junctions, where the result knows those of
+ * octaves 0 and up alone. ASJ_ERROR_MEMORY. */
+asj_status asj_match_result_number(asj_context *context, asj_match_result *shown, int32_t side, double minimum_opening,
+                                   const asj_junction *junctions, size_t count);
+
 /* A result of stretched images -> one of the images themselves (unstretch.h). */
 void asj_match_result_unstretch(asj_match_result *shown, const asj_stretch by[2]);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The matcher on rendered rooms, whose geometry is known: how many of its key-point and segment matches show the same thing.
  *
- *     match_room [--check] [--first N] [--last N] [--rooms] [--sweep] [--threads N] [key=value ...]
+ *     match_room [--check] [--first N] [--last N] [--rooms] [--first-octave -1] [--sweep] [--threads N] [key=value ...]
  *
  * View 0 of the sample room is matched with the views from --first (1) to --last (6). --rooms: random rooms instead, two views
  * each, seeds --first to --last. --sweep: random rooms, then again with each number among the options a fifth lower and a fifth
@@ -23,7 +23,7 @@ static const double least_average = 0.92; /* share of right matches: measured 0.
 static const uint32_t least_matches = 130; /* of each pair: measured 148 and more */
 
 typedef struct settings {
-    int32_t first, last, check, random, sweep;
+    int32_t first, last, check, random, sweep, first_octave;
     asj_match_options options;
     asj_context *context;
 } settings;
@@ -76,7 +76,7 @@ static int look(const settings *set, const synth_room *room, int32_t seed, int32
 {
     const synth_camera camera = set->random ? synth_room_random_camera((uint64_t)seed, index, ROOM_WIDTH, ROOM_HEIGHT)
                                             : synth_room_camera(index, ROOM_WIDTH, ROOM_HEIGHT);
-    return room_view_make(set->context, room, camera, (uint64_t)index + 1, view);
+    return room_view_make(set->context, room, camera, (uint64_t)index + 1, set->first_octave, view);
 }
 
 static int sample_room(const settings *set)
@@ -240,7 +240,7 @@ static int set_option(settings *set, const char *text)
 static int parse(int argc, char **argv, settings *set, int32_t *threads)
 {
     static const struct option longs[] = {{"check", 0, NULL, 'c'}, {"first", 1, NULL, 'f'}, {"last", 1, NULL, 'l'},
-                                          {"rooms", 0, NULL, 'r'}, {"sweep", 0, NULL, 's'},
+                                          {"rooms", 0, NULL, 'r'}, {"first-octave", 1, NULL, 'o'}, {"sweep", 0, NULL, 's'},
                                           {"threads", 1, NULL, 't'}, {NULL, 0, NULL, 0}};
     int c, result = 0;
     while (result == 0 && (c = getopt_long(argc, argv, "", longs, NULL)) != -1)
@@ -248,6 +248,7 @@ static int parse(int argc, char **argv, settings *set, int32_t *threads)
         case 'c': set->check = 1; break;
         case 'f': result = number(optarg, 1, MOST, &set->first); break;
         case 'l': result = number(optarg, 1, MOST, &set->last); break;
+        case 'o': set->first_octave = (int32_t)strtol(optarg, NULL, 10); break;
         case 's': set->sweep = 1; /* fall through */
         case 'r': set->random = 1; break;
         case 't': result = number(optarg, 0, 256, threads); break;
@@ -265,7 +266,8 @@ int main(int argc, char **argv)
     asj_match_options_init(&set.options);
     asj_context_options_init(&how);
     if (parse(argc, argv, &set, &how.threads) != 0) {
-        fputs("usage: match_room [--check] [--first N] [--last N] [--rooms] [--sweep] [--threads N] [key=value ...]\n", stderr);
+        fputs("usage: match_room [--check] [--first N] [--last N] [--rooms] [--first-octave N] [--sweep] [--threads N] "
+              "[key=value ...]\n", stderr);
         return 2;
     }
     if (asj_context_create(&how, &set.context) != ASJ_OK)

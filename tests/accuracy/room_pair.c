@@ -16,7 +16,8 @@ static int fail(const char *what)
     return -1;
 }
 
-int room_view_make(asj_context *context, const synth_room *room, synth_camera camera, uint64_t noise_seed, room_view *view)
+int room_view_make(asj_context *context, const synth_room *room, synth_camera camera, uint64_t noise_seed, int32_t first_octave,
+                   room_view *view)
 {
     synth_view painted;
     asj_detect_options options;
@@ -30,6 +31,7 @@ int room_view_make(asj_context *context, const synth_room *room, synth_camera ca
         return fail("cannot render a view");
     view->image = (asj_image){view->pixels, ASJ_FORMAT_GRAY8, camera.width, camera.height, 0, 0};
     asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
+    options.first_octave = first_octave;
     return asj_detect(context, &view->image, &options, &view->found) == ASJ_OK ? 0 : fail(asj_context_message(context));
 }
 

@@ -19,7 +19,8 @@ typedef struct room_view {
 } room_view;
 
 /* Blur 0.9 px, noise 2 grey levels. 0, or -1 with a line on standard error; free either way. */
-int room_view_make(asj_context *context, const synth_room *room, synth_camera camera, uint64_t noise_seed, room_view *view);
+int room_view_make(asj_context *context, const synth_room *room, synth_camera camera, uint64_t noise_seed, int32_t first_octave,
+                   room_view *view);
 void room_view_free(room_view *view);
 
 /* Counts of a pair; add up over pairs. */

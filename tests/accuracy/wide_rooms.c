@@ -28,7 +28,7 @@ static const double least_right = 0.50; /* of --check: share of all pairs */
 static const int most_wrong = 0, most_far_off = 0;
 
 typedef struct settings {
-    int check, held_out, unrelated, no_cameras, find_focal;
+    int check, held_out, unrelated, no_cameras, find_focal, first_octave;
     long first, last;
     asj_stretch stretch;
     asj_context *context;
@@ -44,6 +44,7 @@ static int detect(const settings *set, const synth_wide_pair *pair, int which, u
 {
     asj_detect_options options;
     asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
+    options.first_octave = set->first_octave;
     *pixels = synth_wide_picture(pair, which);
     *image = (asj_image){*pixels, ASJ_FORMAT_RGB8, SYNTH_WIDE_WIDTH, SYNTH_WIDE_HEIGHT, 0, 0};
     return *pixels && asj_detect(set->context, image, &options, found) == ASJ_OK ? 0 : -1;
@@ -203,7 +204,7 @@ static int run(const settings *set)
 int main(int argc, char **argv)
 {
     static const struct option longs[] = {{"check", 0, NULL, 'c'}, {"held-out", 0, NULL, 'h'}, {"unrelated", 0, NULL, 'u'},
-                                          {"no-cameras", 0, NULL, 'n'}, {"stretch", 1, NULL, 's'},
+                                          {"no-cameras", 0, NULL, 'n'}, {"stretch", 1, NULL, 's'}, {"first-octave", 1, NULL, '1'},
                                           {"find-focal", 0, NULL, 'o'}, {"first", 1, NULL, 'f'}, {"last", 1, NULL, 'l'},
                                           {"threads", 1, NULL, 't'}, {NULL, 0, NULL, 0}};
     settings set = {.last = 99};
@@ -218,12 +219,13 @@ int main(int argc, char **argv)
         case 'n': set.no_cameras = 1; break;
         case 'o': set.find_focal = 1; break;
         case 's': sscanf(optarg, "%lf,%lf", &set.stretch.x, &set.stretch.y); break;
+        case '1': set.first_octave = (int)strtol(optarg, NULL, 10); break;
         case 'f': set.first = strtol(optarg, NULL, 10); break;
         case 'l': set.last = strtol(optarg, NULL, 10); break;
         case 't': how.threads = (int32_t)strtol(optarg, NULL, 10); break;
         default:
             fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--stretch X,Y] "
-                  "[--first N] [--last N] [--threads N]\n", stderr);
+                  "[--first-octave N] [--first N] [--last N] [--threads N]\n", stderr);
             return 2;
         }
     if (asj_context_create(&how, &set.context) != ASJ_OK)

@@ -165,7 +165,8 @@ static int make_side(asj_context *context, const settings *set, const synth_wide
     in->options.geometry.cameras[v] = (asj_camera){f, f, 0.5 * (SYNTH_WIDE_WIDTH - 1), 0.5 * (SYNTH_WIDE_HEIGHT - 1)};
     in->options.geometry.widths[v] = SYNTH_WIDE_WIDTH;
     in->options.geometry.heights[v] = SYNTH_WIDE_HEIGHT;
-    asj_status status = asj_image_features_create(context, &in->options, &image, side->list, side->count, v + 1, &in->features[v]);
+    asj_status status = asj_image_features_create(context, &in->options, &image, side->list, side->count, v + 1, 0,
+                                                  &in->features[v]);
     if (status == ASJ_OK)
         status = asj_colours_create(context, &image, &in->features[v].l_junctions, &in->features[v].colours);
     return status == ASJ_OK ? 0 : fail(asj_context_message(context));

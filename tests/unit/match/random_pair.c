@@ -73,7 +73,7 @@ void random_pair_create(asj_context *context, uint64_t seed, int32_t count, cons
     for (int32_t n = 0; n < 2; n++) {
         const asj_image image = unit_gray8(pixels, RANDOM_PAIR_SIDE, RANDOM_PAIR_SIDE);
         paint(n, pixels);
-        assert_int_equal(asj_image_features_create(context, &pair->options, &image, junctions[n], (size_t)count, n + 1,
+        assert_int_equal(asj_image_features_create(context, &pair->options, &image, junctions[n], (size_t)count, n + 1, 0,
                                                    &pair->image[n]), ASJ_OK);
     }
     free(pixels);

@@ -51,7 +51,8 @@ static void rank_all(asj_match_options *options, both *b)
             make_corners(&random, corners);
         for (int32_t k = 0; k < CORNERS && n == 1; k += 3)
             corners[k].branches[0].length *= 1.2F;
-        assert_int_equal(asj_image_features_create(b->context, options, &image, corners, CORNERS, n + 1, &b->features[n]), ASJ_OK);
+        assert_int_equal(asj_image_features_create(b->context, options, &image, corners, CORNERS, n + 1, 0, &b->features[n]),
+                         ASJ_OK);
         const uint32_t count = b->features[n].l_junctions.count;
         assert_true(count > CORNERS);
         b->lists[n] = malloc(count * LIMIT * sizeof **b->lists);

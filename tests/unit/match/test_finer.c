@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Junctions of octave -1: they are matched in the enlarged images, from images, features and bytes alike, and only where the images
+ * themselves confirm them; otherwise the result is what there is without them. L-junctions are numbered as all of them are. */
+#include "core/bytes.h"
+#include "match/finer.h"
+#include "room.h"
+#include "unit_test.h"
+
+#include <asj/asj.h>
+
+enum { WIDTH = 320, HEIGHT = 237 };
+
+typedef struct view {
+    uint8_t *pixels;
+    asj_image image;
+    asj_detection *plain, *finer; /* without octave -1, and with it */
+} view;
+
+static view views[2];
+
+static int make_views(void **state)
+{
+    synth_room room;
+    assert_int_equal(unit_set_up(state), 0);
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_detect_options options;
+    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
+    assert_int_equal(synth_room_make(&room), 0);
+    for (int32_t n = 0; n < 2; n++) {
+        synth_view made;
+        const synth_camera camera = synth_room_camera(n, WIDTH, HEIGHT);
+        assert_int_equal(synth_view_make(&room, &camera, 4, &made), 0);
+        views[n].pixels = synth_photograph(&made.scene, 0.9, 2, (uint64_t)n + 1);
+        assert_non_null(views[n].pixels);
+        views[n].image = unit_gray8(views[n].pixels, WIDTH, HEIGHT);
+        options.first_octave = 0;
+        assert_int_equal(asj_detect(context, &views[n].image, &options, &views[n].plain), ASJ_OK);
+        options.first_octave = -1;
+        assert_int_equal(asj_detect(context, &views[n].image, &options, &views[n].finer), ASJ_OK);
+        assert_false(asj_has_finer(views[n].plain->junctions, views[n].plain->junction_count));
+        assert_true(asj_has_finer(views[n].finer->junctions, views[n].finer->junction_count));
+        synth_view_free(&made);
+    }
+    synth_room_free(&room);
+    return 0;
+}
+
+static int free_views(void **state)
+{
+    for (int32_t n = 0; n < 2; n++) {
+        asj_detection_free(&views[n].plain);
+        asj_detection_free(&views[n].finer);
+        free(views[n].pixels);
+    }
+    return unit_tear_down(state);
+}
+
+static asj_match_result *match(asj_context *context, const asj_detection *a, const asj_detection *b,
+                               const asj_match_options *options)
+{
+    asj_match_result *result = NULL;
+    assert_int_equal(asj_match(context, &views[0].image, a->junctions, a->junction_count, &views[1].image, b->junctions,
+                               b->junction_count, options, &result), ASJ_OK);
+    return result;
+}
+
+/* L-junctions are all of the detection's, and matches stand where theirs do. */
+static void assert_numbered(const asj_match_result *r, const asj_detection *a, const asj_detection *b)
+{
+    const size_t counts[2] = {r->l_junction_count1, r->l_junction_count2};
+    const asj_detection *const of[2] = {a, b};
+    for (int32_t n = 0; n < 2; n++) {
+        const asj_l_junction *shown = n ? r->l_junctions2 : r->l_junctions1;
+        assert_int_equal(counts[n], of[n]->l_junction_count);
+        for (size_t l = 0; l < counts[n]; l++) {
+            const asj_l_junction *wanted = &of[n]->l_junctions[l];
+            assert_int_equal(shown[l].junction, wanted->junction);
+            unit_near("x", (double)n, (double)l, (double)shown[l].x, (double)wanted->x, 1e-4);
+            unit_near("by", (double)n, (double)l, (double)shown[l].by, (double)wanted->by, 1e-3);
+        }
+    }
+    for (uint32_t k = 0; k < r->match_count; k++) {
+        const asj_junction_match *m = &r->matches[k];
+        assert_true(m->l1 < counts[0] && m->l2 < counts[1]);
+        assert_true(m->x1 == r->l_junctions1[m->l1].x && m->y1 == r->l_junctions1[m->l1].y);
+        assert_int_equal(m->junction1, r->l_junctions1[m->l1].junction);
+        assert_int_equal(m->junction2, r->l_junctions2[m->l2].junction);
+        assert_true(hypotf(m->x2 - r->l_junctions2[m->l2].x, m->y2 - r->l_junctions2[m->l2].y) < 8);
+    }
+}
+
+static uint32_t fine_ones(const asj_match_result *r, const asj_detection *a)
+{
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < r->match_count; k++)
+        count += a->junctions[r->matches[k].junction1].octave < 0;
+    return count;
+}
+
+static void more_matches(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *plain = match(context, views[0].plain, views[1].plain, NULL);
+    asj_match_result *finer = match(context, views[0].finer, views[1].finer, NULL);
+    asj_match_result *mixed = match(context, views[0].finer, views[1].plain, NULL);
+    printf("%u matches, with octave -1 %u, with that of one image %u\n", (unsigned)plain->match_count, (unsigned)finer->match_count,
+           (unsigned)mixed->match_count);
+    assert_true(plain->match_count > 10 && 4 * finer->match_count > 5 * plain->match_count);
+    assert_true(4 * fine_ones(finer, views[0].finer) > finer->match_count);
+    assert_numbered(plain, views[0].plain, views[1].plain);
+    assert_numbered(finer, views[0].finer, views[1].finer);
+    assert_numbered(mixed, views[0].finer, views[1].plain);
+    asj_match_result_free(&plain);
+    asj_match_result_free(&finer);
+    asj_match_result_free(&mixed);
+}
+
+/* --- which of two results holds: passes that answer as they are told -------------------------------------------------------- */
+
+typedef struct answers {
+    int32_t passes;
+    int own_is_empty, finer_is_other; /* what they answer */
+    uint32_t finer_count;
+} answers;
+
+/* Matches of the plain junctions for the images themselves; for the enlarged ones of all, right or of the first image with
+ * itself upside down. */
+static asj_status answer(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
+                         asj_match_result **result)
+{
+    answers *a = *(answers *const *)data;
+    static uint8_t turned[WIDTH * HEIGHT];
+    asj_detection *found = NULL;
+    asj_detect_options how;
+    a->passes++;
+    if (!enlarged) {
+        const uint32_t count = a->own_is_empty ? 3 : views[0].plain->junction_count;
+        return asj_match(context, &views[0].image, views[0].plain->junctions, count, &views[1].image, views[1].plain->junctions,
+                         views[1].plain->junction_count, options, result);
+    }
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        turned[i] = views[0].pixels[WIDTH * HEIGHT - 1 - i];
+    const asj_image image = unit_gray8(a->finer_is_other ? turned : views[1].pixels, WIDTH, HEIGHT);
+    asj_detect_options_preset(&how, ASJ_PRESET_MATCH);
+    how.epsilon = 1e5; /* and so some more of them */
+    assert_int_equal(asj_detect(context, &image, &how, &found), ASJ_OK);
+    const asj_status status = asj_match(context, &views[0].image, views[0].plain->junctions, views[0].plain->junction_count, &image,
+                                        found->junctions, found->junction_count, options, result);
+    asj_detection_free(&found);
+    a->finer_count = status == ASJ_OK ? (*result)->match_count : 0;
+    return status;
+}
+
+static void only_what_is_confirmed(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_options options;
+    asj_match_options_init(&options);
+    asj_match_result *plain = match(context, views[0].plain, views[1].plain, NULL);
+    for (int32_t n = 0; n < 2; n++) {
+        answers a = {0, n == 0, n == 1, 0};
+        answers *data = &a;
+        asj_match_result *result = NULL;
+        const asj_finer_match both = {answer, &data, {views[0].finer->junctions, views[1].finer->junctions},
+                                      {views[0].finer->junction_count, views[1].finer->junction_count}};
+        assert_int_equal(asj_match_finer(context, &options, &both, &result), ASJ_OK);
+        assert_int_equal(a.passes, n == 0 ? 1 : 2); /* nothing comes of the images: no second look */
+        assert_true(n == 0 || a.finer_count > plain->match_count); /* enough, of the first image turned */
+        assert_int_equal(result->match_count, n == 0 ? 0 : plain->match_count);
+        for (uint32_t k = 0; k < result->match_count; k++)
+            assert_true(result->matches[k].x1 == plain->matches[k].x1 && result->matches[k].y2 == plain->matches[k].y2 &&
+                        memcmp(result->matches[k].affine, plain->matches[k].affine, sizeof plain->matches[k].affine) == 0);
+        asj_match_result_free(&result);
+    }
+    asj_match_result_free(&plain);
+}
+
+/* --- features ---------------------------------------------------------------------------------------------------------------- */
+
+static void assert_same(const asj_match_result *a, const asj_match_result *b)
+{
+    assert_true(a->match_count > 0);
+    assert_int_equal(a->match_count, b->match_count);
+    assert_memory_equal(a->matches, b->matches, a->match_count * sizeof *a->matches);
+    assert_int_equal(a->l_junction_count2, b->l_junction_count2);
+    assert_memory_equal(a->l_junctions2, b->l_junctions2, a->l_junction_count2 * sizeof *a->l_junctions2);
+    assert_memory_equal(&a->geometry, &b->geometry, sizeof a->geometry);
+}
+
+static asj_features *features_of(asj_context *context, int32_t n)
+{
+    asj_features *features = NULL;
+    assert_int_equal(asj_features_create(context, &views[n].image, views[n].finer->junctions, views[n].finer->junction_count, NULL,
+                                         &features), ASJ_OK);
+    return features;
+}
+
+static uint8_t *bytes_of(const asj_features *features, size_t *size)
+{
+    *size = asj_features_save(features, NULL, 0);
+    uint8_t *bytes = malloc(*size);
+    assert_non_null(bytes);
+    assert_int_equal(asj_features_save(features, bytes, *size), *size);
+    return bytes;
+}
+
+static void features_and_bytes(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_options options;
+    asj_match_options_init(&options);
+    for (int32_t model = 0; model < 2; model++) {
+        options.geometry.model = model ? ASJ_GEOMETRY_FUNDAMENTAL : ASJ_GEOMETRY_NONE;
+        asj_match_result *expected = match(context, views[0].finer, views[1].finer, &options);
+        asj_features *made[2], *read[2];
+        for (int32_t n = 0; n < 2; n++) {
+            size_t size, size2;
+            made[n] = features_of(context, n);
+            uint8_t *bytes = bytes_of(made[n], &size);
+            assert_int_equal(asj_get_u32(bytes + 8), 3); /* no colours */
+            assert_true(size < 2 * WIDTH * HEIGHT + 4096 + 200 * (size_t)views[n].finer->junction_count); /* no enlarged image */
+            assert_int_equal(asj_features_load(context, bytes, size, &read[n]), ASJ_OK);
+            uint8_t *second = bytes_of(read[n], &size2);
+            assert_int_equal(size, size2);
+            assert_memory_equal(bytes, second, size);
+            free(bytes);
+            free(second);
+            asj_features_info info;
+            asj_features_get_info(read[n], &info);
+            assert_true(info.width == WIDTH && info.height == HEIGHT);
+            assert_int_equal(info.l_junction_count, views[n].finer->l_junction_count);
+            assert_memory_equal(info.l_junctions, views[n].finer->l_junctions, info.l_junction_count * sizeof *info.l_junctions);
+        }
+        asj_match_result *result = NULL;
+        assert_int_equal(asj_match_features(context, made[0], read[1], &options, &result), ASJ_OK);
+        assert_same(expected, result);
+        asj_match_result_free(&result);
+        assert_int_equal(asj_match_features(context, read[0], made[1], &options, &result), ASJ_OK);
+        assert_same(expected, result);
+        asj_match_result_free(&result);
+        asj_match_result_free(&expected);
+        for (int32_t n = 0; n < 2; n++) {
+            asj_features_free(&made[n]);
+            asj_features_free(&read[n]);
+        }
+    }
+}
+
+static void refuse(asj_context *context, uint8_t *bytes, size_t size, asj_status status, const char *word)
+{
+    asj_features *features = NULL;
+    asj_put_u64(bytes + 16, size);
+    asj_put_u32(bytes + 12, asj_crc32(bytes + 16, size - 16));
+    assert_int_equal(asj_features_load(context, bytes, size, &features), status);
+    assert_null(features);
+    if (!strstr(asj_context_message(context), word))
+        fail_msg("\"%s\" does not say %s", asj_context_message(context), word);
+}
+
+static void hostile_bytes(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_features *features = features_of(context, 0);
+    size_t size;
+    uint8_t *bytes = bytes_of(features, &size);
+    asj_put_u32(bytes + 8, 5); /* colours of a finer octave, and no finer octave */
+    refuse(context, bytes, size, ASJ_ERROR_UNSUPPORTED, "version 5");
+    asj_put_u32(bytes + 8, 9);
+    refuse(context, bytes, size, ASJ_ERROR_UNSUPPORTED, "version 9");
+    asj_put_u32(bytes + 8, 4);
+    refuse(context, bytes, size, ASJ_ERROR_FORMAT, "colours are not all there");
+    asj_put_u32(bytes + 8, 3);
+    refuse(context, bytes, size - 2, ASJ_ERROR_FORMAT, "damaged");
+    asj_put_u16(bytes + size - 2, 0xffff);
+    refuse(context, bytes, size, ASJ_ERROR_FORMAT, "whiter than white");
+    free(bytes);
+    asj_features_free(&features);
+}
+
+static void out_of_memory(void **state)
+{
+    (void)state;
+    int succeeded = 0;
+    for (long n = 1; n < 2000 && !succeeded; n += n < 100 ? 1 : 7) {
+        unit_counter counter = {0, 0, 0, 0};
+        asj_context *poor = unit_context(&counter, 1);
+        asj_match_result *result = NULL;
+        counter.fail_at = counter.calls + n;
+        const asj_status status = asj_match(poor, &views[0].image, views[0].finer->junctions, views[0].finer->junction_count,
+                                            &views[1].image, views[1].finer->junctions, views[1].finer->junction_count, NULL,
+                                            &result);
+        counter.fail_at = 0;
+        succeeded = status == ASJ_OK;
+        assert_true(succeeded ? result != NULL : status == ASJ_ERROR_MEMORY && result == NULL);
+        asj_match_result_free(&result);
+        unit_context_free(&counter, &poor);
+    }
+    assert_true(succeeded);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(more_matches),  cmocka_unit_test(only_what_is_confirmed), cmocka_unit_test(features_and_bytes),
+        cmocka_unit_test(hostile_bytes), cmocka_unit_test(out_of_memory),
+    };
+    return cmocka_run_group_tests(tests, make_views, free_views);
+}
