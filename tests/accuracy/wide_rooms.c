@@ -2,12 +2,14 @@
 /* Two-view geometry on rendered rooms seen from far apart, whose cameras are known.
  *
  *     wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--stretch X,Y] [--first N] [--last N]
- *                [--threads N]
+ *                [--threads N] [--draw N] [--seed N] [--poses]
  *
  * Pairs of seeds --first (0) to --last (99): status, model, log10 NFA, pose error (the larger of rotation and direction of
  * translation, degrees) and matches within 4 px of their epipolar lines. Then the area under the curve of recall over error up to
  * 5, 10 and 20 degrees, how many of the pairs with a third in common were accepted, and how many of the accepted are wrong by more
  * than 3 degrees. --held-out: seeds that nothing was tuned on. --unrelated: image 1 of a seed with image 2 of the next one.
+ * --draw: another draw of the images' noise. --seed: of the samples. --poses: log10 NFA of the strongest rival, and how far
+ * rotation and translation are out, in brackets as told (the largest standard deviation of either).
  * --check: exit 1 when fewer poses are right (within 3 degrees) than below, or more are wrong. */
 #define _POSIX_C_SOURCE 200809L
 #include "wide_pair.h"
@@ -28,8 +30,8 @@ static const double least_right = 0.50; /* of --check: share of all pairs */
 static const int most_wrong = 0, most_far_off = 0;
 
 typedef struct settings {
-    int check, held_out, unrelated, no_cameras, find_focal, first_octave;
-    long first, last;
+    int check, held_out, unrelated, no_cameras, find_focal, first_octave, poses;
+    long first, last, draw, seed;
     asj_stretch stretch;
     asj_context *context;
 } settings;
@@ -61,6 +63,34 @@ static double pose_error(const asj_geometry *g, const synth_wide_pair *pair)
     for (int k = 0; k < 3; k++)
         dot += t[k] * g->translation[k];
     return fmax(acos(fmax(-1, fmin(1, (trace - 1) / 2))), acos(fmin(1, fabs(dot)))) / DEGREE;
+}
+
+/* The largest standard deviation of a direction in a block of the told covariance, degrees: by the power method. */
+static double told_sd(const double covariance[36], int first)
+{
+    double v[3] = {0.6, 0.5, 0.4}, length = 0;
+    for (int round = 0; round < 60; round++) {
+        double w[3] = {0, 0, 0};
+        for (int k = 0; k < 9; k++)
+            w[k / 3] += covariance[6 * (first + k / 3) + first + k % 3] * v[k % 3];
+        length = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+        for (int k = 0; k < 3 && length > 0; k++)
+            v[k] = w[k] / length;
+    }
+    return sqrt(length) / DEGREE;
+}
+
+/* Rotation and direction of the translation one by one. */
+static void print_pose(const asj_geometry *g, const synth_wide_pair *pair)
+{
+    double r[9], t[3], trace = 0, dot = 0;
+    synth_relative_pose(&pair->cameras[0], &pair->cameras[1], r, t);
+    for (int k = 0; k < 9; k++)
+        trace += r[k] * g->rotation[k];
+    for (int k = 0; k < 3; k++)
+        dot += t[k] * g->translation[k];
+    printf("  rotation %.2f (%.2f) translation %.2f (%.2f)", acos(fmax(-1, fmin(1, (trace - 1) / 2))) / DEGREE,
+           told_sd(g->covariance, 0), acos(fmax(-1, fmin(1, dot))) / DEGREE, told_sd(g->covariance, 3));
 }
 
 static uint32_t count_right(const asj_match_result *result, const synth_wide_pair *pair)
@@ -96,6 +126,10 @@ static void count(const settings *set, const synth_wide_pair *pair, const asj_ma
            (unsigned)result->match_count, result->total_ms);
     if (g->focal_sd > 0)
         printf("  focal length %.0f (%.0f), sd %.3f", g->focal[0], pair->cameras[0].focal, g->focal_sd);
+    if (set->poses && g->has_second)
+        printf("  second %.1f", g->second_log10_nfa);
+    if (set->poses && accepted && g->has_pose)
+        print_pose(g, pair);
     puts("");
     fflush(stdout);
 }
@@ -112,6 +146,7 @@ static int match(const settings *set, const synth_wide_pair *first, const synth_
     asj_match_options_init(&options);
     options.geometry.model = ASJ_GEOMETRY_AUTO;
     options.geometry.find_focal = set->find_focal;
+    options.geometry.seed = (uint64_t)set->seed;
     for (int v = 0; v < 2 && !failed; v++) {
         const double f = pairs[v]->cameras[v].focal;
         if (!set->no_cameras && !set->find_focal)
@@ -180,6 +215,8 @@ static int run(const settings *set)
         synth_wide_pair pair;
         if (synth_wide_pair_make(&pair, start + (uint64_t)seed) != 0)
             continue; /* no such viewpoints in this room */
+        for (int v = 0; v < 2; v++)
+            pair.exposures[v].noise_seed += 1000003 * (uint64_t)set->draw;
         if (!set->unrelated) {
             failed = match(set, &pair, &pair, &sum);
             synth_wide_pair_free(&pair);
@@ -206,8 +243,9 @@ int main(int argc, char **argv)
     static const struct option longs[] = {{"check", 0, NULL, 'c'}, {"held-out", 0, NULL, 'h'}, {"unrelated", 0, NULL, 'u'},
                                           {"no-cameras", 0, NULL, 'n'}, {"stretch", 1, NULL, 's'}, {"first-octave", 1, NULL, '1'},
                                           {"find-focal", 0, NULL, 'o'}, {"first", 1, NULL, 'f'}, {"last", 1, NULL, 'l'},
-                                          {"threads", 1, NULL, 't'}, {NULL, 0, NULL, 0}};
-    settings set = {.last = 99};
+                                          {"threads", 1, NULL, 't'}, {"draw", 1, NULL, 'd'}, {"seed", 1, NULL, 'e'},
+                                          {"poses", 0, NULL, 'p'}, {NULL, 0, NULL, 0}};
+    settings set = {.last = 99, .seed = 1};
     asj_context_options how;
     int c;
     asj_context_options_init(&how);
@@ -222,10 +260,13 @@ int main(int argc, char **argv)
         case '1': set.first_octave = (int)strtol(optarg, NULL, 10); break;
         case 'f': set.first = strtol(optarg, NULL, 10); break;
         case 'l': set.last = strtol(optarg, NULL, 10); break;
+        case 'd': set.draw = strtol(optarg, NULL, 10); break;
+        case 'e': set.seed = strtol(optarg, NULL, 10); break;
+        case 'p': set.poses = 1; break;
         case 't': how.threads = (int32_t)strtol(optarg, NULL, 10); break;
         default:
             fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--stretch X,Y] "
-                  "[--first-octave N] [--first N] [--last N] [--threads N]\n", stderr);
+                  "[--first-octave N] [--first N] [--last N] [--threads N] [--draw N] [--seed N] [--poses]\n", stderr);
             return 2;
         }
     if (asj_context_create(&how, &set.context) != ASJ_OK)
