@@ -16,10 +16,11 @@ typedef struct asj_pair {
 } asj_pair;
 
 /* A rotation that the images' directions make likely: manhattan.c. */
+#define ASJ_ROTATION_SIZES 2
 typedef struct asj_likely_rotation {
     double matrix[9];
-    double precision[9]; /* rad^-2: inverse covariance of w with exp([w]x) matrix the true one */
-    double log_top;      /* of its density at its middle over the flat one */
+    double precision[ASJ_ROTATION_SIZES][9]; /* rad^-2: inverse covariances of w with exp([w]x) matrix the true one */
+    double log_top[ASJ_ROTATION_SIZES];      /* of their densities at the middle over the flat one, each with its share */
 } asj_likely_rotation;
 
 /* Candidates, the likeliest first, and what is known beforehand. */
@@ -38,6 +39,9 @@ typedef struct asj_pairs {
     asj_likely_rotation *rotations;
     int32_t rotation_count;
     int32_t has_colours;
+    int32_t has_down;
+    int32_t reserved;
+    double down[2][3];       /* of either camera, where has_down: the direction that points down in its image */
     double middle[2][2];     /* px: of image 1 and image 2 */
     float *at;               /* near.c: all x1, all y1, x2, y2, from the middles */
     double farthest[4];      /* the largest of each */

@@ -7,7 +7,7 @@
  *   focal.c       the same for a row of focal lengths, where none is known and it is asked for
  *   rivals.c      what explains as much without the candidates of the best one
  *   evidence.c    how often chance brings as much
- *   ambiguity.c   which of these colours and pictures contradict (colour_vote.c, picture_vote.c); whether one may be right as well
+ *   ambiguity.c   which of these are contradicted (colour_vote.c, picture_vote.c, upright.c); whether one may be right as well
  *   answer.c      which kind, and what is told of it
  *   model.c       what moves when a geometry moves */
 #include "ambiguity.h"

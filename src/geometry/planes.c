@@ -62,39 +62,68 @@ static void frame_of(const double a[3], const double b[3], double frame[9])
     }
 }
 
-int32_t asj_motions_of_homography(const asj_pairs *set, const asj_model *homography, const asj_camera cameras[2],
-                                  asj_model motions[2])
+/* What two of them have in common. */
+typedef struct decomposed {
+    double n[9];                   /* N with the second singular value 1 */
+    double normal[2][3];           /* of the plane, of either sign */
+    double rotation[2][9];
+} decomposed;
+
+/* How many: 2, or 0 where the camera only turns. */
+static int32_t decompose(const asj_model *homography, const asj_camera cameras[2], decomposed *d)
 {
-    double n[9], square[9], values[3], vectors[9], v2[3];
-    int32_t found = 0;
-    asj_normal_homography(homography->view.matrix, cameras, n);
-    asj_transposed_multiply3(n, n, square);
+    double square[9], values[3], vectors[9], v2[3], nv2[3];
+    asj_normal_homography(homography->view.matrix, cameras, d->n);
+    asj_transposed_multiply3(d->n, d->n, square);
     asj_symmetric_eigen(square, 3, values, vectors);
     if (!(values[0] > 1e-9 * values[2]) || !isfinite(values[2]))
         return 0;
     for (int32_t k = 0; k < 9; k++)
-        n[k] /= sqrt(values[1]);
+        d->n[k] /= sqrt(values[1]);
     const double low = values[0] / values[1], high = values[2] / values[1];
     if (!(high - low > NO_PLANE))
         return 0;
     const double along1 = sqrt((1 - low) / (high - low)), along3 = sqrt((high - 1) / (high - low));
     for (int32_t i = 0; i < 3; i++)
         v2[i] = vectors[3 * i + 1];
-    for (int32_t side = -1; side <= 1; side += 2) {
-        double u[3], normal[3], nv2[3], nu[3], from[9], to[9];
-        asj_model *m = &motions[found];
-        memset(m, 0, sizeof *m);
+    asj_apply3(d->n, v2, nv2);
+    for (int32_t k = 0; k < 2; k++) {
+        const int32_t side = 2 * k - 1;
+        double u[3], nu[3], from[9], to[9];
         for (int32_t i = 0; i < 3; i++) /* vectors: of the smallest value first, which is s3 */
             u[i] = along1 * vectors[3 * i + 2] + side * along3 * vectors[3 * i];
-        asj_cross3(v2, u, normal);
-        asj_apply3(n, v2, nv2);
-        asj_apply3(n, u, nu);
+        asj_cross3(v2, u, d->normal[k]);
+        asj_apply3(d->n, u, nu);
         frame_of(v2, u, from);
         frame_of(nv2, nu, to);
-        asj_multiply3_transposed(to, from, m->rotation);
+        asj_multiply3_transposed(to, from, d->rotation[k]);
+    }
+    return 2;
+}
+
+int32_t asj_rotations_of_homography(const asj_model *homography, const asj_camera cameras[2], double rotations[2][9])
+{
+    decomposed d;
+    const int32_t count = decompose(homography, cameras, &d);
+    if (count > 0)
+        memcpy(rotations, d.rotation, sizeof d.rotation);
+    return count;
+}
+
+int32_t asj_motions_of_homography(const asj_pairs *set, const asj_model *homography, const asj_camera cameras[2],
+                                  asj_model motions[2])
+{
+    decomposed d;
+    int32_t found = 0;
+    const int32_t count = decompose(homography, cameras, &d);
+    for (int32_t k = 0; k < count; k++) {
+        const double *normal = d.normal[k];
+        asj_model *m = &motions[found];
+        memset(m, 0, sizeof *m);
+        memcpy(m->rotation, d.rotation[k], sizeof m->rotation);
         const double sign = sign_of(set, homography, &cameras[0], normal);
         for (int32_t i = 0; i < 3; i++)
-            m->translation[i] = sign * (asj_dot3(n + 3 * i, normal) - asj_dot3(m->rotation + 3 * i, normal));
+            m->translation[i] = sign * (asj_dot3(d.n + 3 * i, normal) - asj_dot3(m->rotation + 3 * i, normal));
         const double length = sqrt(asj_dot3(m->translation, m->translation));
         for (int32_t i = 0; i < 3; i++)
             m->planes[0][i] = sign * length * normal[i];

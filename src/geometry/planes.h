@@ -10,6 +10,9 @@
 int32_t asj_motions_of_homography(const asj_pairs *set, const asj_model *homography, const asj_camera cameras[2],
                                   asj_model motions[2]);
 
+/* The rotations of these alone; 0 or 2, a mirror perhaps. */
+int32_t asj_rotations_of_homography(const asj_model *homography, const asj_camera cameras[2], double rotations[2][9]);
+
 /* Adds planes to an essential matrix as long as its evidence rises. evidence, score and view are those of the result. */
 void asj_add_planes(const asj_pairs *set, asj_model *model, asj_adjust_scratch *scratch);
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Three directions at right angles from straight edges: synthetic edges of known directions among others, none from too few, and
- * the density of rotations that they make likely. */
+/* Three directions at right angles from straight edges: synthetic edges of known directions among others, none from too few, the
+ * density of rotations that they make likely, and which way is up. */
 #include "unit_test.h"
 
 #include "geometry/directions.h"
 #include "geometry/manhattan.h"
+#include "geometry/planes.h"
 #include "geometry/small_matrix.h"
+#include "geometry/upright.h"
 
 #define WIDTH 640
 #define HEIGHT 480
@@ -179,10 +181,101 @@ static void rotations_have_a_density(void **state)
     assert_int_equal(set.rotation_count, 0);
 }
 
+/* Directions as a camera sees them that is turned like this. */
+static void turned_directions(double x, double y, double z, asj_directions_list *list)
+{
+    const double w[3] = {x, y, z};
+    double turn[9];
+    memset(list, 0, sizeof *list);
+    list->count = 1;
+    asj_rotation_of(w, turn);
+    for (int k = 0; k < 9; k++) /* rows: R e_k */
+        list->list[0].axes[k] = turn[3 * (k % 3) + k / 3];
+    for (int k = 0; k < 3; k++)
+        list->list[0].covariance[4 * k] = 1e-6;
+}
+
+/* Upright in both images: 4 of the 24 names have nine tenths of the density and their part of the rest. Rolled by 45 degrees:
+ * nothing is known. */
+static void down_stays_down(void **state)
+{
+    (void)state;
+    for (int rolled = 0; rolled < 2; rolled++) {
+        unit_counter counter = {0};
+        asj_memory memory = unit_memory(&counter);
+        asj_directions_list both[2];
+        asj_pairs set = {.count = 0};
+        int more = 0;
+        turned_directions(0.2, 0.4, 0, &both[0]);
+        turned_directions(0, -0.3, rolled ? UNIT_PI / 4 : 0.1, &both[1]);
+        assert_true(asj_manhattan_rotations(&memory, both, &set));
+        assert_int_equal(set.rotation_count, 24);
+        assert_int_equal(set.has_down, !rolled);
+        for (int k = 0; k < 24; k++) {
+            double down[3];
+            asj_apply3(set.rotations[k].matrix, set.down[0], down);
+            const int stays = !rolled && asj_dot3(down, set.down[1]) > 0.9;
+            const double share = rolled ? 1.0 / 24 : stays ? 0.9 / 4 + 0.1 / 24 : 0.1 / 24, sd = 0.25 * DEGREE;
+            const double variance = sd * sd + 4 * 2e-6;
+            unit_near("share", k, rolled, set.rotations[k].log_top[1],
+                      log(0.5 * share * 8 * UNIT_PI * UNIT_PI) - 1.5 * log(2 * UNIT_PI * variance), 1e-9);
+            more += stays;
+        }
+        assert_int_equal(more, rolled ? 0 : 4);
+        asj_release(&memory, set.rotations);
+    }
+}
+
+/* A motion with a plane, as an essential matrix and as the homography of the plane. */
+static void make_motion(double yaw, double roll, asj_model *motion, asj_model *plane)
+{
+    const double about_y[3] = {0, yaw, 0}, about_z[3] = {0, 0, roll}, t[3] = {0.8, 0.1, 0.3}, n[3] = {0.1, 0.6, 0.3};
+    double turn[9], over[9], h[9];
+    memset(motion, 0, sizeof *motion);
+    memset(plane, 0, sizeof *plane);
+    asj_rotation_of(about_y, turn);
+    asj_rotation_of(about_z, over);
+    asj_multiply3(over, turn, motion->rotation);
+    motion->kind = ASJ_GEOMETRY_ESSENTIAL;
+    plane->kind = ASJ_GEOMETRY_HOMOGRAPHY;
+    for (int k = 0; k < 9; k++)
+        h[k] = motion->rotation[k] + t[k / 3] * n[k % 3];
+    const asj_camera cameras[2] = {camera, camera};
+    asj_pixel_homography(h, cameras, plane->view.matrix);
+}
+
+static void what_turns_the_room_over(void **state)
+{
+    (void)state;
+    const asj_camera cameras[2] = {camera, camera};
+    asj_pairs set = {.has_down = 1, .down = {{0, 1, 0}, {0, 1, 0}}};
+    asj_model motion, plane;
+    for (int over = 0; over < 2; over++) {
+        make_motion(0.5, over ? UNIT_PI : 0.1, &motion, &plane);
+        assert_int_equal(asj_turns_over(&set, &motion, cameras), over);
+        assert_int_equal(asj_turns_over(&set, &plane, cameras), over);
+        assert_int_equal(asj_turns_over(&set, &motion, NULL), 0);
+        double rotations[2][9], least = HUGE_VAL;
+        assert_int_equal(asj_rotations_of_homography(&plane, cameras, rotations), 2);
+        for (int n = 0; n < 2; n++) {
+            double turn[9];
+            asj_multiply3_transposed(rotations[n], motion.rotation, turn);
+            least = fmin(least, asj_rotation_angle(turn));
+        }
+        unit_near("rotation", over, 0, least, 0, 1e-6);
+    }
+    make_motion(0.5, UNIT_PI / 2, &motion, &plane);
+    assert_int_equal(asj_turns_over(&set, &motion, cameras), 1);
+    set.has_down = 0;
+    assert_int_equal(asj_turns_over(&set, &motion, cameras), 0);
+    assert_int_equal(asj_turns_over(&set, &plane, cameras), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(directions_among_other_edges), cmocka_unit_test(too_few_have_none),
-        cmocka_unit_test(one_set_is_added_once), cmocka_unit_test(rotations_have_a_density)};
+        cmocka_unit_test(one_set_is_added_once), cmocka_unit_test(rotations_have_a_density),
+        cmocka_unit_test(down_stays_down), cmocka_unit_test(what_turns_the_room_over)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
