@@ -93,8 +93,10 @@ static int measure(const settings *set, const asj_image *image, asj_context *con
             pid_t load[MOST_LOAD];
             double ms[2];
             const int32_t started = busy ? start_load(set->load, load) : 0;
-            for (int more = 0; more < 2; more++)
+            for (int turn = 0; turn < 2; turn++) { /* either first in turn: a process that has slept is preferred for some ms */
+                const int more = (turn + run) & 1;
                 ms[more] = time_some(contexts[more], image);
+            }
             end_load(started, load);
             if (ms[0] < 0 || ms[1] < 0)
                 return -1;
