@@ -136,7 +136,8 @@ void asj_detection_run_clear(asj_detection_run *run)
     run->isotropic = NULL;
     run->guesses = NULL;
     run->hypotheses = NULL;
-    run->candidate_count = run->isotropic_count = run->hypothesis_count = 0;
+    run->candidate_count = run->isotropic_count = run->hypothesis_count = run->settled = 0;
+    run->choice = 0;
     run->guess_count = run->guess_capacity = run->hypothesis_capacity = 0;
 }
 
@@ -169,12 +170,12 @@ static void work_on_some(const void *data, const asj_part *part)
 {
     const job *j = data;
     for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++)
-        j->work(j->run, &j->run->hypotheses[i]);
+        j->work(j->run, &j->run->hypotheses[j->run->settled + (size_t)i]);
 }
 
 asj_status asj_detection_run_each(asj_detection_run *run, int32_t stage, int32_t least, asj_hypothesis_work work)
 {
-    const int64_t count = (int64_t)run->hypothesis_count;
+    const int64_t count = (int64_t)(run->hypothesis_count - run->settled);
     asj_watch watch;
     const job j = {run, &watch, work};
     asj_watch_start(&watch, run->context, stage);

@@ -43,11 +43,13 @@ typedef struct asj_detection_run {
     size_t candidate_count;
     asj_isotropic_junction *isotropic; /* step 3 */
     size_t isotropic_count;
-    asj_guess *guesses;              /* of these; from the location on there are hypotheses */
+    asj_guess *guesses;              /* of these; after the location those that a better one hides */
     size_t guess_count, guess_capacity;
     asj_hypothesis *hypotheses;
     size_t hypothesis_capacity;
     size_t hypothesis_count;
+    int32_t choice;                  /* 0; 1 = of what a better one has suppressed that failed (detect.c) */
+    size_t settled;                  /* hypotheses at the front that the first choice has validated */
     asj_hypothesis *all;             /* of the octaves that are done, in pixels of the image */
     size_t all_count, all_capacity;
     asj_evidence *evidence;          /* of branches of all octaves, by asj_hypothesis_branch.evidence */
@@ -94,8 +96,8 @@ size_t asj_detection_run_room(size_t count);
 /* What is done to one hypothesis, without a look at the others. */
 typedef void (*asj_hypothesis_work)(const asj_detection_run *run, asj_hypothesis *hypothesis);
 
-/* Does it to every hypothesis, by the threads of the context, until the caller stops it. `least`: so many of them make a thread
- * worth waking. */
+/* Does it to every hypothesis that is not settled, by the threads of the context, until the caller stops it. `least`: so many of
+ * them make a thread worth waking. */
 asj_status asj_detection_run_each(asj_detection_run *run, int32_t stage, int32_t least, asj_hypothesis_work work);
 
 /* Reports that the stage is done up to here, as a part of the pass over one octave; ASJ_ERROR_CANCELLED when the caller wants to

@@ -2,6 +2,7 @@
 /* Ends over an image: what the planes of an octave say of every branch that is left. */
 #include "end_kind.h"
 #include "ends.h"
+#include "soft_twins.h"
 #include "steps.h"
 #include "validate.h"
 #include "core/threads.h"
@@ -90,7 +91,13 @@ static void leave_out_rejected(asj_detection_run *run)
 /* Ends at junctions are told first: what is at them needs no look at the picture. */
 asj_status asj_step_ends(asj_detection_run *run)
 {
-    asj_status status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, end_by_contrast);
+    asj_status status = asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "validated");
+    if (status == ASJ_OK)
+        status = asj_drop_soft_twins(run);
+    if (status == ASJ_OK)
+        status = asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "junctions");
+    if (status == ASJ_OK)
+        status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, end_by_contrast);
     leave_out_rejected(run);
     if (status == ASJ_OK)
         status = look_for_junctions(run, 0);

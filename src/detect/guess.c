@@ -59,7 +59,15 @@ static int by_meaning(const void *a, const void *b)
         return p->log_nfa < q->log_nfa ? -1 : 1;
     if (p->y != q->y)
         return p->y < q->y ? -1 : 1;
-    return p->x < q->x ? -1 : p->x > q->x;
+    if (p->x != q->x)
+        return p->x < q->x ? -1 : 1;
+    return p->y0 != q->y0 ? p->y0 - q->y0 : p->x0 - q->x0;
+}
+
+void asj_guess_sort(asj_guess *guesses, size_t count)
+{
+    if (count > 1)
+        qsort(guesses, count, sizeof *guesses, by_meaning);
 }
 
 /* Whether each branch of a guess is one of the other's too, and the other one is not likely to be rejected yet. */
@@ -96,8 +104,7 @@ size_t asj_guess_drop_twins(asj_guess *guesses, size_t count, int32_t width, int
     for (size_t i = 0; i < count; i++)
         if (guesses[i].branch_count >= 2)
             guesses[valid++] = guesses[i];
-    if (valid > 1)
-        qsort(guesses, valid, sizeof *guesses, by_meaning);
+    asj_guess_sort(guesses, valid);
     for (size_t i = 0; i < valid; i++) {
         const asj_guess guess = guesses[i];
         const int64_t cell = asj_close_grid_cell(&grid, guess.x, guess.y);

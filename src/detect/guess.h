@@ -25,4 +25,7 @@ void asj_guess_restore(const asj_guess *guess, asj_hypothesis *hypothesis);
  * Returns how many stay, at the front. `cells` is scratch of asj_close_grid_cells() elements. */
 size_t asj_guess_drop_twins(asj_guess *guesses, size_t count, int32_t width, int32_t height, int32_t *cells);
 
+/* Sorts by meaningfulness, ties by place. */
+void asj_guess_sort(asj_guess *guesses, size_t count);
+
 #endif

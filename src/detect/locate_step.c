@@ -3,7 +3,8 @@
  * them. A chunk of guesses at a time, of which a quarter stays.
  *
  * The most meaningful come first, as suppression has it (suppress.c). So what stays of the chunks before suppresses whatever comes
- * within its reach, and a guess well within that is not worth a fit. */
+ * within its reach, and a guess well within that is not worth a fit. Guesses that are suppressed, fitted or not, are kept: what
+ * suppressed them may fail later, and then they are located after all, apart from what is settled by then (detect.c). */
 #include "blurred_corner.h"
 #include "edge_width.h"
 #include "locate.h"
@@ -77,46 +78,65 @@ static asj_status keep(asj_detection_run *run, const asj_hypothesis *chunk, size
     return ASJ_OK;
 }
 
-/* The next chunk begins at guess `first`: those from *next on that nothing hides move there. Returns how many. */
+/* The next chunk begins at guess `first`: those from *next on that nothing hides move there, before those that are hidden. Returns
+ * how many. */
 static int64_t pick(const asj_detection_run *run, const asj_close_grid *apart, size_t first, size_t *next)
 {
     const double spare = GUESS_ERROR * run->options->max_move;
     size_t end = first;
     for (; *next < run->guess_count && end - first < AT_ONCE; (*next)++) {
         const asj_guess guess = run->guesses[*next];
-        if (!asj_suppress_hides(run->hypotheses, apart, guess.x, guess.y, spare))
-            run->guesses[end++] = guess;
+        if (asj_suppress_hides(run->hypotheses, apart, guess.x, guess.y, spare))
+            continue;
+        run->guesses[*next] = run->guesses[end];
+        run->guesses[end++] = guess;
     }
     return (int64_t)(end - first);
 }
 
-/* The hypotheses from `first` on that nothing suppresses go to the grid. */
-static void mark(const asj_detection_run *run, size_t first, asj_close_grid *apart)
+/* The hypothesis goes to the grid where nothing suppresses it; whether it does. */
+static int mark(const asj_detection_run *run, size_t index, asj_close_grid *apart)
 {
-    for (size_t i = first; i < run->hypothesis_count; i++) {
-        const double x = run->hypotheses[i].x, y = run->hypotheses[i].y;
-        if (!asj_suppress_hides(run->hypotheses, apart, x, y, 0))
-            asj_close_grid_add(apart, asj_close_grid_cell(apart, x, y), i);
-    }
+    const double x = run->hypotheses[index].x, y = run->hypotheses[index].y;
+    if (asj_suppress_hides(run->hypotheses, apart, x, y, 0))
+        return 0;
+    asj_close_grid_add(apart, asj_close_grid_cell(apart, x, y), index);
+    return 1;
+}
+
+/* The hypotheses of a chunk go to the grid. Of the `count` guesses of the chunk those that are suppressed, and the ones that were
+ * not worth a fit, which stand behind them up to `next`, go where hidden ones are kept. */
+static void mark_chunk(asj_detection_run *run, const asj_hypothesis *chunk, asj_guess *guesses, size_t count, size_t skipped,
+                       asj_close_grid *apart, size_t *hidden)
+{
+    size_t index = run->hypothesis_count;
+    for (size_t i = 0; i < count; i++)
+        index -= chunk[i].branch_count > 0;
+    for (size_t i = 0; i < count + skipped; i++)
+        if (i >= count || (chunk[i].branch_count > 0 && !mark(run, index++, apart)))
+            run->guesses[(*hidden)++] = guesses[i];
 }
 
 static asj_status locate_chunks(asj_detection_run *run, asj_close_grid *apart, asj_hypothesis *chunk)
 {
     asj_context *context = run->context;
     asj_status status = keep(run, NULL, 0);
+    size_t hidden = 0;
     asj_watch watch;
+    for (size_t i = 0; i < run->settled; i++)
+        mark(run, i, apart);
     asj_watch_start(&watch, context, ASJ_STAGE_LOCATE);
     for (size_t first = 0, next = 0; next < run->guess_count && status == ASJ_OK; first = next) {
         const int64_t count = pick(run, apart, first, &next);
-        const size_t known = run->hypothesis_count;
         const job j = {run, run->guesses + first, chunk, &watch};
         asj_parallel(context, asj_threads_for(context, count, ASJ_LEAST_JUNCTIONS), count, ASJ_JUNCTIONS_AT_ONCE, locate_some, &j);
         status = asj_watch_end(&watch);
         if (status == ASJ_OK)
             status = keep(run, chunk, (size_t)count);
         if (status == ASJ_OK)
-            mark(run, known, apart);
+            mark_chunk(run, chunk, run->guesses + first, (size_t)count, next - first - (size_t)count, apart, &hidden);
     }
+    run->guess_count = hidden;
     return status;
 }
 
@@ -124,7 +144,7 @@ static asj_status locate_all(asj_detection_run *run)
 {
     asj_memory *memory = &run->context->memory;
     const asj_frame *frame = run->frame;
-    const size_t count = asj_close_grid_cells(run->guess_count, frame->width, frame->height);
+    const size_t count = asj_close_grid_cells(run->guess_count + run->settled, frame->width, frame->height);
     asj_hypothesis *chunk = asj_allocate(memory, AT_ONCE, sizeof *chunk);
     int32_t *cells = asj_allocate_list(memory, count, sizeof *cells);
     asj_status status;
@@ -135,8 +155,11 @@ static asj_status locate_all(asj_detection_run *run)
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %d junctions", AT_ONCE);
     asj_release(memory, cells);
     asj_release(memory, chunk);
+    if (run->choice == 0 && run->options->strip_test) /* there may be a second choice */
+        return status;
     asj_release(memory, run->guesses);
     run->guesses = NULL;
+    run->guess_count = run->guess_capacity = 0;
     return status;
 }
 
@@ -149,7 +172,7 @@ static void reject_known(const void *data, const asj_part *part)
 {
     const known_job *j = data;
     for (int64_t i = part->first; i < part->end; i++) {
-        asj_hypothesis *hypothesis = &j->run->hypotheses[i];
+        asj_hypothesis *hypothesis = &j->run->hypotheses[j->run->settled + (size_t)i];
         asj_edge_widths(j->run->frame, hypothesis);
         if (asj_octave_is_known(j->known, hypothesis, ASJ_KNOWN_LINES))
             hypothesis->branch_count = 0;
@@ -160,13 +183,13 @@ static asj_status drop_known(asj_detection_run *run)
 {
     asj_octave_known known;
     const asj_status status = asj_detection_run_known(run, &known);
-    const int64_t count = (int64_t)run->hypothesis_count;
-    size_t kept = 0;
+    const int64_t count = (int64_t)(run->hypothesis_count - run->settled);
+    size_t kept = run->settled;
     if (status != ASJ_OK || !known.finer)
         return status;
     const known_job j = {run, &known};
     asj_parallel(run->context, asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS), count, 0, reject_known, &j);
-    for (size_t i = 0; i < run->hypothesis_count; i++)
+    for (size_t i = kept; i < run->hypothesis_count; i++)
         if (run->hypotheses[i].branch_count > 0)
             run->hypotheses[kept++] = run->hypotheses[i];
     run->hypothesis_count = kept;
@@ -183,7 +206,7 @@ asj_status asj_step_locate(asj_detection_run *run)
     asj_status status = ASJ_OK;
     for (size_t i = 0; i < sizeof steps / sizeof *steps && status == ASJ_OK; i++) {
         status = steps[i].step(run);
-        if (status == ASJ_OK)
+        if (status == ASJ_OK && run->choice == 0)
             status = asj_detection_run_dump_hypotheses(run, ASJ_STAGE_LOCATE, steps[i].name);
     }
     return status;

@@ -4,7 +4,6 @@
 #include "blurred_corner.h"
 #include "edge_width.h"
 #include "end_kind.h"
-#include "soft_twins.h"
 #include "steps.h"
 #include "suppress.h"
 #include "validate.h"
@@ -37,12 +36,6 @@ static void refine(const asj_detection_run *run, asj_hypothesis *hypothesis)
 
 asj_status asj_step_refine(asj_detection_run *run)
 {
-    asj_status status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, refine);
-    if (status == ASJ_OK)
-        status = asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "validated");
-    if (status == ASJ_OK)
-        status = asj_suppress_all(run);
-    if (status == ASJ_OK)
-        status = asj_drop_soft_twins(run);
-    return status == ASJ_OK ? asj_detection_run_dump_hypotheses(run, ASJ_STAGE_REFINE, "junctions") : status;
+    const asj_status status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, refine);
+    return status == ASJ_OK ? asj_suppress_all(run) : status;
 }

@@ -45,7 +45,7 @@ static int32_t first_radius(const asj_detection_run *run, const asj_hypothesis *
 static size_t list_rays(const asj_detection_run *run, asj_ray *rays, asj_hypothesis_branch **branches)
 {
     size_t count = 0;
-    for (size_t i = 0; i < run->hypothesis_count; i++) {
+    for (size_t i = run->settled; i < run->hypothesis_count; i++) {
         asj_hypothesis *hypothesis = &run->hypotheses[i];
         for (int32_t b = 0; b < hypothesis->branch_count; b++) {
             asj_hypothesis_branch *branch = &hypothesis->branches[b];
@@ -83,8 +83,8 @@ static asj_status follow(const asj_detection_run *run, asj_ray *rays, size_t cou
 
 static asj_status scan_branches(asj_detection_run *run, asj_ray *rays, asj_hypothesis_branch **branches)
 {
-    if (run->hypothesis_count > 1)
-        qsort(run->hypotheses, run->hypothesis_count, sizeof *run->hypotheses, by_strip);
+    if (run->hypothesis_count > run->settled)
+        qsort(run->hypotheses + run->settled, run->hypothesis_count - run->settled, sizeof *run->hypotheses, by_strip);
     const size_t count = list_rays(run, rays, branches);
     size_t left = 0;
     asj_status status = follow(run, rays, count);
@@ -108,7 +108,7 @@ asj_status asj_step_scan(asj_detection_run *run)
 {
     asj_memory *memory = &run->context->memory;
     size_t total = 0;
-    for (size_t i = 0; i < run->hypothesis_count; i++)
+    for (size_t i = run->settled; i < run->hypothesis_count; i++)
         total += (size_t)run->hypotheses[i].branch_count;
     asj_ray *rays = asj_allocate_list(memory, asj_detection_run_room(total), sizeof *rays);
     asj_hypothesis_branch **branches = asj_allocate_list(memory, asj_detection_run_room(total), sizeof *branches);

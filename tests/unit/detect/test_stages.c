@@ -16,7 +16,8 @@ static int32_t watch(void *user, int32_t stage, double done)
 {
     watcher *w = user;
     w->wrong += done < w->last || done < 0 || done > 1 || stage < 0 || stage >= ASJ_STAGE_COUNT;
-    w->wrong += stage < w->stage_last - 1 && stage != ASJ_STAGE_GRADIENT; /* which begins an octave */
+    /* GRADIENT begins an octave, LOCATE a second choice */
+    w->wrong += stage < w->stage_last - 1 && stage != ASJ_STAGE_GRADIENT && stage != ASJ_STAGE_LOCATE;
     w->last = done;
     w->stage_last = stage;
     w->stages |= 1u << stage;

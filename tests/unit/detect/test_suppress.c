@@ -52,12 +52,31 @@ static void test_close(void **state)
         memcpy(copy, hypotheses, sizeof copy);
         int32_t *cells = malloc(asj_close_grid_cells(count, width, height) * sizeof *cells);
         assert_non_null(cells);
-        const size_t kept = asj_suppress(hypotheses, count, width, height, cells);
+        const size_t kept = asj_suppress(hypotheses, 0, count, width, height, cells);
         assert_int_equal(kept, naive_suppress(copy, count, expected));
         for (size_t i = 0; i < kept; i++)
             assert_memory_equal(&hypotheses[i], &expected[i], sizeof hypotheses[i]);
         free(cells);
     }
+}
+
+/* What an earlier choice has settled stays where it is and hides what is more meaningful; nothing else changes. */
+static void test_settled(void **state)
+{
+    asj_hypothesis h[] = {{.x = 20, .y = 20, .radius = 7, .branch_count = 2, .log_nfa = -5},
+                          {.x = 40, .y = 20, .radius = 7, .branch_count = 2, .log_nfa = -9},
+                          {.x = 42, .y = 21, .radius = 7, .branch_count = 2, .log_nfa = -50},
+                          {.x = 22, .y = 20, .radius = 7, .branch_count = 2, .log_nfa = -40},
+                          {.x = 30, .y = 20, .radius = 7, .branch_count = 2, .log_nfa = -8},
+                          {.x = 30, .y = 21, .radius = 7, .branch_count = 2, .log_nfa = -9}};
+    static const double left[] = {-5, -9, -9};
+    int32_t cells[400];
+    (void)state;
+    assert_true(asj_close_grid_cells(6, 60, 60) <= 400);
+    assert_int_equal(asj_suppress(h, 2, 6, 60, 60, cells), 3);
+    for (int i = 0; i < 3; i++)
+        assert_true(h[i].log_nfa == left[i]);
+    assert_true(h[2].x == 30 && h[2].y == 21);
 }
 
 /* What one junction hides, with and without px to spare: within 3 px of a small one, 0.35 radii of a large one. */
@@ -124,7 +143,7 @@ static void test_twins(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_close), cmocka_unit_test(test_hides),
+        cmocka_unit_test(test_settled), cmocka_unit_test(test_close), cmocka_unit_test(test_hides),
         cmocka_unit_test(test_twins),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
