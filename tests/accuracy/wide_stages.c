@@ -101,7 +101,7 @@ static asj_status make_side(const settings *set, const synth_wide_pair *pair, in
     asj_status status = asj_detect(set->context, &s->images[v], &options, &s->found[v]);
     if (status == ASJ_OK)
         status = asj_image_features_create(set->context, &s->options, &s->images[v], s->found[v]->junctions,
-                                           s->found[v]->junction_count, v + 1, &s->features[v]);
+                                           s->found[v]->junction_count, v + 1, 0, &s->features[v]);
     if (status == ASJ_OK)
         status = asj_colours_create(set->context, &s->images[v], &s->features[v].l_junctions, &s->features[v].colours);
     return status;
