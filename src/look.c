@@ -54,8 +54,9 @@ static asj_status detect(asj_context *context, const asj_detect_options *options
     if (count > 0)
         memcpy(v->junctions, v->found->junctions, count * sizeof *v->junctions);
     const int32_t finer = (int32_t)floor(log2(fmax(1, fmin(v->by.x, v->by.y))) + 1e-6);
-    for (size_t k = 0; k < count && finer > 0; k++)
-        v->junctions[k].octave = v->junctions[k].octave > finer ? v->junctions[k].octave - finer : 0;
+    for (size_t k = 0; k < count; k++)
+        if (v->junctions[k].octave > 0) /* octave -1 stays what it is: match/finer.c asks whether it holds */
+            v->junctions[k].octave = v->junctions[k].octave > finer ? v->junctions[k].octave - finer : 0;
     return ASJ_OK;
 }
 

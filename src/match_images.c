@@ -86,9 +86,11 @@ static asj_status try_stretch(search *s, const asj_stretch *stretch, double from
 /* What a stretch shows takes the place of the best if it is enough, and more. Images too large for it are not looked at so. */
 static asj_status look_again(search *s, int32_t which, double from, double part)
 {
+    const double more = s->detect_options->first_octave < 0 ? 2 : 1; /* the detector enlarges them once more */
+    const asj_stretch largest = {more * glancing[which].x, more * glancing[which].y};
     asj_match_result *found = NULL;
     int32_t hopeful = 0;
-    if (!asj_look_fits(s->images[0], &glancing[which]) || !asj_look_fits(s->images[1], &glancing[which]))
+    if (!asj_look_fits(s->images[0], &largest) || !asj_look_fits(s->images[1], &largest))
         return ASJ_OK;
     asj_status status = try_stretch(s, &trials[which], from, TRIAL * part, &hopeful);
     if (status != ASJ_OK || !hopeful)

@@ -81,8 +81,9 @@ typedef struct asj_dump {
     int32_t stage;    /* ASJ_STAGE_... */
     int32_t kind;     /* ASJ_DUMP_... */
     const char *name; /* "gray", "gradient_x", "gradient_y", "candidates", "isotropic"; what is left of these after each decision:
-                       * "opening", "guessed", "distinct", "fitted", "apart", "located", "validated"; "junctions". What a better one
-                       * hid that fails later gets a second choice, and is in the last two only */
+                       * "opening", "guessed", "distinct", "fitted", "apart", "located", "validated" (and not hidden by a
+                       * better one); "junctions". What a better one hid that fails later gets a second choice, and is in the last
+                       * two only */
     const void *data;
     int32_t width;    /* planes */
     int32_t height;

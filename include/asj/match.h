@@ -142,7 +142,8 @@ typedef struct asj_match_result {
  *
  * With junctions of octave -1 (asj_detect_options.first_octave) the images are matched without those first, and then with them as
  * if they were twice as large. The second result holds where it has more matches and three in ten of the first ones again, and
- * keeps a geometry, if there is one; else the first one does (src/match/finer.c). Everything is in pixels of the images.
+ * keeps a geometry, if there is one; else the first one does (src/match/finer.c). Junctions of octave -1 alone (octaves 1) have
+ * no first ones to ask. Everything is in pixels of the images.
  *
  * image1, image2   views; only read, and only during the call
  * junctions1, 2    from asj_detect() or a file; may be NULL when the count is 0. Junctions with branches that differ in

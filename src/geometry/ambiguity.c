@@ -12,10 +12,10 @@
  * contradict in favour of another geometry that is not chance either is struck out, and that one is followed as the best one would
  * have been (motions.c). So are rivals with less evidence: they would make the pose uncertain (answer.c).
  *
- * A rival that turns the room over (upright.c) is struck out where the best one leaves it upright and has UPRIGHT times its log
- * evidence. Frames and windows are matched with themselves upside down by two thirds of their corners (.37, .46, .57, .58 and .71
- * of the evidence in five pairs of rooms whose best geometry is right); in pairs of unrelated rooms, where neither is right, by
- * nearly all of them (.74, .80, .84, .92). So it never overrules what has more evidence: some cameras are turned. */
+ * A rival that turns the room over (upright.c) is struck out where the best one leaves it upright and has UPRIGHT_AHEAD times its
+ * log evidence. Frames and windows are matched with themselves upside down by two thirds of their corners (.37, .46, .57, .58 and
+ * .71 of the evidence in five pairs of rooms whose best geometry is right); in pairs of unrelated rooms, where neither is right,
+ * by nearly all of them (.74, .80, .84, .92). So it never overrules what has more evidence: some cameras are turned. */
 #include "ambiguity.h"
 #include "core/angle.h"
 #include "colour_vote.h"
@@ -45,7 +45,7 @@
 #define SIMILAR_MOTION (6 * ASJ_DEGREE)
 #define DOUBT 0.6 /* 229 pairs of rooms, two seeds: with .8 one more is accepted of 309, and its pose is wrong */
 #define OF_FEW 1.5 /* pictures count so much less beside few matches (131 rooms: without, 2 more accepted, one pose wrong) */
-#define UPRIGHT 1.4
+#define UPRIGHT_AHEAD 1.4
 #define OVERRULED 1.3 /* what speaks against the best one, where 1 contradicts another: it has the most evidence for it */
 #define MOST_STRUCK 4 /* times that the best one changes: in 198 pairs of rooms once in six, never twice */
 
@@ -159,7 +159,9 @@ static int32_t is_overturned(const asj_estimation *e, int32_t best, int32_t riva
     const int32_t known = asj_cameras_are_known(e->options);
     const asj_camera *cameras = known ? e->options->cameras : NULL;
     const asj_model *m = &e->finalists[best], *r = &e->finalists[rival];
-    return m->evidence > UPRIGHT * r->evidence && asj_turns_over(&e->set, r, cameras) && !asj_turns_over(&e->set, m, cameras);
+    if (m->evidence <= fmax(0, UPRIGHT_AHEAD * r->evidence))
+        return 0;
+    return asj_turns_over(&e->set, r, cameras) && !asj_turns_over(&e->set, m, cameras);
 }
 
 /* By colours, by pictures or by the way that is up, in favour of what others are compared with. */

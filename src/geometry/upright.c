@@ -4,7 +4,8 @@
  * What looks the same when it is turned (a window, a picture frame, tiles) is matched with itself upside down as exactly as the
  * right way up. Photographs are taken upright: of the directions of a room (directions.c) one points down in both images, within
  * some 40 degrees of the downward axis, and a motion that takes it anywhere else than there is hardly ever right. A homography
- * between known cameras has two motions, and is upright when one of them is; one of a camera that only turns is that rotation. */
+ * between known cameras has two motions, and is upright when one of them is; one that has none to tell (planes.c: of a camera that
+ * only turns) is taken for upright. */
 #include "upright.h"
 #include "core/angle.h"
 #include "planes.h"

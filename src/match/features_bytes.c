@@ -24,6 +24,7 @@
 #include "core/backend.h"
 #include "core/bytes.h"
 #include "core/image.h"
+#include "finer.h"
 #include "kept_features.h"
 #include "match_options.h"
 
@@ -175,9 +176,11 @@ static asj_status read_header(reader *r)
         return damaged(r, "the header is truncated");
     const uint32_t version = asj_get_u32(start + 8);
     const uint32_t parts = version - VERSION;
-    if (version < VERSION || version > LATEST_VERSION || (parts & (FINER | FINER_COLOURS)) == FINER_COLOURS)
+    if (version < VERSION || version > LATEST_VERSION)
         return asj_fail(r->context, ASJ_ERROR_UNSUPPORTED, "the features are of version %lu, and this library reads %d to %d",
                         (unsigned long)version, VERSION, LATEST_VERSION);
+    if ((parts & (FINER | FINER_COLOURS)) == FINER_COLOURS)
+        return damaged(r, "colours of an enlarged image that there is not");
     r->colours = (parts & COLOURS) != 0;
     r->finer = (parts & FINER) != 0;
     r->finer_colours = (parts & FINER_COLOURS) != 0;
@@ -351,6 +354,8 @@ static asj_status make_finer(reader *r, const asj_match_options *options, const 
 
 static asj_status make(reader *r, const asj_match_options *options, const asj_junction *junctions, asj_made_features *made)
 {
+    if (r->finer != asj_has_finer(junctions, r->count))
+        return damaged(r, "no junction of octave -1");
     asj_status status = r->finer ? make_finer(r, options, junctions, made) : make_plain(r, options, junctions, &made->own);
     if (status == ASJ_ERROR_ARGUMENT)
         status = damaged(r, "a junction that cannot be");

@@ -30,8 +30,9 @@ typedef struct row {
 
 /* The targets of b1.0-n2-c60, b1.0-n10-c60 and b1.0-n2-c15 are the project's acceptance figures for the default preset, and so are
  * those of soft and weak corners (blur 1.5 and more of 15, 25 and 60, contrast 8 and 5), whose locations may be out by 0.12 of the
- * blur; easier scenes must not do worse. The crossing rows ask that long branches pass other junctions wherever every piece of the
- * line has contrast: random tiles may be as grey as their neighbours, so they have no target. */
+ * blur; easier scenes must not do worse. (Of blur 8 half was asked for; without the second choice of detect.c it is .607.) The
+ * crossing rows ask that long branches pass other junctions wherever every piece of the line has contrast: random tiles may be as
+ * grey as their neighbours, so they have no target. */
 static const row rows[] = {
     {"b1.0-n0-c60", PARALLELOGRAMS, 1.0, 0, 60, .99, .99, .15, .2, .97, 0},
     {"b0.8-n2-c60", PARALLELOGRAMS, 0.8, 2, 60, .99, .99, .15, .2, .97, 0},
@@ -46,7 +47,7 @@ static const row rows[] = {
     {"b2.0-n2-c60", PARALLELOGRAMS, 2.0, 2, 60, .99, .99, .24, 0, 0, 0},
     {"b3.0-n2-c60", PARALLELOGRAMS, 3.0, 2, 60, .99, .99, .36, 0, 0, 0},
     {"b5.0-n2-c60", PARALLELOGRAMS, 5.0, 2, 60, .90, .96, .60, 0, 0, 0},
-    {"b8.0-n2-c60", PARALLELOGRAMS, 8.0, 2, 60, .50, .90, .96, 0, 0, 0},
+    {"b8.0-n2-c60", PARALLELOGRAMS, 8.0, 2, 60, .64, .90, .96, 0, 0, 0},
     {"b3.0-n2-c25", PARALLELOGRAMS, 3.0, 2, 25, .98, .98, .36, 0, 0, 0},
     {"b5.0-n2-c25", PARALLELOGRAMS, 5.0, 2, 25, .85, .95, .60, 0, 0, 0},
     {"weak-n2-c8", PARALLELOGRAMS, 1.0, 2, 8, .98, .98, 0, 0, 0, 0},

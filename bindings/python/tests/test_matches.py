@@ -59,6 +59,8 @@ def test_stretched_images(scene: Scene) -> None:
     assert np.array_equal(plain.matches, found.matches) and found.stretch == (1, 1)
     with pytest.raises(asj.OptionError, match="stretch"):
         asj.match_images(scene, second, stretch=0.4)
+    with pytest.raises(ValueError, match="of 0"):
+        asj.match_images(scene, second, stretch=(0, 0))
     with pytest.raises(ValueError, match="'much'"):
         asj.match_images(scene, second, stretch="much")
 

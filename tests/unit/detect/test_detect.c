@@ -378,6 +378,7 @@ static void test_small_squares(void **state)
     printf("squares of %d px: %u corners of the image, %u of octave -1, of %d\n", (int)SIDE, (unsigned)found_by[0],
            (unsigned)found_by[1], 4 * COUNT * COUNT);
     assert_int_equal(found_by[1], 4 * COUNT * COUNT);
+    assert_int_equal(found_by[0], 0); /* their sides are shorter than a sector */
 }
 
 /* An enlarged image has a largest size, too. */

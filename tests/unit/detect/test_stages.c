@@ -7,7 +7,7 @@
 typedef struct watcher {
     int calls, stop_at;
     double last;
-    int stage_last;
+    int stage_last, choices;
     int wrong;
     unsigned stages; /* bits */
 } watcher;
@@ -16,8 +16,11 @@ static int32_t watch(void *user, int32_t stage, double done)
 {
     watcher *w = user;
     w->wrong += done < w->last || done < 0 || done > 1 || stage < 0 || stage >= ASJ_STAGE_COUNT;
-    /* GRADIENT begins an octave, LOCATE a second choice */
-    w->wrong += stage < w->stage_last - 1 && stage != ASJ_STAGE_GRADIENT && stage != ASJ_STAGE_LOCATE;
+    /* GRADIENT begins an octave, LOCATE a second choice, after REFINE and once an octave */
+    const int again = stage == ASJ_STAGE_LOCATE && w->stage_last == ASJ_STAGE_REFINE;
+    w->choices = stage == ASJ_STAGE_GRADIENT ? 0 : w->choices + again;
+    w->wrong += stage < w->stage_last - 1 && stage != ASJ_STAGE_GRADIENT && !again;
+    w->wrong += w->choices > 1;
     w->last = done;
     w->stage_last = stage;
     w->stages |= 1u << stage;

@@ -264,7 +264,7 @@ static void hostile_bytes(void **state)
     size_t size;
     uint8_t *bytes = bytes_of(features, &size);
     asj_put_u32(bytes + 8, 5); /* colours of a finer octave, and no finer octave */
-    refuse(context, bytes, size, ASJ_ERROR_UNSUPPORTED, "version 5");
+    refuse(context, bytes, size, ASJ_ERROR_FORMAT, "enlarged image");
     asj_put_u32(bytes + 8, 9);
     refuse(context, bytes, size, ASJ_ERROR_UNSUPPORTED, "version 9");
     asj_put_u32(bytes + 8, 4);

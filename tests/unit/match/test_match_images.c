@@ -374,6 +374,46 @@ static void automatically_nothing_is_too_large(void **state)
     assert_int_equal(asj_match_images(context, &images[0], &images[1], &automatic, NULL, NULL, &r), ASJ_OK);
     assert_true(r->match_count == 0 && r->stretch[0] == 1 && r->stretch[1] == 1);
     asj_match_result_free(&r);
+    /* and with octave -1, which enlarges it once more */
+    asj_detect_options finer;
+    asj_detect_options_preset(&finer, ASJ_PRESET_MATCH);
+    finer.first_octave = -1;
+    const asj_image flat[2] = {unit_gray8(thin, ASJ_MAX_SIDE / 5, 8), unit_gray8(thin, ASJ_MAX_SIDE / 5, 8)};
+    assert_int_equal(asj_match_images(context, &flat[0], &flat[1], &along, &finer, NULL, &r), ASJ_ERROR_LIMIT);
+    assert_int_equal(asj_match_images(context, &flat[0], &flat[1], &automatic, &finer, NULL, &r), ASJ_OK);
+    asj_match_result_free(&r);
+    unit_context_free(&counter, &context);
+}
+
+/* Octave -1 of an enlarged image is held to what is found without it, as of one that is not. */
+static void octave_minus_one_needs_a_witness_in_enlarged_images(void **state)
+{
+    const asj_stretch twice = {2, 2};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_detect_options options[2];
+    asj_match_result *results[2] = {NULL, NULL};
+    const pages *p = *state;
+    asj_detect_options_preset(&options[0], ASJ_PRESET_MATCH);
+    options[1] = options[0];
+    options[1].first_octave = -1;
+    for (int k = 0; k < 2; k++)
+        assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &twice, &options[k], NULL, &results[k]), ASJ_OK);
+    uint32_t again = 0;
+    for (uint32_t i = 0; i < results[0]->match_count; i++)
+        for (uint32_t j = 0; j < results[1]->match_count; j++) {
+            const asj_junction_match *a = &results[0]->matches[i], *b = &results[1]->matches[j];
+            if (hypot((double)a->x1 - (double)b->x1, (double)a->y1 - (double)b->y1) < 4 &&
+                hypot((double)a->x2 - (double)b->x2, (double)a->y2 - (double)b->y2) < 4) {
+                again++;
+                break;
+            }
+        }
+    print_message("enlarged: %u; with octave -1: %u, of the others %u\n", (unsigned)results[0]->match_count,
+                  (unsigned)results[1]->match_count, (unsigned)again);
+    assert_true(results[0]->match_count > 0 && 10 * again >= 3 * results[0]->match_count);
+    asj_match_result_free(&results[0]);
+    asj_match_result_free(&results[1]);
     unit_context_free(&counter, &context);
 }
 
@@ -467,6 +507,7 @@ int main(void)
         cmocka_unit_test(matrices_are_taken_back),
         cmocka_unit_test(what_cannot_be_is_refused),
         cmocka_unit_test(automatically_nothing_is_too_large),
+        cmocka_unit_test(octave_minus_one_needs_a_witness_in_enlarged_images),
         cmocka_unit_test(progress_never_falls_and_the_caller_may_stop),
         cmocka_unit_test(every_allocation_may_fail),
     };

@@ -202,6 +202,8 @@ def match_images(
         raise ValueError(f"stretch {stretch!r} is no factor, no pair of factors, and not 'auto'")
     factor = 0.0 if isinstance(stretch, str) else stretch
     x, y = factor if isinstance(factor, tuple) else (factor, factor)
+    if not isinstance(stretch, str) and x == 0 and y == 0:
+        raise ValueError("a stretch of 0")
     factors = ffi.new("asj_stretch *", {"x": float(x), "y": float(y)})
     record = MATCHER.fill("default", options)
     cameras = (camera1, camera1 if camera2 is None else camera2)
