@@ -26,6 +26,11 @@ static const format_info *find_format(int32_t format)
     return format >= ASJ_FORMAT_GRAY8 && format <= ASJ_FORMAT_GRAY_FLOAT ? &table[format] : NULL;
 }
 
+int32_t asj_bytes_per_pixel(int32_t format)
+{
+    return find_format(format)->bytes_per_pixel;
+}
+
 asj_status asj_image_check(asj_context *context, const asj_image *image)
 {
     const format_info *format = find_format(image->format);
@@ -246,7 +251,7 @@ static void load_rows(const void *data, const asj_part *part)
 
 asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image)
 {
-    const ptrdiff_t row_bytes = (ptrdiff_t)image->width * find_format(image->format)->bytes_per_pixel;
+    const ptrdiff_t row_bytes = (ptrdiff_t)image->width * asj_bytes_per_pixel(image->format);
     const ptrdiff_t stride = image->stride ? image->stride : row_bytes;
     const int32_t height = image->height;
     int32_t failed = 0;

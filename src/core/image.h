@@ -40,6 +40,9 @@ typedef struct asj_frame {
 /* Checks a view: ASJ_OK, or the status and message that asj_detect() documents. Does not look at the pixels. */
 asj_status asj_image_check(asj_context *context, const asj_image *image);
 
+/* Of a format that asj_image_check() has passed. */
+int32_t asj_bytes_per_pixel(int32_t format);
+
 /* Makes room for an image of this size; keeps the memory when it is large enough. */
 asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t width, int32_t height);
 /* The same for gray levels alone: the gradient must not be read. */

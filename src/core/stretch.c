@@ -5,6 +5,7 @@
  * weights are 1 - f and f with f = u - i in 1/256. Outside, the pixels of the border repeat. Sums of whole numbers, rounded once;
  * of floats, products that are exact in double precision. So the copy is the same on every machine and with any number of
  * threads. */
+#include "image.h"
 #include "stretch.h"
 #include "watch.h"
 
@@ -101,9 +102,8 @@ static void stretch_rows(const void *data, const asj_part *part)
 /* Channels of a pixel and bytes of each. */
 static void describe(job *j, int32_t format)
 {
-    const int32_t gray = format == ASJ_FORMAT_GRAY8 || format == ASJ_FORMAT_GRAY16 || format == ASJ_FORMAT_GRAY_FLOAT;
-    j->channels = gray ? 1 : format == ASJ_FORMAT_RGB8 || format == ASJ_FORMAT_BGR8 ? 3 : 4;
     j->sample = format == ASJ_FORMAT_GRAY16 ? 2 : format == ASJ_FORMAT_GRAY_FLOAT ? (int32_t)sizeof(float) : 1;
+    j->channels = asj_bytes_per_pixel(format) / j->sample;
 }
 
 asj_status asj_stretch_image(asj_context *context, asj_memory *memory, const asj_image *image, int32_t width, int32_t height,
