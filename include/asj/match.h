@@ -161,7 +161,8 @@ typedef struct asj_match_result {
  * with two). The caller is asked every 50 ms whether to go on.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that lies more than ASJ_MAX_OUTSIDE px outside its image, has a wrong branch
- *                      count, an angle that is not finite, a length that is negative or not finite, or an end of no known kind
+ *                      count, an octave that is not -1 .. 15, an angle that is not finite, a length that is negative or not
+ *                      finite, or an end of no known kind
  * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED   as asj_detect()
  * ASJ_ERROR_LIMIT      also when more than 2^24 pairs of candidate matches agree: images that repeat themselves, options far
  *                      looser than the defaults */

@@ -251,7 +251,9 @@ static asj_status read_junction(reader *r, asj_junction *j)
     get_floats(r->next, head, 5);
     const uint32_t branches = asj_get_u32(r->next + 20);
     const uint32_t octave = asj_get_u32(r->next + 24);
-    j->octave = r->finer && octave == UINT32_MAX ? -1 : (int32_t)(octave & 0xff);
+    if (octave > ASJ_COARSEST && !(r->finer && octave == UINT32_MAX))
+        return damaged(r, "a junction of an octave that there is not");
+    j->octave = octave == UINT32_MAX ? -1 : (int32_t)octave;
     r->next += JUNCTION_BYTES;
     r->left -= JUNCTION_BYTES;
     if (branches > ASJ_MAX_BRANCHES || r->left < branches * (size_t)BRANCH_BYTES)

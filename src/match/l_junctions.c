@@ -42,6 +42,8 @@ static asj_status check(asj_context *context, const asj_junction_list *input)
         if (j->branch_count < 0 || j->branch_count > ASJ_MAX_BRANCHES)
             return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d has %d branches", n, which,
                             (int)j->branch_count);
+        if (j->octave < -1 || j->octave > ASJ_COARSEST)
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d is of octave %d", n, which, (int)j->octave);
         for (int32_t b = 0; b < j->branch_count; b++) {
             const asj_branch *branch = &j->branches[b];
             if (branch->end < 0 || branch->end > ASJ_BRANCH_END_BORDER)

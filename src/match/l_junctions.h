@@ -9,7 +9,7 @@
 #include <asj/match.h>
 
 #define ASJ_MAX_HYPOTHESES 4
-#define ASJ_COARSEST 15 /* octave; coarser ones count as this one */
+#define ASJ_COARSEST 15 /* octave: what lies beyond is refused */
 
 /* Lengths that a branch may have, its own first, then falling. */
 typedef struct asj_lengths {

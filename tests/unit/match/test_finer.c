@@ -246,6 +246,47 @@ static void features_and_bytes(void **state)
     }
 }
 
+/* Version 8: a file of octave -1 with the colours of the image and of the enlarged one. The image is reddish, and the junctions of
+ * octave -1 come back as such. */
+static void colours_and_octaves_come_back(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    uint8_t *rgb = malloc((size_t)3 * WIDTH * HEIGHT);
+    const uint8_t *gray = views[0].image.data;
+    assert_non_null(rgb);
+    for (size_t n = 0; n < (size_t)WIDTH * HEIGHT; n++) {
+        rgb[3 * n] = gray[n];
+        rgb[3 * n + 1] = gray[n] / 2;
+        rgb[3 * n + 2] = gray[n] / 3;
+    }
+    const asj_image image = {rgb, ASJ_FORMAT_RGB8, WIDTH, HEIGHT, 0, 0};
+    const asj_detection *found = views[0].finer;
+    asj_features *made = NULL, *read = NULL;
+    assert_int_equal(asj_features_create(context, &image, found->junctions, found->junction_count, NULL, &made), ASJ_OK);
+    size_t size, size2;
+    uint8_t *bytes = bytes_of(made, &size);
+    assert_int_equal(asj_get_u32(bytes + 8), 8);
+    assert_int_equal(asj_features_load(context, bytes, size, &read), ASJ_OK);
+    uint8_t *second = bytes_of(read, &size2);
+    assert_int_equal(size, size2);
+    assert_memory_equal(bytes, second, size);
+    asj_features_info info;
+    asj_features_get_info(read, &info);
+    assert_int_equal(info.junction_count, found->junction_count);
+    uint32_t finer = 0, own = 0;
+    for (uint32_t n = 0; n < info.junction_count; n++) {
+        assert_int_equal(info.junctions[n].octave, found->junctions[n].octave);
+        finer += info.junctions[n].octave == -1;
+        own += info.junctions[n].octave >= 0;
+    }
+    assert_true(finer > 0 && own > 0);
+    free(bytes);
+    free(second);
+    free(rgb);
+    asj_features_free(&made);
+    asj_features_free(&read);
+}
+
 static void refuse(asj_context *context, uint8_t *bytes, size_t size, asj_status status, const char *word)
 {
     asj_features *features = NULL;
@@ -270,6 +311,11 @@ static void hostile_bytes(void **state)
     asj_put_u32(bytes + 8, 4);
     refuse(context, bytes, size, ASJ_ERROR_FORMAT, "colours are not all there");
     asj_put_u32(bytes + 8, 3);
+    const size_t octave = 40 + asj_get_u32(bytes + 32) + 24; /* of the first junction */
+    const uint32_t right = asj_get_u32(bytes + octave);
+    asj_put_u32(bytes + octave, (uint32_t)-2);
+    refuse(context, bytes, size, ASJ_ERROR_FORMAT, "an octave that there is not");
+    asj_put_u32(bytes + octave, right);
     refuse(context, bytes, size - 2, ASJ_ERROR_FORMAT, "damaged");
     asj_put_u16(bytes + size - 2, 0xffff);
     refuse(context, bytes, size, ASJ_ERROR_FORMAT, "whiter than white");
@@ -302,7 +348,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(more_matches),  cmocka_unit_test(only_what_is_confirmed), cmocka_unit_test(features_and_bytes),
-        cmocka_unit_test(hostile_bytes), cmocka_unit_test(out_of_memory),
+        cmocka_unit_test(hostile_bytes), cmocka_unit_test(out_of_memory),         cmocka_unit_test(colours_and_octaves_come_back),
     };
     return cmocka_run_group_tests(tests, make_views, free_views);
 }
