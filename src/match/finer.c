@@ -48,9 +48,12 @@ static int comes_again(const asj_junction_match *m, const asj_around *finer)
     return 0;
 }
 
+/* With its pose: many weak corners on one wall may explain more as a homography than the motion does. */
 static int keeps_geometry(const asj_match_result *own, const asj_match_result *finer)
 {
-    return own->geometry.status != ASJ_GEOMETRY_ACCEPTED || finer->geometry.status == ASJ_GEOMETRY_ACCEPTED;
+    const asj_geometry *g = &finer->geometry;
+    return own->geometry.status != ASJ_GEOMETRY_ACCEPTED ||
+           (g->status == ASJ_GEOMETRY_ACCEPTED && (g->has_pose || !own->geometry.has_pose));
 }
 
 static asj_status holds(asj_context *context, const asj_match_result *own, const asj_match_result *finer, int *answer)
