@@ -6,6 +6,7 @@
 #include "motions.h"
 #include "core/threads.h"
 #include "evidence.h"
+#include "manhattan.h"
 #include "planes.h"
 #include "posterior.h"
 #include "ranking.h"
@@ -18,6 +19,7 @@
 #define MOST_STARTS (3 * ASJ_FINALISTS)
 #define FEW_ROUNDS 4
 #define ROUNDS 5
+#define LIKE_ROUNDS 4
 #define WITH_PLANES 4
 #define UNLIKELY 7.0 /* nats below the best one */
 
@@ -79,6 +81,37 @@ static void add_planes_to_some(const void *data, const asj_part *part)
     }
 }
 
+/* The model with the k-th likely rotation in place of its own, and with the matches of its own; -HUGE_VAL: no such model. */
+static asj_model snapped(const asj_pairs *set, const asj_model *model, int32_t k, asj_adjust_scratch *s)
+{
+    asj_model m = *model;
+    memcpy(m.rotation, set->rotations[k].matrix, sizeof m.rotation);
+    m.evidence = -HUGE_VAL;
+    if (!asj_model_complete(&m))
+        return m;
+    asj_adjust_like(set, &m, model, LIKE_ROUNDS, s);
+    asj_adjust(set, &m, ROUNDS, s);
+    m.evidence = asj_log_evidence(set, &m, s);
+    return m;
+}
+
+static void snap_some(const void *data, const asj_part *part)
+{
+    const job *j = data;
+    for (int64_t n = part->first; n < part->end; n++) {
+        asj_model *model = &j->m->picked[n];
+        const asj_model from = *model;
+        for (int32_t k = 0; k < j->set->rotation_count && !asj_pairs_stop(j->set, part); k++) {
+            double w[3];
+            if (!asj_rotation_is_near(j->set, k, from.rotation, w))
+                continue;
+            const asj_model m = snapped(j->set, &from, k, &j->scratch[part->thread]);
+            if (m.evidence > model->evidence)
+                *model = m;
+        }
+    }
+}
+
 static void refine(asj_context *context, const job *j)
 {
     motions *m = j->m;
@@ -87,6 +120,8 @@ static void refine(asj_context *context, const job *j)
     m->count = asj_pick(m->starts, m->order, m->count, ASJ_FINALISTS, m->picked);
     const int32_t most = m->count < WITH_PLANES ? m->count : WITH_PLANES;
     asj_parallel(context, context->threads, most, 1, add_planes_to_some, j);
+    if (j->set->rotation_count > 0)
+        asj_parallel(context, context->threads, most, 1, snap_some, j);
 }
 
 /* The best ones that are apart from each other become all that the candidates allow around them. */

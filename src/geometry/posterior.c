@@ -10,7 +10,8 @@
  * whole region. Mean and covariance of the pose are those of exp(TEMPER score): candidates of one wall, one border or one kind of
  * corner err together, and a product of likelihoods that takes them for independent is too sharp. Raised to a power below 1 it
  * spreads as widely as poses err (composite likelihoods: Pauli, Racugno and Ventura 2011; Ribatet, Cooley and Davison 2012). TEMPER
- * is from rendered rooms: tests/accuracy/README.md.
+ * is from rendered rooms: tests/accuracy/README.md. The prior of rotations is not: its edges are no candidates, and manhattan.c
+ * counts what they have in common itself.
  *
  * Drawn are the five parameters of the motion (model.c). Planes follow as the equations of adjust.c say, n' = -H_nn^-1 H_nm m', and
  * are integrated over by Laplace's method. Standard deviations of a round: those of the draws so far, times the SPREADS in turn,
@@ -52,7 +53,8 @@ typedef struct cloud {
 
 typedef struct draw {
     double at[MOTION];
-    double score; /* log of what is integrated */
+    double score; /* of the candidates */
+    double prior; /* log of the density of rotations */
     double log_density;
 } draw;
 
@@ -163,11 +165,6 @@ static int32_t move(const asj_model *model, const cloud *c, const double at[MOTI
     return asj_model_move(model, delta, moved);
 }
 
-static double log_target(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch)
-{
-    return asj_score_apart(set, &model->view, scratch) + asj_rotation_prior(set, model->rotation);
-}
-
 /* What a loop over draws works on. */
 typedef struct job {
     const asj_pairs *set;
@@ -194,8 +191,11 @@ static void draw_some(const void *data, const asj_part *part)
                 d->at[i] += scale * c->root[i * MOTION + k] * y[k];
         }
         d->score = -HUGE_VAL;
-        if (!asj_pairs_stop(j->set, part) && move(j->model, c, d->at, &moved))
-            d->score = log_target(j->set, &moved, &j->scratch[part->thread]);
+        d->prior = 0;
+        if (!asj_pairs_stop(j->set, part) && move(j->model, c, d->at, &moved)) {
+            d->score = asj_score_apart(j->set, &moved.view, &j->scratch[part->thread]);
+            d->prior = asj_rotation_prior(j->set, moved.rotation);
+        }
     }
 }
 
@@ -214,16 +214,16 @@ static void set_densities(const cloud *clouds, int32_t rounds, draw *draws, int3
     }
 }
 
-/* Weights exp(temper score) over density of the draws, the largest 1; *sum of them. Returns the log of the factor that has been
- * taken out, -HUGE_VAL when there are none. */
+/* Weights exp(temper score) x prior over density of the draws, the largest 1; *sum of them. Returns the log of the factor that
+ * has been taken out, -HUGE_VAL when there are none. */
 static double weigh(const draw *draws, int32_t count, double temper, double *weights, double *sum)
 {
     double largest = -HUGE_VAL;
     *sum = 0;
     for (int32_t n = 0; n < count; n++)
-        largest = fmax(largest, temper * draws[n].score - draws[n].log_density);
+        largest = fmax(largest, temper * draws[n].score + draws[n].prior - draws[n].log_density);
     for (int32_t n = 0; n < count && largest > -HUGE_VAL; n++) {
-        weights[n] = exp(temper * draws[n].score - draws[n].log_density - largest);
+        weights[n] = exp(temper * draws[n].score + draws[n].prior - draws[n].log_density - largest);
         *sum += weights[n];
     }
     return largest;
