@@ -175,6 +175,40 @@ static void only_what_is_confirmed(void **state)
     asj_match_result_free(&plain);
 }
 
+/* Matches that would do, and geometries as told: a pose for the images themselves, and for the enlarged ones perhaps. */
+static asj_status answer_with_geometry(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
+                                       asj_match_result **result)
+{
+    const int32_t finer_has_pose = **(const int32_t *const *)data;
+    const asj_detection *a = enlarged ? views[0].finer : views[0].plain, *b = enlarged ? views[1].finer : views[1].plain;
+    const asj_status status = asj_match(context, &views[0].image, a->junctions, a->junction_count, &views[1].image, b->junctions,
+                                        b->junction_count, options, result);
+    if (status == ASJ_OK) {
+        (*result)->geometry.status = ASJ_GEOMETRY_ACCEPTED;
+        (*result)->geometry.model = ASJ_GEOMETRY_ESSENTIAL;
+        (*result)->geometry.has_pose = !enlarged || finer_has_pose;
+        (*result)->geometry.log10_nfa = enlarged ? -2 : -1;
+    }
+    return status;
+}
+
+static void a_pose_is_kept(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_options options;
+    asj_match_options_init(&options);
+    for (int32_t has_pose = 0; has_pose < 2; has_pose++) {
+        const int32_t *data = &has_pose;
+        asj_match_result *result = NULL;
+        const asj_finer_match both = {answer_with_geometry, &data, {views[0].finer->junctions, views[1].finer->junctions},
+                                      {views[0].finer->junction_count, views[1].finer->junction_count}};
+        assert_int_equal(asj_match_finer(context, &options, &both, &result), ASJ_OK);
+        assert_true(result->geometry.has_pose);
+        assert_true(result->geometry.log10_nfa == (has_pose ? -2 : -1)); /* of the enlarged images only with a pose */
+        asj_match_result_free(&result);
+    }
+}
+
 /* --- features ---------------------------------------------------------------------------------------------------------------- */
 
 static void assert_same(const asj_match_result *a, const asj_match_result *b)
@@ -347,8 +381,9 @@ static void out_of_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(more_matches),  cmocka_unit_test(only_what_is_confirmed), cmocka_unit_test(features_and_bytes),
-        cmocka_unit_test(hostile_bytes), cmocka_unit_test(out_of_memory),         cmocka_unit_test(colours_and_octaves_come_back),
+        cmocka_unit_test(more_matches),       cmocka_unit_test(only_what_is_confirmed), cmocka_unit_test(a_pose_is_kept),
+        cmocka_unit_test(features_and_bytes), cmocka_unit_test(hostile_bytes),          cmocka_unit_test(out_of_memory),
+        cmocka_unit_test(colours_and_octaves_come_back),
     };
     return cmocka_run_group_tests(tests, make_views, free_views);
 }
