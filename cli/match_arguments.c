@@ -61,8 +61,9 @@ static const cli_option input_options[] = {
     {MASK_2, 0, "mask2", "FILE", "the same for IMAGE2"},
     {STRETCH, 0, "stretch", "N|X,Y|auto",
      "look at both images enlarged N times (2: about three times the matches, in three to eight times the time; 1: as they "
-     "are), or stretched along each axis (1,3: surfaces seen at a glancing angle, like things on a table). auto: as they are, "
-     "and where nothing comes of it by 1,3 and 3,1; the default of two images with --geometry"},
+     "are), or stretched along each axis (1,3: surfaces seen at a glancing angle, like things on a table). auto, the default of "
+     "two whole images: as they are; from --enlarge-from matches on also enlarged, where these hold; and where nothing comes of "
+     "it by 1,3 and 3,1"},
 };
 
 static const cli_option geometry_options[] = {
@@ -244,6 +245,14 @@ static asj_status set_match_option(void *options, const char *key, const char *t
     return asj_match_options_set(options, key, text, message, message_size);
 }
 
+/* Who names a first octave wants that one. */
+static void keep_first_octave(cli_match_arguments *arguments)
+{
+    if (cli_settings_have(&arguments->detect_settings, "first_octave") &&
+        !cli_settings_have(&arguments->match_settings, "enlarge_from"))
+        arguments->options.enlarge_from = 0;
+}
+
 static int apply_settings(cli_match_arguments *arguments)
 {
     const int quiet = arguments->common.quiet;
@@ -254,6 +263,7 @@ static int apply_settings(cli_match_arguments *arguments)
     int result = cli_settings_apply(&arguments->detect_settings, "match", quiet, &arguments->detect_options, set_detect_option);
     if (result == CLI_SUCCESS)
         result = cli_settings_apply(&arguments->match_settings, "match", quiet, &arguments->options, set_match_option);
+    keep_first_octave(arguments);
     return result;
 }
 
@@ -297,14 +307,14 @@ static int check_detector(const cli_match_arguments *arguments)
     return CLI_SUCCESS;
 }
 
-/* Where a geometry is asked of two images, whole and with what the library knows best, both are looked at together. */
+/* Two whole images are looked at together. */
 static int looks_by_itself(const cli_match_arguments *arguments)
 {
     int images = 1;
     for (int v = 0; v < 2; v++)
         images = images && !arguments->junctions[v] && !arguments->regions[v].mask && arguments->regions[v].width == 0 &&
                  !asj_features_probe(arguments->images[v]);
-    return images && arguments->geometry != ASJ_GEOMETRY_NONE && arguments->focal_from != CLI_FOCAL_ESTIMATE;
+    return images;
 }
 
 /* The detector runs on stretched images as a whole. */
@@ -319,9 +329,10 @@ static int check_stretch(cli_match_arguments *arguments)
             return cli_usage_error("match", "--stretch looks at whole images: it does not go with --%s%d",
                                    arguments->regions[v].mask ? "mask" : "region", v + 1);
     }
-    if (arguments->look && arguments->focal_from == CLI_FOCAL_ESTIMATE &&
-        (arguments->stretch.x != arguments->stretch.y || arguments->stretch.x == 0))
-        return cli_usage_error("match", "--focal estimate needs square pixels, which --stretch along one axis or auto has not");
+    if ((!arguments->look || arguments->stretch.x > 0) && cli_settings_have(&arguments->match_settings, "enlarge_from"))
+        return cli_usage_error("match", "--enlarge-from changes nothing: it is for two whole images, without --stretch");
+    if (arguments->look && arguments->focal_from == CLI_FOCAL_ESTIMATE && arguments->stretch.x != arguments->stretch.y)
+        return cli_usage_error("match", "--focal estimate needs square pixels, which --stretch along one axis has not");
     return CLI_SUCCESS;
 }
 

@@ -5,6 +5,7 @@
 #include "parse.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 int cli_settings_create(cli_settings *settings, int argc)
 {
@@ -29,6 +30,14 @@ int cli_settings_take(void *target, const char *key, const char *text)
     setting->key = key;
     setting->text = text;
     return CLI_SUCCESS;
+}
+
+int cli_settings_have(const cli_settings *settings, const char *key)
+{
+    for (size_t i = 0; i < settings->count; i++)
+        if (strcmp(settings->list[i].key, key) == 0)
+            return 1;
+    return 0;
 }
 
 int cli_take_preset(const char *command, const char *option, const char *text, int32_t *preset)

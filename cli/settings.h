@@ -22,6 +22,9 @@ void cli_settings_free(cli_settings *settings);
 /* The `take` of a cli_table. */
 int cli_settings_take(void *settings, const char *key, const char *text);
 
+/* Is this option among them? */
+int cli_settings_have(const cli_settings *settings, const char *key);
+
 /* "default", "paper" or "match" as ASJ_PRESET_...; CLI_SUCCESS, or CLI_USAGE after saying why, with the name of the option. */
 int cli_take_preset(const char *command, const char *option, const char *text, int32_t *preset);
 

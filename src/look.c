@@ -6,6 +6,7 @@
 #include "look.h"
 #include "core/image.h"
 #include "core/stretch.h"
+#include "match/finer.h"
 #include "match/match_result.h"
 
 #include <math.h>
@@ -91,7 +92,11 @@ asj_status asj_look_open(asj_context *context, const asj_image *const images[2],
     return status;
 }
 
-asj_status asj_look_match(const asj_look *look, const asj_match_options *options, asj_match_result **result)
+typedef asj_status (*matcher)(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
+                              const asj_image *image2, const asj_junction *junctions2, size_t count2,
+                              const asj_match_options *options, asj_match_result **result);
+
+static asj_status match_by(const asj_look *look, matcher match, const asj_match_options *options, asj_match_result **result)
 {
     const asj_view *v = look->views;
     const asj_stretch by[2] = {v[0].by, v[1].by};
@@ -100,8 +105,8 @@ asj_status asj_look_match(const asj_look *look, const asj_match_options *options
         if (options->geometry.cameras[n].fx > 0)
             stretched.geometry.cameras[n] = asj_stretch_camera(&options->geometry.cameras[n], &by[n]);
     begin_part(look, 2 * DETECTION, 1 - 2 * DETECTION);
-    const asj_status status = asj_match(look->context, &v[0].stretched, v[0].junctions, v[0].found->junction_count,
-                                        &v[1].stretched, v[1].junctions, v[1].found->junction_count, &stretched, result);
+    const asj_status status = match(look->context, &v[0].stretched, v[0].junctions, v[0].found->junction_count,
+                                    &v[1].stretched, v[1].junctions, v[1].found->junction_count, &stretched, result);
     end_part(look->context);
     if (status != ASJ_OK)
         return status;
@@ -110,6 +115,16 @@ asj_status asj_look_match(const asj_look *look, const asj_match_options *options
     (*result)->stretch[0] = look->stretch.x;
     (*result)->stretch[1] = look->stretch.y;
     return ASJ_OK;
+}
+
+asj_status asj_look_match(const asj_look *look, const asj_match_options *options, asj_match_result **result)
+{
+    return match_by(look, asj_match, options, result);
+}
+
+asj_status asj_look_match_enlarged(const asj_look *look, const asj_match_options *options, asj_match_result **result)
+{
+    return match_by(look, asj_match_enlarged, options, result);
 }
 
 void asj_look_add_times(const asj_look *look, double *stage_ms)

@@ -36,6 +36,10 @@ asj_status asj_look_open(asj_context *context, const asj_image *const images[2],
  * matching alone. */
 asj_status asj_look_match(const asj_look *look, const asj_match_options *options, asj_match_result **result);
 
+/* The same of images that the detector has enlarged (first_octave -1), and of these alone: a witness is to be asked
+ * (match/finer.h). */
+asj_status asj_look_match_enlarged(const asj_look *look, const asj_match_options *options, asj_match_result **result);
+
 /* Adds the times of the detections, by ASJ_STAGE_.... */
 void asj_look_add_times(const asj_look *look, double *stage_ms);
 

@@ -1,8 +1,16 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj_match_images(): from two images to their matches, if wanted stretched before.
  *
- * Automatically: as they are, and where that leaves the images without an answer, stretched to three times their height, then to
- * three times their width. A square on a plane seen at an angle of a to it has sin a of its height: at 1, 3 one at 19 degrees is a
+ * Automatically: as they are; where that gives matches enough, enlarged, too; and where it leaves the images without an answer,
+ * stretched to three times their height, then to three times their width.
+ *
+ * Enlarged. With junctions of octave -1 photographs have three times the matches (match/finer.c, which asks the images' own matches
+ * whether those hold), in several times the time. options->enlarge_from own matches are asked, so that pairs without anything in
+ * common are answered as before. Where the images have a geometry, it judges the new matches too, and is not estimated again;
+ * where they have none, their enlarged selves may have. Images of more than LARGEST pixels have detail enough, and what a camera
+ * delivers at that size is seldom sharp to the pixel.
+ *
+ * Stretched. A square on a plane seen at an angle of a to it has sin a of its height: at 1, 3 one at 19 degrees is a
  * square again, and those at 10 and 40 degrees are off by less than two times (the tilts of ASIFT, Morel and Yu 2009, go by sqrt 2
  * up to 5.7, as descriptors want them; here the patches follow the junctions, and one is enough).
  *
@@ -13,11 +21,14 @@
  * Images that have nothing in common match at a few places now and then, and so do things that repeat; the more looks the more
  * often. So a stretched look needs ENOUGH matches, and as many more than there are. */
 #include "look.h"
+#include "match/finer.h"
 
 #define ENOUGH 16  /* matches. Stretched by 1, 3 or 3, 1, pairs of frames that do not match had up to 7 wrong ones, of which
                     * no geometry was left; planes at extreme angles 95 to 190 right ones */
 #define HINT 6     /* matches of the trial. On one octave false ones are rarer; the whole look decides */
-#define FIRST 0.5  /* of all the progress, for the look as they are */
+#define FIRST 0.2  /* of all the progress, for the look as they are, */
+#define CLOSER 0.4 /* .. and for the enlarged one */
+#define LARGEST 2e6 /* pixels */
 #define TRIAL 0.2  /* of what a stretch has of it */
 
 static const asj_stretch as_it_is = {1, 1};
@@ -44,21 +55,24 @@ static uint32_t answered(const search *s, const asj_match_result *r)
     return asks_geometry(s) && r->geometry.status != ASJ_GEOMETRY_ACCEPTED ? 0 : r->match_count;
 }
 
-/* Are the images left without an answer? Rivals, and a motion that is open, are one. */
+/* Are the images left without an answer? Rivals, and a motion that is open, are one. A focal length is of square pixels. */
 static int32_t goes_on(const search *s)
 {
     const int32_t status = s->best->geometry.status;
+    if (asks_geometry(s) && s->options->geometry.find_focal)
+        return 0;
     return (status != ASJ_GEOMETRY_AMBIGUOUS && status != ASJ_GEOMETRY_DEGENERATE) && answered(s, s->best) < ENOUGH;
 }
 
-/* One look, from `from` on a part of the progress. */
-static asj_status look(search *s, const asj_stretch *stretch, const asj_detect_options *detect_options,
-                       const asj_match_options *options, double from, double part, asj_match_result **found)
+typedef asj_status (*matcher)(const asj_look *look, const asj_match_options *options, asj_match_result **result);
+
+static asj_status look_by(search *s, matcher match, const asj_stretch *stretch, const asj_detect_options *detect_options,
+                          const asj_match_options *options, double from, double part, asj_match_result **found)
 {
     asj_look eyes;
     asj_status status = asj_look_open(s->context, s->images, stretch, detect_options, from, part, &eyes);
     if (status == ASJ_OK)
-        status = asj_look_match(&eyes, options, found);
+        status = match(&eyes, options, found);
     if (status == ASJ_OK) {
         asj_look_add_times(&eyes, s->stage_ms);
         for (int32_t k = 0; k < ASJ_STAGE_COUNT; k++)
@@ -67,6 +81,41 @@ static asj_status look(search *s, const asj_stretch *stretch, const asj_detect_o
     asj_look_close(&eyes);
     return status;
 }
+
+/* One look, from `from` on a part of the progress. */
+static asj_status look(search *s, const asj_stretch *stretch, const asj_detect_options *detect_options,
+                       const asj_match_options *options, double from, double part, asj_match_result **found)
+{
+    return look_by(s, asj_look_match, stretch, detect_options, options, from, part, found);
+}
+
+/* --- enlarged ---------------------------------------------------------------------------------------------------------------- */
+
+/* Who asks for one octave, or for another first one, has decided. */
+static int32_t may_enlarge(const search *s)
+{
+    static const asj_stretch twice = {2, 2};
+    const asj_detect_options *d = s->detect_options;
+    int32_t may = d->first_octave == 0 && d->octaves > 1 && s->options->enlarge_from > 0 &&
+                  s->best->match_count >= (uint32_t)s->options->enlarge_from;
+    for (int32_t n = 0; n < 2 && may; n++)
+        may = (double)s->images[n]->width * s->images[n]->height <= LARGEST && asj_look_fits(s->images[n], &twice);
+    return may;
+}
+
+static asj_status look_closer(search *s)
+{
+    asj_detect_options finer = *s->detect_options;
+    asj_match_options options = *s->options;
+    asj_match_result *found = NULL;
+    finer.first_octave = -1;
+    if (s->best->geometry.status == ASJ_GEOMETRY_ACCEPTED)
+        options.geometry.model = ASJ_GEOMETRY_NONE;
+    asj_status status = look_by(s, asj_look_match_enlarged, &as_it_is, &finer, &options, FIRST, CLOSER, &found);
+    return status == ASJ_OK ? asj_finer_choose(s->context, &s->best, &found) : status;
+}
+
+/* --- stretched --------------------------------------------------------------------------------------------------------------- */
 
 static asj_status try_stretch(search *s, const asj_stretch *stretch, double from, double part, int32_t *hopeful)
 {
@@ -108,10 +157,12 @@ static asj_status look_again(search *s, int32_t which, double from, double part)
 
 static asj_status look_for_answer(search *s)
 {
-    const double part = (1 - FIRST) / GLANCING;
+    const double part = (1 - FIRST - CLOSER) / GLANCING;
     asj_status status = look(s, &as_it_is, s->detect_options, s->options, 0, FIRST, &s->best);
+    if (status == ASJ_OK && may_enlarge(s))
+        status = look_closer(s);
     for (int32_t k = 0; k < GLANCING && status == ASJ_OK && goes_on(s); k++)
-        status = look_again(s, k, FIRST + k * part, part);
+        status = look_again(s, k, FIRST + CLOSER + k * part, part);
     return status == ASJ_OK ? asj_progress(s->context, ASJ_STAGE_ASSIGN, 1) : status;
 }
 
@@ -131,7 +182,7 @@ static asj_status check(asj_context *context, const asj_stretch *stretch, const 
         return asj_fail(context, ASJ_ERROR_OPTION, "a stretch of %g, %g is outside %g .. %d", stretch->x, stretch->y,
                         ASJ_LEAST_STRETCH, ASJ_MOST_STRETCH);
     if (options->geometry.model != ASJ_GEOMETRY_NONE && options->geometry.find_focal &&
-        (stretch->x != stretch->y || is_automatic(stretch)))
+        stretch->x != stretch->y)
         return asj_fail(context, ASJ_ERROR_OPTION, "a focal length is found for square pixels only, not for a stretch of %g, %g",
                         stretch->x, stretch->y);
     return ASJ_OK;

@@ -36,7 +36,8 @@ typedef struct asj_match_options {
     int32_t descriptor;          /* ASJ_DESCRIPTOR_...; raw */
     int32_t normalise;           /* 1 = raw patches are brought to zero mean and unit norm. 1; paper 0 */
     int32_t patch_size;          /* samples along a side of a patch, a multiple of 4. 8 .. 24; 16 */
-    int32_t reserved_integer;    /* zero */
+    int32_t enlarge_from;        /* asj_match_images(), automatically: from so many matches on the images are looked at enlarged, too
+                                  * (octave -1); 0 = never. 0 .. 1000000; 8; paper 0 */
     double window_start;         /* a canonical patch reaches from here .. -1 .. 0; -0.25 */
     double window_end;           /* .. to here, in branch lengths. 0.25 .. 2; 1 */
     double patch_radius;         /* px: half a side of an induced patch. 4 .. 64; 16 */
@@ -129,7 +130,9 @@ typedef struct asj_match_result {
                                         * distance first */
     uint64_t rejected_count;
     double stretch[2];                 /* along x and y, how the images were looked at: asj_match_images(); 1, 1 = as they are */
-    uint64_t reserved[2];
+    uint64_t enlarged;                 /* 1 = the matches are those of the enlarged images, with junctions of octave -1
+                                        * (src/match/finer.c) */
+    uint64_t reserved[1];
 } asj_match_result;
 
 /* Matches the junctions of two images: the pipeline of the paper, step 7.
@@ -184,16 +187,21 @@ typedef struct asj_stretch {
  * Everything in the result is in pixels of the images as they are. Numbers of junctions are those of the detector in this call,
  * and the times those of all of it; result->stretch says how the images were looked at.
  *
- * stretch          NULL = as they are. Automatically (0, 0): as they are, and where that gives fewer than 16 matches, with a
- *                  geometry asked 16 that one holds together, also stretched by 1, 3 and by 3, 1, unless rivals or a motion that
- *                  stays open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the answer. What comes of that counts from 16 matches on,
- *                  and when it is twice as many. A pair that has nothing in common takes 1.4 times as long
- *                  with a geometry
+ * stretch          NULL = as they are. Automatically (0, 0):
+ *                  - as they are;
+ *                  - where that gives options->enlarge_from matches, also with junctions of octave -1, which hold as asj_match() says
+ *                    (result->enlarged), unless detect_options name another first octave, or one octave alone, or an image has
+ *                    more than 2 megapixels. A geometry of the images judges these matches as well;
+ *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together, also stretched
+ *                    by 1, 3 and by 3, 1, unless rivals or a motion that stays open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the
+ *                    answer, or a focal length is looked for. What comes of that counts from 16 matches on, and when it is twice
+ *                    as many.
+ *                  A pair that has nothing in common takes about twice as long as without all that (tests/benchmark/README.md)
  * detect_options   NULL = preset `match`
  * options          NULL = preset `default`; cameras are those of the images as they are
  *
  * Memory: the stretched images besides what the two calls need for images of that size.
- * ASJ_ERROR_OPTION  also for a stretch outside its range, and for one along one axis, or automatically, with geometry.find_focal
+ * ASJ_ERROR_OPTION  also for a stretch outside its range, and for one along one axis with geometry.find_focal
  * ASJ_ERROR_LIMIT   also when a stretched image has more pixels than the library takes
  * Others as asj_detect() and asj_match() */
 ASJ_API asj_status asj_match_images(asj_context *context, const asj_image *image1, const asj_image *image2,

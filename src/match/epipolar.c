@@ -36,7 +36,7 @@ static asj_status estimate(const asj_match_run *run, asj_geometry_candidate *ask
     }
     for (size_t n = 0; n < run->choices.count; n++) {
         const asj_candidate *c = &run->candidates.list[run->choices.list[n].candidate];
-        if (asj_keeps_area(c))
+        if (asj_keeps_area(c->map.to))
             asked[count++] = asj_candidate_for_geometry(run, c, PRIOR);
     }
     return asj_geometry_estimate(run->context, asked, count, &options, NULL, geometry);

@@ -17,6 +17,8 @@
  * Matches that come again, of ten pairs that match: .41 to .85 where the enlarged images are right in 97 of 100 and more, .63 where
  * they have 44 of 48 right for 20 of 27, 0 and .14 where they have 1 of 13 right and 23 of 30. */
 #include "finer.h"
+#include "geometry_candidate.h"
+#include "match_result.h"
 #include "core/watch.h"
 
 #include <math.h>
@@ -71,6 +73,37 @@ static asj_status holds(asj_context *context, const asj_match_result *own, const
     return asj_watch_end(&watch);
 }
 
+/* --- the images' own geometry and matches of the enlarged ones --------------------------------------------------------------- */
+
+/* Negative: contradicted. The rules are those of verdict.c for matches that were no candidates of the geometry. */
+static double probability_of(const asj_match_result *own, const asj_known_geometry *known, const asj_junction_match *m)
+{
+    const double x1 = (double)m->x1, y1 = (double)m->y1, x2 = (double)m->x2, y2 = (double)m->y2, *h = m->affine;
+    const asj_geometry_candidate g = {0, 0, x1, y1, x2, y2, {h[0], h[1], h[3], h[4]}, ASJ_MATCH_RIGHT};
+    if (known->lines_hold && asj_distance_from_line(&own->geometry, x1, y1, x2, y2) > known->farthest)
+        return -1;
+    return asj_keeps_area(g.affine) ? asj_judge_probability(&known->judge, &g) : 0;
+}
+
+/* Where the images have a geometry, and the enlarged ones were asked for none, it is theirs. */
+static asj_status judge(asj_context *context, const asj_match_result *own, asj_match_result *finer)
+{
+    const asj_known_geometry *known = asj_match_result_geometry(own);
+    if (!known || finer->geometry.status != ASJ_GEOMETRY_NOT_ASKED)
+        return ASJ_OK;
+    float *probability = asj_allocate(&context->memory, finer->match_count, sizeof *probability);
+    if (!probability)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu matches", (unsigned long)finer->match_count);
+    for (uint32_t k = 0; k < finer->match_count; k++)
+        probability[k] = (float)probability_of(own, known, &finer->matches[k]);
+    const asj_status status = asj_match_result_judge(context, finer, probability);
+    finer->geometry = own->geometry;
+    asj_release(&context->memory, probability);
+    return status;
+}
+
+/* --- which one holds --------------------------------------------------------------------------------------------------------- */
+
 /* Times of both. */
 static void add_times(asj_match_result *to, const asj_match_result *from)
 {
@@ -79,11 +112,12 @@ static void add_times(asj_match_result *to, const asj_match_result *from)
     to->total_ms += from->total_ms;
 }
 
-/* Leaves the one that holds in *own; *finer is freed. */
-static asj_status choose(asj_context *context, asj_match_result **own, asj_match_result **finer)
+asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_match_result **finer)
 {
     int chosen;
-    const asj_status status = holds(context, *own, *finer, &chosen);
+    asj_status status = judge(context, *own, *finer);
+    if (status == ASJ_OK)
+        status = holds(context, *own, *finer, &chosen);
     if (status == ASJ_OK && chosen) {
         asj_match_result *other = *own;
         *own = *finer;
@@ -114,7 +148,7 @@ static asj_status match_both(asj_context *context, const asj_match_options *opti
     context->progress_from = from;
     context->progress_part = part;
     if (status == ASJ_OK && finer)
-        status = choose(context, result, &finer);
+        status = asj_finer_choose(context, result, &finer);
     for (int32_t side = 0; side < 2 && status == ASJ_OK; side++)
         status = asj_match_result_number(context, *result, side, options->minimum_opening, match->junctions[side],
                                          match->counts[side]);
@@ -128,7 +162,8 @@ static asj_status match_both(asj_context *context, const asj_match_options *opti
 asj_status asj_match_finer(asj_context *context, const asj_match_options *options, const asj_finer_match *match,
                            asj_match_result **result)
 {
-    return asj_has_finer(match->junctions[0], match->counts[0]) || asj_has_finer(match->junctions[1], match->counts[1])
-               ? match_both(context, options, match, result)
-               : match->pass(context, options, match->data, 0, result);
+    const int32_t finer = asj_has_finer(match->junctions[0], match->counts[0]) ||
+                          asj_has_finer(match->junctions[1], match->counts[1]);
+    return finer && !match->enlarged_only ? match_both(context, options, match, result)
+                                          : match->pass(context, options, match->data, finer, result);
 }

@@ -18,10 +18,20 @@ typedef struct asj_finer_match {
     const void *data;                 /* for it */
     const asj_junction *junctions[2]; /* all of both images */
     size_t counts[2];
+    int32_t enlarged_only;            /* the caller asks for the witness: see asj_finer_choose() */
 } asj_finer_match;
 
 /* The passes that are needed, and the result that holds: see finer.c. */
 asj_status asj_match_finer(asj_context *context, const asj_match_options *options, const asj_finer_match *match,
                            asj_match_result **result);
+
+/* Leaves in *own the one that holds of *own, of the images as they are, and *finer, of the enlarged ones, which is freed. */
+asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_match_result **finer);
+
+/* asj_match() of the enlarged images alone. */
+asj_status asj_match_enlarged(asj_context *context,
+                              const asj_image *image1, const asj_junction *junctions1, size_t count1,
+                              const asj_image *image2, const asj_junction *junctions2, size_t count2,
+                              const asj_match_options *options, asj_match_result **result);
 
 #endif

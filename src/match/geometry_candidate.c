@@ -20,9 +20,9 @@ asj_geometry_candidate asj_candidate_for_geometry(const asj_match_run *run, cons
         (double)l2->y + c->move2[1] - (t[2] * c->move1[0] + t[3] * c->move1[1]), {t[0], t[1], t[2], t[3]}, prior};
 }
 
-int asj_keeps_area(const asj_candidate *c)
+int asj_keeps_area(const double t[4])
 {
-    const double *t = c->map.to, area = t[0] * t[3] - t[1] * t[2];
+    const double area = t[0] * t[3] - t[1] * t[2];
     return area > 1e-3 && area < 1e3;
 }
 

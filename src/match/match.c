@@ -224,6 +224,8 @@ static asj_status match_features(asj_context *context, const asj_match_options *
         status = finish(&run, watch, result);
     if (status == ASJ_OK && enlarged)
         asj_match_result_unstretch(*result, by);
+    if (status == ASJ_OK)
+        (*result)->enlarged = enlarged ? 1 : 0;
     asj_release(&context->memory, run.candidates.list);
     asj_release(&context->memory, run.choices.list);
     asj_release(&context->memory, run.rejected.list);
@@ -272,9 +274,8 @@ static asj_status match_sources(asj_context *context, const asj_match_options *o
     return status;
 }
 
-asj_status asj_match(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
-                     const asj_image *image2, const asj_junction *junctions2, size_t count2,
-                     const asj_match_options *options, asj_match_result **result)
+static asj_status match_junctions(asj_context *context, const source sources[2], const asj_match_options *options,
+                                  int32_t enlarged_only, asj_match_result **result)
 {
     asj_match_options defaults;
     char message[256];
@@ -282,22 +283,42 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
         *result = NULL;
     if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
-    if (!image1 || !image2 || !result || (!junctions1 && count1 > 0) || (!junctions2 && count2 > 0))
-        return asj_fail(context, ASJ_ERROR_ARGUMENT, "an image, the junctions or the result is NULL");
+    for (int32_t n = 0; n < 2; n++)
+        if (!sources[n].image || (!sources[n].junctions && sources[n].count > 0) || !result)
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "an image, the junctions or the result is NULL");
     if (!options) {
         asj_match_options_init(&defaults);
         options = &defaults;
     }
     if (asj_match_options_check(options, message, sizeof message) != ASJ_OK)
         return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
-    const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
-    const asj_finer_match match = {match_sources, sources, {junctions1, junctions2}, {count1, count2}};
+    const asj_finer_match match = {match_sources,
+                                   sources,
+                                   {sources[0].junctions, sources[1].junctions},
+                                   {sources[0].count, sources[1].count},
+                                   enlarged_only};
     asj_status status;
     asj_backend_begin(context);
     do
         status = asj_match_finer(context, options, &match, result);
     while (asj_backend_retry(context, status));
     return status;
+}
+
+asj_status asj_match(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
+                     const asj_image *image2, const asj_junction *junctions2, size_t count2,
+                     const asj_match_options *options, asj_match_result **result)
+{
+    const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
+    return match_junctions(context, sources, options, 0, result);
+}
+
+asj_status asj_match_enlarged(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
+                              const asj_image *image2, const asj_junction *junctions2, size_t count2,
+                              const asj_match_options *options, asj_match_result **result)
+{
+    const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
+    return match_junctions(context, sources, options, 1, result);
 }
 
 static asj_status match_kept(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
@@ -348,7 +369,8 @@ asj_status asj_match_features(asj_context *context, const asj_features *features
     const asj_finer_match match = {match_kept,
                                    kept,
                                    {features1->junctions, features2->junctions},
-                                   {features1->junction_count, features2->junction_count}};
+                                   {features1->junction_count, features2->junction_count},
+                                   0};
     asj_backend_begin(context);
     do
         status = asj_match_finer(context, options, &match, result);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Chosen candidates as the caller sees them. */
 #include "match_result.h"
+#include "geometry_candidate.h"
 #include "segments.h"
 #include "core/watch.h"
 
@@ -15,6 +16,8 @@ typedef struct result {
     asj_l_junction *l1, *l2;
     asj_place *places[2]; /* of `count` matches, in image 1 and image 2 */
     uint32_t count;
+    asj_known_geometry known; /* the one that is accepted, if there is one, .. */
+    int32_t is_known;         /* .. in pixels of the images */
 } result;
 
 /* Where the aligned map puts the junction of image 1. When image 1 was the one that moved, the map takes its moved
@@ -174,6 +177,9 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
     }
     for (int32_t side = 0; side < 2; side++)
         asj_places_sort(r->places[side], r->matches, r->count, side);
+    r->is_known = run->geometry.status == ASJ_GEOMETRY_ACCEPTED;
+    if (r->is_known)
+        r->known = (asj_known_geometry){run->judge, asj_farthest_from_line(run), run->lines_hold};
     const asj_status status = find_ends(run, r);
     if (status == ASJ_OK)
         show(run, r);
@@ -194,9 +200,41 @@ asj_around asj_match_result_around(const asj_match_result *shown)
     return around;
 }
 
+const asj_known_geometry *asj_match_result_geometry(const asj_match_result *shown)
+{
+    const result *r = (const result *)shown;
+    return r->is_known ? &r->known : NULL;
+}
+
+asj_status asj_match_result_judge(asj_context *context, asj_match_result *shown, const float *probability)
+{
+    result *r = (result *)shown;
+    uint32_t kept = 0, gone = 0;
+    asj_junction_match *rejected = asj_allocate(&r->memory, shown->match_count, sizeof *rejected);
+    if (!rejected)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu matches", (unsigned long)shown->match_count);
+    for (uint32_t k = 0; k < shown->match_count; k++)
+        if (probability[k] < 0) {
+            rejected[gone++] = r->matches[k];
+        } else {
+            r->matches[kept] = r->matches[k];
+            r->matches[kept++].probability = probability[k];
+        }
+    asj_release(&r->memory, r->rejected);
+    r->rejected = rejected;
+    shown->rejected = gone ? rejected : NULL;
+    shown->rejected_count = gone;
+    shown->matches = kept ? r->matches : NULL;
+    shown->match_count = r->count = kept;
+    for (int32_t side = 0; side < 2; side++)
+        asj_places_sort(r->places[side], r->matches, kept, side);
+    return ASJ_OK;
+}
+
 void asj_match_result_unstretch(asj_match_result *shown, const asj_stretch by[2])
 {
     result *r = (result *)shown;
+    r->is_known = 0; /* the judge sees stretched images */
     asj_unstretch_matches(r->matches, shown->match_count, by);
     asj_unstretch_matches(r->rejected, (size_t)shown->rejected_count, by);
     asj_unstretch_l_junctions(r->l1, shown->l_junction_count1, &by[0]);

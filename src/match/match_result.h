@@ -15,6 +15,19 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
  * matches are no longer those of the call. */
 asj_around asj_match_result_around(const asj_match_result *shown);
 
+/* The accepted geometry of two images, for other matches of theirs. */
+typedef struct asj_known_geometry {
+    asj_judge judge;
+    double farthest;    /* px from its epipolar line that a match may be .. */
+    int32_t lines_hold; /* .. if anything follows from that (verdict.c) */
+} asj_known_geometry;
+
+/* NULL where there is none, and for stretched images. Of a result of asj_match_result_create(). */
+const asj_known_geometry *asj_match_result_geometry(const asj_match_result *shown);
+
+/* Takes the matches whose probability is negative to the rejected ones; others have theirs from now on. ASJ_ERROR_MEMORY. */
+asj_status asj_match_result_judge(asj_context *context, asj_match_result *shown, const float *probability);
+
 /* Numbers the L-junctions of image 1 (side 0) or 2 as asj_decompose() does those of all junctions, where the result knows those of
  * octaves 0 and up alone. ASJ_ERROR_MEMORY. */
 asj_status asj_match_result_number(asj_context *context, asj_match_result *shown, int32_t side, double minimum_opening,

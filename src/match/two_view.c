@@ -125,7 +125,7 @@ static asj_status estimate(asj_match_run *run, asj_wide_run *w)
     size_t kept = 0;
     for (size_t k = 0; k < count; k++) { /* a map that hardly keeps any area is no map */
         const asj_candidate *c = &w->run.candidates.list[k];
-        if (!asj_keeps_area(c))
+        if (!asj_keeps_area(c->map.to))
             continue;
         w->given[kept] = clustered(w, c, w->probability[k]);
         w->colours[kept] = w->colours[k];

@@ -18,8 +18,8 @@
  *     the geometry does not contradict it.
  *
  * Each match receives its probability: that of the candidate; of guests, and beyond the likeliest candidates, which are all that a
- * geometry looks at (pairs.c), that under the geometry alone, where MATCH_RIGHT of them are right before it (of guests 962 of 1055
- * in rooms 101 to 140). It is 0 where a map keeps hardly any area. */
+ * geometry looks at (pairs.c), that under the geometry alone, where ASJ_MATCH_RIGHT of them are right before it. It is 0 where a
+ * map keeps hardly any area. */
 #include "verdict.h"
 #include "epipolar.h"
 #include "geometry_candidate.h"
@@ -30,7 +30,6 @@
 #define LEAST_PROBABILITY 0.5
 #define SURE_PROBABILITY 0.99
 #define MANY_MATCHES 20
-#define MATCH_RIGHT 0.9
 #define ELSEWHERE 15.0 /* px */
 
 /* --- candidates that the geometry makes likely ------------------------------------------------------------------------------- */
@@ -90,8 +89,8 @@ static int by_pair(const void *left, const void *right)
 /* Of a match that is no candidate. */
 static double probability_by_itself(const asj_match_run *run, const asj_candidate *c)
 {
-    const asj_geometry_candidate g = asj_candidate_for_geometry(run, c, MATCH_RIGHT);
-    return asj_keeps_area(c) ? asj_judge_probability(&run->judge, &g) : 0;
+    const asj_geometry_candidate g = asj_candidate_for_geometry(run, c, ASJ_MATCH_RIGHT);
+    return asj_keeps_area(c->map.to) ? asj_judge_probability(&run->judge, &g) : 0;
 }
 
 /* That of the same pair in the wide list, where it was looked at. */
@@ -130,7 +129,7 @@ static asj_status filter(asj_match_run *run, const asj_wide_run *w, const likely
         const asj_candidate *c = asj_chosen(run, n);
         const double probability = probability_of(run, w, c);
         asj_choice choice = choices->list[n];
-        const int32_t hopeless = probability < 1 - SURE_PROBABILITY && asj_keeps_area(c);
+        const int32_t hopeless = probability < 1 - SURE_PROBABILITY && asj_keeps_area(c->map.to);
         if ((run->lines_hold && is_off_line(run, c)) || (hopeless && is_replaced(run, w, all, c))) {
             rejected->list[rejected->count++] = choice;
         } else {

@@ -148,7 +148,7 @@ static asj_status make_candidates(stage *s)
     size_t kept = 0;
     for (size_t k = 0; k < count; k++) {
         const asj_candidate *c = &s->run.candidates.list[k];
-        if (!asj_keeps_area(c))
+        if (!asj_keeps_area(c->map.to))
             continue;
         s->given[kept] = asj_candidate_for_geometry(&s->run, c, s->probability[k]);
         s->given[kept].place1 = s->place[0][s->given[kept].place1];

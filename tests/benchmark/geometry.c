@@ -95,7 +95,7 @@ static asj_status make_priors(steps *s)
     size_t kept = 0;
     for (size_t k = 0; k < count && status == ASJ_OK; k++) {
         const asj_candidate *c = &s->run.candidates.list[k];
-        if (!asj_keeps_area(c))
+        if (!asj_keeps_area(c->map.to))
             continue;
         s->given[kept] = asj_candidate_for_geometry(&s->run, c, s->probability[k]);
         s->colours[kept++] = s->colours[k];

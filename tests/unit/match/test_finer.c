@@ -162,7 +162,7 @@ static void only_what_is_confirmed(void **state)
         answers *data = &a;
         asj_match_result *result = NULL;
         const asj_finer_match both = {answer, &data, {views[0].finer->junctions, views[1].finer->junctions},
-                                      {views[0].finer->junction_count, views[1].finer->junction_count}};
+                                      {views[0].finer->junction_count, views[1].finer->junction_count}, 0};
         assert_int_equal(asj_match_finer(context, &options, &both, &result), ASJ_OK);
         assert_int_equal(a.passes, n == 0 ? 1 : 2); /* nothing comes of the images: no second look */
         assert_true(n == 0 || a.finer_count > plain->match_count); /* enough, of the first image turned */
@@ -201,7 +201,7 @@ static void a_pose_is_kept(void **state)
         const int32_t *data = &has_pose;
         asj_match_result *result = NULL;
         const asj_finer_match both = {answer_with_geometry, &data, {views[0].finer->junctions, views[1].finer->junctions},
-                                      {views[0].finer->junction_count, views[1].finer->junction_count}};
+                                      {views[0].finer->junction_count, views[1].finer->junction_count}, 0};
         assert_int_equal(asj_match_finer(context, &options, &both, &result), ASJ_OK);
         assert_true(result->geometry.has_pose);
         assert_true(result->geometry.log10_nfa == (has_pose ? -2 : -1)); /* of the enlarged images only with a pose */

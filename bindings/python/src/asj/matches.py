@@ -116,6 +116,11 @@ class Matches:
         return self._result.stretch[0], self._result.stretch[1]
 
     @property
+    def enlarged(self) -> bool:
+        """Whether these are the matches of the enlarged images, with junctions of octave -1."""
+        return bool(self._result.enlarged)
+
+    @property
     def rejected(self) -> NDArray[Any]:
         """Records of what would match without the geometry, and contradicts it."""
         return arrays.view(self._result.rejected, self._result.rejected_count, "asj_junction_match", self._result)
@@ -179,7 +184,7 @@ def match(
 
 
 def match_images(
-    image1: ArrayLike, image2: ArrayLike, *, stretch: float | tuple[float, float] | str = 1.0, geometry: str = "none",
+    image1: ArrayLike, image2: ArrayLike, *, stretch: float | tuple[float, float] | str = "auto", geometry: str = "none",
     camera1: Camera | None = None, camera2: Camera | None = None, find_focal: bool = False, context: Context | None = None,
     **options: object,
 ) -> Matches:  # fmt: skip
@@ -187,7 +192,8 @@ def match_images(
 
     stretch    a factor of 0.5 to 8, or one for x and one for y. Photographs of up to some megapixels have about three times the matches
                at 2, in three to eight times the time; what is seen at a glancing angle, like things on a table, matches at (1, 3).
-               "auto": as they are, and where nothing comes of it at (1, 3) and (3, 1); :attr:`Matches.stretch` tells which it was
+               "auto": as they are; from `enlarge_from` matches on (8; 0 = never) also enlarged, which :attr:`Matches.enlarged`
+               tells; and where nothing comes of it at (1, 3) and (3, 1); :attr:`Matches.stretch` tells which it was
     options    those of the matcher; the others as for :func:`asj.match`
 
     >>> import numpy as np
