@@ -7,7 +7,7 @@
 #include "core/image.h"
 #include "core/stretch.h"
 #include "match/finer.h"
-#include "match/match_result.h"
+#include "match/result_changes.h"
 
 #include <math.h>
 #include <string.h>

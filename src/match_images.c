@@ -112,7 +112,7 @@ static asj_status look_closer(search *s)
     if (s->best->geometry.status == ASJ_GEOMETRY_ACCEPTED)
         options.geometry.model = ASJ_GEOMETRY_NONE;
     asj_status status = look_by(s, asj_look_match_enlarged, &as_it_is, &finer, &options, FIRST, CLOSER, &found);
-    return status == ASJ_OK ? asj_finer_choose(s->context, &s->best, &found) : status;
+    return status == ASJ_OK ? asj_finer_choose(s->context, &s->best, &found, 0) : status;
 }
 
 /* --- stretched --------------------------------------------------------------------------------------------------------------- */

@@ -18,7 +18,7 @@
  * they have 44 of 48 right for 20 of 27, 0 and .14 where they have 1 of 13 right and 23 of 30. */
 #include "finer.h"
 #include "geometry_candidate.h"
-#include "match_result.h"
+#include "result_changes.h"
 #include "core/watch.h"
 
 #include <math.h>
@@ -35,21 +35,6 @@ int32_t asj_has_finer(const asj_junction *junctions, size_t count)
     return 0;
 }
 
-static int is_same(const asj_junction_match *a, const asj_junction_match *b)
-{
-    return fabsf(a->x1 - b->x1) <= SAME && fabsf(a->y1 - b->y1) <= SAME && fabsf(a->x2 - b->x2) <= SAME &&
-           fabsf(a->y2 - b->y2) <= SAME;
-}
-
-static int comes_again(const asj_junction_match *m, const asj_around *finer)
-{
-    asj_place_walk walk = asj_places_near(finer->places[0], finer->place_count, m->x1, m->y1, (double)SAME);
-    for (uint32_t k; asj_places_next(&walk, &k);)
-        if (is_same(m, &finer->matches[k]))
-            return 1;
-    return 0;
-}
-
 /* With its pose: many weak corners on one wall may explain more as a homography than the motion does. */
 static int keeps_geometry(const asj_match_result *own, const asj_match_result *finer)
 {
@@ -58,19 +43,48 @@ static int keeps_geometry(const asj_match_result *own, const asj_match_result *f
            (g->status == ASJ_GEOMETRY_ACCEPTED && (g->has_pose || !own->geometry.has_pose));
 }
 
-static asj_status holds(asj_context *context, const asj_match_result *own, const asj_match_result *finer, int *answer)
+/* One of the images' own matches among those of the enlarged images. */
+enum { NEW, TAKEN /* another match has one of its places */, AGAIN_THERE };
+
+static int is_near(float ax, float ay, float bx, float by)
+{
+    return fabsf(ax - bx) <= SAME && fabsf(ay - by) <= SAME;
+}
+
+static uint8_t look_up(const asj_junction_match *m, const asj_around *finer)
+{
+    uint8_t found = NEW;
+    for (int32_t side = 0; side < 2 && found != AGAIN_THERE; side++) {
+        asj_place_walk walk = asj_places_near(finer->places[side], finer->place_count, side ? m->x2 : m->x1, side ? m->y2 : m->y1,
+                                              (double)SAME);
+        for (uint32_t k; asj_places_next(&walk, &k);) {
+            const asj_junction_match *f = &finer->matches[k];
+            const int at1 = is_near(m->x1, m->y1, f->x1, f->y1), at2 = is_near(m->x2, m->y2, f->x2, f->y2);
+            if (at1 && at2)
+                return AGAIN_THERE;
+            found = at1 || at2 ? TAKEN : found;
+        }
+    }
+    return found;
+}
+
+/* What the matches of the images are among those of the enlarged ones. */
+static asj_status look_all_up(asj_context *context, const asj_match_result *own, const asj_match_result *finer, uint8_t *found)
 {
     const asj_around around = asj_match_result_around(finer);
-    uint32_t again = 0;
     asj_watch watch;
-    *answer = 0;
-    if (finer->match_count <= own->match_count || !keeps_geometry(own, finer))
-        return ASJ_OK;
     asj_watch_start(&watch, context, ASJ_STAGE_ASSIGN);
     for (uint32_t n = 0; n < own->match_count && !asj_watch_stops(&watch, NULL); n++)
-        again += (uint32_t)comes_again(&own->matches[n], &around);
-    *answer = again >= AGAIN * own->match_count;
+        found[n] = look_up(&own->matches[n], &around);
     return asj_watch_end(&watch);
+}
+
+static int32_t holds(const asj_match_result *own, const asj_match_result *finer, const uint8_t *found)
+{
+    uint32_t again = 0;
+    for (uint32_t n = 0; n < own->match_count; n++)
+        again += found[n] == AGAIN_THERE;
+    return finer->match_count > own->match_count && keeps_geometry(own, finer) && again >= AGAIN * own->match_count;
 }
 
 /* --- the images' own geometry and matches of the enlarged ones --------------------------------------------------------------- */
@@ -112,18 +126,29 @@ static void add_times(asj_match_result *to, const asj_match_result *from)
     to->total_ms += from->total_ms;
 }
 
-asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_match_result **finer)
+/* Those of the enlarged images, and of the others what is new. */
+static asj_status join(asj_context *context, asj_match_result *own, asj_match_result *finer, uint8_t *found, int32_t same_lists)
 {
-    int chosen;
-    asj_status status = judge(context, *own, *finer);
+    for (uint32_t n = 0; n < own->match_count; n++)
+        found[n] = found[n] == NEW;
+    return asj_match_result_join(context, finer, own, found, same_lists);
+}
+
+asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_match_result **finer, int32_t same_lists)
+{
+    uint8_t *found = asj_allocate(&context->memory, (*own)->match_count, sizeof *found);
+    asj_status status = found ? judge(context, *own, *finer)
+                              : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu matches", (unsigned long)(*own)->match_count);
     if (status == ASJ_OK)
-        status = holds(context, *own, *finer, &chosen);
-    if (status == ASJ_OK && chosen) {
+        status = look_all_up(context, *own, *finer, found);
+    if (status == ASJ_OK && holds(*own, *finer, found)) {
+        status = join(context, *own, *finer, found, same_lists);
         asj_match_result *other = *own;
         *own = *finer;
         *finer = other;
     }
     add_times(*own, *finer);
+    asj_release(&context->memory, found);
     asj_match_result_free(finer);
     return status;
 }
@@ -147,11 +172,11 @@ static asj_status match_both(asj_context *context, const asj_match_options *opti
         status = match->pass(context, options, match->data, 1, &finer);
     context->progress_from = from;
     context->progress_part = part;
-    if (status == ASJ_OK && finer)
-        status = asj_finer_choose(context, result, &finer);
     for (int32_t side = 0; side < 2 && status == ASJ_OK; side++)
         status = asj_match_result_number(context, *result, side, options->minimum_opening, match->junctions[side],
                                          match->counts[side]);
+    if (status == ASJ_OK && finer)
+        status = asj_finer_choose(context, result, &finer, 1);
     if (status == ASJ_OK)
         status = asj_progress(context, ASJ_STAGE_ASSIGN, 1);
     if (status != ASJ_OK)

@@ -25,8 +25,9 @@ typedef struct asj_finer_match {
 asj_status asj_match_finer(asj_context *context, const asj_match_options *options, const asj_finer_match *match,
                            asj_match_result **result);
 
-/* Leaves in *own the one that holds of *own, of the images as they are, and *finer, of the enlarged ones, which is freed. */
-asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_match_result **finer);
+/* Leaves in *own what holds of *own, of the images as they are, and *finer, of the enlarged ones, which is freed. same_lists: their
+ * L-junctions have the same numbers. */
+asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_match_result **finer, int32_t same_lists);
 
 /* asj_match() of the enlarged images alone. */
 asj_status asj_match_enlarged(asj_context *context,

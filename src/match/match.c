@@ -37,7 +37,7 @@
 #include "guided.h"
 #include "kept_features.h"
 #include "match_options.h"
-#include "match_result.h"
+#include "result_changes.h"
 #include "related.h"
 #include "same_corner.h"
 #include "shortlist.h"

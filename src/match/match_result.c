@@ -9,17 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct result {
-    asj_match_result shown; /* first, so that the caller's pointer is ours */
-    asj_memory memory;
-    asj_junction_match *matches, *rejected;
-    asj_l_junction *l1, *l2;
-    asj_place *places[2]; /* of `count` matches, in image 1 and image 2 */
-    uint32_t count;
-    asj_known_geometry known; /* the one that is accepted, if there is one, .. */
-    int32_t is_known;         /* .. in pixels of the images */
-} result;
-
 /* Where the aligned map puts the junction of image 1. When image 1 was the one that moved, the map takes its moved
  * location to the other's: q = p2 - A (p1 + move - p1). */
 static void refined_location(const asj_candidate *c, const asj_l_junction *l2, double *x, double *y)
@@ -94,6 +83,14 @@ static void fill_ends(const asj_match_run *run, const asj_around *around, asj_ju
     m->by2 = to[3];
 }
 
+static asj_l_junction *copy(asj_memory *memory, const asj_l_junctions *l_junctions)
+{
+    asj_l_junction *l = asj_allocate(memory, l_junctions->count, sizeof *l);
+    if (l && l_junctions->count)
+        memcpy(l, l_junctions->l, l_junctions->count * sizeof *l);
+    return l;
+}
+
 static int by_distance(const void *left, const void *right)
 {
     const asj_junction_match *p = left, *q = right;
@@ -104,12 +101,10 @@ static int by_distance(const void *left, const void *right)
     return p->l2 < q->l2 ? -1 : p->l2 > q->l2;
 }
 
-static asj_l_junction *copy(asj_memory *memory, const asj_l_junctions *l_junctions)
+static void sort(asj_junction_match *matches, size_t count)
 {
-    asj_l_junction *l = asj_allocate(memory, l_junctions->count, sizeof *l);
-    if (l && l_junctions->count)
-        memcpy(l, l_junctions->l, l_junctions->count * sizeof *l);
-    return l;
+    if (count > 1)
+        qsort(matches, count, sizeof *matches, by_distance);
 }
 
 /* Choices as matches, smallest distance first; NULL without memory. */
@@ -118,13 +113,13 @@ static asj_junction_match *list_of(const asj_match_run *run, asj_memory *memory,
     asj_junction_match *list = asj_allocate(memory, choices->count, sizeof *list);
     for (size_t n = 0; list && n < choices->count; n++)
         fill(run, &choices->list[n], &list[n]);
-    if (list && choices->count > 1)
-        qsort(list, choices->count, sizeof *list, by_distance);
+    if (list)
+        sort(list, choices->count);
     return list;
 }
 
 /* The ends of all, as the chosen matches see them. */
-static asj_status find_ends(const asj_match_run *run, result *r)
+static asj_status find_ends(const asj_match_run *run, asj_own_result *r)
 {
     const asj_around all = {r->matches, r->count, {r->places[0], r->places[1]}, r->count};
     const asj_around *around = run->options->neighbours > 0 ? &all : NULL;
@@ -138,7 +133,7 @@ static asj_status find_ends(const asj_match_run *run, result *r)
 }
 
 /* What the caller sees of it. */
-static void show(const asj_match_run *run, result *r)
+static void show(const asj_match_run *run, asj_own_result *r)
 {
     const asj_l_junctions *in1 = &run->image[0]->l_junctions, *in2 = &run->image[1]->l_junctions;
     asj_match_result *shown = &r->shown;
@@ -159,7 +154,7 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
 {
     asj_memory memory = {.allocator = run->context->memory.allocator};
     const size_t count = run->choices.count;
-    result *r = asj_allocate_zero(&memory, 1, sizeof *r);
+    asj_own_result *r = asj_allocate_zero(&memory, 1, sizeof *r);
     if (!r)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for a result");
     *shown = &r->shown;
@@ -188,9 +183,16 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
     return status;
 }
 
+void asj_match_result_sort(asj_own_result *r)
+{
+    sort(r->matches, r->count);
+    for (int32_t side = 0; side < 2; side++)
+        asj_places_sort(r->places[side], r->matches, r->count, side);
+}
+
 asj_around asj_match_result_around(const asj_match_result *shown)
 {
-    const result *r = (const result *)shown;
+    const asj_own_result *r = (const asj_own_result *)shown;
     asj_around around = {shown->matches, shown->match_count, {NULL, NULL}, 0};
     if (shown->own == (uint64_t)(uintptr_t)r && shown->matches == r->matches && shown->match_count <= r->count) {
         around.places[0] = r->places[0];
@@ -202,93 +204,15 @@ asj_around asj_match_result_around(const asj_match_result *shown)
 
 const asj_known_geometry *asj_match_result_geometry(const asj_match_result *shown)
 {
-    const result *r = (const result *)shown;
+    const asj_own_result *r = (const asj_own_result *)shown;
     return r->is_known ? &r->known : NULL;
-}
-
-asj_status asj_match_result_judge(asj_context *context, asj_match_result *shown, const float *probability)
-{
-    result *r = (result *)shown;
-    uint32_t kept = 0, gone = 0;
-    asj_junction_match *rejected = asj_allocate(&r->memory, shown->match_count, sizeof *rejected);
-    if (!rejected)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu matches", (unsigned long)shown->match_count);
-    for (uint32_t k = 0; k < shown->match_count; k++)
-        if (probability[k] < 0) {
-            rejected[gone++] = r->matches[k];
-        } else {
-            r->matches[kept] = r->matches[k];
-            r->matches[kept++].probability = probability[k];
-        }
-    asj_release(&r->memory, r->rejected);
-    r->rejected = rejected;
-    shown->rejected = gone ? rejected : NULL;
-    shown->rejected_count = gone;
-    shown->matches = kept ? r->matches : NULL;
-    shown->match_count = r->count = kept;
-    for (int32_t side = 0; side < 2; side++)
-        asj_places_sort(r->places[side], r->matches, kept, side);
-    return ASJ_OK;
-}
-
-void asj_match_result_unstretch(asj_match_result *shown, const asj_stretch by[2])
-{
-    result *r = (result *)shown;
-    r->is_known = 0; /* the judge sees stretched images */
-    asj_unstretch_matches(r->matches, shown->match_count, by);
-    asj_unstretch_matches(r->rejected, (size_t)shown->rejected_count, by);
-    asj_unstretch_l_junctions(r->l1, shown->l_junction_count1, &by[0]);
-    asj_unstretch_l_junctions(r->l2, shown->l_junction_count2, &by[1]);
-    asj_unstretch_geometry(&shown->geometry, by);
-    for (int32_t side = 0; side < 2; side++)
-        asj_places_sort(r->places[side], r->matches, r->count, side);
-}
-
-static void renumber(asj_junction_match *list, size_t count, int32_t side, const uint32_t *number)
-{
-    for (size_t k = 0; k < count; k++) {
-        uint32_t *l = side ? &list[k].l2 : &list[k].l1;
-        *l = number[*l];
-    }
-}
-
-asj_status asj_match_result_number(asj_context *context, asj_match_result *shown, int32_t side, double minimum_opening,
-                                   const asj_junction *junctions, size_t count)
-{
-    result *r = (result *)shown;
-    const size_t total = asj_decompose(junctions, count, minimum_opening, NULL, 0);
-    if (total == (side ? shown->l_junction_count2 : shown->l_junction_count1))
-        return ASJ_OK;
-    asj_l_junction *all = asj_allocate(&r->memory, total, sizeof *all);
-    uint32_t *number = asj_allocate(&context->memory, total, sizeof *number), known = 0;
-    if (!all || !number) {
-        asj_release(&r->memory, all);
-        asj_release(&context->memory, number);
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu L-junctions", total);
-    }
-    asj_decompose(junctions, count, minimum_opening, all, total);
-    for (uint32_t l = 0; l < total; l++)
-        if (junctions[all[l].junction].octave >= 0)
-            number[known++] = l;
-    renumber(r->matches, shown->match_count, side, number);
-    renumber(r->rejected, (size_t)shown->rejected_count, side, number);
-    asj_release(&context->memory, number);
-    asj_release(&r->memory, side ? r->l2 : r->l1);
-    if (side) {
-        shown->l_junctions2 = r->l2 = all;
-        shown->l_junction_count2 = (uint32_t)total;
-    } else {
-        shown->l_junctions1 = r->l1 = all;
-        shown->l_junction_count1 = (uint32_t)total;
-    }
-    return ASJ_OK;
 }
 
 void asj_match_result_free(asj_match_result **pointer)
 {
     if (!pointer || !*pointer)
         return;
-    result *r = (result *)*pointer;
+    asj_own_result *r = (asj_own_result *)*pointer;
     asj_memory memory = r->memory;
     asj_release(&memory, r->matches);
     asj_release(&memory, r->rejected);

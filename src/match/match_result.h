@@ -25,15 +25,19 @@ typedef struct asj_known_geometry {
 /* NULL where there is none, and for stretched images. Of a result of asj_match_result_create(). */
 const asj_known_geometry *asj_match_result_geometry(const asj_match_result *shown);
 
-/* Takes the matches whose probability is negative to the rejected ones; others have theirs from now on. ASJ_ERROR_MEMORY. */
-asj_status asj_match_result_judge(asj_context *context, asj_match_result *shown, const float *probability);
+/* What asj_match_result_create() makes is one. */
+typedef struct asj_own_result {
+    asj_match_result shown; /* first, so that the caller's pointer is ours */
+    asj_memory memory;
+    asj_junction_match *matches, *rejected;
+    asj_l_junction *l1, *l2;
+    asj_place *places[2]; /* of `count` matches, in image 1 and image 2 */
+    uint32_t count;
+    asj_known_geometry known; /* the one that is accepted, if there is one, .. */
+    int32_t is_known;         /* .. in pixels of the images */
+} asj_own_result;
 
-/* Numbers the L-junctions of image 1 (side 0) or 2 as asj_decompose() does those of all junctions, where the result knows those of
- * octaves 0 and up alone. ASJ_ERROR_MEMORY. */
-asj_status asj_match_result_number(asj_context *context, asj_match_result *shown, int32_t side, double minimum_opening,
-                                   const asj_junction *junctions, size_t count);
-
-/* A result of stretched images -> one of the images themselves (unstretch.h). */
-void asj_match_result_unstretch(asj_match_result *shown, const asj_stretch by[2]);
+/* Its matches are no longer what they were: smallest distance first again, and where they are. */
+void asj_match_result_sort(asj_own_result *r);
 
 #endif

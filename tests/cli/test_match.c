@@ -89,14 +89,14 @@ static table found, other;
 static void matches_go_to_standard_output_and_words_to_standard_error(void **state)
 {
     (void)state;
-    const outcome *result = run_cli("match", "first.png", "second.png", NULL);
+    const outcome *result = run_cli("match", "--stretch", "1", "first.png", "second.png", NULL);
     expect_code(result, 0);
     parse_csv(result->out, &found);
     expect_true(&found);
     char words[80];
     snprintf(words, sizeof words, "first.png, second.png: %zu matches\n", found.count);
     assert_string_equal(result->err, words);
-    result = run_cli("match", "-q", "-o", "m.csv", "first.png", "second.png", NULL);
+    result = run_cli("match", "-q", "--stretch", "1", "-o", "m.csv", "first.png", "second.png", NULL);
     expect_code(result, 0);
     expect_empty(result, "standard output", result->out);
     expect_empty(result, "standard error", result->err);
@@ -231,13 +231,13 @@ static void detect_for_match(const char *image, const char *file)
     expect_code(run_cli_list(arguments), 0);
 }
 
-/* Detecting first and matching then is the same as both at once. */
+/* Detecting first and matching then is the same as both at once, of the images as they are. */
 static void junctions_come_from_files(void **state)
 {
     (void)state;
     detect_for_match("first.png", "1.json");
     detect_for_match("second.png", "2.json");
-    const outcome *result = run_cli("match", "-q", "first.png", "second.png", NULL);
+    const outcome *result = run_cli("match", "-q", "--stretch", "1", "first.png", "second.png", NULL);
     expect_code(result, 0);
     parse_csv(result->out, &found);
     result = run_cli("match", "-q", "first.png", "second.png", "--junctions1", "1.json", "--junctions2", "2.json", NULL);
@@ -261,7 +261,7 @@ static void the_preset_match_detects_for_match(void **state)
     detect_for_match("first.png", "1.json");
     expect_code(run_cli("detect", "-q", "--preset", "match", "-o", "1p.json", "first.png", NULL), 0);
     expect_code(run_cli("detect", "-q", "--for", "matching", "-o", "1f.json", "first.png", NULL), 0);
-    const outcome *result = run_cli("match", "-q", "first.png", "second.png", NULL);
+    const outcome *result = run_cli("match", "-q", "--stretch", "1", "first.png", "second.png", NULL);
     expect_code(result, 0);
     parse_csv(result->out, &found);
     assert_true(found.count > 10);
@@ -273,7 +273,7 @@ static void the_preset_match_detects_for_match(void **state)
         assert_int_equal(found.count, other.count);
         assert_memory_equal(found.rows, other.rows, found.count * sizeof found.rows[0]);
     }
-    result = run_cli("match", "-q", "--octaves", "1", "first.png", "second.png", NULL);
+    result = run_cli("match", "-q", "--stretch", "1", "--octaves", "1", "first.png", "second.png", NULL);
     expect_code(result, 0);
     parse_csv(result->out, &found);
     expect_code(run_cli("detect", "-q", "--preset", "match", "-o", "1p.asj", "first.png", NULL), 0);
@@ -369,7 +369,7 @@ static void stretched_images_match_in_their_own_pixels(void **state)
     free(text);
 }
 
-/* As they are where that is enough, stretched where it is not; with a geometry nobody has to ask for it. */
+/* As they are where that is enough, stretched where it is not; nobody has to ask for it. */
 static void a_glancing_view_is_stretched_by_itself(void **state)
 {
     (void)state;
@@ -380,16 +380,47 @@ static void a_glancing_view_is_stretched_by_itself(void **state)
     char *text = read_bytes("auto.json", &size);
     assert_non_null(strstr(text, "\"stretch\": [1.0, 1.0]"));
     free(text);
-    write_flat_views("flat1.png", "flat2.png", 6);
-    result = run_cli("match", "-q", "--stretch", "1", "--geometry", "auto", "flat1.png", "flat2.png", NULL);
-    expect_code(result, 0);
-    parse_csv(result->out, &found);
-    result = run_cli("match", "-o", "auto.csv", "--geometry", "auto", "flat1.png", "flat2.png", NULL);
-    expect_code(result, 0);
-    expect_in(result, result->err, "looked at stretched by 1,3");
-    result = run_cli("match", "-q", "--geometry", "auto", "flat1.png", "flat2.png", NULL);
-    parse_csv(result->out, &other);
-    assert_true(other.count >= 16 && found.count < 16);
+    write_flat_views("flat1.png", "flat2.png", 9);
+    static const char *const models[] = {"none", "auto"};
+    for (size_t m = 0; m < 2; m++) {
+        result = run_cli("match", "-q", "--stretch", "1", "--geometry", models[m], "flat1.png", "flat2.png", NULL);
+        expect_code(result, 0);
+        parse_csv(result->out, &found);
+        result = run_cli("match", "-o", "auto.csv", "--geometry", models[m], "flat1.png", "flat2.png", NULL);
+        expect_code(result, 0);
+        expect_in(result, result->err, "looked at stretched by 1,3");
+        result = run_cli("match", "-q", "--geometry", models[m], "flat1.png", "flat2.png", NULL);
+        parse_csv(result->out, &other);
+        assert_true(other.count >= 16 && found.count < 16);
+    }
+}
+
+/* Where they have matches enough, whole images are looked at enlarged too: more matches, of the same places within what soft and
+ * coarse edges are known to (3 px here), told in JSON. With --enlarge-from it is left, or is not reached. */
+static void whole_images_are_enlarged_by_themselves(void **state)
+{
+    (void)state;
+    expect_code(run_cli("match", "-q", "--stretch", "1", "-o", "plain.csv", "first.png", "second.png", NULL), 0);
+    read_csv("plain.csv", &other);
+    for (int k = 0; k < 3; k++) {
+        static const char *const from[] = {"20", "0", "1000"};
+        size_t size = 0;
+        expect_code(run_cli("match", "-q", "--enlarge-from", from[k], "-o", "e.json", "first.png", "second.png", NULL), 0);
+        char *text = read_bytes("e.json", &size);
+        expect_code(run_cli("match", "-q", "--enlarge-from", from[k], "-o", "e.csv", "first.png", "second.png", NULL), 0);
+        read_csv("e.csv", &found);
+        assert_non_null(strstr(text, k == 0 ? "\"enlarged\": true" : "\"enlarged\": false"));
+        assert_true(k == 0 ? found.count > other.count : found.count == other.count);
+        for (size_t n = 0; n < found.count; n++) {
+            const double *row = found.rows[n];
+            assert_true(transfer_error(row[X1], row[Y1], row[X2], row[Y2]) < 3);
+        }
+        free(text);
+    }
+    const outcome *result = run_cli("match", "--enlarge-from", "9", "--stretch", "1", "first.png", "second.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--enlarge-from changes nothing");
+    expect_code(run_cli("match", "--enlarge-from", "9", "--junctions1", "plain.csv", "first.png", "second.png", NULL), 2);
 }
 
 static void a_stretch_goes_with_images_alone(void **state)
@@ -409,11 +440,11 @@ static void a_stretch_goes_with_images_alone(void **state)
     expect_in(result, result->err, "square pixels");
 }
 
-/* Features take the place of either image or of both, with the same result; the images may be gone. */
+/* Features take the place of either image or of both, with the result of the images as they are; these may be gone. */
 static void features_take_the_place_of_images(void **state)
 {
     (void)state;
-    const outcome *result = run_cli("match", "-q", "first.png", "second.png", NULL);
+    const outcome *result = run_cli("match", "-q", "--stretch", "1", "first.png", "second.png", NULL);
     expect_code(result, 0);
     parse_csv(result->out, &found);
     assert_true(found.count > 10);
@@ -620,6 +651,10 @@ static void times_are_printed_on_request(void **state)
     const outcome *result = run_cli("match", "--time", "-q", "first.png", "second.png", NULL);
     expect_code(result, 0);
     for (int32_t stage = ASJ_STAGE_GRADIENT; stage <= ASJ_STAGE_ASSIGN; stage++)
+        expect_in(result, result->err, asj_stage_name(stage)); /* of all looks */
+    result = run_cli("match", "--time", "-q", "first.png", "second.png", "--region2", "0,0,320,240", NULL);
+    expect_code(result, 0);
+    for (int32_t stage = ASJ_STAGE_GRADIENT; stage <= ASJ_STAGE_ASSIGN; stage++)
         expect_in(result, result->err, asj_stage_name(stage));
     expect_in(result, result->err, "second.png: 320 x 240");
     expect_in(result, result->err, "reading");
@@ -670,6 +705,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_surest_junctions_give_a_warning),
         cmocka_unit_test(stretched_images_match_in_their_own_pixels),
         cmocka_unit_test(a_glancing_view_is_stretched_by_itself),
+        cmocka_unit_test(whole_images_are_enlarged_by_themselves),
         cmocka_unit_test(a_stretch_goes_with_images_alone),
         cmocka_unit_test(features_take_the_place_of_images),
         cmocka_unit_test(what_the_geometry_is_is_told),

@@ -3,6 +3,7 @@
  * themselves confirm them; otherwise the result is what there is without them. L-junctions are numbered as all of them are. */
 #include "core/bytes.h"
 #include "match/finer.h"
+#include "match/match_result.h"
 #include "room.h"
 #include "unit_test.h"
 
@@ -209,6 +210,77 @@ static void a_pose_is_kept(void **state)
     }
 }
 
+/* The images' own matches, and those of the left part of the enlarged ones. */
+static asj_status answer_part(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
+                              asj_match_result **result)
+{
+    const asj_detection *a = enlarged ? views[0].finer : views[0].plain, *b = enlarged ? views[1].finer : views[1].plain;
+    asj_junction *left = calloc(a->junction_count, sizeof *left);
+    size_t count = 0;
+    (void)data;
+    assert_non_null(left);
+    for (uint32_t k = 0; k < a->junction_count; k++)
+        if (!enlarged || a->junctions[k].x < 0.7 * WIDTH)
+            left[count++] = a->junctions[k];
+    const asj_status status = asj_match(context, &views[0].image, left, count, &views[1].image, b->junctions, b->junction_count,
+                                        options, result);
+    free(left);
+    return status;
+}
+
+/* How many of the matches have one of m's places, and how many both. */
+static void count_near(const asj_match_result *r, const asj_junction_match *m, uint32_t *one, uint32_t *both)
+{
+    *one = *both = 0;
+    for (uint32_t k = 0; k < r->match_count; k++) {
+        const asj_junction_match *f = &r->matches[k];
+        const int at1 = fabsf(f->x1 - m->x1) <= 4 && fabsf(f->y1 - m->y1) <= 4;
+        const int at2 = fabsf(f->x2 - m->x2) <= 4 && fabsf(f->y2 - m->y2) <= 4;
+        *one += (uint32_t)(at1 || at2);
+        *both += (uint32_t)(at1 && at2);
+    }
+}
+
+/* What the enlarged images do not see remains, as it is in the images; no place has another match for that. */
+static void what_only_the_images_have_remains(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_options options;
+    asj_match_options_init(&options);
+    asj_match_result *own = NULL, *part = NULL;
+    assert_int_equal(answer_part(context, &options, NULL, 0, &own), ASJ_OK);
+    assert_int_equal(answer_part(context, &options, NULL, 1, &part), ASJ_OK);
+    const uint32_t part_count = part->match_count, first = part->l_junction_count1;
+    assert_true(part_count > own->match_count);
+    uint32_t wanted = 0, kept = 0, one, both;
+    for (uint32_t k = 0; k < own->match_count; k++) {
+        count_near(part, &own->matches[k], &one, &both);
+        wanted += one == 0;
+    }
+    assert_int_equal(asj_finer_choose(context, &own, &part, 0), ASJ_OK);
+    assert_null(part);
+    assert_true(wanted > 3);
+    assert_int_equal(own->match_count, part_count + wanted);
+    for (uint32_t k = 0; k < own->match_count; k++) {
+        const asj_junction_match *m = &own->matches[k];
+        assert_true(k == 0 || own->matches[k - 1].distance <= m->distance);
+        assert_true(m->l1 < own->l_junction_count1 && m->l2 < own->l_junction_count2);
+        assert_true(m->x1 == own->l_junctions1[m->l1].x && m->y1 == own->l_junctions1[m->l1].y);
+        assert_int_equal(m->junction1, own->l_junctions1[m->l1].junction);
+        assert_int_equal(m->junction2, own->l_junctions2[m->l2].junction);
+        if (m->l1 < first)
+            continue;
+        kept++;
+        count_near(own, m, &one, &both);
+        assert_int_equal(one, 1); /* itself */
+        assert_true(m->junction1 > own->l_junctions1[first - 1].junction);
+    }
+    assert_int_equal(kept, wanted);
+    const asj_around around = asj_match_result_around(own);
+    assert_int_equal(around.place_count, own->match_count);
+    asj_match_result_free(&own);
+}
+
 /* --- features ---------------------------------------------------------------------------------------------------------------- */
 
 static void assert_same(const asj_match_result *a, const asj_match_result *b)
@@ -383,7 +455,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(more_matches),       cmocka_unit_test(only_what_is_confirmed), cmocka_unit_test(a_pose_is_kept),
         cmocka_unit_test(features_and_bytes), cmocka_unit_test(hostile_bytes),          cmocka_unit_test(out_of_memory),
-        cmocka_unit_test(colours_and_octaves_come_back),
+        cmocka_unit_test(colours_and_octaves_come_back), cmocka_unit_test(what_only_the_images_have_remains),
     };
     return cmocka_run_group_tests(tests, make_views, free_views);
 }

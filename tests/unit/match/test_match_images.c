@@ -174,12 +174,14 @@ static void a_page_that_lies_flat_matches_when_it_is_stretched(void **state)
     unit_context_free(&counters[1], &contexts[1]);
 }
 
+/* As they are, or stretched; not enlarged. */
 static asj_match_result *look(asj_context *context, const asj_image images[2], const asj_stretch *stretch, int32_t model)
 {
     asj_match_options options;
     asj_match_result *r = NULL;
     asj_match_options_init(&options);
     options.geometry.model = model;
+    options.enlarge_from = 0;
     assert_int_equal(asj_match_images(context, &images[0], &images[1], stretch, NULL, &options, &r), ASJ_OK);
     return r;
 }
@@ -216,6 +218,88 @@ static void automatically_the_first_look_that_is_enough_counts(void **state)
 
         found = look(context, unlike, &automatic, models[m]);
         assert_true(found->match_count == 0 && found->stretch[0] == 1 && found->stretch[1] == 1);
+        asj_match_result_free(&found);
+    }
+    unit_context_free(&counter, &context);
+}
+
+/* --- enlarged by themselves ---------------------------------------------------------------------------------------------------- */
+
+/* Whether a match of `r` has both places of m (2), one of them (1) or none. */
+static int places_of(const asj_match_result *r, const asj_junction_match *m)
+{
+    int most = 0;
+    for (uint32_t k = 0; k < r->match_count; k++) {
+        const asj_junction_match *f = &r->matches[k];
+        const int both = (fabsf(f->x1 - m->x1) <= 4 && fabsf(f->y1 - m->y1) <= 4) + (fabsf(f->x2 - m->x2) <= 4 && fabsf(f->y2 - m->y2) <= 4);
+        most = both > most ? both : most;
+    }
+    return most;
+}
+
+/* One answer of both looks: more matches than the images have, all of theirs that nothing else takes the place of, smallest distance
+ * first, with the numbers of their own L-junctions and junctions; also judged by the images' own geometry; with any number of
+ * threads. */
+static void automatically_images_are_enlarged_too(void **state)
+{
+    static const asj_stretch automatic = {0, 0};
+    static const int32_t models[] = {ASJ_GEOMETRY_NONE, ASJ_GEOMETRY_HOMOGRAPHY};
+    const pages *p = *state;
+    const asj_image images[2] = {p->images[0], p->images[0]};
+    unit_counter counters[2] = {{0}, {0}};
+    asj_context *contexts[2] = {unit_context(&counters[0], 1), unit_context(&counters[1], 2)};
+    for (size_t m = 0; m < UNIT_COUNT(models); m++) {
+        asj_match_result *plain = look(contexts[1], images, NULL, models[m]), *found[2] = {NULL, NULL};
+        asj_match_options options;
+        asj_match_options_init(&options);
+        options.geometry.model = models[m];
+        for (int n = 0; n < 2; n++)
+            assert_int_equal(asj_match_images(contexts[n], &images[0], &images[1], &automatic, NULL, &options, &found[n]), ASJ_OK);
+        expect_equal(found[0], found[1]);
+        const asj_match_result *r = found[0];
+        expect_consistent(r);
+        print_message("%u matches, enlarged too %u\n", (unsigned)plain->match_count, (unsigned)r->match_count);
+        assert_true(r->enlarged == 1 && plain->enlarged == 0 && 2 * r->match_count > 3 * plain->match_count);
+        for (uint32_t k = 0; k < plain->match_count; k++)
+            assert_true(places_of(r, &plain->matches[k]) > 0);
+        for (uint32_t k = 0; k < r->match_count; k++) {
+            const asj_junction_match *a = &r->matches[k];
+            assert_true(k == 0 || r->matches[k - 1].distance <= a->distance);
+            assert_int_equal(a->junction1, r->l_junctions1[a->l1].junction);
+            assert_int_equal(a->junction2, r->l_junctions2[a->l2].junction);
+        }
+        assert_int_equal(r->geometry.status, plain->geometry.status);
+        assert_memory_equal(r->geometry.matrix, plain->geometry.matrix, sizeof r->geometry.matrix);
+        for (int n = 0; n < 2; n++)
+            asj_match_result_free(&found[n]);
+        asj_match_result_free(&plain);
+    }
+    unit_context_free(&counters[0], &contexts[0]);
+    unit_context_free(&counters[1], &contexts[1]);
+}
+
+/* Who asks for octave -1, for one octave, for more matches than there are or for none of it gets what the images have. */
+static void images_are_not_enlarged_unasked(void **state)
+{
+    static const asj_stretch automatic = {0, 0};
+    const pages *p = *state;
+    const asj_image *image = &p->images[0];
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_detect_options detect_options;
+    asj_match_options options;
+    for (int k = 0; k < 4; k++) {
+        asj_match_result *plain = NULL, *found = NULL;
+        asj_detect_options_preset(&detect_options, ASJ_PRESET_MATCH);
+        asj_match_options_init(&options);
+        detect_options.octaves = k == 0 ? 1 : detect_options.octaves;
+        detect_options.first_octave = k == 1 ? -1 : 0;
+        options.enlarge_from = k == 2 ? 100000 : k == 3 ? 0 : options.enlarge_from;
+        assert_int_equal(asj_match_images(context, image, image, NULL, &detect_options, &options, &plain), ASJ_OK);
+        assert_int_equal(asj_match_images(context, image, image, &automatic, &detect_options, &options, &found), ASJ_OK);
+        expect_equal(plain, found);
+        assert_true(found->match_count >= 16 && found->enlarged == (k == 1));
+        asj_match_result_free(&plain);
         asj_match_result_free(&found);
     }
     unit_context_free(&counter, &context);
@@ -336,7 +420,7 @@ static void what_cannot_be_is_refused(void **state)
 {
     static const asj_stretch outside[] = {{0.4, 1}, {1, 8.5}, {NAN, 1}, {1, -1}, {INFINITY, 2}, {0, 1}, {3, 0}};
     const pages *p = *state;
-    const asj_stretch along = {1, 2}, most = {8, 8}, automatic = {0, 0};
+    const asj_stretch along = {1, 2}, most = {8, 8};
     unit_counter counter = {0};
     asj_context *context = unit_context(&counter, 1);
     asj_match_result *r = (asj_match_result *)&counter;
@@ -349,7 +433,6 @@ static void what_cannot_be_is_refused(void **state)
     options.geometry.model = ASJ_GEOMETRY_AUTO;
     options.geometry.find_focal = 1;
     assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &along, NULL, &options, &r), ASJ_ERROR_OPTION);
-    assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &automatic, NULL, &options, &r), ASJ_ERROR_OPTION);
     assert_int_equal(asj_match_images(context, NULL, &p->images[1], NULL, NULL, NULL, &r), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], NULL, NULL, NULL, NULL), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_match_images(NULL, &p->images[0], &p->images[1], NULL, NULL, NULL, &r), ASJ_ERROR_ARGUMENT);
@@ -357,6 +440,24 @@ static void what_cannot_be_is_refused(void **state)
     assert_int_equal(asj_match_images(context, &wide, &p->images[1], &most, NULL, NULL, &r), ASJ_ERROR_LIMIT);
     assert_int_equal(asj_match_images(context, &p->images[0], &empty, &along, NULL, NULL, &r), ASJ_ERROR_IMAGE);
     assert_null(r);
+    unit_context_free(&counter, &context);
+}
+
+/* Automatically a focal length is found for images as they are, although stretched ones match. */
+static void a_focal_length_is_of_square_pixels(void **state)
+{
+    static const asj_stretch automatic = {0, 0};
+    const pages *p = *state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_match_result *r = NULL;
+    asj_match_options options;
+    asj_match_options_init(&options);
+    options.geometry.model = ASJ_GEOMETRY_AUTO;
+    options.geometry.find_focal = 1;
+    assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &automatic, NULL, &options, &r), ASJ_OK);
+    assert_true(r->stretch[0] == 1 && r->stretch[1] == 1);
+    asj_match_result_free(&r);
     unit_context_free(&counter, &context);
 }
 
@@ -502,10 +603,13 @@ int main(void)
         cmocka_unit_test(as_they_are_it_is_what_two_calls_give),
         cmocka_unit_test(a_page_that_lies_flat_matches_when_it_is_stretched),
         cmocka_unit_test(automatically_the_first_look_that_is_enough_counts),
+        cmocka_unit_test(automatically_images_are_enlarged_too),
+        cmocka_unit_test(images_are_not_enlarged_unasked),
         cmocka_unit_test(a_homography_is_of_the_images_as_they_are),
         cmocka_unit_test(a_pose_is_found_in_enlarged_images),
         cmocka_unit_test(matrices_are_taken_back),
         cmocka_unit_test(what_cannot_be_is_refused),
+        cmocka_unit_test(a_focal_length_is_of_square_pixels),
         cmocka_unit_test(automatically_nothing_is_too_large),
         cmocka_unit_test(octave_minus_one_needs_a_witness_in_enlarged_images),
         cmocka_unit_test(progress_never_falls_and_the_caller_may_stop),
