@@ -36,8 +36,8 @@ typedef struct asj_match_options {
     int32_t descriptor;          /* ASJ_DESCRIPTOR_...; raw */
     int32_t normalise;           /* 1 = raw patches are brought to zero mean and unit norm. 1; paper 0 */
     int32_t patch_size;          /* samples along a side of a patch, a multiple of 4. 8 .. 24; 16 */
-    int32_t enlarge_from;        /* asj_match_images(), automatically: from so many matches on the images are looked at enlarged, too
-                                  * (octave -1); 0 = never. 0 .. 1000000; 8; paper 0 */
+    int32_t enlarge_from;        /* asj_match_images(), automatically: from so many matches on the images are looked at enlarged,
+                                  * too (octave -1); 0 = never. 0 .. 1000000; 8; paper 0 */
     double window_start;         /* a canonical patch reaches from here .. -1 .. 0; -0.25 */
     double window_end;           /* .. to here, in branch lengths. 0.25 .. 2; 1 */
     double patch_radius;         /* px: half a side of an induced patch. 4 .. 64; 16 */
@@ -130,7 +130,7 @@ typedef struct asj_match_result {
                                         * distance first */
     uint64_t rejected_count;
     double stretch[2];                 /* along x and y, how the images were looked at: asj_match_images(); 1, 1 = as they are */
-    uint64_t enlarged;                 /* 1 = the matches are those of the enlarged images, with junctions of octave -1
+    uint64_t enlarged;                 /* 1 = most matches are those of the enlarged images, with junctions of octave -1
                                         * (src/match/finer.c) */
     uint64_t reserved[1];
 } asj_match_result;
@@ -145,8 +145,8 @@ typedef struct asj_match_result {
  *
  * With junctions of octave -1 (asj_detect_options.first_octave) the images are matched without those first, and then with them as
  * if they were twice as large. The second result holds where it has more matches and three in ten of the first ones again, and
- * keeps a geometry, if there is one; else the first one does (src/match/finer.c). Junctions of octave -1 alone (octaves 1) have
- * no first ones to ask. Everything is in pixels of the images.
+ * keeps a geometry, if there is one, together with those of the first ones whose places no other match has; else the first one does
+ * (src/match/finer.c). Junctions of octave -1 alone (octaves 1) have no first ones to ask. Everything is in pixels of the images.
  *
  * image1, image2   views; only read, and only during the call
  * junctions1, 2    from asj_detect() or a file; may be NULL when the count is 0. Junctions with branches that differ in
@@ -184,13 +184,14 @@ typedef struct asj_stretch {
 /* From two images to their matches: asj_detect() and asj_match(), on both images stretched. Enlarged twice (2, 2), photographs of
  * up to some megapixels have about three times the matches, in three to eight times the time; a surface that is seen at a glancing
  * angle, like a magazine on a table, matches stretched across it (1, 3) where it did not at all (tests/accuracy/README.md).
- * Everything in the result is in pixels of the images as they are. Numbers of junctions are those of the detector in this call,
- * and the times those of all of it; result->stretch says how the images were looked at.
+ * Everything in the result is in pixels of the images as they are. Numbers of junctions are those of the detector in this call;
+ * where it has looked twice (result->enlarged), those of the images as they are, and their L-junctions, come after those of the
+ * enlarged ones. Times are those of all of it; result->stretch says how the images were looked at.
  *
  * stretch          NULL = as they are. Automatically (0, 0):
  *                  - as they are;
- *                  - where that gives options->enlarge_from matches, also with junctions of octave -1, which hold as asj_match() says
- *                    (result->enlarged), unless detect_options name another first octave, or one octave alone, or an image has
+ *                  - where that gives options->enlarge_from matches, also with junctions of octave -1, which hold as asj_match()
+ *                    says (result->enlarged), unless detect_options name another first octave, or one octave alone, or an image has
  *                    more than 2 megapixels. A geometry of the images judges these matches as well;
  *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together, also stretched
  *                    by 1, 3 and by 3, 1, unless rivals or a motion that stays open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the

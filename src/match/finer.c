@@ -136,9 +136,10 @@ static asj_status join(asj_context *context, asj_match_result *own, asj_match_re
 
 asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_match_result **finer, int32_t same_lists)
 {
-    uint8_t *found = asj_allocate(&context->memory, (*own)->match_count, sizeof *found);
+    const size_t count = (*own)->match_count;
+    uint8_t *found = asj_allocate(&context->memory, count, sizeof *found);
     asj_status status = found ? judge(context, *own, *finer)
-                              : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu matches", (unsigned long)(*own)->match_count);
+                              : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu matches", count);
     if (status == ASJ_OK)
         status = look_all_up(context, *own, *finer, found);
     if (status == ASJ_OK && holds(*own, *finer, found)) {

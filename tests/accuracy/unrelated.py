@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""Geometry on pairs of photographs that have nothing in common: none should be accepted.
+"""Pairs of photographs that have nothing in common: no geometry should be accepted, and nothing matched.
 
-    unrelated.py ASJ_CLI PAIRS [--limit N] [--every K] [--same NAME,NAME] [-- OPTIONS OF MATCH]
+    unrelated.py ASJ_CLI PAIRS [--limit N] [--every K] [--same NAME,NAME] [--whole] [-- OPTIONS OF MATCH]
 
 PAIRS holds folders with 1.png, 2.png and truth.json (K1 and K2, 3 x 3, where the cameras are known). Each image of a folder is
 paired with those of the folders after it, but for folders named by --same, which show one scene. Cameras are given where both are
-known, unless the options of match name a focal length. Prints what was accepted or ambiguous; exit code 1 when any was accepted.
+known, unless the options of match name a focal length. Features of every image are made once; with --whole, match gets the
+photographs themselves, and looks at them enlarged and stretched by itself. Prints what was accepted or ambiguous, or has matches
+where the options of match say --geometry none; exit code 1 when any was accepted.
 """
 
 import argparse
@@ -33,6 +35,7 @@ def main():
     parser.add_argument("--limit", type=int)
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--same", default="LePoint2,LePoint3,evd_mag")
+    parser.add_argument("--whole", action="store_true")
     words = sys.argv[1:]
     cut = words.index("--") if "--" in words else len(words)
     given = parser.parse_args(words[:cut])
@@ -42,25 +45,32 @@ def main():
     images = [(folder, which) for folder in folders for which in (1, 2)]
     chosen = [(a, b) for a, b in itertools.combinations(images, 2) if a[0] != b[0] and not {a[0].name, b[0].name} <= same]
     chosen = chosen[:: given.every][: given.limit]
-    ended, nearest, begin = collections.Counter(), [], time.monotonic()
+    ended, counts, begin = collections.Counter(), [], time.monotonic()
     with tempfile.TemporaryDirectory() as place:
-        for folder, which in {image for pair in chosen for image in pair}:
+        for folder, which in {image for pair in chosen for image in pair if not given.whole}:
             subprocess.run([given.cli, "detect", "-q", "--for", "matching", "-o", f"{place}/{folder.name}-{which}.asjf",
                             str(folder / f"{which}.png")], check=True)
         for pair in chosen:
-            files = [f"{place}/{folder.name}-{which}.asjf" for folder, which in pair]
+            if given.whole:
+                files = [str(folder / f"{which}.png") for folder, which in pair]
+            else:
+                files = [f"{place}/{folder.name}-{which}.asjf" for folder, which in pair]
             cameras = [camera(*image) for image in pair]
-            with_cameras = [f"--camera{k + 1}={cameras[k]}" for k in range(2)] if all(cameras) and "--focal" not in options else []
+            known = all(cameras) and not {"--focal", "none"} & set(options)
+            with_cameras = [f"--camera{k + 1}={cameras[k]}" for k in range(2)] if known else []
             out = subprocess.run([given.cli, "match", "-q", "-f", "json", "--geometry", "auto", *with_cameras, *options, *files],
                                  check=True, capture_output=True, text=True)
             found = json.loads(out.stdout)
-            status = found["geometry_status"]
+            status = found.get("geometry_status", "not asked")
             ended[status] += 1
-            if status in ("accepted", "ambiguous"):
+            count = len(found["matches"])
+            if status in ("accepted", "ambiguous") or (status == "not asked" and count):
                 name = " ".join(f"{folder.name}/{which}" for folder, which in pair)
-                print(f"{status}: {name} {found['geometry'] and found['geometry']['log10_nfa']}", flush=True)
-            nearest.append(len(found["matches"]))
-    print(f"{len(chosen)} pairs: {dict(ended)}; matches in all {sum(nearest)}; {time.monotonic() - begin:.0f} s")
+                geometry = found.get("geometry") or {}
+                print(f"{status}: {name} {count} matches {geometry.get('log10_nfa', '')}", flush=True)
+            counts.append(count)
+    matched = sum(count > 0 for count in counts)
+    print(f"{len(chosen)} pairs: {dict(ended)}; {matched} with matches, {sum(counts)} in all; {time.monotonic() - begin:.0f} s")
     return 1 if ended["accepted"] else 0
 
 

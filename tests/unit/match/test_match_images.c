@@ -223,7 +223,7 @@ static void automatically_the_first_look_that_is_enough_counts(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* --- enlarged by themselves ---------------------------------------------------------------------------------------------------- */
+/* --- enlarged by themselves -------------------------------------------------------------------------------------------------- */
 
 /* Whether a match of `r` has both places of m (2), one of them (1) or none. */
 static int places_of(const asj_match_result *r, const asj_junction_match *m)
@@ -231,15 +231,16 @@ static int places_of(const asj_match_result *r, const asj_junction_match *m)
     int most = 0;
     for (uint32_t k = 0; k < r->match_count; k++) {
         const asj_junction_match *f = &r->matches[k];
-        const int both = (fabsf(f->x1 - m->x1) <= 4 && fabsf(f->y1 - m->y1) <= 4) + (fabsf(f->x2 - m->x2) <= 4 && fabsf(f->y2 - m->y2) <= 4);
-        most = both > most ? both : most;
+        const int at1 = fabsf(f->x1 - m->x1) <= 4 && fabsf(f->y1 - m->y1) <= 4;
+        const int at2 = fabsf(f->x2 - m->x2) <= 4 && fabsf(f->y2 - m->y2) <= 4;
+        most = at1 + at2 > most ? at1 + at2 : most;
     }
     return most;
 }
 
-/* One answer of both looks: more matches than the images have, all of theirs that nothing else takes the place of, smallest distance
- * first, with the numbers of their own L-junctions and junctions; also judged by the images' own geometry; with any number of
- * threads. */
+/* One answer of both looks: more matches than the images have, all of theirs that nothing else takes the place of, smallest
+ * distance first, with the numbers of their own L-junctions and junctions; also judged by the images' own geometry; with any number
+ * of threads. */
 static void automatically_images_are_enlarged_too(void **state)
 {
     static const asj_stretch automatic = {0, 0};
