@@ -310,7 +310,8 @@ static int check_detector(const cli_match_arguments *arguments)
 /* Two whole images are looked at together. */
 static int looks_by_itself(const cli_match_arguments *arguments)
 {
-    int images = 1;
+    const int32_t matcher = arguments->match_preset < 0 ? arguments->preset : arguments->match_preset;
+    int images = matcher != ASJ_PRESET_PAPER; /* which has nothing of it */
     for (int v = 0; v < 2; v++)
         images = images && !arguments->junctions[v] && !arguments->regions[v].mask && arguments->regions[v].width == 0 &&
                  !asj_features_probe(arguments->images[v]);
