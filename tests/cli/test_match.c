@@ -393,6 +393,18 @@ static void a_glancing_view_is_stretched_by_itself(void **state)
         parse_csv(result->out, &other);
         assert_true(other.count >= 16 && found.count < 16);
     }
+    /* the paper has nothing of it */
+    for (int k = 0; k < 2; k++) {
+        result = run_cli("match", "--match-preset", "paper", "-o", k ? "as_it_is.csv" : "paper.csv", "flat1.png", "flat2.png",
+                         k ? "--stretch" : NULL, "1", NULL);
+        expect_code(result, 0);
+        assert_null(strstr(result->err, "looked at stretched"));
+    }
+    size_t size2 = 0;
+    char *paper = read_bytes("paper.csv", &size), *as_it_is = read_bytes("as_it_is.csv", &size2);
+    assert_string_equal(paper, as_it_is);
+    free(paper);
+    free(as_it_is);
 }
 
 /* Where they have matches enough, whole images are looked at enlarged too: more matches, of the same places within what soft and
