@@ -47,7 +47,7 @@ def test_segments(pair: tuple[asj.Features, asj.Features]) -> None:
 
 def test_stretched_images(scene: Scene) -> None:
     second = panels(shift=(6, 4))
-    plain, by_two = asj.match_images(scene, second), asj.match(asj.detect(scene), asj.detect(second))
+    plain, by_two = asj.match_images(scene, second, stretch=1), asj.match(asj.detect(scene), asj.detect(second))
     assert np.array_equal(plain.matches, by_two.matches) and not hasattr(plain, "features1")
     for stretch in (2, (1.0, 1.5)):
         found = asj.match_images(scene, second, stretch=stretch)
@@ -55,14 +55,23 @@ def test_stretched_images(scene: Scene) -> None:
         assert np.mean(np.linalg.norm(found.xy2 - found.xy1 - (6, 4), axis=1) < 1) > 0.9
         assert np.array_equal(found.xy1[:, 0], found.l_junctions1["x"][found.l_indices[:, 0]])
         assert found.stretch == (stretch if isinstance(stretch, tuple) else (stretch, stretch))
-    found = asj.match_images(scene, second, stretch="auto")
-    assert np.array_equal(plain.matches, found.matches) and found.stretch == (1, 1)
     with pytest.raises(asj.OptionError, match="stretch"):
         asj.match_images(scene, second, stretch=0.4)
     with pytest.raises(ValueError, match="of 0"):
         asj.match_images(scene, second, stretch=(0, 0))
     with pytest.raises(ValueError, match="'much'"):
         asj.match_images(scene, second, stretch="much")
+
+
+def test_enlarged_by_themselves(scene: Scene) -> None:
+    second = panels(shift=(6, 4))
+    plain, found = asj.match_images(scene, second, stretch=1), asj.match_images(scene, second)
+    assert found.enlarged and not plain.enlarged and found.stretch == (1, 1)
+    assert len(found) > len(plain)
+    assert np.mean(np.linalg.norm(found.xy2 - found.xy1 - (6, 4), axis=1) < 1) > 0.9
+    assert np.array_equal(found.xy1[:, 0], found.l_junctions1["x"][found.l_indices[:, 0]])
+    assert np.array_equal(found.matches, asj.match_images(scene, second, stretch="auto").matches)
+    assert np.array_equal(plain.matches, asj.match_images(scene, second, enlarge_from=0).matches)
 
 
 def test_nothing_in_common(scene: Scene) -> None:
