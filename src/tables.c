@@ -14,8 +14,10 @@ static void fill_reference(asj_tables *t)
     t->field = asj_field_reference;
     t->isotropic = asj_isotropic_reference;
     t->line = asj_line_reference;
+    t->arc = asj_arc_reference;
     t->scan = asj_scan_reference;
     t->strip = asj_strip_reference;
+    t->wedge = asj_wedge_reference;
     t->patch = asj_patch_reference;
     t->describe = asj_describe_reference;
     t->bound = asj_bound_reference;
@@ -24,8 +26,8 @@ static void fill_reference(asj_tables *t)
     t->gate = asj_gate_reference;
     t->ops = (asj_ops){
         .image = &t->image, .pyramid = &t->pyramid, .gradient = &t->gradient, .field = &t->field, .isotropic = &t->isotropic,
-        .line = &t->line, .scan = &t->scan, .strip = &t->strip, .patch = &t->patch, .describe = &t->describe,
-        .bound = &t->bound, .rank = &t->rank, .disc = &t->disc, .gate = &t->gate};
+        .line = &t->line, .arc = &t->arc, .scan = &t->scan, .strip = &t->strip, .wedge = &t->wedge, .patch = &t->patch,
+        .describe = &t->describe, .bound = &t->bound, .rank = &t->rank, .disc = &t->disc, .gate = &t->gate};
 }
 
 int asj_tables_has(int32_t simd)

@@ -8,7 +8,9 @@
 #include "detect/gradient.h"
 #include "detect/isotropic.h"
 #include "detect/line_sums.h"
+#include "detect/ray_walk.h"
 #include "detect/scan.h"
+#include "detect/blurred_wedge.h"
 #include "detect/strip.h"
 #include "match/disc.h"
 #include "match/describe.h"
@@ -24,8 +26,10 @@ typedef struct asj_tables {
     asj_field_ops field;
     asj_isotropic_ops isotropic;
     asj_line_ops line;
+    asj_arc_ops arc;
     asj_scan_ops scan;
     asj_strip_ops strip;
+    asj_wedge_ops wedge;
     asj_patch_ops patch;
     asj_describe_ops describe;
     asj_bound_ops bound;

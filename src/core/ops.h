@@ -14,8 +14,10 @@ typedef struct asj_ops {
     struct asj_field_ops *field;         /* detect/field.h */
     struct asj_isotropic_ops *isotropic; /* detect/isotropic.h */
     struct asj_line_ops *line;           /* detect/line_sums.h */
+    struct asj_arc_ops *arc;             /* detect/ray_walk.h */
     struct asj_scan_ops *scan;           /* detect/scan.h */
     struct asj_strip_ops *strip;         /* detect/strip.h */
+    struct asj_wedge_ops *wedge;         /* detect/blurred_wedge.h */
     struct asj_patch_ops *patch;         /* match/patch.h */
     struct asj_describe_ops *describe;   /* match/describe.h */
     struct asj_bound_ops *bound;         /* match/product_bound.h */

@@ -16,6 +16,8 @@
 #include "blurred_corner.h"
 #include "blurred_wedge.h"
 #include "core/angle.h"
+#include "core/context.h"
+#include "core/ops.h"
 #include "edge_width.h"
 
 #include <math.h>
@@ -146,7 +148,7 @@ static int step(equations *e, double blur, asj_wedge *w, double *moved)
 
 /* The corner around w, which is near it, and whose step the first sums tell; 0: there is none. e: of the round before the last
  * step. */
-static int find(const asj_frame *frame, const double lengths[2], asj_wedge *w, equations *e)
+static int find(const asj_wedge_ops *ops, const asj_frame *frame, const double lengths[2], asj_wedge *w, equations *e)
 {
     const asj_wedge start = *w;
     const double blur = start.p[BLUR];
@@ -154,7 +156,7 @@ static int find(const asj_frame *frame, const double lengths[2], asj_wedge *w, e
     for (int round = 0; round < ROUNDS && moved > SETTLED; round++) {
         const asj_wedge_window in = window_of(w, lengths, blur);
         asj_wedge_sums sums;
-        asj_wedge_add_up(frame, w, &in, &sums);
+        ops->add_up(frame, w, &in, &sums);
         if (!(sums.products[STEP][STEP] > 0))
             return 0;
         if (round == 0)
@@ -188,7 +190,7 @@ int asj_blurred_corner_is_sure(const asj_hypothesis *hypothesis)
     return hypothesis->explained >= SURE;
 }
 
-int asj_blurred_corner(const asj_frame *frame, asj_hypothesis *hypothesis)
+int asj_blurred_corner(const asj_context *context, const asj_frame *frame, asj_hypothesis *hypothesis)
 {
     const asj_hypothesis_branch *a = &hypothesis->branches[0], *b = &hypothesis->branches[1];
     const double sharper = fmin(a->width, b->width), softer = fmax(a->width, b->width);
@@ -207,7 +209,7 @@ int asj_blurred_corner(const asj_frame *frame, asj_hypothesis *hypothesis)
         equations e;
         if (!whole && (frame->octave <= 0 || fmax(branches[0].length, branches[1].length) <= most))
             break;
-        if (find(frame, lengths, &w, &e) && (whole || e.error <= (1 - SURE) * e.total))
+        if (find(context->ops->wedge, frame, lengths, &w, &e) && (whole || e.error <= (1 - SURE) * e.total))
             keep(&w, &e, first, hypothesis);
     }
     return hypothesis->explained > 0;

@@ -10,7 +10,7 @@
 /* For a hypothesis of two soft branches whose widths are known, lengths where they are: moves it, and turns the branches, to the
  * corner whose blurred gradient is most like that of the pixels around; says how much that explains. Returns 0, and changes nothing
  * else, when there is no such corner. */
-int asj_blurred_corner(const asj_frame *frame, asj_hypothesis *hypothesis);
+int asj_blurred_corner(const asj_context *context, const asj_frame *frame, asj_hypothesis *hypothesis);
 
 /* Whether it explains as much as chance does not. */
 int asj_blurred_corner_is_sure(const asj_hypothesis *hypothesis);

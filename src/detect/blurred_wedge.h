@@ -25,7 +25,11 @@ typedef struct asj_wedge_sums {
     double total, weight;
 } asj_wedge_sums;
 
-/* The window is around the corner. */
-void asj_wedge_add_up(const asj_frame *frame, const asj_wedge *wedge, const asj_wedge_window *window, asj_wedge_sums *sums);
+/* Operations (core/ops.h). */
+typedef struct asj_wedge_ops {
+    /* The window is around the corner. */
+    void (*add_up)(const asj_frame *frame, const asj_wedge *wedge, const asj_wedge_window *window, asj_wedge_sums *sums);
+} asj_wedge_ops;
+extern const asj_wedge_ops asj_wedge_reference;
 
 #endif

@@ -41,7 +41,7 @@ static void look_for_soft(const asj_detection_run *run, const asj_guess *guess, 
         return;
     asj_guess_restore(guess, &soft);
     asj_edge_widths(run->frame, &soft);
-    asj_blurred_corner(run->frame, &soft);
+    asj_blurred_corner(run->context, run->frame, &soft);
     if (asj_blurred_corner_is_sure(&soft) &&
         hypot(soft.x - soft.x0, soft.y - soft.y0) <= asj_locate_most_move(run->options, &soft) + SOFT_MOVE)
         *hypothesis = soft;

@@ -36,8 +36,9 @@
 
 /* d / r turned into a rotation: cos and sin in 2^-30. One table of them for all rays, since r is a whole number; beyond the table
  * the arc is straight to within 0.01 px. */
-static asj_arc_sample place(const asj_scan *scan, const asj_ray_direction *ray, int32_t r, int32_t d)
+static void place(const asj_scan *scan, const asj_ray_direction *ray, int32_t r, int32_t d, asj_arc *arc)
 {
+    const int32_t lane = d + scan->half_width;
     const int32_t size = d < 0 ? -d : d;
     const int in_table = r < ASJ_SCAN_TABLE_RADIUS;
     const int64_t c = in_table ? scan->arc_cosine[r][size] : (int64_t)1 << 30;
@@ -46,26 +47,24 @@ static asj_arc_sample place(const asj_scan *scan, const asj_ray_direction *ray, 
         s = -s;
     /* (cos a_d, sin a_d) = (c ux - s uy, c uy + s ux) */
     int64_t ex = (c * ray->ux - s * ray->uy) >> 30, ey = (c * ray->uy + s * ray->ux) >> 30;
-    asj_arc_sample out;
-    out.x = (ray->x + ((r * ex) >> 14) + 32768) >> 16;
-    out.y = (ray->y + ((r * ey) >> 14) + 32768) >> 16;
-    out.cosine = (int32_t)(ex >> 16);
-    out.sine = (int32_t)(ey >> 16);
-    return out;
+    arc->x[lane] = (int32_t)((ray->x + ((r * ex) >> 14) + 32768) >> 16);
+    arc->y[lane] = (int32_t)((ray->y + ((r * ey) >> 14) + 32768) >> 16);
+    arc->unit[lane][0] = (int16_t)(ex >> 16);
+    arc->unit[lane][1] = (int16_t)(ey >> 16);
 }
 
-void asj_ray_walk_samples(const asj_scan *scan, const asj_ray_walk *walk, int32_t r, asj_arc_sample *samples)
+static void place_arc(const asj_scan *scan, const asj_ray_direction *way, int32_t r, asj_arc *arc)
 {
-    for (int32_t i = 0; i <= 2 * scan->half_width; i++)
-        samples[i] = place(scan, &walk->way, r, i - scan->half_width);
+    for (int32_t d = -scan->half_width; d <= scan->half_width; d++)
+        place(scan, way, r, d, arc);
 }
 
 /* gamma~ of one local branch seen from the ray, in 1/256 standard deviations; *ahead tells whether it points along the ray. */
-static int32_t junctionness(const asj_scan *scan, asj_field_branch branch, const asj_arc_sample *at, int *ahead)
+static int32_t junctionness(const asj_scan *scan, asj_field_branch branch, const int16_t at[2], int *ahead)
 {
     const int16_t *unit = scan->unit[(branch.angle + 32) >> 6 & 1023];
-    const int32_t along = unit[0] * at->cosine + unit[1] * at->sine;
-    const int32_t across = unit[0] * at->sine - unit[1] * at->cosine;
+    const int32_t along = unit[0] * at[0] + unit[1] * at[1];
+    const int32_t across = unit[0] * at[1] - unit[1] * at[0];
     const int32_t gamma = ((abs(along) - abs(across)) >> 14) * branch.strength >> 14;
     *ahead = along > 0;
     return gamma > 0 ? gamma : 0;
@@ -87,24 +86,25 @@ static void closest(const asj_field_branch *list, uint16_t angle, int32_t *forwa
     *axial = nearest_axis % ASJ_FIELD_BRANCHES;
 }
 
-asj_arc_sums asj_ray_walk_sums(const asj_scan *scan, const asj_ray_walk *walk, const asj_arc_sample *samples,
-                               asj_field_branch (*branches)[ASJ_FIELD_BRANCHES])
+static void sum_arc(const asj_scan *scan, const asj_ray_direction *way, const asj_arc *arc, asj_arc_branches branches,
+                    asj_arc_sums *to)
 {
     asj_arc_sums sums = {0, 0, 0};
     for (int32_t i = 0; i <= 2 * scan->half_width; i++) {
         const asj_field_branch *list = branches[i];
         int32_t forward, axial;
         int ahead, ignored;
-        closest(list, walk->way.angle, &forward, &axial);
-        const int32_t gamma = junctionness(scan, list[forward], &samples[i], &ahead);
+        closest(list, way->angle, &forward, &axial);
+        const int32_t gamma = junctionness(scan, list[forward], arc->unit[i], &ahead);
         sums.forward += gamma;
         sums.ahead += ahead ? gamma : 0;
-        sums.axial += axial == forward ? gamma : junctionness(scan, list[axial], &samples[i], &ignored);
+        sums.axial += axial == forward ? gamma : junctionness(scan, list[axial], arc->unit[i], &ignored);
     }
     sums.axial = scan->axial ? sums.axial : 0;
-    return sums;
+    *to = sums;
 }
 
+const asj_arc_ops asj_arc_reference = {.place = place_arc, .sum = sum_arc};
 
 /* Takes the step to radius r; 0 when the ray ends. */
 static int advance(const asj_scan *scan, const asj_arc_sums *sums, int32_t bridge, int32_t r, asj_ray_progress *p, asj_ray *ray)

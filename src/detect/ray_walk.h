@@ -17,11 +17,16 @@ typedef struct asj_ray_direction {
     uint16_t angle; /* 1/65536 of a turn */
 } asj_ray_direction;
 
-/* A sample of an arc: its pixel, and the direction a_d to it, 1 = 16384. */
-typedef struct asj_arc_sample {
-    int64_t x, y;
-    int32_t cosine, sine;
-} asj_arc_sample;
+#define ASJ_ARC_LANES 8 /* places for the samples of an arc, at most ASJ_MAX_ARC of which are used */
+
+/* The samples of an arc: their pixels, and cosine and sine of the directions a_d to them, 1 = 16384. */
+typedef struct asj_arc {
+    int32_t x[ASJ_ARC_LANES], y[ASJ_ARC_LANES];
+    int16_t unit[ASJ_ARC_LANES][2];
+} asj_arc;
+
+/* The local junctions there. */
+typedef asj_field_branch asj_arc_branches[ASJ_ARC_LANES][ASJ_FIELD_BRANCHES];
 
 /* Sums over the arc at one radius. */
 typedef struct asj_arc_sums {
@@ -48,12 +53,16 @@ void asj_ray_walk_start(asj_ray *ray, asj_ray_walk *walk);
 /* The radius of the next arc to sum. */
 int32_t asj_ray_walk_next(const asj_scan *scan, const asj_frame *frame, asj_ray_walk *walk);
 
-/* The samples of the arc at radius r, 2 half_width + 1 of them. */
-void asj_ray_walk_samples(const asj_scan *scan, const asj_ray_walk *walk, int32_t r, asj_arc_sample *samples);
-
-/* The sums of an arc; branches[i]: the local junction at sample i, all of strength 0 outside the image. */
-asj_arc_sums asj_ray_walk_sums(const asj_scan *scan, const asj_ray_walk *walk, const asj_arc_sample *samples,
-                               asj_field_branch (*branches)[ASJ_FIELD_BRANCHES]);
+/* Operations (core/ops.h). */
+typedef struct asj_arc_ops {
+    /* The samples of the arc at radius r, 2 half_width + 1 of them; other places may be written to. */
+    void (*place)(const asj_scan *scan, const asj_ray_direction *way, int32_t r, asj_arc *arc);
+    /* The sums of an arc; branches[i]: the local junction at sample i, all of strength 0 outside the image and in places that are
+     * not used. */
+    void (*sum)(const asj_scan *scan, const asj_ray_direction *way, const asj_arc *arc, asj_arc_branches branches,
+                asj_arc_sums *sums);
+} asj_arc_ops;
+extern const asj_arc_ops asj_arc_reference;
 
 /* Takes the arc that asj_ray_walk_next() asked for; 0 when the ray ends, whose lengths are set then. */
 int asj_ray_walk_take(const asj_scan *scan, const asj_arc_sums *sums, asj_ray_walk *walk);

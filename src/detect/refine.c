@@ -85,7 +85,7 @@ void asj_refine(const asj_context *context, const asj_frame *frame, const asj_de
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         follow_line(context, frame, hypothesis, &hypothesis->branches[i]);
     asj_locate_meet(frame, options, hypothesis);
-    asj_blurred_corner(frame, hypothesis);
+    asj_blurred_corner(context, frame, hypothesis);
 }
 
 /* The line over the whole branch, roughly: guessed over parts that grow from one at whose end it is known to a pixel, and once more

@@ -14,7 +14,7 @@ static void orient(const asj_detection_run *run, asj_hypothesis *hypothesis)
     if (!asj_detection_run_is_coarse(run))
         return;
     asj_edge_widths(run->frame, hypothesis);
-    asj_blurred_corner(run->frame, hypothesis);
+    asj_blurred_corner(run->context, run->frame, hypothesis);
 }
 
 asj_status asj_step_orient(asj_detection_run *run)

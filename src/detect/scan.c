@@ -51,8 +51,8 @@ void asj_scan_prepare(const asj_detect_options *options, const asj_field *field,
 typedef struct group {
     int32_t count;
     asj_ray_walk walks[GROUP];
-    asj_arc_sample samples[GROUP][ASJ_MAX_ARC];
-    asj_field_branch branches[GROUP][ASJ_MAX_ARC][ASJ_FIELD_BRANCHES];
+    asj_arc arcs[GROUP];
+    asj_arc_branches branches[GROUP];
     /* pixels that the cache does not hold, where their branches are wanted, and the branches */
     int32_t missing;
     asj_pixel pixels[GROUP * ASJ_MAX_ARC];
@@ -63,6 +63,7 @@ typedef struct group {
 /* What a thread follows rays with. */
 typedef struct follower {
     const asj_field_ops *ops;
+    const asj_arc_ops *arc;
     const asj_scan *scan;
     const asj_frame *frame;
     size_t thread;
@@ -72,14 +73,13 @@ typedef struct follower {
 } follower;
 
 /* The branches at a sample, now or when those that are missing are computed. */
-static void look_up(const follower *f, const asj_arc_sample *at, asj_field_branch *branches)
+static void look_up(const follower *f, asj_pixel pixel, asj_field_branch *branches)
 {
     group *g = f->rays;
-    if (at->x < 0 || at->y < 0 || at->x >= f->frame->width || at->y >= f->frame->height) {
+    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= f->frame->width || pixel.y >= f->frame->height) {
         memset(branches, 0, ASJ_FIELD_BRANCHES * sizeof *branches);
         return;
     }
-    const asj_pixel pixel = {(int32_t)at->x, (int32_t)at->y};
     if (asj_scan_cache_get(f->scan->cache, f->thread, pixel, branches))
         return;
     g->pixels[g->missing] = pixel;
@@ -104,13 +104,15 @@ static void advance_group(const follower *f)
     group *g = f->rays;
     int32_t left = 0;
     for (int32_t i = 0; i < g->count; i++) {
-        asj_ray_walk_samples(scan, &g->walks[i], asj_ray_walk_next(scan, f->frame, &g->walks[i]), g->samples[i]);
+        const asj_arc *arc = &g->arcs[i];
+        f->arc->place(scan, &g->walks[i].way, asj_ray_walk_next(scan, f->frame, &g->walks[i]), &g->arcs[i]);
         for (int32_t d = 0; d <= 2 * scan->half_width; d++)
-            look_up(f, &g->samples[i][d], g->branches[i][d]);
+            look_up(f, (asj_pixel){arc->x[d], arc->y[d]}, g->branches[i][d]);
     }
     compute_missing(f);
     for (int32_t i = 0; i < g->count; i++) {
-        const asj_arc_sums sums = asj_ray_walk_sums(scan, &g->walks[i], g->samples[i], g->branches[i]);
+        asj_arc_sums sums;
+        f->arc->sum(scan, &g->walks[i].way, &g->arcs[i], g->branches[i], &sums);
         if (asj_ray_walk_take(scan, &sums, &g->walks[i]))
             g->walks[left++] = g->walks[i];
     }
@@ -145,6 +147,8 @@ static void follow_part(const follower *f, const asj_part *part, size_t *next, s
     const int32_t most = most_at_once(threads, count);
     group *g = f->rays;
     g->count = g->missing = 0;
+    memset(g->arcs, 0, sizeof g->arcs); /* places that are not used */
+    memset(g->branches, 0, sizeof g->branches);
     for (int more = 1; more || g->count > 0;) {
         while (more && g->count < most) {
             const size_t i = take_ray(next, threads, f->thread, count);
@@ -182,8 +186,8 @@ static void follow_some(const void *data, const asj_part *part)
     const job *j = data;
     for (int64_t i = part->first; i < part->end; i++) {
         const size_t own = (size_t)i;
-        const follower f = {j->context->ops->field, j->scan, j->frame, own, j->w->scratch + own * asj_field_scratch(j->scan->field),
-                            &j->w->groups[own], j->watch};
+        const follower f = {j->context->ops->field, j->context->ops->arc, j->scan, j->frame, own,
+                            j->w->scratch + own * asj_field_scratch(j->scan->field), &j->w->groups[own], j->watch};
         follow_part(&f, part, j->w->next, j->threads, j->rays, j->count);
     }
 }

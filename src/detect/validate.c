@@ -204,7 +204,8 @@ static int has_moved_far(const asj_detect_options *options, const asj_hypothesis
 
 /* Where the branches that are left meet: one that was none should not say where the junction is. Of soft ones the lines do not say
  * it. Not where the strip does not judge: what goes there are twins and frames. */
-static void meet_again(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
+static void meet_again(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                       asj_hypothesis *hypothesis)
 {
     const asj_hypothesis before = *hypothesis;
     int soft = 0, worse = 0;
@@ -213,7 +214,7 @@ static void meet_again(const asj_frame *frame, const asj_detect_options *options
     if (!options->strip_test || options->refinement != ASJ_REFINE_LINE_FIT)
         return;
     if (soft)
-        asj_blurred_corner(frame, hypothesis);
+        asj_blurred_corner(context, frame, hypothesis);
     else
         worse = !asj_locate_meet(frame, options, hypothesis);
     worse |= has_moved_far(options, hypothesis);
@@ -243,7 +244,7 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
         return;
     }
     if (hypothesis->branch_count < count)
-        meet_again(frame, options, hypothesis);
+        meet_again(context, frame, options, hypothesis);
     if (is_unsure(frame, options, hypothesis))
         hypothesis->branch_count = 0;
     for (int32_t i = 1; i < hypothesis->branch_count; i++) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Whole-image operations on lists: rays (scan_operation.c), patches and partners (match_operations.c). As operations.h has them. */
+/* Whole-image operations on lists: rays (scan_operation.c), patches and partners (match_operations.c). As operations.h has them.
+ * And what has a file of its own. */
 #ifndef ASJ_TESTS_PARITY_MORE_OPERATIONS_H
 #define ASJ_TESTS_PARITY_MORE_OPERATIONS_H
 
@@ -7,6 +8,10 @@
 
 size_t rays_size(const subject *s);
 asj_status run_rays(asj_context *context, const subject *s, uint16_t *scratch, void *output);
+
+/* The sums of a blurred wedge (wedge_operation.c). */
+size_t wedge_size(const subject *s);
+asj_status run_wedge(asj_context *context, const subject *s, uint16_t *scratch, void *output);
 
 /* Canonical patches of random frames, and which of them can be used. */
 size_t patches_size(const subject *s);

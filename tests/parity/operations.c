@@ -335,6 +335,7 @@ const operation operations[] = {
     {"line sums", 0, line_sums_size, one_run, NULL, run_line_sums},
     {"line profile", 0, line_profile_size, one_run, NULL, run_line_profile},
     {"strip", 0, strip_size, one_run, NULL, run_strip},
+    {"wedge", 0, wedge_size, one_run, NULL, run_wedge},
     {"blur row", 0, blur_size, one_line, NULL, run_blur},
     {"pyramid samples", 0, samples_size, one_run, NULL, run_samples},
     {"discs", 0, discs_size, one_run, NULL, run_discs},

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Compiled with -mavx2; called only where the processor has it. */
 #include "avx2_vectors.h" /* before kernels.h */
+#include "detect/blurred_wedge_sums.h"
 #include "simd/kernels.h"
+#include "arcs.h"
 #include "colour.h"
 #include "discs.h"
 #include "lines.h"
@@ -17,7 +19,10 @@ void asj_fill_avx2(const asj_ops *ops)
     ops->pyramid->sample = pyramid_sample_avx2;
     ops->line->sums = line_sums_avx2;
     ops->line->profile = line_profile_avx2;
+    ops->arc->place = place_arc_avx2;
+    ops->arc->sum = sum_arc_avx2;
     ops->strip->sums = strip_sums_avx2;
+    ops->wedge->add_up = wedge_add_up;
     ops->patch->levels = patch_levels_avx2;
     ops->patch->normalise = patch_normalise_avx2;
     ops->disc->compare = disc_compare_avx2;

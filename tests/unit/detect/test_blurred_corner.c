@@ -45,7 +45,7 @@ static int find(synth_scene *scene, double blur, double noise, asj_hypothesis *h
     memset(&frame, 0, sizeof frame);
     unit_frame_of(context, scene, blur, noise, NULL, &frame);
     frame.octave = 1; /* as in a coarse one */
-    const int found = asj_blurred_corner(&frame, h);
+    const int found = asj_blurred_corner(context, &frame, h);
     asj_frame_free(&context->memory, &frame);
     unit_context_free(&counter, &context);
     return found;
@@ -92,7 +92,7 @@ static void test_errors_are_as_told(void **state)
         unit_frame(context, &image, NULL, &frame);
         frame.octave = 1;
         asj_hypothesis h = start_of(30, opening, 2);
-        assert_int_equal(asj_blurred_corner(&frame, &h), 1);
+        assert_int_equal(asj_blurred_corner(context, &frame, &h), 1);
         square[0] += (pow(h.x - 30.3, 2) + pow(h.y - 28.6, 2)) / 2;
         told[0] += h.location_variance;
         for (int i = 0; i < 2; i++) {

@@ -9,8 +9,12 @@
  * Where the edge is far from its beginning and the other one is nowhere near, N = 1 and df/dt = 0: everything is along n, but for
  * the turn of n, and in proportion to f. Most pixels of long bands are such.
  *
- * Pixels are collected and worked on BATCH at a time, in single precision, in loops that compilers make vectors of. Sums have LANES
- * parts, which are added at the end: the same bits with any length of vectors. */
+ * Pixels are collected and worked on BATCH at a time, in single precision, in loops that compilers make vectors of. Sums have PARTS
+ * parts, which are added at the end: the same bits with any length of vectors. So this is compiled once as the reference
+ * (blurred_wedge_sums.c) and once more for each instruction set with longer vectors that is worth it (simd). */
+#ifndef ASJ_SRC_BLURRED_WEDGE_SUMS_H
+#define ASJ_SRC_BLURRED_WEDGE_SUMS_H
+
 #include "blurred_wedge.h"
 
 #include <math.h>
@@ -18,7 +22,7 @@
 
 #define NOTHING 4.0f /* standard deviations from where on a normal distribution is 0 or 1 */
 #define BATCH 32
-#define LANES 8
+#define PARTS 8
 
 enum {
     X = ASJ_WEDGE_X,
@@ -30,46 +34,46 @@ enum {
 };
 
 /* Pixels, from that of the corner; twice what is seen there; their weights, unless these follow from where they are. */
-typedef struct batch {
+typedef struct wedge_pixels {
     int32_t count;
     int32_t x[BATCH], y[BATCH], seen_x[BATCH], seen_y[BATCH];
     float weight[BATCH];
-} batch;
+} wedge_pixels;
 
 /* x, y: the pixel of the corner. `plain`: px along an edge from where on its band has only this edge. */
-typedef struct work {
+typedef struct wedge_work {
     const asj_frame *frame;
     const asj_wedge *wedge;
     const asj_wedge_window *in;
     int32_t x, y;
     float part_x, part_y; /* of the corner, from its pixel */
     double plain;
-    batch pixels;         /* anywhere */
-    batch far;            /* of the band in turn, where it is plain */
+    wedge_pixels pixels;         /* anywhere */
+    wedge_pixels far;            /* of the band in turn, where it is plain */
     asj_wedge_sums *to;
-} work;
+} wedge_work;
 
-static double add_lanes(const float sum[LANES])
+static double add_parts(const float sum[PARTS])
 {
     return (double)(((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7])));
 }
 
 static double dot(const float *a, const float *b, int32_t count)
 {
-    float sum[LANES] = {0};
-    for (int32_t i = 0; i < count; i += LANES)
-        for (int32_t lane = 0; lane < LANES; lane++)
+    float sum[PARTS] = {0};
+    for (int32_t i = 0; i < count; i += PARTS)
+        for (int32_t lane = 0; lane < PARTS; lane++)
             sum[lane] += a[i + lane] * b[i + lane];
-    return add_lanes(sum);
+    return add_parts(sum);
 }
 
 static double total(const float *a)
 {
-    float sum[LANES] = {0};
-    for (int32_t i = 0; i < BATCH; i += LANES)
-        for (int32_t lane = 0; lane < LANES; lane++)
+    float sum[PARTS] = {0};
+    for (int32_t i = 0; i < BATCH; i += PARTS)
+        for (int32_t lane = 0; lane < PARTS; lane++)
             sum[lane] += a[i + lane];
-    return add_lanes(sum);
+    return add_parts(sum);
 }
 
 /* 1 where a <= b, else 0: without a comparison, which compilers may make a jump of. */
@@ -102,7 +106,8 @@ static inline float normal(float z, float density)
 
 /* What one edge adds to the gradient of the pixels, its components one behind the other, and to the changes of it. `turn`: those
  * with its angle. */
-static void add_edge(const work *w, int edge, const batch *restrict p, float (*restrict d)[2 * BATCH], float *restrict turn)
+static void add_edge(const wedge_work *w, int edge, const wedge_pixels *restrict p, float (*restrict d)[2 * BATCH],
+                     float *restrict turn)
 {
     const float ux = (float)w->in->ux[edge], uy = (float)w->in->uy[edge], sign = edge == 0 ? 1 : -1;
     const float b = (float)w->wedge->p[BLUR], inverse = 1 / b, part_x = w->part_x, part_y = w->part_y;
@@ -127,7 +132,7 @@ static void add_edge(const work *w, int edge, const batch *restrict p, float (*r
 }
 
 /* Pixels without weight fill the batch. */
-static void fill(batch *p)
+static void fill(wedge_pixels *p)
 {
     for (int32_t i = p->count; i < BATCH; i++) {
         p->x[i] = p->y[i] = p->seen_x[i] = p->seen_y[i] = 0;
@@ -136,9 +141,9 @@ static void fill(batch *p)
     p->count = 0;
 }
 
-static void add_pixels(work *w)
+static void add_pixels(wedge_work *w)
 {
-    batch *p = &w->pixels;
+    wedge_pixels *p = &w->pixels;
     asj_wedge_sums *to = w->to;
     float d[PARAMETERS][2 * BATCH], weighted[2 * BATCH], seen[2 * BATCH], by_weight[2 * BATCH];
     fill(p);
@@ -166,12 +171,12 @@ static void add_pixels(work *w)
 
 /* A plain stretch: the edge alone. In terms of f across, its turn, its widening and f itself, which the parameters change by
  * (across uy) n, -(across ux) n, turned n - f u, wider n and f n. */
-static void add_far(work *w, int edge)
+static void add_far(wedge_work *w, int edge)
 {
     const double ux = w->in->ux[edge], uy = w->in->uy[edge];
     const float fx = (float)ux, fy = (float)uy, inverse = (float)(1 / w->wedge->p[BLUR]), sign = edge == 0 ? 1 : -1;
     const float part_x = w->part_x, part_y = w->part_y, last = (float)w->in->last[edge], narrow = (float)(1 / w->in->across);
-    batch *p = &w->far;
+    wedge_pixels *p = &w->far;
     asj_wedge_sums *to = w->to;
     float across[BATCH], turned[BATCH], wider[BATCH], f[BATCH], by_across[BATCH], by_turned[BATCH], by_wider[BATCH], by_f[BATCH];
     float along_n[BATCH], along_u[BATCH], weights[BATCH], squares[BATCH];
@@ -225,7 +230,7 @@ static void add_far(work *w, int edge)
 }
 
 /* Returns whether the batch is full. */
-static inline int put(const work *w, int32_t x, int32_t y, float weight, batch *p)
+static inline int put(const wedge_work *w, int32_t x, int32_t y, float weight, wedge_pixels *p)
 {
     const uint16_t *at = w->frame->gray + y * w->frame->stride + x;
     const int32_t i = p->count++;
@@ -250,7 +255,7 @@ static void pixels_between(double from, double to, int32_t size, int32_t *first,
     *last = (int32_t)floor(fmax(fmin(to, size - 2), 0));
 }
 
-static void add_disc(work *w)
+static void add_disc(wedge_work *w)
 {
     const asj_wedge_window *in = w->in;
     int32_t left, right, top, bottom;
@@ -264,7 +269,7 @@ static void add_disc(work *w)
         }
 }
 
-static void add_pixel_of_band(work *w, int edge, int32_t x, int32_t y)
+static void add_pixel_of_band(wedge_work *w, int edge, int32_t x, int32_t y)
 {
     const asj_wedge_window *in = w->in;
     const double ux = in->ux[edge], uy = in->uy[edge], dx = x - in->x, dy = y - in->y;
@@ -277,7 +282,7 @@ static void add_pixel_of_band(work *w, int edge, int32_t x, int32_t y)
 }
 
 /* A line of pixels across a band, between (x, y) and the end, by one or the other axis. */
-static void add_line_of_band(work *w, int edge, int by_x, int32_t line, int32_t from, int32_t until)
+static void add_line_of_band(wedge_work *w, int edge, int by_x, int32_t line, int32_t from, int32_t until)
 {
     const asj_wedge_window *in = w->in;
     const double across = by_x ? in->uy[edge] : in->ux[edge], along = by_x ? in->ux[edge] : in->uy[edge];
@@ -293,7 +298,7 @@ static void add_line_of_band(work *w, int edge, int by_x, int32_t line, int32_t 
 }
 
 /* What a band adds to the disc. It is walked by the axis that it is longer on. */
-static void add_band(work *w, int edge)
+static void add_band(wedge_work *w, int edge)
 {
     const asj_wedge_window *in = w->in;
     const double ux = in->ux[edge], uy = in->uy[edge], last = in->last[edge];
@@ -315,7 +320,7 @@ static void add_band(work *w, int edge)
 
 /* From where on the bands are plain. A place of one, t px along it and at most `across` beside it, is at least t sin - across cos
  * beside the other edge, and where that opens by more than a right angle t cos - across sin behind its beginning. */
-static void set_plain(work *w)
+static void set_plain(wedge_work *w)
 {
     const asj_wedge_window *in = w->in;
     const double reach = NOTHING * w->wedge->p[BLUR], cosine = in->ux[0] * in->ux[1] + in->uy[0] * in->uy[1];
@@ -325,9 +330,9 @@ static void set_plain(work *w)
     w->plain = fmax(fmax(reach, in->reach), fmin(beside, behind));
 }
 
-void asj_wedge_add_up(const asj_frame *frame, const asj_wedge *wedge, const asj_wedge_window *window, asj_wedge_sums *sums)
+static void wedge_add_up(const asj_frame *frame, const asj_wedge *wedge, const asj_wedge_window *window, asj_wedge_sums *sums)
 {
-    work w;
+    wedge_work w;
     w.frame = frame;
     w.wedge = wedge;
     w.in = window;
@@ -345,3 +350,5 @@ void asj_wedge_add_up(const asj_frame *frame, const asj_wedge *wedge, const asj_
     if (w.pixels.count > 0)
         add_pixels(&w);
 }
+
+#endif
