@@ -62,10 +62,24 @@ int asj_memory_allocator(const asj_context_options *options, asj_allocator *allo
 
 #define CALLS_KEPT 8 /* calls that a block may be of no use to before it is given back */
 
+/* Of smaller blocks, two thirds of the pages that a first image touches, those that are kept share large pages: of 4096 bytes each
+ * takes 1.2 us here, 2 MB of them 630 us, and as one page 30. What is given back of a shelf is not used again before all of it is,
+ * so there are few. Not with an allocator of the caller's, who knows better. */
+#define MOST_SHELVES 4
+#define LEAST_ON_SHELF 16384u           /* bytes */
+#define MOST_ON_SHELF (LARGE_PAGE / 2)
+
+typedef struct asj_shelf {
+    struct asj_shelf *next;
+    size_t used;   /* bytes from its beginning on */
+    size_t blocks; /* that have not been given back */
+} shelf;
+
 /* Before each aligned block stands what is needed to release and to count it. */
 typedef struct asj_spare {
     void *start;
     size_t bytes;
+    shelf *on;              /* NULL: a block of the allocator's */
     struct asj_spare *next; /* of a block that is kept */
     uint64_t call;          /* that released it */
 } header;
@@ -82,10 +96,61 @@ static size_t size_of(const header *head)
     return (size_t)((char *)head->start + head->bytes - (const char *)(head + 1));
 }
 
+static void count(asj_memory *memory, size_t bytes)
+{
+    memory->now += bytes;
+    if (memory->now > memory->peak)
+        memory->peak = memory->now;
+}
+
+/* A block of a shelf has been given back. */
+static void leave_shelf(asj_memory *memory, shelf *s)
+{
+    shelf **link = &memory->shelves;
+    if (--s->blocks > 0)
+        return;
+    while (*link != s)
+        link = &(*link)->next;
+    *link = s->next;
+    memory->now -= LARGE_PAGE;
+    memory->allocator.release(memory->allocator.user, s);
+}
+
+/* Room for a block, or NULL. */
+static char *take_from_shelf(asj_memory *memory, size_t bytes, shelf **on)
+{
+    const size_t room = (bytes + ASJ_ALIGNMENT - 1) / ASJ_ALIGNMENT * ASJ_ALIGNMENT;
+    size_t shelves = 0;
+    *on = NULL;
+    if (!memory->open || memory->allocator.allocate != allocate_default || bytes < LEAST_ON_SHELF || bytes > MOST_ON_SHELF)
+        return NULL;
+    for (shelf *s = memory->shelves; s && !*on; s = s->next, shelves++)
+        *on = LARGE_PAGE - s->used >= room ? s : NULL;
+    if (!*on && shelves < MOST_SHELVES) {
+        *on = memory->allocator.allocate(memory->allocator.user, LARGE_PAGE);
+        if (!*on)
+            return NULL;
+        **on = (shelf){memory->shelves, ASJ_ALIGNMENT, 0};
+        memory->shelves = *on;
+        count(memory, LARGE_PAGE);
+    }
+    if (!*on)
+        return NULL;
+    char *start = (char *)*on + (*on)->used;
+    (*on)->used += room;
+    (*on)->blocks++;
+    return start;
+}
+
 static void give_back(asj_memory *memory, header *head)
 {
-    memory->now -= head->bytes;
+    shelf *on = head->on;
     ALLOW(block_of(head), size_of(head));
+    if (on) {
+        leave_shelf(memory, on);
+        return;
+    }
+    memory->now -= head->bytes;
     memory->allocator.release(memory->allocator.user, head->start);
 }
 
@@ -138,7 +203,10 @@ static void *take_new(asj_memory *memory, size_t bytes)
 {
     if (memory->open)
         drop_outgrown(memory, bytes);
-    char *start = memory->allocator.allocate(memory->allocator.user, bytes);
+    shelf *on;
+    char *start = take_from_shelf(memory, bytes, &on);
+    if (!start)
+        start = memory->allocator.allocate(memory->allocator.user, bytes);
     if (!start && memory->spare) {
         trim(memory, UINT64_MAX);
         start = memory->allocator.allocate(memory->allocator.user, bytes);
@@ -147,10 +215,9 @@ static void *take_new(asj_memory *memory, size_t bytes)
         return NULL;
     const uintptr_t address = (uintptr_t)(start + EXTRA) & ~(uintptr_t)(ASJ_ALIGNMENT - 1);
     header *head = (header *)(void *)(start + (address - (uintptr_t)start)) - 1;
-    *head = (header){start, bytes, NULL, 0};
-    memory->now += bytes;
-    if (memory->now > memory->peak)
-        memory->peak = memory->now;
+    *head = (header){start, bytes, on, NULL, 0};
+    if (!on)
+        count(memory, bytes);
     return block_of(head);
 }
 

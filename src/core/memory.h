@@ -11,6 +11,7 @@ typedef struct asj_memory {
     struct asj_spare *spare; /* released blocks that are kept */
     int32_t open;            /* asj_memory_open() less asj_memory_close() */
     uint64_t call;           /* how often it was opened */
+    struct asj_shelf *shelves; /* large pages that smaller blocks share */
 } asj_memory;
 
 /* The allocator that the options ask for; malloc() and free() when they name none or are NULL. 0 when they name only one of the

@@ -170,13 +170,45 @@ static void test_list(void **state)
     assert_int_equal(counter.live, 0);
 }
 
+/* Kept blocks of the default allocator share large pages, up to a few; the others stand by themselves. */
+static void test_shelves(void **state)
+{
+    enum { MOST = 150 };
+    asj_memory memory = {{NULL, NULL, NULL}, 0, 0, NULL, 0, 0, NULL};
+    unsigned char *blocks[MOST];
+    (void)state;
+    assert_int_equal(asj_memory_allocator(NULL, &memory.allocator), 1);
+    for (int round = 0; round < 3; round++) {
+        asj_memory_open(&memory);
+        for (size_t i = 0; i < MOST; i++) {
+            const size_t size = 1000 + 1800 * i;
+            blocks[i] = asj_allocate(&memory, size, 1);
+            assert_non_null(blocks[i]);
+            assert_int_equal((uintptr_t)blocks[i] % ASJ_ALIGNMENT, 0);
+            memset(blocks[i], (int)i, size);
+        }
+        for (size_t i = 0; i < MOST; i++) {
+            assert_int_equal(blocks[i][0], (unsigned char)i);
+            assert_int_equal(blocks[i][999 + 1800 * i], (unsigned char)i);
+            asj_release(&memory, blocks[i]);
+        }
+        asj_memory_close(&memory);
+        assert_non_null(memory.shelves);
+        if (round == 1)
+            asj_memory_trim(&memory);
+        assert_true(round != 1 || (memory.now == 0 && !memory.shelves));
+    }
+    asj_memory_trim(&memory);
+    assert_true(memory.now == 0 && !memory.shelves);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_alignment_and_counts), cmocka_unit_test(test_zero), cmocka_unit_test(test_overflow),
         cmocka_unit_test(test_failure),              cmocka_unit_test(test_grow),
         cmocka_unit_test(test_kept),
-        cmocka_unit_test(test_list),
+        cmocka_unit_test(test_list),                 cmocka_unit_test(test_shelves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
