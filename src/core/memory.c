@@ -55,16 +55,18 @@ int asj_memory_allocator(const asj_context_options *options, asj_allocator *allo
 #include <sanitizer/asan_interface.h>
 #define FORBID(block, size) ASAN_POISON_MEMORY_REGION(block, size)
 #define ALLOW(block, size) ASAN_UNPOISON_MEMORY_REGION(block, size)
+#define GAP ASJ_ALIGNMENT /* bytes between blocks of a shelf that nobody may touch */
 #else
 #define FORBID(block, size) ((void)(block), (void)(size))
 #define ALLOW(block, size) ((void)(block), (void)(size))
+#define GAP 0
 #endif
 
 #define CALLS_KEPT 8 /* calls that a block may be of no use to before it is given back */
 
 /* Of smaller blocks, two thirds of the pages that a first image touches, those that are kept share large pages: of 4096 bytes each
  * takes 1.2 us here, 2 MB of them 630 us, and as one page 30. What is given back of a shelf is not used again before all of it is,
- * so there are few. Not with an allocator of the caller's, who knows better. */
+ * so there are few, and for small images none (asj_memory_share()). Not with an allocator of the caller's, who knows better. */
 #define MOST_SHELVES 4
 #define LEAST_ON_SHELF 16384u           /* bytes */
 #define MOST_ON_SHELF (LARGE_PAGE / 2)
@@ -113,16 +115,18 @@ static void leave_shelf(asj_memory *memory, shelf *s)
         link = &(*link)->next;
     *link = s->next;
     memory->now -= LARGE_PAGE;
+    ALLOW(s, LARGE_PAGE);
     memory->allocator.release(memory->allocator.user, s);
 }
 
 /* Room for a block, or NULL. */
 static char *take_from_shelf(asj_memory *memory, size_t bytes, shelf **on)
 {
-    const size_t room = (bytes + ASJ_ALIGNMENT - 1) / ASJ_ALIGNMENT * ASJ_ALIGNMENT;
+    const size_t room = (bytes + ASJ_ALIGNMENT - 1) / ASJ_ALIGNMENT * ASJ_ALIGNMENT + GAP;
     size_t shelves = 0;
     *on = NULL;
-    if (!memory->open || memory->allocator.allocate != allocate_default || bytes < LEAST_ON_SHELF || bytes > MOST_ON_SHELF)
+    if (!memory->open || !memory->sharing || memory->allocator.allocate != allocate_default || bytes < LEAST_ON_SHELF ||
+        bytes > MOST_ON_SHELF)
         return NULL;
     for (shelf *s = memory->shelves; s && !*on; s = s->next, shelves++)
         *on = LARGE_PAGE - s->used >= room ? s : NULL;
@@ -139,6 +143,7 @@ static char *take_from_shelf(asj_memory *memory, size_t bytes, shelf **on)
     char *start = (char *)*on + (*on)->used;
     (*on)->used += room;
     (*on)->blocks++;
+    FORBID(start + bytes, room - bytes);
     return start;
 }
 
@@ -267,6 +272,11 @@ void asj_memory_open(asj_memory *memory)
 {
     if (memory->open++ == 0)
         memory->call++;
+}
+
+void asj_memory_share(asj_memory *memory, int32_t sharing)
+{
+    memory->sharing = sharing;
 }
 
 void asj_memory_close(asj_memory *memory)

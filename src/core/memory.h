@@ -12,6 +12,7 @@ typedef struct asj_memory {
     int32_t open;            /* asj_memory_open() less asj_memory_close() */
     uint64_t call;           /* how often it was opened */
     struct asj_shelf *shelves; /* large pages that smaller blocks share */
+    int32_t sharing;           /* whether new ones do */
 } asj_memory;
 
 /* The allocator that the options ask for; malloc() and free() when they name none or are NULL. 0 when they name only one of the
@@ -41,6 +42,9 @@ asj_status asj_grow(asj_memory *memory, void **block, size_t *capacity, size_t c
  * nothing. A block that has been of no use to several calls is given back. */
 void asj_memory_open(asj_memory *memory);
 void asj_memory_close(asj_memory *memory);
+
+/* Whether new smaller blocks share large pages: a large image is ready sooner the first time, a small one takes more memory. */
+void asj_memory_share(asj_memory *memory, int32_t sharing);
 
 /* Gives back all blocks that are kept. */
 void asj_memory_trim(asj_memory *memory);

@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#define SHARING_FROM 600000 /* pixels; their planes take most of the memory then */
+
 #define LEAST_LIST 256 /* elements */
 
 static void free_detector(asj_memory *memory, void *state)
@@ -108,7 +110,10 @@ asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context,
     asj_status status = asj_image_check(context, image);
     if (status == ASJ_OK && run->options->first_octave < 0)
         status = asj_enlarge_check(context, image);
-    return status == ASJ_OK ? prepare(run) : status;
+    if (status != ASJ_OK)
+        return status;
+    asj_memory_share(&context->memory, (int64_t)image->width * image->height >= SHARING_FROM);
+    return prepare(run);
 }
 
 void asj_detection_run_end(asj_detection_run *run)
