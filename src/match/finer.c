@@ -100,30 +100,38 @@ static int32_t holds(const asj_match_result *own, const asj_match_result *finer,
 /* --- the images' own geometry and matches of the enlarged ones --------------------------------------------------------------- */
 
 /* Negative: contradicted. The rules are those of verdict.c for matches that were no candidates of the geometry. */
-static double probability_of(const asj_match_result *own, const asj_known_geometry *known, const asj_junction_match *m)
+static double probability_of(const asj_match_result *by, const asj_known_geometry *known, const asj_junction_match *m)
 {
     const double x1 = (double)m->x1, y1 = (double)m->y1, x2 = (double)m->x2, y2 = (double)m->y2, *h = m->affine;
-    const asj_geometry_candidate g = {0, 0, x1, y1, x2, y2, {h[0], h[1], h[3], h[4]}, ASJ_MATCH_RIGHT};
-    if (known->lines_hold && asj_distance_from_line(&own->geometry, x1, y1, x2, y2) > known->farthest)
+    asj_geometry_candidate g = {0, 0, x1, y1, x2, y2, {h[0], h[1], h[3], h[4]}, ASJ_MATCH_RIGHT};
+    if (known->lines_hold && asj_distance_from_line(&by->geometry, x1, y1, x2, y2) > known->farthest)
         return -1;
-    return asj_keeps_area(g.affine) ? asj_judge_probability(&known->judge, &g) : 0;
+    if (!asj_keeps_area(g.affine))
+        return 0;
+    asj_stretch_candidate(&g, known->by);
+    return asj_judge_probability(&known->judge, &g);
+}
+
+/* By the geometry of the other result. */
+static asj_status judge(asj_context *context, const asj_match_result *by, asj_match_result *judged)
+{
+    const asj_known_geometry *known = asj_match_result_geometry(by);
+    float *probability = asj_allocate(&context->memory, judged->match_count, sizeof *probability);
+    if (!probability)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu matches", (unsigned long)judged->match_count);
+    for (uint32_t k = 0; k < judged->match_count; k++)
+        probability[k] = (float)probability_of(by, known, &judged->matches[k]);
+    const asj_status status = asj_match_result_judge(context, judged, probability);
+    judged->geometry = by->geometry;
+    asj_release(&context->memory, probability);
+    return status;
 }
 
 /* Where the images have a geometry, and the enlarged ones were asked for none, it is theirs. */
-static asj_status judge(asj_context *context, const asj_match_result *own, asj_match_result *finer)
+static asj_status judge_finer(asj_context *context, const asj_match_result *own, asj_match_result *finer)
 {
-    const asj_known_geometry *known = asj_match_result_geometry(own);
-    if (!known || finer->geometry.status != ASJ_GEOMETRY_NOT_ASKED)
-        return ASJ_OK;
-    float *probability = asj_allocate(&context->memory, finer->match_count, sizeof *probability);
-    if (!probability)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu matches", (unsigned long)finer->match_count);
-    for (uint32_t k = 0; k < finer->match_count; k++)
-        probability[k] = (float)probability_of(own, known, &finer->matches[k]);
-    const asj_status status = asj_match_result_judge(context, finer, probability);
-    finer->geometry = own->geometry;
-    asj_release(&context->memory, probability);
-    return status;
+    return asj_match_result_geometry(own) && finer->geometry.status == ASJ_GEOMETRY_NOT_ASKED ? judge(context, own, finer)
+                                                                                              : ASJ_OK;
 }
 
 /* --- which one holds --------------------------------------------------------------------------------------------------------- */
@@ -136,19 +144,51 @@ static void add_times(asj_match_result *to, const asj_match_result *from)
     to->total_ms += from->total_ms;
 }
 
-/* Those of the enlarged images, and of the others what is new. */
+/* Which ones of a list are not in another one, which has places of its own for the time being. */
+static asj_status find_new(asj_context *context, const asj_junction_match *list, size_t count, const asj_junction_match *others,
+                           uint32_t other_count, uint8_t *is_new)
+{
+    asj_memory *memory = &context->memory;
+    asj_place *places[2] = {asj_allocate(memory, other_count, sizeof **places), asj_allocate(memory, other_count, sizeof **places)};
+    asj_status status = ASJ_OK;
+    if (!places[0] || !places[1])
+        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu matches", (unsigned long)other_count);
+    for (int32_t side = 0; side < 2 && status == ASJ_OK; side++)
+        asj_places_sort(places[side], others, other_count, side);
+    const asj_around around = {others, other_count, {places[0], places[1]}, other_count};
+    for (size_t n = 0; n < count && status == ASJ_OK; n++)
+        is_new[n] = look_up(&list[n], &around) != AGAIN_THERE;
+    asj_release(memory, places[0]);
+    asj_release(memory, places[1]);
+    return status;
+}
+
+/* Those of the enlarged images, and of the others what is new. A geometry that the enlarged images have themselves judges these,
+ * too: what it contradicts takes the place of what another one did. */
 static asj_status join(asj_context *context, asj_match_result *own, asj_match_result *finer, uint8_t *found, int32_t same_lists)
 {
+    asj_status status = asj_match_result_geometry(finer) ? judge(context, finer, own) : ASJ_OK;
+    if (status == ASJ_OK)
+        status = look_all_up(context, own, finer, found);
+    uint8_t *rejected = asj_allocate(&context->memory, (size_t)own->rejected_count, sizeof *rejected);
+    if (status == ASJ_OK && !rejected)
+        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %llu matches", (unsigned long long)own->rejected_count);
+    if (status == ASJ_OK)
+        status = find_new(context, own->rejected, (size_t)own->rejected_count, finer->rejected, (uint32_t)finer->rejected_count,
+                          rejected);
     for (uint32_t n = 0; n < own->match_count; n++)
         found[n] = found[n] == NEW;
-    return asj_match_result_join(context, finer, own, found, same_lists);
+    if (status == ASJ_OK)
+        status = asj_match_result_join(context, finer, own, found, rejected, same_lists);
+    asj_release(&context->memory, rejected);
+    return status;
 }
 
 asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_match_result **finer, int32_t same_lists)
 {
     const size_t count = (*own)->match_count;
     uint8_t *found = asj_allocate(&context->memory, count, sizeof *found);
-    asj_status status = found ? judge(context, *own, *finer)
+    asj_status status = found ? judge_finer(context, *own, *finer)
                               : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu matches", count);
     if (status == ASJ_OK)
         status = look_all_up(context, *own, *finer, found);

@@ -174,7 +174,7 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
         asj_places_sort(r->places[side], r->matches, r->count, side);
     r->is_known = run->geometry.status == ASJ_GEOMETRY_ACCEPTED;
     if (r->is_known)
-        r->known = (asj_known_geometry){run->judge, asj_farthest_from_line(run), run->lines_hold};
+        r->known = (asj_known_geometry){run->judge, {{1, 1}, {1, 1}}, asj_farthest_from_line(run), run->lines_hold};
     const asj_status status = find_ends(run, r);
     if (status == ASJ_OK)
         show(run, r);
@@ -186,6 +186,7 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
 void asj_match_result_sort(asj_own_result *r)
 {
     sort(r->matches, r->count);
+    sort(r->rejected, (size_t)r->shown.rejected_count);
     for (int32_t side = 0; side < 2; side++)
         asj_places_sort(r->places[side], r->matches, r->count, side);
 }

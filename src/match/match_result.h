@@ -17,12 +17,13 @@ asj_around asj_match_result_around(const asj_match_result *shown);
 
 /* The accepted geometry of two images, for other matches of theirs. */
 typedef struct asj_known_geometry {
-    asj_judge judge;
-    double farthest;    /* px from its epipolar line that a match may be .. */
+    asj_judge judge;    /* of images stretched so: */
+    asj_stretch by[2];
+    double farthest;    /* px of the images from its epipolar line that a match may be .. */
     int32_t lines_hold; /* .. if anything follows from that (verdict.c) */
 } asj_known_geometry;
 
-/* NULL where there is none, and for stretched images. Of a result of asj_match_result_create(). */
+/* NULL where there is none. Of a result of asj_match_result_create(). */
 const asj_known_geometry *asj_match_result_geometry(const asj_match_result *shown);
 
 /* What asj_match_result_create() makes is one. */
@@ -33,8 +34,8 @@ typedef struct asj_own_result {
     asj_l_junction *l1, *l2;
     asj_place *places[2]; /* of `count` matches, in image 1 and image 2 */
     uint32_t count;
-    asj_known_geometry known; /* the one that is accepted, if there is one, .. */
-    int32_t is_known;         /* .. in pixels of the images */
+    asj_known_geometry known; /* the one that is accepted, */
+    int32_t is_known;         /* .. if there is one */
 } asj_own_result;
 
 /* Its matches are no longer what they were: smallest distance first again, and where they are. */

@@ -5,13 +5,14 @@
 
 #include "match_result.h"
 
-/* Takes the matches whose probability is negative to the rejected ones; others have theirs from now on. ASJ_ERROR_MEMORY. */
+/* The matches whose probability is negative are the rejected ones, in place of those before; others have theirs from now on.
+ * ASJ_ERROR_MEMORY. */
 asj_status asj_match_result_judge(asj_context *context, asj_match_result *shown, const float *probability);
 
-/* Adds the matches of another result of the same images that are wanted, with their L-junctions and numbers of junctions of their
+/* Adds the matches and rejected ones of another result of the same images that are wanted, with their L-junctions and numbers of junctions of their
  * own, unless both have the same lists. Without a match at one place twice: see finer.c. ASJ_ERROR_MEMORY. */
 asj_status asj_match_result_join(asj_context *context, asj_match_result *shown, const asj_match_result *other,
-                                 const uint8_t *wanted, int32_t same_lists);
+                                 const uint8_t *wanted, const uint8_t *wanted_rejected, int32_t same_lists);
 
 /* Numbers the L-junctions of image 1 (side 0) or 2 as asj_decompose() does those of all junctions, where the result knows those of
  * octaves 0 and up alone. ASJ_ERROR_MEMORY. */

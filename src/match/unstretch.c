@@ -14,6 +14,11 @@ static double back(double q, double s)
     return (q + 0.5) / s - 0.5;
 }
 
+static double forth(double p, double s)
+{
+    return s * (p + 0.5) - 0.5;
+}
+
 static void point_back(float *x, float *y, const asj_stretch *by)
 {
     *x = (float)back((double)*x, by->x);
@@ -53,6 +58,16 @@ void asj_unstretch_l_junctions(asj_l_junction *list, uint32_t count, const asj_s
         point_back(&list[k].ax, &list[k].ay, by);
         point_back(&list[k].bx, &list[k].by, by);
     }
+}
+
+void asj_stretch_candidate(asj_geometry_candidate *g, const asj_stretch by[2])
+{
+    g->x1 = forth(g->x1, by[0].x);
+    g->y1 = forth(g->y1, by[0].y);
+    g->x2 = forth(g->x2, by[1].x);
+    g->y2 = forth(g->y2, by[1].y);
+    for (int32_t k = 0; k < 4; k++) /* rows: along x, along y */
+        g->affine[k] *= (k < 2 ? by[1].x : by[1].y) / (k % 2 == 0 ? by[0].x : by[0].y);
 }
 
 /* m T: T = [s_x 0 c_x; 0 s_y c_y; 0 0 1] */

@@ -3,11 +3,14 @@
 #ifndef ASJ_SRC_UNSTRETCH_H
 #define ASJ_SRC_UNSTRETCH_H
 
+#include <asj/geometry.h>
 #include <asj/match.h>
 
 /* A pixel of the image is by->x times by->y pixels of the stretched one. */
 void asj_unstretch_matches(asj_junction_match *matches, size_t count, const asj_stretch by[2]);
 void asj_unstretch_l_junctions(asj_l_junction *list, uint32_t count, const asj_stretch *by);
+/* The other way round, for a candidate's locations and map. */
+void asj_stretch_candidate(asj_geometry_candidate *g, const asj_stretch by[2]);
 void asj_unstretch_geometry(asj_geometry *geometry, const asj_stretch by[2]);
 
 /* The camera of the stretched image. */

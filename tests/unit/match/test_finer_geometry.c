@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The matches of two images and those of the enlarged ones under one geometry, whichever of them has it. */
+#include "match/finer.h"
+#include "match/result_changes.h"
+#include "room.h"
+#include "unit_test.h"
+
+#include <asj/asj.h>
+
+enum { WIDTH = 320, HEIGHT = 237 };
+
+typedef struct view {
+    uint8_t *pixels;
+    asj_image image;
+    asj_camera camera;
+    asj_detection *plain, *finer; /* without octave -1, and with it */
+} view;
+
+static view views[2];
+
+static int make_views(void **state)
+{
+    synth_room room;
+    assert_int_equal(unit_set_up(state), 0);
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_detect_options options;
+    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
+    assert_int_equal(synth_room_make(&room), 0);
+    for (int32_t n = 0; n < 2; n++) {
+        synth_view made;
+        const synth_camera camera = synth_room_camera(n, WIDTH, HEIGHT);
+        assert_int_equal(synth_view_make(&room, &camera, 4, &made), 0);
+        views[n].camera = (asj_camera){camera.focal, camera.focal, 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1)};
+        views[n].pixels = synth_photograph(&made.scene, 0.9, 2, (uint64_t)n + 1);
+        assert_non_null(views[n].pixels);
+        views[n].image = unit_gray8(views[n].pixels, WIDTH, HEIGHT);
+        options.first_octave = 0;
+        assert_int_equal(asj_detect(context, &views[n].image, &options, &views[n].plain), ASJ_OK);
+        options.first_octave = -1;
+        assert_int_equal(asj_detect(context, &views[n].image, &options, &views[n].finer), ASJ_OK);
+        synth_view_free(&made);
+    }
+    synth_room_free(&room);
+    return 0;
+}
+
+static int free_views(void **state)
+{
+    for (int32_t n = 0; n < 2; n++) {
+        asj_detection_free(&views[n].plain);
+        asj_detection_free(&views[n].finer);
+        free(views[n].pixels);
+    }
+    return unit_tear_down(state);
+}
+
+/* Of the enlarged images what lies in the left part of the first one, so that the images have matches that they have not. */
+static asj_match_result *match(asj_context *context, int32_t enlarged, int32_t with_geometry)
+{
+    const asj_detection *a = enlarged ? views[0].finer : views[0].plain, *b = enlarged ? views[1].finer : views[1].plain;
+    asj_junction *left = calloc(a->junction_count, sizeof *left);
+    asj_match_options options;
+    asj_match_result *result = NULL;
+    size_t count = 0;
+    assert_non_null(left);
+    for (uint32_t k = 0; k < a->junction_count; k++)
+        if (!enlarged || a->junctions[k].x < 0.7 * WIDTH)
+            left[count++] = a->junctions[k];
+    asj_match_options_init(&options);
+    options.geometry.model = with_geometry ? ASJ_GEOMETRY_ESSENTIAL : ASJ_GEOMETRY_NONE;
+    for (int32_t n = 0; n < 2; n++)
+        options.geometry.cameras[n] = views[n].camera;
+    assert_int_equal((enlarged ? asj_match_enlarged : asj_match)(context, &views[0].image, left, count, &views[1].image,
+                                                                 b->junctions, b->junction_count, &options, &result), ASJ_OK);
+    assert_int_equal(result->geometry.status, with_geometry ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_NOT_ASKED);
+    free(left);
+    return result;
+}
+
+static int is_at(const asj_junction_match *a, const asj_junction_match *b, float tolerance)
+{
+    return fabsf(a->x1 - b->x1) <= tolerance && fabsf(a->y1 - b->y1) <= tolerance && fabsf(a->x2 - b->x2) <= tolerance &&
+           fabsf(a->y2 - b->y2) <= tolerance;
+}
+
+static uint32_t times_in(const asj_junction_match *list, size_t count, const asj_junction_match *m, float tolerance)
+{
+    uint32_t times = 0;
+    for (size_t k = 0; k < count; k++)
+        times += (uint32_t)is_at(&list[k], m, tolerance);
+    return times;
+}
+
+static void assert_list(const asj_match_result *r, const asj_junction_match *list, size_t count)
+{
+    for (size_t k = 0; k < count; k++) {
+        const asj_junction_match *m = &list[k];
+        assert_true(k == 0 || list[k - 1].distance <= m->distance);
+        assert_true(m->l1 < r->l_junction_count1 && m->l2 < r->l_junction_count2);
+        assert_true(m->x1 == r->l_junctions1[m->l1].x && m->y1 == r->l_junctions1[m->l1].y);
+        assert_int_equal(m->junction1, r->l_junctions1[m->l1].junction);
+        assert_int_equal(m->junction2, r->l_junctions2[m->l2].junction);
+    }
+}
+
+/* What the images' own geometry contradicts is still there when the enlarged images are the answer, each once. */
+static void what_is_rejected_stays_so(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 0);
+    const uint32_t first = finer->l_junction_count1;
+    float *probability = calloc(own->match_count, sizeof *probability);
+    assert_non_null(probability);
+    assert_true(own->match_count >= 12);
+    for (uint32_t k = 0; k < own->match_count; k++)
+        probability[k] = k % 3 == 1 ? -1 : 0.5F;
+    assert_int_equal(asj_match_result_judge(context, own, probability), ASJ_OK);
+    free(probability);
+    const size_t rejected_count = (size_t)own->rejected_count;
+    asj_junction_match *rejected = calloc(rejected_count, sizeof *rejected);
+    assert_non_null(rejected);
+    assert_true(rejected_count >= 4);
+    memcpy(rejected, own->rejected, rejected_count * sizeof *rejected);
+    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+    assert_true(own->l_junction_count1 > first); /* that of the enlarged images */
+    assert_int_equal(own->geometry.status, ASJ_GEOMETRY_ACCEPTED);
+    for (size_t k = 0; k < rejected_count; k++) {
+        assert_true(times_in(own->rejected, (size_t)own->rejected_count, &rejected[k], 4) >= 1);
+        assert_true(times_in(own->rejected, (size_t)own->rejected_count, &rejected[k], 0) <= 1);
+    }
+    assert_list(own, own->matches, own->match_count);
+    assert_list(own, own->rejected, (size_t)own->rejected_count);
+    free(rejected);
+    asj_match_result_free(&own);
+}
+
+/* A geometry that only the enlarged images have judges the images' own matches: a wrong one goes, the others have their
+ * probability. With one that is asked for both it is the same. */
+static void a_geometry_judges_all(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    for (int32_t both = 0; both < 2; both++) {
+        asj_match_result *own = match(context, 0, both), *finer = match(context, 1, 1);
+        const uint32_t first = finer->l_junction_count1, own_count = own->match_count;
+        asj_junction_match *list = (asj_junction_match *)(uintptr_t)own->matches, wrong = {.l1 = UINT32_MAX};
+        const double log10_nfa = finer->geometry.log10_nfa;
+        for (uint32_t k = 0; k < own_count && wrong.l1 == UINT32_MAX; k++)
+            if (list[k].x1 > 0.8F * WIDTH && times_in(finer->matches, finer->match_count, &list[k], 12) == 0) {
+                list[k].y2 += 40; /* across the lines of a camera that moves sideways */
+                list[k].affine[5] += 40;
+                wrong = list[k];
+            }
+        assert_true(wrong.l1 != UINT32_MAX);
+        assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+        assert_true(own->l_junction_count1 > first);
+        assert_true(own->geometry.log10_nfa == log10_nfa);
+        assert_int_equal(times_in(own->matches, own->match_count, &wrong, 0), 0);
+        assert_int_equal(times_in(own->rejected, (size_t)own->rejected_count, &wrong, 0), 1);
+        uint32_t added = 0, probable = 0;
+        for (uint32_t k = 0; k < own->match_count; k++) {
+            added += own->matches[k].l1 >= first;
+            probable += own->matches[k].l1 >= first && own->matches[k].probability > 0.5F;
+        }
+        printf("%u of %u added matches are probable\n", (unsigned)probable, (unsigned)added);
+        assert_true(added >= 3 && 3 * probable >= 2 * added);
+        asj_match_result_free(&own);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_rejected_stays_so),
+        cmocka_unit_test(a_geometry_judges_all),
+    };
+    return cmocka_run_group_tests(tests, make_views, free_views);
+}
