@@ -52,6 +52,13 @@ asj_context *unit_context(unit_counter *counter, int32_t threads)
     return context;
 }
 
+int unit_reached(unit_counter *counter)
+{
+    const int reached = counter->calls >= counter->fail_at;
+    counter->fail_at = 0;
+    return reached;
+}
+
 void unit_context_free(unit_counter *counter, asj_context **context)
 {
     asj_context_free(context);

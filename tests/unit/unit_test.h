@@ -42,6 +42,10 @@ asj_memory unit_memory(unit_counter *counter);
 asj_context *unit_context(unit_counter *counter, int32_t threads);
 void unit_context_free(unit_counter *counter, asj_context **context);
 
+/* Whether the allocation that was to fail has been asked for; none is to fail any more. A test of failing allocations goes on until
+ * this is 0, not until a call succeeds: what does without some memory would end it too soon. */
+int unit_reached(unit_counter *counter);
+
 /* Pixels of a scene, freed with free(); the scene is freed too. Never NULL: fails the test. */
 uint8_t *unit_picture(synth_scene *scene, double blur, double noise, uint64_t seed);
 asj_image unit_gray8(const uint8_t *pixels, int32_t width, int32_t height);

@@ -465,8 +465,7 @@ static void out_of_memory(void **state)
         const asj_status status = asj_match(poor, &views[0].image, views[0].finer->junctions, views[0].finer->junction_count,
                                             &views[1].image, views[1].finer->junctions, views[1].finer->junction_count, NULL,
                                             &result);
-        reached = counter.calls >= counter.fail_at;
-        counter.fail_at = 0;
+        reached = unit_reached(&counter);
         assert_true(status == ASJ_OK ? result != NULL : reached && status == ASJ_ERROR_MEMORY && result == NULL);
         asj_match_result_free(&result);
         unit_context_free(&counter, &poor);

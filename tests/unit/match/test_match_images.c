@@ -579,8 +579,7 @@ static void expect_allocations_may_fail(const asj_image *image, const asj_stretc
         asj_match_result *r = NULL;
         counter.fail_at = counter.calls + n;
         const asj_status status = asj_match_images(poor, image, image, stretch, NULL, NULL, &r);
-        reached = counter.calls >= counter.fail_at;
-        counter.fail_at = 0;
+        reached = unit_reached(&counter);
         assert_true(status == ASJ_OK ? r != NULL : reached && status == ASJ_ERROR_MEMORY && !r);
         asj_match_result_free(&r);
         unit_context_free(&counter, &poor);
