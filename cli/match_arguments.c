@@ -253,6 +253,17 @@ static void keep_first_octave(cli_match_arguments *arguments)
         arguments->options.enlarge_from = 0;
 }
 
+/* One octave, or another first one, says how images are looked at. */
+static int check_enlarging(const cli_match_arguments *arguments)
+{
+    const int32_t first = arguments->detect_options.first_octave;
+    if (cli_settings_have(&arguments->match_settings, "enlarge_from") && (first != 0 || arguments->detect_options.octaves == 1))
+        return cli_usage_error("match", "--enlarge-from changes nothing with %s",
+                               first < 0 ? "--first-octave -1, which enlarges the images anyway" :
+                               first > 0 ? "--first-octave above 0" : "one octave");
+    return CLI_SUCCESS;
+}
+
 static int apply_settings(cli_match_arguments *arguments)
 {
     const int quiet = arguments->common.quiet;
@@ -264,7 +275,7 @@ static int apply_settings(cli_match_arguments *arguments)
     if (result == CLI_SUCCESS)
         result = cli_settings_apply(&arguments->match_settings, "match", quiet, &arguments->options, set_match_option);
     keep_first_octave(arguments);
-    return result;
+    return result == CLI_SUCCESS ? check_enlarging(arguments) : result;
 }
 
 static int check_files(const cli_match_arguments *arguments)

@@ -433,6 +433,12 @@ static void whole_images_are_enlarged_by_themselves(void **state)
     expect_code(result, 2);
     expect_in(result, result->err, "--enlarge-from changes nothing");
     expect_code(run_cli("match", "--enlarge-from", "9", "--junctions1", "plain.csv", "first.png", "second.png", NULL), 2);
+    static const char *const decided[][2] = {{"--first-octave", "-1"}, {"--first-octave", "1"}, {"--octaves", "1"}};
+    for (size_t k = 0; k < sizeof decided / sizeof decided[0]; k++) {
+        result = run_cli("match", "--enlarge-from", "9", decided[k][0], decided[k][1], "first.png", "second.png", NULL);
+        expect_code(result, 2);
+        expect_in(result, result->err, "--enlarge-from changes nothing");
+    }
 }
 
 static void a_stretch_goes_with_images_alone(void **state)
