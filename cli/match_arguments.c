@@ -63,7 +63,7 @@ static const cli_option input_options[] = {
      "look at both images enlarged N times (2: about three times the matches, in three to eight times the time; 1: as they "
      "are), or stretched along each axis (1,3: surfaces seen at a glancing angle, like things on a table). auto, the default of "
      "two whole images: as they are; from --enlarge-from matches on also enlarged, where these hold; and where nothing comes of "
-     "it by 1,3 and 3,1"},
+     "it by 1,3 and 3,1, then also enlarged"},
 };
 
 static const cli_option geometry_options[] = {

@@ -2,7 +2,7 @@
 /* asj_match_images(): from two images to their matches, if wanted stretched before.
  *
  * Automatically: as they are; where that gives matches enough, enlarged, too; and where it leaves the images without an answer,
- * stretched to three times their height, then to three times their width.
+ * stretched to three times their height, then to three times their width; and where that is the answer, stretched and enlarged.
  *
  * Enlarged. With junctions of octave -1 photographs have three times the matches (match/finer.c, which asks the images' own matches
  * whether those hold), in several times the time. options->enlarge_from own matches are asked, so that pairs without anything in
@@ -29,7 +29,8 @@
 #define FIRST 0.2  /* of all the progress, for the look as they are, */
 #define CLOSER 0.4 /* .. and for the enlarged one */
 #define LARGEST 2e6 /* pixels */
-#define TRIAL 0.2  /* of what a stretch has of it */
+#define TRIAL 0.1  /* of what a stretch has of it */
+#define WHOLE 0.3  /* .. before the enlarged look */
 
 static const asj_stretch as_it_is = {1, 1};
 static const asj_stretch glancing[] = {{1, 3}, {3, 1}}, trials[] = {{0.5, 1.5}, {1.5, 0.5}};
@@ -92,9 +93,9 @@ static asj_status look(search *s, const asj_stretch *stretch, const asj_detect_o
 /* --- enlarged ---------------------------------------------------------------------------------------------------------------- */
 
 /* Who asks for one octave, or for another first one, has decided. */
-static int32_t may_enlarge(const search *s)
+static int32_t may_enlarge(const search *s, const asj_stretch *stretch)
 {
-    static const asj_stretch twice = {2, 2};
+    const asj_stretch twice = {2 * stretch->x, 2 * stretch->y};
     const asj_detect_options *d = s->detect_options;
     int32_t may = d->first_octave == 0 && d->octaves > 1 && s->options->enlarge_from > 0 &&
                   s->best->match_count >= (uint32_t)s->options->enlarge_from;
@@ -103,15 +104,18 @@ static int32_t may_enlarge(const search *s)
     return may;
 }
 
-static asj_status look_closer(search *s)
+/* What was seen with a stretch, with the same one. */
+static asj_status look_closer(search *s, const asj_stretch *stretch, double from, double part)
 {
     asj_detect_options finer = *s->detect_options;
     asj_match_options options = *s->options;
     asj_match_result *found = NULL;
+    if (!may_enlarge(s, stretch))
+        return ASJ_OK;
     finer.first_octave = -1;
     if (s->best->geometry.status == ASJ_GEOMETRY_ACCEPTED)
         options.geometry.model = ASJ_GEOMETRY_NONE;
-    asj_status status = look_by(s, asj_look_match_enlarged, &as_it_is, &finer, &options, FIRST, CLOSER, &found);
+    asj_status status = look_by(s, asj_look_match_enlarged, stretch, &finer, &options, from, part, &found);
     return status == ASJ_OK ? asj_finer_choose(s->context, &s->best, &found, 0) : status;
 }
 
@@ -144,23 +148,24 @@ static asj_status look_again(search *s, int32_t which, double from, double part)
     asj_status status = try_stretch(s, &trials[which], from, TRIAL * part, &hopeful);
     if (status != ASJ_OK || !hopeful)
         return status;
-    status = look(s, &glancing[which], s->detect_options, s->options, from + TRIAL * part, (1 - TRIAL) * part, &found);
+    status = look(s, &glancing[which], s->detect_options, s->options, from + TRIAL * part, WHOLE * part, &found);
     if (status != ASJ_OK)
         return status;
     const uint32_t count = answered(s, found);
     const int32_t better = count >= ENOUGH && count >= 2 * answered(s, s->best);
     asj_match_result_free(better ? &s->best : &found);
-    if (better)
-        s->best = found;
-    return ASJ_OK;
+    if (!better)
+        return ASJ_OK;
+    s->best = found;
+    return look_closer(s, &glancing[which], from + (TRIAL + WHOLE) * part, (1 - TRIAL - WHOLE) * part);
 }
 
 static asj_status look_for_answer(search *s)
 {
     const double part = (1 - FIRST - CLOSER) / GLANCING;
     asj_status status = look(s, &as_it_is, s->detect_options, s->options, 0, FIRST, &s->best);
-    if (status == ASJ_OK && may_enlarge(s))
-        status = look_closer(s);
+    if (status == ASJ_OK)
+        status = look_closer(s, &as_it_is, FIRST, CLOSER);
     for (int32_t k = 0; k < GLANCING && status == ASJ_OK && goes_on(s); k++)
         status = look_again(s, k, FIRST + CLOSER + k * part, part);
     return status == ASJ_OK ? asj_progress(s->context, ASJ_STAGE_ASSIGN, 1) : status;

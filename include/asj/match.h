@@ -196,7 +196,7 @@ typedef struct asj_stretch {
  *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together, also stretched
  *                    by 1, 3 and by 3, 1, unless rivals or a motion that stays open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the
  *                    answer, or a focal length is looked for. What comes of that counts from 16 matches on, and when it is twice
- *                    as many.
+ *                    as many; then it is looked at with octave -1, too, as above.
  *                  A pair that has nothing in common takes about twice as long as without all that (tests/benchmark/README.md)
  * detect_options   NULL = preset `match`
  * options          NULL = preset `default`; cameras are those of the images as they are

@@ -8,7 +8,14 @@
 
 #include <asj/asj.h>
 
-enum { WIDTH = 420, HEIGHT = 200, PATCHES = 70 };
+enum { WIDTH = 420, HEIGHT = 200 };
+
+/* Patches of a page, and half their sides. */
+typedef struct print_size {
+    int count;
+    double least, most;
+} print_size;
+static const print_size large_print = {70, 0.08, 0.3}, small_print = {220, 0.03, 0.09};
 
 /* Where a point of the page, -1 .. 1 along both axes, is seen: from low above, turned by `turn` for the second view. */
 static synth_point seen(double u, double v, double turn)
@@ -23,15 +30,16 @@ static double turn_of(int view)
     return view == 0 ? 0.1 : 0.75;
 }
 
-static uint8_t *page(int view)
+static uint8_t *page(const print_size *print, int view)
 {
     synth_scene scene;
     synth_random random;
     synth_random_seed(&random, 8);
     synth_scene_init(&scene, WIDTH, HEIGHT, 120);
-    for (int k = 0; k < PATCHES; k++) {
+    for (int k = 0; k < print->count; k++) {
         const double u = synth_random_between(&random, -0.9, 0.9), v = synth_random_between(&random, -0.9, 0.9);
-        const double a = synth_random_between(&random, 0.08, 0.3), b = synth_random_between(&random, 0.08, 0.3);
+        const double a = synth_random_between(&random, print->least, print->most);
+        const double b = synth_random_between(&random, print->least, print->most);
         const double gray = synth_random_between(&random, 30, 220);
         const synth_point corners[4] = {seen(u - a, v - b, turn_of(view)), seen(u + a, v - b, turn_of(view)),
                                         seen(u + a, v + b, turn_of(view)), seen(u - a, v + b, turn_of(view))};
@@ -63,7 +71,7 @@ static int set_up(void **state)
 {
     static pages made;
     for (int view = 0; view < 2; view++) {
-        made.pixels[view] = page(view);
+        made.pixels[view] = page(&large_print, view);
         made.images[view] = unit_gray8(made.pixels[view], WIDTH, HEIGHT);
     }
     *state = &made;
@@ -220,6 +228,40 @@ static void automatically_the_first_look_that_is_enough_counts(void **state)
         assert_true(found->match_count == 0 && found->stretch[0] == 1 && found->stretch[1] == 1);
         asj_match_result_free(&found);
     }
+    unit_context_free(&counter, &context);
+}
+
+/* What a stretch answers is enlarged too, with the same stretch, under one geometry. */
+static void a_stretched_page_is_enlarged_too(void **state)
+{
+    static const asj_stretch automatic = {0, 0};
+    static const int32_t models[] = {ASJ_GEOMETRY_NONE, ASJ_GEOMETRY_HOMOGRAPHY};
+    uint8_t *pixels[2] = {page(&small_print, 0), page(&small_print, 1)};
+    const asj_image images[2] = {unit_gray8(pixels[0], WIDTH, HEIGHT), unit_gray8(pixels[1], WIDTH, HEIGHT)};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    (void)state;
+    for (size_t m = 0; m < UNIT_COUNT(models); m++) {
+        asj_match_options options;
+        asj_match_result *plain = look(context, images, &automatic, models[m]), *both = NULL;
+        asj_match_options_init(&options);
+        options.geometry.model = models[m];
+        assert_int_equal(asj_match_images(context, &images[0], &images[1], &automatic, NULL, &options, &both), ASJ_OK);
+        const uint32_t right = count_right(both);
+        print_message("stretched: %u right of %u; enlarged too %u of %u\n", (unsigned)count_right(plain), (unsigned)plain->match_count,
+                      (unsigned)right, (unsigned)both->match_count);
+        assert_true(plain->enlarged == 0 && both->enlarged == 1 && both->stretch[0] == 1 && both->stretch[1] == 3);
+        assert_true(2 * right > 3 * count_right(plain) && 20 * right >= 18 * both->match_count);
+        assert_int_equal(both->geometry.status, m ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_NOT_ASKED);
+        uint32_t probable = 0;
+        for (uint32_t k = 0; k < both->match_count; k++)
+            probable += both->matches[k].probability > 0.5F;
+        assert_true(m ? 10 * probable > 9 * both->match_count : probable == 0);
+        asj_match_result_free(&plain);
+        asj_match_result_free(&both);
+    }
+    free(pixels[0]);
+    free(pixels[1]);
     unit_context_free(&counter, &context);
 }
 
@@ -603,6 +645,7 @@ int main(void)
         cmocka_unit_test(as_they_are_it_is_what_two_calls_give),
         cmocka_unit_test(a_page_that_lies_flat_matches_when_it_is_stretched),
         cmocka_unit_test(automatically_the_first_look_that_is_enough_counts),
+        cmocka_unit_test(a_stretched_page_is_enlarged_too),
         cmocka_unit_test(automatically_images_are_enlarged_too),
         cmocka_unit_test(images_are_not_enlarged_unasked),
         cmocka_unit_test(a_homography_is_of_the_images_as_they_are),
