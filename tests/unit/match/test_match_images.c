@@ -248,8 +248,8 @@ static void a_stretched_page_is_enlarged_too(void **state)
         options.geometry.model = models[m];
         assert_int_equal(asj_match_images(context, &images[0], &images[1], &automatic, NULL, &options, &both), ASJ_OK);
         const uint32_t right = count_right(both);
-        print_message("stretched: %u right of %u; enlarged too %u of %u\n", (unsigned)count_right(plain), (unsigned)plain->match_count,
-                      (unsigned)right, (unsigned)both->match_count);
+        print_message("stretched: %u right of %u; enlarged too %u of %u\n", (unsigned)count_right(plain),
+                      (unsigned)plain->match_count, (unsigned)right, (unsigned)both->match_count);
         assert_true(plain->enlarged == 0 && both->enlarged == 1 && both->stretch[0] == 1 && both->stretch[1] == 3);
         assert_true(2 * right > 3 * count_right(plain) && 20 * right >= 18 * both->match_count);
         assert_int_equal(both->geometry.status, m ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_NOT_ASKED);
