@@ -125,6 +125,8 @@ void asj_detection_run_end(asj_detection_run *run)
     asj_release(memory, run->candidates);
     asj_release(memory, run->all);
     asj_release(memory, run->scratch.memory);
+    if (run->frame)
+        asj_frame_free(memory, run->frame); /* kept as all that is released, but not for good: the next image may be small */
 }
 
 int asj_detection_run_is_coarse(const asj_detection_run *run)

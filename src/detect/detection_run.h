@@ -19,7 +19,7 @@ typedef struct asj_detector {
     asj_scan scan;
     int32_t width, height;      /* that the numbers of tests were set for, */
     int32_t octaves;            /* and for so many octaves */
-    asj_frame frame;            /* planes, for images of any size */
+    asj_frame frame;            /* planes, during a pass */
     asj_scan_cache scan_cache;
 } asj_detector;
 

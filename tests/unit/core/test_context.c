@@ -219,6 +219,47 @@ static void test_memory(void **state)
     free(pixels);
 }
 
+/* Planes of a large image are given back as all else is that several calls had no use for, enlarged ones too. */
+static void test_large_image_is_forgotten(void **state)
+{
+    enum { WIDTH = 90, HEIGHT = 70, LARGE = 900 };
+    asj_context_options options;
+    asj_detect_options detect_options;
+    asj_context *context = NULL;
+    asj_detection *found = NULL;
+    uint64_t now, small, large;
+    uint8_t *pixels = synth_noise_image(LARGE, LARGE, 100, 10, 1);
+    (void)state;
+    assert_non_null(pixels);
+    const asj_image images[2] = {unit_gray8(pixels, WIDTH, HEIGHT), unit_gray8(pixels, LARGE, LARGE)};
+    asj_context_options_init(&options);
+    options.threads = 1;
+    options.allocator = (asj_allocator){sized_allocate, sized_release, NULL};
+    for (int32_t first_octave = -1; first_octave <= 0; first_octave++) {
+        asj_detect_options_init(&detect_options);
+        detect_options.first_octave = first_octave;
+        assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+        assert_int_equal(asj_detect(context, &images[0], &detect_options, &found), ASJ_OK);
+        asj_detection_free(&found);
+        asj_context_memory(context, &small, NULL);
+        assert_int_equal(asj_detect(context, &images[1], &detect_options, &found), ASJ_OK);
+        asj_detection_free(&found);
+        asj_context_memory(context, &large, NULL);
+        assert_true(large > 5 * small);
+        for (int i = 0; i < 12; i++) {
+            assert_int_equal(asj_detect(context, &images[0], &detect_options, &found), ASJ_OK);
+            asj_detection_free(&found);
+        }
+        asj_context_memory(context, &now, NULL);
+        print_message("first octave %d: %llu bytes, with a large image %llu, and then %llu\n", (int)first_octave,
+                      (unsigned long long)small, (unsigned long long)large, (unsigned long long)now);
+        assert_true(now == taken && now < 2 * small);
+        asj_context_free(&context);
+        assert_int_equal(taken, 0);
+    }
+    free(pixels);
+}
+
 /* ---- messages and log ---- */
 
 typedef struct log_record {
@@ -342,6 +383,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_defaults), cmocka_unit_test(test_refused), cmocka_unit_test(test_threads),
             cmocka_unit_test(test_memory), cmocka_unit_test(test_simd), cmocka_unit_test(test_tables),
+        cmocka_unit_test(test_large_image_is_forgotten),
         cmocka_unit_test(test_messages), cmocka_unit_test(test_log),     cmocka_unit_test(test_progress),
             cmocka_unit_test(test_clock),
     };
