@@ -86,14 +86,17 @@ static asj_status look_all_up(asj_context *context, const asj_match_result *own,
     return asj_watch_end(&watch);
 }
 
-static int32_t holds(const asj_match_result *own, const asj_match_result *finer, const uint8_t *found)
+/* judged: by the geometry of the images, which has given them matches that it makes likely, and the enlarged ones none; so there
+ * are more when there are with those that the enlarged images leave room for. */
+static int32_t holds(const asj_match_result *own, const asj_match_result *finer, const uint8_t *found, int32_t judged)
 {
-    uint32_t again = 0, contradicted = 0;
+    uint32_t again = 0, contradicted = 0, added = 0;
     for (uint32_t n = 0; n < own->match_count; n++) {
         again += found[n] == AGAIN_THERE;
         contradicted += found[n] == CONTRADICTED;
+        added += judged && found[n] == NEW;
     }
-    return finer->match_count > own->match_count && keeps_geometry(own, finer) && again >= AGAIN * own->match_count &&
+    return finer->match_count + added > own->match_count && keeps_geometry(own, finer) && again >= AGAIN * own->match_count &&
            contradicted <= MOST_CONTRADICTED * again;
 }
 
@@ -128,10 +131,9 @@ static asj_status judge(asj_context *context, const asj_match_result *by, asj_ma
 }
 
 /* Where the images have a geometry, and the enlarged ones were asked for none, it is theirs. */
-static asj_status judge_finer(asj_context *context, const asj_match_result *own, asj_match_result *finer)
+static int32_t is_judged(const asj_match_result *own, const asj_match_result *finer)
 {
-    return asj_match_result_geometry(own) && finer->geometry.status == ASJ_GEOMETRY_NOT_ASKED ? judge(context, own, finer)
-                                                                                              : ASJ_OK;
+    return asj_match_result_geometry(own) && finer->geometry.status == ASJ_GEOMETRY_NOT_ASKED;
 }
 
 /* --- which one holds --------------------------------------------------------------------------------------------------------- */
@@ -188,11 +190,13 @@ asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_ma
 {
     const size_t count = (*own)->match_count;
     uint8_t *found = asj_allocate(&context->memory, count, sizeof *found);
-    asj_status status = found ? judge_finer(context, *own, *finer)
-                              : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu matches", count);
+    const int32_t judged = is_judged(*own, *finer);
+    asj_status status = found ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu matches", count);
+    if (status == ASJ_OK && judged)
+        status = judge(context, *own, *finer);
     if (status == ASJ_OK)
         status = look_all_up(context, *own, *finer, found);
-    if (status == ASJ_OK && holds(*own, *finer, found)) {
+    if (status == ASJ_OK && holds(*own, *finer, found, judged)) {
         status = join(context, *own, *finer, found, same_lists);
         asj_match_result *other = *own;
         *own = *finer;

@@ -167,11 +167,35 @@ static void a_geometry_judges_all(void **state)
     }
 }
 
+/* A geometry that makes matches likely gives the images more of them, but not the enlarged ones, which were asked for none: they
+ * hold although they have fewer, where there are more of both. */
+static void what_a_geometry_adds_is_no_reason_against(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 0);
+    const uint32_t first = finer->l_junction_count1, own_count = own->match_count;
+    float *probability = calloc(finer->match_count, sizeof *probability);
+    assert_non_null(probability);
+    assert_true(finer->match_count > own_count);
+    for (uint32_t k = own_count - 1; k < finer->match_count; k++)
+        probability[k] = -1;
+    assert_int_equal(asj_match_result_judge(context, finer, probability), ASJ_OK);
+    free(probability);
+    assert_true(finer->match_count < own_count);
+    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+    printf("%u matches of the images, with those of the enlarged ones %u\n", (unsigned)own_count, (unsigned)own->match_count);
+    assert_true(own->l_junction_count1 > first && own->match_count > own_count);
+    assert_int_equal(own->geometry.status, ASJ_GEOMETRY_ACCEPTED);
+    assert_list(own, own->matches, own->match_count);
+    asj_match_result_free(&own);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_rejected_stays_so),
         cmocka_unit_test(a_geometry_judges_all),
+        cmocka_unit_test(what_a_geometry_adds_is_no_reason_against),
     };
     return cmocka_run_group_tests(tests, make_views, free_views);
 }
