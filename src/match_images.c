@@ -204,6 +204,7 @@ asj_status asj_match_images(asj_context *context, const asj_image *image1, const
         return ASJ_ERROR_ARGUMENT;
     if (!image1 || !image2 || !result)
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "an image or the result is NULL");
+    context->progress = 0; /* the images are stretched before the first call that is a part of this one begins */
     asj_detect_options_preset(&for_matching, ASJ_PRESET_MATCH);
     asj_match_options_init(&defaults);
     wanted = wanted ? wanted : &as_it_is;

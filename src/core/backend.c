@@ -19,7 +19,10 @@ asj_status asj_backend_prepare(asj_context *context)
 
 void asj_backend_begin(asj_context *context)
 {
-    context->progress = context->progress_part > 0 ? context->progress_from : 0;
+    if (context->progress_part <= 0)
+        context->progress = 0;
+    else if (context->progress < context->progress_from) /* of a whole that has begun: it may be there already, rounded */
+        context->progress = context->progress_from;
     asj_memory_open(&context->memory);
 }
 

@@ -98,7 +98,7 @@ asj_status asj_progress(asj_context *context, int32_t stage, double done)
         return ASJ_OK;
     const double whole = context->progress_part > 0 ? context->progress_from + context->progress_part * done : done;
     if (whole > context->progress)
-        context->progress = whole;
+        context->progress = whole < 1 ? whole : 1; /* parts of parts add up to a little more */
     context->asked_ms = asj_clock_ms();
     context->in_hook++;
     const int32_t stop = context->options.progress(context->options.progress_user, stage, context->progress);

@@ -3,6 +3,7 @@
  * everything is in pixels of the images. */
 #include "unit_test.h"
 
+#include "core/context.h"
 #include "match/unstretch.h"
 #include "wide_pair.h"
 
@@ -612,6 +613,39 @@ static void progress_never_falls_and_the_caller_may_stop(void **state)
     assert_true(all > 20);
 }
 
+/* A second call with the same context begins at 0, though it stretches the images first and its caller has not been asked for long;
+ * and a part that ends at the whole ends at 1, however its limits are rounded. */
+static void progress_begins_and_ends_where_it_should(void **state)
+{
+    static const asj_stretch twice = {2, 2};
+    const pages *p = *state;
+    listener l = {0};
+    asj_context_options options;
+    asj_context *context = NULL;
+    asj_match_result *r = NULL;
+    asj_context_options_init(&options);
+    options.backend = ASJ_BACKEND_CPU;
+    options.threads = 1;
+    options.progress = listen;
+    options.progress_user = &l;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+    for (int n = 0; n < 2; n++) {
+        l = (listener){0};
+        context->asked_ms -= 1000;
+        assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &twice, NULL, NULL, &r), ASJ_OK);
+        assert_int_equal(l.falls, 0);
+        assert_true(l.last == 1);
+        asj_match_result_free(&r);
+    }
+    l = (listener){0};
+    context->progress = 0;
+    context->progress_from = 0.9;
+    context->progress_part = 0.1 + 1e-15;
+    assert_int_equal(asj_progress(context, ASJ_STAGE_ASSIGN, 1), ASJ_OK);
+    assert_true(l.last == 1);
+    asj_context_free(&context);
+}
+
 static void expect_allocations_may_fail(const asj_image *image, const asj_stretch *stretch)
 {
     int reached = 1;
@@ -656,6 +690,7 @@ int main(void)
         cmocka_unit_test(automatically_nothing_is_too_large),
         cmocka_unit_test(octave_minus_one_needs_a_witness_in_enlarged_images),
         cmocka_unit_test(progress_never_falls_and_the_caller_may_stop),
+        cmocka_unit_test(progress_begins_and_ends_where_it_should),
         cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
