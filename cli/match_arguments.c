@@ -342,7 +342,8 @@ static int check_stretch(cli_match_arguments *arguments)
                                    arguments->regions[v].mask ? "mask" : "region", v + 1);
     }
     if ((!arguments->look || arguments->stretch.x > 0) && cli_settings_have(&arguments->match_settings, "enlarge_from"))
-        return cli_usage_error("match", "--enlarge-from changes nothing: it is for two whole images, without --stretch");
+        return cli_usage_error("match", "--enlarge-from changes nothing: it is for two whole images, without --stretch and without "
+                               "the preset paper");
     if (arguments->look && arguments->focal_from == CLI_FOCAL_ESTIMATE && arguments->stretch.x != arguments->stretch.y)
         return cli_usage_error("match", "--focal estimate needs square pixels, which --stretch along one axis has not");
     return CLI_SUCCESS;

@@ -13,7 +13,7 @@
  * images when these are right. So the images are matched first without octave -1,
  *   - when nothing comes of it, that is the answer, in less time;
  *   - when AGAIN of their matches come again, and the enlarged images have more, those of the enlarged images are the answer;
- *   - otherwise, and when the enlarged images lose a geometry, or contradict the images (MOST_CONTRADICTED: 48 rendered rooms
+ *   - otherwise, and when the enlarged images contradict the images (MOST_CONTRADICTED: 48 rendered rooms
  *     12272 of 12683 right -> 12338 of 12562), those of the images are.
  * Matches that come again, of ten pairs that match: .41 to .85 where the enlarged images are right in 97 of 100 and more, .63 where
  * they have 44 of 48 right for 20 of 27, 0 and .14 where they have 1 of 13 right and 23 of 30. */
@@ -130,10 +130,20 @@ static asj_status judge(asj_context *context, const asj_match_result *by, asj_ma
     return status;
 }
 
-/* Where the images have a geometry, and the enlarged ones were asked for none, it is theirs. */
+/* Rivals of the matches of the enlarged images are many weak corners around them, of which the matcher has chosen one. As for those
+ * that another geometry judges, what it has chosen has none. */
+static void judge_without_rivals(asj_match_result *finer)
+{
+    const asj_known_geometry *known = asj_match_result_geometry(finer);
+    asj_junction_match *matches = ((asj_own_result *)finer)->matches;
+    for (uint32_t k = 0; k < finer->match_count; k++)
+        matches[k].probability = fmaxf(matches[k].probability, (float)probability_of(finer, known, &matches[k]));
+}
+
+/* Where the enlarged images do not keep the images' geometry, or were asked for none, it is theirs. */
 static int32_t is_judged(const asj_match_result *own, const asj_match_result *finer)
 {
-    return asj_match_result_geometry(own) && finer->geometry.status == ASJ_GEOMETRY_NOT_ASKED;
+    return asj_match_result_geometry(own) && !keeps_geometry(own, finer);
 }
 
 /* --- which one holds --------------------------------------------------------------------------------------------------------- */
@@ -165,11 +175,24 @@ static asj_status find_new(asj_context *context, const asj_junction_match *list,
     return status;
 }
 
+/* Rivals of one of the images, and a motion that stays open, are an answer. */
+static int is_answer(const asj_geometry *g)
+{
+    return g->status == ASJ_GEOMETRY_ACCEPTED || g->status == ASJ_GEOMETRY_AMBIGUOUS || g->status == ASJ_GEOMETRY_DEGENERATE;
+}
+
 /* Those of the enlarged images, and of the others what is new. A geometry that the enlarged images have themselves judges these,
  * too: what it contradicts takes the place of what another one did. */
-static asj_status join(asj_context *context, asj_match_result *own, asj_match_result *finer, uint8_t *found, int32_t same_lists)
+static asj_status join(asj_context *context, asj_match_result *own, asj_match_result *finer, uint8_t *found, int32_t judged,
+                       int32_t same_lists)
 {
-    asj_status status = asj_match_result_geometry(finer) ? judge(context, finer, own) : ASJ_OK;
+    asj_status status = ASJ_OK;
+    if (!is_answer(&finer->geometry) && is_answer(&own->geometry))
+        finer->geometry = own->geometry;
+    if (!judged && asj_match_result_geometry(finer)) {
+        judge_without_rivals(finer);
+        status = judge(context, finer, own);
+    }
     if (status == ASJ_OK)
         status = look_all_up(context, own, finer, found);
     uint8_t *rejected = asj_allocate(&context->memory, (size_t)own->rejected_count, sizeof *rejected);
@@ -197,7 +220,7 @@ asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_ma
     if (status == ASJ_OK)
         status = look_all_up(context, *own, *finer, found);
     if (status == ASJ_OK && holds(*own, *finer, found, judged)) {
-        status = join(context, *own, *finer, found, same_lists);
+        status = join(context, *own, *finer, found, judged, same_lists);
         asj_match_result *other = *own;
         *own = *finer;
         *finer = other;

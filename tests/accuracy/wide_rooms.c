@@ -8,6 +8,7 @@
  * translation, degrees) and matches within 4 px of their epipolar lines. Then the area under the curve of recall over error up to
  * 5, 10 and 20 degrees, how many of the pairs with a third in common were accepted, and how many of the accepted are wrong by more
  * than 3 degrees. --held-out: seeds that nothing was tuned on. --unrelated: image 1 of a seed with image 2 of the next one.
+ * --stretch: by asj_match_images(); 0,0: automatically.
  * --draw: another draw of the images' noise. --seed: of the samples. --poses: log10 NFA of the strongest rival, and how far
  * rotation and translation are out, in brackets as told (the largest standard deviation of either).
  * --check: exit 1 when fewer poses are right (within 3 degrees) than below, or more are wrong. */
@@ -30,7 +31,7 @@ static const double least_right = 0.50; /* of --check: share of all pairs */
 static const int most_wrong = 0, most_far_off = 0;
 
 typedef struct settings {
-    int check, held_out, unrelated, no_cameras, find_focal, first_octave, poses;
+    int check, held_out, unrelated, no_cameras, find_focal, first_octave, poses, look;
     long first, last, draw, seed;
     asj_stretch stretch;
     asj_context *context;
@@ -153,7 +154,7 @@ static int match(const settings *set, const synth_wide_pair *first, const synth_
             options.geometry.cameras[v] = (asj_camera){f, f, 0.5 * (SYNTH_WIDE_WIDTH - 1), 0.5 * (SYNTH_WIDE_HEIGHT - 1)};
         failed = detect(set, pairs[v], v, &pixels[v], &images[v], &found[v]);
     }
-    if (!failed && set->stretch.x > 0)
+    if (!failed && set->look)
         failed = asj_match_images(set->context, &images[0], &images[1], &set->stretch, NULL, &options, &result) != ASJ_OK;
     else if (!failed)
         failed = asj_match(set->context, &images[0], found[0]->junctions, found[0]->junction_count, &images[1], found[1]->junctions,
@@ -256,7 +257,7 @@ int main(int argc, char **argv)
         case 'u': set.unrelated = 1; break;
         case 'n': set.no_cameras = 1; break;
         case 'o': set.find_focal = 1; break;
-        case 's': sscanf(optarg, "%lf,%lf", &set.stretch.x, &set.stretch.y); break;
+        case 's': set.look = sscanf(optarg, "%lf,%lf", &set.stretch.x, &set.stretch.y) == 2; break;
         case '1': set.first_octave = (int)strtol(optarg, NULL, 10); break;
         case 'f': set.first = strtol(optarg, NULL, 10); break;
         case 'l': set.last = strtol(optarg, NULL, 10); break;

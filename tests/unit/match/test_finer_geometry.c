@@ -190,11 +190,28 @@ static void what_a_geometry_adds_is_no_reason_against(void **state)
     asj_match_result_free(&own);
 }
 
+/* Rivals of the images' geometry are not forgotten for what is none. */
+static void rivals_are_an_answer(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *own = match(context, 0, 0), *finer = match(context, 1, 0);
+    const uint32_t first = finer->l_junction_count1;
+    own->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
+    own->geometry.log10_nfa = -7;
+    finer->geometry.status = ASJ_GEOMETRY_CHANCE;
+    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+    assert_true(own->l_junction_count1 > first);
+    assert_int_equal(own->geometry.status, ASJ_GEOMETRY_AMBIGUOUS);
+    assert_true(own->geometry.log10_nfa == -7);
+    asj_match_result_free(&own);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_rejected_stays_so),
         cmocka_unit_test(a_geometry_judges_all),
+        cmocka_unit_test(rivals_are_an_answer),
         cmocka_unit_test(what_a_geometry_adds_is_no_reason_against),
     };
     return cmocka_run_group_tests(tests, make_views, free_views);
