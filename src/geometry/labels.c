@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Corners of a room have their branches along its directions. In each image a branch within ALONG of where one of them points at
- * its place is labelled with it, and with which way it goes: six labels in each set of directions (directions.c). A rotation D2' P D1
- * (manhattan.c) says which label of image 1 is which of image 2. Of a right candidate both branches have labels that are the
- * same then; a wrong one, whose shape and affine map fit as well, has them by chance. With the true rotations of rooms 200 to 300,
- * of 2195 right candidates and 171368 wrong ones, in brackets weighed by their priors:
+ * its place is labelled with it, and with which way it goes: six labels in each set of directions (directions.c). A rotation
+ * D2' P D1 (manhattan.c) says which label of image 1 is which of image 2. Of a right candidate both branches have labels that are
+ * the same then; a wrong one, whose shape and affine map fit as well, has them by chance. With the true rotations of rooms 200 to
+ * 300, of 2195 right candidates and 171368 wrong ones, in brackets weighed by their priors:
  *
  *     both branches agree        right .78     wrong .10 (.22)
  *     one agrees, one differs          .04           .08 (.07)
@@ -21,8 +21,8 @@
  *
  *     log_labels = sum over the places of log(1 + sum p_c (ratio_c - 1)),
  *
- * the smaller of both images'. (161 pairs of rooms with a third in common: in 140 a rotation within 10 degrees of the true one is the
- * first, with its share.) Samples are drawn most from the first ones (search.c). It is no part of the evidence. */
+ * the smaller of both images'. (161 pairs of rooms with a third in common: in 140 a rotation within 10 degrees of the true one is
+ * the first, with its share.) Samples are drawn most from the first ones (search.c). It is no part of the evidence. */
 #include "labels.h"
 #include "core/angle.h"
 #include "elementary.h"

@@ -62,8 +62,8 @@ static const asj_pair *draw(const asj_pairs *set, const double *sum, int32_t cou
     return &set->list[low];
 }
 
-/* Candidates of different places, drawn by the running sums, that labels do not speak against with this rotation (NULL: any); 0 when
- * none were found. */
+/* Candidates of different places, drawn by the running sums, that labels do not speak against with this rotation (NULL: any);
+ * 0 when none were found. */
 static int32_t draw_some(const asj_pairs *set, const double *sum, int32_t count, uint64_t seed, uint64_t stream, int32_t wanted,
                          const asj_likely_rotation *rotation, const asj_pair **pairs)
 {
@@ -98,8 +98,8 @@ static int32_t guess(const asj_pairs *set, const asj_pair *const pairs[2], const
     return 1;
 }
 
-/* Which of the set's rotations a sample has: `near`, or -1: one of its own choice. Where labels tell the likeliest ones, every other
- * one is one of these. -1: its candidates tell the rotation, too. */
+/* Which of the set's rotations a sample has: `near`, or -1: one of its own choice. Where labels tell the likeliest ones, every
+ * other one is one of these. -1: its candidates tell the rotation, too. */
 static int32_t rotation_of(const asj_pairs *set, const asj_search *search, const asj_turned *turned, int32_t near, uint64_t stream)
 {
     const int32_t known = turned ? turned->count > 0 : near >= 0;

@@ -12,7 +12,8 @@
  *
  * A location that is out by e rad moves the normal by e / |m|, and its vote by that over the sine s of the angle between the
  * normals: where |m| s is less than CLEAR, a vote is spread over so many bins that each receives |m| s / CLEAR of it.
- * Else the votes weigh as the priors, times what labels (labels.c) say of the candidate under the rotation. Bins are of equal width in
+ * Else the votes weigh as the priors, times what labels (labels.c) say of the candidate under the rotation. Bins are of equal
+ * width in
  *
  *     d = s / (s + |c|) for c >= 0,   2 - s / (s + |c|) for c < 0,   (c, s) = (m . b, - m . a) or, where that has s < 0, minus it,
  *
