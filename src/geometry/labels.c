@@ -22,7 +22,10 @@
  *     log_labels = sum over the places of log(1 + sum p_c (ratio_c - 1)),
  *
  * the smaller of both images'. (161 pairs of rooms with a third in common: in 140 a rotation within 10 degrees of the true one is
- * the first, with its share.) Samples are drawn most from the first ones (search.c). It is no part of the evidence. */
+ * the first, with its share.) Samples are drawn most from the first ones (search.c). It is no part of the evidence.
+ *
+ * A motion has the names of a rotation that is as near as branches must be to directions: with 6 degrees motions that are off by 3
+ * to 5 are drawn there by what they gain, and in 806 pairs of rooms 24 poses are out by more than 3 degrees instead of 16. */
 #include "labels.h"
 #include "core/angle.h"
 #include "elementary.h"
@@ -34,7 +37,7 @@
 #include <string.h>
 
 #define ALONG (4 * ASJ_DEGREE)
-#define NEAR (6 * ASJ_DEGREE) /* as manhattan.c */
+#define NEAR ALONG
 
 /* By what the two branches do: 0 no label, 1 the same, 2 another one. */
 static const double ratios[3][3] = {{1, 3, 0.15}, {3, 5, 0.3}, {0.15, 0.3, 0.02}};

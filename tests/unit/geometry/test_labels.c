@@ -188,12 +188,12 @@ static void motions_near_a_rotation_have_it(void **state)
     make(&s, &memory, 9);
     assert_true(asj_order_rotations(&memory, &s.set));
     for (int degrees = 0; degrees < 45; degrees++) {
-        const double w[3] = {0, degrees * DEGREE, 0};
+        const double w[3] = {0, (degrees + 0.5) * DEGREE, 0};
         double turn[9], turned[9];
         asj_rotation_of(w, turn);
         asj_multiply3(turn, s.rotation, turned);
         const asj_likely_rotation *named = asj_named_rotation(&s.set, turned);
-        assert_true(named == (degrees < 6 ? &s.set.rotations[0] : NULL));
+        assert_true(named == (degrees < 4 ? &s.set.rotations[0] : NULL));
     }
     counter.fail_at = counter.calls + 1;
     assert_false(asj_order_rotations(&memory, &s.set));
