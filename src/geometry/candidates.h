@@ -5,6 +5,9 @@
 
 #include <stdint.h>
 
+#define ASJ_MOST_DIRECTIONS 4 /* sets of them, of one image */
+#define ASJ_BRANCH_NUMBERS 8  /* x and y of both branches in both images */
+
 /* A candidate match, px; affine: linear part of the map from image 1 to image 2, row by row. */
 typedef struct asj_pair {
     double x1, y1, x2, y2;
@@ -13,6 +16,7 @@ typedef struct asj_pair {
     uint32_t place1, place2; /* from 0 */
     uint32_t source;         /* index in the caller's list */
     float colour;            /* how well colours agree: estimate.h */
+    uint8_t label[2][ASJ_MOST_DIRECTIONS][2]; /* of each image, in each set of its directions: of both branches (labels.c) */
 } asj_pair;
 
 /* A rotation that the images' directions make likely: manhattan.c. */
@@ -21,6 +25,10 @@ typedef struct asj_likely_rotation {
     double matrix[9];
     double precision[ASJ_ROTATION_SIZES][9]; /* rad^-2: inverse covariances of w with exp([w]x) matrix the true one */
     double log_top[ASJ_ROTATION_SIZES];      /* of their densities at the middle over the flat one, each with its share */
+    double log_share;        /* before any candidate is looked at */
+    double log_labels;       /* what the labels of all candidates say of it */
+    int32_t of_set[2];       /* which set of directions it is from, in either image */
+    uint8_t name[8];         /* labels.c: the label in image 2 of each label of image 1 */
 } asj_likely_rotation;
 
 /* Candidates, the likeliest first, and what is known beforehand. */
@@ -36,11 +44,11 @@ typedef struct asj_pairs {
     double scale_sd;         /* of half the log of a ratio of squares */
     double spread;           /* px: wrong partners lie anywhere within this distance from an epipolar line */
     double area;             /* px^2: .. or anywhere in the image */
-    asj_likely_rotation *rotations;
+    asj_likely_rotation *rotations; /* where there are labels, in falling order of what these say, with the shares */
     int32_t rotation_count;
     int32_t has_colours;
     int32_t has_down;
-    int32_t reserved;
+    int32_t has_labels;
     double down[2][3];       /* of either camera, where has_down: the direction that points down in its image */
     double middle[2][2];     /* px: of image 1 and image 2 */
     float *at;               /* near.c: all x1, all y1, x2, y2, from the middles */
@@ -60,6 +68,7 @@ typedef struct asj_two_view {
     double in_front[ASJ_MOST_PLANES][3]; /* a pixel (x, y, 1) of the plane is in front of camera 1 when its product is positive */
     int32_t has_motion;      /* what follows is known: which side of the cameras a point is */
     int32_t reserved;
+    double rotation[9];
     double turned[9];        /* R K1^-1 */
     double translation[3];
     double ray2[4];          /* 1 / fx, 1 / fy, cx, cy of camera 2 */

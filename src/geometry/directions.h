@@ -3,10 +3,9 @@
 #ifndef ASJ_SRC_GEOMETRY_DIRECTIONS_H
 #define ASJ_SRC_GEOMETRY_DIRECTIONS_H
 
+#include "candidates.h"
 #include "vanishing_vote.h"
 #include "core/memory.h"
-
-#define ASJ_MOST_DIRECTIONS 4
 
 typedef struct asj_directions {
     double axes[9];       /* rows: directions in camera coordinates */

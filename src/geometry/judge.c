@@ -15,7 +15,7 @@ asj_judge asj_judge_create(const asj_two_view *view, const asj_pairs *set)
 double asj_judge_probability(const asj_judge *judge, const asj_geometry_candidate *m)
 {
     const asj_pair pair = {m->x1, m->y1, m->x2, m->y2, {m->affine[0], m->affine[1], m->affine[2], m->affine[3]}, m->probability,
-                           0, 0, 0, 0};
+                           0, 0, 0, 0, {{{0}}}};
     const asj_peaks peaks = asj_likelihood_peaks(&judge->scales, &judge->view, 1);
     const double right = m->probability * asj_likelihood_ratio(&judge->view, &judge->scales, &pair, &peaks, NULL);
     const double wrong = 1 - m->probability;

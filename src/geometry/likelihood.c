@@ -28,6 +28,9 @@
  * What is right lies in front of both cameras; of the points of an epipolar line half do. So the ratio is multiplied by 2 - BEHIND
  * or by BEHIND, and by 1 where rays are so nearly parallel that locations do not tell.
  *
+ * Where branches point along directions of the room, and the motion says which of image 1 is which of image 2, the ratio is
+ * multiplied by what labels.c says of that.
+ *
  * How large errors are differs from image to image and from corner to corner: of matches in rendered rooms half lie within .3 px of
  * their epipolar lines and a twentieth beyond 2 px, in frames of a video half within .9 px. So a right candidate has one of SIZES
  * sizes of errors, all its standard deviations divided by 1, 2 and 4 (a scale mixture of normal distributions: Andrews and Mallows
@@ -47,6 +50,7 @@
 #include "likelihood.h"
 #include "core/angle.h"
 #include "elementary.h"
+#include "labels.h"
 #include "near.h"
 
 #include <math.h>
@@ -159,7 +163,9 @@ asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, d
     const double shear = SHEAR_WIDTH * SHEAR_WIDTH / (2 * ASJ_PI * loose * ASJ_SHEAR_SD * loose * ASJ_SHEAR_SD);
     const double line = 2 * set->spread / (normal * sd) * shape;
     const double plane = set->area / (2 * ASJ_PI * sd * sd) * shape * shear;
-    asj_peaks peaks = {view->planar ? plane : line, plane, loose, !(loose > 1), 0};
+    asj_peaks peaks = {view->planar ? plane : line, plane, loose, !(loose > 1), 0, NULL};
+    if (set->has_labels && view->has_motion)
+        peaks.named = asj_named_rotation(set, view->rotation);
     if (!view->planar && view->plane_count > 0) {
         peaks.first *= 1 - ON_PLANES;
         peaks.plane *= ON_PLANES / view->plane_count;
@@ -217,7 +223,8 @@ double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *s
         sizes_of(square, planar, s);
     else
         s[0] = asj_exp_falling(-0.5 * square);
-    const double ratio = (part > 0 ? peaks->plane : peaks->first) * (s[0] + s[1] + s[2]);
+    const double labels = peaks->named ? asj_label_ratio(peaks->named, c) : 1;
+    const double ratio = labels * (part > 0 ? peaks->plane : peaks->first) * (s[0] + s[1] + s[2]);
     return !planar && view->has_motion ? ratio * side_factor(view, c) : ratio;
 }
 

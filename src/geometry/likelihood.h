@@ -30,6 +30,7 @@ typedef struct asj_peaks {
     double loose;
     int32_t fine;        /* residuals have several sizes: where `loose` is 1 */
     int32_t reserved;
+    const asj_likely_rotation *named; /* labels.c; NULL: none */
 } asj_peaks;
 asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, double loose);
 

@@ -27,6 +27,7 @@
 #include "manhattan.h"
 #include "core/angle.h"
 #include "core/context.h"
+#include "labels.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -101,8 +102,13 @@ static int32_t add_names(const asj_directions *first, const asj_directions *seco
         for (int32_t k = 0; k < 9; k++)
             permuted[k] = (n >> (k / 3) & 1 ? -1 : 1) * first->axes[3 * p[k / 3] + k % 3];
         asj_transposed_multiply3(second->axes, permuted, matrix);
-        if (asj_determinant3(matrix) > 0 && count < NAMES)
-            count += set_rotation(first, second, matrix, log_share + log_share_of(first, second, matrix), &list[count]);
+        if (!(asj_determinant3(matrix) > 0) || count == NAMES)
+            continue;
+        asj_likely_rotation *r = &list[count];
+        r->log_share = log_share + log_share_of(first, second, matrix);
+        for (int32_t k = 0; k < 6; k++) /* row k / 2 of D2 is row p[k / 2] of D1, or minus it */
+            r->name[ASJ_LABEL(p[k / 2], k % 2)] = (uint8_t)ASJ_LABEL(k / 2, k % 2 ^ (n >> (k / 2) & 1));
+        count += set_rotation(first, second, matrix, r->log_share, r);
     }
     return count;
 }
@@ -114,10 +120,15 @@ int32_t asj_manhattan_rotations(asj_memory *memory, const asj_directions_list di
     if (pairs == 0)
         return 1;
     set->has_down = find_down(&directions[0].list[0], set->down[0]) && find_down(&directions[1].list[0], set->down[1]);
-    set->rotations = asj_allocate(memory, NAMES * (size_t)pairs, sizeof *set->rotations);
-    for (int32_t i = 0; i < pairs && set->rotations; i++)
-        set->rotation_count += add_names(&directions[0].list[i % directions[0].count], &directions[1].list[i / directions[0].count],
-                                         -log(pairs), &set->rotations[set->rotation_count]);
+    set->rotations = asj_allocate_zero(memory, NAMES * (size_t)pairs, sizeof *set->rotations);
+    for (int32_t i = 0; i < pairs && set->rotations; i++) {
+        const int32_t of_set[2] = {i % directions[0].count, i / directions[0].count};
+        asj_likely_rotation *list = &set->rotations[set->rotation_count];
+        const int32_t count = add_names(&directions[0].list[of_set[0]], &directions[1].list[of_set[1]], -log(pairs), list);
+        for (int32_t k = 0; k < count; k++)
+            memcpy(list[k].of_set, of_set, sizeof of_set);
+        set->rotation_count += count;
+    }
     return set->rotations != NULL;
 }
 

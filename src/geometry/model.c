@@ -136,6 +136,7 @@ static int32_t complete_essential(asj_model *m)
     asj_fundamental_of(essential, m->cameras, m->view.matrix);
     inverse_of(&m->cameras[0], k1);
     asj_multiply3(m->rotation, k1, m->view.turned);
+    memcpy(m->view.rotation, m->rotation, sizeof m->rotation);
     memcpy(m->view.translation, m->translation, sizeof m->translation);
     m->view.ray2[0] = 1 / c2->fx;
     m->view.ray2[1] = 1 / c2->fy;

@@ -4,6 +4,8 @@
 #include "pairs.h"
 #include "core/angle.h"
 #include "elementary.h"
+#include "geometry_options.h"
+#include "labels.h"
 #include "manhattan.h"
 #include "near.h"
 
@@ -102,7 +104,7 @@ static void set_scales(const asj_geometry_options *options, asj_pairs *set)
     set->area = sqrt(w1 * h1) * sqrt(w2 * h2);
 }
 
-/* The caller's directions, or else the images'. */
+/* The caller's directions, or else the images'; and what branches point along. */
 static asj_status set_rotations(asj_context *context, const asj_geometry_options *options, const asj_geometry_hints *hints,
                                 asj_pairs *set)
 {
@@ -110,7 +112,10 @@ static asj_status set_rotations(asj_context *context, const asj_geometry_options
     for (int32_t v = 0; v < 2; v++)
         asj_directions_given(options->directions[v], &given[v]);
     const int32_t from_caller = given[0].count > 0 || given[1].count > 0 || !hints;
-    return asj_manhattan_rotations(&context->memory, from_caller ? given : hints->directions, set)
+    const asj_directions_list *directions = from_caller ? given : hints->directions;
+    if (hints && hints->branches && asj_cameras_are_known(options))
+        asj_set_labels(set, hints->branches, directions, options->cameras);
+    return asj_manhattan_rotations(&context->memory, directions, set)
                ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the rotations of the geometry");
 }
 
@@ -168,7 +173,7 @@ asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *
         if (c->probability < least)
             continue;
         set->list[kept++] = (asj_pair){c->x1, c->y1, c->x2, c->y2, {c->affine[0], c->affine[1], c->affine[2], c->affine[3]},
-                                  c->probability, c->place1, c->place2, (uint32_t)k, colours ? (float)colours[k] : 0};
+                                  c->probability, c->place1, c->place2, (uint32_t)k, colours ? (float)colours[k] : 0, {{{0}}}};
     }
     if (kept > 1)
         qsort(set->list, kept, sizeof *set->list, likelier);
@@ -185,6 +190,8 @@ asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *
             return status;
     }
     limit_priors(set);
+    if (set->has_labels && !asj_order_rotations(&context->memory, set))
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the labels of %lu candidates", (unsigned long)set->count);
     return asj_near_prepare(&context->memory, set)
                ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu candidates", (unsigned long)set->count);
 }

@@ -12,7 +12,8 @@
  *
  * A location that is out by e rad moves the normal by e / |m|, and its vote by that over the sine s of the angle between the
  * normals: where |m| s is less than CLEAR, a vote is spread over so many bins that each receives |m| s / CLEAR of it.
- * Else the votes weigh as the priors. Bins are of equal width in
+ * Else the votes weigh as the priors, times what labels (labels.c) say of the candidate under the rotation. Bins are of equal
+ * width in
  *
  *     d = s / (s + |c|) for c >= 0,   2 - s / (s + |c|) for c < 0,   (c, s) = (m . b, - m . a) or, where that has s < 0, minus it,
  *
@@ -20,6 +21,7 @@
  * all vote for where the cameras look to: what counts is by how much a bin, with half of its neighbours, is above the mean of those
  * around it, in units of the root of that mean, as for numbers of chance. */
 #include "turned.h"
+#include "labels.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -36,7 +38,7 @@ int32_t asj_turned_create(asj_memory *memory, const asj_pairs *set, int32_t coun
 {
     turned->count = count;
     turned->normal = asj_allocate(memory, 3 * (size_t)count * (size_t)set->rotation_count, sizeof *turned->normal);
-    turned->weight = asj_allocate(memory, (size_t)count, sizeof *turned->weight);
+    turned->weight = asj_allocate(memory, (size_t)count * (size_t)set->rotation_count, sizeof *turned->weight);
     if (!turned->normal || !turned->weight)
         return 0;
     for (int32_t k = 0; k < count; k++) {
@@ -44,8 +46,10 @@ int32_t asj_turned_create(asj_memory *memory, const asj_pairs *set, int32_t coun
         double y1[3], y2[3];
         asj_ray(&cameras[0], c->x1, c->y1, y1);
         asj_ray(&cameras[1], c->x2, c->y2, y2);
-        turned->weight[k] = (float)(c->prior * (weights ? weights[k] : 1));
+        const double weight = c->prior * (weights ? weights[k] : 1);
         for (int32_t r = 0; r < set->rotation_count; r++) {
+            const double labels = set->has_labels ? asj_label_ratio(&set->rotations[r], c) : 1;
+            turned->weight[(ptrdiff_t)count * r + k] = (float)(weight * labels);
             float *normal = turned->normal + 3 * (ptrdiff_t)count * r + k;
             double rotated[3], n[3];
             asj_apply3(set->rotations[r].matrix, y1, rotated);
@@ -109,6 +113,7 @@ int32_t asj_translation_by_vote(const asj_pairs *set, const asj_turned *turned, 
 {
     const ptrdiff_t count = turned->count, at = pair - set->list;
     const float *x = turned->normal + 3 * count * rotation, *y = x + count, *z = y + count;
+    const float *weight = turned->weight + count * rotation;
     double n[3] = {(double)x[at], (double)y[at], (double)z[at]}, a[3], b[3], cosine, sine, rays[2][3];
     float votes[BINS + 1] = {0}, part[BLOCK]; /* the last bin is the first one again */
     int32_t bins[BLOCK];
@@ -120,7 +125,7 @@ int32_t asj_translation_by_vote(const asj_pairs *set, const asj_turned *turned, 
         const int32_t some = turned->count - first < BLOCK ? turned->count - first : BLOCK;
         find_bins(x + first, y + first, z + first, some, af, bf, bins, part);
         for (int32_t k = 0; k < some; k++)
-            votes[bins[k]] += part[k] * turned->weight[first + k];
+            votes[bins[k]] += part[k] * weight[first + k];
     }
     votes[0] += votes[BINS];
     middle_of(clearest(votes), &cosine, &sine);

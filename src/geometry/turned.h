@@ -9,7 +9,7 @@
 /* What the first `count` candidates say of the translation under each of the set's rotations. */
 typedef struct asj_turned {
     float *normal; /* for each rotation all x, all y, all z */
-    float *weight; /* of each candidate's vote */
+    float *weight; /* for each rotation, of each candidate's vote */
     int32_t count;
     int32_t reserved;
 } asj_turned;

@@ -6,6 +6,7 @@
 #include "geometry_candidate.h"
 
 #include <math.h>
+#include <string.h>
 
 #define FARTHEST 4.0   /* px, and .. */
 #define OF_SIDE 0.0025 /* .. of the longer side */
@@ -18,6 +19,12 @@ asj_geometry_candidate asj_candidate_for_geometry(const asj_match_run *run, cons
         run->image[0]->l_junctions.location[c->i], run->image[1]->l_junctions.location[c->j],
         (double)l1->x, (double)l1->y, (double)l2->x + c->move2[0] - (t[0] * c->move1[0] + t[1] * c->move1[1]),
         (double)l2->y + c->move2[1] - (t[2] * c->move1[0] + t[3] * c->move1[1]), {t[0], t[1], t[2], t[3]}, prior};
+}
+
+void asj_candidate_branches(const asj_match_run *run, const asj_candidate *c, double *branches)
+{
+    memcpy(branches, run->image[0]->l_junctions.direction + 4 * (size_t)c->i, 4 * sizeof *branches);
+    memcpy(branches + 4, run->image[1]->l_junctions.direction + 4 * (size_t)c->j, 4 * sizeof *branches);
 }
 
 int asj_keeps_area(const double t[4])

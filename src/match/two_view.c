@@ -109,12 +109,13 @@ static asj_status estimate(asj_match_run *run, asj_wide_run *w)
     w->given = asj_allocate(memory, count, sizeof *w->given);
     w->probability = asj_allocate(memory, count, sizeof *w->probability);
     w->colours = asj_allocate(memory, count, sizeof *w->colours);
+    w->branches = asj_allocate(memory, ASJ_BRANCH_NUMBERS * count, sizeof *w->branches);
     for (int32_t side = 0; side < 2; side++)
         w->place[side] = asj_allocate(memory, run->image[side]->l_junctions.location_count, sizeof *w->place[side]);
-    if (!w->given || !w->probability || !w->colours || !w->place[0] || !w->place[1])
+    if (!w->given || !w->probability || !w->colours || !w->branches || !w->place[0] || !w->place[1])
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the geometry of %zu candidates", count);
     asj_geometry_options options = run->options->geometry;
-    asj_geometry_hints hints = {.colours = NULL};
+    asj_geometry_hints hints = {.branches = w->branches};
     asj_status status = asj_candidate_priors(&w->run, w->probability, w->colours);
     if (status == ASJ_OK)
         status = complete_options(run, &options, &hints);
@@ -129,6 +130,7 @@ static asj_status estimate(asj_match_run *run, asj_wide_run *w)
             continue;
         w->given[kept] = clustered(w, c, w->probability[k]);
         w->colours[kept] = w->colours[k];
+        asj_candidate_branches(&w->run, c, &w->branches[ASJ_BRANCH_NUMBERS * kept]);
         w->run.candidates.list[kept++] = *c;
     }
     w->run.candidates.count = kept;
@@ -153,6 +155,7 @@ asj_status asj_apply_geometry(asj_match_run *run)
     asj_release(memory, w.given);
     asj_release(memory, w.probability);
     asj_release(memory, w.colours);
+    asj_release(memory, w.branches);
     asj_release(memory, w.place[0]);
     asj_release(memory, w.place[1]);
     return status;

@@ -12,6 +12,7 @@ typedef struct asj_wide_run {
     asj_geometry_candidate *given;
     double *probability;
     double *colours;    /* how well those of each candidate agree */
+    double *branches;   /* of each candidate: geometry/estimate.h */
     uint32_t *place[2]; /* of each location */
 } asj_wide_run;
 

@@ -76,7 +76,7 @@ def match(features, cameras, options, geometry, seed):
     context = current()
     one, two = (f.described(record, context) for f in features)
     context.call(lib.asj_match_features, one, two, record, place)
-    return of_matches.Matches(ffi.gc(place[0], of_matches._free), *features)
+    return of_matches.Matches(ffi.gc(place[0], of_matches._free), tuple(features))
 
 
 def ransac(found, cameras, seed):

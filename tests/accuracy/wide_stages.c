@@ -70,7 +70,7 @@ typedef struct stage {
     asj_match_options options;
     asj_match_run run;
     asj_geometry_candidate *given;
-    double *probability, *colours;
+    double *probability, *colours, *branches;
     asj_geometry_hints hints;
     uint32_t *place[2];
     uint8_t *right;   /* of each candidate: its aligned point is right; 2 = its map too */
@@ -135,6 +135,7 @@ static asj_status make_candidates(stage *s)
     s->given = get(count, sizeof *s->given);
     s->probability = get(count, sizeof *s->probability);
     s->colours = get(count, sizeof *s->colours);
+    s->branches = get(ASJ_BRANCH_NUMBERS * count, sizeof *s->branches);
     s->right = get(count, 1);
     status = asj_candidate_priors(&s->run, s->probability, s->colours);
     for (int v = 0; v < 2; v++) {
@@ -153,11 +154,13 @@ static asj_status make_candidates(stage *s)
         s->given[kept] = asj_candidate_for_geometry(&s->run, c, s->probability[k]);
         s->given[kept].place1 = s->place[0][s->given[kept].place1];
         s->given[kept].place2 = s->place[1][s->given[kept].place2];
+        asj_candidate_branches(&s->run, c, &s->branches[ASJ_BRANCH_NUMBERS * kept]);
         s->run.candidates.list[kept] = *c;
         s->colours[kept++] = s->colours[k];
     }
     s->run.candidates.count = kept;
     s->hints.colours = s->colours;
+    s->hints.branches = s->branches;
     return status;
 }
 
@@ -335,6 +338,7 @@ static asj_status one_pair(const settings *set, const synth_wide_pair *pair)
     free(s.given);
     free(s.probability);
     free(s.colours);
+    free(s.branches);
     free(s.right);
     for (int v = 0; v < 2; v++) {
         free(s.place[v]);
