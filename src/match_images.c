@@ -8,9 +8,9 @@
  * whether those hold), in several times the time. options->enlarge_from own matches are asked, so that pairs without anything in
  * common are answered as before; with a geometry that is asked and not found, one is enough. A pose is estimated again, from more
  * (rendered rooms seen from far apart, 1000 to 1399: 313 of 398 poses -> 328, AUC at 5, 10, 20 degrees 67.3 72.7 75.6 -> 71.3 76.5
- * 79.2; with the images' own pose half of that is gained), for 1.7 times the time. Another geometry of the images judges the new matches too:
- * estimated again it gives one in forty more. Images of more than LARGEST pixels have detail enough, and what a camera delivers at
- * that size is seldom sharp to the pixel.
+ * 79.2; with the images' own pose half of that is gained), for 1.7 times the time. Another geometry of the images judges the new
+ * matches too: estimated again it gives one in forty more. Images of more than LARGEST pixels have detail enough, and what a camera
+ * delivers at that size is seldom sharp to the pixel.
  *
  * Stretched. A square on a plane seen at an angle of a to it has sin a of its height: at 1, 3 one at 19 degrees is a
  * square again, and those at 10 and 40 degrees are off by less than two times (the tilts of ASIFT, Morel and Yu 2009, go by sqrt 2
