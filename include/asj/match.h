@@ -37,7 +37,8 @@ typedef struct asj_match_options {
     int32_t normalise;           /* 1 = raw patches are brought to zero mean and unit norm. 1; paper 0 */
     int32_t patch_size;          /* samples along a side of a patch, a multiple of 4. 8 .. 24; 16 */
     int32_t enlarge_from;        /* asj_match_images(), automatically: from so many matches on the images are looked at enlarged,
-                                  * too (octave -1); 0 = never. 0 .. 1000000; 8; paper 0 */
+                                  * too (octave -1), from 1 on where a geometry is asked and none accepted; 0 = never.
+                                  * 0 .. 1000000; 8; paper 0 */
     double window_start;         /* a canonical patch reaches from here .. -1 .. 0; -0.25 */
     double window_end;           /* .. to here, in branch lengths. 0.25 .. 2; 1 */
     double patch_radius;         /* px: half a side of an induced patch. 4 .. 64; 16 */
@@ -108,7 +109,8 @@ typedef struct asj_junction_match {
     float ratio;            /* how much worse the second best at another place is; HUGE_VAL when there is none */
     float similarity;       /* correlation of the aligned discs, -1 .. 1; 0 when not aligned */
     float support;          /* neighbouring matches that agree, each counted 0 to 1 */
-    float probability;      /* that the match is right, given the geometry, where one was accepted, and its rivals; else 0.
+    float probability;      /* that the match is right, given the geometry, where one was accepted, and, but in enlarged images,
+                             * its rivals; else 0.
                              * Off the plane of a homography it is low, and the match stays: there are other planes */
     float reserved;         /* zero */
 } asj_junction_match;
@@ -130,7 +132,7 @@ typedef struct asj_match_result {
                                         * distance first */
     uint64_t rejected_count;
     double stretch[2];                 /* along x and y, how the images were looked at: asj_match_images(); 1, 1 = as they are */
-    uint64_t enlarged;                 /* 1 = most matches are those of the enlarged images, with junctions of octave -1
+    uint64_t enlarged;                 /* 1 = the matches of the enlarged images are among them, with junctions of octave -1
                                         * (src/match/finer.c) */
     uint64_t reserved[1];
 } asj_match_result;
@@ -144,9 +146,10 @@ typedef struct asj_match_result {
  * that repeat often differ in hue alone. Exposure and white balance may differ.
  *
  * With junctions of octave -1 (asj_detect_options.first_octave) the images are matched without those first, and then with them as
- * if they were twice as large. The second result holds where it has more matches and three in ten of the first ones again, and
- * keeps a geometry, if there is one, together with those of the first ones whose places no other match has; else the first one does
- * (src/match/finer.c). Junctions of octave -1 alone (octaves 1) have no first ones to ask. Everything is in pixels of the images.
+ * if they were twice as large. The second result holds where it has more matches, three in ten of the first ones again and few that
+ * contradict these, together with those of the first ones whose places no other match has; else the first one does. One geometry
+ * judges both: that of the second one, or, where it has none or loses the pose, that of the first one (src/match/finer.c). Junctions
+ * of octave -1 alone (octaves 1) have no first ones to ask. Everything is in pixels of the images.
  *
  * image1, image2   views; only read, and only during the call
  * junctions1, 2    from asj_detect() or a file; may be NULL when the count is 0. Junctions with branches that differ in
@@ -185,8 +188,7 @@ typedef struct asj_stretch {
  * up to some megapixels have about three times the matches, in three to eight times the time; a surface that is seen at a glancing
  * angle, like a magazine on a table, matches stretched across it (1, 3) where it did not at all (tests/accuracy/README.md).
  * Everything in the result is in pixels of the images as they are. Numbers of junctions are those of the detector in this call;
- * where it has looked twice (result->enlarged), those of the images as they are, and their L-junctions, come after those of the
- * enlarged ones. Times are those of all of it; result->stretch says how the images were looked at.
+ * where it has looked twice (result->enlarged), those of the images without octave -1, and their L-junctions, come after those with it. Times are those of all of it; result->stretch says how the images were looked at.
  *
  * stretch          NULL = as they are. Automatically (0, 0):
  *                  - as they are;
@@ -198,7 +200,7 @@ typedef struct asj_stretch {
  *                    by 1, 3 and by 3, 1, unless rivals or a motion that stays open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the
  *                    answer, or a focal length is looked for. What comes of that counts from 16 matches on, and when it is twice
  *                    as many; then it is looked at with octave -1, too, as above.
- *                  A pair that has nothing in common takes about twice as long as without all that (tests/benchmark/README.md)
+ *                  A pair that has nothing in common takes about twice as long as without all that (tests/accuracy/README.md)
  * detect_options   NULL = preset `match`
  * options          NULL = preset `default`; cameras are those of the images as they are
  *

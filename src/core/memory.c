@@ -115,6 +115,7 @@ static void leave_shelf(asj_memory *memory, shelf *s)
         link = &(*link)->next;
     *link = s->next;
     memory->now -= LARGE_PAGE;
+    memory->shelf_count--;
     ALLOW(s, LARGE_PAGE);
     memory->allocator.release(memory->allocator.user, s);
 }
@@ -123,19 +124,19 @@ static void leave_shelf(asj_memory *memory, shelf *s)
 static char *take_from_shelf(asj_memory *memory, size_t bytes, shelf **on)
 {
     const size_t room = (bytes + ASJ_ALIGNMENT - 1) / ASJ_ALIGNMENT * ASJ_ALIGNMENT + GAP;
-    size_t shelves = 0;
     *on = NULL;
     if (!memory->open || !memory->sharing || memory->allocator.allocate != allocate_default || bytes < LEAST_ON_SHELF ||
         bytes > MOST_ON_SHELF)
         return NULL;
-    for (shelf *s = memory->shelves; s && !*on; s = s->next, shelves++)
+    for (shelf *s = memory->shelves; s && !*on; s = s->next)
         *on = LARGE_PAGE - s->used >= room ? s : NULL;
-    if (!*on && shelves < MOST_SHELVES) {
+    if (!*on && memory->shelf_count < MOST_SHELVES) {
         *on = memory->allocator.allocate(memory->allocator.user, LARGE_PAGE);
         if (!*on)
             return NULL;
         **on = (shelf){memory->shelves, ASJ_ALIGNMENT, 0};
         memory->shelves = *on;
+        memory->shelf_count++;
         count(memory, LARGE_PAGE);
     }
     if (!*on)

@@ -13,6 +13,7 @@ typedef struct asj_memory {
     uint64_t call;           /* how often it was opened */
     struct asj_shelf *shelves; /* large pages that smaller blocks share */
     int32_t sharing;           /* whether new ones do */
+    int32_t shelf_count;
 } asj_memory;
 
 /* The allocator that the options ask for; malloc() and free() when they name none or are NULL. 0 when they name only one of the

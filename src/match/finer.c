@@ -12,9 +12,11 @@
  * The images themselves are the witness: their own matches, found with other junctions at another scale, come again in the enlarged
  * images when these are right. So the images are matched first without octave -1,
  *   - when nothing comes of it, that is the answer, in less time;
- *   - when AGAIN of their matches come again, and the enlarged images have more, those of the enlarged images are the answer;
- *   - otherwise, and when the enlarged images contradict the images (MOST_CONTRADICTED: 48 rendered rooms
- *     12272 of 12683 right -> 12338 of 12562), those of the images are.
+ *   - when AGAIN of their matches come again, and the enlarged images have more (with those that a geometry of the images has
+ *     added, where it judges both), the enlarged images' matches are the answer, with the others whose places are free;
+ *   - otherwise, and when the enlarged images contradict the images (MOST_CONTRADICTED: 48 rendered rooms 12272 of 12683 right ->
+ *     12338 of 12562), the images' matches are.
+ * One geometry judges both: that of the enlarged images, or, where they have none or lose the pose, that of the images.
  * Matches that come again, of ten pairs that match: .41 to .85 where the enlarged images are right in 97 of 100 and more, .63 where
  * they have 44 of 48 right for 20 of 27, 0 and .14 where they have 1 of 13 right and 23 of 30. */
 #include "finer.h"
@@ -100,32 +102,45 @@ static int32_t holds(const asj_match_result *own, const asj_match_result *finer,
            contradicted <= MOST_CONTRADICTED * again;
 }
 
-/* --- the images' own geometry and matches of the enlarged ones --------------------------------------------------------------- */
+/* --- a geometry of one result, and matches of the other ----------------------------------------------------------------------- */
+
+/* px from an epipolar line that may be: as far as either result has it for its own matches, which are of half a pixel or of one. */
+static double farthest_of(const asj_match_result *by, const asj_match_result *judged)
+{
+    return fmax(asj_match_result_farthest(by), asj_match_result_farthest(judged));
+}
 
 /* Negative: contradicted. The rules are those of verdict.c for matches that were no candidates of the geometry. */
-static double probability_of(const asj_match_result *by, const asj_known_geometry *known, const asj_junction_match *m)
+static float probability_of(const asj_match_result *by, double farthest, const asj_junction_match *m)
 {
+    const asj_known_geometry *known = asj_match_result_geometry(by);
     const double x1 = (double)m->x1, y1 = (double)m->y1, x2 = (double)m->x2, y2 = (double)m->y2, *h = m->affine;
     asj_geometry_candidate g = {0, 0, x1, y1, x2, y2, {h[0], h[1], h[3], h[4]}, ASJ_MATCH_RIGHT};
-    if (known->lines_hold && asj_distance_from_line(&by->geometry, x1, y1, x2, y2) > known->farthest)
+    if (known->lines_hold && asj_distance_from_line(&by->geometry, x1, y1, x2, y2) > farthest)
         return -1;
     if (!asj_keeps_area(g.affine))
         return 0;
     asj_stretch_candidate(&g, known->by);
-    return asj_judge_probability(&known->judge, &g);
+    return (float)asj_judge_probability(&known->judge, &g);
 }
 
-/* By the geometry of the other result. */
+/* By the geometry of the other result, which is that of both from now on. */
 static asj_status judge(asj_context *context, const asj_match_result *by, asj_match_result *judged)
 {
-    const asj_known_geometry *known = asj_match_result_geometry(by);
-    float *probability = asj_allocate(&context->memory, judged->match_count, sizeof *probability);
+    const size_t count = judged->match_count, rejected_count = (size_t)judged->rejected_count;
+    const double farthest = farthest_of(by, judged);
+    asj_own_result *r = (asj_own_result *)judged;
+    float *probability = asj_allocate(&context->memory, count + rejected_count, sizeof *probability);
     if (!probability)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu matches", (unsigned long)judged->match_count);
-    for (uint32_t k = 0; k < judged->match_count; k++)
-        probability[k] = (float)probability_of(by, known, &judged->matches[k]);
-    const asj_status status = asj_match_result_judge(context, judged, probability);
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu matches", count + rejected_count);
+    for (size_t k = 0; k < count; k++)
+        probability[k] = probability_of(by, farthest, &judged->matches[k]);
+    for (size_t k = 0; k < rejected_count; k++)
+        probability[count + k] = probability_of(by, farthest, &judged->rejected[k]);
+    const asj_status status = asj_match_result_judge(context, judged, probability, probability + count);
     judged->geometry = by->geometry;
+    r->known = *asj_match_result_geometry(by);
+    r->is_known = 1;
     asj_release(&context->memory, probability);
     return status;
 }
@@ -134,10 +149,9 @@ static asj_status judge(asj_context *context, const asj_match_result *by, asj_ma
  * that another geometry judges, what it has chosen has none. */
 static void judge_without_rivals(asj_match_result *finer)
 {
-    const asj_known_geometry *known = asj_match_result_geometry(finer);
     asj_junction_match *matches = ((asj_own_result *)finer)->matches;
     for (uint32_t k = 0; k < finer->match_count; k++)
-        matches[k].probability = fmaxf(matches[k].probability, (float)probability_of(finer, known, &matches[k]));
+        matches[k].probability = fmaxf(matches[k].probability, probability_of(finer, farthest_of(finer, finer), &matches[k]));
 }
 
 /* Where the enlarged images do not keep the images' geometry, or were asked for none, it is theirs. */
@@ -156,7 +170,7 @@ static void add_times(asj_match_result *to, const asj_match_result *from)
     to->total_ms += from->total_ms;
 }
 
-/* Which ones of a list are not in another one, which has places of its own for the time being. */
+/* Which ones of a list are not in another one, sorted by place here: rejected matches have no places. */
 static asj_status find_new(asj_context *context, const asj_junction_match *list, size_t count, const asj_junction_match *others,
                            uint32_t other_count, uint8_t *is_new)
 {
@@ -179,6 +193,19 @@ static asj_status find_new(asj_context *context, const asj_junction_match *list,
 static int is_answer(const asj_geometry *g)
 {
     return g->status == ASJ_GEOMETRY_ACCEPTED || g->status == ASJ_GEOMETRY_AMBIGUOUS || g->status == ASJ_GEOMETRY_DEGENERATE;
+}
+
+/* What one look rejects and the other one keeps is a match. */
+static void forget_what_is_kept(asj_match_result *finer)
+{
+    const asj_around kept = asj_match_result_around(finer);
+    asj_own_result *r = (asj_own_result *)finer;
+    size_t count = 0;
+    for (size_t n = 0; n < finer->rejected_count; n++)
+        if (look_up(&r->rejected[n], &kept) != AGAIN_THERE)
+            r->rejected[count++] = r->rejected[n];
+    finer->rejected_count = count;
+    finer->rejected = count ? r->rejected : NULL;
 }
 
 /* Those of the enlarged images, and of the others what is new. A geometry that the enlarged images have themselves judges these,
@@ -205,6 +232,8 @@ static asj_status join(asj_context *context, asj_match_result *own, asj_match_re
         found[n] = found[n] == NEW;
     if (status == ASJ_OK)
         status = asj_match_result_join(context, finer, own, found, rejected, same_lists);
+    if (status == ASJ_OK)
+        forget_what_is_kept(finer);
     asj_release(&context->memory, rejected);
     return status;
 }

@@ -13,7 +13,7 @@
  * as match_result.c has them. */
 asj_geometry_candidate asj_candidate_for_geometry(const asj_match_run *run, const asj_candidate *c, double prior);
 
-/* The unit vectors of its branches, a and b in image 1, then in image 2 (ASJ_BRANCH_NUMBERS of geometry/estimate.h). */
+/* The unit vectors of its branches, a and b in image 1, then in image 2 (ASJ_BRANCH_NUMBERS of geometry/candidates.h). */
 void asj_candidate_branches(const asj_match_run *run, const asj_candidate *c, double *branches);
 
 /* A map that hardly keeps any area, or makes thousandfold, is no map, and the geometry takes none. */

@@ -172,9 +172,10 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
     }
     for (int32_t side = 0; side < 2; side++)
         asj_places_sort(r->places[side], r->matches, r->count, side);
+    r->farthest = asj_farthest_from_line(run);
     r->is_known = run->geometry.status == ASJ_GEOMETRY_ACCEPTED;
     if (r->is_known)
-        r->known = (asj_known_geometry){run->judge, {{1, 1}, {1, 1}}, asj_farthest_from_line(run), run->lines_hold};
+        r->known = (asj_known_geometry){run->judge, {{1, 1}, {1, 1}}, run->lines_hold};
     const asj_status status = find_ends(run, r);
     if (status == ASJ_OK)
         show(run, r);
@@ -207,6 +208,11 @@ const asj_known_geometry *asj_match_result_geometry(const asj_match_result *show
 {
     const asj_own_result *r = (const asj_own_result *)shown;
     return r->is_known ? &r->known : NULL;
+}
+
+double asj_match_result_farthest(const asj_match_result *shown)
+{
+    return ((const asj_own_result *)shown)->farthest;
 }
 
 void asj_match_result_free(asj_match_result **pointer)

@@ -19,8 +19,7 @@ asj_around asj_match_result_around(const asj_match_result *shown);
 typedef struct asj_known_geometry {
     asj_judge judge;    /* of images stretched so: */
     asj_stretch by[2];
-    double farthest;    /* px of the images from its epipolar line that a match may be .. */
-    int32_t lines_hold; /* .. if anything follows from that (verdict.c) */
+    int32_t lines_hold; /* whether anything follows from being far from an epipolar line (verdict.c) */
 } asj_known_geometry;
 
 /* NULL where there is none. Of a result of asj_match_result_create(). */
@@ -34,9 +33,13 @@ typedef struct asj_own_result {
     asj_l_junction *l1, *l2;
     asj_place *places[2]; /* of `count` matches, in image 1 and image 2 */
     uint32_t count;
+    double farthest;          /* px of the images from an epipolar line that its matches may be: asj_farthest_from_line() */
     asj_known_geometry known; /* the one that is accepted, */
     int32_t is_known;         /* .. if there is one */
 } asj_own_result;
+
+/* px from an epipolar line that its matches may be. */
+double asj_match_result_farthest(const asj_match_result *shown);
 
 /* Its matches are no longer what they were: smallest distance first again, and where they are. */
 void asj_match_result_sort(asj_own_result *r);

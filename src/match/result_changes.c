@@ -12,7 +12,7 @@ void asj_match_result_unstretch(asj_match_result *shown, const asj_stretch by[2]
         r->known.by[n].x *= by[n].x;
         r->known.by[n].y *= by[n].y;
     }
-    r->known.farthest /= sqrt(sqrt(by[0].x * by[0].y * by[1].x * by[1].y)); /* the mean scale */
+    r->farthest /= sqrt(sqrt(by[0].x * by[0].y * by[1].x * by[1].y)); /* the mean scale */
     asj_unstretch_matches(r->matches, shown->match_count, by);
     asj_unstretch_matches(r->rejected, (size_t)shown->rejected_count, by);
     asj_unstretch_l_junctions(r->l1, shown->l_junction_count1, &by[0]);
@@ -61,13 +61,18 @@ asj_status asj_match_result_number(asj_context *context, asj_match_result *shown
     return ASJ_OK;
 }
 
-asj_status asj_match_result_judge(asj_context *context, asj_match_result *shown, const float *probability)
+asj_status asj_match_result_judge(asj_context *context, asj_match_result *shown, const float *probability,
+                                  const float *of_rejected)
 {
     asj_own_result *r = (asj_own_result *)shown;
+    const size_t count = (size_t)(shown->match_count + shown->rejected_count);
     uint32_t kept = 0, gone = 0;
-    asj_junction_match *rejected = asj_allocate(&r->memory, shown->match_count, sizeof *rejected);
+    asj_junction_match *rejected = asj_allocate(&r->memory, count, sizeof *rejected);
     if (!rejected)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu matches", (unsigned long)shown->match_count);
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu matches", count);
+    for (size_t k = 0; of_rejected && k < shown->rejected_count; k++)
+        if (of_rejected[k] < 0)
+            rejected[gone++] = r->rejected[k];
     for (uint32_t k = 0; k < shown->match_count; k++)
         if (probability[k] < 0) {
             rejected[gone++] = r->matches[k];

@@ -5,9 +5,10 @@
 
 #include "match_result.h"
 
-/* The matches whose probability is negative are the rejected ones, in place of those before; others have theirs from now on.
- * ASJ_ERROR_MEMORY. */
-asj_status asj_match_result_judge(asj_context *context, asj_match_result *shown, const float *probability);
+/* The matches whose probability is negative are rejected, others have theirs from now on. Of those that were rejected before, the
+ * ones whose own is negative, too, stay so (NULL: none), and the others are forgotten. ASJ_ERROR_MEMORY. */
+asj_status asj_match_result_judge(asj_context *context, asj_match_result *shown, const float *probability,
+                                  const float *of_rejected);
 
 /* Adds the matches and rejected ones of another result of the same images that are wanted, with their L-junctions and numbers of
  * junctions of their own, unless both have the same lists. Without a match at one place twice: see finer.c. ASJ_ERROR_MEMORY. */

@@ -239,6 +239,13 @@ static int run(const settings *set)
     return report(set, &sum);
 }
 
+static int usage(void)
+{
+    fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--stretch X,Y] "
+          "[--first-octave N] [--first N] [--last N] [--threads N] [--draw N] [--seed N] [--poses]\n", stderr);
+    return 2;
+}
+
 int main(int argc, char **argv)
 {
     static const struct option longs[] = {{"check", 0, NULL, 'c'}, {"held-out", 0, NULL, 'h'}, {"unrelated", 0, NULL, 'u'},
@@ -257,7 +264,11 @@ int main(int argc, char **argv)
         case 'u': set.unrelated = 1; break;
         case 'n': set.no_cameras = 1; break;
         case 'o': set.find_focal = 1; break;
-        case 's': set.look = sscanf(optarg, "%lf,%lf", &set.stretch.x, &set.stretch.y) == 2; break;
+        case 's':
+            if (sscanf(optarg, "%lf,%lf", &set.stretch.x, &set.stretch.y) != 2)
+                return usage();
+            set.look = 1;
+            break;
         case '1': set.first_octave = (int)strtol(optarg, NULL, 10); break;
         case 'f': set.first = strtol(optarg, NULL, 10); break;
         case 'l': set.last = strtol(optarg, NULL, 10); break;
@@ -265,10 +276,7 @@ int main(int argc, char **argv)
         case 'e': set.seed = strtol(optarg, NULL, 10); break;
         case 'p': set.poses = 1; break;
         case 't': how.threads = (int32_t)strtol(optarg, NULL, 10); break;
-        default:
-            fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--stretch X,Y] "
-                  "[--first-octave N] [--first N] [--last N] [--threads N] [--draw N] [--seed N] [--poses]\n", stderr);
-            return 2;
+        default: return usage();
         }
     if (asj_context_create(&how, &set.context) != ASJ_OK)
         return 1;

@@ -174,7 +174,7 @@ static void test_list(void **state)
 static void test_shelves(void **state)
 {
     enum { MOST = 150 };
-    asj_memory memory = {{NULL, NULL, NULL}, 0, 0, NULL, 0, 0, NULL, 0};
+    asj_memory memory = {{NULL, NULL, NULL}, 0, 0, NULL, 0, 0, NULL, 0, 0};
     unsigned char *blocks[MOST];
     (void)state;
     assert_int_equal(asj_memory_allocator(NULL, &memory.allocator), 1);
@@ -194,6 +194,7 @@ static void test_shelves(void **state)
             asj_release(&memory, blocks[i]);
         }
         asj_memory_close(&memory);
+        assert_int_equal(memory.shelf_count, round > 0 ? 4 : 0); /* of the 10 that all would need */
         assert_int_equal(memory.shelves != NULL, round > 0);
         if (round != 1)
             asj_memory_trim(&memory);

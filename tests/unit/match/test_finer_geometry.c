@@ -103,18 +103,25 @@ static void assert_list(const asj_match_result *r, const asj_junction_match *lis
     }
 }
 
-/* What the images' own geometry contradicts is still there when the enlarged images are the answer, each once. */
-static void what_is_rejected_stays_so(void **state)
+/* What the images' own geometry contradicts is still there when the enlarged images are the answer, each once: under that geometry,
+ * and under another one that contradicts it, too. */
+static void check_rejected(asj_context *context, int32_t both)
 {
-    asj_context *context = ((unit_fixture *)*state)->context;
-    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 0);
+    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, both);
+    asj_junction_match *list = (asj_junction_match *)(uintptr_t)own->matches;
     const uint32_t first = finer->l_junction_count1;
     float *probability = calloc(own->match_count, sizeof *probability);
     assert_non_null(probability);
     assert_true(own->match_count >= 12);
     for (uint32_t k = 0; k < own->match_count; k++)
-        probability[k] = k % 3 == 1 ? -1 : 0.5F;
-    assert_int_equal(asj_match_result_judge(context, own, probability), ASJ_OK);
+        if (k % 3 == 1) {
+            list[k].y2 += 40; /* across the lines of a camera that moves sideways */
+            list[k].affine[5] += 40;
+            probability[k] = -1;
+        } else {
+            probability[k] = 0.5F;
+        }
+    assert_int_equal(asj_match_result_judge(context, own, probability, NULL), ASJ_OK);
     free(probability);
     const size_t rejected_count = (size_t)own->rejected_count;
     asj_junction_match *rejected = calloc(rejected_count, sizeof *rejected);
@@ -124,14 +131,64 @@ static void what_is_rejected_stays_so(void **state)
     assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
     assert_true(own->l_junction_count1 > first); /* that of the enlarged images */
     assert_int_equal(own->geometry.status, ASJ_GEOMETRY_ACCEPTED);
-    for (size_t k = 0; k < rejected_count; k++) {
-        assert_true(times_in(own->rejected, (size_t)own->rejected_count, &rejected[k], 4) >= 1);
-        assert_true(times_in(own->rejected, (size_t)own->rejected_count, &rejected[k], 0) <= 1);
-    }
+    for (size_t k = 0; k < rejected_count; k++)
+        assert_int_equal(times_in(own->rejected, (size_t)own->rejected_count, &rejected[k], 0), 1);
+    for (size_t k = 0; k < own->rejected_count; k++)
+        assert_int_equal(times_in(own->matches, own->match_count, &own->rejected[k], 4), 0);
     assert_list(own, own->matches, own->match_count);
     assert_list(own, own->rejected, (size_t)own->rejected_count);
     free(rejected);
     asj_match_result_free(&own);
+}
+
+static void what_is_rejected_stays_so(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    check_rejected(context, 0);
+    check_rejected(context, 1);
+}
+
+/* What only one look rejects, and the other one has, is a match. */
+static void what_is_kept_is_not_rejected(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 0);
+    float *probability = calloc(own->match_count, sizeof *probability);
+    assert_non_null(probability);
+    for (uint32_t k = 0; k < own->match_count; k++)
+        probability[k] = k % 3 == 1 ? -1 : 0.5F;
+    assert_int_equal(asj_match_result_judge(context, own, probability, NULL), ASJ_OK);
+    free(probability);
+    uint32_t again = 0;
+    for (size_t k = 0; k < own->rejected_count; k++)
+        again += times_in(finer->matches, finer->match_count, &own->rejected[k], 4) > 0;
+    assert_true(again >= 3);
+    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+    for (size_t k = 0; k < own->rejected_count; k++)
+        assert_int_equal(times_in(own->matches, own->match_count, &own->rejected[k], 4), 0);
+    assert_list(own, own->rejected, (size_t)own->rejected_count);
+    asj_match_result_free(&own);
+}
+
+/* Where the enlarged images lose the pose, or accept nothing, the one of the images judges both. */
+static void a_lost_pose_is_that_of_the_images(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    for (int32_t accepted = 0; accepted < 2; accepted++) {
+        asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+        const uint32_t first = finer->l_junction_count1;
+        const asj_geometry wanted = own->geometry;
+        finer->geometry.has_pose = 0;
+        if (!accepted)
+            finer->geometry.status = ASJ_GEOMETRY_CHANCE;
+        assert_true(wanted.has_pose && wanted.log10_nfa != finer->geometry.log10_nfa);
+        assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+        assert_true(own->l_junction_count1 > first);
+        assert_memory_equal(&own->geometry, &wanted, sizeof wanted);
+        const asj_known_geometry *known = asj_match_result_geometry(own);
+        assert_true(known && known->by[0].x == 1); /* of the images as they are */
+        asj_match_result_free(&own);
+    }
 }
 
 /* A geometry that only the enlarged images have judges the images' own matches: a wrong one goes, the others have their
@@ -179,7 +236,7 @@ static void what_a_geometry_adds_is_no_reason_against(void **state)
     assert_true(finer->match_count > own_count);
     for (uint32_t k = own_count - 1; k < finer->match_count; k++)
         probability[k] = -1;
-    assert_int_equal(asj_match_result_judge(context, finer, probability), ASJ_OK);
+    assert_int_equal(asj_match_result_judge(context, finer, probability, NULL), ASJ_OK);
     free(probability);
     assert_true(finer->match_count < own_count);
     assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
@@ -210,6 +267,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_rejected_stays_so),
+        cmocka_unit_test(what_is_kept_is_not_rejected),
+        cmocka_unit_test(a_lost_pose_is_that_of_the_images),
         cmocka_unit_test(a_geometry_judges_all),
         cmocka_unit_test(rivals_are_an_answer),
         cmocka_unit_test(what_a_geometry_adds_is_no_reason_against),
