@@ -148,8 +148,8 @@ typedef struct asj_match_result {
  * With junctions of octave -1 (asj_detect_options.first_octave) the images are matched without those first, and then with them as
  * if they were twice as large. The second result holds where it has more matches, three in ten of the first ones again and few that
  * contradict these, together with those of the first ones whose places no other match has; else the first one does. One geometry
- * judges both: that of the second one, or, where it has none or loses the pose, that of the first one (src/match/finer.c). Junctions
- * of octave -1 alone (octaves 1) have no first ones to ask. Everything is in pixels of the images.
+ * judges both: that of the second one, or, where it has none or loses the pose, that of the first one (src/match/finer.c).
+ * Junctions of octave -1 alone (octaves 1) have no first ones to ask. Everything is in pixels of the images.
  *
  * image1, image2   views; only read, and only during the call
  * junctions1, 2    from asj_detect() or a file; may be NULL when the count is 0. Junctions with branches that differ in
@@ -188,7 +188,8 @@ typedef struct asj_stretch {
  * up to some megapixels have about three times the matches, in three to eight times the time; a surface that is seen at a glancing
  * angle, like a magazine on a table, matches stretched across it (1, 3) where it did not at all (tests/accuracy/README.md).
  * Everything in the result is in pixels of the images as they are. Numbers of junctions are those of the detector in this call;
- * where it has looked twice (result->enlarged), those of the images without octave -1, and their L-junctions, come after those with it. Times are those of all of it; result->stretch says how the images were looked at.
+ * where it has looked twice (result->enlarged), those of the images without octave -1, and their L-junctions, come after those with
+ * it. Times are those of all of it; result->stretch says how the images were looked at.
  *
  * stretch          NULL = as they are. Automatically (0, 0):
  *                  - as they are;

@@ -23,8 +23,8 @@ static const char *const descriptor_words[] = {"raw", "sift", NULL};
 /* ..., range, default, paper, match (the same as default), help */
 static const asj_option_info rows[] = {
     INTEGER(IMAGES, COMMON, enlarge_from, "", 0, 1000000, 8, 0, 8,
-            "matches from which on two images are looked at enlarged, too, unless --stretch says how (1 where a geometry is asked and "
-            "none accepted); 0 = never"),
+            "matches from which on two images are looked at enlarged, too, unless --stretch says how (1 where a geometry is asked "
+            "and none accepted); 0 = never"),
 
     NUMBER(FRAMES, ADVANCED, minimum_opening, "deg", 0, 80, 20, 20, 20, "branches that open by less give no frame"),
     INTEGER(FRAMES, ADVANCED, length_hypotheses, "", 1, 4, 3, 1, 3,
