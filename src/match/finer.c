@@ -209,7 +209,7 @@ static void forget_what_is_kept(asj_match_result *finer)
 }
 
 /* Those of the enlarged images, and of the others what is new. A geometry that the enlarged images have themselves judges these,
- * too: what it contradicts takes the place of what another one did. */
+ * too, and what another one has rejected. */
 static asj_status join(asj_context *context, asj_match_result *own, asj_match_result *finer, uint8_t *found, int32_t judged,
                        int32_t same_lists)
 {

@@ -3,6 +3,7 @@
 
 #include "core/context.h"
 #include "detect/gradient.h"
+#include "room.h"
 
 void unit_near(const char *what, double at, double also_at, double value, double expected, double tolerance)
 {
@@ -71,6 +72,20 @@ uint8_t *unit_picture(synth_scene *scene, double blur, double noise, uint64_t se
     uint8_t *pixels = synth_photograph(scene, blur, noise, seed);
     synth_scene_free(scene);
     assert_non_null(pixels);
+    return pixels;
+}
+
+uint8_t *unit_room_picture(int32_t viewpoint, int32_t width, int32_t height)
+{
+    const synth_camera camera = synth_room_camera(viewpoint, width, height);
+    synth_room room;
+    synth_view view;
+    assert_int_equal(synth_room_make(&room), 0);
+    assert_int_equal(synth_view_make(&room, &camera, 4, &view), 0);
+    uint8_t *pixels = synth_photograph(&view.scene, 0.9, 2, (uint64_t)viewpoint + 1);
+    assert_non_null(pixels);
+    synth_view_free(&view);
+    synth_room_free(&room);
     return pixels;
 }
 

@@ -50,6 +50,9 @@ int unit_reached(unit_counter *counter);
 uint8_t *unit_picture(synth_scene *scene, double blur, double noise, uint64_t seed);
 asj_image unit_gray8(const uint8_t *pixels, int32_t width, int32_t height);
 
+/* The sample room from a viewpoint (synth_room_camera()), blur 0.9, noise 2, freed with free(). Never NULL: fails the test. */
+uint8_t *unit_room_picture(int32_t viewpoint, int32_t width, int32_t height);
+
 /* Loaded and differentiated; asj_frame_free() when done. `options` NULL = the preset default. */
 void unit_frame(asj_context *context, const asj_image *image, const asj_detect_options *options, asj_frame *frame);
 /* The same from a scene, which is freed. */

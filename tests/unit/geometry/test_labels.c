@@ -25,6 +25,8 @@ typedef struct scene {
     double branches[ASJ_BRANCH_NUMBERS * COUNT];
     uint8_t label[COUNT][2]; /* of the branches in image 1 */
     asj_pairs set;
+    unit_counter counter;
+    asj_memory memory;
 } scene;
 
 static void project(const scene *s, int view, const double point[3], double pixel[2])
@@ -75,12 +77,13 @@ static void name_otherwise(const double first[9], const double rotation[9], doub
 }
 
 /* The first RIGHT candidates are corners that both images see; of the others image 2 sees another corner. */
-static void make(scene *s, asj_memory *memory, uint64_t seed)
+static void make(scene *s, uint64_t seed)
 {
     const double of_room[3] = {0.3, 0.5, 0.1}, turn[3] = {0.1, 0.6, -0.05}, translation[3] = {-0.8, 0.1, 0.3};
     synth_random random;
     synth_random_seed(&random, seed);
     memset(s, 0, sizeof *s);
+    s->memory = unit_memory(&s->counter);
     asj_directions sets[2] = {{.score = 0}};
     asj_rotation_of(of_room, sets[0].axes);
     asj_rotation_of(turn, s->rotation);
@@ -106,7 +109,7 @@ static void make(scene *s, asj_memory *memory, uint64_t seed)
     }
     s->set = (asj_pairs){.list = s->list, .count = COUNT, .place_count = {COUNT, COUNT}};
     asj_set_labels(&s->set, s->branches, s->directions, cameras);
-    assert_true(asj_manhattan_rotations(memory, s->directions, &s->set));
+    assert_true(asj_manhattan_rotations(&s->memory, s->directions, &s->set));
     assert_int_equal(s->set.rotation_count, 24);
 }
 
@@ -114,10 +117,8 @@ static void make(scene *s, asj_memory *memory, uint64_t seed)
 static void names_are_what_rotations_do(void **state)
 {
     (void)state;
-    unit_counter counter = {0};
-    asj_memory memory = unit_memory(&counter);
     scene s;
-    make(&s, &memory, 3);
+    make(&s, 3);
     for (int r = 0; r < s.set.rotation_count; r++)
         for (int axis = 0; axis < 3; axis++)
             for (int backward = 0; backward < 2; backward++) {
@@ -129,20 +130,19 @@ static void names_are_what_rotations_do(void **state)
                 const double along = asj_dot3(turned, s.directions[1].list[0].axes + 3 * (name / 2));
                 unit_near("direction", r, ASJ_LABEL(axis, backward), along, backward == name % 2 ? 1 : -1, 1e-9);
             }
-    asj_release(&memory, s.set.rotations);
+    asj_release(&s.memory, s.set.rotations);
+    assert_int_equal(s.counter.live, 0);
 }
 
 static void labels_tell_the_rotation(void **state)
 {
     (void)state;
-    unit_counter counter = {0};
-    asj_memory memory = unit_memory(&counter);
     scene s;
     for (uint64_t seed = 1; seed <= 10; seed++) {
         double w[3], sum = 0;
-        make(&s, &memory, seed);
+        make(&s, seed);
         assert_true(s.set.has_labels);
-        assert_true(asj_order_rotations(&memory, &s.set));
+        assert_true(asj_order_rotations(&s.memory, &s.set));
         assert_int_equal(asj_nearest_rotation(&s.set, s.rotation, w), 0);
         for (int k = 0; k < COUNT; k++)
             assert_memory_equal(s.list[k].label[0][0], s.label[k], sizeof s.label[k]);
@@ -151,7 +151,8 @@ static void labels_tell_the_rotation(void **state)
         for (int k = RIGHT; k < COUNT; k++)
             sum += asj_label_ratio(&s.set.rotations[0], &s.list[k]);
         assert_true(sum < WRONG); /* what is wrong is no likelier for it */
-        asj_release(&memory, s.set.rotations);
+        asj_release(&s.memory, s.set.rotations);
+        assert_int_equal(s.counter.live, 0);
     }
 }
 
@@ -159,11 +160,9 @@ static void labels_tell_the_rotation(void **state)
 static void the_other_way_differs(void **state)
 {
     (void)state;
-    unit_counter counter = {0};
-    asj_memory memory = unit_memory(&counter);
     scene s;
-    make(&s, &memory, 7);
-    assert_true(asj_order_rotations(&memory, &s.set));
+    make(&s, 7);
+    assert_true(asj_order_rotations(&s.memory, &s.set));
     for (size_t k = 0; k < RIGHT; k++)
         for (size_t n = 4; n < ASJ_BRANCH_NUMBERS; n++)
             s.branches[ASJ_BRANCH_NUMBERS * k + n] *= -1;
@@ -176,17 +175,16 @@ static void the_other_way_differs(void **state)
     asj_set_labels(&s.set, s.branches, s.directions, cameras);
     for (int k = 0; k < RIGHT; k++)
         unit_near("no label", 0, k, asj_label_ratio(&s.set.rotations[0], &s.list[k]), 1, 0);
-    asj_release(&memory, s.set.rotations);
+    asj_release(&s.memory, s.set.rotations);
+    assert_int_equal(s.counter.live, 0);
 }
 
 static void motions_near_a_rotation_have_it(void **state)
 {
     (void)state;
-    unit_counter counter = {0};
-    asj_memory memory = unit_memory(&counter);
     scene s;
-    make(&s, &memory, 9);
-    assert_true(asj_order_rotations(&memory, &s.set));
+    make(&s, 9);
+    assert_true(asj_order_rotations(&s.memory, &s.set));
     for (int degrees = 0; degrees < 45; degrees++) {
         const double w[3] = {0, (degrees + 0.5) * DEGREE, 0};
         double turn[9], turned[9];
@@ -195,10 +193,11 @@ static void motions_near_a_rotation_have_it(void **state)
         const asj_likely_rotation *named = asj_named_rotation(&s.set, turned);
         assert_true(named == (degrees < 4 ? &s.set.rotations[0] : NULL));
     }
-    counter.fail_at = counter.calls + 1;
-    assert_false(asj_order_rotations(&memory, &s.set));
-    counter.fail_at = 0;
-    asj_release(&memory, s.set.rotations);
+    s.counter.fail_at = s.counter.calls + 1;
+    assert_false(asj_order_rotations(&s.memory, &s.set));
+    s.counter.fail_at = 0;
+    asj_release(&s.memory, s.set.rotations);
+    assert_int_equal(s.counter.live, 0);
 }
 
 int main(void)

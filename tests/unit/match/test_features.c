@@ -4,7 +4,6 @@
 #include "core/bytes.h"
 #include "core/threads.h"
 #include "match/kept_features.h"
-#include "room.h"
 #include "unit_test.h"
 
 #define WIDTH 320
@@ -22,25 +21,17 @@ static view views[2];
 
 static int make_views(void **state)
 {
-    synth_room room;
     assert_int_equal(unit_set_up(state), 0);
     asj_context *context = ((unit_fixture *)*state)->context;
     asj_detect_options options;
     asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
-    assert_int_equal(synth_room_make(&room), 0);
     for (int32_t n = 0; n < 2; n++) {
-        synth_view made;
-        const synth_camera camera = synth_room_camera(n, WIDTH, HEIGHT);
-        assert_int_equal(synth_view_make(&room, &camera, 4, &made), 0);
-        views[n].pixels = synth_photograph(&made.scene, 0.9, 2, (uint64_t)n + 1);
-        assert_non_null(views[n].pixels);
+        views[n].pixels = unit_room_picture(n, WIDTH, HEIGHT);
         views[n].image = unit_gray8(views[n].pixels, WIDTH, HEIGHT);
         assert_int_equal(asj_detect(context, &views[n].image, &options, &views[n].found), ASJ_OK);
         assert_true(views[n].found->junction_count > 60);
         views[n].count = views[n].found->junction_count;
-        synth_view_free(&made);
     }
-    synth_room_free(&room);
     return 0;
 }
 

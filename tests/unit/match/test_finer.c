@@ -2,59 +2,8 @@
 /* Junctions of octave -1: they are matched in the enlarged images, from images, features and bytes alike, and only where the images
  * themselves confirm them; otherwise the result is what there is without them. L-junctions are numbered as all of them are. */
 #include "core/bytes.h"
-#include "match/finer.h"
+#include "finer_views.h"
 #include "match/match_result.h"
-#include "room.h"
-#include "unit_test.h"
-
-#include <asj/asj.h>
-
-enum { WIDTH = 320, HEIGHT = 237 };
-
-typedef struct view {
-    uint8_t *pixels;
-    asj_image image;
-    asj_detection *plain, *finer; /* without octave -1, and with it */
-} view;
-
-static view views[2];
-
-static int make_views(void **state)
-{
-    synth_room room;
-    assert_int_equal(unit_set_up(state), 0);
-    asj_context *context = ((unit_fixture *)*state)->context;
-    asj_detect_options options;
-    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
-    assert_int_equal(synth_room_make(&room), 0);
-    for (int32_t n = 0; n < 2; n++) {
-        synth_view made;
-        const synth_camera camera = synth_room_camera(n, WIDTH, HEIGHT);
-        assert_int_equal(synth_view_make(&room, &camera, 4, &made), 0);
-        views[n].pixels = synth_photograph(&made.scene, 0.9, 2, (uint64_t)n + 1);
-        assert_non_null(views[n].pixels);
-        views[n].image = unit_gray8(views[n].pixels, WIDTH, HEIGHT);
-        options.first_octave = 0;
-        assert_int_equal(asj_detect(context, &views[n].image, &options, &views[n].plain), ASJ_OK);
-        options.first_octave = -1;
-        assert_int_equal(asj_detect(context, &views[n].image, &options, &views[n].finer), ASJ_OK);
-        assert_false(asj_has_finer(views[n].plain->junctions, views[n].plain->junction_count));
-        assert_true(asj_has_finer(views[n].finer->junctions, views[n].finer->junction_count));
-        synth_view_free(&made);
-    }
-    synth_room_free(&room);
-    return 0;
-}
-
-static int free_views(void **state)
-{
-    for (int32_t n = 0; n < 2; n++) {
-        asj_detection_free(&views[n].plain);
-        asj_detection_free(&views[n].finer);
-        free(views[n].pixels);
-    }
-    return unit_tear_down(state);
-}
 
 static asj_match_result *match(asj_context *context, const asj_detection *a, const asj_detection *b,
                                const asj_match_options *options)

@@ -1,57 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The matches of two images and those of the enlarged ones under one geometry, whichever of them has it. */
-#include "match/finer.h"
+#include "finer_views.h"
 #include "match/result_changes.h"
 #include "room.h"
-#include "unit_test.h"
 
-#include <asj/asj.h>
-
-enum { WIDTH = 320, HEIGHT = 237 };
-
-typedef struct view {
-    uint8_t *pixels;
-    asj_image image;
-    asj_camera camera;
-    asj_detection *plain, *finer; /* without octave -1, and with it */
-} view;
-
-static view views[2];
-
-static int make_views(void **state)
+static asj_camera camera_of(int32_t n)
 {
-    synth_room room;
-    assert_int_equal(unit_set_up(state), 0);
-    asj_context *context = ((unit_fixture *)*state)->context;
-    asj_detect_options options;
-    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
-    assert_int_equal(synth_room_make(&room), 0);
-    for (int32_t n = 0; n < 2; n++) {
-        synth_view made;
-        const synth_camera camera = synth_room_camera(n, WIDTH, HEIGHT);
-        assert_int_equal(synth_view_make(&room, &camera, 4, &made), 0);
-        views[n].camera = (asj_camera){camera.focal, camera.focal, 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1)};
-        views[n].pixels = synth_photograph(&made.scene, 0.9, 2, (uint64_t)n + 1);
-        assert_non_null(views[n].pixels);
-        views[n].image = unit_gray8(views[n].pixels, WIDTH, HEIGHT);
-        options.first_octave = 0;
-        assert_int_equal(asj_detect(context, &views[n].image, &options, &views[n].plain), ASJ_OK);
-        options.first_octave = -1;
-        assert_int_equal(asj_detect(context, &views[n].image, &options, &views[n].finer), ASJ_OK);
-        synth_view_free(&made);
-    }
-    synth_room_free(&room);
-    return 0;
-}
-
-static int free_views(void **state)
-{
-    for (int32_t n = 0; n < 2; n++) {
-        asj_detection_free(&views[n].plain);
-        asj_detection_free(&views[n].finer);
-        free(views[n].pixels);
-    }
-    return unit_tear_down(state);
+    const double focal = synth_room_camera(n, WIDTH, HEIGHT).focal;
+    return (asj_camera){focal, focal, 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1)};
 }
 
 /* Of the enlarged images what lies in the left part of the first one, so that the images have matches that they have not. */
@@ -69,7 +25,7 @@ static asj_match_result *match(asj_context *context, int32_t enlarged, int32_t w
     asj_match_options_init(&options);
     options.geometry.model = with_geometry ? ASJ_GEOMETRY_ESSENTIAL : ASJ_GEOMETRY_NONE;
     for (int32_t n = 0; n < 2; n++)
-        options.geometry.cameras[n] = views[n].camera;
+        options.geometry.cameras[n] = camera_of(n);
     assert_int_equal((enlarged ? asj_match_enlarged : asj_match)(context, &views[0].image, left, count, &views[1].image,
                                                                  b->junctions, b->junction_count, &options, &result), ASJ_OK);
     assert_int_equal(result->geometry.status, with_geometry ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_NOT_ASKED);

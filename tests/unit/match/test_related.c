@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Images that have nothing in common are answered at once, and those that have something are matched as before. */
 #include "match/match_options.h"
-#include "room.h"
 #include "unit_test.h"
 
 #include <asj/features.h>
@@ -32,16 +31,10 @@ static int make_views(void **state)
     assert_int_equal(unit_set_up(state), 0);
     asj_context *context = ((unit_fixture *)*state)->context;
     asj_detect_options options;
-    synth_room room;
     asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
-    assert_int_equal(synth_room_make(&room), 0);
     for (int32_t n = 0; n < 2; n++) {
-        synth_view made;
         asj_detection *found = NULL;
-        const synth_camera camera = synth_room_camera(n, WIDTH, HEIGHT);
-        assert_int_equal(synth_view_make(&room, &camera, 4, &made), 0);
-        uint8_t *pixels = synth_photograph(&made.scene, 0.9, 2, (uint64_t)n + 1);
-        assert_non_null(pixels);
+        uint8_t *pixels = unit_room_picture(n, WIDTH, HEIGHT);
         const asj_image image = unit_gray8(pixels, WIDTH, HEIGHT);
         assert_int_equal(asj_detect(context, &image, &options, &found), ASJ_OK);
         views[n] = describe(context, &image, found);
@@ -50,10 +43,8 @@ static int make_views(void **state)
             views[2] = describe(context, &image, found);
         }
         asj_detection_free(&found);
-        synth_view_free(&made);
         free(pixels);
     }
-    synth_room_free(&room);
     return 0;
 }
 
