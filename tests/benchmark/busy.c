@@ -18,14 +18,14 @@
 #define MOST_LOAD 64
 
 static const char help[] =
-    "usage: busy [--threads N] [--load N] [--runs N] [--quick]\n"
+    "usage: busy [--threads N] [--load N] [--runs N] [--images N] [--quick]\n"
     "\n"
     "Detects the junctions of the sample room at three sizes with one and with N threads (2), alone and beside N processes (2)\n"
-    "that compute, all taking turns, and prints milliseconds: medians of N runs (51) and the worst, and the time with more\n"
-    "threads over that with one. --quick: three runs of the smallest size.\n";
+    "that compute, all taking turns, and prints milliseconds an image: medians of N runs (15) of N images in a row (40) and the\n"
+    "worst, and the time with more threads over that with one. --quick: three runs of five images of the smallest size.\n";
 
 typedef struct settings {
-    int32_t threads, load, runs;
+    int32_t threads, load, runs, images;
     int quick;
 } settings;
 
@@ -72,18 +72,18 @@ static void end_load(int32_t count, const pid_t *load)
     }
 }
 
-/* A few images in a row, so that the load has its share of each; milliseconds of one. */
-static double time_some(asj_context *context, const asj_image *image)
+/* Images in a row, milliseconds of one. In a short row one thread may keep a processor to itself, as a process that has slept may
+ * for tens of ms; in a longer one the load has its share. */
+static double time_row(int32_t images, asj_context *context, const asj_image *image)
 {
-    enum { IN_A_ROW = 5 };
     const double start = clock_ms();
-    for (int i = 0; i < IN_A_ROW; i++) {
+    for (int32_t i = 0; i < images; i++) {
         asj_detection *found = NULL;
         if (asj_detect(context, image, NULL, &found) != ASJ_OK)
             return -1;
         asj_detection_free(&found);
     }
-    return (clock_ms() - start) / IN_A_ROW;
+    return (clock_ms() - start) / images;
 }
 
 static int measure(const settings *set, const asj_image *image, asj_context *const contexts[2], times *all)
@@ -93,9 +93,9 @@ static int measure(const settings *set, const asj_image *image, asj_context *con
             pid_t load[MOST_LOAD];
             double ms[2];
             const int32_t started = busy ? start_load(set->load, load) : 0;
-            for (int turn = 0; turn < 2; turn++) { /* either first in turn: a process that has slept is preferred for some ms */
+            for (int turn = 0; turn < 2; turn++) { /* either first in turn */
                 const int more = (turn + run) & 1;
-                ms[more] = time_some(contexts[more], image);
+                ms[more] = time_row(set->images, contexts[more], image);
             }
             end_load(started, load);
             if (ms[0] < 0 || ms[1] < 0)
@@ -141,16 +141,18 @@ static int run(const settings *set)
 int main(int argc, char **argv)
 {
     static const struct option longs[] = {{"threads", 1, NULL, 't'}, {"load", 1, NULL, 'l'}, {"runs", 1, NULL, 'r'},
-                                          {"quick", 0, NULL, 'q'}, {NULL, 0, NULL, 0}};
-    settings set = {2, 2, 51, 0};
+                                          {"images", 1, NULL, 'i'}, {"quick", 0, NULL, 'q'}, {NULL, 0, NULL, 0}};
+    settings set = {2, 2, 15, 40, 0};
     int c, result = 0;
     while (result == 0 && (c = getopt_long(argc, argv, "", longs, NULL)) != -1) {
         result = c == 't' ? measure_number(optarg, 1, 256, &set.threads) :
                  c == 'l' ? measure_number(optarg, 0, MOST_LOAD, &set.load) :
-                 c == 'r' ? measure_number(optarg, 1, MOST_RUNS, &set.runs) : c == 'q' ? 0 : -1;
+                 c == 'r' ? measure_number(optarg, 1, MOST_RUNS, &set.runs) :
+                 c == 'i' ? measure_number(optarg, 1, MOST_RUNS, &set.images) : c == 'q' ? 0 : -1;
         if (c == 'q') {
             set.quick = 1;
             set.runs = 3;
+            set.images = 5;
         }
     }
     if (result != 0 || optind < argc) {
