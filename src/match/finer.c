@@ -16,11 +16,11 @@
  *     added, where it judges both), the enlarged images' matches are the answer, with the others whose places are free;
  *   - otherwise, and when the enlarged images contradict the images (MOST_CONTRADICTED: 48 rendered rooms 12272 of 12683 right ->
  *     12338 of 12562), the images' matches are.
- * One geometry judges both: that of the enlarged images, or, where they have none or lose the pose, that of the images.
+ * One geometry judges both (finer_geometry.c).
  * Matches that come again, of ten pairs that match: .41 to .85 where the enlarged images are right in 97 of 100 and more, .63 where
  * they have 44 of 48 right for 20 of 27, 0 and .14 where they have 1 of 13 right and 23 of 30. */
 #include "finer.h"
-#include "geometry_candidate.h"
+#include "finer_geometry.h"
 #include "result_changes.h"
 #include "core/watch.h"
 
@@ -38,14 +38,6 @@ int32_t asj_has_finer(const asj_junction *junctions, size_t count)
         if (junctions[n].octave < 0)
             return 1;
     return 0;
-}
-
-/* With its pose: many weak corners on one wall may explain more as a homography than the motion does. */
-static int keeps_geometry(const asj_match_result *own, const asj_match_result *finer)
-{
-    const asj_geometry *g = &finer->geometry;
-    return own->geometry.status != ASJ_GEOMETRY_ACCEPTED ||
-           (g->status == ASJ_GEOMETRY_ACCEPTED && (g->has_pose || !own->geometry.has_pose));
 }
 
 /* One of the images' own matches among those of the enlarged images. */
@@ -88,76 +80,19 @@ static asj_status look_all_up(asj_context *context, const asj_match_result *own,
     return asj_watch_end(&watch);
 }
 
-/* judged: by the geometry of the images, which has given them matches that it makes likely, and the enlarged ones none; so there
- * are more when there are with those that the enlarged images leave room for. */
-static int32_t holds(const asj_match_result *own, const asj_match_result *finer, const uint8_t *found, int32_t judged)
+/* Where the geometry of the images judges both, it has given them matches that it makes likely, and the enlarged ones none; so
+ * there are more when there are with those that the enlarged images leave room for. */
+static int32_t holds(const asj_match_result *own, const asj_match_result *finer, const uint8_t *found, asj_looks looks)
 {
     uint32_t again = 0, contradicted = 0, added = 0;
     for (uint32_t n = 0; n < own->match_count; n++) {
         again += found[n] == AGAIN_THERE;
         contradicted += found[n] == CONTRADICTED;
-        added += judged && found[n] == NEW;
+        added += looks == ASJ_LOOKS_BY_IMAGES && found[n] == NEW;
     }
-    return finer->match_count + added > own->match_count && keeps_geometry(own, finer) && again >= AGAIN * own->match_count &&
-           contradicted <= MOST_CONTRADICTED * again;
-}
-
-/* --- a geometry of one result, and matches of the other ----------------------------------------------------------------------- */
-
-/* px from an epipolar line that may be: as far as either result has it for its own matches, which are of half a pixel or of one. */
-static double farthest_of(const asj_match_result *by, const asj_match_result *judged)
-{
-    return fmax(asj_match_result_farthest(by), asj_match_result_farthest(judged));
-}
-
-/* Negative: contradicted. The rules are those of verdict.c for matches that were no candidates of the geometry. */
-static float probability_of(const asj_match_result *by, double farthest, const asj_junction_match *m)
-{
-    const asj_known_geometry *known = asj_match_result_geometry(by);
-    const double x1 = (double)m->x1, y1 = (double)m->y1, x2 = (double)m->x2, y2 = (double)m->y2, *h = m->affine;
-    asj_geometry_candidate g = {0, 0, x1, y1, x2, y2, {h[0], h[1], h[3], h[4]}, ASJ_MATCH_RIGHT};
-    if (known->lines_hold && asj_distance_from_line(&by->geometry, x1, y1, x2, y2) > farthest)
-        return -1;
-    if (!asj_keeps_area(g.affine))
-        return 0;
-    asj_stretch_candidate(&g, known->by);
-    return (float)asj_judge_probability(&known->judge, &g);
-}
-
-/* By the geometry of the other result, which is that of both from now on. */
-static asj_status judge(asj_context *context, const asj_match_result *by, asj_match_result *judged)
-{
-    const size_t count = judged->match_count, rejected_count = (size_t)judged->rejected_count;
-    const double farthest = farthest_of(by, judged);
-    asj_own_result *r = (asj_own_result *)judged;
-    float *probability = asj_allocate(&context->memory, count + rejected_count, sizeof *probability);
-    if (!probability)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu matches", count + rejected_count);
-    for (size_t k = 0; k < count; k++)
-        probability[k] = probability_of(by, farthest, &judged->matches[k]);
-    for (size_t k = 0; k < rejected_count; k++)
-        probability[count + k] = probability_of(by, farthest, &judged->rejected[k]);
-    const asj_status status = asj_match_result_judge(context, judged, probability, probability + count);
-    judged->geometry = by->geometry;
-    r->known = *asj_match_result_geometry(by);
-    r->is_known = 1;
-    asj_release(&context->memory, probability);
-    return status;
-}
-
-/* Rivals of the matches of the enlarged images are many weak corners around them, of which the matcher has chosen one. As for those
- * that another geometry judges, what it has chosen has none. */
-static void judge_without_rivals(asj_match_result *finer)
-{
-    asj_junction_match *matches = ((asj_own_result *)finer)->matches;
-    for (uint32_t k = 0; k < finer->match_count; k++)
-        matches[k].probability = fmaxf(matches[k].probability, probability_of(finer, farthest_of(finer, finer), &matches[k]));
-}
-
-/* Where the enlarged images do not keep the images' geometry, or were asked for none, it is theirs. */
-static int32_t is_judged(const asj_match_result *own, const asj_match_result *finer)
-{
-    return asj_match_result_geometry(own) && !keeps_geometry(own, finer);
+    return looks == ASJ_LOOKS_CONFIRMED ||
+           (looks != ASJ_LOOKS_LOST && finer->match_count + added > own->match_count && again >= AGAIN * own->match_count &&
+            contradicted <= MOST_CONTRADICTED * again);
 }
 
 /* --- which one holds --------------------------------------------------------------------------------------------------------- */
@@ -189,12 +124,6 @@ static asj_status find_new(asj_context *context, const asj_junction_match *list,
     return status;
 }
 
-/* Rivals of one of the images, and a motion that stays open, are an answer. */
-static int is_answer(const asj_geometry *g)
-{
-    return g->status == ASJ_GEOMETRY_ACCEPTED || g->status == ASJ_GEOMETRY_AMBIGUOUS || g->status == ASJ_GEOMETRY_DEGENERATE;
-}
-
 /* What one look rejects and the other one keeps is a match. */
 static void forget_what_is_kept(asj_match_result *finer)
 {
@@ -210,16 +139,10 @@ static void forget_what_is_kept(asj_match_result *finer)
 
 /* Those of the enlarged images, and of the others what is new. A geometry that the enlarged images have themselves judges these,
  * too, and what another one has rejected. */
-static asj_status join(asj_context *context, asj_match_result *own, asj_match_result *finer, uint8_t *found, int32_t judged,
+static asj_status join(asj_context *context, asj_match_result *own, asj_match_result *finer, uint8_t *found, asj_looks looks,
                        int32_t same_lists)
 {
-    asj_status status = ASJ_OK;
-    if (!is_answer(&finer->geometry) && is_answer(&own->geometry))
-        finer->geometry = own->geometry;
-    if (!judged && asj_match_result_geometry(finer)) {
-        judge_without_rivals(finer);
-        status = judge(context, finer, own);
-    }
+    asj_status status = looks == ASJ_LOOKS_BY_IMAGES ? ASJ_OK : asj_looks_judge_by_enlarged(context, own, finer);
     if (status == ASJ_OK)
         status = look_all_up(context, own, finer, found);
     uint8_t *rejected = asj_allocate(&context->memory, (size_t)own->rejected_count, sizeof *rejected);
@@ -242,14 +165,16 @@ asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_ma
 {
     const size_t count = (*own)->match_count;
     uint8_t *found = asj_allocate(&context->memory, count, sizeof *found);
-    const int32_t judged = is_judged(*own, *finer);
+    const asj_looks looks = asj_looks_of(*own, *finer);
     asj_status status = found ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu matches", count);
-    if (status == ASJ_OK && judged)
-        status = judge(context, *own, *finer);
+    if (status == ASJ_OK && looks == ASJ_LOOKS_BY_IMAGES)
+        status = asj_looks_judge(context, *own, *finer);
     if (status == ASJ_OK)
         status = look_all_up(context, *own, *finer, found);
-    if (status == ASJ_OK && holds(*own, *finer, found, judged)) {
-        status = join(context, *own, *finer, found, judged, same_lists);
+    if (status == ASJ_OK && looks == ASJ_LOOKS_DISPUTED) {
+        status = asj_looks_dispute(context, *own, *finer);
+    } else if (status == ASJ_OK && holds(*own, *finer, found, looks)) {
+        status = join(context, *own, *finer, found, looks, same_lists);
         asj_match_result *other = *own;
         *own = *finer;
         *finer = other;

@@ -219,6 +219,126 @@ static void rivals_are_an_answer(void **state)
     asj_match_result_free(&own);
 }
 
+/* --- two poses --------------------------------------------------------------------------------------------------------------- */
+
+/* The pose is turned about the optical axis, and its standard deviations are those of before times `sd`. */
+static void change_pose(asj_match_result *r, double degrees, double sd)
+{
+    asj_geometry *g = &r->geometry;
+    const double turn = degrees * 3.14159265358979323846 / 180, c = cos(turn), s = sin(turn);
+    for (int k = 0; k < 3; k++) {
+        const double x = g->rotation[k], y = g->rotation[3 + k];
+        g->rotation[k] = c * x - s * y;
+        g->rotation[3 + k] = s * x + c * y;
+    }
+    for (int k = 0; k < 36; k++)
+        g->covariance[k] *= sd * sd;
+}
+
+static double sd_of_rotation(const asj_match_result *r)
+{
+    return sqrt(r->geometry.covariance[14]) * 180 / 3.14159265358979323846; /* about the optical axis, degrees */
+}
+
+/* Two motions are no answer: what both contradict goes, and the weaker one is told as the second. */
+static void poses_at_odds_are_ambiguous(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+    const uint32_t count = own->match_count, l_count = own->l_junction_count1;
+    const double own_nfa = own->geometry.log10_nfa, nfa = finer->geometry.log10_nfa;
+    asj_junction_match *list = (asj_junction_match *)(uintptr_t)own->matches;
+    list[2].y2 += 40;
+    const asj_junction_match off = list[2];
+    printf("standard deviations %.2f and %.2f degrees\n", sd_of_rotation(own), sd_of_rotation(finer));
+    change_pose(own, 3 + 5 * hypot(sd_of_rotation(own), sd_of_rotation(finer)), 1);
+    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+    assert_int_equal(own->geometry.status, ASJ_GEOMETRY_AMBIGUOUS);
+    assert_true(own->geometry.log10_nfa == nfa && own->geometry.has_second && own->geometry.second_log10_nfa == own_nfa);
+    assert_true(own->l_junction_count1 == l_count && own->match_count + own->rejected_count == count);
+    assert_int_equal(times_in(own->rejected, (size_t)own->rejected_count, &off, 0), 1);
+    assert_true(2 * own->match_count > count);
+    assert_list(own, own->matches, own->match_count);
+    asj_match_result_free(&own);
+}
+
+/* As far apart, and no wonder: neither knows better. And less than 3 degrees, however sure. Then the surer one is the answer. */
+static void poses_that_agree_are_one(void **state)
+{
+    static const struct {
+        double own, finer; /* times the standard deviation */
+        double degrees;    /* more than 4 standard deviations, if not multiplied; 0 = 2 degrees */
+    } cases[] = {{20, 10, 1}, {10, 20, 1}, {0.01, 0.02, 0}, {0.02, 0.01, 0}};
+    asj_context *context = ((unit_fixture *)*state)->context;
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+        const double sd = hypot(sd_of_rotation(own), sd_of_rotation(finer)), ratio = sd_of_rotation(own) / sd_of_rotation(finer);
+        change_pose(own, cases[k].degrees > 0 ? 3 + 5 * sd : 2, cases[k].own / ratio);
+        change_pose(finer, 0, cases[k].finer);
+        for (int n = 0; n < 36; n++) /* of rotation alone, so that it is the one that is surer in all */
+            if (n / 6 > 2 || n % 6 > 2)
+                own->geometry.covariance[n] = finer->geometry.covariance[n] = 0;
+        const asj_geometry surer = cases[k].own < cases[k].finer ? own->geometry : finer->geometry;
+        assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+        assert_int_equal(own->geometry.status, ASJ_GEOMETRY_ACCEPTED);
+        assert_memory_equal(own->geometry.rotation, surer.rotation, sizeof surer.rotation);
+        asj_match_result_free(&own);
+    }
+}
+
+/* The images have rivals, and none of their matches comes again: the enlarged images' motion is the answer when it is the images'
+ * best, and otherwise not. */
+static void rivals_are_confirmed(void **state)
+{
+    static const double degrees[] = {1, 30};
+    asj_context *context = ((unit_fixture *)*state)->context;
+    for (int k = 0; k < 2; k++) {
+        asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+        const uint32_t own_count = own->l_junction_count1, finer_count = finer->l_junction_count1;
+        asj_junction_match *list = (asj_junction_match *)(uintptr_t)own->matches;
+        for (uint32_t n = 0; n < own->match_count; n++)
+            list[n].x2 += 25; /* by a period */
+        own->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
+        own->geometry.has_pose = 0;
+        ((asj_own_result *)own)->is_known = 0;
+        change_pose(own, degrees[k], 1);
+        assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+        assert_int_equal(own->geometry.status, k == 0 ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_AMBIGUOUS);
+        assert_true(k == 0 ? own->l_junction_count1 >= finer_count : own->l_junction_count1 == own_count);
+        asj_match_result_free(&own);
+    }
+}
+
+/* What tells no motion is no answer where the images leave open which motion it is. */
+static void a_plane_decides_no_motion(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+    const uint32_t own_count = own->l_junction_count1;
+    own->geometry.status = ASJ_GEOMETRY_DEGENERATE;
+    own->geometry.has_pose = 0;
+    ((asj_own_result *)own)->is_known = 0;
+    finer->geometry.has_pose = 0;
+    finer->geometry.model = ASJ_GEOMETRY_HOMOGRAPHY;
+    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+    assert_int_equal(own->geometry.status, ASJ_GEOMETRY_DEGENERATE);
+    assert_int_equal(own->l_junction_count1, own_count);
+    asj_match_result_free(&own);
+}
+
+/* The enlarged images were not asked: what the images say stays, also when it is nothing. */
+static void chance_stays_chance(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *own = match(context, 0, 0), *finer = match(context, 1, 0);
+    const uint32_t first = finer->l_junction_count1;
+    own->geometry.status = ASJ_GEOMETRY_CHANCE;
+    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+    assert_true(own->l_junction_count1 >= first);
+    assert_int_equal(own->geometry.status, ASJ_GEOMETRY_CHANCE);
+    asj_match_result_free(&own);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -227,6 +347,11 @@ int main(void)
         cmocka_unit_test(a_lost_pose_is_that_of_the_images),
         cmocka_unit_test(a_geometry_judges_all),
         cmocka_unit_test(rivals_are_an_answer),
+        cmocka_unit_test(poses_at_odds_are_ambiguous),
+        cmocka_unit_test(poses_that_agree_are_one),
+        cmocka_unit_test(rivals_are_confirmed),
+        cmocka_unit_test(a_plane_decides_no_motion),
+        cmocka_unit_test(chance_stays_chance),
         cmocka_unit_test(what_a_geometry_adds_is_no_reason_against),
     };
     return cmocka_run_group_tests(tests, make_views, free_views);

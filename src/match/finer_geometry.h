@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The geometry of the images as they are and that of the enlarged ones: which one is that of both, and what it makes of the matches
+ * of the other look. */
+#ifndef ASJ_SRC_FINER_GEOMETRY_H
+#define ASJ_SRC_FINER_GEOMETRY_H
+
+#include "match_result.h"
+
+typedef enum asj_looks {
+    ASJ_LOOKS_BY_ENLARGED, /* that of the enlarged images, if they have one; otherwise what the images say of theirs */
+    ASJ_LOOKS_BY_IMAGES,   /* the accepted one of the images, which the enlarged ones do not keep, or were asked for none */
+    ASJ_LOOKS_CONFIRMED,   /* the images leave it open, and the enlarged ones accept their best */
+    ASJ_LOOKS_LOST,        /* the images leave open which motion it is, and the enlarged ones accept what tells none */
+    ASJ_LOOKS_DISPUTED     /* both accept a motion, not the same */
+} asj_looks;
+
+asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *finer);
+
+/* The matches of the one by the accepted geometry of the other, which is that of both from now on. ASJ_ERROR_MEMORY. */
+asj_status asj_looks_judge(asj_context *context, const asj_match_result *by, asj_match_result *judged);
+
+/* Both by that of the enlarged images, where they have one, after it has chosen. ASJ_ERROR_MEMORY. */
+asj_status asj_looks_judge_by_enlarged(asj_context *context, asj_match_result *own, asj_match_result *finer);
+
+/* ASJ_LOOKS_DISPUTED: the images' matches that neither geometry contradicts, and an ambiguous geometry. ASJ_ERROR_MEMORY. */
+asj_status asj_looks_dispute(asj_context *context, asj_match_result *own, const asj_match_result *finer);
+
+#endif
