@@ -89,8 +89,8 @@ ASJ_API asj_status asj_match_options_get(const asj_match_options *options, const
  * within 4 px (or a part of the length: end_tolerance) of the other, 3 px when what is at them differs; the border of an image
  * corresponds to nothing. */
 enum {
-    ASJ_END_CUT = 0,   /* they do not: the longer branch was cut where the matches around put the end of the shorter one, or
-                        * nearer, where they do not know that */
+    ASJ_END_CUT = 0,   /* they do not: the longer branch was cut where the matches around, and its epipolar line, put the
+                        * end of the shorter one, or nearer, where they do not know that */
     ASJ_END_INNER = 1, /* a junction on one of the branches, or on each, corresponds to the other's end */
     ASJ_END_BOTH = 2   /* both branches' own ends correspond */
 };

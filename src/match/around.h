@@ -11,6 +11,7 @@ typedef struct asj_around {
     uint32_t count;
     const asj_place *places[2];
     uint32_t place_count;
+    const double *epipolar; /* the fundamental matrix of the images by rows, x2' F x1 = 0; NULL = not known */
 } asj_around;
 
 /* The line of a matched branch in both images: from the junctions, as detected, along unit vectors. */

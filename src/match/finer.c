@@ -116,7 +116,7 @@ static asj_status find_new(asj_context *context, const asj_junction_match *list,
         status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu matches", (unsigned long)other_count);
     for (int32_t side = 0; side < 2 && status == ASJ_OK; side++)
         asj_places_sort(places[side], others, other_count, side);
-    const asj_around around = {others, other_count, {places[0], places[1]}, other_count};
+    const asj_around around = {others, other_count, {places[0], places[1]}, other_count, NULL};
     for (size_t n = 0; n < count && status == ASJ_OK; n++)
         is_new[n] = look_up(&list[n], &around) != AGAIN_THERE;
     asj_release(memory, places[0]);

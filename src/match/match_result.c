@@ -121,7 +121,8 @@ static asj_junction_match *list_of(const asj_match_run *run, asj_memory *memory,
 /* The ends of all, as the chosen matches see them. */
 static asj_status find_ends(const asj_match_run *run, asj_own_result *r)
 {
-    const asj_around all = {r->matches, r->count, {r->places[0], r->places[1]}, r->count};
+    const asj_around all = {r->matches, r->count, {r->places[0], r->places[1]}, r->count,
+                            run->has_epipolar ? run->epipolar : NULL};
     const asj_around *around = run->options->neighbours > 0 ? &all : NULL;
     asj_watch watch;
     asj_watch_start(&watch, run->context, ASJ_STAGE_ASSIGN);
@@ -173,6 +174,8 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
     for (int32_t side = 0; side < 2; side++)
         asj_places_sort(r->places[side], r->matches, r->count, side);
     r->farthest = asj_farthest_from_line(run);
+    r->has_epipolar = run->has_epipolar;
+    memcpy(r->epipolar, run->epipolar, sizeof r->epipolar);
     r->is_known = run->geometry.status == ASJ_GEOMETRY_ACCEPTED;
     if (r->is_known)
         r->known = (asj_known_geometry){run->judge, {{1, 1}, {1, 1}}, run->lines_hold};
@@ -195,11 +198,12 @@ void asj_match_result_sort(asj_own_result *r)
 asj_around asj_match_result_around(const asj_match_result *shown)
 {
     const asj_own_result *r = (const asj_own_result *)shown;
-    asj_around around = {shown->matches, shown->match_count, {NULL, NULL}, 0};
+    asj_around around = {shown->matches, shown->match_count, {NULL, NULL}, 0, NULL};
     if (shown->own == (uint64_t)(uintptr_t)r && shown->matches == r->matches && shown->match_count <= r->count) {
         around.places[0] = r->places[0];
         around.places[1] = r->places[1];
         around.place_count = r->count;
+        around.epipolar = r->has_epipolar ? r->epipolar : NULL;
     }
     return around;
 }

@@ -36,6 +36,8 @@ typedef struct asj_own_result {
     double farthest;          /* px of the images from an epipolar line that its matches may be: asj_farthest_from_line() */
     asj_known_geometry known; /* the one that is accepted, */
     int32_t is_known;         /* .. if there is one */
+    int32_t has_epipolar;     /* is the fundamental matrix of the matches known (epipolar.c), */
+    double epipolar[9];       /* .. of the images, by rows */
 } asj_own_result;
 
 /* px from an epipolar line that its matches may be. */

@@ -18,6 +18,7 @@ void asj_match_result_unstretch(asj_match_result *shown, const asj_stretch by[2]
     asj_unstretch_l_junctions(r->l1, shown->l_junction_count1, &by[0]);
     asj_unstretch_l_junctions(r->l2, shown->l_junction_count2, &by[1]);
     asj_unstretch_geometry(&shown->geometry, by);
+    asj_unstretch_fundamental(r->epipolar, by);
     asj_match_result_sort(r);
 }
 

@@ -94,15 +94,25 @@ static void from_the_left(double m[9], const asj_stretch *by, int32_t homography
     }
 }
 
-void asj_unstretch_geometry(asj_geometry *geometry, const asj_stretch by[2])
+static void unstretch_matrix(double m[9], const asj_stretch by[2], int32_t homography)
 {
-    double *m = geometry->matrix, norm = 0;
+    double norm = 0;
     times_stretch(m, &by[0]);
-    from_the_left(m, &by[1], geometry->model == ASJ_GEOMETRY_HOMOGRAPHY);
+    from_the_left(m, &by[1], homography);
     for (int32_t k = 0; k < 9; k++)
         norm += m[k] * m[k];
     for (int32_t k = 0; k < 9 && norm > 0; k++)
         m[k] /= sqrt(norm);
+}
+
+void asj_unstretch_fundamental(double matrix[9], const asj_stretch by[2])
+{
+    unstretch_matrix(matrix, by, 0);
+}
+
+void asj_unstretch_geometry(asj_geometry *geometry, const asj_stretch by[2])
+{
+    unstretch_matrix(geometry->matrix, by, geometry->model == ASJ_GEOMETRY_HOMOGRAPHY);
     geometry->focal[0] /= by[0].x;
     geometry->focal[1] /= by[1].x;
 }

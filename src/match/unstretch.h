@@ -12,6 +12,8 @@ void asj_unstretch_l_junctions(asj_l_junction *list, uint32_t count, const asj_s
 /* The other way round, for a candidate's locations and map. */
 void asj_stretch_candidate(asj_geometry_candidate *g, const asj_stretch by[2]);
 void asj_unstretch_geometry(asj_geometry *geometry, const asj_stretch by[2]);
+/* By rows, to the norm 1. */
+void asj_unstretch_fundamental(double matrix[9], const asj_stretch by[2]);
 
 /* The camera of the stretched image. */
 asj_camera asj_stretch_camera(const asj_camera *camera, const asj_stretch *by);

@@ -439,7 +439,11 @@ static void matrices_are_taken_back(void **state)
         double m[9];
         for (int k = 0; k < 9; k++)
             m[k] = g.matrix[k] = synth_random_between(&random, -1, 1);
+        double fundamental[9];
+        memcpy(fundamental, m, sizeof fundamental);
+        asj_unstretch_fundamental(fundamental, by);
         asj_unstretch_geometry(&g, by);
+        assert_int_equal(memcmp(fundamental, g.matrix, sizeof fundamental) == 0, model == ASJ_GEOMETRY_FUNDAMENTAL);
         const double *t = g.matrix, x1 = points[0], y1 = points[1], x2 = points[2], y2 = points[3];
         const double sx1 = (x1 + 0.5) * 2 - 0.5, sy1 = (y1 + 0.5) * 3 - 0.5, sx2 = (x2 + 0.5) * 1.25 - 0.5, sy2 = y2;
         double before[3], after[3];

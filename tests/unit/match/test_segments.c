@@ -60,7 +60,7 @@ static void time_is_proportional(void **state)
     const clock_t start = clock();
     for (int32_t side = 0; side < 2; side++)
         asj_places_sort(places[side], matches, MOST, side);
-    const asj_around around = {matches, MOST, {places[0], places[1]}, MOST};
+    const asj_around around = {matches, MOST, {places[0], places[1]}, MOST, NULL};
     const size_t count = asj_segment_matches(&result, &around, ASJ_END_CUT, segments, 2 * MOST);
     const double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
     assert_int_equal(count, 2 * MOST - 1);
@@ -96,8 +96,8 @@ static void places_change_nothing(void **state)
     for (int32_t side = 0; side < 2; side++)
         asj_places_sort(places[side], matches, 2000, side);
     for (result.match_count = 2000; result.match_count > 0; result.match_count /= 5) {
-        const asj_around none = {matches, result.match_count, {NULL, NULL}, 0};
-        const asj_around all = {matches, result.match_count, {places[0], places[1]}, 2000};
+        const asj_around none = {matches, result.match_count, {NULL, NULL}, 0, NULL};
+        const asj_around all = {matches, result.match_count, {places[0], places[1]}, 2000, NULL};
         const size_t count = asj_segment_matches(&result, &none, ASJ_END_CUT, others, 2 * MOST);
         assert_true(result.match_count < 2000 || count < 2 * 2000 - 300);
         assert_int_equal(asj_segment_matches(&result, &all, ASJ_END_CUT, segments, 2 * MOST), count);
@@ -138,7 +138,7 @@ static asj_common_end end_of(const asj_around *around, float one, int32_t one_ki
 static void matches_around_put_ends(void **state)
 {
     const asj_matched_branch branch = {&matches[0], {0, 0}, {0, 0}, {1, 1}, {0, 0}};
-    const asj_around around = {matches, 4, {NULL, NULL}, 0};
+    const asj_around around = {matches, 4, {NULL, NULL}, 0, NULL};
     const int32_t junction = ASJ_BRANCH_END_JUNCTION, faded = ASJ_BRANCH_END_FADED, border = ASJ_BRANCH_END_BORDER;
     (void)state;
     matches[0] = on_wall(0, 0);
@@ -165,10 +165,38 @@ static void matches_around_put_ends(void **state)
     unit_near("whole in image 2", 0, 0, shorter.length[1], 160, 0);
 }
 
+/* The wall as an epipolar line puts it: exactly, unless the line runs along the branch or the matches around contradict. */
+static void epipolar_lines_put_cuts(void **state)
+{
+    static const double across[9] = {1.0 / 400, 0, 1, 0, 0, 0, -2, 0, 0}; /* (x, y) -> x2 = 2 x / (1 + x / 400) */
+    static const double along[9] = {0, 0, 0, 0, 0, -1, 0, 1, 0};          /* y2 = y */
+    static const double elsewhere[9] = {1.0 / 400, 0, 1, 0, 0, 0, -2.25, 0, -100}; /* x2 + 100 */
+    const int32_t junction = ASJ_BRANCH_END_JUNCTION, faded = ASJ_BRANCH_END_FADED;
+    const double *lines[] = {NULL, across, along, elsewhere};
+    double by[4][2];
+    (void)state;
+    matches[0] = on_wall(0, 0);
+    matches[1] = on_wall(100, 20);
+    matches[2] = on_wall(90, -12);
+    matches[3] = on_wall(115, -5);
+    for (int k = 0; k < 4; k++) {
+        const asj_around around = {matches, 4, {NULL, NULL}, 0, lines[k]};
+        by[k][1] = end_of(&around, 100, junction, 240, junction).length[1];
+        by[k][0] = end_of(&around, 180, faded, 160, junction).length[0];
+        printf("%.3f px in image 2, %.3f in image 1\n", by[k][1], by[k][0]);
+    }
+    unit_near("crossing in image 2", 0, 0, by[1][1], 160, 1e-9);
+    unit_near("crossing in image 1", 0, 0, by[1][0], 100, 1e-9);
+    for (int n = 0; n < 2; n++) {
+        assert_true(fabs(by[0][n] - (n ? 160 : 100)) > 1e-3);
+        assert_true(by[2][n] == by[0][n] && by[3][n] == by[0][n]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(thousands_of_matches), cmocka_unit_test(time_is_proportional),
                                        cmocka_unit_test(places_change_nothing),
-                                       cmocka_unit_test(matches_around_put_ends)};
+                                       cmocka_unit_test(matches_around_put_ends), cmocka_unit_test(epipolar_lines_put_cuts)};
     return cmocka_run_group_tests_name("segments", tests, NULL, NULL);
 }
