@@ -166,10 +166,20 @@ asj_status asj_looks_judge(asj_context *context, const asj_match_result *by, asj
     return status;
 }
 
+/* A probability is one under a geometry that is accepted. */
+static void forget_probabilities(asj_own_result *r)
+{
+    for (uint32_t k = 0; k < r->shown.match_count; k++)
+        r->matches[k].probability = 0;
+    for (size_t k = 0; k < r->shown.rejected_count; k++)
+        r->rejected[k].probability = 0;
+}
+
 asj_status asj_looks_dispute(asj_context *context, asj_match_result *own, const asj_match_result *finer)
 {
     const double second = own->geometry.log10_nfa;
     const asj_status status = judge_by(context, finer, own, 1);
+    forget_probabilities((asj_own_result *)own);
     own->geometry = finer->geometry;
     own->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
     own->geometry.has_second = 1;

@@ -240,7 +240,13 @@ static double sd_of_rotation(const asj_match_result *r)
     return sqrt(r->geometry.covariance[14]) * 180 / 3.14159265358979323846; /* about the optical axis, degrees */
 }
 
-/* Two motions are no answer: what both contradict goes, and the weaker one is told as the second. */
+static void assert_no_probability(const asj_junction_match *list, size_t count)
+{
+    for (size_t k = 0; k < count; k++)
+        assert_true(list[k].probability == 0);
+}
+
+/* Two motions are no answer: what either contradicts goes, the images' one is told as the second, and no match has a probability. */
 static void poses_at_odds_are_ambiguous(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
@@ -259,6 +265,8 @@ static void poses_at_odds_are_ambiguous(void **state)
     assert_int_equal(times_in(own->rejected, (size_t)own->rejected_count, &off, 0), 1);
     assert_true(2 * own->match_count > count);
     assert_list(own, own->matches, own->match_count);
+    assert_no_probability(own->matches, own->match_count);
+    assert_no_probability(own->rejected, (size_t)own->rejected_count);
     asj_match_result_free(&own);
 }
 
