@@ -128,7 +128,7 @@ typedef struct asj_match_result {
     uint64_t candidates;               /* pairs that were aligned or compared by the pair's own map */
     asj_geometry geometry;             /* status not asked where options->geometry.model is none */
     uint64_t own;                      /* the library's; 0 in a result that the caller puts together or copies */
-    const asj_junction_match *rejected;/* matches that there would be without the geometry, or with that of one look, and that it
+    const asj_junction_match *rejected;/* matches that there would be without the geometry, or by that of one look, and that it
                                         * contradicts; with two at odds (ASJ_GEOMETRY_AMBIGUOUS) what either contradicts; smallest
                                         * distance first */
     uint64_t rejected_count;
@@ -142,9 +142,9 @@ typedef struct asj_match_result {
  *
  * With options->geometry.model the two-view geometry is estimated as well, from many more candidates than become matches
  * (geometry.h; src/match/two_view.c). Where one is accepted, matches that contradict it go, and others that it makes likely come;
- * where none is, the matches are those that there are without, but for junctions of octave -1, below. Junctions of other octaves than the finest are no candidates
- * (src/match/guests.c), but their matches go and come as others do. Where both images have colours, these count there, too: things
- * that repeat often differ in hue alone. Exposure and white balance may differ.
+ * where none is, the matches are those that there are without (junctions of octave -1: see below). Junctions of other octaves than
+ * the finest are no candidates (src/match/guests.c), but their matches go and come as others do. Where both images have colours,
+ * these count there, too: things that repeat often differ in hue alone. Exposure and white balance may differ.
  *
  * With junctions of octave -1 (asj_detect_options.first_octave) the images are matched without those first, and then with them as
  * if they were twice as large. The second result holds where it has more matches, three in ten of the first ones again and few that
