@@ -31,7 +31,8 @@ typedef struct distance {
     double rotation, translation, deviations;
 } distance;
 
-/* v / sd of the sum of both in its direction; 0 where that is 0. */
+/* v / sd of the sum of both in its direction. Nothing is uncertain along a translation itself, which is of length 1: opposite ones
+ * are sure to differ, whatever rounding leaves of the variance. */
 static double in_deviations(const double v[3], const asj_geometry *a, const asj_geometry *b, int32_t first)
 {
     double variance = 0;
@@ -40,7 +41,8 @@ static double in_deviations(const double v[3], const asj_geometry *a, const asj_
             const int32_t at = 6 * (first + i) + first + k;
             variance += v[i] * v[k] * (a->covariance[at] + b->covariance[at]);
         }
-    return variance > 0 ? asj_dot3(v, v) / sqrt(variance) : 0;
+    const double square = asj_dot3(v, v);
+    return variance > 0 ? square / sqrt(variance) : square > 0 ? HUGE_VAL : 0;
 }
 
 static distance measure(const asj_geometry *a, const asj_geometry *b)

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The matches of two images and those of the enlarged ones under one geometry, whichever of them has it. */
 #include "finer_views.h"
+#include "geometry/model.h"
+#include "match/finer_geometry.h"
 #include "match/result_changes.h"
 #include "room.h"
 
@@ -270,6 +272,32 @@ static void poses_at_odds_are_ambiguous(void **state)
     asj_match_result_free(&own);
 }
 
+/* The other way along the same line, where the covariance says nothing: of 40 directions rounding leaves some a variance of 0 or
+ * less. */
+static void opposite_translations_are_at_odds(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+    asj_geometry *a = &own->geometry, *b = &finer->geometry;
+    memcpy(b->rotation, a->rotation, sizeof a->rotation);
+    for (int k = 0; k < 40; k++) {
+        double axes[2][3];
+        const double u = 0.3 * k, v = 0.7 + 0.05 * k, t[3] = {cos(u) * cos(v), sin(u) * cos(v), sin(v)};
+        asj_translation_axes(t, axes[0], axes[1]);
+        memset(a->covariance, 0, sizeof a->covariance);
+        for (int n = 0; n < 9; n++)
+            a->covariance[6 * (3 + n / 3) + 3 + n % 3] = 1e-4 * (axes[0][n / 3] * axes[0][n % 3] + axes[1][n / 3] * axes[1][n % 3]);
+        memcpy(b->covariance, a->covariance, sizeof a->covariance);
+        for (int n = 0; n < 3; n++) {
+            a->translation[n] = t[n];
+            b->translation[n] = -t[n];
+        }
+        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_DISPUTED);
+    }
+    asj_match_result_free(&own);
+    asj_match_result_free(&finer);
+}
+
 /* As far apart, and no wonder: neither knows better. And less than 3 degrees, however sure. Then the surer one is the answer. */
 static void poses_that_agree_are_one(void **state)
 {
@@ -286,6 +314,7 @@ static void poses_that_agree_are_one(void **state)
         for (int n = 0; n < 36; n++) /* of rotation alone, so that it is the one that is surer in all */
             if (n / 6 > 2 || n % 6 > 2)
                 own->geometry.covariance[n] = finer->geometry.covariance[n] = 0;
+        memcpy(own->geometry.translation, finer->geometry.translation, sizeof own->geometry.translation);
         const asj_geometry surer = cases[k].own < cases[k].finer ? own->geometry : finer->geometry;
         assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
         assert_int_equal(own->geometry.status, ASJ_GEOMETRY_ACCEPTED);
@@ -356,6 +385,7 @@ int main(void)
         cmocka_unit_test(a_geometry_judges_all),
         cmocka_unit_test(rivals_are_an_answer),
         cmocka_unit_test(poses_at_odds_are_ambiguous),
+        cmocka_unit_test(opposite_translations_are_at_odds),
         cmocka_unit_test(poses_that_agree_are_one),
         cmocka_unit_test(rivals_are_confirmed),
         cmocka_unit_test(a_plane_decides_no_motion),
