@@ -272,6 +272,30 @@ static void poses_at_odds_are_ambiguous(void **state)
     asj_match_result_free(&own);
 }
 
+/* From each allocation on there is no memory: the result, whole or changed in part, is there to be freed, and nothing leaks. */
+static void poses_at_odds_without_memory(void **state)
+{
+    uint32_t failed = 0;
+    int reached = 1;
+    for (long n = 1; reached; n++) {
+        unit_counter counter = {0};
+        asj_context *poor = unit_context(&counter, 1);
+        asj_match_result *own = match(poor, 0, 1), *finer = match(poor, 1, 1);
+        change_pose(own, 3 + 5 * hypot(sd_of_rotation(own), sd_of_rotation(finer)), 1);
+        counter.fail_at = counter.calls + n;
+        counter.for_good = 1;
+        const asj_status status = asj_finer_choose(poor, &own, &finer, 0);
+        reached = unit_reached(&counter);
+        assert_true(status == ASJ_OK || (reached && status == ASJ_ERROR_MEMORY));
+        assert_true(own && !finer);
+        failed += status != ASJ_OK;
+        asj_match_result_free(&own);
+        unit_context_free(&counter, &poor);
+    }
+    assert_true(failed > 0);
+    (void)state;
+}
+
 /* The other way along the same line, where the covariance says nothing: of 40 directions rounding leaves some a variance of 0 or
  * less. */
 static void opposite_translations_are_at_odds(void **state)
@@ -385,6 +409,7 @@ int main(void)
         cmocka_unit_test(a_geometry_judges_all),
         cmocka_unit_test(rivals_are_an_answer),
         cmocka_unit_test(poses_at_odds_are_ambiguous),
+        cmocka_unit_test(poses_at_odds_without_memory),
         cmocka_unit_test(opposite_translations_are_at_odds),
         cmocka_unit_test(poses_that_agree_are_one),
         cmocka_unit_test(rivals_are_confirmed),
