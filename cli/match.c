@@ -185,14 +185,29 @@ static void print_stretch(const run *r)
         cli_note("looked at stretched by %g,%g: as they are the images have too little in common", by[0], by[1]);
 }
 
+/* Of matches, where none is accepted. What the images and the enlarged ones tell at odds has rejected some (asj/match.h). */
+static void print_no_geometry(const run *r)
+{
+    const int32_t status = r->result->geometry.status;
+    const unsigned long rejected = (unsigned long)r->result->rejected_count;
+    char of_matches[96] = "; the matches are those that there are without";
+    if (rejected > 0)
+        snprintf(of_matches, sizeof of_matches, "; the images and the enlarged ones tell two; matches left out: %lu", rejected);
+    else if (status == ASJ_GEOMETRY_AMBIGUOUS)
+        snprintf(of_matches, sizeof of_matches, "; several explain the views as well");
+    else if (status == ASJ_GEOMETRY_DEGENERATE)
+        snprintf(of_matches, sizeof of_matches, "; what matches leaves the motion open");
+    cli_note("geometry: none (%s)%s", asj_geometry_status_name(status), of_matches);
+}
+
 static void print_geometry(const run *r)
 {
     const asj_geometry *g = &r->result->geometry;
     if (g->status == ASJ_GEOMETRY_ACCEPTED)
         cli_note("geometry: %s, log10 NFA %.1f%s", asj_geometry_model_name(g->model), g->log10_nfa,
                  g->model == ASJ_GEOMETRY_HOMOGRAPHY ? "; matches off its plane stay, less probable" : "");
-    else if (g->status != ASJ_GEOMETRY_NOT_ASKED && r->result->match_count > 0)
-        cli_note("geometry: none (%s); the matches are those that there are without", asj_geometry_status_name(g->status));
+    else if (g->status != ASJ_GEOMETRY_NOT_ASKED && (r->result->match_count > 0 || r->result->rejected_count > 0))
+        print_no_geometry(r);
 }
 
 /* Could a focal length be told? */
@@ -206,7 +221,7 @@ static int without_focal(const asj_geometry_options *geometry)
 static void print_hint(const run *r)
 {
     const int32_t status = r->result->geometry.status;
-    if (r->result->match_count > 0)
+    if (r->result->match_count > 0 || (status == ASJ_GEOMETRY_AMBIGUOUS && r->result->rejected_count > 0))
         return;
     if (r->result->l_junction_count1 < FEW || r->result->l_junction_count2 < FEW)
         cli_note("hint: %s has %lu corners only: 'asj-cli detect --for matching --plot' shows them",

@@ -128,7 +128,8 @@ typedef struct asj_match_result {
     uint64_t candidates;               /* pairs that were aligned or compared by the pair's own map */
     asj_geometry geometry;             /* status not asked where options->geometry.model is none */
     uint64_t own;                      /* the library's; 0 in a result that the caller puts together or copies */
-    const asj_junction_match *rejected;/* matches that there would be without the geometry, and that it contradicts; smallest
+    const asj_junction_match *rejected;/* matches that there would be without the geometry, or by that of one look, and that it
+                                        * contradicts; with two at odds (ASJ_GEOMETRY_AMBIGUOUS) what either contradicts; smallest
                                         * distance first */
     uint64_t rejected_count;
     double stretch[2];                 /* along x and y, how the images were looked at: asj_match_images(); 1, 1 = as they are */
@@ -141,14 +142,18 @@ typedef struct asj_match_result {
  *
  * With options->geometry.model the two-view geometry is estimated as well, from many more candidates than become matches
  * (geometry.h; src/match/two_view.c). Where one is accepted, matches that contradict it go, and others that it makes likely come;
- * where none is, the matches are those that there are without. Junctions of other octaves than the finest are no candidates
- * (src/match/guests.c), but their matches go and come as others do. Where both images have colours, these count there, too: things
- * that repeat often differ in hue alone. Exposure and white balance may differ.
+ * where none is, the matches are those that there are without (junctions of octave -1: see below). Junctions of other octaves than
+ * the finest are no candidates (src/match/guests.c), but their matches go and come as others do. Where both images have colours,
+ * these count there, too: things that repeat often differ in hue alone. Exposure and white balance may differ.
  *
  * With junctions of octave -1 (asj_detect_options.first_octave) the images are matched without those first, and then with them as
  * if they were twice as large. The second result holds where it has more matches, three in ten of the first ones again and few that
  * contradict these, together with those of the first ones whose places no other match has; else the first one does. One geometry
- * judges both: that of the second one, or, where it has none or loses the pose, that of the first one (src/match/finer.c).
+ * judges both: that of the second one, or, where it has none or loses the pose, that of the first one; of two poses that agree
+ * the surer one where the second result holds. Two at odds are ASJ_GEOMETRY_AMBIGUOUS, and the first result's matches stay that
+ * neither contradicts. Where the first one has rivals or leaves its motion open, the second one holds, whatever its matches, when
+ * it accepts the same pose, and does not when it accepts none, or another one of a motion that was open (src/match/finer.c,
+ * finer_geometry.c).
  * Junctions of octave -1 alone (octaves 1) have no first ones to ask. Everything is in pixels of the images.
  *
  * image1, image2   views; only read, and only during the call
@@ -196,9 +201,9 @@ typedef struct asj_stretch {
  *                  - where that gives options->enlarge_from matches, also with junctions of octave -1, which hold as asj_match()
  *                    says (result->enlarged), unless detect_options name another first octave, or one octave alone, or an image has
  *                    more than 2 megapixels. A pose of the images is estimated again from these matches: of two that agree the
- *                    surer one is told, two at odds are ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is accepted that they
- *                    accept, too. Another geometry of the images judges them. Where the images leave it open, one match is enough
- *                    to look;
+ *                    surer one is told where they hold, two at odds are ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is accepted
+ *                    that they accept, too. Another geometry of the images judges them. Where the images have rivals or leave the
+ *                    motion open, and without cameras where they have no geometry, one match is enough to look;
  *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together, also stretched
  *                    by 1, 3 and by 3, 1, unless rivals or a motion that stays open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the
  *                    answer, or a focal length is looked for. What comes of that counts from 16 matches on, and when it is twice

@@ -151,9 +151,9 @@ asj_status asj_write_match_json(asj_output *output, const asj_match_report *repo
     asj_output_text(output, ",\n\"matches\": [");
     for (i = 0; i < result->match_count && !json.out_of_memory; i++)
         asj_json_put(&json, i ? ",\n" : "\n", match_value(&result->matches[i], geometry), ASJ_JSON_FLOATS);
-    if (geometry)
+    if (geometry || result->rejected_count > 0) /* two that are at odds reject, too */
         asj_output_text(output, "],\n\"rejected\": [");
-    for (i = 0; i < result->rejected_count && geometry && !json.out_of_memory; i++)
+    for (i = 0; i < result->rejected_count && !json.out_of_memory; i++)
         asj_json_put(&json, i ? ",\n" : "\n", match_value(&result->rejected[i], 0), ASJ_JSON_FLOATS);
     if (report->lines)
         asj_output_text(output, "],\n\"lines\": [");

@@ -16,7 +16,7 @@
  *     added, where it judges both), the enlarged images' matches are the answer, with the others whose places are free;
  *   - otherwise, and when the enlarged images contradict the images (MOST_CONTRADICTED: 48 rendered rooms 12272 of 12683 right ->
  *     12338 of 12562), the images' matches are.
- * One geometry judges both (finer_geometry.c).
+ * One geometry judges both, and where the images leave it open or the two are at odds it says which ones are (finer_geometry.c).
  * Matches that come again, of ten pairs that match: .41 to .85 where the enlarged images are right in 97 of 100 and more, .63 where
  * they have 44 of 48 right for 20 of 27, 0 and .14 where they have 1 of 13 right and 23 of 30. */
 #include "finer.h"

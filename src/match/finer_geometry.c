@@ -5,7 +5,8 @@
  * images. Poses are two witnesses of one motion (how often: rooms seen from far apart, seeds 1000 to 1399):
  *   - Both accepted and at odds: one is wrong, and nothing says which; the enlarged images have more evidence either way. That is
  *     an ambiguous answer. (7 pairs: 3 poses of the images and 4 of the enlarged ones are out, by 3.4 to 180 degrees.)
- *   - Both accepted, and they agree as far as they know: the surer one is the answer.
+ *   - Both accepted, and they agree as far as they know: the surer one is the answer, where the enlarged images' matches hold
+ *     (finer.c); otherwise that of the images is, surer or not.
  *   - The images have rivals or leave the motion open, and what the enlarged ones accept is the images' best: that is the answer,
  *     whether or not matches come again, since what repeats has been matched by the period. (22 pairs, all within 3 degrees. Of 397
  *     unrelated pairs of such rooms one.)
@@ -31,7 +32,8 @@ typedef struct distance {
     double rotation, translation, deviations;
 } distance;
 
-/* v / sd of the sum of both in its direction; 0 where that is 0. */
+/* v / sd of the sum of both in its direction. Nothing is uncertain along a translation itself, which is of length 1: opposite ones
+ * are sure to differ, whatever rounding leaves of the variance. */
 static double in_deviations(const double v[3], const asj_geometry *a, const asj_geometry *b, int32_t first)
 {
     double variance = 0;
@@ -40,7 +42,8 @@ static double in_deviations(const double v[3], const asj_geometry *a, const asj_
             const int32_t at = 6 * (first + i) + first + k;
             variance += v[i] * v[k] * (a->covariance[at] + b->covariance[at]);
         }
-    return variance > 0 ? asj_dot3(v, v) / sqrt(variance) : 0;
+    const double square = asj_dot3(v, v);
+    return variance > 0 ? square / sqrt(variance) : square > 0 ? HUGE_VAL : 0;
 }
 
 static distance measure(const asj_geometry *a, const asj_geometry *b)
@@ -166,10 +169,20 @@ asj_status asj_looks_judge(asj_context *context, const asj_match_result *by, asj
     return status;
 }
 
+/* A probability is one under a geometry that is accepted. */
+static void forget_probabilities(asj_own_result *r)
+{
+    for (uint32_t k = 0; k < r->shown.match_count; k++)
+        r->matches[k].probability = 0;
+    for (size_t k = 0; k < r->shown.rejected_count; k++)
+        r->rejected[k].probability = 0;
+}
+
 asj_status asj_looks_dispute(asj_context *context, asj_match_result *own, const asj_match_result *finer)
 {
     const double second = own->geometry.log10_nfa;
     const asj_status status = judge_by(context, finer, own, 1);
+    forget_probabilities((asj_own_result *)own);
     own->geometry = finer->geometry;
     own->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
     own->geometry.has_second = 1;

@@ -8,9 +8,10 @@
 
 typedef enum asj_looks {
     ASJ_LOOKS_BY_ENLARGED, /* that of the enlarged images, if they have one; otherwise what the images say of theirs */
-    ASJ_LOOKS_BY_IMAGES,   /* the accepted one of the images, which the enlarged ones do not keep, or were asked for none */
+    ASJ_LOOKS_BY_IMAGES,   /* the accepted one of the images: it is surer, or the enlarged ones do not keep it, or were not asked */
     ASJ_LOOKS_CONFIRMED,   /* the images leave it open, and the enlarged ones accept their best */
-    ASJ_LOOKS_LOST,        /* the images leave open which motion it is, and the enlarged ones accept what tells none */
+    ASJ_LOOKS_LOST,        /* the images leave open which motion it is, and the enlarged ones accept what tells none, or, where
+                            * it is no matter of rivals, another one */
     ASJ_LOOKS_DISPUTED     /* both accept a motion, not the same */
 } asj_looks;
 

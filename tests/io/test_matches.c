@@ -320,6 +320,30 @@ static void json_has_the_lines_beside_the_matches(void **state)
     json_decref(root);
 }
 
+/* Two geometries at odds are none, and what either contradicts is rejected. */
+static void json_has_what_is_rejected_without_a_geometry(void **state)
+{
+    json_t *root;
+    size_t k;
+    (void)state;
+    result.geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
+    root = read_json(write_report("ambiguous.json", ASJ_FILE_JSON));
+    assert_null(json_object_get(root, "rejected"));
+    json_decref(root);
+    result.rejected = &matches[COUNT - 3];
+    result.rejected_count = 3;
+    result.match_count = COUNT - 3;
+    root = read_json(write_report("rejected.json", ASJ_FILE_JSON));
+    assert_true(json_is_null(need(root, "geometry")));
+    expect_text(root, "geometry_status", "ambiguous");
+    assert_int_equal(json_array_size(need(root, "rejected")), 3);
+    for (k = 0; k < COUNT; k++)
+        expect_match(k < COUNT - 3 ? json_array_get(need(root, "matches"), k) :
+                                     json_array_get(need(root, "rejected"), k - (COUNT - 3)), &matches[k]);
+    assert_null(json_object_get(json_array_get(need(root, "matches"), 0), "probability"));
+    json_decref(root);
+}
+
 static void json_can_do_with_the_result_alone(void **state)
 {
     static const asj_match_report none = {0};
@@ -395,6 +419,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup(json_holds_every_match, fill),
         cmocka_unit_test_setup(json_says_how_it_came_about, fill),
         cmocka_unit_test_setup(json_has_the_lines_beside_the_matches, fill),
+        cmocka_unit_test_setup(json_has_what_is_rejected_without_a_geometry, fill),
         cmocka_unit_test_setup(json_can_do_with_the_result_alone, fill),
         cmocka_unit_test_setup(wrong_arguments_are_refused, fill),
         cmocka_unit_test_setup(results_that_cannot_be_read_are_refused, fill),

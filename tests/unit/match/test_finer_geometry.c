@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The matches of two images and those of the enlarged ones under one geometry, whichever of them has it. */
 #include "finer_views.h"
+#include "geometry/model.h"
+#include "match/finer_geometry.h"
 #include "match/result_changes.h"
 #include "room.h"
 
@@ -240,7 +242,13 @@ static double sd_of_rotation(const asj_match_result *r)
     return sqrt(r->geometry.covariance[14]) * 180 / 3.14159265358979323846; /* about the optical axis, degrees */
 }
 
-/* Two motions are no answer: what both contradict goes, and the weaker one is told as the second. */
+static void assert_no_probability(const asj_junction_match *list, size_t count)
+{
+    for (size_t k = 0; k < count; k++)
+        assert_true(list[k].probability == 0);
+}
+
+/* Two motions are no answer: what either contradicts goes, the images' one is told as the second, and no match has a probability. */
 static void poses_at_odds_are_ambiguous(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
@@ -259,7 +267,59 @@ static void poses_at_odds_are_ambiguous(void **state)
     assert_int_equal(times_in(own->rejected, (size_t)own->rejected_count, &off, 0), 1);
     assert_true(2 * own->match_count > count);
     assert_list(own, own->matches, own->match_count);
+    assert_no_probability(own->matches, own->match_count);
+    assert_no_probability(own->rejected, (size_t)own->rejected_count);
     asj_match_result_free(&own);
+}
+
+/* From each allocation on there is no memory: the result, whole or changed in part, is there to be freed, and nothing leaks. */
+static void poses_at_odds_without_memory(void **state)
+{
+    uint32_t failed = 0;
+    int reached = 1;
+    for (long n = 1; reached; n++) {
+        unit_counter counter = {0};
+        asj_context *poor = unit_context(&counter, 1);
+        asj_match_result *own = match(poor, 0, 1), *finer = match(poor, 1, 1);
+        change_pose(own, 3 + 5 * hypot(sd_of_rotation(own), sd_of_rotation(finer)), 1);
+        counter.fail_at = counter.calls + n;
+        counter.for_good = 1;
+        const asj_status status = asj_finer_choose(poor, &own, &finer, 0);
+        reached = unit_reached(&counter);
+        assert_true(status == ASJ_OK || (reached && status == ASJ_ERROR_MEMORY));
+        assert_true(own && !finer);
+        failed += status != ASJ_OK;
+        asj_match_result_free(&own);
+        unit_context_free(&counter, &poor);
+    }
+    assert_true(failed > 0);
+    (void)state;
+}
+
+/* The other way along the same line, where the covariance says nothing: of 40 directions rounding leaves some a variance of 0 or
+ * less. */
+static void opposite_translations_are_at_odds(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+    asj_geometry *a = &own->geometry, *b = &finer->geometry;
+    memcpy(b->rotation, a->rotation, sizeof a->rotation);
+    for (int k = 0; k < 40; k++) {
+        double axes[2][3];
+        const double u = 0.3 * k, v = 0.7 + 0.05 * k, t[3] = {cos(u) * cos(v), sin(u) * cos(v), sin(v)};
+        asj_translation_axes(t, axes[0], axes[1]);
+        memset(a->covariance, 0, sizeof a->covariance);
+        for (int n = 0; n < 9; n++)
+            a->covariance[6 * (3 + n / 3) + 3 + n % 3] = 1e-4 * (axes[0][n / 3] * axes[0][n % 3] + axes[1][n / 3] * axes[1][n % 3]);
+        memcpy(b->covariance, a->covariance, sizeof a->covariance);
+        for (int n = 0; n < 3; n++) {
+            a->translation[n] = t[n];
+            b->translation[n] = -t[n];
+        }
+        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_DISPUTED);
+    }
+    asj_match_result_free(&own);
+    asj_match_result_free(&finer);
 }
 
 /* As far apart, and no wonder: neither knows better. And less than 3 degrees, however sure. Then the surer one is the answer. */
@@ -278,6 +338,7 @@ static void poses_that_agree_are_one(void **state)
         for (int n = 0; n < 36; n++) /* of rotation alone, so that it is the one that is surer in all */
             if (n / 6 > 2 || n % 6 > 2)
                 own->geometry.covariance[n] = finer->geometry.covariance[n] = 0;
+        memcpy(own->geometry.translation, finer->geometry.translation, sizeof own->geometry.translation);
         const asj_geometry surer = cases[k].own < cases[k].finer ? own->geometry : finer->geometry;
         assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
         assert_int_equal(own->geometry.status, ASJ_GEOMETRY_ACCEPTED);
@@ -348,6 +409,8 @@ int main(void)
         cmocka_unit_test(a_geometry_judges_all),
         cmocka_unit_test(rivals_are_an_answer),
         cmocka_unit_test(poses_at_odds_are_ambiguous),
+        cmocka_unit_test(poses_at_odds_without_memory),
+        cmocka_unit_test(opposite_translations_are_at_odds),
         cmocka_unit_test(poses_that_agree_are_one),
         cmocka_unit_test(rivals_are_confirmed),
         cmocka_unit_test(a_plane_decides_no_motion),

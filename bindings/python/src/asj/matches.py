@@ -122,7 +122,7 @@ class Matches:
 
     @property
     def rejected(self) -> NDArray[Any]:
-        """Records of what would match without the geometry, and contradicts it."""
+        """Records of what would match without the geometry, and contradicts it; of two at odds ("ambiguous") either one."""
         return arrays.view(self._result.rejected, self._result.rejected_count, "asj_junction_match", self._result)
 
     @property
