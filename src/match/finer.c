@@ -80,8 +80,8 @@ static asj_status look_all_up(asj_context *context, const asj_match_result *own,
     return asj_watch_end(&watch);
 }
 
-/* Where the geometry of the images judges both, it has given them matches that it makes likely, and the enlarged ones none; so
- * there are more when there are with those that the enlarged images leave room for. */
+/* Where the geometry of the images judges both, it has given them matches that it makes likely, and the enlarged ones none of its
+ * own; so there are more when there are with those that the enlarged images leave room for. */
 static int32_t holds(const asj_match_result *own, const asj_match_result *finer, const uint8_t *found, asj_looks looks)
 {
     uint32_t again = 0, contradicted = 0, added = 0;
@@ -142,7 +142,9 @@ static void forget_what_is_kept(asj_match_result *finer)
 static asj_status join(asj_context *context, asj_match_result *own, asj_match_result *finer, uint8_t *found, asj_looks looks,
                        int32_t same_lists)
 {
-    asj_status status = looks == ASJ_LOOKS_BY_IMAGES ? ASJ_OK : asj_looks_judge_by_enlarged(context, own, finer);
+    asj_status status = looks == ASJ_LOOKS_BY_IMAGES ? ASJ_OK :
+                        looks == ASJ_LOOKS_DISPUTED  ? asj_looks_filter(context, finer, own) :
+                                                       asj_looks_judge_by_enlarged(context, own, finer);
     if (status == ASJ_OK)
         status = look_all_up(context, own, finer, found);
     uint8_t *rejected = asj_allocate(&context->memory, (size_t)own->rejected_count, sizeof *rejected);
@@ -161,24 +163,37 @@ static asj_status join(asj_context *context, asj_match_result *own, asj_match_re
     return status;
 }
 
+/* What is left of both, in *own. */
+static asj_status choose(asj_context *context, asj_match_result **own, asj_match_result **finer, uint8_t *found, asj_looks looks,
+                         int32_t same_lists)
+{
+    asj_status status = looks == ASJ_LOOKS_BY_IMAGES ? asj_looks_judge(context, *own, *finer) :
+                        looks == ASJ_LOOKS_DISPUTED  ? asj_looks_filter(context, *own, *finer) : ASJ_OK;
+    if (status == ASJ_OK)
+        status = look_all_up(context, *own, *finer, found);
+    if (status != ASJ_OK)
+        return status;
+    if (!holds(*own, *finer, found, looks))
+        return looks == ASJ_LOOKS_DISPUTED ? asj_looks_filter(context, *finer, *own) : ASJ_OK;
+    status = join(context, *own, *finer, found, looks, same_lists);
+    asj_match_result *other = *own;
+    *own = *finer;
+    *finer = other;
+    return status;
+}
+
 asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_match_result **finer, int32_t same_lists)
 {
     const size_t count = (*own)->match_count;
-    uint8_t *found = asj_allocate(&context->memory, count, sizeof *found);
     const asj_looks looks = asj_looks_of(*own, *finer);
-    asj_status status = found ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu matches", count);
-    if (status == ASJ_OK && looks == ASJ_LOOKS_BY_IMAGES)
-        status = asj_looks_judge(context, *own, *finer);
-    if (status == ASJ_OK)
-        status = look_all_up(context, *own, *finer, found);
-    if (status == ASJ_OK && looks == ASJ_LOOKS_DISPUTED) {
-        status = asj_looks_dispute(context, *own, *finer);
-    } else if (status == ASJ_OK && holds(*own, *finer, found, looks)) {
-        status = join(context, *own, *finer, found, looks, same_lists);
-        asj_match_result *other = *own;
-        *own = *finer;
-        *finer = other;
-    }
+    const asj_geometry of_own = (*own)->geometry, of_finer = (*finer)->geometry;
+    uint8_t *found = asj_allocate(&context->memory, count, sizeof *found);
+    const asj_status status = found ? choose(context, own, finer, found, looks, same_lists)
+                                    : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu matches", count);
+    if (looks == ASJ_LOOKS_DISPUTED)
+        asj_looks_leave_open(&of_own, &of_finer, *own);
+    else if (looks == ASJ_LOOKS_PLANE)
+        (*own)->geometry.has_pose = 0;
     add_times(*own, *finer);
     asj_release(&context->memory, found);
     asj_match_result_free(finer);

@@ -4,13 +4,14 @@
  * One geometry judges the matches of both: that of the enlarged images, or, where they have none or lose the pose, that of the
  * images. Poses are two witnesses of one motion (how often: rooms seen from far apart, seeds 1000 to 1399):
  *   - Both accepted and at odds: one is wrong, and nothing says which; the enlarged images have more evidence either way. That is
- *     an ambiguous answer. (7 pairs: 3 poses of the images and 4 of the enlarged ones are out, by 3.4 to 180 degrees.)
+ *     an ambiguous answer, with the matches that neither contradicts. (7 pairs: 3 poses of the images and 4 of the enlarged ones are
+ *     out, by 3.4 to 180 degrees.) Two of a plane: the plane is the answer, and its pose is open.
  *   - Both accepted, and they agree as far as they know: the surer one is the answer, where the enlarged images' matches hold
  *     (finer.c); otherwise that of the images is, surer or not.
  *   - The images have rivals or leave the motion open, and what the enlarged ones accept is the images' best: that is the answer,
- *     whether or not matches come again, since what repeats has been matched by the period. (22 pairs, all within 3 degrees. Of 397
+ *     whether or not matches come again, since what repeats has been matched by the period. (21 pairs, all within 3 degrees. Of 397
  *     unrelated pairs of such rooms one.)
- *   - The images have rivals, and the enlarged ones accept another motion: when matches come again (5 pairs, all within 3 degrees).
+ *   - The images have rivals, and the enlarged ones accept another motion: when matches come again (4 pairs, all within 3 degrees).
  *   - The images' is accepted, and the enlarged ones have rivals: the images' is the answer (19 pairs, all within 3 degrees). */
 #include "finer_geometry.h"
 #include "core/angle.h"
@@ -97,8 +98,9 @@ static int32_t is_answer(const asj_geometry *g)
 /* Of two accepted poses. */
 static asj_looks compare(const asj_geometry *own, const asj_geometry *finer)
 {
+    const int32_t plane = own->model == ASJ_GEOMETRY_HOMOGRAPHY && finer->model == ASJ_GEOMETRY_HOMOGRAPHY;
     if (are_at_odds(own, finer))
-        return ASJ_LOOKS_DISPUTED;
+        return plane ? ASJ_LOOKS_PLANE : ASJ_LOOKS_DISPUTED;
     return uncertainty(finer) <= uncertainty(own) ? ASJ_LOOKS_BY_ENLARGED : ASJ_LOOKS_BY_IMAGES;
 }
 
@@ -178,17 +180,20 @@ static void forget_probabilities(asj_own_result *r)
         r->rejected[k].probability = 0;
 }
 
-asj_status asj_looks_dispute(asj_context *context, asj_match_result *own, const asj_match_result *finer)
+asj_status asj_looks_filter(asj_context *context, const asj_match_result *by, asj_match_result *judged)
 {
-    const double second = own->geometry.log10_nfa;
-    const asj_status status = judge_by(context, finer, own, 1);
-    forget_probabilities((asj_own_result *)own);
-    own->geometry = finer->geometry;
-    own->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
-    own->geometry.has_second = 1;
-    own->geometry.second_log10_nfa = second;
-    ((asj_own_result *)own)->is_known = 0;
-    return status;
+    return judge_by(context, by, judged, 1);
+}
+
+void asj_looks_leave_open(const asj_geometry *own, const asj_geometry *finer, asj_match_result *result)
+{
+    forget_probabilities((asj_own_result *)result);
+    ((asj_own_result *)result)->is_known = 0;
+    const double second = own->log10_nfa;
+    result->geometry = *finer;
+    result->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
+    result->geometry.has_second = 1;
+    result->geometry.second_log10_nfa = second;
 }
 
 /* Rivals of the matches of the enlarged images are many weak corners around them, of which the matcher has chosen one. As for those

@@ -12,7 +12,8 @@ typedef enum asj_looks {
     ASJ_LOOKS_CONFIRMED,   /* the images leave it open, and the enlarged ones accept their best */
     ASJ_LOOKS_LOST,        /* the images leave open which motion it is, and the enlarged ones accept what tells none, or, where
                             * it is no matter of rivals, another one */
-    ASJ_LOOKS_DISPUTED     /* both accept a motion, not the same */
+    ASJ_LOOKS_PLANE,       /* both accept a plane, which leaves its motion open: the enlarged images', without a pose */
+    ASJ_LOOKS_DISPUTED     /* both accept a motion, not the same: neither, and no match that either contradicts */
 } asj_looks;
 
 asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *finer);
@@ -23,7 +24,10 @@ asj_status asj_looks_judge(asj_context *context, const asj_match_result *by, asj
 /* Both by that of the enlarged images, where they have one, after it has chosen. ASJ_ERROR_MEMORY. */
 asj_status asj_looks_judge_by_enlarged(asj_context *context, asj_match_result *own, asj_match_result *finer);
 
-/* ASJ_LOOKS_DISPUTED: the images' matches that neither geometry contradicts, and an ambiguous geometry. ASJ_ERROR_MEMORY. */
-asj_status asj_looks_dispute(asj_context *context, asj_match_result *own, const asj_match_result *finer);
+/* The matches of the one that the accepted geometry of the other contradicts are rejected, too. ASJ_ERROR_MEMORY. */
+asj_status asj_looks_filter(asj_context *context, const asj_match_result *by, asj_match_result *judged);
+
+/* Says of a result that its geometry is ambiguous, of two that are at odds. */
+void asj_looks_leave_open(const asj_geometry *own, const asj_geometry *finer, asj_match_result *result);
 
 #endif
