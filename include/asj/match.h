@@ -150,10 +150,10 @@ typedef struct asj_match_result {
  * if they were twice as large. The second result holds where it has more matches, three in ten of the first ones again and few that
  * contradict these, together with those of the first ones whose places no other match has; else the first one does. One geometry
  * judges both: that of the second one, or, where it has none or loses the pose, that of the first one; of two poses that agree
- * the surer one where the second result holds. Two at odds are ASJ_GEOMETRY_AMBIGUOUS, and what either contradicts is rejected; of
- * two planes the pose is left out. Where the first one has rivals or leaves its motion open, the second one holds, whatever its matches, when
- * it accepts the same pose, and does not when it accepts none, or another one of a motion that was open (src/match/finer.c,
- * finer_geometry.c).
+ * the surer one where the second result holds. Two at odds are ASJ_GEOMETRY_AMBIGUOUS, and what either contradicts is rejected;
+ * of two planes the pose is left out. Where the first one has rivals or leaves its motion open, the second one holds, whatever
+ * its matches, when it accepts the same pose, and does not when it accepts none, or another one of a motion that was open
+ * (src/match/finer.c, finer_geometry.c).
  * Junctions of octave -1 alone (octaves 1) have no first ones to ask. Everything is in pixels of the images.
  *
  * image1, image2   views; only read, and only during the call

@@ -4,8 +4,8 @@
  * One geometry judges the matches of both: that of the enlarged images, or, where they have none or lose the pose, that of the
  * images. Poses are two witnesses of one motion (how often: rooms seen from far apart, seeds 1000 to 1399):
  *   - Both accepted and at odds: one is wrong, and nothing says which; the enlarged images have more evidence either way. That is
- *     an ambiguous answer, with the matches that neither contradicts. (7 pairs: 3 poses of the images and 4 of the enlarged ones are
- *     out, by 3.4 to 180 degrees.) Two of a plane: the plane is the answer, and its pose is open.
+ *     an ambiguous answer, with the matches that neither contradicts. (7 pairs: 3 poses of the images and 4 of the enlarged ones
+ *     are out, by 3.4 to 180 degrees.) Two of a plane: the plane is the answer, and its pose is open.
  *   - Both accepted, and they agree as far as they know: the surer one is the answer, where the enlarged images' matches hold
  *     (finer.c); otherwise that of the images is, surer or not.
  *   - The images have rivals or leave the motion open, and what the enlarged ones accept is the images' best: that is the answer,
