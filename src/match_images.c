@@ -60,19 +60,12 @@ static uint32_t answered(const search *s, const asj_match_result *r)
     return asks_geometry(s) && r->geometry.status != ASJ_GEOMETRY_ACCEPTED ? 0 : r->match_count;
 }
 
-/* Rivals, and a motion that is open, are an answer. */
-static int32_t is_open(const search *s)
-{
-    const int32_t status = s->best->geometry.status;
-    return status == ASJ_GEOMETRY_AMBIGUOUS || status == ASJ_GEOMETRY_DEGENERATE;
-}
-
 /* Are the images left without an answer? A focal length is of square pixels. */
 static int32_t goes_on(const search *s)
 {
     if (asks_geometry(s) && s->options->geometry.find_focal)
         return 0;
-    return !is_open(s) && answered(s, s->best) < ENOUGH;
+    return !asj_geometry_is_open(&s->best->geometry) && answered(s, s->best) < ENOUGH;
 }
 
 typedef asj_status (*matcher)(const asj_look *look, const asj_match_options *options, asj_match_result **result);
@@ -110,7 +103,7 @@ static int32_t asks_closer(const search *s)
     const asj_geometry *g = &s->best->geometry;
     if (g->status == ASJ_GEOMETRY_ACCEPTED)
         return g->has_pose;
-    return asks_geometry(s) && (is_open(s) || !asj_cameras_are_known(&s->options->geometry));
+    return asks_geometry(s) && (asj_geometry_is_open(g) || !asj_cameras_are_known(&s->options->geometry));
 }
 
 /* Who asks for one octave, or for another first one, has decided. */

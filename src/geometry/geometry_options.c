@@ -35,6 +35,11 @@ int32_t asj_cameras_are_known(const asj_geometry_options *options)
     return asj_camera_is_known(&options->cameras[0]) && asj_camera_is_known(&options->cameras[1]);
 }
 
+int32_t asj_geometry_is_open(const asj_geometry *geometry)
+{
+    return geometry->status == ASJ_GEOMETRY_AMBIGUOUS || geometry->status == ASJ_GEOMETRY_DEGENERATE;
+}
+
 static asj_status check_camera(asj_context *context, const asj_camera *c, int32_t number)
 {
     if (c->fx == 0 && c->fy == 0 && isfinite(c->cx) && isfinite(c->cy))

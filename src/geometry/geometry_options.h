@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Options of the geometry. */
+/* Options of the geometry, and what its status says. */
 #ifndef ASJ_SRC_GEOMETRY_OPTIONS_H
 #define ASJ_SRC_GEOMETRY_OPTIONS_H
 
@@ -12,5 +12,8 @@ asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_o
 
 int32_t asj_camera_is_known(const asj_camera *camera);
 int32_t asj_cameras_are_known(const asj_geometry_options *options); /* both */
+
+/* Rivals, or a motion that stays open: an answer, too. */
+int32_t asj_geometry_is_open(const asj_geometry *geometry);
 
 #endif

@@ -15,6 +15,7 @@
  *   - The images' is accepted, and the enlarged ones have rivals: the images' is the answer (19 pairs, all within 3 degrees). */
 #include "finer_geometry.h"
 #include "core/angle.h"
+#include "geometry/geometry_options.h"
 #include "geometry/small_matrix.h"
 #include "geometry_candidate.h"
 #include "result_changes.h"
@@ -84,15 +85,9 @@ static double uncertainty(const asj_geometry *g)
     return sum;
 }
 
-/* Rivals of one of the images, and a motion that stays open, are an answer. */
-static int32_t is_open(const asj_geometry *g)
-{
-    return g->status == ASJ_GEOMETRY_AMBIGUOUS || g->status == ASJ_GEOMETRY_DEGENERATE;
-}
-
 static int32_t is_answer(const asj_geometry *g)
 {
-    return g->status == ASJ_GEOMETRY_ACCEPTED || is_open(g);
+    return g->status == ASJ_GEOMETRY_ACCEPTED || asj_geometry_is_open(g);
 }
 
 /* Of two accepted poses. */
@@ -111,7 +106,7 @@ asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *fine
     if (a->status == ASJ_GEOMETRY_ACCEPTED)
         return accepted && a->has_pose && b->has_pose ? compare(a, b) :
                accepted && !a->has_pose ? ASJ_LOOKS_BY_ENLARGED : ASJ_LOOKS_BY_IMAGES;
-    if (!accepted || !is_open(a) || a->model != ASJ_GEOMETRY_ESSENTIAL)
+    if (!accepted || !asj_geometry_is_open(a) || a->model != ASJ_GEOMETRY_ESSENTIAL)
         return ASJ_LOOKS_BY_ENLARGED;
     if (b->has_pose && have_same_pose(a, b))
         return ASJ_LOOKS_CONFIRMED;
@@ -189,11 +184,10 @@ void asj_looks_leave_open(const asj_geometry *own, const asj_geometry *finer, as
 {
     forget_probabilities((asj_own_result *)result);
     ((asj_own_result *)result)->is_known = 0;
-    const double second = own->log10_nfa;
     result->geometry = *finer;
     result->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
     result->geometry.has_second = 1;
-    result->geometry.second_log10_nfa = second;
+    result->geometry.second_log10_nfa = own->log10_nfa;
 }
 
 /* Rivals of the matches of the enlarged images are many weak corners around them, of which the matcher has chosen one. As for those

@@ -27,7 +27,7 @@ asj_status asj_looks_judge_by_enlarged(asj_context *context, asj_match_result *o
 /* The matches of the one that the accepted geometry of the other contradicts are rejected, too. ASJ_ERROR_MEMORY. */
 asj_status asj_looks_filter(asj_context *context, const asj_match_result *by, asj_match_result *judged);
 
-/* Says of a result that its geometry is ambiguous, of two that are at odds. */
+/* Says of a result that its geometry is ambiguous, of two that are at odds; neither is the result's own. */
 void asj_looks_leave_open(const asj_geometry *own, const asj_geometry *finer, asj_match_result *result);
 
 #endif

@@ -13,8 +13,8 @@
  * Of segments of rendered rooms 1 to 12 that end so, 98.8 % (both) and 97.3 % (inner) are right, and 79.8 % of those cut where
  * the other's end is put; by the lengths under the match's own map, within end_tolerance, 96.3, 70.3 and 56.4 % were. Of all
  * segments of rooms 1 to 8, cut ones among them, 89.1 % are right where the end does not come nearer, with FARTHEST = 60, 45, 35,
- * 28 90.7, 92.6, 93.4, 93.7 %. Epipolar lines: of rooms 1 to 48 15135 of 15674
- * are right without them and 15137 with them, of photographs 84.4 and 85.0 % (twelve pairs, cut ones among them). */
+ * 28 90.7, 92.6, 93.4, 93.7 %. Epipolar lines: of rooms 1 to 48 15135 of 15674 are right without them and 15137 with them, of
+ * photographs 84.4 and 85.0 % (twelve pairs, cut ones among them). */
 #include "segments.h"
 
 #include <math.h>
@@ -24,9 +24,9 @@
 #define OTHER_KIND 0.75
 #define FARTHEST 35.0 /* px: sqrt(29^2 + 20^2), asj_line_place.from */
 #define PARTS 10      /* of the branch: it comes nearer by one after the other */
-#define LEAST_SINE 0.5      /* of the angle between the branch and the epipolar line */
-#define MAPS_ERR 16.0       /* px along the branch that the matches around may be out, or .. */
-#define MAPS_ERR_SHARE 0.4  /* .. this part of the length */
+#define LEAST_SINE 0.5     /* of the angle between the branch and the epipolar line */
+#define MAPS_OFF 16.0      /* px along the branch that the maps of the matches around may be off, or .. */
+#define MAPS_OFF_SHARE 0.4 /* .. this part of the length */
 
 /* How far ends of these kinds may lie apart, as a part of what ends of one kind may. The border of the image is no place of the
  * scene. */
@@ -66,7 +66,7 @@ static void put_on_line(const asj_around *around, const asj_matched_branch *bran
     if (!(fabs(across) > LEAST_SINE * norm))
         return;
     const double crossing = -(line[0] * branch->x[other] + line[1] * branch->y[other] + line[2]) / across;
-    if (fabs(crossing - *along) <= fmax(MAPS_ERR, MAPS_ERR_SHARE * fabs(*along)))
+    if (fabs(crossing - *along) <= fmax(MAPS_OFF, MAPS_OFF_SHARE * fabs(*along)))
         *along = crossing;
 }
 
