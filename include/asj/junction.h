@@ -44,7 +44,7 @@ typedef struct asj_junction {
     float location_sd;      /* px: standard uncertainty of x and of y (root mean square of the two); 0 = not known */
     int32_t branch_count;   /* 2 .. ASJ_MAX_BRANCHES */
     int32_t octave;         /* that located it: 0 = the image itself, or not known, 1 = its half, 2 = its quarter, .., -1 = enlarged
-                             * twice */
+                             * twice; half octaves rounded away from 0 */
     asj_branch branches[ASJ_MAX_BRANCHES]; /* those beyond branch_count are zero */
 } asj_junction;
 

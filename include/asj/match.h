@@ -70,7 +70,11 @@ typedef struct asj_match_options {
     /* line segments */
     double end_tolerance;        /* lengths of branches that explain each other agree within this part, and ends that
                                   * correspond within a sixth of it, or 4 px. 0.01 .. 1; 0.12 */
-    double reserved[20];         /* zero */
+    /* asj_match_images() again */
+    int32_t enlarged_half_octaves; /* 1 = enlarged images are looked at half-way between their octaves, too: half as many right
+                                    * matches again, for half as much time again. 1; paper 0 */
+    int32_t reserved_integer;    /* zero */
+    double reserved[19];         /* zero */
     /* two-view geometry; not among the options with a key. model: none, the default, and then the rest of it does not matter. Sizes
      * of the images are filled in */
     asj_geometry_options geometry;
@@ -190,20 +194,22 @@ typedef struct asj_stretch {
 #define ASJ_MOST_STRETCH 8
 
 /* From two images to their matches: asj_detect() and asj_match(), on both images stretched. Enlarged twice (2, 2), photographs of
- * up to some megapixels have about three times the matches, in three to eight times the time; a surface that is seen at a glancing
- * angle, like a magazine on a table, matches stretched across it (1, 3) where it did not at all (tests/accuracy/README.md).
- * Everything in the result is in pixels of the images as they are. Numbers of junctions are those of the detector in this call;
- * where it has looked twice (result->enlarged), those of the images without octave -1, and their L-junctions, come after those with
- * it. Times are those of all of it; result->stretch says how the images were looked at.
+ * up to some megapixels have about three times the matches, in three to eight times the time; automatically (0, 0), with half
+ * octaves, about five times the matches, in five to eighteen times the time. A surface that is seen at a glancing angle, like a
+ * magazine on a table, matches stretched across it (1, 3) where it did not at all (tests/accuracy/README.md). Everything in the
+ * result is in pixels of the images as they are. Numbers of junctions are those of the detector in this call; where it has looked
+ * twice (result->enlarged), those of the images without octave -1, and their L-junctions, come after those with it. Times are those
+ * of all of it; result->stretch says how the images were looked at.
  *
  * stretch          NULL = as they are. Automatically (0, 0):
  *                  - as they are;
  *                  - where that gives options->enlarge_from matches, also with junctions of octave -1, which hold as asj_match()
- *                    says (result->enlarged), unless detect_options name another first octave, or one octave alone, or an image has
- *                    more than 2 megapixels. A pose of the images is estimated again from these matches: of two that agree the
- *                    surer one is told where they hold, two at odds are ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is accepted
- *                    that they accept, too. Another geometry of the images judges them. Where the images have rivals or leave the
- *                    motion open, and without cameras where they have no geometry, one match is enough to look;
+ *                    says (result->enlarged), and half octaves (options->enlarged_half_octaves), unless detect_options name another
+ *                    first octave, or one octave alone, or an image has more than 2 megapixels. A pose of the images is estimated
+ *                    again from these matches: of two that agree the surer one is told where they hold, two at odds are
+ *                    ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is accepted that they accept, too. Another geometry of the
+ *                    images judges them. Where the images have rivals or leave the motion open, and without cameras where they have
+ *                    no geometry, one match is enough to look;
  *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together, also stretched
  *                    by 1, 3 and by 3, 1, unless rivals or a motion that stays open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the
  *                    answer, or a focal length is looked for. What comes of that counts from 16 matches on, and when it is twice

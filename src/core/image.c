@@ -298,17 +298,29 @@ static void halve_rows(const void *data, const asj_part *part)
                   j->frame->gray + y * j->frame->stride);
 }
 
-asj_status asj_frame_halve(asj_context *context, asj_frame *frame)
+/* Rows of the plane `stride` levels apart. */
+static asj_status halve(asj_context *context, asj_frame *frame, const asj_gray_plane *from, ptrdiff_t stride)
 {
-    const halve_job j = {frame->gray, frame->stride, frame};
-    const int32_t octave = frame->octave + 1, octaves = frame->octaves;
-    asj_status status = asj_frame_prepare(context, frame, frame->width / 2, frame->height / 2);
+    const halve_job j = {from->levels, stride, frame};
+    const int32_t octaves = frame->octaves;
+    asj_status status = asj_frame_prepare(context, frame, from->width / 2, from->height / 2);
     if (status != ASJ_OK)
         return status;
-    frame->octave = octave;
+    frame->octave = from->octave + 1;
     frame->octaves = octaves;
     const int64_t pixels = (int64_t)frame->width * frame->height;
     asj_parallel(context, asj_threads_for(context, pixels, LEAST_HALVED), frame->height, 0, halve_rows, &j);
     repeat_rows(frame);
     return ASJ_OK;
+}
+
+asj_status asj_frame_halve(asj_context *context, asj_frame *frame)
+{
+    const asj_gray_plane own = {frame->gray, frame->width, frame->height, frame->octave};
+    return halve(context, frame, &own, frame->stride);
+}
+
+asj_status asj_frame_halve_plane(asj_context *context, asj_frame *frame, const asj_gray_plane *from)
+{
+    return halve(context, frame, from, from->width);
 }

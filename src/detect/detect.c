@@ -85,7 +85,7 @@ static asj_status run_octaves(asj_detection_run *run)
         run->done += run->octave > range.first ? run->share : 0;
         run->share = (double)run->frame->width * run->frame->height / range.pixels;
         status = status == ASJ_OK ? run_octave(run) : status;
-        if (status != ASJ_OK || run->octave + 1 == range.end)
+        if (status != ASJ_OK || run->octave + 1 >= range.end)
             break;
         status = asj_step_next_octave(run);
     }

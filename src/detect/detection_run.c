@@ -125,6 +125,7 @@ void asj_detection_run_end(asj_detection_run *run)
     asj_release(memory, run->candidates);
     asj_release(memory, run->all);
     asj_release(memory, run->scratch.memory);
+    asj_release(memory, run->kept.levels);
     if (run->frame)
         asj_frame_free(memory, run->frame); /* kept as all that is released, but not for good: the next image may be small */
 }

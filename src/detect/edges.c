@@ -42,7 +42,7 @@ typedef struct graph {
     int own_octave;        /* whether those of other octaves count as not there */
     int must_divide;       /* whether junctions on the way count only if they divide the edge */
     int32_t columns, rows;
-    double log_epsilon, log_tests[ASJ_MAX_OCTAVES - ASJ_FIRST_OCTAVE]; /* of the first octave, .. */
+    double log_epsilon, log_tests[2 * (ASJ_MAX_OCTAVES - ASJ_FIRST_OCTAVE)]; /* by asj_octave_index() */
 } graph;
 
 /* One branch, seen from its junction. */
@@ -113,7 +113,7 @@ static int goes_on(const asj_hypothesis *hypothesis, double angle)
 static double log_nfa(const graph *g, const asj_hypothesis_branch *branch, double distance)
 {
     return asj_edge_evidence_log_nfa(&g->evidence[branch->evidence], distance / asj_octave_scale(branch->octave),
-                                     g->log_tests[branch->octave - ASJ_FIRST_OCTAVE]);
+                                     g->log_tests[asj_octave_index(branch->octave)]);
 }
 
 /* Of the two branches those that reach the other junction tell what lies between; the surer one of both. */
@@ -213,9 +213,9 @@ static void start(graph *g, const asj_detect_options *options, int32_t width, in
 {
     g->log_epsilon = log(options->epsilon);
     g->own_octave = options->octave_union;
-    for (int32_t o = ASJ_FIRST_OCTAVE; o < ASJ_MAX_OCTAVES; o++) {
+    for (double o = ASJ_FIRST_OCTAVE; o < ASJ_MAX_OCTAVES; o += 0.5) {
         const int32_t columns = asj_octave_size(width, o), rows = asj_octave_size(height, o);
-        g->log_tests[o - ASJ_FIRST_OCTAVE] = asj_strip_log_tests(columns > 0 ? columns : 1, rows > 0 ? rows : 1, octaves);
+        g->log_tests[asj_octave_index(o)] = asj_strip_log_tests(columns > 0 ? columns : 1, rows > 0 ? rows : 1, octaves);
     }
 }
 

@@ -24,6 +24,29 @@ asj_status asj_step_halve(asj_detection_run *run)
     return status == ASJ_OK ? asj_detection_run_set_size(run) : status;
 }
 
+/* From a whole octave, whose grey plane is kept, half-way to the next one. */
+static asj_status go_half_way(asj_detection_run *run)
+{
+    run->octave += 0.5;
+    const asj_status status = asj_gray_plane_keep(run->context, run->frame, &run->kept);
+    return status == ASJ_OK ? asj_frame_shrink(run->context, run->frame, &run->kept) : status;
+}
+
+static asj_status go_on(asj_detection_run *run)
+{
+    run->octave += 0.5;
+    const asj_status status = run->octave > 0 ? asj_frame_halve_plane(run->context, run->frame, &run->kept) : reduce(run);
+    asj_release(&run->context->memory, run->kept.levels);
+    run->kept.levels = NULL;
+    return status;
+}
+
+asj_status asj_step_half_octave(asj_detection_run *run)
+{
+    const asj_status status = run->kept.levels ? go_on(run) : go_half_way(run);
+    return status == ASJ_OK ? asj_detection_run_set_size(run) : status;
+}
+
 asj_status asj_step_gradient(asj_detection_run *run)
 {
     asj_frame *frame = run->frame;

@@ -8,16 +8,23 @@
 #define ASJ_MAX_OCTAVES 16 /* numbers of octaves are below this, */
 #define ASJ_FIRST_OCTAVE (-1) /* and not below this: the image enlarged twice */
 
-/* px of the image for one of the octave. */
-static inline double asj_octave_scale(int32_t octave)
+/* Octaves are whole numbers, or lie half-way between two (octaves.c): so many halves after the first one. */
+static inline int32_t asj_octave_index(double octave)
 {
-    return octave < 0 ? 0.5 : (double)(1 << octave);
+    return (int32_t)(2 * (octave - ASJ_FIRST_OCTAVE));
 }
 
-/* px of the octave for so many of the image. */
-static inline int32_t asj_octave_size(int32_t size, int32_t octave)
+/* px of the image for one of the octave: 2^octave. */
+static inline double asj_octave_scale(double octave)
 {
-    return octave < 0 ? 2 * size : size >> octave;
+    const int32_t index = asj_octave_index(octave);
+    return 0.5 * (double)(1 << index / 2) * (index % 2 ? ASJ_SQRT2 : 1);
+}
+
+/* px of the octave for so many of the image: whole ones. */
+static inline int32_t asj_octave_size(int32_t size, double octave)
+{
+    return (int32_t)(size / asj_octave_scale(octave));
 }
 
 /* A ray that has been followed along a branch (step 4). */
@@ -37,10 +44,10 @@ typedef struct asj_hypothesis_branch {
     double offset_variance;  /* px^2 of the fit at the junction */
     double apart;            /* px between the two edges of a thin line, 0 = one edge */
     double width;            /* px of its octave: standard deviation of the edge's blur (edge_width.c); 0 = sharp or not known */
-    int32_t octave;          /* that found it */
-    int32_t evidence;        /* where what its strip says stands in asj_detection_run.evidence, once that is measured */
+    double octave;           /* that found it */
     double end_variance;     /* px^2 of the end along the branch; 0 = not known */
     int32_t end;             /* ASJ_BRANCH_END_... */
+    int32_t evidence;        /* where what its strip says stands in asj_detection_run.evidence, once that is measured */
 } asj_hypothesis_branch;
 
 typedef struct asj_hypothesis {
@@ -51,7 +58,7 @@ typedef struct asj_hypothesis {
     double first;              /* px along the branches: where lines are fitted from, once they are guessed */
     double location_variance;  /* px^2, mean of both axes */
     double explained;          /* share of the gradient around that a blurred corner explains (blurred_corner.c); 0 = none */
-    int32_t octave;            /* that located it: 0 = the image itself, 1 = the image halved, .., -1 = enlarged twice */
+    double octave;             /* that located it: 0 = the image itself, 1 = the image halved, .., -1 = enlarged twice */
     int32_t branch_count;      /* 0 = rejected */
     asj_hypothesis_branch branches[ASJ_MAX_BRANCHES];
 } asj_hypothesis;

@@ -10,7 +10,7 @@
 typedef struct asj_octave_grid {
     int32_t *heads, *next;
     int32_t columns, rows;
-    int32_t coarsest; /* octave of those that are in */
+    double coarsest; /* octave of those that are in */
 } asj_octave_grid;
 
 /* From the first to the last, all in the grid. */

@@ -7,6 +7,11 @@
  * Octave -1, when it is asked for, works on the image enlarged twice (core/enlarge.c): the same formula. Corners with branches of
  * fewer pixels than a sector needs are found there.
  *
+ * With half_octaves there is one half-way between two: the same formula for o + 1/2, made of octave o (core/half_octave.c). What is
+ * too soft or too weak for an octave, and too small for the next one, is found between them. Rooms and corners (tests/accuracy,
+ * without and with them): of 5 grey levels .820 and .966 found, precision .997 and .998; blurred by 5 px, of 25 grey levels,
+ * .867 and .939; rooms .951 and .956, precision .990 and .989; in 1.5 times the time.
+ *
  * Which octave an edge belongs to is decided by its own width (edge_width.c), not by which octave fired first: lines that are
  * fitted to edges wider than the fits look follow noise, and corners of them are off by pixels.
  *   - a branch wider than WIDEST is dropped: a coarser octave sees it, or nothing does (a gradient of light);
@@ -50,14 +55,15 @@ static int32_t count_octaves(int32_t width, int32_t height)
 asj_octave_range asj_octaves_of(const asj_detect_options *options, int32_t width, int32_t height)
 {
     const int32_t count = count_octaves(width, height);
-    asj_octave_range range = {options->first_octave < count ? options->first_octave : count - 1, 0, 0};
+    asj_octave_range range = {options->first_octave < count ? options->first_octave : count - 1, 0, 0, 0};
     range.end = count - range.first < options->octaves ? count : range.first + options->octaves;
-    for (int32_t o = range.first; o < range.end; o++)
+    const double step = options->half_octaves ? 0.5 : 1;
+    for (double o = range.first; o <= range.end - 1; o += step, range.count++)
         range.pixels += (double)asj_octave_size(width, o) * asj_octave_size(height, o);
     return range;
 }
 
-void asj_octaves_map(asj_hypothesis *hypothesis, int32_t octave)
+void asj_octaves_map(asj_hypothesis *hypothesis, double octave)
 {
     const double scale = asj_octave_scale(octave);
     hypothesis->octave = octave;
@@ -78,8 +84,7 @@ void asj_octaves_map(asj_hypothesis *hypothesis, int32_t octave)
 
 int32_t asj_octaves_sharing(const asj_detect_options *options, int32_t width, int32_t height)
 {
-    const asj_octave_range range = asj_octaves_of(options, width, height);
-    return options->octave_union ? 1 : range.end - range.first;
+    return options->octave_union ? 1 : asj_octaves_of(options, width, height).count;
 }
 
 /* Of the two sharpest branches the less sharp one, px of the octave: two make a junction. */
@@ -102,7 +107,7 @@ static int by_preference(const void *a, const void *b)
     if (soft != other)
         return soft - other;
     if (p->octave != q->octave)
-        return soft ? q->octave - p->octave : p->octave - q->octave;
+        return soft == (p->octave > q->octave) ? -1 : 1;
     if (p->log_nfa != q->log_nfa)
         return p->log_nfa < q->log_nfa ? -1 : 1;
     if (p->y != q->y)
@@ -136,7 +141,7 @@ static int share_direction(const asj_hypothesis *a, const asj_hypothesis *b)
 /* The nearest of those that stay which is the same junction in another octave; -1 = none. */
 static int32_t find_same(const asj_octave_grid *grid, const asj_hypothesis *hypotheses, const asj_hypothesis *hypothesis)
 {
-    const int32_t coarsest = grid->coarsest > hypothesis->octave ? grid->coarsest : hypothesis->octave;
+    const double coarsest = grid->coarsest > hypothesis->octave ? grid->coarsest : hypothesis->octave;
     const asj_octave_cells w = asj_octave_grid_around(grid, hypothesis, NEAR * asj_octave_scale(coarsest));
     double least = HUGE_VAL;
     int32_t found = -1;
@@ -144,7 +149,7 @@ static int32_t find_same(const asj_octave_grid *grid, const asj_hypothesis *hypo
         for (int32_t column = w.left; column <= w.right; column++)
             for (int32_t i = grid->heads[row * grid->columns + column]; i >= 0; i = grid->next[i]) {
                 const asj_hypothesis *other = &hypotheses[i];
-                const int32_t coarser = other->octave > hypothesis->octave ? other->octave : hypothesis->octave;
+                const double coarser = other->octave > hypothesis->octave ? other->octave : hypothesis->octave;
                 const double reach = NEAR * asj_octave_scale(coarser);
                 const double distance = hypot(other->x - hypothesis->x, other->y - hypothesis->y);
                 if (other->octave != hypothesis->octave && distance <= reach && distance < least &&
@@ -235,7 +240,7 @@ static int is_at_finer(const asj_octave_known *known, const asj_hypothesis *hypo
     return 0;
 }
 
-asj_octave_known asj_octave_known_start(const asj_hypothesis *finer, size_t count, int32_t octave, double minimum_opening,
+asj_octave_known asj_octave_known_start(const asj_hypothesis *finer, size_t count, double octave, double minimum_opening,
                                         int32_t width, int32_t height, int32_t *cells)
 {
     asj_octave_known known = {asj_octave_grid_start(width, height, cells), finer, octave, minimum_opening};

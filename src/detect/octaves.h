@@ -6,9 +6,10 @@
 
 #include "octave_ghosts.h"
 
-/* The octaves that the options ask for and an image of this size has: first .. end - 1, at least one. */
+/* The octaves that the options ask for and an image of this size has: first .. end - 1, at least one, and those between. */
 typedef struct asj_octave_range {
     int32_t first, end;
+    int32_t count; /* with those between */
     double pixels; /* of all of them */
 } asj_octave_range;
 
@@ -18,7 +19,7 @@ asj_octave_range asj_octaves_of(const asj_detect_options *options, int32_t width
 int32_t asj_octaves_sharing(const asj_detect_options *options, int32_t width, int32_t height);
 
 /* From the pixels of an octave to those of the image; the hypothesis and its branches belong to that octave from then on. */
-void asj_octaves_map(asj_hypothesis *hypothesis, int32_t octave);
+void asj_octaves_map(asj_hypothesis *hypothesis, double octave);
 
 /* Merges hypotheses in pixels of the image, each octave's without duplicates: see octaves.c. Returns how many stay, at the front,
  * in no order that matters. `cells` is scratch of asj_octave_grid_cells() elements. */
@@ -32,12 +33,12 @@ enum { ASJ_KNOWN_PIXEL, ASJ_KNOWN_ROUGHLY, ASJ_KNOWN_LINES };
 typedef struct asj_octave_known {
     asj_octave_grid grid;         /* of the sharp ones of `finer` */
     const asj_hypothesis *finer;  /* in pixels of the image; NULL = none */
-    int32_t octave;               /* the coarser one */
+    double octave;                /* the coarser one */
     double minimum_opening;
 } asj_octave_known;
 
 /* `cells` as above, for `count`. */
-asj_octave_known asj_octave_known_start(const asj_hypothesis *finer, size_t count, int32_t octave, double minimum_opening,
+asj_octave_known asj_octave_known_start(const asj_hypothesis *finer, size_t count, double octave, double minimum_opening,
                                         int32_t width, int32_t height, int32_t *cells);
 
 /* Whether a hypothesis in pixels of the coarser octave would not survive the merge and could add nothing: one that lies at a sharp

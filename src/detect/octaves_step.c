@@ -41,7 +41,9 @@ static asj_status collect(asj_detection_run *run)
 asj_status asj_step_next_octave(asj_detection_run *run)
 {
     asj_status status = collect(run);
-    return status == ASJ_OK ? asj_step_halve(run) : status;
+    if (status != ASJ_OK)
+        return status;
+    return run->options->half_octaves ? asj_step_half_octave(run) : asj_step_halve(run);
 }
 
 static void confirm(const asj_detection_run *run, asj_hypothesis *hypothesis)

@@ -4,8 +4,8 @@
  * what it is without a region: what lies outside still speaks for or against a junction inside, and branches reach as far.
  *
  * A junction moves by max_move px of its octave while it is located; so candidates stay up to `reach` = that, rounded up, and one
- * more around the region. Pixel (i, j) of octave o stands for the pixels i 2^o .. (i + 1) 2^o - 1 of the image, j likewise;
- * of octave -1, for pixel i / 2. */
+ * more around the region. Pixel (i, j) of octave o stands for what lies between i 2^o and (i + 1) 2^o in the image,
+ * pixel k from k to k + 1; j likewise. */
 #include "region.h"
 
 #include <math.h>
@@ -63,8 +63,9 @@ static int32_t reach_of(const asj_detection_run *run)
 static void octave_range(const asj_detection_run *run, int32_t first, int32_t end, int32_t size, int32_t *from, int32_t *to)
 {
     const int32_t reach = reach_of(run);
-    *from = (run->octave < 0 ? 2 * first : first >> run->octave) - reach;
-    *to = (run->octave < 0 ? 2 * end : ((end - 1) >> run->octave) + 1) + reach;
+    const double scale = asj_octave_scale(run->octave);
+    *from = (int32_t)floor(first / scale) - reach;
+    *to = (int32_t)ceil(end / scale) + reach;
     *from = *from > 0 ? *from : 0;
     *to = *to < size ? *to : size;
     *from = *from < *to ? *from : *to; /* the last pixel of the image may belong to no pixel of the octave */
@@ -105,8 +106,9 @@ static void clear_bit(uint16_t *bits, int32_t x)
 static void image_range(const asj_detection_run *run, int32_t i, int32_t size, int32_t *first, int32_t *end)
 {
     const int32_t reach = reach_of(run), before = i - reach, after = i + reach + 1;
-    *first = clamp(run->octave < 0 ? before / 2 : before * (1 << run->octave), size);
-    *end = clamp(run->octave < 0 ? (after + 1) / 2 : after * (1 << run->octave), size);
+    const double scale = asj_octave_scale(run->octave);
+    *first = clamp((int32_t)floor(before * scale), size);
+    *end = clamp((int32_t)ceil(after * scale), size);
 }
 
 /* Bits of candidates with nothing of `line` near go. */

@@ -24,7 +24,7 @@ static void convert(const asj_hypothesis *hypothesis, asj_junction *out)
     out->log10_nfa = (float)(hypothesis->log_nfa / LN_10);
     out->location_sd = (float)sqrt(hypothesis->location_variance);
     out->branch_count = hypothesis->branch_count;
-    out->octave = hypothesis->octave;
+    out->octave = (int32_t)(hypothesis->octave < 0 ? floor(hypothesis->octave) : ceil(hypothesis->octave));
     for (int32_t i = 0; i < hypothesis->branch_count; i++) {
         const asj_hypothesis_branch *branch = &hypothesis->branches[i];
         float angle = (float)branch->angle;

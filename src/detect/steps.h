@@ -8,6 +8,7 @@
 
 asj_status asj_step_load(asj_detection_run *run);       /* gradient_step.c: image -> grey plane of the frame */
 asj_status asj_step_halve(asj_detection_run *run);      /* gradient_step.c: -> grey plane of the next octave */
+asj_status asj_step_half_octave(asj_detection_run *run); /* gradient_step.c: -> the same, of half an octave more */
 asj_status asj_step_gradient(asj_detection_run *run);   /* step 1 (gradient_step.c): -> gradient planes */
 asj_status asj_step_candidates(asj_detection_run *run); /* step 2 (candidates_step.c): planes -> candidates */
 size_t asj_candidates_count(const uint16_t *masks, size_t count); /* bits in a list of masks */

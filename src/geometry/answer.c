@@ -113,44 +113,68 @@ static int32_t is_believed(const asj_estimation *e, int32_t essential, int32_t b
     return essential != e->focal_at || e->finalists[essential].evidence > ALMOST * e->finalists[best].evidence;
 }
 
-void asj_answer(asj_estimation *e, double *probabilities, asj_judge *judge, asj_geometry *result)
+/* Which finalist is told, -1 = there is none, with its pose. *determined: 0 when nothing determines its motion. */
+static int32_t choose(asj_estimation *e, asj_geometry *result, int32_t *determined)
 {
-    int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO), determined = 1;
-    const double least = log10(e->options->epsilon);
-    result->status = ASJ_GEOMETRY_CHANCE;
-    if (best < 0)
-        return;
+    const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO);
     const int32_t essential = asj_estimation_best(e, ASJ_GEOMETRY_ESSENTIAL); /* a plane's pose comes from here, too */
-    if (essential >= 0 && is_believed(e, essential, best) && asj_estimation_log10_nfa(e, &e->finalists[essential]) <= least)
-        determined = set_pose(e, essential, result);
-    if (best == essential && !result->has_pose)
-        best = instead_of(e, best);
-    determined = determined || best != essential;
-    const asj_model *m = &e->finalists[best];
-    const int32_t open_focal = best == e->focal_at && !e->focal.is_known;
-    result->model = open_focal ? ASJ_GEOMETRY_FUNDAMENTAL : m->kind;
+    int32_t chosen = best;
+    *determined = 1;
+    if (best >= 0 && essential >= 0 && is_believed(e, essential, best) &&
+        asj_estimation_log10_nfa(e, &e->finalists[essential]) <= log10(e->options->epsilon))
+        *determined = set_pose(e, essential, result);
+    if (best >= 0 && best == essential && !result->has_pose)
+        chosen = instead_of(e, best);
+    if (chosen != essential)
+        *determined = 1;
+    return chosen;
+}
+
+static int32_t has_open_focal(const asj_estimation *e, int32_t number)
+{
+    return number == e->focal_at && !e->focal.is_known;
+}
+
+/* All but its pose; the probabilities of candidates are in the scratch then. */
+static void describe(asj_estimation *e, int32_t number, asj_geometry *result)
+{
+    const asj_model *m = &e->finalists[number];
+    result->model = has_open_focal(e, number) ? ASJ_GEOMETRY_FUNDAMENTAL : m->kind;
     result->log10_nfa = asj_estimation_log10_nfa(e, m);
     set_matrix(m, result);
     asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
     for (int32_t k = 0; k < e->set.count; k++)
         result->inliers += e->scratch.probability[k];
-    int32_t doubt = 0;
+}
+
+/* Whether the motion that was asked for stays open. */
+static int32_t is_open(const asj_estimation *e, int32_t number, const asj_geometry *result)
+{
+    const int32_t motion = number == asj_estimation_best(e, ASJ_GEOMETRY_ESSENTIAL) && number != e->focal_at;
+    return (motion && !result->has_pose && result->inliers < FEW_WITHOUT_POSE) ||
+           (has_open_focal(e, number) && e->options->model == ASJ_GEOMETRY_ESSENTIAL);
+}
+
+void asj_answer(asj_estimation *e, double *probabilities, asj_judge *judge, asj_geometry *result)
+{
+    int32_t determined, doubt = 0;
+    const int32_t best = choose(e, result, &determined);
+    result->status = ASJ_GEOMETRY_CHANCE;
+    if (best < 0)
+        return;
+    describe(e, best, result);
     const int32_t second = asj_strongest_rival(e, best, &doubt);
     if (second >= 0) {
         result->has_second = 1;
         result->second_log10_nfa = asj_estimation_log10_nfa(e, &e->finalists[second]);
     }
-    if (result->log10_nfa > least)
+    if (result->log10_nfa > log10(e->options->epsilon))
         return;
-    if (best == essential && best != e->focal_at && !result->has_pose && result->inliers < FEW_WITHOUT_POSE)
-        determined = 0;
-    if (open_focal && e->options->model == ASJ_GEOMETRY_ESSENTIAL)
-        determined = 0;
-    result->status = !determined ? ASJ_GEOMETRY_DEGENERATE : ASJ_GEOMETRY_ACCEPTED;
+    result->status = determined && !is_open(e, best, result) ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_DEGENERATE;
     if (second >= 0 && asj_is_ambiguous(e, best, second, doubt, result->inliers))
         result->status = ASJ_GEOMETRY_AMBIGUOUS;
     if (judge && result->status == ASJ_GEOMETRY_ACCEPTED)
-        *judge = asj_judge_create(&m->view, &e->set);
+        *judge = asj_judge_create(&e->finalists[best].view, &e->set);
     for (int32_t k = 0; k < e->set.count && probabilities; k++)
         probabilities[e->set.list[k].source] = e->scratch.probability[k];
 }

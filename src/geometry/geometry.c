@@ -125,6 +125,55 @@ asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candid
     return asj_estimate_with_hints(context, candidates, count, NULL, options, probabilities, NULL, result);
 }
 
+static asj_status make_scratch(asj_estimation *e, const asj_geometry_hints *hints)
+{
+    asj_memory *memory = &e->context->memory;
+    const int32_t *count = e->set.place_count, shown = hints && hints->pictures[0] && hints->pictures[1];
+    e->other = asj_allocate(memory, (size_t)e->set.count, sizeof *e->other);
+    e->elsewhere = asj_allocate(memory, (size_t)e->set.count, sizeof *e->elsewhere);
+    e->vote = asj_allocate(memory, (size_t)(count[0] > count[1] ? count[0] : count[1]), 4 * sizeof *e->vote);
+    e->pictures = shown ? asj_pictures_create(memory, hints->pictures, e->set.count) : NULL;
+    if (e->other && e->elsewhere && e->vote && (e->pictures || !shown) && asj_adjust_scratch_create(memory, &e->set, &e->scratch))
+        return ASJ_OK;
+    return asj_fail(e->context, ASJ_ERROR_MEMORY, "no memory for the geometry");
+}
+
+static void free_estimation(asj_estimation *e)
+{
+    asj_memory *memory = &e->context->memory;
+    asj_adjust_scratch_free(memory, &e->scratch);
+    asj_release(memory, e->other);
+    asj_release(memory, e->elsewhere);
+    asj_release(memory, e->vote);
+    asj_pictures_free(memory, e->pictures);
+    asj_pairs_free(memory, &e->set);
+    asj_release(memory, e);
+}
+
+/* The steps above. */
+static asj_status estimate(asj_estimation *e, const asj_geometry_hints *hints, double *probabilities, asj_judge *judge,
+                           asj_geometry *found)
+{
+    if (e->options->model == ASJ_GEOMETRY_NONE)
+        return ASJ_OK;
+    if (e->set.place_count[0] < 2 || e->set.place_count[1] < 2) {
+        found->status = ASJ_GEOMETRY_TOO_FEW;
+        return ASJ_OK;
+    }
+    asj_status status = make_scratch(e, hints);
+    if (status == ASJ_OK)
+        status = search_all(e);
+    if (status == ASJ_OK)
+        status = search_rivals(e);
+    if (status == ASJ_OK)
+        status = asj_strike_out(e);
+    if (status == ASJ_OK)
+        status = asj_watch_end(e->set.watch);
+    if (status == ASJ_OK)
+        asj_answer(e, probabilities, judge, found);
+    return status;
+}
+
 asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
                                    const asj_geometry_hints *hints, const asj_geometry_options *options, double *probabilities,
                                    asj_judge *judge, asj_geometry *result)
@@ -150,36 +199,9 @@ asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_cand
     e->set.watch = &watch;
     for (size_t k = 0; k < count && probabilities; k++)
         probabilities[k] = 0;
-    if (status == ASJ_OK && options->model != ASJ_GEOMETRY_NONE) {
-        if (e->set.place_count[0] < 2 || e->set.place_count[1] < 2) {
-            found.status = ASJ_GEOMETRY_TOO_FEW;
-        } else {
-            e->other = asj_allocate(&context->memory, (size_t)e->set.count, sizeof *e->other);
-            e->elsewhere = asj_allocate(&context->memory, (size_t)e->set.count, sizeof *e->elsewhere);
-            const int32_t places = e->set.place_count[0] > e->set.place_count[1] ? e->set.place_count[0] : e->set.place_count[1];
-            e->vote = asj_allocate(&context->memory, (size_t)places, 4 * sizeof *e->vote);
-            const int32_t shown = hints && hints->pictures[0] && hints->pictures[1];
-            e->pictures = shown ? asj_pictures_create(&context->memory, hints->pictures, e->set.count) : NULL;
-            status = e->other && e->elsewhere && e->vote && (e->pictures || !shown) &&
-                             asj_adjust_scratch_create(&context->memory, &e->set, &e->scratch)
-                         ? search_all(e) : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the geometry");
-            if (status == ASJ_OK)
-                status = search_rivals(e);
-            if (status == ASJ_OK)
-                status = asj_strike_out(e);
-            if (status == ASJ_OK)
-                status = asj_watch_end(&watch);
-            if (status == ASJ_OK)
-                asj_answer(e, probabilities, judge, &found);
-        }
-    }
-    asj_adjust_scratch_free(&context->memory, &e->scratch);
-    asj_release(&context->memory, e->other);
-    asj_release(&context->memory, e->elsewhere);
-    asj_release(&context->memory, e->vote);
-    asj_pictures_free(&context->memory, e->pictures);
-    asj_pairs_free(&context->memory, &e->set);
-    asj_release(&context->memory, e);
+    if (status == ASJ_OK)
+        status = estimate(e, hints, probabilities, judge, &found);
+    free_estimation(e);
     if (status == ASJ_OK)
         *result = found;
     return status;

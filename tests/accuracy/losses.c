@@ -26,7 +26,7 @@
 #endif
 
 #define NEAR 3.5 /* px of the octave: a junction moves, and a dump has whole pixels */
-#define MOST_OCTAVES 16
+#define MOST_OCTAVES 32
 
 static const double least_found[CHANGES] = {80, 88, 86, 72, 89, 90}; /* of --check: per cent; measured 84 and more, noise 76 */
 
@@ -99,17 +99,28 @@ static int is_near(const points *p, double x, double y)
     return 0;
 }
 
-/* Which step has lost what would be at (x, y) of the copy. */
-static int find_step(const session *s, const asj_detection *copy, int32_t octave, double x, double y)
+/* The last step that has left something near (x, y) of the copy in an octave, -1 = none. */
+static int last_step(const session *s, double octave, double x, double y)
 {
-    const int index = octave - s->options.first_octave;
-    const double scale = ldexp(1, octave);
+    const int index = (int)((s->options.half_octaves ? 2 : 1) * (octave - s->options.first_octave));
+    const double scale = exp2(octave);
     int last = -1;
     for (int step = 0; step < STEPS && index >= 0 && index < s->seen.octaves; step++)
         if (is_near(&s->seen.left[index][step], (x + 0.5) / scale - 0.5, (y + 0.5) / scale - 0.5))
             last = step;
+    return last;
+}
+
+/* Which step has lost what would be at (x, y) of the copy: half octaves come rounded away from 0. */
+static int find_step(const session *s, const asj_detection *copy, int32_t octave, double x, double y)
+{
+    int last = last_step(s, octave, x, y);
+    if (s->options.half_octaves && octave != 0) {
+        const int between = last_step(s, octave < 0 ? octave + 0.5 : octave - 0.5, x, y);
+        last = between > last ? between : last;
+    }
     for (uint32_t i = 0; last == STEPS - 1 && i < copy->junction_count; i++)
-        if (hypot((double)copy->junctions[i].x - x, (double)copy->junctions[i].y - y) < NEAR * scale + 1)
+        if (hypot((double)copy->junctions[i].x - x, (double)copy->junctions[i].y - y) < NEAR * exp2(octave) + 1)
             return MOVED;
     return last + 1;
 }

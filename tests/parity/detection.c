@@ -134,6 +134,10 @@ static void settings(run_state *state, int quick)
     state->setting = "first_octave=-1";
     scenes(state, quick ? 1 : 3);
     asj_detect_options_init(&state->options);
+    state->options.half_octaves = 1;
+    state->setting = "half_octaves=1";
+    scenes(state, quick ? 1 : 3);
+    asj_detect_options_init(&state->options);
     state->setting = "default";
 }
 

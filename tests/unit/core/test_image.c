@@ -328,6 +328,56 @@ static void test_enlarge(void **state)
     free((void *)(uintptr_t)large.data);
 }
 
+/* The mean of the plane between first and end along both axes, pixel k from k to k + 1. */
+static double mean_between(const uint8_t *pixels, int32_t width, double left, double right, double top, double bottom)
+{
+    double sum = 0;
+    for (int32_t y = (int32_t)top; y < bottom; y++)
+        for (int32_t x = (int32_t)left; x < right; x++)
+            sum += (fmin(x + 1, right) - fmax(x, left)) * (fmin(y + 1, bottom) - fmax(y, top)) * pixels[y * width + x];
+    return sum / ((right - left) * (bottom - top));
+}
+
+/* Means over sqrt 2 x sqrt 2 px, to what rounding their shares to 1/256 leaves; what is the same everywhere stays. The plane that
+ * is kept becomes the next octave, as the frame itself does. */
+static void test_shrink(void **state)
+{
+    enum { WIDTH = 83, HEIGHT = 47 };
+    static const int32_t sizes[][2] = {{WIDTH, HEIGHT}, {2, 2}, {3, HEIGHT}, {WIDTH, 2}};
+    const double step = sqrt(2);
+    fixture *f = *state;
+    uint8_t pixels[WIDTH * HEIGHT];
+    for (size_t k = 0; k < 2 * UNIT_COUNT(sizes); k++) {
+        const int32_t w = sizes[k / 2][0], h = sizes[k / 2][1], same = k % 2;
+        const asj_image image = unit_gray8(pixels, w, h);
+        asj_gray_plane kept;
+        for (int i = 0; i < w * h; i++)
+            pixels[i] = (uint8_t)(same ? 255 : i * 89 % 251);
+        assert_int_equal(asj_frame_prepare(f->context, &f->frame, w, h), ASJ_OK);
+        assert_int_equal(asj_frame_load(f->context, &f->frame, &image), ASJ_OK);
+        f->frame.octave = 2;
+        f->frame.octaves = 7;
+        assert_int_equal(asj_gray_plane_keep(f->context, &f->frame, &kept), ASJ_OK);
+        assert_int_equal(asj_frame_shrink(f->context, &f->frame, &kept), ASJ_OK);
+        assert_true(f->frame.width == (int32_t)(w / step) && f->frame.height == (int32_t)(h / step));
+        assert_true(f->frame.octave == 2.5 && f->frame.octaves == 7);
+        for (int32_t y = 0; y < f->frame.height; y++)
+            for (int32_t x = 0; x < f->frame.width; x++) {
+                const double mean = mean_between(pixels, w, x * step, (x + 1) * step, y * step, (y + 1) * step);
+                assert_true(fabs((double)gray(f, x, y) / ASJ_GRAY_ONE - mean) < (same ? 1e-9 : 1.0));
+            }
+        assert_int_equal(gray(f, -ASJ_GRAY_BORDER, -1), gray(f, 0, 0));
+        assert_int_equal(gray(f, f->frame.width, f->frame.height + ASJ_GRAY_BORDER - 1),
+                         gray(f, f->frame.width - 1, f->frame.height - 1));
+        assert_int_equal(asj_frame_halve_plane(f->context, &f->frame, &kept), ASJ_OK);
+        assert_true(f->frame.width == w / 2 && f->frame.height == h / 2 && f->frame.octave == 3 && f->frame.octaves == 7);
+        for (int32_t y = 0; y < h / 2; y++)
+            for (int32_t x = 0; x < w / 2; x++)
+                assert_true(gray(f, x, y) == mean_between(pixels, w, 2 * x, 2 * x + 2, 2 * y, 2 * y + 2) * ASJ_GRAY_ONE);
+        asj_release(&f->context->memory, kept.levels);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -335,7 +385,7 @@ int main(void)
         cmocka_unit_test(test_extreme_white), cmocka_unit_test(test_colour),     cmocka_unit_test(test_strides),
         cmocka_unit_test(test_refused),       cmocka_unit_test(test_short_strides),
         cmocka_unit_test(test_bottom_up), cmocka_unit_test(test_not_finite),
-        cmocka_unit_test(test_prepare), cmocka_unit_test(test_enlarge),
+        cmocka_unit_test(test_prepare), cmocka_unit_test(test_enlarge), cmocka_unit_test(test_shrink),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }

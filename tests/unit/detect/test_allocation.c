@@ -41,7 +41,7 @@ static void ignore_dump(void *user, const asj_dump *dump)
 }
 
 /* From a new context every time (`fresh`), and with one that has worked and failed before. */
-static void check_detect(int32_t preset, int fresh, int for_good, int dump)
+static void check_detect(int32_t preset, int fresh, int for_good, int dump, int32_t half_octaves)
 {
     asj_detect_options detect_options;
     uint8_t *pixels = picture(WIDTH, HEIGHT);
@@ -51,6 +51,7 @@ static void check_detect(int32_t preset, int fresh, int for_good, int dump)
     int reached = 1;
     long n = 1;
     asj_detect_options_preset(&detect_options, preset);
+    detect_options.half_octaves = half_octaves;
     for (; reached && n < MOST; n++) {
         asj_detection *found = (asj_detection *)pixels;
         if (!context) {
@@ -89,10 +90,11 @@ static void check_detect(int32_t preset, int fresh, int for_good, int dump)
 static void test_detect(void **state)
 {
     (void)state;
-    check_detect(ASJ_PRESET_DEFAULT, 1, 0, 1);
-    check_detect(ASJ_PRESET_DEFAULT, 0, 1, 1);
-    check_detect(ASJ_PRESET_DEFAULT, 0, 0, 0);
-    check_detect(ASJ_PRESET_PAPER, 0, 0, 0);
+    check_detect(ASJ_PRESET_DEFAULT, 1, 0, 1, 0);
+    check_detect(ASJ_PRESET_DEFAULT, 0, 1, 1, 0);
+    check_detect(ASJ_PRESET_DEFAULT, 0, 0, 0, 0);
+    check_detect(ASJ_PRESET_DEFAULT, 0, 0, 0, 1);
+    check_detect(ASJ_PRESET_PAPER, 0, 0, 0, 0);
 }
 
 static void test_local_field(void **state)

@@ -30,7 +30,7 @@ static asj_hypothesis corner(double x, double y, double width)
     return h;
 }
 
-static asj_hypothesis of_octave(int32_t octave, double x, double y, double width)
+static asj_hypothesis of_octave(double octave, double x, double y, double width)
 {
     asj_hypothesis h = corner(x, y, width);
     asj_octaves_map(&h, octave);
@@ -81,6 +81,32 @@ static void test_range(void **state)
     range = asj_octaves_of(&options, 1, 1);
     assert_int_equal(range.first, 0);
     assert_int_equal(range.end, 1);
+}
+
+/* Half-way between two octaves that are looked at, and nowhere else. */
+static void test_half_range(void **state)
+{
+    asj_detect_options options;
+    (void)state;
+    asj_detect_options_init(&options);
+    options.half_octaves = 1;
+    options.octaves = 3;
+    options.first_octave = -1; /* 1280 x 960, 905 x 678, 640 x 480, 452 x 339, 320 x 240 */
+    const asj_octave_range range = asj_octaves_of(&options, 640, 480);
+    assert_true(range.first == -1 && range.end == 2 && range.count == 5);
+    assert_true(range.pixels == 1280 * 960 + 905 * 678 + 640 * 480 + 452 * 339 + 320 * 240);
+    assert_int_equal(asj_octaves_sharing(&options, 640, 480), 5);
+    options.octaves = 1;
+    assert_int_equal(asj_octaves_of(&options, 640, 480).count, 1);
+    for (int32_t index = 0; index <= 34; index++) {
+        const double octave = 0.5 * index - 1;
+        assert_int_equal(asj_octave_index(octave), index);
+        assert_true(fabs(asj_octave_scale(octave) - exp2(octave)) <= 1e-12 * exp2(octave));
+        assert_true(index % 2 || asj_octave_scale(octave) == exp2(octave));
+    }
+    const asj_hypothesis h = of_octave(0.5, 2, 10, 1);
+    unit_near("x", 0.5, 2, h.x, 2.5 * sqrt(2) - 0.5, 1e-12);
+    unit_near("length", 0.5, 2, h.branches[0].length, of_octave(0, 2, 10, 1).branches[0].length * sqrt(2), 1e-9);
 }
 
 /* The corner between the first four pixels of level 0 is the centre of pixel 0 of level 1; pixels 0 and 1 of octave -1 lie a
@@ -227,6 +253,96 @@ static void test_union(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Octaves that are listed each for itself are as they are without those between, which come rounded away from the image itself. */
+static void test_half_union(void **state)
+{
+    unit_counter counter;
+    asj_context *context = unit_context(&counter, 2);
+    asj_detect_options options;
+    synth_scene scene;
+    (void)state;
+    synth_scene_init(&scene, 240, 240, 100);
+    synth_add_rectangle(&scene, (synth_point){60, 60}, 100, 80, 0.2, 140);
+    synth_add_rectangle(&scene, (synth_point){130, 120}, 60, 70, 0.9, 50);
+    uint8_t *pixels = unit_picture(&scene, 1.2, 3, 3);
+    const asj_image image = unit_gray8(pixels, 240, 240);
+    assert_int_equal(asj_detect_options_preset(&options, ASJ_PRESET_MATCH), ASJ_OK);
+    options.first_octave = -1;
+    asj_detection *whole = NULL, *all = NULL;
+    assert_int_equal(asj_detect(context, &image, &options, &whole), ASJ_OK);
+    options.half_octaves = 1;
+    assert_int_equal(asj_detect(context, &image, &options, &all), ASJ_OK);
+    uint32_t there = 0, between[4] = {0, 0, 0, 0}, radii_between = 0;
+    for (uint32_t i = 0; i < all->junction_count; i++) {
+        const asj_junction *j = &all->junctions[i];
+        uint32_t k = 0;
+        while (k < whole->junction_count && memcmp(j, &whole->junctions[k], sizeof *j) != 0)
+            k++;
+        there += k < whole->junction_count;
+        assert_true(j->octave >= -1 && j->octave <= 2);
+        if (k < whole->junction_count)
+            continue;
+        between[j->octave + 1]++; /* radii of 7 and 14 px of its octave */
+        const double octave = j->octave < 0 ? -0.5 : j->octave - 0.5, radius = (double)j->scale / exp2(octave);
+        radii_between += fabs(radius - 7) < 1e-4 || fabs(radius - 14) < 1e-4;
+    }
+    assert_int_equal(there, whole->junction_count);
+    assert_true(between[0] > 8 && between[1] == 0 && between[2] > 4 && between[3] > 0);
+    assert_int_equal(radii_between, between[0] + between[2] + between[3]);
+    asj_detection_free(&whole);
+    asj_detection_free(&all);
+    free(pixels);
+    unit_context_free(&counter, &context);
+}
+
+/* Corners of 4 grey levels in noise of 2: more are found, none is listed twice, and few places have none. */
+static void test_half_finds_more(void **state)
+{
+    enum { SCENES = 12, CORNERS = 4 };
+    unit_counter counter;
+    asj_context *context = unit_context(&counter, 1);
+    int found_by[2] = {0, 0}, elsewhere[2] = {0, 0};
+    (void)state;
+    for (uint64_t seed = 1; seed <= SCENES; seed++) {
+        const double c60 = 60 * cos(0.3), s60 = 60 * sin(0.3), c50 = 50 * cos(0.3), s50 = 50 * sin(0.3);
+        const synth_point corners[CORNERS] = {
+            {70, 60}, {70 + c60, 60 + s60}, {70 + c60 - s50, 60 + s60 + c50}, {70 - s50, 60 + c50}};
+        synth_scene scene;
+        synth_scene_init(&scene, 240, 220, 120);
+        synth_add_rectangle(&scene, corners[0], 60, 50, 0.3, 124);
+        uint8_t *pixels = unit_picture(&scene, 1, 2, seed);
+        const asj_image image = unit_gray8(pixels, 240, 220);
+        for (int32_t half = 0; half < 2; half++) {
+            asj_detect_options options;
+            asj_detection *found = NULL;
+            asj_detect_options_init(&options);
+            options.half_octaves = half;
+            assert_int_equal(asj_detect(context, &image, &options, &found), ASJ_OK);
+            int at[CORNERS] = {0, 0, 0, 0};
+            for (uint32_t j = 0; j < found->junction_count; j++) {
+                int nearest = -1;
+                for (int c = 0; c < CORNERS; c++)
+                    if (hypot((double)found->junctions[j].x - corners[c].x, (double)found->junctions[j].y - corners[c].y) < 5)
+                        nearest = c;
+                elsewhere[half] += nearest < 0;
+                if (nearest >= 0)
+                    at[nearest]++;
+            }
+            for (int c = 0; c < CORNERS; c++) {
+                assert_in_range(at[c], 0, 1);
+                found_by[half] += at[c];
+            }
+            asj_detection_free(&found);
+        }
+        free(pixels);
+    }
+    printf("corners of 4 grey levels: %d of %d, with half octaves %d; elsewhere %d and %d\n", found_by[0], SCENES * CORNERS,
+           found_by[1], elsewhere[0], elsewhere[1]);
+    assert_true(found_by[1] > found_by[0] && found_by[1] >= SCENES * CORNERS * 9 / 10);
+    assert_true(elsewhere[1] <= 1);
+    unit_context_free(&counter, &context);
+}
+
 /* A step blurred by 0.6 to 3 px, on its line and half a pixel beside it. Of sharp ones no more is known than that they are. */
 static void test_widths(void **state)
 {
@@ -299,7 +415,8 @@ int main(void)
         cmocka_unit_test(test_others_stay),    cmocka_unit_test(test_soft_branch_joins),
         cmocka_unit_test(test_widths),         cmocka_unit_test(test_ghosts),
         cmocka_unit_test(test_soft_corners),   cmocka_unit_test(test_confirm),
-        cmocka_unit_test(test_union),
+        cmocka_unit_test(test_union),          cmocka_unit_test(test_half_range),
+        cmocka_unit_test(test_half_union),     cmocka_unit_test(test_half_finds_more),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -322,6 +322,38 @@ static void automatically_images_are_enlarged_too(void **state)
     unit_context_free(&counters[1], &contexts[1]);
 }
 
+/* Half-way between the octaves of the enlarged images there are more matches, which are true, too; the images as they are go
+ * without, unless half octaves are asked for. */
+static void enlarged_images_have_half_octaves(void **state)
+{
+    static const asj_stretch automatic = {0, 0};
+    const pages *p = *state;
+    const asj_image *image = &p->images[0];
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_match_options options;
+    asj_match_result *found[2], *plain[2] = {NULL, NULL};
+    asj_match_options_init(&options);
+    for (int32_t half = 0; half < 2; half++) {
+        options.enlarged_half_octaves = half;
+        assert_int_equal(asj_match_images(context, image, image, &automatic, NULL, &options, &found[half]), ASJ_OK);
+        assert_int_equal(asj_match_images(context, image, image, NULL, NULL, &options, &plain[half]), ASJ_OK);
+        assert_true(found[half]->enlarged == 1);
+        for (uint32_t k = 0; k < found[half]->match_count; k++) {
+            const asj_junction_match *m = &found[half]->matches[k]; /* of an image with itself */
+            assert_true(hypot((double)(m->x1 - m->x2), (double)(m->y1 - m->y2)) < 2);
+        }
+    }
+    print_message("%u matches, with half octaves %u\n", (unsigned)found[0]->match_count, (unsigned)found[1]->match_count);
+    assert_true(5 * found[1]->match_count > 6 * found[0]->match_count);
+    expect_equal(plain[0], plain[1]);
+    for (int32_t half = 0; half < 2; half++) {
+        asj_match_result_free(&found[half]);
+        asj_match_result_free(&plain[half]);
+    }
+    unit_context_free(&counter, &context);
+}
+
 /* Who asks for octave -1, for one octave, for more matches than there are or for none of it gets what the images have. */
 static void images_are_not_enlarged_unasked(void **state)
 {
@@ -685,7 +717,7 @@ int main(void)
         cmocka_unit_test(automatically_the_first_look_that_is_enough_counts),
         cmocka_unit_test(a_stretched_page_is_enlarged_too),
         cmocka_unit_test(automatically_images_are_enlarged_too),
-        cmocka_unit_test(images_are_not_enlarged_unasked),
+        cmocka_unit_test(images_are_not_enlarged_unasked), cmocka_unit_test(enlarged_images_have_half_octaves),
         cmocka_unit_test(a_homography_is_of_the_images_as_they_are),
         cmocka_unit_test(a_pose_is_found_in_enlarged_images),
         cmocka_unit_test(matrices_are_taken_back),
