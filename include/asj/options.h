@@ -114,7 +114,7 @@ typedef struct asj_detect_options {
     double most_tilt;             /* step 5: deg, a branch that crosses the edges in its strip at a larger angle is turned to them,
                                    * or is none; 0 = not asked. 0 .. 45; 6; paper 0; match 0 */
     int32_t half_octaves;         /* 1 = the image is looked at half-way between two octaves, too: finds weak and soft corners more
-                                   * surely, and more of them again where a picture shrinks, for half as much time again. 0 */
+                                   * surely, for half as much time again and 2 bytes for each pixel of the first octave. 0 */
     int32_t reserved_integer;     /* zero */
     double reserved[16];          /* zero */
 } asj_detect_options;
