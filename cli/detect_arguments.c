@@ -255,6 +255,8 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
     if (arguments->options.octave_union && strcmp(cli_detect_extension(arguments), "asj") == 0)
         arguments->options.octaves = 1; /* the file does not say octaves, and the matcher must know which junctions are coarse */
     result = cli_settings_apply(&arguments->settings, "detect", arguments->common.quiet, &arguments->options, set_option);
+    if (result == CLI_SUCCESS && arguments->options.octaves == 1 && cli_settings_have(&arguments->settings, "half_octaves"))
+        return cli_usage_error("detect", "--half-octaves changes nothing with one octave");
     return result == CLI_SUCCESS ? check(arguments) : result;
 }
 

@@ -253,14 +253,26 @@ static void keep_first_octave(cli_match_arguments *arguments)
         arguments->options.enlarge_from = 0;
 }
 
+/* What was given of how images are enlarged by themselves; NULL = nothing. */
+static const char *asked_of_enlarging(const cli_match_arguments *arguments)
+{
+    return cli_settings_have(&arguments->match_settings, "enlarge_from")            ? "--enlarge-from" :
+           cli_settings_have(&arguments->match_settings, "enlarged_half_octaves") ? "--enlarged-half-octaves" : NULL;
+}
+
 /* One octave, or another first one, says how images are looked at. */
 static int check_enlarging(const cli_match_arguments *arguments)
 {
-    const int32_t first = arguments->detect_options.first_octave;
-    if (cli_settings_have(&arguments->match_settings, "enlarge_from") && (first != 0 || arguments->detect_options.octaves == 1))
-        return cli_usage_error("match", "--enlarge-from changes nothing with %s",
+    const int32_t first = arguments->detect_options.first_octave, one = arguments->detect_options.octaves == 1;
+    const char *asked = asked_of_enlarging(arguments);
+    if (asked && (first != 0 || one))
+        return cli_usage_error("match", "%s changes nothing with %s", asked,
                                first < 0 ? "--first-octave -1, which enlarges the images anyway" :
                                first > 0 ? "--first-octave above 0" : "one octave");
+    if (asked && arguments->options.enlarge_from == 0 && cli_settings_have(&arguments->match_settings, "enlarged_half_octaves"))
+        return cli_usage_error("match", "--enlarged-half-octaves changes nothing with --enlarge-from 0");
+    if (one && cli_settings_have(&arguments->detect_settings, "half_octaves"))
+        return cli_usage_error("match", "--half-octaves changes nothing with one octave");
     return CLI_SUCCESS;
 }
 
@@ -341,9 +353,10 @@ static int check_stretch(cli_match_arguments *arguments)
             return cli_usage_error("match", "--stretch looks at whole images: it does not go with --%s%d",
                                    arguments->regions[v].mask ? "mask" : "region", v + 1);
     }
-    if ((!arguments->look || arguments->stretch.x > 0) && cli_settings_have(&arguments->match_settings, "enlarge_from"))
-        return cli_usage_error("match", "--enlarge-from changes nothing: it is for two whole images, without --stretch and without "
-                               "the preset paper");
+    const char *asked = asked_of_enlarging(arguments);
+    if ((!arguments->look || arguments->stretch.x > 0) && asked)
+        return cli_usage_error("match", "%s changes nothing: it is for two whole images, without --stretch and without the preset "
+                               "paper", asked);
     if (arguments->look && arguments->focal_from == CLI_FOCAL_ESTIMATE && arguments->stretch.x != arguments->stretch.y)
         return cli_usage_error("match", "--focal estimate needs square pixels, which --stretch along one axis has not");
     return CLI_SUCCESS;

@@ -15,6 +15,7 @@
 
 #define ONE 256             /* all shares of a row together */
 #define LEAST_PIXELS 32768  /* for a thread: 20 us */
+#define LEAST_IN_PLACE 256  /* px */
 
 /* The pixels of a row that a mean meets. */
 typedef struct tap {
@@ -45,12 +46,11 @@ static void fill_taps(tap *taps, int32_t count, int32_t size)
 
 static void shrink_row(const job *j, int64_t y, uint32_t *sums)
 {
-    const size_t width = (size_t)j->from->width;
     const tap *row = &j->rows[y];
-    const uint16_t *a = j->from->levels + (size_t)row->at[0] * width, *b = j->from->levels + (size_t)row->at[1] * width;
-    const uint16_t *c = j->from->levels + (size_t)row->at[2] * width;
+    const uint16_t *levels = j->from->levels, *a = levels + row->at[0] * j->from->stride;
+    const uint16_t *b = levels + row->at[1] * j->from->stride, *c = levels + row->at[2] * j->from->stride;
     uint16_t *to = j->to->gray + y * j->to->stride;
-    for (size_t x = 0; x < width; x++)
+    for (int32_t x = 0; x < j->from->width; x++)
         sums[x] = row->share[0] * a[x] + row->share[1] * b[x] + row->share[2] * c[x];
     for (int32_t x = 0; x < j->to->width; x++) { /* 255 * 128 * ONE * ONE is below 2^31 */
         const tap *t = &j->columns[x];
@@ -69,13 +69,21 @@ static void shrink_rows(const void *data, const asj_part *part)
 asj_status asj_gray_plane_keep(asj_context *context, const asj_frame *frame, asj_gray_plane *copy)
 {
     const size_t width = (size_t)frame->width, height = (size_t)frame->height;
-    *copy = (asj_gray_plane){asj_allocate(&context->memory, width * height, sizeof *copy->levels), frame->width, frame->height,
-                             frame->octave};
+    *copy = asj_frame_gray(frame);
+    copy->stride = frame->width;
+    copy->levels = asj_allocate(&context->memory, width * height, sizeof *copy->levels);
     if (!copy->levels)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for a plane of %d x %d", (int)frame->width, (int)frame->height);
     for (size_t y = 0; y < height; y++)
         memcpy(copy->levels + y * width, frame->gray + (ptrdiff_t)y * frame->stride, width * sizeof *copy->levels);
     return ASJ_OK;
+}
+
+/* Planes of the smaller image take, with their margins, 3 (w / sqrt 2 + 64) (h / sqrt 2 + 64) levels at most, and the larger one's
+ * grey levels stand behind 2 (w + 64) (h + 64): more, from such sides on. */
+int32_t asj_frame_shrinks_in_place(const asj_frame *frame)
+{
+    return frame->width >= LEAST_IN_PLACE && frame->height >= LEAST_IN_PLACE;
 }
 
 asj_status asj_frame_shrink(asj_context *context, asj_frame *frame, const asj_gray_plane *from)

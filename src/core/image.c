@@ -298,10 +298,14 @@ static void halve_rows(const void *data, const asj_part *part)
                   j->frame->gray + y * j->frame->stride);
 }
 
-/* Rows of the plane `stride` levels apart. */
-static asj_status halve(asj_context *context, asj_frame *frame, const asj_gray_plane *from, ptrdiff_t stride)
+asj_gray_plane asj_frame_gray(const asj_frame *frame)
 {
-    const halve_job j = {from->levels, stride, frame};
+    return (asj_gray_plane){frame->gray, frame->stride, frame->width, frame->height, frame->octave};
+}
+
+asj_status asj_frame_halve_plane(asj_context *context, asj_frame *frame, const asj_gray_plane *from)
+{
+    const halve_job j = {from->levels, from->stride, frame};
     const int32_t octaves = frame->octaves;
     asj_status status = asj_frame_prepare(context, frame, from->width / 2, from->height / 2);
     if (status != ASJ_OK)
@@ -316,11 +320,6 @@ static asj_status halve(asj_context *context, asj_frame *frame, const asj_gray_p
 
 asj_status asj_frame_halve(asj_context *context, asj_frame *frame)
 {
-    const asj_gray_plane own = {frame->gray, frame->width, frame->height, frame->octave};
-    return halve(context, frame, &own, frame->stride);
-}
-
-asj_status asj_frame_halve_plane(asj_context *context, asj_frame *frame, const asj_gray_plane *from)
-{
-    return halve(context, frame, from, from->width);
+    const asj_gray_plane own = asj_frame_gray(frame);
+    return asj_frame_halve_plane(context, frame, &own);
 }

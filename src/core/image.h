@@ -31,7 +31,7 @@ typedef struct asj_frame {
     int16_t *gradient_y;
     int16_t *memory;              /* what the three planes stand in */
     size_t capacity;              /* elements of it */
-    double octave;                /* how often the image was halved to make it, in halves; -1 = it was enlarged twice */
+    double octave;                /* how often the image was halved to make it, 1/2 by sqrt 2; -1 = it was enlarged twice */
     int32_t octaves;              /* that share the false alarms allowed: 1, or more (octaves.c) */
     void *rows;                   /* scratch of asj_gradient() */
     size_t row_capacity;
@@ -63,18 +63,22 @@ extern const asj_image_ops asj_image_reference;
  * anew. */
 asj_status asj_frame_halve(asj_context *context, asj_frame *frame);
 
-/* A grey plane that is put by (half_octave.c). */
+/* A grey plane, of a frame or put by (half_octave.c). */
 typedef struct asj_gray_plane {
-    uint16_t *levels; /* row y at [y * width] */
+    uint16_t *levels; /* row y at [y * stride] */
+    ptrdiff_t stride;
     int32_t width, height;
     double octave;
 } asj_gray_plane;
 
+asj_gray_plane asj_frame_gray(const asj_frame *frame);
 /* Puts the frame's grey plane by. The caller releases copy->levels. ASJ_ERROR_MEMORY. */
 asj_status asj_gray_plane_keep(asj_context *context, const asj_frame *frame, asj_gray_plane *copy);
-/* Makes the frame that of a plane made 1 / sqrt 2 as large, and of one halved. ASJ_ERROR_MEMORY. */
+/* Makes the frame that of a plane made 1 / sqrt 2 as large, and of one halved: in place, if the plane is its own and
+ * asj_frame_shrinks_in_place(). ASJ_ERROR_MEMORY. */
 asj_status asj_frame_shrink(asj_context *context, asj_frame *frame, const asj_gray_plane *from);
 asj_status asj_frame_halve_plane(asj_context *context, asj_frame *frame, const asj_gray_plane *from);
+int32_t asj_frame_shrinks_in_place(const asj_frame *frame);
 
 #define ASJ_SQRT2 1.4142135623730951
 

@@ -32,9 +32,9 @@ typedef struct asj_detection_run {
     asj_detect_options defaults;     /* what `options` points to when the caller gives none */
     const asj_image *image;
     const asj_region *region;        /* NULL = everywhere */
-    asj_frame *frame;                /* its planes, or those of the image halved `octave` times: step 1 fills them; -1 = enlarged */
+    asj_frame *frame;                /* its planes, or those of the image made 2^-octave as large: step 1 fills them */
     double octave;
-    asj_gray_plane kept;             /* with half_octaves: grey plane of the whole octave, while the one half-way is looked at */
+    asj_gray_plane kept;             /* with half_octaves: grey plane of the whole octave while the one half-way is looked at */
     const asj_field *field;          /* tables of steps 2, .. */
     const asj_isotropic *test;       /* .. 3 .. */
     const asj_scan *scan;            /* .. and 4 */

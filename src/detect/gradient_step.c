@@ -24,12 +24,14 @@ asj_status asj_step_halve(asj_detection_run *run)
     return status == ASJ_OK ? asj_detection_run_set_size(run) : status;
 }
 
-/* From a whole octave, whose grey plane is kept, half-way to the next one. */
+/* From a whole octave half-way to the next one. That one is made of the grey plane that is kept, but octave 0, of the image. */
 static asj_status go_half_way(asj_detection_run *run)
 {
+    const int32_t in_place = run->octave < 0 && asj_frame_shrinks_in_place(run->frame);
+    const asj_gray_plane own = asj_frame_gray(run->frame);
+    const asj_status status = in_place ? ASJ_OK : asj_gray_plane_keep(run->context, run->frame, &run->kept);
     run->octave += 0.5;
-    const asj_status status = asj_gray_plane_keep(run->context, run->frame, &run->kept);
-    return status == ASJ_OK ? asj_frame_shrink(run->context, run->frame, &run->kept) : status;
+    return status == ASJ_OK ? asj_frame_shrink(run->context, run->frame, in_place ? &own : &run->kept) : status;
 }
 
 static asj_status go_on(asj_detection_run *run)
@@ -43,7 +45,7 @@ static asj_status go_on(asj_detection_run *run)
 
 asj_status asj_step_half_octave(asj_detection_run *run)
 {
-    const asj_status status = run->kept.levels ? go_on(run) : go_half_way(run);
+    const asj_status status = asj_octave_is_whole(run->octave) ? go_half_way(run) : go_on(run);
     return status == ASJ_OK ? asj_detection_run_set_size(run) : status;
 }
 

@@ -21,10 +21,16 @@ static inline double asj_octave_scale(double octave)
     return 0.5 * (double)(1 << index / 2) * (index % 2 ? ASJ_SQRT2 : 1);
 }
 
-/* px of the octave for so many of the image: whole ones. */
+static inline int32_t asj_octave_is_whole(double octave)
+{
+    return asj_octave_index(octave) % 2 == 0;
+}
+
+/* px of the octave for so many of the image: those that are whole, of a half octave those of the one that it is made of. */
 static inline int32_t asj_octave_size(int32_t size, double octave)
 {
-    return (int32_t)(size / asj_octave_scale(octave));
+    const int32_t index = asj_octave_index(octave), made_of = index < 2 ? 2 * size : size >> (index / 2 - 1);
+    return index % 2 ? (int32_t)(made_of / ASJ_SQRT2) : made_of;
 }
 
 /* A ray that has been followed along a branch (step 4). */
@@ -58,7 +64,7 @@ typedef struct asj_hypothesis {
     double first;              /* px along the branches: where lines are fitted from, once they are guessed */
     double location_variance;  /* px^2, mean of both axes */
     double explained;          /* share of the gradient around that a blurred corner explains (blurred_corner.c); 0 = none */
-    double octave;             /* that located it: 0 = the image itself, 1 = the image halved, .., -1 = enlarged twice */
+    double octave;             /* that located it: 0 = the image itself, 1/2, 1 = the image halved, .., -1 = enlarged twice */
     int32_t branch_count;      /* 0 = rejected */
     asj_hypothesis_branch branches[ASJ_MAX_BRANCHES];
 } asj_hypothesis;

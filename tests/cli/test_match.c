@@ -439,6 +439,16 @@ static void whole_images_are_enlarged_by_themselves(void **state)
         expect_code(result, 2);
         expect_in(result, result->err, "--enlarge-from changes nothing");
     }
+    static const char *const useless[][2] = {{"--first-octave", "-1"}, {"--octaves", "1"},    {"--stretch", "2"},
+                                             {"--enlarge-from", "0"},  {"--preset", "paper"}, {"--junctions1", "plain.csv"}};
+    for (size_t k = 0; k < sizeof useless / sizeof useless[0]; k++) {
+        result = run_cli("match", "--enlarged-half-octaves", "no", useless[k][0], useless[k][1], "first.png", "second.png", NULL);
+        expect_code(result, 2);
+        expect_in(result, result->err, k == 3 ? "--enlarge-from 0" : "changes nothing");
+    }
+    result = run_cli("match", "--half-octaves", "yes", "--octaves", "1", "first.png", "second.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--half-octaves changes nothing");
 }
 
 static void a_stretch_goes_with_images_alone(void **state)

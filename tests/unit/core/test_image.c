@@ -378,6 +378,43 @@ static void test_shrink(void **state)
     }
 }
 
+/* A large frame needs no copy of its plane for that. */
+static void test_shrink_in_place(void **state)
+{
+    static const int32_t sizes[][2] = {{256, 256}, {257, 1031}, {1031, 256}, {273, 289}};
+    fixture *f = *state;
+    for (size_t k = 0; k < UNIT_COUNT(sizes); k++) {
+        const int32_t w = sizes[k][0], h = sizes[k][1], width = (int32_t)(w / ASJ_SQRT2), height = (int32_t)(h / ASJ_SQRT2);
+        uint8_t *pixels = malloc((size_t)w * (size_t)h);
+        uint16_t *expected = malloc((size_t)width * (size_t)height * sizeof *expected);
+        assert_true(pixels && expected);
+        for (int32_t i = 0; i < w * h; i++)
+            pixels[i] = (uint8_t)(i * 89 % 251);
+        const asj_image image = unit_gray8(pixels, w, h);
+        for (int in_place = 0; in_place < 2; in_place++) {
+            asj_gray_plane plane;
+            assert_int_equal(asj_frame_prepare(f->context, &f->frame, w, h), ASJ_OK);
+            assert_int_equal(asj_frame_load(f->context, &f->frame, &image), ASJ_OK);
+            assert_true(asj_frame_shrinks_in_place(&f->frame));
+            plane = asj_frame_gray(&f->frame);
+            if (!in_place)
+                assert_int_equal(asj_gray_plane_keep(f->context, &f->frame, &plane), ASJ_OK);
+            assert_int_equal(asj_frame_shrink(f->context, &f->frame, &plane), ASJ_OK);
+            assert_true(f->frame.width == width && f->frame.height == height);
+            for (int32_t i = 0; i < width * height && in_place; i++)
+                assert_int_equal(gray(f, i % width, i / width), expected[i]);
+            for (int32_t i = 0; i < width * height && !in_place; i++)
+                expected[i] = f->frame.gray[(i / width) * f->frame.stride + i % width];
+            if (!in_place)
+                asj_release(&f->context->memory, plane.levels);
+        }
+        free(expected);
+        free(pixels);
+    }
+    assert_int_equal(asj_frame_prepare(f->context, &f->frame, 255, 400), ASJ_OK);
+    assert_false(asj_frame_shrinks_in_place(&f->frame));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -386,6 +423,7 @@ int main(void)
         cmocka_unit_test(test_refused),       cmocka_unit_test(test_short_strides),
         cmocka_unit_test(test_bottom_up), cmocka_unit_test(test_not_finite),
         cmocka_unit_test(test_prepare), cmocka_unit_test(test_enlarge), cmocka_unit_test(test_shrink),
+        cmocka_unit_test(test_shrink_in_place),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }

@@ -98,6 +98,7 @@ static void test_half_range(void **state)
     assert_int_equal(asj_octaves_sharing(&options, 640, 480), 5);
     options.octaves = 1;
     assert_int_equal(asj_octaves_of(&options, 640, 480).count, 1);
+    assert_int_equal(asj_octave_size(193, 1.5), 67); /* of 193, 96, 67.9; not of 68.2 */
     for (int32_t index = 0; index <= 34; index++) {
         const double octave = 0.5 * index - 1;
         assert_int_equal(asj_octave_index(octave), index);
