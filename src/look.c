@@ -96,7 +96,16 @@ typedef asj_status (*matcher)(asj_context *context, const asj_image *image1, con
                               const asj_image *image2, const asj_junction *junctions2, size_t count2,
                               const asj_match_options *options, asj_match_result **result);
 
-static asj_status match_by(const asj_look *look, matcher match, const asj_match_options *options, asj_match_result **result)
+/* The most meaningful ones stand first. most: 0 = all. */
+static size_t count_of(const asj_view *v, int32_t most)
+{
+    const size_t count = v->found->junction_count;
+    return most > 0 && count > (size_t)most ? (size_t)most : count;
+}
+
+/* Of each image so many junctions at most (0 = all). */
+static asj_status match_by(const asj_look *look, matcher match, int32_t most, const asj_match_options *options,
+                           asj_match_result **result)
 {
     const asj_view *v = look->views;
     const asj_stretch by[2] = {v[0].by, v[1].by};
@@ -105,8 +114,8 @@ static asj_status match_by(const asj_look *look, matcher match, const asj_match_
         if (options->geometry.cameras[n].fx > 0)
             stretched.geometry.cameras[n] = asj_stretch_camera(&options->geometry.cameras[n], &by[n]);
     begin_part(look, 2 * DETECTION, 1 - 2 * DETECTION);
-    const asj_status status = match(look->context, &v[0].stretched, v[0].junctions, v[0].found->junction_count,
-                                    &v[1].stretched, v[1].junctions, v[1].found->junction_count, &stretched, result);
+    const asj_status status = match(look->context, &v[0].stretched, v[0].junctions, count_of(&v[0], most), &v[1].stretched,
+                                    v[1].junctions, count_of(&v[1], most), &stretched, result);
     end_part(look->context);
     if (status != ASJ_OK)
         return status;
@@ -119,12 +128,12 @@ static asj_status match_by(const asj_look *look, matcher match, const asj_match_
 
 asj_status asj_look_match(const asj_look *look, const asj_match_options *options, asj_match_result **result)
 {
-    return match_by(look, asj_match, options, result);
+    return match_by(look, asj_match, 0, options, result);
 }
 
 asj_status asj_look_match_enlarged(const asj_look *look, const asj_match_options *options, asj_match_result **result)
 {
-    return match_by(look, asj_match_enlarged, options, result);
+    return match_by(look, asj_match_enlarged, options->enlarged_most, options, result);
 }
 
 void asj_look_add_times(const asj_look *look, double *stage_ms)

@@ -36,8 +36,8 @@ asj_status asj_look_open(asj_context *context, const asj_image *const images[2],
  * matching alone. */
 asj_status asj_look_match(const asj_look *look, const asj_match_options *options, asj_match_result **result);
 
-/* The same of images that the detector has enlarged (first_octave -1), and of these alone: a witness is to be asked
- * (match/finer.h). */
+/* The same of images that the detector has enlarged (first_octave -1), and of these alone, of the options->enlarged_most most
+ * meaningful junctions of each: a witness is to be asked (match/finer.h). */
 asj_status asj_look_match_enlarged(const asj_look *look, const asj_match_options *options, asj_match_result **result);
 
 /* Adds the times of the detections, by ASJ_STAGE_.... */

@@ -9,7 +9,7 @@
  * common are answered as before; where they leave a geometry open, one is enough. A pose is estimated again, from more matches, in
  * 1.8 times the time, and match/finer_geometry.c says which one is told. (Rooms seen from far apart, 1000 to 1399, as they are and
  * so: 313 and 336 of 398 poses, of these out by more than 3 degrees 8 and 5, AUC at 5, 10, 20 degrees 67.3 72.7 75.6 and 74.5 79.3
- * 81.7.) With half octaves (options->enlarged_half_octaves) sixteen pairs have 4477 of 4576 right in place of 3088 of 3148, in 1.3
+ * 81.7.) With half octaves (options->enlarged_half_octaves) sixteen pairs have 4468 of 4567 right in place of 3088 of 3148, in 1.3
  * to 2.3 times the time, and the rooms 336 poses in place of 331. In the images as they are these would add 3 % for a tenth of the
  * time, known less well. Another geometry of the images judges the new matches too: estimated again it gives 3 % more right ones,
  * of nine photographs. Images of more than LARGEST pixels have detail enough, and what a camera delivers at that size is seldom

@@ -73,7 +73,8 @@ typedef struct asj_match_options {
     /* asj_match_images() again */
     int32_t enlarged_half_octaves; /* 1 = enlarged images are looked at half-way between their octaves, too: half as many right
                                     * matches again, in 1.3 to 2.3 times the time. 1; paper 0 */
-    int32_t reserved_integer;    /* zero */
+    int32_t enlarged_most;       /* junctions of an enlarged image that take part, the most meaningful ones; 0 = all, which takes a
+                                  * minute where two megapixels are full of texture. 0 .. 1000000; 16000 */
     double reserved[19];         /* zero */
     /* two-view geometry; not among the options with a key. model: none, the default, and then the rest of it does not matter. Sizes
      * of the images are filled in */

@@ -27,6 +27,8 @@ static const asj_option_info rows[] = {
             "and none accepted); 0 = never"),
     SWITCH(IMAGES, COMMON, enlarged_half_octaves, 1, 0, 1,
            "look at enlarged images half-way between their octaves, too: half as many matches again, in 1.3 to 2.3 times the time"),
+    INTEGER(IMAGES, ADVANCED, enlarged_most, "", 0, 1000000, 16000, 16000, 16000,
+            "junctions of an enlarged image that take part, the most meaningful ones; 0 = all"),
 
     NUMBER(FRAMES, ADVANCED, minimum_opening, "deg", 0, 80, 20, 20, 20, "branches that open by less give no frame"),
     INTEGER(FRAMES, ADVANCED, length_hypotheses, "", 1, 4, 3, 1, 3,

@@ -446,6 +446,9 @@ static void whole_images_are_enlarged_by_themselves(void **state)
         expect_code(result, 2);
         expect_in(result, result->err, k == 3 ? "--enlarge-from 0" : "changes nothing");
     }
+    result = run_cli("match", "--enlarged-most", "9", "--enlarge-from", "0", "first.png", "second.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--enlarged-most changes nothing");
     result = run_cli("match", "--half-octaves", "yes", "--octaves", "1", "first.png", "second.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "--half-octaves changes nothing");

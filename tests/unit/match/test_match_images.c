@@ -354,6 +354,30 @@ static void enlarged_images_have_half_octaves(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Fewer junctions of the enlarged images have fewer matches; as many as there are, and 0, are all of them. */
+static void the_most_meaningful_junctions_are_enough(void **state)
+{
+    static const asj_stretch automatic = {0, 0};
+    static const int32_t most[] = {0, 1000000, 150};
+    const pages *p = *state;
+    const asj_image *image = &p->images[0];
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_match_options options;
+    asj_match_result *found[UNIT_COUNT(most)];
+    asj_match_options_init(&options);
+    for (size_t k = 0; k < UNIT_COUNT(most); k++) {
+        options.enlarged_most = most[k];
+        assert_int_equal(asj_match_images(context, image, image, &automatic, NULL, &options, &found[k]), ASJ_OK);
+        assert_true(found[k]->enlarged == 1);
+    }
+    expect_equal(found[0], found[1]);
+    assert_true(found[2]->match_count < found[0]->match_count && found[2]->l_junction_count1 < found[0]->l_junction_count1);
+    for (size_t k = 0; k < UNIT_COUNT(most); k++)
+        asj_match_result_free(&found[k]);
+    unit_context_free(&counter, &context);
+}
+
 /* Who asks for octave -1, for one octave, for more matches than there are or for none of it gets what the images have. */
 static void images_are_not_enlarged_unasked(void **state)
 {
@@ -718,6 +742,7 @@ int main(void)
         cmocka_unit_test(a_stretched_page_is_enlarged_too),
         cmocka_unit_test(automatically_images_are_enlarged_too),
         cmocka_unit_test(images_are_not_enlarged_unasked), cmocka_unit_test(enlarged_images_have_half_octaves),
+        cmocka_unit_test(the_most_meaningful_junctions_are_enough),
         cmocka_unit_test(a_homography_is_of_the_images_as_they_are),
         cmocka_unit_test(a_pose_is_found_in_enlarged_images),
         cmocka_unit_test(matrices_are_taken_back),
