@@ -253,13 +253,18 @@ static void keep_first_octave(cli_match_arguments *arguments)
         arguments->options.enlarge_from = 0;
 }
 
-/* What was given of how images are enlarged by themselves; NULL = nothing. */
-static const char *asked_of_enlarging(const cli_match_arguments *arguments)
+/* What was given of how enlarged images are looked at; NULL = nothing. */
+static const char *asked_of_enlarged(const cli_match_arguments *arguments)
 {
     const cli_settings *given = &arguments->match_settings;
-    return cli_settings_have(given, "enlarge_from")          ? "--enlarge-from" :
-           cli_settings_have(given, "enlarged_half_octaves") ? "--enlarged-half-octaves" :
+    return cli_settings_have(given, "enlarged_half_octaves") ? "--enlarged-half-octaves" :
            cli_settings_have(given, "enlarged_most")         ? "--enlarged-most" : NULL;
+}
+
+/* The same, and of when they are. */
+static const char *asked_of_enlarging(const cli_match_arguments *arguments)
+{
+    return cli_settings_have(&arguments->match_settings, "enlarge_from") ? "--enlarge-from" : asked_of_enlarged(arguments);
 }
 
 /* One octave, or another first one, says how images are looked at. */
@@ -271,10 +276,10 @@ static int check_enlarging(const cli_match_arguments *arguments)
         return cli_usage_error("match", "%s changes nothing with %s", asked,
                                first < 0 ? "--first-octave -1, which enlarges the images anyway" :
                                first > 0 ? "--first-octave above 0" : "one octave");
-    const int half = cli_settings_have(&arguments->match_settings, "enlarged_half_octaves");
-    if (arguments->options.enlarge_from == 0 && (half || cli_settings_have(&arguments->match_settings, "enlarged_most")))
-        return cli_usage_error("match", "%s changes nothing with --enlarge-from 0",
-                               half ? "--enlarged-half-octaves" : "--enlarged-most");
+    const char *enlarged = asked_of_enlarged(arguments);
+    if (enlarged && arguments->options.enlarge_from == 0)
+        return cli_usage_error("match", "%s changes nothing with --enlarge-from 0, as it is with --first-octave and the preset "
+                               "paper", enlarged);
     if (one && cli_settings_have(&arguments->detect_settings, "half_octaves"))
         return cli_usage_error("match", "--half-octaves changes nothing with one octave");
     return CLI_SUCCESS;

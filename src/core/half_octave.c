@@ -79,8 +79,8 @@ asj_status asj_gray_plane_keep(asj_context *context, const asj_frame *frame, asj
     return ASJ_OK;
 }
 
-/* Planes of the smaller image take, with their margins, 3 (w / sqrt 2 + 64) (h / sqrt 2 + 64) levels at most, and the larger one's
- * grey levels stand behind 2 (w + 64) (h + 64): more, from such sides on. */
+/* Planes of the smaller image take, with their margins and rows of whole runs of pixels, 3 (w / sqrt 2 + 79) (h / sqrt 2 + 64)
+ * levels at most, and the larger one's grey levels stand behind 2 (w + 64) (h + 64): more, from such sides on. */
 int32_t asj_frame_shrinks_in_place(const asj_frame *frame)
 {
     return frame->width >= LEAST_IN_PLACE && frame->height >= LEAST_IN_PLACE;
