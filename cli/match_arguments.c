@@ -253,12 +253,25 @@ static void keep_first_octave(cli_match_arguments *arguments)
         arguments->options.enlarge_from = 0;
 }
 
-/* What was given of how enlarged images are looked at; NULL = nothing. */
+/* Will there be junctions of octave -1, or may a file have some? */
+static int may_have_finer(const cli_match_arguments *arguments)
+{
+    int may = arguments->detect_options.first_octave < 0;
+    for (int v = 0; v < 2; v++)
+        may = may || arguments->junctions[v] || asj_features_probe(arguments->images[v]);
+    return may;
+}
+
+/* What was given of how enlarged images are looked at; NULL = nothing. Where their partners are looked for matters to junctions of
+ * octave -1 as well. */
 static const char *asked_of_enlarged(const cli_match_arguments *arguments)
 {
     const cli_settings *given = &arguments->match_settings;
-    return cli_settings_have(given, "enlarged_half_octaves") ? "--enlarged-half-octaves" :
-           cli_settings_have(given, "enlarged_most")         ? "--enlarged-most" : NULL;
+    const int only_enlarged = !may_have_finer(arguments);
+    return cli_settings_have(given, "enlarged_half_octaves")               ? "--enlarged-half-octaves" :
+           cli_settings_have(given, "enlarged_most")                       ? "--enlarged-most" :
+           only_enlarged && cli_settings_have(given, "enlarged_reach")     ? "--enlarged-reach" :
+           only_enlarged && cli_settings_have(given, "enlarged_shortlist") ? "--enlarged-shortlist" : NULL;
 }
 
 /* The same, and of when they are. */
@@ -280,6 +293,8 @@ static int check_enlarging(const cli_match_arguments *arguments)
     if (enlarged && arguments->options.enlarge_from == 0)
         return cli_usage_error("match", "%s changes nothing with --enlarge-from 0, as it is with --first-octave and the preset "
                                "paper", enlarged);
+    if (arguments->options.enlarged_reach == 0 && cli_settings_have(&arguments->match_settings, "enlarged_shortlist"))
+        return cli_usage_error("match", "--enlarged-shortlist changes nothing with --enlarged-reach 0");
     if (one && cli_settings_have(&arguments->detect_settings, "half_octaves"))
         return cli_usage_error("match", "--half-octaves changes nothing with one octave");
     return CLI_SUCCESS;

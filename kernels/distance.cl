@@ -94,6 +94,21 @@ __kernel void distance_scores(__global const int *products, int pitch, __global 
     scores[(size_t)i * (size_t)count2 + (size_t)j] = best;
 }
 
+/* x, y within left, top, right, bottom. */
+static int holds(float4 box, float2 at)
+{
+    return at.x >= box.x && at.x <= box.z && at.y >= box.y && at.y <= box.w;
+}
+
+/* Leaves the scores of pairs that lie where they are expected (src/match/expected.h), in px. */
+__kernel void distance_expected(__global const float2 *points1, __global const float4 *boxes1, __global const float2 *points2,
+                                __global const float4 *boxes2, int first, int count1, int count2, __global int *scores)
+{
+    const int j = (int)get_global_id(0), i = (int)get_global_id(1);
+    if (i < count1 && j < count2 && !(holds(boxes1[first + i], points2[j]) && holds(boxes2[j], points1[first + i])))
+        scores[(size_t)i * (size_t)count2 + (size_t)j] = NO_PARTNER;
+}
+
 /* Inserts into a list of (score, index) that falls; the earlier of equals stays first. */
 static void offer(__global int2 *list, int limit, int score, int index)
 {

@@ -10,9 +10,11 @@
 #include "match/result_changes.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define DETECTION 0.3 /* of the progress, for each image */
+#define BAND 64.0     /* px: height of the bands of rows in which junctions are sorted */
 
 static void stretched_size(const asj_image *image, const asj_stretch *wanted, double *width, double *height)
 {
@@ -92,35 +94,32 @@ asj_status asj_look_open(asj_context *context, const asj_image *const images[2],
     return status;
 }
 
-typedef asj_status (*matcher)(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
-                              const asj_image *image2, const asj_junction *junctions2, size_t count2,
-                              const asj_match_options *options, asj_match_result **result);
+/* Junctions of one image that are matched. */
+typedef struct junction_list {
+    const asj_junction *list;
+    size_t count;
+} junction_list;
 
-/* The most meaningful ones stand first. most: 0 = all. */
-static size_t count_of(const asj_view *v, int32_t most)
-{
-    const size_t count = v->found->junction_count;
-    return most > 0 && count > (size_t)most ? (size_t)most : count;
-}
-
-/* Of each image so many junctions at most (0 = all). */
-static asj_status match_by(const asj_look *look, matcher match, int32_t most, const asj_match_options *options,
-                           asj_match_result **result)
+/* own: of the enlarged images alone, with their own matches as a witness; NULL: as they are. */
+static asj_status match_lists(const asj_look *look, const junction_list lists[2], const asj_match_options *options,
+                              const asj_match_result *own, asj_match_result **result)
 {
     const asj_view *v = look->views;
-    const asj_stretch by[2] = {v[0].by, v[1].by};
+    const asj_known_matches known = {own, {v[0].by, v[1].by}};
     asj_match_options stretched = *options;
     for (int32_t n = 0; n < 2; n++)
         if (options->geometry.cameras[n].fx > 0)
-            stretched.geometry.cameras[n] = asj_stretch_camera(&options->geometry.cameras[n], &by[n]);
+            stretched.geometry.cameras[n] = asj_stretch_camera(&options->geometry.cameras[n], &v[n].by);
     begin_part(look, 2 * DETECTION, 1 - 2 * DETECTION);
-    const asj_status status = match(look->context, &v[0].stretched, v[0].junctions, count_of(&v[0], most), &v[1].stretched,
-                                    v[1].junctions, count_of(&v[1], most), &stretched, result);
+    const asj_status status = own ? asj_match_enlarged(look->context, &v[0].stretched, lists[0].list, lists[0].count,
+                                                       &v[1].stretched, lists[1].list, lists[1].count, &stretched, &known, result)
+                                  : asj_match(look->context, &v[0].stretched, lists[0].list, lists[0].count, &v[1].stretched,
+                                              lists[1].list, lists[1].count, &stretched, result);
     end_part(look->context);
     if (status != ASJ_OK)
         return status;
     if (v[0].pixels || v[1].pixels)
-        asj_match_result_unstretch(*result, by);
+        asj_match_result_unstretch(*result, known.by);
     (*result)->stretch[0] = look->stretch.x;
     (*result)->stretch[1] = look->stretch.y;
     return ASJ_OK;
@@ -128,12 +127,57 @@ static asj_status match_by(const asj_look *look, matcher match, int32_t most, co
 
 asj_status asj_look_match(const asj_look *look, const asj_match_options *options, asj_match_result **result)
 {
-    return match_by(look, asj_match, 0, options, result);
+    const asj_view *v = look->views;
+    const junction_list lists[2] = {{v[0].junctions, v[0].found->junction_count}, {v[1].junctions, v[1].found->junction_count}};
+    return match_lists(look, lists, options, NULL, result);
 }
 
-asj_status asj_look_match_enlarged(const asj_look *look, const asj_match_options *options, asj_match_result **result)
+/* --- enlarged ---------------------------------------------------------------------------------------------------------------- */
+
+static int order(double a, double b)
 {
-    return match_by(look, asj_match_enlarged, options->enlarged_most, options, result);
+    return (a > b) - (a < b);
+}
+
+static int by_place(const void *left, const void *right)
+{
+    const asj_junction *a = left, *b = right;
+    const double keys[][2] = {{floor((double)a->y / BAND), floor((double)b->y / BAND)}, {(double)a->x, (double)b->x},
+                              {(double)a->y, (double)b->y}, {a->octave, b->octave}, {(double)a->log10_nfa, (double)b->log10_nfa}};
+    int found = 0;
+    for (size_t k = 0; k < sizeof keys / sizeof keys[0] && found == 0; k++)
+        found = order(keys[k][0], keys[k][1]);
+    return found;
+}
+
+/* The `most` most meaningful ones (0 = all), which stand first, by place: neighbours lie near each other (match/rank.c). */
+static asj_status sort_by_place(const asj_look *look, int32_t n, int32_t most, asj_junction **sorted, junction_list *list)
+{
+    const asj_view *v = &look->views[n];
+    const size_t all = v->found->junction_count, count = most > 0 && all > (size_t)most ? (size_t)most : all;
+    *sorted = asj_allocate(&look->context->memory, count, sizeof **sorted);
+    if (!*sorted)
+        return asj_fail(look->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", count);
+    if (count > 0)
+        memcpy(*sorted, v->junctions, count * sizeof **sorted);
+    qsort(*sorted, count, sizeof **sorted, by_place);
+    *list = (junction_list){*sorted, count};
+    return ASJ_OK;
+}
+
+asj_status asj_look_match_enlarged(const asj_look *look, const asj_match_options *options, const asj_match_result *own,
+                                   asj_match_result **result)
+{
+    asj_junction *sorted[2] = {NULL, NULL};
+    junction_list lists[2];
+    asj_status status = ASJ_OK;
+    for (int32_t n = 0; n < 2 && status == ASJ_OK; n++)
+        status = sort_by_place(look, n, options->enlarged_most, &sorted[n], &lists[n]);
+    if (status == ASJ_OK)
+        status = match_lists(look, lists, options, own, result);
+    asj_release(&look->context->memory, sorted[0]);
+    asj_release(&look->context->memory, sorted[1]);
+    return status;
 }
 
 void asj_look_add_times(const asj_look *look, double *stage_ms)

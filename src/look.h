@@ -37,8 +37,9 @@ asj_status asj_look_open(asj_context *context, const asj_image *const images[2],
 asj_status asj_look_match(const asj_look *look, const asj_match_options *options, asj_match_result **result);
 
 /* The same of images that the detector has enlarged (first_octave -1), and of these alone, of the options->enlarged_most most
- * meaningful junctions of each: a witness is to be asked (match/finer.h). */
-asj_status asj_look_match_enlarged(const asj_look *look, const asj_match_options *options, asj_match_result **result);
+ * meaningful junctions of each, where the images' own matches put them: the witness that is to be asked (match/finer.h). */
+asj_status asj_look_match_enlarged(const asj_look *look, const asj_match_options *options, const asj_match_result *own,
+                                   asj_match_result **result);
 
 /* Adds the times of the detections, by ASJ_STAGE_.... */
 void asj_look_add_times(const asj_look *look, double *stage_ms);

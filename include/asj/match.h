@@ -72,10 +72,15 @@ typedef struct asj_match_options {
                                   * correspond within a sixth of it, or 4 px. 0.01 .. 1; 0.12 */
     /* asj_match_images() again */
     int32_t enlarged_half_octaves; /* 1 = enlarged images are looked at half-way between their octaves, too: half as many right
-                                    * matches again, in 1.3 to 2.3 times the time. 1; paper 0 */
+                                    * matches again, in 1.3 to 1.6 times the time. 1; paper 0 */
     int32_t enlarged_most;       /* junctions of an enlarged image that take part, the most meaningful ones; 0 = all, which takes a
                                   * minute where two megapixels are full of texture. 0 .. 1000000; 16000 */
-    double reserved[19];         /* zero */
+    double enlarged_reach;       /* of enlarged images partners lie no farther from where the images' own matches put them, if
+                                  * there are eight; in diagonals of the images, and 0.3 of the distance to these matches; 0 =
+                                  * anywhere. 0 .. 1; 0.02; paper 0 */
+    int32_t enlarged_shortlist;  /* .. and then this stands for shortlist; 0 = shortlist does. 0 .. 32; 2; paper 0 */
+    int32_t reserved_integer;    /* zero */
+    double reserved[17];         /* zero */
     /* two-view geometry; not among the options with a key. model: none, the default, and then the rest of it does not matter. Sizes
      * of the images are filled in */
     asj_geometry_options geometry;
@@ -196,11 +201,11 @@ typedef struct asj_stretch {
 
 /* From two images to their matches: asj_detect() and asj_match(), on both images stretched. Enlarged twice (2, 2), photographs of
  * up to some megapixels have about three times the matches, in three to eight times the time; automatically (0, 0), with half
- * octaves, about five times the matches, in five to eighteen times the time. A surface that is seen at a glancing angle, like a
+ * octaves, about six times the matches, in five to nine times the time. A surface that is seen at a glancing angle, like a
  * magazine on a table, matches stretched across it (1, 3) where it did not at all (tests/accuracy/README.md). Everything in the
- * result is in pixels of the images as they are. Numbers of junctions are those of the detector in this call; where it has looked
- * twice (result->enlarged), those of the images without octave -1, and their L-junctions, come after those with it. Times are those
- * of all of it; result->stretch says how the images were looked at.
+ * result is in pixels of the images as they are. Junctions are numbered as the detector lists them in this call; where it has
+ * looked twice (result->enlarged), first those with octave -1, by place, and after them, with their L-junctions, those of the
+ * images without it. Times are those of all of it; result->stretch says how the images were looked at.
  *
  * stretch          NULL = as they are. Automatically (0, 0):
  *                  - as they are;

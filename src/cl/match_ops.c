@@ -5,6 +5,7 @@
 #include "kernels/contract.h"
 #include "detect.h"
 #include "match/describe.h"
+#include "match/expected.h"
 #include "overrides.h"
 #include "state.h"
 
@@ -27,6 +28,7 @@ struct asj_cl_match {
     uint64_t last_number;
     device_features images[IMAGES];
     asj_cl_buffer planes, grids, inside;
+    asj_cl_buffer points[IMAGES], boxes[IMAGES]; /* asj_expected */
     asj_cl_buffer products, scores, lists, rows, columns;
     asj_cl_host_buffer host_grids;
 };
@@ -49,6 +51,8 @@ void asj_cl_free_match(asj_context *context)
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         asj_cl_release(context, buffers[i]);
     for (int v = 0; v < IMAGES; v++) {
+        asj_cl_release(context, &match->points[v]);
+        asj_cl_release(context, &match->boxes[v]);
         asj_cl_release(context, &match->images[v].patches);
         asj_cl_release(context, &match->images[v].usable);
         asj_cl_release(context, &match->images[v].frames);
@@ -227,6 +231,25 @@ static asj_status find_features(asj_context *context, struct asj_cl_match *match
     return status == ASJ_OK ? send_frames(context, to, features) : status;
 }
 
+/* Where partners are expected, if that is known. */
+static asj_status send_expected(const asj_match_run *run, struct asj_cl_match *match)
+{
+    const asj_expected *e = run->expected;
+    asj_context *context = run->context;
+    asj_status status = ASJ_OK;
+    for (int v = 0; e && v < IMAGES && status == ASJ_OK; v++) {
+        const size_t count = run->image[v]->l_junctions.count;
+        status = asj_cl_reserve(context, &match->points[v], count * sizeof **e->points);
+        if (status == ASJ_OK)
+            status = asj_cl_write(context, &match->points[v], 0, e->points[v], count * sizeof **e->points);
+        if (status == ASJ_OK)
+            status = asj_cl_reserve(context, &match->boxes[v], count * sizeof **e->boxes);
+        if (status == ASJ_OK)
+            status = asj_cl_write(context, &match->boxes[v], 0, e->boxes[v], count * sizeof **e->boxes);
+    }
+    return status;
+}
+
 /* A block of L-junctions of image 1, and how the work is divided. */
 typedef struct block {
     const device_features *images[2];
@@ -234,6 +257,7 @@ typedef struct block {
     int32_t length, limit, parts;
     uint32_t first, count;    /* L-junctions of the block */
     uint32_t frame, frames;   /* its frames */
+    int32_t expected;         /* do partners lie where they are expected? */
 } block;
 
 #define PRODUCT_ARGUMENTS                                                                                                     \
@@ -260,7 +284,14 @@ static asj_status run_scores(asj_context *context, struct asj_cl_match *match, c
         ASJ_CL_BUFFER(&match->products), ASJ_CL_INT(b->frames2), ASJ_CL_BUFFER(&b->images[0]->frames),
         ASJ_CL_BUFFER(&b->images[0]->usable), ASJ_CL_BUFFER(&b->images[1]->frames), ASJ_CL_BUFFER(&b->images[1]->usable),
         ASJ_CL_INT(b->first), ASJ_CL_INT(b->count), ASJ_CL_INT(b->count2), ASJ_CL_BUFFER(&match->scores)};
-    return asj_cl_run(context, "distance_scores", 2, global, local, ASJ_CL_ARGUMENTS(arguments));
+    const asj_cl_argument places[] = {
+        ASJ_CL_BUFFER(&match->points[0]), ASJ_CL_BUFFER(&match->boxes[0]), ASJ_CL_BUFFER(&match->points[1]),
+        ASJ_CL_BUFFER(&match->boxes[1]), ASJ_CL_INT(b->first), ASJ_CL_INT(b->count), ASJ_CL_INT(b->count2),
+        ASJ_CL_BUFFER(&match->scores)};
+    const asj_status status = asj_cl_run(context, "distance_scores", 2, global, local, ASJ_CL_ARGUMENTS(arguments));
+    if (status != ASJ_OK || !b->expected)
+        return status;
+    return asj_cl_run(context, "distance_expected", 2, global, local, ASJ_CL_ARGUMENTS(places));
 }
 
 /* With one part only, the rows' lists are made where they belong. */
@@ -382,8 +413,10 @@ asj_status asj_cl_rank_partners(const asj_match_run *run, asj_partner *rows, asj
     if (status != ASJ_OK)
         return status;
     block b = {{images[0], images[1]}, in2->count, in2->frame_count, asj_patch_length(run->options), run->options->shortlist,
-               processor(context) ? 1 : 16, 0, 0, 0, 0};
-    status = asj_cl_reserve(context, &match->columns, bytes2);
+               processor(context) ? 1 : 16, 0, 0, 0, 0, run->expected != NULL};
+    status = send_expected(run, match);
+    if (status == ASJ_OK)
+        status = asj_cl_reserve(context, &match->columns, bytes2);
     if (status == ASJ_OK)
         status = asj_cl_write(context, &match->columns, 0, columns, bytes2);
     if (status == ASJ_OK)

@@ -15,7 +15,8 @@
  *   - when AGAIN of their matches come again, and the enlarged images have more (with those that a geometry of the images has
  *     added, where it judges both), the enlarged images' matches are the answer, with the others whose places are free;
  *   - otherwise, and when the enlarged images contradict the images (MOST_CONTRADICTED: 48 rendered rooms 12272 of 12683 right ->
- *     12338 of 12562), the images' matches are.
+ *     12338 of 12562, looked for anywhere), the images' matches are.
+ * And the images' matches say where those of the enlarged ones are looked for (expected.c).
  * One geometry judges both, and where the images leave it open or the two are at odds it says which ones are (finer_geometry.c).
  * Matches that come again, of ten pairs that match: .41 to .85 where the enlarged images are right in 97 of 100 and more, .63 where
  * they have 44 of 48 right for 20 of 27, 0 and .14 where they have 1 of 13 right and 23 of 30. */
@@ -28,7 +29,9 @@
 
 #define AGAIN 0.3  /* between .14 and .41 */
 #define OWN 0.2    /* of the time */
-#define MOST_CONTRADICTED 0.2 /* for one that comes again: things that repeat, matched by the period in the enlarged images */
+#define MOST_CONTRADICTED 0.25 /* for one that comes again: things that repeat, matched by the period in the enlarged images. Of 48
+                                * rendered rooms .31 and 1.8 where that is so and .12 at most elsewhere, .08 at most where partners
+                                * are expected (expected.c); of a page at an extreme angle .22 */
 #define FAR 12.0f  /* px */
 #define SAME 4.0f  /* px, in both images: soft corners lie so far apart in two octaves */
 
@@ -212,11 +215,13 @@ static asj_status match_both(asj_context *context, const asj_match_options *opti
     const double from = context->progress_from, part = context->progress_part, whole = part > 0 ? part : 1;
     asj_match_result *finer = NULL;
     context->progress_part = OWN * whole;
-    asj_status status = match->pass(context, options, match->data, 0, result);
+    asj_known_matches known = {NULL, {{1, 1}, {1, 1}}};
+    asj_status status = match->pass(context, options, match->data, 0, NULL, result);
     context->progress_from = from + OWN * whole;
     context->progress_part = (1 - OWN) * whole;
+    known.result = *result;
     if (status == ASJ_OK && is_worth(*result))
-        status = match->pass(context, options, match->data, 1, &finer);
+        status = match->pass(context, options, match->data, 1, &known, &finer);
     context->progress_from = from;
     context->progress_part = part;
     for (int32_t side = 0; side < 2 && status == ASJ_OK; side++)
@@ -239,5 +244,5 @@ asj_status asj_match_finer(asj_context *context, const asj_match_options *option
     const int32_t finer = asj_has_finer(match->junctions[0], match->counts[0]) ||
                           asj_has_finer(match->junctions[1], match->counts[1]);
     return finer && !match->enlarged_only ? match_both(context, options, match, result)
-                                          : match->pass(context, options, match->data, finer, result);
+                                          : match->pass(context, options, match->data, finer, match->known, result);
 }

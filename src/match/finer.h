@@ -8,17 +8,24 @@
 /* Whether some are of octave -1. */
 int32_t asj_has_finer(const asj_junction *junctions, size_t count);
 
+/* Matches of the images, which say where those of the enlarged ones lie (expected.h). */
+typedef struct asj_known_matches {
+    const asj_match_result *result;
+    asj_stretch by[2]; /* px of the images that are looked at for a px of these; 1, 1 = the same */
+} asj_known_matches;
+
 /* Matches two images once: `enlarged` says whether those that have junctions of octave -1 are looked at enlarged; otherwise such
- * junctions are none. Results are in pixels of the images. */
+ * junctions are none. `known` may be NULL. Results are in pixels of the images. */
 typedef asj_status (*asj_match_pass)(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
-                                     asj_match_result **result);
+                                     const asj_known_matches *known, asj_match_result **result);
 
 typedef struct asj_finer_match {
     asj_match_pass pass;
     const void *data;                 /* for it */
     const asj_junction *junctions[2]; /* all of both images */
     size_t counts[2];
-    int32_t enlarged_only;            /* the caller asks for the witness: see asj_finer_choose() */
+    int32_t enlarged_only;            /* the caller asks for the witness: see asj_finer_choose(), */
+    const asj_known_matches *known;   /* .. and has these; else NULL */
 } asj_finer_match;
 
 /* The passes that are needed, and the result that holds: see finer.c. */
@@ -29,10 +36,10 @@ asj_status asj_match_finer(asj_context *context, const asj_match_options *option
  * L-junctions have the same numbers. */
 asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_match_result **finer, int32_t same_lists);
 
-/* asj_match() of the enlarged images alone. */
+/* asj_match() of the enlarged images alone; known may be NULL. */
 asj_status asj_match_enlarged(asj_context *context,
                               const asj_image *image1, const asj_junction *junctions1, size_t count1,
                               const asj_image *image2, const asj_junction *junctions2, size_t count2,
-                              const asj_match_options *options, asj_match_result **result);
+                              const asj_match_options *options, const asj_known_matches *known, asj_match_result **result);
 
 #endif

@@ -7,6 +7,7 @@
  *   colour.c         colours around them                         for the geometry only
  *
  * Of the pair, the list below:
+ *   expected.c       of enlarged images: where their own matches put the partners
  *   related.c        unless the images have nothing in common
  *   shortlist.c      best partners among all pairs               (rank.c; product_bound.c rules most pairs out)
  *   align.c          each candidate's map refined on the images  (disc.c; paper: not done)
@@ -32,6 +33,7 @@
 #include "consensus.h"
 #include "core/backend.h"
 #include "epipolar.h"
+#include "expected.h"
 #include "finer.h"
 #include "guests.h"
 #include "guided.h"
@@ -48,6 +50,8 @@
 #include "verify.h"
 
 #include <string.h>
+
+#define ENOUGH_KNOWN 8 /* matches */
 
 /* Times of the stages. */
 typedef struct stop_watch {
@@ -202,30 +206,51 @@ static asj_stretch stretch_of(const asj_image_features *features)
     return features->l_junctions.enlarged ? (asj_stretch){2, 2} : (asj_stretch){1, 1};
 }
 
-static asj_match_options options_for(const asj_match_options *options, const asj_stretch by[2])
+static asj_match_options options_for(const asj_match_options *options, const asj_stretch by[2], int32_t expected)
 {
     asj_match_options enlarged = *options;
     for (int32_t n = 0; n < 2; n++)
         if (options->geometry.cameras[n].fx > 0)
             enlarged.geometry.cameras[n] = asj_stretch_camera(&options->geometry.cameras[n], &by[n]);
+    if (expected && options->enlarged_shortlist > 0)
+        enlarged.shortlist = options->enlarged_shortlist;
     return enlarged;
+}
+
+/* Do matches that are known say where those of the enlarged images lie? Fewer may all be wrong. */
+static int32_t says_where(const asj_match_options *options, const asj_known_matches *known)
+{
+    return known && options->enlarged_reach > 0 && known->result->match_count >= ENOUGH_KNOWN;
+}
+
+static asj_status expect(asj_match_run *run, const asj_known_matches *known, const asj_stretch enlarged[2], asj_expected *expected)
+{
+    asj_stretch by[2];
+    for (int32_t n = 0; n < 2; n++)
+        by[n] = (asj_stretch){known->by[n].x * enlarged[n].x, known->by[n].y * enlarged[n].y};
+    run->expected = expected;
+    return asj_expect(run, known->result, by, expected);
 }
 
 /* From the features of two images to the result. */
 static asj_status match_features(asj_context *context, const asj_match_options *options, const asj_image_features *features[2],
-                                 stop_watch *watch, asj_match_result **result)
+                                 const asj_known_matches *known, stop_watch *watch, asj_match_result **result)
 {
     const asj_stretch by[2] = {stretch_of(features[0]), stretch_of(features[1])};
-    const int32_t enlarged = by[0].x > 1 || by[1].x > 1;
-    const asj_match_options of_enlarged = options_for(options, by);
+    const int32_t enlarged = by[0].x > 1 || by[1].x > 1, expected = enlarged && says_where(options, known);
+    const asj_match_options of_enlarged = options_for(options, by, expected);
+    asj_expected places = {{NULL, NULL}, {NULL, NULL}};
     asj_match_run run = {.context = context, .options = enlarged ? &of_enlarged : options, .image = {features[0], features[1]}};
-    asj_status status = run_steps(&run, watch);
+    asj_status status = expected ? expect(&run, known, by, &places) : ASJ_OK;
+    if (status == ASJ_OK)
+        status = run_steps(&run, watch);
     if (status == ASJ_OK)
         status = finish(&run, watch, result);
     if (status == ASJ_OK && enlarged)
         asj_match_result_unstretch(*result, by);
     if (status == ASJ_OK)
         (*result)->enlarged = enlarged ? 1 : 0;
+    asj_expected_free(&context->memory, &places);
     asj_release(&context->memory, run.candidates.list);
     asj_release(&context->memory, run.choices.list);
     asj_release(&context->memory, run.rejected.list);
@@ -256,7 +281,7 @@ static asj_status make_features(asj_context *context, const asj_match_options *o
 }
 
 static asj_status match_sources(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
-                                asj_match_result **result)
+                                const asj_known_matches *known, asj_match_result **result)
 {
     const source *sources = data;
     asj_image_features features[2];
@@ -268,14 +293,14 @@ static asj_status match_sources(asj_context *context, const asj_match_options *o
         status = make_features(context, options, &sources[n], n, enlarged, &features[n]);
     stop(&watch, ASJ_STAGE_PATCHES);
     if (status == ASJ_OK)
-        status = match_features(context, options, both, &watch, result);
+        status = match_features(context, options, both, known, &watch, result);
     for (int32_t n = 0; n < 2; n++)
         asj_image_features_free(&context->memory, &features[n]);
     return status;
 }
 
 static asj_status match_junctions(asj_context *context, const source sources[2], const asj_match_options *options,
-                                  int32_t enlarged_only, asj_match_result **result)
+                                  int32_t enlarged_only, const asj_known_matches *known, asj_match_result **result)
 {
     asj_match_options defaults;
     char message[256];
@@ -296,7 +321,8 @@ static asj_status match_junctions(asj_context *context, const source sources[2],
                                    sources,
                                    {sources[0].junctions, sources[1].junctions},
                                    {sources[0].count, sources[1].count},
-                                   enlarged_only};
+                                   enlarged_only,
+                                   known};
     asj_status status;
     asj_backend_begin(context);
     do
@@ -310,26 +336,26 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
                      const asj_match_options *options, asj_match_result **result)
 {
     const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
-    return match_junctions(context, sources, options, 0, result);
+    return match_junctions(context, sources, options, 0, NULL, result);
 }
 
 asj_status asj_match_enlarged(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
                               const asj_image *image2, const asj_junction *junctions2, size_t count2,
-                              const asj_match_options *options, asj_match_result **result)
+                              const asj_match_options *options, const asj_known_matches *known, asj_match_result **result)
 {
     const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
-    return match_junctions(context, sources, options, 1, result);
+    return match_junctions(context, sources, options, 1, known, result);
 }
 
 static asj_status match_kept(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
-                             asj_match_result **result)
+                             const asj_known_matches *known, asj_match_result **result)
 {
     const asj_features *const *kept = data;
     const asj_image_features views[2] = {asj_features_view(context, kept[0], enlarged),
                                          asj_features_view(context, kept[1], enlarged)};
     const asj_image_features *both[2] = {&views[0], &views[1]};
     stop_watch watch = {.clock = asj_clock_ms()};
-    return match_features(context, options, both, &watch, result);
+    return match_features(context, options, both, known, &watch, result);
 }
 
 /* Features tell what they were made with; the pair's steps read the same options. */
@@ -370,7 +396,8 @@ asj_status asj_match_features(asj_context *context, const asj_features *features
                                    kept,
                                    {features1->junctions, features2->junctions},
                                    {features1->junction_count, features2->junction_count},
-                                   0};
+                                   0,
+                                   NULL};
     asj_backend_begin(context);
     do
         status = asj_match_finer(context, options, &match, result);

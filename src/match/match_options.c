@@ -26,9 +26,13 @@ static const asj_option_info rows[] = {
             "matches from which on two images are looked at enlarged, too, unless --stretch says how (1 where a geometry is asked "
             "and none accepted); 0 = never"),
     SWITCH(IMAGES, COMMON, enlarged_half_octaves, 1, 0, 1,
-           "look at enlarged images half-way between their octaves, too: half as many matches again, in 1.3 to 2.3 times the time"),
+           "look at enlarged images half-way between their octaves, too: half as many matches again, in 1.3 to 1.6 times the time"),
     INTEGER(IMAGES, ADVANCED, enlarged_most, "", 0, 1000000, 16000, 16000, 16000,
             "junctions of an enlarged image that take part, the most meaningful ones; 0 = all"),
+    NUMBER(IMAGES, ADVANCED, enlarged_reach, "", 0, 1, 0.02, 0, 0.02,
+           "enlarged, partners lie no farther, in diagonals of the image, from where matches of the images put them; 0 = anywhere"),
+    INTEGER(IMAGES, ADVANCED, enlarged_shortlist, "", 0, 32, 2, 0, 2,
+            "shortlist where enlarged_reach says where partners lie; 0 = as it is"),
 
     NUMBER(FRAMES, ADVANCED, minimum_opening, "deg", 0, 80, 20, 20, 20, "branches that open by less give no frame"),
     INTEGER(FRAMES, ADVANCED, length_hypotheses, "", 1, 4, 3, 1, 3,

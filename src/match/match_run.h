@@ -11,6 +11,7 @@ typedef struct asj_match_run {
     asj_context *context;
     const asj_match_options *options;
     const asj_image_features *image[2];
+    const struct asj_expected *expected; /* expected.c: where partners are looked for; NULL: everywhere */
     asj_candidates candidates; /* shortlist.c fills them, align.c their maps, consensus.c their scores */
     asj_support support;       /* support.c: who agrees with whom */
     asj_choices choices;       /* assign.c; room for every location of image 1 */

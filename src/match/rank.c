@@ -4,8 +4,12 @@
  * Rows are worked through in blocks, the columns of a row in tiles. From each tile the best partners of its row are kept, from each
  * block, row after row, those of all columns: memory for the full matrix is never needed, and a pair that is on neither list cannot
  * come on one later. So only pairs are compared whose bound says that they may be better than the last ones on the lists of
- * both (product_bound.c); blocks and tiles start small, for lists to compare with. */
+ * both (product_bound.c); blocks and tiles start small, for lists to compare with.
+ *
+ * Where it is known about where partners lie (expected.c) pairs that lie elsewhere are not compared, and tiles that hold no other
+ * pairs of a block are not looked at: so L-junctions had better come in an order in which neighbours are near. */
 #include "describe.h"
+#include "expected.h"
 #include "induced_score.h"
 #include "product_bound.h"
 #include "shortlist.h"
@@ -29,7 +33,16 @@ typedef struct table {
     int32_t *least;              /* of each frame of image 2: the threshold of its L-junction's list, */
     uint32_t *owner;             /* and that L-junction */
     asj_induced_squares squares; /* the paper's patches */
+    struct tile *tiles;          /* of the L-junctions of image 2 */
+    uint32_t tile_count;
 } table;
+
+/* L-junctions first .. end - 1 of image 2. */
+typedef struct tile {
+    uint32_t first, end;
+    asj_box box;   /* around them */
+    int32_t asked; /* may one of them be a partner of a row of the block? */
+} tile;
 
 /* Inserts into a list that falls; the earlier of equals stays first. */
 static void offer(asj_partner *list, int32_t limit, int32_t score, uint32_t index)
@@ -49,6 +62,11 @@ static int32_t threshold(const asj_partner *list, int32_t limit)
     return score > ASJ_BOUND_LEAST ? score : ASJ_BOUND_LEAST;
 }
 
+static int32_t products_do(const asj_match_options *options)
+{
+    return options->patches == ASJ_PATCHES_CANONICAL && asj_patch_units(options);
+}
+
 /* --- unit vectors: the pair of frames with the largest product is the best -------------------------------------------------- */
 
 /* Which frames first .. end - 1 of image 2 to compare with frame f of image 1, whose L-junction's list has the threshold `most`. */
@@ -62,19 +80,39 @@ static int32_t find_frames(const table *t, uint32_t f, uint32_t first, uint32_t 
     return (int32_t)(end - first);
 }
 
-/* L-junctions first .. end - 1 of image 2 against L-junction i. */
-static void multiply_tile(const table *t, uint32_t i, uint32_t first, uint32_t end, int32_t *scores)
+/* May L-junctions i of image 1 and j of image 2 be partners? */
+static int is_expected(const table *t, uint32_t i, uint32_t j)
+{
+    return !t->run->expected || asj_may_be_partners(t->run->expected, i, j);
+}
+
+/* Leaves in the list the frames of L-junctions that may be partners of i; returns how many. */
+static int32_t keep_expected(const table *t, uint32_t i, int32_t *frames, int32_t count)
+{
+    int32_t kept = 0;
+    for (int32_t k = 0; k < count; k++)
+        if (is_expected(t, i, t->owner[frames[k]]))
+            frames[kept++] = frames[k];
+    return kept;
+}
+
+/* A tile of image 2 against L-junction i. */
+static void multiply_tile(const table *t, uint32_t i, const tile *columns, int32_t *scores)
 {
     const asj_l_junctions *c1 = &t->image1->l_junctions, *c2 = &t->image2->l_junctions;
-    const uint32_t start = c2->first_frame[first], stop = c2->first_frame[end];
+    const uint32_t first = columns->first, end = columns->end, start = c2->first_frame[first], stop = c2->first_frame[end];
     asj_partner *list = t->rows + (size_t)i * (size_t)t->limit;
     int32_t frames[MOST_FRAMES], products[MOST_FRAMES];
     for (uint32_t j = first; j < end; j++)
         scores[j] = ASJ_NO_PARTNER;
+    if (t->run->expected && !asj_boxes_meet(&t->run->expected->boxes[0][i], &columns->box))
+        return;
     for (uint32_t f = c1->first_frame[i]; f < c1->first_frame[i + 1]; f++) {
         if (!t->image1->usable[f])
             continue;
-        const int32_t count = find_frames(t, f, start, stop, threshold(list, t->limit), frames);
+        int32_t count = find_frames(t, f, start, stop, threshold(list, t->limit), frames);
+        if (t->run->expected)
+            count = keep_expected(t, i, frames, count);
         t->ops->patch->products(t->image1->patches + (size_t)f * (size_t)t->length, t->image2->patches, t->length, frames, count,
                                products);
         for (int32_t k = 0; k < count; k++) {
@@ -91,15 +129,49 @@ static void multiply_tile(const table *t, uint32_t i, uint32_t first, uint32_t e
  * first row. */
 static void multiply_rows(const table *t, uint32_t first_row, uint32_t end_row, int32_t *scores)
 {
+    for (uint32_t n = 0; n < t->tile_count; n++)
+        for (uint32_t i = first_row; i < end_row && t->tiles[n].asked; i++)
+            multiply_tile(t, i, &t->tiles[n], scores + (size_t)(i - first_row) * t->image2->l_junctions.count);
+}
+
+/* Around L-junctions first .. end - 1 of image 2. */
+static asj_box box_around(const asj_expected *expected, uint32_t first, uint32_t end)
+{
+    asj_box box = asj_box_empty();
+    for (uint32_t j = first; j < end; j++) {
+        const asj_point *p = &expected->points[1][j];
+        asj_box_join(&box, &(asj_box){p->x, p->y, p->x, p->y});
+    }
+    return box;
+}
+
+/* Divides the columns. Returns how many tiles there are. */
+static uint32_t find_tiles(const table *t)
+{
     const asj_l_junctions *c2 = &t->image2->l_junctions;
+    const asj_expected *expected = t->run->expected;
+    uint32_t count = 0;
     for (uint32_t first = 0, end; first < c2->count; first = end) {
         const uint32_t start = c2->first_frame[first], wanted = FIRST_FRAMES + start / 2;
         const uint32_t most = wanted < MOST_FRAMES ? wanted : MOST_FRAMES;
         for (end = first + 1; end < c2->count && c2->first_frame[end + 1] - start <= most; end++)
             ;
-        for (uint32_t i = first_row; i < end_row; i++)
-            multiply_tile(t, i, first, end, scores + (size_t)(i - first_row) * c2->count);
+        t->tiles[count++] = (tile){first, end, expected ? box_around(expected, first, end) : asj_box_empty(), 1};
     }
+    return count;
+}
+
+/* Which tiles a block of rows asks. */
+static void ask_tiles(const table *t, int64_t first, int64_t end)
+{
+    const asj_expected *e = t->run->expected;
+    asj_box box = asj_box_empty();
+    if (!e || !products_do(t->run->options))
+        return;
+    for (int64_t i = first; i < end; i++)
+        asj_box_join(&box, &e->boxes[0][i]);
+    for (uint32_t n = 0; n < t->tile_count; n++)
+        t->tiles[n].asked = asj_boxes_meet(&box, &t->tiles[n].box);
 }
 
 /* --- others ----------------------------------------------------------------------------------------------------------------- */
@@ -139,7 +211,7 @@ static void score_row(const table *t, uint32_t i, int32_t *scores)
     for (uint32_t j = 0; j < c2->count; j++) {
         const int32_t mine = list[limit - 1].score, theirs = t->columns[(j + 1) * limit - 1].score;
         const int32_t needed = two ? row.second : mine < theirs ? mine : theirs;
-        scores[j] = asj_induced_score(t->run, &t->squares, i, j, needed);
+        scores[j] = is_expected(t, i, j) ? asj_induced_score(t->run, &t->squares, i, j, needed) : ASJ_NO_PARTNER;
         offer(list, t->limit, scores[j], j);
         if (two)
             remember(&row, scores[j], c2->location[j]);
@@ -147,11 +219,6 @@ static void score_row(const table *t, uint32_t i, int32_t *scores)
 }
 
 /* --- blocks of rows --------------------------------------------------------------------------------------------------------- */
-
-static int32_t products_do(const asj_match_options *options)
-{
-    return options->patches == ASJ_PATCHES_CANONICAL && asj_patch_units(options);
-}
 
 /* Rows first .. end - 1 offer themselves to column j. */
 static void offer_rows(const table *t, int64_t first, int64_t end, uint32_t j)
@@ -186,8 +253,11 @@ static void score_rows(const void *data, const asj_part *part)
 static void offer_some(const void *data, const asj_part *part)
 {
     const job *j = data;
-    for (int64_t column = part->first; column < part->end; column++)
-        offer_rows(j->t, j->first, j->end, (uint32_t)column);
+    for (int64_t n = part->first; n < part->end; n++) {
+        const tile *columns = &j->t->tiles[n];
+        for (uint32_t column = columns->first; column < columns->end && columns->asked; column++)
+            offer_rows(j->t, j->first, j->end, column);
+    }
 }
 
 static asj_status work(const table *t)
@@ -199,8 +269,9 @@ static asj_status work(const table *t)
         end = first + (wanted < MOST_ROWS ? wanted : MOST_ROWS);
         end = end < count1 ? end : count1;
         const job j = {t, first, end};
+        ask_tiles(t, first, end);
         asj_parallel(context, context->threads, end - first, products_do(t->run->options) ? 0 : 1, score_rows, &j);
-        asj_parallel(context, asj_threads_for(context, (end - first) * count2, LEAST_OFFERS), count2, 0, offer_some, &j);
+        asj_parallel(context, asj_threads_for(context, (end - first) * count2, LEAST_OFFERS), t->tile_count, 0, offer_some, &j);
         asj_status status = asj_progress(context, ASJ_STAGE_DISTANCES, 0.2 + 0.4 * (double)end / (double)count1);
         if (status != ASJ_OK)
             return status;
@@ -217,11 +288,13 @@ static asj_status prepare(table *t)
     t->scores = asj_allocate(memory, MOST_ROWS * (size_t)c2->count, sizeof *t->scores);
     t->least = asj_allocate_zero(memory, padded, sizeof *t->least);
     t->owner = asj_allocate(memory, c2->frame_count, sizeof *t->owner);
-    if (!t->scores || !t->least || !t->owner)
+    t->tiles = asj_allocate(memory, c2->count, sizeof *t->tiles);
+    if (!t->scores || !t->least || !t->owner || !t->tiles)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the distances of %u L-junctions", (unsigned)c2->count);
     const asj_status squares = asj_induced_squares_create(t->run, &t->squares);
     if (squares != ASJ_OK)
         return squares;
+    t->tile_count = find_tiles(t);
     for (uint32_t g = 0; g < c2->frame_count; g++)
         t->least[g] = ASJ_BOUND_LEAST;
     for (uint32_t j = 0; j < c2->count; j++)
@@ -244,6 +317,7 @@ asj_status asj_rank_partners(const asj_match_run *run, asj_partner *rows, asj_pa
     asj_release(memory, t.scores);
     asj_release(memory, t.least);
     asj_release(memory, t.owner);
+    asj_release(memory, t.tiles);
     asj_release(memory, t.left);
     asj_release(memory, t.right);
     asj_induced_squares_free(memory, &t.squares);

@@ -449,6 +449,14 @@ static void whole_images_are_enlarged_by_themselves(void **state)
     result = run_cli("match", "--enlarged-most", "9", "--enlarge-from", "0", "first.png", "second.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "--enlarged-most changes nothing");
+    expect_code(run_cli("match", "--enlarged-reach", "0", "--first-octave", "-1", "-q", "-o", "wide.csv", "first.png", "second.png",
+                        NULL), 0);
+    for (int k = 0; k < 2; k++) {
+        result = run_cli("match", "--enlarged-shortlist", "2", k ? "--stretch" : "--enlarged-reach", k ? "2" : "0", "first.png",
+                         "second.png", NULL);
+        expect_code(result, 2);
+        expect_in(result, result->err, "--enlarged-shortlist changes nothing");
+    }
     result = run_cli("match", "--half-octaves", "yes", "--octaves", "1", "first.png", "second.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "--half-octaves changes nothing");

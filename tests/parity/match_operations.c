@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "match/describe.h"
+#include "match/expected.h"
 #include "more_operations.h"
 
 #include <math.h>
@@ -126,7 +127,42 @@ size_t partners_size(const subject *s)
     return (corner_count(s, 1) + corner_count(s, 2)) * (size_t)options.shortlist * sizeof(asj_partner);
 }
 
-/* Patches that a device has made itself or, every third time, does not know. Several of them are the same, for ties. */
+/* Boxes of two thirds of the image's sides anywhere in it, some of them empty, and points. */
+static asj_status choose_expected(const subject *s, const described p[2], asj_expected *expected)
+{
+    synth_random random = s->random;
+    memset(expected, 0, sizeof *expected);
+    for (int32_t v = 0; v < 2; v++) {
+        const uint32_t count = p[v].features.l_junctions.count;
+        expected->points[v] = malloc(count * sizeof **expected->points);
+        expected->boxes[v] = malloc(count * sizeof **expected->boxes);
+        if (!expected->points[v] || !expected->boxes[v])
+            return ASJ_ERROR_MEMORY;
+        for (uint32_t i = 0; i < count; i++) {
+            const float width = (float)s->frame.width, height = (float)s->frame.height;
+            const asj_point at = {width * (float)synth_random_between(&random, 0, 1),
+                                  height * (float)synth_random_between(&random, 0, 1)};
+            const asj_point middle = {width * (float)synth_random_between(&random, 0, 1),
+                                      height * (float)synth_random_between(&random, 0, 1)};
+            expected->points[v][i] = at;
+            expected->boxes[v][i] = i % 7 == 3 ? asj_box_empty()
+                                               : (asj_box){middle.x - width / 3, middle.y - height / 3, middle.x + width / 3,
+                                                           middle.y + height / 3};
+        }
+    }
+    return ASJ_OK;
+}
+
+static void expected_free(asj_expected *expected)
+{
+    for (int32_t v = 0; v < 2; v++) {
+        free(expected->points[v]);
+        free(expected->boxes[v]);
+    }
+}
+
+/* Patches that a device has made itself or, every third time, does not know. Several of them are the same, for ties. Every other
+ * time it is known where partners lie. */
 asj_status run_partners(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
     described p[2];
@@ -145,10 +181,15 @@ asj_status run_partners(asj_context *context, const subject *s, uint16_t *scratc
             p[v].features.device_copy = 0;
     }
     asj_status result = status[0] == ASJ_OK ? status[1] : status[0];
-    const asj_match_run run = {.context = context, .options = &p[0].options, .image = {&p[0].features, &p[1].features}};
+    asj_expected expected = {{NULL, NULL}, {NULL, NULL}};
+    if (result == ASJ_OK && s->seed % 2)
+        result = choose_expected(s, p, &expected);
+    const asj_match_run run = {.context = context, .options = &p[0].options, .image = {&p[0].features, &p[1].features},
+                               .expected = s->seed % 2 ? &expected : NULL};
     if (result == ASJ_OK)
         result = context->ops->rank->partners(&run, partners,
                                              partners + p[0].features.l_junctions.count * (size_t)p[0].options.shortlist);
+    expected_free(&expected);
     described_free(context, &p[0]);
     described_free(context, &p[1]);
     return result;

@@ -29,8 +29,11 @@ static asj_match_result *match(asj_context *context, int32_t enlarged, int32_t w
     options.geometry.model = with_geometry ? ASJ_GEOMETRY_ESSENTIAL : ASJ_GEOMETRY_NONE;
     for (int32_t n = 0; n < 2; n++)
         options.geometry.cameras[n] = camera_of(n);
-    assert_int_equal((enlarged ? asj_match_enlarged : asj_match)(context, &views[0].image, left, count, &views[1].image,
-                                                                 b->junctions, b->junction_count, &options, &result), ASJ_OK);
+    const asj_status status = enlarged ? asj_match_enlarged(context, &views[0].image, left, count, &views[1].image, b->junctions,
+                                                            b->junction_count, &options, NULL, &result)
+                                       : asj_match(context, &views[0].image, left, count, &views[1].image, b->junctions,
+                                                   b->junction_count, &options, &result);
+    assert_int_equal(status, ASJ_OK);
     assert_int_equal(result->geometry.status, with_geometry ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_NOT_ASKED);
     free(left);
     return result;

@@ -378,6 +378,33 @@ static void the_most_meaningful_junctions_are_enough(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Partners are looked for where the images' own matches put them: fewer candidates, and as many matches of an image with itself. A
+ * reach of the whole image and none are the same. */
+static void partners_lie_where_they_are_expected(void **state)
+{
+    static const asj_stretch automatic = {0, 0};
+    static const double reach[] = {0, 1, 0.01};
+    const pages *p = *state;
+    const asj_image *image = &p->images[0];
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_match_options options;
+    asj_match_result *found[UNIT_COUNT(reach)];
+    asj_match_options_init(&options);
+    options.enlarged_shortlist = 0;
+    for (size_t k = 0; k < UNIT_COUNT(reach); k++) {
+        options.enlarged_reach = reach[k];
+        assert_int_equal(asj_match_images(context, image, image, &automatic, NULL, &options, &found[k]), ASJ_OK);
+        assert_true(found[k]->enlarged == 1);
+    }
+    print_message("%u matches anywhere, %u near\n", (unsigned)found[0]->match_count, (unsigned)found[2]->match_count);
+    expect_equal(found[0], found[1]);
+    assert_true(found[2]->candidates < found[0]->candidates && found[2]->match_count >= found[0]->match_count);
+    for (size_t k = 0; k < UNIT_COUNT(reach); k++)
+        asj_match_result_free(&found[k]);
+    unit_context_free(&counter, &context);
+}
+
 /* Who asks for octave -1, for one octave, for more matches than there are or for none of it gets what the images have. */
 static void images_are_not_enlarged_unasked(void **state)
 {
@@ -743,6 +770,7 @@ int main(void)
         cmocka_unit_test(automatically_images_are_enlarged_too),
         cmocka_unit_test(images_are_not_enlarged_unasked), cmocka_unit_test(enlarged_images_have_half_octaves),
         cmocka_unit_test(the_most_meaningful_junctions_are_enough),
+        cmocka_unit_test(partners_lie_where_they_are_expected),
         cmocka_unit_test(a_homography_is_of_the_images_as_they_are),
         cmocka_unit_test(a_pose_is_found_in_enlarged_images),
         cmocka_unit_test(matrices_are_taken_back),
