@@ -256,7 +256,7 @@ static void keep_first_octave(cli_match_arguments *arguments)
 /* Will there be junctions of octave -1, or may a file have some? */
 static int may_have_finer(const cli_match_arguments *arguments)
 {
-    int may = arguments->detect_options.first_octave < 0;
+    int may = arguments->detect_options.first_octave < 0 && arguments->detect_options.octaves > 1;
     for (int v = 0; v < 2; v++)
         may = may || arguments->junctions[v] || asj_features_probe(arguments->images[v]);
     return may;

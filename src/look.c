@@ -134,33 +134,39 @@ asj_status asj_look_match(const asj_look *look, const asj_match_options *options
 
 /* --- enlarged ---------------------------------------------------------------------------------------------------------------- */
 
-static int order(double a, double b)
-{
-    return (a > b) - (a < b);
-}
+/* Where the junction of this number stands. */
+typedef struct stand {
+    int32_t band; /* of rows */
+    float x;
+    uint32_t number;
+} stand;
 
 static int by_place(const void *left, const void *right)
 {
-    const asj_junction *a = left, *b = right;
-    const double keys[][2] = {{floor((double)a->y / BAND), floor((double)b->y / BAND)}, {(double)a->x, (double)b->x},
-                              {(double)a->y, (double)b->y}, {a->octave, b->octave}, {(double)a->log10_nfa, (double)b->log10_nfa}};
-    int found = 0;
-    for (size_t k = 0; k < sizeof keys / sizeof keys[0] && found == 0; k++)
-        found = order(keys[k][0], keys[k][1]);
-    return found;
+    const stand *a = left, *b = right;
+    if (a->band != b->band)
+        return a->band < b->band ? -1 : 1;
+    return a->x != b->x ? (a->x < b->x ? -1 : 1) : (a->number > b->number) - (a->number < b->number);
 }
 
 /* The `most` most meaningful ones (0 = all), which stand first, by place: neighbours lie near each other (match/rank.c). */
 static asj_status sort_by_place(const asj_look *look, int32_t n, int32_t most, asj_junction **sorted, junction_list *list)
 {
     const asj_view *v = &look->views[n];
+    asj_memory *memory = &look->context->memory;
     const size_t all = v->found->junction_count, count = most > 0 && all > (size_t)most ? (size_t)most : all;
-    *sorted = asj_allocate(&look->context->memory, count, sizeof **sorted);
-    if (!*sorted)
+    stand *stands = asj_allocate(memory, count, sizeof *stands);
+    *sorted = asj_allocate(memory, count, sizeof **sorted);
+    if (!stands || !*sorted) {
+        asj_release(memory, stands);
         return asj_fail(look->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", count);
-    if (count > 0)
-        memcpy(*sorted, v->junctions, count * sizeof **sorted);
-    qsort(*sorted, count, sizeof **sorted, by_place);
+    }
+    for (size_t k = 0; k < count; k++)
+        stands[k] = (stand){(int32_t)floor((double)v->junctions[k].y / BAND), v->junctions[k].x, (uint32_t)k};
+    qsort(stands, count, sizeof *stands, by_place);
+    for (size_t k = 0; k < count; k++)
+        (*sorted)[k] = v->junctions[stands[k].number];
+    asj_release(memory, stands);
     *list = (junction_list){*sorted, count};
     return ASJ_OK;
 }

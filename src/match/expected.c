@@ -34,13 +34,13 @@ typedef struct job {
     asj_watch *watch;
 } job;
 
-/* Where a match puts (x, y) of image `side` in the other one. Returns 0 when its map has no inverse. */
+/* Where a match puts (x, y) of image `side` in the other one. Returns 0 when its map has no inverse: it says nothing of either. */
 static int predict(const asj_junction_match *m, int32_t side, double x, double y, double at[2])
 {
     const double *h = m->affine, dx = x - (double)(side ? m->x2 : m->x1), dy = y - (double)(side ? m->y2 : m->y1);
     const double to[4] = {h[0], h[1], h[3], h[4]};
     double from[4];
-    if (side && !asj_affine_invert(to, from))
+    if (!asj_affine_invert(to, from))
         return 0;
     const double *a = side ? from : to;
     at[0] = (double)(side ? m->x1 : m->x2) + a[0] * dx + a[1] * dy;
@@ -48,12 +48,15 @@ static int predict(const asj_junction_match *m, int32_t side, double x, double y
     return 1;
 }
 
+/* From where the junctions were detected: x2, y2 is where a match has moved one to. */
 static asj_nearest find_guides(const job *j, double x, double y, uint32_t *index)
 {
+    const asj_match_result *known = j->known;
     asj_nearest near = {.limit = GUIDES, .index = index};
-    for (uint32_t k = 0; k < j->known->match_count; k++) {
-        const asj_junction_match *m = &j->known->matches[k];
-        const double dx = x - (double)(j->side ? m->x2 : m->x1), dy = y - (double)(j->side ? m->y2 : m->y1);
+    for (uint32_t k = 0; k < known->match_count; k++) {
+        const asj_junction_match *m = &known->matches[k];
+        const asj_l_junction *l = j->side ? &known->l_junctions2[m->l2] : &known->l_junctions1[m->l1];
+        const double dx = x - (double)l->x, dy = y - (double)l->y;
         asj_nearest_offer(&near, k, dx * dx + dy * dy);
     }
     return near;

@@ -217,10 +217,12 @@ static asj_match_options options_for(const asj_match_options *options, const asj
     return enlarged;
 }
 
-/* Do matches that are known say where those of the enlarged images lie? Fewer may all be wrong. */
+/* Do matches that are known say where those of the enlarged images lie? Fewer may all be wrong; and where a geometry was asked that
+ * the images leave open, the enlarged ones settle it (finer_geometry.c) and are not told. */
 static int32_t says_where(const asj_match_options *options, const asj_known_matches *known)
 {
-    return known && options->enlarged_reach > 0 && known->result->match_count >= ENOUGH_KNOWN;
+    return known && options->enlarged_reach > 0 && known->result->match_count >= ENOUGH_KNOWN &&
+           (known->result->geometry.status == ASJ_GEOMETRY_NOT_ASKED || known->result->geometry.status == ASJ_GEOMETRY_ACCEPTED);
 }
 
 static asj_status expect(asj_match_run *run, const asj_known_matches *known, const asj_stretch enlarged[2], asj_expected *expected)

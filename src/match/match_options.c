@@ -30,7 +30,8 @@ static const asj_option_info rows[] = {
     INTEGER(IMAGES, ADVANCED, enlarged_most, "", 0, 1000000, 16000, 16000, 16000,
             "junctions of an enlarged image that take part, the most meaningful ones; 0 = all"),
     NUMBER(IMAGES, ADVANCED, enlarged_reach, "", 0, 1, 0.02, 0, 0.02,
-           "enlarged, partners lie no farther, in diagonals of the image, from where matches of the images put them; 0 = anywhere"),
+           "enlarged, partners are compared that lie no farther from where eight or more matches of the images put them, in "
+           "diagonals, and 0.3 of the distance to these; 0 = anywhere"),
     INTEGER(IMAGES, ADVANCED, enlarged_shortlist, "", 0, 32, 2, 0, 2,
             "shortlist where enlarged_reach says where partners lie; 0 = as it is"),
 

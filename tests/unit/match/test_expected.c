@@ -50,6 +50,15 @@ static asj_junction_match match_at(float x, float y, double a)
                                 .affine = {a, 0, 20, 0, 1, -10}};
 }
 
+/* The L-junctions of matches, as detected: in image 2 a little off where the match has moved them. */
+static void stand(const asj_junction_match *matches, uint32_t count, asj_l_junction l1[], asj_l_junction l2[])
+{
+    for (uint32_t k = 0; k < count; k++) {
+        l1[k] = (asj_l_junction){.x = matches[k].x1, .y = matches[k].y1};
+        l2[k] = (asj_l_junction){.x = matches[k].x2 + 3, .y = matches[k].y2};
+    }
+}
+
 static void assert_box(const asj_box *box, double x, double y, double half_width, double half_height)
 {
     unit_near("left", x, y, (double)box->left, x - half_width, 1e-3);
@@ -64,16 +73,18 @@ static void one_match(void **state)
     asj_context *context = ((unit_fixture *)*state)->context;
     static const float places[2][2] = {{100, 50}, {160, 130}};
     const asj_junction_match match = match_at(100, 50, 2);
-    const asj_match_result known = {.matches = &match, .match_count = 1};
+    asj_l_junction l1, l2;
+    const asj_match_result known = {.matches = &match, .match_count = 1, .l_junctions1 = &l1, .l_junctions2 = &l2};
     const asj_stretch same[2] = {{1, 1}, {1, 1}};
     asj_expected expected = {{NULL, NULL}, {NULL, NULL}};
     scene s;
+    stand(&match, 1, &l1, &l2);
     set(&s, context, places, 2, 1);
     s.options.enlarged_reach = 0.02; /* of a diagonal of 500 px */
     assert_int_equal(asj_expect(&s.run, &known, same, &expected), ASJ_OK);
     assert_box(&expected.boxes[0][0], 220, 40, 10, 10);
     assert_box(&expected.boxes[0][1], 340, 120, 10 + 0.3 * 100, 10 + 0.3 * 100);
-    assert_box(&expected.boxes[1][1], 70, 140, 10 + 0.3 * hypot(60, 90), 10 + 0.3 * hypot(60, 90)); /* (160, 130) of image 2 */
+    assert_box(&expected.boxes[1][1], 70, 140, 10 + 0.3 * hypot(63, 90), 10 + 0.3 * hypot(63, 90)); /* (160, 130) of image 2 */
     assert_true(expected.points[0][1].x == 160 && expected.points[1][1].y == 130);
     asj_expected_free(&context->memory, &expected);
 
@@ -95,13 +106,17 @@ static void several_matches(void **state)
     static const float places[1][2] = {{100, 50}};
     const asj_stretch same[2] = {{1, 1}, {1, 1}};
     asj_junction_match matches[8];
-    const asj_match_result known = {.matches = matches, .match_count = 8};
+    asj_l_junction l1[8], l2[8];
+    asj_match_result known = {.matches = matches, .match_count = 8, .l_junctions1 = l1, .l_junctions2 = l2};
     asj_expected expected = {{NULL, NULL}, {NULL, NULL}};
     scene s;
     for (int32_t k = 0; k < 8; k++)
         matches[k] = match_at(100, (float)(50 + k), 1);
     matches[2].x2 += 50;  /* another surface */
     matches[7].x2 += 500; /* farther than six others */
+    for (uint32_t k = 0; k < 8; k++)
+        matches[k].l1 = matches[k].l2 = k;
+    stand(matches, 8, l1, l2);
     set(&s, context, places, 1, 1);
     s.options.enlarged_reach = 0;
     assert_int_equal(asj_expect(&s.run, &known, same, &expected), ASJ_OK);
@@ -142,10 +157,12 @@ static void out_of_memory(void **state)
     (void)state;
     static const float places[2][2] = {{100, 50}, {160, 130}};
     const asj_junction_match match = match_at(100, 50, 2);
-    const asj_match_result known = {.matches = &match, .match_count = 1};
+    asj_l_junction l1, l2;
+    const asj_match_result known = {.matches = &match, .match_count = 1, .l_junctions1 = &l1, .l_junctions2 = &l2};
     const asj_stretch same[2] = {{1, 1}, {1, 1}};
     asj_status status = ASJ_ERROR_MEMORY;
     long failed = 0;
+    stand(&match, 1, &l1, &l2);
     for (long n = 1; status != ASJ_OK; n++) {
         unit_counter counter = {0, 0, 0, 0};
         asj_context *poor = unit_context(&counter, 1);

@@ -14,7 +14,7 @@ static asj_camera camera_of(int32_t n)
 }
 
 /* Of the enlarged images what lies in the left part of the first one, so that the images have matches that they have not. */
-static asj_match_result *match(asj_context *context, int32_t enlarged, int32_t with_geometry)
+static asj_match_result *match_known(asj_context *context, int32_t enlarged, int32_t with_geometry, const asj_known_matches *known)
 {
     const asj_detection *a = enlarged ? views[0].finer : views[0].plain, *b = enlarged ? views[1].finer : views[1].plain;
     asj_junction *left = calloc(a->junction_count, sizeof *left);
@@ -30,13 +30,18 @@ static asj_match_result *match(asj_context *context, int32_t enlarged, int32_t w
     for (int32_t n = 0; n < 2; n++)
         options.geometry.cameras[n] = camera_of(n);
     const asj_status status = enlarged ? asj_match_enlarged(context, &views[0].image, left, count, &views[1].image, b->junctions,
-                                                            b->junction_count, &options, NULL, &result)
+                                                            b->junction_count, &options, known, &result)
                                        : asj_match(context, &views[0].image, left, count, &views[1].image, b->junctions,
                                                    b->junction_count, &options, &result);
     assert_int_equal(status, ASJ_OK);
     assert_int_equal(result->geometry.status, with_geometry ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_NOT_ASKED);
     free(left);
     return result;
+}
+
+static asj_match_result *match(asj_context *context, int32_t enlarged, int32_t with_geometry)
+{
+    return match_known(context, enlarged, with_geometry, NULL);
 }
 
 static int is_at(const asj_junction_match *a, const asj_junction_match *b, float tolerance)
@@ -441,6 +446,25 @@ static void chance_stays_chance(void **state)
     asj_match_result_free(&own);
 }
 
+/* The images' own matches say where those of the enlarged ones are looked for, unless the geometry that is asked is open: then the
+ * enlarged images are a witness, and are not told. */
+static void a_witness_is_not_told(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    static const int32_t statuses[] = {ASJ_GEOMETRY_ACCEPTED, ASJ_GEOMETRY_AMBIGUOUS, ASJ_GEOMETRY_CHANCE};
+    asj_match_result *own = match(context, 0, 1), *anywhere = match(context, 1, 1);
+    const asj_known_matches known = {own, {{1, 1}, {1, 1}}};
+    for (size_t k = 0; k < UNIT_COUNT(statuses); k++) {
+        own->geometry.status = statuses[k];
+        asj_match_result *told = match_known(context, 1, 1, &known);
+        assert_true(k == 0 ? told->candidates < anywhere->candidates : told->candidates == anywhere->candidates);
+        asj_match_result_free(&told);
+    }
+    own->geometry.status = ASJ_GEOMETRY_ACCEPTED;
+    asj_match_result_free(&own);
+    asj_match_result_free(&anywhere);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -458,6 +482,7 @@ int main(void)
         cmocka_unit_test(a_plane_decides_no_motion),
         cmocka_unit_test(chance_stays_chance),
         cmocka_unit_test(what_a_geometry_adds_is_no_reason_against),
+        cmocka_unit_test(a_witness_is_not_told),
     };
     return cmocka_run_group_tests(tests, make_views, free_views);
 }
