@@ -75,9 +75,9 @@ typedef struct asj_match_options {
                                     * matches again, in 1.3 to 1.6 times the time. 1; paper 0 */
     int32_t enlarged_most;       /* junctions of an enlarged image that take part, the most meaningful ones; 0 = all, which takes a
                                   * minute where two megapixels are full of texture. 0 .. 1000000; 16000 */
-    double enlarged_reach;       /* of enlarged images those are compared that lie no farther from where the images' own matches put them, if
-                                  * there are eight and a geometry that is asked is accepted; in diagonals of the images, and
-                                  * 0.3 of the distance to these matches; 0 = anywhere. 0 .. 1; 0.02; paper 0 */
+    double enlarged_reach;       /* of enlarged images L-junctions are compared that lie no farther from where the images' own
+                                  * matches put them, if there are eight and no geometry is left open; in diagonals of the images,
+                                  * and 0.3 of the distance to these matches; 0 = anywhere. 0 .. 1; 0.02; paper 0 */
     int32_t enlarged_shortlist;  /* .. and then this stands for shortlist; 0 = shortlist does. 0 .. 32; 2; paper 0 */
     int32_t reserved_integer;    /* zero */
     double reserved[17];         /* zero */
