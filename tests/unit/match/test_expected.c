@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Where matches put partners: the rectangles of expected.h, and that nothing else is compared. */
+/* Where matches put partners: the rectangles of expected.h, and what lies in them. */
 #include "match/expected.h"
-#include "match/match_options.h"
 #include "unit_test.h"
 
 #include <math.h>
