@@ -8,7 +8,7 @@
 
 #define PI 3.14159265358979323846
 
-const char *const change_names[CHANGES] = {"zoom 0.9", "shift 0.5", "blur 0.5", "noise 2", "JPEG 90", "gain 0.8"};
+const char *const change_names[CHANGES] = {"zoom 0.9", "shift 1", "shift 0.5", "blur 0.5", "noise 2", "JPEG 90", "gain 0.8"};
 
 static double *to_samples(const uint8_t *pixels, size_t count)
 {
@@ -37,6 +37,15 @@ static void shift(double *samples, int32_t width, int32_t height)
         shift_line(samples + (ptrdiff_t)y * width, width, 1);
     for (int32_t x = 0; x < width; x++)
         shift_line(samples + x, height, width);
+}
+
+/* What comes in from the right and from below is the last column and row once more. */
+static void shift_by_one(double *samples, int32_t width, int32_t height)
+{
+    for (int32_t y = 0; y < height; y++)
+        for (int32_t x = 0; x < width; x++)
+            samples[(ptrdiff_t)y * width + x] =
+                samples[(ptrdiff_t)(y + 1 < height ? y + 1 : y) * width + (x + 1 < width ? x + 1 : x)];
 }
 
 /* ITU-T T.81, table K.1: steps of luma at quality 50, row by row; quality 90 has a fifth of them (libjpeg's rule), at least 1. */
@@ -91,6 +100,7 @@ static int change_samples(double *samples, int32_t width, int32_t height, int ch
 {
     const size_t count = (size_t)width * (size_t)height;
     switch (change) {
+    case CHANGE_PIXEL: shift_by_one(samples, width, height); return 0;
     case CHANGE_SHIFT: shift(samples, width, height); return 0;
     case CHANGE_BLUR: return synth_blur(samples, width, height, 0.5);
     case CHANGE_NOISE: synth_add_noise(samples, count, 2.0, 1); return 0;
@@ -105,7 +115,7 @@ static int change_samples(double *samples, int32_t width, int32_t height, int ch
 int change_image(const uint8_t *pixels, int32_t width, int32_t height, int change, changed_image *out)
 {
     const size_t count = (size_t)width * (size_t)height;
-    const double moved = change == CHANGE_SHIFT ? 0.5 : 0.0;
+    const double moved = change == CHANGE_SHIFT ? 0.5 : change == CHANGE_PIXEL ? -1.0 : 0.0;
     *out = (changed_image){NULL, width, height, {1.0, 1.0, moved, moved}};
     if (change == CHANGE_ZOOM) {
         out->width = (int32_t)floor(0.9 * width + 0.5);

@@ -5,7 +5,7 @@
 
 #include "correspond.h"
 
-enum { CHANGE_ZOOM, CHANGE_SHIFT, CHANGE_BLUR, CHANGE_NOISE, CHANGE_JPEG, CHANGE_GAIN, CHANGES };
+enum { CHANGE_ZOOM, CHANGE_PIXEL, CHANGE_SHIFT, CHANGE_BLUR, CHANGE_NOISE, CHANGE_JPEG, CHANGE_GAIN, CHANGES };
 
 extern const char *const change_names[CHANGES];
 
@@ -17,6 +17,7 @@ typedef struct changed_image {
 
 /* CHANGE_...
  * ZOOM   0.9 times as large, area averages
+ * PIXEL  by one pixel to the left and up
  * SHIFT  by half a pixel to the right and down, cubic interpolation
  * BLUR   Gaussian, standard deviation 0.5 px
  * NOISE  normal, standard deviation 2 grey levels
