@@ -245,10 +245,10 @@ static asj_status set_match_option(void *options, const char *key, const char *t
     return asj_match_options_set(options, key, text, message, message_size);
 }
 
-/* Who names a first octave wants that one. */
+/* Who names another first octave wants that one. */
 static void keep_first_octave(cli_match_arguments *arguments)
 {
-    if (cli_settings_have(&arguments->detect_settings, "first_octave") &&
+    if (arguments->detect_options.first_octave != 0 && cli_settings_have(&arguments->detect_settings, "first_octave") &&
         !cli_settings_have(&arguments->match_settings, "enlarge_from"))
         arguments->options.enlarge_from = 0;
 }
@@ -291,8 +291,7 @@ static int check_enlarging(const cli_match_arguments *arguments)
                                first > 0 ? "--first-octave above 0" : "one octave");
     const char *enlarged = asked_of_enlarged(arguments);
     if (enlarged && arguments->options.enlarge_from == 0)
-        return cli_usage_error("match", "%s changes nothing with --enlarge-from 0, as it is with --first-octave and the preset "
-                               "paper", enlarged);
+        return cli_usage_error("match", "%s changes nothing with --enlarge-from 0, as it is with the preset paper", enlarged);
     if (arguments->options.enlarged_reach == 0 && cli_settings_have(&arguments->match_settings, "enlarged_shortlist"))
         return cli_usage_error("match", "--enlarged-shortlist changes nothing with --enlarged-reach 0");
     if (one && cli_settings_have(&arguments->detect_settings, "half_octaves"))

@@ -13,6 +13,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#define MOST_THREADS 256
+
 void asj_context_options_init(asj_context_options *options)
 {
     if (!options)
@@ -87,10 +89,16 @@ static asj_status asj_cl_list(asj_memory *memory, const char *library, asj_devic
 
 /* ---- contexts ---- */
 
-static int options_in_range(const asj_context_options *options)
+static asj_status check_range(asj_context *context)
 {
-    return options->backend >= ASJ_BACKEND_AUTO && options->backend <= ASJ_BACKEND_OPENCL && options->threads >= 0 &&
-           options->threads <= 256 && options->simd >= ASJ_SIMD_AUTO && options->simd < ASJ_SIMD_COUNT;
+    const asj_context_options *options = &context->options;
+    if (options->backend < ASJ_BACKEND_AUTO || options->backend > ASJ_BACKEND_OPENCL)
+        return asj_fail(context, ASJ_ERROR_OPTION, "backend %d: there is no such", (int)options->backend);
+    if (options->threads < 0 || options->threads > MOST_THREADS)
+        return asj_fail(context, ASJ_ERROR_OPTION, "threads %d: 0 .. %d", (int)options->threads, MOST_THREADS);
+    if (options->simd < ASJ_SIMD_AUTO || options->simd >= ASJ_SIMD_COUNT)
+        return asj_fail(context, ASJ_ERROR_OPTION, "simd %d: there is no such", (int)options->simd);
+    return ASJ_OK;
 }
 
 asj_status asj_context_create_from(const char *library, const asj_context_options *options, asj_context **result)
@@ -105,15 +113,16 @@ asj_status asj_context_create_from(const char *library, const asj_context_option
         options = &defaults;
     if (!asj_memory_allocator(options, &memory.allocator))
         return ASJ_ERROR_ARGUMENT;
-    if (!options_in_range(options))
-        return ASJ_ERROR_OPTION;
     asj_context *context = asj_allocate_zero(&memory, 1, sizeof *context);
     if (!context)
         return ASJ_ERROR_MEMORY;
     context->memory = memory;
     context->options = *options;
-    context->threads = asj_thread_count(options->threads);
-    asj_status status = asj_pool_open(context);
+    asj_status status = check_range(context);
+    if (status == ASJ_OK) {
+        context->threads = asj_thread_count(options->threads);
+        status = asj_pool_open(context);
+    }
     if (status == ASJ_OK)
         status = fill_tables(context);
     if (status == ASJ_OK)

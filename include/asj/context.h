@@ -154,7 +154,7 @@ typedef struct asj_context asj_context;
 
 /* Makes a context. `options` NULL = the defaults. On success the caller owns *context until asj_context_free().
  * ASJ_ERROR_ARGUMENT  context is NULL, or only one of the allocator's functions is given
- * ASJ_ERROR_OPTION    backend, threads or simd out of range
+ * ASJ_ERROR_OPTION    backend, threads or simd out of range: the log says which
  * ASJ_ERROR_MEMORY
  * ASJ_ERROR_DEVICE    ASJ_BACKEND_OPENCL, and there is no such device: the log has the reason of each, one line for each; or vector
  *                     instructions (simd) that this processor or this build lacks: the log says which of both */

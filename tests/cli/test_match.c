@@ -429,6 +429,11 @@ static void whole_images_are_enlarged_by_themselves(void **state)
         }
         free(text);
     }
+    expect_code(run_cli("match", "-q", "-o", "e.csv", "first.png", "second.png", NULL), 0);
+    read_csv("e.csv", &found);
+    expect_code(run_cli("match", "-q", "--first-octave", "0", "-o", "named.csv", "first.png", "second.png", NULL), 0);
+    read_csv("named.csv", &other);
+    assert_true(found.count == other.count && memcmp(found.rows, other.rows, found.count * sizeof found.rows[0]) == 0);
     const outcome *result = run_cli("match", "--enlarge-from", "9", "--stretch", "1", "first.png", "second.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "--enlarge-from changes nothing");

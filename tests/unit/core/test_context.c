@@ -41,6 +41,32 @@ static void test_defaults(void **state)
     asj_context_free(&context);
 }
 
+typedef struct last_line {
+    char text[128];
+    int32_t level;
+} last_line;
+
+static void keep_last(void *user, int32_t level, const char *message)
+{
+    last_line *line = user;
+    line->level = level;
+    snprintf(line->text, sizeof line->text, "%s", message);
+}
+
+/* The number out of range is refused, and the log says which. */
+static void refuse(asj_context_options *options, const char *word)
+{
+    static unit_counter nothing;
+    asj_context *context = (asj_context *)&nothing;
+    last_line line = {"", -1};
+    options->log = keep_last;
+    options->log_user = &line;
+    assert_int_equal(asj_context_create(options, &context), ASJ_ERROR_OPTION);
+    assert_null(context);
+    assert_int_equal(line.level, ASJ_LOG_ERROR);
+    assert_true(strncmp(line.text, word, strlen(word)) == 0);
+}
+
 static void test_refused(void **state)
 {
     unit_counter counter;
@@ -59,23 +85,17 @@ static void test_refused(void **state)
     for (size_t i = 0; i < UNIT_COUNT(backends); i++) {
         options = with(&counter);
         options.backend = backends[i];
-        context = (asj_context *)&counter;
-        assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_OPTION);
-        assert_null(context);
+        refuse(&options, "backend ");
     }
     for (size_t i = 0; i < UNIT_COUNT(threads); i++) {
         options = with(&counter);
         options.threads = threads[i];
-        context = (asj_context *)&counter;
-        assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_OPTION);
-        assert_null(context);
+        refuse(&options, "threads ");
     }
     for (size_t i = 0; i < UNIT_COUNT(forms); i++) {
         options = with(&counter);
         options.simd = forms[i];
-        context = (asj_context *)&counter;
-        assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_OPTION);
-        assert_null(context);
+        refuse(&options, "simd ");
     }
     assert_int_equal(counter.live, 0);
 }
