@@ -223,10 +223,11 @@ static void print_hint(const run *r)
     const int32_t status = r->result->geometry.status;
     if (r->result->match_count > 0 || (status == ASJ_GEOMETRY_AMBIGUOUS && r->result->rejected_count > 0))
         return;
-    if (r->result->l_junction_count1 < FEW || r->result->l_junction_count2 < FEW)
-        cli_note("hint: %s has %lu corners only: 'asj-cli detect --for matching --plot' shows them",
-                 r->inputs[r->result->l_junction_count1 < FEW ? 0 : 1].name,
-                 (unsigned long)(r->result->l_junction_count1 < FEW ? r->result->l_junction_count1 : r->result->l_junction_count2));
+    const int bare = r->result->l_junction_count1 < FEW ? 0 : 1;
+    const unsigned long corners = (unsigned long)(bare == 0 ? r->result->l_junction_count1 : r->result->l_junction_count2);
+    if (corners < FEW)
+        cli_note("hint: %s has %lu corner%s only: 'asj-cli detect --for matching --plot' shows them", r->inputs[bare].name, corners,
+                 corners == 1 ? "" : "s");
     else if (status == ASJ_GEOMETRY_NOT_ASKED)
         cli_note("hint: matches need corners that both show, from not too different sides; for views far apart try "
                  "--geometry auto, with --camera1 and --camera2 or --focal where they are known");
