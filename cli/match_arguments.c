@@ -245,14 +245,6 @@ static asj_status set_match_option(void *options, const char *key, const char *t
     return asj_match_options_set(options, key, text, message, message_size);
 }
 
-/* Who names another first octave wants that one. */
-static void keep_first_octave(cli_match_arguments *arguments)
-{
-    if (arguments->detect_options.first_octave != 0 && cli_settings_have(&arguments->detect_settings, "first_octave") &&
-        !cli_settings_have(&arguments->match_settings, "enlarge_from"))
-        arguments->options.enlarge_from = 0;
-}
-
 /* Will there be junctions of octave -1, or may a file have some? */
 static int may_have_finer(const cli_match_arguments *arguments)
 {
@@ -309,7 +301,6 @@ static int apply_settings(cli_match_arguments *arguments)
     int result = cli_settings_apply(&arguments->detect_settings, "match", quiet, &arguments->detect_options, set_detect_option);
     if (result == CLI_SUCCESS)
         result = cli_settings_apply(&arguments->match_settings, "match", quiet, &arguments->options, set_match_option);
-    keep_first_octave(arguments);
     return result == CLI_SUCCESS ? check_enlarging(arguments) : result;
 }
 

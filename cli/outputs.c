@@ -139,12 +139,12 @@ static int check_against(const char *command, const cli_planned *outputs, size_t
 /* Whether the folder that a file is to lie in is there. */
 static int check_folder(const char *path)
 {
-    const size_t length = (size_t)(cli_base_name(path) - path);
-    char *folder = length > 0 ? copy(path) : NULL;
     if (*path == '\0') {
         cli_error("cannot create a file without a name");
         return CLI_FAILED;
     }
+    const size_t length = (size_t)(cli_base_name(path) - path);
+    char *folder = length > 0 ? copy(path) : NULL;
     if (length > 0 && !folder) {
         cli_error("out of memory");
         return CLI_FAILED;

@@ -13,8 +13,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define MOST_THREADS 256
-
 void asj_context_options_init(asj_context_options *options)
 {
     if (!options)
@@ -94,8 +92,8 @@ static asj_status check_range(asj_context *context)
     const asj_context_options *options = &context->options;
     if (options->backend < ASJ_BACKEND_AUTO || options->backend > ASJ_BACKEND_OPENCL)
         return asj_fail(context, ASJ_ERROR_OPTION, "backend %d: there is no such", (int)options->backend);
-    if (options->threads < 0 || options->threads > MOST_THREADS)
-        return asj_fail(context, ASJ_ERROR_OPTION, "threads %d: 0 .. %d", (int)options->threads, MOST_THREADS);
+    if (options->threads < 0 || options->threads > ASJ_MOST_THREADS)
+        return asj_fail(context, ASJ_ERROR_OPTION, "threads %d: 0 .. %d", (int)options->threads, ASJ_MOST_THREADS);
     if (options->simd < ASJ_SIMD_AUTO || options->simd >= ASJ_SIMD_COUNT)
         return asj_fail(context, ASJ_ERROR_OPTION, "simd %d: there is no such", (int)options->simd);
     return ASJ_OK;

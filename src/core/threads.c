@@ -45,7 +45,6 @@ static void work(queue *q, int32_t thread, int32_t caller)
 #include <signal.h>
 #endif
 
-#define MOST_THREADS 256
 #define STACK (1 << 20) /* bytes: the deepest loop needs a few dozen kB */
 #define SPIN 0.3        /* ms: how long one who has nothing to do looks for more before falling asleep; the gaps between the loops
                          * of a call are shorter. On two idle cores 0.02 makes two threads 1.2 times as slow, on busy ones 0.3
@@ -66,7 +65,7 @@ typedef struct asj_pool {
     pthread_t caller;
     int32_t workers, most;     /* how many have been made, and how many there can be */
     pid_t process;
-    pthread_t thread[MOST_THREADS];
+    pthread_t thread[ASJ_MOST_THREADS];
 } asj_pool;
 
 static void relax(void)
@@ -137,7 +136,7 @@ static void start(asj_pool *pool)
     pthread_cond_init(&pool->done, NULL);
     pool->queue = NULL;
     pool->running = pool->asleep = pool->workers = 0;
-    pool->most = MOST_THREADS;
+    pool->most = ASJ_MOST_THREADS;
     pool->process = getpid();
 }
 
@@ -299,7 +298,7 @@ int32_t asj_thread_count(int32_t wanted)
     if (count <= 0)
         count = sysconf(_SC_NPROCESSORS_ONLN);
 #endif
-    return wanted > 0 ? wanted : count < 1 ? 1 : count > MOST_THREADS ? MOST_THREADS : (int32_t)count;
+    return wanted > 0 ? wanted : count < 1 ? 1 : count > ASJ_MOST_THREADS ? ASJ_MOST_THREADS : (int32_t)count;
 }
 
 #else
