@@ -33,6 +33,7 @@ static size_t list_of_image(const asj_image_features *f, size_t offset, const as
     PIECE(l_junctions.l, l->count);
     PIECE(l_junctions.lengths, 2 * (size_t)l->count);
     PIECE(l_junctions.direction, 4 * (size_t)l->count);
+    PIECE(l_junctions.direction_sd, 2 * (size_t)l->count);
     PIECE(l_junctions.first_frame, (size_t)l->count + 1);
     PIECE(l_junctions.frames, l->frame_count);
     PIECE(l_junctions.location, l->count);

@@ -292,13 +292,21 @@ static asj_status set_octaves(asj_context *context, const asj_junction_list *inp
     return ASJ_OK;
 }
 
-static void set_ends(const asj_junction_list *input, asj_l_junctions *all)
+/* What junctions say of branches: what is at their ends, and how well their directions are known. */
+static asj_status set_branches(asj_context *context, const asj_junction_list *input, asj_l_junctions *all)
 {
+    all->direction_sd = asj_allocate(&context->memory, 2 * (size_t)all->count, sizeof *all->direction_sd);
+    if (!all->direction_sd)
+        return no_memory(context);
     for (uint32_t i = 0; i < all->count; i++) {
         const asj_branch *branches = input->list[all->l[i].junction].branches;
-        all->lengths[2 * i].end = branches[all->l[i].branch_a].end;
-        all->lengths[2 * i + 1].end = branches[all->l[i].branch_b].end;
+        const asj_branch *both[2] = {&branches[all->l[i].branch_a], &branches[all->l[i].branch_b]};
+        for (uint32_t b = 0; b < 2; b++) {
+            all->lengths[2 * i + b].end = both[b]->end;
+            all->direction_sd[2 * i + b] = both[b]->angle_sd;
+        }
     }
+    return ASJ_OK;
 }
 
 /* A branch of the L-junctions of one location. */
@@ -426,7 +434,7 @@ asj_status asj_l_junctions_create(asj_context *context, const asj_match_options 
     if (status == ASJ_OK)
         status = make_frames(context, options, all);
     if (status == ASJ_OK)
-        set_ends(input, all);
+        status = set_branches(context, input, all);
     if (status == ASJ_OK)
         status = find_t_junctions(context, all);
     return status;
@@ -434,7 +442,7 @@ asj_status asj_l_junctions_create(asj_context *context, const asj_match_options 
 
 void asj_l_junctions_free(asj_memory *memory, asj_l_junctions *all)
 {
-    void *blocks[] = {all->l, all->lengths, all->direction, all->first_frame, all->frames, all->location,
+    void *blocks[] = {all->l, all->lengths, all->direction, all->direction_sd, all->first_frame, all->frames, all->location,
                       all->location_x, all->location_y, all->neighbour, all->neighbour_count,
                       all->first_of_location, all->l_of_location, all->octave, all->t_junction};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)

@@ -24,6 +24,7 @@ typedef struct asj_l_junctions {
     uint32_t count;
     asj_lengths *lengths;        /* [2 * i] of branch a, [2 * i + 1] of branch b */
     double *direction;           /* [4 * i]: unit vectors of branch a and of branch b */
+    float *direction_sd;         /* rad, [2 * i] of branch a, [2 * i + 1] of branch b: what the caller says, unchecked */
     uint32_t *first_frame;       /* frames of L-junction i: first_frame[i] .. first_frame[i + 1] - 1; own lengths come first */
     asj_affine_frame *frames;
     uint32_t frame_count;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Chosen candidates as the caller sees them. */
 #include "match_result.h"
+#include "common_direction.h"
 #include "geometry_candidate.h"
 #include "segments.h"
 #include "core/watch.h"
@@ -68,11 +69,32 @@ static int32_t find_end(const asj_match_run *run, const asj_around *around, cons
     return end.kind;
 }
 
+/* Turns branch a (0) or b (1), which ends there, to the direction that both images and the map give it. */
+static void turn(const asj_match_run *run, const asj_junction_match *m, int32_t branch, float from[2], float to[2])
+{
+    const double map[4] = {m->affine[0], m->affine[1], m->affine[3], m->affine[4]}, at1[2] = {(double)m->x1, (double)m->y1};
+    const double at2[2] = {(double)m->x2, (double)m->y2};
+    const double sd[2] = {(double)run->image[0]->l_junctions.direction_sd[2 * (size_t)m->l1 + (size_t)branch],
+                          (double)run->image[1]->l_junctions.direction_sd[2 * (size_t)m->l2 + (size_t)branch]};
+    double ends[2][2];
+    for (int32_t k = 0; k < 2; k++) {
+        ends[0][k] = (double)from[k] - at1[k];
+        ends[1][k] = (double)to[k] - at2[k];
+    }
+    asj_common_direction(map, sd, ends);
+    for (int32_t k = 0; k < 2; k++) {
+        from[k] = (float)(at1[k] + ends[0][k]);
+        to[k] = (float)(at2[k] + ends[1][k]);
+    }
+}
+
 static void fill_ends(const asj_match_run *run, const asj_around *around, asj_junction_match *m)
 {
     float from[4], to[4];
     m->end_a = find_end(run, around, m, 0, from, to);
     m->end_b = find_end(run, around, m, 1, from + 2, to + 2);
+    turn(run, m, 0, from, to);
+    turn(run, m, 1, from + 2, to + 2);
     m->ax1 = from[0];
     m->ay1 = from[1];
     m->bx1 = from[2];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The matcher on rendered rooms, whose geometry is known: how many of its key-point and segment matches show the same thing.
+/* The matcher on rendered rooms, whose geometry is known: how many of its key-point and segment matches show the same thing,
+ * and how many of the branches of its right key points point the same way.
  *
  *     match_room [--check] [--first N] [--last N] [--rooms] [--first-octave -1] [--sweep] [--threads N] [key=value ...]
  *
@@ -41,9 +42,9 @@ static double share(uint32_t right, uint32_t all)
 
 static void print(const char *name, const room_score *s)
 {
-    printf("%-24s %5u / %5u %5.1f %%  %5u / %5u %5.1f %%  %5u / %5u %5.1f %%\n", name, s->right_points, s->points,
-           share(s->right_points, s->points), s->right_segments, s->segments, share(s->right_segments, s->segments),
-           s->right_lines, s->lines, share(s->right_lines, s->lines));
+    printf("%-24s %5u / %5u %5.1f %%  %5u %5.1f %%  %5u / %5u %5.1f %%  %5u / %5u %5.1f %%\n", name, s->right_points, s->points,
+           share(s->right_points, s->points), s->right_directions, share(s->right_directions, s->segments), s->right_segments,
+           s->segments, share(s->right_segments, s->segments), s->right_lines, s->lines, share(s->right_lines, s->lines));
     fflush(stdout);
 }
 
@@ -53,6 +54,7 @@ static void add(room_score *sum, const room_score *s)
     sum->right_points += s->right_points;
     sum->segments += s->segments;
     sum->right_segments += s->right_segments;
+    sum->right_directions += s->right_directions;
     sum->lines += s->lines;
     sum->right_lines += s->right_lines;
 }
@@ -83,8 +85,9 @@ static int sample_room(const settings *set)
 {
     synth_room room;
     room_view a, b;
-    room_score sum = {0, 0, 0, 0, 0, 0};
+    room_score sum;
     double average = 0;
+    memset(&sum, 0, sizeof sum);
     if (synth_room_make(&room) != 0)
         return fail("no room");
     int result = look(set, &room, 0, 0, &a);
@@ -272,8 +275,8 @@ int main(int argc, char **argv)
     }
     if (asj_context_create(&how, &set.context) != ASJ_OK)
         return fail("no context") != 0;
-    printf("pair                     key points             segments               merged lines (right / all, %d x %d)\n",
-           ROOM_WIDTH, ROOM_HEIGHT);
+    printf("pair                     key points             directions      segments               merged lines "
+           "(right / all, %d x %d)\n", ROOM_WIDTH, ROOM_HEIGHT);
     const int result = set.sweep ? sweep(&set) : set.random ? random_rooms(&set) : sample_room(&set);
     asj_context_free(&set.context);
     return result == 0 ? 0 : 1;

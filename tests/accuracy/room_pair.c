@@ -2,6 +2,7 @@
 #include "room_pair.h"
 #include "render.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +10,8 @@
 #define AROUND 2.0  /* px */
 #define NEAR 4.0    /* px */
 #define NEAR_END 8.0 /* px */
+#define PART 20.0     /* px of a branch */
+#define LEAST_COSINE 0.984807753 /* of 10 degrees */
 
 static int fail(const char *what)
 {
@@ -58,6 +61,29 @@ int room_pair_right(const synth_room *room, const room_view *a, const room_view 
     return 0;
 }
 
+/* Does the branch that ends there, x and y in both views, point in the second one as the surface beside it says, within 2 px as
+ * above? */
+static int points_right(const synth_room *room, const room_view *a, const room_view *b, const asj_junction_match *m,
+                        const float end[4])
+{
+    const double dx = (double)end[0] - (double)m->x1, dy = (double)end[1] - (double)m->y1, length = hypot(dx, dy);
+    const double ux = (double)end[2] - (double)m->x2, uy = (double)end[3] - (double)m->y2;
+    const double part = length > PART ? PART / length : 1;
+    for (int32_t j = -2; j <= 2; j++)
+        for (int32_t i = -2; i <= 2; i++) {
+            synth_point p, q;
+            const double x = (double)m->x1 + i * AROUND / 2, y = (double)m->y1 + j * AROUND / 2;
+            if (i * i + j * j > 4 || !synth_room_transfer(room, &a->camera, x, y, &b->camera, &p) ||
+                !synth_room_transfer(room, &a->camera, x + part * dx, y + part * dy, &b->camera, &q))
+                continue;
+            const double vx = q.x - p.x, vy = q.y - p.y;
+            if (hypot(p.x - (double)m->x2, p.y - (double)m->y2) <= NEAR &&
+                vx * ux + vy * uy >= LEAST_COSINE * hypot(vx, vy) * hypot(ux, uy))
+                return 1;
+        }
+    return 0;
+}
+
 int room_pair_score(const synth_room *room, const room_view *a, const room_view *b, const asj_match_result *result, room_score *s)
 {
     for (uint32_t k = 0; k < result->match_count; k++) {
@@ -66,6 +92,9 @@ int room_pair_score(const synth_room *room, const room_view *a, const room_view 
         s->points++;
         s->right_points += (uint32_t)right;
         s->segments += 2;
+        const float ends[2][4] = {{m->ax1, m->ay1, m->ax2, m->ay2}, {m->bx1, m->by1, m->bx2, m->by2}};
+        for (int32_t n = 0; n < 2 && right; n++)
+            s->right_directions += (uint32_t)points_right(room, a, b, m, ends[n]);
         s->right_segments += (uint32_t)(right && room_pair_right(room, a, b, m->ax1, m->ay1, m->ax2, m->ay2, NEAR_END));
         s->right_segments += (uint32_t)(right && room_pair_right(room, a, b, m->bx1, m->by1, m->bx2, m->by2, NEAR_END));
     }

@@ -27,12 +27,14 @@ void room_view_free(room_view *view);
 typedef struct room_score {
     uint32_t points, right_points;     /* matches as key points */
     uint32_t segments, right_segments; /* two of each match: both ends */
+    uint32_t right_directions;         /* of as many branches */
     uint32_t lines, right_lines;       /* as asj_match_segments() merges them, ends at least `inner` */
 } room_score;
 
 /* A point match is right when the surface seen within 2 px of its place in the first view appears within `near` px of its place in
  * the second: corners lie on borders of surfaces, and a border seen from elsewhere may hide what lies behind it, so the exact
- * place alone would judge the background. Locations: 4 px; far ends of segments: 8 px. 0, or -1 (memory). */
+ * place alone would judge the background. Locations: 4 px; far ends of segments: 8 px; directions of branches of matches that are
+ * right: 10 degrees, of their first 20 px. 0, or -1 (memory). */
 int room_pair_score(const synth_room *room, const room_view *a, const room_view *b, const asj_match_result *result, room_score *s);
 
 /* One place of it; tests and pictures of what is wrong. */
