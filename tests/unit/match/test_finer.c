@@ -405,24 +405,46 @@ static void hostile_bytes(void **state)
 }
 
 /* Every allocation once, each in a run of its own; the library may do without one, and then there is a result. */
+enum { PART = 110 }; /* px */
+
+/* The junctions left of x. */
+static asj_junction *left_part(const asj_detection *detection, float x, uint32_t *count)
+{
+    asj_junction *list = calloc(detection->junction_count, sizeof *list);
+    assert_non_null(list);
+    *count = 0;
+    for (uint32_t n = 0; n < detection->junction_count; n++)
+        if (detection->junctions[n].x < x)
+            list[(*count)++] = detection->junctions[n];
+    return list;
+}
+
+/* Of a part of the images, which is enough for the enlarged ones to hold: each allocation fails once. */
 static void out_of_memory(void **state)
 {
     (void)state;
-    int reached = 1;
+    int reached = 1, enlarged = 0;
+    uint32_t counts[2];
+    asj_junction *part[2];
+    for (int32_t side = 0; side < 2; side++)
+        part[side] = left_part(views[side].finer, PART, &counts[side]);
     for (long n = 1; n < 2000 && reached; n++) {
         unit_counter counter = {0, 0, 0, 0};
         asj_context *poor = unit_context(&counter, 1);
         asj_match_result *result = NULL;
         counter.fail_at = counter.calls + n;
-        const asj_status status = asj_match(poor, &views[0].image, views[0].finer->junctions, views[0].finer->junction_count,
-                                            &views[1].image, views[1].finer->junctions, views[1].finer->junction_count, NULL,
+        const asj_status status = asj_match(poor, &views[0].image, part[0], counts[0], &views[1].image, part[1], counts[1], NULL,
                                             &result);
         reached = unit_reached(&counter);
         assert_true(status == ASJ_OK ? result != NULL : reached && status == ASJ_ERROR_MEMORY && result == NULL);
+        enlarged = status == ASJ_OK && result->enlarged;
         asj_match_result_free(&result);
         unit_context_free(&counter, &poor);
     }
     assert_false(reached);
+    assert_true(enlarged);
+    free(part[0]);
+    free(part[1]);
 }
 
 int main(void)

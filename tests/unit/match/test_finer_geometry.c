@@ -327,13 +327,18 @@ static void planes_at_odds_have_no_pose(void **state)
 /* From each allocation on there is no memory: the result, whole or changed in part, is there to be freed, and nothing leaks. */
 static void poses_at_odds_without_memory(void **state)
 {
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *found[2] = {match(context, 0, 1), match(context, 1, 1)};
     uint32_t failed = 0;
     int reached = 1;
+    change_pose(found[0], 3 + 5 * hypot(sd_of_rotation(found[0]), sd_of_rotation(found[1])), 1);
     for (long n = 1; reached; n++) {
         unit_counter counter = {0};
         asj_context *poor = unit_context(&counter, 1);
-        asj_match_result *own = match(poor, 0, 1), *finer = match(poor, 1, 1);
-        change_pose(own, 3 + 5 * hypot(sd_of_rotation(own), sd_of_rotation(finer)), 1);
+        asj_match_result *own = match(poor, 0, 0), *finer = match(poor, 1, 0);
+        own->geometry = found[0]->geometry;
+        finer->geometry = found[1]->geometry;
+        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_DISPUTED);
         counter.fail_at = counter.calls + n;
         counter.for_good = 1;
         const asj_status status = asj_finer_choose(poor, &own, &finer, 0);
@@ -345,7 +350,8 @@ static void poses_at_odds_without_memory(void **state)
         unit_context_free(&counter, &poor);
     }
     assert_true(failed > 0);
-    (void)state;
+    asj_match_result_free(&found[0]);
+    asj_match_result_free(&found[1]);
 }
 
 /* The other way along the same line, where the covariance says nothing: of 40 directions rounding leaves some a variance of 0 or
