@@ -49,7 +49,8 @@ typedef struct asj_match_options {
                                   * 0 .. 64; 0.14; paper 0 */
     /* short list, and alignment of its pairs */
     int32_t shortlist;           /* best candidates kept for each L-junction of either image. 1 .. 32; 4; paper 16 */
-    int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map; 0 = none. 0 .. 30; 6; paper 0 */
+    int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map, twice as many in enlarged images; 0 = none.
+                                  * 0 .. 30; 6; paper 0 */
     double align_radius;         /* px: radius of the disc around the junction that is aligned. 8 .. 64; 20 */
     double max_move;             /* px an alignment may move the junction. 0.5 .. 20; 8 */
     /* support by neighbouring candidates */
