@@ -49,7 +49,8 @@ typedef struct asj_match_options {
                                   * 0 .. 64; 0.14; paper 0 */
     /* short list, and alignment of its pairs */
     int32_t shortlist;           /* best candidates kept for each L-junction of either image. 1 .. 32; 4; paper 16 */
-    int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map, twice as many in enlarged images; 0 = none.
+    int32_t align_iterations;    /* Gauss-Newton steps for the pair's own map, twice as many with junctions of octave -1, but for
+                                  * candidates of a geometry; 0 = none.
                                   * 0 .. 30; 6; paper 0 */
     double align_radius;         /* px: radius of the disc around the junction that is aligned. 8 .. 64; 20 */
     double max_move;             /* px an alignment may move the junction. 0.5 .. 20; 8 */
@@ -113,9 +114,10 @@ typedef struct asj_junction_match {
     double affine[6];       /* h11 h12 h13 h21 h22 h23: x2 = h11 x1 + h12 y1 + h13, y2 = h21 x1 + h22 y1 + h23 */
     float x1, y1;           /* px: junction in image 1, as detected */
     float x2, y2;           /* px: where the aligned map puts it in image 2; as detected when it was not aligned */
-    float ax1, ay1, bx1, by1; /* ends of the parts of both branches that correspond, image 1. Each as far from the junction as
-                               * found, in the direction that both branches, each as well as it is known (angle_sd), and the
-                               * map give together; as detected when one of the two is not known (0) */
+    float ax1, ay1, bx1, by1; /* ends of the parts of both branches that correspond, image 1. Each as far along the branch as
+                               * found, seen from (x1, y1) and (x2, y2) in the direction that both branches, each as well as it
+                               * is known (angle_sd), and the map give together: a little off its junction's own, it may lie
+                               * outside the image. On the branch as detected when one of the two is not known (not above 0) */
     float ax2, ay2, bx2, by2; /* image 2 */
     int32_t end_a, end_b;   /* ASJ_END_... */
     float distance;         /* of the patches; see compare.c. The smaller the better */
@@ -247,8 +249,8 @@ typedef struct asj_segment_match {
 } asj_segment_match;
 
 /* The matches as line-segment matches: the two branches of each match, then the other branches of the same two junctions that
- * the map takes to each other; those whose far ends correspond at least as `minimum_end` says (ASJ_END_...); what is at the ends of
- * those other branches is not asked. A pair found from both its ends comes once. Writes at most `capacity` of them and returns how
+ * the map takes to each other, in their directions as detected; those whose far ends correspond at least as `minimum_end` says
+ * (ASJ_END_...); what is at the ends of those other branches is not asked. A pair found from both its ends comes once. Writes at most `capacity` of them and returns how
  * many there are in all (ASJ_MAX_BRANCHES x match_count at most). Time: proportional to the matches (20 000 of two branches: 40 ms,
  * 10 000 of three: .2 s); for a result that the caller has put together or copied, to their square (20 000 of two: 4 s). */
 ASJ_API size_t asj_match_segments(const asj_match_result *result, int32_t minimum_end,

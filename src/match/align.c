@@ -237,6 +237,12 @@ static asj_status align_groups(asj_match_run *run, size_t first, const grouping 
     return asj_watch_end(&watch);
 }
 
+int32_t asj_align_steps(const asj_match_run *run)
+{
+    const int32_t enlarged = run->image[0]->l_junctions.enlarged || run->image[1]->l_junctions.enlarged;
+    return run->options->align_iterations * (enlarged && !run->for_geometry ? ENLARGED_STEPS : 1);
+}
+
 asj_status asj_align_candidates(asj_match_run *run, size_t first)
 {
     asj_memory *memory = &run->context->memory;
@@ -249,8 +255,7 @@ asj_status asj_align_candidates(asj_match_run *run, size_t first)
     if (!g.start || !g.order || !g.group || !disc) {
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory to align %zu candidates", count);
     } else {
-        const int32_t more = !run->for_geometry && (run->image[0]->l_junctions.enlarged || run->image[1]->l_junctions.enlarged);
-        const asj_aligner aligner = {disc, run->options->align_iterations * (more ? ENLARGED_STEPS : 1), run->options->max_move};
+        const asj_aligner aligner = {disc, asj_align_steps(run), run->options->max_move};
         asj_disc_create(run->options->align_radius, disc);
         group_by_template(run, first, &g);
         status = align_groups(run, first, &g, &aligner);

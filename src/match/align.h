@@ -29,6 +29,9 @@ typedef struct asj_aligner {
 /* Aligns `source` with the template, starting from the pose given. */
 asj_alignment asj_align(const asj_aligner *aligner, const asj_template *t, const asj_pyramid *source, const asj_disc_pose *start);
 
+/* Steps for the candidates of this run. */
+int32_t asj_align_steps(const asj_match_run *run);
+
 /* Aligns every candidate from `first` on (sorted or not): updates map, move1, move2, similarity and distance2, and drops those
  * whose discs do not look alike. */
 asj_status asj_align_candidates(asj_match_run *run, size_t first);

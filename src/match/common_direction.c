@@ -3,20 +3,20 @@
  *
  * A branch of ten pixels knows its direction to some degrees, and the aligned map (align.c) says which direction in the other image
  * that is. So the directions theta_1 and theta_2, measured with variances v_1 and v_2, and the map f with variance v_f are three
- * measurements of two directions phi_1 and phi_2. The weighted least squares of
+ * measurements of two directions phi_1 and phi_2. The sum
  *     (phi_1 - theta_1)^2 / v_1 + (phi_2 - theta_2)^2 / v_2 + (phi_2 - f(phi_1))^2 / v_f
- * are, with the residual w = theta_2 - f(theta_1), t = d phi_2 / d phi_1 under the map and V = t^2 v_1 + v_2 + v_f,
+ * is least, with w = theta_2 - f(theta_1), t = d phi_2 / d phi_1 under the map and V = t^2 v_1 + v_2 + v_f, where f is linear, at
  *     phi_1 = theta_1 + w t v_1 / V,     phi_2 = theta_2 - w v_2 / V:
  * each direction goes its share of the way to where the other one is mapped, t^2 v_1 / V and v_2 / V. The way is taken on the chord
  * between the unit vectors, in one step: what is far apart comes nearer, if not to the least of the sum. A long branch, known to a
  * tenth of a degree, stays where it is and shows a short one its direction.
  *
- * For a map A, t is |det A| |u|^2 / |A u|^2 in direction u. Mean of t in both branches' directions, the geometric one, and v_f = t
- * MAP_SD^2: so swapping the images swaps the result.
+ * For a map A, |t| is |det A| |u|^2 / |A u|^2 in direction u. Mean of t in both branches' directions, the geometric one, and
+ * v_f = t MAP_SD^2: so swapping both sides swaps the result.
  *
  * Of the branches of right matches in rendered rooms (tests/accuracy/match_room --rooms --last 40; --first-octave -1 --last 24)
- * 98.6 % (98.5) point where the surface says, within 10 degrees, for 97.4 % (97.0) as detected; with MAP_SD half or twice as large
- * as many.
+ * 98.6 % (98.5) point where the surface says, within 10 degrees, for 97.4 % (97.0) as detected, and as many with MAP_SD half or
+ * twice as large.
  *
  * Ours; the paper takes both branches as detected. */
 #include "common_direction.h"
@@ -55,19 +55,20 @@ static void turn(double branch[2], double length, const double to[2], double to_
     branch[1] = length * mean[1] / norm;
 }
 
-void asj_common_direction(const double map[4], const double sd[2], double branch[2][2])
+int32_t asj_common_direction(const double map[4], const double sd[2], double branch[2][2])
 {
     double back[4], mapped[2][2]; /* each branch in the other image */
     if (!is_known(sd[0]) || !is_known(sd[1]) || !asj_affine_invert(map, back))
-        return;
+        return 0;
     apply(back, branch[1], mapped[0]);
     apply(map, branch[0], mapped[1]);
     const double length[2] = {length_of(branch[0]), length_of(branch[1])};
     const double across[2] = {length_of(mapped[0]), length_of(mapped[1])};
     if (!(length[0] > 0 && length[1] > 0 && across[0] > 0 && across[1] > 0))
-        return;
+        return 0;
     const double t = fabs(map[0] * map[3] - map[1] * map[2]) * (across[0] / length[1]) * (length[0] / across[1]);
     const double v1 = t * t * sd[0] * sd[0], v2 = sd[1] * sd[1], all = v1 + v2 + t * MAP_SD * MAP_SD;
     turn(branch[0], length[0], mapped[0], across[0], v1 / all);
     turn(branch[1], length[1], mapped[1], across[1], v2 / all);
+    return 1;
 }

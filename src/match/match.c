@@ -22,7 +22,8 @@
  *   two_view.c       the geometry of the pair, when asked for: candidates once more, a longer list (prior.c, colour_prior.c,
  *                    ../geometry/)
  *   verdict.c        where one is accepted: which matches go, and which come; then guests.c and same_corner.c once more
- *   match_result.c   what the caller sees; segments.c: which ends of the branches correspond; common_direction.c: where to
+ *   match_result.c   what the caller sees; segments.c: which ends of the branches correspond; common_direction.c:
+ *                    where they point
  *
  * All of this once, and where there are junctions of octave -1 once more with them in the enlarged images: finer.c decides.
  *

@@ -56,7 +56,7 @@ static const asj_option_info rows[] = {
     INTEGER(SHORTLIST, ADVANCED, shortlist, "", 1, 32, 4, 16, 4, "best candidates kept for each L-junction of either image"),
 
     INTEGER(ALIGNMENT, ADVANCED, align_iterations, "", 0, 30, 6, 0, 6,
-            "steps that refine the affine map of a candidate on the images, twice as many in enlarged ones; 0 = none"),
+            "steps that refine the affine map of a candidate on the images, twice as many with junctions of octave -1; 0 = none"),
     NUMBER(ALIGNMENT, ADVANCED, align_radius, "px", 8, 64, 20, 20, 20, "radius of the disc that is aligned"),
     NUMBER(ALIGNMENT, ADVANCED, max_move, "px", 0.5, 20, 8, 8, 8, "farthest that the alignment may move a junction"),
 

@@ -77,7 +77,7 @@ static int points_right(const synth_room *room, const room_view *a, const room_v
                 !synth_room_transfer(room, &a->camera, x + part * dx, y + part * dy, &b->camera, &q))
                 continue;
             const double vx = q.x - p.x, vy = q.y - p.y;
-            if (hypot(p.x - (double)m->x2, p.y - (double)m->y2) <= NEAR &&
+            if (hypot(p.x - (double)m->x2, p.y - (double)m->y2) <= NEAR && hypot(vx, vy) > 0 && hypot(ux, uy) > 0 &&
                 vx * ux + vy * uy >= LEAST_COSINE * hypot(vx, vy) * hypot(ux, uy))
                 return 1;
         }

@@ -88,7 +88,7 @@ static void test_least_squares(void **state)
         sighting s = before;
         double least[2];
         search(&before, least);
-        asj_common_direction(s.map, s.sd, s.branch);
+        assert_int_equal(asj_common_direction(s.map, s.sd, s.branch), 1);
         for (int side = 0; side < 2; side++) {
             unit_near("turn", n, side, turned(before.branch[side], s.branch[side]), least[side], 0.02 * fabs(wrong));
             unit_near("length", n, side, hypot(s.branch[side][0], s.branch[side][1]),
@@ -156,7 +156,7 @@ static void test_unknown(void **state)
         sighting s = make((int32_t)n + 1, 0.3);
         const sighting before = s;
         s.sd[n % 2] = bad[n / 2];
-        asj_common_direction(s.map, s.sd, s.branch);
+        assert_int_equal(asj_common_direction(s.map, s.sd, s.branch), 0);
         assert_memory_equal(s.branch, before.branch, sizeof s.branch);
     }
     for (int n = 0; n < 3; n++) {
@@ -166,7 +166,7 @@ static void test_unknown(void **state)
         else
             memcpy(s.map, no_map, sizeof no_map);
         const sighting before = s;
-        asj_common_direction(s.map, s.sd, s.branch);
+        assert_int_equal(asj_common_direction(s.map, s.sd, s.branch), 0);
         assert_memory_equal(s.branch, before.branch, sizeof s.branch);
     }
 }
