@@ -114,10 +114,10 @@ typedef struct asj_junction_match {
     double affine[6];       /* h11 h12 h13 h21 h22 h23: x2 = h11 x1 + h12 y1 + h13, y2 = h21 x1 + h22 y1 + h23 */
     float x1, y1;           /* px: junction in image 1, as detected */
     float x2, y2;           /* px: where the aligned map puts it in image 2; as detected when it was not aligned */
-    float ax1, ay1, bx1, by1; /* ends of the parts of both branches that correspond, image 1. Each as far along the branch as
-                               * found, seen from (x1, y1) and (x2, y2) in the direction that both branches, each as well as it
-                               * is known (angle_sd), and the map give together: a little off its junction's own, it may lie
-                               * outside the image. On the branch as detected when one of the two is not known (not above 0) */
+    float ax1, ay1, bx1, by1; /* ends of the parts of both branches that correspond, image 1. Each as far from (x1, y1) or (x2, y2)
+                               * as found, in the direction that both, each as well as its branch's is known (angle_sd), and the
+                               * map give together: a little off the branch, it may lie outside the image. On the branch as
+                               * detected when one of the two is not known (not above 0) */
     float ax2, ay2, bx2, by2; /* image 2 */
     int32_t end_a, end_b;   /* ASJ_END_... */
     float distance;         /* of the patches; see compare.c. The smaller the better */

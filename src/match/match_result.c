@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_REST 1.0 /* px: of a branch beyond the location, where that lies behind its end */
+#define LEAST_ALONG 0.9 /* cosine of 26 degrees: between a branch as detected and as seen from the match's location */
 
 /* Where the aligned map puts the junction of image 1. When image 1 was the one that moved, the map takes its moved
  * location to the other's: q = p2 - A (p1 + move - p1). */
@@ -47,61 +47,51 @@ static void fill(const asj_match_run *run, const asj_choice *choice, asj_junctio
     m->probability = choice->probability;
 }
 
-/* The two branches, both as detected, and how well their directions are known; 0 = not, or nothing else is known of them. */
-static asj_matched_branch line_of(const asj_match_run *run, const asj_junction_match *m, int32_t branch, double sd[2])
-{
-    const uint32_t l[2] = {m->l1, m->l2};
-    const int32_t aligned = run->options->align_iterations > 0; /* else the map is that of the branches themselves */
-    asj_matched_branch line = {.match = m};
-    for (int32_t side = 0; side < 2; side++) {
-        const asj_l_junctions *in = &run->image[side]->l_junctions;
-        const double *u = in->direction + 4 * (size_t)l[side] + 2 * branch;
-        line.x[side] = (double)in->l[l[side]].x;
-        line.y[side] = (double)in->l[l[side]].y;
-        line.ux[side] = u[0];
-        line.uy[side] = u[1];
-        sd[side] = aligned ? (double)in->direction_sd[2 * (size_t)l[side] + (size_t)branch] : 0;
-    }
-    return line;
-}
-
-/* Where branches end, in both images: on their lines as detected, or where these are turned to what both images and the map say, as
- * far along them, seen from the locations of the match. */
-static void put_ends(const asj_junction_match *m, const asj_matched_branch *line, const double length[2], const double sd[2],
-                     float from[2], float to[2])
-{
-    const double map[4] = {m->affine[0], m->affine[1], m->affine[3], m->affine[4]};
-    const double at[2][2] = {{(double)m->x1, (double)m->y1}, {(double)m->x2, (double)m->y2}};
-    double branch[2][2], end[2][2];
-    for (int32_t side = 0; side < 2; side++) {
-        const double ahead = (at[side][0] - line->x[side]) * line->ux[side] + (at[side][1] - line->y[side]) * line->uy[side];
-        const double rest = length[side] > 0 ? fmax(length[side] - ahead, LEAST_REST) : 0;
-        branch[side][0] = rest * line->ux[side];
-        branch[side][1] = rest * line->uy[side];
-        end[side][0] = line->x[side] + length[side] * line->ux[side];
-        end[side][1] = line->y[side] + length[side] * line->uy[side];
-    }
-    if (asj_common_direction(map, sd, branch))
-        for (int32_t side = 0; side < 2; side++)
-            for (int32_t k = 0; k < 2; k++)
-                end[side][k] = at[side][k] + branch[side][k];
-    for (int32_t k = 0; k < 2; k++) {
-        from[k] = (float)end[0][k];
-        to[k] = (float)end[1][k];
-    }
-}
-
 /* The end of branch a (0) or b (1) that both images show, at `from` (x, y) in image 1 and `to` in image 2. Returns its kind. */
 static int32_t find_end(const asj_match_run *run, const asj_around *around, const asj_junction_match *m, int32_t branch,
                         float from[2], float to[2])
 {
-    const asj_lengths *lengths[2] = {&run->image[0]->l_junctions.lengths[2 * (size_t)m->l1 + (size_t)branch],
-                                     &run->image[1]->l_junctions.lengths[2 * (size_t)m->l2 + (size_t)branch]};
-    double sd[2];
-    const asj_matched_branch line = line_of(run, m, branch, sd);
+    const asj_l_junctions *in[2] = {&run->image[0]->l_junctions, &run->image[1]->l_junctions};
+    const uint32_t l[2] = {m->l1, m->l2};
+    const asj_lengths *lengths[2];
+    asj_matched_branch line = {.match = m};
+    for (int32_t side = 0; side < 2; side++) {
+        const double *u = in[side]->direction + 4 * (size_t)l[side] + 2 * branch;
+        lengths[side] = &in[side]->lengths[2 * (size_t)l[side] + (size_t)branch];
+        line.x[side] = (double)in[side]->l[l[side]].x;
+        line.y[side] = (double)in[side]->l[l[side]].y;
+        line.ux[side] = u[0];
+        line.uy[side] = u[1];
+    }
     const asj_common_end end = asj_find_common_end(around, &line, lengths, run->options->end_tolerance);
-    put_ends(m, &line, end.length, sd, from, to);
+    from[0] = (float)(line.x[0] + end.length[0] * line.ux[0]);
+    from[1] = (float)(line.y[0] + end.length[0] * line.uy[0]);
+    to[0] = (float)(line.x[1] + end.length[1] * line.ux[1]);
+    to[1] = (float)(line.y[1] + end.length[1] * line.uy[1]);
     return end.kind;
+}
+
+/* Turns branch a (0) or b (1), which ends there, to the direction that both images and the map give it, seen from the match's
+ * locations: in image 2 the aligned one, from where the end of the edge as detected is the end that is seen. */
+static void turn(const asj_match_run *run, const asj_junction_match *m, int32_t branch, float from[2], float to[2])
+{
+    const double map[4] = {m->affine[0], m->affine[1], m->affine[3], m->affine[4]}, at1[2] = {(double)m->x1, (double)m->y1};
+    const double at2[2] = {(double)m->x2, (double)m->y2};
+    const double sd[2] = {(double)run->image[0]->l_junctions.direction_sd[2 * (size_t)m->l1 + (size_t)branch],
+                          (double)run->image[1]->l_junctions.direction_sd[2 * (size_t)m->l2 + (size_t)branch]};
+    double ends[2][2];
+    for (int32_t k = 0; k < 2; k++) {
+        ends[0][k] = (double)from[k] - at1[k];
+        ends[1][k] = (double)to[k] - at2[k];
+    }
+    const double *u = run->image[1]->l_junctions.direction + 4 * (size_t)m->l2 + 2 * branch;
+    if (ends[1][0] * u[0] + ends[1][1] * u[1] < LEAST_ALONG * sqrt(ends[1][0] * ends[1][0] + ends[1][1] * ends[1][1]) ||
+        !asj_common_direction(map, sd, ends))
+        return; /* or the location is as far off the line as the end is away */
+    for (int32_t k = 0; k < 2; k++) {
+        from[k] = (float)(at1[k] + ends[0][k]);
+        to[k] = (float)(at2[k] + ends[1][k]);
+    }
 }
 
 static void fill_ends(const asj_match_run *run, const asj_around *around, asj_junction_match *m)
@@ -109,6 +99,8 @@ static void fill_ends(const asj_match_run *run, const asj_around *around, asj_ju
     float from[4], to[4];
     m->end_a = find_end(run, around, m, 0, from, to);
     m->end_b = find_end(run, around, m, 1, from + 2, to + 2);
+    turn(run, m, 0, from, to);
+    turn(run, m, 1, from + 2, to + 2);
     m->ax1 = from[0];
     m->ay1 = from[1];
     m->bx1 = from[2];
