@@ -97,9 +97,10 @@ build_and_test() {
     build "$folder_wanted" "$@" && run_tests "$folder_wanted" $tests_wanted
 }
 
-# What other builds leave out: suites that take minutes and whose results the goldens stand for.
-sanitized='--no-suite accuracy --no-suite experiments --no-suite long --no-suite benchmark'
-quick="$sanitized --no-suite enlarged"
+# What builds for another purpose leave out: suites that take minutes and whose results the goldens stand for. The sanitizers still
+# look at enlarged images.
+brief='--no-suite accuracy --no-suite experiments --no-suite long --no-suite benchmark'
+quick="$brief --no-suite enlarged"
 
 # The core alone: no library but libc and libm (the compiler's own run-time library may show up too). Without the accuracy suite:
 # the goldens show that its results are those of the whole build.
@@ -126,7 +127,7 @@ with_clang() {
 with_sanitizers() {
     ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}use_sigaltstack=0
     export ASAN_OPTIONS
-    build_and_test build-sanitize "$sanitized --no-suite fails --no-suite device-images --timeout-multiplier 4" \
+    build_and_test build-sanitize "$brief --no-suite fails --no-suite device-images --timeout-multiplier 4" \
         -Dauto_features=enabled --buildtype=debugoptimized -Db_sanitize=address,undefined -Dc_args=-fno-sanitize-recover=undefined \
         -Dcpp_args=-fno-sanitize-recover=undefined &&
         logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2

@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_ALONG 0.9 /* cosine of 26 degrees: between a branch as detected and as seen from the match's location */
+#define LEAST_ALONG 0.9 /* cosine of 26 degrees, which a branch seen from the match's location may be off its own direction: a
+                         * location half as far off the line as the end is away says nothing of that */
 
 /* Where the aligned map puts the junction of image 1. When image 1 was the one that moved, the map takes its moved
  * location to the other's: q = p2 - A (p1 + move - p1). */
@@ -87,7 +88,7 @@ static void turn(const asj_match_run *run, const asj_junction_match *m, int32_t 
     const double *u = run->image[1]->l_junctions.direction + 4 * (size_t)m->l2 + 2 * branch;
     if (ends[1][0] * u[0] + ends[1][1] * u[1] < LEAST_ALONG * sqrt(ends[1][0] * ends[1][0] + ends[1][1] * ends[1][1]) ||
         !asj_common_direction(map, sd, ends))
-        return; /* or the location is as far off the line as the end is away */
+        return;
     for (int32_t k = 0; k < 2; k++) {
         from[k] = (float)(at1[k] + ends[0][k]);
         to[k] = (float)(at2[k] + ends[1][k]);

@@ -10,7 +10,7 @@
 #define AROUND 2.0  /* px */
 #define NEAR 4.0    /* px */
 #define NEAR_END 8.0 /* px */
-#define PART 20.0     /* px of a branch */
+#define PART 20.0    /* px of a branch */
 #define LEAST_COSINE 0.984807753 /* of 10 degrees */
 
 static int fail(const char *what)

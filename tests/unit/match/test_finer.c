@@ -404,7 +404,6 @@ static void hostile_bytes(void **state)
     asj_features_free(&features);
 }
 
-/* Every allocation once, each in a run of its own; the library may do without one, and then there is a result. */
 enum { PART = 110 }; /* px */
 
 /* The junctions left of x. */
@@ -419,7 +418,8 @@ static asj_junction *left_part(const asj_detection *detection, float x, uint32_t
     return list;
 }
 
-/* Of a part of the images, which is enough for the enlarged ones to hold: each allocation fails once. */
+/* Every allocation once, each in a run of its own; the library may do without one, and then there is a result. Of a part of the
+ * images, which is enough for the enlarged ones to hold. */
 static void out_of_memory(void **state)
 {
     (void)state;

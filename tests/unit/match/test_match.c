@@ -189,6 +189,38 @@ static void branches_point_where_both_images_say(void **state)
     free(b.pixels);
 }
 
+/* Branches so short that the corner, once aligned, lies half as far off their line as they are long: they stay as detected. */
+static void short_branches_stay_where_the_corner_moved(void **state)
+{
+    static const float length = 6, moved = 4;
+    asj_context *context = ((unit_fixture *)*state)->context;
+    scene a, b;
+    scene_make(identity, 1, &a);
+    scene_make(oblique, 1, &b);
+    for (size_t n = 0; n < CORNERS; n++) {
+        for (int32_t k = 0; k < 2; k++) {
+            a.junctions[n].branches[k].length = b.junctions[n].branches[k].length = length;
+            a.junctions[n].branches[k].angle_sd = 0.3f;
+            b.junctions[n].branches[k].angle_sd = 0.002f;
+        }
+        b.junctions[n].y += moved; /* across branch a */
+    }
+    asj_match_result *r = match(context, &a, &b, NULL);
+    uint32_t aligned = 0;
+    for (uint32_t n = 0; n < r->match_count; n++) {
+        const asj_junction_match *m = &r->matches[n];
+        if (fabsf(m->y2 - b.junctions[m->junction2].y) < 3.5f)
+            continue;
+        aligned++;
+        const double a1 = direction(m->x1, m->y1, m->ax1, m->ay1), own = (double)a.junctions[m->junction1].branches[0].angle;
+        unit_near("a1", n, 0, unit_turn(a1, own), 0, 1e-4);
+    }
+    assert_true(aligned >= 5);
+    asj_match_result_free(&r);
+    free(a.pixels);
+    free(b.pixels);
+}
+
 static void paper_preset_and_sift_work_too(void **state)
 {
     const unit_fixture *fixture = *state;
@@ -528,6 +560,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finds_the_corners_of_an_oblique_copy),
         cmocka_unit_test(branches_point_where_both_images_say),
+        cmocka_unit_test(short_branches_stay_where_the_corner_moved),
         cmocka_unit_test(paper_preset_and_sift_work_too),
         cmocka_unit_test(corners_of_several_octaves_match_once),
         cmocka_unit_test(a_wrong_picture_gives_nothing),
