@@ -9,10 +9,11 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
 strict='-Wall -Wextra -Wpedantic -Wconversion -Wundef -Werror'
 
-install_into() { # NAME OPTION...
+install_into() { # NAME OPTION...: not optimized, since it runs for seconds only
     prefix=$work/$1
     shift
-    meson setup "$work/build" "$root" --prefix="$prefix" --libdir=lib -Dio=enabled -Dcli=enabled -Dtests=disabled "$@"
+    meson setup "$work/build" "$root" --prefix="$prefix" --libdir=lib -Dio=enabled -Dcli=enabled -Dtests=disabled \
+        -Doptimization=0 "$@"
     meson install -C "$work/build"
     rm -rf "$work/build"
 }
@@ -64,7 +65,7 @@ subproject() {
     ln -s "$root" "$work/user/subprojects/asj"
     cat > "$work/user/meson.build" << 'END'
 project('user', 'c')
-asj = dependency('asj', static: true, fallback: 'asj', default_options: ['io=disabled', 'tests=disabled'])
+asj = dependency('asj', static: true, fallback: 'asj', default_options: ['io=disabled', 'tests=disabled', 'optimization=0'])
 executable('core', 'core.c', dependencies: asj)
 END
     { meson setup "$work/user/build" "$work/user" --force-fallback-for=asj && meson compile -C "$work/user/build"; } \

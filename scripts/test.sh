@@ -14,7 +14,7 @@ usage: sh scripts/test.sh [--all]
 Installs what is missing (apt-get), builds everything in build-test/ and runs all tests.
 --all, or CI=true in the environment, takes warnings as errors, and also checks the style of the sources, builds with clang, runs
 the tests under the address and undefined-behaviour sanitizers and in builds with fewer parts, a few programs under the thread and
-the memory sanitizer, a minute of each fuzzer, runs the tests of the core for 64-bit ARM under emulation, compares results with
+the memory sanitizer, half a minute of each fuzzer, runs the tests of the core for 64-bit ARM under emulation, compares results with
 those of other machines, and uses an installed library from other programs.
 Exit code: 0 everything passed, 1 something failed, 2 wrong usage, 3 packages are missing and cannot be installed here.
 END
@@ -97,10 +97,8 @@ build_and_test() {
     build "$folder_wanted" "$@" && run_tests "$folder_wanted" $tests_wanted
 }
 
-# What builds for another purpose leave out: suites that take minutes and whose results the goldens stand for. The sanitizers still
-# look at enlarged images.
-brief='--no-suite accuracy --no-suite experiments --no-suite long --no-suite benchmark'
-quick="$brief --no-suite enlarged"
+# What builds for another purpose leave out: suites that take minutes and whose results the goldens stand for.
+quick='--no-suite accuracy --no-suite experiments --no-suite long --no-suite benchmark --no-suite enlarged'
 
 # The core alone: no library but libc and libm (the compiler's own run-time library may show up too). Without the accuracy suite:
 # the goldens show that its results are those of the whole build.
@@ -120,16 +118,17 @@ with_clang() {
         -Dauto_features=enabled --werror
 }
 
-# Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code. Without the tests that must
-# fail, which need no sanitizer, without whole images on devices, and without the benchmarks. On alternative signal stacks: LLVM, in
-# PoCL, gives the thread that starts it one of its own where the sanitizer's is smaller, which depends on the processor, and when
-# the thread ends the sanitizer unmaps that in place of its own and fails.
+# Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code. Of enlarged images one test.
+# Without the tests that must fail, which need no sanitizer, without whole images on devices, and without the benchmarks. On
+# alternative signal stacks: LLVM, in PoCL, gives the thread that starts it one of its own where the sanitizer's is smaller, which
+# depends on the processor, and when the thread ends the sanitizer unmaps that in place of its own and fails.
 with_sanitizers() {
     ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}use_sigaltstack=0
     export ASAN_OPTIONS
-    build_and_test build-sanitize "$brief --no-suite fails --no-suite device-images --timeout-multiplier 4" \
+    build_and_test build-sanitize "$quick --no-suite fails --no-suite device-images --timeout-multiplier 4" \
         -Dauto_features=enabled --buildtype=debugoptimized -Db_sanitize=address,undefined -Dc_args=-fno-sanitize-recover=undefined \
         -Dcpp_args=-fno-sanitize-recover=undefined &&
+        run_tests build-sanitize --timeout-multiplier 4 finer &&
         logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2
 }
 
@@ -178,7 +177,7 @@ on_machines() {
 
 more_checks() {
     step style sh "$root/scripts/style.sh"
-    step fuzzers-begin start_fuzzers 60 # beside all that follows
+    step fuzzers-begin start_fuzzers 30 # beside all that follows
     step python python_package
     step sanitizers with_sanitizers
     step fewer-parts fewer_parts
