@@ -246,6 +246,7 @@ typedef struct asj_segment_match {
     int32_t end;              /* ASJ_END_... of the far end */
     float x1, y1, ex1, ey1;   /* image 1: the junction's end, the far end */
     float x2, y2, ex2, ey2;   /* image 2 */
+    int32_t branch1, branch2; /* which branches of the match's junction1 and junction2; -1: its l1 or l2 has no L-junction */
 } asj_segment_match;
 
 /* The matches as line-segment matches: the two branches of each match, then the other branches of the same two junctions that

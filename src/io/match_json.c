@@ -121,9 +121,10 @@ static json_t *match_value(const asj_junction_match *m, int geometry)
 
 static json_t *segment_value(const asj_segment_match *s)
 {
-    return json_pack("{s:I, s:s, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "match", (json_int_t)s->match, "end", end_name(s->end),
-                     "x1", (double)s->x1, "y1", (double)s->y1, "ex1", (double)s->ex1, "ey1", (double)s->ey1, "x2", (double)s->x2,
-                     "y2", (double)s->y2, "ex2", (double)s->ex2, "ey2", (double)s->ey2);
+    return json_pack("{s:I, s:s, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:i, s:i}", "match", (json_int_t)s->match, "end",
+                     end_name(s->end), "x1", (double)s->x1, "y1", (double)s->y1, "ex1", (double)s->ex1, "ey1", (double)s->ey1,
+                     "x2", (double)s->x2, "y2", (double)s->y2, "ex2", (double)s->ex2, "ey2", (double)s->ey2, "branch1",
+                     s->branch1, "branch2", s->branch2);
 }
 
 static void put_corners(asj_json_output *json, const char *name, const asj_l_junction *list, uint32_t count)

@@ -77,10 +77,11 @@ static int32_t along(const bundle *b, double x, double y)
     return found;
 }
 
-/* A branch of a match that is not one of its two, in both images, and its lengths as detected. */
+/* A branch of a match that is not one of its two, in both images: its number, and its lengths as detected. */
 typedef struct other_branch {
     asj_matched_branch line;
     double length[2];
+    int32_t number[2];
 } other_branch;
 
 /* Branch k of b1 and what corresponds to it in b2; 0 when nothing does. */
@@ -95,7 +96,7 @@ static int pair_up(const search *in, const asj_junction_match *m, const bundle *
     const asj_l_junction *j1 = &in->result->l_junctions1[m->l1], *j2 = &in->result->l_junctions2[m->l2];
     const asj_matched_branch line = {m, {(double)j1->x, (double)j2->x}, {(double)j1->y, (double)j2->y}, {x1 / l1, x2 / l2},
                                      {y1 / l1, y2 / l2}};
-    *other = (other_branch){line, {l1, l2}};
+    *other = (other_branch){line, {l1, l2}, {k, partner}};
     return 1;
 }
 
@@ -129,14 +130,25 @@ static asj_segment_match segment_along(const search *in, const other_branch *oth
         y[side] = line->y[side] + end.length[side] * line->uy[side];
     }
     return (asj_segment_match){(uint32_t)(m - in->result->matches), end.kind, m->x1, m->y1, (float)x[0], (float)y[0],
-                               m->x2, m->y2, (float)x[1], (float)y[1]};
+                               m->x2, m->y2, (float)x[1], (float)y[1], other->number[0], other->number[1]};
 }
 
-/* Pair number 0 or 1 of match `index`, which is m: its branch a or b. */
-static asj_segment_match matched_segment(const asj_junction_match *m, uint32_t index, int32_t slot)
+/* The number of branch a (slot 0) or b of an L-junction. */
+static int32_t branch_number(const asj_l_junction *list, uint32_t count, uint32_t l, int32_t slot)
 {
-    return slot == 0 ? (asj_segment_match){index, m->end_a, m->x1, m->y1, m->ax1, m->ay1, m->x2, m->y2, m->ax2, m->ay2}
-                     : (asj_segment_match){index, m->end_b, m->x1, m->y1, m->bx1, m->by1, m->x2, m->y2, m->bx2, m->by2};
+    if (l >= count)
+        return -1;
+    return slot == 0 ? list[l].branch_a : list[l].branch_b;
+}
+
+/* Pair number 0 or 1 of match `index`: its branch a or b. */
+static asj_segment_match matched_segment(const asj_match_result *result, uint32_t index, int32_t slot)
+{
+    const asj_junction_match *m = &result->matches[index];
+    const int32_t n1 = branch_number(result->l_junctions1, result->l_junction_count1, m->l1, slot);
+    const int32_t n2 = branch_number(result->l_junctions2, result->l_junction_count2, m->l2, slot);
+    return slot == 0 ? (asj_segment_match){index, m->end_a, m->x1, m->y1, m->ax1, m->ay1, m->x2, m->y2, m->ax2, m->ay2, n1, n2}
+                     : (asj_segment_match){index, m->end_b, m->x1, m->y1, m->bx1, m->by1, m->x2, m->y2, m->bx2, m->by2, n1, n2};
 }
 
 static double distance2(float x1, float y1, float x2, float y2)
@@ -189,7 +201,7 @@ static int segment_of(const search *in, uint32_t k, int32_t slot, const surround
     const asj_junction_match *m = &in->result->matches[k];
     other_branch other;
     if (slot < 2) {
-        *s = matched_segment(m, k, slot);
+        *s = matched_segment(in->result, k, slot);
         return 1;
     }
     if (!other_branch_of(in, m, slot, &other) || (at && !may_be_same(at, m, &other.line)))

@@ -304,8 +304,9 @@ static void json_says_how_it_came_about(void **state)
 
 static void json_has_the_lines_beside_the_matches(void **state)
 {
+    static asj_segment_match segments[2 * COUNT];
     json_t *root, *lines;
-    size_t count = asj_match_segments(&result, ASJ_END_INNER, NULL, 0);
+    size_t count = asj_match_segments(&result, ASJ_END_INNER, segments, 2 * COUNT);
     (void)state;
     report.lines = 1;
     report.minimum_end = ASJ_END_INNER;
@@ -317,6 +318,8 @@ static void json_has_the_lines_beside_the_matches(void **state)
     assert_int_equal(json_integer_value(need(need(root, "counts"), "lines")), count);
     assert_true(float_at(json_array_get(lines, 0), "x1") ==
                 matches[json_integer_value(need(json_array_get(lines, 0), "match"))].x1);
+    assert_int_equal(json_integer_value(need(json_array_get(lines, count - 1), "branch1")), segments[count - 1].branch1);
+    assert_int_equal(json_integer_value(need(json_array_get(lines, count - 1), "branch2")), segments[count - 1].branch2);
     json_decref(root);
 }
 

@@ -45,6 +45,17 @@ def test_segments(pair: tuple[asj.Features, asj.Features]) -> None:
         found.segments("all")
 
 
+def test_segments_are_branches(pair: tuple[asj.Features, asj.Features]) -> None:
+    found = asj.match(*pair)
+    *seen, which = found.segments("cut")
+    numbers = found.segment_indices("cut")
+    assert numbers.shape == (len(which), 2)
+    for side, features in enumerate(pair):
+        assert np.array_equal(features.branches["junction"][numbers[:, side]], found.indices[which, side])
+        one, two = (np.diff(segments, axis=1)[:, 0] for segments in (features.segments[numbers[:, side]], seen[side]))
+        assert ((one * two).sum(axis=1) > 0.97 * np.linalg.norm(one, axis=1) * np.linalg.norm(two, axis=1)).all()
+
+
 def test_stretched_images(scene: Scene) -> None:
     second = panels(shift=(6, 4))
     plain, by_two = asj.match_images(scene, second, stretch=1), asj.match(asj.detect(scene), asj.detect(second))

@@ -441,6 +441,7 @@ static void segments_of_matches(void **state)
     asj_segment_match s[4];
     assert_int_equal(asj_match_segments(&result, ASJ_END_CUT, s, 4), 3);
     assert_int_equal(s[0].match, 0);
+    assert_true(s[0].branch1 == -1 && s[2].branch2 == -1); /* no L-junctions */
     unit_near("far end", 0, 0, (double)s[0].ex1, 110, 0);
     assert_int_equal(s[1].end, ASJ_END_CUT);
     assert_int_equal(s[2].match, 1);
@@ -457,8 +458,9 @@ static void segments_of_other_branches(void **state)
     (void)state;
     const asj_l_junction first[] = {{7, 0, 1, 50, 50, 90, 50, 50, 80}, {7, 1, 2, 50, 50, 50, 80, 20, 50},
                                     {7, 2, 3, 50, 50, 20, 50, 50, 10}};
-    const asj_l_junction second[] = {{3, 0, 1, 60, 60, 100, 60, 60, 90}, {3, 1, 2, 60, 60, 60, 90, 29, 61},
-                                     {3, 2, 3, 60, 60, 29, 61, 60, 40}};
+    const asj_l_junction second[] = {{3, 2, 0, 60, 60, 100, 60, 60, 90}, {3, 0, 3, 60, 60, 60, 90, 29, 61},
+                                     {3, 3, 1, 60, 60, 29, 61, 60, 40}};
+    const int32_t branches[4][2] = {{0, 2}, {1, 0}, {2, 3}, {3, 1}};
     asj_junction_match matches[2];
     memset(matches, 0, sizeof matches);
     matches[0] = (asj_junction_match){.affine = {1, 0, 10, 0, 1, 10}, .x1 = 50, .y1 = 50, .ax1 = 90, .ay1 = 50, .bx1 = 50,
@@ -468,6 +470,8 @@ static void segments_of_other_branches(void **state)
                                .l_junction_count1 = 3, .l_junction_count2 = 3};
     asj_segment_match s[2 * ASJ_MAX_BRANCHES];
     assert_int_equal(asj_match_segments(&result, ASJ_END_CUT, s, 2 * ASJ_MAX_BRANCHES), 4);
+    for (int32_t k = 0; k < 4; k++)
+        assert_true(s[k].branch1 == branches[k][0] && s[k].branch2 == branches[k][1]);
     assert_int_equal(s[2].end, ASJ_END_BOTH); /* to the left */
     unit_near("left", 1, 0, (double)s[2].ex1, 20, 1e-4);
     unit_near("left", 2, 0, (double)s[2].ex2, 29, 1e-4);

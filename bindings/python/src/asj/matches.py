@@ -136,13 +136,32 @@ class Matches:
         ends   what must be known of the far ends: "both" (both branches' own ends correspond), "inner" (or a junction on the longer
                one does), "cut" (or the longer one was cut where the matches around put the end of the shorter one)
         """
+        records = self._segment_records(ends)
+        return (arrays.columns(records, "x1", (2, 2)), arrays.columns(records, "x2", (2, 2)), np.asarray(records["match"]))
+
+    def segment_indices(self, ends: str = "both") -> NDArray[np.int64]:
+        """(S, 2) which of features1.segments and features2.segments those of :meth:`segments` are, by the branches they follow."""
+        records = self._segment_records(ends)
+        junctions = self.indices[records["match"]]
+        columns = [
+            _first_segments(features)[junctions[:, side]] + records[f"branch{side + 1}"]
+            for side, features in enumerate((self.features1, self.features2))
+        ]
+        return np.stack(columns, axis=1)
+
+    def _segment_records(self, ends: str) -> NDArray[Any]:
         if ends not in _ENDS:
             raise ValueError(f"ends is {ends!r}: one of {', '.join(_ENDS)}")
         count = lib.asj_match_segments(self._result, _ENDS[ends], ffi.NULL, 0)
         room = ffi.new("asj_segment_match[]", max(count, 1))
         lib.asj_match_segments(self._result, _ENDS[ends], room, count)
-        records = arrays.view(room, count, "asj_segment_match", room)
-        return (arrays.columns(records, "x1", (2, 2)), arrays.columns(records, "x2", (2, 2)), np.asarray(records["match"]))
+        return arrays.view(room, count, "asj_segment_match", room)
+
+
+def _first_segments(features: Features) -> NDArray[np.int64]:
+    """(N,) the index in features.segments of each junction's first branch."""
+    counts = features.junctions["branch_count"].astype(np.int64)
+    return np.cumsum(counts) - counts
 
 
 def match(

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import context, errors, images
 from ..features import DescribedFeatures, Features, detect
@@ -63,7 +62,8 @@ def match_images(one: Features, two: Features, focals: tuple[float | None, float
     """The matches of two images, and what relates them, where it is asked for. focals: from EXIF data, px."""
     try:
         found = match(one, two, **_keywords(plan.matcher), **_cameras(focals, plan))
-        return Matched(None, found.matches.tobytes(), line_indices(found).tobytes(), _as_json(found.geometry))
+        lines = found.segment_indices("cut").astype(np.uint32)
+        return Matched(None, found.matches.tobytes(), lines.tobytes(), _as_json(found.geometry))
     except (errors.Error, MemoryError) as bad:
         return Matched(_line(bad), None, None, None)
 
@@ -115,29 +115,6 @@ class Kept:
 
 def _size(features: Features) -> int:
     return features.nbytes if isinstance(features, DescribedFeatures) else 0
-
-
-def line_indices(found: Matches) -> NDArray[np.uint32]:
-    """(S, 2) which of features.segments match: the segments of a match by the branches that point along them."""
-    first, second, which = found.segments("cut")
-    ends = [
-        _branch_of(features, found.indices[which, side].astype(np.int64), segments)
-        for side, (features, segments) in enumerate(((found.features1, first), (found.features2, second)))
-    ]
-    return np.stack(ends, axis=1).astype(np.uint32)
-
-
-def _branch_of(features: Features, junctions: NDArray[np.int64], segments: NDArray[np.float32]) -> NDArray[np.int64]:
-    """The branch of each junction that points along the segment, as an index into features.segments."""
-    counts = features.junctions["branch_count"].astype(np.int64)
-    first = np.concatenate([[0], np.cumsum(counts)])
-    along = segments[:, 1] - segments[:, 0]
-    angle = np.arctan2(along[:, 1], along[:, 0])
-    angles = features.junctions["branches"]["angle"][junctions]
-    away = np.abs((angles - angle[:, None] + np.pi) % (2 * np.pi) - np.pi)
-    away[np.arange(away.shape[1]) >= counts[junctions][:, None]] = np.inf
-    nearest: NDArray[np.int64] = first[junctions] + np.argmin(away, axis=1)
-    return nearest
 
 
 def _keywords(options: dict[str, str]) -> dict[str, Any]:
