@@ -97,8 +97,9 @@ build_and_test() {
     build "$folder_wanted" "$@" && run_tests "$folder_wanted" $tests_wanted
 }
 
-# What builds for another purpose leave out: suites that take minutes and whose results the goldens stand for.
-quick='--no-suite accuracy --no-suite experiments --no-suite long --no-suite benchmark --no-suite enlarged'
+# What builds for another purpose leave out: suites that take minutes and whose results the goldens stand for, and the README's
+# commands, which do what other tests of the command line do.
+quick='--no-suite accuracy --no-suite experiments --no-suite long --no-suite benchmark --no-suite enlarged --no-suite readme'
 
 # The core alone: no library but libc and libm (the compiler's own run-time library may show up too). Without the accuracy suite:
 # the goldens show that its results are those of the whole build.
@@ -110,12 +111,12 @@ core_alone() {
     [ -z "$others" ]
 }
 
-# Last: the compilers stay chosen.
+# The library, made by another compiler: the command line adds nothing to that but time. Last: the compilers stay chosen.
 with_clang() {
     CC=clang CXX=clang++
     export CC CXX
-    build_and_test build-clang "$quick --no-suite opencl --no-suite device-operations --no-suite device-images --no-suite fails" \
-        -Dauto_features=enabled --werror
+    devices='--no-suite opencl --no-suite device-operations --no-suite device-images'
+    build_and_test build-clang "$quick $devices --no-suite cli --no-suite fails" -Dauto_features=enabled --werror
 }
 
 # Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code. Of enlarged images one test.
