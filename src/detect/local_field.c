@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* asj_local_field(): the very local junctions of step 2 at every pixel. */
+/* asj_local_field(): the very local junctions of step 2 at every pixel of the image itself, no other octave. */
 #include "core/angle.h"
 #include "core/backend.h"
 #include "nfa.h"
@@ -71,7 +71,13 @@ static asj_status local_field(asj_context *context, const asj_image *image, cons
                               asj_local_branch *branches)
 {
     asj_detection_run run;
-    asj_status status = asj_detection_run_begin(&run, context, image, options, branches);
+    asj_detect_options of_image;
+    if (options) {
+        of_image = *options;
+        if (of_image.first_octave == ASJ_FIRST_OCTAVE) /* no larger than the image */
+            of_image.first_octave = 0;
+    }
+    asj_status status = asj_detection_run_begin(&run, context, image, options ? &of_image : NULL, branches);
     if (status == ASJ_OK)
         status = asj_step_load(&run);
     if (status == ASJ_OK)

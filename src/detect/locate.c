@@ -182,6 +182,11 @@ static double most_move(const asj_detect_options *options, const asj_rough_line 
     return fmax(options->max_move, sharp < widest * SHARP_MOVE ? sharp / widest : SHARP_MOVE);
 }
 
+double asj_locate_farthest_move(const asj_detect_options *options)
+{
+    return options->strip_test ? fmax(options->max_move, SHARP_MOVE) : options->max_move;
+}
+
 double asj_locate_most_move(const asj_detect_options *options, const asj_hypothesis *hypothesis)
 {
     asj_rough_line lines[ASJ_MAX_BRANCHES];

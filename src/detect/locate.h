@@ -14,6 +14,9 @@ void asj_locate(const asj_context *context, const asj_frame *frame, const asj_de
 /* px that a junction with these branches may move while it is located: max_move, or somewhat more at sharp corners. */
 double asj_locate_most_move(const asj_detect_options *options, const asj_hypothesis *hypothesis);
 
+/* The most that it says of any branches. */
+double asj_locate_farthest_move(const asj_detect_options *options);
+
 /* The least-squares meeting point of the branches' lines becomes the location; the offsets become those from there.
  * Returns 0, and changes nothing, when the lines are too parallel to say where they meet, or, in coarse octaves and without the
  * strip test, all but one of them too uncertain. */

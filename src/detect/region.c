@@ -3,10 +3,11 @@
  * what saves time. Of the junctions that were found those outside are dropped at the end: that is exact. In between the image is
  * what it is without a region: what lies outside still speaks for or against a junction inside, and branches reach as far.
  *
- * A junction moves by max_move px of its octave while it is located; so candidates stay up to `reach` = that, rounded up, and one
- * more around the region. Pixel (i, j) of octave o stands for what lies between i 2^o and (i + 1) 2^o in the image,
- * pixel k from k to k + 1; j likewise. */
+ * A junction lies, in px of its octave, at most max_move and what its location may move (locate.c) from its candidate (validate.c:
+ * has_moved_far()); so candidates stay up to `reach` = that, rounded up, and one more around the region. Pixel (i, j) of octave o
+ * stands for what lies between i 2^o and (i + 1) 2^o in the image, pixel k from k to k + 1; j likewise. */
 #include "region.h"
+#include "locate.h"
 
 #include <math.h>
 #include <string.h>
@@ -56,7 +57,7 @@ asj_status asj_region_check(asj_context *context, const asj_image *image, const 
 
 static int32_t reach_of(const asj_detection_run *run)
 {
-    return (int32_t)ceil(run->options->max_move) + 1;
+    return (int32_t)ceil(run->options->max_move + asj_locate_farthest_move(run->options)) + 1;
 }
 
 /* Pixels of the octave whose neighbourhood meets first .. end - 1 of the image. */

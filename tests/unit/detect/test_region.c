@@ -160,6 +160,37 @@ static void test_octaves(void **state)
     check(f, &(asj_region){.mask = &f->mask_image}, 4);
 }
 
+/* Each junction by itself, sharp ones too, which are found farthest from where they were seen first. */
+static void test_own_pixels(void **state)
+{
+    fixture *f = *state;
+    const int32_t side = 200;
+    uint32_t count = 0;
+    f->options.octaves = 1;
+    for (int32_t n = 0; n < 24; n++) {
+        const double along = 0.27 * n, open = (26 + n % 4) * UNIT_PI / 180;
+        const synth_point apex = {90.2 + n / 24.0, 101.7};
+        const synth_point wedge[3] = {apex, {apex.x + 70 * cos(along), apex.y + 70 * sin(along)},
+                                      {apex.x + 70 * cos(along + open), apex.y + 70 * sin(along + open)}};
+        synth_scene scene;
+        synth_scene_init(&scene, side, side, 110);
+        synth_scene_add(&scene, wedge, 3, synth_flat(170), 0);
+        uint8_t *pixels = unit_picture(&scene, 0.8, 1, 4);
+        f->image = unit_gray8(pixels, side, side);
+        asj_detection *whole = detect(f, NULL);
+        for (uint32_t i = 0; i < whole->junction_count; i++, count++) {
+            const asj_junction *expected = &whole->junctions[i];
+            const asj_region own = {.x = pixel_of(expected->x, side), .y = pixel_of(expected->y, side), .width = 1, .height = 1};
+            asj_detection *found = detect(f, &own);
+            assert_true(found->junction_count >= 1 && found->junctions[0].x == expected->x && found->junctions[0].y == expected->y);
+            asj_detection_free(&found);
+        }
+        asj_detection_free(&whole);
+        free(pixels);
+    }
+    assert_true(count > 60);
+}
+
 static void test_paper(void **state)
 {
     fixture *f = *state;
@@ -210,6 +241,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_mask, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_extreme_masks, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_octaves, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_own_pixels, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_paper, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_refused, set_up, tear_down),
     };
