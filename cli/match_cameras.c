@@ -21,7 +21,7 @@ static void take_exif(const cli_match_arguments *arguments, const cli_match_inpu
         return;
     if (input->image->focal_length > 0)
         *camera = of_focal((double)input->image->focal_length, &input->image->image);
-    else if (input->image->focal_source == ASJ_FOCAL_UNUSABLE && !arguments->common.quiet)
+    else if (input->image->focal_source == ASJ_EXIF_FOCAL_UNUSABLE && !arguments->common.quiet)
         cli_note("%s: EXIF data not used: damaged, of a larger picture, or of a focal length that cannot be", input->name);
 }
 
@@ -30,7 +30,7 @@ static void say_exif(const cli_match_arguments *arguments, const cli_match_input
     for (int v = 0; v < 2; v++)
         if (!(arguments->cameras[v].fx > 0) && !arguments->common.quiet)
             cli_note("%s: focal length %.0f px, from EXIF data%s", inputs[v].name, options->cameras[v].fx,
-                     inputs[v].image->focal_source == ASJ_FOCAL_FILM ? " (35 mm equivalent)" : "");
+                     inputs[v].image->focal_source == ASJ_EXIF_FOCAL_FILM ? " (35 mm equivalent)" : "");
 }
 
 /* One camera without the other, or none where they must be. */

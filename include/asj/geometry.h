@@ -97,16 +97,16 @@ typedef struct asj_geometry {
  *
  * candidates     may be NULL when count is 0; only read
  * probabilities  NULL, or room for `count` numbers: the probability of each candidate given the geometry; 0 where there is none
- * result         written whole when ASJ_OK is returned
+ * result         it and the probabilities are written when ASJ_OK is returned
  *
  * src/geometry/likelihood.c says what is maximised, search.c how, evidence.c what log10_nfa rests on. The result depends on the
  * input and the seed, not on the number of threads.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a candidate that is not finite, lies 10^6 px away, mirrors or collapses, or a probability
  *                      outside 0 .. 1
- * ASJ_ERROR_OPTION     an option outside its range; a camera with a focal length that is negative or not finite, or a principal
- *                      point that is not finite; directions that are not three of length 1 at right angles; model essential
- *                      without cameras
+ * ASJ_ERROR_OPTION     an option outside its range; a camera that is known (fx or fy not 0) with a focal length that is not
+ *                      1 .. 10^7 px, or a principal point beyond +-10^7; directions that are not three of length 1 at right
+ *                      angles; model essential without cameras; find_focal with one, or with model fundamental or homography
  * ASJ_ERROR_LIMIT      more than 2^24 candidates or places
  * ASJ_ERROR_CANCELLED  the progress callback, which is called every 50 ms, wants to stop
  * ASJ_ERROR_MEMORY */

@@ -24,17 +24,17 @@ extern "C" {
 
 /* What a focal length from EXIF data rests on. */
 enum {
-    ASJ_FOCAL_NONE = 0,    /* there is none */
-    ASJ_FOCAL_FILM = 1,    /* the focal length of the same view on 35 mm film, in whole mm */
-    ASJ_FOCAL_PLANE = 2,   /* the focal length, and the resolution on the focal plane */
-    ASJ_FOCAL_UNUSABLE = 3 /* the EXIF data are damaged, their focal length cannot be, or the picture was cut since */
+    ASJ_EXIF_FOCAL_NONE = 0,    /* there is none */
+    ASJ_EXIF_FOCAL_FILM = 1,    /* the focal length of the same view on 35 mm film, in whole mm */
+    ASJ_EXIF_FOCAL_PLANE = 2,   /* the focal length, and the resolution on the focal plane */
+    ASJ_EXIF_FOCAL_UNUSABLE = 3 /* the EXIF data are damaged, their focal length cannot be, or the picture was cut since */
 };
 
 /* An image read from a file; it owns its pixels. */
 typedef struct asj_image_file {
     asj_image image;     /* view of the pixels: GRAY8, GRAY16, RGB8, BGR8 or GRAY_FLOAT */
     int32_t orientation; /* the EXIF orientation (1 .. 8) that was applied: the view is upright. 1 = none */
-    int32_t focal_source;/* ASJ_FOCAL_... */
+    int32_t focal_source;/* ASJ_EXIF_FOCAL_... */
     float focal_length;  /* px of `image`, from EXIF data; 0 = not known */
     int32_t reserved;
 } asj_image_file;

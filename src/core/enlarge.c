@@ -8,12 +8,13 @@
  * Interpolation makes no detail. It makes room: sectors, bands and strips have a least size in pixels, and more short edges fill
  * it. Neighbouring pixels of noise are alike then, which is what blurred noise is (octaves.c). */
 #include "image.h"
-#include "threads.h"
+#include "watch.h"
 
 #define LEAST_PIXELS 65536 /* for a thread: 20 us */
 
 typedef struct job {
     const asj_frame *from, *to;
+    asj_watch *watch;
 } job;
 
 /* One row of two: `near` weighs three times as much as `far`; both go on for a pixel on either side. */
@@ -30,7 +31,7 @@ static void enlarge_rows(const void *data, const asj_part *part)
 {
     const job *j = data;
     const asj_frame *from = j->from, *to = j->to;
-    for (int64_t y = part->first; y < part->end; y++) {
+    for (int64_t y = part->first; y < part->end && !asj_watch_stops(j->watch, part); y++) {
         const uint16_t *row = from->gray + y * from->stride;
         enlarge_row(row, row - from->stride, from->width, to->gray + 2 * y * to->stride);
         enlarge_row(row, row + from->stride, from->width, to->gray + (2 * y + 1) * to->stride);
@@ -60,12 +61,14 @@ asj_status asj_frame_enlarge(asj_context *context, asj_frame *frame, const asj_i
     status = asj_frame_load(context, &own, image);
     if (status != ASJ_OK)
         return status;
-    const job j = {&own, frame};
+    asj_watch watch;
+    asj_watch_start(&watch, context, ASJ_STAGE_GRADIENT);
+    const job j = {&own, frame, &watch};
     const int64_t pixels = (int64_t)width * height;
     asj_parallel(context, asj_threads_for(context, pixels, LEAST_PIXELS), image->height, 0, enlarge_rows, &j);
     asj_frame_repeat_border(frame);
     status = asj_frame_prepare(context, frame, width, height);
     frame->octave = -1;
     frame->octaves = octaves;
-    return status;
+    return status == ASJ_OK ? asj_watch_end(&watch) : status;
 }

@@ -9,6 +9,7 @@
  * .25), and .15 of it is common to two of them side by side, which is what noise that is hardly blurred is like. */
 #include "image.h"
 #include "threads.h"
+#include "watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -28,6 +29,7 @@ typedef struct job {
     const asj_frame *to;
     const tap *columns, *rows;
     uint32_t *sums; /* of three rows, for each thread */
+    asj_watch *watch;
 } job;
 
 static void fill_taps(tap *taps, int32_t count, int32_t size)
@@ -62,7 +64,7 @@ static void shrink_row(const job *j, int64_t y, uint32_t *sums)
 static void shrink_rows(const void *data, const asj_part *part)
 {
     const job *j = data;
-    for (int64_t y = part->first; y < part->end; y++)
+    for (int64_t y = part->first; y < part->end && !asj_watch_stops(j->watch, part); y++)
         shrink_row(j, y, j->sums + (size_t)part->thread * (size_t)j->from->width);
 }
 
@@ -98,11 +100,14 @@ asj_status asj_frame_shrink(asj_context *context, asj_frame *frame, const asj_gr
     tap *taps = asj_allocate(&context->memory, (size_t)width + (size_t)height, sizeof *taps);
     uint32_t *sums = asj_allocate(&context->memory, (size_t)context->threads * (size_t)from->width, sizeof *sums);
     if (taps && sums) {
-        const job j = {from, frame, taps, taps + width, sums};
+        asj_watch watch;
+        asj_watch_start(&watch, context, ASJ_STAGE_GRADIENT);
+        const job j = {from, frame, taps, taps + width, sums, &watch};
         fill_taps(taps, width, from->width);
         fill_taps(taps + width, height, from->height);
         asj_parallel(context, asj_threads_for(context, (int64_t)width * height, LEAST_PIXELS), height, 0, shrink_rows, &j);
         asj_frame_repeat_border(frame);
+        status = asj_watch_end(&watch);
     } else {
         status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory to make a plane of %d x %d smaller", (int)from->width,
                           (int)from->height);

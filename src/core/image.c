@@ -2,6 +2,7 @@
 /* Views of every format, checked -> planes of grey levels. */
 #include "image.h"
 #include "threads.h"
+#include "watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -234,6 +235,7 @@ typedef struct job {
     const asj_image *image;
     ptrdiff_t stride;
     int32_t *failed;
+    asj_watch *watch;
 } job;
 
 static int load_row_at(const job *j, int64_t y)
@@ -244,7 +246,7 @@ static int load_row_at(const job *j, int64_t y)
 static void load_rows(const void *data, const asj_part *part)
 {
     const job *j = data;
-    for (int64_t y = part->first; y < part->end; y++)
+    for (int64_t y = part->first; y < part->end && !asj_watch_stops(j->watch, part); y++)
         if (!load_row_at(j, y))
             __atomic_store_n(j->failed, 1, __ATOMIC_RELAXED);
 }
@@ -257,13 +259,15 @@ asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_imag
     int32_t failed = 0;
     conversion c;
     prepare_conversion(context, image, &c);
-    const job j = {&c, frame, image, stride, &failed};
+    asj_watch watch;
+    asj_watch_start(&watch, context, ASJ_STAGE_GRADIENT);
+    const job j = {&c, frame, image, stride, &failed, &watch};
     asj_parallel(context, asj_threads_for(context, (int64_t)image->width * height, LEAST_PIXELS), height, 0, load_rows, &j);
     for (int32_t y = 0; failed && y < height; y++)
         if (!load_row_at(&j, y))
             return asj_fail(context, ASJ_ERROR_IMAGE, "row %d of the image holds NaN or infinity", (int)y);
     repeat_rows(frame);
-    return ASJ_OK;
+    return asj_watch_end(&watch);
 }
 
 const asj_image_ops asj_image_reference = {.luma = asj_image_luma};
@@ -288,12 +292,13 @@ typedef struct halve_job {
     const uint16_t *from;
     ptrdiff_t stride; /* of `from` */
     const asj_frame *frame;
+    asj_watch *watch;
 } halve_job;
 
 static void halve_rows(const void *data, const asj_part *part)
 {
     const halve_job *j = data;
-    for (int64_t y = part->first; y < part->end; y++)
+    for (int64_t y = part->first; y < part->end && !asj_watch_stops(j->watch, part); y++)
         halve_row(j->from + 2 * y * j->stride, j->from + (2 * y + 1) * j->stride, j->frame->width,
                   j->frame->gray + y * j->frame->stride);
 }
@@ -305,7 +310,8 @@ asj_gray_plane asj_frame_gray(const asj_frame *frame)
 
 asj_status asj_frame_halve_plane(asj_context *context, asj_frame *frame, const asj_gray_plane *from)
 {
-    const halve_job j = {from->levels, from->stride, frame};
+    asj_watch watch;
+    const halve_job j = {from->levels, from->stride, frame, &watch};
     const int32_t octaves = frame->octaves;
     asj_status status = asj_frame_prepare(context, frame, from->width / 2, from->height / 2);
     if (status != ASJ_OK)
@@ -313,9 +319,10 @@ asj_status asj_frame_halve_plane(asj_context *context, asj_frame *frame, const a
     frame->octave = from->octave + 1;
     frame->octaves = octaves;
     const int64_t pixels = (int64_t)frame->width * frame->height;
+    asj_watch_start(&watch, context, ASJ_STAGE_GRADIENT);
     asj_parallel(context, asj_threads_for(context, pixels, LEAST_HALVED), frame->height, 0, halve_rows, &j);
     repeat_rows(frame);
-    return ASJ_OK;
+    return asj_watch_end(&watch);
 }
 
 asj_status asj_frame_halve(asj_context *context, asj_frame *frame)

@@ -5,6 +5,7 @@
  * 1/256 of a grey level. */
 #include "pyramid.h"
 #include "threads.h"
+#include "watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -78,17 +79,17 @@ typedef struct blur_job {
     const asj_frame *frame;
     const int32_t *taps;
     int32_t radius;
-    size_t padded;     /* elements of a strip */
-    uint16_t *scratch; /* a strip for each row */
+    asj_scratch scratch; /* a row */
     uint16_t *across, *plane;
+    asj_watch *watch;
 } blur_job;
 
 static void blur_lines(const void *data, const asj_part *part)
 {
     const blur_job *j = data;
     const int32_t width = j->frame->width;
-    for (int64_t y = part->first; y < part->end; y++) {
-        uint16_t *line = j->scratch + (size_t)y * j->padded + LARGEST_RADIUS;
+    for (int64_t y = part->first; y < part->end && !asj_watch_stops(j->watch, part); y++) {
+        uint16_t *line = asj_thread_scratch(&j->scratch, part) + LARGEST_RADIUS;
         memcpy(line, j->frame->gray + y * j->frame->stride, (size_t)width * sizeof *line);
         for (int32_t i = 1; i <= j->radius; i++) {
             line[-i] = line[0];
@@ -102,7 +103,7 @@ static void blur_columns(const void *data, const asj_part *part)
 {
     const blur_job *j = data;
     const int32_t width = j->frame->width, stride = width + 1;
-    for (int64_t y = part->first; y < part->end; y++)
+    for (int64_t y = part->first; y < part->end && !asj_watch_stops(j->watch, part); y++)
         blur_column(j->ops, j->across, stride, width, j->frame->height, (int32_t)y, j->taps, j->radius, j->plane + y * stride);
 }
 
@@ -120,19 +121,21 @@ static asj_status fill_base(asj_context *context, const asj_frame *frame, double
     const int32_t radius = gaussian(smoothing, taps);
     const size_t padded = (size_t)width + 2 * LARGEST_RADIUS;
     uint16_t *across = asj_allocate(&context->memory, (size_t)height * (size_t)stride, sizeof *across);
-    uint16_t *scratch = asj_allocate(&context->memory, (size_t)height, padded * sizeof *scratch); /* a strip for each row */
+    uint16_t *scratch = asj_allocate(&context->memory, (size_t)context->threads, padded * sizeof *scratch);
     if (!across || !scratch) {
         asj_release(&context->memory, across);
         asj_release(&context->memory, scratch);
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory to blur an image");
     }
-    const blur_job j = {context->ops->pyramid, frame, taps, radius, padded, scratch, across, pyramid->plane[0]};
+    asj_watch watch;
+    asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
+    const blur_job j = {context->ops->pyramid, frame, taps, radius, {scratch, padded}, across, pyramid->plane[0], &watch};
     const int32_t threads = asj_threads_for(context, (int64_t)width * height, LEAST_PIXELS);
     asj_parallel(context, threads, height, 0, blur_lines, &j);
     asj_parallel(context, threads, height, 0, blur_columns, &j);
     asj_release(&context->memory, across);
     asj_release(&context->memory, scratch);
-    return ASJ_OK;
+    return asj_watch_end(&watch);
 }
 
 /* A level, and that above it. */
@@ -204,7 +207,7 @@ asj_status asj_pyramid_create(asj_context *context, const asj_image *image, doub
     memset(&frame, 0, sizeof frame);
     asj_status status = asj_image_check(context, image);
     if (status == ASJ_OK)
-        status = asj_frame_prepare(context, &frame, image->width, image->height);
+        status = asj_frame_prepare_gray(context, &frame, image->width, image->height);
     if (status == ASJ_OK)
         status = asj_frame_load(context, &frame, image);
     if (status == ASJ_OK)

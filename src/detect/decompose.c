@@ -10,6 +10,8 @@
 
 #include <math.h>
 
+#define PARALLEL 1e-6 /* rad: angles are rounded to single precision */
+
 static asj_l_junction make(const asj_junction *junction, uint32_t index, int32_t a, int32_t b)
 {
     const asj_branch *p = &junction->branches[a], *q = &junction->branches[b];
@@ -40,7 +42,7 @@ size_t asj_decompose(const asj_junction *junctions, size_t junction_count, doubl
                 double turn = fmod((double)junction->branches[j].angle - (double)junction->branches[i].angle, ASJ_TWO_PI);
                 turn = turn < 0 ? turn + ASJ_TWO_PI : turn;
                 double opening = turn < ASJ_PI ? turn : ASJ_TWO_PI - turn;
-                if (!(opening > 0 && opening < ASJ_PI && opening >= least && opening <= ASJ_PI - least))
+                if (!(opening > PARALLEL && opening < ASJ_PI - PARALLEL && opening >= least && opening <= ASJ_PI - least))
                     continue;
                 if (l_junctions && count < capacity)
                     l_junctions[count] = turn < ASJ_PI ? make(junction, (uint32_t)n, i, j) : make(junction, (uint32_t)n, j, i);

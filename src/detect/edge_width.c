@@ -3,7 +3,7 @@
  *
  * Across a step that a Gaussian has blurred the gradient is G(s) = G(0) exp(-s^2 / (2 b^2)). With the mean gradient along the
  * branch at s = -a, 0, a from its line, which may itself be d off the edge,
- *     G(-a) G(a) / G(0)^2 = exp(-(((a - d)^2 + (a + d)^2 - 2 d^2) / (2 b^2)) = exp(-a^2 / b^2)   whatever d,
+ *     G(-a) G(a) / G(0)^2 = exp(-((a - d)^2 + (a + d)^2 - 2 d^2) / (2 b^2)) = exp(-a^2 / b^2)   whatever d,
  * so     b^2 = -a^2 / ln(G(-a) G(a) / G(0)^2) = -a^2 / (2 ln q),   q = sqrt(G(-a) G(a)) / G(0).
  * The differences over two pixels and the interpolation between them blur as well: ASJ_EDGE_SAMPLING of that variance is theirs.
  * An edge whose gradient changes sign within a is sharp: 0. Of a thin line each of the two edges is blurred by no more than half of

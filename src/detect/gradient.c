@@ -27,6 +27,7 @@
  * ">>" of a negative number is the arithmetic shift on every compiler that we know; asj_gradient() checks it at compile time. */
 #include "gradient.h"
 #include "core/threads.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -35,6 +36,7 @@
 #define LEAST_PIXELS 32768 /* for a thread: about 40 us */
 #define BANDS_PER_THREAD 4 /* so that a thread that comes late costs little; each band sums up four rows more than it needs */
 #define LEAST_ROWS 32      /* of a band */
+#define MOST_PIXELS (1 << 21) /* of a band: between two the caller may be asked whether to go on */
 
 typedef char arithmetic_shift_is_needed[(-3 >> 1) == -2 ? 1 : -1];
 
@@ -152,7 +154,8 @@ static size_t gradient_scratch(int32_t width)
 }
 
 /* The paper's standardisation: each axis to zero mean and unit variance over the image, in whole numbers:
- * g' = ((g - mean) factor + 2^11) >> 12, factor = round(4096 x 1024 / sd), cut to 16 bits. */
+ * g' = ((g - mean) factor + 2^11) >> 12, factor = round(4096 x 1024 / sd), cut where its norm could exceed ASJ_GRADIENT_LIMIT: at
+ * 2.45 standard deviations. The paper does not cut; sums of sectors are 16 bits here. */
 static void standardise(const asj_frame *frame, int16_t *plane)
 {
     int64_t sum = 0, squares = 0, count = (int64_t)frame->width * frame->height;
@@ -183,12 +186,13 @@ typedef struct job {
     uint32_t epsilon;
     int32_t bands;
     asj_scratch scratch;
+    asj_watch *watch;
 } job;
 
 static void do_bands(const void *data, const asj_part *part)
 {
     const job *j = data;
-    for (int64_t band = part->first; band < part->end; band++) {
+    for (int64_t band = part->first; band < part->end && !asj_watch_stops(j->watch, part); band++) {
         const int32_t first = (int32_t)(j->frame->height * band / j->bands);
         const int32_t last = (int32_t)(j->frame->height * (band + 1) / j->bands);
         uint16_t *scratch = asj_thread_scratch(&j->scratch, part);
@@ -201,18 +205,21 @@ asj_status asj_gradient(asj_context *context, asj_frame *frame, const asj_detect
 {
     const uint32_t epsilon = (uint32_t)lrint(256 * options->gradient_epsilon);
     const int32_t threads = asj_threads_for(context, (int64_t)frame->width * frame->height, LEAST_PIXELS);
-    const int32_t many = BANDS_PER_THREAD * threads, bands = threads == 1 || frame->height < LEAST_ROWS * many ? threads : many;
+    const int32_t many = BANDS_PER_THREAD * threads, few = threads == 1 || frame->height < LEAST_ROWS * many ? threads : many;
+    const int32_t least = (int32_t)((int64_t)frame->width * frame->height / MOST_PIXELS), bands = few > least ? few : least;
     const size_t size = gradient_scratch(frame->width);
     asj_status status = asj_grow(&context->memory, &frame->rows, &frame->row_capacity, (size_t)threads * size, sizeof(uint16_t), 0);
     if (status != ASJ_OK)
         return asj_fail(context, status, "no memory for the gradient's rows");
-    const job j = {context->ops->gradient, frame, epsilon, bands, {frame->rows, size}};
+    asj_watch watch;
+    asj_watch_start(&watch, context, ASJ_STAGE_GRADIENT);
+    const job j = {context->ops->gradient, frame, epsilon, bands, {frame->rows, size}, &watch};
     asj_parallel(context, threads, bands, 1, do_bands, &j);
     if (options->standardise) {
         standardise(frame, frame->gradient_x);
         standardise(frame, frame->gradient_y);
     }
-    return ASJ_OK;
+    return asj_watch_end(&watch);
 }
 
 const asj_gradient_ops asj_gradient_reference = {

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Weighted line fit to an edge, the work of steps 3 and 5 (replaces the paper's search over +-0.1 rad, which is kept as the option
- * refinement = search: refine.c).
+ * refinement = search: search.c).
  *
- * In the frame of the branch (t along u, s along n = u turned by +90 degrees) samples lie at t = first, first + 1, .. and s = -w ..
- * w. Each has the weight of its raw gradient's agreement with the branch, w(t, s) = max(|g.n| - |g.u|, 0), the same form as the
- * junction-ness. Per t: centroid c(t) = sum w s / sum w and weight W(t) = sum w. Weighted least squares c = a + b t gives the line;
- * it is repeated around the line found, in a narrower band.
+ * In the frame of the branch (t along u, s along n = u turned by +90 degrees) samples lie at t = first, first + 1, .., or as many
+ * as there is room for, farther apart on a long branch, and evenly from s = -w to w, about a pixel apart. Each has the weight of
+ * its raw gradient's agreement with the branch, w(t, s) = max(|g.n| - |g.u|, 0), the same form as the junction-ness. Per t:
+ * centroid c(t) = sum w s / sum w and weight W(t) = sum w. Weighted least squares c = a + b t gives the line; it is repeated around
+ * the line found, in a narrower band.
  *
  * The two signs of g.n (dark to bright, bright to dark) are fitted apart. Indoor scenes are full of narrow bands, the two edges of
  * a door jamb or a skirting board, and a fit that mixes them follows neither. The stronger sign gives the line; when both are

@@ -90,7 +90,10 @@ asj_status asj_result_fill(const asj_context *context, const asj_findings *findi
     result *r = (result *)*detection;
     if (r) {
         asj_result_clear(&r->detection);
-        return fill(r, findings, minimum_opening);
+        const asj_status refilled = fill(r, findings, minimum_opening);
+        if (refilled != ASJ_OK)
+            asj_result_clear(&r->detection);
+        return refilled;
     }
     asj_memory memory = {.allocator = context->memory.allocator};
     r = asj_allocate_zero(&memory, 1, sizeof *r);

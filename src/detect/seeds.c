@@ -18,6 +18,7 @@
  * The segments' own number of false alarms may be large (option segment_epsilon): a false segment costs the time for a few
  * candidates, no more, and small things have short segments. */
 #include "seeds.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -123,16 +124,19 @@ static int side_by_side(const asj_line_segment *a, const asj_line_segment *b, do
 }
 
 /* A segment meets those that start before it ends. A point no farther than gap from both: they are 2 gap apart at most. */
-static void mark_pairs(const marker *m, asj_line_segment *segments, size_t count, double gap)
+static asj_status mark_pairs(asj_context *context, const marker *m, asj_line_segment *segments, size_t count, double gap)
 {
+    asj_watch watch;
+    asj_watch_start(&watch, context, ASJ_STAGE_CANDIDATES);
     if (count > 1)
         qsort(segments, count, sizeof *segments, from_left);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count && !asj_watch_stops(&watch, NULL); i++) {
         const double end = fmax(segments[i].x1, segments[i].x2) + 2 * gap;
         for (size_t j = i + 1; j < count && left_of(&segments[j]) <= end; j++)
             if (side_by_side(&segments[i], &segments[j], 2 * gap))
                 mark_pair(m, &segments[i], &segments[j], gap);
     }
+    return asj_watch_end(&watch);
 }
 
 asj_status asj_seeds_mark(asj_context *context, const asj_frame *frame, const asj_detect_options *options, uint16_t *masks)
@@ -143,7 +147,7 @@ asj_status asj_seeds_mark(asj_context *context, const asj_frame *frame, const as
     memset(masks, 0, (size_t)frame->blocks * (size_t)frame->height * sizeof *masks);
     asj_status status = asj_line_segments_find(context, frame, ASJ_STAGE_CANDIDATES, options->segment_epsilon, &segments, &count);
     if (status == ASJ_OK)
-        mark_pairs(&m, segments, count, options->seed_gap);
+        status = mark_pairs(context, &m, segments, count, options->seed_gap);
     asj_release(&context->memory, segments);
     return status;
 }

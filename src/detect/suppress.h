@@ -17,7 +17,7 @@ int asj_suppress_hides(const asj_hypothesis *hypotheses, const asj_close_grid *g
 /* Sorts by meaningfulness, ties by place. */
 void asj_suppress_sort(asj_hypothesis *hypotheses, size_t count);
 
-/* The same for those of a run. */
+/* asj_suppress() of what a run has found. */
 asj_status asj_suppress_all(asj_detection_run *run);
 
 #endif

@@ -122,6 +122,8 @@ static asj_status search_rivals(asj_estimation *e)
 asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
                                  const asj_geometry_options *options, double *probabilities, asj_geometry *result)
 {
+    if (context)
+        context->progress = 0; /* a call of its own */
     return asj_estimate_with_hints(context, candidates, count, NULL, options, probabilities, NULL, result);
 }
 
@@ -151,15 +153,8 @@ static void free_estimation(asj_estimation *e)
 }
 
 /* The steps above. */
-static asj_status estimate(asj_estimation *e, const asj_geometry_hints *hints, double *probabilities, asj_judge *judge,
-                           asj_geometry *found)
+static asj_status search(asj_estimation *e, const asj_geometry_hints *hints)
 {
-    if (e->options->model == ASJ_GEOMETRY_NONE)
-        return ASJ_OK;
-    if (e->set.place_count[0] < 2 || e->set.place_count[1] < 2) {
-        found->status = ASJ_GEOMETRY_TOO_FEW;
-        return ASJ_OK;
-    }
     asj_status status = make_scratch(e, hints);
     if (status == ASJ_OK)
         status = search_all(e);
@@ -167,11 +162,25 @@ static asj_status estimate(asj_estimation *e, const asj_geometry_hints *hints, d
         status = search_rivals(e);
     if (status == ASJ_OK)
         status = asj_strike_out(e);
-    if (status == ASJ_OK)
-        status = asj_watch_end(e->set.watch);
-    if (status == ASJ_OK)
+    return status == ASJ_OK ? asj_watch_end(e->set.watch) : status;
+}
+
+/* Nothing is written unless it ends well. */
+static asj_status estimate(asj_estimation *e, const asj_geometry_hints *hints, size_t count, double *probabilities,
+                           asj_judge *judge, asj_geometry *found)
+{
+    const int32_t asked = e->options->model != ASJ_GEOMETRY_NONE;
+    const int32_t enough = e->set.place_count[0] >= 2 && e->set.place_count[1] >= 2;
+    const asj_status status = asked && enough ? search(e, hints) : ASJ_OK;
+    if (status != ASJ_OK)
+        return status;
+    for (size_t k = 0; k < count && probabilities; k++)
+        probabilities[k] = 0;
+    if (asked && enough)
         asj_answer(e, probabilities, judge, found);
-    return status;
+    else if (asked)
+        found->status = ASJ_GEOMETRY_TOO_FEW;
+    return ASJ_OK;
 }
 
 asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
@@ -197,10 +206,8 @@ asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_cand
     e->focal_at = -1;
     status = asj_pairs_create(context, candidates, count, hints, options, &e->set);
     e->set.watch = &watch;
-    for (size_t k = 0; k < count && probabilities; k++)
-        probabilities[k] = 0;
     if (status == ASJ_OK)
-        status = estimate(e, hints, probabilities, judge, &found);
+        status = estimate(e, hints, count, probabilities, judge, &found);
     free_estimation(e);
     if (status == ASJ_OK)
         *result = found;

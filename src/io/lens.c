@@ -40,15 +40,15 @@ double asj_lens_focal(const asj_lens *lens, int32_t width, int32_t height, int32
     const int is_cut = was_shorter > 0 && fabs(was_longer * shorter / (was_shorter * longer) - 1) > SAME_RATIO;
     const double smaller = was_longer > 0 ? longer / was_longer : 1;
     const double focal = by_film ? lens->film_mm * hypot(longer, shorter) / FILM_DIAGONAL : lens->mm * per_mm(lens) * smaller;
-    *source = ASJ_FOCAL_NONE;
+    *source = ASJ_EXIF_FOCAL_NONE;
     if (!by_film && !by_plane) {
-        *source = lens->is_damaged ? ASJ_FOCAL_UNUSABLE : ASJ_FOCAL_NONE;
+        *source = lens->is_damaged ? ASJ_EXIF_FOCAL_UNUSABLE : ASJ_EXIF_FOCAL_NONE;
         return 0;
     }
     if (is_cut || !(focal >= SHORTEST * longer && focal <= LONGEST * longer)) {
-        *source = ASJ_FOCAL_UNUSABLE;
+        *source = ASJ_EXIF_FOCAL_UNUSABLE;
         return 0;
     }
-    *source = by_film ? ASJ_FOCAL_FILM : ASJ_FOCAL_PLANE;
+    *source = by_film ? ASJ_EXIF_FOCAL_FILM : ASJ_EXIF_FOCAL_PLANE;
     return focal;
 }

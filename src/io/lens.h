@@ -19,7 +19,7 @@ typedef struct asj_lens {
 /* Reads an EXIF block, which is a small TIFF file. Damage is no error: a picture with a bad description is still a picture. */
 void asj_exif_lens(const unsigned char *block, size_t size, asj_lens *lens);
 
-/* The focal length in px of a picture of this size, either way up; 0 when it is not known. *source: ASJ_FOCAL_... of io.h. */
+/* The focal length in px of a picture of this size, either way up; 0 when it is not known. *source: ASJ_EXIF_FOCAL_... of io.h. */
 double asj_lens_focal(const asj_lens *lens, int32_t width, int32_t height, int32_t *source);
 
 #endif

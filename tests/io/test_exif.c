@@ -21,9 +21,11 @@ static void every_format_tells_it(void **state)
         const char *name;
         int32_t source;
         double focal;
-    } files[] = {{"lens.jpg", ASJ_FOCAL_FILM, 28}, {"lens.webp", ASJ_FOCAL_FILM, 28}, {"lens.png", ASJ_FOCAL_PLANE, 30},
-                 {"lens.tif", ASJ_FOCAL_PLANE, 30}, {"gray.jpg", ASJ_FOCAL_NONE, 0}, {"gray.png", ASJ_FOCAL_NONE, 0},
-                 {"lzw.tif", ASJ_FOCAL_NONE, 0}, {"lossy.webp", ASJ_FOCAL_NONE, 0}, {"text.ppm", ASJ_FOCAL_NONE, 0}};
+    } files[] = {{"lens.jpg", ASJ_EXIF_FOCAL_FILM, 28}, {"lens.webp", ASJ_EXIF_FOCAL_FILM, 28},
+                 {"lens.png", ASJ_EXIF_FOCAL_PLANE, 30}, {"lens.tif", ASJ_EXIF_FOCAL_PLANE, 30},
+                 {"gray.jpg", ASJ_EXIF_FOCAL_NONE, 0}, {"gray.png", ASJ_EXIF_FOCAL_NONE, 0},
+                 {"lzw.tif", ASJ_EXIF_FOCAL_NONE, 0}, {"lossy.webp", ASJ_EXIF_FOCAL_NONE, 0},
+                 {"text.ppm", ASJ_EXIF_FOCAL_NONE, 0}};
     size_t k;
     (void)state;
     for (k = 0; k < sizeof files / sizeof files[0]; k++) {
@@ -105,24 +107,24 @@ static void values(void **state)
         int32_t source;
         double focal;
     } cases[] = {
-        {{1, 35, 0, 0, 0, 0, 0, 0}, ASJ_FOCAL_FILM, 35 * 50 / diagonal}, /* the pictures are 40 x 30 */
-        {{6, 35, 0, 0, 0, 0, 40, 30}, ASJ_FOCAL_FILM, 35 * 50 / diagonal}, /* held upright */
-        {{1, 35, 0, 0, 0, 0, 30, 40}, ASJ_FOCAL_FILM, 35 * 50 / diagonal}, /* turned by a program */
-        {{1, 35, 5, 100, 1, 4, 4000, 3000}, ASJ_FOCAL_FILM, 35 * 50 / diagonal},
-        {{1, 0, 5, 800, 1, 4, 4000, 3000}, ASJ_FOCAL_PLANE, 40}, /* a hundredth as large since */
-        {{1, 0, 5, 80, 10, 4, 0, 0}, ASJ_FOCAL_PLANE, 40},
-        {{1, 0, 5, 80, 1, 3, 0, 0}, ASJ_FOCAL_PLANE, 40},
-        {{1, 0, 5, 2032, 10, 2, 0, 0}, ASJ_FOCAL_PLANE, 40},
-        {{1, 0, 5, 2032, 10, 0, 0, 0}, ASJ_FOCAL_PLANE, 40},
-        {{1, 0, 5, 80, 10000, 5, 0, 0}, ASJ_FOCAL_PLANE, 40},
-        {{1, 0, 5, 80, 10, 7, 0, 0}, ASJ_FOCAL_NONE, 0}, /* no such unit */
-        {{1, 0, 5, 80, 0, 4, 0, 0}, ASJ_FOCAL_NONE, 0},  /* divided by zero */
-        {{1, 0, 0, 80, 10, 4, 0, 0}, ASJ_FOCAL_NONE, 0},
-        {{1, 0, 5, 0, 10, 4, 0, 0}, ASJ_FOCAL_NONE, 0},
-        {{1, 35, 0, 0, 0, 0, 4000, 2250}, ASJ_FOCAL_UNUSABLE, 0}, /* cut from 16:9 to 4:3 */
-        {{1, 1, 0, 0, 0, 0, 0, 0}, ASJ_FOCAL_UNUSABLE, 0},        /* 175 degrees */
-        {{1, 65535, 0, 0, 0, 0, 0, 0}, ASJ_FOCAL_UNUSABLE, 0},
-        {{1, 0, 4000000000u, 4000000000u, 1, 5, 0, 0}, ASJ_FOCAL_UNUSABLE, 0},
+        {{1, 35, 0, 0, 0, 0, 0, 0}, ASJ_EXIF_FOCAL_FILM, 35 * 50 / diagonal}, /* the pictures are 40 x 30 */
+        {{6, 35, 0, 0, 0, 0, 40, 30}, ASJ_EXIF_FOCAL_FILM, 35 * 50 / diagonal}, /* held upright */
+        {{1, 35, 0, 0, 0, 0, 30, 40}, ASJ_EXIF_FOCAL_FILM, 35 * 50 / diagonal}, /* turned by a program */
+        {{1, 35, 5, 100, 1, 4, 4000, 3000}, ASJ_EXIF_FOCAL_FILM, 35 * 50 / diagonal},
+        {{1, 0, 5, 800, 1, 4, 4000, 3000}, ASJ_EXIF_FOCAL_PLANE, 40}, /* a hundredth as large since */
+        {{1, 0, 5, 80, 10, 4, 0, 0}, ASJ_EXIF_FOCAL_PLANE, 40},
+        {{1, 0, 5, 80, 1, 3, 0, 0}, ASJ_EXIF_FOCAL_PLANE, 40},
+        {{1, 0, 5, 2032, 10, 2, 0, 0}, ASJ_EXIF_FOCAL_PLANE, 40},
+        {{1, 0, 5, 2032, 10, 0, 0, 0}, ASJ_EXIF_FOCAL_PLANE, 40},
+        {{1, 0, 5, 80, 10000, 5, 0, 0}, ASJ_EXIF_FOCAL_PLANE, 40},
+        {{1, 0, 5, 80, 10, 7, 0, 0}, ASJ_EXIF_FOCAL_NONE, 0}, /* no such unit */
+        {{1, 0, 5, 80, 0, 4, 0, 0}, ASJ_EXIF_FOCAL_NONE, 0},  /* divided by zero */
+        {{1, 0, 0, 80, 10, 4, 0, 0}, ASJ_EXIF_FOCAL_NONE, 0},
+        {{1, 0, 5, 0, 10, 4, 0, 0}, ASJ_EXIF_FOCAL_NONE, 0},
+        {{1, 35, 0, 0, 0, 0, 4000, 2250}, ASJ_EXIF_FOCAL_UNUSABLE, 0}, /* cut from 16:9 to 4:3 */
+        {{1, 1, 0, 0, 0, 0, 0, 0}, ASJ_EXIF_FOCAL_UNUSABLE, 0},        /* 175 degrees */
+        {{1, 65535, 0, 0, 0, 0, 0, 0}, ASJ_EXIF_FOCAL_UNUSABLE, 0},
+        {{1, 0, 4000000000u, 4000000000u, 1, 5, 0, 0}, ASJ_EXIF_FOCAL_UNUSABLE, 0},
     };
     static test_bytes block;
     size_t k;
@@ -153,8 +155,9 @@ static void damage(void **state)
             block.bytes[k - whole] ^= 0xff;
         asj_image_file *file = read_with(&block, 40, 30);
         assert_true(isfinite(file->focal_length) && file->focal_length >= 0);
-        assert_true((file->focal_length > 0) == (file->focal_source == ASJ_FOCAL_FILM || file->focal_source == ASJ_FOCAL_PLANE));
-        unusable += file->focal_source == ASJ_FOCAL_UNUSABLE;
+        assert_true((file->focal_length > 0) ==
+                    (file->focal_source == ASJ_EXIF_FOCAL_FILM || file->focal_source == ASJ_EXIF_FOCAL_PLANE));
+        unusable += file->focal_source == ASJ_EXIF_FOCAL_UNUSABLE;
         asj_image_file_free(&file);
     }
     assert_true(unusable > 10);

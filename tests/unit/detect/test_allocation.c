@@ -188,6 +188,33 @@ static void test_into(void **state)
     free(pixels);
 }
 
+/* Each allocation fails while a result that was empty is filled: it stays empty. */
+static void test_into_without_memory(void **state)
+{
+    static const uint8_t flat[WIDTH * HEIGHT] = {0};
+    uint8_t *pixels = picture(WIDTH, HEIGHT);
+    const asj_image image = unit_gray8(pixels, WIDTH, HEIGHT), nothing = unit_gray8(flat, WIDTH, HEIGHT);
+    int reached = 1;
+    (void)state;
+    for (long n = 1; n < MOST && reached; n++) {
+        unit_counter counter;
+        asj_context *context = unit_context(&counter, 1);
+        asj_detection *found = NULL;
+        assert_int_equal(asj_detect_into(context, &nothing, NULL, &found), ASJ_OK);
+        counter.calls = 0;
+        counter.fail_at = n;
+        const asj_status status = asj_detect_into(context, &image, NULL, &found);
+        reached = unit_reached(&counter);
+        assert_true(status == ASJ_OK || (reached && status == ASJ_ERROR_MEMORY));
+        if (status != ASJ_OK)
+            assert_true(found->junction_count == 0 && found->l_junction_count == 0 && !found->junctions && found->width == 0);
+        asj_detection_free(&found);
+        unit_context_free(&counter, &context);
+    }
+    assert_false(reached);
+    free(pixels);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -196,6 +223,7 @@ int main(void)
         cmocka_unit_test(test_local_field),
         cmocka_unit_test(test_stream),
         cmocka_unit_test(test_into),
+        cmocka_unit_test(test_into_without_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
