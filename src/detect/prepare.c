@@ -25,16 +25,13 @@ static void draw_test_picture(uint8_t *pixels, int32_t width, int32_t height)
         memset(pixels + (size_t)y * row + left, 200, row / 2 - left);
 }
 
-/* Junctions of the test picture, which nobody wants to hear of. */
+/* Junctions of the test picture, whose planes nobody wants to see. */
 static asj_status detect_quietly(asj_context *context, const asj_detect_options *options, const asj_image *image)
 {
-    const asj_progress_callback progress = context->options.progress;
     const asj_dump_callback dump = context->options.dump;
     asj_detection *found = NULL;
-    context->options.progress = NULL;
     context->options.dump = NULL;
     const asj_status status = asj_detect(context, image, options, &found);
-    context->options.progress = progress;
     context->options.dump = dump;
     asj_detection_free(&found);
     return status;

@@ -133,7 +133,7 @@ static asj_status mark_pairs(asj_context *context, const marker *m, asj_line_seg
     for (size_t i = 0; i < count && !asj_watch_stops(&watch, NULL); i++) {
         const double end = fmax(segments[i].x1, segments[i].x2) + 2 * gap;
         for (size_t j = i + 1; j < count && left_of(&segments[j]) <= end; j++)
-            if (side_by_side(&segments[i], &segments[j], 2 * gap))
+            if (side_by_side(&segments[i], &segments[j], 2 * gap) && !asj_watch_stops(&watch, NULL))
                 mark_pair(m, &segments[i], &segments[j], gap);
     }
     return asj_watch_end(&watch);

@@ -124,9 +124,10 @@ static double log_number_of_tests(const asj_frame *frame)
     return asj_strip_log_tests(frame->width, frame->height, frame->octaves);
 }
 
+/* Of a strip without a pixel, beyond the border, nothing speaks: its tail is 1. */
 static double log_nfa(const asj_frame *frame, double gamma, int32_t pixels)
 {
-    return pixels ? log_number_of_tests(frame) + asj_nfa_log_sector_tail(asj_nfa_tables(), gamma, pixels) : HUGE_VAL;
+    return log_number_of_tests(frame) + (pixels ? asj_nfa_log_sector_tail(asj_nfa_tables(), gamma, pixels) : 0);
 }
 
 int asj_strip_passes(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,

@@ -640,7 +640,7 @@ static void test_extreme_options(void **state)
     uint8_t *pixels = unit_picture(&scene, 1, 4, 4);
     const asj_image image = unit_gray8(pixels, 60, 50);
     for (size_t k = 0; k < asj_detect_option_count(); k++)
-        for (int preset = 0; preset < 2; preset++)
+        for (int preset = ASJ_PRESET_DEFAULT; preset <= ASJ_PRESET_MATCH; preset++)
             for (int above = 0; above < 2; above++) {
                 const asj_option_info *row = asj_detect_option(k);
                 asj_detect_options options;
@@ -669,6 +669,34 @@ static void test_extreme_options(void **state)
                 asj_detection_free(&found);
             }
     free(pixels);
+}
+
+/* Branches that hardly have a pixel, since the picture ends: their numbers are finite, too. */
+static void test_branches_at_the_border(void **state)
+{
+    const fixture *f = *state;
+    enum { SIDE = 96 };
+    static uint8_t pixels[SIDE * SIDE];
+    const asj_image image = unit_gray8(pixels, SIDE, SIDE);
+    asj_detect_options options;
+    uint32_t random = 1, count = 0;
+    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
+    options.ignore_frame = 0;
+    for (int32_t n = 0; n < 40; n++) {
+        asj_detection *found = NULL;
+        for (int32_t i = 0; i < SIDE * SIDE; i++) { /* cells of 6 x 6 px, noise */
+            if (i % 6 == 0 && i / SIDE % 6 == 0)
+                pixels[i] = (uint8_t)((random = random * 1664525u + 1013904223u) >> 24);
+            else
+                pixels[i] = pixels[i / SIDE / 6 * 6 * SIDE + i % SIDE / 6 * 6];
+        }
+        assert_int_equal(asj_detect(f->context, &image, &options, &found), ASJ_OK);
+        for (uint32_t i = 0; i < found->junction_count; i++, count++)
+            for (int32_t b = 0; b < found->junctions[i].branch_count; b++)
+                assert_true(isfinite(found->junctions[i].branches[b].log10_nfa));
+        asj_detection_free(&found);
+    }
+    assert_true(count > 1000);
 }
 
 /* Radii that share the gammas of a larger one, small fields, radii at which five branches do not fit: under sanitizers this
@@ -716,7 +744,7 @@ int main(void)
         cmocka_unit_test(test_reuse),  cmocka_unit_test(test_quarter_turn), cmocka_unit_test(test_formats),
         cmocka_unit_test(test_octave_union), cmocka_unit_test(test_small_squares), cmocka_unit_test(test_enlarged_limit),
         cmocka_unit_test(test_minimum_length),
-        cmocka_unit_test(test_radii),
+        cmocka_unit_test(test_radii), cmocka_unit_test(test_branches_at_the_border),
         cmocka_unit_test(test_arguments), cmocka_unit_test(test_bad_options), cmocka_unit_test(test_extreme_options),
     };
     return cmocka_run_group_tests(tests, set_up, unit_tear_down);

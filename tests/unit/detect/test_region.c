@@ -121,7 +121,7 @@ static void test_extreme_masks(void **state)
     assert_true(found->candidates == f->whole->candidates);
     asj_detection_free(&found);
     memset(f->mask, 0, WIDTH * HEIGHT / 2);
-    const asj_image turned = {f->mask + (HEIGHT - 1) * WIDTH, ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 0, -WIDTH};
+    const asj_image turned = {f->mask + (HEIGHT - 1) * WIDTH, ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, NAN, -WIDTH};
     region.mask = &turned;
     found = detect(f, &region);
     assert_true(found->junction_count > 3);
