@@ -174,6 +174,8 @@ def test_hdf5(done: Path, photographs: Path, tmp_path: Path) -> None:
 
 def test_limap(done: Path, tmp_path: Path) -> None:
     del done
+    names = dict(line.split(" ", 1) for line in (tmp_path / "limap" / "images.txt").read_text(encoding="utf-8").splitlines())
+    assert names["1"] == "a.png" and names["2"] == "b.png"
     first = (tmp_path / "limap" / "segments" / "segments_1.txt").read_text().splitlines()
     second = (tmp_path / "limap" / "segments" / "segments_2.txt").read_text().splitlines()
     assert int(first[0]) == len(first) - 1

@@ -131,7 +131,11 @@ class Matches:
         return read_geometry(self._result.geometry)
 
     def segments(self, ends: str = "both") -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint32]]:
-        """Line segments that match, each edge once: (S, 2, 2) in the first image, (S, 2, 2) in the second, (S,) index of the match.
+        """Line segments that match: (S, 2, 2) in the first image, (S, 2, 2) in the second, (S,) index of the match. A segment seen from
+        both its ends comes once; of an edge with corners on it there are segments from each.
+
+        They begin at the match's points and point where both images say; the branches as detected are ``features1.segments`` and
+        ``features2.segments`` at :meth:`segment_indices`, in the second image some pixels beside these where the match moved the corner.
 
         ends   what must be known of the far ends: "both" (both branches' own ends correspond), "inner" (or a junction on the longer
                one does), "cut" (or the longer one was cut where the matches around put the end of the shorter one)
@@ -140,7 +144,8 @@ class Matches:
         return (arrays.columns(records, "x1", (2, 2)), arrays.columns(records, "x2", (2, 2)), np.asarray(records["match"]))
 
     def segment_indices(self, ends: str = "both") -> NDArray[np.int64]:
-        """(S, 2) which of features1.segments and features2.segments those of :meth:`segments` are, by the branches they follow."""
+        """(S, 2) which of features1.segments and features2.segments those of :meth:`segments` are, by the branches they follow; matches
+        of :func:`asj.match_images` have no features, and none."""
         records = self._segment_records(ends)
         junctions = self.indices[records["match"]]
         columns = [

@@ -48,10 +48,20 @@ def write(store: Store, path: Path, verify: bool = True, refine: bool = True) ->
         finally:
             database.close()
         if verify:
-            pycolmap.geometric_verification(temporary)
+            _verify(pycolmap, temporary)
         _write_geometries(store, pycolmap, temporary, numbers)
         for left in ("-wal", "-shm"):
             Path(f"{temporary}{left}").unlink(missing_ok=True)
+
+
+def _verify(pycolmap: Any, path: Path) -> None:
+    """COLMAP's own two-view geometries; of what it says while it looks for them, warnings."""
+    level = pycolmap.logging.minloglevel
+    pycolmap.logging.minloglevel = pycolmap.logging.WARNING.value
+    try:
+        pycolmap.geometric_verification(path)
+    finally:
+        pycolmap.logging.minloglevel = level
 
 
 def _write_geometries(store: Store, pycolmap: Any, path: Path, numbers: dict[int, int]) -> None:

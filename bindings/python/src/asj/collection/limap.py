@@ -2,8 +2,8 @@
 """Line segments and their matches as LIMAP reads them.
 
 segments/segments_<image>.txt: the count, then x1 y1 x2 y2 score in each line; matches/matches_<image>.npy would hold a dictionary,
-so the pairs are written as text: matches/matches_<image1>_<image2>.txt, two indices in each line. Images have the numbers of the
-COLMAP database.
+so the pairs are written as text: matches/matches_<image1>_<image2>.txt, two indices, counted from 0, in each line. images.txt says
+which photograph has which number, those of the COLMAP database.
 """
 
 from __future__ import annotations
@@ -23,16 +23,20 @@ def write(store: Store, folder: Path) -> None:
     (folder / "segments").mkdir(parents=True, exist_ok=True)
     (folder / "matches").mkdir(exist_ok=True)
     numbers: dict[int, int] = {}
-    for image, _, detected in store.detected():
+    names = []
+    for image, name, detected in store.detected():
         if detected.features is None:
             continue
         number = numbers[image] = len(numbers) + 1
+        names.append(f"{number} {name}\n")
         junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
         segments, branches = segments_of(junctions)
         with whole_file(folder / "segments" / f"segments_{number}.txt") as temporary, temporary.open("w", encoding="ascii") as file:
             file.write(f"{len(segments)}\n")
             for (start, end), branch in zip(segments.tolist(), branches):
                 file.write(f"{start[0]:.6f} {start[1]:.6f} {end[0]:.6f} {end[1]:.6f} {-branch['log10_nfa']:.6f}\n")
+    with whole_file(folder / "images.txt") as temporary:
+        temporary.write_text("".join(names), encoding="utf-8")
     for one, two, matched in store.matched():
         if matched.lines is None:
             continue
