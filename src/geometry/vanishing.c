@@ -22,6 +22,8 @@
 #define LONGEST_FOCAL 4.0
 #define DIRECTION_SD (0.3 * ASJ_DEGREE)
 #define FOCAL_SD 0.05                /* relative: a focal length known worse than this is none */
+#define USUAL_FOCAL 2                /* where none is known: the longer side of the image, and .. */
+#define SAME (8 * ASJ_DEGREE)        /* .. directions nearer than that are one, which lens or vote has split */
 
 void asj_vanishing_options_init(asj_vanishing_options *options)
 {
@@ -177,12 +179,30 @@ static void fill(const asj_vote *at, const double direction[3], const asj_camera
     out->branch_count = (uint32_t)at->votes;
 }
 
+/* The surest first; of those that would be nearly one direction with a usual camera the surest stays. Returns how many there are. */
+static int32_t distinct(asj_vote *points, int32_t found)
+{
+    int32_t kept = 0;
+    qsort(points, (size_t)found, sizeof *points, by_nfa);
+    for (int32_t k = 0; k < found; k++) {
+        double d[3], e[3], nearest = 0;
+        direction_of(points[k].v, USUAL_FOCAL, d);
+        for (int32_t i = 0; i < kept; i++) {
+            direction_of(points[i].v, USUAL_FOCAL, e);
+            nearest = fmax(nearest, fabs(asj_dot3(d, e)));
+        }
+        if (nearest <= cos(SAME))
+            points[kept++] = points[k];
+    }
+    return kept;
+}
+
 static void answer(asj_vote_search *s, const asj_vanishing_options *options, const asj_camera *camera, asj_vanishing_points *result)
 {
     asj_vote points[ASJ_VOTE_POINTS];
     const int32_t given = options->camera.fx > 0;
     const double most = log(options->epsilon);
-    const int32_t found = asj_vote_points(s, most, points);
+    int32_t found = asj_vote_points(s, most, points);
     const frame f = best_frame(s, points, found, given ? 1 : 0, most);
     result->focal_source = given ? ASJ_FOCAL_GIVEN : f.count >= 2 ? ASJ_FOCAL_FOUND : ASJ_FOCAL_UNKNOWN;
     if (given)
@@ -196,6 +216,7 @@ static void answer(asj_vote_search *s, const asj_vanishing_options *options, con
         return;
     }
     /* no two at right angles: with a focal length the surest alone, without one the surest three */
+    found = distinct(points, found);
     result->count = given ? (found > 0) : found < ASJ_MOST_VANISHING ? found : ASJ_MOST_VANISHING;
     for (int32_t k = 0; k < result->count; k++) {
         double d[3];

@@ -78,6 +78,41 @@ static void rooms_have_three_directions(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Without a focal length: points 4 degrees apart are one direction, others two, the surer one first. */
+static void near_points_are_one(void **state)
+{
+    static const double second[2][2] = {{1800, 420}, {1000, 900}};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    synth_random random;
+    (void)state;
+    synth_random_seed(&random, 78);
+    for (int32_t n = 0; n < 2; n++) {
+        asj_junction list[60];
+        asj_vanishing_options options;
+        asj_vanishing_points found;
+        memset(list, 0, sizeof list);
+        for (int32_t k = 0; k < 60; k++) {
+            const double x = k < 25 ? 2000 : second[n][0], y = k < 25 ? 300 : second[n][1];
+            list[k].x = (float)synth_random_between(&random, 0, 640);
+            list[k].y = (float)synth_random_between(&random, 0, 480);
+            list[k].branch_count = 1;
+            list[k].branches[0].angle = (float)atan2(y - (double)list[k].y, x - (double)list[k].x);
+            list[k].branches[0].length = 50;
+            list[k].branches[0].angle_sd = 0.004F;
+        }
+        asj_vanishing_options_init(&options);
+        options.width = 640;
+        options.height = 480;
+        assert_int_equal(asj_find_vanishing_points(context, list, 60, &options, &found), ASJ_OK);
+        assert_int_equal(found.focal_source, ASJ_FOCAL_UNKNOWN);
+        assert_int_equal(found.count, n + 1);
+        unit_near("the surer one", n, 0, found.points[0].point[0] / found.points[0].point[2], second[n][0], 30);
+        assert_true(n == 0 || found.points[0].log10_nfa < found.points[1].log10_nfa);
+    }
+    unit_context_free(&counter, &context);
+}
+
 /* Branches of any direction at any place: what is found is a false alarm; epsilon 0.01 allows none of 40 images, nearly always. */
 static void chance_has_no_directions(void **state)
 {
@@ -157,7 +192,7 @@ static void bad_input_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rooms_have_three_directions), cmocka_unit_test(chance_has_no_directions),
+        cmocka_unit_test(rooms_have_three_directions), cmocka_unit_test(near_points_are_one), cmocka_unit_test(chance_has_no_directions),
         cmocka_unit_test(bad_input_is_refused),
     };
     return cmocka_run_group_tests_name("vanishing points", tests, NULL, NULL);
