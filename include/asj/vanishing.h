@@ -39,8 +39,8 @@ typedef struct asj_vanishing_point {
     uint32_t reserved;
 } asj_vanishing_point;
 
-/* Up to three directions; with a focal length, given or found, they are at right angles to each other, else at least 8 degrees apart
- * in a camera whose focal length is the longer side of the image. The surest first. */
+/* Up to three directions; with a focal length, given or found, they are at right angles to each other, else at least 8 degrees
+ * apart in a camera whose focal length is the longer side of the image. The surest first. */
 typedef struct asj_vanishing_points {
     int32_t count;
     int32_t focal_source;     /* ASJ_FOCAL_... */

@@ -179,7 +179,7 @@ static void fill(const asj_vote *at, const double direction[3], const asj_camera
     out->branch_count = (uint32_t)at->votes;
 }
 
-/* The surest first; of those that would be nearly one direction with a usual camera the surest stays. Returns how many there are. */
+/* The surest first; of those that would be nearly one direction with a usual camera the surest stays. How many stay. */
 static int32_t distinct(asj_vote *points, int32_t found)
 {
     int32_t kept = 0;

@@ -192,7 +192,8 @@ static void bad_input_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rooms_have_three_directions), cmocka_unit_test(near_points_are_one), cmocka_unit_test(chance_has_no_directions),
+        cmocka_unit_test(rooms_have_three_directions), cmocka_unit_test(near_points_are_one),
+        cmocka_unit_test(chance_has_no_directions),
         cmocka_unit_test(bad_input_is_refused),
     };
     return cmocka_run_group_tests_name("vanishing points", tests, NULL, NULL);
