@@ -26,7 +26,7 @@ static void draw_test_picture(uint8_t *pixels, int32_t width, int32_t height)
 }
 
 /* Junctions of the test picture, whose planes nobody wants to see. */
-static asj_status detect_quietly(asj_context *context, const asj_detect_options *options, const asj_image *image)
+static asj_status detect_without_dumps(asj_context *context, const asj_detect_options *options, const asj_image *image)
 {
     const asj_dump_callback dump = context->options.dump;
     asj_detection *found = NULL;
@@ -53,7 +53,7 @@ asj_status asj_prepare(asj_context *context, const asj_detect_options *options, 
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for a test picture of %d x %d", (int)width, (int)height);
     draw_test_picture(pixels, width, height);
     image.data = pixels;
-    status = detect_quietly(context, options, &image);
+    status = detect_without_dumps(context, options, &image);
     asj_release(&context->memory, pixels);
     return status;
 }

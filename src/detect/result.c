@@ -50,22 +50,13 @@ static asj_status reserve(asj_memory *memory, void **list, size_t *capacity, siz
     return count > *capacity ? asj_grow(memory, list, capacity, count + count / 2, size, 0) : ASJ_OK;
 }
 
-static asj_status fill_edges(result *r, const asj_findings *findings)
-{
-    const size_t count = findings->edge_count;
-    const asj_status status = reserve(&r->memory, &r->edges, &r->edge_capacity, count, sizeof(asj_edge));
-    if (status != ASJ_OK || count == 0)
-        return status;
-    memcpy(r->edges, findings->edges, count * sizeof(asj_edge));
-    r->detection.edges = r->edges;
-    r->detection.edge_count = (uint32_t)count;
-    return ASJ_OK;
-}
-
+/* All or nothing: there is room for every list before the first is told. */
 static asj_status fill(result *r, const asj_findings *findings, double minimum_opening)
 {
-    const size_t count = findings->count;
+    const size_t count = findings->count, edge_count = findings->edge_count;
     asj_status status = reserve(&r->memory, &r->junctions, &r->capacity, count, sizeof(asj_junction));
+    if (status == ASJ_OK)
+        status = reserve(&r->memory, &r->edges, &r->edge_capacity, edge_count, sizeof(asj_edge));
     if (status != ASJ_OK || count == 0)
         return status;
     asj_junction *junctions = r->junctions;
@@ -77,11 +68,15 @@ static asj_status fill(result *r, const asj_findings *findings, double minimum_o
         return status;
     if (l_count > 0)
         asj_decompose(junctions, count, minimum_opening, r->l_junctions, l_count);
+    if (edge_count > 0)
+        memcpy(r->edges, findings->edges, edge_count * sizeof(asj_edge));
     r->detection.junctions = junctions;
     r->detection.junction_count = (uint32_t)count;
     r->detection.l_junctions = l_count > 0 ? r->l_junctions : NULL;
     r->detection.l_junction_count = (uint32_t)l_count;
-    return fill_edges(r, findings);
+    r->detection.edges = edge_count > 0 ? r->edges : NULL;
+    r->detection.edge_count = (uint32_t)edge_count;
+    return ASJ_OK;
 }
 
 asj_status asj_result_fill(const asj_context *context, const asj_findings *findings, double minimum_opening,
@@ -90,10 +85,7 @@ asj_status asj_result_fill(const asj_context *context, const asj_findings *findi
     result *r = (result *)*detection;
     if (r) {
         asj_result_clear(&r->detection);
-        const asj_status refilled = fill(r, findings, minimum_opening);
-        if (refilled != ASJ_OK)
-            asj_result_clear(&r->detection);
-        return refilled;
+        return fill(r, findings, minimum_opening);
     }
     asj_memory memory = {.allocator = context->memory.allocator};
     r = asj_allocate_zero(&memory, 1, sizeof *r);

@@ -122,8 +122,9 @@ static asj_status search_rivals(asj_estimation *e)
 asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
                                  const asj_geometry_options *options, double *probabilities, asj_geometry *result)
 {
-    if (context)
-        context->progress = 0; /* a call of its own */
+    if (asj_enter(context) != ASJ_OK)
+        return ASJ_ERROR_ARGUMENT;
+    context->progress = 0; /* a call of its own */
     return asj_estimate_with_hints(context, candidates, count, NULL, options, probabilities, NULL, result);
 }
 

@@ -77,7 +77,7 @@ static int32_t along(const bundle *b, double x, double y)
     return found;
 }
 
-/* A branch of a match that is not one of its two, in both images: its number, and its lengths as detected. */
+/* A branch of a match that is not one of its two, in both images: its lengths as detected, and its numbers. */
 typedef struct other_branch {
     asj_matched_branch line;
     double length[2];

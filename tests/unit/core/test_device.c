@@ -190,11 +190,30 @@ static void test_prepare(void **state)
     unit_context_free(&counter, &context);
 }
 
+static int32_t stop(void *user, int32_t stage, double done)
+{
+    (void)user, (void)stage, (void)done;
+    return 1;
+}
+
+static void test_prepare_can_be_cancelled(void **state)
+{
+    asj_context_options options;
+    asj_context *context = NULL;
+    (void)state;
+    asj_context_options_init(&options);
+    options.progress = stop;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+    assert_int_equal(asj_prepare(context, NULL, 133, 97), ASJ_ERROR_CANCELLED);
+    asj_context_free(&context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_selectors), cmocka_unit_test(test_type_names), cmocka_unit_test(test_list),
         cmocka_unit_test(test_contexts),  cmocka_unit_test(test_prepare),
+        cmocka_unit_test(test_prepare_can_be_cancelled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -100,8 +100,8 @@ static void test_named_shapes(void **state)
     }
 }
 
-/* At minimum_opening 0 every pair but the equal and the opposite ones counts: floats cannot hold pi, so "opposite" is what their
- * difference says. */
+/* At minimum_opening 0 every pair but the equal and the opposite ones counts. Floats cannot hold pi: the
+ * nearest one is opposite. */
 static void test_no_minimum(void **state)
 {
     static const double near[] = {0, 1e-3, 2.0, UNIT_PI - 1e-3};
@@ -111,6 +111,9 @@ static void test_no_minimum(void **state)
         asj_junction junction = star(2, angles);
         assert_int_equal(asj_decompose(&junction, 1, 0, NULL, 0), near[i] > 0);
     }
+    const double line[2] = {0, UNIT_PI};
+    asj_junction straight = star(2, line);
+    assert_int_equal(asj_decompose(&straight, 1, 0, NULL, 0), 0);
 }
 
 /* A short array is filled, and the whole number returned; nothing is written behind it. */
