@@ -107,6 +107,8 @@ static int find_segments(run *r)
         return CLI_FAILED;
     }
     asj_match_segments(r->result, minimum_end, r->segments, r->segment_count);
+    if (r->arguments->lines == ASJ_LINES_JOINED)
+        r->segment_count = asj_join_segment_matches(r->segments, r->segment_count);
     return CLI_SUCCESS;
 }
 

@@ -38,7 +38,7 @@ static const char conclusion[] =
     "More: man asj-cli; all numbers: man asj-options; file formats: man asj-formats\n";
 
 enum {
-    OUTPUT, FORMAT, LINES, LINE_ENDS, JUNCTIONS_1, JUNCTIONS_2, REGION_1, REGION_2, MASK_1, MASK_2, STRETCH, PLOT,
+    OUTPUT, FORMAT, LINES, LINE_ENDS, JOIN_LINES, JUNCTIONS_1, JUNCTIONS_2, REGION_1, REGION_2, MASK_1, MASK_2, STRETCH, PLOT,
     PLOT_BACKGROUND, PLOT_LINES, PLOT_EPIPOLAR, PLOT_LAYOUT, PLOT_SCALE, PRESET, DETECT_PRESET, MATCH_PRESET, GEOMETRY, CAMERA_1,
     CAMERA_2, FOCAL
 };
@@ -50,6 +50,7 @@ static const cli_option output_options[] = {
     {LINE_ENDS, 0, "line-ends", "cut|inner|both",
      "line segments whose far ends are known at least so well. both: both branches end there, as the matches around see it; "
      "inner (the default): also where the end of one is a corner further inside the other; cut: all, the longer one cut to fit"},
+    {JOIN_LINES, 0, "join-lines", NULL, "line segments that are parts of one edge, from each of its corners, as one"},
 };
 
 static const cli_option input_options[] = {
@@ -110,7 +111,8 @@ static int take_output(void *target, int id, const char *text)
     cli_match_arguments *arguments = target;
     switch (id) {
     case OUTPUT: arguments->output = text; break;
-    case LINES: arguments->lines = 1; break;
+    case LINES: arguments->lines = ASJ_LINES_BRANCHES; break;
+    case JOIN_LINES: arguments->join_lines = 1; break;
     case LINE_ENDS:
         if ((arguments->minimum_end = cli_find_word(ends, text)) < 0)
             return cli_usage_error("match", "--line-ends: '%s' is not cut, inner or both", text);
@@ -381,6 +383,10 @@ static int check_results(cli_match_arguments *arguments)
 {
     if (arguments->minimum_end >= 0 && !arguments->lines)
         return cli_usage_error("match", "--line-ends changes nothing without --lines");
+    if (arguments->join_lines && !arguments->lines)
+        return cli_usage_error("match", "--join-lines changes nothing without --lines");
+    if (arguments->join_lines)
+        arguments->lines = ASJ_LINES_JOINED;
     if (arguments->minimum_end < 0)
         arguments->minimum_end = ASJ_END_INNER;
     if (!arguments->plot)

@@ -32,7 +32,8 @@ typedef struct cli_match_arguments {
     asj_camera cameras[2];    /* fx 0 = not given */
     int32_t focal_from;       /* CLI_FOCAL_... */
     double focal;             /* px, CLI_FOCAL_GIVEN */
-    int lines;
+    int32_t lines;            /* ASJ_LINES_... */
+    int join_lines;
     int32_t minimum_end;      /* ASJ_END_...; -1 until all options are read = inner */
     const char *plot;         /* a file; NULL = none */
     int32_t plot_format;      /* CLI_PLOT_... */

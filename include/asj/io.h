@@ -141,11 +141,17 @@ typedef struct asj_detection_report {
 ASJ_API asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_detection_report *report,
                                        char *message, size_t message_size);
 
+/* Line segments of matches (asj_match_report.lines). */
+enum {
+    ASJ_LINES_NONE = 0,
+    ASJ_LINES_BRANCHES = 1, /* asj_match_segments() */
+    ASJ_LINES_JOINED = 2    /* these, those of one edge as one: asj_join_segment_matches() */
+};
+
 /* What is written of a match. Only `result` is needed. */
 typedef struct asj_match_report {
     const asj_match_result *result;
-    int32_t lines;                       /* 1 = line segments (asj_match_segments()): CSV has them in place of the matches, JSON
-                                          * beside them */
+    int32_t lines;                       /* ASJ_LINES_...: line segments; CSV has them in place of the matches, JSON beside them */
     int32_t minimum_end;                 /* ASJ_END_...: line segments whose ends are less sure are left out */
     const asj_match_options *options;    /* JSON: the options used; NULL = left out */
     const asj_detect_options *detect_options; /* JSON: those of the detector; NULL = left out */

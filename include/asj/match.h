@@ -104,7 +104,8 @@ enum {
     ASJ_END_CUT = 0,   /* they do not: the longer branch was cut where the matches around, and its epipolar line, put the
                         * end of the shorter one, or nearer, where they do not know that */
     ASJ_END_INNER = 1, /* a junction on one of the branches, or on each, corresponds to the other's end */
-    ASJ_END_BOTH = 2   /* both branches' own ends correspond */
+    ASJ_END_BOTH = 2,  /* both branches' own ends correspond */
+    ASJ_END_CORNER = 3 /* of line segments: a corner that is matched */
 };
 
 /* Two L-junctions that show the same corner. */
@@ -248,6 +249,7 @@ typedef struct asj_segment_match {
     float x1, y1, ex1, ey1;   /* image 1: the junction's end, the far end */
     float x2, y2, ex2, ey2;   /* image 2 */
     int32_t branch1, branch2; /* which branches of the match's junction1 and junction2; -1: its l1 or l2 has no L-junction */
+    int32_t start;            /* ASJ_END_... of the junction's end: ASJ_END_CORNER, joined ones also less */
 } asj_segment_match;
 
 /* The matches as line-segment matches: the two branches of each match, then the other branches of the same two junctions that
@@ -258,6 +260,14 @@ typedef struct asj_segment_match {
  * square (20 000 of two: 4 s). */
 ASJ_API size_t asj_match_segments(const asj_match_result *result, int32_t minimum_end,
                                   asj_segment_match *segments, size_t capacity);
+
+/* Joins, in place, those that are parts of one edge: an edge with corners on it has a segment from each of them to its end. Two are
+ * of one edge when they lie within 2 px of one line in both images, in the same order, and overlap by more than 4 px and 5 % of
+ * the longer one, or the shorter lies in the longer. What comes of them reaches from the first end to the last in both images;
+ * match, branch1, branch2 are those of its longest part, and either end may be a matched corner (`start`, `end`) or not. Returns
+ * how many there are then, in the order of their matches. Time: `count` times what it returns (5000 that
+ * share nothing: .1 s, 20 000: 2 s). */
+ASJ_API size_t asj_join_segment_matches(asj_segment_match *segments, size_t count);
 
 #ifdef __cplusplus
 }

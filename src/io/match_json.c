@@ -92,7 +92,7 @@ static void put_geometry(asj_json_output *json, const asj_geometry *g)
 
 static const char *end_name(int32_t end)
 {
-    return end == ASJ_END_BOTH ? "both" : end == ASJ_END_INNER ? "inner" : "cut";
+    return end == ASJ_END_CORNER ? "corner" : end == ASJ_END_BOTH ? "both" : end == ASJ_END_INNER ? "inner" : "cut";
 }
 
 /* Two halves, joined: a json_pack() with everything could not be read. */
@@ -121,10 +121,10 @@ static json_t *match_value(const asj_junction_match *m, int geometry)
 
 static json_t *segment_value(const asj_segment_match *s)
 {
-    return json_pack("{s:I, s:s, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:i, s:i}", "match", (json_int_t)s->match, "end",
-                     end_name(s->end), "x1", (double)s->x1, "y1", (double)s->y1, "ex1", (double)s->ex1, "ey1", (double)s->ey1,
-                     "x2", (double)s->x2, "y2", (double)s->y2, "ex2", (double)s->ex2, "ey2", (double)s->ey2, "branch1",
-                     s->branch1, "branch2", s->branch2);
+    return json_pack("{s:I, s:s, s:s, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:i, s:i}", "match", (json_int_t)s->match, "start",
+                     end_name(s->start), "end", end_name(s->end), "x1", (double)s->x1, "y1", (double)s->y1, "ex1",
+                     (double)s->ex1, "ey1", (double)s->ey1, "x2", (double)s->x2, "y2", (double)s->y2, "ex2", (double)s->ex2,
+                     "ey2", (double)s->ey2, "branch1", s->branch1, "branch2", s->branch2);
 }
 
 static void put_corners(asj_json_output *json, const char *name, const asj_l_junction *list, uint32_t count)

@@ -64,6 +64,8 @@ static asj_status find_segments(const asj_match_report *report, asj_segment_list
     if (!segments->list)
         return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for %zu line segments", segments->count);
     asj_match_segments(report->result, report->minimum_end, segments->list, segments->count);
+    if (report->lines == ASJ_LINES_JOINED)
+        segments->count = asj_join_segment_matches(segments->list, segments->count);
     return ASJ_OK;
 }
 

@@ -130,7 +130,7 @@ static asj_segment_match segment_along(const search *in, const other_branch *oth
         y[side] = line->y[side] + end.length[side] * line->uy[side];
     }
     return (asj_segment_match){(uint32_t)(m - in->result->matches), end.kind, m->x1, m->y1, (float)x[0], (float)y[0],
-                               m->x2, m->y2, (float)x[1], (float)y[1], other->number[0], other->number[1]};
+                               m->x2, m->y2, (float)x[1], (float)y[1], other->number[0], other->number[1], ASJ_END_CORNER};
 }
 
 /* The number of branch a (slot 0) or b of an L-junction. */
@@ -147,8 +147,13 @@ static asj_segment_match matched_segment(const asj_match_result *result, uint32_
     const asj_junction_match *m = &result->matches[index];
     const int32_t n1 = branch_number(result->l_junctions1, result->l_junction_count1, m->l1, slot);
     const int32_t n2 = branch_number(result->l_junctions2, result->l_junction_count2, m->l2, slot);
-    return slot == 0 ? (asj_segment_match){index, m->end_a, m->x1, m->y1, m->ax1, m->ay1, m->x2, m->y2, m->ax2, m->ay2, n1, n2}
-                     : (asj_segment_match){index, m->end_b, m->x1, m->y1, m->bx1, m->by1, m->x2, m->y2, m->bx2, m->by2, n1, n2};
+    asj_segment_match s = {.match = index, .x1 = m->x1, .y1 = m->y1, .x2 = m->x2, .y2 = m->y2, .branch1 = n1, .branch2 = n2,
+                           .start = ASJ_END_CORNER};
+    if (slot == 0)
+        s.end = m->end_a, s.ex1 = m->ax1, s.ey1 = m->ay1, s.ex2 = m->ax2, s.ey2 = m->ay2;
+    else
+        s.end = m->end_b, s.ex1 = m->bx1, s.ey1 = m->by1, s.ex2 = m->bx2, s.ey2 = m->by2;
+    return s;
 }
 
 static double distance2(float x1, float y1, float x2, float y2)

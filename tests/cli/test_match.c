@@ -2,6 +2,7 @@
 /* asj-cli match: what it writes, where, and what it says. */
 #define _POSIX_C_SOURCE 200809L
 #include "files.h"
+#include "match_table.h"
 #include "program.h"
 
 #include <asj/context.h>
@@ -19,47 +20,6 @@
 #include <math.h>
 #include <signal.h>
 #include <time.h>
-
-#define HEADER "i,j,x1,y1,ax1,ay1,bx1,by1,x2,y2,ax2,ay2,bx2,by2,distance,ratio,h11,h12,h13,h21,h22,h23\n"
-enum { COLUMNS = 22, MOST_ROWS = 400 };
-enum { I, J, X1, Y1, AX1, AY1, BX1, BY1, X2, Y2, AX2, AY2, BX2, BY2, DISTANCE, RATIO, H11, H12, H13, H21, H22, H23 };
-
-typedef struct table {
-    double rows[MOST_ROWS][COLUMNS]; /* NaN = empty */
-    size_t count;
-} table;
-
-/* Columns by their place; every line must have them all. */
-static void parse_csv(const char *text, table *t)
-{
-    t->count = 0;
-    if (strncmp(text, HEADER, strlen(HEADER)) != 0)
-        fail_msg("not the header:\n%s", text);
-    for (text += strlen(HEADER); *text; t->count++) {
-        assert_true(t->count < MOST_ROWS);
-        for (int c = 0; c < COLUMNS; c++) {
-            size_t length = strcspn(text, ",\n");
-            t->rows[t->count][c] = length ? strtod(text, NULL) : NAN;
-            text += length;
-            assert_int_equal(*text, c + 1 < COLUMNS ? ',' : '\n');
-            text++;
-        }
-    }
-}
-
-static void read_csv(const char *path, table *t)
-{
-    size_t size = 0;
-    char *text = read_bytes(path, &size);
-    assert_non_null(text);
-    parse_csv(text, t);
-    free(text);
-}
-
-static double transfer_error(double x1, double y1, double x2, double y2)
-{
-    return hypot(VIEW_SCALE * x1 + VIEW_X - x2, VIEW_SCALE * y1 + VIEW_Y - y2);
-}
 
 /* Location, both ends and the map agree with the views. */
 static int is_true(const double *row)
@@ -111,8 +71,8 @@ static void the_name_or_the_option_chooses_the_format(void **state)
     static const struct {
         const char *path, *format, *beginning;
     } cases[] = {
-        {"a.csv", NULL, HEADER}, {"a.json", NULL, "{\n\"schema\": \"asj-matches-1\""}, {"a.txt", NULL, HEADER},
-        {"b.csv", "json", "{"}, {"b.json", "csv", HEADER},
+        {"a.csv", NULL, MATCH_HEADER}, {"a.json", NULL, "{\n\"schema\": \"asj-matches-1\""}, {"a.txt", NULL, MATCH_HEADER},
+        {"b.csv", "json", "{"}, {"b.json", "csv", MATCH_HEADER},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         size_t size = 0;
@@ -161,7 +121,7 @@ static void no_match_is_a_result(void **state)
     write_constant("dot.png", 1, 1);
     const outcome *result = run_cli("match", "first.png", "flat.png", NULL);
     expect_code(result, 0);
-    assert_string_equal(result->out, HEADER);
+    assert_string_equal(result->out, MATCH_HEADER);
     expect_in(result, result->err, "first.png, flat.png: 0 matches");
     expect_in(result, result->err, "hint: flat.png has 0 corners only");
     result = run_cli("match", "--minimum-support", "60", "first.png", "second.png", NULL);
@@ -170,44 +130,10 @@ static void no_match_is_a_result(void **state)
     expect_in(result, result->err, "for views far apart try --geometry auto");
     result = run_cli("match", "-q", "dot.png", "flat.png", NULL);
     expect_code(result, 0);
-    assert_string_equal(result->out, HEADER);
+    assert_string_equal(result->out, MATCH_HEADER);
     result = run_cli("match", "-q", "--lines", "-f", "json", "dot.png", "flat.png", NULL);
     expect_code(result, 0);
     expect_in(result, result->out, "\"matches\": [],\n\"lines\": [],\n\"l_junctions1\": []");
-}
-
-static void line_segments_take_the_place_of_matches(void **state)
-{
-    (void)state;
-    size_t kept[3];
-    static const char *const ends[] = {"cut", "inner", "both"};
-    for (size_t e = 0; e < 3; e++) {
-        const outcome *result = run_cli("match", "--lines", "--line-ends", ends[e], "first.png", "second.png", NULL);
-        expect_code(result, 0);
-        expect_in(result, result->err, " lines");
-        parse_csv(result->out, &found);
-        kept[e] = found.count;
-        assert_true(found.count >= 10);
-        for (size_t k = 0; k < found.count; k++) {
-            const double *row = found.rows[k];
-            assert_true(isnan(row[X1]) && isnan(row[Y1]) && isnan(row[X2]) && isnan(row[Y2]));
-            for (int c = 0; c < COLUMNS; c++)
-                assert_true(c == X1 || c == Y1 || c == X2 || c == Y2 || !isnan(row[c]));
-            assert_true(hypot(row[AX1] - row[BX1], row[AY1] - row[BY1]) > 3);
-        }
-    }
-    assert_true(kept[0] >= kept[1] && kept[1] >= kept[2]);
-    const outcome *result = run_cli("match", "--lines", "first.png", "second.png", NULL);
-    expect_code(result, 0);
-    parse_csv(result->out, &found);
-    assert_int_equal(found.count, kept[1]);
-    size_t good = 0;
-    for (size_t k = 0; k < found.count; k++) {
-        const double *row = found.rows[k];
-        good += transfer_error(row[AX1], row[AY1], row[AX2], row[AY2]) < 5 &&
-                transfer_error(row[BX1], row[BY1], row[BX2], row[BY2]) < 5;
-    }
-    assert_true(good >= found.count - found.count / 10);
 }
 
 /* Runs detect with the options that match has, each by its name. */
@@ -595,7 +521,7 @@ static void options_reach_detector_and_matcher(void **state)
     assert_true(json_number(result->out, DETECTOR, "epsilon") == 7);
     result = run_cli("match", "--ratio", "10", "--minimum-support", "64", "first.png", "second.png", NULL);
     expect_code(result, 0);
-    assert_string_equal(result->out, HEADER);
+    assert_string_equal(result->out, MATCH_HEADER);
 }
 
 /* The former names of options work for one version, with a warning. */
@@ -743,7 +669,6 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_name_or_the_option_chooses_the_format),
         cmocka_unit_test(swapped_images_give_swapped_matches),
         cmocka_unit_test(no_match_is_a_result),
-        cmocka_unit_test(line_segments_take_the_place_of_matches),
         cmocka_unit_test(junctions_come_from_files),
         cmocka_unit_test(the_preset_match_detects_for_match),
         cmocka_unit_test(the_surest_junctions_give_a_warning),

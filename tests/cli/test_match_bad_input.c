@@ -80,6 +80,7 @@ static const struct {
     {{"match", "--format", "asj", "first.png", "first.png"}, "--format: 'asj'"},
     {{"match", "--line-ends", "all", "first.png", "first.png"}, "--line-ends: 'all'"},
     {{"match", "--line-ends", "cut", "first.png", "first.png"}, "--line-ends changes nothing without --lines"},
+    {{"match", "--join-lines", "first.png", "first.png"}, "--join-lines changes nothing without --lines"},
     {{"match", "--plot-layout", "below", "first.png", "first.png"}, "--plot-layout changes nothing without --plot"},
     {{"match", "--plot-lines", "no", "first.png", "first.png"}, "--plot-lines changes nothing without --plot"},
     {{"match", "--plot", "picture.jpg", "first.png", "first.png"}, "--plot"},

@@ -174,7 +174,7 @@ static void csv_of_lines_has_no_locations(void **state)
     static asj_segment_match segments[2 * COUNT];
     int32_t end;
     (void)state;
-    report.lines = 1;
+    report.lines = ASJ_LINES_BRANCHES;
     for (end = ASJ_END_CUT; end <= ASJ_END_BOTH; end++) {
         size_t count = asj_match_segments(&result, end, segments, 2 * COUNT), k;
         report.minimum_end = end;
@@ -200,7 +200,7 @@ static void no_match_is_a_header(void **state)
     (void)state;
     memset(&result, 0, sizeof result);
     assert_int_equal(read_rows(write_report("none.csv", ASJ_FILE_CSV)), 0);
-    report.lines = 1;
+    report.lines = ASJ_LINES_BRANCHES;
     assert_int_equal(read_rows(write_report("none.csv", ASJ_FILE_CSV)), 0);
 }
 
@@ -308,7 +308,7 @@ static void json_has_the_lines_beside_the_matches(void **state)
     json_t *root, *lines;
     size_t count = asj_match_segments(&result, ASJ_END_INNER, segments, 2 * COUNT);
     (void)state;
-    report.lines = 1;
+    report.lines = ASJ_LINES_BRANCHES;
     report.minimum_end = ASJ_END_INNER;
     root = read_json(write_report("lines.json", ASJ_FILE_JSON));
     lines = need(root, "lines");
@@ -320,6 +320,15 @@ static void json_has_the_lines_beside_the_matches(void **state)
                 matches[json_integer_value(need(json_array_get(lines, 0), "match"))].x1);
     assert_int_equal(json_integer_value(need(json_array_get(lines, count - 1), "branch1")), segments[count - 1].branch1);
     assert_int_equal(json_integer_value(need(json_array_get(lines, count - 1), "branch2")), segments[count - 1].branch2);
+    assert_string_equal(json_string_value(need(json_array_get(lines, 0), "start")), "corner");
+    json_decref(root);
+    /* joined */
+    report.lines = ASJ_LINES_JOINED;
+    count = asj_join_segment_matches(segments, count);
+    root = read_json(write_report("joined.json", ASJ_FILE_JSON));
+    lines = need(root, "lines");
+    assert_int_equal(json_array_size(lines), count);
+    assert_true(float_at(json_array_get(lines, count - 1), "ex2") == segments[count - 1].ex2);
     json_decref(root);
 }
 

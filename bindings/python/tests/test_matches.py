@@ -41,6 +41,9 @@ def test_segments(pair: tuple[asj.Features, asj.Features]) -> None:
     both, cut = found.segments("both"), found.segments("cut")
     assert 0 < len(both[0]) <= len(cut[0]) and both[0].shape[1:] == (2, 2)
     assert np.median(np.linalg.norm(both[1] - both[0] - (6, 4), axis=2)) < 1
+    joined = found.segments("both", joined=True)
+    assert 0 < len(joined[0]) < len(both[0])
+    assert np.median(np.linalg.norm(joined[1] - joined[0] - (6, 4), axis=2)) < 1
     with pytest.raises(ValueError, match="both"):
         found.segments("all")
 

@@ -130,9 +130,12 @@ class Matches:
         """What relates the two views; None unless :func:`asj.match` was asked for it."""
         return read_geometry(self._result.geometry)
 
-    def segments(self, ends: str = "both") -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint32]]:
+    def segments(
+        self, ends: str = "both", *, joined: bool = False
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint32]]:
         """Line segments that match: (S, 2, 2) in the first image, (S, 2, 2) in the second, (S,) index of the match. A segment seen from
-        both its ends comes once; of an edge with corners on it there are segments from each.
+        both its ends comes once; of an edge with corners on it there are segments from each, with joined=True one, from the first
+        end to the last, and the index is that of its longest part.
 
         They begin at the match's points and point where both images say; the branches as detected are ``features1.segments`` and
         ``features2.segments`` at :meth:`segment_indices`, in the second image some pixels beside these where the match moved the corner.
@@ -140,13 +143,13 @@ class Matches:
         ends   what must be known of the far ends: "both" (both branches' own ends correspond), "inner" (or a junction on the longer
                one does), "cut" (or the longer one was cut where the matches around put the end of the shorter one)
         """
-        records = self._segment_records(ends)
+        records = self._segment_records(ends, joined)
         return (arrays.columns(records, "x1", (2, 2)), arrays.columns(records, "x2", (2, 2)), np.asarray(records["match"]))
 
     def segment_indices(self, ends: str = "both") -> NDArray[np.int64]:
         """(S, 2) which of features1.segments and features2.segments those of :meth:`segments` are, by the branches they follow; matches
         of :func:`asj.match_images` have no features, and none."""
-        records = self._segment_records(ends)
+        records = self._segment_records(ends, False)
         junctions = self.indices[records["match"]]
         columns = [
             _first_segments(features)[junctions[:, side]] + records[f"branch{side + 1}"]
@@ -154,12 +157,14 @@ class Matches:
         ]
         return np.stack(columns, axis=1)
 
-    def _segment_records(self, ends: str) -> NDArray[Any]:
+    def _segment_records(self, ends: str, joined: bool) -> NDArray[Any]:
         if ends not in _ENDS:
             raise ValueError(f"ends is {ends!r}: one of {', '.join(_ENDS)}")
         count = lib.asj_match_segments(self._result, _ENDS[ends], ffi.NULL, 0)
         room = ffi.new("asj_segment_match[]", max(count, 1))
         lib.asj_match_segments(self._result, _ENDS[ends], room, count)
+        if joined:
+            count = lib.asj_join_segment_matches(room, count)
         return arrays.view(room, count, "asj_segment_match", room)
 
 
