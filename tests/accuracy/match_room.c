@@ -42,9 +42,11 @@ static double share(uint32_t right, uint32_t all)
 
 static void print(const char *name, const room_score *s)
 {
-    printf("%-24s %5u / %5u %5.1f %%  %5u %5.1f %%  %5u / %5u %5.1f %%  %5u / %5u %5.1f %%\n", name, s->right_points, s->points,
+    printf("%-24s %5u / %5u %5.1f %%  %5u %5.1f %%  %5u / %5u %5.1f %%  %5u / %5u %5.1f %%"
+           "  %5u / %5u %5.1f %%\n", name, s->right_points, s->points,
            share(s->right_points, s->points), s->right_directions, share(s->right_directions, s->segments), s->right_segments,
-           s->segments, share(s->right_segments, s->segments), s->right_lines, s->lines, share(s->right_lines, s->lines));
+           s->segments, share(s->right_segments, s->segments), s->right_lines, s->lines, share(s->right_lines, s->lines),
+           s->right_joined, s->joined, share(s->right_joined, s->joined));
     fflush(stdout);
 }
 
@@ -57,6 +59,8 @@ static void add(room_score *sum, const room_score *s)
     sum->right_directions += s->right_directions;
     sum->lines += s->lines;
     sum->right_lines += s->right_lines;
+    sum->joined += s->joined;
+    sum->right_joined += s->right_joined;
 }
 
 static int match_pair(const settings *set, const synth_room *room, const room_view *a, const room_view *b, const char *name,
@@ -275,7 +279,7 @@ int main(int argc, char **argv)
     }
     if (asj_context_create(&how, &set.context) != ASJ_OK)
         return fail("no context") != 0;
-    printf("pair                     key points             directions      segments               merged lines "
+    printf("pair                     key points             directions      segments               merged lines            joined  "
            "(right / all, %d x %d)\n", ROOM_WIDTH, ROOM_HEIGHT);
     const int result = set.sweep ? sweep(&set) : set.random ? random_rooms(&set) : sample_room(&set);
     asj_context_free(&set.context);

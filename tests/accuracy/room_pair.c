@@ -84,6 +84,19 @@ static int points_right(const synth_room *room, const room_view *a, const room_v
     return 0;
 }
 
+/* How many have both ends in place. */
+static uint32_t lines_right(const synth_room *room, const room_view *a, const room_view *b, const asj_segment_match *lines,
+                            size_t count)
+{
+    uint32_t right = 0;
+    for (size_t k = 0; k < count; k++) {
+        const asj_segment_match *m = &lines[k];
+        right += room_pair_right(room, a, b, m->x1, m->y1, m->x2, m->y2, NEAR_END) &&
+                 room_pair_right(room, a, b, m->ex1, m->ey1, m->ex2, m->ey2, NEAR_END);
+    }
+    return right;
+}
+
 int room_pair_score(const synth_room *room, const room_view *a, const room_view *b, const asj_match_result *result, room_score *s)
 {
     for (uint32_t k = 0; k < result->match_count; k++) {
@@ -104,11 +117,10 @@ int room_pair_score(const synth_room *room, const room_view *a, const room_view 
         return fail("no memory");
     asj_match_segments(result, ASJ_END_INNER, lines, count);
     s->lines += (uint32_t)count;
-    for (size_t k = 0; k < count; k++) {
-        const asj_segment_match *m = &lines[k];
-        s->right_lines += (uint32_t)(room_pair_right(room, a, b, m->x1, m->y1, m->x2, m->y2, NEAR_END) &&
-                                     room_pair_right(room, a, b, m->ex1, m->ey1, m->ex2, m->ey2, NEAR_END));
-    }
+    s->right_lines += lines_right(room, a, b, lines, count);
+    const size_t joined = asj_join_segment_matches(lines, count);
+    s->joined += (uint32_t)joined;
+    s->right_joined += lines_right(room, a, b, lines, joined);
     free(lines);
     return 0;
 }

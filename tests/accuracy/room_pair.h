@@ -29,6 +29,7 @@ typedef struct room_score {
     uint32_t segments, right_segments; /* two of each match: both ends */
     uint32_t right_directions;         /* of as many branches */
     uint32_t lines, right_lines;       /* as asj_match_segments() merges them, ends at least `inner` */
+    uint32_t joined, right_joined;     /* of these, those of one edge as one: asj_join_segment_matches() */
 } room_score;
 
 /* A point match is right when the surface seen within 2 px of its place in the first view appears within `near` px of its place in

@@ -36,7 +36,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     fuzz_bytes bytes = {data, size};
     asj_junction junctions[2][MOST];
-    asj_segment_match segments[4];
+    asj_segment_match segments[4] = {{0}};
     asj_match_result *result = NULL;
     asj_match_options options;
     asj_image images[2];
@@ -62,6 +62,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                        result->matches[i].distance == result->matches[i].distance, "a match of nothing");
         fuzz_check(asj_match_segments(result, ASJ_END_CUT, segments, 4) <= (size_t)ASJ_MAX_BRANCHES * result->match_count,
                    "more segments than promised");
+        fuzz_check(asj_join_segment_matches(segments, 4) <= 4, "more segments than there were");
     }
     asj_match_result_free(&result);
     for (v = 0; v < 2; v++)
