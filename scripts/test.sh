@@ -99,7 +99,9 @@ build_and_test() {
 
 # What builds for another purpose leave out: suites that take minutes and whose results the goldens stand for, and the README's
 # commands, which do what other tests of the command line do.
-quick='--no-suite accuracy --no-suite experiments --no-suite long --no-suite benchmark --no-suite enlarged --no-suite readme'
+quick_with_finer='--no-suite accuracy --no-suite experiments --no-suite long --no-suite benchmark --no-suite enlarged
+--no-suite readme'
+quick="$quick_with_finer --no-suite finer"
 
 # The core alone: no library but libc and libm (the compiler's own run-time library may show up too). Without the accuracy suite:
 # the goldens show that its results are those of the whole build.
@@ -119,18 +121,21 @@ with_clang() {
     build_and_test build-clang "$quick $devices --no-suite cli --no-suite fails" -Dauto_features=enabled --werror
 }
 
-# Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code. Of enlarged images one test.
-# Without the tests that must fail, which need no sanitizer, without whole images on devices, and without the benchmarks. On
-# alternative signal stacks: LLVM, in PoCL, gives the thread that starts it one of its own where the sanitizer's is smaller, which
-# depends on the processor, and when the thread ends the sanitizer unmaps that in place of its own and fails.
+# Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code, beside the tests. Of
+# enlarged images one test. Without the tests that must fail, which need no sanitizer, without whole images on devices, and without
+# the benchmarks. Lines of the sources are all that reports need to know (-g1). On alternative signal stacks: LLVM, in PoCL, gives
+# the thread that starts it one of its own where the sanitizer's is smaller, which depends on the processor, and when the thread
+# ends the sanitizer unmaps that in place of its own and fails.
 with_sanitizers() {
     ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}use_sigaltstack=0
     export ASAN_OPTIONS
-    build_and_test build-sanitize "$quick --no-suite fails --no-suite device-images --timeout-multiplier 4" \
-        -Dauto_features=enabled --buildtype=debugoptimized -Db_sanitize=address,undefined -Dc_args=-fno-sanitize-recover=undefined \
-        -Dcpp_args=-fno-sanitize-recover=undefined &&
-        run_tests build-sanitize --timeout-multiplier 4 finer &&
-        logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2
+    build build-sanitize -Dauto_features=enabled --buildtype=debugoptimized -Db_sanitize=address,undefined \
+        -Dc_args=-fno-sanitize-recover=undefined,-g1 -Dcpp_args=-fno-sanitize-recover=undefined,-g1 || return 1
+    logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2 &
+    scenes=$!
+    state_of_tests=0
+    run_tests build-sanitize $quick_with_finer --no-suite fails --no-suite device-images --timeout-multiplier 4 || state_of_tests=1
+    wait "$scenes" && [ "$state_of_tests" = 0 ]
 }
 
 # From a copy in which the folders that are only for OpenCL are missing.
