@@ -2,6 +2,7 @@
 /* Options of both commands, the context that they ask for, and its log. */
 #include "common.h"
 #include "message.h"
+#include "platform.h"
 
 #include <asj/image.h>
 #include <asj/io.h>
@@ -151,6 +152,8 @@ int cli_session_fail(cli_session *session, const char *path, const char *message
 {
     cli_progress_clear(&session->progress);
     if (strcmp(path, "-") == 0) {
+        if (status == ASJ_ERROR_FILE && cli_output_is_closed())
+            return CLI_FAILED; /* as other programs do: there is nobody to tell */
         path = "standard output";
         message += strncmp(message, "-: ", 3) == 0 ? 3 : 0;
     }

@@ -34,8 +34,8 @@ static const char conclusion[] =
     "More: man asj-cli; all numbers: man asj-options; file formats: man asj-formats\n";
 
 enum {
-    OUTPUT, OUT_DIR, FORMAT, WHOLE, REGION, MASK, VANISHING_POINTS, CAMERA, PLOT, PLOT_COLOR, PLOT_BACKGROUND, PLOT_SCALE,
-    PRESET, FOR
+    OUTPUT, OUT_DIR, KEEP_FOLDERS, FORMAT, WHOLE, REGION, MASK, VANISHING_POINTS, CAMERA, PLOT, PLOT_COLOR, PLOT_BACKGROUND,
+    PLOT_SCALE, PRESET, FOR
 };
 
 static const cli_option output_options[] = {
@@ -43,6 +43,7 @@ static const cli_option output_options[] = {
      "where the junctions of one image go; - is standard output (the default for one image without a plot)"},
     {OUT_DIR, 'd', "out-dir", "DIR",
      "folder for the results of one or several images, made where it is missing: photo.jpg gives DIR/photo.asj"},
+    {KEEP_FOLDERS, 0, "keep-folders", NULL, "below DIR the folders of the images: kitchen/photo.jpg gives DIR/kitchen/photo.asj"},
     {FORMAT, 'f', "format", "asj|json|csv|asjf",
      "asj: text, one record for each pair of branches; json: everything; csv: one line a branch; asjf: features, all that 'asj-cli "
      "match' needs of the image. Default: by the end of FILE, else asj"},
@@ -94,6 +95,7 @@ static int take_output(void *target, int id, const char *text)
     switch (id) {
     case OUTPUT: arguments->output = text; break;
     case OUT_DIR: arguments->out_dir = text; break;
+    case KEEP_FOLDERS: arguments->keep_folders = 1; break;
     case WHOLE: arguments->whole = 1; break;
     default:
         if (cli_find_word(formats, text) < 0)
@@ -188,6 +190,8 @@ static int check(cli_detect_arguments *arguments)
         return cli_usage_error("detect", "--output and --out-dir exclude each other");
     if (arguments->out_dir && !*arguments->out_dir)
         return cli_usage_error("detect", "--out-dir: an empty path names no folder (. is this one)");
+    if (arguments->keep_folders && !arguments->out_dir)
+        return cli_usage_error("detect", "--keep-folders changes nothing without --out-dir");
     if (arguments->image_count > 1 && !arguments->out_dir)
         return cli_usage_error("detect", "%zu images need --out-dir DIR for their results", arguments->image_count);
     for (size_t i = 0; i < arguments->image_count; i++)

@@ -18,6 +18,7 @@ typedef struct cli_detect_arguments {
     cli_settings settings;
     const char *output;    /* -o; NULL = none */
     const char *out_dir;   /* NULL = none */
+    int keep_folders;      /* results stand in the folders of their images, below out_dir */
     const char *format;    /* "asj", "json", "csv", "asjf"; NULL = by the name of `output` */
     int whole;
     int vanishing_points;  /* into JSON */

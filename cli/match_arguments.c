@@ -322,7 +322,7 @@ static int check_files(const cli_match_arguments *arguments)
         outputs[output_count++] = (cli_planned){arguments->output, "the matches", NULL};
     if (arguments->plot)
         outputs[output_count++] = (cli_planned){arguments->plot, "the plot", NULL};
-    const int result = cli_check_collisions("match", outputs, output_count, inputs, input_count);
+    const int result = cli_check_collisions("match", "", outputs, output_count, inputs, input_count);
     return result == CLI_SUCCESS ? cli_check_folders(outputs, output_count) : result;
 }
 

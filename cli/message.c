@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Lines on standard error, with the name of the program. */
 #include "message.h"
+#include "platform.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -58,6 +59,7 @@ int cli_close_output(void)
 {
     if (fflush(stdout) == 0 && !ferror(stdout))
         return CLI_SUCCESS;
-    cli_error("standard output: %s", errno ? strerror(errno) : "write error");
+    if (!cli_output_is_closed())
+        cli_error("standard output: %s", errno ? strerror(errno) : "write error");
     return CLI_FAILED;
 }

@@ -29,8 +29,26 @@ static char *copy(const char *text)
     return result ? memcpy(result, text, size) : NULL;
 }
 
-/* DIR + name of the image without folder and last extension + "." + extension */
-static char *name_in(const char *folder, const char *image, const char *extension)
+/* Appends the folders of a path to `to`, but for the root, . and .. */
+static size_t append_folders(char *to, const char *path, size_t length)
+{
+    size_t n = 0;
+    for (size_t start = 0, end; start < length; start = end + 1) {
+        for (end = start; end < length && !cli_is_separator(path[end]);)
+            end++;
+        const char *name = path + start;
+        const size_t size = end - start;
+        if (size == 0 || (size == 1 && name[0] == '.') || (size == 2 && name[0] == '.' && name[1] == '.'))
+            continue;
+        memcpy(to + n, name, size);
+        to[n + size] = '/';
+        n += size + 1;
+    }
+    return n;
+}
+
+/* DIR, with keep_folders the folders of the image, its name without last extension, "." and an extension. */
+static char *name_in(const cli_detect_arguments *arguments, const char *image, const char *extension)
 {
     size_t end = strlen(image);
     while (end > 0 && cli_is_separator(image[end - 1]))
@@ -42,10 +60,15 @@ static char *name_in(const char *folder, const char *image, const char *extensio
     while (dot > start && image[dot - 1] != '.')
         dot--;
     size_t length = dot > start + 1 ? dot - 1 - start : end - start;
-    size_t size = strlen(folder) + 1 + length + 1 + strlen(extension) + 1;
+    size_t n = strlen(arguments->out_dir), size = n + 1 + end + 1 + strlen(extension) + 1;
     char *path = malloc(size);
-    if (path)
-        snprintf(path, size, "%s/%.*s.%s", folder, (int)length, image + start, extension);
+    if (!path)
+        return NULL;
+    memcpy(path, arguments->out_dir, n);
+    path[n++] = '/';
+    if (arguments->keep_folders)
+        n += append_folders(path + n, image, start);
+    snprintf(path + n, size - n, "%.*s.%s", (int)length, image + start, extension);
     return path;
 }
 
@@ -57,9 +80,9 @@ static int name_outputs(const cli_detect_arguments *arguments, cli_outputs *outp
         cli_output *output = &outputs->of[i];
         if (arguments->out_dir) {
             const char *image = arguments->images[i];
-            output->junctions = name_in(arguments->out_dir, image, cli_detect_extension(arguments));
+            output->junctions = name_in(arguments, image, cli_detect_extension(arguments));
             if (arguments->plot)
-                output->plot = name_in(arguments->out_dir, image, plot_extensions[arguments->plot_format]);
+                output->plot = name_in(arguments, image, plot_extensions[arguments->plot_format]);
         } else {
             if (arguments->output || !arguments->plot)
                 output->junctions = copy(arguments->output ? arguments->output : "-");
@@ -121,14 +144,14 @@ static size_t identify(const char *const *paths, size_t count, cli_identity *lis
     return n;
 }
 
-static int check_against(const char *command, const cli_planned *outputs, size_t output_count, const cli_identity *inputs,
-                         size_t input_count)
+static int check_against(const char *command, const char *hint, const cli_planned *outputs, size_t output_count,
+                         const cli_identity *inputs, size_t input_count)
 {
     cli_identity existing;
     for (size_t i = 1; i < output_count; i++)
         if (strcmp(outputs[i - 1].target, outputs[i].target) == 0)
-            return cli_usage_error(command, "%s: would be written twice, for %s and for %s", outputs[i].path,
-                                   outputs[i - 1].purpose, outputs[i].purpose);
+            return cli_usage_error(command, "%s: would be written twice, for %s and for %s%s", outputs[i].path,
+                                   outputs[i - 1].purpose, outputs[i].purpose, hint);
     for (size_t i = 0; i < output_count; i++)
         if (input_count > 0 && cli_identify(outputs[i].path, &existing) &&
             bsearch(&existing, inputs, input_count, sizeof *inputs, compare_identity))
@@ -167,8 +190,8 @@ int cli_check_folders(const cli_planned *outputs, size_t output_count)
     return result;
 }
 
-int cli_check_collisions(const char *command, cli_planned *outputs, size_t output_count, const char *const *inputs,
-                         size_t input_count)
+int cli_check_collisions(const char *command, const char *hint, cli_planned *outputs, size_t output_count,
+                         const char *const *inputs, size_t input_count)
 {
     cli_identity *list = calloc(input_count + 1, sizeof *list);
     int result = CLI_FAILED;
@@ -177,7 +200,7 @@ int cli_check_collisions(const char *command, cli_planned *outputs, size_t outpu
     } else {
         if (output_count > 1)
             qsort(outputs, output_count, sizeof *outputs, compare_planned);
-        result = check_against(command, outputs, output_count, list, identify(inputs, input_count, list));
+        result = check_against(command, hint, outputs, output_count, list, identify(inputs, input_count, list));
     }
     for (size_t i = 0; i < output_count; i++)
         free(outputs[i].target);
@@ -210,6 +233,24 @@ static int make_folder(const char *path)
     return CLI_FAILED;
 }
 
+/* The folders that results of `detect` lie in. */
+static int make_folders(const cli_detect_arguments *arguments, const cli_planned *outputs, size_t count)
+{
+    int result = make_folder(arguments->out_dir);
+    for (size_t i = 0; i < count && result == CLI_SUCCESS && arguments->keep_folders; i++) {
+        char *folder = copy(outputs[i].path);
+        if (!folder) {
+            cli_error("out of memory");
+            return CLI_FAILED;
+        }
+        folder[cli_base_name(folder) - folder - 1] = '\0';
+        if (!cli_is_folder(folder))
+            result = make_folder(folder);
+        free(folder);
+    }
+    return result;
+}
+
 int cli_outputs_plan(const cli_detect_arguments *arguments, cli_outputs *outputs)
 {
     int result = CLI_FAILED;
@@ -229,9 +270,10 @@ int cli_outputs_plan(const cli_detect_arguments *arguments, cli_outputs *outputs
         cli_error("out of memory");
     } else {
         const size_t planned = list_planned(arguments, outputs, list);
-        result = cli_check_collisions("detect", list, planned, inputs, input_count);
+        const char *hint = arguments->out_dir && !arguments->keep_folders ? " (--keep-folders tells folders apart)" : "";
+        result = cli_check_collisions("detect", hint, list, planned, inputs, input_count);
         if (result == CLI_SUCCESS)
-            result = arguments->out_dir ? make_folder(arguments->out_dir) : cli_check_folders(list, planned);
+            result = arguments->out_dir ? make_folders(arguments, list, planned) : cli_check_folders(list, planned);
     }
     free(inputs);
     free(list);

@@ -11,10 +11,10 @@ typedef struct cli_planned {
     char *target; /* filled in by cli_check_collisions() */
 } cli_planned;
 
-/* Two results may not share a name, and none may take the place of an input. Sorts `outputs`. CLI_SUCCESS, or CLI_USAGE or
- * CLI_FAILED (no memory) after saying why. */
-int cli_check_collisions(const char *command, cli_planned *outputs, size_t output_count, const char *const *inputs,
-                         size_t input_count);
+/* Two results may not share a name, which is told with a hint at what may help, and none may take the place of an input. Sorts
+ * `outputs`. CLI_SUCCESS, or CLI_USAGE or CLI_FAILED (no memory) after saying why. */
+int cli_check_collisions(const char *command, const char *hint, cli_planned *outputs, size_t output_count,
+                         const char *const *inputs, size_t input_count);
 
 /* Whether the folders of the files are there, asked before any work. CLI_SUCCESS, or CLI_FAILED after saying which are not. */
 int cli_check_folders(const cli_planned *outputs, size_t output_count);

@@ -15,6 +15,9 @@ int cli_is_terminal(void);
  * A closed pipe and a file beyond the limit of the shell become ordinary write errors. */
 void cli_catch_signals(void (*note)(int number));
 
+/* Whether nobody reads standard output any more: a pipe whose reader, `head` for instance, has what it wanted. */
+int cli_output_is_closed(void);
+
 /* Makes one folder. 0, or -1 with errno set, as mkdir(). */
 int cli_make_one_folder(const char *path);
 

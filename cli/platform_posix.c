@@ -3,6 +3,7 @@
 #define _XOPEN_SOURCE 700
 #include "platform.h"
 
+#include <poll.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -36,6 +37,12 @@ void cli_catch_signals(void (*note)(int number))
     action.sa_flags = 0;
     sigaction(SIGPIPE, &action, NULL);
     sigaction(SIGXFSZ, &action, NULL);
+}
+
+int cli_output_is_closed(void)
+{
+    struct pollfd output = {STDOUT_FILENO, POLLOUT, 0};
+    return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
 }
 
 int cli_make_one_folder(const char *path)

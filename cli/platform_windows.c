@@ -30,6 +30,11 @@ void cli_catch_signals(void (*note)(int number))
     signal(SIGBREAK, note);
 }
 
+int cli_output_is_closed(void)
+{
+    return 0;
+}
+
 int cli_make_one_folder(const char *path)
 {
     return _mkdir(path);

@@ -72,6 +72,36 @@ static void two_spellings_of_one_output(void **state)
     rmdir("folder");
 }
 
+/* Images of one name in several folders: each result below the folders of its path, but for the root, . and .. */
+static void folders_of_images_are_kept(void **state)
+{
+    static const char *const wanted[] = {"scene", "kitchen/scene", "kitchen/kitchen/wall/scene"};
+    char absolute[4000], path[4096];
+    (void)state;
+    mkdir("kitchen", 0777);
+    mkdir("kitchen/wall", 0777);
+    assert_int_equal(link("scene.png", "kitchen/scene.png"), 0);
+    assert_int_equal(link("scene.png", "kitchen/wall/scene.png"), 0);
+    assert_non_null(getcwd(absolute, sizeof absolute - 16));
+    strcat(absolute, "/scene");
+    snprintf(path, sizeof path, "%s.png", absolute);
+    expect_code(run_cli("detect", "-q", "--keep-folders", "--out-dir", "kept/results", "scene.png", ".//kitchen/scene.png",
+                        "kitchen/../kitchen/wall/scene.png", path, NULL), 0);
+    for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
+        snprintf(path, sizeof path, "kept/results/%s.asj", wanted[i]);
+        assert_true(exists(path));
+    }
+    snprintf(path, sizeof path, "kept/results%s.asj", absolute);
+    assert_true(exists(path));
+    const outcome *result = run_cli("detect", "--keep-folders", "--out-dir", "more", "scene.png", "./scene.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "written twice, for scene.png and for ./scene.png\n");
+    result = run_cli("detect", "--out-dir", "more", "scene.png", "kitchen/scene.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--keep-folders");
+    assert_false(exists("more"));
+}
+
 static void a_link_to_nothing_yet_is_followed(void **state)
 {
     struct stat facts;
@@ -113,6 +143,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_limit_of_file_size_is_an_error), cmocka_unit_test(two_spellings_of_one_output),
+        cmocka_unit_test(folders_of_images_are_kept),
         cmocka_unit_test(a_link_to_nothing_yet_is_followed), cmocka_unit_test(names_that_promise_another_format),
     };
     program_start(argc, argv);
