@@ -29,19 +29,17 @@
 #define END_MOST 8.0   /* .. but no more than this: where an edge fades they may be fifty pixels */
 #define LEAST 3.0      /* px */
 #define LN_10 2.302585092994046
-#define CELL 32        /* px of the grid in which junctions on the way are looked for */
 #define LEAST_JUNCTIONS 32 /* for a thread: one takes about 1 us */
 
 typedef struct graph {
     asj_watch *watch;
     const asj_evidence *evidence;
     const asj_hypothesis *hypotheses;
-    int32_t *heads, *next; /* junctions by cell */
+    const asj_junction_grid *grid;
     int32_t *nearest;      /* of each branch: junction * ASJ_MAX_BRANCHES + branch of what it may be joined with, -1 = none */
     int32_t *joined;       /* the same of what it is joined with */
     int own_octave;        /* whether those of other octaves count as not there */
     int must_divide;       /* whether junctions on the way count only if they divide the edge */
-    int32_t columns, rows;
     double log_epsilon, log_tests[2 * (ASJ_MAX_OCTAVES - ASJ_FIRST_OCTAVE)]; /* by asj_octave_index() */
 } graph;
 
@@ -54,30 +52,9 @@ typedef struct way {
     double ux, uy;
 } way;
 
-static size_t columns_of(int32_t side)
+size_t asj_edges_scratch(size_t count)
 {
-    return (size_t)side / CELL + 3; /* a border, for neighbours and for junctions just outside the image */
-}
-
-size_t asj_edges_scratch(size_t count, int32_t width, int32_t height)
-{
-    return columns_of(width) * columns_of(height) + (1 + 2 * ASJ_MAX_BRANCHES) * count;
-}
-
-static int32_t cell_of(double x, int32_t cells)
-{
-    const double cell = floor(x / CELL) + 1;
-    return (int32_t)fmax(1, fmin(cell, cells - 2));
-}
-
-static void fill_grid(graph *g, size_t count)
-{
-    memset(g->heads, 0xff, (size_t)g->columns * (size_t)g->rows * sizeof *g->heads);
-    for (size_t i = count; i-- > 0;) {
-        const int32_t cell = cell_of(g->hypotheses[i].y, g->rows) * g->columns + cell_of(g->hypotheses[i].x, g->columns);
-        g->next[i] = g->heads[cell];
-        g->heads[cell] = (int32_t)i;
-    }
+    return 2 * ASJ_MAX_BRANCHES * count;
 }
 
 static double end_tolerance(const asj_hypothesis_branch *branch)
@@ -134,17 +111,21 @@ static int is_joined(const graph *g, int32_t junction, int32_t branch)
     return g->joined[(size_t)junction * ASJ_MAX_BRANCHES + (size_t)branch] >= 0;
 }
 
-/* The branch of junction `index` that comes back along w; -1 = none. *distance: px from one to the other. */
-static int32_t comes_back(const graph *g, const way *w, int32_t index, double *distance)
+/* Whether a place lies on the line of w. *distance: px along it. */
+static int is_on(const way *w, const asj_grid_place *place, double *distance)
+{
+    const double dx = place->x - w->from->x, dy = place->y - w->from->y;
+    *distance = dx * w->ux + dy * w->uy;
+    return *distance >= LEAST && fabs(dy * w->ux - dx * w->uy) <= off_tolerance(w->along, *distance);
+}
+
+/* The branch of junction `index`, t px along w, that comes back; -1 = none. */
+static int32_t comes_back(const graph *g, const way *w, int32_t index, double t)
 {
     const asj_hypothesis *to = &g->hypotheses[index];
-    const double dx = to->x - w->from->x, dy = to->y - w->from->y, t = dx * w->ux + dy * w->uy;
-    const double off = fabs(dy * w->ux - dx * w->uy), back = w->along->angle + ASJ_PI;
+    const double dx = to->x - w->from->x, dy = to->y - w->from->y, back = w->along->angle + ASJ_PI;
     double least = TURN;
     int32_t found = -1;
-    *distance = t;
-    if (t < LEAST || off > off_tolerance(w->along, t))
-        return -1;
     for (int32_t i = 0; i < to->branch_count; i++) {
         const asj_hypothesis_branch *branch = &to->branches[i];
         const double turn = asj_angle_distance(branch->angle, back);
@@ -160,42 +141,45 @@ static int32_t comes_back(const graph *g, const way *w, int32_t index, double *d
 }
 
 /* Looks at the junctions of one cell; the nearest so far is *nearest px away. Returns it as junction * ASJ_MAX_BRANCHES + branch.
- * */
+ * Hardly one in a hundred lies on the line: only of these more than the place is read. */
 static int32_t look_in(const graph *g, const way *w, int32_t cell, double *nearest, int32_t found)
 {
-    for (int32_t i = g->heads[cell]; i >= 0; i = g->next[i]) {
-        const asj_hypothesis *to = &g->hypotheses[i];
+    for (int32_t k = g->grid->first[cell]; k < g->grid->first[cell + 1]; k++) {
+        const asj_grid_place *place = &g->grid->places[k];
         double distance;
-        const int is_known = !g->own_octave || to->octave == w->from->octave;
-        const int32_t branch = (size_t)i == w->junction || !is_known ? -1 : comes_back(g, w, i, &distance);
-        if (branch >= 0 && distance < *nearest &&
-            (!g->must_divide || ends_at(w->along, distance) || goes_on(to, w->along->angle))) {
+        if (!is_on(w, place, &distance) || !(distance < *nearest) || (size_t)place->junction == w->junction ||
+            (g->own_octave && place->octave != asj_octave_index(w->from->octave)))
+            continue;
+        const int32_t branch = comes_back(g, w, place->junction, distance);
+        if (branch >= 0 && (!g->must_divide || ends_at(w->along, distance) ||
+                            goes_on(&g->hypotheses[place->junction], w->along->angle))) {
             *nearest = distance;
-            found = i * ASJ_MAX_BRANCHES + branch;
+            found = place->junction * ASJ_MAX_BRANCHES + branch;
         }
     }
     return found;
 }
 
 /* The nearest junction on the way of a branch that it may be joined with; -1 = none. At t along the way all junctions up to
- * t + CELL / 2 lie in the cells around, of which those around the place before have been looked at. */
+ * t + ASJ_GRID_CELL / 2 lie in the cells around, of which those around the place before have been looked at. */
 static int32_t find_nearest(const graph *g, size_t junction, int32_t branch)
 {
     const asj_hypothesis *from = &g->hypotheses[junction];
     const asj_hypothesis_branch *along = &from->branches[branch];
     const way w = {junction, branch, from, along, cos(along->angle), sin(along->angle)};
     const double last = 2 * along->length + end_tolerance(along);
+    const int32_t columns = g->grid->columns, rows = g->grid->rows;
     double nearest = HUGE_VAL;
     int32_t found = -1, column_before = -2, row_before = -2;
-    for (double t = 0; t < last + CELL && nearest > t - CELL / 2; t += CELL) {
+    for (double t = 0; t < last + ASJ_GRID_CELL && nearest > t - ASJ_GRID_CELL / 2; t += ASJ_GRID_CELL) {
         const double x = from->x + t * w.ux, y = from->y + t * w.uy;
-        if (x < -CELL || y < -CELL || x > g->columns * CELL || y > g->rows * CELL)
+        if (x < -ASJ_GRID_CELL || y < -ASJ_GRID_CELL || x > columns * ASJ_GRID_CELL || y > rows * ASJ_GRID_CELL)
             break;
-        const int32_t column = cell_of(x, g->columns), row = cell_of(y, g->rows);
+        const int32_t column = asj_grid_cell(x, columns), row = asj_grid_cell(y, rows);
         for (int32_t y_cell = row - 1; y_cell <= row + 1; y_cell++)
             for (int32_t x_cell = column - 1; x_cell <= column + 1; x_cell++)
                 if (abs(y_cell - row_before) > 1 || abs(x_cell - column_before) > 1)
-                    found = look_in(g, &w, y_cell * g->columns + x_cell, &nearest, found);
+                    found = look_in(g, &w, y_cell * columns + x_cell, &nearest, found);
         column_before = column;
         row_before = row;
     }
@@ -259,17 +243,14 @@ static asj_edge edge_of(const graph *g, int32_t own, int32_t other)
 }
 
 size_t asj_edges_join(asj_watch *watch, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves,
-                      const asj_evidence *evidence, asj_hypothesis *hypotheses, size_t count, int32_t *scratch, asj_edge *edges)
+                      const asj_evidence *evidence, const asj_junction_grid *grid, asj_hypothesis *hypotheses, size_t count,
+                      int32_t *scratch, asj_edge *edges)
 {
-    graph g = {.watch = watch, .evidence = evidence, .hypotheses = hypotheses, .heads = scratch,
-               .columns = (int32_t)columns_of(width), .rows = (int32_t)columns_of(height)};
+    graph g = {.watch = watch, .evidence = evidence, .grid = grid, .hypotheses = hypotheses, .nearest = scratch,
+               .joined = scratch + count * ASJ_MAX_BRANCHES};
     size_t found = 0;
     start(&g, options, width, height, octaves);
-    g.next = scratch + (size_t)g.columns * (size_t)g.rows;
-    g.nearest = g.next + count;
-    g.joined = g.nearest + count * ASJ_MAX_BRANCHES;
     memset(g.joined, 0xff, count * ASJ_MAX_BRANCHES * sizeof *g.joined);
-    fill_grid(&g, count);
     for (int32_t pass = 0; pass < 2; pass++) {
         find_all(&g, count, pass == 0);
         if (asj_watch_end(watch) != ASJ_OK)

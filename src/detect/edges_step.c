@@ -18,17 +18,21 @@ asj_status asj_step_join(asj_detection_run *run)
     const int32_t width = run->image->width, height = run->image->height;
     const size_t count = run->hypothesis_count, most = asj_detection_run_room(count_branches(run) / 2);
     const int32_t octaves = asj_octaves_sharing(run->options, width, height);
-    int32_t *scratch = asj_allocate_list(memory, asj_edges_scratch(asj_detection_run_room(count), width, height), sizeof *scratch);
+    asj_junction_grid grid;
+    asj_status status = asj_junction_grid_make(run->context, run->hypotheses, count, width, height, &grid);
+    if (status != ASJ_OK)
+        return status;
+    int32_t *scratch = asj_allocate_list(memory, asj_edges_scratch(asj_detection_run_room(count)), sizeof *scratch);
     run->edges = asj_allocate_list(memory, most, sizeof *run->edges);
-    asj_status status = ASJ_OK;
     asj_watch watch;
     asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
     if (scratch && run->edges) {
-        run->edge_count = asj_edges_join(&watch, run->options, width, height, octaves, run->evidence, run->hypotheses,
+        run->edge_count = asj_edges_join(&watch, run->options, width, height, octaves, run->evidence, &grid, run->hypotheses,
                                          count, scratch, run->edges);
         status = asj_watch_end(&watch);
     } else
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for edges between %zu junctions", count);
+    asj_junction_grid_free(run->context, &grid);
     asj_release(memory, scratch);
     return status;
 }

@@ -17,7 +17,6 @@
 #include "core/angle.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define OFF_LINE 2.0 /* px */
 #define AT_END 4.0   /* px: a junction so near is what is at the end, whether the end moves or not */
@@ -26,28 +25,6 @@
 #define DOUBTFUL (-30 * 2.302585092994046) /* natural logarithms */
 #define SURE (-60 * 2.302585092994046)
 #define TURN (15 * ASJ_DEGREE) /* default of merge_angle: closer branches would be one */
-
-static int by_row(const void *a, const void *b)
-{
-    const asj_hypothesis *p = *(const asj_hypothesis *const *)a, *q = *(const asj_hypothesis *const *)b;
-    if (p->y != q->y)
-        return p->y < q->y ? -1 : 1;
-    return p->x < q->x ? -1 : p->x > q->x;
-}
-
-/* First hypothesis in `order` with y >= least. */
-static size_t lower_bound(const asj_hypothesis *const *order, size_t count, double least)
-{
-    size_t low = 0, high = count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (order[middle]->y < least)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
 
 /* Whether an edge that comes at this angle ends at the junction: a branch comes back, and none goes on. */
 static int ends_at(const asj_hypothesis *junction, double angle)
@@ -82,78 +59,103 @@ static double reach_of(const asj_hypothesis *junction, double angle, double base
     return base + (SURE_REACH - base) * fmin(fmax(sure, 0), 1);
 }
 
-/* The junction on the line of a branch nearest to its end, less than `reach` px of its octave away, or farther from those that are
- * `sure`; NULL = none. *distance: px to it. With own_octave those of other octaves are none. */
-static const asj_hypothesis *find_end(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, double reach, int sure,
-                                      int own_octave, const asj_hypothesis *const *order, size_t count, double *distance)
+/* What is asked of junctions near the end of a branch. */
+typedef struct question {
+    const asj_junction_grid *grid;
+    const asj_hypothesis *junctions;
+    size_t self;          /* the branch's own */
+    const asj_hypothesis_branch *branch;
+    double ux, uy, scale; /* its direction; px of the image for one of its octave */
+    double reach;         /* px of its octave from its end, more to those that are `sure` */
+    int sure, own_octave; /* own_octave: those of other octaves are none */
+} question;
+
+/* Of two as far from the end, the upper one. */
+static int is_before(const asj_grid_place *p, const asj_grid_place *q)
 {
-    const double ux = cos(branch->angle), uy = sin(branch->angle), end_y = hypothesis->y + branch->length * uy;
-    const double scale = asj_octave_scale(branch->octave), off_line = OFF_LINE * scale;
-    const double around = scale * (sure ? fmax(reach, SURE_REACH) : reach) + off_line;
-    const asj_hypothesis *found = NULL;
-    double best = HUGE_VAL;
-    for (size_t i = lower_bound(order, count, end_y - around); i < count && order[i]->y <= end_y + around; i++) {
-        const double dx = order[i]->x - hypothesis->x, dy = order[i]->y - hypothesis->y;
-        const double t = dx * ux + dy * uy, off = fabs(dy * ux - dx * uy), away = fabs(t - branch->length);
-        if (own_octave && order[i]->octave != hypothesis->octave)
+    return p->y != q->y ? p->y < q->y : p->x < q->x;
+}
+
+/* Looks at the junctions of one cell. */
+static void look_in(const question *q, int32_t cell, double *best, double *distance, const asj_grid_place **found)
+{
+    const asj_hypothesis *from = &q->junctions[q->self];
+    for (int32_t k = q->grid->first[cell]; k < q->grid->first[cell + 1]; k++) {
+        const asj_grid_place *place = &q->grid->places[k];
+        const double dx = place->x - from->x, dy = place->y - from->y;
+        const double t = dx * q->ux + dy * q->uy, off = fabs(dy * q->ux - dx * q->uy), away = fabs(t - q->branch->length);
+        if (!(off <= OFF_LINE * q->scale && t > 0) || (size_t)place->junction == q->self ||
+            (q->own_octave && place->octave != asj_octave_index(from->octave)))
             continue;
-        if (order[i] != hypothesis && t > 0 && off <= off_line && away < best &&
-            away < scale * (sure ? reach_of(order[i], branch->angle, reach) : reach)) {
-            best = away;
+        if (!(away < *best || (*found && away == *best && is_before(place, *found))))
+            continue;
+        const asj_hypothesis *junction = &q->junctions[place->junction];
+        if (away < q->scale * (q->sure ? reach_of(junction, q->branch->angle, q->reach) : q->reach)) {
+            *best = away;
             *distance = t;
-            found = order[i];
+            *found = place;
         }
     }
-    return found;
 }
 
-static void sort_by_row(const asj_hypothesis *hypotheses, size_t count, const asj_hypothesis **order)
+/* The junction on the line of a branch nearest to its end; NULL = none. *distance: px to it. */
+static const asj_hypothesis *find_end(const question *q, double *distance)
 {
-    for (size_t i = 0; i < count; i++)
-        order[i] = &hypotheses[i];
-    if (count > 1)
-        qsort(order, count, sizeof *order, by_row);
+    const asj_hypothesis *from = &q->junctions[q->self];
+    const double around = q->scale * ((q->sure ? fmax(q->reach, SURE_REACH) : q->reach) + OFF_LINE);
+    const double x = from->x + q->branch->length * q->ux, y = from->y + q->branch->length * q->uy;
+    const int32_t columns = q->grid->columns, rows = q->grid->rows;
+    const int32_t left = asj_grid_cell(x - around, columns), right = asj_grid_cell(x + around, columns);
+    const int32_t upper = asj_grid_cell(y - around, rows), lower = asj_grid_cell(y + around, rows);
+    const asj_grid_place *found = NULL;
+    double best = HUGE_VAL;
+    for (int32_t row = upper; row <= lower; row++)
+        for (int32_t column = left; column <= right; column++)
+            look_in(q, row * columns + column, &best, distance, &found);
+    return found ? &q->junctions[found->junction] : NULL;
 }
 
-void asj_ends_mark(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order, asj_watch *watch)
+static question ask(const asj_ends *ends, size_t self, const asj_hypothesis_branch *branch, double reach, int sure, int own_octave)
 {
+    return (question){ends->grid, ends->hypotheses, self, branch, cos(branch->angle), sin(branch->angle),
+                      asj_octave_scale(branch->octave), reach, sure, own_octave};
+}
+
+void asj_ends_mark(const asj_ends *ends, size_t index)
+{
+    asj_hypothesis *hypothesis = &ends->hypotheses[index];
     double distance;
-    sort_by_row(hypotheses, count, order);
-    for (size_t i = 0; i < count && !(watch && asj_watch_stops(watch, NULL)); i++)
-        for (int32_t b = 0; b < hypotheses[i].branch_count; b++) {
-            asj_hypothesis_branch *branch = &hypotheses[i].branches[b];
-            if (find_end(&hypotheses[i], branch, fmax(reach, AT_END), 0, 0, order, count, &distance))
-                branch->end = ASJ_BRANCH_END_JUNCTION;
-        }
+    for (int32_t b = 0; b < hypothesis->branch_count; b++) {
+        const question q = ask(ends, index, &hypothesis->branches[b], fmax(ends->options->snap_distance, AT_END), 0, 0);
+        if (find_end(&q, &distance))
+            hypothesis->branches[b].end = ASJ_BRANCH_END_JUNCTION;
+    }
 }
 
 /* No branch becomes shorter than minimum_length, nor, where ends move from farther than snap_distance says, than half of what it
  * was: what is so near is no end of it. */
-static void snap(const asj_hypothesis *hypothesis, const asj_detect_options *options, const asj_hypothesis *const *order,
-                 size_t count, asj_hypothesis_branch *branch)
+static void snap(const asj_ends *ends, size_t index, asj_hypothesis_branch *branch)
 {
-    const double reach = options->snap_distance, half = reach < SURE_REACH ? 0.5 * branch->length : 0;
-    const double least = fmax(options->minimum_length, half);
-    const int own_octave = options->octave_union;
+    const double reach = ends->options->snap_distance, half = reach < SURE_REACH ? 0.5 * branch->length : 0;
+    const double least = fmax(ends->options->minimum_length, half);
+    const int own_octave = ends->options->octave_union;
     const double base = branch->octave > 0 && reach > 0 ? fmax(reach, COARSE_REACH) : reach;
+    const question far = ask(ends, index, branch, base, 1, own_octave), near = ask(ends, index, branch, AT_END, 0, own_octave);
     double distance = 0;
-    const asj_hypothesis *end = find_end(hypothesis, branch, base, 1, own_octave, order, count, &distance);
+    const asj_hypothesis *end = find_end(&far, &distance);
     if (end && distance >= least) {
         branch->end = ASJ_BRANCH_END_JUNCTION;
         branch->length = distance;
-        branch->end_variance = hypothesis->location_variance + end->location_variance;
-    } else if (find_end(hypothesis, branch, AT_END, 0, own_octave, order, count, &distance)) {
+        branch->end_variance = ends->hypotheses[index].location_variance + end->location_variance;
+    } else if (find_end(&near, &distance)) {
         branch->end = ASJ_BRANCH_END_JUNCTION;
     } else if (branch->end == ASJ_BRANCH_END_JUNCTION) {
         branch->end = ASJ_BRANCH_END_UNKNOWN; /* of another octave, gone */
     }
 }
 
-void asj_ends_snap(asj_hypothesis *hypotheses, size_t count, const asj_detect_options *options, const asj_hypothesis **order,
-                   asj_watch *watch)
+void asj_ends_snap(const asj_ends *ends, size_t index)
 {
-    sort_by_row(hypotheses, count, order);
-    for (size_t i = 0; i < count && !(watch && asj_watch_stops(watch, NULL)); i++)
-        for (int32_t b = 0; b < hypotheses[i].branch_count; b++)
-            snap(&hypotheses[i], options, order, count, &hypotheses[i].branches[b]);
+    for (int32_t b = 0; b < ends->hypotheses[index].branch_count; b++)
+        snap(ends, index, &ends->hypotheses[index].branches[b]);
 }

@@ -8,6 +8,8 @@
 #include "core/threads.h"
 #include "core/watch.h"
 
+#define LEAST_ENDS 64 /* junctions for a thread: one takes less than 1 us */
+
 /* Hypotheses that are shared out. */
 typedef struct job {
     asj_detection_run *run;
@@ -53,20 +55,33 @@ static asj_status measure_all(asj_detection_run *run)
     return asj_watch_end(&watch);
 }
 
-/* asj_ends_mark(), or at the end asj_ends_snap(). */
-static asj_status look_for_junctions(asj_detection_run *run, int at_the_end)
+typedef struct junctions_job {
+    asj_ends ends;
+    asj_watch *watch;
+    void (*look)(const asj_ends *ends, size_t index);
+} junctions_job;
+
+static void look_for_some(const void *data, const asj_part *part)
 {
-    const size_t count = run->hypothesis_count;
-    const asj_hypothesis **order = asj_allocate_list(&run->context->memory, asj_detection_run_room(count), sizeof *order);
-    if (!order)
-        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu junctions", count);
+    const junctions_job *j = data;
+    for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++)
+        j->look(&j->ends, (size_t)i);
+}
+
+/* asj_ends_mark(), or at the end asj_ends_snap(), of all. */
+static asj_status look_for_junctions(asj_detection_run *run, void (*look)(const asj_ends *ends, size_t index))
+{
+    const int64_t count = (int64_t)run->hypothesis_count;
+    asj_junction_grid grid;
+    const asj_status status = asj_junction_grid_make(run->context, run->hypotheses, run->hypothesis_count, run->image->width,
+                                                     run->image->height, &grid);
+    if (status != ASJ_OK)
+        return status;
     asj_watch watch;
+    const junctions_job j = {{&grid, run->options, run->hypotheses}, &watch, look};
     asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
-    if (at_the_end)
-        asj_ends_snap(run->hypotheses, count, run->options, order, &watch);
-    else
-        asj_ends_mark(run->hypotheses, count, run->options->snap_distance, order, &watch);
-    asj_release(&run->context->memory, order);
+    asj_parallel(run->context, asj_threads_for(run->context, count, LEAST_ENDS), count, 0, look_for_some, &j);
+    asj_junction_grid_free(run->context, &grid);
     return asj_watch_end(&watch);
 }
 
@@ -100,7 +115,7 @@ asj_status asj_step_ends(asj_detection_run *run)
         status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, end_by_contrast);
     leave_out_rejected(run);
     if (status == ASJ_OK)
-        status = look_for_junctions(run, 0);
+        status = look_for_junctions(run, asj_ends_mark);
     if (status == ASJ_OK)
         status = number_branches(run);
     return status == ASJ_OK ? measure_all(run) : status;
@@ -108,5 +123,5 @@ asj_status asj_step_ends(asj_detection_run *run)
 
 asj_status asj_step_snap(asj_detection_run *run)
 {
-    return look_for_junctions(run, 1);
+    return look_for_junctions(run, asj_ends_snap);
 }

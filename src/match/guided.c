@@ -14,6 +14,7 @@
 #include "core/watch.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define GUIDES_ASKED 8            /* nearest matches: two or three surfaces meet at a corner; 4 or 16 find as much within 1 % */
@@ -27,8 +28,15 @@ typedef struct guide {
     const double *map;     /* from the one to the other */
 } guide;
 
+/* Where guide `index` stands in the image asked. */
+typedef struct stand {
+    double x, y;
+    uint32_t index;
+} stand;
+
 typedef struct guides {
     guide *list;
+    stand *by_x; /* in order of x */
     size_t count;
 } guides;
 
@@ -37,12 +45,40 @@ typedef struct proposals {
     uint32_t partner[MOST_PROPOSALS];
 } proposals;
 
+static int compare_x(const void *a, const void *b)
+{
+    const stand *p = a, *q = b;
+    if (p->x != q->x)
+        return p->x < q->x ? -1 : 1;
+    return p->index < q->index ? -1 : p->index > q->index;
+}
+
+/* The first guide in order of x that stands at x or beyond. */
+static size_t first_beyond(const guides *all, double x)
+{
+    size_t low = 0, high = all->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (all->by_x[middle].x < x)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* From x outwards, until x alone is too far away. */
 static uint32_t nearest_guides(const guides *all, double x, double y, uint32_t *out)
 {
     asj_nearest nearest = {.limit = GUIDES_ASKED, .index = out};
-    for (size_t g = 0; g < all->count; g++) {
-        const double dx = all->list[g].x - x, dy = all->list[g].y - y;
-        asj_nearest_offer(&nearest, (uint32_t)g, dx * dx + dy * dy);
+    size_t right = first_beyond(all, x), left = right;
+    while (left > 0 || right < all->count) {
+        const int back = right == all->count || (left > 0 && x - all->by_x[left - 1].x <= all->by_x[right].x - x);
+        const stand *s = &all->by_x[back ? --left : right++];
+        const double dx = s->x - x, dy = s->y - y;
+        if (asj_nearest_beyond(&nearest, dx * dx))
+            break;
+        asj_nearest_offer(&nearest, s->index, dx * dx + dy * dy);
     }
     return nearest.count;
 }
@@ -182,7 +218,10 @@ static void set_guides(const asj_match_run *run, int32_t side, guides *all)
         const asj_candidate *c = &run->candidates.list[run->choices.list[n].candidate];
         const asj_l_junction *from = asj_match_run_l(run, c, side), *to = asj_match_run_l(run, c, 1 - side);
         all->list[n] = (guide){(double)from->x, (double)from->y, (double)to->x, (double)to->y, asj_candidate_map(c, side)};
+        all->by_x[n] = (stand){(double)from->x, (double)from->y, (uint32_t)n};
     }
+    if (all->count > 1)
+        qsort(all->by_x, all->count, sizeof *all->by_x, compare_x);
 }
 
 static asj_status append(asj_match_run *run, asj_candidates *fresh)
@@ -203,15 +242,18 @@ static asj_status append(asj_match_run *run, asj_candidates *fresh)
 asj_status asj_guided(asj_match_run *run)
 {
     asj_candidates fresh = {NULL, 0, 0};
-    guides all = {asj_allocate(&run->context->memory, run->choices.count, sizeof *all.list), 0};
-    asj_status status = all.list ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
+    asj_memory *memory = &run->context->memory;
+    guides all = {asj_allocate(memory, run->choices.count, sizeof *all.list),
+                  asj_allocate(memory, run->choices.count, sizeof *all.by_x), 0};
+    asj_status status = all.list && all.by_x ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
     for (int32_t side = 0; side < 2 && status == ASJ_OK; side++) {
         set_guides(run, side, &all);
         status = one_side(run, side, &all, &fresh);
     }
     if (status == ASJ_OK)
         status = append(run, &fresh);
-    asj_release(&run->context->memory, fresh.list);
-    asj_release(&run->context->memory, all.list);
+    asj_release(memory, fresh.list);
+    asj_release(memory, all.list);
+    asj_release(memory, all.by_x);
     return status;
 }

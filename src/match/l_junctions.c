@@ -10,7 +10,7 @@
  * Neighbours of a location are the nearest others farther than `separation`, so that a cluster of duplicates is no neighbour of
  * itself. Guests (guests.c) are nobody's neighbours and lengthen no branch, so that others are as they are without them. */
 #include "l_junctions.h"
-#include "nearest.h"
+#include "location_grid.h"
 #include "core/angle.h"
 #include "core/watch.h"
 
@@ -126,26 +126,9 @@ uint32_t asj_first_location(const asj_l_junctions *all, double x)
     return low;
 }
 
-/* The nearest locations farther than `separation`: from the location itself outwards in x, until x alone is too far away. */
-static uint32_t find_nearest(const asj_l_junctions *all, uint32_t location, double separation, uint32_t limit, uint32_t *out)
-{
-    const double x = all->location_x[location], y = all->location_y[location], least = separation * separation;
-    asj_nearest list = {.limit = limit, .index = out};
-    for (uint32_t left = location, right = location + 1; left > 0 || right < all->location_count;) {
-        const int32_t back = right == all->location_count ||
-                             (left > 0 && x - all->location_x[left - 1] <= all->location_x[right] - x);
-        const uint32_t q = back ? --left : right++;
-        const double dx = all->location_x[q] - x, dy = all->location_y[q] - y, square = dx * dx + dy * dy;
-        if (asj_nearest_beyond(&list, dx * dx))
-            break;
-        if (square > least && !asj_is_guest_location(all, q))
-            asj_nearest_offer(&list, q, square);
-    }
-    return list.count;
-}
-
 typedef struct job {
     const asj_match_options *options;
+    const asj_location_grid *grid;
     asj_l_junctions *all;
     asj_watch *watch;
 } job;
@@ -155,11 +138,13 @@ static void find_some(const void *data, const asj_part *part)
     const job *j = data;
     asj_l_junctions *all = j->all;
     for (int64_t p = part->first; p < part->end && !asj_watch_stops(j->watch, part); p++)
-        all->neighbour_count[p] = find_nearest(all, (uint32_t)p, j->options->separation, all->neighbour_limit,
-                                               all->neighbour + (size_t)p * all->neighbour_limit);
+        all->neighbour_count[p] = asj_location_grid_nearest(j->grid, all->location_x[p], all->location_y[p],
+                                                            j->options->separation, all->neighbour_limit,
+                                                            all->neighbour + (size_t)p * all->neighbour_limit);
 }
 
-static asj_status find_neighbours(asj_context *context, const asj_match_options *options, asj_l_junctions *all)
+static asj_status find_neighbours(asj_context *context, const asj_match_options *options, const asj_location_grid *grid,
+                                  asj_l_junctions *all)
 {
     all->neighbour_limit = (uint32_t)options->neighbours;
     if (options->neighbours == 0)
@@ -169,7 +154,7 @@ static asj_status find_neighbours(asj_context *context, const asj_match_options 
     if (!all->neighbour || !all->neighbour_count)
         return no_memory(context);
     asj_watch watch;
-    const job j = {options, all, &watch};
+    const job j = {options, grid, all, &watch};
     asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
     asj_parallel(context, asj_threads_for(context, all->location_count, LEAST_LOCATIONS), all->location_count, 0, find_some, &j);
     return asj_watch_end(&watch);
@@ -177,24 +162,15 @@ static asj_status find_neighbours(asj_context *context, const asj_match_options 
 
 /* --- lengths and frames ----------------------------------------------------------------------------------------------------- */
 
-/* Appends extra lengths, falling, LEAST_APART from each other. Only locations with an x that the branch passes are looked at. */
-static void find_lengths(const asj_l_junctions *all, double x, double y, const double u[2], double own, int32_t limit,
+/* Appends extra lengths, falling, LEAST_APART from each other. */
+static void find_lengths(const asj_location_grid *grid, double x, double y, const double u[2], double own, int32_t limit,
                          asj_lengths *lengths)
 {
     lengths->count = 1;
     lengths->length[0] = (float)own;
     double before = own - LEAST_BEFORE_END;
-    const double most = x + (u[0] > 0 ? before * u[0] : 0) + RAY_DISTANCE + 1;
-    const uint32_t first = asj_first_location(all, x + (u[0] < 0 ? before * u[0] : 0) - RAY_DISTANCE - 1);
     while (lengths->count < limit) { /* the longest one not longer than `before` */
-        double best = 0;
-        for (uint32_t q = first; q < all->location_count && all->location_x[q] <= most; q++) {
-            double dx = all->location_x[q] - x, dy = all->location_y[q] - y;
-            double along = dx * u[0] + dy * u[1];
-            if (along >= LEAST_START && along <= before && along > best && fabs(dx * u[1] - dy * u[0]) < RAY_DISTANCE &&
-                !asj_is_guest_location(all, q))
-                best = along;
-        }
+        const double best = asj_location_grid_last(grid, x, y, u, LEAST_START, before, RAY_DISTANCE);
         if (best <= 0)
             return;
         lengths->length[lengths->count++] = (float)best;
@@ -211,7 +187,7 @@ static double direct(const asj_l_junction *l, float ex, float ey, double u[2])
     return length;
 }
 
-static void prepare(asj_l_junctions *all, uint32_t i, int32_t limit)
+static void prepare(asj_l_junctions *all, const asj_location_grid *grid, uint32_t i, int32_t limit)
 {
     const asj_l_junction *l = &all->l[i];
     double *u = all->direction + 4 * (size_t)i;
@@ -221,8 +197,8 @@ static void prepare(asj_l_junctions *all, uint32_t i, int32_t limit)
         all->lengths[2 * i + 1] = (asj_lengths){0, {(float)b}, 0};
         return;
     }
-    find_lengths(all, (double)l->x, (double)l->y, u, a, limit, &all->lengths[2 * i]);
-    find_lengths(all, (double)l->x, (double)l->y, u + 2, b, limit, &all->lengths[2 * i + 1]);
+    find_lengths(grid, (double)l->x, (double)l->y, u, a, limit, &all->lengths[2 * i]);
+    find_lengths(grid, (double)l->x, (double)l->y, u + 2, b, limit, &all->lengths[2 * i + 1]);
 }
 
 static void fill_frames(asj_l_junctions *all)
@@ -244,10 +220,11 @@ static void prepare_some(const void *data, const asj_part *part)
 {
     const job *j = data;
     for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++)
-        prepare(j->all, (uint32_t)i, j->options->length_hypotheses);
+        prepare(j->all, j->grid, (uint32_t)i, j->options->length_hypotheses);
 }
 
-static asj_status make_frames(asj_context *context, const asj_match_options *options, asj_l_junctions *all)
+static asj_status make_frames(asj_context *context, const asj_match_options *options, const asj_location_grid *grid,
+                              asj_l_junctions *all)
 {
     asj_memory *memory = &context->memory;
     all->lengths = asj_allocate(memory, 2 * (size_t)all->count, sizeof *all->lengths);
@@ -256,7 +233,7 @@ static asj_status make_frames(asj_context *context, const asj_match_options *opt
     if (!all->lengths || !all->direction || !all->first_frame)
         return no_memory(context);
     asj_watch watch;
-    const job j = {options, all, &watch};
+    const job j = {options, grid, all, &watch};
     asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
     asj_parallel(context, asj_threads_for(context, all->count, LEAST_LOCATIONS), all->count, 0, prepare_some, &j);
     if (watch.stopped)
@@ -272,6 +249,26 @@ static asj_status make_frames(asj_context *context, const asj_match_options *opt
         return no_memory(context);
     fill_frames(all);
     return ASJ_OK;
+}
+
+/* What asks for locations around; those of guests are none. */
+static asj_status find_around(asj_context *context, const asj_match_options *options, asj_l_junctions *all)
+{
+    asj_location_grid grid;
+    asj_location_place *places = asj_allocate(&context->memory, all->home_locations, sizeof *places);
+    uint32_t count = 0;
+    for (uint32_t p = 0; p < all->location_count && places; p++)
+        if (!asj_is_guest_location(all, p))
+            places[count++] = (asj_location_place){all->location_x[p], all->location_y[p], p};
+    const int made = places && asj_location_grid_make(&context->memory, places, count, &grid) == ASJ_OK;
+    asj_release(&context->memory, places);
+    if (!made)
+        return no_memory(context);
+    asj_status status = find_neighbours(context, options, &grid, all);
+    if (status == ASJ_OK)
+        status = make_frames(context, options, &grid, all);
+    asj_location_grid_free(&context->memory, &grid);
+    return status;
 }
 
 static asj_status set_octaves(asj_context *context, const asj_junction_list *input, asj_l_junctions *all)
@@ -430,9 +427,7 @@ asj_status asj_l_junctions_create(asj_context *context, const asj_match_options 
     if (status == ASJ_OK)
         status = find_locations(context, all);
     if (status == ASJ_OK)
-        status = find_neighbours(context, options, all);
-    if (status == ASJ_OK)
-        status = make_frames(context, options, all);
+        status = find_around(context, options, all);
     if (status == ASJ_OK)
         status = set_branches(context, input, all);
     if (status == ASJ_OK)

@@ -51,13 +51,16 @@ static void join(drawing *d)
 {
     asj_context *context = NULL;
     asj_detect_options options;
-    int32_t *scratch = calloc(asj_edges_scratch(d->count, 640, 480), sizeof *scratch);
+    int32_t *scratch = calloc(asj_edges_scratch(d->count), sizeof *scratch);
+    asj_junction_grid grid;
     assert_non_null(scratch);
     assert_int_equal(asj_context_create(NULL, &context), ASJ_OK);
     asj_detect_options_init(&options);
     asj_watch watch;
     asj_watch_start(&watch, context, ASJ_STAGE_REFINE);
-    d->edge_count = asj_edges_join(&watch, &options, 640, 480, 1, evidence, d->list, d->count, scratch, d->edges);
+    assert_int_equal(asj_junction_grid_make(context, d->list, d->count, 640, 480, &grid), ASJ_OK);
+    d->edge_count = asj_edges_join(&watch, &options, 640, 480, 1, evidence, &grid, d->list, d->count, scratch, d->edges);
+    asj_junction_grid_free(context, &grid);
     asj_context_free(&context);
     free(scratch);
 }

@@ -5,12 +5,25 @@
 
 enum { COUNT = 120 };
 
-static void snap(asj_hypothesis *hypotheses, size_t count, double reach, const asj_hypothesis **order)
+static void snap_by(const asj_detect_options *options, asj_hypothesis *hypotheses, size_t count)
+{
+    asj_context *context = NULL;
+    asj_junction_grid grid;
+    assert_int_equal(asj_context_create(NULL, &context), ASJ_OK);
+    assert_int_equal(asj_junction_grid_make(context, hypotheses, count, 120, 90, &grid), ASJ_OK);
+    const asj_ends ends = {&grid, options, hypotheses};
+    for (size_t i = 0; i < count; i++)
+        asj_ends_snap(&ends, i);
+    asj_junction_grid_free(context, &grid);
+    asj_context_free(&context);
+}
+
+static void snap(asj_hypothesis *hypotheses, size_t count, double reach)
 {
     asj_detect_options options;
     asj_detect_options_init(&options);
     options.snap_distance = reach;
-    asj_ends_snap(hypotheses, count, &options, order, NULL);
+    snap_by(&options, hypotheses, count);
 }
 
 /* Of the junctions ahead, at most 2 px off the line and less than `reach` px from the end, the one nearest to the end, but for
@@ -33,7 +46,6 @@ static double naive_length(const asj_hypothesis *hypotheses, size_t count, size_
 static void test_random(void **state)
 {
     static asj_hypothesis hypotheses[COUNT], before[COUNT];
-    static const asj_hypothesis *order[COUNT];
     synth_random random;
     int moved = 0;
     (void)state;
@@ -53,7 +65,7 @@ static void test_random(void **state)
             }
         }
         memcpy(before, hypotheses, sizeof before);
-        snap(hypotheses, count, reach, order);
+        snap(hypotheses, count, reach);
         for (size_t i = 0; i < count; i++)
             for (int32_t b = 0; b < hypotheses[i].branch_count; b++) {
                 unit_near("length", (double)i, b, hypotheses[i].branches[b].length,
@@ -73,7 +85,6 @@ static void test_random(void **state)
 static void test_off(void **state)
 {
     asj_hypothesis hypotheses[2], before[2];
-    const asj_hypothesis *order[2];
     (void)state;
     memset(hypotheses, 0, sizeof hypotheses);
     hypotheses[0].branch_count = 1;
@@ -82,13 +93,13 @@ static void test_off(void **state)
     hypotheses[1].location_variance = 0.03;
     hypotheses[1].x = 26;
     memcpy(before, hypotheses, sizeof before);
-    snap(hypotheses, 2, 0, order);
+    snap(hypotheses, 2, 0);
     assert_memory_equal(hypotheses, before, sizeof before);
     hypotheses[1].x = 21; /* so near that it is what is there */
-    snap(hypotheses, 2, 0, order);
+    snap(hypotheses, 2, 0);
     assert_true(hypotheses[0].branches[0].length == 20 && hypotheses[0].branches[0].end == ASJ_BRANCH_END_JUNCTION);
-    snap(hypotheses, 0, 5, NULL);
-    snap(hypotheses, 2, 5, order);
+    snap(hypotheses, 0, 5);
+    snap(hypotheses, 2, 5);
     assert_true(hypotheses[0].branches[0].length == 21);
     unit_near("variance", 0, 0, hypotheses[0].branches[0].end_variance, 0.05, 1e-12);
 }
@@ -97,7 +108,6 @@ static void test_off(void **state)
 static double snapped(double reach, double back, double other, double log_nfa)
 {
     asj_hypothesis hypotheses[2];
-    const asj_hypothesis *order[2];
     memset(hypotheses, 0, sizeof hypotheses);
     hypotheses[0].branch_count = 1;
     hypotheses[0].branches[0].length = 26;
@@ -107,7 +117,7 @@ static double snapped(double reach, double back, double other, double log_nfa)
     hypotheses[1].branches[1].angle = other;
     hypotheses[1].branches[0].log_nfa = -400;
     hypotheses[1].branches[1].log_nfa = log_nfa;
-    snap(hypotheses, 2, reach, order);
+    snap(hypotheses, 2, reach);
     return hypotheses[0].branches[0].length;
 }
 
@@ -129,7 +139,6 @@ static void test_sure(void **state)
 static void test_minimum_length(void **state)
 {
     asj_hypothesis hypotheses[2];
-    const asj_hypothesis *order[2];
     asj_detect_options options;
     (void)state;
     asj_detect_options_init(&options);
@@ -139,10 +148,10 @@ static void test_minimum_length(void **state)
     hypotheses[0].branches[0].length = 26;
     hypotheses[1].x = 20;
     options.minimum_length = 21;
-    asj_ends_snap(hypotheses, 2, &options, order, NULL);
+    snap_by(&options, hypotheses, 2);
     assert_true(hypotheses[0].branches[0].length == 26);
     options.minimum_length = 20;
-    asj_ends_snap(hypotheses, 2, &options, order, NULL);
+    snap_by(&options, hypotheses, 2);
     assert_true(hypotheses[0].branches[0].length == 20);
 }
 
