@@ -59,7 +59,8 @@ int cli_close_output(void)
 {
     if (fflush(stdout) == 0 && !ferror(stdout))
         return CLI_SUCCESS;
+    const int error = errno;
     if (!cli_output_is_closed())
-        cli_error("standard output: %s", errno ? strerror(errno) : "write error");
+        cli_error("standard output: %s", error ? strerror(error) : "write error");
     return CLI_FAILED;
 }

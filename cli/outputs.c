@@ -29,22 +29,43 @@ static char *copy(const char *text)
     return result ? memcpy(result, text, size) : NULL;
 }
 
-/* Appends the folders of a path to `to`, but for the root, . and .. */
+/* The next folder of a path up to `end`, but for the root, . and .. ; NULL = there is none left. *at goes on behind it. */
+static const char *next_folder(const char **at, const char *end, size_t *size)
+{
+    while (*at < end) {
+        const char *name = *at;
+        while (*at < end && !cli_is_separator(**at))
+            ++*at;
+        *size = (size_t)(*at - name);
+        if (*at < end)
+            ++*at;
+        if (*size > 0 && !(*size == 1 && name[0] == '.') && !(*size == 2 && name[0] == '.' && name[1] == '.'))
+            return name;
+    }
+    return NULL;
+}
+
+/* Appends the folders of a path, which ends with a separator. */
 static size_t append_folders(char *to, const char *path, size_t length)
 {
-    size_t n = 0;
-    for (size_t start = 0, end; start < length; start = end + 1) {
-        for (end = start; end < length && !cli_is_separator(path[end]);)
-            end++;
-        const char *name = path + start;
-        const size_t size = end - start;
-        if (size == 0 || (size == 1 && name[0] == '.') || (size == 2 && name[0] == '.' && name[1] == '.'))
-            continue;
+    size_t n = 0, size;
+    for (const char *at = path, *name; (name = next_folder(&at, path + length, &size)) != NULL; n += size + 1) {
         memcpy(to + n, name, size);
         to[n + size] = '/';
-        n += size + 1;
     }
     return n;
+}
+
+/* Whether results of these two images would lie in the same folder. */
+static int same_folders(const char *one, const char *other)
+{
+    const char *ends[2] = {cli_base_name(one), cli_base_name(other)}, *a, *b;
+    size_t size_a = 0, size_b = 0;
+    do {
+        a = next_folder(&one, ends[0], &size_a);
+        b = next_folder(&other, ends[1], &size_b);
+    } while (a && b && size_a == size_b && memcmp(a, b, size_a) == 0);
+    return !a && !b;
 }
 
 /* DIR, with keep_folders the folders of the image, its name without last extension, "." and an extension. */
@@ -151,7 +172,8 @@ static int check_against(const char *command, const char *hint, const cli_planne
     for (size_t i = 1; i < output_count; i++)
         if (strcmp(outputs[i - 1].target, outputs[i].target) == 0)
             return cli_usage_error(command, "%s: would be written twice, for %s and for %s%s", outputs[i].path,
-                                   outputs[i - 1].purpose, outputs[i].purpose, hint);
+                                   outputs[i - 1].purpose, outputs[i].purpose,
+                                   same_folders(outputs[i - 1].purpose, outputs[i].purpose) ? "" : hint);
     for (size_t i = 0; i < output_count; i++)
         if (input_count > 0 && cli_identify(outputs[i].path, &existing) &&
             bsearch(&existing, inputs, input_count, sizeof *inputs, compare_identity))

@@ -42,7 +42,7 @@ void cli_catch_signals(void (*note)(int number))
 int cli_output_is_closed(void)
 {
     struct pollfd output = {STDOUT_FILENO, POLLOUT, 0};
-    return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
+    return poll(&output, 1, 0) > 0 && (output.revents & (POLLERR | POLLHUP)) != 0; /* the one on Linux, the other on BSD */
 }
 
 int cli_make_one_folder(const char *path)

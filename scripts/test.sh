@@ -133,8 +133,10 @@ with_sanitizers() {
         -Dc_args=-fno-sanitize-recover=undefined,-g1 -Dcpp_args=-fno-sanitize-recover=undefined,-g1 || return 1
     logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2 &
     scenes=$!
+    trap 'kill "$scenes" 2> /dev/null; exit 130' INT TERM
     state_of_tests=0
     run_tests build-sanitize $quick_with_finer --no-suite fails --no-suite device-images --timeout-multiplier 4 || state_of_tests=1
+    trap - INT TERM
     wait "$scenes" && [ "$state_of_tests" = 0 ]
 }
 

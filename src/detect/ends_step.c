@@ -8,7 +8,7 @@
 #include "core/threads.h"
 #include "core/watch.h"
 
-#define LEAST_ENDS 64 /* junctions for a thread: one takes less than 1 us */
+#define LEAST_ENDS 64 /* junctions for a thread: fewer take less time than to wake it */
 
 /* Hypotheses that are shared out. */
 typedef struct job {

@@ -16,8 +16,8 @@ typedef struct asj_grid_place {
     int32_t octave;   /* asj_octave_index() */
 } asj_grid_place;
 
-/* Those of cell c are places[first[c]] .. places[first[c + 1] - 1], in order of index. A border of one cell stands around the
- * image, for neighbours and for junctions just outside of it; what is farther away counts as there. */
+/* Those of cell c are places[first[c]] .. places[first[c + 1] - 1], in order of index. A border of empty cells
+ * stands around the image, so that all have neighbours; what lies outside of it counts in its outermost cells. */
 typedef struct asj_junction_grid {
     int32_t *first;
     asj_grid_place *places;

@@ -106,9 +106,9 @@ static int is_beside(const course c[2], int end, int far)
     return 1;
 }
 
-enum { APART, ONE, GROWN };
+enum { APART, ONE, MOVED };
 
-/* Whether both are of one edge; then the longer has become both, and may have grown. */
+/* Whether both are of one edge; then the longer has become both, and its ends may have moved. */
 static int join(asj_segment_match *longer, const asj_segment_match *shorter)
 {
     course c[2];
@@ -123,15 +123,18 @@ static int join(asj_segment_match *longer, const asj_segment_match *shorter)
         if ((beyond[end] = goes_beyond(c, end, far[end])) == 1)
             return APART;
     const int inside = !beyond[0] && !beyond[1];
+    int result = ONE;
     for (int image = 0; image < 2; image++)
         if (!(shared(&c[image]) > (inside ? 0 : c[image].same_end)))
             return APART;
     for (int end = 0; end < 2; end++) {
         const int32_t kind = end == 0 ? longer->start : longer->end, other = far[end] == 0 ? shorter->start : shorter->end;
-        if (beyond[end] || (other > kind && far[end] == 0 && is_beside(c, end, far[end])))
+        if (beyond[end] || (other == ASJ_END_CORNER && kind < ASJ_END_CORNER && is_beside(c, end, far[end]))) {
             take_end(longer, end, shorter, far[end]);
+            result = MOVED;
+        }
     }
-    return inside ? ONE : GROWN;
+    return result;
 }
 
 static int by_names(const asj_segment_match *p, const asj_segment_match *q)
@@ -143,13 +146,27 @@ static int by_names(const asj_segment_match *p, const asj_segment_match *q)
     return p->branch2 < q->branch2 ? -1 : p->branch2 > q->branch2;
 }
 
+/* The last word where nothing else tells two apart, so that no order is left to qsort(). */
+static int by_place(const asj_segment_match *p, const asj_segment_match *q)
+{
+    const float one[] = {p->x1, p->y1, p->ex1, p->ey1, p->x2, p->y2, p->ex2, p->ey2};
+    const float other[] = {q->x1, q->y1, q->ex1, q->ey1, q->x2, q->y2, q->ex2, q->ey2};
+    for (size_t k = 0; k < sizeof one / sizeof *one; k++)
+        if (one[k] < other[k] || one[k] > other[k])
+            return one[k] < other[k] ? -1 : 1;
+    if (p->end != q->end)
+        return p->end < q->end ? -1 : 1;
+    return p->start < q->start ? -1 : p->start > q->start;
+}
+
 static int by_length(const void *a, const void *b)
 {
     const asj_segment_match *p = a, *q = b;
     const double one = length_of(p), other = length_of(q);
     if (one > other || one < other)
         return one > other ? -1 : 1;
-    return by_names(p, q);
+    const int order = by_names(p, q);
+    return order ? order : by_place(p, q);
 }
 
 static int by_match(const void *a, const void *b)
@@ -158,22 +175,22 @@ static int by_match(const void *a, const void *b)
     return order ? order : by_length(a, b);
 }
 
-/* One after the other, the longest first, into those before; whether any of these has grown. */
+/* One after the other, the longest first, into those before; whether ends of these have moved. */
 static int join_once(asj_segment_match *segments, size_t *count)
 {
     size_t kept = 0;
-    int grown = 0;
+    int moved = 0;
     for (size_t i = 0; i < *count; i++) {
         const asj_segment_match s = segments[i];
         int joined = APART;
         for (size_t k = 0; k < kept && joined == APART; k++)
             joined = join(&segments[k], &s);
-        grown |= joined == GROWN;
+        moved |= joined == MOVED;
         if (joined == APART)
             segments[kept++] = s;
     }
     *count = kept;
-    return grown;
+    return moved;
 }
 
 size_t asj_join_segment_matches(asj_segment_match *segments, size_t count)
@@ -181,7 +198,7 @@ size_t asj_join_segment_matches(asj_segment_match *segments, size_t count)
     if (!segments)
         return 0;
     int again = count > 1;
-    while (again) { /* what has grown may reach others */
+    while (again) { /* where ends have moved they may reach others */
         qsort(segments, count, sizeof *segments, by_length);
         again = join_once(segments, &count);
     }

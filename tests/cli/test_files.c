@@ -98,7 +98,10 @@ static void folders_of_images_are_kept(void **state)
     expect_in(result, result->err, "written twice, for scene.png and for ./scene.png\n");
     result = run_cli("detect", "--out-dir", "more", "scene.png", "kitchen/scene.png", NULL);
     expect_code(result, 2);
-    expect_in(result, result->err, "--keep-folders");
+    expect_in(result, result->err, "(--keep-folders tells folders apart)\n");
+    result = run_cli("detect", "--out-dir", "more", "kitchen/scene.png", "kitchen/.//scene.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "for kitchen/.//scene.png\n"); /* it would not help */
     assert_false(exists("more"));
 }
 

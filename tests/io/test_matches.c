@@ -324,7 +324,12 @@ static void json_has_the_lines_beside_the_matches(void **state)
     json_decref(root);
     /* joined */
     report.lines = ASJ_LINES_JOINED;
+    matches[0] = (asj_junction_match){.x1 = 10, .y1 = 10, .ax1 = 90, .ay1 = 10, .bx1 = 50, .by1 = 10, .x2 = 20, .y2 = 20,
+                                      .ax2 = 180, .ay2 = 20, .bx2 = 100, .by2 = 20, .end_a = ASJ_END_BOTH, .end_b = ASJ_END_BOTH};
+    count = asj_match_segments(&result, ASJ_END_INNER, segments, 2 * COUNT);
+    const size_t all = count;
     count = asj_join_segment_matches(segments, count);
+    assert_true(count < all);
     root = read_json(write_report("joined.json", ASJ_FILE_JSON));
     lines = need(root, "lines");
     assert_int_equal(json_array_size(lines), count);

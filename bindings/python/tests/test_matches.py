@@ -48,15 +48,17 @@ def test_segments(pair: tuple[asj.Features, asj.Features]) -> None:
         found.segments("all")
 
 
-def test_segments_are_branches(pair: tuple[asj.Features, asj.Features]) -> None:
+@pytest.mark.parametrize("joined", [False, True])
+def test_segments_are_branches(pair: tuple[asj.Features, asj.Features], joined: bool) -> None:
     found = asj.match(*pair)
-    *seen, which = found.segments("cut")
-    numbers = found.segment_indices("cut")
+    *seen, which = found.segments("cut", joined=joined)
+    numbers = found.segment_indices("cut", joined=joined)
     assert numbers.shape == (len(which), 2)
     for side, features in enumerate(pair):
         assert np.array_equal(features.branches["junction"][numbers[:, side]], found.indices[which, side])
         one, two = (np.diff(segments, axis=1)[:, 0] for segments in (features.segments[numbers[:, side]], seen[side]))
-        assert ((one * two).sum(axis=1) > 0.97 * np.linalg.norm(one, axis=1) * np.linalg.norm(two, axis=1)).all()
+        along = np.abs((one * two).sum(axis=1)) if joined else (one * two).sum(axis=1)
+        assert (along > 0.97 * np.linalg.norm(one, axis=1) * np.linalg.norm(two, axis=1)).all()
 
 
 def test_stretched_images(scene: Scene) -> None:

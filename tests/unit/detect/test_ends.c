@@ -56,8 +56,8 @@ static void test_random(void **state)
         memset(hypotheses, 0, sizeof hypotheses);
         for (size_t i = 0; i < count; i++) {
             asj_hypothesis *d = &hypotheses[i];
-            d->x = synth_random_between(&random, 0, 120);
-            d->y = floor(synth_random_between(&random, 0, 90)); /* rows with several */
+            d->x = synth_random_between(&random, -12, 130);
+            d->y = floor(synth_random_between(&random, -12, 100)); /* rows with several */
             d->branch_count = (int32_t)synth_random_between(&random, 2, 6);
             for (int32_t b = 0; b < d->branch_count; b++) {
                 d->branches[b].angle = synth_random_between(&random, 0, 2 * UNIT_PI);

@@ -135,9 +135,9 @@ class Matches:
     ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint32]]:
         """Line segments that match: (S, 2, 2) in the first image, (S, 2, 2) in the second, (S,) index of the match. A segment seen from
         both its ends comes once; of an edge with corners on it there are segments from each, with joined=True one, from the first
-        end to the last, and the index is that of its longest part.
+        end to the last, whose index is that of a part of it, mostly the longest.
 
-        They begin at the match's points and point where both images say; the branches as detected are ``features1.segments`` and
+        They point where both images say, and begin at the match's points, joined ones also elsewhere; the branches as detected are ``features1.segments`` and
         ``features2.segments`` at :meth:`segment_indices`, in the second image some pixels beside these where the match moved the corner.
 
         ends   what must be known of the far ends: "both" (both branches' own ends correspond), "inner" (or a junction on the longer
@@ -146,10 +146,10 @@ class Matches:
         records = self._segment_records(ends, joined)
         return (arrays.columns(records, "x1", (2, 2)), arrays.columns(records, "x2", (2, 2)), np.asarray(records["match"]))
 
-    def segment_indices(self, ends: str = "both") -> NDArray[np.int64]:
-        """(S, 2) which of features1.segments and features2.segments those of :meth:`segments` are, by the branches they follow; matches
-        of :func:`asj.match_images` have no features, and none."""
-        records = self._segment_records(ends, False)
+    def segment_indices(self, ends: str = "both", *, joined: bool = False) -> NDArray[np.int64]:
+        """(S, 2) which of features1.segments and features2.segments those of :meth:`segments` (with the same arguments) are, by the
+        branches they follow; matches of :func:`asj.match_images` have no features, and none."""
+        records = self._segment_records(ends, joined)
         junctions = self.indices[records["match"]]
         columns = [
             _first_segments(features)[junctions[:, side]] + records[f"branch{side + 1}"]
