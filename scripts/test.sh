@@ -130,7 +130,7 @@ with_sanitizers() {
     ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}use_sigaltstack=0
     export ASAN_OPTIONS
     build build-sanitize -Dauto_features=enabled --buildtype=debugoptimized -Db_sanitize=address,undefined \
-        -Dc_args=-fno-sanitize-recover=undefined,-g1 -Dcpp_args=-fno-sanitize-recover=undefined,-g1 || return 1
+        '-Dc_args=-fno-sanitize-recover=undefined -g1' '-Dcpp_args=-fno-sanitize-recover=undefined -g1' || return 1
     logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2 &
     scenes=$!
     trap 'kill "$scenes" 2> /dev/null; exit 130' INT TERM
