@@ -267,7 +267,7 @@ ASJ_API size_t asj_match_segments(const asj_match_result *result, int32_t minimu
  * reaches from the first end to the last in both images; match, branch1, branch2 are those of one of its parts, mostly the longest,
  * and either end may be a matched corner (`start`, `end`) or not. Returns how many there are then, in the order of their matches;
  * joined again they stay as they are. The order in which they come changes nothing. Time: `count` times what it returns (5000 that
- * share nothing: .1 s, 20 000: 2 s), again each time that ends have moved (a chain of 16 000: 5 s). */
+ * share nothing: .1 s, 20 000: 2 s), again each time that ends have moved. */
 ASJ_API size_t asj_join_segment_matches(asj_segment_match *segments, size_t count);
 
 #ifdef __cplusplus

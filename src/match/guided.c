@@ -10,11 +10,10 @@
 #include "agreement.h"
 #include "align.h"
 #include "compare.h"
-#include "nearest.h"
+#include "location_grid.h"
 #include "core/watch.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define GUIDES_ASKED 8            /* nearest matches: two or three surfaces meet at a corner; 4 or 16 find as much within 1 % */
@@ -28,15 +27,9 @@ typedef struct guide {
     const double *map;     /* from the one to the other */
 } guide;
 
-/* Where guide `index` stands in the image asked. */
-typedef struct stand {
-    double x, y;
-    uint32_t index;
-} stand;
-
 typedef struct guides {
     guide *list;
-    stand *by_x; /* in order of x */
+    asj_location_place *places; /* of the list, in the image asked */
     size_t count;
 } guides;
 
@@ -44,44 +37,6 @@ typedef struct proposals {
     uint32_t count;
     uint32_t partner[MOST_PROPOSALS];
 } proposals;
-
-static int compare_x(const void *a, const void *b)
-{
-    const stand *p = a, *q = b;
-    if (p->x != q->x)
-        return p->x < q->x ? -1 : 1;
-    return p->index < q->index ? -1 : p->index > q->index;
-}
-
-/* The first guide in order of x that stands at x or beyond. */
-static size_t first_beyond(const guides *all, double x)
-{
-    size_t low = 0, high = all->count;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (all->by_x[middle].x < x)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-/* From x outwards, until x alone is too far away. */
-static uint32_t nearest_guides(const guides *all, double x, double y, uint32_t *out)
-{
-    asj_nearest nearest = {.limit = GUIDES_ASKED, .index = out};
-    size_t right = first_beyond(all, x), left = right;
-    while (left > 0 || right < all->count) {
-        const int back = right == all->count || (left > 0 && x - all->by_x[left - 1].x <= all->by_x[right].x - x);
-        const stand *s = &all->by_x[back ? --left : right++];
-        const double dx = s->x - x, dy = s->y - y;
-        if (asj_nearest_beyond(&nearest, dx * dx))
-            break;
-        asj_nearest_offer(&nearest, s->index, dx * dx + dy * dy);
-    }
-    return nearest.count;
-}
 
 /* Does the map turn direction u within 25 degrees of v? */
 static int turns(const double map[4], const double u[2], const double v[2])
@@ -177,6 +132,7 @@ typedef struct job {
     const asj_match_run *run;
     int32_t side;
     const guides *asked;
+    const asj_location_grid *grid; /* of these */
     proposals *all;
     asj_watch *watch;
 } job;
@@ -187,27 +143,36 @@ static void ask_some(const void *data, const asj_part *part)
     const asj_l_junction *mine = j->run->image[j->side]->l_junctions.l;
     for (int64_t l = part->first; l < part->end && !asj_watch_stops(j->watch, part); l++) {
         uint32_t near[GUIDES_ASKED];
-        const uint32_t n = nearest_guides(j->asked, (double)mine[l].x, (double)mine[l].y, near);
+        const uint32_t n = asj_location_grid_nearest(j->grid, (double)mine[l].x, (double)mine[l].y, -1, GUIDES_ASKED, near);
         for (uint32_t k = 0; k < n; k++)
             ask(j->run, j->side, (uint32_t)l, &j->asked->list[near[k]], &j->all[l]);
     }
 }
 
+static asj_status ask_all(const asj_match_run *run, int32_t side, const guides *asked, const asj_location_grid *grid,
+                          proposals *all)
+{
+    asj_watch watch;
+    const job j = {run, side, asked, grid, all, &watch};
+    asj_watch_start(&watch, run->context, ASJ_STAGE_ALIGN);
+    asj_parallel(run->context, run->context->threads, run->image[side]->l_junctions.count, 16, ask_some, &j);
+    return asj_watch_end(&watch);
+}
+
 static asj_status one_side(const asj_match_run *run, int32_t side, const guides *asked, asj_candidates *fresh)
 {
-    const asj_l_junctions *mine = &run->image[side]->l_junctions;
-    proposals *all = asj_allocate_zero(&run->context->memory, mine->count, sizeof *all);
-    asj_status status = all ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
-    if (status == ASJ_OK) {
-        asj_watch watch;
-        const job j = {run, side, asked, all, &watch};
-        asj_watch_start(&watch, run->context, ASJ_STAGE_ALIGN);
-        asj_parallel(run->context, run->context->threads, mine->count, 16, ask_some, &j);
-        status = asj_watch_end(&watch);
-        if (status == ASJ_OK)
-            status = collect(run, side, all, fresh);
-    }
-    asj_release(&run->context->memory, all);
+    asj_memory *memory = &run->context->memory;
+    asj_location_grid grid = {.first = NULL};
+    proposals *all = asj_allocate_zero(memory, run->image[side]->l_junctions.count, sizeof *all);
+    asj_status status = all ? asj_location_grid_make(memory, asked->places, (uint32_t)asked->count, &grid) : ASJ_ERROR_MEMORY;
+    if (status == ASJ_OK)
+        status = ask_all(run, side, asked, &grid, all);
+    else
+        asj_fail(run->context, status, "no memory for the guided pass");
+    if (status == ASJ_OK)
+        status = collect(run, side, all, fresh);
+    asj_location_grid_free(memory, &grid);
+    asj_release(memory, all);
     return status;
 }
 
@@ -218,10 +183,8 @@ static void set_guides(const asj_match_run *run, int32_t side, guides *all)
         const asj_candidate *c = &run->candidates.list[run->choices.list[n].candidate];
         const asj_l_junction *from = asj_match_run_l(run, c, side), *to = asj_match_run_l(run, c, 1 - side);
         all->list[n] = (guide){(double)from->x, (double)from->y, (double)to->x, (double)to->y, asj_candidate_map(c, side)};
-        all->by_x[n] = (stand){(double)from->x, (double)from->y, (uint32_t)n};
+        all->places[n] = (asj_location_place){(double)from->x, (double)from->y, (uint32_t)n};
     }
-    if (all->count > 1)
-        qsort(all->by_x, all->count, sizeof *all->by_x, compare_x);
 }
 
 static asj_status append(asj_match_run *run, asj_candidates *fresh)
@@ -244,8 +207,8 @@ asj_status asj_guided(asj_match_run *run)
     asj_candidates fresh = {NULL, 0, 0};
     asj_memory *memory = &run->context->memory;
     guides all = {asj_allocate(memory, run->choices.count, sizeof *all.list),
-                  asj_allocate(memory, run->choices.count, sizeof *all.by_x), 0};
-    asj_status status = all.list && all.by_x ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
+                  asj_allocate(memory, run->choices.count, sizeof *all.places), 0};
+    asj_status status = all.list && all.places ? ASJ_OK : asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the guided pass");
     for (int32_t side = 0; side < 2 && status == ASJ_OK; side++) {
         set_guides(run, side, &all);
         status = one_side(run, side, &all, &fresh);
@@ -254,6 +217,6 @@ asj_status asj_guided(asj_match_run *run)
         status = append(run, &fresh);
     asj_release(memory, fresh.list);
     asj_release(memory, all.list);
-    asj_release(memory, all.by_x);
+    asj_release(memory, all.places);
     return status;
 }

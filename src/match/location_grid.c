@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#define A_CELL 4.0     /* locations */
+#define A_CELL 4.0     /* places */
 #define LEAST_CELL 1.0 /* px */
 #define ROUNDING 1e-6  /* px: more than a sum of coordinates is off */
 
@@ -91,7 +91,7 @@ static void look_in_row(search *s, int32_t row, int32_t first_column, int32_t la
     for (uint32_t k = grid->first[before + (size_t)from]; k < grid->first[before + (size_t)to + 1]; k++) {
         const double dx = grid->places[k].x - s->x, dy = grid->places[k].y - s->y, square = dx * dx + dy * dy;
         if (square > s->least)
-            asj_nearest_offer(&s->list, grid->places[k].location, square);
+            asj_nearest_offer(&s->list, grid->places[k].index, square);
     }
 }
 
@@ -115,7 +115,8 @@ static double covered(const search *s, int32_t column, int32_t row, int32_t ring
 uint32_t asj_location_grid_nearest(const asj_location_grid *grid, double x, double y, double separation, uint32_t limit,
                                    uint32_t *out)
 {
-    search s = {grid, x, y, separation * separation, {.limit = limit, .index = out}};
+    const double least = separation < 0 ? -1 : separation * separation;
+    search s = {grid, x, y, least, {.limit = limit, .index = out}};
     const int32_t column = cell_of(x, grid->left, grid->cell, grid->columns), row = cell_of(y, grid->upper, grid->cell, grid->rows);
     look_in_row(&s, row, column, column);
     for (int32_t ring = 0;;) {

@@ -5,19 +5,17 @@
  * and so a segment match from each: two in five of 4311 in photographs of sixteen scenes. Two are of one edge when
  *     both ends of the shorter lie within OFF_LINE px of the longer's line, in both images (what the detector takes for on a line),
  *     both images have its ends in the same order along that line, and
- *     they share more than an end's uncertainty (SAME_END px or SAME_END_SHARE of the longer), or the shorter lies in the longer.
+ *     they share more than an end's uncertainty (4 px or 5 % of the longer: ASJ_SAME_END), or the shorter lies in the longer.
  * So two that only touch, at a corner where one edge ends and another begins, stay two. An end that goes on beyond the longer's in
  * both images moves its end there; where only one image says so, the two stay as they are: one of them is wrong. Where the shorter
  * ends at a matched corner beside an end of the longer that is less sure, that corner is the end. The paper has no such step: its
  * segments are the branches of the matches. */
-#include <asj/match.h>
+#include "segment_matches.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #define OFF_LINE 2.0        /* px */
-#define SAME_END 4.0        /* px, or .. */
-#define SAME_END_SHARE 0.05 /* .. this part of the length */
 
 typedef struct point {
     double x, y;
@@ -79,7 +77,7 @@ static int course_along(const asj_segment_match *longer, const asj_segment_match
     c->length = sqrt(length2);
     c->at[0] /= c->length;
     c->at[1] /= c->length;
-    c->same_end = fmax(SAME_END, SAME_END_SHARE * c->length);
+    c->same_end = fmax(ASJ_SAME_END, ASJ_SAME_END_SHARE * c->length);
     return length2 > 0;
 }
 

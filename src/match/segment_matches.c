@@ -17,8 +17,6 @@
 
 #define LEAST_TURN_COSINE 0.978147601       /* cosine of 12 degrees: half the least opening of branches of the detector, and less */
 #define END_TOLERANCE 0.12     /* as the option's default */
-#define SAME_END 4.0           /* px, or .. */
-#define SAME_END_SHARE 0.05    /* .. this part of the length */
 #define ROUNDING 1e-6          /* of a coordinate: more than single precision is off */
 #define SLOTS ASJ_MAX_BRANCHES /* segment pairs of one match: its branches a and b, then others */
 
@@ -162,12 +160,18 @@ static double distance2(float x1, float y1, float x2, float y2)
     return dx * dx + dy * dy;
 }
 
+/* px^2 within which ends are one, of a segment of this length (squared). */
+static double same_end2(double length2)
+{
+    const double least = ASJ_SAME_END * ASJ_SAME_END, share = ASJ_SAME_END_SHARE * ASJ_SAME_END_SHARE * length2;
+    return share > least ? share : least;
+}
+
 /* Do the ends lie together in both images, in this order or the other? */
 static int same(const asj_segment_match *s, const asj_segment_match *t)
 {
     const double l1 = distance2(s->x1, s->y1, s->ex1, s->ey1), l2 = distance2(s->x2, s->y2, s->ex2, s->ey2);
-    const double least = SAME_END * SAME_END, share = SAME_END_SHARE * SAME_END_SHARE;
-    const double near1 = share * l1 > least ? share * l1 : least, near2 = share * l2 > least ? share * l2 : least;
+    const double near1 = same_end2(l1), near2 = same_end2(l2);
     return (distance2(s->x1, s->y1, t->x1, t->y1) <= near1 && distance2(s->ex1, s->ey1, t->ex1, t->ey1) <= near1 &&
             distance2(s->x2, s->y2, t->x2, t->y2) <= near2 && distance2(s->ex2, s->ey2, t->ex2, t->ey2) <= near2) ||
            (distance2(s->x1, s->y1, t->ex1, t->ey1) <= near1 && distance2(s->ex1, s->ey1, t->x1, t->y1) <= near1 &&
@@ -183,8 +187,7 @@ typedef struct surroundings {
 
 static surroundings around(const asj_segment_match *s)
 {
-    const double l1 = distance2(s->x1, s->y1, s->ex1, s->ey1), least = SAME_END * SAME_END, share = SAME_END_SHARE * SAME_END_SHARE;
-    return (surroundings){{s->x1, s->ex1}, {s->y1, s->ey1}, share * l1 > least ? share * l1 : least};
+    return (surroundings){{s->x1, s->ex1}, {s->y1, s->ey1}, same_end2(distance2(s->x1, s->y1, s->ex1, s->ey1))};
 }
 
 /* May a segment from m's location along this line of image 1 be the same? One end of s lies at the location, and then the other

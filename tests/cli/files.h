@@ -18,6 +18,7 @@ void write_crossing(const char *path);
 #define VIEW_X (-21.0)
 #define VIEW_Y (-12.0)
 void write_views(const char *first, const char *second);
+int make_views(void **state); /* before a group of tests: first.png and second.png */
 void write_flat_views(const char *first, const char *second, int rows); /* so many rows are one, as of a wall seen from below */
 
 /* A PNG of one grey level. */

@@ -85,13 +85,6 @@ static void joined_lines_are_whole_edges(void **state)
     expect_in(result, result->err, summary);
 }
 
-static int make_files(void **state)
-{
-    (void)state;
-    write_views("first.png", "second.png");
-    return 0;
-}
-
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -99,5 +92,5 @@ int main(int argc, char **argv)
         cmocka_unit_test(joined_lines_are_whole_edges),
     };
     program_start(argc, argv);
-    return program_end(cmocka_run_group_tests(tests, make_files, NULL));
+    return program_end(cmocka_run_group_tests(tests, make_views, NULL));
 }

@@ -248,13 +248,6 @@ static void a_build_without_cairo_says_so(void **state)
     expect_in(result, result->err, "cairo");
 }
 
-static int make_files(void **state)
-{
-    (void)state;
-    write_views("first.png", "second.png");
-    return 0;
-}
-
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -271,6 +264,6 @@ int main(int argc, char **argv)
     const struct CMUnitTest without[] = {cmocka_unit_test(a_build_without_cairo_says_so)};
     program_start(argc, argv);
     if (argc > 2 && strcmp(argv[2], "without-cairo") == 0)
-        return program_end(cmocka_run_group_tests(without, make_files, NULL));
-    return program_end(cmocka_run_group_tests(tests, make_files, NULL));
+        return program_end(cmocka_run_group_tests(without, make_views, NULL));
+    return program_end(cmocka_run_group_tests(tests, make_views, NULL));
 }

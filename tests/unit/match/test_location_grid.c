@@ -33,7 +33,7 @@ static uint32_t naive_nearest(uint32_t all, double x, double y, double separatio
             int taken = 0;
             for (uint32_t n = 0; n < count; n++)
                 taken |= out[n] == p;
-            if (!taken && square > separation * separation && square >= before && square < best) {
+            if (!taken && (separation < 0 || square > separation * separation) && square >= before && square < best) {
                 best = square;
                 found = p;
             }
@@ -79,9 +79,10 @@ static void against_all(void **state)
             const double y = of_one ? places[p].y : synth_random_between(&random, -100, size[1] + 100);
             const double angle = k % 5 == 0 ? k / 5 % 4 * UNIT_PI / 2 : synth_random_between(&random, 0, 2 * UNIT_PI);
             const double u[2] = {cos(angle), sin(angle)}, most = synth_random_between(&random, 5, 1.5 * (size[0] + size[1] + 60));
+            const double separation = k % 3 - 1 ? 6 : -1;
             uint32_t found[ASKED], wanted[ASKED];
-            const uint32_t count = asj_location_grid_nearest(&grid, x, y, 6, ASKED, found);
-            assert_int_equal(count, naive_nearest(all, x, y, 6, wanted));
+            const uint32_t count = asj_location_grid_nearest(&grid, x, y, separation, ASKED, found);
+            assert_int_equal(count, naive_nearest(all, x, y, separation, wanted));
             assert_memory_equal(found, wanted, count * sizeof *found);
             const double last = asj_location_grid_last(&grid, x, y, u, 10, most, 3);
             assert_true(last == naive_last(all, x, y, u, most));
