@@ -89,7 +89,7 @@ build() {
     configure "$@" && logged "build-$name" meson compile -C "$folder"
 }
 
-# build_and_test FOLDER "ARGUMENT..." OPTION...: the arguments are those of meson test.
+# build_and_test FOLDER "ARGUMENT..." OPTION...: everything; the arguments are those of meson test.
 build_and_test() {
     tests_wanted=$2
     folder_wanted=$1
@@ -140,14 +140,15 @@ with_sanitizers() {
     wait "$scenes" && [ "$state_of_tests" = 0 ]
 }
 
-# From a copy in which the folders that are only for OpenCL are missing. Vector forms are those of the whole build: no parity.
+# From a copy in which the folders that are only for OpenCL are missing. Vector forms are those of the whole build: no parity; and
+# modules are tested one by one in the whole build, and without threads in the core alone: no unit tests.
 fewer_parts() {
     whole=$root
     root=$whole/out/without-opencl
     rm -rf "$root/src" "$root/kernels" && mkdir -p "$root" &&
         (cd "$whole" &&
             cp -R -p README.md CHANGELOG.md LICENSE bindings cli include meson.build meson_options.txt scripts src tests "$root") &&
-        rm -rf "$root/src/cl" && build_and_test build-fewer "$quick --no-suite parity --no-suite fails" \
+        rm -rf "$root/src/cl" && build_and_test build-fewer "$quick --no-suite parity --no-suite unit --no-suite fails" \
         -Djpeg=disabled -Dtiff=disabled -Dwebp=disabled -Djpeg2000=disabled -Dheif=disabled -Dexif=disabled -Dopencv=disabled \
         -Dcairo=disabled -Dthreads=disabled -Dio=enabled -Dcli=enabled -Dtests=enabled --werror
     state_of_fewer=$?
