@@ -10,6 +10,7 @@
 
 #include <asj/detect.h>
 #include <asj/io.h>
+#include <asj/segments.h>
 
 #include <stdio.h>
 #include <string.h>
@@ -52,10 +53,11 @@ static asj_status find_directions(run *r, const asj_image *pixels, const asj_det
 }
 
 static asj_status write_junctions(run *r, const char *image, const char *path, const asj_image *pixels,
-                                  const asj_detection *detection, char *message)
+                                  const asj_detection *detection, const asj_segment_list *segments, char *message)
 {
     const int32_t format = cli_detect_file_format(r->arguments);
-    asj_detection_report report = {.detection = detection, .options = &r->arguments->options, .image_name = image};
+    asj_detection_report report = {.detection = detection, .options = &r->arguments->options, .image_name = image,
+                                   .segments = segments};
     asj_vanishing_points points;
     if (format == CLI_FILE_FEATURES)
         return write_features(r, path, pixels, detection, message);
@@ -69,21 +71,21 @@ static asj_status write_junctions(run *r, const char *image, const char *path, c
 }
 
 static int write_results(run *r, const char *image, const cli_output *output, const asj_image *pixels,
-                         const asj_detection *detection)
+                         const asj_detection *detection, const asj_segment_list *segments)
 {
     const cli_detect_arguments *arguments = r->arguments;
     char message[MESSAGE_SIZE] = "";
     int result = CLI_SUCCESS;
     if (output->junctions) {
-        asj_status status = write_junctions(r, image, output->junctions, pixels, detection, message);
+        asj_status status = write_junctions(r, image, output->junctions, pixels, detection, segments, message);
         if (status == ASJ_ERROR_CANCELLED)
             return CLI_FAILED;
         if (status != ASJ_OK)
             result = cli_session_fail(&r->session, output->junctions, message, status);
     }
     if (output->plot && !cli_interrupted()) {
-        asj_status status = cli_plot_write(output->plot, arguments->plot_format, pixels, detection, &arguments->style, message,
-                                           sizeof message);
+        asj_status status = cli_plot_write(output->plot, arguments->plot_format, pixels, detection, segments, &arguments->style,
+                                           message, sizeof message);
         if (status == ASJ_ERROR_CANCELLED)
             return CLI_FAILED;
         if (status != ASJ_OK)
@@ -93,36 +95,51 @@ static int write_results(run *r, const char *image, const cli_output *output, co
 }
 
 static void print_summary(const char *image, const cli_output *output, const asj_detect_options *options,
-                          const asj_detection *detection)
+                          const asj_detection *detection, const asj_segment_list *segments)
 {
     const char *junctions = output->junctions && strcmp(output->junctions, "-") != 0 ? output->junctions : NULL;
-    cli_note("%s: %lu junction%s%s%s%s%s", image, (unsigned long)detection->junction_count,
-             detection->junction_count == 1 ? "" : "s", junctions || output->plot ? " -> " : "", junctions ? junctions : "",
+    char lines[64] = "";
+    if (segments)
+        snprintf(lines, sizeof lines, ", %lu line%s", (unsigned long)segments->count, segments->count == 1 ? "" : "s");
+    cli_note("%s: %lu junction%s%s%s%s%s%s", image, (unsigned long)detection->junction_count,
+             detection->junction_count == 1 ? "" : "s", lines, junctions || output->plot ? " -> " : "", junctions ? junctions : "",
              junctions && output->plot ? ", " : "", output->plot ? output->plot : "");
     if (detection->junction_count == 0 && (options->epsilon < 100 || options->candidate_strength > 2))
         cli_note("%s: weaker corners are found with --epsilon 100 --candidate-strength 2", image);
 }
 
-static int detect_pixels(run *r, const char *image, const cli_output *output, const asj_image *pixels, const asj_region *region)
+static int tell(run *r, const char *image, const cli_output *output, const asj_image *pixels, const asj_detection *detection,
+                const asj_segment_list *segments)
 {
-    asj_detection *detection = NULL;
-    asj_status status = asj_detect_region(r->session.context, pixels, region, &r->arguments->options, &detection);
-    if (status == ASJ_ERROR_OPTION)
-        return cli_usage_error("detect", "%s", asj_context_message(r->session.context));
-    if (status == ASJ_ERROR_CANCELLED)
-        return CLI_FAILED; /* the loop sees the signal */
-    if (status != ASJ_OK)
-        return cli_session_fail(&r->session, image, asj_context_message(r->session.context), status);
     double start = cli_now_ms();
-    int result = write_results(r, image, output, pixels, detection);
+    int result = write_results(r, image, output, pixels, detection, segments);
     double write_ms = cli_now_ms() - start;
     cli_progress_clear(&r->session.progress);
     if (result == CLI_SUCCESS && !r->arguments->common.quiet)
-        print_summary(image, output, &r->arguments->options, detection);
+        print_summary(image, output, &r->arguments->options, detection, segments);
     if (result == CLI_SUCCESS && r->arguments->common.time) {
         cli_timing_detection(image, r->session.context, detection);
         cli_timing_files(r->read_ms, write_ms);
     }
+    return result;
+}
+
+static int detect_pixels(run *r, const char *image, const cli_output *output, const asj_image *pixels, const asj_region *region)
+{
+    asj_detection *detection = NULL;
+    asj_segment_list *segments = NULL;
+    asj_status status = asj_detect_region(r->session.context, pixels, region, &r->arguments->options, &detection);
+    if (status == ASJ_ERROR_OPTION)
+        return cli_usage_error("detect", "%s", asj_context_message(r->session.context));
+    if (status == ASJ_OK && r->arguments->lines)
+        status = asj_find_segments(r->session.context, detection->junctions, detection->junction_count, detection->edges,
+                                   detection->edge_count, &segments);
+    int result = CLI_FAILED;
+    if (status == ASJ_OK)
+        result = tell(r, image, output, pixels, detection, segments);
+    else if (status != ASJ_ERROR_CANCELLED) /* else the loop sees the signal */
+        result = cli_session_fail(&r->session, image, asj_context_message(r->session.context), status);
+    asj_segment_list_free(&segments);
     asj_detection_free(&detection);
     return result;
 }

@@ -21,6 +21,7 @@ static const char introduction[] =
     "                                                      everything as JSON, and a picture to look at\n"
     "  asj-cli detect --out-dir out --plot png *.jpg       a result and a plot for every photograph\n"
     "  asj-cli detect --epsilon 0.01 photo.jpg             only the surest junctions\n"
+    "  asj-cli detect --lines -o lines.csv photo.jpg       straight edges from end to end, each once\n"
     "  asj-cli detect -o photo.asjf photo.jpg              features: all that 'asj-cli match' needs of it\n"
     "\n"
     "Images: PNG, PNM, and the formats that asj-cli --version lists. A file that cannot be read is\n"
@@ -34,8 +35,8 @@ static const char conclusion[] =
     "More: man asj-cli; all numbers: man asj-options; file formats: man asj-formats\n";
 
 enum {
-    OUTPUT, OUT_DIR, KEEP_FOLDERS, FORMAT, WHOLE, REGION, MASK, VANISHING_POINTS, CAMERA, PLOT, PLOT_COLOR, PLOT_BACKGROUND,
-    PLOT_SCALE, PRESET, FOR
+    OUTPUT, OUT_DIR, KEEP_FOLDERS, FORMAT, LINES, WHOLE, REGION, MASK, VANISHING_POINTS, CAMERA, PLOT, PLOT_COLOR,
+    PLOT_BACKGROUND, PLOT_SCALE, PRESET, FOR
 };
 
 static const cli_option output_options[] = {
@@ -46,7 +47,10 @@ static const cli_option output_options[] = {
     {KEEP_FOLDERS, 0, "keep-folders", NULL, "below DIR the folders of the images: kitchen/photo.jpg gives DIR/kitchen/photo.asj"},
     {FORMAT, 'f', "format", "asj|json|csv|asjf",
      "asj: text, one record for each pair of branches; json: everything; csv: one line a branch; asjf: features, all that 'asj-cli "
-     "match' needs of the image. Default: by the end of FILE, else asj"},
+     "match' needs of the image. Default: by the end of FILE, else asj, and with --lines csv"},
+    {LINES, 0, "lines", NULL,
+     "straight edges from end to end, each once, whichever corners have a branch along it: csv has them in place of the branches, "
+     "json beside them; a plot shows them"},
     {WHOLE, 0, "whole", NULL, "asj: whole junctions of two to five branches (json and csv always have them)"},
 };
 
@@ -96,6 +100,7 @@ static int take_output(void *target, int id, const char *text)
     case OUTPUT: arguments->output = text; break;
     case OUT_DIR: arguments->out_dir = text; break;
     case KEEP_FOLDERS: arguments->keep_folders = 1; break;
+    case LINES: arguments->lines = 1; break;
     case WHOLE: arguments->whole = 1; break;
     default:
         if (cli_find_word(formats, text) < 0)
@@ -182,6 +187,16 @@ static int check_plot(cli_detect_arguments *arguments)
     return CLI_SUCCESS;
 }
 
+static int check_lines(const cli_detect_arguments *arguments)
+{
+    const int32_t format = cli_detect_file_format(arguments);
+    if (arguments->lines && format != ASJ_FILE_CSV && format != ASJ_FILE_JSON)
+        return cli_usage_error("detect", "--lines go into CSV or JSON: --format csv, or --output FILE.json");
+    if (arguments->lines && arguments->style.color != CLI_PLOT_COLOR_NFA)
+        return cli_usage_error("detect", "--plot-color: with --lines it takes nfa alone");
+    return CLI_SUCCESS;
+}
+
 static int check(cli_detect_arguments *arguments)
 {
     if (arguments->image_count == 0)
@@ -200,6 +215,8 @@ static int check(cli_detect_arguments *arguments)
     int result = cli_common_check("detect", &arguments->common);
     if (result == CLI_SUCCESS)
         result = cli_check_ending("detect", "junctions", arguments->output, arguments->format, formats);
+    if (result == CLI_SUCCESS)
+        result = check_lines(arguments);
     if (result == CLI_SUCCESS && arguments->vanishing_points && cli_detect_file_format(arguments) != ASJ_FILE_JSON)
         return cli_usage_error("detect", "--vanishing-points go into JSON: --format json, or --output FILE.json");
     if (result == CLI_SUCCESS && arguments->camera.fx > 0 && !arguments->vanishing_points)
@@ -216,7 +233,8 @@ const char *cli_detect_extension(const cli_detect_arguments *arguments)
         return "json";
     if (dot && strcmp(dot, ".asjf") == 0)
         return "asjf";
-    return dot && strcmp(dot, ".csv") == 0 ? "csv" : "asj";
+    const int is_csv = arguments->lines ? !dot || strcmp(dot, ".asj") != 0 : dot && strcmp(dot, ".csv") == 0;
+    return is_csv ? "csv" : "asj";
 }
 
 static void choose_preset(cli_detect_arguments *arguments)

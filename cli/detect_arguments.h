@@ -21,6 +21,7 @@ typedef struct cli_detect_arguments {
     int keep_folders;      /* results stand in the folders of their images, below out_dir */
     const char *format;    /* "asj", "json", "csv", "asjf"; NULL = by the name of `output` */
     int whole;
+    int lines;             /* straight edges: CSV and plot have them in place of the branches, JSON beside them */
     int vanishing_points;  /* into JSON */
     asj_camera camera;     /* fx = 0: not known */
     cli_region region;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The plot of detect: branches over the photograph, then the junctions as dots. */
+/* The plot of detect: branches, or straight edges, over the photograph, then the junctions as dots. */
 #include "plot.h"
 #include "interrupt.h"
 #include "plot_color.h"
@@ -77,6 +77,19 @@ static void draw_edges(cairo_t *cairo, const cli_plot_layout *layout, const asj_
     }
 }
 
+/* The longest come first in a list, and last, on top, in a plot. */
+static void draw_segments(cairo_t *cairo, const cli_plot_layout *layout, const asj_segment_list *segments)
+{
+    cairo_set_line_width(cairo, 1.5 * layout->line);
+    for (uint32_t i = segments->count; i-- > 0;) {
+        const asj_segment *s = &segments->segments[i];
+        set_color(cairo, cli_ramp_color((double)s->log10_nfa));
+        cairo_move_to(cairo, place(layout, (double)s->x1), place(layout, (double)s->y1));
+        cairo_line_to(cairo, place(layout, (double)s->x2), place(layout, (double)s->y2));
+        cairo_stroke(cairo);
+    }
+}
+
 static void draw_dot(cairo_t *cairo, const cli_plot_layout *layout, const asj_junction *junction)
 {
     double x = place(layout, (double)junction->x), y = place(layout, (double)junction->y);
@@ -88,17 +101,30 @@ static void draw_dot(cairo_t *cairo, const cli_plot_layout *layout, const asj_ju
     cairo_fill(cairo);
 }
 
+/* What the drawing on the surface needs. */
+typedef struct drawing {
+    cli_plot_layout layout;
+    const asj_image *image;
+    const asj_detection *detection;
+    const asj_segment_list *segments; /* NULL = branches */
+    const cli_plot_style *style;
+} drawing;
+
 /* The surest come first in a detection, and last, on top, in a plot. */
-static void draw_junctions(cairo_t *cairo, const cli_plot_layout *layout, const asj_detection *detection, int32_t color)
+static void draw_junctions(cairo_t *cairo, const drawing *d)
 {
+    const cli_plot_layout *layout = &d->layout;
+    const asj_detection *detection = d->detection;
     cairo_save(cairo);
     cairo_rectangle(cairo, 0, 0, layout->width, layout->image_height);
     cairo_clip(cairo);
     cairo_set_line_width(cairo, layout->line);
     cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT); /* ends where the branch ends */
-    for (uint32_t i = detection->junction_count; i-- > 0;)
-        draw_branches(cairo, layout, &detection->junctions[i], color);
-    if (color == CLI_PLOT_COLOR_EDGE)
+    for (uint32_t i = detection->junction_count; i-- > 0 && !d->segments;)
+        draw_branches(cairo, layout, &detection->junctions[i], d->style->color);
+    if (d->segments)
+        draw_segments(cairo, layout, d->segments);
+    if (d->style->color == CLI_PLOT_COLOR_EDGE)
         draw_edges(cairo, layout, detection);
     for (uint32_t i = detection->junction_count; i-- > 0;)
         draw_dot(cairo, layout, &detection->junctions[i]);
@@ -127,17 +153,26 @@ static void draw_ramp(cairo_t *cairo, double x, double y, double width, double h
     cairo_pattern_destroy(ramp);
 }
 
-static void draw_legend(cairo_t *cairo, const cli_plot_layout *layout, const asj_detection *detection, int32_t color)
+/* What there is most of in the plot: its number, and its name. */
+static void count_text(const drawing *d, char *text, size_t size)
 {
+    const int edges = d->style->color == CLI_PLOT_COLOR_EDGE;
+    const unsigned long count = d->segments ? d->segments->count : edges ? d->detection->edge_count : d->detection->junction_count;
+    const char *name = d->segments ? "line" : edges ? "edge" : "junction";
+    snprintf(text, size, "%lu %s%s", count, name, count == 1 ? "" : "s");
+}
+
+static void draw_legend(cairo_t *cairo, const drawing *d)
+{
+    const cli_plot_layout *layout = &d->layout;
     char text[64];
     double em = layout->font, base = layout->image_height + 1.55 * em, middle = base - 0.35 * em;
     /* the font inside cairo: the same on every machine, and there is always one */
     cairo_select_font_face(cairo, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cairo, em);
-    const unsigned long count = color == CLI_PLOT_COLOR_EDGE ? detection->edge_count : detection->junction_count;
-    snprintf(text, sizeof text, "%lu %s%s", count, color == CLI_PLOT_COLOR_EDGE ? "edge" : "junction", count == 1 ? "" : "s");
+    count_text(d, text, sizeof text);
     draw_text(cairo, 0.8 * em, base, text);
-    if (color != CLI_PLOT_COLOR_BRANCH) {
+    if (d->style->color != CLI_PLOT_COLOR_BRANCH) {
         draw_text(cairo, 10.5 * em, base, "barely");
         draw_ramp(cairo, 14.4 * em, middle - 0.35 * em, 8 * em, 0.7 * em);
         snprintf(text, sizeof text, "sure   (log10 NFA %g to %g)", CLI_RAMP_UNSURE, CLI_RAMP_SURE);
@@ -157,14 +192,6 @@ static void draw_legend(cairo_t *cairo, const cli_plot_layout *layout, const asj
     }
 }
 
-/* What the drawing on the surface needs. */
-typedef struct drawing {
-    cli_plot_layout layout;
-    const asj_image *image;
-    const asj_detection *detection;
-    const cli_plot_style *style;
-} drawing;
-
 static void draw(cairo_t *cairo, void *user)
 {
     const drawing *d = user;
@@ -172,13 +199,13 @@ static void draw(cairo_t *cairo, void *user)
     cairo_paint(cairo);
     if (d->style->background != CLI_PLOT_WHITE)
         cli_plot_photo(cairo, d->image, d->style->background, d->layout.scale, d->layout.width, d->layout.image_height);
-    draw_junctions(cairo, &d->layout, d->detection, d->style->color);
+    draw_junctions(cairo, d);
     if (d->layout.legend_height > 0)
-        draw_legend(cairo, &d->layout, d->detection, d->style->color);
+        draw_legend(cairo, d);
 }
 
-/* What a browser says of a junction or branch under its pointer. */
-static void annotate_junction(asj_output *output, const cli_plot_layout *layout, const asj_junction *junction, unsigned long number)
+/* What a browser says of a branch, a straight edge or a junction under its pointer. */
+static void annotate_branches(asj_output *output, const cli_plot_layout *layout, const asj_junction *junction, unsigned long number)
 {
     char text[256];
     const double x = place(layout, (double)junction->x), y = place(layout, (double)junction->y);
@@ -193,24 +220,46 @@ static void annotate_junction(asj_output *output, const cli_plot_layout *layout,
                           2 * layout->line);
         asj_output_text(output, "</g>\n");
     }
+}
+
+static void annotate_segment(asj_output *output, const cli_plot_layout *layout, const asj_segment *s, unsigned long number)
+{
+    char text[256];
+    const double length = hypot((double)s->x2 - (double)s->x1, (double)s->y2 - (double)s->y1);
+    snprintf(text, sizeof text, "<g id=\"line-%lu\"><title>line %lu: %.1f px, log10 NFA %.1f</title>\n", number, number, length,
+             (double)s->log10_nfa);
+    asj_output_text(output, text);
+    cli_plot_hot_line(output, place(layout, (double)s->x1), place(layout, (double)s->y1), place(layout, (double)s->x2),
+                      place(layout, (double)s->y2), 2 * layout->line);
+    asj_output_text(output, "</g>\n");
+}
+
+static void annotate_dot(asj_output *output, const cli_plot_layout *layout, const asj_junction *junction, unsigned long number)
+{
+    char text[256];
     snprintf(text, sizeof text, "<g id=\"junction-%lu\"><title>junction %lu: %.1f, %.1f, %d branches, log10 NFA %.1f</title>\n",
              number, number, (double)junction->x, (double)junction->y, (int)junction->branch_count, (double)junction->log10_nfa);
     asj_output_text(output, text);
-    cli_plot_hot_dot(output, x, y, 3 * layout->line);
+    cli_plot_hot_dot(output, place(layout, (double)junction->x), place(layout, (double)junction->y), 3 * layout->line);
     asj_output_text(output, "</g>\n");
 }
 
 static void annotate(asj_output *output, void *user)
 {
     const drawing *d = user;
-    for (uint32_t i = d->detection->junction_count; i-- > 0;)
-        annotate_junction(output, &d->layout, &d->detection->junctions[i], (unsigned long)i + 1);
+    for (uint32_t i = d->segments ? d->segments->count : 0; i-- > 0;)
+        annotate_segment(output, &d->layout, &d->segments->segments[i], (unsigned long)i + 1);
+    for (uint32_t i = d->detection->junction_count; i-- > 0;) {
+        if (!d->segments)
+            annotate_branches(output, &d->layout, &d->detection->junctions[i], (unsigned long)i + 1);
+        annotate_dot(output, &d->layout, &d->detection->junctions[i], (unsigned long)i + 1);
+    }
 }
 
 asj_status cli_plot_write(const char *path, int32_t format, const asj_image *image, const asj_detection *detection,
-                          const cli_plot_style *style, char *message, size_t message_size)
+                          const asj_segment_list *segments, const cli_plot_style *style, char *message, size_t message_size)
 {
-    drawing d = {.image = image, .detection = detection, .style = style};
+    drawing d = {.image = image, .detection = detection, .segments = segments, .style = style};
     lay_out(image, style->scale, &d.layout);
     return cli_plot_file(path, format, d.layout.width, d.layout.image_height + d.layout.legend_height,
                          &(cli_plot_content){draw, annotate, &d, cli_interrupted}, message, message_size);

@@ -6,6 +6,7 @@
 #include "plot_format.h"
 
 #include <asj/detect.h>
+#include <asj/segments.h>
 
 enum { CLI_PLOT_COLOR_NFA = 0, CLI_PLOT_COLOR_BRANCH = 1, CLI_PLOT_COLOR_EDGE = 2 };
 
@@ -15,8 +16,9 @@ typedef struct cli_plot_style {
     double scale; /* plot pixels for one image pixel; 0 = automatic */
 } cli_plot_style;
 
-/* Writes a plot; the file appears whole or not at all. On failure `message` receives a line that names the cause. */
+/* Writes a plot, of straight edges in place of branches where `segments` is not NULL; the file appears whole or not at all. On
+ * failure `message` receives a line that names the cause. */
 asj_status cli_plot_write(const char *path, int32_t format, const asj_image *image, const asj_detection *detection,
-                          const cli_plot_style *style, char *message, size_t message_size);
+                          const asj_segment_list *segments, const cli_plot_style *style, char *message, size_t message_size);
 
 #endif

@@ -12,12 +12,13 @@ static asj_status refuse(char *message, size_t message_size)
 }
 
 asj_status cli_plot_write(const char *path, int32_t format, const asj_image *image, const asj_detection *detection,
-                          const cli_plot_style *style, char *message, size_t message_size)
+                          const asj_segment_list *segments, const cli_plot_style *style, char *message, size_t message_size)
 {
     (void)path;
     (void)format;
     (void)image;
     (void)detection;
+    (void)segments;
     (void)style;
     return refuse(message, message_size);
 }

@@ -12,8 +12,8 @@ from pathlib import Path
 import cffi
 
 # In the order in which they include each other.
-HEADERS = ["status", "version", "context", "image", "junction", "options", "detect", "field", "device", "geometry", "vanishing", "match",
-           "features"]
+HEADERS = ["status", "version", "context", "image", "junction", "options", "detect", "field", "device", "geometry", "vanishing",
+           "segments", "match", "features"]
 
 CALLBACKS = """
 extern "Python" int32_t asj_python_progress(void *user, int32_t stage, double done);

@@ -25,6 +25,7 @@
 #include <asj/junction.h>
 #include <asj/match.h>
 #include <asj/options.h>
+#include <asj/segments.h>
 #include <asj/status.h>
 #include <asj/vanishing.h>
 #include <asj/version.h>

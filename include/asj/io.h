@@ -9,6 +9,7 @@
 #include <asj/image.h>
 #include <asj/junction.h>
 #include <asj/match.h>
+#include <asj/segments.h>
 #include <asj/vanishing.h>
 
 #ifdef __cplusplus
@@ -119,7 +120,8 @@ enum {
     ASJ_FILE_JSON = 2,      /* schema "asj-junctions-1": everything, with options, version, back end and times */
     ASJ_FILE_CSV = 3        /* a header, then one line a branch: junction,x,y,scale,log10_nfa,location_sd,octave,branch,
                              * angle,length,strength,branch_log10_nfa,angle_sd,width,length_sd,end,to_junction,to_branch,
-                             * edge_log10_nfa; the last three are empty where the branch is part of no edge */
+                             * edge_log10_nfa; the last three are empty where the branch is part of no edge. Of segments: x1,y1,x2,
+                             * y2,sd1,sd2,end1,end2,junction1,junction2,log10_nfa,junction,branch,branches */
 };
 
 /* What is written. Only `detection` is needed. */
@@ -128,13 +130,15 @@ typedef struct asj_detection_report {
     const asj_detect_options *options; /* JSON: the options used; NULL = left out */
     const char *image_name;            /* JSON: NULL = left out */
     const asj_vanishing_points *vanishing_points; /* JSON: NULL = left out */
-    uint64_t reserved[3];              /* zero */
+    const asj_segment_list *segments;  /* straight edges, each once: CSV has them in place of the branches, JSON beside them; NULL =
+                                        * left out */
+    uint64_t reserved[2];              /* zero */
 } asj_detection_report;
 
 /* Writes junctions as asj_output_begin() and asj_output_commit() do.
  * ASJ_ERROR_ARGUMENT  a NULL pointer, no such file format, or a detection that no reader would take: NaN or infinity, a
  *                     branch_count beyond ASJ_MAX_BRANCHES, a negative scale or length, an octave that is not -1 .. 15, an
- *                     L-junction or edge of a junction or branch that is not there. (Readers of JSON refuse a location far
+ *                     L-junction, edge or segment of a junction or branch that is not there. (Readers of JSON refuse a location far
  *                     outside of the image, too, and edges of branches that stand in no order of angle.)
  * ASJ_ERROR_FILE      cannot create, disk full, cannot rename
  * ASJ_ERROR_MEMORY */

@@ -32,9 +32,11 @@ static void put_head(asj_json_output *json, const asj_detection_report *report)
     asj_json_put(json, ",\n\"timing\": ",
         asj_json_timing(found->total_ms, found->stage_ms, ASJ_STAGE_GRADIENT, ASJ_STAGE_DECOMPOSE), JSON_REAL_PRECISION(15));
     asj_json_put(json, ",\n\"counts\": ",
-        json_pack("{s:I, s:I, s:I, s:I, s:I}", "candidates", (json_int_t)found->candidates, "isotropic",
+        json_pack("{s:I, s:I, s:I, s:I, s:o*, s:I}", "candidates", (json_int_t)found->candidates, "isotropic",
                   (json_int_t)found->isotropic, "junctions", (json_int_t)found->junction_count, "edges",
-                  (json_int_t)found->edge_count, "l_junctions", (json_int_t)found->l_junction_count), 0);
+                  (json_int_t)found->edge_count, "lines",
+                  report->segments ? json_integer((json_int_t)report->segments->count) : NULL,
+                  "l_junctions", (json_int_t)found->l_junction_count), 0);
 }
 
 static json_t *junction_value(const asj_junction *junction)
@@ -63,6 +65,20 @@ static json_t *edge_value(const asj_edge *edge)
     return json_pack("{s:I, s:i, s:I, s:i, s:f}", "junction_a", (json_int_t)edge->junction_a, "branch_a", (int)edge->branch_a,
                      "junction_b", (json_int_t)edge->junction_b, "branch_b", (int)edge->branch_b,
                      "log10_nfa", (double)edge->log10_nfa);
+}
+
+static json_t *end_value(uint32_t junction)
+{
+    return junction == ASJ_NO_JUNCTION ? json_null() : json_integer((json_int_t)junction);
+}
+
+static json_t *segment_value(const asj_segment *s)
+{
+    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:s*, s:s*, s:o, s:o, s:f, s:I, s:i, s:i}", "x1", (double)s->x1,
+                     "y1", (double)s->y1, "x2", (double)s->x2, "y2", (double)s->y2, "sd1", (double)s->sd1, "sd2", (double)s->sd2,
+                     "end1", asj_end_word(s->end1), "end2", asj_end_word(s->end2), "junction1", end_value(s->junction1),
+                     "junction2", end_value(s->junction2), "log10_nfa", (double)s->log10_nfa,
+                     "junction", (json_int_t)s->junction, "branch", (int)s->branch, "branches", (int)s->branch_count);
 }
 
 static json_t *triple(const double values[3])
@@ -108,6 +124,10 @@ asj_status asj_write_json(asj_output *output, const asj_detection_report *report
     asj_output_text(output, "],\n\"edges\": [");
     for (i = 0; i < found->edge_count && !json.out_of_memory; i++)
         asj_json_put(&json, i ? ",\n" : "\n", edge_value(&found->edges[i]), ASJ_JSON_FLOATS);
+    if (report->segments)
+        asj_output_text(output, "],\n\"lines\": [");
+    for (i = 0; report->segments && i < report->segments->count && !json.out_of_memory; i++)
+        asj_json_put(&json, i ? ",\n" : "\n", segment_value(&report->segments->segments[i]), ASJ_JSON_FLOATS);
     asj_output_text(output, "],\n\"l_junctions\": [");
     for (i = 0; i < found->l_junction_count && !json.out_of_memory; i++)
         asj_json_put(&json, i ? ",\n" : "\n", asj_json_l_junction(&found->l_junctions[i]), ASJ_JSON_FLOATS);

@@ -11,6 +11,7 @@ void asj_write_text(asj_output *output, const asj_detection *detection, int whol
 
 /* ASJ_ERROR_MEMORY */
 asj_status asj_write_csv(asj_output *output, const asj_detection *detection, const asj_message *message);
+void asj_write_segments_csv(asj_output *output, const asj_segment_list *list);
 asj_status asj_write_json(asj_output *output, const asj_detection_report *report, const asj_message *message);
 
 #endif

@@ -34,6 +34,31 @@ static int is_sound_pair(const asj_detection *detection, const asj_l_junction *p
            isfinite(pair->ay) && isfinite(pair->bx) && isfinite(pair->by);
 }
 
+static int is_sound_end(const asj_detection *detection, uint32_t junction)
+{
+    return junction == ASJ_NO_JUNCTION || junction < detection->junction_count;
+}
+
+static int is_sound_segment(const asj_detection *detection, const asj_segment *s)
+{
+    const int32_t branches = s->junction < detection->junction_count ? detection->junctions[s->junction].branch_count : 0;
+    return s->branch < branches && is_sound_end(detection, s->junction1) && is_sound_end(detection, s->junction2) &&
+           isfinite(s->x1) && isfinite(s->y1) && isfinite(s->x2) && isfinite(s->y2) && isfinite(s->sd1) && isfinite(s->sd2) &&
+           isfinite(s->log10_nfa);
+}
+
+static asj_status check_segments(const asj_detection *detection, const asj_segment_list *list, const asj_message *message)
+{
+    uint32_t i;
+    if (list->count && !list->segments)
+        return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the segments have a count but no array");
+    for (i = 0; i < list->count; i++)
+        if (!is_sound_segment(detection, &list->segments[i]))
+            return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: segment %lu has NaN, infinity or a wrong index",
+                                    (unsigned long)i);
+    return ASJ_OK;
+}
+
 static asj_status check(const asj_detection *detection, const asj_message *message)
 {
     uint32_t i;
@@ -68,12 +93,16 @@ asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_
     if (file_format < ASJ_FILE_ASJ || file_format > ASJ_FILE_CSV)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "%d is no file format", (int)file_format);
     status = check(report->detection, &message);
+    if (status == ASJ_OK && report->segments)
+        status = check_segments(report->detection, report->segments, &message);
     if (status == ASJ_OK)
         status = asj_output_begin(path, &output, text, text_size);
     if (status != ASJ_OK)
         return status;
     if (file_format == ASJ_FILE_JSON)
         status = asj_write_json(output, report, &message);
+    else if (file_format == ASJ_FILE_CSV && report->segments)
+        asj_write_segments_csv(output, report->segments);
     else if (file_format == ASJ_FILE_CSV)
         status = asj_write_csv(output, report->detection, &message);
     else

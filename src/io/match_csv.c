@@ -55,7 +55,7 @@ static void put_segment(asj_output *output, const asj_segment_match *s, const as
     put_quality(output, m);
 }
 
-void asj_write_match_csv(asj_output *output, const asj_match_report *report, const asj_segment_list *segments)
+void asj_write_match_csv(asj_output *output, const asj_match_report *report, const asj_match_lines *segments)
 {
     const asj_match_result *result = report->result;
     size_t i;

@@ -46,7 +46,7 @@ static json_t *numbers(const double *values, int count)
     return list;
 }
 
-static void put_head(asj_json_output *json, const asj_match_report *report, const asj_segment_list *segments)
+static void put_head(asj_json_output *json, const asj_match_report *report, const asj_match_lines *segments)
 {
     const asj_match_result *result = report->result;
     /* asj_match_images() detects, too */
@@ -135,7 +135,7 @@ static void put_corners(asj_json_output *json, const char *name, const asj_l_jun
         asj_json_put(json, i ? ",\n" : "\n", asj_json_l_junction(&list[i]), ASJ_JSON_FLOATS);
 }
 
-asj_status asj_write_match_json(asj_output *output, const asj_match_report *report, const asj_segment_list *segments,
+asj_status asj_write_match_json(asj_output *output, const asj_match_report *report, const asj_match_lines *segments,
                                 const asj_message *message)
 {
     const asj_match_result *result = report->result;

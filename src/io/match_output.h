@@ -8,15 +8,15 @@
 #include "message.h"
 
 /* Line segments of a report; none when it asks for none. */
-typedef struct asj_segment_list {
+typedef struct asj_match_lines {
     asj_segment_match *list;
     size_t count;
-} asj_segment_list;
+} asj_match_lines;
 
-void asj_write_match_csv(asj_output *output, const asj_match_report *report, const asj_segment_list *segments);
+void asj_write_match_csv(asj_output *output, const asj_match_report *report, const asj_match_lines *segments);
 
 /* ASJ_ERROR_MEMORY */
-asj_status asj_write_match_json(asj_output *output, const asj_match_report *report, const asj_segment_list *segments,
+asj_status asj_write_match_json(asj_output *output, const asj_match_report *report, const asj_match_lines *segments,
                                 const asj_message *message);
 
 #endif

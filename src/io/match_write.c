@@ -54,7 +54,7 @@ static asj_status check(const asj_match_result *result, const asj_message *messa
     return ASJ_OK;
 }
 
-static asj_status find_segments(const asj_match_report *report, asj_segment_list *segments, const asj_message *message)
+static asj_status find_segments(const asj_match_report *report, asj_match_lines *segments, const asj_message *message)
 {
     segments->list = NULL;
     segments->count = report->lines ? asj_match_segments(report->result, report->minimum_end, NULL, 0) : 0;
@@ -70,7 +70,7 @@ static asj_status find_segments(const asj_match_report *report, asj_segment_list
 }
 
 static asj_status write_file(const char *path, int32_t file_format, const asj_match_report *report,
-                             const asj_segment_list *segments, const asj_message *message)
+                             const asj_match_lines *segments, const asj_message *message)
 {
     asj_output *output;
     asj_status status = asj_output_begin(path, &output, message->text, message->size);
@@ -89,7 +89,7 @@ static asj_status write_file(const char *path, int32_t file_format, const asj_ma
 asj_status asj_matches_write(const char *path, int32_t file_format, const asj_match_report *report, char *text, size_t text_size)
 {
     asj_message message = asj_message_start(text, text_size, path);
-    asj_segment_list segments;
+    asj_match_lines segments;
     asj_status status;
 
     if (!path || !report || !report->result)

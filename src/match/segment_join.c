@@ -3,35 +3,31 @@
  *
  * An edge with corners on it (a window frame where bars meet it, a row of tiles) has a branch from each corner to the edge's end,
  * and so a segment match from each: two in five of 4311 in photographs of sixteen scenes. Two are of one edge when
- *     both ends of the shorter lie within OFF_LINE px of the longer's line, in both images (what the detector takes for on a line),
+ *     both ends of the shorter lie on the longer's line in both images (within ASJ_OFF_LINE px),
  *     both images have its ends in the same order along that line, and
  *     they share more than an end's uncertainty (4 px or 5 % of the longer: ASJ_SAME_END), or the shorter lies in the longer.
  * So two that only touch, at a corner where one edge ends and another begins, stay two. An end that goes on beyond the longer's in
  * both images moves its end there; where only one image says so, the two stay as they are: one of them is wrong. Where the shorter
  * ends at a matched corner beside an end of the longer that is less sure, that corner is the end. The paper has no such step: its
  * segments are the branches of the matches. */
-#include "segment_matches.h"
+#include "segments/course.h"
+
+#include <asj/match.h>
 
 #include <math.h>
 #include <stdlib.h>
 
-#define OFF_LINE 2.0        /* px */
-
-typedef struct point {
-    double x, y;
-} point;
-
-static point end_of(const asj_segment_match *s, int image, int end)
+static asj_end_point end_of(const asj_segment_match *s, int image, int end)
 {
     if (image == 0)
-        return end == 0 ? (point){(double)s->x1, (double)s->y1} : (point){(double)s->ex1, (double)s->ey1};
-    return end == 0 ? (point){(double)s->x2, (double)s->y2} : (point){(double)s->ex2, (double)s->ey2};
+        return end == 0 ? (asj_end_point){(double)s->x1, (double)s->y1} : (asj_end_point){(double)s->ex1, (double)s->ey1};
+    return end == 0 ? (asj_end_point){(double)s->x2, (double)s->y2} : (asj_end_point){(double)s->ex2, (double)s->ey2};
 }
 
 /* Moves an end of `s` to an end of `t`, in both images. */
 static void take_end(asj_segment_match *s, int end, const asj_segment_match *t, int from)
 {
-    const point one = end_of(t, 0, from), other = end_of(t, 1, from);
+    const asj_end_point one = end_of(t, 0, from), other = end_of(t, 1, from);
     const int32_t kind = from == 0 ? t->start : t->end;
     if (end == 0) {
         s->x1 = (float)one.x, s->y1 = (float)one.y, s->x2 = (float)other.x, s->y2 = (float)other.y;
@@ -44,7 +40,7 @@ static void take_end(asj_segment_match *s, int end, const asj_segment_match *t, 
 
 static double length_in(const asj_segment_match *s, int image)
 {
-    const point a = end_of(s, image, 0), b = end_of(s, image, 1);
+    const asj_end_point a = end_of(s, image, 0), b = end_of(s, image, 1);
     return sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
 }
 
@@ -55,53 +51,12 @@ static double length_of(const asj_segment_match *s)
     return shorter > 0 ? shorter : 0; /* NaN: what the caller has put there */
 }
 
-/* Where a segment lies along the line of a longer one in one image: px from the longer's first end. */
-typedef struct course {
-    double length;   /* of the longer */
-    double at[2];    /* the shorter's ends */
-    double same_end; /* px between ends that are one */
-} course;
-
-/* 0: it does not lie along that line. */
-static int course_along(const asj_segment_match *longer, const asj_segment_match *shorter, int image, course *c)
+/* 0: the shorter does not lie along the longer's line in this image. */
+static int course_in(const asj_segment_match *longer, const asj_segment_match *shorter, int image, asj_course *c)
 {
-    const point a = end_of(longer, image, 0), b = end_of(longer, image, 1);
-    const double dx = b.x - a.x, dy = b.y - a.y, length2 = dx * dx + dy * dy;
-    for (int end = 0; end < 2; end++) {
-        const point p = end_of(shorter, image, end);
-        const double across = dx * (p.y - a.y) - dy * (p.x - a.x); /* px times the length */
-        if (!(across * across <= OFF_LINE * OFF_LINE * length2))
-            return 0;
-        c->at[end] = dx * (p.x - a.x) + dy * (p.y - a.y);
-    }
-    c->length = sqrt(length2);
-    c->at[0] /= c->length;
-    c->at[1] /= c->length;
-    c->same_end = fmax(ASJ_SAME_END, ASJ_SAME_END_SHARE * c->length);
-    return length2 > 0;
-}
-
-/* px that both cover. */
-static double shared(const course *c)
-{
-    return fmin(fmax(c->at[0], c->at[1]), c->length) - fmax(fmin(c->at[0], c->at[1]), 0);
-}
-
-/* How many images have the shorter go on beyond this end of the longer; `far`: with that one of its ends. */
-static int goes_beyond(const course c[2], int end, int far)
-{
-    int images = 0;
-    for (int image = 0; image < 2; image++)
-        images += end == 0 ? c[image].at[far] < -c[image].same_end : c[image].at[far] > c[image].length + c[image].same_end;
-    return images;
-}
-
-static int is_beside(const course c[2], int end, int far)
-{
-    for (int image = 0; image < 2; image++)
-        if (fabs(c[image].at[far] - (end == 0 ? 0 : c[image].length)) > c[image].same_end)
-            return 0;
-    return 1;
+    const asj_end_point ends[2] = {end_of(longer, image, 0), end_of(longer, image, 1)};
+    const asj_end_point of_shorter[2] = {end_of(shorter, image, 0), end_of(shorter, image, 1)};
+    return asj_course_along(ends, of_shorter, c);
 }
 
 enum { APART, ONE, MOVED };
@@ -109,25 +64,28 @@ enum { APART, ONE, MOVED };
 /* Whether both are of one edge; then the longer has become both, and its ends may have moved. */
 static int join(asj_segment_match *longer, const asj_segment_match *shorter)
 {
-    course c[2];
-    if (!course_along(longer, shorter, 0, &c[0]) || !course_along(longer, shorter, 1, &c[1]))
+    asj_course c[2];
+    if (!course_in(longer, shorter, 0, &c[0]) || !course_in(longer, shorter, 1, &c[1]))
         return APART;
-    const int back = c[0].at[1] < c[0].at[0];
-    if (back != (c[1].at[1] < c[1].at[0]))
+    const int back = asj_course_is_back(&c[0]);
+    if (back != asj_course_is_back(&c[1]))
         return APART;
     const int far[2] = {back ? 1 : 0, back ? 0 : 1}; /* which of the shorter's ends is towards the longer's first and second */
     int beyond[2];
-    for (int end = 0; end < 2; end++)
-        if ((beyond[end] = goes_beyond(c, end, far[end])) == 1)
+    for (int end = 0; end < 2; end++) {
+        beyond[end] = asj_course_is_beyond(&c[0], end, far[end]);
+        if (beyond[end] != asj_course_is_beyond(&c[1], end, far[end]))
             return APART;
+    }
     const int inside = !beyond[0] && !beyond[1];
     int result = ONE;
     for (int image = 0; image < 2; image++)
-        if (!(shared(&c[image]) > (inside ? 0 : c[image].same_end)))
+        if (!(asj_course_shared(&c[image]) > (inside ? 0 : c[image].same_end)))
             return APART;
     for (int end = 0; end < 2; end++) {
         const int32_t kind = end == 0 ? longer->start : longer->end, other = far[end] == 0 ? shorter->start : shorter->end;
-        if (beyond[end] || (other == ASJ_END_CORNER && kind < ASJ_END_CORNER && is_beside(c, end, far[end]))) {
+        const int beside = asj_course_is_beside(&c[0], end, far[end]) && asj_course_is_beside(&c[1], end, far[end]);
+        if (beyond[end] || (other == ASJ_END_CORNER && kind < ASJ_END_CORNER && beside)) {
             take_end(longer, end, shorter, far[end]);
             result = MOVED;
         }

@@ -12,6 +12,7 @@
 
 #include "match_result.h"
 #include "segments.h"
+#include "segments/course.h"
 
 #include <math.h>
 

@@ -5,10 +5,6 @@
 
 #include "around.h"
 
-/* Ends of two segments are one within .. */
-#define ASJ_SAME_END 4.0        /* px, or .. */
-#define ASJ_SAME_END_SHARE 0.05 /* .. this part of the length */
-
 /* asj_match_segments(). `around` holds the result's matches; its places may be of more than these; without them every segment is
  * compared with every match. */
 size_t asj_segment_matches(const asj_match_result *result, const asj_around *around, int32_t minimum_end,

@@ -171,6 +171,34 @@ static void directions_are_written_on_request(void **state)
     expect_in(result, result->err, "is not FX,FY,CX,CY");
 }
 
+/* The square of the scene: eight branches, four edges. */
+static void lines_come_each_once(void **state)
+{
+    static const char head[] = "x1,y1,x2,y2,sd1,sd2,end1,end2,junction1,junction2,log10_nfa,junction,branch,branches\n";
+    (void)state;
+    const outcome *result = run_cli("detect", "--lines", "scene.png", NULL);
+    expect_code(result, 0);
+    assert_memory_equal(result->out, head, sizeof head - 1);
+    size_t lines = 0;
+    for (const char *at = result->out; (at = strchr(at, '\n')); at++)
+        lines++;
+    assert_int_equal(lines, 1 + 4);
+    expect_in(result, result->err, "4 junctions, 4 lines");
+    result = run_cli("detect", "--lines", "-f", "json", "scene.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->out, "\"lines\": 4");
+    expect_in(result, result->out, "\"junctions\": [\n{");
+    static const char *const others[][2] = {{"-f", "asj"}, {"-f", "asjf"}, {"-o", "x.asj"}, {"-o", "x.asjf"}};
+    for (size_t k = 0; k < sizeof others / sizeof others[0]; k++) {
+        result = run_cli("detect", "--lines", others[k][0], others[k][1], "scene.png", NULL);
+        expect_code(result, 2);
+        expect_in(result, result->err, "--lines go into CSV or JSON");
+    }
+    result = run_cli("detect", "--lines", "--out-dir", "lines", "scene.png", NULL);
+    expect_code(result, 0);
+    assert_true(exists("lines/scene.csv"));
+}
+
 static void an_option_reaches_the_detector(void **state)
 {
     (void)state;
@@ -449,7 +477,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_name_or_the_option_chooses_the_format),
         cmocka_unit_test(whole_junctions_are_written_on_request),
         cmocka_unit_test(the_preset_comes_first_wherever_it_stands),
-        cmocka_unit_test(directions_are_written_on_request), cmocka_unit_test(an_option_reaches_the_detector),
+        cmocka_unit_test(directions_are_written_on_request), cmocka_unit_test(lines_come_each_once),
+        cmocka_unit_test(an_option_reaches_the_detector),
         cmocka_unit_test(times_are_printed_on_request),
         cmocka_unit_test(no_progress_without_a_terminal),
         cmocka_unit_test(threads_do_not_change_the_result),

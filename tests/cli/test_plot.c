@@ -65,6 +65,47 @@ static void junctions_are_drawn_where_they_are(void **state)
     asj_junction_file_free(&found);
 }
 
+static void expect_text(const char *path, const char *beginning, const char *within, const char *without)
+{
+    size_t size = 0;
+    char *bytes = read_bytes(path, &size);
+    assert_non_null(bytes);
+    if (strncmp(bytes, beginning, strlen(beginning)) != 0)
+        fail_msg("%s does not begin with '%s'", path, beginning);
+    for (size_t i = 0; i < size; i++)
+        if (!bytes[i])
+            bytes[i] = ' ';
+    if (within && !strstr(bytes, within))
+        fail_msg("%s: no '%s'", path, within);
+    if (without && strstr(bytes, without))
+        fail_msg("%s: '%s'", path, without);
+    free(bytes);
+}
+
+/* From corner to corner, once: in the plot's colours, and each by its number in SVG. */
+static void lines_take_the_place_of_branches(void **state)
+{
+    static const double middles[4][2] = {{(SCENE_LEFT + SCENE_RIGHT) / 2.0, SCENE_TOP},
+                                         {(SCENE_LEFT + SCENE_RIGHT) / 2.0, SCENE_BOTTOM},
+                                         {SCENE_LEFT, (SCENE_TOP + SCENE_BOTTOM) / 2.0},
+                                         {SCENE_RIGHT, (SCENE_TOP + SCENE_BOTTOM) / 2.0}};
+    (void)state;
+    expect_code(run_cli("detect", "-q", "--lines", "--plot", "lines.png", "--plot-background", "white", "--plot-scale", "6",
+                        "scene.png", NULL), 0);
+    asj_image_file *plot = read_plot("lines.png");
+    for (int k = 0; k < 4; k++) {
+        assert_true(is_colored(plot_pixel(plot, (int)(SCALE * middles[k][0]), (int)(SCALE * middles[k][1]))));
+        assert_true(is_gray(plot_pixel(plot, (int)(SCALE * (middles[k][0] + 4)), (int)(SCALE * (middles[k][1] + 4))), 255));
+    }
+    asj_image_file_free(&plot);
+    expect_code(run_cli("detect", "-q", "--lines", "--plot", "lines.svg", "scene.png", NULL), 0);
+    expect_text("lines.svg", "<?xml", "<g id=\"line-4\"><title>line 4: 12", "branch-1");
+    expect_text("lines.svg", "<?xml", "<g id=\"junction-4\"", "line-5");
+    const outcome *result = run_cli("detect", "--lines", "--plot", "x.png", "--plot-color", "edge", "scene.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--plot-color: with --lines it takes nfa alone");
+}
+
 static void the_photograph_is_pale_and_gray(void **state)
 {
     (void)state;
@@ -122,23 +163,6 @@ static void the_colors_follow_the_option(void **state)
     }
     for (int i = 0; i < 3; i++)
         free(plots[i]);
-}
-
-static void expect_text(const char *path, const char *beginning, const char *within, const char *without)
-{
-    size_t size = 0;
-    char *bytes = read_bytes(path, &size);
-    assert_non_null(bytes);
-    if (strncmp(bytes, beginning, strlen(beginning)) != 0)
-        fail_msg("%s does not begin with '%s'", path, beginning);
-    for (size_t i = 0; i < size; i++)
-        if (!bytes[i])
-            bytes[i] = ' ';
-    if (within && !strstr(bytes, within))
-        fail_msg("%s: no '%s'", path, within);
-    if (without && strstr(bytes, without))
-        fail_msg("%s: '%s'", path, without);
-    free(bytes);
 }
 
 static void svg_and_pdf_hold_the_photograph(void **state)
@@ -237,6 +261,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(junctions_are_drawn_where_they_are),
+        cmocka_unit_test(lines_take_the_place_of_branches),
         cmocka_unit_test(the_photograph_is_pale_and_gray),
         cmocka_unit_test(the_photograph_keeps_its_colors_on_request),
         cmocka_unit_test(small_images_are_enlarged),

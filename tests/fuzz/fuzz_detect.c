@@ -34,6 +34,24 @@ static void check_detection(const asj_detection *found)
         fuzz_check(found->l_junctions[i].junction < found->junction_count, "an L-junction of nothing");
 }
 
+/* Every branch with a length is a part of one straight edge. */
+static void check_segments(const asj_detection *found)
+{
+    asj_segment_list *list = NULL;
+    uint32_t parts = 0, i;
+    fuzz_check(asj_find_segments(fuzz_context(), found->junctions, found->junction_count, found->edges, found->edge_count, &list) ==
+               ASJ_OK, "no segments of a detection");
+    for (i = 0; i < list->count; i++) {
+        parts += list->segments[i].branch_count;
+        fuzz_check(list->of_branches[list->segments[i].junction * ASJ_MAX_BRANCHES + list->segments[i].branch] == i,
+                   "a segment that its branch is no part of");
+    }
+    for (i = 0; i < list->junction_count * ASJ_MAX_BRANCHES; i++)
+        parts -= list->of_branches[i] < list->count;
+    fuzz_check(parts == 0, "branches that count twice, or not");
+    asj_segment_list_free(&list);
+}
+
 /* None, or a rectangle, which may leave the image; sometimes the image itself is the mask. */
 static asj_region *make_region(fuzz_bytes *bytes, const asj_image *image, asj_region *region)
 {
@@ -65,6 +83,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_check((status == ASJ_OK) == (first != NULL), "a status and a result that do not fit");
     if (first) {
         check_detection(first);
+        check_segments(first);
         fuzz_check(asj_detect_region(fuzz_context(), &image, &region, &options, &second) == ASJ_OK, "no result the second time");
         fuzz_check(second->junction_count == first->junction_count &&
                    (!first->junction_count ||

@@ -19,6 +19,17 @@ static void check_junction(const asj_junction *junction)
     }
 }
 
+/* Whatever was read has straight edges, or is refused. */
+static void find_segments(const asj_junction_file *file)
+{
+    asj_segment_list *list = NULL;
+    const asj_status status = asj_find_segments(fuzz_context(), file->junctions, file->junction_count, file->edges,
+                                                file->edge_count, &list);
+    fuzz_check(status == ASJ_OK || status == ASJ_ERROR_ARGUMENT, "segments fail");
+    fuzz_check((status == ASJ_OK) == (list != NULL), "a status and a list that do not fit");
+    asj_segment_list_free(&list);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     asj_junction_file *file = NULL;
@@ -30,6 +41,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_check((status == ASJ_OK) == !*message, "a status and a message that do not fit");
     for (i = 0; file && i < file->junction_count; i++)
         check_junction(&file->junctions[i]);
+    if (file)
+        find_segments(file);
     asj_junction_file_free(&file);
     return 0;
 }

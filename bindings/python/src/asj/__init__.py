@@ -25,6 +25,7 @@ from .errors import (
 from .features import Features, detect, load_features
 from .geometry import Geometry
 from .images import read as read_image
+from .lines import Lines, lines
 from .matches import Matches, match, match_images
 from .options import detect_options, match_options
 from .plot import plot, plot_matches
@@ -34,6 +35,6 @@ __version__ = errors.text(_lib.asj_version_string())
 
 __all__ = [
     "ArgumentError", "Cancelled", "Context", "DeviceError", "Error", "Features", "FormatError", "Geometry", "ImageError",
-    "LimitError", "Matches", "OptionError", "OutOfMemoryError", "VanishingPoints", "detect", "detect_options", "load_features",
-    "match", "match_images", "match_options", "plot", "plot_matches", "read_image", "set_current", "vanishing_points",
+    "LimitError", "Lines", "Matches", "OptionError", "OutOfMemoryError", "VanishingPoints", "detect", "detect_options", "lines",
+    "load_features", "match", "match_images", "match_options", "plot", "plot_matches", "read_image", "set_current", "vanishing_points",
 ]  # fmt: skip
