@@ -71,8 +71,8 @@ static const cli_option plot_options[] = {
     {PLOT, 'p', "plot", "FILE",
      "draw the junctions: FILE.png, FILE.svg or FILE.pdf; with --out-dir only png, svg or pdf: photo.jpg gives DIR/photo.plot.png"},
     {PLOT_COLOR, 0, "plot-color", "nfa|branch|edge",
-     "branches coloured by how sure they are (the default) or by their number, or edges between two junctions by how sure they "
-     "are"},
+     "branches, or lines, coloured by how sure they are (the default), or branches by their number, or edges between two junctions "
+     "by how sure they are"},
     {PLOT_BACKGROUND, 0, "plot-background", "photo|color|white",
      "over the pale photograph in grey (the default) or in its colours, or on white"},
     {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of the image, 0.01 .. 16; default: small images are enlarged"},

@@ -262,12 +262,12 @@ ASJ_API size_t asj_match_segments(const asj_match_result *result, int32_t minimu
                                   asj_segment_match *segments, size_t capacity);
 
 /* Joins, in place, those that are parts of one edge: an edge with corners on it has a segment from each of them to its end. Two are
- * of one edge when they lie within 2 px of one line in both images, in the same order, overlap by more than 4 px and 5 % of the
- * longer one, or the shorter lies in the longer, and both images agree on which goes on beyond the other. What comes of them
- * reaches from the first end to the last in both images; match, branch1, branch2 are those of one of its parts, mostly the longest,
- * and either end may be a matched corner (`start`, `end`) or not. Returns how many there are then, in the order of their matches;
- * joined again they stay as they are. The order in which they come changes nothing. Time: `count` times what it returns (5000 that
- * share nothing: .1 s, 20 000: 2 s), again each time that ends have moved. */
+ * of one edge when they lie within 2 px of one line in both images, in the same order, share more than 4 px and 5 % of the shorter
+ * one (12 px are enough), or the shorter lies in the longer, and both images agree on which goes on beyond the other. What comes of
+ * them reaches from the first end to the last in both images; match, branch1, branch2 are those of one of its parts, mostly the
+ * longest, and either end may be a matched corner (`start`, `end`) or not. Returns how many there are then, in the order of their
+ * matches; joined again they stay as they are. The order in which they come changes nothing. Time: `count` times what it returns
+ * (5000 that share nothing: .1 s, 20 000: 2 s), again each time that ends have moved. */
 ASJ_API size_t asj_join_segment_matches(asj_segment_match *segments, size_t count);
 
 #ifdef __cplusplus

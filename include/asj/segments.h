@@ -20,7 +20,7 @@ typedef struct asj_segment {
     uint32_t junction1, junction2; /* the junction that the end is, from which a branch goes along the segment; ASJ_NO_JUNCTION =
                                     * none, and with ASJ_BRANCH_END_JUNCTION one that has no branch that way */
     float log10_nfa;               /* of the surest of its branches */
-    uint32_t junction;             /* of its longest branch, which gives its direction: from end 1 to end 2 */
+    uint32_t junction;             /* of one of its branches, mostly the longest, which goes from end 1 to end 2 */
     uint16_t branch;
     uint16_t branch_count;         /* that are parts of it; 65535 = so many or more */
     uint32_t reserved;
@@ -36,10 +36,12 @@ typedef struct asj_segment_list {
 } asj_segment_list;
 
 /* The straight edges of one image, each once, from its junctions: an edge has a branch from each of its ends and from every corner
- * on it. Two are of one edge when they lie within 2 px of one line and overlap by more than 4 px and 5 % of the longer one, or the
- * shorter lies in the longer: what only touches, where one edge ends at a corner and another begins, stays two. An edge reaches
- * from its first end to the last; where a corner is beside a less sure end, or turns and that end is beyond it by 24 px at most,
- * to the corner. For matches of two images: asj_join_segment_matches().
+ * on it. Two are of one edge when they lie within 2 px of one line and share more than 4 px and 5 % of the shorter one (12 px are
+ * enough), or the shorter lies in the longer: what only touches, where one edge ends at a corner and another begins, stays two. An
+ * edge reaches from its first end to the last; ends are known to 4 px or 5 % of the length, 12 px at most, and where a corner is no
+ * farther from a less sure end, that is the end, unless the corner goes on and the end lies beyond it by more than 4 px. A corner
+ * that turns is the end also of what goes on beyond it by up to 24 px. Edges count as straight: what bends by more than 2 px comes
+ * in several. For matches of two images: asj_join_segment_matches().
  *
  * junctions   may be NULL when count is 0; only read
  * edges       of these junctions, as the detection has them: branches that end at each other's junctions are one in any case. NULL
@@ -47,12 +49,13 @@ typedef struct asj_segment_list {
  * list        on success *list belongs to the caller until asj_segment_list_free(); the context may end before
  *
  * Made for junctions of preset default: those of preset match have many weak branches and are of all octaves side by side, which
- * the segments then show, too. The same junctions give the same list. Time: 50 ms for 19 000 branches of a photograph; 100 000 that
- * lie anywhere in 16 megapixels take .6 s where they are 30 px long, 10 s where they are 300. Memory while it works: 400 to 850
- * bytes a junction. Thread safety: one call at a time per context.
+ * the segments then show, too. The same junctions give the same list. Progress comes as ASJ_STAGE_DECOMPOSE. Time: 50 ms for 19 000
+ * branches of a photograph; for 100 000 that lie anywhere in 16 megapixels .5 s where they are 30 px long, 10 s where they are 300.
+ * Memory while it works: 400 bytes a junction and 8 for every 32 px of a branch. Thread safety: one call at a time per context.
  *
- * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction whose location, angles or lengths are not finite, or with more than
- *                      ASJ_MAX_BRANCHES branches; an edge of a branch that is not there
+ * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction whose location is not finite, or with more than ASJ_MAX_BRANCHES branches; a
+ *                      branch with a negative length, or with an angle, length, log10 NFA, uncertainty or end that is not finite;
+ *                      an edge of a branch that is not there
  * ASJ_ERROR_LIMIT      more than 2^28 junctions or 2^32 - 2 edges
  * ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED */
 ASJ_API asj_status asj_find_segments(asj_context *context, const asj_junction *junctions, size_t count, const asj_edge *edges,

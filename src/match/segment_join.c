@@ -5,7 +5,7 @@
  * and so a segment match from each: two in five of 4311 in photographs of sixteen scenes. Two are of one edge when
  *     both ends of the shorter lie on the longer's line in both images (within ASJ_OFF_LINE px),
  *     both images have its ends in the same order along that line, and
- *     they share more than an end's uncertainty (4 px or 5 % of the longer: ASJ_SAME_END), or the shorter lies in the longer.
+ *     they share more than an end's uncertainty (4 px, or 5 % of the shorter, 12 px at most), or the shorter lies in the longer.
  * So two that only touch, at a corner where one edge ends and another begins, stay two. An end that goes on beyond the longer's in
  * both images moves its end there; where only one image says so, the two stay as they are: one of them is wrong. Where the shorter
  * ends at a matched corner beside an end of the longer that is less sure, that corner is the end. The paper has no such step: its
@@ -80,7 +80,7 @@ static int join(asj_segment_match *longer, const asj_segment_match *shorter)
     const int inside = !beyond[0] && !beyond[1];
     int result = ONE;
     for (int image = 0; image < 2; image++)
-        if (!(asj_course_shared(&c[image]) > (inside ? 0 : c[image].same_end)))
+        if (!(asj_course_shared(&c[image]) > (inside ? 0 : c[image].overlap)))
             return APART;
     for (int end = 0; end < 2; end++) {
         const int32_t kind = end == 0 ? longer->start : longer->end, other = far[end] == 0 ? shorter->start : shorter->end;

@@ -6,6 +6,13 @@
 
 #include <math.h>
 
+#define ALONG 0.9 /* cosine of 26 degrees, by which even short parts are not turned */
+
+static double same_end(double length)
+{
+    return fmax(ASJ_SAME_END, fmin(ASJ_SAME_END_MOST, ASJ_SAME_END_SHARE * length));
+}
+
 int32_t asj_course_along(const asj_end_point longer[2], const asj_end_point shorter[2], asj_course *c)
 {
     const double dx = longer[1].x - longer[0].x, dy = longer[1].y - longer[0].y, length2 = dx * dx + dy * dy;
@@ -19,8 +26,10 @@ int32_t asj_course_along(const asj_end_point longer[2], const asj_end_point shor
     c->length = sqrt(length2);
     c->at[0] /= c->length;
     c->at[1] /= c->length;
-    c->same_end = fmax(ASJ_SAME_END, ASJ_SAME_END_SHARE * c->length);
-    return length2 > 0;
+    const double sx = shorter[1].x - shorter[0].x, sy = shorter[1].y - shorter[0].y, of_shorter = sqrt(sx * sx + sy * sy);
+    c->same_end = same_end(c->length);
+    c->overlap = same_end(of_shorter);
+    return fabs(c->at[1] - c->at[0]) >= ALONG * of_shorter && length2 > 0;
 }
 
 int32_t asj_course_is_back(const asj_course *c)

@@ -10,7 +10,8 @@
 
 /* Ends of two segments are one within .. */
 #define ASJ_SAME_END 4.0        /* px, or .. */
-#define ASJ_SAME_END_SHARE 0.05 /* .. this part of the length */
+#define ASJ_SAME_END_SHARE 0.05 /* .. this part of the length, but no more than .. */
+#define ASJ_SAME_END_MOST 12.0  /* px */
 
 typedef struct asj_end_point {
     double x, y; /* px */
@@ -20,9 +21,11 @@ typedef struct asj_course {
     double length;   /* of the longer, px */
     double at[2];    /* the shorter's ends, px along it from the longer's first end */
     double same_end; /* px between ends that are one */
+    double overlap;  /* px that parts of one edge share at least, the same of the shorter */
 } asj_course;
 
-/* Both by their ends. 0: an end of the shorter lies more than ASJ_OFF_LINE px off the longer's line, or there is no such line. */
+/* Both by their ends. 0: an end of the shorter lies more than ASJ_OFF_LINE px off the longer's line, it lies across, or there is no
+ * such line. */
 int32_t asj_course_along(const asj_end_point longer[2], const asj_end_point shorter[2], asj_course *c);
 
 /* Whether the shorter goes the other way. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* A segment is in the cells that its strip, `margin` px to all sides, reaches: of each row of cells those columns between which the
  * part of the segment lies that is within `margin` of the row. So two segments that come within `margin` px of each other share a
- * cell when one was added with that margin and the other is asked for without (but for SLACK, which rounding cannot exceed). */
+ * cell when one was added with that margin and the other is asked for without. (SLACK: rounding.) */
 #include "segment_cells.h"
 
 #include <math.h>

@@ -38,7 +38,7 @@ def test_branches_are_parts_of_lines(panels: asj.Features) -> None:
 def test_lines_outlive_what_they_come_from() -> None:
     image = np.full((90, 120), 60, np.uint8)
     image[21:71, 31:101] = 200
-    segments = asj.lines(asj.detect(image), context=asj.Context()).segments
+    segments = asj.lines(asj.detect(image, preset="default"), context=asj.Context()).segments
     assert np.allclose(np.sort(segments.reshape(-1, 2), axis=0)[[0, -1]], [[30.5, 20.5], [100.5, 70.5]], atol=0.1)
 
 

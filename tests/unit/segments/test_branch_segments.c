@@ -144,6 +144,49 @@ static void a_corner_that_turns_is_the_end(void **state)
         }
 }
 
+/* The 5 % of the length by which ends may be out are 12 px at most; beyond 4 a corner on a long edge that goes on is no end. */
+static void a_long_edge_keeps_its_ends(void **state)
+{
+    static const struct { float corner; double other; float end; } cases[] = {
+        {955, 0, 1000},             /* goes on */
+        {992, 0, 1000},
+        {997, 0, 997},
+        {955, UNIT_PI / 2, 1000},   /* turns, too far away */
+        {992, UNIT_PI / 2, 992},
+        {980, UNIT_PI / 2, 980},
+        {1010, UNIT_PI / 2, 1010},
+        {1010, 0, 1010},
+    };
+    unit_fixture *f = *state;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_junction *corner = place(1, cases[k].corner, 10);
+        add_branch(place(0, 0, 10), 0, 1000, ASJ_BRANCH_END_FADED);
+        add_branch(corner, cases[k].other, 3, ASJ_BRANCH_END_FADED);
+        add_branch(corner, UNIT_PI, 900, ASJ_BRANCH_END_FADED);
+        asj_segment_list *list = find(f->context, 2);
+        assert_true(list->segments[0].x1 == 0 && list->segments[0].x2 == cases[k].end);
+        asj_segment_list_free(&list);
+    }
+    add_branch(place(0, 0, 10), 0, 1000, ASJ_BRANCH_END_FADED);
+    add_branch(place(1, 500, 10), 0, 545, ASJ_BRANCH_END_FADED);
+    asj_segment_list *list = find(f->context, 2);
+    assert_true(list->count == 1 && list->segments[0].x2 == 1045);
+    asj_segment_list_free(&list);
+}
+
+/* Each overlaps the next by a fifth of its length. */
+static void a_chain_is_one_edge(void **state)
+{
+    unit_fixture *f = *state;
+    for (uint32_t k = 0; k < 60; k++)
+        add_branch(place(k, 80 * (float)k, 10), 0, 100, ASJ_BRANCH_END_FADED);
+    asj_segment_list *list = find(f->context, 60);
+    assert_int_equal(list->count, 1);
+    assert_int_equal(list->segments[0].branch_count, 60);
+    assert_true(list->segments[0].x1 == 0 && list->segments[0].x2 == 4820);
+    asj_segment_list_free(&list);
+}
+
 /* Side by side, one after the other, crossing, touching: not one edge. */
 static void what_only_is_near_stays(void **state)
 {
@@ -154,6 +197,8 @@ static void what_only_is_near_stays(void **state)
         {50, -20, UNIT_PI / 2, 60}, /* across */
         {40, 12, 0.1, 40},   /* turned away */
         {0, 10, UNIT_PI, 60},/* the other way from the same corner */
+        {50, 11.5f, 3 * UNIT_PI / 2, 3.2f}, /* across, both its ends on the line */
+        {50, 10, 0.6, 3},    /* turned away, within 2 px */
     };
     unit_fixture *f = *state;
     for (size_t k = 0; k < UNIT_COUNT(second); k++) {
@@ -181,8 +226,23 @@ static void the_graph_says_which_are_one(void **state)
         assert_int_equal(of_branch(list, 1, 0) == of_branch(list, 0, 0), with);
         asj_segment_list_free(&list);
     }
-    const asj_edge none = {.junction_a = 0, .junction_b = 2};
     asj_segment_list *list = NULL;
+    const asj_edge itself = {.junction_a = 0, .branch_a = 0, .junction_b = 0, .branch_b = 1};
+    add_branch(place(0, 100, 10), 0, 3, ASJ_BRANCH_END_JUNCTION);
+    add_branch(&junctions[0], 2, 3, ASJ_BRANCH_END_JUNCTION);
+    add_branch(place(1, 100, 10), UNIT_PI, 3, ASJ_BRANCH_END_JUNCTION); /* at the same place */
+    for (int k = 0; k < 2; k++) {
+        assert_int_equal(asj_find_segments(f->context, junctions, 2, k ? &edge : &itself, 1, &list), ASJ_OK);
+        assert_int_equal(list->count, 3);
+        asj_segment_list_free(&list);
+    }
+    add_branch(place(0, 0, 50), UNIT_PI / 2, 100, ASJ_BRANCH_END_JUNCTION);
+    add_branch(place(1, 100, 50), UNIT_PI / 2, 100, ASJ_BRANCH_END_JUNCTION); /* neither goes to the other */
+    assert_int_equal(asj_find_segments(f->context, junctions, 2, &edge, 1, &list), ASJ_OK);
+    assert_int_equal(list->count, 2);
+    assert_true(list->segments[0].y2 == 150);
+    asj_segment_list_free(&list);
+    const asj_edge none = {.junction_a = 0, .junction_b = 2};
     assert_int_equal(asj_find_segments(f->context, junctions, 2, &none, 1, &list), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_find_segments(f->context, junctions, 2, NULL, 1, &list), ASJ_ERROR_ARGUMENT);
     assert_null(list);
@@ -304,11 +364,17 @@ static void what_cannot_be_is_refused(void **state)
     assert_int_equal(asj_find_segments(NULL, junctions, 1, NULL, 0, &list), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_find_segments(f->context, junctions, 1, NULL, 0, NULL), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_find_segments(f->context, NULL, 1, NULL, 0, &list), ASJ_ERROR_ARGUMENT);
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 9; k++) {
         asj_junction *j = place(0, k == 0 ? NAN : k == 1 ? 3e38f : 5, k == 2 ? INFINITY : 5);
         add_branch(j, k == 3 ? (double)NAN : 0, k == 1 ? 3e38f : k == 4 ? INFINITY : 9, ASJ_BRANCH_END_FADED);
         if (k == 5)
             j->branch_count = ASJ_MAX_BRANCHES + 1;
+        if (k == 6)
+            j->branches[0].length = -9;
+        if (k == 7)
+            j->branches[0].log10_nfa = NAN;
+        if (k == 8)
+            j->location_sd = INFINITY;
         assert_int_equal(asj_find_segments(f->context, junctions, 1, NULL, 0, &list), ASJ_ERROR_ARGUMENT);
         assert_non_null(strstr(asj_context_message(f->context), "junction 0"));
         assert_null(list);
@@ -383,6 +449,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(parts_that_overlap_reach_from_first_to_last, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(a_corner_beside_an_end_is_the_end, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(a_corner_that_turns_is_the_end, unit_set_up, unit_tear_down),
+        cmocka_unit_test_setup_teardown(a_long_edge_keeps_its_ends, unit_set_up, unit_tear_down),
+        cmocka_unit_test_setup_teardown(a_chain_is_one_edge, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(what_only_is_near_stays, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(the_graph_says_which_are_one, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(cells_change_nothing, unit_set_up, unit_tear_down),

@@ -41,11 +41,14 @@ class Lines:
 def lines(features: Features, *, context: Context | None = None) -> Lines:
     """The straight edges of an image, each once, whichever corners have a branch along it.
 
+    Of features of preset "default": those of preset "match", for :func:`asj.match`, have many weak branches of all octaves, and so have
+    their lines.
+
     >>> import asj, numpy as np
     >>> square = np.full((90, 120), 60, np.uint8); square[21:71, 31:101] = 200
-    >>> found = asj.lines(asj.detect(square))
-    >>> len(found), found.segments[0].round(1).tolist()
-    (4, [[30.5, 20.5], [100.5, 20.5]])
+    >>> found = asj.lines(asj.detect(square, preset="default"))
+    >>> len(found), np.linalg.norm(found.segments[:, 1] - found.segments[:, 0], axis=1).round(1).tolist()
+    (4, [70.0, 70.0, 50.0, 50.0])
     """
     return lines_of(features.junctions, features.edges, context or current())
 
