@@ -25,7 +25,7 @@ from .errors import (
 from .features import Features, detect, load_features
 from .geometry import Geometry
 from .images import read as read_image
-from .lines import Lines, lines
+from .line_segments import Lines, lines
 from .matches import Matches, match, match_images
 from .options import detect_options, match_options
 from .plot import plot, plot_matches
