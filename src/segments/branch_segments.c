@@ -2,18 +2,11 @@
 /* asj_find_segments(): the straight edges of an image, each once.
  *
  * An edge has a branch from each of its ends, and one from every corner on it (a window frame where bars meet it, a row of tiles).
- * Branches are taken one after the other, the longest first; one that is of the same edge as one before joins it. The rule is
- * that of the matches of two images (match/segment_join.c), for one image: both ends of the shorter lie on the longer's line, and
- * they share more than an end's uncertainty, or the shorter lies in the longer. An end that goes on beyond the longer's moves its
- * end there; a junction that a branch begins at is a better end than one beside it that is none. Where ends have moved they may
- * reach others, so all is done again until none has. Before all that the two branches of an edge of the graph (asj_edge) that end
- * at each other's junctions are one: side by side with another edge, each might join that instead.
- *
- * Of many branches along an edge the one that overshoots most would be its end. So a corner that turns (no branch of it goes on) is
- * the end of what goes on by OVERSHOOT at most and ends at no corner. Rendered rooms (tests/accuracy/lines.c): of the true edges
- * .858 in place of .836 have a line within their ends. Six photographs have 43 such corners; of 18 looked at 14 are the end.
- *
+ * Branches are taken one after the other, the longest first; one that is of the same edge as one before joins it (one_edge.c).
+ * Where ends have moved they may reach others, so all is done again until none has. Before all that the two branches of an edge of
+ * the graph (asj_edge) that end at each other's junctions are one: side by side with another edge, each might join that instead.
  * The paper has no such step: its results are branches. */
+#include "one_edge.h"
 #include "segment_cells.h"
 #include "core/context.h"
 #include "core/watch.h"
@@ -24,9 +17,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STRAIGHT 0.978147601 /* cosine of 12 degrees */
-#define OVERSHOOT 24.0       /* px, and no more than .. */
-#define OVERSHOOT_SHARE 0.5  /* .. this part of the segment */
 #define MOST_JUNCTIONS 268435456u
 
 /* What stands behind the public struct. */
@@ -49,11 +39,6 @@ typedef struct work {
     uint32_t *asked;       /* for each segment the last one that was compared with it, + 1 */
     asj_segment_cells cells;
 } work;
-
-static asj_end_point end_of(const asj_segment *s, int32_t end)
-{
-    return end == 0 ? (asj_end_point){(double)s->x1, (double)s->y1} : (asj_end_point){(double)s->x2, (double)s->y2};
-}
 
 static double length2_of(const asj_segment *s)
 {
@@ -112,7 +97,7 @@ static int ends_at(const asj_junction *junction, uint16_t branch, const asj_junc
     const double distance = hypot(dx, dy), length = (double)junction->branches[branch].length;
     const double angle = (double)junction->branches[branch].angle;
     const double most = fmax(ASJ_SAME_END, fmin(ASJ_SAME_END_MOST, ASJ_SAME_END_SHARE * distance));
-    return length > 0 && fabs(length - distance) <= most && dx * cos(angle) + dy * sin(angle) > STRAIGHT * distance;
+    return length > 0 && fabs(length - distance) <= most && dx * cos(angle) + dy * sin(angle) > ASJ_STRAIGHT * distance;
 }
 
 static int has_branch(const asj_junction *junctions, size_t count, uint32_t junction, uint16_t branch)
@@ -178,94 +163,12 @@ static asj_status take_branches(work *w, const asj_junction *junctions, size_t c
     return ASJ_OK;
 }
 
-/* ---- one edge ---- */
-
-/* 0: they are parts of different edges. */
-static int32_t is_same_edge(const asj_segment *longer, const asj_segment *shorter, asj_course *c)
-{
-    const asj_end_point ends[2] = {end_of(longer, 0), end_of(longer, 1)};
-    const asj_end_point of_shorter[2] = {end_of(shorter, 0), end_of(shorter, 1)};
-    if (!asj_course_along(ends, of_shorter, c))
-        return 0;
-    const int32_t back = asj_course_is_back(c);
-    const int32_t inside = !asj_course_is_beyond(c, 0, back) && !asj_course_is_beyond(c, 1, !back);
-    return asj_course_shared(c) > (inside ? 0 : c->overlap);
-}
-
-static void take_end(asj_segment *s, int32_t end, const asj_segment *t, int32_t from)
-{
-    const float x = from == 0 ? t->x1 : t->x2, y = from == 0 ? t->y1 : t->y2, sd = from == 0 ? t->sd1 : t->sd2;
-    const int32_t kind = from == 0 ? t->end1 : t->end2;
-    const uint32_t junction = from == 0 ? t->junction1 : t->junction2;
-    if (end == 0)
-        s->x1 = x, s->y1 = y, s->sd1 = sd, s->end1 = kind, s->junction1 = junction;
-    else
-        s->x2 = x, s->y2 = y, s->sd2 = sd, s->end2 = kind, s->junction2 = junction;
-}
-
-static uint32_t junction_at(const asj_segment *s, int32_t end)
-{
-    return end == 0 ? s->junction1 : s->junction2;
-}
-
-/* A corner at which the segment ends: no branch of the junction goes on the way that the segment comes. */
-static int32_t turns_at(const work *w, const asj_segment *s, int32_t end)
-{
-    const uint32_t at = junction_at(s, end);
-    if (at == ASJ_NO_JUNCTION)
-        return 0;
-    const asj_end_point from = end_of(s, !end), to = end_of(s, end);
-    const double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
-    for (int32_t b = 0; b < w->junctions[at].branch_count; b++) {
-        const double angle = (double)w->junctions[at].branches[b].angle;
-        if (dx * cos(angle) + dy * sin(angle) > STRAIGHT * length)
-            return 0;
-    }
-    return 1;
-}
-
-/* How far the longer goes on beyond an end of the shorter; below 0: the shorter beyond the longer. */
-static double excess(const asj_course *c, int32_t end, int32_t of_shorter)
-{
-    return end == 0 ? c->at[of_shorter] : c->length - c->at[of_shorter];
-}
-
-/* Whether the shorter's end is that of both: where it goes on beyond the longer's, or is a corner and the longer's is none.
- * A corner that goes on is no end of what goes on by more than ASJ_SAME_END. */
-static int32_t is_end_of_both(const work *w, const asj_segment *longer, const asj_segment *shorter, const asj_course *c,
-                              int32_t end, int32_t far)
-{
-    const double beyond = excess(c, end, far), most = fmax(c->same_end, fmin(OVERSHOOT, OVERSHOOT_SHARE * c->length));
-    const int32_t has = junction_at(longer, end) != ASJ_NO_JUNCTION, has_other = junction_at(shorter, far) != ASJ_NO_JUNCTION;
-    if (beyond < -c->same_end)
-        return has_other || beyond < -most || !turns_at(w, longer, end);
-    if (has || !has_other)
-        return 0;
-    return beyond <= ASJ_SAME_END || (beyond <= most && turns_at(w, shorter, far));
-}
-
-/* The longer becomes both. Returns whether an end has moved. */
-static int32_t join(const work *w, asj_segment *longer, const asj_segment *shorter, const asj_course *c)
-{
-    const int32_t back = asj_course_is_back(c);
-    int32_t is_moved[2];
-    for (int32_t end = 0; end < 2; end++)
-        is_moved[end] = is_end_of_both(w, longer, shorter, c, end, end == 0 ? back : !back);
-    for (int32_t end = 0; end < 2; end++)
-        if (is_moved[end])
-            take_end(longer, end, shorter, end == 0 ? back : !back);
-    longer->log10_nfa = fminf(longer->log10_nfa, shorter->log10_nfa);
-    const uint32_t branches = (uint32_t)longer->branch_count + shorter->branch_count;
-    longer->branch_count = (uint16_t)(branches < UINT16_MAX ? branches : UINT16_MAX);
-    return is_moved[0] || is_moved[1];
-}
-
 /* ---- all of them ---- */
 
 /* Of the first `kept` segments the longest that s is of one edge with; `kept`: there is none. */
 static uint32_t find_longer(work *w, const asj_segment *s, uint32_t number, uint32_t kept, asj_course *c)
 {
-    const asj_end_point ends[2] = {end_of(s, 0), end_of(s, 1)};
+    const asj_end_point ends[2] = {asj_segment_end(s, 0), asj_segment_end(s, 1)};
     uint32_t best = kept;
     int32_t first, last;
     asj_segment_cells_rows(&w->cells, ends, 0, &first, &last);
@@ -279,7 +182,7 @@ static uint32_t find_longer(work *w, const asj_segment *s, uint32_t number, uint
                 if (k >= best || w->asked[k] == number + 1)
                     continue;
                 w->asked[k] = number + 1;
-                if (is_same_edge(&w->segments[k], s, &course)) {
+                if (asj_is_one_edge(&w->segments[k], s, &course)) {
                     best = k;
                     *c = course;
                 }
@@ -291,7 +194,7 @@ static uint32_t find_longer(work *w, const asj_segment *s, uint32_t number, uint
 
 static int32_t add_to_cells(work *w, uint32_t k)
 {
-    const asj_end_point ends[2] = {end_of(&w->segments[k], 0), end_of(&w->segments[k], 1)};
+    const asj_end_point ends[2] = {asj_segment_end(&w->segments[k], 0), asj_segment_end(&w->segments[k], 1)};
     return asj_segment_cells_add(&w->context->memory, &w->cells, ends, k);
 }
 
@@ -308,7 +211,7 @@ static asj_status join_once(work *w, int32_t *moved)
         const uint32_t k = find_longer(w, &s, i, kept, &c);
         int32_t changed = k == kept;
         if (k < kept) {
-            changed = join(w, &w->segments[k], &s, &c);
+            changed = asj_become_one_edge(w->junctions, &w->segments[k], &s, &c);
             *moved |= changed;
             w->joined[branch_of(&s)] = (uint32_t)branch_of(&w->segments[k]);
         } else {
@@ -337,7 +240,7 @@ static int32_t make_cells(work *w)
     double left = 0, top = 0, right = 0, bottom = 0;
     for (uint32_t k = 0; k < w->count; k++)
         for (int32_t end = 0; end < 2; end++) {
-            const asj_end_point p = end_of(&w->segments[k], end);
+            const asj_end_point p = asj_segment_end(&w->segments[k], end);
             const int32_t is_first = k == 0 && end == 0;
             left = is_first ? p.x : fmin(left, p.x);
             right = is_first ? p.x : fmax(right, p.x);
