@@ -5,7 +5,8 @@
  *
  * Of many branches along an edge the one that overshoots most would be its end. So a corner that turns (no branch of it goes on) is
  * the end of what goes on by OVERSHOOT at most and ends at no corner. Rendered rooms (tests/accuracy/lines.c): of the true edges
- * .858 in place of .836 have a line within their ends. Six photographs have 43 such corners; of 18 looked at 14 are the end. */
+ * .948 have a line in place of .931, and .934 of the lines are true in place of .923. Six photographs have 43 such corners; of 18
+ * looked at 14 are the end. */
 #include "one_edge.h"
 
 #include <math.h>

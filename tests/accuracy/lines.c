@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Straight edges (asj_find_segments()) of rendered views of the room, whose edges are known:
  *
- *     lines [--check] [--views N] [--blur B] [--noise SD] [key=value ...]        (100, 0.9, 2; options of the detector)
+ *     lines [--check] [--views N] [--blur B] [--noise SD] [--save FOLDER] [--judge FOLDER] [key=value ...]
+ *
+ * (100, 0.9, 2; options of the detector.) --save writes the views as FOLDER/0.pgm and so on; --judge also judges the line segments
+ * of FOLDER/0.txt and so on, x1 y1 x2 y2 in each line, that another program has found in them.
  *
  * True edges: lines of the scene that are at least SHORTEST px long from end to end, with a step of at least MINIMUM_STEP grey
- * levels all along, no other one within CLEARANCE px beside them. A line found is one of such an edge when both its ends lie within
- * BESIDE px of the edge's line and no farther beyond its ends. Of the true edges: how many have one, exactly one, one from end to
- * end (both within BESIDE px), how much of the edges their longest lines cover. Of the lines found, and of the branches, without
- * joining: how many lie along a line of the scene, and how many of them belong to one true edge on average.
+ * levels all along, no other one within CLEARANCE px beside them. A line found is true when TRUE_SHARE of it lies along lines of
+ * the scene, within BESIDE px: one, or several end to end. It is one of a true edge when it is true and the part of it that lies
+ * along the edge is LEAST_PART px long. Of the true edges: how many have one, exactly one, one from end to end (to BESIDE px), and
+ * how much of an edge its longest one covers. Of the lines found, and of the branches, without joining: how many are true, and how
+ * many of them a true edge that has any has on average.
  * --check: exit code 1 when less is found than below. */
 #define _POSIX_C_SOURCE 200809L
 #include "render.h"
@@ -25,13 +29,16 @@
 #define MINIMUM_STEP 10.0 /* grey levels */
 #define CLEARANCE 6.0     /* px */
 #define BESIDE 3.0        /* px */
+#define TRUE_SHARE 0.95
+#define LEAST_PART 10.0   /* px */
 #define MOST 4000
+#define WAYS 3            /* lines, branches, another program's */
 
-static const double least_once = 0.83, least_along = 0.84; /* .856 and .863 of a hundred views */
+static const double least_once = 0.91, least_true = 0.91; /* .938 and .934 of a hundred views */
 
 typedef struct line {
     double x, y, dx, dy, length; /* px: an end, the direction, the length */
-    int is_wanted;               /* long, of contrast, alone */
+    int is_wanted;               /* long, of contrast, alone; of found ones: true */
     int at_border;               /* the far end */
 } line;
 
@@ -112,54 +119,91 @@ static void leave_out_crowded(line *lines, int count)
         }
 }
 
-static int is_whole(const line *edge, const line *found)
+/* The part of a line found that lies along an edge, px from the edge's first end. 0: none. */
+static int part_along(const line *edge, const line *of, double part[2])
 {
-    double first = along(edge, found->x, found->y), last = along(edge, found->x + found->length * found->dx,
-                                                                 found->y + found->length * found->dy);
-    if (first > last) {
-        const double other = first;
-        first = last;
-        last = other;
+    const double cosine = edge->dx * of->dx + edge->dy * of->dy;
+    const double first = along(edge, of->x, of->y), last = first + cosine * of->length;
+    part[0] = fmax(fmin(first, last), 0);
+    part[1] = fmin(fmax(first, last), edge->length);
+    if (fabs(cosine) < 0.9 || part[1] <= part[0])
+        return 0;
+    for (int end = 0; end < 2; end++) {
+        const double at = (part[end] - first) / cosine;
+        if (beside(edge, of->x + at * of->dx, of->y + at * of->dy) > BESIDE)
+            return 0;
     }
-    return fabs(first) < BESIDE && (fabs(last - edge->length) < BESIDE || (edge->at_border && last > edge->length - 2 * BESIDE));
+    return 1;
 }
 
-static void judge(const line *edges, int edge_count, const line *found, long found_count, tally *sum)
+/* Does TRUE_SHARE of it lie along lines of the scene? By points a pixel apart; an end may be out by BESIDE. */
+static int is_true(const line *edges, int edge_count, const line *of)
 {
+    static unsigned char lies[4096];
+    const int points = (int)fmin(of->length, sizeof lies - 1) + 1;
+    int count = 0;
+    memset(lies, 0, (size_t)points);
     for (int i = 0; i < edge_count; i++) {
-        long of_edge = 0;
-        double longest = 0;
-        int whole = 0;
-        for (long k = 0; k < found_count && edges[i].is_wanted; k++)
-            if (lies_along(&edges[i], &found[k])) {
-                of_edge++;
-                longest = fmax(longest, found[k].length);
-                whole |= is_whole(&edges[i], &found[k]);
-            }
-        sum->wanted += edges[i].is_wanted;
-        sum->has_one += of_edge > 0;
-        sum->has_one_only += of_edge == 1;
-        sum->is_whole += whole;
-        sum->of_wanted += (double)of_edge;
-        sum->covered += edges[i].is_wanted ? fmin(1, longest / edges[i].length) : 0;
+        double part[2];
+        if (!part_along(&edges[i], of, part))
+            continue;
+        const double cosine = edges[i].dx * of->dx + edges[i].dy * of->dy, offset = along(&edges[i], of->x, of->y);
+        const double one = (part[0] - offset) / cosine, other = (part[1] - offset) / cosine;
+        for (int k = 0; k < points; k++)
+            lies[k] |= k >= fmin(one, other) - BESIDE && k <= fmax(one, other) + BESIDE;
     }
-    for (long k = 0; k < found_count; k++) {
-        int is_true = 0;
-        for (int i = 0; i < edge_count && !is_true; i++)
-            is_true = lies_along(&edges[i], &found[k]);
-        sum->along += is_true;
-    }
-    sum->lines += found_count;
+    for (int k = 0; k < points; k++)
+        count += lies[k];
+    return count >= TRUE_SHARE * points;
 }
 
-static line found[2][ASJ_MAX_BRANCHES * MOST];
+static void judge_edge(const line *edge, const line *lines, long count, tally *sum)
+{
+    long of_edge = 0;
+    double longest = 0;
+    int whole = 0;
+    for (long k = 0; k < count; k++) {
+        double part[2];
+        if (!lines[k].is_wanted || !part_along(edge, &lines[k], part) || part[1] - part[0] < LEAST_PART)
+            continue;
+        of_edge++;
+        longest = fmax(longest, part[1] - part[0]);
+        whole |= part[0] < BESIDE && part[1] > edge->length - (edge->at_border ? 2 : 1) * BESIDE;
+    }
+    sum->wanted++;
+    sum->has_one += of_edge > 0;
+    sum->has_one_only += of_edge == 1;
+    sum->is_whole += whole;
+    sum->of_wanted += (double)of_edge;
+    sum->covered += longest / edge->length;
+}
+
+static void judge(const line *edges, int edge_count, line *lines, long count, tally *sum)
+{
+    for (long k = 0; k < count; k++) {
+        lines[k].is_wanted = is_true(edges, edge_count, &lines[k]);
+        sum->along += lines[k].is_wanted;
+    }
+    sum->lines += count;
+    for (int i = 0; i < edge_count; i++)
+        if (edges[i].is_wanted)
+            judge_edge(&edges[i], lines, count, sum);
+}
+
+typedef struct settings {
+    asj_context *context;
+    asj_detect_options options;
+    double blur, noise;
+    const char *save, *judge; /* folders; NULL = none */
+} settings;
+
+static line found[WAYS][ASJ_MAX_BRANCHES * MOST];
 
 /* Lines into found[0], branches into found[1]. */
-static int detect(asj_context *context, const asj_detect_options *options, const asj_image *image, long counts[2])
+static int detect(asj_context *context, const asj_detect_options *options, const asj_image *image, long counts[WAYS])
 {
     asj_detection *detection = NULL;
     asj_segment_list *list = NULL;
-    counts[0] = counts[1] = 0;
     if (asj_detect(context, image, options, &detection) != ASJ_OK || detection->junction_count > MOST ||
         asj_find_segments(context, detection->junctions, detection->junction_count, detection->edges, detection->edge_count,
                           &list) != ASJ_OK) {
@@ -182,21 +226,52 @@ static int detect(asj_context *context, const asj_detect_options *options, const
     return 0;
 }
 
-static int look(asj_context *context, const asj_detect_options *options, const synth_room *room, int number, double blur,
-                double noise, tally sums[2])
+static int save(const char *folder, int number, const asj_image *image)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%d.pgm", folder, number);
+    FILE *file = fopen(path, "wb");
+    if (!file)
+        return -1;
+    const size_t size = (size_t)image->width * (size_t)image->height;
+    fprintf(file, "P5\n%d %d\n255\n", (int)image->width, (int)image->height);
+    const int written = fwrite(image->data, 1, size, file) == size;
+    return fclose(file) == 0 && written ? 0 : -1;
+}
+
+/* Another program's, into found[2]. */
+static int read_others(const char *folder, int number, long *count)
+{
+    char path[1024];
+    double x1, y1, x2, y2;
+    snprintf(path, sizeof path, "%s/%d.txt", folder, number);
+    FILE *file = fopen(path, "r");
+    if (!file)
+        return -1;
+    while (*count < ASJ_MAX_BRANCHES * MOST && fscanf(file, "%lf %lf %lf %lf", &x1, &y1, &x2, &y2) == 4)
+        found[2][(*count)++] = line_of(x1, y1, x2, y2);
+    fclose(file);
+    return 0;
+}
+
+static int look(const settings *set, const synth_room *room, int number, tally sums[WAYS])
 {
     static line edges[MOST];
     const synth_camera camera = synth_room_camera(number, 1052, 780);
     synth_view view;
-    long counts[2];
+    long counts[WAYS] = {0};
     if (synth_view_make(room, &camera, 1.0, &view) != 0)
         return -1;
-    uint8_t *pixels = synth_photograph(&view.scene, blur, noise, (uint64_t)number + 1);
+    uint8_t *pixels = synth_photograph(&view.scene, set->blur, set->noise, (uint64_t)number + 1);
     const asj_image image = {pixels, ASJ_FORMAT_GRAY8, camera.width, camera.height, 0, 0};
-    const int result = pixels ? detect(context, options, &image, counts) : -1;
+    int result = pixels ? detect(set->context, &set->options, &image, counts) : -1;
+    if (result == 0 && set->save)
+        result = save(set->save, number, &image);
+    if (result == 0 && set->judge)
+        result = read_others(set->judge, number, &counts[2]);
     const int edge_count = true_lines(&view.truth, edges);
     leave_out_crowded(edges, edge_count);
-    for (int k = 0; k < 2 && result == 0; k++)
+    for (int k = 0; k < WAYS && result == 0; k++)
         judge(edges, edge_count, found[k], counts[k], &sums[k]);
     free(pixels);
     synth_view_free(&view);
@@ -205,7 +280,7 @@ static int look(asj_context *context, const asj_detect_options *options, const s
 
 static void print(const char *name, const tally *t)
 {
-    printf("%-9s %6ld, along lines of the scene %.3f; true edges %ld: with one %.3f, with one only %.3f, whole %.3f, covered %.3f, "
+    printf("%-9s %6ld, true %.3f; true edges %ld: with one %.3f, with one only %.3f, whole %.3f, covered %.3f, "
            "of each that has one %.2f\n",
            name, t->lines, (double)t->along / (double)t->lines, t->wanted, (double)t->has_one / (double)t->wanted,
            (double)t->has_one_only / (double)t->wanted, (double)t->is_whole / (double)t->wanted, t->covered / (double)t->wanted,
@@ -228,36 +303,39 @@ int main(int argc, char **argv)
 {
     static const struct option words[] = {
         {"check", no_argument, NULL, 'c'}, {"views", required_argument, NULL, 'v'}, {"blur", required_argument, NULL, 'b'},
-        {"noise", required_argument, NULL, 'n'}, {NULL, 0, NULL, 0}};
+        {"noise", required_argument, NULL, 'n'}, {"save", required_argument, NULL, 's'}, {"judge", required_argument, NULL, 'j'},
+        {NULL, 0, NULL, 0}};
+    settings set = {.blur = 0.9, .noise = 2};
     int check = 0, views = 100, letter, result = 0;
-    double blur = 0.9, noise = 2;
-    tally sums[2];
-    asj_detect_options options;
-    asj_context *context;
+    tally sums[WAYS];
     synth_room room;
-    asj_detect_options_init(&options);
+    asj_detect_options_init(&set.options);
     while ((letter = getopt_long(argc, argv, "", words, NULL)) != -1)
         switch (letter) {
         case 'c': check = 1; break;
         case 'v': views = (int)strtol(optarg, NULL, 10); break;
-        case 'b': blur = strtod(optarg, NULL); break;
-        case 'n': noise = strtod(optarg, NULL); break;
+        case 'b': set.blur = strtod(optarg, NULL); break;
+        case 'n': set.noise = strtod(optarg, NULL); break;
+        case 's': set.save = optarg; break;
+        case 'j': set.judge = optarg; break;
         default: return 2;
         }
     for (; optind < argc; optind++)
-        if (set_option(&options, argv[optind]) != 0)
+        if (set_option(&set.options, argv[optind]) != 0)
             return 2;
     memset(sums, 0, sizeof sums);
-    if (asj_context_create(NULL, &context) != ASJ_OK || synth_room_make(&room) != 0)
+    if (asj_context_create(NULL, &set.context) != ASJ_OK || synth_room_make(&room) != 0)
         return 99;
     for (int k = 0; k < views && result == 0; k++)
-        result = look(context, &options, &room, k, blur, noise, sums);
+        result = look(&set, &room, k, sums);
     synth_room_free(&room);
-    asj_context_free(&context);
+    asj_context_free(&set.context);
     if (result != 0 || sums[0].wanted == 0 || sums[0].lines == 0)
         return 99;
     print("lines", &sums[0]);
     print("branches", &sums[1]);
+    if (sums[2].lines > 0)
+        print("others", &sums[2]);
     const double once = (double)sums[0].has_one_only / (double)sums[0].wanted;
-    return check && (once < least_once || (double)sums[0].along / (double)sums[0].lines < least_along);
+    return check && (once < least_once || (double)sums[0].along / (double)sums[0].lines < least_true);
 }
