@@ -108,8 +108,8 @@ static void print_summary(const char *image, const cli_output *output, const asj
         cli_note("%s: weaker corners are found with --epsilon 100 --candidate-strength 2", image);
 }
 
-static int tell(run *r, const char *image, const cli_output *output, const asj_image *pixels, const asj_detection *detection,
-                const asj_segment_list *segments)
+static int finish_image(run *r, const char *image, const cli_output *output, const asj_image *pixels,
+                        const asj_detection *detection, const asj_segment_list *segments)
 {
     double start = cli_now_ms();
     int result = write_results(r, image, output, pixels, detection, segments);
@@ -136,7 +136,7 @@ static int detect_pixels(run *r, const char *image, const cli_output *output, co
                                    detection->edge_count, &segments);
     int result = CLI_FAILED;
     if (status == ASJ_OK)
-        result = tell(r, image, output, pixels, detection, segments);
+        result = finish_image(r, image, output, pixels, detection, segments);
     else if (status != ASJ_ERROR_CANCELLED) /* else the loop sees the signal */
         result = cli_session_fail(&r->session, image, asj_context_message(r->session.context), status);
     asj_segment_list_free(&segments);

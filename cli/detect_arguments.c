@@ -233,8 +233,9 @@ const char *cli_detect_extension(const cli_detect_arguments *arguments)
         return "json";
     if (dot && strcmp(dot, ".asjf") == 0)
         return "asjf";
-    const int is_csv = arguments->lines ? !dot || strcmp(dot, ".asj") != 0 : dot && strcmp(dot, ".csv") == 0;
-    return is_csv ? "csv" : "asj";
+    if (dot && strcmp(dot, ".csv") == 0)
+        return "csv";
+    return arguments->lines && !(dot && strcmp(dot, ".asj") == 0) ? "csv" : "asj";
 }
 
 static void choose_preset(cli_detect_arguments *arguments)

@@ -47,6 +47,13 @@ static double place(const cli_plot_layout *layout, double coordinate)
     return (coordinate + 0.5) * layout->scale;
 }
 
+static void draw_line(cairo_t *cairo, const cli_plot_layout *layout, double x1, double y1, double x2, double y2)
+{
+    cairo_move_to(cairo, place(layout, x1), place(layout, y1));
+    cairo_line_to(cairo, place(layout, x2), place(layout, y2));
+    cairo_stroke(cairo);
+}
+
 static void draw_branches(cairo_t *cairo, const cli_plot_layout *layout, const asj_junction *junction, int32_t color)
 {
     for (int32_t i = 0; i < junction->branch_count; i++) {
@@ -57,9 +64,7 @@ static void draw_branches(cairo_t *cairo, const cli_plot_layout *layout, const a
             cairo_set_source_rgb(cairo, LOOSE_GRAY, LOOSE_GRAY, LOOSE_GRAY);
         else
             set_color(cairo, color == CLI_PLOT_COLOR_BRANCH ? cli_branch_color(i) : cli_ramp_color((double)branch->log10_nfa));
-        cairo_move_to(cairo, place(layout, (double)junction->x), place(layout, (double)junction->y));
-        cairo_line_to(cairo, place(layout, x), place(layout, y));
-        cairo_stroke(cairo);
+        draw_line(cairo, layout, (double)junction->x, (double)junction->y, x, y);
     }
 }
 
@@ -71,9 +76,7 @@ static void draw_edges(cairo_t *cairo, const cli_plot_layout *layout, const asj_
         const asj_edge *edge = &detection->edges[i];
         const asj_junction *a = &detection->junctions[edge->junction_a], *b = &detection->junctions[edge->junction_b];
         set_color(cairo, cli_ramp_color((double)edge->log10_nfa));
-        cairo_move_to(cairo, place(layout, (double)a->x), place(layout, (double)a->y));
-        cairo_line_to(cairo, place(layout, (double)b->x), place(layout, (double)b->y));
-        cairo_stroke(cairo);
+        draw_line(cairo, layout, (double)a->x, (double)a->y, (double)b->x, (double)b->y);
     }
 }
 
@@ -84,9 +87,7 @@ static void draw_segments(cairo_t *cairo, const cli_plot_layout *layout, const a
     for (uint32_t i = segments->count; i-- > 0;) {
         const asj_segment *s = &segments->segments[i];
         set_color(cairo, cli_ramp_color((double)s->log10_nfa));
-        cairo_move_to(cairo, place(layout, (double)s->x1), place(layout, (double)s->y1));
-        cairo_line_to(cairo, place(layout, (double)s->x2), place(layout, (double)s->y2));
-        cairo_stroke(cairo);
+        draw_line(cairo, layout, (double)s->x1, (double)s->y1, (double)s->x2, (double)s->y2);
     }
 }
 
@@ -120,10 +121,11 @@ static void draw_junctions(cairo_t *cairo, const drawing *d)
     cairo_clip(cairo);
     cairo_set_line_width(cairo, layout->line);
     cairo_set_line_cap(cairo, CAIRO_LINE_CAP_BUTT); /* ends where the branch ends */
-    for (uint32_t i = detection->junction_count; i-- > 0 && !d->segments;)
-        draw_branches(cairo, layout, &detection->junctions[i], d->style->color);
     if (d->segments)
         draw_segments(cairo, layout, d->segments);
+    else
+        for (uint32_t i = detection->junction_count; i-- > 0;)
+            draw_branches(cairo, layout, &detection->junctions[i], d->style->color);
     if (d->style->color == CLI_PLOT_COLOR_EDGE)
         draw_edges(cairo, layout, detection);
     for (uint32_t i = detection->junction_count; i-- > 0;)
@@ -153,7 +155,7 @@ static void draw_ramp(cairo_t *cairo, double x, double y, double width, double h
     cairo_pattern_destroy(ramp);
 }
 
-/* What there is most of in the plot: its number, and its name. */
+/* How many of what the plot shows. */
 static void count_text(const drawing *d, char *text, size_t size)
 {
     const int edges = d->style->color == CLI_PLOT_COLOR_EDGE;

@@ -89,7 +89,7 @@ build() {
     configure "$@" && logged "build-$name" meson compile -C "$folder"
 }
 
-# build_and_test FOLDER "ARGUMENT..." OPTION...: everything; the arguments are those of meson test.
+# build_and_test FOLDER "ARGUMENT..." OPTION...: the arguments are those of meson test.
 build_and_test() {
     tests_wanted=$2
     folder_wanted=$1

@@ -161,7 +161,7 @@ static double distance2(float x1, float y1, float x2, float y2)
     return dx * dx + dy * dy;
 }
 
-/* px^2 within which ends are one, of a segment of this length (squared). */
+/* px^2 within which ends are one, of a segment of this length (squared). However long: an edge seen from both its ends is one. */
 static double same_end2(double length2)
 {
     const double least = ASJ_SAME_END * ASJ_SAME_END, share = ASJ_SAME_END_SHARE * ASJ_SAME_END_SHARE * length2;

@@ -30,6 +30,8 @@ typedef struct own_list {
 typedef struct work {
     asj_context *context;
     const asj_junction *junctions;
+    const asj_edge *edges;
+    size_t junction_count, edge_count;
     asj_watch watch;
     asj_segment *segments;
     uint32_t count;
@@ -46,9 +48,14 @@ static double length2_of(const asj_segment *s)
     return dx * dx + dy * dy;
 }
 
+static size_t number_of(uint32_t junction, uint16_t branch)
+{
+    return (size_t)junction * ASJ_MAX_BRANCHES + branch;
+}
+
 static size_t branch_of(const asj_segment *s)
 {
-    return (size_t)s->junction * ASJ_MAX_BRANCHES + s->branch;
+    return number_of(s->junction, s->branch);
 }
 
 static int by_length(const void *a, const void *b)
@@ -96,26 +103,26 @@ static int ends_at(const asj_junction *junction, uint16_t branch, const asj_junc
     const double dx = (double)other->x - (double)junction->x, dy = (double)other->y - (double)junction->y;
     const double distance = hypot(dx, dy), length = (double)junction->branches[branch].length;
     const double angle = (double)junction->branches[branch].angle;
-    const double most = fmax(ASJ_SAME_END, fmin(ASJ_SAME_END_MOST, ASJ_SAME_END_SHARE * distance));
-    return length > 0 && fabs(length - distance) <= most && dx * cos(angle) + dy * sin(angle) > ASJ_STRAIGHT * distance;
+    return length > 0 && fabs(length - distance) <= asj_same_end(distance) &&
+           dx * cos(angle) + dy * sin(angle) > ASJ_STRAIGHT * distance;
 }
 
-static int has_branch(const asj_junction *junctions, size_t count, uint32_t junction, uint16_t branch)
+static int has_branch(const work *w, uint32_t junction, uint16_t branch)
 {
-    return junction < count && branch < ASJ_MAX_BRANCHES && branch < junctions[junction].branch_count;
+    return junction < w->junction_count && branch < ASJ_MAX_BRANCHES && branch < w->junctions[junction].branch_count;
 }
 
 /* The edges whose two branches end at each other's junctions. */
-static asj_status take_edges(work *w, const asj_junction *junctions, size_t count, const asj_edge *edges, size_t edge_count)
+static asj_status take_edges(work *w)
 {
-    memset(w->edge_of, 0, count * ASJ_MAX_BRANCHES * sizeof *w->edge_of);
-    for (size_t k = 0; k < edge_count; k++) {
-        const asj_edge *e = &edges[k];
-        if (!has_branch(junctions, count, e->junction_a, e->branch_a) || !has_branch(junctions, count, e->junction_b, e->branch_b))
+    memset(w->edge_of, 0, w->junction_count * ASJ_MAX_BRANCHES * sizeof *w->edge_of);
+    for (size_t k = 0; k < w->edge_count; k++) {
+        const asj_edge *e = &w->edges[k];
+        if (!has_branch(w, e->junction_a, e->branch_a) || !has_branch(w, e->junction_b, e->branch_b))
             return asj_fail(w->context, ASJ_ERROR_ARGUMENT, "edge %zu is of a branch that is not there", k);
-        const asj_junction *a = &junctions[e->junction_a], *b = &junctions[e->junction_b];
-        uint32_t *of_a = &w->edge_of[(size_t)e->junction_a * ASJ_MAX_BRANCHES + e->branch_a];
-        uint32_t *of_b = &w->edge_of[(size_t)e->junction_b * ASJ_MAX_BRANCHES + e->branch_b];
+        const asj_junction *a = &w->junctions[e->junction_a], *b = &w->junctions[e->junction_b];
+        uint32_t *of_a = &w->edge_of[number_of(e->junction_a, e->branch_a)];
+        uint32_t *of_b = &w->edge_of[number_of(e->junction_b, e->branch_b)];
         if (!*of_a && !*of_b && ends_at(a, e->branch_a, b) && ends_at(b, e->branch_b, a))
             *of_a = *of_b = (uint32_t)k + 1;
     }
@@ -135,61 +142,75 @@ static void reach_other_end(asj_segment *s, const asj_edge *e, const asj_junctio
     s->branch_count = 2;
 }
 
-/* Those with a length, in the order of the junctions. */
-static asj_status take_branches(work *w, const asj_junction *junctions, size_t count, const asj_edge *edges)
+/* A branch, or the edge that it is the first branch of; the second belongs to the first. What has no length is left out. */
+static asj_status take_branch(work *w, uint32_t j, int32_t b)
 {
-    for (size_t j = 0; j < count; j++) {
-        const int32_t branches = junctions[j].branch_count;
+    asj_segment s = segment_of(&w->junctions[j], j, b);
+    const size_t number = branch_of(&s);
+    const asj_edge *edge = w->edge_of[number] ? &w->edges[w->edge_of[number] - 1] : NULL;
+    const size_t first = edge ? number_of(edge->junction_a, edge->branch_a) : number;
+    if (!is_sound(&s, &w->junctions[j].branches[b]))
+        return asj_fail(w->context, ASJ_ERROR_ARGUMENT, "branch %d of junction %lu cannot be", (int)b, (unsigned long)j);
+    if (!edge && !(length2_of(&s) > 0))
+        return ASJ_OK;
+    w->joined[number] = (uint32_t)first;
+    if (number != first)
+        return ASJ_OK;
+    if (edge)
+        reach_other_end(&s, edge, w->junctions);
+    w->segments[w->count++] = s;
+    return ASJ_OK;
+}
+
+/* In the order of the junctions. */
+static asj_status take_branches(work *w)
+{
+    asj_status status = ASJ_OK;
+    for (size_t j = 0; j < w->junction_count && status == ASJ_OK; j++) {
+        const int32_t branches = w->junctions[j].branch_count;
         if (branches < 0 || branches > ASJ_MAX_BRANCHES)
             return asj_fail(w->context, ASJ_ERROR_ARGUMENT, "junction %zu has %d branches", j, (int)branches);
-        if (!isfinite(junctions[j].x) || !isfinite(junctions[j].y))
+        if (!isfinite(w->junctions[j].x) || !isfinite(w->junctions[j].y))
             return asj_fail(w->context, ASJ_ERROR_ARGUMENT, "junction %zu is nowhere", j);
-        for (int32_t b = 0; b < branches; b++) {
-            asj_segment s = segment_of(&junctions[j], (uint32_t)j, b);
-            const size_t number = branch_of(&s);
-            const asj_edge *edge = w->edge_of[number] ? &edges[w->edge_of[number] - 1] : NULL;
-            const int is_first = !edge || (edge->junction_a == j && edge->branch_a == b);
-            if (!is_sound(&s, &junctions[j].branches[b]))
-                return asj_fail(w->context, ASJ_ERROR_ARGUMENT, "branch %d of junction %zu cannot be", (int)b, j);
-            if (edge && is_first)
-                reach_other_end(&s, edge, junctions);
-            if (!(length2_of(&s) > 0))
-                continue;
-            w->joined[number] = (uint32_t)(is_first ? number : (size_t)edge->junction_a * ASJ_MAX_BRANCHES + edge->branch_a);
-            if (is_first)
-                w->segments[w->count++] = s;
-        }
+        for (int32_t b = 0; b < branches && status == ASJ_OK; b++)
+            status = take_branch(w, (uint32_t)j, b);
     }
-    return ASJ_OK;
+    return status;
 }
 
 /* ---- all of them ---- */
 
-/* Of the first `kept` segments the longest that s is of one edge with; `kept`: there is none. */
-static uint32_t find_longer(work *w, const asj_segment *s, uint32_t number, uint32_t kept, asj_course *c)
+/* The longest before segment `number` that it is of one edge with. */
+typedef struct partner {
+    uint32_t best; /* so far; at first one beyond all */
+    asj_course course;
+} partner;
+
+static void look_in_cell(work *w, const asj_segment *s, uint32_t number, uint32_t first, partner *p)
+{
+    for (uint32_t at = first; at; at = w->cells.entries[at].next) {
+        const uint32_t k = w->cells.entries[at].segment;
+        asj_course course;
+        if (k >= p->best || w->asked[k] == number + 1)
+            continue;
+        w->asked[k] = number + 1;
+        if (asj_is_one_edge(&w->segments[k], s, &course))
+            *p = (partner){k, course};
+    }
+}
+
+static partner find_longer(work *w, const asj_segment *s, uint32_t number, uint32_t kept)
 {
     const asj_end_point ends[2] = {asj_segment_end(s, 0), asj_segment_end(s, 1)};
-    uint32_t best = kept;
+    partner p = {.best = kept};
     int32_t first, last;
     asj_segment_cells_rows(&w->cells, ends, 0, &first, &last);
     for (int32_t row = first; row <= last; row++) {
         const asj_cell_run run = asj_segment_cells_run(&w->cells, ends, 0, row);
-        for (int32_t column = run.first; column <= run.last; column++) {
-            uint32_t at = w->cells.first[(size_t)row * (size_t)w->cells.columns + (size_t)column];
-            for (; at; at = w->cells.entries[at].next) {
-                const uint32_t k = w->cells.entries[at].segment;
-                asj_course course;
-                if (k >= best || w->asked[k] == number + 1)
-                    continue;
-                w->asked[k] = number + 1;
-                if (asj_is_one_edge(&w->segments[k], s, &course)) {
-                    best = k;
-                    *c = course;
-                }
-            }
-        }
+        for (int32_t column = run.first; column <= run.last; column++)
+            look_in_cell(w, s, number, w->cells.first[(size_t)row * (size_t)w->cells.columns + (size_t)column], &p);
     }
-    return best;
+    return p;
 }
 
 static int32_t add_to_cells(work *w, uint32_t k)
@@ -207,11 +228,11 @@ static asj_status join_once(work *w, int32_t *moved)
     asj_segment_cells_clear(&w->cells);
     for (uint32_t i = 0; i < w->count && !asj_watch_stops(&w->watch, NULL); i++) {
         const asj_segment s = w->segments[i];
-        asj_course c;
-        const uint32_t k = find_longer(w, &s, i, kept, &c);
+        const partner p = find_longer(w, &s, i, kept);
+        const uint32_t k = p.best;
         int32_t changed = k == kept;
         if (k < kept) {
-            changed = asj_become_one_edge(w->junctions, &w->segments[k], &s, &c);
+            changed = asj_become_one_edge(w->junctions, &w->segments[k], &s, &p.course);
             *moved |= changed;
             w->joined[branch_of(&s)] = (uint32_t)branch_of(&w->segments[k]);
         } else {
@@ -224,10 +245,26 @@ static asj_status join_once(work *w, int32_t *moved)
     return asj_watch_end(&w->watch);
 }
 
+/* Of two or more. */
+static int32_t make_cells(work *w)
+{
+    double left = HUGE_VAL, top = HUGE_VAL, right = -HUGE_VAL, bottom = -HUGE_VAL;
+    for (uint32_t k = 0; k < 2 * w->count; k++) {
+        const asj_end_point p = asj_segment_end(&w->segments[k / 2], (int32_t)(k % 2));
+        left = fmin(left, p.x), right = fmax(right, p.x);
+        top = fmin(top, p.y), bottom = fmax(bottom, p.y);
+    }
+    return asj_segment_cells_make(&w->context->memory, left, top, right, bottom, &w->cells);
+}
+
 static asj_status join_all(work *w)
 {
-    int32_t moved = w->count > 1;
+    int32_t moved = 1;
     asj_status status = ASJ_OK;
+    if (w->count < 2)
+        return ASJ_OK;
+    if (!make_cells(w))
+        return asj_fail(w->context, ASJ_ERROR_MEMORY, "no memory for the segments of %lu branches", (unsigned long)w->count);
     while (moved && status == ASJ_OK) {
         qsort(w->segments, w->count, sizeof *w->segments, by_length);
         status = join_once(w, &moved);
@@ -235,28 +272,14 @@ static asj_status join_all(work *w)
     return status;
 }
 
-static int32_t make_cells(work *w)
-{
-    double left = 0, top = 0, right = 0, bottom = 0;
-    for (uint32_t k = 0; k < w->count; k++)
-        for (int32_t end = 0; end < 2; end++) {
-            const asj_end_point p = asj_segment_end(&w->segments[k], end);
-            const int32_t is_first = k == 0 && end == 0;
-            left = is_first ? p.x : fmin(left, p.x);
-            right = is_first ? p.x : fmax(right, p.x);
-            top = is_first ? p.y : fmin(top, p.y);
-            bottom = is_first ? p.y : fmax(bottom, p.y);
-        }
-    return asj_segment_cells_make(&w->context->memory, left, top, right, bottom, &w->cells);
-}
-
 /* ---- the list ---- */
 
-static asj_status make_list(work *w, size_t junction_count, own_list **made)
+static asj_status make_list(work *w, own_list **made)
 {
+    const size_t branches = w->junction_count * ASJ_MAX_BRANCHES;
     asj_memory memory = {.allocator = w->context->memory.allocator};
     own_list *l = asj_allocate_zero(&memory, 1, sizeof *l);
-    uint32_t *of_branches = asj_allocate(&memory, junction_count, ASJ_MAX_BRANCHES * sizeof *of_branches);
+    uint32_t *of_branches = asj_allocate(&memory, branches, sizeof *of_branches);
     asj_segment *segments = asj_allocate(&memory, w->count, sizeof *segments);
     if (!l || !of_branches || !segments) {
         asj_release(&memory, l);
@@ -267,7 +290,7 @@ static asj_status make_list(work *w, size_t junction_count, own_list **made)
     memcpy(segments, w->segments, w->count * sizeof *segments);
     for (uint32_t k = 0; k < w->count; k++)
         of_branches[branch_of(&segments[k])] = k;
-    for (size_t b = 0; b < junction_count * ASJ_MAX_BRANCHES; b++) {
+    for (size_t b = 0; b < branches; b++) {
         uint32_t root = w->joined[b];
         while (root != ASJ_NO_SEGMENT && w->joined[root] != root)
             root = w->joined[root];
@@ -276,30 +299,28 @@ static asj_status make_list(work *w, size_t junction_count, own_list **made)
     l->memory = memory;
     l->segments = segments;
     l->of_branches = of_branches;
-    l->list = (asj_segment_list){segments, of_branches, w->count, (uint32_t)junction_count, {0, 0}};
+    l->list = (asj_segment_list){segments, of_branches, w->count, (uint32_t)w->junction_count, {0, 0}};
     *made = l;
     return ASJ_OK;
 }
 
-static asj_status work_on(work *w, const asj_junction *junctions, size_t count, const asj_edge *edges, size_t edge_count,
-                          own_list **made)
+static asj_status work_on(work *w, own_list **made)
 {
     asj_memory *memory = &w->context->memory;
-    w->segments = asj_allocate(memory, count, ASJ_MAX_BRANCHES * sizeof *w->segments);
-    w->joined = asj_allocate(memory, count, ASJ_MAX_BRANCHES * sizeof *w->joined);
-    w->edge_of = asj_allocate(memory, count, ASJ_MAX_BRANCHES * sizeof *w->edge_of);
-    w->asked = asj_allocate(memory, count, ASJ_MAX_BRANCHES * sizeof *w->asked);
+    const size_t branches = w->junction_count * ASJ_MAX_BRANCHES;
+    w->segments = asj_allocate(memory, branches, sizeof *w->segments);
+    w->joined = asj_allocate(memory, branches, sizeof *w->joined);
+    w->edge_of = asj_allocate(memory, branches, sizeof *w->edge_of);
+    w->asked = asj_allocate(memory, branches, sizeof *w->asked);
     if (!w->segments || !w->joined || !w->edge_of || !w->asked)
-        return asj_fail(w->context, ASJ_ERROR_MEMORY, "no memory for the branches of %zu junctions", count);
-    memset(w->joined, 0xff, count * ASJ_MAX_BRANCHES * sizeof *w->joined);
-    asj_status status = take_edges(w, junctions, count, edges, edge_count);
+        return asj_fail(w->context, ASJ_ERROR_MEMORY, "no memory for the branches of %zu junctions", w->junction_count);
+    memset(w->joined, 0xff, branches * sizeof *w->joined);
+    asj_status status = take_edges(w);
     if (status == ASJ_OK)
-        status = take_branches(w, junctions, count, edges);
-    if (status == ASJ_OK && !make_cells(w))
-        status = asj_fail(w->context, ASJ_ERROR_MEMORY, "no memory for the segments of %zu junctions", count);
+        status = take_branches(w);
     if (status == ASJ_OK)
         status = join_all(w);
-    return status == ASJ_OK ? make_list(w, count, made) : status;
+    return status == ASJ_OK ? make_list(w, made) : status;
 }
 
 asj_status asj_find_segments(asj_context *context, const asj_junction *junctions, size_t count, const asj_edge *edges,
@@ -313,15 +334,14 @@ asj_status asj_find_segments(asj_context *context, const asj_junction *junctions
     if (count > MOST_JUNCTIONS || edge_count >= UINT32_MAX)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions or %zu edges are too many", count, edge_count);
     own_list *made = NULL;
-    work w = {.context = context, .junctions = junctions};
+    work w = {.context = context, .junctions = junctions, .edges = edges, .junction_count = count, .edge_count = edge_count};
     asj_watch_start(&w.watch, context, ASJ_STAGE_DECOMPOSE);
-    const asj_status status = work_on(&w, junctions, count, edges, edge_count, &made);
+    const asj_status status = work_on(&w, &made);
     asj_release(&context->memory, w.segments);
     asj_release(&context->memory, w.joined);
     asj_release(&context->memory, w.edge_of);
     asj_release(&context->memory, w.asked);
-    if (w.cells.first)
-        asj_segment_cells_free(&context->memory, &w.cells);
+    asj_segment_cells_free(&context->memory, &w.cells);
     if (status == ASJ_OK)
         *list = &made->list;
     return status;

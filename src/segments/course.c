@@ -6,11 +6,12 @@
 
 #include <math.h>
 
+#define MOST 12.0 /* px: more would cut long edges at corners on them */
 #define ALONG 0.9 /* cosine of 26 degrees, by which even short parts are not turned */
 
-static double same_end(double length)
+double asj_same_end(double length)
 {
-    return fmax(ASJ_SAME_END, fmin(ASJ_SAME_END_MOST, ASJ_SAME_END_SHARE * length));
+    return fmax(ASJ_SAME_END, fmin(MOST, ASJ_SAME_END_SHARE * length));
 }
 
 int32_t asj_course_along(const asj_end_point longer[2], const asj_end_point shorter[2], asj_course *c)
@@ -27,8 +28,8 @@ int32_t asj_course_along(const asj_end_point longer[2], const asj_end_point shor
     c->at[0] /= c->length;
     c->at[1] /= c->length;
     const double sx = shorter[1].x - shorter[0].x, sy = shorter[1].y - shorter[0].y, of_shorter = sqrt(sx * sx + sy * sy);
-    c->same_end = same_end(c->length);
-    c->overlap = same_end(of_shorter);
+    c->same_end = asj_same_end(c->length);
+    c->overlap = asj_same_end(of_shorter);
     return fabs(c->at[1] - c->at[0]) >= ALONG * of_shorter && length2 > 0;
 }
 

@@ -10,8 +10,10 @@
 
 /* Ends of two segments are one within .. */
 #define ASJ_SAME_END 4.0        /* px, or .. */
-#define ASJ_SAME_END_SHARE 0.05 /* .. this part of the length, but no more than .. */
-#define ASJ_SAME_END_MOST 12.0  /* px */
+#define ASJ_SAME_END_SHARE 0.05 /* .. this part of the length */
+
+/* px within which they are, parts of one edge being told by them: 12 px at most. */
+double asj_same_end(double length);
 
 typedef struct asj_end_point {
     double x, y; /* px */

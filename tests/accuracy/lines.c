@@ -38,12 +38,12 @@ static const double least_once = 0.91, least_true = 0.91; /* .938 and .934 of a 
 
 typedef struct line {
     double x, y, dx, dy, length; /* px: an end, the direction, the length */
-    int is_wanted;               /* long, of contrast, alone; of found ones: true */
+    int counts;                  /* a true edge: long, of contrast, alone; one found: true */
     int at_border;               /* the far end */
 } line;
 
 typedef struct tally {
-    long wanted, has_one, has_one_only, is_whole, lines, along;
+    long wanted, has_one, has_one_only, is_whole, lines, true_ones;
     double covered, of_wanted;
 } tally;
 
@@ -96,7 +96,7 @@ static int true_lines(const synth_truth *truth, line *lines)
             int is_new = !goes_on_behind(j, branch) && count < MOST;
             for (int k = 0; k < count && is_new; k++)
                 is_new = !(lies_along(&lines[k], &l) && fabs(lines[k].length - l.length) < 1 && beside(&lines[k], l.x, l.y) < 0.01);
-            l.is_wanted = l.length >= SHORTEST && branch->weakest >= MINIMUM_STEP;
+            l.counts = l.length >= SHORTEST && branch->weakest >= MINIMUM_STEP;
             l.at_border = branch->at_border;
             if (is_new)
                 lines[count++] = l;
@@ -108,14 +108,14 @@ static int true_lines(const synth_truth *truth, line *lines)
 static void leave_out_crowded(line *lines, int count)
 {
     for (int i = 0; i < count; i++)
-        for (int k = 0; k < count && lines[i].is_wanted; k++) {
+        for (int k = 0; k < count && lines[i].counts; k++) {
             const line *l = &lines[i], *other = &lines[k];
             const double middle = along(l, other->x + other->length / 2 * other->dx, other->y + other->length / 2 * other->dy);
             const double cosine = fabs(l->dx * other->dx + l->dy * other->dy);
             if (k != i && cosine > 0.99 && middle > -other->length / 2 && middle < l->length + other->length / 2 &&
                 (beside(l, other->x, other->y) < CLEARANCE ||
                  beside(l, other->x + other->length * other->dx, other->y + other->length * other->dy) < CLEARANCE))
-                lines[i].is_wanted = 0;
+                lines[i].counts = 0;
         }
 }
 
@@ -164,7 +164,7 @@ static void judge_edge(const line *edge, const line *lines, long count, tally *s
     int whole = 0;
     for (long k = 0; k < count; k++) {
         double part[2];
-        if (!lines[k].is_wanted || !part_along(edge, &lines[k], part) || part[1] - part[0] < LEAST_PART)
+        if (!lines[k].counts || !part_along(edge, &lines[k], part) || part[1] - part[0] < LEAST_PART)
             continue;
         of_edge++;
         longest = fmax(longest, part[1] - part[0]);
@@ -181,12 +181,12 @@ static void judge_edge(const line *edge, const line *lines, long count, tally *s
 static void judge(const line *edges, int edge_count, line *lines, long count, tally *sum)
 {
     for (long k = 0; k < count; k++) {
-        lines[k].is_wanted = is_true(edges, edge_count, &lines[k]);
-        sum->along += lines[k].is_wanted;
+        lines[k].counts = is_true(edges, edge_count, &lines[k]);
+        sum->true_ones += lines[k].counts;
     }
     sum->lines += count;
     for (int i = 0; i < edge_count; i++)
-        if (edges[i].is_wanted)
+        if (edges[i].counts)
             judge_edge(&edges[i], lines, count, sum);
 }
 
@@ -282,7 +282,7 @@ static void print(const char *name, const tally *t)
 {
     printf("%-9s %6ld, true %.3f; true edges %ld: with one %.3f, with one only %.3f, whole %.3f, covered %.3f, "
            "of each that has one %.2f\n",
-           name, t->lines, (double)t->along / (double)t->lines, t->wanted, (double)t->has_one / (double)t->wanted,
+           name, t->lines, (double)t->true_ones / (double)t->lines, t->wanted, (double)t->has_one / (double)t->wanted,
            (double)t->has_one_only / (double)t->wanted, (double)t->is_whole / (double)t->wanted, t->covered / (double)t->wanted,
            t->of_wanted / (double)t->has_one);
 }
@@ -337,5 +337,5 @@ int main(int argc, char **argv)
     if (sums[2].lines > 0)
         print("others", &sums[2]);
     const double once = (double)sums[0].has_one_only / (double)sums[0].wanted;
-    return check && (once < least_once || (double)sums[0].along / (double)sums[0].lines < least_true);
+    return check && (once < least_once || (double)sums[0].true_ones / (double)sums[0].lines < least_true);
 }
