@@ -280,6 +280,9 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
     result = cli_settings_apply(&arguments->settings, "detect", arguments->common.quiet, &arguments->options, set_option);
     if (result == CLI_SUCCESS && arguments->options.octaves == 1 && cli_settings_have(&arguments->settings, "half_octaves"))
         return cli_usage_error("detect", "--half-octaves changes nothing with one octave");
+    if (result == CLI_SUCCESS && arguments->options.refinement == ASJ_REFINE_SEARCH &&
+        cli_settings_have(&arguments->settings, "complete_junctions"))
+        return cli_usage_error("detect", "--complete-junctions changes nothing with --refinement search");
     return result == CLI_SUCCESS ? check(arguments) : result;
 }
 

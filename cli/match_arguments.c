@@ -290,6 +290,9 @@ static int check_enlarging(const cli_match_arguments *arguments)
         return cli_usage_error("match", "--enlarged-shortlist changes nothing with --enlarged-reach 0");
     if (one && cli_settings_have(&arguments->detect_settings, "half_octaves"))
         return cli_usage_error("match", "--half-octaves changes nothing with one octave");
+    if (arguments->detect_options.refinement == ASJ_REFINE_SEARCH &&
+        cli_settings_have(&arguments->detect_settings, "complete_junctions"))
+        return cli_usage_error("match", "--complete-junctions changes nothing with --refinement search");
     return CLI_SUCCESS;
 }
 

@@ -115,7 +115,9 @@ typedef struct asj_detect_options {
                                    * or is none; 0 = not asked. 0 .. 45; 6; paper 0; match 0 */
     int32_t half_octaves;         /* 1 = the image is looked at half-way between two octaves, too: finds weak and soft corners more
                                    * surely, for half as much time again and 2 bytes for each pixel of the first octave. 0 */
-    int32_t reserved_integer;     /* zero */
+    int32_t complete_junctions;   /* step 5: 1 = around every junction branches are looked for that its test has missed, mostly
+                                   * edges much fainter than its others; sharp branches of coarse octaves join too. In 1.1 to 1.2
+                                   * times the time; nothing with ASJ_REFINE_SEARCH. 0 */
     double reserved[16];          /* zero */
 } asj_detect_options;
 

@@ -65,13 +65,13 @@ static asj_status run_octave(asj_detection_run *run)
         {asj_step_isotropic, ASJ_STAGE_ISOTROPIC, 0.70},   /* step 3 */
         {asj_step_guess, ASJ_STAGE_LOCATE, 0.75},
     };
-    static const step after[] = {{asj_step_ends, ASJ_STAGE_REFINE, 0.99}};
+    static const step after[] = {{asj_step_complete, ASJ_STAGE_REFINE, 0.985}, {asj_step_ends, ASJ_STAGE_REFINE, 0.99}};
     asj_status status = run_steps(run, before, sizeof before / sizeof *before, 0, 1);
     if (status == ASJ_OK)
         status = choose(run, 0.75, 0.21);
     if (status == ASJ_OK)
         status = choose_again(run);
-    return status == ASJ_OK ? run_steps(run, after, 1, 0, 1) : status;
+    return status == ASJ_OK ? run_steps(run, after, sizeof after / sizeof *after, 0, 1) : status;
 }
 
 /* From the finest to the coarsest; each takes as long as its share of all pixels. */

@@ -91,6 +91,8 @@ static const asj_option_info rows[] = {
            "a branch that ends so close (px of its octave) to a junction on its line ends at it"),
     NUMBER(REFINE, ADVANCED, end_contrast, "", 0, 0.9, 0.15, 0, 0,
            "an edge ends where it has this share of its own contrast left; 0 = where noise has it"),
+    SWITCH(REFINE, COMMON, complete_junctions, 0, 0, 0,
+           "look around every junction for branches that its test has missed"),
 };
 static const asj_option_table table = {rows, sizeof rows / sizeof *rows, sizeof(asj_detect_options)};
 

@@ -159,7 +159,7 @@ asj_status asj_detection_run_known(const asj_detection_run *run, asj_octave_know
     int32_t *cells = asj_allocate_list(&run->context->memory, count, sizeof *cells);
     if (!cells)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu cells", count);
-    *known = asj_octave_known_start(run->all, run->all_count, run->octave, run->options->minimum_opening, width, height, cells);
+    *known = asj_octave_known_start(run->all, run->all_count, run->octave, run->options, width, height, cells);
     return ASJ_OK;
 }
 

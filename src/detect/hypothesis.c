@@ -8,6 +8,7 @@
 #include <string.h>
 
 #define TURN 65536 /* of an isotropic junction's directions */
+#define JOINED_APART 20.0 /* deg */
 
 int asj_isotropic_has_opening(const asj_detect_options *options, const asj_isotropic_junction *junction)
 {
@@ -56,6 +57,27 @@ void asj_hypothesis_select(asj_hypothesis *hypothesis, const int *keep)
         if (keep[i])
             hypothesis->branches[kept++] = hypothesis->branches[i];
     hypothesis->branch_count = kept;
+}
+
+double asj_joined_apart(const asj_detect_options *options)
+{
+    return fmax(JOINED_APART, options->merge_angle) * ASJ_DEGREE;
+}
+
+int asj_hypothesis_is_free(const asj_hypothesis *hypothesis, double angle, double least)
+{
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        if (asj_angle_distance(hypothesis->branches[i].angle, angle) < least)
+            return 0;
+    return 1;
+}
+
+void asj_hypothesis_insert(asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+{
+    int32_t i = hypothesis->branch_count++;
+    for (; i > 0 && hypothesis->branches[i - 1].angle > branch->angle; i--)
+        hypothesis->branches[i] = hypothesis->branches[i - 1];
+    hypothesis->branches[i] = *branch;
 }
 
 int asj_hypothesis_has_opening(const asj_hypothesis *hypothesis, double least)

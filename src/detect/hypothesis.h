@@ -66,6 +66,7 @@ typedef struct asj_hypothesis {
     double explained;          /* share of the gradient around that a blurred corner explains (blurred_corner.c); 0 = none */
     double octave;             /* that located it: 0 = the image itself, 1/2, 1 = the image halved, .., -1 = enlarged twice */
     int32_t branch_count;      /* 0 = rejected */
+    int32_t completes;         /* complete_step.c: the junction that its only branch may be one of */
     asj_hypothesis_branch branches[ASJ_MAX_BRANCHES];
 } asj_hypothesis;
 
@@ -83,6 +84,15 @@ double asj_angle_wrap(double angle);
 
 /* Removes branches whose flag is 0, keeping the order. */
 void asj_hypothesis_select(asj_hypothesis *hypothesis, const int *keep);
+
+/* rad from any other branch to one that joins them later: 20 degrees; merge_angle, if that is more. */
+double asj_joined_apart(const asj_detect_options *options);
+
+/* Whether no branch is closer to this direction than `least` radians. */
+int asj_hypothesis_is_free(const asj_hypothesis *hypothesis, double angle, double least);
+
+/* Adds a branch, for which there is room, behind those of smaller angles. */
+void asj_hypothesis_insert(asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch);
 
 /* 1 when two branches open by at least `least` radians and at most pi - least. */
 int asj_hypothesis_has_opening(const asj_hypothesis *hypothesis, double least);

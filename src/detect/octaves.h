@@ -34,16 +34,16 @@ typedef struct asj_octave_known {
     asj_octave_grid grid;         /* of the sharp ones of `finer` */
     const asj_hypothesis *finer;  /* in pixels of the image; NULL = none */
     double octave;                /* the coarser one */
-    double minimum_opening;
+    const asj_detect_options *options;
 } asj_octave_known;
 
 /* `cells` as above, for `count`. */
-asj_octave_known asj_octave_known_start(const asj_hypothesis *finer, size_t count, double octave, double minimum_opening,
+asj_octave_known asj_octave_known_start(const asj_hypothesis *finer, size_t count, double octave, const asj_detect_options *options,
                                         int32_t width, int32_t height, int32_t *cells);
 
 /* Whether a hypothesis in pixels of the coarser octave would not survive the merge and could add nothing: one that lies at a sharp
- * finer one and has its directions only, or no soft ones else once widths are known; and a ghost, once lines are. `what`:
- * ASJ_KNOWN_... */
+ * finer one and has its directions only, or no soft ones else once widths are known (with complete_junctions sharp ones add, too);
+ * and a ghost, once lines are. `what`: ASJ_KNOWN_... */
 int asj_octave_is_known(const asj_octave_known *known, const asj_hypothesis *hypothesis, int what);
 
 #endif

@@ -25,6 +25,7 @@
 #define EARLY_OPENING 5.0
 
 #define LARGEST_OFFSET 2.0 /* px: a line that misses the junction by more belongs to something else */
+#define LARGEST_OFFSET_OF_ANOTHER 0.5 /* px: the same where the line has no say in where the junction is */
 
 /* A soft edge's end is uncertain by its width, and what a scan goes beyond a short one drowns it. So of edges wider than SOFT a
  * strip without the last SOFT_END widths is tried too; the number of tests counts all ends. Not on the image itself: there such
@@ -247,13 +248,18 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
         meet_again(context, frame, options, hypothesis);
     if (is_unsure(frame, options, hypothesis))
         hypothesis->branch_count = 0;
-    for (int32_t i = 1; i < hypothesis->branch_count; i++) {
-        asj_hypothesis_branch moved = hypothesis->branches[i];
-        int32_t j = i;
-        for (; j > 0 && hypothesis->branches[j - 1].angle > moved.angle; j--)
-            hypothesis->branches[j] = hypothesis->branches[j - 1];
-        hypothesis->branches[j] = moved;
-    }
+    const asj_hypothesis unsorted = *hypothesis;
+    hypothesis->branch_count = 0;
+    for (int32_t i = 0; i < unsorted.branch_count; i++)
+        asj_hypothesis_insert(hypothesis, &unsorted.branches[i]);
+}
+
+int asj_validate_another(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                         const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
+{
+    return judge(context, frame, options, hypothesis, branch) != NOT_AT_ALL && branch->log_nfa <= log(options->epsilon) &&
+           fabs(branch->offset) <= LARGEST_OFFSET_OF_ANOTHER &&
+           asj_hypothesis_is_free(hypothesis, branch->angle, asj_joined_apart(options));
 }
 
 void asj_validate_lengths(const asj_detect_options *options, asj_hypothesis *hypothesis)

@@ -391,6 +391,12 @@ static void whole_images_are_enlarged_by_themselves(void **state)
     result = run_cli("match", "--half-octaves", "yes", "--octaves", "1", "first.png", "second.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "--half-octaves changes nothing");
+    for (int k = 0; k < 2; k++) {
+        result = run_cli(k ? "match" : "detect", "--preset", "paper", "--complete-junctions", "yes", "first.png",
+                         k ? "second.png" : NULL, NULL);
+        expect_code(result, 2);
+        expect_in(result, result->err, "--complete-junctions changes nothing");
+    }
 }
 
 static void a_stretch_goes_with_images_alone(void **state)

@@ -138,6 +138,10 @@ static void settings(run_state *state, int quick)
     state->setting = "half_octaves=1";
     scenes(state, quick ? 1 : 3);
     asj_detect_options_init(&state->options);
+    state->options.complete_junctions = 1;
+    state->setting = "complete_junctions=1";
+    scenes(state, quick ? 1 : 3);
+    asj_detect_options_init(&state->options);
     state->setting = "default";
 }
 

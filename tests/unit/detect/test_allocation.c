@@ -41,7 +41,7 @@ static void ignore_dump(void *user, const asj_dump *dump)
 }
 
 /* From a new context every time (`fresh`), and with one that has worked and failed before. */
-static void check_detect(int32_t preset, int fresh, int for_good, int dump, int32_t half_octaves)
+static void check_detect(int32_t preset, int fresh, int for_good, int dump, int32_t more)
 {
     asj_detect_options detect_options;
     uint8_t *pixels = picture(WIDTH, HEIGHT);
@@ -51,7 +51,7 @@ static void check_detect(int32_t preset, int fresh, int for_good, int dump, int3
     int reached = 1;
     long n = 1;
     asj_detect_options_preset(&detect_options, preset);
-    detect_options.half_octaves = half_octaves;
+    detect_options.half_octaves = detect_options.complete_junctions = more;
     for (; reached && n < MOST; n++) {
         asj_detection *found = (asj_detection *)pixels;
         if (!context) {

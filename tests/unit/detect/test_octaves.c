@@ -37,16 +37,22 @@ static asj_hypothesis of_octave(double octave, double x, double y, double width)
     return h;
 }
 
-static size_t merge(asj_hypothesis *list, size_t count)
+static size_t merge_as(asj_hypothesis *list, size_t count, int32_t complete_junctions)
 {
     asj_detect_options options;
     asj_detect_options_init(&options);
     options.octaves = 16;
+    options.complete_junctions = complete_junctions;
     int32_t *cells = malloc(asj_octave_grid_cells(count, 640, 480) * sizeof *cells);
     assert_non_null(cells);
     const size_t kept = asj_octaves_merge(list, count, &options, 640, 480, cells);
     free(cells);
     return kept;
+}
+
+static size_t merge(asj_hypothesis *list, size_t count)
+{
+    return merge_as(list, count, 0);
 }
 
 static void test_range(void **state)
@@ -176,6 +182,24 @@ static void test_soft_branch_joins(void **state)
         assert_int_equal(list[0].branch_count, soft ? 3 : 2);
         if (soft)
             assert_true(list[0].branches[1].octave == 1 && list[0].branches[1].length == 40 && list[0].branches[0].octave == 0);
+    }
+}
+
+/* One that is sharp does so where junctions are completed, if its line passes the junction closely. */
+static void test_faint_branch_joins(void **state)
+{
+    static const double off[] = {0.5, 0.7, -0.5, -0.7}; /* px of the image; FAINT_OFF is 0.6 there */
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        const int complete = i < 4;
+        asj_hypothesis list[2] = {of_octave(0, 100.5, 100.5, 1), corner(50, 50, 0.5)};
+        list[1].branch_count = 3;
+        list[1].branches[2] = list[1].branches[1];
+        list[1].branches[1].angle = 0.25 * UNIT_PI;
+        list[1].branches[1].offset = off[i % 4] / 2;
+        asj_octaves_map(&list[1], 1);
+        assert_int_equal(merge_as(list, 2, complete), 1);
+        assert_int_equal(list[0].branch_count, complete && i % 2 == 0 ? 3 : 2);
     }
 }
 
@@ -413,7 +437,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_range),          cmocka_unit_test(test_map),
         cmocka_unit_test(test_finest_sharp_one_stays), cmocka_unit_test(test_soft_one_gives_way),
-        cmocka_unit_test(test_others_stay),    cmocka_unit_test(test_soft_branch_joins),
+        cmocka_unit_test(test_others_stay),    cmocka_unit_test(test_soft_branch_joins), cmocka_unit_test(test_faint_branch_joins),
         cmocka_unit_test(test_widths),         cmocka_unit_test(test_ghosts),
         cmocka_unit_test(test_soft_corners),   cmocka_unit_test(test_confirm),
         cmocka_unit_test(test_union),          cmocka_unit_test(test_half_range),
