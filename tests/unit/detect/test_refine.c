@@ -8,6 +8,8 @@
 #include "detect/search.h"
 #include "unit_test.h"
 
+#include <asj/asj.h>
+
 enum { SIZE = 121 };
 
 typedef unit_fixture fixture;
@@ -108,6 +110,49 @@ static void test_orient(void **state)
             assert_true(hypothesis.branches[b].length == sides[b]);
         }
     }
+}
+
+/* A faint panel, and a dark handle beside the farther part of one of its edges: where that edge points, in degrees off. -1: the
+ * corner is not found. */
+static double pulled_by(asj_context *context, double turn, double beside)
+{
+    enum { SIDE = 220 };
+    const double ux = cos(turn), uy = sin(turn), x = 110.3 - 45 * (ux - uy), y = 109.6 - 45 * (uy + ux);
+    asj_detection *found = NULL;
+    synth_scene scene;
+    double off = -1;
+    synth_scene_init(&scene, SIDE, SIDE, 170);
+    synth_add_rectangle(&scene, (synth_point){x, y}, 110, 90, turn, 185);
+    synth_add_rectangle(&scene, (synth_point){x + 42 * ux + (beside + 5) * uy, y + 42 * uy - (beside + 5) * ux}, 40, 5, turn, 60);
+    uint8_t *pixels = unit_picture(&scene, 0.9, 2, 1);
+    const asj_image image = unit_gray8(pixels, SIDE, SIDE);
+    assert_int_equal(asj_detect(context, &image, NULL, &found), ASJ_OK);
+    for (uint32_t i = 0; i < found->junction_count; i++) {
+        const asj_junction *j = &found->junctions[i];
+        if (hypot((double)j->x + 0.5 - x, (double)j->y + 0.5 - y) > 1.5)
+            continue;
+        for (int32_t b = 0; b < j->branch_count; b++) {
+            const double angle = unit_turn((double)j->branches[b].angle, turn) * 180 / UNIT_PI;
+            off = angle < 20 ? angle : off;
+        }
+    }
+    asj_detection_free(&found);
+    free(pixels);
+    return off;
+}
+
+/* Handles 2 to 4 px beside the edge pull lines over by up to 3 degrees: where the whole line is believed, 91 of 108. */
+static void test_pulled(void **state)
+{
+    fixture *f = *state;
+    int right = 0, all = 0;
+    for (int n = 0; n < 36; n++)
+        for (double beside = 2; beside <= 4; beside += 1, all++) {
+            const double off = pulled_by(f->context, n * UNIT_PI / 18 + 0.05, beside);
+            right += off >= 0 && off <= 1;
+        }
+    printf("of %d edges with a handle beside them %d to a degree\n", all, right);
+    assert_true(right >= all * 0.9);
 }
 
 /* ---- validation ---- */
@@ -229,6 +274,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_sector_strength, reset), cmocka_unit_test_setup(test_line_fit, reset),
+        cmocka_unit_test_setup(test_pulled, reset),
         cmocka_unit_test_setup(test_orient, reset),           cmocka_unit_test_setup(test_reject_early, reset),
         cmocka_unit_test_setup(test_good_corner, reset),      cmocka_unit_test_setup(test_dropped_branches, reset),
         cmocka_unit_test_setup(test_merge, reset),            cmocka_unit_test_setup(test_order_and_opening, reset),
