@@ -281,8 +281,8 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
     if (result == CLI_SUCCESS && arguments->options.octaves == 1 && cli_settings_have(&arguments->settings, "half_octaves"))
         return cli_usage_error("detect", "--half-octaves changes nothing with one octave");
     if (result == CLI_SUCCESS && arguments->options.refinement == ASJ_REFINE_SEARCH &&
-        cli_settings_have(&arguments->settings, "complete_junctions"))
-        return cli_usage_error("detect", "--complete-junctions changes nothing with --refinement search");
+        arguments->options.complete_junctions)
+        return cli_usage_error("detect", "--complete-junctions changes nothing with --refinement search, nor with --preset paper");
     return result == CLI_SUCCESS ? check(arguments) : result;
 }
 

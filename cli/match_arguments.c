@@ -290,9 +290,6 @@ static int check_enlarging(const cli_match_arguments *arguments)
         return cli_usage_error("match", "--enlarged-shortlist changes nothing with --enlarged-reach 0");
     if (one && cli_settings_have(&arguments->detect_settings, "half_octaves"))
         return cli_usage_error("match", "--half-octaves changes nothing with one octave");
-    if (arguments->detect_options.refinement == ASJ_REFINE_SEARCH &&
-        cli_settings_have(&arguments->detect_settings, "complete_junctions"))
-        return cli_usage_error("match", "--complete-junctions changes nothing with --refinement search");
     return CLI_SUCCESS;
 }
 
@@ -306,6 +303,9 @@ static int apply_settings(cli_match_arguments *arguments)
     int result = cli_settings_apply(&arguments->detect_settings, "match", quiet, &arguments->detect_options, set_detect_option);
     if (result == CLI_SUCCESS)
         result = cli_settings_apply(&arguments->match_settings, "match", quiet, &arguments->options, set_match_option);
+    if (result == CLI_SUCCESS && arguments->detect_options.refinement == ASJ_REFINE_SEARCH &&
+        arguments->detect_options.complete_junctions)
+        return cli_usage_error("match", "--complete-junctions changes nothing with --refinement search, nor with --preset paper");
     return result == CLI_SUCCESS ? check_enlarging(arguments) : result;
 }
 

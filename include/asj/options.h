@@ -104,7 +104,8 @@ typedef struct asj_detect_options {
                                    * as strong all along; 0 = where the scan loses it, which depends on noise. 0 .. 0.9; 0.15;
                                    * paper 0; match 0 */
     int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`, in coarse
-                                   * octaves alone or together with another one. 1; paper 0; match 0 */
+                                   * octaves alone or together with another one; and stronger edges beside it are told from it when
+                                   * its line is fitted. 1; paper 0; match 0 */
     int32_t octave_union;         /* 1 = every octave is a detector of its own and keeps what it finds, though a finer one has found
                                    * the same corner: for the matcher, which takes each corner once. 0; match 1 */
     int32_t all_meaningful_branches; /* step 3: 1 = a junction has all branches of which two alike would be a meaningful junction;
@@ -116,8 +117,8 @@ typedef struct asj_detect_options {
     int32_t half_octaves;         /* 1 = the image is looked at half-way between two octaves, too: finds weak and soft corners more
                                    * surely, for half as much time again and 2 bytes for each pixel of the first octave. 0 */
     int32_t complete_junctions;   /* step 5: 1 = around every junction branches are looked for that its test has missed, mostly
-                                   * edges much fainter than its others; sharp branches of coarse octaves join too. In 1.1 to 1.2
-                                   * times the time; nothing with ASJ_REFINE_SEARCH. 0 */
+                                   * edges much fainter than its others, up to max_branches; without octave_union sharp branches of
+                                   * coarse octaves join too. In 1.1 to 1.3 times the time; not with ASJ_REFINE_SEARCH. 0 */
     double reserved[16];          /* zero */
 } asj_detect_options;
 

@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Option complete_junctions: branches of a junction that the isotropic test has missed.
  *
- * That test asks which set of directions makes a pixel most meaningful. An edge much fainter than the other branches adds little to
- * that, and one whose line passes that pixel, which is off the corner by one or two, at some distance adds nothing. Once lines have
- * said where the corner is, a simpler question is left: does any other edge begin here? So the strip (strip.c) over LENGTH px from
- * the junction is looked at in TURNS directions. One is worth following when its NFA is nearly meaningful (its line will be
- * better), no direction within PEAK turns is more so, and no branch is near it. What follows is what is done to every other branch:
- * line, length, orientation, validation; and its line has to pass where the others meet. Where that is does not change.
+ * That test asks which set of directions makes a pixel most meaningful. An edge much fainter than the other branches adds little
+ * to that, and one whose line passes that pixel, which is off the corner by one or two, at some distance adds nothing. Once lines
+ * have said where the corner is, a simpler question is left: does any other edge begin here? So the strip (strip.c) over LENGTH
+ * px from the junction is looked at in TURNS directions. One is worth following when it is nearly meaningful, at an NFA of 1 at
+ * most (its line will be better), no direction within PEAK turns is more so, and no branch is near it. What follows is what is
+ * done to every other branch: line, length, orientation, validation; and its line has to pass where the others meet. Where that
+ * is does not change.
  *
- * Of the branches of corners in random tiles 12 % are missed without it and 5 % with it, in noise of 5 around stars of two to five
- * 7 and 1 %, in the rendered room 7 and 4 % (tests/accuracy). Neither LENGTH (20 .. 60 px) nor the offset that is allowed (.2 to
- * 1.5 px) matters much. Looked for in a coarser octave than the junction's own, four in five would be false: there what lies some
- * pixels beside a fine corner seems to begin at it. */
+ * Of the branches of corners in random tiles 12 % are missed without it and 5 % with it, in noise of 5 around stars of two to
+ * five 7 and 1 %, in the rendered room 7 and 4 % (tests/accuracy). Neither LENGTH (20 .. 60 px) nor the offset that is allowed
+ * (.2 to 1.5 px) matters much. Looked for in a coarser octave than the junction's own, four in five would be false: there what
+ * lies some pixels beside a fine corner seems to begin at it. */
 #include "complete.h"
 #include "null_model.h"
 #include "strip.h"
@@ -27,7 +28,7 @@
 #define SLACK 6.0     /* natural logarithm of a number of false alarms: as in validate.c's EARLY_LOG_NFA */
 #define FIRST_LENGTH 20.0 /* px of the branch where its line is looked for first */
 
-/* -ln NFA of the strip in each direction; 0 near branches. */
+/* -ln NFA of the strip in each direction; 0 near branches, and of what noise would have in every image. */
 static void look_around(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                         const asj_hypothesis *hypothesis, double meaning[TURNS])
 {
@@ -49,31 +50,47 @@ static int is_peak(const double meaning[TURNS], int32_t i)
     return 1;
 }
 
+/* The list stays sorted, the most meaningful first, and drops the last one when it is full. */
+static void list_peak(double angle, double meaning, asj_missed *missed)
+{
+    int32_t i = missed->count < ASJ_MAX_BRANCHES ? missed->count++ : ASJ_MAX_BRANCHES - 1;
+    if (i == ASJ_MAX_BRANCHES - 1 && missed->meaning[i] >= meaning)
+        return;
+    for (; i > 0 && missed->meaning[i - 1] < meaning; i--) {
+        missed->angles[i] = missed->angles[i - 1];
+        missed->meaning[i] = missed->meaning[i - 1];
+    }
+    missed->angles[i] = angle;
+    missed->meaning[i] = meaning;
+}
+
 void asj_complete_look(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                        const asj_hypothesis *hypothesis, asj_missed *missed)
 {
     double meaning[TURNS];
     const double least = -log(options->epsilon) - SLACK;
-    missed->count = 0;
-    if (hypothesis->branch_count == 0)
+    memset(missed, 0, sizeof *missed);
+    if (hypothesis->branch_count == 0 || hypothesis->branch_count >= options->max_branches)
         return;
     look_around(context, frame, options, hypothesis, meaning);
-    for (int32_t i = 0; i < TURNS && hypothesis->branch_count + missed->count < ASJ_MAX_BRANCHES; i++)
+    for (int32_t i = 0; i < TURNS; i++)
         if (meaning[i] > 0 && meaning[i] >= least && is_peak(meaning, i))
-            missed->angles[missed->count++] = ASJ_TWO_PI * i / TURNS;
+            list_peak(ASJ_TWO_PI * i / TURNS, meaning[i], missed);
 }
 
-void asj_complete_start(const asj_hypothesis *hypothesis, double angle, asj_hypothesis *branch_only)
+void asj_complete_start(const asj_hypothesis *hypothesis, const asj_missed *missed, int32_t number, asj_hypothesis *branch_only)
 {
     const double turn = ASJ_TWO_PI / TURNS;
     *branch_only = *hypothesis;
     memset(branch_only->branches, 0, sizeof branch_only->branches);
     branch_only->branch_count = 1;
-    branch_only->branches[0].angle = angle;
+    branch_only->branches[0].angle = missed->angles[number];
+    branch_only->branches[0].log_nfa = -missed->meaning[number];
     branch_only->branches[0].length = FIRST_LENGTH;
     branch_only->branches[0].angle_variance = turn * turn / 12;
     branch_only->branches[0].offset_variance = 1;
     branch_only->branches[0].octave = hypothesis->octave;
+    branch_only->branches[0].is_another = 1;
 }
 
 /* As the isotropic test has it: of the pixels along the branch as far as that looks, standard deviations above the null model. */
@@ -89,7 +106,7 @@ void asj_complete_add(const asj_context *context, const asj_frame *frame, const 
                       const asj_hypothesis *branch_only, asj_hypothesis *hypothesis)
 {
     asj_hypothesis_branch branch = branch_only->branches[0];
-    if (hypothesis->branch_count >= ASJ_MAX_BRANCHES || !asj_validate_another(context, frame, options, hypothesis, &branch))
+    if (hypothesis->branch_count >= options->max_branches || !asj_validate_another(context, frame, options, hypothesis, &branch))
         return;
     branch.strength = strength_of(context, frame, options, hypothesis, &branch);
     asj_hypothesis_insert(hypothesis, &branch);

@@ -11,18 +11,20 @@ static inline int asj_complete_is_asked(const asj_detect_options *options)
     return options->complete_junctions && options->refinement == ASJ_REFINE_LINE_FIT;
 }
 
-/* Directions at one junction. */
+/* Directions at one junction, the most meaningful first. */
 typedef struct asj_missed {
     int32_t count;
-    double angles[ASJ_MAX_BRANCHES]; /* rad */
+    double angles[ASJ_MAX_BRANCHES];  /* rad */
+    double meaning[ASJ_MAX_BRANCHES]; /* -ln of the number of false alarms of the strip that way */
 } asj_missed;
 
-/* At most as many as the junction has room for. */
+/* None when the junction has max_branches already. */
 void asj_complete_look(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                        const asj_hypothesis *hypothesis, asj_missed *missed);
 
-/* A hypothesis at that junction with nothing but a branch that way, whose line and length are not known yet. */
-void asj_complete_start(const asj_hypothesis *hypothesis, double angle, asj_hypothesis *branch_only);
+/* A hypothesis at that junction with nothing but a branch that way: its log_nfa is that of the strip, its length only says how
+ * far to look for its line first. */
+void asj_complete_start(const asj_hypothesis *hypothesis, const asj_missed *missed, int32_t number, asj_hypothesis *branch_only);
 
 /* Adds the branch of `branch_only` when its line, length and orientation are known, if the junction has it (validate.c). */
 void asj_complete_add(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,

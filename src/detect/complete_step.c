@@ -17,12 +17,14 @@ typedef struct job {
     asj_watch *watch;
 } job;
 
-/* The scan has sorted them by place. */
+/* The most meaningful of a junction first; the scan has sorted them by place. */
 static int by_junction(const void *a, const void *b)
 {
     const asj_hypothesis *p = a, *q = b;
     if (p->completes != q->completes)
         return p->completes < q->completes ? -1 : 1;
+    if (p->branches[0].log_nfa != q->branches[0].log_nfa)
+        return p->branches[0].log_nfa < q->branches[0].log_nfa ? -1 : 1;
     return p->branches[0].angle < q->branches[0].angle ? -1 : p->branches[0].angle > q->branches[0].angle;
 }
 
@@ -56,6 +58,8 @@ static void refine(const asj_detection_run *run, asj_hypothesis *branch_only)
 static asj_status follow(asj_detection_run *branches)
 {
     asj_status status = asj_step_orient(branches); /* near the junction */
+    for (size_t i = 0; i < branches->hypothesis_count; i++)
+        branches->hypotheses[i].branches[0].length = 0;
     if (status == ASJ_OK)
         status = asj_step_scan(branches);
     if (status == ASJ_OK)
@@ -70,7 +74,7 @@ static void start_all(const asj_detection_run *run, const asj_missed *missed, as
     size_t count = 0;
     for (size_t i = 0; i < run->hypothesis_count; i++)
         for (int32_t k = 0; k < missed[i].count; k++) {
-            asj_complete_start(&run->hypotheses[i], missed[i].angles[k], &list[count]);
+            asj_complete_start(&run->hypotheses[i], &missed[i], k, &list[count]);
             list[count++].completes = (int32_t)i;
         }
 }

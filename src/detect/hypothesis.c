@@ -8,7 +8,6 @@
 #include <string.h>
 
 #define TURN 65536 /* of an isotropic junction's directions */
-#define JOINED_APART 20.0 /* deg */
 
 int asj_isotropic_has_opening(const asj_detect_options *options, const asj_isotropic_junction *junction)
 {
@@ -61,7 +60,7 @@ void asj_hypothesis_select(asj_hypothesis *hypothesis, const int *keep)
 
 double asj_joined_apart(const asj_detect_options *options)
 {
-    return fmax(JOINED_APART, options->merge_angle) * ASJ_DEGREE;
+    return fmax(ASJ_JOINED_APART, options->merge_angle * ASJ_DEGREE);
 }
 
 int asj_hypothesis_is_free(const asj_hypothesis *hypothesis, double angle, double least)

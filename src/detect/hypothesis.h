@@ -4,6 +4,7 @@
 #define ASJ_SRC_HYPOTHESIS_H
 
 #include "isotropic.h"
+#include "core/angle.h"
 
 #define ASJ_MAX_OCTAVES 16 /* numbers of octaves are below this, */
 #define ASJ_FIRST_OCTAVE (-1) /* and not below this: the image enlarged twice */
@@ -53,6 +54,7 @@ typedef struct asj_hypothesis_branch {
     double octave;           /* that found it */
     double end_variance;     /* px^2 of the end along the branch; 0 = not known */
     int32_t end;             /* ASJ_BRANCH_END_... */
+    int32_t is_another;      /* 1 = found when its junction was known (complete.c): it has no say in where that is */
     int32_t evidence;        /* where what its strip says stands in asj_detection_run.evidence, once that is measured */
 } asj_hypothesis_branch;
 
@@ -85,7 +87,8 @@ double asj_angle_wrap(double angle);
 /* Removes branches whose flag is 0, keeping the order. */
 void asj_hypothesis_select(asj_hypothesis *hypothesis, const int *keep);
 
-/* rad from any other branch to one that joins them later: 20 degrees; merge_angle, if that is more. */
+/* From any other branch to one that joins them later; merge_angle, if that is more. */
+#define ASJ_JOINED_APART (20 * ASJ_DEGREE)
 double asj_joined_apart(const asj_detect_options *options);
 
 /* Whether no branch is closer to this direction than `least` radians. */

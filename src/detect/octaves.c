@@ -94,7 +94,7 @@ static double softness(const asj_hypothesis *hypothesis)
 {
     double first = HUGE_VAL, second = HUGE_VAL;
     for (int32_t i = 0; i < hypothesis->branch_count; i++) {
-        const double width = hypothesis->branches[i].width;
+        const double width = hypothesis->branches[i].is_another ? HUGE_VAL : hypothesis->branches[i].width;
         second = width < first ? first : fmin(second, width);
         first = fmin(first, width);
     }
@@ -117,6 +117,17 @@ static int by_preference(const void *a, const void *b)
     return p->x < q->x ? -1 : p->x > q->x;
 }
 
+/* Whether those of its branches do that said where it is. */
+static int makes_junction(const asj_hypothesis *hypothesis, double minimum_opening)
+{
+    asj_hypothesis first = *hypothesis;
+    int keep[ASJ_MAX_BRANCHES];
+    for (int32_t b = 0; b < first.branch_count; b++)
+        keep[b] = !first.branches[b].is_another;
+    asj_hypothesis_select(&first, keep);
+    return asj_hypothesis_has_opening(&first, minimum_opening * ASJ_DEGREE);
+}
+
 static size_t drop_wide(asj_hypothesis *hypotheses, size_t count, double minimum_opening)
 {
     size_t kept = 0;
@@ -125,7 +136,7 @@ static size_t drop_wide(asj_hypothesis *hypotheses, size_t count, double minimum
         for (int32_t b = 0; b < hypotheses[i].branch_count; b++)
             keep[b] = hypotheses[i].branches[b].width <= WIDEST;
         asj_hypothesis_select(&hypotheses[i], keep);
-        if (asj_hypothesis_has_opening(&hypotheses[i], minimum_opening * ASJ_DEGREE))
+        if (makes_junction(&hypotheses[i], minimum_opening))
             hypotheses[kept++] = hypotheses[i];
     }
     return kept;
@@ -209,12 +220,12 @@ size_t asj_octaves_merge(asj_hypothesis *hypotheses, size_t count, const asj_det
 }
 
 /* Whether join() would take no branch. `soft_only`: it takes soft ones, and widths are known. */
-static int adds_nothing(const asj_hypothesis *hypothesis, int soft_only, double apart, const asj_hypothesis *finer)
+static int adds_nothing(const asj_hypothesis *hypothesis, int soft_only, const asj_hypothesis *finer)
 {
     const double relative = asj_octave_scale(hypothesis->octave - finer->octave);
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         if ((!soft_only || hypothesis->branches[i].width * relative > SHARP) &&
-            asj_hypothesis_is_free(finer, hypothesis->branches[i].angle, apart))
+            asj_hypothesis_is_free(finer, hypothesis->branches[i].angle, ASJ_JOINED_APART))
             return 0;
     return 1;
 }
@@ -223,13 +234,13 @@ static int is_at_finer(const asj_octave_known *known, const asj_hypothesis *hypo
 {
     const asj_octave_grid *grid = &known->grid;
     const asj_hypothesis *finer = known->finer;
-    const double apart = asj_joined_apart(known->options), reach = NEAR * asj_octave_scale(hypothesis->octave);
+    const double reach = NEAR * asj_octave_scale(hypothesis->octave);
     const asj_octave_cells w = asj_octave_grid_around(grid, hypothesis, reach);
     for (int32_t row = w.top; row <= w.bottom; row++)
         for (int32_t column = w.left; column <= w.right; column++)
             for (int32_t i = grid->heads[row * grid->columns + column]; i >= 0; i = grid->next[i])
                 if (hypot(finer[i].x - hypothesis->x, finer[i].y - hypothesis->y) <= reach &&
-                    share_direction(hypothesis, &finer[i]) && adds_nothing(hypothesis, soft_only, apart, &finer[i]))
+                    share_direction(hypothesis, &finer[i]) && adds_nothing(hypothesis, soft_only, &finer[i]))
                     return 1;
     return 0;
 }

@@ -21,10 +21,11 @@
 #define BENT 3.0       /* standard uncertainties */
 
 /* A stronger edge a few px beside the farther part of one pulls its line over (the handles of a cupboard those of its panels, by
- * 2.7 degrees), and the scan then follows that. What is fitted over HELD_PART alone leaves that line, at either end, by PULLED px
- * and PULLED_SURELY standard uncertainties then. Rendered rooms: lines that are true .934 -> .956; nine tenths of the corners
- * within .34 px for .45, of the orientations within .58 degrees for .68. With 5 in place of 7 lines are .959, but by the paper's
- * criterion fewer junctions repeat where photographs have arcs and cloth. */
+ * 2.7 degrees). What is fitted over HELD_PART alone leaves that line, at either end, by PULLED px and by PULLED_SURELY times the
+ * standard uncertainty of where it passes the junction then. The length stays that of the scan along the other line. Rendered
+ * rooms: lines that are true .934 -> .956; nine tenths of the corners within .34 px for .45, of the orientations within .58
+ * degrees for .68. With 5 in place of 7 lines are .959, but by the paper's criterion fewer junctions repeat where photographs
+ * have arcs and cloth. */
 #define HELD_PART 40.0     /* px: as long as an angle needs to be sure to half a degree, and .. */
 #define HELD_FROM 50.0     /* .. of a part longer than this, else it is most of it */
 #define PULLED 0.75        /* px */

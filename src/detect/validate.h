@@ -15,8 +15,8 @@ void asj_reject_early(const asj_context *context, const asj_frame *frame, const 
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                   asj_hypothesis *hypothesis);
 
-/* Whether a validated junction has this branch, too: one that would be reported by itself, passes the junction, and points
- * elsewhere than its others. Sets the branch's number of false alarms. */
+/* Whether a validated junction has this branch, too: one that is beyond doubt, passes the junction, and points elsewhere than its
+ * others. Sets the branch's number of false alarms. */
 int asj_validate_another(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch);
 
