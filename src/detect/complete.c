@@ -10,9 +10,10 @@
  * is does not change.
  *
  * Of the branches of corners in random tiles 12 % are missed without it and 5 % with it, in noise of 5 around stars of two to
- * five 7 and 1 %, in the rendered room 7 and 4 % (tests/accuracy). Neither LENGTH (20 .. 60 px) nor the offset that is allowed
- * (.2 to 1.5 px) matters much. Looked for in a coarser octave than the junction's own, four in five would be false: there what
- * lies some pixels beside a fine corner seems to begin at it. */
+ * five 7 and 1 %, in the rendered room 7 and 4 % (tests/accuracy). LENGTH may be 30 to 60 px and the offset that is allowed .35 to
+ * 1.5 px without changing that by more than half a percent; with 20 px two in five of what is found are missed again. Looked for
+ * one octave coarser than the junction's own, one in five would be false, two octaves and more four in five: there what lies some
+ * pixels beside a fine corner seems to begin at it. */
 #include "complete.h"
 #include "null_model.h"
 #include "strip.h"
@@ -51,17 +52,14 @@ static int is_peak(const double meaning[TURNS], int32_t i)
 }
 
 /* The list stays sorted, the most meaningful first, and drops the last one when it is full. */
-static void list_peak(double angle, double meaning, asj_missed *missed)
+static void list_peak(asj_missed_direction peak, asj_missed *missed)
 {
     int32_t i = missed->count < ASJ_MAX_BRANCHES ? missed->count++ : ASJ_MAX_BRANCHES - 1;
-    if (i == ASJ_MAX_BRANCHES - 1 && missed->meaning[i] >= meaning)
+    if (i == ASJ_MAX_BRANCHES - 1 && missed->list[i].meaning >= peak.meaning)
         return;
-    for (; i > 0 && missed->meaning[i - 1] < meaning; i--) {
-        missed->angles[i] = missed->angles[i - 1];
-        missed->meaning[i] = missed->meaning[i - 1];
-    }
-    missed->angles[i] = angle;
-    missed->meaning[i] = meaning;
+    for (; i > 0 && missed->list[i - 1].meaning < peak.meaning; i--)
+        missed->list[i] = missed->list[i - 1];
+    missed->list[i] = peak;
 }
 
 void asj_complete_look(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
@@ -75,17 +73,17 @@ void asj_complete_look(const asj_context *context, const asj_frame *frame, const
     look_around(context, frame, options, hypothesis, meaning);
     for (int32_t i = 0; i < TURNS; i++)
         if (meaning[i] > 0 && meaning[i] >= least && is_peak(meaning, i))
-            list_peak(ASJ_TWO_PI * i / TURNS, meaning[i], missed);
+            list_peak((asj_missed_direction){ASJ_TWO_PI * i / TURNS, meaning[i]}, missed);
 }
 
-void asj_complete_start(const asj_hypothesis *hypothesis, const asj_missed *missed, int32_t number, asj_hypothesis *branch_only)
+void asj_complete_start(const asj_hypothesis *hypothesis, const asj_missed_direction *direction, asj_hypothesis *branch_only)
 {
     const double turn = ASJ_TWO_PI / TURNS;
     *branch_only = *hypothesis;
     memset(branch_only->branches, 0, sizeof branch_only->branches);
     branch_only->branch_count = 1;
-    branch_only->branches[0].angle = missed->angles[number];
-    branch_only->branches[0].log_nfa = -missed->meaning[number];
+    branch_only->branches[0].angle = direction->angle;
+    branch_only->branches[0].log_nfa = -direction->meaning;
     branch_only->branches[0].length = FIRST_LENGTH;
     branch_only->branches[0].angle_variance = turn * turn / 12;
     branch_only->branches[0].offset_variance = 1;

@@ -11,11 +11,15 @@ static inline int asj_complete_is_asked(const asj_detect_options *options)
     return options->complete_junctions && options->refinement == ASJ_REFINE_LINE_FIT;
 }
 
-/* Directions at one junction, the most meaningful first. */
+typedef struct asj_missed_direction {
+    double angle;   /* rad */
+    double meaning; /* -ln of the number of false alarms of the strip that way */
+} asj_missed_direction;
+
+/* At one junction, the most meaningful first. */
 typedef struct asj_missed {
     int32_t count;
-    double angles[ASJ_MAX_BRANCHES];  /* rad */
-    double meaning[ASJ_MAX_BRANCHES]; /* -ln of the number of false alarms of the strip that way */
+    asj_missed_direction list[ASJ_MAX_BRANCHES];
 } asj_missed;
 
 /* None when the junction has max_branches already. */
@@ -24,7 +28,7 @@ void asj_complete_look(const asj_context *context, const asj_frame *frame, const
 
 /* A hypothesis at that junction with nothing but a branch that way: its log_nfa is that of the strip, its length only says how
  * far to look for its line first. */
-void asj_complete_start(const asj_hypothesis *hypothesis, const asj_missed *missed, int32_t number, asj_hypothesis *branch_only);
+void asj_complete_start(const asj_hypothesis *hypothesis, const asj_missed_direction *direction, asj_hypothesis *branch_only);
 
 /* Adds the branch of `branch_only` when its line, length and orientation are known, if the junction has it (validate.c). */
 void asj_complete_add(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,

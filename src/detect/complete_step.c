@@ -2,8 +2,6 @@
 /* Option complete_junctions, over an image: the directions that are worth following become hypotheses of one branch each, which
  * take the same steps as the branches of junctions have taken. */
 #include "complete.h"
-#include "edge_width.h"
-#include "refine.h"
 #include "steps.h"
 #include "core/threads.h"
 #include "core/watch.h"
@@ -47,14 +45,7 @@ static asj_status look_at_all(const asj_detection_run *run, asj_missed *missed)
     return asj_watch_end(&watch);
 }
 
-static void refine(const asj_detection_run *run, asj_hypothesis *branch_only)
-{
-    if (run->frame->octaves > 1 || asj_detection_run_is_coarse(run)) /* as in refine_step.c */
-        asj_edge_widths(run->frame, branch_only);
-    asj_refine(run->context, run->frame, run->options, branch_only);
-}
-
-/* The steps of detect.c. */
+/* The steps of detect.c; a length that is not 0 stands for one that a scan has found. */
 static asj_status follow(asj_detection_run *branches)
 {
     asj_status status = asj_step_orient(branches); /* near the junction */
@@ -66,7 +57,7 @@ static asj_status follow(asj_detection_run *branches)
         status = asj_step_orient(branches);
     if (status == ASJ_OK)
         status = asj_step_scan(branches);
-    return status == ASJ_OK ? asj_detection_run_each(branches, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, refine) : status;
+    return status == ASJ_OK ? asj_detection_run_each(branches, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, asj_step_fit_lines) : status;
 }
 
 static void start_all(const asj_detection_run *run, const asj_missed *missed, asj_hypothesis *list)
@@ -74,7 +65,7 @@ static void start_all(const asj_detection_run *run, const asj_missed *missed, as
     size_t count = 0;
     for (size_t i = 0; i < run->hypothesis_count; i++)
         for (int32_t k = 0; k < missed[i].count; k++) {
-            asj_complete_start(&run->hypotheses[i], &missed[i], k, &list[count]);
+            asj_complete_start(&run->hypotheses[i], &missed[i].list[k], &list[count]);
             list[count++].completes = (int32_t)i;
         }
 }

@@ -43,7 +43,7 @@
 #define NEAR 2.5                  /* px of the coarser octave */
 #define SAME_DIRECTION 0.3        /* rad */
 #define JOINED_OFF 1.5            /* px of the coarser octave: the line of a soft branch passes the junction at most so far away */
-#define FAINT_OFF 0.3             /* the same of a sharp one: of 118 that join others of 30 rooms 107 are left, all of them true */
+#define FAINT_OFF 0.3             /* the same of a sharp one: of 138 that 1.5 has join in 30 rooms 107 are left, hardly any false */
 
 /* How many there are. */
 static int32_t count_octaves(int32_t width, int32_t height)
@@ -117,7 +117,7 @@ static int by_preference(const void *a, const void *b)
     return p->x < q->x ? -1 : p->x > q->x;
 }
 
-/* Whether those of its branches do that said where it is. */
+/* Whether the branches that said where it is make a junction. */
 static int makes_junction(const asj_hypothesis *hypothesis, double minimum_opening)
 {
     asj_hypothesis first = *hypothesis;
@@ -174,13 +174,12 @@ static int32_t find_same(const asj_octave_grid *grid, const asj_hypothesis *hypo
     return found;
 }
 
-/* Whether a branch of a coarser octave, whose line passes the junction `offset` px of the image away, may be one of it. */
-static int may_join(const asj_hypothesis_branch *branch, double offset, const asj_detect_options *options,
-                    const asj_hypothesis *hypothesis)
+/* Whether a branch of a coarser octave, whose offset is that from the junction, may be one of it. */
+static int may_join(const asj_hypothesis_branch *branch, const asj_detect_options *options, const asj_hypothesis *hypothesis)
 {
     const double scale = asj_octave_scale(branch->octave);
     const int soft = branch->width * scale > SHARP * asj_octave_scale(hypothesis->octave);
-    return fabs(offset) <= (soft ? JOINED_OFF : FAINT_OFF) * scale && (soft || asj_complete_is_asked(options));
+    return fabs(branch->offset) <= (soft ? JOINED_OFF : FAINT_OFF) * scale && (soft || asj_complete_is_asked(options));
 }
 
 /* Adds the branches of a coarser octave that are too soft for the octave of `hypothesis`, or too faint. */
@@ -192,7 +191,7 @@ static void join(const asj_hypothesis *coarse, const asj_detect_options *options
         const double ux = cos(branch.angle), uy = sin(branch.angle);
         branch.offset -= dy * ux - dx * uy;
         branch.length -= dx * ux + dy * uy;
-        if (may_join(&branch, branch.offset, options, hypothesis) && branch.length > 0 &&
+        if (may_join(&branch, options, hypothesis) && branch.length > 0 &&
             asj_hypothesis_is_free(hypothesis, branch.angle, asj_joined_apart(options)))
             asj_hypothesis_insert(hypothesis, &branch);
     }

@@ -26,7 +26,7 @@
  * rooms: lines that are true .934 -> .956; nine tenths of the corners within .34 px for .45, of the orientations within .58
  * degrees for .68. With 5 in place of 7 lines are .959, but by the paper's criterion fewer junctions repeat where photographs
  * have arcs and cloth. */
-#define HELD_PART 40.0     /* px: as long as an angle needs to be sure to half a degree, and .. */
+#define HELD_PART 40.0     /* px (35 does as well), .. */
 #define HELD_FROM 50.0     /* .. of a part longer than this, else it is most of it */
 #define PULLED 0.75        /* px */
 #define PULLED_SURELY 7.0

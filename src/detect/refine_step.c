@@ -24,11 +24,16 @@ asj_status asj_step_orient(asj_detection_run *run)
     return asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, orient);
 }
 
-static void refine(const asj_detection_run *run, asj_hypothesis *hypothesis)
+void asj_step_fit_lines(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
     if (run->frame->octaves > 1 || asj_detection_run_is_coarse(run)) /* soft edges are looked for: how soft? */
         asj_edge_widths(run->frame, hypothesis);
     asj_refine(run->context, run->frame, run->options, hypothesis);
+}
+
+static void refine(const asj_detection_run *run, asj_hypothesis *hypothesis)
+{
+    asj_step_fit_lines(run, hypothesis);
     if (asj_blurred_corner_is_sure(hypothesis))
         asj_ends_of_short(run->frame, run->options, hypothesis);
     asj_validate(run->context, run->frame, run->options, hypothesis);

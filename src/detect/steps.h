@@ -19,6 +19,7 @@ asj_status asj_step_scan(asj_detection_run *run);       /* step 4 (scan_step.c):
 asj_status asj_step_orient(asj_detection_run *run);     /* step 5 (refine_step.c): orientations, to scan along again */
 asj_status asj_step_search(asj_detection_run *run);     /* the same as in the paper (search_step.c), with their lengths */
 asj_status asj_step_refine(asj_detection_run *run);     /* step 5 (refine_step.c): orientations, location, validation */
+void asj_step_fit_lines(const asj_detection_run *run, asj_hypothesis *hypothesis); /* refine_step.c: of one, without validation */
 asj_status asj_step_complete(asj_detection_run *run);   /* complete_step.c: branches that junctions lack, if asked for */
 asj_status asj_step_ends(asj_detection_run *run);       /* ends_step.c: what is at the ends of branches, evidence along them */
 asj_status asj_step_snap(asj_detection_run *run);       /* ends_step.c: ends moved onto junctions */

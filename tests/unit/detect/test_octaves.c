@@ -156,6 +156,22 @@ static void test_soft_one_gives_way(void **state)
     assert_int_equal(merge(&wide, 1), 0);  /* a gradient of light */
 }
 
+/* A sharp branch that was found when the junction was known does not make it sharp. */
+static void test_another_has_no_say(void **state)
+{
+    (void)state;
+    for (int is_another = 0; is_another < 2; is_another++) {
+        asj_hypothesis list[2] = {of_octave(0, 101, 101, 2.0), of_octave(1, 50, 50, 1.0)};
+        list[0].branches[1].width = 0.5;
+        list[0].branches[2] = list[0].branches[1];
+        list[0].branches[2].angle = UNIT_PI;
+        list[0].branches[2].is_another = is_another;
+        list[0].branch_count = 3;
+        assert_int_equal(merge(list, 2), 1);
+        assert_int_equal(list[0].octave, is_another);
+    }
+}
+
 static void test_others_stay(void **state)
 {
     asj_hypothesis far[2] = {of_octave(0, 101, 101, 1), of_octave(1, 53.5, 50, 1)}; /* 6.5 px = 3.25 of the coarser */
@@ -437,7 +453,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_range),          cmocka_unit_test(test_map),
         cmocka_unit_test(test_finest_sharp_one_stays), cmocka_unit_test(test_soft_one_gives_way),
-        cmocka_unit_test(test_others_stay),    cmocka_unit_test(test_soft_branch_joins), cmocka_unit_test(test_faint_branch_joins),
+        cmocka_unit_test(test_another_has_no_say), cmocka_unit_test(test_others_stay),
+        cmocka_unit_test(test_soft_branch_joins), cmocka_unit_test(test_faint_branch_joins),
         cmocka_unit_test(test_widths),         cmocka_unit_test(test_ghosts),
         cmocka_unit_test(test_soft_corners),   cmocka_unit_test(test_confirm),
         cmocka_unit_test(test_union),          cmocka_unit_test(test_half_range),
