@@ -186,7 +186,7 @@ on_machines() {
 
 more_checks() {
     step style sh "$root/scripts/style.sh"
-    step fuzzers-begin start_fuzzers 30 # beside all that follows
+    step fuzzers-begin start_fuzzers 15 # beside all that follows
     step python python_package
     step sanitizers with_sanitizers
     step fewer-parts fewer_parts
