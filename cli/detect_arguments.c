@@ -80,7 +80,7 @@ static const cli_option plot_options[] = {
 
 static const cli_option preset_options[] = {
     {PRESET, 0, "preset", "default|paper|match",
-     "start from these values of the options below, wherever this stands: our recommendation, the paper to the letter, or what "
+     "start from these values of the options below, wherever this stands: our recommendation, the paper's way, or what "
      "'asj-cli match' detects: weaker junctions too (the default for asjf; without coarse octaves for asj, which cannot "
      "tell them)"},
     {FOR, 0, "for", "matching", "the same as --preset match"},
@@ -275,11 +275,15 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
     arguments->image_count = (size_t)(argc - first);
     choose_preset(arguments);
     asj_detect_options_preset(&arguments->options, arguments->preset);
-    if (arguments->options.octave_union && strcmp(cli_detect_extension(arguments), "asj") == 0)
-        arguments->options.octaves = 1; /* the file does not say octaves, and the matcher must know which junctions are coarse */
+    /* the file does not say octaves, and the matcher must know which junctions are coarse */
+    const int without_octaves = arguments->options.octave_union && (arguments->output || arguments->out_dir) &&
+                                strcmp(cli_detect_extension(arguments), "asj") == 0;
+    if (without_octaves)
+        arguments->options.octaves = 1;
     result = cli_settings_apply(&arguments->settings, "detect", arguments->common.quiet, &arguments->options, set_option);
     if (result == CLI_SUCCESS && arguments->options.octaves == 1 && cli_settings_have(&arguments->settings, "half_octaves"))
-        return cli_usage_error("detect", "--half-octaves changes nothing with one octave");
+        return cli_usage_error("detect", "--half-octaves changes nothing with one octave%s",
+                               without_octaves ? ", and an .asj file of --preset match has one: write json" : "");
     if (result == CLI_SUCCESS && arguments->options.refinement == ASJ_REFINE_SEARCH &&
         arguments->options.complete_junctions)
         return cli_usage_error("detect", "--complete-junctions changes nothing with --refinement search, nor with --preset paper");

@@ -232,14 +232,17 @@ static void print_hint(const run *r)
                  corners == 1 ? "" : "s");
     else if (status == ASJ_GEOMETRY_NOT_ASKED)
         cli_note("hint: matches need corners that both show, from not too different sides; for views far apart try "
-                 "--geometry auto, with --camera1 and --camera2 or --focal where they are known");
+                 "%s--geometry auto, with --camera1 and --camera2 or --focal where they are known",
+                 r->arguments->look && r->arguments->stretch.x > 0 ? "it without --stretch, or " : "");
     else if (status == ASJ_GEOMETRY_AMBIGUOUS)
         cli_note("hint: several geometries explain the views as well: things that repeat");
     else if (status == ASJ_GEOMETRY_DEGENERATE)
         cli_note("hint: what matches leaves the motion open: few of them, a plane, or a camera that only turned");
     else if (status != ASJ_GEOMETRY_ACCEPTED)
         cli_note("hint: nothing in common stands out from chance (geometry: %s)%s", asj_geometry_status_name(status),
-                 without_focal(&r->geometry) ? "; cameras or --focal estimate may help" : "");
+                 without_focal(&r->geometry)      ? "; cameras or --focal estimate may help"
+                 : r->geometry.find_focal ? "; glancing angles are tried without --focal estimate only"
+                                          : "");
 }
 
 static void print_times(const run *r, double write_ms)

@@ -89,8 +89,13 @@ for view in 1 2; do
 done
 [ "$photographs" != 0 ] || set -- out/room-1.png out/room-2.png
 
+seen=
 for image in "$@"; do
     result_of "$image"
+    case $seen in
+    *"|$result|"*) fail "$image: another image has its name, and so would its results in $out/" ;;
+    esac
+    seen="$seen|$result|"
     rm -f "$result.csv" "$result.plot.png"
 done
 say 'Running build/cli/asj-cli detect --out-dir out --format csv --plot png IMAGE...'

@@ -80,7 +80,7 @@ ASJ_API asj_status asj_detect_region(asj_context *context, const asj_image *imag
 
 /* Does ahead what the first asj_detect() with these options and an image of this size would do once: makes tables, allocates,
  * compiles the kernels of the device. It detects the junctions of a test picture of that size, so it takes as long as that.
- * `options` NULL = preset `default`. Never needed; errors as asj_detect(). */
+ * `options` NULL = preset `default`. Never needed; errors and threads as asj_detect(). */
 ASJ_API asj_status asj_prepare(asj_context *context, const asj_detect_options *options, int32_t width, int32_t height);
 
 /* Frees a result and sets the pointer to NULL. NULL and a pointer to NULL are fine. */

@@ -32,7 +32,7 @@ typedef struct asj_features asj_features;
  *                  recorded, as the others are. NULL = preset `default`
  * features         on success *features belongs to the caller until asj_features_free()
  *
- * The same input gives the same features with any number of threads and on every back end.
+ * The same input gives the same features with any number of threads and on every back end. One call at a time for a context.
  *
  * ASJ_ERROR_ARGUMENT, ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED, ASJ_ERROR_DEVICE
  *                  as asj_match() */
@@ -77,7 +77,8 @@ ASJ_API size_t asj_features_save(const asj_features *features, void *bytes, size
 
 /* Features from bytes. What is not among the bytes is computed once more, so that they equal those that were saved, but for the
  * geometry of the options, which concerns pairs and is that of preset `default` again; and damaged or hostile bytes can do no more
- * than any other image and junctions. On success *features belongs to the caller until asj_features_free().
+ * than any other image and junctions. On success *features belongs to the caller until asj_features_free(). One call at a time for
+ * a context.
  *
  * ASJ_ERROR_ARGUMENT     a NULL pointer
  * ASJ_ERROR_FORMAT       no such bytes, truncated, more of them than there should be, a wrong checksum, values that cannot be

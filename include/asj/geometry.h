@@ -53,12 +53,12 @@ typedef struct asj_geometry_options {
     asj_camera cameras[2];   /* of image 1 and image 2; not known. Without them the middle of the image and the larger side as focal
                               * length serve as a guess for samples, which nothing rests on */
     int32_t widths[2], heights[2]; /* px of the images; must be given */
-    double epsilon;          /* accepted is what chance brings at most so often, in pairs of unrelated images: 1e-12 .. 1;
-                              * 1e-7 */
-    double location_sd;      /* px: error of a location, of the fifth that is worst; others are a half or a quarter as large, and so
-                              * with the next two. 0.1 .. 10; 1.5 */
-    double angle_sd;         /* deg: error of a map's rotation. 1 .. 45; 9 */
-    double scale_sd;         /* error of the log of a map's scale. 0.02 .. 1; 0.22 */
+    double epsilon;          /* a geometry is accepted when chance brings one as good at most this often, in pairs of unrelated
+                              * images: 1e-12 .. 1; 1e-7 */
+    double location_sd;      /* px: standard deviation of a location, of the worst fifth of the candidates; a half and a quarter of
+                              * it for the others. The next two likewise. 0.1 .. 10; 1.5 */
+    double angle_sd;         /* deg: of a map's rotation. 1 .. 45; 9 */
+    double scale_sd;         /* of the log of a map's scale. 0.02 .. 1; 0.22 */
     double directions[2][9]; /* of image 1 and image 2: three directions of the scene at right angles to each other, in camera
                               * coordinates, one after the other, in any order and of either sign (vanishing.h finds them); zero,
                               * the default: not known. With cameras only */
@@ -96,11 +96,12 @@ typedef struct asj_geometry {
 /* Estimates the two-view geometry of candidate matches.
  *
  * candidates     may be NULL when count is 0; only read
- * probabilities  NULL, or room for `count` numbers: the probability of each candidate given the geometry; 0 where there is none
+ * probabilities  NULL, or room for `count` numbers: the probability of each candidate given the geometry; 0 where there is none,
+ *                and of all but the 3000 likeliest candidates, which are all that is looked at
  * result         it and the probabilities are written when ASJ_OK is returned
  *
  * src/geometry/likelihood.c says what is maximised, search.c how, evidence.c what log10_nfa rests on. The result depends on the
- * input and the seed, not on the number of threads.
+ * input and the seed, not on the number of threads. One call at a time for a context.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a candidate that is not finite, lies 10^6 px away, mirrors or collapses, or a probability
  *                      outside 0 .. 1

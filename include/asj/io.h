@@ -137,7 +137,7 @@ typedef struct asj_detection_report {
 
 /* Writes junctions as asj_output_begin() and asj_output_commit() do.
  * ASJ_ERROR_ARGUMENT  a NULL pointer, no such file format, or a detection that no reader would take: NaN or infinity, a
- *                     branch_count beyond ASJ_MAX_BRANCHES, a negative scale or length, an octave that is not -1 .. 15, an
+ *                     branch_count not 2 .. ASJ_MAX_BRANCHES, a negative scale or length, an octave that is not -1 .. 15, an
  *                     L-junction, edge or segment of a junction or branch that is not there. (Readers of JSON refuse a location far
  *                     outside of the image, too, and edges of branches that stand in no order of angle.)
  * ASJ_ERROR_FILE      cannot create, disk full, cannot rename

@@ -13,7 +13,8 @@ extern "C" {
 /* What is at the far end of a branch. Ends at a junction or at a crossing are places of the scene, which another picture of it may
  * show too; where something hides an edge or the border cuts it that is not so, and where it fades the place is known least. */
 enum {
-    ASJ_BRANCH_END_UNKNOWN = 0,   /* not looked at: junctions from files that do not say it */
+    ASJ_BRANCH_END_UNKNOWN = 0,   /* not looked at: junctions from files that do not say it; or a junction was there that is none of
+                                   * the list, since a finer octave had it already */
     ASJ_BRANCH_END_JUNCTION = 1,  /* another junction of the list */
     ASJ_BRANCH_END_CROSSING = 2,  /* edges that go on or turn away there, and no junction of the list */
     ASJ_BRANCH_END_FADED = 3,     /* nothing: the edge gets too weak, against itself (end_contrast) or noise */

@@ -115,19 +115,19 @@ typedef struct asj_junction_match {
     double affine[6];       /* h11 h12 h13 h21 h22 h23: x2 = h11 x1 + h12 y1 + h13, y2 = h21 x1 + h22 y1 + h23 */
     float x1, y1;           /* px: junction in image 1, as detected */
     float x2, y2;           /* px: where the aligned map puts it in image 2; as detected when it was not aligned */
-    float ax1, ay1, bx1, by1; /* ends of the parts of both branches that correspond, image 1. Each as far from (x1, y1) or (x2, y2)
-                               * as found, in the direction that both, each as well as its branch's is known (angle_sd), and the
-                               * map give together: a little off the branch, it may lie outside the image. On the branch as
-                               * detected when one of the two is not known (not above 0) */
+    float ax1, ay1, bx1, by1; /* ends of the parts of both branches that correspond, image 1. Their distance from (x1, y1) or
+                               * (x2, y2) is as found, their direction the mean of what both images say, carried over by the map
+                               * and weighted by the branches' angle_sd: a little off the branch, an end may lie outside the
+                               * image. On the branch as detected when one of the two is not known (angle_sd not above 0) */
     float ax2, ay2, bx2, by2; /* image 2 */
     int32_t end_a, end_b;   /* ASJ_END_... */
     float distance;         /* of the patches; see compare.c. The smaller the better */
     float ratio;            /* how much worse the second best at another place is; HUGE_VAL when there is none */
     float similarity;       /* correlation of the aligned discs, -1 .. 1; 0 when not aligned */
     float support;          /* neighbouring matches that agree, each counted 0 to 1 */
-    float probability;      /* that the match is right, given the geometry, where one was accepted, and, but in enlarged images,
-                             * its rivals; else 0.
-                             * Off the plane of a homography it is low, and the match stays: there are other planes */
+    float probability;      /* that the match is right, given the accepted geometry and, except in enlarged images, the candidates
+                             * that are its rivals; 0 without a geometry. Off the plane of a homography it is low, and the match
+                             * stays: there are other planes */
     float reserved;         /* zero */
 } asj_junction_match;
 
@@ -186,7 +186,7 @@ typedef struct asj_match_result {
  * junctions of five branches at one point, 20 000 L-junctions that all look alike: some ten seconds). With a geometry, four times
  * as many candidates are aligned for it, and it takes a share of its own: two frames of a video with 1150 L-junctions each and
  * their focal length took 1.5 s in place of 0.2 s (one thread of a two-core Xeon; 0.9 s with two). The caller is asked every 50 ms
- * whether to go on.
+ * whether to go on. One call at a time for a context.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that lies more than ASJ_MAX_OUTSIDE px outside its image, has a wrong branch
  *                      count, an octave that is not -1 .. 15, an angle beyond +-10^6, a length that is not 0 .. 4 ASJ_MAX_SIDE,
@@ -231,7 +231,7 @@ typedef struct asj_stretch {
  * detect_options   NULL = preset `match`
  * options          NULL = preset `default`; cameras are those of the images as they are
  *
- * Memory: the stretched images besides what the two calls need for images of that size.
+ * Memory: the stretched images besides what the two calls need for images of that size. One call at a time for a context.
  * ASJ_ERROR_OPTION  also for a stretch outside its range, and for one along one axis with geometry.find_focal
  * ASJ_ERROR_LIMIT   also when a stretched image has more pixels than the library takes
  * Others as asj_detect() and asj_match() */

@@ -88,7 +88,7 @@ typedef struct asj_detect_options {
     /* step 5: location, orientation and validation */
     double minimum_opening;       /* deg: at least two branches of a junction open by this much, and by at most 180 minus this.
                                    * 0 .. 80; 25; paper 0; match 20 */
-    double minimum_length;        /* px: shorter branches are dropped. 0 .. 1000; 0 */
+    double minimum_length;        /* px of the image, in all octaves: shorter branches are dropped. 0 .. 1000; 0 */
     int32_t refinement;           /* ASJ_REFINE_...: line fits, or the paper's search; line_fit; paper search */
     int32_t ignore_frame;         /* 1 = drop branches that run along the border of the image, within 2.5 px. 1; paper 0 */
     double max_move;              /* px a junction may move while it is located by line fits; with strip_test sharp corners up to

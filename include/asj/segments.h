@@ -17,8 +17,8 @@ typedef struct asj_segment {
     float x1, y1, x2, y2;          /* px: its ends */
     float sd1, sd2;                /* px: standard uncertainty of the ends along it; 0 = not known */
     int32_t end1, end2;            /* ASJ_BRANCH_END_...: what is at them */
-    uint32_t junction1, junction2; /* the junction that the end is, from which a branch goes along the segment; ASJ_NO_JUNCTION =
-                                    * none, and with ASJ_BRANCH_END_JUNCTION one that has no branch that way */
+    uint32_t junction1, junction2; /* the junction at this end, if one of its branches runs along the segment; ASJ_NO_JUNCTION =
+                                    * none, and with ASJ_BRANCH_END_JUNCTION one that has no such branch */
     float log10_nfa;               /* of the surest of its branches */
     uint32_t junction;             /* of one of its branches, mostly the longest, which goes from end 1 to end 2 */
     uint16_t branch;

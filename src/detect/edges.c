@@ -2,7 +2,7 @@
 /* An edge joins junctions i and j when a branch of either points at the other: with t the distance from i to j along the branch
  * of i,
  *   - j lies at most max(OFF_LINE, OFF_SHARE t) px off that branch's line, and i off the line of the other branch;
- *   - the two point against each other to within TURN;
+ *   - the two point against each other to within ASJ_ONE_WAY;
  *   - one of them reaches the other junction (its length is t or more, but for the uncertainty of its end), the other goes at
  *     least half of the way: the scan may lose a fading edge from one side that it follows from the other;
  *   - the part between is meaningful: log NFA <= log epsilon (edge_evidence.c), by the branch that reaches.
@@ -23,7 +23,6 @@
 
 #define OFF_LINE 2.0   /* px of the branch's octave: as branches snap (ends.c) */
 #define OFF_SHARE 0.01 /* of the length: 0.6 degrees. Lenses bend long edges */
-#define TURN (15 * ASJ_DEGREE) /* default of merge_angle: closer branches would be one */
 #define END_NEAR 4.0   /* px of the branch's octave, or .. */
 #define END_SURE 3.0   /* .. standard uncertainties of the end, .. */
 #define END_MOST 8.0   /* .. but no more than this: where an edge fades they may be fifty pixels */
@@ -82,7 +81,7 @@ static int reaches(const asj_hypothesis_branch *branch, double distance)
 static int goes_on(const asj_hypothesis *hypothesis, double angle)
 {
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        if (asj_angle_distance(hypothesis->branches[i].angle, angle) <= TURN)
+        if (asj_angle_distance(hypothesis->branches[i].angle, angle) <= ASJ_ONE_WAY)
             return 1;
     return 0;
 }
@@ -124,7 +123,7 @@ static int32_t comes_back(const graph *g, const way *w, int32_t index, double t)
 {
     const asj_hypothesis *to = &g->hypotheses[index];
     const double dx = to->x - w->from->x, dy = to->y - w->from->y, back = w->along->angle + ASJ_PI;
-    double least = TURN;
+    double least = ASJ_ONE_WAY;
     int32_t found = -1;
     for (int32_t i = 0; i < to->branch_count; i++) {
         const asj_hypothesis_branch *branch = &to->branches[i];
@@ -161,7 +160,8 @@ static int32_t look_in(const graph *g, const way *w, int32_t cell, double *neare
 }
 
 /* The nearest junction on the way of a branch that it may be joined with; -1 = none. At t along the way all junctions up to
- * t + ASJ_GRID_CELL / 2 lie in the cells around, of which those around the place before have been looked at. */
+ * t + ASJ_GRID_CELL / 2 that lie near enough to the line are in the cells around, `ring` to either side, of which those around the
+ * place before have been looked at. */
 static int32_t find_nearest(const graph *g, size_t junction, int32_t branch)
 {
     const asj_hypothesis *from = &g->hypotheses[junction];
@@ -169,16 +169,19 @@ static int32_t find_nearest(const graph *g, size_t junction, int32_t branch)
     const way w = {junction, branch, from, along, cos(along->angle), sin(along->angle)};
     const double last = 2 * along->length + end_tolerance(along);
     const int32_t columns = g->grid->columns, rows = g->grid->rows;
+    const int32_t ring = (int32_t)ceil(hypot(off_tolerance(along, last), ASJ_GRID_CELL / 2) / ASJ_GRID_CELL);
     double nearest = HUGE_VAL;
-    int32_t found = -1, column_before = -2, row_before = -2;
+    int32_t found = -1, column_before = -1 - ring, row_before = -1 - ring;
     for (double t = 0; t < last + ASJ_GRID_CELL && nearest > t - ASJ_GRID_CELL / 2; t += ASJ_GRID_CELL) {
         const double x = from->x + t * w.ux, y = from->y + t * w.uy;
         if (x < -ASJ_GRID_CELL || y < -ASJ_GRID_CELL || x > columns * ASJ_GRID_CELL || y > rows * ASJ_GRID_CELL)
             break;
         const int32_t column = asj_grid_cell(x, columns), row = asj_grid_cell(y, rows);
-        for (int32_t y_cell = row - 1; y_cell <= row + 1; y_cell++)
-            for (int32_t x_cell = column - 1; x_cell <= column + 1; x_cell++)
-                if (abs(y_cell - row_before) > 1 || abs(x_cell - column_before) > 1)
+        const int32_t left = column > ring ? column - ring : 0, right = column + ring < columns ? column + ring : columns - 1;
+        const int32_t upper = row > ring ? row - ring : 0, lower = row + ring < rows ? row + ring : rows - 1;
+        for (int32_t y_cell = upper; y_cell <= lower; y_cell++)
+            for (int32_t x_cell = left; x_cell <= right; x_cell++)
+                if (abs(y_cell - row_before) > ring || abs(x_cell - column_before) > ring)
                     found = look_in(g, &w, y_cell * columns + x_cell, &nearest, found);
         column_before = column;
         row_before = row;

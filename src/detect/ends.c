@@ -24,16 +24,15 @@
 #define SURE_REACH 8.0   /* px */
 #define DOUBTFUL (-30 * 2.302585092994046) /* natural logarithms */
 #define SURE (-60 * 2.302585092994046)
-#define TURN (15 * ASJ_DEGREE) /* default of merge_angle: closer branches would be one */
 
 /* Whether an edge that comes at this angle ends at the junction: a branch comes back, and none goes on. */
 static int ends_at(const asj_hypothesis *junction, double angle)
 {
     int back = 0;
     for (int32_t i = 0; i < junction->branch_count; i++) {
-        if (asj_angle_distance(junction->branches[i].angle, angle) <= TURN)
+        if (asj_angle_distance(junction->branches[i].angle, angle) <= ASJ_ONE_WAY)
             return 0;
-        back |= asj_angle_distance(junction->branches[i].angle, angle + ASJ_PI) <= TURN;
+        back |= asj_angle_distance(junction->branches[i].angle, angle + ASJ_PI) <= ASJ_ONE_WAY;
     }
     return back;
 }

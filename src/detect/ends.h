@@ -15,7 +15,8 @@ typedef struct asj_ends {
 
 /* Both look at all hypotheses, but for lengths and ends of branches, and change those of one: several may go on at once. */
 
-/* Marks the branches that asj_ends_snap() would find a junction at the end of; what is at the others is still to be seen. */
+/* Marks the branches that have a junction on their line within 4 px, or snap_distance if that is more, of their end; what is at the
+ * others is still to be seen. */
 void asj_ends_mark(const asj_ends *ends, size_t index);
 
 /* Moves the ends of branches onto junctions that lie on their line within snap_distance of the end, or somewhat farther (ends.c),

@@ -68,13 +68,13 @@ static void look_for_some(const void *data, const asj_part *part)
         j->look(&j->ends, (size_t)i);
 }
 
-/* asj_ends_mark(), or at the end asj_ends_snap(), of all. */
-static asj_status look_for_junctions(asj_detection_run *run, void (*look)(const asj_ends *ends, size_t index))
+/* asj_ends_mark(), or at the end asj_ends_snap(), of all. width, height: px, of where the junctions are. */
+static asj_status look_for_junctions(asj_detection_run *run, int32_t width, int32_t height,
+                                     void (*look)(const asj_ends *ends, size_t index))
 {
     const int64_t count = (int64_t)run->hypothesis_count;
     asj_junction_grid grid;
-    const asj_status status = asj_junction_grid_make(run->context, run->hypotheses, run->hypothesis_count, run->image->width,
-                                                     run->image->height, &grid);
+    const asj_status status = asj_junction_grid_make(run->context, run->hypotheses, run->hypothesis_count, width, height, &grid);
     if (status != ASJ_OK)
         return status;
     asj_watch watch;
@@ -88,7 +88,7 @@ static asj_status look_for_junctions(asj_detection_run *run, void (*look)(const 
 static void end_by_contrast(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
     asj_ends_by_contrast(run->frame, run->options, hypothesis);
-    asj_validate_lengths(run->options, hypothesis);
+    asj_validate_lengths(run->frame, run->options, hypothesis);
 }
 
 static void leave_out_rejected(asj_detection_run *run)
@@ -115,7 +115,7 @@ asj_status asj_step_ends(asj_detection_run *run)
         status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, end_by_contrast);
     leave_out_rejected(run);
     if (status == ASJ_OK)
-        status = look_for_junctions(run, asj_ends_mark);
+        status = look_for_junctions(run, run->frame->width, run->frame->height, asj_ends_mark);
     if (status == ASJ_OK)
         status = number_branches(run);
     return status == ASJ_OK ? measure_all(run) : status;
@@ -123,5 +123,5 @@ asj_status asj_step_ends(asj_detection_run *run)
 
 asj_status asj_step_snap(asj_detection_run *run)
 {
-    return look_for_junctions(run, asj_ends_snap);
+    return look_for_junctions(run, run->image->width, run->image->height, asj_ends_snap);
 }

@@ -9,6 +9,10 @@
 #define ASJ_MAX_OCTAVES 16 /* numbers of octaves are below this, */
 #define ASJ_FIRST_OCTAVE (-1) /* and not below this: the image enlarged twice */
 
+/* Branches that turn by no more than this are of one edge: the default of merge_angle, below which two of a junction would be one;
+ * whatever that option says, since the two belong to different junctions. */
+#define ASJ_ONE_WAY (15 * ASJ_DEGREE)
+
 /* Octaves are whole numbers, or lie half-way between two (octaves.c): so many halves after the first one. */
 static inline int32_t asj_octave_index(double octave)
 {

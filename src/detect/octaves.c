@@ -218,7 +218,7 @@ size_t asj_octaves_merge(asj_hypothesis *hypotheses, size_t count, const asj_det
     return kept;
 }
 
-/* Whether join() would take no branch. `soft_only`: it takes soft ones, and widths are known. */
+/* Whether join() would surely take no branch. `soft_only`: it takes soft ones, and widths are known. */
 static int adds_nothing(const asj_hypothesis *hypothesis, int soft_only, const asj_hypothesis *finer)
 {
     const double relative = asj_octave_scale(hypothesis->octave - finer->octave);

@@ -42,8 +42,8 @@ asj_octave_known asj_octave_known_start(const asj_hypothesis *finer, size_t coun
                                         int32_t width, int32_t height, int32_t *cells);
 
 /* Whether a hypothesis in pixels of the coarser octave would not survive the merge and could add nothing: one that lies at a sharp
- * finer one and has its directions only, or no soft ones else once widths are known (with complete_junctions sharp ones add, too);
- * and a ghost, once lines are. `what`: ASJ_KNOWN_... */
+ * finer one, which has all its directions, or all its soft ones once widths are known (with complete_junctions the sharp ones
+ * count, too); and a ghost, once lines are known. `what`: ASJ_KNOWN_... */
 int asj_octave_is_known(const asj_octave_known *known, const asj_hypothesis *hypothesis, int what);
 
 #endif

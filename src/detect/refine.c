@@ -31,7 +31,7 @@
 #define PULLED 0.75        /* px */
 #define PULLED_SURELY 7.0
 
-#define SETTLED 0.1    /* px at the end of a branch that one more guess is not worth */
+#define SETTLED 0.1    /* px: a line that moves by less at the end of its branch is not guessed once more */
 
 /* Half-widths of the band in which a line is looked for, and of that in which it is fitted last, px. Chosen: a pixel of error and
  * the blur of an edge to either side; narrower cuts edges off, wider takes neighbours in. */

@@ -93,7 +93,7 @@ static int on_frame(const asj_frame *frame, const asj_hypothesis *hypothesis, co
 /* Of two branches closer than merge_angle the more meaningful one stays; of those that lie on one line, the stronger one. */
 static int less_meaningful(const asj_hypothesis_branch *a, const asj_hypothesis_branch *b)
 {
-    const double same = 1e-3; /* decades of what rounding makes of one line */
+    const double same = 1e-3; /* of a natural logarithm: what rounding makes of one line */
     return fabs(a->log_nfa - b->log_nfa) > same ? a->log_nfa > b->log_nfa : a->strength < b->strength;
 }
 
@@ -149,6 +149,12 @@ void asj_reject_early(const asj_context *context, const asj_frame *frame, const 
     hypothesis->branch_count = opens ? hypothesis->branch_count : 0;
 }
 
+/* px of the frame's octave for those of the image that minimum_length has. */
+static double least_length(const asj_frame *frame, const asj_detect_options *options)
+{
+    return options->minimum_length / asj_octave_scale(frame->octave);
+}
+
 /* Sets the branch's number of false alarms; returns whether the branch is to be kept: ALONE, only WITH_OTHERS, IF_OTHERS_OPEN. */
 static int judge(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                  const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)
@@ -162,7 +168,7 @@ static int judge(const asj_context *context, const asj_frame *frame, const asj_d
         const asj_strip shorter = asj_strip_test(context, frame, options, &line);
         branch->log_nfa = fmin(branch->log_nfa, asj_strip_correlated(frame, &shorter, branch->width, explained));
     }
-    if (branch->length < options->minimum_length || branch->length <= 0 || fabs(branch->offset) > LARGEST_OFFSET ||
+    if (branch->length < least_length(frame, options) || branch->length <= 0 || fabs(branch->offset) > LARGEST_OFFSET ||
         !reaches(frame, options, branch, &strip) || asj_is_tilted(options, &strip.sums) ||
         (options->ignore_frame && on_frame(frame, hypothesis, branch)))
         return NOT_AT_ALL;
@@ -266,13 +272,13 @@ int asj_validate_another(const asj_context *context, const asj_frame *frame, con
            asj_hypothesis_is_free(hypothesis, branch->angle, asj_joined_apart(options));
 }
 
-void asj_validate_lengths(const asj_detect_options *options, asj_hypothesis *hypothesis)
+void asj_validate_lengths(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
 {
     int keep[ASJ_MAX_BRANCHES];
     if (options->minimum_length <= 0)
         return;
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        keep[i] = hypothesis->branches[i].length >= options->minimum_length;
+        keep[i] = hypothesis->branches[i].length >= least_length(frame, options);
     asj_hypothesis_select(hypothesis, keep);
     if (!asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE))
         hypothesis->branch_count = 0;

@@ -21,6 +21,6 @@ int asj_validate_another(const asj_context *context, const asj_frame *frame, con
                          const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch);
 
 /* The same as asj_validate() for lengths alone, which have changed since. */
-void asj_validate_lengths(const asj_detect_options *options, asj_hypothesis *hypothesis);
+void asj_validate_lengths(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis);
 
 #endif

@@ -14,6 +14,7 @@
 #include "answer.h"
 #include "ambiguity.h"
 #include "core/angle.h"
+#include "core/watch.h"
 #include "likelihood.h"
 #include "motions.h"
 #include "posterior.h"
@@ -155,26 +156,27 @@ static int32_t is_open(const asj_estimation *e, int32_t number, const asj_geomet
            (has_open_focal(e, number) && e->options->model == ASJ_GEOMETRY_ESSENTIAL);
 }
 
-void asj_answer(asj_estimation *e, double *probabilities, asj_judge *judge, asj_geometry *result)
+asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)
 {
     int32_t determined, doubt = 0;
     const int32_t best = choose(e, result, &determined);
     result->status = ASJ_GEOMETRY_CHANCE;
     if (best < 0)
-        return;
+        return ASJ_OK;
     describe(e, best, result);
     const int32_t second = asj_strongest_rival(e, best, &doubt);
+    if (asj_watch_end(e->set.watch) != ASJ_OK)
+        return ASJ_ERROR_CANCELLED; /* rivals that nobody has looked at */
     if (second >= 0) {
         result->has_second = 1;
         result->second_log10_nfa = asj_estimation_log10_nfa(e, &e->finalists[second]);
     }
     if (result->log10_nfa > log10(e->options->epsilon))
-        return;
+        return ASJ_OK;
     result->status = determined && !is_open(e, best, result) ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_DEGENERATE;
     if (second >= 0 && asj_is_ambiguous(e, best, second, doubt, result->inliers))
         result->status = ASJ_GEOMETRY_AMBIGUOUS;
     if (judge && result->status == ASJ_GEOMETRY_ACCEPTED)
         *judge = asj_judge_create(&e->finalists[best].view, &e->set);
-    for (int32_t k = 0; k < e->set.count && probabilities; k++)
-        probabilities[e->set.list[k].source] = e->scratch.probability[k];
+    return ASJ_OK;
 }

@@ -6,7 +6,8 @@
 #include "estimation.h"
 #include "judge.h"
 
-/* probabilities: of the caller's candidates, or NULL. judge: NULL, or written where the geometry is accepted. */
-void asj_answer(asj_estimation *e, double *probabilities, asj_judge *judge, asj_geometry *result);
+/* judge: NULL, or written where the geometry is accepted. Probabilities of its candidates are in e->scratch then, unless it is by
+ * chance. Errors: CANCELLED. */
+asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result);
 
 #endif

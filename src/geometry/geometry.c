@@ -166,22 +166,25 @@ static asj_status search(asj_estimation *e, const asj_geometry_hints *hints)
     return status == ASJ_OK ? asj_watch_end(e->set.watch) : status;
 }
 
-/* Nothing is written unless it ends well. */
-static asj_status estimate(asj_estimation *e, const asj_geometry_hints *hints, size_t count, double *probabilities,
-                           asj_judge *judge, asj_geometry *found)
+/* Those of candidates that a geometry which is not chance speaks of; 0 of all others. */
+static void tell_probabilities(const asj_estimation *e, const asj_geometry *found, size_t count, double *probabilities)
 {
-    const int32_t asked = e->options->model != ASJ_GEOMETRY_NONE;
-    const int32_t enough = e->set.place_count[0] >= 2 && e->set.place_count[1] >= 2;
-    const asj_status status = asked && enough ? search(e, hints) : ASJ_OK;
-    if (status != ASJ_OK)
-        return status;
-    for (size_t k = 0; k < count && probabilities; k++)
+    const int32_t told = found->status == ASJ_GEOMETRY_ACCEPTED || asj_geometry_is_open(found);
+    for (size_t k = 0; k < count; k++)
         probabilities[k] = 0;
-    if (asked && enough)
-        asj_answer(e, probabilities, judge, found);
-    else if (asked)
+    for (int32_t k = 0; k < e->set.count && told; k++)
+        probabilities[e->set.list[k].source] = e->scratch.probability[k];
+}
+
+/* Nothing is written unless it ends well. */
+static asj_status estimate(asj_estimation *e, const asj_geometry_hints *hints, asj_judge *judge, asj_geometry *found)
+{
+    if (e->set.place_count[0] < 2 || e->set.place_count[1] < 2) {
         found->status = ASJ_GEOMETRY_TOO_FEW;
-    return ASJ_OK;
+        return ASJ_OK;
+    }
+    const asj_status status = search(e, hints);
+    return status == ASJ_OK ? asj_answer(e, judge, found) : status;
 }
 
 asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_candidate *candidates, size_t count,
@@ -207,8 +210,10 @@ asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_cand
     e->focal_at = -1;
     status = asj_pairs_create(context, candidates, count, hints, options, &e->set);
     e->set.watch = &watch;
-    if (status == ASJ_OK)
-        status = estimate(e, hints, count, probabilities, judge, &found);
+    if (status == ASJ_OK && options->model != ASJ_GEOMETRY_NONE)
+        status = estimate(e, hints, judge, &found);
+    if (status == ASJ_OK && probabilities)
+        tell_probabilities(e, &found, count, probabilities);
     free_estimation(e);
     if (status == ASJ_OK)
         *result = found;

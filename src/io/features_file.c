@@ -44,9 +44,10 @@ asj_status asj_features_read(asj_context *context, const char *path, asj_feature
     asj_input input;
     asj_status status;
 
+    if (features)
+        *features = NULL;
     if (!context || !path || !features)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no context, no path or no place for the features");
-    *features = NULL;
     status = asj_input_read(&input, is_no_features, &message);
     if (status != ASJ_OK)
         return status;

@@ -98,9 +98,10 @@ asj_status asj_image_file_read(const char *path, uint64_t max_pixels, asj_image_
     asj_input input;
     asj_status status;
 
+    if (file)
+        *file = NULL;
     if (!path || !file)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no path or no place for the image");
-    *file = NULL;
     if (!max_pixels)
         max_pixels = ASJ_IO_DEFAULT_MAX_PIXELS;
     status = asj_input_read(&input, is_no_image, &message);

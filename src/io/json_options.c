@@ -2,6 +2,8 @@
 /* Rows of an option table as JSON values. */
 #include "json_options.h"
 
+#include "json_output.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +14,7 @@ static json_t *radii_value(uint32_t bits)
     int radius;
     for (radius = 0; radius < 32; radius++)
         if (bits >> radius & 1)
-            json_array_append_new(list, json_integer(radius));
+            list = asj_json_append(list, json_integer(radius));
     return list;
 }
 
@@ -50,13 +52,8 @@ json_t *asj_json_options(const void *options, size_t count, const asj_option_inf
 {
     json_t *object = json_object();
     size_t i;
-    for (i = 0; i < count && object; i++) {
-        const asj_option_info *row = row_at(i);
-        if (json_object_set_new(object, row->key, option_value(row, options))) {
-            json_decref(object);
-            object = NULL;
-        }
-    }
+    for (i = 0; i < count && object; i++)
+        object = asj_json_set(object, row_at(i)->key, option_value(row_at(i), options));
     return object;
 }
 

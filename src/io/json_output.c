@@ -40,6 +40,22 @@ const char *asj_json_backend(int32_t backend)
     return backend == ASJ_BACKEND_CPU ? "cpu" : backend == ASJ_BACKEND_OPENCL ? "opencl" : "unknown";
 }
 
+json_t *asj_json_append(json_t *list, json_t *value)
+{
+    if (json_array_append_new(list, value) == 0)
+        return list;
+    json_decref(list);
+    return NULL;
+}
+
+json_t *asj_json_set(json_t *object, const char *key, json_t *value)
+{
+    if (json_object_set_new(object, key, value) == 0)
+        return object;
+    json_decref(object);
+    return NULL;
+}
+
 /* Microseconds are more than a clock can tell, and short to read. */
 static double round_ms(double ms)
 {
@@ -51,8 +67,7 @@ json_t *asj_json_timing(double total_ms, const double *stage_ms, int32_t first, 
     json_t *stages = json_object();
     int32_t stage;
     for (stage = first; stage <= last; stage++)
-        if (stages)
-            json_object_set_new(stages, asj_stage_name(stage), json_real(round_ms(stage_ms[stage])));
+        stages = asj_json_set(stages, asj_stage_name(stage), json_real(round_ms(stage_ms[stage])));
     return json_pack("{s:f, s:o}", "total_ms", round_ms(total_ms), "stages", stages);
 }
 

@@ -19,6 +19,10 @@ typedef struct asj_json_output {
 /* Writes a value after some text, and lets go of it. NULL: jansson had no memory for it. */
 void asj_json_put(asj_json_output *json, const char *before, json_t *value, size_t flags);
 
+/* The list or the object with the value in it, which it owns then; NULL, and nothing is left of either, when there is no memory. */
+json_t *asj_json_append(json_t *list, json_t *value);
+json_t *asj_json_set(json_t *object, const char *key, json_t *value);
+
 /* A file name need not be UTF-8, JSON must be: other bytes become '?'. */
 json_t *asj_json_name(const char *name);
 

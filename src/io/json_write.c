@@ -15,9 +15,9 @@ static void put_head(asj_json_output *json, const asj_detection_report *report)
     json_t *image = json_object();
 
     if (report->image_name)
-        json_object_set_new(image, "name", asj_json_name(report->image_name));
-    json_object_set_new(image, "width", json_integer(found->width));
-    json_object_set_new(image, "height", json_integer(found->height));
+        image = asj_json_set(image, "name", asj_json_name(report->image_name));
+    image = asj_json_set(image, "width", json_integer(found->width));
+    image = asj_json_set(image, "height", json_integer(found->height));
     asj_json_put(json, "{\n\"schema\": ", json_string("asj-junctions-1"), 0);
     asj_json_put(json, ",\n\"library\": ", json_pack("{s:s, s:s}", "name", "libasj", "version", asj_version_string()), 0);
     asj_json_put(json, ",\n\"image\": ", image, 0);
@@ -50,10 +50,7 @@ static json_t *junction_value(const asj_junction *junction)
                                   "strength", (double)branch->strength, "log10_nfa", (double)branch->log10_nfa,
                                   "angle_sd", (double)branch->angle_sd, "width", (double)branch->width,
                                   "length_sd", (double)branch->length_sd, "end", asj_end_word(branch->end));
-        if (json_array_append_new(branches, value)) {
-            json_decref(branches);
-            branches = NULL;
-        }
+        branches = asj_json_append(branches, value);
     }
     return json_pack("{s:f, s:f, s:f, s:f, s:f, s:i, s:o}", "x", (double)junction->x, "y", (double)junction->y,
                      "scale", (double)junction->scale, "log10_nfa", (double)junction->log10_nfa,
@@ -95,7 +92,7 @@ static void put_vanishing_points(asj_json_output *json, const asj_vanishing_poin
     int32_t k;
     for (k = 0; k < found->count && k < ASJ_MOST_VANISHING; k++) {
         const asj_vanishing_point *p = &found->points[k];
-        json_array_append_new(points, json_pack("{s:o, s:o, s:f, s:I}", "point", triple(p->point), "direction",
+        points = asj_json_append(points, json_pack("{s:o, s:o, s:f, s:I}", "point", triple(p->point), "direction",
                                                 known ? triple(p->direction) : json_null(), "log10_nfa", p->log10_nfa, "branches",
                                                 (json_int_t)p->branch_count));
     }

@@ -42,9 +42,10 @@ asj_status asj_junctions_read(const char *path, asj_junction_file **file, char *
     asj_input input;
     asj_status status;
 
+    if (file)
+        *file = NULL;
     if (!path || !file)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no path or no place for the junctions");
-    *file = NULL;
     status = asj_input_read(&input, is_no_text, &message);
     if (status != ASJ_OK)
         return status;

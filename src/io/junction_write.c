@@ -9,7 +9,7 @@
 static int is_sound(const asj_junction *junction)
 {
     int32_t b;
-    if (junction->branch_count < 0 || junction->branch_count > ASJ_MAX_BRANCHES)
+    if (junction->branch_count < 2 || junction->branch_count > ASJ_MAX_BRANCHES)
         return 0;
     if (junction->scale < 0 || junction->octave < ASJ_LEAST_OCTAVE || junction->octave > ASJ_LARGEST_OCTAVE)
         return 0;
@@ -59,6 +59,20 @@ static asj_status check_segments(const asj_detection *detection, const asj_segme
     return ASJ_OK;
 }
 
+static asj_status check_vanishing(const asj_vanishing_points *found, const asj_message *message)
+{
+    const asj_camera *c = &found->camera;
+    int sound = found->focal_source == ASJ_FOCAL_UNKNOWN ||
+                (isfinite(c->fx) && isfinite(c->fy) && isfinite(c->cx) && isfinite(c->cy));
+    int32_t i, k;
+    for (i = 0; i < found->count && i < ASJ_MOST_VANISHING; i++)
+        for (k = 0; k < 3; k++)
+            sound = sound && isfinite(found->points[i].point[k]) && isfinite(found->points[i].direction[k]) &&
+                    isfinite(found->points[i].log10_nfa);
+    return sound ? ASJ_OK
+                 : asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the vanishing points have NaN or infinity");
+}
+
 static asj_status check(const asj_detection *detection, const asj_message *message)
 {
     uint32_t i;
@@ -95,6 +109,8 @@ asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_
     status = check(report->detection, &message);
     if (status == ASJ_OK && report->segments)
         status = check_segments(report->detection, report->segments, &message);
+    if (status == ASJ_OK && report->vanishing_points)
+        status = check_vanishing(report->vanishing_points, &message);
     if (status == ASJ_OK)
         status = asj_output_begin(path, &output, text, text_size);
     if (status != ASJ_OK)

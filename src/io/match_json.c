@@ -14,13 +14,13 @@ static json_t *image_value(const asj_match_report *report, int v)
 {
     json_t *image = json_object();
     if (report->image_names[v])
-        json_object_set_new(image, "name", asj_json_name(report->image_names[v]));
+        image = asj_json_set(image, "name", asj_json_name(report->image_names[v]));
     if (report->widths[v] > 0 && report->heights[v] > 0) {
-        json_object_set_new(image, "width", json_integer(report->widths[v]));
-        json_object_set_new(image, "height", json_integer(report->heights[v]));
+        image = asj_json_set(image, "width", json_integer(report->widths[v]));
+        image = asj_json_set(image, "height", json_integer(report->heights[v]));
     }
     if (report->junction_names[v])
-        json_object_set_new(image, "junctions", asj_json_name(report->junction_names[v]));
+        image = asj_json_set(image, "junctions", asj_json_name(report->junction_names[v]));
     return image;
 }
 
@@ -42,7 +42,7 @@ static json_t *numbers(const double *values, int count)
     json_t *list = json_array();
     int k;
     for (k = 0; k < count; k++)
-        json_array_append_new(list, json_real(values[k]));
+        list = asj_json_append(list, json_real(values[k]));
     return list;
 }
 
@@ -55,7 +55,7 @@ static void put_head(asj_json_output *json, const asj_match_report *report, cons
                                (json_int_t)result->l_junction_count2, "candidates", (json_int_t)result->candidates, "matches",
                                (json_int_t)result->match_count);
     if (report->lines)
-        json_object_set_new(counts, "lines", json_integer((json_int_t)segments->count));
+        counts = asj_json_set(counts, "lines", json_integer((json_int_t)segments->count));
     asj_json_put(json, "{\n\"schema\": ", json_string("asj-matches-1"), 0);
     asj_json_put(json, ",\n\"library\": ", json_pack("{s:s, s:s}", "name", "libasj", "version", asj_version_string()), 0);
     asj_json_put(json, ",\n\"images\": ", json_pack("[o, o]", image_value(report, 0), image_value(report, 1)), 0);
@@ -114,9 +114,7 @@ static json_t *match_value(const asj_junction_match *m, int geometry)
         value = NULL;
     }
     json_decref(rest);
-    if (value && geometry)
-        json_object_set_new(value, "probability", json_real((double)m->probability));
-    return value;
+    return value && geometry ? asj_json_set(value, "probability", json_real((double)m->probability)) : value;
 }
 
 static json_t *segment_value(const asj_segment_match *s)

@@ -18,7 +18,7 @@ static int is_sound(const asj_match_result *result, const asj_junction_match *m)
 {
     const double numbers[] = {(double)m->x1, (double)m->y1, (double)m->ax1, (double)m->ay1, (double)m->bx1, (double)m->by1,
                               (double)m->x2, (double)m->y2, (double)m->ax2, (double)m->ay2, (double)m->bx2, (double)m->by2,
-                              (double)m->distance, (double)m->similarity, (double)m->support};
+                              (double)m->distance, (double)m->similarity, (double)m->support, (double)m->probability};
     return all_finite(numbers, sizeof numbers / sizeof numbers[0]) && all_finite(m->affine, 6) && !isnan(m->ratio) &&
            m->l1 < result->l_junction_count1 && m->l2 < result->l_junction_count2;
 }
@@ -27,6 +27,14 @@ static int is_sound_corner(const asj_l_junction *l)
 {
     const double numbers[] = {(double)l->x, (double)l->y, (double)l->ax, (double)l->ay, (double)l->bx, (double)l->by};
     return all_finite(numbers, 6);
+}
+
+static int is_sound_geometry(const asj_geometry *g)
+{
+    const double numbers[] = {g->focal[0], g->focal[1], g->focal_sd, g->log10_nfa, g->inliers};
+    return g->status != ASJ_GEOMETRY_ACCEPTED ||
+           (all_finite(numbers, sizeof numbers / sizeof numbers[0]) && all_finite(g->matrix, 9) && all_finite(g->rotation, 9) &&
+            all_finite(g->translation, 3) && all_finite(g->covariance, 36));
 }
 
 static asj_status check(const asj_match_result *result, const asj_message *message)
@@ -38,6 +46,8 @@ static asj_status check(const asj_match_result *result, const asj_message *messa
     if ((result->match_count && !result->matches) || (result->rejected_count && !result->rejected) ||
         (counts[0] && !lists[0]) || (counts[1] && !lists[1]))
         return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the result has a count but no array");
+    if (!is_sound_geometry(&result->geometry))
+        return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the geometry has NaN or infinity");
     for (i = 0; i < result->match_count; i++)
         if (!is_sound(result, &result->matches[i]))
             return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: match %lu has NaN, infinity or a wrong index",

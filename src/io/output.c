@@ -39,9 +39,10 @@ asj_status asj_output_begin(const char *path, asj_output **output, char *text, s
     asj_output *opened;
     const size_t path_size = path ? strlen(path) + 1 : 0;
 
+    if (output)
+        *output = NULL;
     if (!path || !output)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no path or no place for the output");
-    *output = NULL;
     if (!*path)
         return asj_message_fail(&message, ASJ_ERROR_FILE, "an empty path names no file");
     opened = calloc(1, sizeof *opened);

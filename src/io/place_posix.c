@@ -162,10 +162,13 @@ asj_status asj_system_resolve(const char *path, char *target, size_t target_size
     if (folder && slash)
         folder[slash - file + 1] = '\0';
     absolute = folder ? realpath(folder, NULL) : NULL;
+    const int no_memory = !folder || (!absolute && errno == ENOMEM);
     if (absolute)
         length = snprintf(target, target_size, "%s/%s", absolute, name);
     free(absolute);
     free(folder);
     free(file);
+    if (no_memory)
+        return ASJ_ERROR_MEMORY;
     return length >= 0 && (size_t)length < target_size ? ASJ_OK : ASJ_ERROR_FILE;
 }

@@ -13,6 +13,7 @@
  * A plane leaves the matrix open; then any of those that its matches allow does. */
 #include "epipolar.h"
 #include "geometry_candidate.h"
+#include "geometry/estimate.h"
 
 #include <math.h>
 #include <string.h>
@@ -39,7 +40,7 @@ static asj_status estimate(const asj_match_run *run, asj_geometry_candidate *ask
         if (asj_keeps_area(c->map.to))
             asked[count++] = asj_candidate_for_geometry(run, c, PRIOR);
     }
-    return asj_geometry_estimate(run->context, asked, count, &options, NULL, geometry);
+    return asj_estimate_with_hints(run->context, asked, count, NULL, &options, NULL, NULL, geometry);
 }
 
 static int is_far(const asj_match_run *run, const asj_geometry *geometry, size_t n)

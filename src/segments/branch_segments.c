@@ -326,6 +326,8 @@ static asj_status work_on(work *w, own_list **made)
 asj_status asj_find_segments(asj_context *context, const asj_junction *junctions, size_t count, const asj_edge *edges,
                              size_t edge_count, asj_segment_list **list)
 {
+    if (list)
+        *list = NULL;
     if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
     context->progress = 0; /* a call of its own */

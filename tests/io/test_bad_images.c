@@ -23,7 +23,9 @@ static void files_that_are_no_images(void **state)
     assert_image_refused(write_bytes("empty.png", "", 0), 0, ASJ_ERROR_FORMAT, "empty");
     assert_image_refused("/dev/null", 0, ASJ_ERROR_FORMAT, "empty");
     assert_image_refused(write_bytes("text.png", text, sizeof text - 1), 0, ASJ_ERROR_FORMAT, "not an image");
+    file = (asj_image_file *)message; /* anything: NULL afterwards */
     assert_int_equal(asj_image_file_read(NULL, 0, &file, message, sizeof message), ASJ_ERROR_ARGUMENT);
+    assert_null(file);
     assert_int_equal(asj_image_file_read("x", 0, NULL, message, sizeof message), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_image_file_read(in_folder("missing.png"), 0, &file, NULL, 0), ASJ_ERROR_FILE);
     asj_image_file_free(NULL);

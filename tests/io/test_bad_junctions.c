@@ -130,7 +130,9 @@ static void files_that_cannot_be_read(void **state)
     check_refused(in_folder("."), &directory);
     check_refused(write_bytes("empty", "", 0), &empty);
     check_refused(write_bytes("zeros", "\0\0\0\0", 4), &zeros);
+    file = (asj_junction_file *)&file; /* anything: NULL afterwards */
     assert_int_equal(asj_junctions_read(NULL, &file, NULL, 0), ASJ_ERROR_ARGUMENT);
+    assert_null(file);
     assert_int_equal(asj_junctions_read("x", NULL, NULL, 0), ASJ_ERROR_ARGUMENT);
     asj_junction_file_free(NULL);
     asj_junction_file_free(&file);

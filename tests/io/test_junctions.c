@@ -357,13 +357,14 @@ static void a_name_that_is_no_utf8(void **state)
 
 static void unsound_detections_are_not_written(void **state)
 {
-    asj_junction bad[9];
+    asj_junction bad[10];
+    asj_vanishing_points nowhere = {.count = 1};
     asj_detection wrong = detection;
     asj_edge edge;
     const char *path = in_folder("never");
     size_t i;
     (void)state;
-    for (i = 0; i < 9; i++)
+    for (i = 0; i < 10; i++)
         bad[i] = junctions[1];
     bad[0].x = 0.0f / (float)(random_state & 0);
     bad[1].branches[1].length = 3e38f * (10.0f + random_float(0, 1));
@@ -374,10 +375,11 @@ static void unsound_detections_are_not_written(void **state)
     bad[6].branches[0].length = -1;
     bad[7].scale = -1;
     bad[8].octave = -2;
+    bad[9].branch_count = 1;
     wrong.junction_count = 1;
     wrong.l_junction_count = wrong.edge_count = 0;
     report.detection = &wrong;
-    for (i = 0; i < 9; i++) {
+    for (i = 0; i < 10; i++) {
         wrong.junctions = &bad[i];
         assert_int_equal(asj_junctions_write(path, ASJ_FILE_JSON, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
         assert_non_null(strstr(message, "junction 0"));
@@ -405,6 +407,11 @@ static void unsound_detections_are_not_written(void **state)
     wrong.l_junctions = NULL;
     assert_int_equal(asj_junctions_write(path, ASJ_FILE_ASJ, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
     report.detection = &detection;
+    nowhere.points[0].point[1] = (double)bad[0].x;
+    report.vanishing_points = &nowhere;
+    assert_int_equal(asj_junctions_write(path, ASJ_FILE_JSON, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
+    assert_non_null(strstr(message, "vanishing points"));
+    report.vanishing_points = NULL;
     assert_int_equal(asj_junctions_write(path, 4, &report, NULL, 0), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_junctions_write(path, -1, &report, NULL, 0), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_junctions_write(path, 0, NULL, NULL, 0), ASJ_ERROR_ARGUMENT);

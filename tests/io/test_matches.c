@@ -406,7 +406,7 @@ static void results_that_cannot_be_read_are_refused(void **state)
     const asj_junction_match good = matches[7];
     int which;
     (void)state;
-    for (which = 0; which < 7; which++) {
+    for (which = 0; which < 8; which++) {
         matches[7] = good;
         switch (which) {
         case 0: matches[7].x1 = NAN; break;
@@ -415,12 +415,20 @@ static void results_that_cannot_be_read_are_refused(void **state)
         case 3: matches[7].ratio = NAN; break;
         case 4: matches[7].similarity = NAN; break;
         case 5: matches[7].l1 = CORNERS; break;
+        case 6: matches[7].probability = NAN; break;
         default: matches[7].l2 = CORNERS; break;
         }
         expect_refusal(in_folder("never"), ASJ_FILE_CSV, ASJ_ERROR_ARGUMENT, "match 7");
         expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, "match 7");
     }
     matches[7] = good;
+    result.geometry.status = ASJ_GEOMETRY_ACCEPTED;
+    for (which = 0; which < 9; which++) {
+        result.geometry.matrix[which] = NAN;
+        expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, "geometry");
+        result.geometry.matrix[which] = 0;
+    }
+    result.geometry.status = ASJ_GEOMETRY_NOT_ASKED;
     corners[1][3].bx = NAN;
     expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, "L-junction 3 of image 2");
     result.matches = NULL;

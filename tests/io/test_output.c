@@ -198,7 +198,9 @@ static void paths_that_cannot_be_written(void **state)
     write_bytes("plain", "x", 1);
     assert_cannot_begin(in_folder("plain/x"), ASJ_ERROR_FILE, "Not a directory");
     assert_cannot_begin("", ASJ_ERROR_FILE, "empty path");
+    output = (asj_output *)&output; /* anything: NULL afterwards */
     assert_int_equal(asj_output_begin(NULL, &output, message, sizeof message), ASJ_ERROR_ARGUMENT);
+    assert_null(output);
     assert_int_equal(asj_output_begin("x", NULL, message, sizeof message), ASJ_ERROR_ARGUMENT);
     locked = in_folder("locked");
     assert_int_equal(mkdir(locked, 0555), 0);

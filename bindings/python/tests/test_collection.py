@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 import shutil
 import sqlite3
@@ -199,8 +200,17 @@ def test_bad_use(done: Path, photographs: Path, tmp_path: Path, capsys: pytest.C
     says([str(photographs), *limap, "--set", "minimum_lenght=9"], "did you mean")
     says([str(photographs), "--limap", "/proc/no/folder"], "no folder")
     says([str(photographs), *limap, "--jobs", "0", "--resume"], "jobs is 0")
+    (tmp_path / "file").touch()
+    says([str(photographs), "--limap", str(tmp_path / "file")], "no folder")
+    (photographs / "more-d.png").write_bytes((photographs / "more" / "d.png").read_bytes())
+    says([str(photographs), "--hdf5", str(tmp_path / "h5")], "more-d.png and more/d.png")
+    (photographs / "more-d.png").unlink()
     (tmp_path / "junk.work").write_bytes(b"this is no database" * 100)
     says([str(photographs), "--limap", str(tmp_path / "junk"), "--resume"], "junk.work")
+    changed = (photographs / "a.png").stat()
+    os.utime(photographs / "a.png", (1, 1))
+    says([str(photographs), *limap, "--resume"], "not the file that it was")
+    os.utime(photographs / "a.png", ns=(changed.st_atime_ns, changed.st_mtime_ns))
     with sqlite3.connect(done) as connection:
         connection.execute("UPDATE about SET value = 'asj-collection-0' WHERE key = 'format'")
     says([str(photographs), *limap, "--resume"], "asj-collection-0")

@@ -8,6 +8,7 @@ import pickle
 import signal
 import threading
 import time
+from pathlib import Path
 from typing import Any
 
 import asj
@@ -187,3 +188,59 @@ def test_devices() -> None:
         asj.Context(backend="cuda")
     with pytest.raises(asj.OptionError):
         asj.Context(threads=-1)
+
+
+@pytest.mark.parametrize("kind", ["pgm", "tiff", "big.tiff", "float.tiff"])
+def test_deep_files(tmp_path: Path, scene: Scene, kind: str) -> None:
+    from PIL import Image
+
+    path = tmp_path / f"deep.{kind}"
+    deep = scene.astype(np.uint16) * 257
+    if kind == "pgm":
+        path.write_bytes(b"P5\n%d %d\n65535\n" % (deep.shape[1], deep.shape[0]) + deep.astype(">u2").tobytes())
+    elif kind == "tiff":
+        Image.fromarray(deep).save(path)
+    elif kind == "big.tiff":
+        Image.frombytes("I;16B", deep.shape[::-1], deep.astype(">u2").tobytes()).save(path)
+    else:
+        Image.fromarray(scene.astype(np.float32) / 255).save(path)
+    image = asj.read_image(path)
+    assert image.dtype == (np.float32 if kind == "float.tiff" else np.uint16)
+    assert np.allclose(image / (1.0 if kind == "float.tiff" else 65535.0), scene / 255, atol=1e-6)
+    assert len(asj.detect(image)) > 30
+
+
+def test_numbers_of_numpy() -> None:
+    same = asj.detect(square(), epsilon=2.0, half_octaves=True)
+    assert asj.detect(square(), epsilon=np.float64(2), half_octaves=np.bool_(True)).options == same.options
+    assert asj.detect(square(), epsilon=np.float32(2), half_octaves=np.int64(1)).options == same.options
+    with pytest.raises(asj.OptionError, match="text is str"):
+        asj.detect(square(), epsilon=b"2")
+
+
+def test_a_callback_that_calls_its_context() -> None:
+    context = asj.Context(progress=lambda stage, done: len(asj.detect(square(), context=context)) < 0)
+    with pytest.raises(asj.Error):
+        asj.detect(square(), context=context)
+    context.progress = None
+    assert len(asj.detect(square(), context=context, preset="default")) == 4
+
+
+def test_a_device_is_asked_for() -> None:
+    with pytest.raises(asj.Error):
+        asj.Context(device="there is no such device")
+    with pytest.raises(asj.OptionError, match="changes nothing"):
+        asj.Context(backend="cpu", device="gpu")
+
+
+def test_files_keep_their_permissions(tmp_path: Path, scene: Scene) -> None:
+    features, path = asj.detect(scene), tmp_path / "private.asjf"
+    path.touch(mode=0o600)
+    features.save(path)
+    assert path.stat().st_mode & 0o777 == 0o600
+    loaded = asj.load_features(path)
+    loaded.save(tmp_path / "again.asjf")
+    assert (tmp_path / "again.asjf").read_bytes() == path.read_bytes()
+    for refused in (loaded.without_image, lambda **options: loaded.save(path, **options)):
+        with pytest.raises(asj.OptionError, match="other options"):
+            refused(descriptor="sift")

@@ -431,7 +431,8 @@ static void test_octave_union(void **state)
     assert_true(coarse > 20);
 }
 
-/* No branch is shorter, wherever it ends in the end: ends come after branches have been validated. */
+/* No branch is shorter, wherever it ends in the end: ends come after branches have been validated. In px of the image, in all
+ * octaves: of the enlarged image they are twice as many. */
 static void test_minimum_length(void **state)
 {
     enum { LENGTH = 40, PICTURES = 3 };
@@ -446,7 +447,8 @@ static void test_minimum_length(void **state)
             asj_detect_options options;
             asj_detect_options_init(&options);
             options.minimum_length = least;
-            options.octaves = 1;
+            options.octaves = kind == 1 ? 16 : 1;
+            options.first_octave = kind == 2 ? -1 : 0;
             options.snap_distance = 0;
             assert_int_equal(asj_detect(f->context, &image, &options, &found), ASJ_OK);
             for (uint32_t i = 0; i < found->junction_count; i++) {

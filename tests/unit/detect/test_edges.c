@@ -17,7 +17,7 @@ typedef struct drawing {
 } drawing;
 
 /* Of all branches of all drawings, one behind the other. */
-static asj_evidence evidence[4096];
+static asj_evidence evidence[8192];
 static int32_t evidence_count;
 
 /* A branch with an edge beyond doubt under it, or with `gamma` for each of its 3 pixels across. */
@@ -25,7 +25,7 @@ static void add_branch(asj_hypothesis *h, double angle, double length, double ga
 {
     asj_hypothesis_branch *branch = &h->branches[h->branch_count++];
     branch->angle = angle < 0 ? angle + 2 * UNIT_PI : angle;
-    assert_in_range(evidence_count, 0, 4095);
+    assert_in_range(evidence_count, 0, 8191);
     branch->evidence = evidence_count++;
     asj_evidence *e = &evidence[branch->evidence];
     branch->length = e->length = length;
@@ -164,6 +164,26 @@ static void test_unsure_end(void **state)
     join(&d);
     assert_true(d.edge_count == 1 && joined(&d, 0, 1));
     assert_int_equal(d.list[0].branches[1].end, ASJ_BRANCH_END_FADED);
+}
+
+/* In coarse octaves lines are known to tens of pixels: wherever the cells of the grid lie, what is that far off is found. */
+static void test_far_off(void **state)
+{
+    (void)state;
+    for (int octave = 4; octave <= 5; octave++)
+        for (double phase = 0; phase < 32; phase += 3)
+            for (double side = -1; side <= 1; side += 2) {
+                drawing d = {.count = 0};
+                const double x = 100 + phase, y = 200 + phase, off = side * 1.8 * (1 << octave);
+                add_branch(add_junction(&d, x, y), 0, 210, 1.5);
+                add_branch(add_junction(&d, x + 200, y + off), UNIT_PI, 210, 1.5);
+                for (int i = 0; i < 2; i++) {
+                    d.list[i].octave = octave;
+                    d.list[i].branches[0].octave = d.list[i].branches[1].octave = octave;
+                }
+                join(&d);
+                assert_int_equal(d.edge_count, 1);
+            }
 }
 
 /* Whatever stands there: every branch in one edge at most, sound indices in order. */
@@ -326,7 +346,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pairs),  cmocka_unit_test(test_between), cmocka_unit_test(test_overshoot),
-        cmocka_unit_test(test_random), cmocka_unit_test(test_door),    cmocka_unit_test(test_room),
+        cmocka_unit_test(test_far_off), cmocka_unit_test(test_random), cmocka_unit_test(test_door),    cmocka_unit_test(test_room),
         cmocka_unit_test(test_parallelograms), cmocka_unit_test(test_unsure_end), cmocka_unit_test(test_only_just),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);

@@ -170,6 +170,32 @@ static void test_break(void **state)
     }
 }
 
+/* Two panels in a row, the second `gap` px behind the first, which is 60 px long: the edge ends with the first one; and it does not
+ * where a bar too thin to hide its contrast stands before it. */
+static double end_of_first_panel(const unit_fixture *f, double gap, double second)
+{
+    synth_scene scene;
+    asj_frame frame;
+    const asj_hypothesis h = branch_from(20, 60 + gap + second);
+    synth_scene_init(&scene, SIZE, SIZE, 100);
+    synth_add_rectangle(&scene, (synth_point){20, 90}, 60, 80, 0, 160);
+    synth_add_rectangle(&scene, (synth_point){80 + gap, 90}, second, 80, 0, 160);
+    unit_frame_of(f->context, &scene, 0.8, 1, &f->options, &frame);
+    const double end = asj_end_profile_of(&frame, &h, &h.branches[0], 0.15, 1).end;
+    asj_frame_free(&f->context->memory, &frame);
+    return end;
+}
+
+static void test_gap(void **state)
+{
+    const unit_fixture *f = *state;
+    for (double gap = 12; gap <= 24; gap += 2)
+        unit_near("panels", gap, 0, end_of_first_panel(f, gap, 40), 60, 1.5);
+    for (double gap = 0; gap <= 2; gap++)
+        unit_near("a thin line", gap, 0, end_of_first_panel(f, gap, 60), 120 + gap, 1.5);
+    unit_near("much more edge", 0, 0, end_of_first_panel(f, 8, 100), 168, 1.5);
+}
+
 /* A weaker edge that is as strong all along is followed to its own end; not one too faint or too short to tell. */
 static void test_steady(void **state)
 {
@@ -261,8 +287,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kinds), cmocka_unit_test(test_faded),         cmocka_unit_test(test_border),
-        cmocka_unit_test(test_break), cmocka_unit_test(test_steady),        cmocka_unit_test(test_half_contrast),
-        cmocka_unit_test(test_profile),
+        cmocka_unit_test(test_break), cmocka_unit_test(test_gap),           cmocka_unit_test(test_steady),
+        cmocka_unit_test(test_half_contrast), cmocka_unit_test(test_profile),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }

@@ -436,7 +436,7 @@ static void it_can_be_cancelled(void **state)
     (void)state;
     asj_context_options options;
     asj_context *context;
-    asj_segment_list *list = NULL;
+    asj_segment_list *list = (asj_segment_list *)&options; /* anything: NULL afterwards */
     asj_context_options_init(&options);
     options.progress = stop;
     assert_int_equal(asj_context_create(&options, &context), ASJ_OK);

@@ -129,6 +129,8 @@ def _check_outputs(arguments: argparse.Namespace) -> Path:
     if arguments.hdf5:
         errors.extra("h5py", "hdf5")
     for path in outputs:
+        if path.exists() and path.is_dir() == (path == arguments.colmap):
+            raise FileExistsError(f"{path} is there, and is {'a folder' if path.is_dir() else 'no folder'}")
         if not path.absolute().parent.is_dir():
             raise FileNotFoundError(f"{path}: there is no folder {path.absolute().parent}")
     store: Path | None = arguments.store
@@ -138,6 +140,10 @@ def _check_outputs(arguments: argparse.Namespace) -> Path:
 def _collect(arguments: argparse.Namespace) -> int:
     place = _check_outputs(arguments)
     plan = _plan(arguments)
+    if arguments.hdf5:
+        from .collection import hdf5
+
+        hdf5.check_names(plan.images)
     progress = None if arguments.quiet or not sys.stderr.isatty() else _progress
     open_store = collection.Store.resume if arguments.resume and place.exists() else collection.Store.create
     with open_store(place, plan) as store:

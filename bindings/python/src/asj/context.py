@@ -28,7 +28,7 @@ class Context:
     """Threads, device and scratch memory of the library. One thread at a time uses it.
 
     threads   of the CPU path; 0 = as many as processors. Results do not depend on it
-    backend   "auto" (a GPU through OpenCL where there is one), "cpu", "opencl"
+    backend   "auto" (a GPU through OpenCL where there is one), "cpu", "opencl"; None = "opencl" with a device, else "cpu"
     device    which OpenCL device: its number, "gpu", "cpu", or a part of its name
     progress  called with the name of the stage and how much is done (0 to 1); a result that is true stops the call, which then
               raises Cancelled, and so does an exception, which is passed on
@@ -37,7 +37,12 @@ class Context:
     'cpu'
     """
 
-    def __init__(self, threads: int = 0, backend: str = "cpu", device: str | None = None, progress: Progress | None = None) -> None:
+    def __init__(self, threads: int = 0, backend: str | None = None, device: str | None = None,
+                 progress: Progress | None = None) -> None:  # fmt: skip
+        if backend is None:
+            backend = "cpu" if device is None else "opencl"
+        if backend == "cpu" and device is not None:
+            raise OptionError(f"device {device!r} changes nothing with backend='cpu'")
         if backend not in _BACKENDS:
             raise OptionError(f"backend is {backend!r}: one of {', '.join(_BACKENDS)}")
         self.progress = progress
@@ -60,7 +65,7 @@ class Context:
         if status != lib.ASJ_OK:
             raise error(status, "\n".join(self._messages))
         self._pointer = ffi.gc(place[0], _free)
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()  # a callback that calls the context once more: the library refuses that
 
     @property
     def threads(self) -> int:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import arrays, images
 from ._native import ffi, lib
 from .context import Context, current
-from .errors import FormatError, ImageError
+from .errors import FormatError, ImageError, OptionError
 from .options import DETECTOR, MATCHER
 from .output import whole_file
 
@@ -64,8 +64,12 @@ class Features:
             kept = self._described = key, ffi.gc(place[0], _free_described)
         return kept[1]
 
+    def _check_options(self, preset: str, options: dict[str, object]) -> None:
+        """Any can be had while the image is there."""
+
     def without_image(self, *, preset: str = "default", context: Context | None = None, **options: object) -> Features:
         """What matching needs, and no more: to keep many, and to send them elsewhere. `options` as for :meth:`save`."""
+        self._check_options(preset, options)
         return DescribedFeatures(self.described(MATCHER.fill(preset, options), context or current()))
 
     def save(self, path: str | os.PathLike[str], *, preset: str = "default", context: Context | None = None, **options: object) -> None:
@@ -73,6 +77,7 @@ class Features:
 
         options   those of the matcher that concern one image, for instance descriptor="sift"
         """
+        self._check_options(preset, options)
         handle = self.described(MATCHER.fill(preset, options), context or current())
         size = lib.asj_features_save(handle, ffi.NULL, 0)
         data = ffi.new("char[]", size)
@@ -144,6 +149,12 @@ class DescribedFeatures(Features):
         self.junctions = arrays.view(info.junctions, info.junction_count, "asj_junction", handle)
         self.l_junctions = arrays.view(info.l_junctions, info.l_junction_count, "asj_l_junction", handle)
         self.edges = np.zeros(0, arrays.struct_type("asj_edge"))
+
+    def _check_options(self, preset: str, options: dict[str, object]) -> None:
+        """Without the image they cannot be described once more."""
+        assert self._described is not None
+        if (options or preset != "default") and MATCHER.of_an_image(MATCHER.fill(preset, options)) != self._described[0]:
+            raise OptionError("these features are described with other options, and without their image they stay so")
 
     def described(self, options: Any, context: Context) -> Any:
         """Those that there are: the library refuses other options."""
@@ -219,6 +230,9 @@ def detect(
     mask     HxW of bool or uint8: no junction where it is 0
     region   x, y, width, height: only junctions in this part of the image; branches may leave it
     options  those of the detector by name (:func:`asj.detect_options` lists them), for instance minimum_length=30
+
+    The array is not copied, and matching and saving look at it: pass image.copy() where a buffer is filled anew meanwhile, or take
+    :meth:`Features.without_image` before.
 
     >>> import numpy as np
     >>> square = np.zeros((200, 200), np.uint8); square[60:140, 60:140] = 255

@@ -59,6 +59,8 @@ def fill(options: Any, model: str, cameras: Sequence[Camera | None], sizes: Sequ
         raise OptionError('a camera changes nothing without geometry="auto" (or another)')
     if find_focal and model not in ("auto", "essential"):
         raise OptionError(f'find_focal needs geometry="auto" or "essential", not {model!r}')
+    if cameras[0] is None and cameras[1] is not None:
+        raise OptionError("camera2 without camera1")
     options.geometry.model = MODELS[model]
     options.geometry.find_focal = int(find_focal)
     for place, camera, (width, height) in zip(options.geometry.cameras, cameras, sizes):
@@ -66,10 +68,16 @@ def fill(options: Any, model: str, cameras: Sequence[Camera | None], sizes: Sequ
             place.fx, place.fy, place.cx, place.cy = numbers(camera, width, height)
 
 
+LARGEST_SKEW = 1e-3  # of the focal length: less is no half pixel at the border
+
+
 def numbers(camera: ArrayLike, width: int, height: int) -> tuple[float, float, float, float]:
     """Focal lengths and principal point of a matrix K, of (fx, fy, cx, cy), or of a focal length alone."""
     values = np.asarray(camera, np.float64)
     if values.shape == (3, 3):
+        values = values / values[2, 2] if values[2, 2] else values
+        if abs(values[0, 1]) > LARGEST_SKEW * abs(values[0, 0]):
+            raise ArgumentError("a camera with skew: undistort the image, or leave the skew out")
         numbers = [values[0, 0], values[1, 1], values[0, 2], values[1, 2]]
     elif values.shape == (4,):
         numbers = values.tolist()

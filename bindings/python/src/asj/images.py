@@ -35,6 +35,8 @@ def view(image: ArrayLike, white: float = 0.0) -> View:
     without it: most of them would be cut.
     """
     pixels = np.asarray(image)
+    if pixels.dtype.kind in "USO":
+        raise ImageError(f"not an array of pixels: {image!r:.60}; asj.read_image() reads files")
     if pixels.dtype == np.bool_:
         pixels = pixels.astype(np.uint8) * np.uint8(255)
     if pixels.dtype.kind == "f" and pixels.dtype.itemsize != 4:
@@ -81,8 +83,18 @@ def _luma(pixels: NDArray[Any]) -> NDArray[Any]:
     return np.ascontiguousarray(gray.astype(pixels.dtype))
 
 
-def read(path: str | os.PathLike[str]) -> NDArray[np.uint8]:
-    """An image file as an array, upright (its EXIF orientation is applied): HxW, or HxWx3 in the order red, green, blue.
+def _deep(pixels: NDArray[Any]) -> NDArray[Any]:
+    """Gray of more than 8 bits: float32, or uint16 in this machine's order of bytes."""
+    if pixels.dtype.kind == "f":
+        return pixels.astype(np.float32)
+    if pixels.size and (pixels.min() < 0 or pixels.max() > 65535):
+        raise ValueError("values that are not of 16 bits")
+    return pixels.astype(np.uint16)
+
+
+def read(path: str | os.PathLike[str]) -> NDArray[Any]:
+    """An image file as an array, upright (its EXIF orientation is applied): HxW, or HxWx3 in the order red, green, blue; uint8, of
+    gray files of more bits uint16 or float32.
 
     Needs Pillow. Damaged files raise ImageError.
     """
@@ -93,10 +105,9 @@ def read(path: str | os.PathLike[str]) -> NDArray[np.uint8]:
     try:
         with Image.open(path) as file:
             upright = ImageOps.exif_transpose(file)
-            gray = upright.mode in ("1", "L", "LA", "I;16", "F", "I")
-            if upright.mode == "I;16":
-                return np.asarray(upright)
-            return np.array(upright.convert("L" if gray else "RGB"))
+            if upright.mode in ("F", "I") or upright.mode.startswith("I;16"):
+                return _deep(np.array(upright))
+            return np.array(upright.convert("L" if upright.mode in ("1", "L", "LA") else "RGB"))
     except FileNotFoundError:
         raise
     except (OSError, ValueError, SyntaxError, MemoryError, Image.DecompressionBombError) as bad:

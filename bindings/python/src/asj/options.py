@@ -9,6 +9,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ._native import ffi, lib
 from .errors import OptionError, error, text
 
@@ -88,14 +90,16 @@ def _info(row: Any) -> OptionInfo:
 
 
 def _written(value: object) -> str:
-    if isinstance(value, bool):
+    if isinstance(value, (bool, np.bool_)):
         return "yes" if value else "no"
     if isinstance(value, str):
         return value
+    if isinstance(value, (bytes, bytearray)):
+        raise OptionError(f"{value!r} is no value of an option: text is str here")
     if isinstance(value, Iterable):
         return ",".join(str(int(radius)) for radius in value)
-    if isinstance(value, float):
-        return repr(value)
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value))
     return str(value)
 
 

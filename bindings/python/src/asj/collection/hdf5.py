@@ -7,6 +7,7 @@ features: a group an image with `keypoints` (N, 2) float32 in pixels (centre of 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,15 @@ import numpy as np
 from .. import arrays
 from ..output import whole_file
 from .store import Store
+
+
+def check_names(names: Iterable[str]) -> None:
+    """Raises ValueError when two images would be one group of the matches."""
+    seen: dict[str, str] = {}
+    for name in names:
+        other = seen.setdefault(name.replace("/", "-"), name)
+        if other != name:
+            raise ValueError(f"--hdf5: {other} and {name} would be one group, with - for /")
 
 
 def write_features(store: Store, path: Path) -> None:

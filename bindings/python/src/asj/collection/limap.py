@@ -19,11 +19,12 @@ from .store import Store
 
 
 def write(store: Store, folder: Path) -> None:
-    """The segments of all images and the matches of all pairs."""
+    """The segments of all images and the matches of all pairs. Files of other images and pairs, from an earlier run, go."""
     (folder / "segments").mkdir(parents=True, exist_ok=True)
     (folder / "matches").mkdir(exist_ok=True)
     numbers: dict[int, int] = {}
     names = []
+    written: set[Path] = set()
     for image, name, detected in store.detected():
         if detected.features is None:
             continue
@@ -31,6 +32,7 @@ def write(store: Store, folder: Path) -> None:
         names.append(f"{number} {name}\n")
         junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
         segments, branches = segments_of(junctions)
+        written.add(folder / "segments" / f"segments_{number}.txt")
         with whole_file(folder / "segments" / f"segments_{number}.txt") as temporary, temporary.open("w", encoding="ascii") as file:
             file.write(f"{len(segments)}\n")
             for (start, end), branch in zip(segments.tolist(), branches):
@@ -41,5 +43,10 @@ def write(store: Store, folder: Path) -> None:
         if matched.lines is None:
             continue
         lines = np.frombuffer(matched.lines, np.uint32).reshape(-1, 2)
+        written.add(folder / "matches" / f"matches_{numbers[one]}_{numbers[two]}.txt")
         with whole_file(folder / "matches" / f"matches_{numbers[one]}_{numbers[two]}.txt") as temporary:
             temporary.write_text("".join(f"{i} {j}\n" for i, j in lines.tolist()), encoding="ascii")
+    for kind in ("segments", "matches"):
+        for path in (folder / kind).glob(f"{kind}_*.txt"):
+            if path not in written:
+                path.unlink()

@@ -13,11 +13,11 @@ from .. import __version__
 from .plan import Plan
 from .tasks import Detected, Matched
 
-_FORMAT = "asj-collection-1"
+_FORMAT = "asj-collection-2"
 _SCHEMA = """
 CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT;
 CREATE TABLE images (
-    id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, state TEXT NOT NULL DEFAULT 'waiting', error TEXT,
+    id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, stamp TEXT NOT NULL, state TEXT NOT NULL DEFAULT 'waiting', error TEXT,
     width INTEGER, height INTEGER, focal REAL, features BLOB) STRICT;
 CREATE TABLE pairs (
     id INTEGER PRIMARY KEY, image1 INTEGER NOT NULL REFERENCES images(id), image2 INTEGER NOT NULL REFERENCES images(id),
@@ -47,7 +47,8 @@ class Store:
         with connection:
             connection.executescript("BEGIN;" + _SCHEMA)
             connection.executemany("INSERT INTO about VALUES (?, ?)", _about(plan).items())
-            connection.executemany("INSERT INTO images (id, name) VALUES (?, ?)", [(n, name) for name, n in numbers.items()])
+            rows = [(number, name, _stamp(plan.folder / name)) for name, number in numbers.items()]
+            connection.executemany("INSERT INTO images (id, name, stamp) VALUES (?, ?, ?)", rows)
             connection.executemany(
                 "INSERT INTO pairs (image1, image2) VALUES (?, ?)", [(numbers[one], numbers[two]) for one, two in plan.pairs]
             )
@@ -76,6 +77,10 @@ class Store:
         if names != plan.images or pairs != plan.pairs:
             connection.close()
             raise StoreError(f"{path} is of other work: its images or pairs differ")
+        for name, stamp in connection.execute("SELECT name, stamp FROM images").fetchall():
+            if _stamp(plan.folder / name) != stamp:
+                connection.close()
+                raise StoreError(f"{path} is of other work: {plan.folder / name} is not the file that it was")
         return store
 
     def close(self) -> None:
@@ -168,6 +173,15 @@ class Store:
             "WHERE p.state = 'failed' ORDER BY p.id"
         ).fetchall()
         return rows
+
+
+def _stamp(path: Path) -> str:
+    """Tells a file from another one of its name: size and time of the last change."""
+    try:
+        about = path.stat()
+    except OSError:
+        return "not there"
+    return f"{about.st_size} {about.st_mtime_ns}"
 
 
 def _state(error: str | None) -> str:
