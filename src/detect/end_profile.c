@@ -12,9 +12,10 @@
  * up). The end is found in steps, the first two each the change point between an edge and nothing: the T with the largest
  *     C(T) = sum over t <= T of min(max(a(t) / c - f, -w), w),   w = min(f, 1 - f),
  * which is the place of a step down, and of a slow fade where a(t) = f c, whatever noise does, since many pixels decide. The limits
- * keep single places from deciding. But where a(t) / c < f / 2 there is no edge at all, and such places count GAP times, without
- * limit: a gap is bridged when GAP times as much edge follows it. So the edges of two panels side by side stay two; a crossing of
- * tiles, nothing for a place or two, is passed when some 10 px follow, fewer being chance more often than not.
+ * keep single places from deciding. But where a(t) is less than f c / 2, and less than DOUBT times what noise makes of it, there is
+ * no edge at all, and such places count GAP times, without limit: a gap is bridged when GAP times as much edge follows it. So the
+ * edges of two panels side by side stay two; a crossing of tiles, nothing for a place or two, is passed when some 10 px follow,
+ * fewer being chance more often than not; and shading that slowly turns an edge's contrast round hardly makes a gap.
  *   1. Over the whole branch and BEYOND px more, with the share asked for: how far the edge goes. A small share lets it go on
  *      where what lies beside it changes.
  *   2. Over the last AROUND px of that, with f = 1/2 and c that of the last LAST px: where exactly it breaks off. Of what fades
@@ -24,7 +25,7 @@
  *      long without what smoothing blurs at its ends, its upper quartile of a(t) at least STEADY grey levels, and up to the change
  *      point with f = 1/2 as strong all along: at nine tenths of the places at least EVEN of what it is at the best tenth.
  * Chosen on 24 photographs and their copies (zoom, shift, blur, noise, compression, gain): BLOCK to LAST are one plateau, but
- * LAST >= 16 ends branches before last pieces as short as that. With step 3 random tiles have .899 of their lengths right and
+ * LAST >= 16 ends branches before last pieces as short as that. With step 3 random tiles had .899 of their lengths right and
  * without it .854. (Without step 3 a limit of 4 grey levels in place of the share would do the same, but 2 in 100 junctions of the
  * photographs would not repeat any more; step 3 costs none.) */
 #include "end_profile.h"
@@ -38,7 +39,11 @@
 #define BLOCK 8     /* px */
 #define BLOCKS 24   /* of the part that says what the edge looks like, from the junction on */
 #define BEYOND 8    /* px */
-#define GAP 7       /* chosen on rendered rooms, 6 to 10 being one plateau: lines that are true .956 -> .969 */
+/* Rendered rooms: lines that are true .956 -> .968, and whole junctions of photographs repeat as often under zoom. 6 to 10 are one
+ * plateau, but with 8 a checkerboard's lines end where its tiles have 10 px. Without DOUBT random tiles have .869 of their lengths
+ * right for .880 (.883 without gaps that count more). */
+#define GAP 7
+#define DOUBT 2.0
 #define AROUND 16   /* px */
 #define LAST 14     /* px */
 #define MOST_FADING 100 /* px to either side */
@@ -61,6 +66,7 @@ typedef struct profile {
     const asj_frame *frame;
     double x, y, ux, uy, offset;
     double section[SAMPLES];
+    double nothing;               /* contrast that may be noise */
     int32_t count;                /* blocks */
     double blocks[BLOCKS][SAMPLES];
     int32_t from, held, ends;     /* rows t = from .. from + held - 1 have been read; `ends`: the next one is outside */
@@ -238,14 +244,14 @@ static double fading_around(profile *p, int32_t end, double high, double low)
  * way. */
 static int32_t change_point(profile *p, double own, double share, int32_t first, int32_t last)
 {
-    const double limit = fmin(share, 1 - share);
+    const double limit = fmin(share, 1 - share), gap = fmin(0.5 * share * own, p->nothing);
     double sum = 0, most = 0;
     int32_t end = -1;
     for (int32_t t = first; t <= last; t++) {
         const double a = contrast_at(p, t), more = a / own - share;
         if (a < 0)
             break;
-        sum += more < -0.5 * share ? GAP * more : more < -limit ? -limit : more > limit ? limit : more;
+        sum += a < gap ? GAP * more : more < -limit ? -limit : more > limit ? limit : more;
         if (sum > most) {
             most = sum;
             end = t;
@@ -331,6 +337,7 @@ asj_end_profile asj_end_profile_of(const asj_frame *frame, const asj_hypothesis 
     if (!(own > 0)) /* flat but for a block or two: no contrast to take a share of */
         return result;
     const double noise = noise_of(&p, length);
+    p.nothing = DOUBT * noise / sqrt(2 * SMOOTH + 1);
     const int32_t reach = change_point(&p, own, share, FIRST, length + BEYOND);
     int32_t end = reach < 0 ? -1 : break_before(&p, reach, &own);
     if (end < 0)

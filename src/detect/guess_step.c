@@ -96,7 +96,7 @@ static void reject_known(const void *data, const asj_part *part)
     asj_hypothesis hypothesis;
     for (int64_t i = part->first; i < part->end; i++) {
         asj_guess_restore(&j->guesses[i], &hypothesis);
-        if (asj_octave_is_known(j->known, &hypothesis, ASJ_KNOWN_ROUGHLY))
+        if (asj_octave_is_known(j->known, &hypothesis, ASJ_KNOWN_LINES))
             j->guesses[i].branch_count = 0;
     }
 }

@@ -26,8 +26,8 @@ void asj_octaves_map(asj_hypothesis *hypothesis, double octave);
 size_t asj_octaves_merge(asj_hypothesis *hypotheses, size_t count, const asj_detect_options *options, int32_t width, int32_t height,
                          int32_t *cells);
 
-/* What is known of hypotheses by now: a pixel and directions; the lines, roughly; the lines and the widths of their edges. */
-enum { ASJ_KNOWN_PIXEL, ASJ_KNOWN_ROUGHLY, ASJ_KNOWN_LINES };
+/* What is known of hypotheses by now: a pixel and directions, or the lines. */
+enum { ASJ_KNOWN_PIXEL, ASJ_KNOWN_LINES };
 
 /* What finer octaves have located well is not followed again by coarser ones. */
 typedef struct asj_octave_known {
@@ -42,8 +42,7 @@ asj_octave_known asj_octave_known_start(const asj_hypothesis *finer, size_t coun
                                         int32_t width, int32_t height, int32_t *cells);
 
 /* Whether a hypothesis in pixels of the coarser octave would not survive the merge and could add nothing: one that lies at a sharp
- * finer one, which has all its directions, or all its soft ones once widths are known (with complete_junctions the sharp ones
- * count, too); and a ghost, once lines are known. `what`: ASJ_KNOWN_... */
+ * finer one, which has all its directions; and a ghost, once lines are known. `what`: ASJ_KNOWN_... */
 int asj_octave_is_known(const asj_octave_known *known, const asj_hypothesis *hypothesis, int what);
 
 #endif

@@ -201,21 +201,22 @@ static void test_soft_branch_joins(void **state)
     }
 }
 
-/* One that is sharp does so where junctions are completed, if its line passes the junction closely. */
+/* One that is sharp does so where junctions are completed, or when it is beyond doubt, if its line passes the junction closely. */
 static void test_faint_branch_joins(void **state)
 {
     static const double off[] = {0.5, 0.7, -0.5, -0.7}; /* px of the image; FAINT_OFF is 0.6 there */
     (void)state;
-    for (int i = 0; i < 8; i++) {
-        const int complete = i < 4;
+    for (int i = 0; i < 12; i++) {
+        const int complete = i < 4, sure = i >= 8;
         asj_hypothesis list[2] = {of_octave(0, 100.5, 100.5, 1), corner(50, 50, 0.5)};
         list[1].branch_count = 3;
         list[1].branches[2] = list[1].branches[1];
         list[1].branches[1].angle = 0.25 * UNIT_PI;
+        list[1].branches[1].log_nfa = (sure ? -31 : -29) * log(10);
         list[1].branches[1].offset = off[i % 4] / 2;
         asj_octaves_map(&list[1], 1);
         assert_int_equal(merge_as(list, 2, complete), 1);
-        assert_int_equal(list[0].branch_count, complete && i % 2 == 0 ? 3 : 2);
+        assert_int_equal(list[0].branch_count, (complete || sure) && i % 2 == 0 ? 3 : 2);
     }
 }
 
