@@ -119,8 +119,7 @@ typedef struct asj_detect_options {
     int32_t complete_junctions;   /* step 5: 1 = around every junction branches are looked for that its test has missed, mostly
                                    * edges much fainter than its others, up to max_branches; without octave_union sharp branches of
                                    * coarse octaves join, too, as soft ones and those with an NFA up to 1e-30 do in any case, beyond
-                                   * max_branches. In 1.1 to 1.3 times
-                                   * the time; not with ASJ_REFINE_SEARCH. 0 */
+                                   * max_branches. In 1.1 to 1.3 times the time; not with ASJ_REFINE_SEARCH. 0 */
     double reserved[16];          /* zero */
 } asj_detect_options;
 

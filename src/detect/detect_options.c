@@ -58,7 +58,7 @@ static const asj_option_info rows[] = {
     INTEGER(ISOTROPIC, ADVANCED, isotropic_persistence, "", 1, 8, 1, 3, 1,
             "radii in a row at which a junction must be meaningful"),
     SWITCH(ISOTROPIC, ADVANCED, disjoint_sectors, 0, 1, 0, "the branches of an isotropic junction do not share pixels"),
-    INTEGER(ISOTROPIC, ADVANCED, max_branches, "", 2, ASJ_MAX_BRANCHES, 5, 5, 5, "most branches of a junction"),
+    INTEGER(ISOTROPIC, ADVANCED, max_branches, "", 2, ASJ_MAX_BRANCHES, 5, 5, 5, "branches that are tested together, at most"),
     SWITCH(ISOTROPIC, ADVANCED, all_meaningful_branches, 0, 1, 0,
            "a junction has all branches that are meaningful by themselves"),
     INTEGER(ISOTROPIC, ADVANCED, isotropic_apart, "px", 0, 15, 2, 0, 2,

@@ -244,3 +244,10 @@ def test_files_keep_their_permissions(tmp_path: Path, scene: Scene) -> None:
     for refused in (loaded.without_image, lambda **options: loaded.save(path, **options)):
         with pytest.raises(asj.OptionError, match="other options"):
             refused(descriptor="sift")
+
+
+def test_short_words_for_long_arrays(scene: Scene) -> None:
+    features = asj.detect(scene, preset="default")
+    found = asj.match(features, features, geometry="auto")
+    for thing in (asj.lines(features), asj.vanishing_points(features), found.geometry):
+        assert repr(thing).startswith("<asj.") and len(repr(thing)) < 100

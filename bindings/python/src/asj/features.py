@@ -106,7 +106,7 @@ class Features:
 
     @property
     def xy(self) -> NDArray[np.float32]:
-        """(N, 2) locations."""
+        """(N, 2) locations; up to 10 px outside the image, where edges meet there."""
         return arrays.columns(self.junctions, "x", (2,))
 
     @property

@@ -50,6 +50,10 @@ class Geometry:
     def __bool__(self) -> bool:
         return self.status == "accepted"
 
+    def __repr__(self) -> str:
+        posed = ", with a pose" if self.rotation is not None else ""
+        return f"<asj.Geometry: {self.status}{f', {self.model}, log10 NFA {self.log10_nfa:.1f}{posed}' if self else ''}>"
+
 
 def fill(options: Any, model: str, cameras: Sequence[Camera | None], sizes: Sequence[tuple[int, int]], find_focal: bool) -> None:
     """Sets the geometry of an asj_match_options."""

@@ -27,6 +27,9 @@ class Lines:
     def __len__(self) -> int:
         return len(self.records)
 
+    def __repr__(self) -> str:
+        return f"<asj.Lines: {len(self)} straight edges>"
+
     @property
     def segments(self) -> NDArray[np.float32]:
         """(S, 2, 2) the two ends of each."""

@@ -35,6 +35,9 @@ class VanishingPoints:
     def __len__(self) -> int:
         return len(self.points)
 
+    def __repr__(self) -> str:
+        return f"<asj.VanishingPoints: {len(self)} directions, focal length {self.focal_source}>"
+
 
 def vanishing_points(
     features: Features, *, camera: Camera | None = None, epsilon: float | None = None, context: Context | None = None
