@@ -62,6 +62,8 @@ int asj_memory_allocator(const asj_context_options *options, asj_allocator *allo
 #define GAP 0
 #endif
 
+#define LEAST_MORE 4 /* elements: a list of one is soon one of two */
+
 #define CALLS_KEPT 8 /* calls that a block may be of no use to before it is given back */
 
 /* Of smaller blocks, two thirds of the pages that a first image touches, those that are kept share large pages: of 4096 bytes each
@@ -243,7 +245,7 @@ void *asj_allocate(asj_memory *memory, size_t count, size_t size)
 
 void *asj_allocate_list(asj_memory *memory, size_t count, size_t size)
 {
-    return take(memory, count, size, memory->open ? count / 2 : 0);
+    return take(memory, count, size, memory->open ? count / 2 + LEAST_MORE : 0);
 }
 
 void *asj_allocate_zero(asj_memory *memory, size_t count, size_t size)

@@ -28,8 +28,8 @@ void *asj_allocate(asj_memory *memory, size_t count, size_t size);
 /* The same, all bytes zero. */
 void *asj_allocate_zero(asj_memory *memory, size_t count, size_t size);
 
-/* The same for a list whose length depends on what a picture shows: a block that will be kept has room for half as many again, so
- * that the next picture's list fits as well. */
+/* The same for a list whose length depends on what a picture shows: a block that will be kept has room for half as many again and
+ * a few, so that the next picture's list fits as well. */
 void *asj_allocate_list(asj_memory *memory, size_t count, size_t size);
 
 /* NULL is fine. */

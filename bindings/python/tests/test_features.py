@@ -247,7 +247,7 @@ def test_files_keep_their_permissions(tmp_path: Path, scene: Scene) -> None:
 
 
 def test_short_words_for_long_arrays(scene: Scene) -> None:
-    features = asj.detect(scene, preset="default")
+    features = asj.detect(scene)
     found = asj.match(features, features, geometry="auto")
     for thing in (asj.lines(features), asj.vanishing_points(features), found.geometry):
         assert repr(thing).startswith("<asj.") and len(repr(thing)) < 100
