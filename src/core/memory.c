@@ -243,9 +243,15 @@ void *asj_allocate(asj_memory *memory, size_t count, size_t size)
     return take(memory, count, size, 0);
 }
 
+/* Elements that a list has room for besides, where its block will be kept. */
+static size_t more_of(const asj_memory *memory, size_t count)
+{
+    return memory->open ? count / 2 + LEAST_MORE : 0;
+}
+
 void *asj_allocate_list(asj_memory *memory, size_t count, size_t size)
 {
-    return take(memory, count, size, memory->open ? count / 2 + LEAST_MORE : 0);
+    return take(memory, count, size, more_of(memory, count));
 }
 
 void *asj_allocate_zero(asj_memory *memory, size_t count, size_t size)
@@ -299,7 +305,7 @@ asj_status asj_grow(asj_memory *memory, void **block, size_t *capacity, size_t c
         return ASJ_OK;
     size_t wanted = *capacity + *capacity / 2;
     if (wanted < count)
-        wanted = memory->open && count <= SIZE_MAX / 2 ? count + count / 2 : count; /* as asj_allocate_list() */
+        wanted = count <= SIZE_MAX / 4 ? count + more_of(memory, count) : count;
     void *larger = asj_allocate(memory, wanted, size);
     if (!larger)
         return ASJ_ERROR_MEMORY;

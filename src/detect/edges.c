@@ -27,7 +27,6 @@
 #define END_SURE 3.0   /* .. standard uncertainties of the end, .. */
 #define END_MOST 8.0   /* .. but no more than this: where an edge fades they may be fifty pixels */
 #define LEAST 3.0      /* px */
-#define LN_10 2.302585092994046
 #define LEAST_JUNCTIONS 32 /* for a thread: one takes about 1 us */
 
 typedef struct graph {
@@ -242,7 +241,7 @@ static asj_edge edge_of(const graph *g, int32_t own, int32_t other)
     const double angle = from->branches[b].angle; /* along the branch, as comes_back() has measured it */
     const double distance = (to->x - from->x) * cos(angle) + (to->y - from->y) * sin(angle);
     return (asj_edge){(uint32_t)i, (uint32_t)j, (uint16_t)b, (uint16_t)c,
-                      (float)(between(g, &from->branches[b], &to->branches[c], distance) / LN_10), {0, 0}};
+                      (float)(between(g, &from->branches[b], &to->branches[c], distance) / ASJ_LN_10), {0, 0}};
 }
 
 size_t asj_edges_join(asj_watch *watch, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves,

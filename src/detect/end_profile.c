@@ -39,9 +39,9 @@
 #define BLOCK 8     /* px */
 #define BLOCKS 24   /* of the part that says what the edge looks like, from the junction on */
 #define BEYOND 8    /* px */
-/* Rendered rooms: lines that are true .956 -> .968, and whole junctions of photographs repeat as often under zoom. 6 to 10 are one
- * plateau, but with 8 a checkerboard's lines end where its tiles have 10 px. Without DOUBT random tiles have .869 of their lengths
- * right for .880 (.883 without gaps that count more). */
+/* Rendered rooms: lines that are true .956 -> .968; whole junctions of photographs repeat a little more often under zoom. 6 to 10
+ * are one plateau, but with 8 a checkerboard's lines end where its tiles have 10 px. Random tiles have .896 of their lengths right
+ * for .900, without DOUBT .888. */
 #define GAP 7
 #define DOUBT 2.0
 #define AROUND 16   /* px */

@@ -22,8 +22,8 @@
 #define AT_END 4.0   /* px: a junction so near is what is at the end, whether the end moves or not */
 #define COARSE_REACH 4.0 /* px */
 #define SURE_REACH 8.0   /* px */
-#define DOUBTFUL (-30 * 2.302585092994046) /* natural logarithms */
-#define SURE (-60 * 2.302585092994046)
+#define DOUBTFUL (-30 * ASJ_LN_10) /* natural logarithms */
+#define SURE (-60 * ASJ_LN_10)
 
 /* Whether an edge that comes at this angle ends at the junction: a branch comes back, and none goes on. */
 static int ends_at(const asj_hypothesis *junction, double angle)

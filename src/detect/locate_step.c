@@ -173,7 +173,7 @@ static void reject_known(const void *data, const asj_part *part)
     const known_job *j = data;
     for (int64_t i = part->first; i < part->end; i++) {
         asj_hypothesis *hypothesis = &j->run->hypotheses[j->run->settled + (size_t)i];
-        asj_edge_widths(j->run->frame, hypothesis);
+        asj_edge_widths(j->run->frame, hypothesis); /* which say where lines are fitted next (refine.c) */
         if (asj_octave_is_known(j->known, hypothesis, ASJ_KNOWN_LINES))
             hypothesis->branch_count = 0;
     }

@@ -10,7 +10,7 @@
  * With half_octaves there is one half-way between two: the same formula for o + 1/2, made of octave o (core/half_octave.c). What is
  * too soft or too weak for an octave, and too small for the next one, is found between them. Rooms and corners (tests/accuracy,
  * without and with them): of 5 grey levels .820 and .966 found, precision .997 and .998; blurred by 5 px, of 25 grey levels,
- * .867 and .939; rooms .951 and .956, precision .990 and .989; in 1.5 times the time.
+ * .867 and .939; rooms .951 and .955, precision .991 and .990; in 1.5 times the time.
  *
  * Which octave an edge belongs to is decided by its own width (edge_width.c), not by which octave fired first: lines that are
  * fitted to edges wider than the fits look follow noise, and corners of them are off by pixels.
@@ -46,10 +46,9 @@
 #define JOINED_OFF 1.5            /* px of the coarser octave: the line of a soft branch passes the junction at most so far away */
 #define FAINT_OFF 0.3             /* the same of a sharp one: of 138 that 1.5 has join in 30 rooms 107 are left, hardly any false */
 
-/* Natural logarithm. Rendered rooms: true edges with a line .953 -> .963, from end to end .920 -> .925, lines that are true as
- * before; and in a photograph the 584 px in which two walls meet. From 1e-10 to 1e-30 that is the same; any would
- * cost .2 to .4 % of the junctions that repeat under zoom. */
-#define FAINT_NFA (-30 * 2.302585092994046)
+/* Natural logarithm. Rendered rooms: true edges with a line .952 -> .962, from end to end .920 -> .926, lines that are true as
+ * before; and in a photograph the 584 px in which two walls meet. From 1e-10 to 1e-30 that is the same. */
+#define FAINT_NFA (-30 * ASJ_LN_10)
 
 /* How many there are. */
 static int32_t count_octaves(int32_t width, int32_t height)

@@ -83,7 +83,7 @@ asj_status asj_step_merge_octaves(asj_detection_run *run)
     run->isotropic_count = run->isotropic_total;
     run->all = NULL;
     run->all_count = run->all_capacity = 0;
-    const int one_list = asj_octaves_sharing(run->options, run->image->width, run->image->height) > 1;
+    const int one_list = run->frame->octaves > 1;
     if (one_list)
         status = confirm_all(run);
     if (status == ASJ_OK && one_list)

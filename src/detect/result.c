@@ -5,7 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#define LN_10 2.302585092994046
 
 /* What stands behind the public struct. */
 typedef struct result {
@@ -21,7 +20,7 @@ static void convert(const asj_hypothesis *hypothesis, asj_junction *out)
     out->x = (float)hypothesis->x;
     out->y = (float)hypothesis->y;
     out->scale = (float)hypothesis->radius;
-    out->log10_nfa = (float)(hypothesis->log_nfa / LN_10);
+    out->log10_nfa = (float)(hypothesis->log_nfa / ASJ_LN_10);
     out->location_sd = (float)sqrt(hypothesis->location_variance);
     out->branch_count = hypothesis->branch_count;
     out->octave = (int32_t)(hypothesis->octave < 0 ? floor(hypothesis->octave) : ceil(hypothesis->octave));
@@ -31,7 +30,7 @@ static void convert(const asj_hypothesis *hypothesis, asj_junction *out)
         out->branches[i].angle = angle < 6.2831853f ? angle : 0; /* rounding to float may reach 2 pi */
         out->branches[i].length = (float)branch->length;
         out->branches[i].strength = (float)branch->strength;
-        out->branches[i].log10_nfa = (float)(branch->log_nfa / LN_10);
+        out->branches[i].log10_nfa = (float)(branch->log_nfa / ASJ_LN_10);
         out->branches[i].angle_sd = (float)sqrt(branch->angle_variance);
         out->branches[i].width = (float)(branch->width * asj_octave_scale(branch->octave));
         out->branches[i].length_sd = (float)sqrt(branch->end_variance);

@@ -19,9 +19,8 @@
 
 #define REACH 4.0     /* widths */
 #define SAME_WAY 0.35 /* rad: what a twin's branches diverge by is about half of it */
-#define DECADE 2.302585092994046
-#define WEAK (-8 * DECADE)
-#define SURER (10 * DECADE)
+#define WEAK (-8 * ASJ_LN_10)
+#define SURER (10 * ASJ_LN_10)
 
 static double best_log_nfa(const asj_hypothesis *hypothesis)
 {

@@ -29,7 +29,7 @@
 /* The same where the line has no say in where the junction is. So many directions are looked at for such branches, and so much lies
  * around a corner, that epsilon is not enough: in five photographs most that look false have an NFA above 1e-5. */
 #define LARGEST_OFFSET_OF_ANOTHER 0.5 /* px */
-#define ANOTHER_LOG (5 * 2.302585092994046)
+#define ANOTHER_LOG (5 * ASJ_LN_10)
 
 /* A soft edge's end is uncertain by its width, and what a scan goes beyond a short one drowns it. So of edges wider than SOFT a
  * strip without the last SOFT_END widths is tried too; the number of tests counts all ends. Not on the image itself: there such
@@ -61,7 +61,7 @@
  * octaves, where little noise is left and short branches are long edges. Corners of 5 grey levels in noise of 2 (tests/accuracy):
  * recall .628 -> .820, precision .997 -> .996. With soft edges too, at blur 5 and 25 grey levels, precision falls from .955 to
  * .928; but where a blurred corner explains what is there it stays. */
-#define PAIR_LOG (2 * 2.302585092994046)
+#define PAIR_LOG (2 * ASJ_LN_10)
 
 enum { NOT_AT_ALL, IF_OTHERS_OPEN, WITH_OTHERS, ALONE };
 

@@ -92,9 +92,10 @@ static void put_vanishing_points(asj_json_output *json, const asj_vanishing_poin
     int32_t k;
     for (k = 0; k < found->count && k < ASJ_MOST_VANISHING; k++) {
         const asj_vanishing_point *p = &found->points[k];
-        points = asj_json_append(points, json_pack("{s:o, s:o, s:f, s:I}", "point", triple(p->point), "direction",
-                                                known ? triple(p->direction) : json_null(), "log10_nfa", p->log10_nfa, "branches",
-                                                (json_int_t)p->branch_count));
+        json_t *value = json_pack("{s:o, s:o, s:f, s:I}", "point", triple(p->point), "direction",
+                                  known ? triple(p->direction) : json_null(), "log10_nfa", p->log10_nfa, "branches",
+                                  (json_int_t)p->branch_count);
+        points = asj_json_append(points, value);
     }
     asj_json_put(json, ",\n\"vanishing_points\": ",
                  json_pack("{s:s, s:o, s:o}", "focal_source", sources[known ? found->focal_source : 0], "camera",

@@ -196,6 +196,23 @@ static void test_gap(void **state)
     unit_near("much more edge", 0, 0, end_of_first_panel(f, 8, 100), 168, 1.5);
 }
 
+/* What shading turns round, from 40 grey levels to -20 over 120 px, is one edge. */
+static void test_turned_round(void **state)
+{
+    const unit_fixture *f = *state;
+    const asj_hypothesis h = branch_from(20, 210);
+    const synth_point ramp[4] = {{80, 90}, {200, 90}, {200, 180}, {80, 180}};
+    synth_scene scene;
+    asj_frame frame;
+    synth_scene_init(&scene, 240, SIZE, 100);
+    synth_add_rectangle(&scene, (synth_point){20, 90}, 60, 90, 0, 140);
+    synth_scene_add(&scene, ramp, 4, (synth_paint){140, -0.5, 0, 80, 90}, 1);
+    synth_add_rectangle(&scene, (synth_point){200, 90}, 30, 90, 0, 80);
+    unit_frame_of(f->context, &scene, 0.8, 1, &f->options, &frame);
+    unit_near("end", 0, 0, asj_end_profile_of(&frame, &h, &h.branches[0], 0.15, 0).end, 210, 2);
+    asj_frame_free(&f->context->memory, &frame);
+}
+
 /* A weaker edge that is as strong all along is followed to its own end; not one too faint or too short to tell. */
 static void test_steady(void **state)
 {
@@ -288,7 +305,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kinds), cmocka_unit_test(test_faded),         cmocka_unit_test(test_border),
         cmocka_unit_test(test_break), cmocka_unit_test(test_gap),           cmocka_unit_test(test_steady),
-        cmocka_unit_test(test_half_contrast), cmocka_unit_test(test_profile),
+        cmocka_unit_test(test_half_contrast), cmocka_unit_test(test_profile),       cmocka_unit_test(test_turned_round),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }

@@ -32,8 +32,8 @@ def write(store: Store, folder: Path) -> None:
         names.append(f"{number} {name}\n")
         junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
         segments, branches = segments_of(junctions)
-        written.add(folder / "segments" / f"segments_{number}.txt")
-        with whole_file(folder / "segments" / f"segments_{number}.txt") as temporary, temporary.open("w", encoding="ascii") as file:
+        written.add(path := folder / "segments" / f"segments_{number}.txt")
+        with whole_file(path) as temporary, temporary.open("w", encoding="ascii") as file:
             file.write(f"{len(segments)}\n")
             for (start, end), branch in zip(segments.tolist(), branches):
                 file.write(f"{start[0]:.6f} {start[1]:.6f} {end[0]:.6f} {end[1]:.6f} {-branch['log10_nfa']:.6f}\n")
@@ -43,8 +43,8 @@ def write(store: Store, folder: Path) -> None:
         if matched.lines is None:
             continue
         lines = np.frombuffer(matched.lines, np.uint32).reshape(-1, 2)
-        written.add(folder / "matches" / f"matches_{numbers[one]}_{numbers[two]}.txt")
-        with whole_file(folder / "matches" / f"matches_{numbers[one]}_{numbers[two]}.txt") as temporary:
+        written.add(path := folder / "matches" / f"matches_{numbers[one]}_{numbers[two]}.txt")
+        with whole_file(path) as temporary:
             temporary.write_text("".join(f"{i} {j}\n" for i, j in lines.tolist()), encoding="ascii")
     for kind in ("segments", "matches"):
         for path in (folder / kind).glob(f"{kind}_*.txt"):
