@@ -65,6 +65,7 @@ typedef struct asj_two_view {
     int32_t plane_count;     /* of a fundamental matrix: planes that lie in it */
     double matrix[9];
     double planes[ASJ_MOST_PLANES][9]; /* their homographies, positive where they are in front of camera 1 */
+    double thickness[ASJ_MOST_PLANES];   /* sd of a location on it, as part of that of others: model.c */
     double in_front[ASJ_MOST_PLANES][3]; /* a pixel (x, y, 1) of the plane is in front of camera 1 when its product is positive */
     int32_t has_motion;      /* what follows is known: which side of the cameras a point is */
     int32_t reserved;

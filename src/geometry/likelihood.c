@@ -22,8 +22,9 @@
  * lie anywhere in the image; angle and scale as above; shear anywhere in SHEAR_WIDTH squared.
  *
  * Rooms are made of planes. An essential matrix [t]x R may have some, n'X = 1 in coordinates of camera 1: on each lies what obeys
- * its homography K2 (R + t n') K1^-1 (Hartley and Zisserman, 13.1). A right candidate lies on one of them in ON_PLANES of all
- * cases, on each as likely, or else anywhere: its likelihood is the sum of the parts.
+ * its homography K2 (R + t n') K1^-1 (Hartley and Zisserman, 13.1), with the plane's thickness as part of the standard deviation of
+ * its location (model.c). A right candidate lies on one of them in ON_PLANES of all cases, on each as likely, or else anywhere: its
+ * likelihood is the sum of the parts.
  *
  * What is right lies in front of both cameras; of the points of an epipolar line half do. So the ratio is multiplied by 2 - BEHIND
  * or by BEHIND, and by 1 where rays are so nearly parallel that locations do not tell.
@@ -95,11 +96,10 @@ static void epipolar_residuals(const double f[9], const asj_pairs *set, const as
     r->square = r->value[0] * r->value[0] + r->value[1] * r->value[1] + r->value[2] * r->value[2];
 }
 
-static void planar_residuals(const double h[9], const asj_pairs *set, const asj_pair *c, double loose, asj_residuals *r)
+static void planar_residuals(const double h[9], const asj_pairs *set, double sd, const asj_pair *c, double loose, asj_residuals *r)
 {
     const double w = h[6] * c->x1 + h[7] * c->y1 + h[8], x = (h[0] * c->x1 + h[1] * c->y1 + h[2]) / w;
     const double y = (h[3] * c->x1 + h[4] * c->y1 + h[5]) / w, dx = c->x2 - x, dy = c->y2 - y;
-    const double sd = set->location_sd;
     r->square = HUGE_VAL;
     const double most = FAR_PLANAR * loose * loose;
     if (!(w > 0) || !(dx * dx + dy * dy <= most * sd * sd))
@@ -137,16 +137,16 @@ void asj_epipolar_residuals(const double f[9], const asj_pairs *set, const asj_p
 
 void asj_planar_residuals(const double h[9], const asj_pairs *set, const asj_pair *c, asj_residuals *r)
 {
-    planar_residuals(h, set, c, WIDEST, r);
+    planar_residuals(h, set, set->location_sd, c, WIDEST, r);
 }
 
 static void part_residuals(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *c, double loose,
                            asj_residuals *r)
 {
     if (part > 0)
-        planar_residuals(view->planes[part - 1], set, c, loose, r);
+        planar_residuals(view->planes[part - 1], set, view->thickness[part - 1] * set->location_sd, c, loose, r);
     else if (view->planar)
-        planar_residuals(view->matrix, set, c, loose, r);
+        planar_residuals(view->matrix, set, set->location_sd, c, loose, r);
     else
         epipolar_residuals(view->matrix, set, c, loose, r);
 }
@@ -207,6 +207,12 @@ static double side_factor(const asj_two_view *view, const asj_pair *c)
     return first > 0 && second > 0 ? 2 - BEHIND : BEHIND;
 }
 
+static double peak_of(const asj_two_view *view, int32_t part, const asj_peaks *peaks)
+{
+    const double thickness = part > 0 ? view->thickness[part - 1] : 1;
+    return part > 0 ? peaks->plane / (thickness * thickness) : peaks->first;
+}
+
 double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *c, const asj_peaks *peaks)
 {
     const int32_t planar = asj_part_is_planar(view, part);
@@ -224,7 +230,7 @@ double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *s
     else
         s[0] = asj_exp_falling(-0.5 * square);
     const double labels = peaks->named ? asj_label_ratio(peaks->named, c) : 1;
-    const double ratio = labels * (part > 0 ? peaks->plane : peaks->first) * (s[0] + s[1] + s[2]);
+    const double ratio = labels * peak_of(view, part, peaks) * (s[0] + s[1] + s[2]);
     return !planar && view->has_motion ? ratio * side_factor(view, c) : ratio;
 }
 

@@ -11,6 +11,8 @@
 #include <math.h>
 #include <string.h>
 
+#define RELIEF 0.003 /* location_sd for each px of parallax: of 1.5 px .0045 of the distance, 1 cm at 2.2 m */
+#define THINNEST 0.3 /* location_sd: without parallax .45 px */
 #define PARALLAX 0.006 /* rad between rays: a location is out by 1.5 px of 600, each of two */
 
 static int32_t unit_norm(double m[9])
@@ -113,6 +115,16 @@ int32_t asj_in_front(const double rotation[9], const double translation[3], cons
     return asj_dot3(side1, c) > 0 && asj_dot3(side2, c) > 0 ? 1 : -1;
 }
 
+/* What belongs to a plane stands a little before or behind it: frames, skirtings, handles. By a share s of its distance it is off
+ * by s times its parallax, which is f |n| px at most. Seen from far apart that is as much as locations are off anyway; from 1 to 15
+ * degrees apart it is less, and a plane to which all belongs that lies within the errors of locations takes what tells the motion.
+ * (149 such pairs of rooms, with planes as thick as that and now: 106 and 126 poses, of these out by more than 3 degrees 12 and 15,
+ * AUC at 1, 2, 5 degrees 23.3 35.4 52.3 and 29.6 42.8 61.4. Seen from 30 to 70 degrees apart 142 of 179 either way.) */
+static double thickness_of(const double plane[3], const asj_camera *camera)
+{
+    return fmin(1, hypot(THINNEST, RELIEF * camera->fx * sqrt(asj_dot3(plane, plane))));
+}
+
 /* The homographies of the planes: K2 (R + t n') K1^-1. In front of camera 1 is what has n' K1^-1 (x, y, 1)' > 0. */
 static void complete_planes(asj_model *m, const double k1[9])
 {
@@ -122,6 +134,7 @@ static void complete_planes(asj_model *m, const double k1[9])
             normal[k] = m->rotation[k] + m->translation[k / 3] * m->planes[p][k % 3];
         asj_pixel_homography(normal, m->cameras, m->view.planes[p]);
         asj_apply3_transposed(k1, m->planes[p], m->view.in_front[p]);
+        m->view.thickness[p] = thickness_of(m->planes[p], &m->cameras[1]);
     }
 }
 

@@ -172,10 +172,10 @@ static void epipolar_slopes(const double f[9], const asj_pairs *set, const asj_p
     }
 }
 
-static void planar_slopes(const double h[9], const asj_pairs *set, const asj_pair *c, const asj_residuals *at, int32_t count,
-                          const double (*along)[9], double slope[ASJ_PART_PARAMETERS][6])
+static void planar_slopes(const double h[9], const asj_pairs *set, double sd, const asj_pair *c, const asj_residuals *at,
+                          int32_t count, const double (*along)[9], double slope[ASJ_PART_PARAMETERS][6])
 {
-    const double x1 = c->x1, y1 = c->y1, *a = c->affine, w = 1 / (h[6] * x1 + h[7] * y1 + h[8]), sd = set->location_sd;
+    const double x1 = c->x1, y1 = c->y1, *a = c->affine, w = 1 / (h[6] * x1 + h[7] * y1 + h[8]);
     const double x = (h[0] * x1 + h[1] * y1 + h[2]) * w, y = (h[3] * x1 + h[4] * y1 + h[5]) * w, dx = c->x2 - x, dy = c->y2 - y;
     const double j0 = (h[0] - x * h[6]) * w, j1 = (h[1] - x * h[7]) * w, j2 = (h[3] - y * h[6]) * w, j3 = (h[4] - y * h[7]) * w;
     const double inverse = 1 / (j0 * j3 - j1 * j2);
@@ -215,6 +215,8 @@ int32_t asj_residual_slopes(const asj_two_view *view, int32_t part, const asj_pa
         epipolar_slopes(view->matrix, set, pair, slopes->count[part], along, slope);
         return 3;
     }
-    planar_slopes(part > 0 ? view->planes[part - 1] : view->matrix, set, pair, at, slopes->count[part], along, slope);
+    const double *matrix = part > 0 ? view->planes[part - 1] : view->matrix;
+    const double sd = part > 0 ? view->thickness[part - 1] * set->location_sd : set->location_sd; /* as if it stayed so */
+    planar_slopes(matrix, set, sd, pair, at, slopes->count[part], along, slope);
     return 6;
 }

@@ -85,6 +85,12 @@ static double uncertainty(const asj_geometry *g)
     return sum;
 }
 
+/* A motion that the images leave open says how far; without a focal length, nothing. */
+static int32_t contradicts(const asj_geometry *open, const asj_geometry *finer)
+{
+    return uncertainty(open) > 0 && are_at_odds(open, finer);
+}
+
 static int32_t is_answer(const asj_geometry *g)
 {
     return g->status == ASJ_GEOMETRY_ACCEPTED || asj_geometry_is_open(g);
@@ -110,7 +116,9 @@ asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *fine
         return ASJ_LOOKS_BY_ENLARGED;
     if (b->has_pose && have_same_pose(a, b))
         return ASJ_LOOKS_CONFIRMED;
-    return b->has_pose && a->status == ASJ_GEOMETRY_AMBIGUOUS ? ASJ_LOOKS_BY_ENLARGED : ASJ_LOOKS_LOST;
+    if (a->status == ASJ_GEOMETRY_DEGENERATE && contradicts(a, b))
+        return ASJ_LOOKS_LOST;
+    return b->has_pose ? ASJ_LOOKS_BY_ENLARGED : ASJ_LOOKS_LOST;
 }
 
 /* --- a geometry of one result, and matches of the other ----------------------------------------------------------------------- */

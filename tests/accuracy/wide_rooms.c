@@ -2,15 +2,16 @@
 /* Two-view geometry on rendered rooms seen from far apart, whose cameras are known.
  *
  *     wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--stretch X,Y] [--first N] [--last N]
- *                [--threads N] [--draw N] [--seed N] [--poses]
+ *                [--threads N] [--draw N] [--seed N] [--near] [--poses]
  *
  * Pairs of seeds --first (0) to --last (99): status, model, log10 NFA, pose error (the larger of rotation and direction of
  * translation, degrees) and matches within 4 px of their epipolar lines. Then the area under the curve of recall over error up to
- * 5, 10 and 20 degrees, how many of the pairs with a third in common were accepted, and how many of the accepted are wrong by more
- * than 3 degrees. --held-out: seeds that nothing was tuned on. --unrelated: image 1 of a seed with image 2 of the next one.
+ * 1, 2, 5, 10 and 20 degrees, how many of the pairs with a third in common were accepted, and how many of the accepted are wrong by
+ * more than 3 degrees. --held-out: seeds that nothing was tuned on. --unrelated: image 1 of a seed with image 2 of the next one.
  * --stretch: by asj_match_images(); 0,0: automatically.
- * --draw: another draw of the images' noise. --seed: of the samples. --poses: log10 NFA of the strongest rival, and how far
- * rotation and translation are out, in brackets as told (the largest standard deviation of either).
+ * --near: the cameras are 1 to 15 degrees apart. --draw: another draw of the images' noise. --seed: of the samples. --poses: log10
+ * NFA of the strongest rival, and how far rotation and translation are out, in brackets as told (the largest standard deviation of
+ * either).
  * --check: exit 1 when fewer poses are right (within 3 degrees) than below, or more are wrong. */
 #define _POSIX_C_SOURCE 200809L
 #include "wide_pair.h"
@@ -31,7 +32,7 @@ static const double least_right = 0.50; /* of --check: share of all pairs */
 static const int most_wrong = 0, most_far_off = 0;
 
 typedef struct settings {
-    int check, held_out, unrelated, no_cameras, find_focal, first_octave, poses, look;
+    int check, near, held_out, unrelated, no_cameras, find_focal, first_octave, poses, look;
     long first, last, draw, seed;
     asj_stretch stretch;
     asj_context *context;
@@ -190,11 +191,13 @@ static double area(const double *errors, int count, double limit)
 
 static int report(const settings *set, tally *sum)
 {
+    static const double limits[] = {1, 2, 5, 10, 20};
     qsort(sum->errors, (size_t)sum->pairs, sizeof *sum->errors, by_size);
-    printf("%d pairs: AUC at 5, 10, 20 degrees %.1f %.1f %.1f; accepted %d, of those with a third in common %d of %d; "
-           "with a pose %d, of these off by more than 3 degrees %d, 30 degrees %d\n", sum->pairs, area(sum->errors, sum->pairs, 5),
-           area(sum->errors, sum->pairs, 10), area(sum->errors, sum->pairs, 20), sum->accepted, sum->common_accepted, sum->common,
-           sum->with_pose, sum->wrong, sum->far_off);
+    printf("%d pairs: AUC at 1, 2, 5, 10, 20 degrees", sum->pairs);
+    for (size_t k = 0; k < sizeof limits / sizeof limits[0]; k++)
+        printf(" %.1f", area(sum->errors, sum->pairs, limits[k]));
+    printf("; accepted %d, of those with a third in common %d of %d; with a pose %d, of these off by more than 3 degrees %d, "
+           "30 degrees %d\n", sum->accepted, sum->common_accepted, sum->common, sum->with_pose, sum->wrong, sum->far_off);
     qsort(sum->focals, (size_t)sum->focal_count, sizeof *sum->focals, by_size);
     if (sum->focal_count > 0)
         printf("focal lengths found %d: error median %.1f %%, three quarters within %.1f %%, largest %.1f %%\n", sum->focal_count,
@@ -214,7 +217,7 @@ static int run(const settings *set)
     int have_last = 0, failed = 0;
     for (long seed = set->first; seed <= set->last && sum.pairs < MOST && !failed; seed++) {
         synth_wide_pair pair;
-        if (synth_wide_pair_make(&pair, start + (uint64_t)seed) != 0)
+        if ((set->near ? synth_near_pair_make : synth_wide_pair_make)(&pair, start + (uint64_t)seed) != 0)
             continue; /* no such viewpoints in this room */
         for (int v = 0; v < 2; v++)
             pair.exposures[v].noise_seed += 1000003 * (uint64_t)set->draw;
@@ -242,7 +245,7 @@ static int run(const settings *set)
 static int usage(void)
 {
     fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--stretch X,Y] "
-          "[--first-octave N] [--first N] [--last N] [--threads N] [--draw N] [--seed N] [--poses]\n", stderr);
+          "[--first-octave N] [--first N] [--last N] [--threads N] [--draw N] [--seed N] [--near] [--poses]\n", stderr);
     return 2;
 }
 
@@ -252,7 +255,7 @@ int main(int argc, char **argv)
                                           {"no-cameras", 0, NULL, 'n'}, {"stretch", 1, NULL, 's'}, {"first-octave", 1, NULL, '1'},
                                           {"find-focal", 0, NULL, 'o'}, {"first", 1, NULL, 'f'}, {"last", 1, NULL, 'l'},
                                           {"threads", 1, NULL, 't'}, {"draw", 1, NULL, 'd'}, {"seed", 1, NULL, 'e'},
-                                          {"poses", 0, NULL, 'p'}, {NULL, 0, NULL, 0}};
+                                          {"poses", 0, NULL, 'p'}, {"near", 0, NULL, 'r'}, {NULL, 0, NULL, 0}};
     settings set = {.last = 99, .seed = 1};
     asj_context_options how;
     int c;
@@ -275,6 +278,7 @@ int main(int argc, char **argv)
         case 'd': set.draw = strtol(optarg, NULL, 10); break;
         case 'e': set.seed = strtol(optarg, NULL, 10); break;
         case 'p': set.poses = 1; break;
+        case 'r': set.near = 1; break;
         case 't': how.threads = (int32_t)strtol(optarg, NULL, 10); break;
         default: return usage();
         }

@@ -130,6 +130,20 @@ static int32_t common_corners(const synth_room *room, const synth_camera cameras
     return count;
 }
 
+/* Do both cameras see enough, and the same? Sets what the pair says of that. */
+static int is_good(synth_wide_pair *pair, synth_vector target)
+{
+    const synth_camera *a = &pair->cameras[0], *b = &pair->cameras[1];
+    if (fabs(b->yaw) > 80 * DEGREE || !synth_room_visible(&pair->room, b, target) || !sees_everywhere(&pair->room, a) ||
+        !sees_everywhere(&pair->room, b))
+        return 0;
+    pair->angle = angle_at(target, a->position, b->position);
+    pair->scale = distance(target, a->position) / distance(target, b->position);
+    pair->common = fmin(common_share(&pair->room, a, b), common_share(&pair->room, b, a));
+    pair->corners = common_corners(&pair->room, pair->cameras);
+    return pair->common > 0.15 && pair->corners >= LEAST_CORNERS;
+}
+
 static int find_cameras(synth_wide_pair *pair, synth_random *random)
 {
     const space s = free_space(&pair->room);
@@ -154,12 +168,40 @@ static int find_cameras(synth_wide_pair *pair, synth_random *random)
         *b = look_at(position, target, between(random, -5, 5) * DEGREE, focal);
         b->yaw += between(random, -8, 8) * DEGREE;
         b->pitch += between(random, -5, 5) * DEGREE;
-        if (fabs(b->yaw) > 80 * DEGREE || !synth_room_visible(&pair->room, b, target) || !sees_everywhere(&pair->room, a) ||
-            !sees_everywhere(&pair->room, b))
+        if (is_good(pair, target))
+            return 0;
+    }
+    return -1;
+}
+
+/* A step in any direction, as far as puts the target under `angle` or less. */
+static synth_vector step_from(const synth_camera *camera, synth_vector target, double angle, synth_random *random)
+{
+    const double length = distance(target, camera->position) * angle * DEGREE;
+    const double around = between(random, 0, 360) * DEGREE, up = between(random, -1, 1), flat = sqrt(1 - up * up);
+    const synth_vector p = camera->position;
+    return (synth_vector){p.x + length * flat * cos(around), p.y + length * up, p.z + length * flat * sin(around)};
+}
+
+static int find_near_cameras(synth_wide_pair *pair, synth_random *random)
+{
+    const space s = free_space(&pair->room);
+    const double angle = exp(between(random, log(1), log(15))), focal = between(random, 0.8, 1.15) * SYNTH_WIDE_WIDTH;
+    for (int i = 0; i < TRIALS; i++) {
+        synth_vector target;
+        synth_camera *a = &pair->cameras[0], *b = &pair->cameras[1];
+        const double roll = between(random, -5, 5) * DEGREE, pitch = between(random, -5, 20) * DEGREE;
+        const double yaw = between(random, -50, 50) * DEGREE;
+        *a = stand(anywhere(&s, random), yaw, pitch, roll, focal);
+        if (synth_room_trace(&pair->room, a, 0.5 * (a->width - 1), 0.5 * (a->height - 1), &target) < 0)
             continue;
-        pair->common = fmin(common_share(&pair->room, a, b), common_share(&pair->room, b, a));
-        pair->corners = common_corners(&pair->room, pair->cameras);
-        if (pair->common > 0.15 && pair->corners >= LEAST_CORNERS)
+        const synth_vector position = step_from(a, target, angle, random);
+        if (distance(target, position) < 1 || distance(target, a->position) < 1)
+            continue;
+        *b = look_at(position, target, between(random, -5, 5) * DEGREE, focal);
+        b->yaw += between(random, -4, 4) * DEGREE;
+        b->pitch += between(random, -4, 4) * DEGREE;
+        if (is_good(pair, target))
             return 0;
     }
     return -1;
@@ -179,7 +221,9 @@ static void set_exposure(synth_exposure *e, synth_random *random)
     e->noise_seed = synth_random_bits(random);
 }
 
-int synth_wide_pair_make(synth_wide_pair *pair, uint64_t seed)
+typedef int finder(synth_wide_pair *pair, synth_random *random);
+
+static int make(synth_wide_pair *pair, uint64_t seed, finder *find)
 {
     synth_random random;
     memset(pair, 0, sizeof *pair);
@@ -187,13 +231,23 @@ int synth_wide_pair_make(synth_wide_pair *pair, uint64_t seed)
         return -1;
     pair->seed = seed;
     synth_random_seed(&random, seed * 8 + 0x77696465);
-    if (find_cameras(pair, &random) != 0) {
+    if (find(pair, &random) != 0) {
         synth_wide_pair_free(pair);
         return -1;
     }
     for (int v = 0; v < 2; v++)
         set_exposure(&pair->exposures[v], &random);
     return 0;
+}
+
+int synth_wide_pair_make(synth_wide_pair *pair, uint64_t seed)
+{
+    return make(pair, seed, find_cameras);
+}
+
+int synth_near_pair_make(synth_wide_pair *pair, uint64_t seed)
+{
+    return make(pair, seed, find_near_cameras);
 }
 
 void synth_wide_pair_free(synth_wide_pair *pair)

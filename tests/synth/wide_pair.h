@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Rooms seen from far apart, in colour, by two cameras that differ in exposure, white balance, shake and noise. */
+/* Rooms seen from far apart or from near each other, in colour, by two cameras that differ in exposure, white balance, shake and
+ * noise. */
 #ifndef ASJ_TESTS_SYNTH_WIDE_PAIR_H
 #define ASJ_TESTS_SYNTH_WIDE_PAIR_H
 
@@ -39,6 +40,8 @@ typedef struct synth_wide_pair {
  * (memory, or no such viewpoints). Seeds below SYNTH_WIDE_HELD_OUT are for tuning, the others for judging: nobody looks at them. */
 #define SYNTH_WIDE_HELD_OUT 100000
 int synth_wide_pair_make(synth_wide_pair *pair, uint64_t seed);
+/* The same with cameras near each other, as in a video: under 1 to 15 degrees at most, small angles as often as large ones. */
+int synth_near_pair_make(synth_wide_pair *pair, uint64_t seed);
 void synth_wide_pair_free(synth_wide_pair *pair);
 
 /* The picture of camera 0 or 1: RGB, 8 bits, row by row, freed with free(); NULL (memory). */

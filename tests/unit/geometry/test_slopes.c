@@ -78,6 +78,7 @@ static void check_slopes(const asj_pairs *set, const asj_model *m, int32_t part,
                 dot += moved.view.matrix[k] * m->view.matrix[k];
             for (int k = 0; k < 9 && dot < 0; k++)
                 moved.view.matrix[k] = -moved.view.matrix[k];
+            memcpy(moved.view.thickness, m->view.thickness, sizeof m->view.thickness); /* as if it stayed so */
             asj_part_residuals(&moved.view, part, set, c, &ends[end]);
         }
         if (!isfinite(ends[0].square) || !isfinite(ends[1].square))
