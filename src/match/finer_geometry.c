@@ -11,6 +11,8 @@
  *   - The images have rivals or leave the motion open, and what the enlarged ones accept is the images' best: that is the answer,
  *     whether or not matches come again, since what repeats has been matched by the period. (21 pairs, all within 3 degrees. Of 397
  *     unrelated pairs of such rooms one.)
+ *   - The images leave the motion open, and that of the enlarged ones is one that they allow, when matches come again: the enlarged
+ *     images know better. (Cameras near each other: their own poses are known to 30 degrees and more, the enlarged images' to one.)
  *   - The images have rivals, and the enlarged ones accept another motion: when matches come again (4 pairs, all within 3 degrees).
  *   - The images' is accepted, and the enlarged ones have rivals: the images' is the answer (19 pairs, all within 3 degrees). */
 #include "finer_geometry.h"
