@@ -143,10 +143,9 @@ void asj_planar_residuals(const double h[9], const asj_pairs *set, const asj_pai
 static void part_residuals(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *c, double loose,
                            asj_residuals *r)
 {
-    if (part > 0)
-        planar_residuals(view->planes[part - 1], set, view->thickness[part - 1] * set->location_sd, c, loose, r);
-    else if (view->planar)
-        planar_residuals(view->matrix, set, set->location_sd, c, loose, r);
+    const double sd = asj_part_thickness(view, part) * set->location_sd;
+    if (asj_part_is_planar(view, part))
+        planar_residuals(part > 0 ? view->planes[part - 1] : view->matrix, set, sd, c, loose, r);
     else
         epipolar_residuals(view->matrix, set, c, loose, r);
 }
@@ -209,8 +208,8 @@ static double side_factor(const asj_two_view *view, const asj_pair *c)
 
 static double peak_of(const asj_two_view *view, int32_t part, const asj_peaks *peaks)
 {
-    const double thickness = part > 0 ? view->thickness[part - 1] : 1;
-    return part > 0 ? peaks->plane / (thickness * thickness) : peaks->first;
+    const double thickness = asj_part_thickness(view, part);
+    return (part > 0 ? peaks->plane : peaks->first) / (thickness * thickness);
 }
 
 double asj_part_ratio(const asj_two_view *view, int32_t part, const asj_pairs *set, const asj_pair *c, const asj_peaks *peaks)

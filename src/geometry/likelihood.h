@@ -17,6 +17,12 @@ void asj_planar_residuals(const double h[9], const asj_pairs *set, const asj_pai
 
 /* What a candidate may be: part 0 is anywhere in a geometry without planes or on the plane of a homography, part k on its k-th
  * plane. */
+/* The standard deviation of a location in it, as part of location_sd. */
+static inline double asj_part_thickness(const asj_two_view *view, int32_t part)
+{
+    return part > 0 ? view->thickness[part - 1] : 1;
+}
+
 static inline int32_t asj_part_is_planar(const asj_two_view *view, int32_t part)
 {
     return view->planar || part > 0;
@@ -26,7 +32,7 @@ void asj_part_residuals(const asj_two_view *view, int32_t part, const asj_pairs 
 /* The largest likelihood ratio of the parts, where all residuals are zero and of the largest size, with their shares; standard
  * deviations times `loose`. */
 typedef struct asj_peaks {
-    double first, plane; /* of part 0 and of the planes */
+    double first, plane; /* of part 0, and of the planes if they are as thick as others' errors */
     double loose;
     int32_t fine;        /* residuals have several sizes: where `loose` is 1 */
     int32_t reserved;

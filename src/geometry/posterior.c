@@ -41,7 +41,8 @@
 #define TEMPER 0.5
 #define MOTION 5
 #define LEAST 0.3        /* of Laplace's covariance */
-#define UNSEEN 1.28      /* variance over that of ALL draws, which spread .88 as far as 8000 do: test_posterior.c */
+#define UNSEEN 1.28      /* variance over that of ALL draws: of six right candidates these spread .88 as far as 8000 do, of
+                          * many .99 (test_posterior.c) */
 #define LEAST_SD 1e-3    /* rad: nearer motions are one */
 #define MOST_SD 0.3      /* rad */
 #define WITHIN 4.0       /* standard deviations */
@@ -55,7 +56,7 @@ typedef struct cloud {
     double mean[MOTION];
     double root[MOTION * MOTION]; /* lower triangle L of the covariance L L' */
     double log_root;              /* log det L */
-    double least[MOTION * MOTION]; /* part of the covariance, whatever draws say */
+    double least[MOTION * MOTION]; /* part of the covariance, whatever the draws say */
     double follow[3 * ASJ_MOST_PLANES][MOTION];
 } cloud;
 

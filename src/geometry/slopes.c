@@ -216,7 +216,7 @@ int32_t asj_residual_slopes(const asj_two_view *view, int32_t part, const asj_pa
         return 3;
     }
     const double *matrix = part > 0 ? view->planes[part - 1] : view->matrix;
-    const double sd = part > 0 ? view->thickness[part - 1] * set->location_sd : set->location_sd; /* as if it stayed so */
+    const double sd = asj_part_thickness(view, part) * set->location_sd; /* as if it stayed so */
     planar_slopes(matrix, set, sd, pair, at, slopes->count[part], along, slope);
     return 6;
 }

@@ -37,6 +37,25 @@ static void pairs_are_what_they_promise(void **state)
     assert_in_range(made, SEEDS / 2, SEEDS);
 }
 
+static void near_pairs_are_what_they_promise(void **state)
+{
+    (void)state;
+    int made = 0, apart = 0;
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        synth_wide_pair pair;
+        if (synth_near_pair_make(&pair, seed) != 0)
+            continue;
+        made++;
+        apart += pair.angle > 1;
+        assert_true(pair.angle > 0 && pair.angle <= 16); /* a step of 15 degrees towards the target is seen under up to that */
+        assert_true(pair.scale > 0.7 && pair.scale < 1.4);
+        assert_true(pair.common > 0.15 && pair.corners >= 40);
+        synth_wide_pair_free(&pair);
+    }
+    assert_in_range(made, SEEDS / 2, SEEDS);
+    assert_true(2 * apart > made);
+}
+
 /* Whatever compiler made the test: a number drawn earlier or later would be another room. */
 static void a_seed_is_one_room_everywhere(void **state)
 {
@@ -132,6 +151,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pairs_are_what_they_promise),
+        cmocka_unit_test(near_pairs_are_what_they_promise),
         cmocka_unit_test(a_seed_is_one_room_everywhere),
         cmocka_unit_test(the_pose_is_that_of_the_cameras),
         cmocka_unit_test(pictures_are_in_colour_and_differ),

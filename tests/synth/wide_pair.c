@@ -144,6 +144,17 @@ static int is_good(synth_wide_pair *pair, synth_vector target)
     return pair->common > 0.15 && pair->corners >= LEAST_CORNERS;
 }
 
+/* Camera 1, anywhere, and what it has in the middle of its image; 0: nothing. */
+static int place_first(synth_wide_pair *pair, const space *s, double focal, synth_random *random, synth_vector *target)
+{
+    synth_camera *a = &pair->cameras[0];
+    /* one after the other: the order of a call's arguments is the compiler's choice */
+    const double roll = between(random, -5, 5) * DEGREE, pitch = between(random, -5, 20) * DEGREE;
+    const double yaw = between(random, -50, 50) * DEGREE;
+    *a = stand(anywhere(s, random), yaw, pitch, roll, focal);
+    return synth_room_trace(&pair->room, a, 0.5 * (a->width - 1), 0.5 * (a->height - 1), target) >= 0;
+}
+
 static int find_cameras(synth_wide_pair *pair, synth_random *random)
 {
     const space s = free_space(&pair->room);
@@ -153,11 +164,7 @@ static int find_cameras(synth_wide_pair *pair, synth_random *random)
         synth_vector target;
         synth_camera *a = &pair->cameras[0], *b = &pair->cameras[1];
         const double loose = 1 + 9.0 * i / TRIALS; /* what was drawn need not fit the room */
-        /* one after the other: the order of a call's arguments is the compiler's choice */
-        const double roll = between(random, -5, 5) * DEGREE, pitch = between(random, -5, 20) * DEGREE;
-        const double yaw = between(random, -50, 50) * DEGREE;
-        *a = stand(anywhere(&s, random), yaw, pitch, roll, focal);
-        if (synth_room_trace(&pair->room, a, 0.5 * (a->width - 1), 0.5 * (a->height - 1), &target) < 0)
+        if (!place_first(pair, &s, focal, random, &target))
             continue;
         const synth_vector position = anywhere(&s, random);
         pair->angle = angle_at(target, a->position, position);
@@ -190,10 +197,7 @@ static int find_near_cameras(synth_wide_pair *pair, synth_random *random)
     for (int i = 0; i < TRIALS; i++) {
         synth_vector target;
         synth_camera *a = &pair->cameras[0], *b = &pair->cameras[1];
-        const double roll = between(random, -5, 5) * DEGREE, pitch = between(random, -5, 20) * DEGREE;
-        const double yaw = between(random, -50, 50) * DEGREE;
-        *a = stand(anywhere(&s, random), yaw, pitch, roll, focal);
-        if (synth_room_trace(&pair->room, a, 0.5 * (a->width - 1), 0.5 * (a->height - 1), &target) < 0)
+        if (!place_first(pair, &s, focal, random, &target))
             continue;
         const synth_vector position = step_from(a, target, angle, random);
         if (distance(target, position) < 1 || distance(target, a->position) < 1)

@@ -11,18 +11,19 @@
 #include "geometry/posterior.h"
 #include "geometry/small_matrix.h"
 
-#define RIGHT 6
-#define WRONG 30
+#define ALL 36
+#define FEW_RIGHT 6
 #define DRAWS 8000
 #define MOTION 5
-#define TEMPER 0.5 /* posterior.c */
+#define TEMPER 0.5 /* posterior.c, */
+#define UNSEEN 1.28 /* .. too */
 #define SCENES 40
 
 static const asj_camera cameras[2] = {{500, 500, 319.5, 239.5}, {500, 500, 319.5, 239.5}};
 
 typedef struct scene {
     double rotation[9], translation[3];
-    asj_geometry_candidate list[RIGHT + WRONG];
+    asj_geometry_candidate list[ALL];
 } scene;
 
 static double normal(synth_random *random) /* Box and Muller */
@@ -46,8 +47,8 @@ static void transfer(const scene *s, const double point[3], const double n[3], d
     to[1] = cameras[1].cy + cameras[1].fy * q[1] / q[2];
 }
 
-/* base: how far apart the cameras are; depths are 2.5 to 6. */
-static void make(scene *s, uint64_t seed, double base)
+/* base: how far apart the cameras are; depths are 2.5 to 6. Of ALL so many are right, the first ones. */
+static void make(scene *s, uint64_t seed, double base, uint32_t right_count)
 {
     static const double sizes[3] = {3, 0.1, 0.1}; /* px: errors have several sizes, and the score is rugged */
     synth_random random;
@@ -57,7 +58,7 @@ static void make(scene *s, uint64_t seed, double base)
     s->translation[0] = -synth_random_between(&random, 0.8, 1.2) * base;
     s->translation[1] = 0.1 * base;
     s->translation[2] = 0.3 * base;
-    for (uint32_t k = 0; k < RIGHT + WRONG; k++) {
+    for (uint32_t k = 0; k < ALL; k++) {
         asj_geometry_candidate *c = &s->list[k];
         const double n[3] = {synth_random_between(&random, -0.5, 0.5), synth_random_between(&random, -0.5, 0.5), 1};
         double ray[3], at[2], right[2], down[2];
@@ -77,7 +78,7 @@ static void make(scene *s, uint64_t seed, double base)
         const double size = sizes[k % 3];
         c->x2 = at[0] + size * normal(&random);
         c->y2 = at[1] + size * normal(&random);
-        if (k >= RIGHT) {
+        if (k >= right_count) {
             c->x2 = synth_random_between(&random, 60, 580);
             c->y2 = synth_random_between(&random, 60, 420);
         }
@@ -156,7 +157,7 @@ static void set_options(asj_geometry_options *options)
 }
 
 /* The geometric mean of told standard deviations over those of many draws. */
-static double spread_of_few(asj_context *context, double base)
+static double spread_of_few(asj_context *context, double base, uint32_t right_count)
 {
     static scene s;
     double log_size = 0;
@@ -166,8 +167,8 @@ static double spread_of_few(asj_context *context, double base)
         asj_model model;
         double many[25];
         set_options(&options);
-        make(&s, seed, base);
-        assert_int_equal(asj_pairs_create(context, s.list, RIGHT + WRONG, NULL, &options, &set), ASJ_OK);
+        make(&s, seed, base, right_count);
+        assert_int_equal(asj_pairs_create(context, s.list, ALL, NULL, &options, &set), ASJ_OK);
         asj_adjust_scratch *scratch = asj_adjust_scratches_create(&context->memory, &set, context->threads);
         assert_non_null(scratch);
         memset(&model, 0, sizeof model);
@@ -192,14 +193,16 @@ static double spread_of_few(asj_context *context, double base)
 static void few_draws_spread_as_many_do(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
-    unit_near("standard deviations over those of many draws", 1, 0, spread_of_few(context, 1), 1, 0.1);
+    unit_near("standard deviations over those of many draws", 1, 0, spread_of_few(context, 1, FEW_RIGHT), 1, 0.1);
 }
 
-/* Cameras near each other: turning and moving look alike, and what the candidates allow is long and thin. */
+/* Cameras near each other: turning and moving look alike, and what many right candidates allow is long and thin. Draws miss nothing
+ * of that, so what is told is as much wider as posterior.c makes up for. (With .06 degrees for all parameters in place of its
+ * LEAST, and nothing made up for, 1.22 times as far.) */
 static void few_draws_of_near_cameras_spread_as_many_do(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
-    unit_near("standard deviations over those of many draws", 0.1, 0, spread_of_few(context, 0.1), 1, 0.1);
+    unit_near("standard deviations over those of many draws", 0.1, 0, spread_of_few(context, 0.1, ALL), sqrt(UNSEEN), 0.05);
 }
 
 /* Directions that are the axes of camera 1, known to a tenth of a degree in both images. */
@@ -227,7 +230,7 @@ static double rotation_error(asj_context *context, const scene *s, uint64_t seed
     int32_t count = 1;
     set_options(&options);
     set_directions(s, hints.directions);
-    assert_int_equal(asj_pairs_create(context, s->list, RIGHT + WRONG, &hints, &options, &set), ASJ_OK);
+    assert_int_equal(asj_pairs_create(context, s->list, ALL, &hints, &options, &set), ASJ_OK);
     assert_true(set.rotation_count > 0);
     asj_model *m = &finalists[0];
     memset(m, 0, sizeof *m);
@@ -256,7 +259,7 @@ static void likely_rotations_count(void **state)
     static scene s;
     int32_t near = 0;
     for (uint64_t seed = 1; seed <= SCENES; seed++) {
-        make(&s, seed, 1);
+        make(&s, seed, 1, FEW_RIGHT);
         near += rotation_error(context, &s, seed) < 0.5;
     }
     printf("rotations within half a degree: %d of %d\n", (int)near, SCENES);
