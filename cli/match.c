@@ -240,9 +240,7 @@ static void print_hint(const run *r)
         cli_note("hint: what matches leaves the motion open: few of them, a plane, or a camera that only turned");
     else if (status != ASJ_GEOMETRY_ACCEPTED)
         cli_note("hint: nothing in common stands out from chance (geometry: %s)%s", asj_geometry_status_name(status),
-                 without_focal(&r->geometry) ? "; cameras or --focal estimate may help"
-                 : r->geometry.find_focal    ? "; glancing angles are tried without --focal estimate only"
-                                             : "");
+                 without_focal(&r->geometry) ? "; cameras or --focal estimate may help" : "");
 }
 
 static void print_times(const run *r, double write_ms)

@@ -376,8 +376,6 @@ static int check_stretch(cli_match_arguments *arguments)
     if ((!arguments->look || arguments->stretch.x > 0) && asked)
         return cli_usage_error("match", "%s changes nothing: it is for two whole images, without --stretch and without the preset "
                                "paper", asked);
-    if (arguments->look && arguments->focal_from == CLI_FOCAL_ESTIMATE && arguments->stretch.x != arguments->stretch.y)
-        return cli_usage_error("match", "--focal estimate needs square pixels, which --stretch along one axis has not");
     return CLI_SUCCESS;
 }
 

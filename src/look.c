@@ -107,9 +107,11 @@ static asj_status match_lists(const asj_look *look, const junction_list lists[2]
     const asj_view *v = look->views;
     const asj_known_matches known = {own, {v[0].by, v[1].by}};
     asj_match_options stretched = *options;
-    for (int32_t n = 0; n < 2; n++)
+    for (int32_t n = 0; n < 2; n++) {
+        stretched.geometry.aspects[n] *= v[n].by.y / v[n].by.x;
         if (options->geometry.cameras[n].fx > 0)
             stretched.geometry.cameras[n] = asj_stretch_camera(&options->geometry.cameras[n], &v[n].by);
+    }
     begin_part(look, 2 * DETECTION, 1 - 2 * DETECTION);
     const asj_status status = own ? asj_match_enlarged(look->context, &v[0].stretched, lists[0].list, lists[0].count,
                                                        &v[1].stretched, lists[1].list, lists[1].count, &stretched, &known, result)

@@ -62,12 +62,14 @@ typedef struct asj_geometry_options {
     double directions[2][9]; /* of image 1 and image 2: three directions of the scene at right angles to each other, in camera
                               * coordinates, one after the other, in any order and of either sign (vanishing.h finds them); zero,
                               * the default: not known. With cameras only */
-    int32_t find_focal;      /* 1 = no camera is known, but both have square pixels, the principal point in the middle of the image
-                              * and the same focal length, as a part of the longer side: it is found with the motion, between 0.4
-                              * and 4 of the longer side. Model auto and essential only. Where the motion leaves it open, auto
-                              * gives a fundamental matrix or a homography, and essential ends degenerate. 0 */
+    int32_t find_focal;      /* 1 = no camera is known, but both have pixels as `aspects` says, the principal point in the middle of
+                              * the image and the same focal length, as a part of the longer side: it is found with the motion,
+                              * between 0.4 and 4 of the longer side. Model auto and essential only. Where the motion leaves it
+                              * open, auto gives a fundamental matrix or a homography, and essential ends degenerate. 0 */
     int32_t reserved_integer;/* zero */
-    double reserved[15];     /* zero */
+    double aspects[2];       /* of image 1 and image 2: fy / fx of a camera that is not known, 1 = square pixels. The longer side is
+                              * that of the image with square pixels as wide as its own. 0.01 .. 100; 1 */
+    double reserved[13];     /* zero */
 } asj_geometry_options;
 
 ASJ_API void asj_geometry_options_init(asj_geometry_options *options);

@@ -223,16 +223,16 @@ typedef struct asj_stretch {
  *                    ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is accepted that they accept, too. Another geometry of the
  *                    images judges them. Where the images have rivals or leave the motion open, and without cameras where they have
  *                    no geometry, one match is enough to look;
- *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together, also stretched
- *                    by 1, 3 and by 3, 1, unless rivals or a motion that stays open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the
- *                    answer, or a focal length is looked for. What comes of that counts from 16 matches on, and when it is twice
- *                    as many; then it is looked at with octave -1, too, as above.
+ *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together and 32 where it
+ *                    tells no pose, also stretched by 1, 3 and by 3, 1, unless rivals or a motion that stays open
+ *                    (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the answer. What comes of that counts from 16 matches on, and when
+ *                    it is twice as many; then it is looked at with octave -1, too, as above.
  *                  A pair that has nothing in common takes about twice as long as without all that (tests/accuracy/README.md)
  * detect_options   NULL = preset `match`
  * options          NULL = preset `default`; cameras are those of the images as they are
  *
  * Memory: the stretched images besides what the two calls need for images of that size. One call at a time for a context.
- * ASJ_ERROR_OPTION  also for a stretch outside its range, and for one along one axis with geometry.find_focal
+ * ASJ_ERROR_OPTION  also for a stretch outside its range
  * ASJ_ERROR_LIMIT   also when a stretched image has more pixels than the library takes
  * Others as asj_detect() and asj_match() */
 ASJ_API asj_status asj_match_images(asj_context *context, const asj_image *image1, const asj_image *image2,

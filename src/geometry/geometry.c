@@ -28,15 +28,15 @@
  * images 46 stay below; of 46 accepted ones none is within 8 nats of it. */
 #define GIVE_UP 17.0
 
-/* Cameras that are not known have the longer side as focal length. */
+/* Cameras that are not known have the longer side as focal length, of the image as it is with square pixels. */
 static asj_search plan(const asj_estimation *e, int32_t kind)
 {
     const asj_geometry_options *o = e->options;
     asj_search search = {kind, o->samples, o->seed, {o->cameras[0], o->cameras[1]}, GIVE_UP - log(o->epsilon), NULL, 0, 0};
     for (int32_t v = 0; v < 2; v++)
         if (!asj_camera_is_known(&search.cameras[v])) {
-            const double longer = o->widths[v] > o->heights[v] ? o->widths[v] : o->heights[v];
-            search.cameras[v] = (asj_camera){longer, longer, 0.5 * (o->widths[v] - 1), 0.5 * (o->heights[v] - 1)};
+            const double aspect = o->aspects[v], longer = fmax(o->widths[v], o->heights[v] / aspect);
+            search.cameras[v] = (asj_camera){longer, longer * aspect, 0.5 * (o->widths[v] - 1), 0.5 * (o->heights[v] - 1)};
         }
     return search;
 }

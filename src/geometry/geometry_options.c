@@ -18,6 +18,7 @@ void asj_geometry_options_init(asj_geometry_options *options)
     options->location_sd = 1.5;
     options->angle_sd = 9;
     options->scale_sd = 0.22;
+    options->aspects[0] = options->aspects[1] = 1;
 }
 
 static int32_t within(double value, double low, double high)
@@ -73,6 +74,8 @@ asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_o
             return status;
         if (o->widths[v] < 1 || o->heights[v] < 1)
             return asj_fail(context, ASJ_ERROR_OPTION, "image %d has no size", (int)v + 1);
+        if (!within(o->aspects[v], 0.01, 100))
+            return asj_fail(context, ASJ_ERROR_OPTION, "pixels of image %d cannot be: aspect %g", (int)v + 1, o->aspects[v]);
         if (!directions_are_sound(o->directions[v]))
             return asj_fail(context, ASJ_ERROR_OPTION, "the directions of image %d are not three at right angles", (int)v + 1);
     }

@@ -410,10 +410,6 @@ static void a_stretch_goes_with_images_alone(void **state)
         expect_in(result, result->err, "--stretch looks at");
         expect_in(result, result->err, wrong[k][2]);
     }
-    const outcome *result = run_cli("match", "--stretch", "1,2", "--geometry", "auto", "--focal", "estimate", "first.png",
-                                    "second.png", NULL);
-    expect_code(result, 2);
-    expect_in(result, result->err, "square pixels");
 }
 
 /* Features take the place of either image or of both, with the result of the images as they are; these may be gone. */

@@ -3,6 +3,7 @@
 #include "unit_test.h"
 
 #include "geometry/small_matrix.h"
+#include "match/unstretch.h"
 
 #include <asj/geometry.h>
 
@@ -122,6 +123,40 @@ static void focal_lengths_are_found(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* What was seen with pixels that are not square: the same focal length, in px along x, and the same motion. */
+static void pixels_need_not_be_square(void **state)
+{
+    (void)state;
+    const double turn[3] = {0.15, -0.5, 0.1}, translation[3] = {2, -0.5, 0.8}, stretches[2][2] = {{1, 3}, {3, 1}};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    for (int i = 0; i < 2; i++) {
+        scene s = {.focal = 600};
+        const asj_stretch both[2] = {{stretches[i][0], stretches[i][1]}, {stretches[i][0], stretches[i][1]}};
+        asj_geometry_options o = blind_options(ASJ_GEOMETRY_AUTO);
+        make(&s, turn, translation, 1);
+        for (int k = 0; k < COUNT; k++)
+            asj_stretch_candidate(&s.candidates[k], both);
+        for (int v = 0; v < 2; v++) {
+            o.widths[v] = WIDTH * (int32_t)both[v].x;
+            o.heights[v] = HEIGHT * (int32_t)both[v].y;
+            o.aspects[v] = both[v].y / both[v].x;
+        }
+        const asj_geometry g = estimate(context, &s, &o);
+        double rest[9];
+        assert_int_equal(g.status, ASJ_GEOMETRY_ACCEPTED);
+        assert_int_equal(g.model, ASJ_GEOMETRY_ESSENTIAL);
+        unit_near("focal length, in standard deviations", i, 600, log(g.focal[0] / both[0].x / 600) / g.focal_sd, 0, 3);
+        asj_multiply3_transposed(g.rotation, s.rotation, rest);
+        unit_near("rotation, deg", i, 0, asj_rotation_angle(rest) * 180 / UNIT_PI, 0, 3);
+        /* taken for square, they are another scene */
+        o.aspects[0] = o.aspects[1] = 1;
+        const asj_geometry square = estimate(context, &s, &o);
+        assert_true(square.log10_nfa > g.log10_nfa + 5);
+    }
+    unit_context_free(&counter, &context);
+}
+
 /* Sideways with parallel axes, and a plane that faces the camera: any focal length explains them. A camera that only turns has no
  * translation. None is an answer with a focal length. */
 static void what_leaves_it_open_has_none(void **state)
@@ -185,6 +220,12 @@ static void bad_options_are_refused(void **state)
     o = blind_options(ASJ_GEOMETRY_AUTO);
     o.find_focal = 2;
     assert_int_equal(asj_geometry_estimate(context, s.candidates, COUNT, &o, NULL, &g), ASJ_ERROR_OPTION);
+    const double aspects[] = {0, -1, 0.001, 1000, NAN, INFINITY};
+    for (size_t k = 0; k < UNIT_COUNT(aspects); k++) {
+        o = blind_options(ASJ_GEOMETRY_AUTO);
+        o.aspects[1] = aspects[k];
+        assert_int_equal(asj_geometry_estimate(context, s.candidates, COUNT, &o, NULL, &g), ASJ_ERROR_OPTION);
+    }
     o = blind_options(ASJ_GEOMETRY_AUTO);
     assert_int_equal(asj_geometry_estimate(context, s.candidates, 1, &o, NULL, &g), ASJ_OK);
     assert_int_equal(g.status, ASJ_GEOMETRY_TOO_FEW);
@@ -221,7 +262,8 @@ static void every_allocation_may_fail(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(focal_lengths_are_found), cmocka_unit_test(what_leaves_it_open_has_none),
+        cmocka_unit_test(focal_lengths_are_found), cmocka_unit_test(pixels_need_not_be_square),
+        cmocka_unit_test(what_leaves_it_open_has_none),
         cmocka_unit_test(threads_change_nothing), cmocka_unit_test(bad_options_are_refused),
         cmocka_unit_test(every_allocation_may_fail),
     };
