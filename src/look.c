@@ -113,10 +113,8 @@ static asj_status match_lists(const asj_look *look, const junction_list lists[2]
             stretched.geometry.cameras[n] = asj_stretch_camera(&options->geometry.cameras[n], &v[n].by);
     }
     begin_part(look, 2 * DETECTION, 1 - 2 * DETECTION);
-    const asj_status status = own ? asj_match_enlarged(look->context, &v[0].stretched, lists[0].list, lists[0].count,
-                                                       &v[1].stretched, lists[1].list, lists[1].count, &stretched, &known, result)
-                                  : asj_match(look->context, &v[0].stretched, lists[0].list, lists[0].count, &v[1].stretched,
-                                              lists[1].list, lists[1].count, &stretched, result);
+    const asj_status status = asj_match_look(look->context, &v[0].stretched, lists[0].list, lists[0].count, &v[1].stretched,
+                                             lists[1].list, lists[1].count, &stretched, own != NULL, own ? &known : NULL, result);
     end_part(look->context);
     if (status != ASJ_OK)
         return status;

@@ -29,6 +29,7 @@
  * often. So a stretched look needs ENOUGH matches, and as many more than there are. */
 #include "look.h"
 #include "geometry/geometry_options.h"
+#include "match/final_pose.h"
 #include "match/finer.h"
 
 #define ENOUGH 16  /* matches. Stretched by 1, 3 or 3, 1, pairs of frames that do not match had up to 7 wrong ones, of which
@@ -232,6 +233,8 @@ asj_status asj_match_images(asj_context *context, const asj_image *image1, const
     asj_status status = check(context, wanted);
     if (status == ASJ_OK)
         status = is_automatic(wanted) ? look_for_answer(&s) : look(&s, wanted, s.detect_options, s.options, 0, 1, &s.best);
+    if (status == ASJ_OK)
+        status = asj_finish_pose(context, &s.options->geometry, &s.best);
     if (status != ASJ_OK) {
         asj_match_result_free(&s.best);
         return status;

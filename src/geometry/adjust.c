@@ -134,6 +134,11 @@ static int32_t step(const asj_pairs *set, asj_model *model, const double *probab
     return 1;
 }
 
+int32_t asj_adjust_once(const asj_pairs *set, asj_model *model, const double *probability)
+{
+    return step(set, model, probability, 1);
+}
+
 double asj_choose_motion(const asj_pairs *set, const double *probability, asj_model *model)
 {
     double essential[9], rotations[2][9], t[3], best = -HUGE_VAL;

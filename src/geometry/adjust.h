@@ -32,6 +32,9 @@ void asj_adjust_scratches_free(asj_memory *memory, asj_adjust_scratch *scratches
 /* Moves the model to where the candidates want it, in so many rounds: adjust.c. Its score is that of all candidates then. */
 void asj_adjust(const asj_pairs *set, asj_model *model, int32_t rounds, asj_adjust_scratch *scratch);
 
+/* One round of it with the probabilities of all candidates; 0, and the model stays, when its equations cannot be solved. */
+int32_t asj_adjust_once(const asj_pairs *set, asj_model *model, const double *probability);
+
 /* The same for a model that should explain the candidates that `like` does, and may still be some way off. */
 void asj_adjust_like(const asj_pairs *set, asj_model *model, const asj_model *like, int32_t rounds, asj_adjust_scratch *scratch);
 

@@ -27,6 +27,7 @@
 #include "counter_random.h"
 #include "evidence.h"
 #include "manhattan.h"
+#include "peak.h"
 #include "small_matrix.h"
 #include "stop.h"
 
@@ -297,7 +298,10 @@ void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_a
     cloud c;
     asj_model moved;
     double log_planes, covariance[MOTION * MOTION];
-    if (model->kind != ASJ_GEOMETRY_ESSENTIAL || !start(set, model, &scratch[0], &c, &log_planes))
+    if (model->kind != ASJ_GEOMETRY_ESSENTIAL)
+        return;
+    asj_climb(set, model, &scratch[0]);
+    if (!start(set, model, &scratch[0], &c, &log_planes))
         return;
     if (largest_sd(model->covariance) > MOST_SD) { /* a direction that nothing determines has no middle */
         model->peak = model->evidence;

@@ -36,10 +36,12 @@ asj_status asj_match_finer(asj_context *context, const asj_match_options *option
  * L-junctions have the same numbers. */
 asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_match_result **finer, int32_t same_lists);
 
-/* asj_match() of the enlarged images alone; known may be NULL. */
-asj_status asj_match_enlarged(asj_context *context,
-                              const asj_image *image1, const asj_junction *junctions1, size_t count1,
-                              const asj_image *image2, const asj_junction *junctions2, size_t count2,
-                              const asj_match_options *options, const asj_known_matches *known, asj_match_result **result);
+/* asj_match() as one of several looks at two images, whose pose is not finished (final_pose.h). `enlarged`: of the enlarged images
+ * alone; known may be NULL. */
+asj_status asj_match_look(asj_context *context,
+                          const asj_image *image1, const asj_junction *junctions1, size_t count1,
+                          const asj_image *image2, const asj_junction *junctions2, size_t count2,
+                          const asj_match_options *options, int32_t enlarged, const asj_known_matches *known,
+                          asj_match_result **result);
 
 #endif

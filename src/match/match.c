@@ -35,6 +35,7 @@
 #include "core/backend.h"
 #include "epipolar.h"
 #include "expected.h"
+#include "final_pose.h"
 #include "finer.h"
 #include "guests.h"
 #include "guided.h"
@@ -334,20 +335,22 @@ static asj_status match_junctions(asj_context *context, const source sources[2],
     return status;
 }
 
+asj_status asj_match_look(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
+                          const asj_image *image2, const asj_junction *junctions2, size_t count2,
+                          const asj_match_options *options, int32_t enlarged, const asj_known_matches *known,
+                          asj_match_result **result)
+{
+    const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
+    return match_junctions(context, sources, options, enlarged, known, result);
+}
+
 asj_status asj_match(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
                      const asj_image *image2, const asj_junction *junctions2, size_t count2,
                      const asj_match_options *options, asj_match_result **result)
 {
-    const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
-    return match_junctions(context, sources, options, 0, NULL, result);
-}
-
-asj_status asj_match_enlarged(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
-                              const asj_image *image2, const asj_junction *junctions2, size_t count2,
-                              const asj_match_options *options, const asj_known_matches *known, asj_match_result **result)
-{
-    const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
-    return match_junctions(context, sources, options, 1, known, result);
+    const asj_status status = asj_match_look(context, image1, junctions1, count1, image2, junctions2, count2, options, 0, NULL,
+                                             result);
+    return status == ASJ_OK && options ? asj_finish_pose(context, &options->geometry, result) : status;
 }
 
 static asj_status match_kept(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
@@ -405,5 +408,5 @@ asj_status asj_match_features(asj_context *context, const asj_features *features
     do
         status = asj_match_finer(context, options, &match, result);
     while (asj_backend_retry(context, status));
-    return status;
+    return status == ASJ_OK ? asj_finish_pose(context, &options->geometry, result) : status;
 }
