@@ -108,7 +108,7 @@ static int32_t asks_closer(const search *s)
 {
     const asj_geometry *g = &s->best->geometry;
     if (g->status == ASJ_GEOMETRY_ACCEPTED)
-        return g->has_pose;
+        return g->has_pose || asj_cameras_are_known(&s->options->geometry);
     return asks_geometry(s) && (asj_geometry_is_open(g) || !asj_cameras_are_known(&s->options->geometry));
 }
 

@@ -200,6 +200,7 @@ void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *s)
     for (int32_t v = 0; v < 2; v++) {
         asj_release(memory, s->score.sum[v]);
         asj_release(memory, s->score.touched[v]);
+        asj_release(memory, s->weights[v]);
     }
     asj_release(memory, s->score.near);
     asj_release(memory, s->probability);
@@ -216,7 +217,8 @@ int32_t asj_adjust_scratch_create(asj_memory *memory, const asj_pairs *set, asj_
         const size_t places = (size_t)set->place_count[v];
         s->score.sum[v] = asj_allocate_zero(memory, places, sizeof *s->score.sum[v]);
         s->score.touched[v] = asj_allocate(memory, places, sizeof *s->score.touched[v]);
-        good = good && s->score.sum[v] && s->score.touched[v];
+        s->weights[v] = asj_allocate(memory, places, sizeof *s->weights[v]);
+        good = good && s->score.sum[v] && s->score.touched[v] && s->weights[v];
     }
     const size_t most = (size_t)(set->place_count[0] > set->place_count[1] ? set->place_count[0] : set->place_count[1]);
     s->score.near = asj_allocate(memory, (size_t)set->count + 1, sizeof *s->score.near);

@@ -19,6 +19,7 @@ typedef struct asj_adjust_scratch {
     asj_share *shares, *sorted;
     double *best;
     float *spots; /* five a place */
+    double *weights[2]; /* of the places of either image: asj_weigh_places() */
 } asj_adjust_scratch;
 
 /* 0 without memory; to be freed either way. All zero at first. */

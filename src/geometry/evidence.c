@@ -23,6 +23,8 @@
  *     (1 - d^2 / (2 (POWER + 1) SHARED^2))^POWER,    d the smaller of both distances,
  *
  * which is exp(-d^2 / 2 SHARED^2) for all that it matters, has the same integral over the plane, and needs no exponential.
+ * (posterior.c draws motions around one, and for these the divisors stay what they are there: counted anew, of near candidates the
+ * one that happens to suit a motion best counts most, every motion finds some that suit it, and the score has peaks everywhere.)
  * Without that, letters that were matched with other letters reach an evidence of exp(50); with half this SHARED,
  * one in ten pairs of unrelated rendered rooms reaches 10^7, which should happen once in 10^7 pairs. */
 #include "evidence.h"
@@ -95,11 +97,11 @@ static void add_nearness(const float *x1, const float *y1, const float *x2, cons
     }
 }
 
-/* `shares` fall. */
-static double count_apart(const asj_share *shares, int32_t count, asj_adjust_scratch *scratch)
+/* Of each of the shares, which fall, how near the larger ones are, as a sum. */
+static const float *find_nearness(const asj_share *shares, int32_t count, asj_adjust_scratch *scratch)
 {
-    float *x1 = scratch->spots, *y1 = x1 + count, *x2 = y1 + count, *y2 = x2 + count, *near = y2 + count;
-    double total = 0;
+    float *const x1 = scratch->spots, *const y1 = x1 + count, *const x2 = y1 + count, *const y2 = x2 + count;
+    float *const near = y2 + count;
     for (int32_t k = 0; k < count; k++) {
         const asj_pair *c = shares[k].pair;
         x1[k] = (float)c->x1;
@@ -108,23 +110,36 @@ static double count_apart(const asj_share *shares, int32_t count, asj_adjust_scr
         y2[k] = (float)c->y2;
         near[k] = 0;
     }
-    for (int32_t k = 0; k < count; k++) {
-        total += shares[k].value / (1 + (double)near[k]);
+    for (int32_t k = 0; k < count; k++)
         add_nearness(x1 + k, y1 + k, x2 + k, y2 + k, count - k, near + k);
-    }
+    return near;
+}
+
+static double count_apart(const asj_share *shares, int32_t count, asj_adjust_scratch *scratch)
+{
+    const float *near = find_nearness(shares, count, scratch);
+    double total = 0;
+    for (int32_t k = 0; k < count; k++)
+        total += shares[k].value / (1 + (double)near[k]);
     return total;
 }
 
-/* The score of one image's places, near ones counted as said above. ratio: of each of the `near` candidates. */
-static double side_score(const asj_pairs *set, int32_t side, const uint32_t *near, int32_t near_count, const double *ratio,
-                         asj_adjust_scratch *scratch)
+static uint32_t place_of(const asj_pair *c, int32_t side)
+{
+    return side == 0 ? c->place1 : c->place2;
+}
+
+/* Adds up what candidates say of the places of one image, in scratch->score.sum, and returns how many places that are, which
+ * scratch->score.touched names. Their best candidates: scratch->shares. */
+static int32_t add_up(const asj_pairs *set, int32_t side, const uint32_t *near, int32_t near_count, const double *ratio,
+                      asj_adjust_scratch *scratch)
 {
     double *sum = scratch->score.sum[side];
     uint32_t *touched = scratch->score.touched[side];
-    int32_t places = 0, count = 0;
+    int32_t places = 0;
     for (int32_t n = 0; n < near_count; n++) {
         const asj_pair *c = &set->list[near[n]];
-        const uint32_t place = side == 0 ? c->place1 : c->place2;
+        const uint32_t place = place_of(c, side);
         const double value = c->prior * ratio[n];
         if (!(value > 0))
             continue;
@@ -138,27 +153,93 @@ static double side_score(const asj_pairs *set, int32_t side, const uint32_t *nea
             scratch->shares[place].pair = c;
         }
     }
+    return places;
+}
+
+/* What the place has to say with so much from its candidates. */
+static double share_of(const asj_pairs *set, int32_t side, uint32_t place, double sum)
+{
+    const double rest = 1 - set->prior[side][place];
+    return asj_log_normal((rest + sum) / rest);
+}
+
+/* The shares of one image's places in scratch->sorted, falling; returns how many. ratio: of each of the `near` candidates. */
+static int32_t find_shares(const asj_pairs *set, int32_t side, const uint32_t *near, int32_t near_count, const double *ratio,
+                           asj_adjust_scratch *scratch)
+{
+    double *sum = scratch->score.sum[side];
+    const uint32_t *touched = scratch->score.touched[side];
+    const int32_t places = add_up(set, side, near, near_count, ratio, scratch);
+    int32_t count = 0;
     for (int32_t n = 0; n < places; n++) {
         const uint32_t p = touched[n];
-        const double rest = 1 - set->prior[side][p], value = asj_log_normal((rest + sum[p]) / rest);
+        const double value = share_of(set, side, p, sum[p]);
         if (value > LEAST_SHARE)
             scratch->sorted[count++] = (asj_share){value, scratch->shares[p].pair};
         sum[p] = 0;
     }
     sort_shares(scratch->sorted, count);
-    return set->empty[side] + count_apart(scratch->sorted, count, scratch);
+    return count;
+}
+
+/* Likelihood ratios of the candidates that are near enough the view, in scratch->probability, and which they are, in
+ * scratch->score.near; returns how many. */
+static int32_t find_ratios(const asj_pairs *set, const asj_two_view *view, asj_adjust_scratch *scratch)
+{
+    const asj_peaks peaks = asj_likelihood_peaks(set, view, 1);
+    const int32_t near = asj_near(set, set->count, view, asj_far_limit(set, view, 1), scratch->score.near);
+    for (int32_t n = 0; n < near; n++)
+        scratch->probability[n] = asj_likelihood_ratio(view, set, &set->list[scratch->score.near[n]], &peaks, NULL);
+    return near;
 }
 
 double asj_score_apart(const asj_pairs *set, const asj_two_view *view, asj_adjust_scratch *scratch)
 {
-    const asj_peaks peaks = asj_likelihood_peaks(set, view, 1);
-    const int32_t near = asj_near(set, set->count, view, asj_far_limit(set, view, 1), scratch->score.near);
-    double *ratio = scratch->probability;
-    for (int32_t n = 0; n < near; n++)
-        ratio[n] = asj_likelihood_ratio(view, set, &set->list[scratch->score.near[n]], &peaks, NULL);
-    const double first = side_score(set, 0, scratch->score.near, near, ratio, scratch);
-    const double second = side_score(set, 1, scratch->score.near, near, ratio, scratch);
-    return first < second ? first : second;
+    const int32_t near = find_ratios(set, view, scratch);
+    double of_side[2];
+    for (int32_t side = 0; side < 2; side++) {
+        const int32_t count = find_shares(set, side, scratch->score.near, near, scratch->probability, scratch);
+        of_side[side] = set->empty[side] + count_apart(scratch->sorted, count, scratch);
+    }
+    return of_side[0] < of_side[1] ? of_side[0] : of_side[1];
+}
+
+void asj_weigh_places(const asj_pairs *set, const asj_two_view *view, asj_adjust_scratch *scratch)
+{
+    const int32_t near = find_ratios(set, view, scratch);
+    for (int32_t side = 0; side < 2; side++) {
+        double *weights = scratch->weights[side];
+        int32_t count = find_shares(set, side, scratch->score.near, near, scratch->probability, scratch);
+        memset(weights, 0, (size_t)set->place_count[side] * sizeof *weights);
+        for (int32_t k = 0; k < count; k++)
+            weights[place_of(scratch->sorted[k].pair, side)] = 1;
+        for (int32_t k = 0; k < set->count; k++) { /* the others have nothing to say yet, and come after */
+            const asj_pair *c = &set->list[k];
+            if (weights[place_of(c, side)] == 0)
+                scratch->sorted[count++] = (asj_share){0, c};
+            weights[place_of(c, side)] = 1;
+        }
+        const float *nearness = find_nearness(scratch->sorted, count, scratch);
+        for (int32_t k = 0; k < count; k++)
+            weights[place_of(scratch->sorted[k].pair, side)] = 1 / (1 + (double)nearness[k]);
+    }
+}
+
+double asj_score_weighed(const asj_pairs *set, const asj_two_view *view, double *const weights[2], asj_adjust_scratch *scratch)
+{
+    const int32_t near = find_ratios(set, view, scratch);
+    double of_side[2];
+    for (int32_t side = 0; side < 2; side++) {
+        double *sum = scratch->score.sum[side];
+        const uint32_t *touched = scratch->score.touched[side];
+        const int32_t places = add_up(set, side, scratch->score.near, near, scratch->probability, scratch);
+        of_side[side] = set->empty[side];
+        for (int32_t n = 0; n < places; n++) {
+            of_side[side] += weights[side][touched[n]] * share_of(set, side, touched[n], sum[touched[n]]);
+            sum[touched[n]] = 0;
+        }
+    }
+    return of_side[0] < of_side[1] ? of_side[0] : of_side[1];
 }
 
 double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch)

@@ -7,6 +7,11 @@
 /* The score of likelihood.c with what candidates of near places share counted once: evidence.c. scratch->probability is lost. */
 double asj_score_apart(const asj_pairs *set, const asj_two_view *view, asj_adjust_scratch *scratch);
 
+/* The same with a weight for what each place says, in place of that: scratch->weights after asj_weigh_places() are those of a view.
+ * scratch->probability is lost. */
+void asj_weigh_places(const asj_pairs *set, const asj_two_view *view, asj_adjust_scratch *scratch);
+double asj_score_weighed(const asj_pairs *set, const asj_two_view *view, double *const weights[2], asj_adjust_scratch *scratch);
+
 /* Of a parameter: the information of its prior, and what Laplace's method adds to the log of the evidence for it. */
 double asj_prior_information(const asj_model *model, int32_t parameter);
 double asj_log_volume(const asj_model *model, int32_t parameter);

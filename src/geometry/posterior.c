@@ -206,7 +206,7 @@ static void draw_some(const void *data, const asj_part *part)
         d->score = -HUGE_VAL;
         d->prior = 0;
         if (!asj_pairs_stop(j->set, part) && move(j->model, c, d->at, &moved)) {
-            d->score = asj_score_apart(j->set, &moved.view, &j->scratch[part->thread]);
+            d->score = asj_score_weighed(j->set, &moved.view, j->scratch[0].weights, &j->scratch[part->thread]);
             d->prior = asj_rotation_prior(j->set, moved.rotation);
         }
     }
@@ -309,6 +309,7 @@ void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_a
         return;
     }
     widen(&c);
+    asj_weigh_places(set, &model->view, &scratch[0]);
     job j = {set, model, NULL, seed, 0, scratch, draws};
     if (!draw_rounds(context, &j, &c, covariance) || !move(model, &c, c.mean, &moved))
         return;

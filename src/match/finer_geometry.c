@@ -14,6 +14,8 @@
  *   - The images leave the motion open, and that of the enlarged ones is one that they allow, when matches come again: the enlarged
  *     images know better. (Cameras near each other: their own poses are known to 30 degrees and more, the enlarged images' to one.)
  *   - The images have rivals, and the enlarged ones accept another motion: when matches come again (4 pairs, all within 3 degrees).
+ *   - The images have rivals or leave the motion open, and that of the enlarged ones turns the room over: nothing is settled.
+ *     Frames and windows match themselves upside down, in either look (one pair, with four seeds of six).
  *   - The images' is accepted, and the enlarged ones have rivals: the images' is the answer (19 pairs, all within 3 degrees). */
 #include "finer_geometry.h"
 #include "core/angle.h"
@@ -93,6 +95,12 @@ static int32_t contradicts(const asj_geometry *open, const asj_geometry *finer)
     return uncertainty(open) > 0 && are_at_odds(open, finer);
 }
 
+/* What is up in image 1 is down in image 2. */
+static int32_t turns_over(const asj_geometry *g)
+{
+    return g->has_pose && g->rotation[4] < 0;
+}
+
 static int32_t is_answer(const asj_geometry *g)
 {
     return g->status == ASJ_GEOMETRY_ACCEPTED || asj_geometry_is_open(g);
@@ -116,6 +124,8 @@ asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *fine
                accepted && !a->has_pose ? ASJ_LOOKS_BY_ENLARGED : ASJ_LOOKS_BY_IMAGES;
     if (!accepted || !asj_geometry_is_open(a) || a->model != ASJ_GEOMETRY_ESSENTIAL)
         return ASJ_LOOKS_BY_ENLARGED;
+    if (turns_over(b))
+        return ASJ_LOOKS_LOST;
     if (b->has_pose && have_same_pose(a, b))
         return ASJ_LOOKS_CONFIRMED;
     if (a->status == ASJ_GEOMETRY_DEGENERATE && contradicts(a, b))

@@ -168,9 +168,23 @@ void asj_judge_guests(asj_match_run *run, size_t first)
 
 /* --- matches that come ------------------------------------------------------------------------------------------------------- */
 
+/* The list of the geometry may have put a match that was off its line on it. */
+static void forget_rejected(asj_match_run *run, const asj_candidate *c)
+{
+    asj_choices *rejected = &run->rejected;
+    size_t kept = 0;
+    for (size_t n = 0; n < rejected->count; n++) {
+        const asj_candidate *gone = &run->candidates.list[rejected->list[n].candidate];
+        if (gone->i != c->i || gone->j != c->j)
+            rejected->list[kept++] = rejected->list[n];
+    }
+    rejected->count = kept;
+}
+
 static asj_status add(asj_match_run *run, const asj_candidate *c, double probability)
 {
     asj_candidate copy = *c;
+    forget_rejected(run, c);
     const asj_candidates one = {&copy, 1, 1};
     const size_t count = run->candidates.count;
     const asj_status status = asj_candidates_append(run->context, &run->candidates, &one);

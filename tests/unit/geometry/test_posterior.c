@@ -98,6 +98,7 @@ static void reference(const asj_pairs *set, const asj_model *model, asj_adjust_s
     double information[25], root[25], none[MOTION] = {0}, mean[MOTION] = {0}, largest = -HUGE_VAL, sum = 0;
     synth_random random;
     synth_random_seed(&random, 99);
+    asj_weigh_places(set, &model->view, scratch);
     asj_probabilities(set, &model->view, 1, &scratch->score, scratch->probability);
     asj_information(set, model, scratch->probability, information);
     for (int p = 0; p < MOTION; p++)
@@ -124,7 +125,8 @@ static void reference(const asj_pairs *set, const asj_model *model, asj_adjust_s
                 at[n][i] += root[5 * i + k] * y[k];
         }
         assert_true(asj_model_move(model, at[n], &moved));
-        weights[n] = TEMPER * asj_score_apart(set, &moved.view, scratch) + asj_rotation_prior(set, moved.rotation) + 0.5 * square;
+        weights[n] = TEMPER * asj_score_weighed(set, &moved.view, scratch->weights, scratch) +
+                     asj_rotation_prior(set, moved.rotation) + 0.5 * square;
         largest = fmax(largest, weights[n]);
     }
     for (int n = 0; n < DRAWS; n++) {
@@ -283,9 +285,11 @@ static void a_motion_beside_its_peak_comes_back(void **state)
         model.evidence = asj_log_evidence(&set, &model, scratch);
         const double before = model.evidence;
         asj_climb(&set, &model, scratch);
+        model.evidence = asj_log_evidence(&set, &model, scratch);
         asj_multiply3_transposed(model.rotation, s.rotation, between);
         const double off = asj_rotation_angle(between) * 180 / UNIT_PI;
-        printf("evidence %.1f -> %.1f, of the right motion %.1f; rotation %.3f deg off\n", before, model.evidence, right.evidence, off);
+        printf("evidence %.1f -> %.1f, of the right motion %.1f; rotation %.3f deg off\n", before, model.evidence, right.evidence,
+               off);
         assert_true(model.evidence > right.evidence - 8 && right.evidence > before + 100 && off < 0.1);
         asj_adjust_scratches_free(&context->memory, scratch, context->threads);
         asj_pairs_free(&context->memory, &set);
