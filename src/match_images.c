@@ -101,9 +101,9 @@ static asj_status look(search *s, const asj_stretch *stretch, const asj_detect_o
 
 /* --- enlarged ---------------------------------------------------------------------------------------------------------------- */
 
-/* Whether to ask the enlarged images for a geometry. Where cameras are known and the images' is chance, that of the enlarged
- * ones is not believed either (accepted then: of 398 pairs of rooms one, of 397 unrelated ones nine). Without cameras it is, when
- * matches come again (of 198 pairs five, of 197 unrelated ones five). */
+/* Whether to ask the enlarged images for a geometry: a pose, also where the images have a plane without one. Where cameras are
+ * known and the images' is chance, that of the enlarged ones is not believed either (accepted then: of 398 pairs of rooms one, of
+ * 397 unrelated ones nine). Without cameras it is, when matches come again (of 198 pairs five, of 197 unrelated ones five). */
 static int32_t asks_closer(const search *s)
 {
     const asj_geometry *g = &s->best->geometry;

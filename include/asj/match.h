@@ -218,11 +218,11 @@ typedef struct asj_stretch {
  *                  - as they are;
  *                  - where that gives options->enlarge_from matches, also with junctions of octave -1, which hold as asj_match()
  *                    says (result->enlarged), and half octaves (options->enlarged_half_octaves), unless detect_options name another
- *                    first octave, or one octave alone, or an image has more than 2 megapixels. A pose of the images is estimated
- *                    again from these matches: of two that agree the surer one is told where they hold, two at odds are
- *                    ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is accepted that they accept, too. Another geometry of the
- *                    images judges them. Where the images have rivals or leave the motion open, and without cameras where they have
- *                    no geometry, one match is enough to look;
+ *                    first octave, or one octave alone, or an image has more than 2 megapixels. A pose of the images, with known
+ *                    cameras also a geometry without one, is estimated again from these matches: of two that agree the surer one
+ *                    is told where they hold, two at odds are ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is accepted
+ *                    that they accept, too. Another geometry of the images judges them. Where the images have rivals or leave the
+ *                    motion open, and without cameras where they have no geometry, one match is enough to look;
  *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together and 32 where it
  *                    tells no pose, also stretched by 1, 3 and by 3, 1, unless rivals or a motion that stays open
  *                    (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the answer. What comes of that counts from 16 matches on, and when

@@ -29,7 +29,7 @@
 /* Of the rotation, and of the direction of the translation: */
 #define SAME_POSE (4 * ASJ_DEGREE)   /* where one of the two is not accepted and does not say how sure it is */
 #define LEAST_APART (3 * ASJ_DEGREE) /* of two that do, no less is at odds, */
-#define SURELY_APART 4.0             /* and no less than so many standard deviations (of others up to 3.9) */
+#define SURELY_APART 6.5             /* and no less than so many standard deviations (of others up to 5.9) */
 
 /* --- which one ---------------------------------------------------------------------------------------------------------------- */
 
