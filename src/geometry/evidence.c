@@ -23,10 +23,11 @@
  *     (1 - d^2 / (2 (POWER + 1) SHARED^2))^POWER,    d the smaller of both distances,
  *
  * which is exp(-d^2 / 2 SHARED^2) for all that it matters, has the same integral over the plane, and needs no exponential.
- * (posterior.c draws motions around one, and for these the divisors stay what they are there: counted anew, of near candidates the
- * one that happens to suit a motion best counts most, every motion finds some that suit it, and the score has peaks everywhere.)
  * Without that, letters that were matched with other letters reach an evidence of exp(50); with half this SHARED,
- * one in ten pairs of unrelated rendered rooms reaches 10^7, which should happen once in 10^7 pairs. */
+ * one in ten pairs of unrelated rendered rooms reaches 10^7, which should happen once in 10^7 pairs.
+ *
+ * posterior.c draws motions around one, and for these the divisors stay what they are there: counted anew, of near candidates the
+ * one that happens to suit a motion best counts most, every motion finds some that suit it, and the score has peaks everywhere. */
 #include "evidence.h"
 #include "core/angle.h"
 #include "elementary.h"

@@ -15,12 +15,12 @@
  *
  * Drawn are the five parameters of the motion (model.c). Planes follow as the equations of adjust.c say, n' = -H_nn^-1 H_nm m', and
  * are integrated over by Laplace's method. Standard deviations of a round: those of the draws so far, times the SPREADS in turn,
- * which the density has all of, so that what lies farther out is found and nothing weighs without bound. Of a covariance of draws,
- * few of which weigh anything at first, LEAST of Laplace's is a part: it is as long and thin as what the candidates allow. (Where
- * cameras are near each other, turning and moving look alike, and the two together are known far better than either. An sd of 0.06
- * degrees for all parameters in place of it left hardly a draw that weighed anything: in 149 pairs of rooms seen from 1 to 15
- * degrees apart translations were out by 1.4 told standard deviations in the median and by 4.7 and more in a tenth; now by 1.0 and
- * 2.5. wide_rooms --near.) */
+ * which the density has all of, so that what lies farther out is found and nothing weighs without bound. Of a covariance of
+ * draws, few of which weigh anything at first, LEAST of Laplace's is a part: it is as long and thin as what the candidates allow.
+ * (Where cameras are near each other, turning and moving look alike, and the two together are known far better than either. An sd
+ * of 0.06 degrees for all parameters in place of it left hardly a draw that weighed anything: in 149 pairs of rooms seen from 1
+ * to 15 degrees apart translations were out by 1.4 told standard deviations in the median and by 4.7 and more in a tenth; with it
+ * by 1.0 and 2.5, before poses were finished by match/final_pose.c. wide_rooms --near.) */
 #include "posterior.h"
 #include "core/angle.h"
 #include "core/threads.h"
@@ -49,6 +49,8 @@
 #define WITHIN 4.0       /* standard deviations */
 #define MOST_TURN 0.6    /* rad */
 #define LEAST_WEIGHT 0.01
+
+typedef char models_are_inverted[ASJ_MODEL_PARAMETERS <= ASJ_MOST_INVERTED ? 1 : -1];
 
 static const double spreads[SPREADS] = {0.8, 1.2, 2};
 
@@ -117,21 +119,6 @@ static int32_t set_root(double covariance[MOTION * MOTION], cloud *c)
     return 1;
 }
 
-/* Inverse of the n x n matrix; 0 when it is not positive definite. */
-static int32_t invert(const double *a, int32_t n, double *inverse, double *log_determinant)
-{
-    for (int32_t p = 0; p < n; p++) {
-        double copy[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], column[ASJ_MODEL_PARAMETERS] = {0};
-        memcpy(copy, a, (size_t)(n * n) * sizeof *copy);
-        column[p] = 1;
-        if (!asj_cholesky_solve(copy, n, column, log_determinant))
-            return 0;
-        for (int32_t k = 0; k < n; k++)
-            inverse[k * n + p] = column[k];
-    }
-    return 1;
-}
-
 /* The cloud of Laplace's approximation at the model; *log_planes: what the planes add to the log of the evidence. */
 static int32_t start(const asj_pairs *set, asj_model *model, asj_adjust_scratch *scratch, cloud *c, double *log_planes)
 {
@@ -144,7 +131,7 @@ static int32_t start(const asj_pairs *set, asj_model *model, asj_adjust_scratch 
     asj_information(set, model, scratch->probability, information);
     for (int32_t p = 0; p < n; p++)
         information[p * (n + 1)] += asj_prior_information(model, p);
-    if (!invert(information, n, inverse, NULL))
+    if (!asj_invert_positive(information, n, inverse, NULL))
         return 0;
     for (int32_t i = 0; i < MOTION; i++)
         for (int32_t k = 0; k < MOTION; k++)
@@ -152,7 +139,7 @@ static int32_t start(const asj_pairs *set, asj_model *model, asj_adjust_scratch 
     for (int32_t i = 0; i < more; i++)
         for (int32_t k = 0; k < more; k++)
             of_planes[i * more + k] = information[(MOTION + i) * n + MOTION + k];
-    if (more > 0 && !invert(of_planes, more, inverse_planes, &log_determinant))
+    if (more > 0 && !asj_invert_positive(of_planes, more, inverse_planes, &log_determinant))
         return 0;
     for (int32_t i = 0; i < more; i++)
         for (int32_t k = 0; k < MOTION; k++)

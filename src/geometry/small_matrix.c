@@ -225,6 +225,20 @@ int32_t asj_cholesky_solve(double *a, int32_t n, double *b, double *log_determin
     return 1;
 }
 
+int32_t asj_invert_positive(const double *a, int32_t n, double *inverse, double *log_determinant)
+{
+    for (int32_t p = 0; p < n; p++) {
+        double copy[ASJ_MOST_INVERTED * ASJ_MOST_INVERTED], column[ASJ_MOST_INVERTED] = {0};
+        memcpy(copy, a, (size_t)(n * n) * sizeof *copy);
+        column[p] = 1;
+        if (!asj_cholesky_solve(copy, n, column, log_determinant))
+            return 0;
+        for (int32_t k = 0; k < n; k++)
+            inverse[k * n + p] = column[k];
+    }
+    return 1;
+}
+
 /* A = P L D L' P' with the largest pivot first (Golub and Van Loan, 4.2.8): D falls, so its last entry tells of the smallest
  * eigenvalue and the one before it of the second. L has ones on its diagonal. 0 when the last but one is as good as 0. */
 static int32_t factor9(double *a, int32_t order[9], double d[9])

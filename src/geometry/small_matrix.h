@@ -66,6 +66,9 @@ int32_t asj_least_vector9(double *a, double *vector);
 /* Solves the symmetric positive definite system A x = b in place: Cholesky's factor goes into the lower triangle of A, x into b,
  * and the logarithm of A's determinant into *log_determinant (may be NULL). 0 when A is not positive definite. */
 int32_t asj_cholesky_solve(double *a, int32_t n, double *b, double *log_determinant);
+/* The inverse of such a matrix, n <= ASJ_MOST_INVERTED; otherwise the same. */
+#define ASJ_MOST_INVERTED 17
+int32_t asj_invert_positive(const double *a, int32_t n, double *inverse, double *log_determinant);
 
 /* Solutions of A x = 0 for a rows x 9 matrix, rows <= 8: 9 - rows orthonormal vectors of 9, one after the other. A is overwritten.
  * 0 when the rows depend on each other. */

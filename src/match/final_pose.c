@@ -106,21 +106,14 @@ static int32_t set_information(const asj_geometry *g, fit *f)
     double to[MOTION][6] = {{1}, {0, 1}, {0, 0, 1}};
     memcpy(&to[3][3], f->axes[0], sizeof f->axes[0]);
     memcpy(&to[4][3], f->axes[1], sizeof f->axes[1]);
-    for (int32_t column = 0; column < MOTION; column++) {
-        double c[MOTION * MOTION], unit[MOTION] = {0};
-        for (int32_t i = 0; i < MOTION; i++)
-            for (int32_t k = 0; k < MOTION; k++) {
-                c[i * MOTION + k] = i == k ? LEAST_SD * LEAST_SD : 0;
-                for (int32_t n = 0; n < 36; n++)
-                    c[i * MOTION + k] += to[i][n / 6] * g->covariance[n] * to[k][n % 6];
-            }
-        unit[column] = 1;
-        if (!asj_cholesky_solve(c, MOTION, unit, NULL))
-            return 0;
-        for (int32_t i = 0; i < MOTION; i++)
-            f->information[i * MOTION + column] = unit[i];
-    }
-    return 1;
+    double c[MOTION * MOTION];
+    for (int32_t i = 0; i < MOTION; i++)
+        for (int32_t k = 0; k < MOTION; k++) {
+            c[i * MOTION + k] = i == k ? LEAST_SD * LEAST_SD : 0;
+            for (int32_t n = 0; n < 36; n++)
+                c[i * MOTION + k] += to[i][n / 6] * g->covariance[n] * to[k][n % 6];
+        }
+    return asj_invert_positive(c, MOTION, f->information, NULL);
 }
 
 /* --- the steps ---------------------------------------------------------------------------------------------------------------- */

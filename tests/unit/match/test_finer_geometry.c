@@ -446,6 +446,26 @@ static void an_open_motion_is_found(void **state)
     }
 }
 
+/* Frames match themselves upside down in either look: both telling one such motion settles nothing, an upright one is found. */
+static void what_turns_over_settles_nothing(void **state)
+{
+    static const int32_t open[] = {ASJ_GEOMETRY_DEGENERATE, ASJ_GEOMETRY_AMBIGUOUS};
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+    own->geometry = finer->geometry;
+    for (size_t k = 0; k < UNIT_COUNT(open); k++) {
+        own->geometry.status = open[k];
+        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_CONFIRMED);
+        change_pose(own, 180, 1);
+        change_pose(finer, 180, 1);
+        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_LOST);
+        change_pose(own, 180, 1);
+        change_pose(finer, 180, 1);
+    }
+    asj_match_result_free(&own);
+    asj_match_result_free(&finer);
+}
+
 /* What tells no motion is no answer where the images leave open which motion it is. */
 static void a_plane_decides_no_motion(void **state)
 {
@@ -507,7 +527,7 @@ int main(void)
         cmocka_unit_test(opposite_translations_are_at_odds),
         cmocka_unit_test(poses_that_agree_are_one),
         cmocka_unit_test(rivals_are_confirmed),
-        cmocka_unit_test(an_open_motion_is_found),
+        cmocka_unit_test(an_open_motion_is_found), cmocka_unit_test(what_turns_over_settles_nothing),
         cmocka_unit_test(a_plane_decides_no_motion),
         cmocka_unit_test(chance_stays_chance),
         cmocka_unit_test(what_a_geometry_adds_is_no_reason_against),
