@@ -42,6 +42,7 @@ static size_t list_of_image(const asj_image_features *f, size_t offset, const as
     PIECE(l_junctions.location_x, l->location_count);
     PIECE(l_junctions.location_y, l->location_count);
     PIECE(l_junctions.octave, l->count);
+    PIECE(l_junctions.log10_nfa, l->count);
     PIECE(l_junctions.t_junction, l->count);
     if (l->neighbour_limit > 0) {
         PIECE(l_junctions.neighbour, (size_t)l->location_count * l->neighbour_limit);

@@ -289,6 +289,19 @@ static asj_status set_octaves(asj_context *context, const asj_junction_list *inp
     return ASJ_OK;
 }
 
+/* What junctions say of themselves: how meaningful they are. */
+static asj_status set_meaning(asj_context *context, const asj_junction_list *input, asj_l_junctions *all)
+{
+    all->log10_nfa = asj_allocate(&context->memory, all->count, sizeof *all->log10_nfa);
+    if (!all->log10_nfa)
+        return no_memory(context);
+    for (uint32_t i = 0; i < all->count; i++) {
+        const float log10_nfa = input->list[all->l[i].junction].log10_nfa;
+        all->log10_nfa[i] = isnan(log10_nfa) ? INFINITY : log10_nfa;
+    }
+    return ASJ_OK;
+}
+
 /* What junctions say of branches: what is at their ends, and how well their directions are known. */
 static asj_status set_branches(asj_context *context, const asj_junction_list *input, asj_l_junctions *all)
 {
@@ -429,6 +442,8 @@ asj_status asj_l_junctions_create(asj_context *context, const asj_match_options 
     if (status == ASJ_OK)
         status = find_around(context, options, all);
     if (status == ASJ_OK)
+        status = set_meaning(context, input, all);
+    if (status == ASJ_OK)
         status = set_branches(context, input, all);
     if (status == ASJ_OK)
         status = find_t_junctions(context, all);
@@ -439,7 +454,8 @@ void asj_l_junctions_free(asj_memory *memory, asj_l_junctions *all)
 {
     void *blocks[] = {all->l, all->lengths, all->direction, all->direction_sd, all->first_frame, all->frames, all->location,
                       all->location_x, all->location_y, all->neighbour, all->neighbour_count,
-                      all->first_of_location, all->l_of_location, all->octave, all->t_junction};
+                      all->first_of_location, all->l_of_location, all->octave, all->log10_nfa,
+                      all->t_junction};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         asj_release(memory, blocks[i]);
     memset(all, 0, sizeof *all);

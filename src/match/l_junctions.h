@@ -39,6 +39,7 @@ typedef struct asj_l_junctions {
     uint8_t *octave;             /* of each L-junction: that located it, 0 .. ASJ_COARSEST */
     int32_t home;                /* the finest octave of at least half as many as any; others are guests (guests.c) */
     uint32_t home_locations;     /* locations of that octave */
+    float *log10_nfa;            /* of each L-junction: what the caller says of its junction; no NaN */
     uint8_t *t_junction;         /* of each L-junction: is it part of a T? One of its branches goes on beyond the location */
     uint32_t *neighbour;         /* [k * location .. + neighbour_count[location]]: nearest other locations that are no guests',
                                   * nearest first */

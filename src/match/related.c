@@ -18,17 +18,10 @@
 #include "subset.h"
 #include "support.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #define SUREST 800 /* candidates of which support is asked; with 400 photographs of one place reach half of what they do so */
 #define FEW 100    /* L-junctions: fewer take no time, and too little can agree */
-
-static int rising(const void *left, const void *right)
-{
-    const float p = *(const float *)left, q = *(const float *)right;
-    return p < q ? -1 : p > q;
-}
 
 /* Keeps the candidates that are as near as the SUREST-th; equals stay together, so that swapping the images changes nothing. */
 static asj_status keep_surest(asj_match_run *run)
@@ -41,8 +34,7 @@ static asj_status keep_surest(asj_match_run *run)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", all->count);
     for (size_t k = 0; k < all->count; k++)
         distances[k] = all->list[k].distance2;
-    qsort(distances, all->count, sizeof *distances, rising);
-    const float most = distances[SUREST - 1];
+    const float most = asj_nth_smallest(distances, all->count, SUREST);
     size_t kept = 0;
     for (size_t k = 0; k < all->count; k++)
         if (all->list[k].distance2 <= most)
@@ -101,9 +93,9 @@ asj_status asj_related(const asj_match_run *run, int32_t *related)
         return ASJ_OK;
     options.shortlist = 1;
     memset(parts, 0, sizeof parts);
-    asj_status status = asj_subset_create(run, 0, 1, &parts[0]);
+    asj_status status = asj_subset_create(run, 0, 1, 0, &parts[0]);
     if (status == ASJ_OK)
-        status = asj_subset_create(run, 1, 1, &parts[1]);
+        status = asj_subset_create(run, 1, 1, 0, &parts[1]);
     if (status == ASJ_OK)
         status = look(&some, related);
     asj_release(memory, some.candidates.list);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 7, short lists: the candidates are the union of the best partners of every L-junction of either image (rank.c), guests left
- * out (guests.c). Ties go to the smaller index, so the list depends on nothing but the input. */
+ * out (guests.c), and for a geometry the less meaningful ones where there are very many (two_view.c). Ties go to the smaller index,
+ * so the list depends on nothing but the input. */
 #include "shortlist.h"
 #include "subset.h"
 
@@ -12,11 +13,20 @@ static void clear(asj_partner *list, size_t count)
         list[i] = (asj_partner){ASJ_NO_PARTNER, 0};
 }
 
+static size_t count_partners(const asj_partner *list, size_t count)
+{
+    size_t partners = 0;
+    for (size_t i = 0; i < count; i++)
+        partners += list[i].score > ASJ_NO_PARTNER;
+    return partners;
+}
+
 /* The union of both lists as candidates. */
 static asj_status collect(asj_match_run *run, const asj_partner *rows, const asj_partner *columns)
 {
     const uint32_t count1 = run->image[0]->l_junctions.count, count2 = run->image[1]->l_junctions.count;
-    const size_t limit = (size_t)run->options->shortlist, most = ((size_t)count1 + count2) * limit;
+    const size_t limit = (size_t)run->options->shortlist, most = count_partners(rows, count1 * limit) +
+                                                                 count_partners(columns, count2 * limit);
     asj_candidates *candidates = &run->candidates;
     candidates->list = asj_allocate(&run->context->memory, most, sizeof *candidates->list);
     if (!candidates->list)
@@ -36,11 +46,13 @@ static asj_status collect(asj_match_run *run, const asj_partner *rows, const asj
     return ASJ_OK;
 }
 
-/* Are there guests that would be compared? */
-static int has_guests(const asj_match_run *run)
+/* Are there L-junctions that are not listed? */
+static int lists_some(const asj_match_run *run)
 {
     for (int32_t side = 0; side < 2 && run->options->patches == ASJ_PATCHES_CANONICAL; side++) {
         const asj_l_junctions *all = &run->image[side]->l_junctions;
+        if (run->most_listed > 0 && all->count > run->most_listed)
+            return 1;
         for (uint32_t i = 0; i < all->count; i++)
             if (asj_is_guest(all, i) && all->first_frame[i] < all->first_frame[i + 1])
                 return 1;
@@ -48,17 +60,17 @@ static int has_guests(const asj_match_run *run)
     return 0;
 }
 
-/* The best partners, guests left out. */
+/* The best partners of those that are listed. */
 static asj_status find_partners(const asj_match_run *run, asj_partner *rows, asj_partner *columns)
 {
     asj_subset hosts[2];
-    if (!has_guests(run))
+    if (!lists_some(run))
         return run->context->ops->rank->partners(run, rows, columns);
     memset(hosts, 0, sizeof hosts);
     asj_match_run among = *run;
     asj_status status = ASJ_OK;
     for (int32_t side = 0; side < 2 && status == ASJ_OK; side++) {
-        status = asj_subset_create(run, side, 0, &hosts[side]);
+        status = asj_subset_create(run, side, 0, run->most_listed, &hosts[side]);
         among.image[side] = &hosts[side].features;
     }
     if (status == ASJ_OK)

@@ -2,21 +2,60 @@
 #include "subset.h"
 #include "describe.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* How many frames of L-junction i are in it. */
-static uint32_t frames_of(const asj_l_junctions *l, uint32_t i, int32_t first_only)
+static int rising(const void *left, const void *right)
 {
-    const uint32_t all = l->first_frame[i + 1] - l->first_frame[i];
-    return asj_is_guest(l, i) ? 0 : first_only && all > 1 ? 1 : all;
+    const float p = *(const float *)left, q = *(const float *)right;
+    return p < q ? -1 : p > q;
 }
 
-static void fill(const asj_image_features *all, int32_t first_only, size_t length, asj_subset *s)
+float asj_nth_smallest(float *values, size_t count, size_t n)
+{
+    qsort(values, count, sizeof *values, rising);
+    return values[n - 1];
+}
+
+/* Those of L-junctions that are no guests, of junctions up to `log10_nfa`; `first_only` of each. */
+typedef struct choice {
+    int32_t first_only;
+    float log10_nfa;
+} choice;
+
+/* How many frames of L-junction i are in it. */
+static uint32_t frames_of(const asj_l_junctions *l, uint32_t i, const choice *c)
+{
+    const uint32_t all = l->first_frame[i + 1] - l->first_frame[i];
+    return asj_is_guest(l, i) || l->log10_nfa[i] > c->log10_nfa ? 0 : c->first_only && all > 1 ? 1 : all;
+}
+
+/* What the `most` most meaningful L-junctions that are no guests reach. */
+static asj_status find_log10_nfa(asj_context *context, const asj_l_junctions *l, uint32_t most, float *log10_nfa)
+{
+    *log10_nfa = INFINITY;
+    if (most == 0 || l->count <= most)
+        return ASJ_OK;
+    float *values = asj_allocate(&context->memory, l->count, sizeof *values);
+    if (!values)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the order of %u L-junctions", (unsigned)l->count);
+    size_t count = 0;
+    for (uint32_t i = 0; i < l->count; i++)
+        if (!asj_is_guest(l, i))
+            values[count++] = l->log10_nfa[i];
+    if (count > most)
+        *log10_nfa = asj_nth_smallest(values, count, most);
+    asj_release(&context->memory, values);
+    return ASJ_OK;
+}
+
+static void fill(const asj_image_features *all, const choice *c, size_t length, asj_subset *s)
 {
     const asj_l_junctions *l = &all->l_junctions;
     uint32_t count = 0;
     for (uint32_t i = 0; i < l->count; i++) {
-        const uint32_t f = l->first_frame[i], some = frames_of(l, i, first_only);
+        const uint32_t f = l->first_frame[i], some = frames_of(l, i, c);
         s->first_frame[i] = count;
         memcpy(s->frames + count, l->frames + f, some * sizeof *s->frames);
         memcpy(s->usable + count, all->usable + f, some);
@@ -26,22 +65,27 @@ static void fill(const asj_image_features *all, int32_t first_only, size_t lengt
     s->first_frame[l->count] = count;
 }
 
-asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t first_only, asj_subset *s)
+asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t first_only, uint32_t most,
+                             asj_subset *s)
 {
     asj_memory *memory = &run->context->memory;
     const asj_image_features *all = run->image[side];
     const asj_l_junctions *l = &all->l_junctions;
     const size_t length = (size_t)asj_patch_length(run->options);
+    choice c = {first_only, 0};
     size_t count = 0;
+    const asj_status status = find_log10_nfa(run->context, l, most, &c.log10_nfa);
+    if (status != ASJ_OK)
+        return status;
     for (uint32_t i = 0; i < l->count; i++)
-        count += frames_of(l, i, first_only);
+        count += frames_of(l, i, &c);
     s->frames = asj_allocate(memory, count, sizeof *s->frames);
     s->first_frame = asj_allocate(memory, (size_t)l->count + 1, sizeof *s->first_frame);
     s->patches = asj_allocate(memory, count * length, sizeof *s->patches);
     s->usable = asj_allocate(memory, count, sizeof *s->usable);
     if (!s->frames || !s->first_frame || !s->patches || !s->usable)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for a part of %u L-junctions", (unsigned)l->count);
-    fill(all, first_only, length, s);
+    fill(all, &c, length, s);
     s->features = *all;
     s->features.device_copy = 0;
     s->features.patches = s->patches;

@@ -14,9 +14,13 @@ typedef struct asj_subset {
     uint8_t *usable;
 } asj_subset;
 
-/* Of image `side`, without the frames of guests (l_junctions.h); with `first_only` with the first frame of each L-junction only.
- * L-junctions keep their numbers; those without a frame are compared with nothing. Canonical patches. Free it either way. */
-asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t first_only, asj_subset *subset);
+/* Of image `side`, without the frames of guests (l_junctions.h); with `first_only` with the first frame of each L-junction only;
+ * with `most` > 0 of the so many most meaningful L-junctions only, and their equals. L-junctions keep their numbers; those without
+ * a frame are compared with nothing. Canonical patches. Free it either way. */
+asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t first_only, uint32_t most, asj_subset *subset);
 void asj_subset_free(asj_memory *memory, asj_subset *subset);
+
+/* The n-th smallest value (1 <= n <= count), of which none is NaN. Sorts them. */
+float asj_nth_smallest(float *values, size_t count, size_t n);
 
 #endif
