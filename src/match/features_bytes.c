@@ -26,6 +26,7 @@
 #include "core/image.h"
 #include "finer.h"
 #include "kept_features.h"
+#include "l_junctions_create.h"
 #include "match_options.h"
 
 #include <stdio.h>
@@ -329,7 +330,7 @@ static asj_status read_colours(reader *r, int32_t last, asj_image_features *made
 
 static asj_status make_plain(reader *r, const asj_match_options *options, const asj_junction *junctions, asj_image_features *made)
 {
-    const asj_junction_list list = {junctions, r->count, r->width, r->height, 1, 0};
+    const asj_image_junctions list = {junctions, r->count, r->width, r->height, 1, 0};
     asj_status status = asj_l_junctions_create(r->context, options, &list, &made->l_junctions);
     if (status == ASJ_OK)
         status = read_plane(r, &made->pyramid);

@@ -11,6 +11,7 @@
 #include "align.h"
 #include "compare.h"
 #include "location_grid.h"
+#include "locations.h"
 #include "core/watch.h"
 
 #include <math.h>

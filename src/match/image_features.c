@@ -4,6 +4,7 @@
 #include "image_features.h"
 #include "core/image.h"
 #include "describe.h"
+#include "l_junctions_create.h"
 #include "patch_induced.h"
 
 #include <string.h>
@@ -15,7 +16,7 @@ asj_status asj_image_features_describe(asj_context *context, const asj_match_opt
 }
 
 static asj_status create(asj_context *context, const asj_match_options *options, const asj_image *image,
-                         const asj_junction_list *junctions, asj_image_features *features)
+                         const asj_image_junctions *junctions, asj_image_features *features)
 {
     asj_status status = asj_l_junctions_create(context, options, junctions, &features->l_junctions);
     if (status == ASJ_OK)
@@ -36,7 +37,7 @@ asj_status asj_image_features_create(asj_context *context, const asj_match_optio
         status = asj_enlarge_check(context, image);
     if (status != ASJ_OK)
         return status;
-    const asj_junction_list list = {junctions, count, image->width, image->height, which, enlarged};
+    const asj_image_junctions list = {junctions, count, image->width, image->height, which, enlarged};
     status = create(context, options, image, &list, features);
     if (status != ASJ_OK)
         asj_image_features_free(&context->memory, features);

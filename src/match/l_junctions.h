@@ -47,23 +47,10 @@ typedef struct asj_l_junctions {
     uint32_t neighbour_limit;    /* k */
 } asj_l_junctions;
 
-/* The junctions of one image, as the caller gives them: in its pixels. */
-typedef struct asj_junction_list {
-    const asj_junction *list;
-    size_t count;
-    int32_t width, height;       /* px: of the image */
-    int32_t which;               /* 1 or 2, for messages */
-    int32_t enlarged;            /* 1: L-junctions in pixels of the image enlarged twice; 0: in its own, and none of octave
-                                  * -1 */
-} asj_junction_list;
-
-/* Makes everything from junctions. ASJ_ERROR_ARGUMENT (see asj_match()), ASJ_ERROR_LIMIT, ASJ_ERROR_MEMORY. On failure the caller
- * still frees. */
-asj_status asj_l_junctions_create(asj_context *context, const asj_match_options *options, const asj_junction_list *input,
-                                  asj_l_junctions *l_junctions);
 /* How many L-junctions are of octaves that the image itself has. Moves them to the front. */
 uint32_t asj_l_junctions_of_image(const asj_junction *junctions, asj_l_junction *l, uint32_t count);
 
+/* All blocks. */
 void asj_l_junctions_free(asj_memory *memory, asj_l_junctions *l_junctions);
 
 /* L-junctions of another octave than home: they neither support nor lengthen others. */
@@ -76,8 +63,5 @@ static inline int asj_is_guest_location(const asj_l_junctions *all, uint32_t loc
 {
     return asj_is_guest(all, all->l_of_location[all->first_of_location[location]]);
 }
-
-/* The first location that is not left of x. */
-uint32_t asj_first_location(const asj_l_junctions *l_junctions, double x);
 
 #endif

@@ -23,6 +23,7 @@
 #include "verdict.h"
 #include "epipolar.h"
 #include "geometry_candidate.h"
+#include "locations.h"
 
 #include <math.h>
 #include <stdlib.h>

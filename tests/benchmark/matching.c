@@ -6,6 +6,7 @@
 #include "match/align.h"
 #include "match/describe.h"
 #include "match/image_features.h"
+#include "match/l_junctions_create.h"
 #include "match/match_options.h"
 #include "match/shortlist.h"
 #include "measure.h"
@@ -94,7 +95,7 @@ static void least(double *value, double since)
 static asj_status prepare(asj_context *context, const benchmark_view *s, const settings *set, int32_t which,
                           asj_image_features *features)
 {
-    const asj_junction_list input = {s->list, s->count, WIDTH, HEIGHT, which, 0};
+    const asj_image_junctions input = {s->list, s->count, WIDTH, HEIGHT, which, 0};
     asj_status status = asj_l_junctions_create(context, &set->options, &input, &features->l_junctions);
     return status == ASJ_OK ? asj_pyramid_create(context, &s->image, set->options.smoothing, &features->pyramid) : status;
 }

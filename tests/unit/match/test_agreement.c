@@ -2,6 +2,7 @@
 /* agreement.c and support_gate.c: exact under perspective; corners of one edge agree across surfaces, Ts and what lies off the edge
  * do not; the gate loses nothing. */
 #include "match/support_gate.h"
+#include "match/l_junctions_create.h"
 #include "random.h"
 #include "unit_test.h"
 
@@ -61,7 +62,7 @@ static float agree(stage *s, int on_surface)
     unit_counter counter = {0, 0, 0, 0};
     asj_context *context = unit_context(&counter, 1);
     for (int v = 0; v < 2; v++) {
-        const asj_junction_list input = {s->junctions[v], 2, SIDE, SIDE, v + 1, 0};
+        const asj_image_junctions input = {s->junctions[v], 2, SIDE, SIDE, v + 1, 0};
         memset(&s->image[v], 0, sizeof s->image[v]);
         assert_int_equal(asj_l_junctions_create(context, &s->options, &input, &s->image[v].l_junctions), ASJ_OK);
     }
@@ -195,7 +196,7 @@ static int passes(const stage *s, const asj_candidate *c, const asj_candidate *d
 
 static asj_status create(asj_context *context, stage *s, const asj_junction *junctions, int v)
 {
-    const asj_junction_list input = {junctions, LOCATIONS, SIDE, SIDE, v + 1, 0};
+    const asj_image_junctions input = {junctions, LOCATIONS, SIDE, SIDE, v + 1, 0};
     return asj_l_junctions_create(context, &s->options, &input, &s->image[v].l_junctions);
 }
 

@@ -5,6 +5,7 @@
 #include "geometry/colour_vote.h"
 #include "geometry/pairs.h"
 #include "match/kept_features.h"
+#include "match/l_junctions_create.h"
 #include "unit_test.h"
 #include "wide_pair.h"
 
@@ -53,7 +54,7 @@ static int32_t colour_of(asj_context *context, const asj_image *image, const asj
     memset(&made, 0, sizeof made);
     memset(colour, 0, sizeof *colour);
     asj_match_options_init(&options);
-    const asj_junction_list list = {corner, 1, image->width, image->height, 1, 0};
+    const asj_image_junctions list = {corner, 1, image->width, image->height, 1, 0};
     assert_int_equal(asj_l_junctions_create(context, &options, &list, &made), ASJ_OK);
     assert_int_equal(made.count, 1);
     assert_int_equal(asj_colours_create(context, image, &made, &found), ASJ_OK);
@@ -156,7 +157,7 @@ static void guests_do_not_say_that_there_are_colours(void **state)
         asj_colour *found = NULL;
         memset(&made, 0, sizeof made);
         corners[2].octave = octave;
-        const asj_junction_list list = {corners, 3, SIDE, SIDE, 1, 0};
+        const asj_image_junctions list = {corners, 3, SIDE, SIDE, 1, 0};
         assert_int_equal(asj_l_junctions_create(context, &options, &list, &made), ASJ_OK);
         assert_int_equal(asj_colours_create(context, &image, &made, &found), ASJ_OK);
         assert_int_equal(found != NULL, octave == 0);

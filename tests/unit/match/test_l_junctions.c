@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* src/match/l_junctions.c against the plain way to find the same: neighbours of locations, lengths of branches. */
-#include "match/l_junctions.h"
+#include "match/l_junctions_create.h"
 #include "random.h"
 #include "unit_test.h"
 
@@ -63,7 +63,7 @@ static void neighbours_are_the_nearest(void **state)
             asj_context *context = unit_context(&counter, 1);
             asj_l_junctions all;
             scatter(seed, junctions);
-            const asj_junction_list input = {junctions, seed == 3 ? 20 : COUNT, SIDE, SIDE, 1, 0};
+            const asj_image_junctions input = {junctions, seed == 3 ? 20 : COUNT, SIDE, SIDE, 1, 0};
             options.neighbours = limit;
             options.separation = seed == 1 ? 0 : 5.0 * (double)seed;
             assert_int_equal(asj_l_junctions_create(context, &options, &input, &all), ASJ_OK);
@@ -95,7 +95,7 @@ static void lengths_are_those_of_junctions_on_the_branch(void **state)
     unit_counter counter = {0, 0, 0, 0};
     asj_context *context = unit_context(&counter, 1);
     asj_l_junctions all;
-    const asj_junction_list input = {junctions, COUNT, SIDE, SIDE, 1, 0};
+    const asj_image_junctions input = {junctions, COUNT, SIDE, SIDE, 1, 0};
     int32_t found = 0;
     asj_match_options_init(&options);
     scatter(4, junctions);
@@ -145,7 +145,7 @@ static void t_junctions_have_one_branch_that_goes_on(void **state)
         junctions[k].y = 60;
         junctions[k].branches[1].angle = junctions[k].branches[0].angle + (float)synth_random_between(&random, 0.5, 2.5);
     }
-    const asj_junction_list input = {junctions, COUNT, SIDE, SIDE, 1, 0};
+    const asj_image_junctions input = {junctions, COUNT, SIDE, SIDE, 1, 0};
     asj_match_options_init(&options);
     assert_int_equal(asj_l_junctions_create(context, &options, &input, &all), ASJ_OK);
     for (uint32_t l = 0; l < all.count; l++) {
@@ -178,7 +178,7 @@ static void guests_change_nothing(void **state)
         guests[k].octave = 1;
         both[2 * k + 1] = guests[k];
     }
-    const asj_junction_list input = {alone, COUNT, SIDE, SIDE, 1, 0}, crowd = {both, COUNT + GUESTS, SIDE, SIDE, 1, 0};
+    const asj_image_junctions input = {alone, COUNT, SIDE, SIDE, 1, 0}, crowd = {both, COUNT + GUESTS, SIDE, SIDE, 1, 0};
     assert_int_equal(asj_l_junctions_create(context, &options, &input, &some), ASJ_OK);
     assert_int_equal(asj_l_junctions_create(context, &options, &crowd, &all), ASJ_OK);
     assert_int_equal(all.home, 0);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* verify.c: what the matches around contradict goes; a T needs more agreement than another corner; what stands alone stays. */
 #include "match/verify.h"
+#include "match/l_junctions_create.h"
 #include "unit_test.h"
 
 #define SIDE 600
@@ -37,7 +38,7 @@ static size_t verify(asj_context *context, stage *s)
 {
     size_t count = 0;
     for (int v = 0; v < 2; v++) {
-        const asj_junction_list input = {s->junctions[v], s->count, SIDE, SIDE, v + 1, 0};
+        const asj_image_junctions input = {s->junctions[v], s->count, SIDE, SIDE, v + 1, 0};
         memset(&s->image[v], 0, sizeof s->image[v]);
         assert_int_equal(asj_l_junctions_create(context, &s->options, &input, &s->image[v].l_junctions), ASJ_OK);
     }
