@@ -6,16 +6,16 @@
  *
  * Enlarged. With junctions of octave -1 photographs have three times the matches (match/finer.c, which asks the images' own
  * matches whether those hold), in several times the time. options->enlarge_from own matches are asked, so that pairs without
- * anything in common are answered as before; where they leave a geometry open, one is enough. A pose is estimated again, from more
- * matches, in 1.8 times the time, and match/finer_geometry.c says which one is told. (Rooms seen from far apart, 1000 to 1399, as
- * they are and so: 313 and 336 of 398 poses, of these out by more than 3 degrees 8 and 5, AUC at 5, 10, 20 degrees 67.3 72.7 75.6
- * and 74.5 79.3 81.7.) With half octaves (options->enlarged_half_octaves) sixteen pairs have 4468 of 4567 right in place of 3088
- * of 3148, in 1.3 to 2.3 times the time, and the rooms 336 poses in place of 331; and where these matches are looked for where the
- * images' own ones put them (match/expected.c) 4766 of 4892, in .7 of that time, and the rooms 337 poses, of these 6 out by more
- * than 3 degrees; that is so where no geometry is left open: told there, too, it is 338 and 7. In the images as they are these
- * would add 3 % for a tenth of the time, known less well. Without cameras the geometry of the images judges the new matches
- * too: estimated again it gives 3 % more right ones, of nine photographs. Images of more than LARGEST pixels have detail enough,
- * and what a camera delivers at that size is seldom sharp to the pixel.
+ * anything in common are answered as before; where they leave a geometry open, none is needed, and without cameras one. A pose is
+ * estimated again, from more matches, in 1.8 times the time, and match/finer_geometry.c says which one is told. (Rooms seen from
+ * far apart, 1000 to 1399, as they are and so: 313 and 336 of 398 poses, of these out by more than 3 degrees 8 and 5, AUC at 5,
+ * 10, 20 degrees 67.3 72.7 75.6 and 74.5 79.3 81.7.) With half octaves (options->enlarged_half_octaves) sixteen pairs have 4468 of
+ * 4567 right in place of 3088 of 3148, in 1.3 to 2.3 times the time, and the rooms 336 poses in place of 331; and where these
+ * matches are looked for where the images' own ones put them (match/expected.c) 4766 of 4892, in .7 of that time, and the rooms
+ * 337 poses, of these 6 out by more than 3 degrees; that is so where no geometry is left open: told there, too, it is 338 and 7.
+ * In the images as they are these would add 3 % for a tenth of the time, known less well. Without cameras the geometry of the
+ * images judges the new matches too: estimated again it gives 3 % more right ones, of nine photographs. Images of more than
+ * LARGEST pixels have detail enough, and what a camera delivers at that size is seldom sharp to the pixel.
  *
  * Stretched. A square on a plane seen at an angle of a to it has sin a of its height: at 1, 3 one at 19 degrees is a
  * square again, and those at 10 and 40 degrees are off by less than two times (the tilts of ASIFT, Morel and Yu 2009, go by sqrt 2
@@ -118,8 +118,8 @@ static int32_t may_enlarge(const search *s, const asj_stretch *stretch)
     const asj_stretch twice = {2 * stretch->x, 2 * stretch->y};
     const asj_detect_options *d = s->detect_options;
     const int32_t from = s->options->enlarge_from, one_is_enough = asks_closer(s) && answered(s, s->best) == 0;
-    int32_t may = d->first_octave == 0 && d->octaves > 1 && from > 0 &&
-                  s->best->match_count >= (one_is_enough ? 1 : (uint32_t)from);
+    const uint32_t enough = asj_geometry_is_open(&s->best->geometry) ? 0 : one_is_enough ? 1 : (uint32_t)from;
+    int32_t may = d->first_octave == 0 && d->octaves > 1 && from > 0 && s->best->match_count >= enough;
     for (int32_t n = 0; n < 2 && may; n++)
         may = (double)s->images[n]->width * s->images[n]->height <= LARGEST && asj_look_fits(s->images[n], &twice);
     return may;

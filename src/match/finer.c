@@ -25,6 +25,7 @@
 #include "finer_geometry.h"
 #include "result_changes.h"
 #include "core/watch.h"
+#include "geometry/geometry_options.h"
 
 #include <math.h>
 
@@ -94,7 +95,7 @@ static int32_t holds(const asj_match_result *own, const asj_match_result *finer,
         contradicted += found[n] == CONTRADICTED;
         added += looks == ASJ_LOOKS_BY_IMAGES && found[n] == NEW;
     }
-    return looks == ASJ_LOOKS_CONFIRMED ||
+    return looks == ASJ_LOOKS_SETTLED ||
            (looks != ASJ_LOOKS_LOST && finer->match_count + added > own->match_count && again >= AGAIN * own->match_count &&
             contradicted <= MOST_CONTRADICTED * again);
 }
@@ -204,10 +205,11 @@ asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_ma
     return status;
 }
 
-/* Worth while where the images themselves have matches, or nothing to match. */
+/* Worth while where the images themselves have matches, or a geometry that they leave open, or nothing to match. */
 static int is_worth(const asj_match_result *own)
 {
-    return own->match_count > 0 || own->l_junction_count1 == 0 || own->l_junction_count2 == 0;
+    return own->match_count > 0 || asj_geometry_is_open(&own->geometry) || own->l_junction_count1 == 0 ||
+           own->l_junction_count2 == 0;
 }
 
 static asj_status match_both(asj_context *context, const asj_match_options *options, const asj_finer_match *match,

@@ -9,7 +9,8 @@
 typedef enum asj_looks {
     ASJ_LOOKS_BY_ENLARGED, /* that of the enlarged images, if they have one; otherwise what the images say of theirs */
     ASJ_LOOKS_BY_IMAGES,   /* the accepted one of the images: it is surer, or the enlarged ones do not keep it, or were not asked */
-    ASJ_LOOKS_CONFIRMED,   /* the images leave it open, and the enlarged ones accept their best */
+    ASJ_LOOKS_SETTLED,     /* that of the enlarged images, whether or not matches come again: they accept the best one of what the
+                            * images leave open, or have so much more evidence */
     ASJ_LOOKS_LOST,        /* the images leave open which motion it is, and the enlarged ones accept what tells none, or, where
                             * it is no matter of rivals, another one */
     ASJ_LOOKS_PLANE,       /* both accept a plane, which leaves its motion open: the enlarged images', without a pose */

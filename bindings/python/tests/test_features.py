@@ -118,6 +118,9 @@ def test_options() -> None:
     with pytest.raises(asj.OptionError, match="did you mean default"):
         asj.detect(square(), preset="defualt")
     assert {"epsilon", "minimum_length"} <= {option.key for option in asj.detect_options()}
+    presets = {option.key: option.presets for option in asj.detect_options()}["octaves"]
+    assert presets == {preset: asj.detect(square(), preset=preset).options["octaves"] for preset in presets}
+    assert len(set(presets.values())) > 1
 
 
 def test_results_outlive_the_context(scene: Scene) -> None:

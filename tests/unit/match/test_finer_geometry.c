@@ -310,6 +310,27 @@ static void poses_at_odds_are_ambiguous(void **state)
     }
 }
 
+/* .. but where one of them turns the room over, or has very much more evidence. */
+static void poses_at_odds_are_decided(void **state)
+{
+    static const struct {
+        double own, finer, log10_nfa; /* degrees; of the images, where the enlarged ones have -100 */
+        asj_looks looks;
+    } cases[] = {{30, 0, -50, ASJ_LOOKS_DISPUTED}, {30, 0, -35, ASJ_LOOKS_SETTLED}, {180, 0, -90, ASJ_LOOKS_SETTLED},
+                 {0, 180, -30, ASJ_LOOKS_BY_IMAGES}, {180, 150, -90, ASJ_LOOKS_DISPUTED}};
+    asj_context *context = ((unit_fixture *)*state)->context;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+        change_pose(own, cases[k].own, 1);
+        change_pose(finer, cases[k].finer, 1);
+        own->geometry.log10_nfa = cases[k].log10_nfa;
+        finer->geometry.log10_nfa = -100;
+        assert_int_equal(asj_looks_of(own, finer), cases[k].looks);
+        asj_match_result_free(&own);
+        asj_match_result_free(&finer);
+    }
+}
+
 /* The pose of a plane is open: the plane stays. */
 static void planes_at_odds_have_no_pose(void **state)
 {
@@ -407,21 +428,51 @@ static void poses_that_agree_are_one(void **state)
 }
 
 /* The images have rivals, and none of their matches comes again: the enlarged images' motion is the answer when it is the images'
- * best, and otherwise not. */
+ * best, or has much more evidence, and otherwise not. */
 static void rivals_are_confirmed(void **state)
 {
-    static const double degrees[] = {1, 30};
+    static const struct {
+        double degrees, finer, own; /* log10 NFA */
+        int32_t accepted;
+    } cases[] = {{1, -40, -40, 1}, {30, -40, -33, 0}, {30, -40, -31, 1}, {30, -34, -17, 0}};
     asj_context *context = ((unit_fixture *)*state)->context;
-    for (int k = 0; k < 2; k++) {
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
         asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
         const uint32_t own_count = own->l_junction_count1, finer_count = finer->l_junction_count1;
         move_along_lines(own);
         leave_open(own, ASJ_GEOMETRY_AMBIGUOUS);
-        change_pose(own, degrees[k], 1);
+        change_pose(own, cases[k].degrees, 1);
+        own->geometry.log10_nfa = cases[k].own;
+        finer->geometry.log10_nfa = cases[k].finer;
         assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
-        assert_int_equal(own->geometry.status, k == 0 ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_AMBIGUOUS);
-        assert_true(k == 0 ? own->l_junction_count1 >= finer_count : own->l_junction_count1 == own_count);
+        assert_int_equal(own->geometry.status, cases[k].accepted ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_AMBIGUOUS);
+        assert_true(cases[k].accepted ? own->l_junction_count1 >= finer_count : own->l_junction_count1 == own_count);
         asj_match_result_free(&own);
+    }
+}
+
+/* Images without any match: only much more evidence is believed, and matches alone are not. */
+static void without_matches_much_evidence_counts(void **state)
+{
+    static const struct {
+        int32_t status; /* of the enlarged images */
+        double log10_nfa;
+        asj_looks looks;
+    } cases[] = {{ASJ_GEOMETRY_ACCEPTED, -40, ASJ_LOOKS_SETTLED}, {ASJ_GEOMETRY_ACCEPTED, -34, ASJ_LOOKS_LOST},
+                 {ASJ_GEOMETRY_AMBIGUOUS, -40, ASJ_LOOKS_LOST}, {ASJ_GEOMETRY_CHANCE, 0, ASJ_LOOKS_LOST}};
+    asj_context *context = ((unit_fixture *)*state)->context;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+        const uint32_t count = own->match_count;
+        leave_open(own, ASJ_GEOMETRY_AMBIGUOUS);
+        own->match_count = 0;
+        own->geometry.log10_nfa = -10;
+        finer->geometry.status = cases[k].status;
+        finer->geometry.log10_nfa = cases[k].log10_nfa;
+        assert_int_equal(asj_looks_of(own, finer), cases[k].looks);
+        own->match_count = count;
+        asj_match_result_free(&own);
+        asj_match_result_free(&finer);
     }
 }
 
@@ -430,14 +481,17 @@ static void rivals_are_confirmed(void **state)
 static void an_open_motion_is_found(void **state)
 {
     static const struct {
-        double sd; /* times the standard deviation */
+        double sd, log10_nfa; /* times the standard deviation; of the images, where the enlarged ones have -100 */
         asj_looks looks;
-    } cases[] = {{1, ASJ_LOOKS_LOST}, {1000, ASJ_LOOKS_BY_ENLARGED}, {0, ASJ_LOOKS_BY_ENLARGED}};
+    } cases[] = {{1, -90, ASJ_LOOKS_LOST}, {1000, -90, ASJ_LOOKS_BY_ENLARGED}, {0, -90, ASJ_LOOKS_BY_ENLARGED},
+                 {1, -70, ASJ_LOOKS_SETTLED}};
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
         asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
         leave_open(own, ASJ_GEOMETRY_DEGENERATE);
         change_pose(own, 10, cases[k].sd);
+        own->geometry.log10_nfa = cases[k].log10_nfa;
+        finer->geometry.log10_nfa = -100;
         if (cases[k].sd == 0)
             memset(own->geometry.rotation, 0, sizeof own->geometry.rotation);
         assert_int_equal(asj_looks_of(own, finer), cases[k].looks);
@@ -455,7 +509,7 @@ static void what_turns_over_settles_nothing(void **state)
     own->geometry = finer->geometry;
     for (size_t k = 0; k < UNIT_COUNT(open); k++) {
         own->geometry.status = open[k];
-        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_CONFIRMED);
+        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_SETTLED);
         change_pose(own, 180, 1);
         change_pose(finer, 180, 1);
         assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_LOST);
@@ -522,11 +576,13 @@ int main(void)
         cmocka_unit_test(a_geometry_judges_all),
         cmocka_unit_test(rivals_are_an_answer),
         cmocka_unit_test(poses_at_odds_are_ambiguous),
+        cmocka_unit_test(poses_at_odds_are_decided),
         cmocka_unit_test(planes_at_odds_have_no_pose),
         cmocka_unit_test(poses_at_odds_without_memory),
         cmocka_unit_test(opposite_translations_are_at_odds),
         cmocka_unit_test(poses_that_agree_are_one),
         cmocka_unit_test(rivals_are_confirmed),
+        cmocka_unit_test(without_matches_much_evidence_counts),
         cmocka_unit_test(an_open_motion_is_found), cmocka_unit_test(what_turns_over_settles_nothing),
         cmocka_unit_test(a_plane_decides_no_motion),
         cmocka_unit_test(chance_stays_chance),

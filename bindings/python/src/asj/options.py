@@ -29,6 +29,8 @@ class OptionInfo:
     maximum: float
     choices: tuple[str, ...]
     group: str
+    presets: Mapping[str, str]
+    """Its value in each preset, as text: ``{"default": "0", ...}``."""
 
 
 class _Table:
@@ -37,8 +39,10 @@ class _Table:
     def __init__(self, what: str, struct: str, count: Any, row: Any, preset: Any, set_: Any, get: Any) -> None:
         self.what, self.struct = what, struct
         self._preset, self._set, self._get = preset, set_, get
-        self.rows = [_info(row(i)) for i in range(count())]
-        self.keys = [info.key for info in self.rows]
+        table = [row(i) for i in range(count())]
+        self.keys = [text(info.key) for info in table]
+        values = {name: self.values(self.fill(name, {})) for name in PRESETS}
+        self.rows = [_info(info, {name: of[text(info.key)] for name, of in values.items()}) for info in table]
         self._image_keys = [info.key for info in self.rows if info.group in _IMAGE_GROUPS or info.key in ("neighbours", "separation")]
 
     def fill(self, preset: str, values: Mapping[str, object]) -> Any:
@@ -79,14 +83,15 @@ class _Table:
         return text(room)
 
 
-def _info(row: Any) -> OptionInfo:
+def _info(row: Any, presets: Mapping[str, str]) -> OptionInfo:
     choices = []
     if row.choices != ffi.NULL:
         i = 0
         while row.choices[i] != ffi.NULL:
             choices.append(text(row.choices[i]))
             i += 1
-    return OptionInfo(text(row.key), text(row.unit), text(row.help), row.minimum, row.maximum, tuple(choices), text(row.group))
+    group = text(row.group)
+    return OptionInfo(text(row.key), text(row.unit), text(row.help), row.minimum, row.maximum, tuple(choices), group, presets)
 
 
 def _written(value: object) -> str:
@@ -118,14 +123,16 @@ MATCHER = _Table("matcher", "asj_match_options", lib.asj_match_option_count, lib
 
 
 def detect_options() -> list[OptionInfo]:
-    """The options of :func:`asj.detect`, with their ranges.
+    """The options of :func:`asj.detect`, with their ranges and what they are in each preset.
 
     >>> next(o.unit for o in detect_options() if o.key == "minimum_length")
     'px'
+    >>> next(o.presets["default"] for o in detect_options() if o.key == "octaves")
+    '4'
     """
     return list(DETECTOR.rows)
 
 
 def match_options() -> list[OptionInfo]:
-    """The options of :func:`asj.match`, with their ranges."""
+    """The options of :func:`asj.match`, with their ranges and what they are in each preset."""
     return list(MATCHER.rows)

@@ -50,7 +50,10 @@ def plot(image: ArrayLike, features: Features, axes: Any = None) -> Any:
 
 
 def plot_matches(image1: ArrayLike, image2: ArrayLike, matches: Matches, axes: Any = None) -> Any:
-    """Both images side by side with their matched corners in the same colours. Returns matplotlib's axes."""
+    """Both images side by side, their matched corners joined by a line and of one colour, by place in the first image.
+
+    Returns matplotlib's axes.
+    """
     collection = extra("matplotlib.collections", "plot").LineCollection
     one, two = (_colour(image) for image in (image1, image2))
     canvas = np.full((max(len(one), len(two)), one.shape[1] + two.shape[1], 3), 255, np.uint8)
@@ -58,10 +61,12 @@ def plot_matches(image1: ArrayLike, image2: ArrayLike, matches: Matches, axes: A
     canvas[: len(two), one.shape[1] :] = two
     axes = _axes(axes, canvas.shape[1], canvas.shape[0])
     _show(axes, canvas)
-    colour = np.linspace(0, 1, max(len(matches), 2))[: len(matches)]
+    colour = matches.matches["x1"] / one.shape[1]
     shift = np.array([one.shape[1], 0])
-    for side, offset in (("1", 0 * shift), ("2", shift)):
-        centre = np.stack([matches.matches["x" + side], matches.matches["y" + side]], 1) + offset
+    corners = [np.stack([matches.matches["x" + side], matches.matches["y" + side]], 1) for side in "12"]
+    corners[1] = corners[1] + shift
+    axes.add_collection(collection(list(np.stack(corners, 1)), array=colour, cmap="hsv", linewidths=0.5, alpha=0.4))
+    for side, offset, centre in zip("12", (0 * shift, shift), corners):
         for end in "ab":
             tip = np.stack([matches.matches[f"{end}x{side}"], matches.matches[f"{end}y{side}"]], 1) + offset
             axes.add_collection(collection(list(np.stack([centre, tip], 1)), array=colour, cmap="hsv", linewidths=1.2))
