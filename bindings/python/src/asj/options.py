@@ -128,7 +128,7 @@ def detect_options() -> list[OptionInfo]:
     >>> next(o.unit for o in detect_options() if o.key == "minimum_length")
     'px'
     >>> next(o.presets["default"] for o in detect_options() if o.key == "octaves")
-    '4'
+    '16'
     """
     return list(DETECTOR.rows)
 

@@ -61,16 +61,16 @@ def plot_matches(image1: ArrayLike, image2: ArrayLike, matches: Matches, axes: A
     canvas[: len(two), one.shape[1] :] = two
     axes = _axes(axes, canvas.shape[1], canvas.shape[0])
     _show(axes, canvas)
-    colour = matches.matches["x1"] / one.shape[1]
+    colour = 0.85 * matches.matches["x1"] / one.shape[1]  # of the circle of hues, so that left and right are not both red
     shift = np.array([one.shape[1], 0])
     corners = [np.stack([matches.matches["x" + side], matches.matches["y" + side]], 1) for side in "12"]
     corners[1] = corners[1] + shift
-    axes.add_collection(collection(list(np.stack(corners, 1)), array=colour, cmap="hsv", linewidths=0.5, alpha=0.4))
+    axes.add_collection(collection(list(np.stack(corners, 1)), array=colour, cmap="hsv", clim=(0, 1), linewidths=0.5, alpha=0.4))
     for side, offset, centre in zip("12", (0 * shift, shift), corners):
         for end in "ab":
             tip = np.stack([matches.matches[f"{end}x{side}"], matches.matches[f"{end}y{side}"]], 1) + offset
-            axes.add_collection(collection(list(np.stack([centre, tip], 1)), array=colour, cmap="hsv", linewidths=1.2))
-        axes.scatter(centre[:, 0], centre[:, 1], s=9, c=colour, cmap="hsv")
+            axes.add_collection(collection(list(np.stack([centre, tip], 1)), array=colour, cmap="hsv", clim=(0, 1), linewidths=1.2))
+        axes.scatter(centre[:, 0], centre[:, 1], s=9, c=colour, cmap="hsv", vmin=0, vmax=1)
     return axes
 
 
