@@ -21,6 +21,7 @@ enum { MESSAGE_SIZE = 1024 };
 typedef struct run {
     const cli_detect_arguments *arguments;
     cli_session session;
+    asj_image_file *mask; /* of all images; NULL: none */
     double read_ms;
 } run;
 
@@ -146,14 +147,9 @@ static int detect_pixels(run *r, const char *image, const cli_output *output, co
 
 static int detect_part(run *r, const char *image, const cli_output *output, const asj_image *pixels)
 {
-    const cli_detect_arguments *arguments = r->arguments;
-    asj_image_file *mask = NULL;
     asj_region region;
-    int result = cli_region_open(&r->session, &arguments->region, arguments->common.max_pixels, image, pixels, &region, &mask);
-    if (result == CLI_SUCCESS)
-        result = cli_interrupted() ? CLI_FAILED : detect_pixels(r, image, output, pixels, &region);
-    asj_image_file_free(&mask);
-    return result;
+    const int result = cli_region_of(&r->session, &r->arguments->region, r->mask, image, pixels, &region);
+    return result != CLI_SUCCESS ? result : cli_interrupted() ? CLI_FAILED : detect_pixels(r, image, output, pixels, &region);
 }
 
 static int detect_file(run *r, const char *image, const cli_output *output)
@@ -174,6 +170,11 @@ static int detect_all(run *r, const cli_outputs *outputs)
 {
     const cli_detect_arguments *arguments = r->arguments;
     int result = cli_session_open(&r->session, &arguments->common, arguments->image_count);
+    if (r->session.context && cli_region_read_mask(&r->session, &arguments->region, arguments->common.max_pixels,
+                                                   &r->mask) != CLI_SUCCESS) {
+        cli_session_close(&r->session);
+        return CLI_FAILED;
+    }
     for (size_t i = 0; result != CLI_USAGE && i < arguments->image_count && r->session.context; i++) {
         cli_progress_next(&r->session.progress, i, arguments->images[i]);
         int one = detect_file(r, arguments->images[i], &outputs->of[i]);
@@ -200,6 +201,7 @@ int cli_detect(int argc, char **argv)
         result = cli_outputs_plan(&arguments, &outputs);
         if (result == CLI_SUCCESS)
             result = detect_all(&r, &outputs);
+        asj_image_file_free(&r.mask);
         cli_outputs_free(&outputs);
     }
     cli_detect_arguments_free(&arguments);

@@ -205,6 +205,8 @@ static int check(cli_detect_arguments *arguments)
         return cli_usage_error("detect", "--output and --out-dir exclude each other");
     if (arguments->out_dir && !*arguments->out_dir)
         return cli_usage_error("detect", "--out-dir: an empty path names no folder (. is this one)");
+    if (arguments->format && arguments->plot && !arguments->output && !arguments->out_dir)
+        return cli_usage_error("detect", "--format changes nothing: with --plot alone no junctions are written (--output - does)");
     if (arguments->keep_folders && !arguments->out_dir)
         return cli_usage_error("detect", "--keep-folders changes nothing without --out-dir");
     if (arguments->image_count > 1 && !arguments->out_dir)

@@ -392,6 +392,8 @@ static int check_results(cli_match_arguments *arguments)
         arguments->minimum_end = ASJ_END_INNER;
     if (!arguments->plot)
         return cli_plot_check_without("match", arguments->plot_option);
+    if (arguments->format && !arguments->output)
+        return cli_usage_error("match", "--format changes nothing: with --plot alone no matches are written (--output - does)");
     return cli_plot_format_of_name("match", arguments->plot, &arguments->plot_format);
 }
 

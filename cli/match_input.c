@@ -116,7 +116,9 @@ int cli_match_input_detect(cli_session *session, const cli_match_arguments *argu
     if (input->file || input->features)
         return CLI_SUCCESS;
     const asj_image *image = &input->image->image;
-    int result = cli_region_open(session, &arguments->regions[v], arguments->common.max_pixels, input->name, image, &region, &mask);
+    int result = cli_region_read_mask(session, &arguments->regions[v], arguments->common.max_pixels, &mask);
+    if (result == CLI_SUCCESS)
+        result = cli_region_of(session, &arguments->regions[v], mask, input->name, image, &region);
     if (result == CLI_SUCCESS)
         result = detect(session, arguments, &region, input);
     asj_image_file_free(&mask);

@@ -38,27 +38,32 @@ static int fail(cli_session *session, const char *name, const char *problem, con
     return cli_session_fail(session, name, message, ASJ_ERROR_ARGUMENT);
 }
 
-int cli_region_open(cli_session *session, const cli_region *region, uint64_t max_pixels, const char *name, const asj_image *image,
-                    asj_region *result, asj_image_file **mask)
+int cli_region_read_mask(cli_session *session, const cli_region *region, uint64_t max_pixels, asj_image_file **mask)
 {
     char message[MESSAGE_SIZE] = "";
+    if (!region->mask)
+        return CLI_SUCCESS;
+    const asj_status status = asj_image_file_read(region->mask, max_pixels, mask, message, sizeof message);
+    if (status != ASJ_OK)
+        return cli_session_fail(session, region->mask, message, status);
+    if ((*mask)->image.format != ASJ_FORMAT_GRAY8)
+        return cli_session_fail(session, region->mask, "a mask is an 8-bit gray image", ASJ_ERROR_ARGUMENT);
+    return CLI_SUCCESS;
+}
+
+int cli_region_of(cli_session *session, const cli_region *region, const asj_image_file *mask, const char *name,
+                  const asj_image *image, asj_region *result)
+{
     memset(result, 0, sizeof *result);
     if (region->width > 0 && (region->x >= image->width || region->width > image->width - region->x ||
                               region->y >= image->height || region->height > image->height - region->y))
         return fail(session, name, "the region leaves", image);
+    if (mask && (mask->image.width != image->width || mask->image.height != image->height))
+        return fail(session, region->mask, "this mask has another size than", image);
     result->x = region->x;
     result->y = region->y;
     result->width = region->width;
     result->height = region->height;
-    if (!region->mask)
-        return CLI_SUCCESS;
-    asj_status status = asj_image_file_read(region->mask, max_pixels, mask, message, sizeof message);
-    if (status != ASJ_OK)
-        return cli_session_fail(session, region->mask, message, status);
-    result->mask = &(*mask)->image;
-    if (result->mask->format != ASJ_FORMAT_GRAY8)
-        return cli_session_fail(session, region->mask, "a mask is an 8-bit gray image", ASJ_ERROR_ARGUMENT);
-    if (result->mask->width != image->width || result->mask->height != image->height)
-        return fail(session, region->mask, "this mask has another size than", image);
+    result->mask = mask ? &mask->image : NULL;
     return CLI_SUCCESS;
 }

@@ -16,9 +16,13 @@ typedef struct cli_region {
 /* --NAME X,Y,WIDTH,HEIGHT. CLI_SUCCESS, or CLI_USAGE after saying why. */
 int cli_region_take(const char *command, const char *name, const char *text, cli_region *region);
 
-/* What asj_detect_region() takes for this image; reads the mask, which the caller frees. CLI_SUCCESS, or CLI_FAILED after saying
- * why: a mask that cannot be read, is not 8-bit gray or of another size; a rectangle that leaves the image. */
-int cli_region_open(cli_session *session, const cli_region *region, uint64_t max_pixels, const char *name, const asj_image *image,
-                    asj_region *result, asj_image_file **mask);
+/* Reads the mask, if any, which the caller frees. CLI_SUCCESS, or CLI_FAILED after saying why: it cannot be read or is not 8-bit
+ * gray. */
+int cli_region_read_mask(cli_session *session, const cli_region *region, uint64_t max_pixels, asj_image_file **mask);
+
+/* What asj_detect_region() takes for this image; `mask` as read, NULL for none. CLI_SUCCESS, or CLI_FAILED after saying why: a mask
+ * of another size, a rectangle that leaves the image. */
+int cli_region_of(cli_session *session, const cli_region *region, const asj_image_file *mask, const char *name,
+                  const asj_image *image, asj_region *result);
 
 #endif

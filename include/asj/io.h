@@ -199,8 +199,8 @@ typedef struct asj_junction_file {
  * ASJ_ERROR_FILE      missing, a directory, unreadable
  * ASJ_ERROR_FORMAT    empty, not such a file, wrong counts, NaN, infinity, a negative length or scale, fewer than 2 or more than
  *                     ASJ_MAX_BRANCHES branches, text after the end; JSON: a location more than ASJ_MAX_OUTSIDE
- *                     px outside the image; edges of branches that are not there, stand in no order
- *                     of angle or are part of two edges
+ *                     px outside the image; an octave that is not one of -1, 0, .. 15; edges of branches that are not there,
+ *                     stand in no order of angle or are part of two edges
  * ASJ_ERROR_LIMIT     more than 2^24 junctions, a file longer than 2^31 - 1 bytes
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_junctions_read(const char *path, asj_junction_file **file, char *message, size_t message_size);

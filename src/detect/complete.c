@@ -26,7 +26,6 @@
 #define TURNS 72      /* directions: at LENGTH they are about as far apart as the strip is wide */
 #define LENGTH 40.0   /* px */
 #define PEAK 2        /* turns */
-#define SLACK 6.0     /* natural logarithm of a number of false alarms: as in validate.c's EARLY_LOG_NFA */
 #define FIRST_LENGTH 20.0 /* px of the branch where its line is looked for first */
 
 /* -ln NFA of the strip in each direction; 0 near branches, and of what noise would have in every image. */
@@ -66,7 +65,7 @@ void asj_complete_look(const asj_context *context, const asj_frame *frame, const
                        const asj_hypothesis *hypothesis, asj_missed *missed)
 {
     double meaning[TURNS];
-    const double least = -log(options->epsilon) - SLACK;
+    const double least = -log(options->epsilon) - ASJ_EARLY_LOG_NFA;
     memset(missed, 0, sizeof *missed);
     if (hypothesis->branch_count == 0 || hypothesis->branch_count >= options->max_branches)
         return;

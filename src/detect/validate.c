@@ -19,9 +19,7 @@
 #define EARLY_LONGER 50.0
 #define EARLY_SHORTEST 8.0
 
-/* And its slack, since angles become better later: natural logarithm of a number of false alarms, and degrees. Chosen: more
- * passes noise on to the scan, which costs time; less begins to reject what would become meaningful. */
-#define EARLY_LOG_NFA 6.0
+/* And its slack of angles, beside that of meaning (validate.h): degrees. */
 #define EARLY_OPENING 5.0
 
 #define LARGEST_OFFSET 2.0 /* px: a line that misses the junction by more belongs to something else */
@@ -112,7 +110,7 @@ static void merge(const asj_detect_options *options, const asj_hypothesis *hypot
 static int may_be_meaningful(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                              const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
 {
-    const double limit = log(options->epsilon) + EARLY_LOG_NFA;
+    const double limit = log(options->epsilon) + ASJ_EARLY_LOG_NFA;
     const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, EARLY_LENGTH};
     const asj_strip_line longer = {hypothesis->x, hypothesis->y, branch->angle, EARLY_LONGER};
     return asj_strip_passes(context, frame, options, &line, EARLY_SHORTER, limit) ||

@@ -5,6 +5,10 @@
 
 #include "hypothesis.h"
 
+/* Slack of decisions that are taken before angles are known as well as later: natural logarithm of a number of false alarms.
+ * Chosen: more passes noise on to the scan, which costs time; less begins to reject what would become meaningful. */
+#define ASJ_EARLY_LOG_NFA 6.0
+
 /* Drops branches that asj_validate() would drop whatever their length, before they are scanned; branch_count becomes 0 when no two
  * that open enough are left. */
 void asj_reject_early(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,

@@ -166,9 +166,10 @@ static asj_status read_junction(const json_reader *reader, size_t line, const js
 
     if (status != ASJ_OK)
         return status;
-    if (!(octave >= ASJ_LEAST_OCTAVE && octave <= ASJ_LARGEST_OCTAVE))
-        return asj_line_fail(reader->message, line, "\"octave\" must be from %d to %d", ASJ_LEAST_OCTAVE, ASJ_LARGEST_OCTAVE);
-    junction.octave = (int32_t)octave;
+    junction.octave = octave >= ASJ_LEAST_OCTAVE && octave <= ASJ_LARGEST_OCTAVE ? (int32_t)octave : INT32_MAX;
+    if ((float)junction.octave != octave)
+        return asj_line_fail(reader->message, line, "\"octave\" must be a whole number from %d to %d", ASJ_LEAST_OCTAVE,
+                             ASJ_LARGEST_OCTAVE);
     if (count < 2 || count > ASJ_MAX_BRANCHES)
         return asj_line_fail(reader->message, line, "a junction must have \"branches\", 2 to %d of them", ASJ_MAX_BRANCHES);
     junction.branch_count = (int32_t)count;
@@ -187,7 +188,7 @@ static json_int_t read_index(const json_t *object, const char *key)
 {
     const json_t *value = json_object_get(object, key);
     const json_int_t index = json_integer_value(value);
-    return json_is_integer(value) && index >= 0 && index <= UINT16_MAX * (json_int_t)UINT16_MAX ? index : -1;
+    return json_is_integer(value) && index >= 0 && index < (json_int_t)ASJ_JUNCTIONS_MAX ? index : -1;
 }
 
 static asj_status read_edge(const json_reader *reader, size_t line, const json_t *object)

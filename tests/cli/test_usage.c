@@ -124,6 +124,8 @@ static const struct {
     {{"detect", "--out-dir", ".", "--plot", "picture.png", "scene.png"}, "--plot"},
     {{"detect", "-o", "a", "--out-dir", ".", "scene.png"}, "exclude each other"},
     {{"detect", "-o", "a", "--keep-folders", "scene.png"}, "--keep-folders changes nothing without --out-dir"},
+    {{"detect", "--plot", "a.png", "-f", "csv", "scene.png"}, "--format changes nothing: with --plot alone"},
+    {{"match", "--plot", "a.png", "-f", "csv", "scene.png", "scene.png"}, "--format changes nothing: with --plot alone"},
     {{"detect", "scene.png", "scene.png"}, "--out-dir"},
     {{"detect", "-o", "both.asj", "scene.png", "scene.png"}, "--out-dir"},
     {{"detect", "--out-dir", ".", "scene.png", "folder/scene.png"}, "written twice, for scene.png and for folder/scene.png"},
