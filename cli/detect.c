@@ -170,11 +170,6 @@ static int detect_all(run *r, const cli_outputs *outputs)
 {
     const cli_detect_arguments *arguments = r->arguments;
     int result = cli_session_open(&r->session, &arguments->common, arguments->image_count);
-    if (r->session.context && cli_region_read_mask(&r->session, &arguments->region, arguments->common.max_pixels,
-                                                   &r->mask) != CLI_SUCCESS) {
-        cli_session_close(&r->session);
-        return CLI_FAILED;
-    }
     for (size_t i = 0; result != CLI_USAGE && i < arguments->image_count && r->session.context; i++) {
         cli_progress_next(&r->session.progress, i, arguments->images[i]);
         int one = detect_file(r, arguments->images[i], &outputs->of[i]);
@@ -198,7 +193,9 @@ int cli_detect(int argc, char **argv)
     int result = cli_detect_arguments_read(argc, argv, &arguments);
     if (result == CLI_SUCCESS) {
         r.arguments = &arguments;
-        result = cli_outputs_plan(&arguments, &outputs);
+        result = cli_region_read_mask(&r.session, &arguments.region, arguments.common.max_pixels, &r.mask); /* before any folder */
+        if (result == CLI_SUCCESS)
+            result = cli_outputs_plan(&arguments, &outputs);
         if (result == CLI_SUCCESS)
             result = detect_all(&r, &outputs);
         asj_image_file_free(&r.mask);

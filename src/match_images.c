@@ -6,7 +6,7 @@
  *
  * Enlarged. With junctions of octave -1 photographs have three times the matches (match/finer.c, which asks the images' own
  * matches whether those hold), in several times the time. options->enlarge_from own matches are asked, so that pairs without
- * anything in common are answered as before; where they leave a geometry open, none is needed, and without cameras one. A pose is
+ * anything in common are answered as before; where they leave a motion open, none is needed, and without cameras one. A pose is
  * estimated again, from more matches, in 1.8 times the time, and match/finer_geometry.c says which one is told. (Rooms seen from
  * far apart, 1000 to 1399, as they are and so: 313 and 336 of 398 poses, of these out by more than 3 degrees 8 and 5, AUC at 5,
  * 10, 20 degrees 67.3 72.7 75.6 and 74.5 79.3 81.7.) With half octaves (options->enlarged_half_octaves) sixteen pairs have 4468 of
@@ -31,6 +31,7 @@
 #include "geometry/geometry_options.h"
 #include "match/final_pose.h"
 #include "match/finer.h"
+#include "match/finer_geometry.h"
 
 #define ENOUGH 16  /* matches. Stretched by 1, 3 or 3, 1, pairs of frames that do not match had up to 7 wrong ones, of which
                     * no geometry was left; planes at extreme angles 95 to 190 right ones */
@@ -118,7 +119,7 @@ static int32_t may_enlarge(const search *s, const asj_stretch *stretch)
     const asj_stretch twice = {2 * stretch->x, 2 * stretch->y};
     const asj_detect_options *d = s->detect_options;
     const int32_t from = s->options->enlarge_from, one_is_enough = asks_closer(s) && answered(s, s->best) == 0;
-    const uint32_t enough = asj_geometry_is_open(&s->best->geometry) ? 0 : one_is_enough ? 1 : (uint32_t)from;
+    const uint32_t enough = asj_looks_may_settle(s->best) ? 0 : one_is_enough ? 1 : (uint32_t)from;
     int32_t may = d->first_octave == 0 && d->octaves > 1 && from > 0 && s->best->match_count >= enough;
     for (int32_t n = 0; n < 2 && may; n++)
         may = (double)s->images[n]->width * s->images[n]->height <= LARGEST && asj_look_fits(s->images[n], &twice);

@@ -37,7 +37,8 @@ typedef struct asj_match_options {
     int32_t normalise;           /* 1 = raw patches are brought to zero mean and unit norm. 1; paper 0 */
     int32_t patch_size;          /* samples along a side of a patch, a multiple of 4. 8 .. 24; 16 */
     int32_t enlarge_from;        /* asj_match_images(), automatically: from so many matches on the images are looked at enlarged,
-                                  * too (octave -1), from 1 on where a geometry is asked and none accepted; 0 = never.
+                                  * too (octave -1), also from fewer on where a geometry is asked and left open (see
+                                  * asj_match_images()); 0 = never.
                                   * 0 .. 1000000; 8; paper 0 */
     double window_start;         /* a canonical patch reaches from here .. -1 .. 0; -0.25 */
     double window_end;           /* .. to here, in branch lengths. 0.25 .. 2; 1 */
@@ -126,8 +127,8 @@ typedef struct asj_junction_match {
     float similarity;       /* correlation of the aligned discs, -1 .. 1; 0 when not aligned */
     float support;          /* neighbouring matches that agree, each counted 0 to 1 */
     float probability;      /* that the match is right, given the accepted geometry and, except in enlarged images, the candidates
-                             * that are its rivals; 0 without a geometry. Off the plane of a homography it is low, and the match
-                             * stays: there are other planes */
+                             * that are its rivals, of the 4000 most meaningful L-junctions of each image; 0 without a geometry.
+                             * Off the plane of a homography it is low, and the match stays: there are other planes */
     float reserved;         /* zero */
 } asj_junction_match;
 
@@ -157,19 +158,23 @@ typedef struct asj_match_result {
 /* Matches the junctions of two images: the pipeline of the paper, step 7.
  *
  * With options->geometry.model the two-view geometry is estimated as well, from many more candidates than become matches
- * (geometry.h; src/match/two_view.c). Where one is accepted, matches that contradict it go, and others that it makes likely come;
- * where none is, the matches are those that there are without (junctions of octave -1: see below). Junctions of other octaves than
- * the finest are no candidates (src/match/guests.c), but their matches go and come as others do. Where both images have colours,
- * these count there, too: things that repeat often differ in hue alone. Exposure and white balance may differ.
+ * (geometry.h; src/match/two_view.c), by the matches and by candidates of the 4000 L-junctions of each image with the least log10
+ * NFA. Where one is accepted, matches that contradict it go, and others that it makes likely come; where none is, the matches are
+ * those that there are without (junctions of octave -1: see below). Junctions of other octaves than the finest are no candidates
+ * (src/match/guests.c), but their matches go and come as others do. Where both images have colours, these count there, too: things
+ * that repeat often differ in hue alone. Exposure and white balance may differ.
  *
  * With junctions of octave -1 (asj_detect_options.first_octave) the images are matched without those first, and then with them as
- * if they were twice as large. The second result holds where it has more matches, three in ten of the first ones again and few that
- * contradict these, together with those of the first ones whose places no other match has; else the first one does. One geometry
- * judges both: that of the second one, or, where it has none or loses the pose, that of the first one; of two poses that agree
- * the surer one where the second result holds. Two at odds are ASJ_GEOMETRY_AMBIGUOUS, and what either contradicts is rejected;
- * of two planes the pose is left out. Where the first one has rivals or leaves its motion open, the second one holds, whatever
- * its matches, when it accepts the same pose, and does not when it accepts none, or another one of a motion that was open
- * (src/match/finer.c, finer_geometry.c).
+ * if they were twice as large. The second result holds where it has more matches, three in ten of the first ones again and few
+ * that contradict these, together with those of the first ones whose places no other match has; else the first one does. One
+ * geometry judges both: that of the second one, or, where it has none or loses the pose, that of the first one; of two poses that
+ * agree the surer one where the second result holds. Of two at odds the second one is told when it has 2.5 times the log10 NFA,
+ * and else the one that is not upside down if the other one is (rotation[4] < 0) and has not so much more; otherwise they are
+ * ASJ_GEOMETRY_AMBIGUOUS, and what either contradicts is rejected; of two planes the pose is left out. Where the first one, of
+ * known cameras, has rivals or leaves its motion open, the second one holds, whatever its matches, when it accepts the same pose,
+ * or another one with a log10 NFA below -35 and 1.25 times the first one's; only then where the first one has no matches; and not
+ * when it accepts none, or one that is upside down, or less surely another one of a motion that was open (src/match/finer.c,
+ * finer_geometry.c).
  * Junctions of octave -1 alone (octaves 1) have no first ones to ask. Everything is in pixels of the images.
  *
  * image1, image2   views; only read, and only during the call
@@ -220,9 +225,10 @@ typedef struct asj_stretch {
  *                    says (result->enlarged), and half octaves (options->enlarged_half_octaves), unless detect_options name another
  *                    first octave, or one octave alone, or an image has more than 2 megapixels. A pose of the images, with known
  *                    cameras also a geometry without one, is estimated again from these matches: of two that agree the surer one
- *                    is told where they hold, two at odds are ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is accepted
- *                    that they accept, too. Another geometry of the images judges them. Where the images have rivals or leave the
- *                    motion open, and without cameras where they have no geometry, one match is enough to look;
+ *                    is told where they hold, two at odds are decided or ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is accepted
+ *                    that they accept, too, or that they have much more evidence for. Another geometry of the images judges them.
+ *                    Where the images have rivals or leave the motion open, with known cameras no match is needed to look, and
+ *                    without, where they have no geometry, one is enough;
  *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together and 32 where it
  *                    tells no pose, also stretched by 1, 3 and by 3, 1, unless rivals or a motion that stays open
  *                    (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the answer. What comes of that counts from 16 matches on, and when

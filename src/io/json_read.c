@@ -166,10 +166,10 @@ static asj_status read_junction(const json_reader *reader, size_t line, const js
 
     if (status != ASJ_OK)
         return status;
-    junction.octave = octave >= ASJ_LEAST_OCTAVE && octave <= ASJ_LARGEST_OCTAVE ? (int32_t)octave : INT32_MAX;
-    if ((float)junction.octave != octave)
+    if (!(octave >= ASJ_LEAST_OCTAVE && octave <= ASJ_LARGEST_OCTAVE && octave == (float)(int32_t)octave))
         return asj_line_fail(reader->message, line, "\"octave\" must be a whole number from %d to %d", ASJ_LEAST_OCTAVE,
                              ASJ_LARGEST_OCTAVE);
+    junction.octave = (int32_t)octave;
     if (count < 2 || count > ASJ_MAX_BRANCHES)
         return asj_line_fail(reader->message, line, "a junction must have \"branches\", 2 to %d of them", ASJ_MAX_BRANCHES);
     junction.branch_count = (int32_t)count;

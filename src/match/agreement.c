@@ -24,7 +24,7 @@
 
 #include <math.h>
 
-#define LEAST_WAY 10.0 /* px: nearer corners say nothing of an edge's direction; as LEAST_START of l_junctions.c */
+#define LEAST_WAY 10.0 /* px: nearer corners say nothing of an edge's direction; as LEAST_START of frames.c */
 
 static float biweight(double r2)
 {

@@ -11,13 +11,14 @@
  * pairs of frames three that match nothing have 6 to 17 matches then, all wrong, and one has 12 wrong of 13.
  * The images themselves are the witness: their own matches, found with other junctions at another scale, come again in the enlarged
  * images when these are right. So the images are matched first without octave -1,
- *   - when nothing comes of it, that is the answer, in less time;
+ *   - when nothing comes of it, and no motion is left open, that is the answer, in less time;
  *   - when AGAIN of their matches come again, and the enlarged images have more (with those that a geometry of the images has
  *     added, where it judges both), the enlarged images' matches are the answer, with the others whose places are free;
  *   - otherwise, and when the enlarged images contradict the images (MOST_CONTRADICTED: 48 rendered rooms 12272 of 12683 right ->
  *     12338 of 12562, looked for anywhere), the images' matches are.
  * And the images' matches say where those of the enlarged ones are looked for (expected.c).
- * One geometry judges both, and where the images leave it open or the two are at odds it says which ones are (finer_geometry.c).
+ * One geometry judges both, and where the images leave it open or the two are at odds it says which ones are, whether or not
+ * matches come again (finer_geometry.c).
  * Matches that come again, of ten pairs that match: .41 to .85 where the enlarged images are right in 97 of 100 and more, .63 where
  * they have 44 of 48 right for 20 of 27, 0 and .14 where they have 1 of 13 right and 23 of 30: all looked for anywhere. Looked for
  * where they are expected .59 to .84 of six pairs. */
@@ -25,7 +26,6 @@
 #include "finer_geometry.h"
 #include "result_changes.h"
 #include "core/watch.h"
-#include "geometry/geometry_options.h"
 
 #include <math.h>
 
@@ -205,10 +205,10 @@ asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_ma
     return status;
 }
 
-/* Worth while where the images themselves have matches, or a geometry that they leave open, or nothing to match. */
+/* Worth while where the images themselves have matches, or leave a motion open, or have nothing to match. */
 static int is_worth(const asj_match_result *own)
 {
-    return own->match_count > 0 || asj_geometry_is_open(&own->geometry) || own->l_junction_count1 == 0 ||
+    return own->match_count > 0 || asj_looks_may_settle(own) || own->l_junction_count1 == 0 ||
            own->l_junction_count2 == 0;
 }
 

@@ -8,16 +8,22 @@
 
 typedef enum asj_looks {
     ASJ_LOOKS_BY_ENLARGED, /* that of the enlarged images, if they have one; otherwise what the images say of theirs */
-    ASJ_LOOKS_BY_IMAGES,   /* the accepted one of the images: it is surer, or the enlarged ones do not keep it, or were not asked */
+    ASJ_LOOKS_BY_IMAGES,   /* the accepted one of the images: it is surer, or the enlarged ones do not keep it, or were not asked,
+                            * or turn it upside down */
     ASJ_LOOKS_SETTLED,     /* that of the enlarged images, whether or not matches come again: they accept the best one of what the
                             * images leave open, or have so much more evidence */
-    ASJ_LOOKS_LOST,        /* the images leave open which motion it is, and the enlarged ones accept what tells none, or, where
-                            * it is no matter of rivals, another one */
+    ASJ_LOOKS_LOST,        /* the images leave open which motion it is, and the enlarged ones accept what tells none, or one that
+                            * is upside down, or, where it is no matter of rivals, another one; or the images have no match, and
+                            * the enlarged ones too little evidence */
     ASJ_LOOKS_PLANE,       /* both accept a plane, which leaves its motion open: the enlarged images', without a pose */
-    ASJ_LOOKS_DISPUTED     /* both accept a motion, not the same: neither, and no match that either contradicts */
+    ASJ_LOOKS_DISPUTED     /* both accept a motion, not the same, and nothing decides: neither, and no match that either
+                            * contradicts */
 } asj_looks;
 
 asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *finer);
+
+/* Do the images leave a motion open that the enlarged ones may settle, even if the images have no match? */
+int32_t asj_looks_may_settle(const asj_match_result *own);
 
 /* The matches of the one by the accepted geometry of the other, which is that of both from now on. ASJ_ERROR_MEMORY. */
 asj_status asj_looks_judge(asj_context *context, const asj_match_result *by, asj_match_result *judged);

@@ -3,8 +3,8 @@
  *
  * Corners that the fine octave sees in one image and a coarse one in the other, those out of focus, and those in few pixels find
  * partners across octaves. But most corners are listed two or three times then, coarse ones look more alike, and their places are
- * known less well. So the finest octave that has enough L-junctions (l_junctions.c) is matched as if there were no others; those
- * are guests, which come when everything else is decided and change nothing of it:
+ * known less well. So the finest octave that has enough L-junctions (l_junctions_create.c) is matched as if there were no others;
+ * those are guests, which come when everything else is decided and change nothing of it:
  *
  *   - accepted matches propose them where nothing is matched yet (guided.c), a guest with a guest or with one of the others;
  *   - what is proposed is compared (with canonical patches; induced ones, preset paper's, are all compared from the start) and

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 7, one image: its L-junctions with their frames (l_junctions.c), its pyramid (core/pyramid.c), and what the
+/* Step 7, one image: its L-junctions with their frames (l_junctions_create.c), its pyramid (core/pyramid.c), and what the
  * neighbourhoods of the L-junctions look like (describe.c; patch_induced.c for the paper's). */
 #include "image_features.h"
 #include "core/image.h"

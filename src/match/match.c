@@ -2,7 +2,7 @@
 /* asj_match(), and asj_match_features(), which is what it does after the features of both images: step 7 of the paper.
  *
  * Of each image (image_features.c):
- *   l_junctions.c    junctions -> ordered L-junctions with frames
+ *   l_junctions_create.c   junctions -> ordered L-junctions      (locations.c, frames.c, t_junctions.c)
  *   describe.c       patches in those frames                     (patch.c, sift.c; paper: patch_induced.c)
  *   colour.c         colours around them                         for the geometry only
  *

@@ -16,7 +16,8 @@ typedef struct asj_match_run {
     asj_support support;       /* support.c: who agrees with whom */
     asj_choices choices;       /* assign.c; room for every location of image 1 */
     int32_t for_geometry;      /* 1: the candidates of two_view.c's longer list, */
-    uint32_t most_listed;      /* .. of so many L-junctions of each image, the most meaningful ones; 0: of all */
+    uint32_t most_listed;      /* .. of so many L-junctions of each image, the most meaningful ones and their equals (canonical
+                                * patches); 0: of all */
     asj_geometry geometry;     /* two_view.c */
     asj_judge judge;           /* two_view.c: what was accepted, for matches that were no candidates of it */
     int32_t lines_hold;        /* verdict.c: is what lies off its epipolar lines wrong? */

@@ -17,6 +17,7 @@
 #include "shortlist.h"
 #include "subset.h"
 #include "support.h"
+#include "core/nth_smallest.h"
 
 #include <string.h>
 

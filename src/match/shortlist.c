@@ -46,8 +46,8 @@ static asj_status collect(asj_match_run *run, const asj_partner *rows, const asj
     return ASJ_OK;
 }
 
-/* Are there L-junctions that are not listed? */
-static int lists_some(const asj_match_run *run)
+/* Are there L-junctions that are not listed? With induced patches all are. */
+static int leaves_some_out(const asj_match_run *run)
 {
     for (int32_t side = 0; side < 2 && run->options->patches == ASJ_PATCHES_CANONICAL; side++) {
         const asj_l_junctions *all = &run->image[side]->l_junctions;
@@ -64,7 +64,7 @@ static int lists_some(const asj_match_run *run)
 static asj_status find_partners(const asj_match_run *run, asj_partner *rows, asj_partner *columns)
 {
     asj_subset hosts[2];
-    if (!lists_some(run))
+    if (!leaves_some_out(run))
         return run->context->ops->rank->partners(run, rows, columns);
     memset(hosts, 0, sizeof hosts);
     asj_match_run among = *run;

@@ -1,22 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "subset.h"
 #include "describe.h"
+#include "core/nth_smallest.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-static int rising(const void *left, const void *right)
-{
-    const float p = *(const float *)left, q = *(const float *)right;
-    return p < q ? -1 : p > q;
-}
-
-float asj_nth_smallest(float *values, size_t count, size_t n)
-{
-    qsort(values, count, sizeof *values, rising);
-    return values[n - 1];
-}
 
 /* Those of L-junctions that are no guests, of junctions up to `log10_nfa`; `first_only` of each. */
 typedef struct choice {

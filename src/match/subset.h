@@ -20,7 +20,4 @@ typedef struct asj_subset {
 asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t first_only, uint32_t most, asj_subset *subset);
 void asj_subset_free(asj_memory *memory, asj_subset *subset);
 
-/* The n-th smallest value (1 <= n <= count), of which none is NaN. Sorts them. */
-float asj_nth_smallest(float *values, size_t count, size_t n);
-
 #endif

@@ -81,7 +81,7 @@ static const bad_file bad_files[] = {
     {J "{\"x\":1,\"y\":2,\"octave\":1.7,\"branches\":[" B "," B "]}]}", 3, "whole number", ASJ_ERROR_FORMAT},
     {J "{\"x\":1,\"y\":2,\"octave\":-2,\"branches\":[" B "," B "]}]}", 3, "from -1 to 15", ASJ_ERROR_FORMAT},
     {J "{\"x\":1,\"y\":2,\"octave\":16,\"branches\":[" B "," B "]}]}", 3, "from -1 to 15", ASJ_ERROR_FORMAT},
-    {J "{\"x\":1,\"y\":2,\"octave\":1e30,\"branches\":[" B "," B "]}]}", 3, "from -1 to 15", ASJ_ERROR_FORMAT},
+    {J "{\"x\":1,\"y\":2,\"octave\":2147483648,\"branches\":[" B "," B "]}]}", 3, "from -1 to 15", ASJ_ERROR_FORMAT},
     {J G ",\n{\"x\":19.5,\"y\":2,\"branches\":[" B "," B "]}]}", 4, "outside", ASJ_ERROR_FORMAT},
     {J "{\"x\":1,\"y\":2,\"branches\":[" B ",{\"angle\":1,\"length\":2,\"end\":\"here\"}]}]}", 3, "no kind of end",
      ASJ_ERROR_FORMAT},

@@ -121,6 +121,7 @@ def test_options() -> None:
     presets = {option.key: option.presets for option in asj.detect_options()}["octaves"]
     assert presets == {preset: asj.detect(square(), preset=preset).options["octaves"] for preset in presets}
     assert len(set(presets.values())) > 1
+    assert len(set(asj.detect_options())) == len(asj.detect_options())
 
 
 def test_results_outlive_the_context(scene: Scene) -> None:

@@ -310,14 +310,15 @@ static void poses_at_odds_are_ambiguous(void **state)
     }
 }
 
-/* .. but where one of them turns the room over, or has very much more evidence. */
+/* .. but where one of them is upside down, or has very much more evidence. */
 static void poses_at_odds_are_decided(void **state)
 {
     static const struct {
         double own, finer, log10_nfa; /* degrees; of the images, where the enlarged ones have -100 */
         asj_looks looks;
-    } cases[] = {{30, 0, -50, ASJ_LOOKS_DISPUTED}, {30, 0, -35, ASJ_LOOKS_SETTLED}, {180, 0, -90, ASJ_LOOKS_SETTLED},
-                 {0, 180, -30, ASJ_LOOKS_BY_IMAGES}, {180, 150, -90, ASJ_LOOKS_DISPUTED}};
+    } cases[] = {{30, 0, -50, ASJ_LOOKS_DISPUTED},   {30, 0, -35, ASJ_LOOKS_SETTLED},   {180, 0, -90, ASJ_LOOKS_SETTLED},
+                 {180, 0, -300, ASJ_LOOKS_DISPUTED}, {0, 180, -62, ASJ_LOOKS_BY_IMAGES}, {0, 180, -35, ASJ_LOOKS_SETTLED},
+                 {180, 150, -90, ASJ_LOOKS_DISPUTED}};
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
         asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
@@ -326,9 +327,30 @@ static void poses_at_odds_are_decided(void **state)
         own->geometry.log10_nfa = cases[k].log10_nfa;
         finer->geometry.log10_nfa = -100;
         assert_int_equal(asj_looks_of(own, finer), cases[k].looks);
+        const int32_t disputed = cases[k].looks == ASJ_LOOKS_DISPUTED;
+        const double told = cases[k].looks == ASJ_LOOKS_BY_IMAGES ? cases[k].log10_nfa : -100;
+        assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+        assert_int_equal(own->geometry.status, disputed ? ASJ_GEOMETRY_AMBIGUOUS : ASJ_GEOMETRY_ACCEPTED);
+        assert_true(own->geometry.log10_nfa == told && (asj_match_result_geometry(own) == NULL) == disputed);
+        assert_list(own, own->matches, own->match_count);
+        assert_list(own, own->rejected, (size_t)own->rejected_count);
         asj_match_result_free(&own);
-        asj_match_result_free(&finer);
     }
+}
+
+/* The axis of half a turn is that of no antisymmetric part. */
+static void half_a_turn_is_at_odds(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+    for (int32_t axis = 0; axis < 3; axis++) {
+        own->geometry = finer->geometry;
+        for (int32_t k = 0; k < 9; k++)
+            own->geometry.rotation[k] *= k / 3 == axis ? 1 : -1;
+        assert_int_equal(asj_looks_of(own, finer), axis == 1 ? ASJ_LOOKS_DISPUTED : ASJ_LOOKS_SETTLED);
+    }
+    asj_match_result_free(&own);
+    asj_match_result_free(&finer);
 }
 
 /* The pose of a plane is open: the plane stays. */
@@ -470,6 +492,8 @@ static void without_matches_much_evidence_counts(void **state)
         finer->geometry.status = cases[k].status;
         finer->geometry.log10_nfa = cases[k].log10_nfa;
         assert_int_equal(asj_looks_of(own, finer), cases[k].looks);
+        own->geometry.model = ASJ_GEOMETRY_HOMOGRAPHY; /* no motion that could be settled so */
+        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_BY_ENLARGED);
         own->match_count = count;
         asj_match_result_free(&own);
         asj_match_result_free(&finer);
@@ -577,6 +601,7 @@ int main(void)
         cmocka_unit_test(rivals_are_an_answer),
         cmocka_unit_test(poses_at_odds_are_ambiguous),
         cmocka_unit_test(poses_at_odds_are_decided),
+        cmocka_unit_test(half_a_turn_is_at_odds),
         cmocka_unit_test(planes_at_odds_have_no_pose),
         cmocka_unit_test(poses_at_odds_without_memory),
         cmocka_unit_test(opposite_translations_are_at_odds),

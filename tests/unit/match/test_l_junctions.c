@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* src/match/l_junctions.c against the plain way to find the same: neighbours of locations, lengths of branches. */
+/* src/match/locations.c and frames.c against the plain way to find the same: neighbours of locations, lengths of branches. */
 #include "match/l_junctions_create.h"
 #include "random.h"
 #include "unit_test.h"

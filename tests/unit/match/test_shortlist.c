@@ -108,11 +108,36 @@ static void all_are_listed_where_that_is_allowed(void **state)
     unit_context_free(&counter, &context);
 }
 
+static void threads_change_nothing(void **state)
+{
+    asj_candidate *lists[2] = {NULL, NULL};
+    size_t counts[2];
+    (void)state;
+    for (int32_t n = 0; n < 2; n++) {
+        unit_counter counter = {0, 0, 0, 0};
+        asj_context *context = unit_context(&counter, n == 0 ? 1 : 3);
+        make(context, 5);
+        pair.run.most_listed = LISTED;
+        assert_int_equal(asj_shortlist(&pair.run), ASJ_OK);
+        counts[n] = pair.run.candidates.count;
+        lists[n] = calloc(counts[n], sizeof **lists);
+        assert_non_null(lists[n]);
+        memcpy(lists[n], pair.run.candidates.list, counts[n] * sizeof **lists);
+        random_pair_free(&pair);
+        unit_context_free(&counter, &context);
+    }
+    assert_int_equal(counts[0], counts[1]);
+    assert_memory_equal(lists[0], lists[1], counts[0] * sizeof **lists);
+    free(lists[0]);
+    free(lists[1]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(very_many_list_the_most_meaningful),
         cmocka_unit_test(all_are_listed_where_that_is_allowed),
+        cmocka_unit_test(threads_change_nothing),
     };
     return cmocka_run_group_tests_name("shortlist", tests, NULL, NULL);
 }

@@ -221,7 +221,7 @@ def match_images(
 
     stretch    a factor of 0.5 to 8, or one for x and one for y. Photographs of up to some megapixels have about three times the matches
                at 2, in three to eight times the time; what is seen at a glancing angle, like things on a table, matches at (1, 3).
-               "auto": as they are; from `enlarge_from` matches on (8; 0 = never) also enlarged, which :attr:`Matches.enlarged`
+               "auto": as they are; from `enlarge_from` matches on (8; fewer where a geometry is left open; 0 = never) also enlarged, which :attr:`Matches.enlarged`
                tells; and where nothing comes of it at (1, 3) and (3, 1), then also enlarged; :attr:`Matches.stretch` tells which it
                was
     options    those of the matcher; the others as for :func:`asj.match`

@@ -6,7 +6,8 @@ from __future__ import annotations
 import difflib
 import warnings
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -29,7 +30,7 @@ class OptionInfo:
     maximum: float
     choices: tuple[str, ...]
     group: str
-    presets: Mapping[str, str]
+    presets: Mapping[str, str] = field(hash=False)
     """Its value in each preset, as text: ``{"default": "0", ...}``."""
 
 
@@ -42,7 +43,7 @@ class _Table:
         table = [row(i) for i in range(count())]
         self.keys = [text(info.key) for info in table]
         values = {name: self.values(self.fill(name, {})) for name in PRESETS}
-        self.rows = [_info(info, {name: of[text(info.key)] for name, of in values.items()}) for info in table]
+        self.rows = [_info(info, MappingProxyType({name: of[text(info.key)] for name, of in values.items()})) for info in table]
         self._image_keys = [info.key for info in self.rows if info.group in _IMAGE_GROUPS or info.key in ("neighbours", "separation")]
 
     def fill(self, preset: str, values: Mapping[str, object]) -> Any:
