@@ -76,10 +76,11 @@ static void fill_frames(asj_l_junctions *all)
     }
 }
 
+/* All that the L-junctions share. */
 typedef struct job {
-    const asj_match_options *options;
-    const asj_location_grid *grid;
     asj_l_junctions *all;
+    const asj_location_grid *grid;
+    int32_t limit; /* lengths of a branch */
     asj_watch *watch;
 } job;
 
@@ -87,7 +88,7 @@ static void prepare_some(const void *data, const asj_part *part)
 {
     const job *j = data;
     for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++)
-        prepare(j->all, j->grid, (uint32_t)i, j->options->length_hypotheses);
+        prepare(j->all, j->grid, (uint32_t)i, j->limit);
 }
 
 asj_status asj_frames_make(asj_context *context, const asj_match_options *options, const asj_location_grid *grid,
@@ -100,7 +101,7 @@ asj_status asj_frames_make(asj_context *context, const asj_match_options *option
     if (!all->lengths || !all->direction || !all->first_frame)
         return no_memory(context);
     asj_watch watch;
-    const job j = {options, grid, all, &watch};
+    const job j = {all, grid, options->length_hypotheses, &watch};
     asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
     asj_parallel(context, asj_threads_for(context, all->count, LEAST_L_JUNCTIONS), all->count, 0, prepare_some, &j);
     if (watch.stopped)

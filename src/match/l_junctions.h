@@ -50,7 +50,6 @@ typedef struct asj_l_junctions {
 /* How many L-junctions are of octaves that the image itself has. Moves them to the front. */
 uint32_t asj_l_junctions_of_image(const asj_junction *junctions, asj_l_junction *l, uint32_t count);
 
-/* All blocks. */
 void asj_l_junctions_free(asj_memory *memory, asj_l_junctions *l_junctions);
 
 /* L-junctions of another octave than home: they neither support nor lengthen others. */

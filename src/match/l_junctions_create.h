@@ -15,8 +15,8 @@ typedef struct asj_image_junctions {
                                   * -1 */
 } asj_image_junctions;
 
-/* Makes everything from junctions. ASJ_ERROR_ARGUMENT (see asj_match()), ASJ_ERROR_LIMIT, ASJ_ERROR_MEMORY. On failure the caller
- * still frees. */
+/* Makes everything from junctions. ASJ_ERROR_ARGUMENT (see asj_match()), ASJ_ERROR_LIMIT, ASJ_ERROR_MEMORY,
+ * ASJ_ERROR_CANCELLED. On failure the caller still frees. */
 asj_status asj_l_junctions_create(asj_context *context, const asj_match_options *options, const asj_image_junctions *input,
                                   asj_l_junctions *l_junctions);
 

@@ -77,10 +77,11 @@ uint32_t asj_first_location(const asj_l_junctions *all, double x)
     return low;
 }
 
+/* All that the locations share. */
 typedef struct job {
-    const asj_match_options *options;
-    const asj_location_grid *grid;
     asj_l_junctions *all;
+    const asj_location_grid *grid;
+    double separation; /* px */
     asj_watch *watch;
 } job;
 
@@ -90,7 +91,7 @@ static void find_some(const void *data, const asj_part *part)
     asj_l_junctions *all = j->all;
     for (int64_t p = part->first; p < part->end && !asj_watch_stops(j->watch, part); p++)
         all->neighbour_count[p] = asj_location_grid_nearest(j->grid, all->location_x[p], all->location_y[p],
-                                                            j->options->separation, all->neighbour_limit,
+                                                            j->separation, all->neighbour_limit,
                                                             all->neighbour + (size_t)p * all->neighbour_limit);
 }
 
@@ -105,7 +106,7 @@ asj_status asj_neighbours_find(asj_context *context, const asj_match_options *op
     if (!all->neighbour || !all->neighbour_count)
         return no_memory(context);
     asj_watch watch;
-    const job j = {options, grid, all, &watch};
+    const job j = {all, grid, options->separation, &watch};
     asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
     asj_parallel(context, asj_threads_for(context, all->location_count, LEAST_LOCATIONS), all->location_count, 0, find_some, &j);
     return asj_watch_end(&watch);

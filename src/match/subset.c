@@ -53,8 +53,7 @@ static void fill(const asj_image_features *all, const choice *c, size_t length, 
     s->first_frame[l->count] = count;
 }
 
-asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t first_only, uint32_t most,
-                             asj_subset *s)
+asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t first_only, uint32_t most, asj_subset *s)
 {
     asj_memory *memory = &run->context->memory;
     const asj_image_features *all = run->image[side];
