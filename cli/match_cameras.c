@@ -5,6 +5,11 @@
 #include "match_cameras.h"
 #include "message.h"
 
+#include <math.h>
+
+#define WIDEST 150.0 /* degrees that a pin-hole camera can show in practice: a picture of a fisheye lens is none, */
+#define NARROWEST 0.5 /* .. and a telescope has it */
+
 static int uses_cameras(int32_t model)
 {
     return model == ASJ_GEOMETRY_AUTO || model == ASJ_GEOMETRY_ESSENTIAL;
@@ -31,6 +36,19 @@ static void say_exif(const cli_match_arguments *arguments, const cli_match_input
         if (!(arguments->cameras[v].fx > 0) && !arguments->common.quiet)
             cli_note("%s: focal length %.0f px, from EXIF data%s", inputs[v].name, options->cameras[v].fx,
                      inputs[v].image->focal_source == ASJ_EXIF_FOCAL_FILM ? " (35 mm equivalent)" : "");
+}
+
+/* A focal length in mm, or of a smaller picture, is a camera of which hardly anything else would tell. */
+static void doubt(const cli_match_arguments *arguments, const cli_match_input inputs[2], const asj_geometry_options *options)
+{
+    const double degrees = 180 / 3.14159265358979323846;
+    for (int v = 0; v < 2 && !arguments->common.quiet; v++) {
+        const asj_image *image = &inputs[v].pixels;
+        const double angle = 2 * degrees * atan2(image->width, 2 * options->cameras[v].fx);
+        if (angle > WIDEST || angle < NARROWEST)
+            cli_note("%s: a focal length of %g px means a view of %.3g degrees: is it in pixels of this image?", inputs[v].name,
+                     options->cameras[v].fx, angle);
+    }
 }
 
 /* One camera without the other, or none where they must be. */
@@ -62,6 +80,7 @@ int cli_match_cameras(const cli_match_arguments *arguments, const cli_match_inpu
     if (options->cameras[0].fx > 0 && options->cameras[1].fx > 0) {
         if (exif)
             say_exif(arguments, inputs, options);
+        doubt(arguments, inputs, options);
         return CLI_SUCCESS;
     }
     const int given = arguments->cameras[0].fx > 0 || arguments->cameras[1].fx > 0;

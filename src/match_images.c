@@ -33,6 +33,7 @@
 #include "match/final_pose.h"
 #include "match/finer.h"
 #include "match/finer_geometry.h"
+#include "match/match_options.h"
 
 #define ENOUGH 16  /* matches. Stretched by 1, 3 or 3, 1, pairs of frames that do not match had up to 7 wrong ones, of which
                     * no geometry was left; planes at extreme angles 95 to 190 right ones */
@@ -139,7 +140,7 @@ static asj_status look_closer(search *s, const asj_stretch *stretch, double from
     finer.half_octaves |= s->options->enlarged_half_octaves;
     if (!asks_closer(s))
         options.geometry.model = ASJ_GEOMETRY_NONE;
-    asj_status status = look_by(s, s->best, stretch, &finer, &options, from, part, &found);
+    const asj_status status = look_by(s, s->best, stretch, &finer, &options, from, part, &found);
     return status == ASJ_OK ? asj_finer_choose(s->context, &s->best, &found, 0) : status;
 }
 
@@ -184,14 +185,20 @@ static asj_status look_again(search *s, int32_t which, double from, double part)
     return look_closer(s, &glancing[which], from + (TRIAL + WHOLE) * part, (1 - TRIAL - WHOLE) * part);
 }
 
+/* Where a further look shows more L-junctions than the matcher takes, what was seen before stays the answer. */
+static asj_status further(asj_status status)
+{
+    return status == ASJ_ERROR_LIMIT ? ASJ_OK : status;
+}
+
 static asj_status look_for_answer(search *s)
 {
     const double part = (1 - FIRST - CLOSER) / GLANCING;
     asj_status status = look(s, &as_it_is, s->detect_options, s->options, 0, FIRST, &s->best);
     if (status == ASJ_OK)
-        status = look_closer(s, &as_it_is, FIRST, CLOSER);
+        status = further(look_closer(s, &as_it_is, FIRST, CLOSER));
     for (int32_t k = 0; k < GLANCING && status == ASJ_OK && goes_on(s); k++)
-        status = look_again(s, k, FIRST + CLOSER + k * part, part);
+        status = further(look_again(s, k, FIRST + CLOSER + k * part, part));
     return status == ASJ_OK ? asj_progress(s->context, ASJ_STAGE_ASSIGN, 1) : status;
 }
 
@@ -233,6 +240,8 @@ asj_status asj_match_images(asj_context *context, const asj_image *image1, const
     s.options = options ? options : &defaults;
     const double start = asj_clock_ms();
     asj_status status = check(context, wanted);
+    if (status == ASJ_OK)
+        status = asj_match_wishes_check(context, s.options);
     if (status == ASJ_OK)
         status = is_automatic(wanted) ? look_for_answer(&s) : look(&s, wanted, s.detect_options, s.options, 0, 1, &s.best);
     if (status == ASJ_OK)

@@ -197,8 +197,7 @@ typedef struct asj_match_result {
  *                      count, an octave that is not -1 .. 15, an angle beyond +-10^6, a length that is not 0 .. 4 ASJ_MAX_SIDE,
  *                      or an end of no known kind
  * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED, ASJ_ERROR_DEVICE   as asj_detect()
- * ASJ_ERROR_LIMIT      also with more than 2^24 L-junctions, or when more than 2^24 pairs of candidate matches agree: images that
- *                      repeat themselves, options far looser than the defaults */
+ * ASJ_ERROR_LIMIT      also with more than 2^24 L-junctions */
 ASJ_API asj_status asj_match(asj_context *context,
                              const asj_image *image1, const asj_junction *junctions1, size_t count1,
                              const asj_image *image2, const asj_junction *junctions2, size_t count2,

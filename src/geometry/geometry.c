@@ -125,6 +125,11 @@ asj_status asj_geometry_estimate(asj_context *context, const asj_geometry_candid
     if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
     context->progress = 0; /* a call of its own */
+    if (!options || !result || (!candidates && count > 0))
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "the candidates, the options or the result is NULL");
+    const asj_status status = asj_geometry_options_check(context, options);
+    if (status != ASJ_OK)
+        return status;
     return asj_estimate_with_hints(context, candidates, count, NULL, options, probabilities, NULL, result);
 }
 
@@ -193,11 +198,6 @@ asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_cand
 {
     if (asj_enter(context) != ASJ_OK)
         return ASJ_ERROR_ARGUMENT;
-    if (!options || !result || (!candidates && count > 0))
-        return asj_fail(context, ASJ_ERROR_ARGUMENT, "the candidates, the options or the result is NULL");
-    asj_status status = asj_geometry_options_check(context, options);
-    if (status != ASJ_OK)
-        return status;
     asj_geometry found;
     memset(&found, 0, sizeof found);
     asj_estimation *e = asj_allocate_zero(&context->memory, 1, sizeof *e);
@@ -208,7 +208,7 @@ asj_status asj_estimate_with_hints(asj_context *context, const asj_geometry_cand
     e->context = context;
     e->options = options;
     e->focal_at = -1;
-    status = asj_pairs_create(context, candidates, count, hints, options, &e->set);
+    asj_status status = asj_pairs_create(context, candidates, count, hints, options, &e->set);
     e->set.watch = &watch;
     if (status == ASJ_OK && options->model != ASJ_GEOMETRY_NONE)
         status = estimate(e, hints, judge, &found);

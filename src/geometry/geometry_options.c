@@ -66,14 +66,12 @@ static int directions_are_sound(const double d[9])
     return most == 0 || wrong < 1e-3;
 }
 
-asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_options *o)
+asj_status asj_geometry_wishes_check(asj_context *context, const asj_geometry_options *o)
 {
     for (int32_t v = 0; v < 2; v++) {
         const asj_status status = check_camera(context, &o->cameras[v], v + 1);
         if (status != ASJ_OK)
             return status;
-        if (o->widths[v] < 1 || o->heights[v] < 1)
-            return asj_fail(context, ASJ_ERROR_OPTION, "image %d has no size", (int)v + 1);
         if (!within(o->aspects[v], 0.01, 100))
             return asj_fail(context, ASJ_ERROR_OPTION, "pixels of image %d cannot be: aspect %g", (int)v + 1, o->aspects[v]);
         if (!directions_are_sound(o->directions[v]))
@@ -93,6 +91,14 @@ asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_o
         !within(o->angle_sd, 1, 45) || !within(o->scale_sd, 0.02, 1))
         return asj_fail(context, ASJ_ERROR_OPTION, "samples, epsilon or a standard deviation of the geometry is out of range");
     return ASJ_OK;
+}
+
+asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_options *options)
+{
+    for (int32_t v = 0; v < 2; v++)
+        if (options->widths[v] < 1 || options->heights[v] < 1)
+            return asj_fail(context, ASJ_ERROR_OPTION, "image %d has no size", (int)v + 1);
+    return asj_geometry_wishes_check(context, options);
 }
 
 const char *asj_geometry_model_name(int32_t model)

@@ -6,10 +6,10 @@
  * largest sum of -log NFA, turned together to fit their branches. Without one, two finite points of directions at right angles give
  * f^2 = -(v1 - c)'(v2 - c) (Caprile and Torre 1990): the pair and focal length are taken that have the largest sum, with the vote
  * for the third direction that they define. */
+#include "vanishing.h"
 #include "vanishing_vote.h"
 
 #include "core/angle.h"
-#include "core/context.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -248,20 +248,14 @@ static asj_status check(asj_context *context, const asj_junction *junctions, siz
     return ASJ_OK;
 }
 
-asj_status asj_find_vanishing_points(asj_context *context, const asj_junction *junctions, size_t count,
-                                     const asj_vanishing_options *options, asj_vanishing_points *result)
+asj_status asj_vanishing_points_of(asj_context *context, const asj_junction *junctions, size_t count,
+                                   const asj_vanishing_options *options, asj_vanishing_points *result)
 {
-    if (asj_enter(context) != ASJ_OK)
-        return ASJ_ERROR_ARGUMENT;
-    if (!options || !result || (!junctions && count > 0))
-        return asj_fail(context, ASJ_ERROR_ARGUMENT, "the junctions, the options or the result is NULL");
-    asj_status status = check(context, junctions, count, options);
-    if (status != ASJ_OK)
-        return status;
     const double half = 0.5 * (options->width > options->height ? options->width : options->height);
     const asj_camera guess = {half, half, 0.5 * (options->width - 1), 0.5 * (options->height - 1)};
     const asj_camera *camera = options->camera.fx > 0 ? &options->camera : &guess;
     asj_memory *memory = &context->memory;
+    asj_status status = ASJ_OK;
     asj_vanishing_points found;
     asj_vote_search s = {0};
     memset(&found, 0, sizeof found);
@@ -277,4 +271,15 @@ asj_status asj_find_vanishing_points(asj_context *context, const asj_junction *j
     asj_release(memory, s.lines);
     asj_release(memory, s.tail);
     return status;
+}
+
+asj_status asj_find_vanishing_points(asj_context *context, const asj_junction *junctions, size_t count,
+                                     const asj_vanishing_options *options, asj_vanishing_points *result)
+{
+    if (asj_enter(context) != ASJ_OK)
+        return ASJ_ERROR_ARGUMENT;
+    if (!options || !result || (!junctions && count > 0))
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "the junctions, the options or the result is NULL");
+    const asj_status status = check(context, junctions, count, options);
+    return status == ASJ_OK ? asj_vanishing_points_of(context, junctions, count, options, result) : status;
 }

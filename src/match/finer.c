@@ -225,6 +225,8 @@ static asj_status match_both(asj_context *context, const asj_match_options *opti
     known.result = *result;
     if (status == ASJ_OK && is_worth(*result))
         status = match->pass(context, options, match->data, 1, &known, &finer);
+    if (status == ASJ_ERROR_LIMIT && *result) /* of L-junctions of the enlarged images: the images' own matches stay */
+        status = ASJ_OK;
     context->progress_from = from;
     context->progress_part = part;
     for (int32_t side = 0; side < 2 && status == ASJ_OK; side++)

@@ -36,8 +36,8 @@ asj_status asj_match_finer(asj_context *context, const asj_match_options *option
  * L-junctions have the same numbers. */
 asj_status asj_finer_choose(asj_context *context, asj_match_result **own, asj_match_result **finer, int32_t same_lists);
 
-/* asj_match() as one of several looks at two images, whose pose is not finished (final_pose.h). `enlarged`: of the enlarged images
- * alone; known may be NULL. */
+/* asj_match() as one of several looks at two images, whose pose is not finished (final_pose.h), with options that are checked, and
+ * with cameras of stretched images perhaps. `enlarged`: of the enlarged images alone; known may be NULL. */
 asj_status asj_match_look(asj_context *context,
                           const asj_image *image1, const asj_junction *junctions1, size_t count1,
                           const asj_image *image2, const asj_junction *junctions2, size_t count2,

@@ -306,8 +306,6 @@ static asj_status match_sources(asj_context *context, const asj_match_options *o
 static asj_status match_junctions(asj_context *context, const source sources[2], const asj_match_options *options,
                                   int32_t enlarged_only, const asj_known_matches *known, asj_match_result **result)
 {
-    asj_match_options defaults;
-    char message[256];
     if (result)
         *result = NULL;
     if (asj_enter(context) != ASJ_OK)
@@ -315,12 +313,6 @@ static asj_status match_junctions(asj_context *context, const source sources[2],
     for (int32_t n = 0; n < 2; n++)
         if (!sources[n].image || (!sources[n].junctions && sources[n].count > 0) || !result)
             return asj_fail(context, ASJ_ERROR_ARGUMENT, "an image, the junctions or the result is NULL");
-    if (!options) {
-        asj_match_options_init(&defaults);
-        options = &defaults;
-    }
-    if (asj_match_options_check(options, message, sizeof message) != ASJ_OK)
-        return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
     const asj_finer_match match = {match_sources,
                                    sources,
                                    {sources[0].junctions, sources[1].junctions},
@@ -348,9 +340,19 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
                      const asj_image *image2, const asj_junction *junctions2, size_t count2,
                      const asj_match_options *options, asj_match_result **result)
 {
-    const asj_status status = asj_match_look(context, image1, junctions1, count1, image2, junctions2, count2, options, 0, NULL,
-                                             result);
-    return status == ASJ_OK && options ? asj_finish_pose(context, &options->geometry, result) : status;
+    asj_match_options defaults;
+    if (result)
+        *result = NULL;
+    if (asj_enter(context) != ASJ_OK)
+        return ASJ_ERROR_ARGUMENT;
+    if (!options) {
+        asj_match_options_init(&defaults);
+        options = &defaults;
+    }
+    asj_status status = asj_match_wishes_check(context, options);
+    if (status == ASJ_OK)
+        status = asj_match_look(context, image1, junctions1, count1, image2, junctions2, count2, options, 0, NULL, result);
+    return status == ASJ_OK ? asj_finish_pose(context, &options->geometry, result) : status;
 }
 
 static asj_status match_kept(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
@@ -367,9 +369,9 @@ static asj_status match_kept(asj_context *context, const asj_match_options *opti
 /* Features tell what they were made with; the pair's steps read the same options. */
 static asj_status check_options(asj_context *context, const asj_match_options *options, const asj_features *kept[2])
 {
-    char message[256];
-    if (asj_match_options_check(options, message, sizeof message) != ASJ_OK)
-        return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
+    const asj_status status = asj_match_wishes_check(context, options);
+    if (status != ASJ_OK)
+        return status;
     for (int32_t n = 0; n < 2; n++) {
         const char *key = asj_match_options_difference(options, &kept[n]->options);
         char wanted[64] = "", made[64] = "";

@@ -2,6 +2,7 @@
 /* THE option table of the matcher. The reason for each step is told on top of the file that uses its options. */
 #include "match_options.h"
 #include "core/option_table.h"
+#include "geometry/geometry_options.h"
 
 #include <string.h>
 
@@ -125,6 +126,14 @@ asj_status asj_match_options_get(const asj_match_options *options, const char *k
 asj_status asj_match_options_check(const asj_match_options *options, char *message, size_t message_size)
 {
     return asj_option_table_check(&table, options, message, message_size);
+}
+
+asj_status asj_match_wishes_check(asj_context *context, const asj_match_options *options)
+{
+    char message[256];
+    if (asj_match_options_check(options, message, sizeof message) != ASJ_OK)
+        return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
+    return options->geometry.model == ASJ_GEOMETRY_NONE ? ASJ_OK : asj_geometry_wishes_check(context, &options->geometry);
 }
 
 /* What the frames and patches of an image depend on: two groups, and what neighbours are. */

@@ -8,9 +8,8 @@
  * Segments are looked for where the image is no larger than LONGEST px: what is straight is seen there. */
 #include "room_directions.h"
 #include "core/angle.h"
+#include "geometry/vanishing.h"
 #include "segments/line_segments.h"
-
-#include <asj/vanishing.h>
 
 #include <math.h>
 #include <string.h>
@@ -83,7 +82,7 @@ static asj_status from_branches(asj_context *context, const asj_image_features *
     options.camera = *camera;
     options.width = image->pyramid.width[0];
     options.height = image->pyramid.height[0];
-    const asj_status status = asj_find_vanishing_points(context, list, count, &options, &points);
+    const asj_status status = asj_vanishing_points_of(context, list, count, &options, &points);
     asj_release(&context->memory, list);
     if (status != ASJ_OK || points.count < 2)
         return status;

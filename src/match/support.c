@@ -2,14 +2,18 @@
 /* Step 7, who agrees with whom: the supporters of every candidate, among those at the nearest locations of image 1 and of image 2.
  *
  * Of millions of pairs a few in a hundred may agree (support_gate.c), fewer do (agreement.c), and only these are stored. When the
- * guided pass brings new candidates, those known before are only compared with the new ones. */
+ * guided pass brings new candidates, those known before are only compared with the new ones.
+ *
+ * In a fine pattern that repeats everything agrees with everything near: memory for MOST_SUPPORTERS is shared out equally among the
+ * candidates, and each keeps those at its nearest neighbours. (Two views of a grid with lines 16 px apart: 100 of some thousands;
+ * of sixteen pairs of photographs no candidate loses one.) */
 #include "support.h"
 #include "support_gate.h"
 #include "core/watch.h"
 
 #include <string.h>
 
-#define MOST_SUPPORTERS 0x1000000 /* of the candidates of one side: 128 MB; eight pairs of photographs need up to 40 000 */
+#define MOST_SUPPORTERS 0x1000000 /* 128 MB */
 #define BLOCK_SUPPORTERS 0x40000  /* of a block of candidates, before it is known how many they are: 2 MB */
 
 /* --- candidates by location ------------------------------------------------------------------------------------------------- */
@@ -95,6 +99,7 @@ typedef struct search {
     const asj_l_junctions *asked, *others; /* of the image whose neighbour locations are asked, and of the other one */
     uint32_t before;           /* candidates that were known before have such a number at most, */
     const asj_supporters *old; /* and these supporters among each other */
+    uint32_t most;             /* supporters of a candidate */
     pool all, fresh;
 } search;
 
@@ -130,9 +135,9 @@ static uint16_t weigh(const search *in, const subject *n, const asj_candidate *d
     return (uint16_t)((v > w ? v : w) * ASJ_SUPPORT_ONE);
 }
 
-/* The supporters at a location, the subject's neighbour of this number. */
+/* The supporters at a location, the subject's neighbour of this number; `most` of them. */
 static uint32_t supporters_at(const search *in, const pool *s, subject *n, uint32_t location, uint32_t neighbour,
-                              asj_supporter *list)
+                              asj_supporter *list, uint32_t most)
 {
     const double x = in->asked->location_x[location] - n->x, y = in->asked->location_y[location] - n->y;
     const uint32_t end = s->index.start[location + 1];
@@ -142,10 +147,10 @@ static uint32_t supporters_at(const search *in, const pool *s, subject *n, uint3
     n->query.px = (float)(n->map[0] * x + n->map[1] * y);
     n->query.py = (float)(n->map[2] * x + n->map[3] * y);
     n->query.edges = asj_edges_through(in->asked, n->mine, in->others->t_junction[n->other] ? 0 : 3, x, y);
-    for (uint32_t m = s->index.start[location]; m < end; m += ASJ_GATE_COUNT) {
+    for (uint32_t m = s->index.start[location]; m < end && count < most; m += ASJ_GATE_COUNT) {
         const uint32_t some = end - m < ASJ_GATE_COUNT ? end - m : ASJ_GATE_COUNT;
         uint64_t passed = in->run->context->ops->gate->pass(&n->query, &s->gate, m, some);
-        for (uint32_t at = m; passed; at++, passed >>= 1) {
+        for (uint32_t at = m; passed && count < most; at++, passed >>= 1) {
             if (!(passed & 1))
                 continue;
             const asj_candidate *d = &in->run->candidates.list[s->index.order[at]];
@@ -158,7 +163,7 @@ static uint32_t supporters_at(const search *in, const pool *s, subject *n, uint3
     return count;
 }
 
-/* All supporters of c; returns how many they are. */
+/* The supporters of c, those at the nearest locations first; returns how many they are. */
 static uint32_t find_supporters(const search *in, const asj_candidate *c, asj_supporter *list)
 {
     const uint32_t location = location_of(in->run, c, in->side);
@@ -169,11 +174,11 @@ static uint32_t find_supporters(const search *in, const asj_candidate *c, asj_su
     const asj_supporter *end = known ? old + in->old->count[c->number - 1] : NULL;
     subject self = subject_of(in, c);
     uint32_t count = 0;
-    for (uint32_t n = 0; n < in->asked->neighbour_count[location]; n++) {
-        while (old < end && old->neighbour == n)
+    for (uint32_t n = 0; n < in->asked->neighbour_count[location] && count < in->most; n++) {
+        while (old < end && old->neighbour == n && count < in->most)
             list[count++] = *old++;
         if (s->index.start[neighbour[n]] < s->index.start[neighbour[n] + 1])
-            count += supporters_at(in, s, &self, neighbour[n], n, list + count);
+            count += supporters_at(in, s, &self, neighbour[n], n, list + count, in->most - count);
     }
     return count;
 }
@@ -198,6 +203,7 @@ static void find_limits(const search *in, block *b)
         b->limits[p] = 0;
         for (uint32_t n = 0; n < asked->neighbour_count[p]; n++)
             b->limits[p] += in->all.index.start[neighbour[n] + 1] - in->all.index.start[neighbour[n]];
+        b->limits[p] = b->limits[p] < in->most ? b->limits[p] : in->most;
         b->capacity = b->limits[p] > b->capacity ? b->limits[p] : b->capacity;
     }
 }
@@ -223,9 +229,6 @@ static asj_status keep(const search *in, size_t first, size_t end, block *b, asj
     size_t total = b->used + 1; /* never NULL */
     for (size_t k = first; k < end; k++)
         total += found->count[list[k].number - 1];
-    if (total > MOST_SUPPORTERS)
-        return asj_fail(in->run->context, ASJ_ERROR_LIMIT, "more than %d pairs of candidates agree: options too loose",
-                        MOST_SUPPORTERS);
     void *memory = found->list;
     const asj_status status = asj_grow(&in->run->context->memory, &memory, &b->kept, total, sizeof *found->list, b->used);
     found->list = memory;
@@ -310,7 +313,7 @@ static void supporters_free(asj_memory *memory, asj_supporters *found)
     *found = (asj_supporters){NULL, NULL, NULL};
 }
 
-asj_status asj_support_find(asj_match_run *run)
+asj_status asj_support_find_within(asj_match_run *run, size_t most)
 {
     asj_support *support = &run->support;
     const uint32_t before = support->count;
@@ -320,15 +323,23 @@ asj_status asj_support_find(asj_match_run *run)
     for (size_t k = 0; k < run->candidates.count; k++)
         if (run->candidates.list[k].number == 0)
             run->candidates.list[k].number = ++support->count;
+    const size_t all = run->candidates.count > 0 ? run->candidates.count : 1;
+    const uint32_t share = most > all ? (uint32_t)(most / all) : 1;
     for (int32_t side = 0; side < 2 && status == ASJ_OK; side++) {
         asj_supporters old = support->side[side];
         search in = {.run = run, .side = side, .asked = &run->image[side]->l_junctions,
-                     .others = &run->image[1 - side]->l_junctions, .before = before, .old = &old};
+                     .others = &run->image[1 - side]->l_junctions, .before = before, .old = &old,
+                     .most = share};
         support->side[side] = (asj_supporters){NULL, NULL, NULL};
         status = one_side(&in, &support->side[side]);
         supporters_free(&run->context->memory, &old);
     }
     return status;
+}
+
+asj_status asj_support_find(asj_match_run *run)
+{
+    return asj_support_find_within(run, MOST_SUPPORTERS);
 }
 
 void asj_support_free(asj_memory *memory, asj_support *support)

@@ -143,6 +143,42 @@ static void scores_are_those_of_the_formula(void **state)
     }
 }
 
+/* Without room for all supporters every candidate keeps the first of its list, which are at the nearest locations. */
+static void a_share_is_what_is_nearest(void **state)
+{
+    (void)state;
+    enum { SHARE = 3 };
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_match_options options;
+    asj_match_options_init(&options);
+    random_pair_create(context, 5, 24, &options, &pair);
+    random_pair_candidates(9, 1, &pair);
+    const uint32_t count = (uint32_t)pair.run.candidates.count;
+    assert_int_equal(asj_support_find(&pair.run), ASJ_OK);
+    asj_support all = pair.run.support;
+    memset(&pair.run.support, 0, sizeof pair.run.support);
+    for (uint32_t k = 0; k < count; k++)
+        pair.run.candidates.list[k].number = 0;
+    assert_int_equal(asj_support_find_within(&pair.run, (size_t)count * (SHARE + 1) - 1), ASJ_OK);
+    uint32_t cut = 0;
+    for (int side = 0; side < 2; side++)
+        for (uint32_t k = 0; k < count; k++) {
+            const asj_supporters *whole = &all.side[side], *part = &pair.run.support.side[side];
+            assert_int_equal(part->count[k], whole->count[k] < SHARE ? whole->count[k] : SHARE);
+            for (uint32_t n = 0; n < part->count[k]; n++) {
+                const asj_supporter *a = whole->list + whole->offset[k] + n, *b = part->list + part->offset[k] + n;
+                assert_true(a->number == b->number && a->weight == b->weight && a->neighbour == b->neighbour);
+            }
+            cut += whole->count[k] > SHARE;
+        }
+    assert_true(cut > 20);
+    asj_support_free(&context->memory, &all);
+    asj_support_free(&context->memory, &pair.run.support);
+    random_pair_free(&pair);
+    unit_context_free(&counter, &context);
+}
+
 /* minimum_support x (neighbours that can be asked / all that the option names), mean of both images. */
 static void needed_support_falls_with_the_locations(void **state)
 {
@@ -192,6 +228,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scores_are_those_of_the_formula),
+        cmocka_unit_test(a_share_is_what_is_nearest),
         cmocka_unit_test(needed_support_falls_with_the_locations),
         cmocka_unit_test(without_neighbours_distance_decides),
     };

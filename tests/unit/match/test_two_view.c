@@ -286,6 +286,9 @@ static void what_is_not_accepted_changes_nothing(void **state)
     options.geometry.cameras[0].fx = -1;
     assert_int_equal(match(context, &a, &b, &options, &with), ASJ_ERROR_OPTION);
     assert_null(with);
+    options.geometry.model = ASJ_GEOMETRY_NONE; /* then nobody asks */
+    assert_int_equal(match(context, &a, &b, &options, &with), ASJ_OK);
+    asj_match_result_free(&with);
     asj_match_result_free(&without);
     release(&a);
     release(&b);
