@@ -227,7 +227,9 @@ static void print_hint(const run *r)
         return;
     const int bare = r->result->l_junction_count1 < FEW ? 0 : 1;
     const unsigned long corners = (unsigned long)(bare == 0 ? r->result->l_junction_count1 : r->result->l_junction_count2);
-    if (corners < FEW)
+    if (corners == 0)
+        cli_note("hint: %s has no corner that is surer than chance", r->inputs[bare].name);
+    else if (corners < FEW)
         cli_note("hint: %s has %lu corner%s only: 'asj-cli detect --for matching --plot' shows them", r->inputs[bare].name, corners,
                  corners == 1 ? "" : "s");
     else if (status == ASJ_GEOMETRY_NOT_ASKED)

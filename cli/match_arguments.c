@@ -403,6 +403,8 @@ static int check_geometry(const cli_match_arguments *arguments)
     const int first = arguments->cameras[0].fx > 0, second = arguments->cameras[1].fx > 0;
     if ((first || second || arguments->focal_from != CLI_FOCAL_AUTO) && arguments->geometry == ASJ_GEOMETRY_NONE)
         return cli_usage_error("match", "a camera changes nothing without --geometry");
+    if (arguments->style.epipolar && arguments->geometry == ASJ_GEOMETRY_NONE)
+        return cli_usage_error("match", "--plot-epipolar changes nothing without --geometry");
     if (arguments->focal_from == CLI_FOCAL_ESTIMATE && (first || second))
         return cli_usage_error("match", "--focal estimate: --camera%d gives it", first ? 1 : 2);
     if (arguments->focal_from == CLI_FOCAL_ESTIMATE && arguments->geometry > ASJ_GEOMETRY_ESSENTIAL)

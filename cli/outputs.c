@@ -181,7 +181,7 @@ static int check_against(const char *command, const char *hint, const cli_planne
     return CLI_SUCCESS;
 }
 
-/* Whether the folder that a file is to lie in is there. */
+/* Whether the folder that a file is to lie in is there, and the file is none. */
 static int check_folder(const char *path)
 {
     if (*path == '\0') {
@@ -196,11 +196,11 @@ static int check_folder(const char *path)
     }
     if (folder)
         folder[length] = '\0';
-    const int there = !folder || cli_is_folder(folder);
-    if (!there)
-        cli_error("%s: cannot create: %s", path, strerror(ENOENT));
+    const int error = folder && !cli_is_folder(folder) ? ENOENT : cli_is_folder(path) ? EISDIR : 0;
+    if (error)
+        cli_error("%s: cannot create: %s", path, strerror(error));
     free(folder);
-    return there ? CLI_SUCCESS : CLI_FAILED;
+    return error ? CLI_FAILED : CLI_SUCCESS;
 }
 
 int cli_check_folders(const cli_planned *outputs, size_t output_count)

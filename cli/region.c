@@ -17,12 +17,16 @@ int cli_region_take(const char *command, const char *name, const char *text, cli
     for (; count < 4 && *at >= '0' && *at <= '9'; count++) {
         char *end;
         const long value = strtol(at, &end, 10);
-        if (value > ASJ_MAX_SIDE || (count < 3 ? *end != ',' : *end != '\0'))
+        if (value > ASJ_MAX_SIDE)
+            return cli_usage_error(command, "--%s: '%s' goes beyond %d, the longest side of an image", name, text, ASJ_MAX_SIDE);
+        if (count < 3 ? *end != ',' : *end != '\0')
             break;
         values[count] = (int32_t)value;
         at = end + (count < 3);
     }
-    if (count < 4 || values[2] < 1 || values[3] < 1)
+    if (count == 4 && (values[2] < 1 || values[3] < 1))
+        return cli_usage_error(command, "--%s: '%s' has no pixel", name, text);
+    if (count < 4)
         return cli_usage_error(command, "--%s: '%s' is not X,Y,WIDTH,HEIGHT in whole pixels, from 0,0 at the top left", name, text);
     region->x = values[0];
     region->y = values[1];

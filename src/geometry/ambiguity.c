@@ -4,7 +4,8 @@
  * motion, give another partner to a place that is matched. Things that repeat do that, shifted by a period or turned. The evidence
  * itself would be surer (odds of a hundred are 5 nats of a hundred or two), but what repeats is matched more or less well for
  * reasons that the model does not know, and all its places together: of rendered rooms with tiled floors, wrong geometries have up
- * to 1.6 times the log evidence of the best one that contradicts them, and with fewer than FEW matches more than that.
+ * to 1.6 times the log evidence of the best one that contradicts them, and with fewer than FEW matches more than that. And a rival
+ * that is ASJ_SURE_RIVAL is one, whatever the best one has.
  *
  * Where images have colours, these say of rivals which one is wrong (colour_vote.c), and that may be the one with most evidence: a
  * floor of tiles, turned by 90 degrees or shifted so that more of it is seen twice, has up to three times the log evidence of the
@@ -194,7 +195,7 @@ int32_t asj_is_ambiguous(const asj_estimation *e, int32_t best, int32_t rival, i
 {
     const double nfa = to_compare(e, &e->finalists[best]), second = asj_estimation_log10_nfa(e, &e->finalists[rival]);
     const int32_t few = doubt || inliers < FEW;
-    return second <= fmax((few ? NEARLY_OF_FEW : NEARLY) * nfa, nfa + (few ? APART_OF_FEW : APART));
+    return second <= fmax(ASJ_SURE_RIVAL, fmax((few ? NEARLY_OF_FEW : NEARLY) * nfa, nfa + (few ? APART_OF_FEW : APART)));
 }
 
 /* The one with most evidence in favour of which colours or pictures contradict number `best`; -1: none. */

@@ -74,9 +74,13 @@ asj_status asj_junction_list_add(asj_junction_list *list, const asj_junction *ju
 
     if (junction->scale < 0)
         return asj_line_fail(message, line, "a negative scale");
-    for (b = 0; b < junction->branch_count; b++)
+    for (b = 0; b < junction->branch_count; b++) {
         if (junction->branches[b].length < 0)
             return asj_line_fail(message, line, "a branch of negative length");
+        if (!(junction->branches[b].length <= 4 * (float)ASJ_MAX_SIDE)) /* what asj_match() takes */
+            return asj_line_fail(message, line, "a branch of %g px, longer than %d", (double)junction->branches[b].length,
+                                 4 * ASJ_MAX_SIDE);
+    }
     if (list->count >= ASJ_JUNCTIONS_MAX)
         return asj_message_fail(message, ASJ_ERROR_LIMIT, "more than %u junctions", ASJ_JUNCTIONS_MAX);
     status = make_room(list, message);

@@ -14,7 +14,7 @@ typedef enum asj_looks {
                             * images leave open, or have so much more evidence */
     ASJ_LOOKS_LOST,        /* the images leave open which motion it is, and the enlarged ones accept what tells none, or one that
                             * is upside down, or, where it is no matter of rivals, another one; or the images have no match, and
-                            * the enlarged ones too little evidence */
+                            * the enlarged ones too little evidence; or the images repeat themselves */
     ASJ_LOOKS_PLANE,       /* both accept a plane, which leaves its motion open: the enlarged images', without a pose */
     ASJ_LOOKS_DISPUTED     /* both accept a motion, not the same, and nothing decides: neither, and no match that either
                             * contradicts */

@@ -123,7 +123,7 @@ static void no_match_is_a_result(void **state)
     expect_code(result, 0);
     assert_string_equal(result->out, MATCH_HEADER);
     expect_in(result, result->err, "first.png, flat.png: 0 matches");
-    expect_in(result, result->err, "hint: flat.png has 0 corners only");
+    expect_in(result, result->err, "hint: flat.png has no corner that is surer than chance");
     result = run_cli("match", "--minimum-support", "60", "first.png", "second.png", NULL);
     expect_code(result, 0);
     expect_in(result, result->err, "0 matches");
@@ -454,6 +454,21 @@ static void what_the_geometry_is_is_told(void **state)
     assert_null(strstr(run_cli("match", "first.png", "second.png", NULL)->err, "geometry"));
 }
 
+/* A focal length that is none of these pixels is used as it is given, and doubted, also where doubling takes it out of range. */
+static void views_that_no_camera_has_are_doubted(void **state)
+{
+    static const char *const focal[] = {"5", "9.9e6", "300"};
+    (void)state;
+    for (size_t k = 0; k < sizeof focal / sizeof *focal; k++) {
+        const outcome *result = run_cli("match", "--geometry", "auto", "--focal", focal[k], "first.png", "second.png", NULL);
+        expect_code(result, 0);
+        assert_int_equal(strstr(result->err, "is it in pixels of this image?") != NULL, k < 2);
+        assert_null(strstr(result->err, "cannot be"));
+        result = run_cli("match", "-q", "--geometry", "auto", "--focal", focal[k], "first.png", "second.png", NULL);
+        expect_empty(result, "standard error", result->err);
+    }
+}
+
 #ifdef ASJ_IMAGES
 #define LENS ASJ_IMAGES "/lens.png" /* 30 px in its EXIF data */
 #define NO_LENS ASJ_IMAGES "/gray.png"
@@ -673,6 +688,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_stretch_goes_with_images_alone),
         cmocka_unit_test(features_take_the_place_of_images),
         cmocka_unit_test(what_the_geometry_is_is_told),
+        cmocka_unit_test(views_that_no_camera_has_are_doubted),
 #ifdef ASJ_IMAGES
         cmocka_unit_test(focal_lengths_come_from_exif),
 #endif

@@ -60,6 +60,7 @@ static const struct {
     {{"match", "--geometry", "affine", "first.png", "first.png"}, "--geometry: 'affine' is not auto"},
     {{"match", "--geometry", "essential", "first.png", "first.png"}, "--geometry essential needs --camera1 and --camera2"},
     {{"match", "--focal", "600", "first.png", "first.png"}, "a camera changes nothing without --geometry"},
+    {{"match", "-p", "x.png", "--plot-epipolar", "yes", "first.png", "first.png"}, "--plot-epipolar changes nothing without"},
     {{"match", "--geometry", "auto", "--focal", "0", "first.png", "first.png"}, "--focal: '0' is not a length"},
     {{"match", "--geometry", "homography", "--focal", "estimate", "first.png", "first.png"}, "changes nothing with this geometry"},
     {{"match", "--geometry", "auto", "--focal", "estimate", "--camera1", "600,600,320,240", "first.png", "first.png"},

@@ -201,6 +201,10 @@ static void a_plot_alone_prints_no_matches(void **state)
     expect_code(result, 1);
     expect_in(result, result->err, "asj-cli: nowhere/plot.png: cannot create: No such file or directory");
     assert_false(exists("before.csv")); /* asked before the work */
+    result = run_cli("match", "-o", ".", "--plot", "before.png", "first.png", "second.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: .: cannot create: Is a directory");
+    assert_false(exists("before.png"));
     result = run_cli("match", "-o", "", "--plot", "before.png", "first.png", "second.png", NULL);
     expect_code(result, 1);
     expect_in(result, result->err, "asj-cli: cannot create a file without a name");

@@ -544,6 +544,29 @@ static void what_turns_over_settles_nothing(void **state)
     asj_match_result_free(&finer);
 }
 
+/* Images with a rival that is no chance by itself repeat themselves: the enlarged ones do so, too, whatever they tell. */
+static void what_repeats_is_not_settled(void **state)
+{
+    static const int32_t models[] = {ASJ_GEOMETRY_ESSENTIAL, ASJ_GEOMETRY_FUNDAMENTAL, ASJ_GEOMETRY_HOMOGRAPHY};
+    asj_context *context = ((unit_fixture *)*state)->context;
+    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+    own->geometry = finer->geometry;
+    own->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
+    own->geometry.has_second = 1;
+    own->geometry.log10_nfa = -130;
+    finer->geometry.log10_nfa = -900;
+    for (size_t k = 0; k < UNIT_COUNT(models); k++) {
+        own->geometry.model = models[k];
+        own->geometry.second_log10_nfa = -99;
+        assert_int_not_equal(asj_looks_of(own, finer), ASJ_LOOKS_LOST);
+        own->geometry.second_log10_nfa = -101;
+        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_LOST);
+    }
+    assert_int_equal(asj_finer_choose(context, &own, &finer, 1), ASJ_OK);
+    assert_int_equal(own->geometry.status, ASJ_GEOMETRY_AMBIGUOUS);
+    asj_match_result_free(&own);
+}
+
 /* What tells no motion is no answer where the images leave open which motion it is. */
 static void a_plane_decides_no_motion(void **state)
 {
@@ -609,6 +632,7 @@ int main(void)
         cmocka_unit_test(rivals_are_confirmed),
         cmocka_unit_test(without_matches_much_evidence_counts),
         cmocka_unit_test(an_open_motion_is_found), cmocka_unit_test(what_turns_over_settles_nothing),
+        cmocka_unit_test(what_repeats_is_not_settled),
         cmocka_unit_test(a_plane_decides_no_motion),
         cmocka_unit_test(chance_stays_chance),
         cmocka_unit_test(what_a_geometry_adds_is_no_reason_against),
