@@ -24,8 +24,8 @@ enum {
     ASJ_GEOMETRY_ACCEPTED = 1,
     ASJ_GEOMETRY_CHANCE = 2,      /* none stands out from what chance brings */
     ASJ_GEOMETRY_TOO_FEW = 3,     /* fewer than two places with candidates in either image */
-    ASJ_GEOMETRY_AMBIGUOUS = 4,   /* another one with other matches explains almost as much: things that repeat; or the images and
-                                   * the enlarged images tell two motions (match.h) */
+    ASJ_GEOMETRY_AMBIGUOUS = 4,   /* another one with other matches explains almost as much, or has a log10 NFA below -100
+                                   * itself: things that repeat; or the images and the enlarged images tell two motions (match.h) */
     ASJ_GEOMETRY_DEGENERATE = 5   /* what matches leaves it open: a camera that only turns has no translation; or, with cameras that
                                    * are known, fewer than 15 matches that tell no pose */
 };

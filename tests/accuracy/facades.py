@@ -7,7 +7,7 @@
 Renders a wall of 30 x 18 windows, 100 x 110 px each, with stains between them (grey levels, standard deviation; 0: nothing tells
 one window from another), in 640 x 480 px from two cameras of focal length 600 px, four pairs of stands for each seed, blur .8 px,
 noise 2. The options of match default to --geometry auto --focal 600. Prints for each of the stains how many pairs are ambiguous or
-chance, and how many are accepted with most matches right (within 5 px) and wrong; exit code 1 when any is accepted wrong.
+chance, and how many are accepted with most probable matches right (within 5 px) and wrong; exit code 1 when any is accepted wrong.
 """
 
 import argparse
@@ -57,7 +57,8 @@ def judge(path, onto_second):
     found = json.loads(path.read_text())
     if found["geometry_status"] != "accepted":
         return found["geometry_status"]
-    places = np.array([[m["x1"], m["y1"], 1, m["x2"], m["y2"]] for m in found["matches"]]).reshape(-1, 5)
+    sure = [m for m in found["matches"] if m["probability"] > 0.5]
+    places = np.array([[m["x1"], m["y1"], 1, m["x2"], m["y2"]] for m in sure]).reshape(-1, 5)
     there = places[:, :3] @ onto_second.T
     far = np.hypot(*(there[:, :2] / there[:, 2:] - places[:, 3:]).T) > 5
     return "accepted wrong" if np.count_nonzero(far) > len(far) / 2 else "accepted right"

@@ -544,7 +544,7 @@ static void what_turns_over_settles_nothing(void **state)
     asj_match_result_free(&finer);
 }
 
-/* Images with a rival that is no chance by itself repeat themselves: the enlarged ones do so, too, whatever they tell. */
+/* Images with a rival that is no chance by itself repeat themselves: the enlarged ones must have twice as much evidence. */
 static void what_repeats_is_not_settled(void **state)
 {
     static const int32_t models[] = {ASJ_GEOMETRY_ESSENTIAL, ASJ_GEOMETRY_FUNDAMENTAL, ASJ_GEOMETRY_HOMOGRAPHY};
@@ -554,12 +554,15 @@ static void what_repeats_is_not_settled(void **state)
     own->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
     own->geometry.has_second = 1;
     own->geometry.log10_nfa = -130;
-    finer->geometry.log10_nfa = -900;
     for (size_t k = 0; k < UNIT_COUNT(models); k++) {
         own->geometry.model = models[k];
+        finer->geometry.log10_nfa = -255;
         own->geometry.second_log10_nfa = -99;
         assert_int_not_equal(asj_looks_of(own, finer), ASJ_LOOKS_LOST);
         own->geometry.second_log10_nfa = -101;
+        finer->geometry.log10_nfa = -265;
+        assert_int_not_equal(asj_looks_of(own, finer), ASJ_LOOKS_LOST);
+        finer->geometry.log10_nfa = -255;
         assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_LOST);
     }
     assert_int_equal(asj_finer_choose(context, &own, &finer, 1), ASJ_OK);
