@@ -286,9 +286,8 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
     if (result == CLI_SUCCESS && arguments->options.octaves == 1 && cli_settings_have(&arguments->settings, "half_octaves"))
         return cli_usage_error("detect", "--half-octaves changes nothing with one octave%s",
                                without_octaves ? ", and an .asj file of --preset match has one: write json" : "");
-    if (result == CLI_SUCCESS && arguments->options.refinement == ASJ_REFINE_SEARCH &&
-        arguments->options.complete_junctions)
-        return cli_usage_error("detect", "--complete-junctions changes nothing with --refinement search, nor with --preset paper");
+    if (result == CLI_SUCCESS)
+        result = cli_check_detector("detect", &arguments->options);
     return result == CLI_SUCCESS ? check(arguments) : result;
 }
 

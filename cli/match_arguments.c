@@ -303,9 +303,8 @@ static int apply_settings(cli_match_arguments *arguments)
     int result = cli_settings_apply(&arguments->detect_settings, "match", quiet, &arguments->detect_options, set_detect_option);
     if (result == CLI_SUCCESS)
         result = cli_settings_apply(&arguments->match_settings, "match", quiet, &arguments->options, set_match_option);
-    if (result == CLI_SUCCESS && arguments->detect_options.refinement == ASJ_REFINE_SEARCH &&
-        arguments->detect_options.complete_junctions)
-        return cli_usage_error("match", "--complete-junctions changes nothing with --refinement search, nor with --preset paper");
+    if (result == CLI_SUCCESS)
+        result = cli_check_detector("match", &arguments->detect_options);
     return result == CLI_SUCCESS ? check_enlarging(arguments) : result;
 }
 

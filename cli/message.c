@@ -9,13 +9,17 @@
 #include <string.h>
 
 /* File names may hold newlines and terminal controls: a message stays one line, and harmless. */
+static char harmless(char c)
+{
+    return (unsigned char)c < 0x20 || c == 0x7f ? '?' : c;
+}
+
 static void print_line(const char *prefix, const char *format, va_list arguments)
 {
     char line[4096];
     vsnprintf(line, sizeof line, format, arguments);
     for (char *c = line; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?';
+        *c = harmless(*c);
     fprintf(stderr, "%s%s\n", prefix, line);
 }
 
@@ -27,9 +31,17 @@ void cli_error(const char *format, ...)
     va_end(arguments);
 }
 
+/* Whether the message begins with the path, which the library has made harmless perhaps. */
+static int tells(const char *message, const char *path)
+{
+    for (; *path && (*message == *path || *message == harmless(*path)); path++)
+        message++;
+    return *path == 0;
+}
+
 void cli_file_error(const char *path, const char *message)
 {
-    if (strncmp(path, message, strlen(path)) == 0)
+    if (tells(message, path))
         cli_error("%s", message);
     else
         cli_error("%s: %s", path, message);

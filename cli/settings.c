@@ -62,3 +62,16 @@ int cli_settings_apply(const cli_settings *settings, const char *command, int qu
     }
     return CLI_SUCCESS;
 }
+
+int cli_check_detector(const char *command, const asj_detect_options *options)
+{
+    int32_t radii = 0;
+    for (uint32_t left = options->isotropic_radii; left; left &= left - 1)
+        radii++;
+    if (options->isotropic_persistence > radii)
+        return cli_usage_error(command, "--isotropic-persistence %d finds nothing with %d --isotropic-radii",
+                               (int)options->isotropic_persistence, (int)radii);
+    if (options->refinement == ASJ_REFINE_SEARCH && options->complete_junctions)
+        return cli_usage_error(command, "--complete-junctions changes nothing with --refinement search, nor with --preset paper");
+    return CLI_SUCCESS;
+}

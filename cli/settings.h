@@ -25,6 +25,9 @@ int cli_settings_take(void *settings, const char *key, const char *text);
 /* Is this option among them? */
 int cli_settings_have(const cli_settings *settings, const char *key);
 
+/* Options of the detector that contradict each other: CLI_SUCCESS, or CLI_USAGE after saying which. */
+int cli_check_detector(const char *command, const asj_detect_options *options);
+
 /* "default", "paper" or "match" as ASJ_PRESET_...; CLI_SUCCESS, or CLI_USAGE after saying why, with the name of the option. */
 int cli_take_preset(const char *command, const char *option, const char *text, int32_t *preset);
 

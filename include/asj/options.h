@@ -49,8 +49,9 @@ typedef struct asj_detect_options {
     /* octaves: the whole detector on the image, on its half, on its quarter, .. */
     int32_t octaves;              /* how many at most, from first_octave on, as long as 48 px of either side are left. 1 .. 16;
                                    * default 16; paper 1; match 4 */
-    int32_t first_octave;         /* 0 = the image itself, 1 = its half, ..: large photographs may begin there; -1 = the image
-                                   * enlarged twice, which finds corners with branches of few pixels. -1 .. 15; 0 */
+    int32_t first_octave;         /* 0 = the image itself, 1 = its half, ..: large photographs may begin there, smaller ones with
+                                   * the last octave that they have; -1 = the image enlarged twice, which finds corners with
+                                   * branches of few pixels. -1 .. 15; 0 */
     /* step 1: normalised gradient */
     double gradient_epsilon;      /* grey levels (0..255) per pixel added to the local mean of the gradient norm; what is much
                                    * weaker than this is flat. 0.05 .. 16; default 0.4; paper 0.05 */
@@ -71,7 +72,8 @@ typedef struct asj_detect_options {
     int32_t seed_radius;          /* px around such a place, and around the ends of such segments. 0 .. 10; 3 */
     /* step 3: isotropic junctions */
     uint32_t isotropic_radii;     /* bit r set = radius r is tested, 3 .. 30; 7,14; paper 3-10 */
-    int32_t isotropic_persistence; /* radii of these, one after the other, at which a junction is meaningful. 1 .. 8; 1; paper 3 */
+    int32_t isotropic_persistence; /* radii of these, one after the other, at which a junction is meaningful; where there are fewer
+                                   * radii none is. 1 .. 8; 1; paper 3 */
     int32_t disjoint_sectors;     /* 1 = the sectors of a junction do not overlap: its branches are 2 Delta apart, not Delta.
                                    * 0; paper 1 */
     int32_t max_branches;         /* branches tested together. 2 .. 5; 5 */

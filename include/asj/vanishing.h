@@ -58,6 +58,7 @@ typedef struct asj_vanishing_points {
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction whose location, angles, their deviations or lengths are not finite, or with more
  *                      than ASJ_MAX_BRANCHES branches
+ * ASJ_ERROR_LIMIT      more than 2^28 junctions
  * ASJ_ERROR_OPTION     an option outside its range, or a camera that cannot be (asj_geometry_estimate())
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_find_vanishing_points(asj_context *context, const asj_junction *junctions, size_t count,

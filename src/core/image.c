@@ -49,6 +49,9 @@ asj_status asj_image_check(asj_context *context, const asj_image *image)
     if (image->stride != 0 && image->stride < row && image->stride > -row)
         return asj_fail(context, ASJ_ERROR_IMAGE, "stride %lld is shorter than a row of %d %s pixels (%lld bytes)",
                         (long long)image->stride, (int)image->width, format->name, (long long)row);
+    if (image->stride > PTRDIFF_MAX / image->height || image->stride < -(PTRDIFF_MAX / image->height))
+        return asj_fail(context, ASJ_ERROR_IMAGE, "%d rows with a stride of %lld are more than memory", (int)image->height,
+                        (long long)image->stride);
     if (!(image->white >= 0) || isinf(image->white))
         return asj_fail(context, ASJ_ERROR_IMAGE, "white level %g is not a level", (double)image->white);
     return ASJ_OK;

@@ -26,7 +26,7 @@ static const asj_option_info rows[] = {
     INTEGER(OCTAVES, COMMON, octaves, "", 1, 16, 16, 1, 4,
             "how often the image is looked at, each time at half the size, as far as it allows; more finds softer corners"),
     INTEGER(OCTAVES, COMMON, first_octave, "", -1, 15, 0, 0, 0,
-            "sizes left out: 1 = begin at half the image's size; -1 = begin at twice it"),
+            "sizes left out: 1 = begin at half the image's size, or at the last one it has; -1 = begin at twice it"),
     SWITCH(OCTAVES, COMMON, half_octaves, 0, 0, 0,
            "look half-way between two octaves, too: finds weak and soft corners more surely, for half as much time again"),
     SWITCH(OCTAVES, ADVANCED, octave_union, 0, 0, 1,

@@ -52,6 +52,8 @@ asj_status asj_region_check(asj_context *context, const asj_image *image, const 
     if (mask->width != image->width || mask->height != image->height)
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "a mask of %d x %d pixels for an image of %d x %d", (int)mask->width,
                         (int)mask->height, (int)image->width, (int)image->height);
+    if (!mask->data)
+        return asj_fail(context, ASJ_ERROR_IMAGE, "the mask has no data");
     asj_image levels = *mask;
     levels.white = 0; /* as the format has it */
     return asj_image_check(context, &levels);

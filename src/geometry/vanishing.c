@@ -10,6 +10,7 @@
 #include "vanishing_vote.h"
 
 #include "core/angle.h"
+#include "core/most_junctions.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -235,6 +236,8 @@ static asj_status check(asj_context *context, const asj_junction *junctions, siz
         return asj_fail(context, ASJ_ERROR_OPTION, "epsilon %g is not 1e-12 .. 1", o->epsilon);
     if (!(fabs(c->cx) <= 1e7 && fabs(c->cy) <= 1e7) || (!none && !(c->fx >= 1 && c->fx <= 1e7 && c->fy >= 1 && c->fy <= 1e7)))
         return asj_fail(context, ASJ_ERROR_OPTION, "the camera cannot be: fx %g, fy %g, cx %g, cy %g", c->fx, c->fy, c->cx, c->cy);
+    if (count > ASJ_MOST_JUNCTIONS)
+        return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions are too many", count);
     for (size_t k = 0; k < count; k++) {
         const asj_junction *j = &junctions[k];
         double sum = (double)j->x + (double)j->y;

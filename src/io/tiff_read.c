@@ -272,8 +272,9 @@ static asj_status decode_by_libtiff(tiff_reader *reader, uint64_t max_pixels, as
     if (status != ASJ_OK)
         return status;
     if (reader->bits > 8 || !TIFFRGBAImageOK(reader->tiff, cause) || !TIFFRGBAImageBegin(&rgba, reader->tiff, 1, cause))
-        return asj_message_fail(message, ASJ_ERROR_UNSUPPORTED, "a TIFF of %u samples of %u bits is not read%s%.160s",
-                                (unsigned)reader->samples, (unsigned)reader->bits, cause[0] ? ": " : "", cause);
+        return asj_message_fail(message, ASJ_ERROR_UNSUPPORTED, "a TIFF of %u%s samples of %u bits is not read%s%.160s",
+                                (unsigned)reader->samples, reader->format == SAMPLEFORMAT_INT ? " signed" : "",
+                                (unsigned)reader->bits, cause[0] ? ": " : "", cause);
     rgba.req_orientation = rgba.orientation; /* as stored: the caller turns it upright */
     pixels = malloc(count * sizeof *pixels);
     good = pixels && TIFFRGBAImageGet(&rgba, pixels, reader->width, reader->height);

@@ -6,6 +6,7 @@
 #include "kept_features.h"
 #include "core/backend.h"
 #include "core/image.h"
+#include "core/most_junctions.h"
 #include "describe.h"
 #include "finer.h"
 #include "match_options.h"
@@ -110,8 +111,6 @@ asj_status asj_features_keep(asj_context *context, const asj_match_options *opti
     asj_features start = {.options = *options, .junction_count = (uint32_t)count, .finer = made->gray != NULL, .gray = made->gray,
                           .enlarged = made->enlarged, .of_image = made->own};
     const size_t l_count = start.finer ? made->enlarged.l_junctions.count : 0;
-    if (count > UINT32_MAX)
-        return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions are more than features take", count);
     start.of_image.device_copy = start.enlarged.device_copy = 0;
     start.of_image.pyramid.ops = start.enlarged.pyramid.ops = NULL;
     memcpy(&start.junctions, &junctions, sizeof junctions);
@@ -196,6 +195,8 @@ asj_status asj_features_create(asj_context *context, const asj_image *image, con
         return ASJ_ERROR_ARGUMENT;
     if (!image || !features || (!junctions && count > 0))
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "the image, the junctions or the result is NULL");
+    if (count > ASJ_MOST_JUNCTIONS)
+        return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions are too many", count);
     if (!options) {
         asj_match_options_init(&defaults);
         options = &defaults;

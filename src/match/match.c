@@ -33,6 +33,7 @@
 #include "assign.h"
 #include "consensus.h"
 #include "core/backend.h"
+#include "core/most_junctions.h"
 #include "epipolar.h"
 #include "expected.h"
 #include "final_pose.h"
@@ -313,6 +314,9 @@ static asj_status match_junctions(asj_context *context, const source sources[2],
     for (int32_t n = 0; n < 2; n++)
         if (!sources[n].image || (!sources[n].junctions && sources[n].count > 0) || !result)
             return asj_fail(context, ASJ_ERROR_ARGUMENT, "an image, the junctions or the result is NULL");
+    for (int32_t n = 0; n < 2; n++)
+        if (sources[n].count > ASJ_MOST_JUNCTIONS)
+            return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions of image %d are too many", sources[n].count, (int)n + 1);
     const asj_finer_match match = {match_sources,
                                    sources,
                                    {sources[0].junctions, sources[1].junctions},

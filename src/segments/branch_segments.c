@@ -9,6 +9,7 @@
 #include "one_edge.h"
 #include "segment_cells.h"
 #include "core/context.h"
+#include "core/most_junctions.h"
 #include "core/watch.h"
 
 #include <asj/segments.h>
@@ -17,7 +18,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_JUNCTIONS 268435456u
 
 /* What stands behind the public struct. */
 typedef struct own_list {
@@ -333,7 +333,7 @@ asj_status asj_find_segments(asj_context *context, const asj_junction *junctions
     context->progress = 0; /* a call of its own */
     if (!list || (!junctions && count > 0) || (!edges && edge_count > 0))
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "the junctions, the edges or the list is NULL");
-    if (count > MOST_JUNCTIONS || edge_count >= UINT32_MAX)
+    if (count > ASJ_MOST_JUNCTIONS || edge_count >= UINT32_MAX)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions or %zu edges are too many", count, edge_count);
     own_list *made = NULL;
     work w = {.context = context, .junctions = junctions, .edges = edges, .junction_count = count, .edge_count = edge_count};

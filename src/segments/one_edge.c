@@ -71,6 +71,8 @@ static int32_t is_end_of_both(const asj_junction *junctions, const asj_segment *
 {
     const double beyond = excess(c, end, far), most = fmax(c->same_end, fmin(OVERSHOOT, OVERSHOOT_SHARE * c->length));
     const int32_t has = junction_at(longer, end) != ASJ_NO_JUNCTION, has_other = junction_at(shorter, far) != ASJ_NO_JUNCTION;
+    if (has && beyond < -ASJ_SAME_END && !turns_at(junctions, longer, end))
+        return 1;
     if (beyond < -c->same_end)
         return has_other || beyond < -most || !turns_at(junctions, longer, end);
     if (has || !has_other)

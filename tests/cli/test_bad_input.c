@@ -41,6 +41,7 @@ static int make_files(void **state)
     assert_int_equal(mkdir("folder.png", 0777), 0);
     write_bytes("empty.png", "", 0);
     write_bytes("text.png", "This is not an image.\n", 22);
+    write_bytes("two\nlines.png", "This is not an image.\n", 22);
     write_part("truncated.png", "good.png", good_size / 2);
     write_part("header.png", "good.png", 20);
     write_part("unended.png", "good.png", good_size - 12);
@@ -72,6 +73,16 @@ static void each_bad_file_has_one_line(void **state)
         if (exists("never.asj"))
             fail_msg("%s: a result was written", bad[i]);
     }
+}
+
+/* Nor is its name told twice where it cannot be told as it is. */
+static void a_name_with_a_newline_is_told_once(void **state)
+{
+    (void)state;
+    const outcome *result = run_cli("detect", "-o", "never.asj", "two\nlines.png", NULL);
+    expect_code(result, 1);
+    if (strncmp(result->err, "asj-cli: two?lines.png: not an image", 36) != 0)
+        fail_msg("not so: %s", result->err);
 }
 
 static void bad_files_do_not_stop_the_others(void **state)
@@ -235,7 +246,7 @@ static void an_opencl_device_that_is_not_there_is_an_error(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_bad_file_has_one_line),
+        cmocka_unit_test(each_bad_file_has_one_line), cmocka_unit_test(a_name_with_a_newline_is_told_once),
         cmocka_unit_test(bad_files_do_not_stop_the_others),
         cmocka_unit_test(a_failure_keeps_the_old_result),
         cmocka_unit_test(an_unreadable_file_is_named),

@@ -134,6 +134,7 @@ static const struct {
     {{"detect", "-f", "asj", "-o", "./scene.png", "scene.png"}, "scene.png: is an input file"},
     {{"detect", "-"}, "standard input"},
     {{"detect", "--region", "1,2,3", "scene.png"}, "--region: '1,2,3'"},
+    {{"detect", "--isotropic-radii", "7", "--isotropic-persistence", "2", "scene.png"}, "finds nothing with 1 --isotropic-radii"},
     {{"detect", "--region", "1,2,3,0", "scene.png"}, "--region: '1,2,3,0' has no pixel"},
     {{"detect", "--region", "1,2,-3,4", "scene.png"}, "--region: '1,2,-3,4'"},
     {{"detect", "--region", "1,2,3,4,", "scene.png"}, "--region: '1,2,3,4,'"},

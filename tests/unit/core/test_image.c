@@ -248,8 +248,12 @@ static void test_short_strides(void **state)
         expect(*state, &image, ASJ_OK, "");
         image.stride = 1 - image.stride;
         expect(*state, &image, ASJ_ERROR_IMAGE, "stride");
-        image.stride = PTRDIFF_MIN;
-        assert_int_equal(asj_image_check(((fixture *)*state)->context, &image), ASJ_OK); /* nobody has so much memory */
+        image.stride = PTRDIFF_MIN; /* nobody has so much memory */
+        expect(*state, &image, ASJ_ERROR_IMAGE, "stride");
+        image.stride = PTRDIFF_MAX / 2;
+        expect(*state, &image, ASJ_ERROR_IMAGE, "stride");
+        image.stride = PTRDIFF_MAX / 3;
+        assert_int_equal(asj_image_check(((fixture *)*state)->context, &image), ASJ_OK);
         image.stride = 1;
         expect(*state, &image, ASJ_ERROR_IMAGE, "stride");
     }

@@ -231,6 +231,7 @@ static void test_refused(void **state)
     mask = f->mask_image;
     mask.data = NULL;
     assert_int_equal(asj_detect_region(f->context, &f->image, &(asj_region){.mask = &mask}, NULL, &found), ASJ_ERROR_IMAGE);
+    assert_non_null(strstr(asj_context_message(f->context), "the mask has no data"));
     assert_int_equal(asj_detect_region(NULL, &f->image, NULL, NULL, &found), ASJ_ERROR_ARGUMENT);
 }
 

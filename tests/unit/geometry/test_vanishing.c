@@ -166,6 +166,7 @@ static void bad_input_is_refused(void **state)
     assert_int_equal(asj_find_vanishing_points(NULL, &one, 1, &options, &found), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_find_vanishing_points(context, NULL, 1, &options, &found), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_find_vanishing_points(context, &one, 1, NULL, &found), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(asj_find_vanishing_points(context, &one, SIZE_MAX / sizeof one, &options, &found), ASJ_ERROR_LIMIT);
     assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, NULL), ASJ_ERROR_ARGUMENT);
     one.branches[1].angle = NAN;
     assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_ARGUMENT);

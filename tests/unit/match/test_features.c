@@ -235,6 +235,8 @@ static void other_options_are_refused(void **state)
     asj_features_free(NULL);
     assert_int_equal(asj_features_create(context, NULL, NULL, 0, NULL, &raw), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_features_create(context, &views[0].image, NULL, 1, NULL, &raw), ASJ_ERROR_ARGUMENT);
+    const asj_junction one = {.branch_count = 2};
+    assert_int_equal(asj_features_create(context, &views[0].image, &one, SIZE_MAX / sizeof one, NULL, &raw), ASJ_ERROR_LIMIT);
     assert_int_equal(asj_features_create(context, &views[0].image, NULL, 0, NULL, NULL), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_features_load(context, NULL, 0, &raw), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_features_save(NULL, NULL, 0), 0);

@@ -389,6 +389,9 @@ static void bad_input_is_refused(void **state)
     scene_make(identity, 1, &a);
     scene_make(oblique, 1, &b);
     scene broken = b;
+    broken.count = SIZE_MAX / sizeof *broken.junctions;
+    refuse(context, &a, &broken, NULL, ASJ_ERROR_LIMIT, "of image 2 are too many"); /* before any is read */
+    broken.count = b.count;
     broken.junctions[3].x = NAN;
     refuse(context, &a, &broken, NULL, ASJ_ERROR_ARGUMENT, "junction 3 of image 2");
     broken = b;

@@ -174,6 +174,26 @@ static void a_long_edge_keeps_its_ends(void **state)
     asj_segment_list_free(&list);
 }
 
+/* A corner near the end of an edge that passes it does not cut the edge, whichever of its branches is looked at first. */
+static void a_corner_near_an_end_is_passed(void **state)
+{
+    unit_fixture *f = *state;
+    for (float gap = 5; gap < 20; gap += 1)
+        for (uint32_t near = 0; near < 2; near++) {
+            asj_junction *passed = place(near, gap, 10), *other = place(1 - near, 200, 10);
+            for (uint32_t k = 0; k < 2; k++) {
+                add_branch(k ? other : passed, 0, k ? 100 : 300 - gap, ASJ_BRANCH_END_FADED);
+                add_branch(k ? other : passed, UNIT_PI, k ? 200 : gap, ASJ_BRANCH_END_FADED);
+            }
+            asj_segment_list *list = find(f->context, 2);
+            const asj_segment *s = &list->segments[0];
+            assert_int_equal(list->count, 1);
+            assert_true(fabsf(fminf(s->x1, s->x2)) < 1e-4f && fmaxf(s->x1, s->x2) == 300);
+            assert_int_equal(s->branch_count, 4);
+            asj_segment_list_free(&list);
+        }
+}
+
 /* Each overlaps the next by a fifth of its length. */
 static void a_chain_is_one_edge(void **state)
 {
@@ -454,6 +474,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(parts_that_overlap_reach_from_first_to_last, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(a_corner_beside_an_end_is_the_end, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(a_corner_that_turns_is_the_end, unit_set_up, unit_tear_down),
+        cmocka_unit_test_setup_teardown(a_corner_near_an_end_is_passed, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(a_long_edge_keeps_its_ends, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(a_chain_is_one_edge, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(what_only_is_near_stays, unit_set_up, unit_tear_down),
