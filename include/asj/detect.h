@@ -37,8 +37,8 @@ typedef struct asj_detection {
  * Constant images, images of noise and images smaller than any sector are valid and give no junctions. The same image and options
  * give the same result with any number of threads and on every back end.
  * Time: in proportion to the pixels, to the candidates, and to the length of all rays together: a chessboard of 5 px over a
- * megapixel, where those of 39 600 junctions are followed over half of the image, takes 16 s. The caller is asked every 50 ms whether to go
- * on.
+ * megapixel, where those of 39 600 junctions are followed over half of the image, takes 16 s. The caller is asked every 50 ms
+ * whether to go on.
  * Memory: about 7 bytes per pixel of the image, whatever the first octave, but 28 with first_octave -1; 2 more with
  * half_octaves, 10 more with seeds from line segments (preset `paper`); plus 7 MB, more where there is much to find
  * (tests/benchmark/README.md).
