@@ -128,6 +128,48 @@ static int goes_on(const asj_l_junctions *all, uint32_t l, const double *u)
 }
 
 /* Twenty L-junctions share one location, six each of a dozen others; a third of the junctions has hardly any company. */
+/* A lattice of side^2 crossings, 15 px apart, each branch over a dozen others: frames of all lengths, or of the own ones alone. */
+static uint32_t frames_of_lattice(asj_context *context, const asj_match_options *options, int32_t side, uint32_t *l_count)
+{
+    const size_t count = (size_t)side * (size_t)side;
+    asj_junction *lattice = calloc(count, sizeof *lattice);
+    asj_l_junctions all;
+    assert_non_null(lattice);
+    for (size_t k = 0; k < count; k++) {
+        lattice[k].x = 15 * (float)(k % (size_t)side);
+        lattice[k].y = 15 * (float)(k / (size_t)side);
+        lattice[k].branch_count = 4;
+        for (int32_t b = 0; b < 4; b++)
+            lattice[k].branches[b] = (asj_branch){.angle = (float)(b * UNIT_PI / 2), .length = 200};
+    }
+    const asj_image_junctions input = {lattice, count, 15 * side, 15 * side, 1, 0};
+    assert_int_equal(asj_l_junctions_create(context, options, &input, &all), ASJ_OK);
+    const uint32_t frames = all.frame_count;
+    *l_count = all.count;
+    for (uint32_t k = 0; k < 2 * all.count && frames == all.count; k++)
+        assert_true(all.lengths[k].count == 1 && all.lengths[k].length[0] == 200);
+    asj_l_junctions_free(&context->memory, &all);
+    free(lattice);
+    return frames;
+}
+
+static void what_repeats_has_its_own_lengths_alone(void **state)
+{
+    (void)state;
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_match_options options;
+    uint32_t l_count;
+    asj_match_options_init(&options);
+    uint32_t frames = frames_of_lattice(context, &options, 42, &l_count);
+    assert_int_equal(l_count, 4 * 42 * 42);
+    assert_in_range(frames, 8 * l_count, 0x10000);
+    frames = frames_of_lattice(context, &options, 48, &l_count);
+    assert_int_equal(l_count, 4 * 48 * 48);
+    assert_int_equal(frames, l_count); /* 8 times as many they would be */
+    unit_context_free(&counter, &context);
+}
+
 static void t_junctions_have_one_branch_that_goes_on(void **state)
 {
     (void)state;
@@ -208,6 +250,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(neighbours_are_the_nearest),
         cmocka_unit_test(lengths_are_those_of_junctions_on_the_branch),
+        cmocka_unit_test(what_repeats_has_its_own_lengths_alone),
         cmocka_unit_test(t_junctions_have_one_branch_that_goes_on),
         cmocka_unit_test(guests_change_nothing),
     };
