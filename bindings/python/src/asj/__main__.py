@@ -27,7 +27,7 @@ def _parser() -> argparse.ArgumentParser:
     which = collect.add_mutually_exclusive_group()
     which.add_argument("--all-pairs", action="store_true", help="every pair of images (default)")
     which.add_argument("--sequential", type=int, metavar="N", help="each image with the N images after it, by name")
-    which.add_argument("--pairs", type=Path, metavar="FILE", help="pairs from a file: two names a line")
+    which.add_argument("--pairs", type=Path, metavar="FILE", help="pairs from a file: two names a line, with blanks in double quotes")
     outputs = collect.add_argument_group("outputs, at least one")
     outputs.add_argument("--colmap", type=Path, metavar="FILE.db", help="COLMAP database (needs pycolmap)")
     outputs.add_argument("--hdf5", type=Path, metavar="FOLDER", help="features.h5 and matches.h5 as hloc reads them (needs h5py)")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -51,13 +52,28 @@ def sequential_pairs(names: list[str], reach: int) -> list[tuple[str, str]]:
     return [(name, other) for i, name in enumerate(names) for other in names[i + 1 : i + 1 + reach]]
 
 
+def _words(line: str) -> list[str]:
+    """Words of a line, also with blanks between double quotes; # begins a comment.
+
+    >>> _words('"a b.png" c.png # both')
+    ['a b.png', 'c.png']
+    """
+    lexer = shlex.shlex(line, posix=True)
+    lexer.whitespace_split, lexer.commenters, lexer.quotes, lexer.escape = True, "#", '"', ""
+    return list(lexer)
+
+
 def read_pairs(path: Path, names: Iterable[str]) -> list[tuple[str, str]]:
-    """Pairs from a text file, two names a line; # begins a comment. Pairs that come twice, or turned round, stay once."""
+    """Pairs from a text file, two names a line, those with blanks in double quotes; # begins a comment. Pairs that come twice, or
+    turned round, stay once."""
     known = set(names)
     seen: set[frozenset[str]] = set()
     pairs = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
-        words = line.split("#")[0].split()
+        try:
+            words = _words(line)
+        except ValueError:
+            raise ValueError(f"{path}, line {number}: a quote that does not end") from None
         if not words:
             continue
         if len(words) != 2:
