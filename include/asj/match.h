@@ -197,7 +197,7 @@ typedef struct asj_match_result {
  *                      count, an octave that is not -1 .. 15, an angle beyond +-10^6, a length that is not 0 .. 4 ASJ_MAX_SIDE,
  *                      or an end of no known kind
  * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED, ASJ_ERROR_DEVICE   as asj_detect()
- * ASJ_ERROR_LIMIT      also with more than 2^24 L-junctions */
+ * ASJ_ERROR_LIMIT      also with more than 2^24 L-junctions; of octave -1 alone they are left out instead */
 ASJ_API asj_status asj_match(asj_context *context,
                              const asj_image *image1, const asj_junction *junctions1, size_t count1,
                              const asj_image *image2, const asj_junction *junctions2, size_t count2,
@@ -232,7 +232,8 @@ typedef struct asj_stretch {
  *                    tells no pose, also stretched by 1, 3 and by 3, 1, unless rivals or a motion that stays open
  *                    (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the answer. What comes of that counts from 16 matches on, and when
  *                    it is twice as many; then it is looked at with octave -1, too, as above.
- *                  A pair that has nothing in common takes about twice as long as without all that (tests/accuracy/README.md)
+ *                  A pair that has nothing in common takes about twice as long as without all that (tests/accuracy/README.md).
+ *                  Where one of these looks shows more L-junctions than the matcher takes, the answer without it stays
  * detect_options   NULL = preset `match`
  * options          NULL = preset `default`; cameras are those of the images as they are
  *
