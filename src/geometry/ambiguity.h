@@ -6,7 +6,7 @@
 #include "estimation.h"
 
 /* log10 NFA of a rival that makes any geometry ambiguous: chance does not bring so much, but what repeats does. (Facades of equal
- * windows that are accepted shifted by a window, with up to 2.2 times the log evidence of a rival that has -160 to -350; of 1083
+ * windows that are accepted shifted by a window, with up to 2.2 times the log evidence of a rival that has -190 to -350; of 1083
  * pairs of rooms none is accepted beside one of -66 or less.) */
 #define ASJ_SURE_RIVAL (-100)
 

@@ -5,8 +5,8 @@
  * guided pass brings new candidates, those known before are only compared with the new ones.
  *
  * In a fine pattern that repeats everything agrees with everything near: memory for MOST_SUPPORTERS is shared out equally among the
- * candidates, and each keeps those at its nearest neighbours. (Two views of a grid with lines 16 px apart: 100 of some thousands;
- * of sixteen pairs of photographs no candidate loses one.) */
+ * candidates, and each keeps those at its nearest neighbours. (Two views of a grid with lines 16 px apart: 71 000 of 129 000 have
+ * their whole share of 129; of the pair of photographs with most candidates 277 of 70 000 have theirs, of 240.) */
 #include "support.h"
 #include "support_gate.h"
 #include "core/watch.h"

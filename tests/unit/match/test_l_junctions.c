@@ -127,7 +127,6 @@ static int goes_on(const asj_l_junctions *all, uint32_t l, const double *u)
     return 0;
 }
 
-/* Twenty L-junctions share one location, six each of a dozen others; a third of the junctions has hardly any company. */
 /* A lattice of side^2 crossings, 15 px apart, each branch over a dozen others: frames of all lengths, or of the own ones alone. */
 static uint32_t frames_of_lattice(asj_context *context, const asj_match_options *options, int32_t side, uint32_t *l_count)
 {
@@ -170,6 +169,7 @@ static void what_repeats_has_its_own_lengths_alone(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Twenty L-junctions share one location, six each of a dozen others; a third of the junctions has hardly any company. */
 static void t_junctions_have_one_branch_that_goes_on(void **state)
 {
     (void)state;
