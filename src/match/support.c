@@ -4,9 +4,9 @@
  * Of millions of pairs a few in a hundred may agree (support_gate.c), fewer do (agreement.c), and only these are stored. When the
  * guided pass brings new candidates, those known before are only compared with the new ones.
  *
- * In a fine pattern that repeats everything agrees with everything near: memory for MOST_SUPPORTERS is shared out equally among the
- * candidates, and each keeps those at its nearest neighbours. (Two views of a grid with lines 16 px apart: 71 000 of 129 000 have
- * their whole share of 129; of the pair of photographs with most candidates 277 of 70 000 have theirs, of 240.) */
+ * In a fine pattern that repeats everything agrees with everything near. Where all are more than MOST_SUPPORTERS, these are shared
+ * out equally among the candidates, and each keeps those at its nearest neighbours. (Two views of a grid with lines 16 px apart:
+ * 71 000 of 129 000 have their whole share of 129.) */
 #include "support.h"
 #include "support_gate.h"
 #include "core/watch.h"
@@ -99,7 +99,8 @@ typedef struct search {
     const asj_l_junctions *asked, *others; /* of the image whose neighbour locations are asked, and of the other one */
     uint32_t before;           /* candidates that were known before have such a number at most, */
     const asj_supporters *old; /* and these supporters among each other */
-    uint32_t most;             /* supporters of a candidate */
+    size_t room;               /* for the supporters of all candidates */
+    uint32_t share;            /* of a candidate, where all are more: UINT32_MAX until that is known */
     pool all, fresh;
 } search;
 
@@ -174,11 +175,11 @@ static uint32_t find_supporters(const search *in, const asj_candidate *c, asj_su
     const asj_supporter *end = known ? old + in->old->count[c->number - 1] : NULL;
     subject self = subject_of(in, c);
     uint32_t count = 0;
-    for (uint32_t n = 0; n < in->asked->neighbour_count[location] && count < in->most; n++) {
-        while (old < end && old->neighbour == n && count < in->most)
+    for (uint32_t n = 0; n < in->asked->neighbour_count[location] && count < in->share; n++) {
+        while (old < end && old->neighbour == n && count < in->share)
             list[count++] = *old++;
         if (s->index.start[neighbour[n]] < s->index.start[neighbour[n] + 1])
-            count += supporters_at(in, s, &self, neighbour[n], n, list + count, in->most - count);
+            count += supporters_at(in, s, &self, neighbour[n], n, list + count, in->share - count);
     }
     return count;
 }
@@ -203,7 +204,7 @@ static void find_limits(const search *in, block *b)
         b->limits[p] = 0;
         for (uint32_t n = 0; n < asked->neighbour_count[p]; n++)
             b->limits[p] += in->all.index.start[neighbour[n] + 1] - in->all.index.start[neighbour[n]];
-        b->limits[p] = b->limits[p] < in->most ? b->limits[p] : in->most;
+        b->limits[p] = b->limits[p] < in->share ? b->limits[p] : in->share;
         b->capacity = b->limits[p] > b->capacity ? b->limits[p] : b->capacity;
     }
 }
@@ -222,13 +223,15 @@ static size_t take_block(const search *in, size_t first, block *b)
     return end;
 }
 
-/* Appends the supporters of candidates first .. end - 1. */
+/* Appends the supporters of candidates first .. end - 1. ASJ_ERROR_LIMIT: there is no room, and nobody has a share yet. */
 static asj_status keep(const search *in, size_t first, size_t end, block *b, asj_supporters *found)
 {
     const asj_candidate *list = in->run->candidates.list;
     size_t total = b->used + 1; /* never NULL */
     for (size_t k = first; k < end; k++)
         total += found->count[list[k].number - 1];
+    if (total > in->room && in->share == UINT32_MAX)
+        return ASJ_ERROR_LIMIT;
     void *memory = found->list;
     const asj_status status = asj_grow(&in->run->context->memory, &memory, &b->kept, total, sizeof *found->list, b->used);
     found->list = memory;
@@ -263,6 +266,8 @@ static void find_some(const void *data, const asj_part *part)
 static asj_status find_all(const search *in, block *b, asj_supporters *found)
 {
     find_limits(in, b);
+    b->used = 0;
+    asj_release(&in->run->context->memory, b->list);
     b->list = asj_allocate(&in->run->context->memory, b->capacity, sizeof *b->list);
     if (!b->list)
         return asj_fail(in->run->context, ASJ_ERROR_MEMORY, "no memory for %zu pairs of candidates", b->capacity);
@@ -297,6 +302,10 @@ static asj_status one_side(search *in, asj_supporters *found)
         status = pool_create(run, in->side, in->before + 1, &in->fresh);
     if (status == ASJ_OK)
         status = find_all(in, &b, found);
+    if (status == ASJ_ERROR_LIMIT) {
+        in->share = in->room > count ? (uint32_t)(in->room / count) : 1;
+        status = find_all(in, &b, found);
+    }
     pool_free(memory, &in->all);
     pool_free(memory, &in->fresh);
     asj_release(memory, b.limits);
@@ -323,13 +332,11 @@ asj_status asj_support_find_within(asj_match_run *run, size_t most)
     for (size_t k = 0; k < run->candidates.count; k++)
         if (run->candidates.list[k].number == 0)
             run->candidates.list[k].number = ++support->count;
-    const size_t all = run->candidates.count > 0 ? run->candidates.count : 1;
-    const uint32_t share = most > all ? (uint32_t)(most / all) : 1;
     for (int32_t side = 0; side < 2 && status == ASJ_OK; side++) {
         asj_supporters old = support->side[side];
         search in = {.run = run, .side = side, .asked = &run->image[side]->l_junctions,
                      .others = &run->image[1 - side]->l_junctions, .before = before, .old = &old,
-                     .most = share};
+                     .room = most, .share = UINT32_MAX};
         support->side[side] = (asj_supporters){NULL, NULL, NULL};
         status = one_side(&in, &support->side[side]);
         supporters_free(&run->context->memory, &old);

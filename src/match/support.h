@@ -20,8 +20,8 @@ void asj_location_index_free(asj_memory *memory, asj_location_index *index);
  * no neighbours are asked. */
 asj_status asj_support_find(asj_match_run *run);
 
-/* The same with room for so many supporters on either side, or for one of each candidate: a candidate keeps no more than its share,
- * those at the nearest locations. */
+/* The same with room for so many supporters on either side, or for one of each candidate: where all are more, a candidate keeps no
+ * more than its share, those at the nearest locations. */
 asj_status asj_support_find_within(asj_match_run *run, size_t most);
 void asj_support_free(asj_memory *memory, asj_support *support);
 

@@ -74,7 +74,7 @@ static int32_t is_end_of_both(const asj_junction *junctions, const asj_segment *
     if (has && beyond < -ASJ_SAME_END && !turns_at(junctions, longer, end))
         return 1;
     if (beyond < -c->same_end)
-        return has_other || beyond < -most || !turns_at(junctions, longer, end);
+        return !has || has_other || beyond < -most;
     if (has || !has_other)
         return 0;
     return beyond <= ASJ_SAME_END || (beyond <= most && turns_at(junctions, shorter, far));
