@@ -22,7 +22,7 @@ typedef struct run {
     const cli_detect_arguments *arguments;
     cli_session session;
     asj_image_file *mask; /* of all images; NULL: none */
-    double read_ms;
+    double read_ms, lines_ms;
 } run;
 
 static asj_status write_features(run *r, const char *path, const asj_image *pixels, const asj_detection *detection, char *message)
@@ -120,6 +120,8 @@ static int finish_image(run *r, const char *image, const cli_output *output, con
         print_summary(image, output, &r->arguments->options, detection, segments);
     if (result == CLI_SUCCESS && r->arguments->common.time) {
         cli_timing_detection(image, r->session.context, detection);
+        if (segments)
+            cli_timing_work("lines", r->lines_ms);
         cli_timing_files(r->read_ms, write_ms);
     }
     return result;
@@ -132,9 +134,11 @@ static int detect_pixels(run *r, const char *image, const cli_output *output, co
     asj_status status = asj_detect_region(r->session.context, pixels, region, &r->arguments->options, &detection);
     if (status == ASJ_ERROR_OPTION)
         return cli_usage_error("detect", "%s", asj_context_message(r->session.context));
+    const double start = cli_now_ms();
     if (status == ASJ_OK && r->arguments->lines)
         status = asj_find_segments(r->session.context, detection->junctions, detection->junction_count, detection->edges,
                                    detection->edge_count, &segments);
+    r->lines_ms = cli_now_ms() - start;
     int result = CLI_FAILED;
     if (status == ASJ_OK)
         result = finish_image(r, image, output, pixels, detection, segments);

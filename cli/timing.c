@@ -40,7 +40,13 @@ void cli_timing_match(const char *name, const asj_context *context, const asj_ma
     print_row("matching", result->total_ms, result->total_ms);
 }
 
+void cli_timing_work(const char *work, double ms)
+{
+    fprintf(stderr, "  %-12s %9.2f ms\n", work, ms);
+}
+
 void cli_timing_files(double read_ms, double write_ms)
 {
-    fprintf(stderr, "  %-12s %9.2f ms\n  %-12s %9.2f ms\n", "reading", read_ms, "writing", write_ms);
+    cli_timing_work("reading", read_ms);
+    cli_timing_work("writing", write_ms);
 }

@@ -185,20 +185,19 @@ static asj_status look_again(search *s, int32_t which, double from, double part)
     return look_closer(s, &glancing[which], from + (TRIAL + WHOLE) * part, (1 - TRIAL - WHOLE) * part);
 }
 
-/* Where a further look shows more L-junctions than the matcher takes, what was seen before stays the answer. */
-static asj_status further(asj_status status)
-{
-    return status == ASJ_ERROR_LIMIT ? ASJ_OK : status;
-}
-
+/* Where a further look shows more than can be matched, what was seen before stays the answer. */
 static asj_status look_for_answer(search *s)
 {
     const double part = (1 - FIRST - CLOSER) / GLANCING;
     asj_status status = look(s, &as_it_is, s->detect_options, s->options, 0, FIRST, &s->best);
-    if (status == ASJ_OK)
-        status = further(look_closer(s, &as_it_is, FIRST, CLOSER));
-    for (int32_t k = 0; k < GLANCING && status == ASJ_OK && goes_on(s); k++)
-        status = further(look_again(s, k, FIRST + CLOSER + k * part, part));
+    if (status == ASJ_OK) {
+        asj_optional_begin(s->context);
+        status = asj_optional_end(s->context, look_closer(s, &as_it_is, FIRST, CLOSER));
+    }
+    for (int32_t k = 0; k < GLANCING && status == ASJ_OK && goes_on(s); k++) {
+        asj_optional_begin(s->context);
+        status = asj_optional_end(s->context, look_again(s, k, FIRST + CLOSER + k * part, part));
+    }
     return status == ASJ_OK ? asj_progress(s->context, ASJ_STAGE_ASSIGN, 1) : status;
 }
 

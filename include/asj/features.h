@@ -35,7 +35,7 @@ typedef struct asj_features asj_features;
  * The same input gives the same features with any number of threads and on every back end. One call at a time for a context.
  *
  * ASJ_ERROR_ARGUMENT, ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED, ASJ_ERROR_DEVICE
- *                  as asj_match() */
+ *                  as asj_match(); ASJ_ERROR_LIMIT also for junctions of octave -1 that it leaves out */
 ASJ_API asj_status asj_features_create(asj_context *context, const asj_image *image, const asj_junction *junctions, size_t count,
                                        const asj_match_options *options, asj_features **features);
 

@@ -34,8 +34,11 @@ typedef struct asj_branch {
     int32_t end;      /* ASJ_BRANCH_END_...: what is there */
 } asj_branch;
 
-/* px that a junction may lie outside its image: branches may meet beyond the border. The detector's largest max_move. */
-#define ASJ_MAX_OUTSIDE 10
+/* What a junction may be, for asj_match() and in files. */
+#define ASJ_MAX_OUTSIDE 10           /* px outside its image: branches may meet beyond the border. The detector's largest max_move */
+#define ASJ_LEAST_OCTAVE (-1)        /* the image enlarged twice */
+#define ASJ_LARGEST_OCTAVE 15
+#define ASJ_LONGEST_BRANCH 262140.0f /* px: four times ASJ_MAX_SIDE */
 
 /* A junction: a point with two to five branches, in order of angle. */
 typedef struct asj_junction {

@@ -58,7 +58,8 @@ typedef struct asj_match_options {
     /* support by neighbouring candidates */
     int32_t neighbours;          /* nearest junctions asked for support; 0 = none. 0 .. 64; 40; paper 0 */
     int32_t guided_rounds;       /* times that accepted matches propose matches near them. 0 .. 4; 1; paper 0 */
-    double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs. 0 .. 64; 1.5; paper 0 */
+    double minimum_support;      /* neighbours' agreement (each counts 0 to 1) that a match needs; with no neighbours none is
+                                  * needed. 0 .. 64; 1.5; paper 0 */
     double neighbour_tolerance;  /* error of a predicted neighbour, as a part of the distance. 0.01 .. 1; 0.08 */
     double map_tolerance;        /* relative difference allowed between the affine maps of neighbours. 0.05 .. 5; 0.5 */
     /* assignment */
@@ -194,10 +195,11 @@ typedef struct asj_match_result {
  * whether to go on. One call at a time for a context.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that lies more than ASJ_MAX_OUTSIDE px outside its image, has a wrong branch
- *                      count, an octave that is not -1 .. 15, an angle beyond +-10^6, a length that is not 0 .. 4 ASJ_MAX_SIDE,
- *                      or an end of no known kind
+ *                      count, an octave that is not -1 .. 15, an angle beyond +-10^6, a length that is not 0 ..
+ *                      ASJ_LONGEST_BRANCH, or an end of no known kind
  * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED, ASJ_ERROR_DEVICE   as asj_detect()
- * ASJ_ERROR_LIMIT      also with more than 2^24 L-junctions; of octave -1 alone they are left out instead */
+ * ASJ_ERROR_LIMIT      also with more than 2^24 L-junctions. Junctions of octave -1 are left out instead, where they alone are more
+ *                      or where their image is too large to be enlarged: the log tells of it (ASJ_LOG_INFO) */
 ASJ_API asj_status asj_match(asj_context *context,
                              const asj_image *image1, const asj_junction *junctions1, size_t count1,
                              const asj_image *image2, const asj_junction *junctions2, size_t count2,

@@ -19,8 +19,9 @@
 extern "C" {
 #endif
 
-/* What a function reports. 0 is success, everything else is negative and leaves the outputs as they were
- * (pointers NULL where a result would have been created), with nothing leaked. */
+/* What a function reports. 0 is success, everything else is negative, leaves nothing half done and leaks nothing:
+ * a pointer to a result that would have been made is NULL, an earlier result that was to be used again (asj_detect_into()) is empty,
+ * other outputs are as they were. */
 typedef int32_t asj_status;
 enum {
     ASJ_OK = 0,

@@ -68,14 +68,29 @@ asj_status asj_enter(asj_context *context)
 
 asj_status asj_fail(asj_context *context, asj_status status, const char *format, ...)
 {
+    char left_out[sizeof context->message];
+    const int is_left_out = status == ASJ_ERROR_LIMIT && context->optional > 0;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(context->message, sizeof context->message, format, arguments);
+    vsnprintf(is_left_out ? left_out : context->message, sizeof context->message, format, arguments);
     va_end(arguments);
     const int goes_on = status == ASJ_ERROR_DEVICE && context->cl && context->options.backend == ASJ_BACKEND_AUTO;
-    if (status != ASJ_ERROR_CANCELLED && !goes_on)
+    if (is_left_out)
+        asj_log(context, ASJ_LOG_INFO, "left out: %s", left_out);
+    else if (status != ASJ_ERROR_CANCELLED && !goes_on)
         asj_log(context, ASJ_LOG_ERROR, "%s", context->message);
     return status;
+}
+
+void asj_optional_begin(asj_context *context)
+{
+    context->optional++;
+}
+
+asj_status asj_optional_end(asj_context *context, asj_status status)
+{
+    context->optional--;
+    return status == ASJ_ERROR_LIMIT ? ASJ_OK : status;
 }
 
 void asj_log(asj_context *context, int32_t level, const char *format, ...)

@@ -41,6 +41,7 @@ struct asj_context {
     double asked_ms;              /* when the caller was last asked whether to go on */
     int32_t in_hook;              /* > 0 while a function of the caller's runs (log, progress, dump, kernel cache) */
     int32_t device_failures;      /* backend.h */
+    int32_t optional;             /* > 0 in steps that the answer does not need: asj_optional_begin() */
     char message[512];
 };
 
@@ -66,6 +67,11 @@ asj_status asj_enter(asj_context *context);
  * `return asj_fail(context, ASJ_ERROR_IMAGE, "stride %td is shorter than a row", stride);` */
 asj_status asj_fail(asj_context *context, asj_status status, const char *format, ...)
     ASJ_PRINTF(3, 4);
+
+/* Around a step that the answer does not need. What is beyond a limit there is left out: asj_fail() tells of it as information and
+ * not as what went wrong, and the end makes ASJ_OK of ASJ_ERROR_LIMIT. There may be others inside. */
+void asj_optional_begin(asj_context *context);
+asj_status asj_optional_end(asj_context *context, asj_status status);
 
 void asj_log(asj_context *context, int32_t level, const char *format, ...)
     ASJ_PRINTF(3, 4);

@@ -18,8 +18,7 @@ static void say(char *message, size_t size, const char *format, ...)
     va_end(arguments);
 }
 
-/* Every value of a table row fits a double exactly: integers of 32 bits, bit sets of 31 bits. */
-static double load(const asj_option_info *row, const void *options)
+double asj_option_load(const asj_option_info *row, const void *options)
 {
     const char *field = (const char *)options + row->offset;
     double number;
@@ -38,7 +37,7 @@ static void store(const asj_option_info *row, void *options, double value)
     int32_t integer;
     uint32_t bits;
     switch (row->type) {
-    case ASJ_OPTION_NUMBER: memcpy(field, &value, sizeof value); break;
+    case ASJ_OPTION_NUMBER: value += 0.0; memcpy(field, &value, sizeof value); break; /* -0 is 0 */
     case ASJ_OPTION_RADII: bits = (uint32_t)value; memcpy(field, &bits, sizeof bits); break;
     default: integer = (int32_t)value; memcpy(field, &integer, sizeof integer); break;
     }
@@ -87,7 +86,7 @@ asj_status asj_option_table_check(const asj_option_table *table, const void *opt
 {
     for (size_t i = 0; i < table->count; i++) {
         const asj_option_info *row = &table->rows[i];
-        double value = load(row, options);
+        double value = asj_option_load(row, options);
         if (!in_range(row, value)) {
             char number[32];
             snprintf(number, sizeof number, "%.9g", value);
@@ -300,7 +299,7 @@ asj_status asj_option_table_get(const asj_option_table *table, const void *optio
     const asj_option_info *row = find(table, key);
     if (!row)
         return ASJ_ERROR_OPTION;
-    double value = load(row, options);
+    double value = asj_option_load(row, options);
     int length;
     if (row->type == ASJ_OPTION_NUMBER)
         length = print_number(text, text_size, value);

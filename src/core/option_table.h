@@ -48,6 +48,9 @@ const asj_option_info *asj_option_table_row(const asj_option_table *table, size_
 /* ASJ_OK, or ASJ_ERROR_OPTION with a sentence about the first field out of range. */
 asj_status asj_option_table_check(const asj_option_table *table, const void *options, char *message, size_t message_size);
 
+/* The value of a field. Every one fits a double exactly: integers of 32 bits, bit sets of 31 bits. */
+double asj_option_load(const asj_option_info *row, const void *options);
+
 /* See asj_detect_options_set() and asj_detect_options_get(). */
 asj_status asj_option_table_set(const asj_option_table *table, void *options, const char *key, const char *text,
                                 char *message, size_t message_size);

@@ -37,8 +37,8 @@ int32_t asj_turned_create(asj_memory *memory, const asj_pairs *set, int32_t coun
                           const asj_camera cameras[2], asj_turned *turned)
 {
     turned->count = count;
-    turned->normal = asj_allocate(memory, 3 * (size_t)count * (size_t)set->rotation_count, sizeof *turned->normal);
-    turned->weight = asj_allocate(memory, (size_t)count * (size_t)set->rotation_count, sizeof *turned->weight);
+    turned->normal = asj_allocate(memory, (size_t)count, 3 * (size_t)set->rotation_count * sizeof *turned->normal);
+    turned->weight = asj_allocate(memory, (size_t)count, (size_t)set->rotation_count * sizeof *turned->weight);
     if (!turned->normal || !turned->weight)
         return 0;
     for (int32_t k = 0; k < count; k++) {

@@ -57,7 +57,7 @@ static void probe_webp(const asj_input *input, asj_image_probe *probe)
         size_t length = little(b + at + 4, 4), left = input->size - at - 8;
         if (length > left)
             return;
-        if (!memcmp(b + at, "EXIF", 4)) {
+        if (!memcmp(b + at, "EXIF", 4) && !probe->exif) {
             size_t skip = length >= 6 && !memcmp(b + at + 8, "Exif\0\0", 6) ? 6 : 0;
             probe->exif = b + at + 8 + skip;
             probe->exif_size = length - skip;

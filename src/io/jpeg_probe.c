@@ -47,7 +47,7 @@ static void read_segment(int marker, const unsigned char *content, size_t length
         probe->width = get16(content + 3);
         probe->has_size = 1;
     }
-    if (marker == MARKER_APP1 && length > 6 && !memcmp(content, "Exif\0\0", 6) && probe->orientation == 1) {
+    if (marker == MARKER_APP1 && length > 6 && !memcmp(content, "Exif\0\0", 6) && !probe->exif) { /* the first counts */
         probe->exif = content + 6;
         probe->exif_size = length - 6;
         probe->orientation = asj_exif_orientation(probe->exif, probe->exif_size);

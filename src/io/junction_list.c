@@ -77,9 +77,9 @@ asj_status asj_junction_list_add(asj_junction_list *list, const asj_junction *ju
     for (b = 0; b < junction->branch_count; b++) {
         if (junction->branches[b].length < 0)
             return asj_line_fail(message, line, "a branch of negative length");
-        if (!(junction->branches[b].length <= 4 * (float)ASJ_MAX_SIDE)) /* what asj_match() takes */
+        if (!(junction->branches[b].length <= ASJ_LONGEST_BRANCH))
             return asj_line_fail(message, line, "a branch of %g px, longer than %d", (double)junction->branches[b].length,
-                                 4 * ASJ_MAX_SIDE);
+                                 (int)ASJ_LONGEST_BRANCH);
     }
     if (list->count >= ASJ_JUNCTIONS_MAX)
         return asj_message_fail(message, ASJ_ERROR_LIMIT, "more than %u junctions", ASJ_JUNCTIONS_MAX);
@@ -126,34 +126,19 @@ asj_status asj_junction_list_add_edge(asj_junction_list *list, const asj_edge *e
     return ASJ_OK;
 }
 
-/* Marks a branch as taken; 0 when it was taken before. */
-static int take(unsigned char *taken, uint32_t junction, uint16_t branch)
-{
-    unsigned char bit = (unsigned char)(1u << branch);
-    int was_free = !(taken[junction] & bit);
-    taken[junction] |= bit;
-    return was_free;
-}
-
 asj_status asj_junction_list_check_edges(const asj_junction_list *list, const asj_message *message)
 {
-    asj_status status = ASJ_OK;
-    unsigned char *taken;
-    size_t i;
+    size_t which;
     if (!list->edge_count)
         return ASJ_OK;
     if (list->was_sorted)
         return asj_line_fail(message, list->edge_lines[0], "edges name branches, which must stand in order of angle then");
-    taken = calloc(list->count ? list->count : 1, 1);
-    if (!taken)
-        return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for %zu junctions", list->count);
-    for (i = 0; i < list->edge_count && status == ASJ_OK; i++) {
-        const asj_edge *e = &list->edges[i];
-        if (!asj_is_sound_edge(list->junctions, list->count, e))
-            status = asj_line_fail(message, list->edge_lines[i], "an edge of a junction or branch that is not there");
-        else if (!take(taken, e->junction_a, e->branch_a) || !take(taken, e->junction_b, e->branch_b))
-            status = asj_line_fail(message, list->edge_lines[i], "a branch is part of two edges");
+    switch (asj_find_edge_fault(list->junctions, list->count, list->edges, list->edge_count, &which)) {
+    case ASJ_EDGES_SOUND: break;
+    case ASJ_EDGE_OF_NOTHING:
+        return asj_line_fail(message, list->edge_lines[which], "an edge of a junction or branch that is not there");
+    case ASJ_EDGE_OF_AN_OTHER: return asj_line_fail(message, list->edge_lines[which], "a branch is part of two edges");
+    case ASJ_EDGES_NO_MEMORY: return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for %zu junctions", list->count);
     }
-    free(taken);
-    return status;
+    return ASJ_OK;
 }

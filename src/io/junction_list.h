@@ -11,10 +11,6 @@
 #define ASJ_JUNCTIONS_MAX (1u << 24)
 #define ASJ_EDGES_MAX (5 * ASJ_JUNCTIONS_MAX / 2) /* no branch is part of two */
 
-/* Of a junction in a file. */
-#define ASJ_LEAST_OCTAVE (-1)
-#define ASJ_LARGEST_OCTAVE 15
-
 typedef struct asj_junction_list {
     asj_junction *junctions;
     uint32_t *lines;

@@ -18,7 +18,7 @@ static int is_sound(const asj_junction *junction)
         return 0;
     for (b = 0; b < junction->branch_count; b++) {
         const asj_branch *branch = &junction->branches[b];
-        if (branch->length < 0)
+        if (branch->length < 0 || branch->length > ASJ_LONGEST_BRANCH)
             return 0;
         if (!isfinite(branch->angle) || !isfinite(branch->length) || !isfinite(branch->strength) || !isfinite(branch->log10_nfa) ||
             !isfinite(branch->angle_sd) || !isfinite(branch->width) || !isfinite(branch->length_sd))
@@ -73,12 +73,30 @@ static asj_status check_vanishing(const asj_vanishing_points *found, const asj_m
                  : asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the vanishing points have NaN or infinity");
 }
 
-static asj_status check(const asj_detection *detection, const asj_message *message)
+static asj_status check_edges(const asj_detection *detection, const asj_message *message)
+{
+    size_t which;
+    switch (asj_find_edge_fault(detection->junctions, detection->junction_count, detection->edges, detection->edge_count, &which)) {
+    case ASJ_EDGES_SOUND: break;
+    case ASJ_EDGE_OF_NOTHING:
+        return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: edge %zu has NaN, infinity or a wrong index", which);
+    case ASJ_EDGE_OF_AN_OTHER:
+        return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: a branch of edge %zu is part of an edge before", which);
+    case ASJ_EDGES_NO_MEMORY: return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory");
+    }
+    return ASJ_OK;
+}
+
+static asj_status check(const asj_detection *detection, int32_t file_format, const asj_message *message)
 {
     uint32_t i;
     if ((detection->junction_count && !detection->junctions) || (detection->l_junction_count && !detection->l_junctions) ||
         (detection->edge_count && !detection->edges))
         return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the detection has a count but no array");
+    if (file_format == ASJ_FILE_JSON && (detection->width < 1 || detection->height < 1 || detection->width > ASJ_MAX_SIDE ||
+                                         detection->height > ASJ_MAX_SIDE))
+        return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: an image of %d x %d pixels", (int)detection->width,
+                                (int)detection->height);
     for (i = 0; i < detection->junction_count; i++)
         if (!is_sound(&detection->junctions[i]))
             return asj_message_fail(message, ASJ_ERROR_ARGUMENT,
@@ -88,11 +106,7 @@ static asj_status check(const asj_detection *detection, const asj_message *messa
         if (!is_sound_pair(detection, &detection->l_junctions[i]))
             return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: L-junction %lu has NaN, infinity or a wrong index",
                                     (unsigned long)i);
-    for (i = 0; i < detection->edge_count; i++)
-        if (!asj_is_sound_edge(detection->junctions, detection->junction_count, &detection->edges[i]))
-            return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: edge %lu has NaN, infinity or a wrong index",
-                                    (unsigned long)i);
-    return ASJ_OK;
+    return check_edges(detection, message);
 }
 
 asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_detection_report *report,
@@ -106,7 +120,7 @@ asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no path or no detection");
     if (file_format < ASJ_FILE_ASJ || file_format > ASJ_FILE_CSV)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "%d is no file format", (int)file_format);
-    status = check(report->detection, &message);
+    status = check(report->detection, file_format, &message);
     if (status == ASJ_OK && report->segments)
         status = check_segments(report->detection, report->segments, &message);
     if (status == ASJ_OK && report->vanishing_points)

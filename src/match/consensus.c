@@ -117,7 +117,7 @@ float asj_needed_support(const asj_match_run *run)
 {
     const uint32_t limit = (uint32_t)run->options->neighbours;
     const uint32_t all = asked(&run->image[0]->l_junctions, limit) + asked(&run->image[1]->l_junctions, limit);
-    return (float)(run->options->minimum_support * (limit > 0 ? all / (2.0 * limit) : 1));
+    return limit > 0 ? (float)(run->options->minimum_support * (all / (2.0 * limit))) : 0;
 }
 
 /* What the graph holds for each candidate: appearance and score in the order of the list, confidence by number. */

@@ -59,7 +59,7 @@ asj_status asj_describe(asj_context *context, const asj_match_options *options, 
 {
     const size_t length = (size_t)asj_patch_length(options), count = features->l_junctions.frame_count;
     features->device_copy = 0;
-    features->patches = asj_allocate(&context->memory, count * length, sizeof *features->patches);
+    features->patches = asj_allocate(&context->memory, count, length * sizeof *features->patches);
     features->usable = asj_allocate(&context->memory, count, sizeof *features->usable);
     if (!features->patches || !features->usable)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu patches", count);

@@ -252,7 +252,7 @@ static asj_status read_junction(reader *r, asj_junction *j)
     get_floats(r->next, head, 5);
     const uint32_t branches = asj_get_u32(r->next + 20);
     const uint32_t octave = asj_get_u32(r->next + 24);
-    if (octave > ASJ_COARSEST && !(r->finer && octave == UINT32_MAX))
+    if (octave > ASJ_LARGEST_OCTAVE && !(r->finer && octave == UINT32_MAX))
         return damaged(r, "a junction of an octave that there is not");
     j->octave = octave == UINT32_MAX ? -1 : (int32_t)octave;
     r->next += JUNCTION_BYTES;

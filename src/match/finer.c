@@ -107,7 +107,6 @@ static void add_times(asj_match_result *to, const asj_match_result *from)
 {
     for (int32_t s = 0; s < ASJ_STAGE_COUNT; s++)
         to->stage_ms[s] += from->stage_ms[s];
-    to->total_ms += from->total_ms;
 }
 
 /* Which ones of a list are not in another one, sorted by place here: rejected matches have no places. */
@@ -223,10 +222,10 @@ static asj_status match_both(asj_context *context, const asj_match_options *opti
     context->progress_from = from + OWN * whole;
     context->progress_part = (1 - OWN) * whole;
     known.result = *result;
-    if (status == ASJ_OK && is_worth(*result))
-        status = match->pass(context, options, match->data, 1, &known, &finer);
-    if (status == ASJ_ERROR_LIMIT && *result) /* of L-junctions of the enlarged images: the images' own matches stay */
-        status = ASJ_OK;
+    if (status == ASJ_OK && is_worth(*result)) {
+        asj_optional_begin(context); /* the images' own matches stay */
+        status = asj_optional_end(context, match->pass(context, options, match->data, 1, &known, &finer));
+    }
     context->progress_from = from;
     context->progress_part = part;
     for (int32_t side = 0; side < 2 && status == ASJ_OK; side++)

@@ -40,7 +40,7 @@ asj_status asj_induced_squares_create(const asj_match_run *run, asj_induced_squa
     for (int32_t side = 0; side < 2 && in_parts(run->options); side++) {
         const asj_image_features *features = run->image[side];
         const uint32_t count = features->l_junctions.count;
-        squares->of[side] = asj_allocate(&run->context->memory, count * length, sizeof *squares->of[side]);
+        squares->of[side] = asj_allocate(&run->context->memory, count, length * sizeof *squares->of[side]);
         if (!squares->of[side])
             return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %u patches", (unsigned)count);
         for (uint32_t l = 0; l < count; l++)

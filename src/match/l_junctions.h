@@ -9,7 +9,6 @@
 #include <asj/match.h>
 
 #define ASJ_MAX_HYPOTHESES 4
-#define ASJ_COARSEST 15 /* octave: what lies beyond is refused */
 
 /* Lengths that a branch may have, its own first, then falling. */
 typedef struct asj_lengths {
@@ -36,7 +35,7 @@ typedef struct asj_l_junctions {
     uint32_t *first_of_location;
     uint32_t *l_of_location;
     double *location_x, *location_y;
-    uint8_t *octave;             /* of each L-junction: that located it, 0 .. ASJ_COARSEST */
+    uint8_t *octave;             /* of each L-junction: that located it, 0 .. ASJ_LARGEST_OCTAVE */
     int32_t home;                /* the finest octave of at least half as many as any; others are guests (guests.c) */
     uint32_t home_locations;     /* locations of that octave */
     float *log10_nfa;            /* of each L-junction: what the caller says of its junction; no NaN */

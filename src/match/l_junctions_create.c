@@ -25,14 +25,14 @@ static asj_status check(asj_context *context, const asj_image_junctions *input)
         if (j->branch_count < 0 || j->branch_count > ASJ_MAX_BRANCHES)
             return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d has %d branches", n, which,
                             (int)j->branch_count);
-        if (j->octave < -1 || j->octave > ASJ_COARSEST)
+        if (j->octave < ASJ_LEAST_OCTAVE || j->octave > ASJ_LARGEST_OCTAVE)
             return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d is of octave %d", n, which, (int)j->octave);
         for (int32_t b = 0; b < j->branch_count; b++) {
             const asj_branch *branch = &j->branches[b];
             if (branch->end < 0 || branch->end > ASJ_BRANCH_END_BORDER)
                 return asj_fail(context, ASJ_ERROR_ARGUMENT, "branch %d of junction %zu of image %d has an end of kind %d", (int)b,
                                 n, which, (int)branch->end);
-            if (!(branch->length >= 0 && branch->length <= 4 * (float)ASJ_MAX_SIDE && fabsf(branch->angle) <= 1e6f))
+            if (!(branch->length >= 0 && branch->length <= ASJ_LONGEST_BRANCH && fabsf(branch->angle) <= 1e6f))
                 return asj_fail(context, ASJ_ERROR_ARGUMENT, "branch %d of junction %zu of image %d has angle %g, length %g",
                                 (int)b, n, which, (double)branch->angle, (double)branch->length);
         }
@@ -67,16 +67,16 @@ static asj_status find_around(asj_context *context, const asj_match_options *opt
 
 static asj_status set_octaves(asj_context *context, const asj_image_junctions *input, asj_l_junctions *all)
 {
-    uint32_t counts[ASJ_COARSEST + 1] = {0}, most = 0;
+    uint32_t counts[ASJ_LARGEST_OCTAVE + 1] = {0}, most = 0;
     all->octave = asj_allocate(&context->memory, all->count, sizeof *all->octave);
     if (!all->octave)
         return no_memory(context);
     for (uint32_t i = 0; i < all->count; i++) {
         const int32_t octave = input->list[all->l[i].junction].octave;
-        all->octave[i] = (uint8_t)(octave < 0 ? 0 : octave > ASJ_COARSEST ? ASJ_COARSEST : octave);
+        all->octave[i] = (uint8_t)(octave < 0 ? 0 : octave > ASJ_LARGEST_OCTAVE ? ASJ_LARGEST_OCTAVE : octave);
         counts[all->octave[i]]++;
     }
-    for (int32_t octave = 0; octave <= ASJ_COARSEST; octave++)
+    for (int32_t octave = 0; octave <= ASJ_LARGEST_OCTAVE; octave++)
         most = counts[octave] > most ? counts[octave] : most;
     while (LEAST_SHARE * counts[all->home] < most)
         all->home++;

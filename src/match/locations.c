@@ -101,7 +101,7 @@ asj_status asj_neighbours_find(asj_context *context, const asj_match_options *op
     all->neighbour_limit = (uint32_t)options->neighbours;
     if (options->neighbours == 0)
         return ASJ_OK;
-    all->neighbour = asj_allocate(&context->memory, (size_t)all->location_count * all->neighbour_limit, sizeof(uint32_t));
+    all->neighbour = asj_allocate(&context->memory, all->location_count, all->neighbour_limit * sizeof(uint32_t));
     all->neighbour_count = asj_allocate(&context->memory, all->location_count, sizeof(uint32_t));
     if (!all->neighbour || !all->neighbour_count)
         return no_memory(context);

@@ -195,8 +195,6 @@ static asj_status finish(const asj_match_run *run, stop_watch *watch, asj_match_
         return status;
     stop(watch, ASJ_STAGE_ASSIGN);
     memcpy(found->stage_ms, watch->stage_ms, sizeof watch->stage_ms);
-    for (int32_t s = 0; s < ASJ_STAGE_COUNT; s++)
-        found->total_ms += watch->stage_ms[s];
     found->backend = asj_context_backend(run->context);
     found->candidates = run->candidates.count;
     *result = found;
@@ -304,9 +302,12 @@ static asj_status match_sources(asj_context *context, const asj_match_options *o
     return status;
 }
 
-static asj_status match_junctions(asj_context *context, const source sources[2], const asj_match_options *options,
-                                  int32_t enlarged_only, const asj_known_matches *known, asj_match_result **result)
+asj_status asj_match_look(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
+                          const asj_image *image2, const asj_junction *junctions2, size_t count2,
+                          const asj_match_options *options, int32_t enlarged, const asj_known_matches *known,
+                          asj_match_result **result)
 {
+    const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
     if (result)
         *result = NULL;
     if (asj_enter(context) != ASJ_OK)
@@ -321,7 +322,7 @@ static asj_status match_junctions(asj_context *context, const source sources[2],
                                    sources,
                                    {sources[0].junctions, sources[1].junctions},
                                    {sources[0].count, sources[1].count},
-                                   enlarged_only,
+                                   enlarged,
                                    known};
     asj_status status;
     asj_backend_begin(context);
@@ -331,13 +332,13 @@ static asj_status match_junctions(asj_context *context, const source sources[2],
     return status;
 }
 
-asj_status asj_match_look(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
-                          const asj_image *image2, const asj_junction *junctions2, size_t count2,
-                          const asj_match_options *options, int32_t enlarged, const asj_known_matches *known,
-                          asj_match_result **result)
+/* What comes at the end of a call of the caller's. */
+static asj_status finish_call(asj_context *context, const asj_match_options *options, double start, asj_match_result **result)
 {
-    const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
-    return match_junctions(context, sources, options, enlarged, known, result);
+    const asj_status status = asj_finish_pose(context, &options->geometry, result);
+    if (status == ASJ_OK)
+        (*result)->total_ms = asj_clock_ms() - start;
+    return status;
 }
 
 asj_status asj_match(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
@@ -353,10 +354,11 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
         asj_match_options_init(&defaults);
         options = &defaults;
     }
+    const double start = asj_clock_ms();
     asj_status status = asj_match_wishes_check(context, options);
     if (status == ASJ_OK)
         status = asj_match_look(context, image1, junctions1, count1, image2, junctions2, count2, options, 0, NULL, result);
-    return status == ASJ_OK ? asj_finish_pose(context, &options->geometry, result) : status;
+    return status == ASJ_OK ? finish_call(context, options, start, result) : status;
 }
 
 static asj_status match_kept(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
@@ -401,6 +403,7 @@ asj_status asj_match_features(asj_context *context, const asj_features *features
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "features or the result are NULL");
     if (!options)
         options = &features1->options;
+    const double start = asj_clock_ms();
     asj_status status = check_options(context, options, kept);
     if (status != ASJ_OK)
         return status;
@@ -414,5 +417,5 @@ asj_status asj_match_features(asj_context *context, const asj_features *features
     do
         status = asj_match_finer(context, options, &match, result);
     while (asj_backend_retry(context, status));
-    return status == ASJ_OK ? asj_finish_pose(context, &options->geometry, result) : status;
+    return status == ASJ_OK ? finish_call(context, options, start, result) : status;
 }

@@ -146,8 +146,8 @@ static int describes(const asj_option_info *row)
 const char *asj_match_options_difference(const asj_match_options *left, const asj_match_options *right)
 {
     for (size_t n = 0; n < table.count; n++) {
-        const size_t size = rows[n].type == ASJ_OPTION_NUMBER ? sizeof(double) : sizeof(int32_t);
-        if (describes(&rows[n]) && memcmp((const char *)left + rows[n].offset, (const char *)right + rows[n].offset, size) != 0)
+        const double one = asj_option_load(&rows[n], left), other = asj_option_load(&rows[n], right); /* numbers: -0 is 0 */
+        if (describes(&rows[n]) && (one < other || one > other))
             return rows[n].key;
     }
     return NULL;

@@ -71,7 +71,7 @@ asj_status asj_patch_induced_describe(asj_context *context, const asj_match_opti
 {
     const size_t length = (size_t)asj_patch_length(options);
     const int64_t count = features->l_junctions.count;
-    features->patches = asj_allocate(&context->memory, (size_t)count * length, sizeof *features->patches);
+    features->patches = asj_allocate(&context->memory, (size_t)count, length * sizeof *features->patches);
     features->usable = asj_allocate(&context->memory, (size_t)count, sizeof *features->usable);
     if (!features->patches || !features->usable)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lld patches", (long long)count);

@@ -85,8 +85,8 @@ asj_status asj_shortlist(asj_match_run *run)
     asj_memory *memory = &run->context->memory;
     const uint32_t count1 = run->image[0]->l_junctions.count, count2 = run->image[1]->l_junctions.count;
     const size_t limit = (size_t)run->options->shortlist;
-    asj_partner *rows = asj_allocate(memory, count1 * limit, sizeof *rows);
-    asj_partner *columns = asj_allocate(memory, count2 * limit, sizeof *columns);
+    asj_partner *rows = asj_allocate(memory, count1, limit * sizeof *rows);
+    asj_partner *columns = asj_allocate(memory, count2, limit * sizeof *columns);
     asj_status status;
     if (!rows || !columns) {
         status = asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for the partners of %u and %u L-junctions",

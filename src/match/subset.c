@@ -68,7 +68,7 @@ asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t fir
         count += frames_of(l, i, &c);
     s->frames = asj_allocate(memory, count, sizeof *s->frames);
     s->first_frame = asj_allocate(memory, (size_t)l->count + 1, sizeof *s->first_frame);
-    s->patches = asj_allocate(memory, count * length, sizeof *s->patches);
+    s->patches = asj_allocate(memory, count, length * sizeof *s->patches);
     s->usable = asj_allocate(memory, count, sizeof *s->usable);
     if (!s->frames || !s->first_frame || !s->patches || !s->usable)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for a part of %u L-junctions", (unsigned)l->count);

@@ -218,6 +218,10 @@ static void times_are_printed_on_request(void **state)
     expect_in(result, result->err, "scene.png: 320 x 240");
     expect_in(result, result->err, "reading");
     assert_null(strstr(result->out, "reading"));
+    assert_null(strstr(result->err, "  lines "));
+    result = run_cli("detect", "--time", "-q", "--lines", "scene.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "  lines ");
 }
 
 static void no_progress_without_a_terminal(void **state)

@@ -21,20 +21,25 @@ static const unsigned char jpeg_tail[] = {
     0xd9};
 static const int jpeg_levels[2][3] = {{120, 200, 200}, {30, 0, 0}};
 
-static void make_jpeg(test_bytes *jpeg, const test_bytes *exif)
+static void append_exif(test_bytes *jpeg, const test_bytes *exif)
 {
-    static unsigned char ones[64], length[2];
+    const unsigned char length[2] = {(unsigned char)((exif->size + 8) >> 8), (unsigned char)(exif->size + 8)};
+    append(jpeg, "\xff\xe1", 2);
+    append(jpeg, length, 2);
+    append(jpeg, "Exif\0\0", 6);
+    append(jpeg, exif->bytes, exif->size);
+}
+
+static void make_jpeg(test_bytes *jpeg, const test_bytes *exif, const test_bytes *second)
+{
+    static unsigned char ones[64];
     memset(ones, 1, sizeof ones); /* quantisation */
     jpeg->size = 0;
     append(jpeg, jpeg_head, 2);
-    if (exif) {
-        length[0] = (unsigned char)((exif->size + 8) >> 8);
-        length[1] = (unsigned char)(exif->size + 8);
-        append(jpeg, "\xff\xe1", 2);
-        append(jpeg, length, 2);
-        append(jpeg, "Exif\0\0", 6);
-        append(jpeg, exif->bytes, exif->size);
-    }
+    if (exif)
+        append_exif(jpeg, exif);
+    if (second)
+        append_exif(jpeg, second);
     append(jpeg, jpeg_head + 2, sizeof jpeg_head - 2);
     append(jpeg, ones, sizeof ones);
     append(jpeg, jpeg_tail, sizeof jpeg_tail);
@@ -69,7 +74,7 @@ static void jpeg_pixels_and_orientation(void **state)
     asj_image_file *file;
     int orientation, big_endian;
     (void)state;
-    make_jpeg(&jpeg, NULL);
+    make_jpeg(&jpeg, NULL, NULL);
     file = read_image("plain.jpg", &jpeg);
     assert_int_equal(file->orientation, 1);
     check_jpeg(file);
@@ -77,12 +82,31 @@ static void jpeg_pixels_and_orientation(void **state)
     for (orientation = 1; orientation <= 8; orientation++)
         for (big_endian = 0; big_endian < 2; big_endian++) {
             make_exif(&exif, big_endian, orientation);
-            make_jpeg(&jpeg, &exif);
+            make_jpeg(&jpeg, &exif, NULL);
             file = read_image("turned.jpg", &jpeg);
             assert_int_equal(file->orientation, orientation);
             check_jpeg(file);
             asj_image_file_free(&file);
         }
+}
+
+static void the_first_exif_block_counts(void **state)
+{
+    static test_bytes jpeg, upright, turned;
+    asj_image_file *file;
+    (void)state;
+    make_exif(&upright, 0, 1);
+    make_exif(&turned, 1, 6);
+    make_jpeg(&jpeg, &upright, &turned);
+    file = read_image("upright.jpg", &jpeg);
+    assert_int_equal(file->orientation, 1);
+    check_jpeg(file);
+    asj_image_file_free(&file);
+    make_jpeg(&jpeg, &turned, &upright);
+    file = read_image("turned.jpg", &jpeg);
+    assert_int_equal(file->orientation, 6);
+    check_jpeg(file);
+    asj_image_file_free(&file);
 }
 
 /* Standard error into a file of the folder while a test runs; how much arrived. */
@@ -114,7 +138,7 @@ static void jpeg_cut_at_every_length(void **state)
     size_t length;
     (void)state;
     make_exif(&exif, 0, 6);
-    make_jpeg(&jpeg, &exif);
+    make_jpeg(&jpeg, &exif, NULL);
     for (length = 1; length < jpeg.size; length++)
         assert_image_refused(write_bytes("cut.jpg", jpeg.bytes, length), 0, ASJ_ERROR_FORMAT, "");
     assert_image_refused(write_bytes("cut.jpg", jpeg.bytes, jpeg.size - 4), 0, ASJ_ERROR_FORMAT, "truncated JPEG");
@@ -126,7 +150,7 @@ static void jpeg_with_too_few_or_too_many_data(void **state)
     static test_bytes jpeg, changed;
     asj_image_file *file;
     (void)state;
-    make_jpeg(&jpeg, NULL);
+    make_jpeg(&jpeg, NULL, NULL);
     changed.size = 0;
     append(&changed, jpeg.bytes, jpeg.size - 6);
     append(&changed, "\xff\xd9", 2);
@@ -271,7 +295,7 @@ static void any_byte_changed(void **state)
     static const unsigned char masks[] = {1, 0x80, 0xff};
     size_t f, at, m;
     (void)state;
-    make_jpeg(&files[0], NULL);
+    make_jpeg(&files[0], NULL, NULL);
     files[1].size = files[3].size = 0;
     append(&files[1], pnm, sizeof pnm - 1);
     make_tiff(&files[2], 0, 8, 6);
@@ -321,7 +345,7 @@ static void formats_that_this_build_lacks(void **state)
     static test_bytes bytes;
     (void)state;
     if (!is_read("JPEG")) {
-        make_jpeg(&bytes, NULL);
+        make_jpeg(&bytes, NULL, NULL);
         assert_image_refused(write_bytes("x.jpg", bytes.bytes, bytes.size), 0, ASJ_ERROR_UNSUPPORTED, "JPEG");
         assert_image_refused(write_bytes("x.jpg", bytes.bytes, bytes.size - 5), 0, ASJ_ERROR_FORMAT, "truncated JPEG");
     }
@@ -487,7 +511,7 @@ static void damage_is_seen_without_descriptors(void **state)
     pid_t child;
     int state_of_child;
     (void)state;
-    make_jpeg(&jpeg, NULL);
+    make_jpeg(&jpeg, NULL, NULL);
     changed.size = 0;
     append(&changed, jpeg.bytes, jpeg.size - 6);
     append(&changed, "\xff\xd9", 2);
@@ -520,6 +544,7 @@ int main(void)
     };
     const struct CMUnitTest jpeg[] = {
         cmocka_unit_test(jpeg_pixels_and_orientation),
+        cmocka_unit_test(the_first_exif_block_counts),
         cmocka_unit_test(jpeg_cut_at_every_length),
         cmocka_unit_test(jpeg_with_too_few_or_too_many_data),
         cmocka_unit_test(damage_is_seen_without_descriptors),

@@ -357,14 +357,14 @@ static void a_name_that_is_no_utf8(void **state)
 
 static void unsound_detections_are_not_written(void **state)
 {
-    asj_junction bad[10];
+    asj_junction bad[11];
     asj_vanishing_points nowhere = {.count = 1};
     asj_detection wrong = detection;
-    asj_edge edge;
+    asj_edge edge, twice[2];
     const char *path = in_folder("never");
     size_t i;
     (void)state;
-    for (i = 0; i < 10; i++)
+    for (i = 0; i < 11; i++)
         bad[i] = junctions[1];
     bad[0].x = 0.0f / (float)(random_state & 0);
     bad[1].branches[1].length = 3e38f * (10.0f + random_float(0, 1));
@@ -376,10 +376,11 @@ static void unsound_detections_are_not_written(void **state)
     bad[7].scale = -1;
     bad[8].octave = -2;
     bad[9].branch_count = 1;
+    bad[10].branches[1].length = ASJ_LONGEST_BRANCH + 1;
     wrong.junction_count = 1;
     wrong.l_junction_count = wrong.edge_count = 0;
     report.detection = &wrong;
-    for (i = 0; i < 10; i++) {
+    for (i = 0; i < 11; i++) {
         wrong.junctions = &bad[i];
         assert_int_equal(asj_junctions_write(path, ASJ_FILE_JSON, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
         assert_non_null(strstr(message, "junction 0"));
@@ -396,6 +397,18 @@ static void unsound_detections_are_not_written(void **state)
         edge.log10_nfa = i == 3 ? bad[0].x : -1;
         assert_int_equal(asj_junctions_write(path, ASJ_FILE_CSV, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
         assert_non_null(strstr(message, "edge 0"));
+    }
+    twice[0] = twice[1] = edges[0];
+    wrong.edges = twice;
+    wrong.edge_count = 2;
+    assert_int_equal(asj_junctions_write(path, ASJ_FILE_JSON, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
+    assert_non_null(strstr(message, "edge 1 is part"));
+    wrong.edge_count = 1;
+    for (i = 0; i < 3; i++) {
+        wrong.width = i == 0 ? 0 : i == 1 ? ASJ_MAX_SIDE + 1 : detection.width;
+        wrong.height = i == 2 ? -1 : detection.height;
+        assert_int_equal(asj_junctions_write(path, ASJ_FILE_JSON, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
+        assert_non_null(strstr(message, "pixels"));
     }
     wrong.edges = NULL;
     assert_int_equal(asj_junctions_write(path, ASJ_FILE_CSV, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);

@@ -197,8 +197,8 @@ static void needed_support_falls_with_the_locations(void **state)
         image[1].l_junctions.home_locations = counts[n][1];
         unit_near("needed", (double)n, 0, (double)asj_needed_support(&run), 2 * asked[n], 1e-6);
     }
-    options.neighbours = 0;
-    unit_near("needed", 0, 0, (double)asj_needed_support(&run), 2, 1e-6);
+    options.neighbours = 0; /* nobody could give it */
+    unit_near("needed", 0, 0, (double)asj_needed_support(&run), 0, 1e-6);
 }
 
 static void without_neighbours_distance_decides(void **state)

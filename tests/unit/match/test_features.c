@@ -224,6 +224,12 @@ static void other_options_are_refused(void **state)
     wider.ratio = 1.2; /* concerns the pair only */
     assert_int_equal(asj_match_features(context, raw, raw, &wider, &result), ASJ_OK);
     asj_match_result_free(&result);
+    asj_features_free(&other); /* -0 is 0 */
+    wider.window_start = 0;
+    other = features_of(context, 1, &wider);
+    wider.window_start = -wider.window_start;
+    assert_int_equal(asj_match_features(context, other, other, &wider, &result), ASJ_OK);
+    asj_match_result_free(&result);
     wider.ratio = 0;
     assert_int_equal(asj_match_features(context, raw, raw, &wider, &result), ASJ_ERROR_OPTION);
     assert_int_equal(asj_match_features(context, raw, NULL, NULL, &result), ASJ_ERROR_ARGUMENT);

@@ -447,13 +447,62 @@ static void out_of_memory(void **state)
     free(part[1]);
 }
 
+/* What the log says, line after line, and how serious the worst line is. */
+typedef struct log_lines {
+    int32_t worst;
+    char text[4096];
+} log_lines;
+
+static void keep_lines(void *user, int32_t level, const char *message)
+{
+    log_lines *lines = user;
+    const size_t used = strlen(lines->text);
+    lines->worst = level < lines->worst ? level : lines->worst;
+    snprintf(lines->text + used, sizeof lines->text - used, "%s\n", message);
+}
+
+/* An image that is too long to be enlarged: its junctions of octave -1 are left out, which is no error. */
+static void what_is_too_large_to_enlarge_is_left_out(void **state)
+{
+    enum { LONG = ASJ_MAX_SIDE / 2 + 2, HIGH = 16 };
+    log_lines lines = {ASJ_LOG_DEBUG, ""};
+    asj_context_options options;
+    asj_context *context = NULL;
+    asj_match_result *result = NULL;
+    asj_features *features = NULL;
+    asj_junction corner = {.x = 40, .y = 8, .scale = 7, .log10_nfa = -10, .branch_count = 2, .octave = -1};
+    uint8_t *pixels = calloc(LONG, HIGH);
+    assert_non_null(pixels);
+    (void)state;
+    corner.branches[0].length = corner.branches[1].length = 5;
+    corner.branches[1].angle = 1.5f;
+    const asj_image image = unit_gray8(pixels, LONG, HIGH);
+    asj_context_options_init(&options);
+    options.backend = ASJ_BACKEND_CPU;
+    options.log = keep_lines;
+    options.log_user = &lines;
+    options.log_level = ASJ_LOG_INFO;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+    assert_int_equal(asj_match(context, &image, &corner, 1, &image, &corner, 1, NULL, &result), ASJ_OK);
+    assert_int_equal(result->enlarged, 0);
+    assert_int_equal(lines.worst, ASJ_LOG_INFO);
+    assert_non_null(strstr(lines.text, "left out: an image of 32769 x 16 pixels is too large for octave -1"));
+    assert_string_equal(asj_context_message(context), "");
+    asj_match_result_free(&result);
+    assert_int_equal(asj_features_create(context, &image, &corner, 1, NULL, &features), ASJ_ERROR_LIMIT);
+    assert_int_equal(lines.worst, ASJ_LOG_ERROR);
+    assert_non_null(strstr(asj_context_message(context), "too large for octave -1"));
+    asj_context_free(&context);
+    free(pixels);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(more_matches),       cmocka_unit_test(only_what_is_confirmed), cmocka_unit_test(a_pose_is_kept),
         cmocka_unit_test(features_and_bytes), cmocka_unit_test(hostile_bytes),          cmocka_unit_test(out_of_memory),
         cmocka_unit_test(colours_and_octaves_come_back), cmocka_unit_test(what_only_the_images_have_remains),
-        cmocka_unit_test(what_contradicts_is_no_answer),
+        cmocka_unit_test(what_contradicts_is_no_answer),  cmocka_unit_test(what_is_too_large_to_enlarge_is_left_out),
     };
     return cmocka_run_group_tests(tests, make_views, free_views);
 }
