@@ -66,7 +66,6 @@ typedef struct asj_cl_argument {
  * const asj_cl_argument arguments[] = {ASJ_CL_BUFFER(&plane), ASJ_CL_INT(width)}; */
 #define ASJ_CL_BUFFER(buffer) {ASJ_CL_KIND_MEMORY, 0, sizeof(cl_mem), &(buffer)->memory}      /* __global or __constant */
 #define ASJ_CL_INT(integer) {ASJ_CL_KIND_NUMBER, (uint32_t)(int32_t)(integer), 4, NULL}       /* int */
-#define ASJ_CL_UINT(integer) {ASJ_CL_KIND_NUMBER, (uint32_t)(integer), 4, NULL}               /* uint */
 #define ASJ_CL_LOCAL(bytes) {ASJ_CL_KIND_LOCAL, 0, (size_t)(bytes), NULL}                     /* __local */
 #define ASJ_CL_STRUCT(pointer, bytes) {ASJ_CL_KIND_VALUE, 0, (size_t)(bytes), (pointer)}      /* anything by value, float too */
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The edge between two junctions is a part of a branch: from the junction to another one that it ends at or passes. The test is
- * the strip's (strip.c), over the whole part: the strip from the junction to t = d holds gamma(d) in n(d) pixels, and
- *     NFA = (NM)^(3/2) F(gamma(d); n(d)).
+ * the strip's (strip.c), over the whole part: the strip from the junction to t = d holds gamma(d) in n(d) pixels, of which c are as
+ * good as one (asj_strip_alike()), and
+ *     ln NFA = ln tests + ln F(gamma(d); n(d)) / c,     tests = (NM)^(3/2) times the octaves.
  * The image's planes are gone when edges are known (each octave has its own), so gamma and n are kept at eight places of the
  * branch and are linear between them. */
 #include "edge_evidence.h"

@@ -71,8 +71,7 @@ static double edge_from(const asj_frame *frame, const asj_end_rays *rays, const 
                       c * end->uy + s * end->ux);
 }
 
-/* The strongest edge to one side from around the end; returns its angle from the branch's line in degrees, 0 when there is none.
- * */
+/* The strongest edge to one side from around the end: its angle from the branch's line in degrees; 0 when there is none. */
 static double edge_beside(const asj_frame *frame, const asj_end_rays *rays, const arrival *end, int side)
 {
     double best = EDGE, found = 0;

@@ -145,7 +145,6 @@ void asj_ray_walk_finish(const asj_scan *scan, asj_ray *ray)
         ray->axial = ray->forward + bridge;
 }
 
-
 /* Whether there is an edge along the ray at radius r: three pixels across, rounded. The border's margin is zero. */
 static int has_edge(const asj_frame *frame, const asj_ray_direction *way, int32_t r)
 {

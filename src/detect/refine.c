@@ -3,8 +3,7 @@
  *
  * line_fit (default): the line fit of line_fit.c over t = 5 .. L - 3 (less for short branches), then the meeting point of all
  * lines. The first pixels are left out because blur bends edges inwards at a corner, the last because the end is known to a few
- * pixels only. About three times as accurate as the search and a hundred
- * times cheaper.
+ * pixels only. About three times as accurate as the search and a hundred times cheaper.
  *
  * search: the paper's way (search.c). */
 #include "refine.h"

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-
 /* What stands behind the public struct. */
 typedef struct result {
     asj_detection detection; /* first: the public pointer is this one */

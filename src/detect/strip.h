@@ -5,8 +5,10 @@
 
 #include "core/image.h"
 
-/* Over the pixels of a strip: the sum of gamma in 1/1024, those of the squares of the gradient's components
- * along (uu) and across (nn) and of their product (un), that of gamma of the part next to the junction, numbers of pixels. */
+/* Over the pixels of a strip: the sum of gamma, those of the squares of the gradient's components along (uu) and across (nn) and of
+ * their product (un), that of gamma of the part next to the junction, numbers of pixels. Sums of gamma are in 1/1024 while they are
+ * added up, and in standard units in what asj_strip_add_up() and asj_strip_test() return; the others stay in 2^-20: only their
+ * ratios count. */
 typedef struct asj_strip_sums {
     double gamma, uu, un, nn, near_gamma;
     int32_t pixels, near_pixels;

@@ -11,6 +11,7 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
@@ -21,8 +22,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* The program takes a second at most for what it should do (its own limit is of processor time). */
-enum { PATIENCE_MS = 60000, MOST_PATH = 4096 };
+/* How long a program that says nothing is waited for: its own limit is one of processor time, a second and another one for each
+ * megapixel (heif_program.c), and the machine may be busy. */
+enum { PATIENCE_MS = 60000, PATIENCE_PIXELS = 250, MOST_PATH = 4096 }; /* and a millisecond for so many pixels */
+
+/* The program's end of the talk. */
+typedef struct talk {
+    int socket, patience_ms;
+} talk;
 
 static int is_there(char *path, const char *folder, size_t folder_size, const char *name)
 {
@@ -81,22 +88,22 @@ static int start(const char *path, const char *program, int socket, const char *
 }
 
 /* Waits until the socket is ready. */
-static int is_ready(int socket, short what)
+static int is_ready(const talk *with, short what)
 {
-    struct pollfd one = {socket, what, 0};
+    struct pollfd one = {with->socket, what, 0};
     int got;
     do
-        got = poll(&one, 1, PATIENCE_MS);
+        got = poll(&one, 1, with->patience_ms);
     while (got < 0 && errno == EINTR);
     return got > 0;
 }
 
 /* All bytes, or 0. A closed socket is no signal but an error. */
-static int send_all(int socket, const unsigned char *bytes, size_t size)
+static int send_all(const talk *with, const unsigned char *bytes, size_t size)
 {
     while (size) {
-        ssize_t sent = is_ready(socket, POLLOUT) ? send(socket, bytes, size, MSG_NOSIGNAL) : 0;
-        if (sent < 0 && errno == EINTR)
+        ssize_t sent = is_ready(with, POLLOUT) ? send(with->socket, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT) : 0;
+        if (sent < 0 && (errno == EINTR || errno == EAGAIN))
             continue;
         if (sent <= 0)
             return 0;
@@ -106,11 +113,11 @@ static int send_all(int socket, const unsigned char *bytes, size_t size)
     return 1;
 }
 
-static int receive_all(int socket, void *to, size_t size)
+static int receive_all(const talk *with, void *to, size_t size)
 {
     unsigned char *bytes = to;
     while (size) {
-        ssize_t got = is_ready(socket, POLLIN) ? recv(socket, bytes, size, 0) : 0;
+        ssize_t got = is_ready(with, POLLIN) ? recv(with->socket, bytes, size, 0) : 0;
         if (got < 0 && errno == EINTR)
             continue;
         if (got <= 0)
@@ -143,14 +150,14 @@ static int is_expected(const asj_decoder_answer *answer, const asj_image_probe *
            answer->width * answer->height <= probe->width * probe->height;
 }
 
-static asj_status receive(int socket, const asj_image_probe *probe, uint64_t max_pixels, asj_image_buffer *buffer,
+static asj_status receive(const talk *with, const asj_image_probe *probe, uint64_t max_pixels, asj_image_buffer *buffer,
                           const asj_message *message)
 {
     asj_decoder_answer answer;
     int32_t format;
     asj_status status;
 
-    if (!receive_all(socket, &answer, sizeof answer) || answer.magic != ASJ_DECODER_MAGIC)
+    if (!receive_all(with, &answer, sizeof answer) || answer.magic != ASJ_DECODER_MAGIC)
         return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged or unusual %s: its decoder gave up", probe->name);
     if (answer.samples == ASJ_DECODER_LACKS)
         return asj_message_fail(message, ASJ_ERROR_UNSUPPORTED, "the %s decoder here lacks the codec of this file", probe->name);
@@ -158,7 +165,7 @@ static asj_status receive(int socket, const asj_image_probe *probe, uint64_t max
     if (!format || !is_expected(&answer, probe))
         return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged or unusual %s", probe->name);
     status = asj_image_allocate(buffer, answer.width, answer.height, format, max_pixels, message);
-    if (status == ASJ_OK && !receive_all(socket, buffer->pixels, (size_t)(answer.width * answer.height) * asj_pixel_size(format)))
+    if (status == ASJ_OK && !receive_all(with, buffer->pixels, (size_t)(answer.width * answer.height) * asj_pixel_size(format)))
         return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged %s: its decoder gave up", probe->name);
     return status;
 }
@@ -175,6 +182,8 @@ asj_status asj_decode_elsewhere(const char *program, const asj_input *input, con
                                 asj_image_buffer *buffer, const asj_message *message)
 {
     char path[MOST_PATH], pixels[32];
+    const uint64_t wait_ms = PATIENCE_MS + probe->width * probe->height / PATIENCE_PIXELS;
+    talk with;
     int ends[2], error, state;
     pid_t process;
     asj_status status = ASJ_OK;
@@ -185,15 +194,17 @@ asj_status asj_decode_elsewhere(const char *program, const asj_input *input, con
     error = open_sockets(ends);
     if (error)
         return asj_message_errno(message, error, "cannot start its decoder");
+    with.socket = ends[0];
+    with.patience_ms = wait_ms < INT_MAX ? (int)wait_ms : INT_MAX;
     snprintf(pixels, sizeof pixels, "%llu", (unsigned long long)(probe->width * probe->height));
     error = start(path, program, ends[1], pixels, &process);
     close(ends[1]);
     if (error) {
         status = asj_message_errno(message, error, "cannot start its decoder");
     } else {
-        if (send_all(ends[0], input->bytes, input->size))
+        if (send_all(&with, input->bytes, input->size))
             shutdown(ends[0], SHUT_WR);
-        status = receive(ends[0], probe, max_pixels, buffer, message);
+        status = receive(&with, probe, max_pixels, buffer, message);
         kill(process, SIGKILL); /* it has nothing more to do */
         while (waitpid(process, &state, 0) < 0 && errno == EINTR)
             continue;

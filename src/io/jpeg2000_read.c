@@ -136,7 +136,7 @@ static asj_status decode(opj_codec_t *codec, opj_stream_t *stream, const asj_ima
     opj_set_default_decoder_parameters(&parameters);
     opj_set_error_handler(codec, on_complaint, reader);
     if (!opj_setup_decoder(codec, &parameters) || !opj_read_header(stream, codec, image))
-        return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged JPEG 2000: %s", reader->cause);
+        return asj_decoder_fail(message, "damaged JPEG 2000", reader->cause);
     if (!is_usual(*image) || (*image)->x1 - (*image)->x0 != probe->width || (*image)->y1 - (*image)->y0 != probe->height)
         return asj_message_fail(message, ASJ_ERROR_UNSUPPORTED, "an unusual JPEG 2000");
     for (i = 0; i < ((*image)->numcomps < 3 ? 1u : 3u); i++)
@@ -147,7 +147,7 @@ static asj_status decode(opj_codec_t *codec, opj_stream_t *stream, const asj_ima
     if (status != ASJ_OK)
         return status;
     if (!opj_decode(codec, stream, *image) || !opj_end_decompress(codec, stream))
-        return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged or truncated JPEG 2000: %s", reader->cause);
+        return asj_decoder_fail(message, "damaged or truncated JPEG 2000", reader->cause);
     for (i = 0; i < ((*image)->numcomps < 3 ? 1u : 3u); i++)
         if (!(*image)->comps[i].data)
             return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged JPEG 2000: a component is missing");

@@ -109,7 +109,7 @@ static void read_header(jpeg_reader *reader)
         leave(reader, status);
 }
 
-/* Adobe's programs store inks inverted, 255 = none, and so does every file with four inks in practice. */
+/* Adobe's programs store inks inverted, 255 = none; as other readers do (Pillow, OpenCV), so it is taken for every file. */
 static void inks_to_rgb(unsigned char *rgb, const unsigned char *inks, int32_t width)
 {
     int32_t x;

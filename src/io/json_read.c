@@ -81,6 +81,15 @@ static asj_status find_end(json_reader *reader, const char **value_end)
 /* Jansson's own form of a value can be 25 times as long as its text. */
 enum { LONGEST_VALUE = 1 << 20 };
 
+/* Whether memory ran out. Jansson says so, or nothing, or takes a string that it has no room for for no token; what is none does
+ * not come as far as this (find_end()). */
+static int is_of_memory(const json_error_t *error)
+{
+    static const char no_token[] = "invalid token";
+    return json_error_code(error) == json_error_out_of_memory || error->text[0] == '\0' ||
+           !strncmp(error->text, no_token, sizeof no_token - 1);
+}
+
 /* Parses one value; the caller lets go of it. */
 static asj_status read_value(json_reader *reader, json_t **value)
 {
@@ -95,7 +104,7 @@ static asj_status read_value(json_reader *reader, json_t **value)
     *value = json_loadb(reader->next, (size_t)(stop - reader->next),
                         JSON_DECODE_ANY | JSON_DISABLE_EOF_CHECK | JSON_REJECT_DUPLICATES, &error);
     if (!*value) {
-        if (json_error_code(&error) == json_error_out_of_memory)
+        if (is_of_memory(&error))
             return asj_message_fail(reader->message, ASJ_ERROR_MEMORY, "out of memory for JSON");
         return asj_line_fail(reader->message, reader->line + (size_t)(error.line > 0 ? error.line - 1 : 0), "damaged JSON: %s",
                              error.text);

@@ -39,6 +39,29 @@ asj_status asj_message_fail(const asj_message *message, asj_status status, const
     return status;
 }
 
+/* "Memory allocation of 9 bytes is beyond the 8 byte limit defined in open options" is libtiff's word for what a file asks beyond
+ * reason (tiff_read.c): that file is damaged. */
+static int is_of_memory(const char *complaint)
+{
+    static const char *const words[] = {"memory", "Memory", "No space", "alloc"};
+    size_t i;
+    if (complaint[0] == '\0')
+        return 1;
+    if (strstr(complaint, "limit"))
+        return 0;
+    for (i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (strstr(complaint, words[i]))
+            return 1;
+    return 0;
+}
+
+asj_status asj_decoder_fail(const asj_message *message, const char *what, const char *complaint)
+{
+    if (is_of_memory(complaint))
+        return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for its decoder");
+    return asj_message_fail(message, ASJ_ERROR_FORMAT, "%s: %s", what, complaint);
+}
+
 asj_status asj_message_errno(const asj_message *message, int error, const char *action)
 {
     char text[128];

@@ -32,6 +32,7 @@ typedef struct png_reader {
     unsigned char *raw;        /* rows as libpng gives them */
     size_t raw_row;            /* bytes of one */
     int colour16;              /* raw rows are 16-bit RGB, still to be reduced */
+    int out_of_memory;         /* libpng has no status for it */
 } png_reader;
 
 static void leave(png_reader *reader, asj_status status)
@@ -40,10 +41,26 @@ static void leave(png_reader *reader, asj_status status)
     longjmp(reader->error_exit, 1);
 }
 
+static png_voidp on_allocate(png_structp png, png_alloc_size_t size)
+{
+    png_reader *reader = png_get_mem_ptr(png);
+    void *block = malloc(size);
+    reader->out_of_memory |= !block;
+    return block;
+}
+
+static void on_release(png_structp png, png_voidp block)
+{
+    (void)png;
+    free(block);
+}
+
 static void on_error(png_structp png, png_const_charp text)
 {
     png_reader *reader = png_get_error_ptr(png);
     const char *cause = reader->warning[0] ? reader->warning : NULL;
+    if (reader->out_of_memory)
+        leave(reader, asj_message_fail(reader->message, ASJ_ERROR_MEMORY, "out of memory for PNG"));
     leave(reader, asj_message_fail(reader->message, ASJ_ERROR_FORMAT, "damaged PNG: %s%s%s%s", text, cause ? " (" : "",
                                    cause ? cause : "", cause ? ")" : ""));
 }
@@ -85,7 +102,7 @@ static void skip_descriptions(png_structp png)
 
 static void open_png(png_reader *reader)
 {
-    reader->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, reader, on_error, on_warning);
+    reader->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, reader, on_error, on_warning, reader, on_allocate, on_release);
     reader->info = reader->png ? png_create_info_struct(reader->png) : NULL;
     if (!reader->info)
         leave(reader, asj_message_fail(reader->message, ASJ_ERROR_MEMORY, "out of memory"));

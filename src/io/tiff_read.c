@@ -194,7 +194,7 @@ static asj_status read_plain(tiff_reader *reader, const asj_message *message)
     for (plane = 0; plane < planes && good; plane++)
         good = is_tiled ? read_tiles(reader, buffer, tile_width, tile_height, plane) : read_rows(reader, buffer, plane);
     free(buffer);
-    return good ? ASJ_OK : asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged or truncated TIFF: %s", reader->cause);
+    return good ? ASJ_OK : asj_decoder_fail(message, "damaged or truncated TIFF", reader->cause);
 }
 
 static float float_at(const unsigned char *from, size_t depth)
@@ -290,7 +290,7 @@ static asj_status decode_by_libtiff(tiff_reader *reader, uint64_t max_pixels, as
         }
     }
     free(pixels);
-    return good ? ASJ_OK : asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged or truncated TIFF: %s", reader->cause);
+    return good ? ASJ_OK : asj_decoder_fail(message, "damaged or truncated TIFF", reader->cause);
 }
 
 static asj_status decode(tiff_reader *reader, const asj_image_probe *probe, uint64_t max_pixels, asj_image_buffer *buffer,
@@ -360,7 +360,7 @@ asj_status asj_tiff_decode(const asj_input *input, const asj_image_probe *probe,
     reader.input = input;
     reader.tiff = open_tiff(&reader, probe);
     if (!reader.tiff)
-        return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged TIFF: %s", reader.cause);
+        return asj_decoder_fail(message, "damaged TIFF", reader.cause);
     status = decode(&reader, probe, max_pixels, buffer, message);
     if (status == ASJ_OK)
         read_lens(reader.tiff, &buffer->lens);

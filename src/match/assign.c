@@ -8,10 +8,10 @@
  * candidate must be the best of both its locations, and the ratio is taken on both sides. Without it several locations of image 1
  * may choose one of image 2; then the one with the best score keeps it.
  *
- * The ratio is of distances as they are, not of their squares, as Lowe has it; 1.5 on distances is 2.25 on squares, and what others
- * call 1.5 on squares is 1.22 here. The paper does not say which; its 1.5 is taken as one of distances.
- *
- * The ratio is that of scores, best over second: of distances, second over best, when no neighbours are asked. */
+ * The ratio is that of scores, the best over the second (consensus.c: appearance times support, by default). Without neighbours, as
+ * in preset `paper`, it is that of distances, the second over the best: as they are, not of their squares, as Lowe has it; 1.5 on
+ * distances is 2.25 on squares, and what others call 1.5 on squares is 1.22 here. The paper does not say which; its 1.5 is taken as
+ * one of distances. */
 #include "assign.h"
 #include "consensus.h"
 #include "support.h"

@@ -24,6 +24,20 @@ void asj_candidates_sort(asj_candidates *candidates)
     candidates->count = kept;
 }
 
+const asj_candidate *asj_candidates_find(const asj_candidates *candidates, uint32_t i, uint32_t j)
+{
+    const asj_candidate *list = candidates->list;
+    size_t low = 0, high = candidates->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (list[middle].i < i || (list[middle].i == i && list[middle].j < j))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < candidates->count && list[low].i == i && list[low].j == j ? &list[low] : NULL;
+}
+
 asj_status asj_candidates_append(asj_context *context, asj_candidates *candidates, const asj_candidates *fresh)
 {
     void *list = candidates->list;

@@ -43,6 +43,9 @@ static inline const double *asj_candidate_map(const asj_candidate *c, int32_t si
 /* Sorts by i, then j; keeps one of equal pairs. */
 void asj_candidates_sort(asj_candidates *candidates);
 
+/* That of these two L-junctions in a sorted list, or NULL. */
+const asj_candidate *asj_candidates_find(const asj_candidates *candidates, uint32_t i, uint32_t j);
+
 /* Adds the fresh ones behind the others, unsorted. */
 asj_status asj_candidates_append(asj_context *context, asj_candidates *candidates, const asj_candidates *fresh);
 

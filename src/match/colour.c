@@ -5,8 +5,9 @@
  *   strips     rows 3 and 4.5 px beside a branch, from where they leave what is near the other branch to 24 px or its end
  *   sectors    on three rays between the branches, and on three opposite, 6 to 15 px away
  *
- * All of these lengths are doubled with each octave that the junction was located in. The nearest pixel counts; a pixel that is cut
- * in one channel does not, since its colour is not that of the scene.
+ * All of these lengths are doubled with each octave that the junction was located in, up to the fourth: 384 px of a strip are as
+ * much as an image shows of one thing. The nearest pixel counts; a pixel that is cut in one channel does not, since its colour is
+ * not that of the scene.
  *
  * Sums of whole numbers at places that are rounded once: the same on every machine. Neither exposure nor white balance is known
  * here: what two images differ in as a whole is seen when they are compared. */

@@ -2,10 +2,10 @@
 /* The pose once more, from where the matches lie.
  *
  * likelihood.c weighs candidates: hundreds of pairs of spots, most of them wrong, known to a pixel or so, with maps that are good
- * to some degrees. That finds the motion, and how far it is known. The matches that are left are more, nearly all are right, and
- * in sharp images they lie within some hundredths of a pixel of their epipolar lines; how near differs from pair to pair, and
- * they tell it themselves. So, with d_k the first-order distance of a match from the geometry (Sampson 1982; Hartley and
- * Zisserman, 11.4.3),
+ * to some degrees. That finds the motion, and how far it is known. The matches that are left are more, nearly all are right, and in
+ * sharp images they lie within some hundredths of a pixel of their epipolar lines; how near differs from pair to pair, and they
+ * tell it themselves. So, with d_k the first-order distance of a match k that is likelier right than wrong from the geometry
+ * (Sampson 1982; Hartley and Zisserman, 11.4.3),
  *
  *     d = x2' F x1 / sqrt(|first two of F x1|^2 + |first two of F' x2|^2)  px,     F = K2'^-1 [t]x R K1^-1,
  *

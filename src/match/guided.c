@@ -93,28 +93,13 @@ static void ask(const asj_match_run *run, int32_t side, uint32_t l, const guide 
 
 /* --- both directions -------------------------------------------------------------------------------------------------------- */
 
-/* Is the pair in the list, which is in order? */
-static int32_t known(const asj_candidates *candidates, uint32_t i, uint32_t j)
-{
-    const asj_candidate *list = candidates->list;
-    size_t low = 0, high = candidates->count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (list[middle].i < i || (list[middle].i == i && list[middle].j < j))
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < candidates->count && list[low].i == i && list[low].j == j;
-}
-
 /* Appends what image `side` proposes to `fresh`. */
 static asj_status collect(const asj_match_run *run, int32_t side, const proposals *all, asj_candidates *fresh)
 {
     for (uint32_t l = 0; l < run->image[side]->l_junctions.count; l++)
         for (uint32_t k = 0; k < all[l].count; k++) {
             const uint32_t i = side == 0 ? l : all[l].partner[k], j = side == 0 ? all[l].partner[k] : l;
-            if (known(&run->candidates, i, j))
+            if (asj_candidates_find(&run->candidates, i, j))
                 continue;
             void *list = fresh->list;
             asj_status status = asj_grow(&run->context->memory, &list, &fresh->capacity, fresh->count + 1, sizeof *fresh->list,

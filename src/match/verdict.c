@@ -79,14 +79,6 @@ static int32_t is_replaced(const asj_match_run *run, const asj_wide_run *w, cons
 
 /* --- matches that are there -------------------------------------------------------------------------------------------------- */
 
-static int by_pair(const void *left, const void *right)
-{
-    const asj_candidate *p = left, *q = right;
-    if (p->i != q->i)
-        return p->i < q->i ? -1 : 1;
-    return p->j < q->j ? -1 : p->j > q->j;
-}
-
 /* Of a match that is no candidate. */
 static double probability_by_itself(const asj_match_run *run, const asj_candidate *c)
 {
@@ -98,7 +90,7 @@ static double probability_by_itself(const asj_match_run *run, const asj_candidat
 static double probability_of(const asj_match_run *run, const asj_wide_run *w, const asj_candidate *c)
 {
     const asj_candidates *wide = &w->run.candidates;
-    const asj_candidate *found = wide->count ? bsearch(c, wide->list, wide->count, sizeof *c, by_pair) : NULL;
+    const asj_candidate *found = asj_candidates_find(wide, c->i, c->j);
     const double probability = found ? w->probability[found - wide->list] : 0;
     return probability > 0 ? probability : probability_by_itself(run, c);
 }

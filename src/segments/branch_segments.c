@@ -18,7 +18,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 /* What stands behind the public struct. */
 typedef struct own_list {
     asj_segment_list list; /* first: the public pointer is this one */

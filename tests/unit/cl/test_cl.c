@@ -309,7 +309,7 @@ static void test_failures(void **state)
     assert_non_null(strstr(asj_context_message(context), "clEnqueueWriteBuffer"));
     assert_int_equal(asj_cl_read(context, &buffer, 4, &number, 1), ASJ_ERROR_DEVICE);
     assert_non_null(strstr(asj_context_message(context), "clEnqueueReadBuffer"));
-    const asj_cl_argument arguments[] = {ASJ_CL_BUFFER(&buffer), ASJ_CL_INT(1), ASJ_CL_UINT(2)};
+    const asj_cl_argument arguments[] = {ASJ_CL_BUFFER(&buffer), ASJ_CL_INT(1), ASJ_CL_INT(2)};
     const asj_cl_arguments first = {arguments, 1};
     const asj_cl_argument wrong[] = {ASJ_CL_STRUCT(&number, 3)};
     assert_int_equal(asj_cl_run(context, "no_such_kernel", 1, &global, NULL, first), ASJ_ERROR_DEVICE);
