@@ -81,11 +81,10 @@ ASJ_API const char *asj_io_image_formats(void);
 
 /* An output file that appears whole or not at all: it is written beside its place under another name and renamed by
  * asj_output_commit(). So a file that was there before stays until then, and stays for good when anything fails. "-" and
- * /dev/stdout are standard output; that, pipes and devices are written directly. A protected file is not replaced, a symbolic
- * link is followed, even to a file that is not there yet, and the permissions of a file that was there before are kept. A
- * process that is killed in between leaves a file named .asj-NUMBER-NUMBER.tmp. Under Windows a symbolic link is replaced, and NUL
- * and consoles are what is written directly.
- * Thread safety: one thread at a time per output. */
+ * /dev/stdout are standard output; that, pipes and devices are written directly. A protected file is not replaced, a symbolic link
+ * is followed, even to a file that is not there yet, and the permissions of a file that was there before are kept, where root
+ * writes it its owner, too. A process that is killed in between leaves a file named .asj-NUMBER-NUMBER.tmp. Under Windows a
+ * symbolic link is replaced, and NUL and consoles are what is written directly. Thread safety: one thread at a time per output. */
 typedef struct asj_output asj_output;
 
 /* The absolute path of the file that an output of this path creates or replaces: folders resolved, symbolic links followed. So two

@@ -2,14 +2,10 @@
 /* The structure of a HEIF or AVIF file (ISO/IEC 23008-12 on the boxes of ISO/IEC 14496-12): its brands, and the size of its
  * largest image. An image's size stands in a property (ispe) that items share; the largest is what the file shows, the others are
  * its tiles, thumbnails and depth maps. Films of the same container are told by their brands. */
+#include "bytes.h"
 #include "probe.h"
 
 #include <string.h>
-
-static uint32_t big32(const unsigned char *b)
-{
-    return (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
-}
 
 /* A box of `bytes`: what is inside is `size` bytes at `content`. */
 typedef struct box {
@@ -27,10 +23,10 @@ static int next_box(const unsigned char *bytes, size_t size, size_t *at, box *b)
 
     if (left < 8)
         return 0;
-    length = big32(start);
+    length = asj_big32(start);
     memcpy(b->type, start + 4, 4);
     if (length == 1 && left >= 16) {
-        length = (uint64_t)big32(start + 8) << 32 | big32(start + 12);
+        length = (uint64_t)asj_big32(start + 8) << 32 | asj_big32(start + 12);
         head = 16;
     } else if (length == 0) { /* to the end */
         length = left;
@@ -56,7 +52,7 @@ static void read_properties(const box *container, asj_image_probe *probe)
     while (next_box(container->content, container->size, &at, &b) == 1) {
         if (!is_type(&b, "ispe") || b.size < 12)
             continue;
-        const uint64_t width = big32(b.content + 4), height = big32(b.content + 8);
+        const uint64_t width = asj_big32(b.content + 4), height = asj_big32(b.content + 8);
         if (!probe->has_size || width * height > probe->width * probe->height) {
             probe->width = width;
             probe->height = height;

@@ -2,6 +2,7 @@
 /* Signatures and headers of image formats. The size is wanted before decoding, so that a small file cannot ask for a huge image. */
 #include "image_probe.h"
 
+#include "bytes.h"
 #include "exif.h"
 
 #include <string.h>
@@ -12,11 +13,6 @@ static uint32_t little(const unsigned char *b, int count)
     while (count--)
         value = value << 8 | b[count];
     return value;
-}
-
-static uint32_t big32(const unsigned char *b)
-{
-    return (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
 }
 
 static void set_size(asj_image_probe *probe, uint64_t width, uint64_t height)
@@ -72,7 +68,7 @@ static void probe_webp(const asj_input *input, asj_image_probe *probe)
 static void probe_sun_raster(const asj_input *input, asj_image_probe *probe)
 {
     if (input->size >= 12)
-        set_size(probe, big32(input->bytes + 4), big32(input->bytes + 8));
+        set_size(probe, asj_big32(input->bytes + 4), asj_big32(input->bytes + 8));
 }
 
 static int read_number(const asj_input *input, size_t *at, uint64_t *number)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The structure of a JPEG 2000 file (ISO/IEC 15444-1): the boxes of JP2 (annex I) down to the codestream, whose main header (annex
  * A) is read up to the first tile. The decoder gets the codestream alone, so that it can find no other than this one. */
+#include "bytes.h"
 #include "probe.h"
 
 #include <string.h>
@@ -10,26 +11,16 @@ enum { MARKER_SIZ = 0xff51, MARKER_SOT = 0xff90 };
 /* OpenJPEG takes some kilobytes for each tile, and 1 kilobyte for each component of each tile, before it has seen any of them. */
 enum { MOST_COMPONENTS = 5, MOST_TILES = 4096 };
 
-static uint32_t big16(const unsigned char *b)
-{
-    return (uint32_t)b[0] << 8 | b[1];
-}
-
-static uint32_t big32(const unsigned char *b)
-{
-    return big16(b) << 16 | big16(b + 2);
-}
-
 /* What the boxes inside jp2h tell: the colours. */
 static void read_header_boxes(const unsigned char *b, size_t size, asj_image_probe *probe)
 {
     size_t at = 0;
     while (size - at >= 8) {
-        size_t length = big32(b + at);
+        size_t length = asj_big32(b + at);
         if (length < 8 || length > size - at)
             return;
         if (!memcmp(b + at + 4, "colr", 4) && length >= 15 && b[at + 8] == 1)
-            probe->is_ycc = big32(b + at + 11) == 18;
+            probe->is_ycc = asj_big32(b + at + 11) == 18;
         if (!memcmp(b + at + 4, "pclr", 4))
             probe->fault = "colours from a palette are not read";
         at += length;
@@ -43,10 +34,10 @@ static size_t find_codestream(const asj_input *input, asj_image_probe *probe)
     size_t at = 0;
 
     while (input->size - at >= 8) {
-        uint64_t length = big32(b + at);
+        uint64_t length = asj_big32(b + at);
         size_t head = 8, left = input->size - at;
         if (length == 1 && left >= 16) {
-            length = (uint64_t)big32(b + at + 8) << 32 | big32(b + at + 12);
+            length = (uint64_t)asj_big32(b + at + 8) << 32 | asj_big32(b + at + 12);
             head = 16;
         }
         if (!memcmp(b + at + 4, "jp2c", 4))
@@ -67,14 +58,15 @@ static void read_siz(const unsigned char *b, size_t length, asj_image_probe *pro
 
     if (length < 36)
         return;
-    right = big32(b + 2), bottom = big32(b + 6), left = big32(b + 10), top = big32(b + 14);
-    if (!big32(b + 18) || !big32(b + 22) || right <= left || bottom <= top || big32(b + 26) > left || big32(b + 30) > top) {
+    right = asj_big32(b + 2), bottom = asj_big32(b + 6), left = asj_big32(b + 10), top = asj_big32(b + 14);
+    if (!asj_big32(b + 18) || !asj_big32(b + 22) || right <= left || bottom <= top || asj_big32(b + 26) > left ||
+        asj_big32(b + 30) > top) {
         probe->fault = "its sizes contradict each other";
         return;
     }
-    across = (right - big32(b + 26) + big32(b + 18) - 1) / big32(b + 18);
-    down = (bottom - big32(b + 30) + big32(b + 22) - 1) / big32(b + 22);
-    if (big16(b + 34) > MOST_COMPONENTS)
+    across = (right - asj_big32(b + 26) + asj_big32(b + 18) - 1) / asj_big32(b + 18);
+    down = (bottom - asj_big32(b + 30) + asj_big32(b + 22) - 1) / asj_big32(b + 22);
+    if (asj_big16(b + 34) > MOST_COMPONENTS)
         probe->fault = "more than five components";
     else if (across > MOST_TILES || down > MOST_TILES || across * down > MOST_TILES)
         probe->fault = "more than 4096 tiles";
@@ -95,15 +87,15 @@ void asj_probe_jpeg2000(const asj_input *input, asj_image_probe *probe)
         probe->fault = "no codestream";
         return;
     }
-    for (at += 2; input->size - at >= 4 && big16(b + at) != MARKER_SOT; at += 2 + big16(b + at + 2)) {
-        size_t length = big16(b + at + 2);
+    for (at += 2; input->size - at >= 4 && asj_big16(b + at) != MARKER_SOT; at += 2 + asj_big16(b + at + 2)) {
+        size_t length = asj_big16(b + at + 2);
         if (length < 2 || length > input->size - at - 2)
             break;
-        if (big16(b + at) == MARKER_SIZ && (probe->has_size || probe->fault))
+        if (asj_big16(b + at) == MARKER_SIZ && (probe->has_size || probe->fault))
             probe->fault = probe->fault ? probe->fault : "it gives its size twice";
-        else if (big16(b + at) == MARKER_SIZ)
+        else if (asj_big16(b + at) == MARKER_SIZ)
             read_siz(b + at + 4, length - 2, probe);
     }
-    if (input->size - at < 4 || big16(b + at) != MARKER_SOT)
+    if (input->size - at < 4 || asj_big16(b + at) != MARKER_SOT)
         probe->is_truncated = 1;
 }

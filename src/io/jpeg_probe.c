@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The marker structure of a JPEG file (ITU-T T.81, annex B). The decoder behind OpenCV fills what is missing from a truncated file
  * with gray and reports success; a file whose end marker is missing is therefore told here. */
+#include "bytes.h"
 #include "exif.h"
 #include "probe.h"
 
@@ -18,11 +19,6 @@ static int is_restart(int marker)
 static int is_frame(int marker)
 {
     return (marker & 0xf0) == 0xc0 && marker != MARKER_DHT && marker != MARKER_JPG && marker != MARKER_DAC;
-}
-
-static size_t get16(const unsigned char *b)
-{
-    return (size_t)b[0] << 8 | b[1];
 }
 
 /* Moves *at behind the next marker and returns it; -1 at the end of the file. Compressed data may stand before it: in them 0xff is
@@ -43,8 +39,8 @@ static int next_marker(const asj_input *input, size_t *at)
 static void read_segment(int marker, const unsigned char *content, size_t length, asj_image_probe *probe)
 {
     if (is_frame(marker) && length >= 5 && !probe->has_size) {
-        probe->height = get16(content + 1);
-        probe->width = get16(content + 3);
+        probe->height = asj_big16(content + 1);
+        probe->width = asj_big16(content + 3);
         probe->has_size = 1;
     }
     if (marker == MARKER_APP1 && length > 6 && !memcmp(content, "Exif\0\0", 6) && !probe->exif) { /* the first counts */
@@ -68,7 +64,7 @@ void asj_probe_jpeg(const asj_input *input, asj_image_probe *probe)
             continue;
         if (marker < 0 || marker == MARKER_EOI || input->size - at < 2)
             break;
-        length = get16(input->bytes + at);
+        length = asj_big16(input->bytes + at);
         if (length < 2 || length > input->size - at)
             break;
         read_segment(marker, input->bytes + at + 2, length - 2, probe);

@@ -105,7 +105,11 @@ int asj_system_open(const char *path, char **target)
 void asj_system_permit(int file, const char *as)
 {
     struct stat info;
-    if (!stat(as, &info) && fchmod(file, info.st_mode & 0777))
+    if (stat(as, &info))
+        return;
+    if ((info.st_uid != geteuid() || info.st_gid != getegid()) && fchown(file, info.st_uid, info.st_gid))
+        errno = 0; /* only root gives files away */
+    if (fchmod(file, info.st_mode & 0777))
         errno = 0; /* some file systems know no permissions: the file itself matters more */
 }
 

@@ -14,7 +14,7 @@
  * -1, and `target`, which is NULL before, names it (free() it): absolute or as given, symbolic links followed. */
 int asj_system_open(const char *path, char **target);
 
-/* Gives an open file the permissions of another, where that is there and the file system knows any. */
+/* Gives an open file the owner and the permissions of another, where that is there and it can be done. */
 void asj_system_permit(int file, const char *as);
 
 /* Opens a file that must not be there, which no other program inherits, with the permissions that new files get. */
