@@ -41,7 +41,9 @@ typedef struct asj_segment_list {
  * edge reaches from its first end to the last; ends are known to 4 px or 5 % of the length, 12 px at most, and where a corner is no
  * farther from a less sure end, that is the end, unless the corner goes on and the end lies beyond it by more than 4 px. A corner
  * that turns is the end also of what goes on beyond it by up to 24 px and half of its length. Edges count as straight: what bends
- * by more than 2 px comes in several. For matches of two images: asj_join_segment_matches().
+ * by more than 2 px comes in several, and of two such that overlap, cross at less than 6 degrees and lie within 6 px of each other
+ * there, one from each end of the edge, each ends where they cross (ASJ_BRANCH_END_CROSSING, its uncertainty not known); where that
+ * is within 2 px of the line between their corners, they are one. For matches of two images: asj_join_segment_matches().
  *
  * junctions   may be NULL when count is 0; only read
  * edges       of these junctions, as the detection has them: branches that end at each other's junctions are one in any case. NULL

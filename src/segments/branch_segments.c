@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj_find_segments(): the straight edges of an image, each once.
  *
- * An edge has a branch from each of its ends, and one from every corner on it (a window frame where bars meet it, a row of tiles).
- * Branches are taken one after the other, the longest first; one that is of the same edge as one before joins it (one_edge.c).
- * Where ends have moved they may reach others, so all is done again until none has. Before all that the two branches of an edge of
- * the graph (asj_edge) that end at each other's junctions are one: side by side with another edge, each might join that instead.
- * The paper has no such step: its results are branches. */
+ * Every branch is a segment, and those of one edge are joined (join_segments.c). Before that the two branches of an edge of the
+ * graph (asj_edge) that end at each other's junctions are one: side by side with another edge, each might join that instead. The
+ * paper has no such step: its results are branches. */
+#include "join_segments.h"
 #include "one_edge.h"
-#include "segment_cells.h"
-#include "core/context.h"
 #include "core/most_junctions.h"
-#include "core/watch.h"
 
 #include <asj/segments.h>
 
@@ -27,43 +23,16 @@ typedef struct own_list {
 } own_list;
 
 typedef struct work {
-    asj_context *context;
-    const asj_junction *junctions;
+    asj_joining joining;
     const asj_edge *edges;
     size_t junction_count, edge_count;
-    asj_watch watch;
-    asj_segment *segments;
-    uint32_t count;
-    uint32_t *joined;      /* for each branch that of the segment which its own has joined, itself while it has not, or
-                            * ASJ_NO_SEGMENT: where this ends is the segment's branch */
-    uint32_t *edge_of;     /* for each branch its edge, + 1; 0 = none */
-    uint32_t *asked;       /* for each segment the last one that was compared with it, + 1 */
-    asj_segment_cells cells;
+    uint32_t *edge_of; /* for each branch its edge, + 1; 0 = none */
 } work;
 
 static double length2_of(const asj_segment *s)
 {
     const double dx = (double)s->x2 - (double)s->x1, dy = (double)s->y2 - (double)s->y1;
     return dx * dx + dy * dy;
-}
-
-static size_t number_of(uint32_t junction, uint16_t branch)
-{
-    return (size_t)junction * ASJ_MAX_BRANCHES + branch;
-}
-
-static size_t branch_of(const asj_segment *s)
-{
-    return number_of(s->junction, s->branch);
-}
-
-static int by_length(const void *a, const void *b)
-{
-    const asj_segment *p = a, *q = b;
-    const double one = length2_of(p), other = length2_of(q);
-    if (one > other || one < other)
-        return one > other ? -1 : 1;
-    return branch_of(p) < branch_of(q) ? -1 : branch_of(p) > branch_of(q);
 }
 
 /* ---- branches ---- */
@@ -108,7 +77,7 @@ static int ends_at(const asj_junction *junction, uint16_t branch, const asj_junc
 
 static int has_branch(const work *w, uint32_t junction, uint16_t branch)
 {
-    return junction < w->junction_count && branch < ASJ_MAX_BRANCHES && branch < w->junctions[junction].branch_count;
+    return junction < w->junction_count && branch < ASJ_MAX_BRANCHES && branch < w->joining.junctions[junction].branch_count;
 }
 
 /* The edges whose two branches end at each other's junctions. */
@@ -118,10 +87,10 @@ static asj_status take_edges(work *w)
     for (size_t k = 0; k < w->edge_count; k++) {
         const asj_edge *e = &w->edges[k];
         if (!has_branch(w, e->junction_a, e->branch_a) || !has_branch(w, e->junction_b, e->branch_b))
-            return asj_fail(w->context, ASJ_ERROR_ARGUMENT, "edge %zu is of a branch that is not there", k);
-        const asj_junction *a = &w->junctions[e->junction_a], *b = &w->junctions[e->junction_b];
-        uint32_t *of_a = &w->edge_of[number_of(e->junction_a, e->branch_a)];
-        uint32_t *of_b = &w->edge_of[number_of(e->junction_b, e->branch_b)];
+            return asj_fail(w->joining.context, ASJ_ERROR_ARGUMENT, "edge %zu is of a branch that is not there", k);
+        const asj_junction *a = &w->joining.junctions[e->junction_a], *b = &w->joining.junctions[e->junction_b];
+        uint32_t *of_a = &w->edge_of[asj_branch_number(e->junction_a, e->branch_a)];
+        uint32_t *of_b = &w->edge_of[asj_branch_number(e->junction_b, e->branch_b)];
         if (!*of_a && !*of_b && ends_at(a, e->branch_a, b) && ends_at(b, e->branch_b, a))
             *of_a = *of_b = (uint32_t)k + 1;
     }
@@ -144,20 +113,20 @@ static void reach_other_end(asj_segment *s, const asj_edge *e, const asj_junctio
 /* A branch, or the edge that it is the first branch of; the second belongs to the first. What has no length is left out. */
 static asj_status take_branch(work *w, uint32_t j, int32_t b)
 {
-    asj_segment s = segment_of(&w->junctions[j], j, b);
-    const size_t number = branch_of(&s);
+    asj_segment s = segment_of(&w->joining.junctions[j], j, b);
+    const size_t number = asj_branch_of(&s);
     const asj_edge *edge = w->edge_of[number] ? &w->edges[w->edge_of[number] - 1] : NULL;
-    const size_t first = edge ? number_of(edge->junction_a, edge->branch_a) : number;
-    if (!is_sound(&s, &w->junctions[j].branches[b]))
-        return asj_fail(w->context, ASJ_ERROR_ARGUMENT, "branch %d of junction %lu cannot be", (int)b, (unsigned long)j);
+    const size_t first = edge ? asj_branch_number(edge->junction_a, edge->branch_a) : number;
+    if (!is_sound(&s, &w->joining.junctions[j].branches[b]))
+        return asj_fail(w->joining.context, ASJ_ERROR_ARGUMENT, "branch %d of junction %lu cannot be", (int)b, (unsigned long)j);
     if (!edge && !(length2_of(&s) > 0))
         return ASJ_OK;
-    w->joined[number] = (uint32_t)first;
+    w->joining.joined[number] = (uint32_t)first;
     if (number != first)
         return ASJ_OK;
     if (edge)
-        reach_other_end(&s, edge, w->junctions);
-    w->segments[w->count++] = s;
+        reach_other_end(&s, edge, w->joining.junctions);
+    w->joining.segments[w->joining.count++] = s;
     return ASJ_OK;
 }
 
@@ -166,107 +135,13 @@ static asj_status take_branches(work *w)
 {
     asj_status status = ASJ_OK;
     for (size_t j = 0; j < w->junction_count && status == ASJ_OK; j++) {
-        const int32_t branches = w->junctions[j].branch_count;
+        const int32_t branches = w->joining.junctions[j].branch_count;
         if (branches < 0 || branches > ASJ_MAX_BRANCHES)
-            return asj_fail(w->context, ASJ_ERROR_ARGUMENT, "junction %zu has %d branches", j, (int)branches);
-        if (!isfinite(w->junctions[j].x) || !isfinite(w->junctions[j].y))
-            return asj_fail(w->context, ASJ_ERROR_ARGUMENT, "junction %zu is nowhere", j);
+            return asj_fail(w->joining.context, ASJ_ERROR_ARGUMENT, "junction %zu has %d branches", j, (int)branches);
+        if (!isfinite(w->joining.junctions[j].x) || !isfinite(w->joining.junctions[j].y))
+            return asj_fail(w->joining.context, ASJ_ERROR_ARGUMENT, "junction %zu is nowhere", j);
         for (int32_t b = 0; b < branches && status == ASJ_OK; b++)
             status = take_branch(w, (uint32_t)j, b);
-    }
-    return status;
-}
-
-/* ---- all of them ---- */
-
-/* The longest before segment `number` that it is of one edge with. */
-typedef struct partner {
-    uint32_t best; /* so far; at first one beyond all */
-    asj_course course;
-} partner;
-
-static void look_in_cell(work *w, const asj_segment *s, uint32_t number, uint32_t first, partner *p)
-{
-    for (uint32_t at = first; at; at = w->cells.entries[at].next) {
-        const uint32_t k = w->cells.entries[at].segment;
-        asj_course course;
-        if (k >= p->best || w->asked[k] == number + 1)
-            continue;
-        w->asked[k] = number + 1;
-        if (asj_is_one_edge(&w->segments[k], s, &course))
-            *p = (partner){k, course};
-    }
-}
-
-static partner find_longer(work *w, const asj_segment *s, uint32_t number, uint32_t kept)
-{
-    const asj_end_point ends[2] = {asj_segment_end(s, 0), asj_segment_end(s, 1)};
-    partner p = {.best = kept};
-    int32_t first, last;
-    asj_segment_cells_rows(&w->cells, ends, 0, &first, &last);
-    for (int32_t row = first; row <= last; row++) {
-        const asj_cell_run run = asj_segment_cells_run(&w->cells, ends, 0, row);
-        for (int32_t column = run.first; column <= run.last; column++)
-            look_in_cell(w, s, number, w->cells.first[(size_t)row * (size_t)w->cells.columns + (size_t)column], &p);
-    }
-    return p;
-}
-
-static int32_t add_to_cells(work *w, uint32_t k)
-{
-    const asj_end_point ends[2] = {asj_segment_end(&w->segments[k], 0), asj_segment_end(&w->segments[k], 1)};
-    return asj_segment_cells_add(&w->context->memory, &w->cells, ends, k);
-}
-
-/* One after the other, the longest first, into those before. */
-static asj_status join_once(work *w, int32_t *moved)
-{
-    uint32_t kept = 0;
-    *moved = 0;
-    memset(w->asked, 0, w->count * sizeof *w->asked);
-    asj_segment_cells_clear(&w->cells);
-    for (uint32_t i = 0; i < w->count && !asj_watch_stops(&w->watch, NULL); i++) {
-        const asj_segment s = w->segments[i];
-        const partner p = find_longer(w, &s, i, kept);
-        const uint32_t k = p.best;
-        int32_t changed = k == kept;
-        if (k < kept) {
-            changed = asj_become_one_edge(w->junctions, &w->segments[k], &s, &p.course);
-            *moved |= changed;
-            w->joined[branch_of(&s)] = (uint32_t)branch_of(&w->segments[k]);
-        } else {
-            w->segments[kept++] = s;
-        }
-        if (changed && !add_to_cells(w, k))
-            return asj_fail(w->context, ASJ_ERROR_MEMORY, "no memory for the segments of %lu branches", (unsigned long)w->count);
-    }
-    w->count = kept;
-    return asj_watch_end(&w->watch);
-}
-
-/* Of two or more. */
-static int32_t make_cells(work *w)
-{
-    double left = HUGE_VAL, top = HUGE_VAL, right = -HUGE_VAL, bottom = -HUGE_VAL;
-    for (uint32_t k = 0; k < 2 * w->count; k++) {
-        const asj_end_point p = asj_segment_end(&w->segments[k / 2], (int32_t)(k % 2));
-        left = fmin(left, p.x), right = fmax(right, p.x);
-        top = fmin(top, p.y), bottom = fmax(bottom, p.y);
-    }
-    return asj_segment_cells_make(&w->context->memory, left, top, right, bottom, &w->cells);
-}
-
-static asj_status join_all(work *w)
-{
-    int32_t moved = 1;
-    asj_status status = ASJ_OK;
-    if (w->count < 2)
-        return ASJ_OK;
-    if (!make_cells(w))
-        return asj_fail(w->context, ASJ_ERROR_MEMORY, "no memory for the segments of %lu branches", (unsigned long)w->count);
-    while (moved && status == ASJ_OK) {
-        qsort(w->segments, w->count, sizeof *w->segments, by_length);
-        status = join_once(w, &moved);
     }
     return status;
 }
@@ -276,49 +151,48 @@ static asj_status join_all(work *w)
 static asj_status make_list(work *w, own_list **made)
 {
     const size_t branches = w->junction_count * ASJ_MAX_BRANCHES;
-    asj_memory memory = {.allocator = w->context->memory.allocator};
+    asj_memory memory = {.allocator = w->joining.context->memory.allocator};
     own_list *l = asj_allocate_zero(&memory, 1, sizeof *l);
     uint32_t *of_branches = asj_allocate(&memory, branches, sizeof *of_branches);
-    asj_segment *segments = asj_allocate(&memory, w->count, sizeof *segments);
+    asj_segment *segments = asj_allocate(&memory, w->joining.count, sizeof *segments);
     if (!l || !of_branches || !segments) {
         asj_release(&memory, l);
         asj_release(&memory, of_branches);
         asj_release(&memory, segments);
-        return asj_fail(w->context, ASJ_ERROR_MEMORY, "no memory for a list of %lu segments", (unsigned long)w->count);
+        return asj_fail(w->joining.context, ASJ_ERROR_MEMORY, "no memory for a list of %lu segments",
+                        (unsigned long)w->joining.count);
     }
-    memcpy(segments, w->segments, w->count * sizeof *segments);
-    for (uint32_t k = 0; k < w->count; k++)
-        of_branches[branch_of(&segments[k])] = k;
+    memcpy(segments, w->joining.segments, w->joining.count * sizeof *segments);
+    for (uint32_t k = 0; k < w->joining.count; k++)
+        of_branches[asj_branch_of(&segments[k])] = k;
     for (size_t b = 0; b < branches; b++) {
-        uint32_t root = w->joined[b];
-        while (root != ASJ_NO_SEGMENT && w->joined[root] != root)
-            root = w->joined[root];
+        const uint32_t root = asj_joined_branch(&w->joining, b);
         of_branches[b] = root == ASJ_NO_SEGMENT ? ASJ_NO_SEGMENT : of_branches[root];
     }
     l->memory = memory;
     l->segments = segments;
     l->of_branches = of_branches;
-    l->list = (asj_segment_list){segments, of_branches, w->count, (uint32_t)w->junction_count, {0, 0}};
+    l->list = (asj_segment_list){segments, of_branches, w->joining.count, (uint32_t)w->junction_count, {0, 0}};
     *made = l;
     return ASJ_OK;
 }
 
 static asj_status work_on(work *w, own_list **made)
 {
-    asj_memory *memory = &w->context->memory;
+    asj_memory *memory = &w->joining.context->memory;
     const size_t branches = w->junction_count * ASJ_MAX_BRANCHES;
-    w->segments = asj_allocate(memory, branches, sizeof *w->segments);
-    w->joined = asj_allocate(memory, branches, sizeof *w->joined);
+    w->joining.segments = asj_allocate(memory, branches, sizeof *w->joining.segments);
+    w->joining.joined = asj_allocate(memory, branches, sizeof *w->joining.joined);
     w->edge_of = asj_allocate(memory, branches, sizeof *w->edge_of);
-    w->asked = asj_allocate(memory, branches, sizeof *w->asked);
-    if (!w->segments || !w->joined || !w->edge_of || !w->asked)
-        return asj_fail(w->context, ASJ_ERROR_MEMORY, "no memory for the branches of %zu junctions", w->junction_count);
-    memset(w->joined, 0xff, branches * sizeof *w->joined);
+    w->joining.asked = asj_allocate(memory, branches, sizeof *w->joining.asked);
+    if (!w->joining.segments || !w->joining.joined || !w->edge_of || !w->joining.asked)
+        return asj_fail(w->joining.context, ASJ_ERROR_MEMORY, "no memory for the branches of %zu junctions", w->junction_count);
+    memset(w->joining.joined, 0xff, branches * sizeof *w->joining.joined);
     asj_status status = take_edges(w);
     if (status == ASJ_OK)
         status = take_branches(w);
     if (status == ASJ_OK)
-        status = join_all(w);
+        status = asj_join_segments(&w->joining);
     return status == ASJ_OK ? make_list(w, made) : status;
 }
 
@@ -335,14 +209,15 @@ asj_status asj_find_segments(asj_context *context, const asj_junction *junctions
     if (count > ASJ_MOST_JUNCTIONS || edge_count >= UINT32_MAX)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions or %zu edges are too many", count, edge_count);
     own_list *made = NULL;
-    work w = {.context = context, .junctions = junctions, .edges = edges, .junction_count = count, .edge_count = edge_count};
-    asj_watch_start(&w.watch, context, ASJ_STAGE_DECOMPOSE);
+    work w = {.joining = {.context = context, .junctions = junctions}, .edges = edges, .junction_count = count,
+              .edge_count = edge_count};
+    asj_watch_start(&w.joining.watch, context, ASJ_STAGE_DECOMPOSE);
     const asj_status status = work_on(&w, &made);
-    asj_release(&context->memory, w.segments);
-    asj_release(&context->memory, w.joined);
+    asj_release(&context->memory, w.joining.segments);
+    asj_release(&context->memory, w.joining.joined);
     asj_release(&context->memory, w.edge_of);
-    asj_release(&context->memory, w.asked);
-    asj_segment_cells_free(&context->memory, &w.cells);
+    asj_release(&context->memory, w.joining.asked);
+    asj_segment_cells_free(&context->memory, &w.joining.cells);
     if (status == ASJ_OK)
         *list = &made->list;
     return status;

@@ -207,6 +207,92 @@ static void a_chain_is_one_edge(void **state)
     asj_segment_list_free(&list);
 }
 
+/* Two branches of an edge from (10, 100) to (190, 100 + bend), that cross in (100, 100). `on` > 0: the right one's corner has
+ * another branch, which goes on to the right, or up. */
+static asj_segment_list *halves(asj_context *context, double bend, float left, float right, float on, double on_angle)
+{
+    add_branch(place(0, 10, 100), 0, left, ASJ_BRANCH_END_FADED);
+    asj_junction *j = place(1, 190, 100 + (float)bend);
+    add_branch(j, UNIT_PI + atan2(bend, 90), right, ASJ_BRANCH_END_FADED);
+    if (on > 0)
+        add_branch(j, on_angle, on, ASJ_BRANCH_END_FADED);
+    return find(context, 2);
+}
+
+static void assert_bent(const asj_segment_list *list, float bend)
+{
+    assert_int_not_equal(of_branch(list, 0, 0), of_branch(list, 1, 0));
+    for (uint32_t k = 0; k < 2; k++) {
+        const asj_segment *s = &list->segments[of_branch(list, k, 0)];
+        unit_near("crossing x", k, (double)bend, (double)s->x2, 100, 1e-3); /* angles are floats */
+        unit_near("crossing y", k, (double)bend, (double)s->y2, 100, 1e-3);
+        assert_true(s->x1 == junctions[k].x && s->y1 == junctions[k].y);
+        assert_true(s->end2 == ASJ_BRANCH_END_CROSSING && s->junction2 == ASJ_NO_JUNCTION && s->sd2 == 0);
+        assert_true(s->branch_count == 1 && s->junction1 == k);
+    }
+}
+
+/* An edge that bends comes as its halves, which end where they cross; one that does not as one, from corner to corner. */
+static void halves_end_where_they_cross(void **state)
+{
+    unit_fixture *f = *state;
+    for (int32_t longer = 0; longer < 2; longer++) { /* the left one, or the right one */
+        const float left = longer ? 130 : 140, right = longer ? 140 : 130;
+        asj_segment_list *list = halves(f->context, 7, left, right, 0, 0);
+        assert_int_equal(list->count, 2);
+        assert_bent(list, 7);
+        asj_segment_list_free(&list);
+        list = halves(f->context, -7, left, right, 0, 0);
+        assert_bent(list, -7);
+        asj_segment_list_free(&list);
+        list = halves(f->context, 3.5, 165, 166, 0, 0); /* 1.75 px from the line of its ends, 2.9 from each other */
+        assert_int_equal(list->count, 1);
+        const asj_segment *s = list->segments;
+        assert_int_equal(s->branch_count, 2);
+        assert_true(s->junction1 + s->junction2 == 1 && s->end2 == ASJ_BRANCH_END_JUNCTION && s->sd2 == 0.25f);
+        assert_true(s->x2 == junctions[s->junction2].x && s->y2 == junctions[s->junction2].y);
+        assert_int_equal(of_branch(list, 0, 0), of_branch(list, 1, 0));
+        asj_segment_list_free(&list);
+    }
+}
+
+/* Two ways across, ones that start on the same side, and what has left the edge too far, are two edges. */
+static void what_crosses_otherwise_stays(void **state)
+{
+    unit_fixture *f = *state;
+    asj_segment_list *list = halves(f->context, 10, 130, 130, 0, 0); /* 6.3 degrees */
+    assert_int_equal(list->count, 2);
+    assert_true(list->segments[0].end2 == ASJ_BRANCH_END_FADED && list->segments[1].end2 == ASJ_BRANCH_END_FADED);
+    asj_segment_list_free(&list);
+    list = halves(f->context, 8, 170, 170, 0, 0); /* 6.2 px from each other at the end of what both cover */
+    assert_true(list->count == 2 && list->segments[0].end2 == ASJ_BRANCH_END_FADED);
+    asj_segment_list_free(&list);
+    list = halves(f->context, 7, 94, 130, 0, 0); /* the left one hardly goes beyond the crossing */
+    assert_true(list->count == 2 && list->segments[0].end2 == ASJ_BRANCH_END_FADED);
+    asj_segment_list_free(&list);
+    add_branch(place(0, 10, 100), 0, 140, ASJ_BRANCH_END_FADED);
+    add_branch(place(1, 30, 95), atan2(5, 70), 120, ASJ_BRANCH_END_FADED);
+    list = find(f->context, 2);
+    assert_true(list->count == 2 && list->segments[0].end2 == ASJ_BRANCH_END_FADED);
+    asj_segment_list_free(&list);
+}
+
+/* What goes on beyond the other's corner is cut only where another branch of that corner shows what lies there. */
+static void beyond_a_corner_another_must_go_on(void **state)
+{
+    unit_fixture *f = *state;
+    asj_segment_list *list = halves(f->context, 5, 200, 130, 0, 0);
+    assert_true(list->count == 2 && list->segments[0].end2 == ASJ_BRANCH_END_FADED);
+    asj_segment_list_free(&list);
+    list = halves(f->context, 5, 200, 130, 40, -UNIT_PI / 2);
+    assert_true(list->count == 3 && list->segments[0].end2 == ASJ_BRANCH_END_FADED);
+    asj_segment_list_free(&list);
+    list = halves(f->context, 5, 200, 130, 40, 0.15);
+    assert_int_equal(list->count, 3);
+    assert_bent(list, 5);
+    asj_segment_list_free(&list);
+}
+
 /* Side by side, one after the other, crossing, touching: not one edge. */
 static void what_only_is_near_stays(void **state)
 {
@@ -477,6 +563,9 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_corner_near_an_end_is_passed, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(a_long_edge_keeps_its_ends, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(a_chain_is_one_edge, unit_set_up, unit_tear_down),
+        cmocka_unit_test_setup_teardown(halves_end_where_they_cross, unit_set_up, unit_tear_down),
+        cmocka_unit_test_setup_teardown(what_crosses_otherwise_stays, unit_set_up, unit_tear_down),
+        cmocka_unit_test_setup_teardown(beyond_a_corner_another_must_go_on, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(what_only_is_near_stays, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(the_graph_says_which_are_one, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(cells_change_nothing, unit_set_up, unit_tear_down),
