@@ -1,29 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Features as bytes: what .asjf files hold (asj-formats(5)).
- *
- *      0  8 bytes        0x89 A S J F CR LF 0x1a: tells a file that was sent as text
- *      8  u32            version of the format: 1; 1 more where there are colours; 2 more where there are junctions of octave -1,
- *                        and 4 more where these have colours
- *     12  u32            CRC-32 of all that follows
- *     16  u64            size of the whole
- *     24  u32, u32       width and height of the image, px
- *     32  u32            bytes of the options' text
- *     36  u32            number of junctions
- *     40  text           options: a line KEY=VALUE for each
- *         junctions      x, y, scale, log10_nfa, location_sd: five floats; u32 number of branches; i32 octave; for each branch
- *                        angle, length, strength, log10_nfa, angle_sd, width, length_sd: seven floats; u32 end
- *         u16            the image after the blur, with junctions of octave -1 before it, in 1/128 of a grey level, row by row
- *         u16            if any: the colours of each L-junction of octave 0 and up, red, green and blue of six regions (colour.h)
- *         u16            if any: the colours of each L-junction, as the enlarged image has them
- *
- * All numbers with the least significant byte first, floats as IEEE 754.
- *
- * Only what cannot be computed is there: L-junctions, neighbours, frames, patches and the coarser images are made again; the
- * patches alone would double the size. So there is no index that a hostile file could set, and what a file says is checked as
- * asj_match() checks what a caller says. */
+/* Features from bytes: features_bytes.h. What a file says is checked as asj_match() checks what a caller says; what is not there is
+ * made again. */
 #include "core/backend.h"
 #include "core/bytes.h"
 #include "core/image.h"
+#include "features_bytes.h"
 #include "finer.h"
 #include "kept_features.h"
 #include "l_junctions_create.h"
@@ -32,125 +13,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define VERSION 1             /* and .. */
-#define COLOURS 1             /* .. so much more where there are colours of the L-junctions of the image itself, */
-#define FINER 2               /* .. junctions of octave -1, */
-#define FINER_COLOURS 4       /* .. and colours of all L-junctions for the enlarged image */
-#define LATEST_VERSION (VERSION + COLOURS + FINER + FINER_COLOURS)
-#define COLOUR_BYTES (2 * 3 * ASJ_COLOUR_REGIONS)
-#define HEADER 40
-#define CHECKED 16          /* the checksum is of the bytes from here on */
-#define JUNCTION_BYTES 28
-#define BRANCH_BYTES 32
-#define MOST_TEXT 65536     /* bytes of options */
-#define LONGEST_LINE 256
-
-static const uint8_t magic[8] = {0x89, 'A', 'S', 'J', 'F', '\r', '\n', 0x1a};
-
-/* --- save --------------------------------------------------------------------------------------------------------------------- */
-
-/* Writes the options' text when `to` is not NULL; returns its length. */
-static size_t put_options(const asj_match_options *options, uint8_t *to)
-{
-    char line[LONGEST_LINE], value[LONGEST_LINE / 2];
-    size_t size = 0;
-    for (size_t n = 0; n < asj_match_option_count(); n++) {
-        const char *key = asj_match_option(n)->key;
-        asj_match_options_get(options, key, value, sizeof value);
-        const int length = snprintf(line, sizeof line, "%s=%s\n", key, value);
-        if (to)
-            memcpy(to + size, line, (size_t)length);
-        size += (size_t)length;
-    }
-    return size;
-}
-
-static uint8_t *put_floats(uint8_t *to, const float *values, size_t count)
-{
-    for (size_t n = 0; n < count; n++, to += 4)
-        asj_put_float(to, values[n]);
-    return to;
-}
-
-static uint8_t *put_junction(uint8_t *to, const asj_junction *j)
-{
-    const float head[] = {j->x, j->y, j->scale, j->log10_nfa, j->location_sd};
-    to = put_floats(to, head, 5);
-    asj_put_u32(to, (uint32_t)j->branch_count);
-    asj_put_u32(to + 4, (uint32_t)j->octave);
-    to += 8;
-    for (int32_t b = 0; b < j->branch_count; b++) {
-        const asj_branch *branch = &j->branches[b];
-        const float values[] = {branch->angle,     branch->length,   branch->strength,
-                                branch->log10_nfa, branch->angle_sd, branch->width, branch->length_sd};
-        to = put_floats(to, values, 7);
-        asj_put_u32(to, (uint32_t)branch->end);
-        to += 4;
-    }
-    return to;
-}
-
-static uint8_t *put_plane(uint8_t *to, const asj_features *features)
-{
-    const asj_pyramid *pyramid = &features->of_image.pyramid;
-    const size_t width = (size_t)pyramid->width[0], stride = features->finer ? width : width + 1;
-    const uint16_t *plane = features->finer ? features->gray : pyramid->plane[0];
-    for (size_t y = 0; y < (size_t)pyramid->height[0]; y++)
-        for (size_t x = 0; x < width; x++, to += 2)
-            asj_put_u16(to, plane[y * stride + x]);
-    return to;
-}
-
-static uint8_t *put_colours(uint8_t *to, const asj_image_features *of_image)
-{
-    for (uint32_t n = 0; of_image->colours && n < of_image->l_junctions.count; n++)
-        for (int32_t k = 0; k < 3 * ASJ_COLOUR_REGIONS; k++, to += 2)
-            asj_put_u16(to, of_image->colours[n].level[k / 3][k % 3]);
-    return to;
-}
-
-static size_t colour_bytes(const asj_image_features *of_image)
-{
-    return of_image->colours ? COLOUR_BYTES * (size_t)of_image->l_junctions.count : 0;
-}
-
-static uint32_t version_of(const asj_features *features)
-{
-    return (uint32_t)(VERSION + (features->of_image.colours ? COLOURS : 0) + (features->finer ? FINER : 0) +
-                      (features->enlarged.colours ? FINER_COLOURS : 0));
-}
-
-size_t asj_features_save(const asj_features *features, void *bytes, size_t capacity)
-{
-    if (!features)
-        return 0;
-    const asj_pyramid *pyramid = &features->of_image.pyramid;
-    const size_t text = put_options(&features->options, NULL), pixels = (size_t)pyramid->width[0] * (size_t)pyramid->height[0];
-    size_t size = HEADER + text + JUNCTION_BYTES * (size_t)features->junction_count + 2 * pixels;
-    for (uint32_t n = 0; n < features->junction_count; n++)
-        size += BRANCH_BYTES * (size_t)features->junctions[n].branch_count;
-    size += colour_bytes(&features->of_image) + colour_bytes(&features->enlarged);
-    if (!bytes || capacity < size)
-        return size;
-    uint8_t *start = bytes, *to = start + HEADER + text;
-    memcpy(start, magic, sizeof magic);
-    asj_put_u32(start + 8, version_of(features));
-    asj_put_u64(start + 16, size);
-    asj_put_u32(start + 24, (uint32_t)pyramid->width[0]);
-    asj_put_u32(start + 28, (uint32_t)pyramid->height[0]);
-    asj_put_u32(start + 32, (uint32_t)text);
-    asj_put_u32(start + 36, features->junction_count);
-    put_options(&features->options, start + HEADER);
-    for (uint32_t n = 0; n < features->junction_count; n++)
-        to = put_junction(to, &features->junctions[n]);
-    to = put_plane(to, features);
-    to = put_colours(to, &features->of_image);
-    put_colours(to, &features->enlarged);
-    asj_put_u32(start + 12, asj_crc32(start + CHECKED, size - CHECKED));
-    return size;
-}
-
-/* --- load --------------------------------------------------------------------------------------------------------------------- */
+#define MOST_TEXT 65536 /* bytes of options */
+#define LATEST_VERSION (ASJ_FEATURES_VERSION + ASJ_FEATURES_COLOURS + ASJ_FEATURES_FINER + ASJ_FEATURES_FINER_COLOURS)
 
 /* Bytes that are read one after the other. */
 typedef struct reader {
@@ -171,24 +35,24 @@ static asj_status read_header(reader *r)
 {
     const uint8_t *start = r->next;
     const size_t size = r->left;
-    if (size < sizeof magic || memcmp(start, magic, sizeof magic) != 0)
+    if (size < ASJ_FEATURES_MAGIC_SIZE || memcmp(start, ASJ_FEATURES_MAGIC, ASJ_FEATURES_MAGIC_SIZE) != 0)
         return asj_fail(r->context, ASJ_ERROR_FORMAT, "these are no features (.asjf)");
-    if (size < HEADER)
+    if (size < ASJ_FEATURES_HEADER)
         return damaged(r, "the header is truncated");
     const uint32_t version = asj_get_u32(start + 8);
-    const uint32_t parts = version - VERSION;
-    if (version < VERSION || version > LATEST_VERSION)
+    const uint32_t parts = version - ASJ_FEATURES_VERSION;
+    if (version < ASJ_FEATURES_VERSION || version > LATEST_VERSION)
         return asj_fail(r->context, ASJ_ERROR_UNSUPPORTED, "the features are of version %lu, and this library reads %d to %d",
-                        (unsigned long)version, VERSION, LATEST_VERSION);
-    if ((parts & (FINER | FINER_COLOURS)) == FINER_COLOURS)
+                        (unsigned long)version, ASJ_FEATURES_VERSION, LATEST_VERSION);
+    if ((parts & (ASJ_FEATURES_FINER | ASJ_FEATURES_FINER_COLOURS)) == ASJ_FEATURES_FINER_COLOURS)
         return damaged(r, "colours of an enlarged image that there is not");
-    r->colours = (parts & COLOURS) != 0;
-    r->finer = (parts & FINER) != 0;
-    r->finer_colours = (parts & FINER_COLOURS) != 0;
+    r->colours = (parts & ASJ_FEATURES_COLOURS) != 0;
+    r->finer = (parts & ASJ_FEATURES_FINER) != 0;
+    r->finer_colours = (parts & ASJ_FEATURES_FINER_COLOURS) != 0;
     if (asj_get_u64(start + 16) != size)
         return asj_fail(r->context, ASJ_ERROR_FORMAT, "the features are damaged: %zu bytes where there should be %llu", size,
                         (unsigned long long)asj_get_u64(start + 16));
-    if (asj_get_u32(start + 12) != asj_crc32(start + CHECKED, size - CHECKED))
+    if (asj_get_u32(start + 12) != asj_crc32(start + ASJ_FEATURES_CHECKED, size - ASJ_FEATURES_CHECKED))
         return damaged(r, "the checksum is wrong");
     const uint32_t width = asj_get_u32(start + 24), height = asj_get_u32(start + 28);
     if (width < 1 || height < 1)
@@ -200,18 +64,18 @@ static asj_status read_header(reader *r)
     r->height = (int32_t)height;
     r->text = asj_get_u32(start + 32);
     r->count = asj_get_u32(start + 36);
-    r->next += HEADER;
-    r->left -= HEADER;
+    r->next += ASJ_FEATURES_HEADER;
+    r->left -= ASJ_FEATURES_HEADER;
     const size_t pixels = (size_t)width * height * 2;
     if (r->text > MOST_TEXT || pixels > r->left || r->text > r->left - pixels ||
-        r->count > (r->left - pixels - r->text) / JUNCTION_BYTES)
+        r->count > (r->left - pixels - r->text) / ASJ_FEATURES_JUNCTION_BYTES)
         return damaged(r, "the counts are wrong");
     return ASJ_OK;
 }
 
 static asj_status read_options(reader *r, asj_match_options *options)
 {
-    char line[LONGEST_LINE], message[256];
+    char line[ASJ_FEATURES_LONGEST_LINE], message[256];
     size_t length = 0;
     asj_match_options_init(options);
     for (uint32_t n = 0; n < r->text; n++) {
@@ -247,7 +111,7 @@ static void get_floats(const uint8_t *from, float *const *to, size_t count)
 static asj_status read_junction(reader *r, asj_junction *j)
 {
     float *const head[] = {&j->x, &j->y, &j->scale, &j->log10_nfa, &j->location_sd};
-    if (r->left < JUNCTION_BYTES)
+    if (r->left < ASJ_FEATURES_JUNCTION_BYTES)
         return damaged(r, "the junctions are truncated");
     get_floats(r->next, head, 5);
     const uint32_t branches = asj_get_u32(r->next + 20);
@@ -255,12 +119,12 @@ static asj_status read_junction(reader *r, asj_junction *j)
     if (octave > ASJ_LARGEST_OCTAVE && !(r->finer && octave == UINT32_MAX))
         return damaged(r, "a junction of an octave that there is not");
     j->octave = octave == UINT32_MAX ? -1 : (int32_t)octave;
-    r->next += JUNCTION_BYTES;
-    r->left -= JUNCTION_BYTES;
-    if (branches > ASJ_MAX_BRANCHES || r->left < branches * (size_t)BRANCH_BYTES)
+    r->next += ASJ_FEATURES_JUNCTION_BYTES;
+    r->left -= ASJ_FEATURES_JUNCTION_BYTES;
+    if (branches > ASJ_MAX_BRANCHES || r->left < branches * (size_t)ASJ_FEATURES_BRANCH_BYTES)
         return damaged(r, "a junction has too many branches");
     j->branch_count = (int32_t)branches;
-    for (uint32_t b = 0; b < branches; b++, r->next += BRANCH_BYTES, r->left -= BRANCH_BYTES) {
+    for (uint32_t b = 0; b < branches; b++, r->next += ASJ_FEATURES_BRANCH_BYTES, r->left -= ASJ_FEATURES_BRANCH_BYTES) {
         asj_branch *branch = &j->branches[b];
         float *const values[] = {&branch->angle, &branch->length, &branch->strength, &branch->log10_nfa, &branch->angle_sd,
                                  &branch->width, &branch->length_sd};
@@ -311,7 +175,7 @@ static asj_status read_plane(reader *r, asj_pyramid *pyramid)
 static asj_status read_colours(reader *r, int32_t last, asj_image_features *made)
 {
     const uint32_t count = made->l_junctions.count;
-    const size_t bytes = COLOUR_BYTES * (size_t)count;
+    const size_t bytes = ASJ_FEATURES_COLOUR_BYTES * (size_t)count;
     uint32_t most = 0;
     if (r->left < bytes || (last && r->left > bytes))
         return damaged(r, "the colours are not all there, or there are more");
