@@ -5,12 +5,12 @@
  * that are no smaller than the image are matched as one: matches of guests (match/guests.c) are fewer, and less sure. */
 #include "look.h"
 #include "core/image.h"
+#include "core/sort.h"
 #include "core/stretch.h"
 #include "match/finer.h"
 #include "match/result_changes.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define DETECTION 0.3 /* of the progress, for each image */
@@ -163,7 +163,7 @@ static asj_status sort_by_place(const asj_look *look, int32_t n, int32_t most, a
     }
     for (size_t k = 0; k < count; k++)
         stands[k] = (stand){(int32_t)floor((double)v->junctions[k].y / BAND), v->junctions[k].x, (uint32_t)k};
-    qsort(stands, count, sizeof *stands, by_place);
+    asj_sort(stands, count, sizeof *stands, by_place);
     for (size_t k = 0; k < count; k++)
         (*sorted)[k] = v->junctions[stands[k].number];
     asj_release(memory, stands);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "nth_smallest.h"
-
-#include <stdlib.h>
+#include "sort.h"
 
 static int rising(const void *left, const void *right)
 {
@@ -11,6 +10,6 @@ static int rising(const void *left, const void *right)
 
 float asj_nth_smallest(float *values, size_t count, size_t n)
 {
-    qsort(values, count, sizeof *values, rising);
+    asj_sort(values, count, sizeof *values, rising);
     return values[n - 1];
 }

@@ -3,10 +3,9 @@
  * take the same steps as the branches of junctions have taken. */
 #include "complete.h"
 #include "steps.h"
+#include "core/sort.h"
 #include "core/threads.h"
 #include "core/watch.h"
-
-#include <stdlib.h>
 
 /* Junctions that are shared out. */
 typedef struct job {
@@ -83,7 +82,7 @@ static asj_status complete(asj_detection_run *run, const asj_missed *missed)
     start_all(run, missed, branches.hypotheses);
     const asj_status status = follow(&branches);
     if (status == ASJ_OK && branches.hypothesis_count > 0)
-        qsort(branches.hypotheses, branches.hypothesis_count, sizeof *branches.hypotheses, by_junction);
+        asj_sort(branches.hypotheses, branches.hypothesis_count, sizeof *branches.hypotheses, by_junction);
     for (size_t i = 0; i < branches.hypothesis_count && status == ASJ_OK; i++)
         asj_complete_add(run->context, run->frame, run->options, &branches.hypotheses[i],
                          &run->hypotheses[branches.hypotheses[i].completes]);

@@ -29,9 +29,9 @@
  * without it .854. (Without step 3 a limit of 4 grey levels in place of the share would do the same, but 2 in 100 junctions of the
  * photographs would not repeat any more; step 3 costs none.) */
 #include "end_profile.h"
+#include "core/sort.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define HALF 2
@@ -200,7 +200,7 @@ static double own_contrast(const profile *p)
     double blocks[BLOCKS];
     for (int32_t k = 0; k < p->count; k++)
         blocks[k] = fabs(product(p->blocks[k], p->section));
-    qsort(blocks, (size_t)p->count, sizeof *blocks, rising);
+    asj_sort(blocks, (size_t)p->count, sizeof *blocks, rising);
     return blocks[(3 * p->count) / 4];
 }
 
@@ -267,7 +267,7 @@ static int32_t break_before(profile *p, int32_t end, double *own)
     int32_t count = 0;
     for (int32_t t = end - LAST > FIRST ? end - LAST : FIRST; t <= end; t++)
         before[count++] = contrast_at(p, t);
-    qsort(before, (size_t)count, sizeof *before, rising);
+    asj_sort(before, (size_t)count, sizeof *before, rising);
     *own = before[(3 * count) / 4];
     return *own > 0 ? change_point(p, *own, 0.5, end - AROUND > FIRST ? end - AROUND : FIRST, end) : -1;
 }
@@ -283,7 +283,7 @@ static int32_t sorted_contrast(profile *p, int32_t first, int32_t last, double v
         values[count++] = a;
     }
     if (count > 1)
-        qsort(values, (size_t)count, sizeof *values, rising);
+        asj_sort(values, (size_t)count, sizeof *values, rising);
     return count;
 }
 

@@ -3,9 +3,9 @@
 #include "guess.h"
 #include "close_grid.h"
 #include "core/angle.h"
+#include "core/sort.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Guesses are one, and only one is worth a fit, when they lie this close, with the same branches to within this angle. Chosen: less
@@ -67,7 +67,7 @@ static int by_meaning(const void *a, const void *b)
 void asj_guess_sort(asj_guess *guesses, size_t count)
 {
     if (count > 1)
-        qsort(guesses, count, sizeof *guesses, by_meaning);
+        asj_sort(guesses, count, sizeof *guesses, by_meaning);
 }
 
 /* Whether each branch of a guess is one of the other's too, and the other one is not likely to be rejected yet. */

@@ -6,8 +6,8 @@
  * pixel beside a corner decides where the corner is and which branches it has: on eight photographs under zoom by 0.9, 0.7, 0.5 the
  * number of branches and their angles repeat at 44, 26, 14 % of the junctions with that rule, at 50, 34, 19 % without. */
 #include "isotropic_thin.h"
+#include "core/sort.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Ties are broken by place, so that the order never depends on anything else. */
@@ -140,7 +140,7 @@ size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const
     if (count == 0)
         return 0;
     if (options->more_branches_win)
-        qsort(junctions, count, sizeof *junctions, by_branches);
+        asj_sort(junctions, count, sizeof *junctions, by_branches);
     for (size_t i = 0; i < count; i++)
         ranks[i] = (rank){key_of(junctions[i].log_nfa), (uint32_t)i, junctions[i].x, junctions[i].y};
     const rank *order = options->more_branches_win ? ranks : sort_ranks(junctions, ranks, spare, count);
@@ -157,6 +157,6 @@ size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const
         if (stays[i])
             junctions[kept++] = junctions[i];
     if (options->more_branches_win)
-        qsort(junctions, kept, sizeof *junctions, in_rows);
+        asj_sort(junctions, kept, sizeof *junctions, in_rows);
     return kept;
 }

@@ -32,9 +32,9 @@
 #include "complete.h"
 #include "octave_ghosts.h"
 #include "core/angle.h"
+#include "core/sort.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define LEAST_SIDE 48 /* px of an octave: twice the largest of the default radii to either side, and something between */
 
@@ -210,7 +210,7 @@ size_t asj_octaves_merge(asj_hypothesis *hypotheses, size_t count, const asj_det
     size_t kept = 0;
     count = drop_wide(hypotheses, count, options->minimum_opening);
     if (count > 1)
-        qsort(hypotheses, count, sizeof *hypotheses, by_preference);
+        asj_sort(hypotheses, count, sizeof *hypotheses, by_preference);
     for (size_t i = 0; i < count; i++) {
         const asj_hypothesis hypothesis = hypotheses[i];
         const int32_t same = find_same(&grid, hypotheses, &hypothesis);

@@ -5,9 +5,9 @@
  * length is known only the last SCANNED_AGAIN px are scanned again, since a better angle mostly changes the end; a branch that
  * ends before that part is scanned once more from its beginning. */
 #include "steps.h"
+#include "core/sort.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define STRIP 64 /* px: see by_strip() */
 
@@ -58,14 +58,20 @@ static size_t list_rays(const asj_detection_run *run, asj_ray *rays, asj_hypothe
     return count;
 }
 
-/* From top to bottom in strips, in a strip from left to right: rays that follow each other then need the same local junctions. */
+/* From top to bottom in strips, in a strip from left to right: rays that follow each other then need the same local junctions.
+ * Those of one place, directions that a junction may have missed (complete_step.c), by their angle. */
 static int by_strip(const void *a, const void *b)
 {
     const asj_hypothesis *p = a, *q = b;
     const int32_t row = (int32_t)p->y / STRIP, other = (int32_t)q->y / STRIP;
+    const double angle = p->branches[0].angle, other_angle = q->branches[0].angle;
     if (row != other)
         return row < other ? -1 : 1;
-    return p->x != q->x ? p->x < q->x ? -1 : 1 : (p->y > q->y) - (p->y < q->y);
+    if (p->x != q->x)
+        return p->x < q->x ? -1 : 1;
+    if (p->y != q->y)
+        return p->y < q->y ? -1 : 1;
+    return angle < other_angle ? -1 : angle > other_angle;
 }
 
 /* Whether a ray that started in the last part of a branch ended before it began. */
@@ -84,7 +90,7 @@ static asj_status follow(const asj_detection_run *run, asj_ray *rays, size_t cou
 static asj_status scan_branches(asj_detection_run *run, asj_ray *rays, asj_hypothesis_branch **branches)
 {
     if (run->hypothesis_count > run->settled)
-        qsort(run->hypotheses + run->settled, run->hypothesis_count - run->settled, sizeof *run->hypotheses, by_strip);
+        asj_sort(run->hypotheses + run->settled, run->hypothesis_count - run->settled, sizeof *run->hypotheses, by_strip);
     const size_t count = list_rays(run, rays, branches);
     size_t left = 0;
     asj_status status = follow(run, rays, count);

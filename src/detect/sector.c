@@ -25,6 +25,7 @@
 #include "sector.h"
 #include "nfa.h"
 #include "core/angle.h"
+#include "core/sort.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -58,7 +59,7 @@ static int32_t list_offsets(int32_t radius, offset *list)
             count++;
         }
     if (list)
-        qsort(list, (size_t)count, sizeof *list, by_angle);
+        asj_sort(list, (size_t)count, sizeof *list, by_angle);
     return count;
 }
 

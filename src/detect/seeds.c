@@ -18,10 +18,10 @@
  * The segments' own number of false alarms may be large (option segment_epsilon): a false segment costs the time for a few
  * candidates, no more, and small things have short segments. */
 #include "seeds.h"
+#include "core/sort.h"
 #include "core/watch.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define LEAST_SINE 0.3420201433256687 /* of 20 degrees */
@@ -111,10 +111,15 @@ static double left_of(const asj_line_segment *s)
     return fmin(s->x1, s->x2);
 }
 
+/* Then by the other numbers, so that the same are in one order. */
 static int from_left(const void *a, const void *b)
 {
-    const double p = left_of(a), q = left_of(b);
-    return (p > q) - (p < q);
+    const asj_line_segment *p = a, *q = b;
+    const double left[][2] = {{left_of(p), left_of(q)}, {p->x1, q->x1}, {p->y1, q->y1}, {p->x2, q->x2}, {p->y2, q->y2}};
+    for (int32_t k = 0; k < 5; k++)
+        if (left[k][0] < left[k][1] || left[k][0] > left[k][1])
+            return left[k][0] < left[k][1] ? -1 : 1;
+    return 0;
 }
 
 /* Whether two segments are no farther apart than `gap` along y. */
@@ -129,7 +134,7 @@ static asj_status mark_pairs(asj_context *context, const marker *m, asj_line_seg
     asj_watch watch;
     asj_watch_start(&watch, context, ASJ_STAGE_CANDIDATES);
     if (count > 1)
-        qsort(segments, count, sizeof *segments, from_left);
+        asj_sort(segments, count, sizeof *segments, from_left);
     for (size_t i = 0; i < count && !asj_watch_stops(&watch, NULL); i++) {
         const double end = fmax(segments[i].x1, segments[i].x2) + 2 * gap;
         for (size_t j = i + 1; j < count && left_of(&segments[j]) <= end; j++)

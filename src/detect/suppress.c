@@ -5,9 +5,9 @@
  * scale in the same way; the paper says no more about it. */
 #include "suppress.h"
 #include "close_grid.h"
+#include "core/sort.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Two located junctions are one when they are closer than this: the larger of 3 px and a share of the radius of the more
  * meaningful one (ASJ_CLOSE_SHARE). Chosen: less reports corners twice, more loses one of two close corners (of a frame, of a tile
@@ -27,7 +27,7 @@ static int by_meaning(const void *a, const void *b)
 void asj_suppress_sort(asj_hypothesis *hypotheses, size_t count)
 {
     if (count > 1)
-        qsort(hypotheses, count, sizeof *hypotheses, by_meaning);
+        asj_sort(hypotheses, count, sizeof *hypotheses, by_meaning);
 }
 
 int asj_suppress_hides(const asj_hypothesis *hypotheses, const asj_close_grid *grid, double x, double y, double spare)

@@ -23,10 +23,10 @@
 #include "directions.h"
 #include "core/angle.h"
 #include "core/context.h"
+#include "core/sort.h"
 #include "small_matrix.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define SHORTEST 0.045 /* of the longer side: an edge that is looked at, and .. */
@@ -139,7 +139,7 @@ static int32_t find_points(const scene *s, ranked *all, ranked points[MOST_POINT
             count++;
         }
     if (count > 1)
-        qsort(all, (size_t)count, sizeof *all, better);
+        asj_sort(all, (size_t)count, sizeof *all, better);
     for (int32_t n = 0; n < count && kept < MOST_POINTS; n++) {
         int32_t fresh = 1;
         for (int32_t k = 0; k < kept && fresh; k++)
@@ -236,7 +236,7 @@ static void search(const scene *s, ranked *all, asj_directions_list *found)
     for (int32_t k = 0; k < point_count; k++)
         turn_about(s, points[k].axes, all + (size_t)k * STEPS);
     if (point_count > 0)
-        qsort(all, (size_t)point_count * STEPS, sizeof *all, better);
+        asj_sort(all, (size_t)point_count * STEPS, sizeof *all, better);
     for (int32_t n = 0; n < point_count * STEPS && kept < STARTS; n++) {
         int32_t fresh = 1;
         for (int32_t k = 0; k < kept && fresh; k++)
@@ -247,7 +247,7 @@ static void search(const scene *s, ranked *all, asj_directions_list *found)
     for (int32_t k = 0; k < kept; k++)
         refine(s, &starts[k]);
     if (kept > 1)
-        qsort(starts, (size_t)kept, sizeof *starts, better);
+        asj_sort(starts, (size_t)kept, sizeof *starts, better);
     for (int32_t k = 0; k < kept && found->count < BEST_KEPT; k++) {
         asj_directions next;
         double normal[9], right[3];

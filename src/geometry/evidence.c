@@ -70,7 +70,7 @@ static int32_t is_before(const asj_share *p, const asj_share *q)
     return p->value > q->value || (p->value == q->value && p->pair->source < q->pair->source);
 }
 
-/* Shell's sort with the gaps of Ciura (2001): there are a hundred or two, and qsort() would call a function to compare. */
+/* Shell's sort with the gaps of Ciura (2001): there are a hundred or two, and asj_sort() would call a function to compare. */
 static void sort_shares(asj_share *shares, int32_t count)
 {
     static const int32_t gaps[] = {1750, 701, 301, 132, 57, 23, 10, 4, 1};

@@ -28,12 +28,12 @@
  * to 5 are drawn there by what they gain, and in 806 pairs of rooms 24 poses are out by more than 3 degrees instead of 16. */
 #include "labels.h"
 #include "core/angle.h"
+#include "core/sort.h"
 #include "elementary.h"
 #include "small_matrix.h"
 
 #include <math.h>
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define ALONG (4 * ASJ_DEGREE)
@@ -131,7 +131,7 @@ int32_t asj_order_rotations(asj_memory *memory, asj_pairs *set)
     for (int32_t k = 0; k < set->rotation_count && sum; k++)
         set->rotations[k].log_labels = log_labels(set, &set->rotations[k], sum);
     if (set->rotation_count > 1 && sum)
-        qsort(set->rotations, (size_t)set->rotation_count, sizeof *set->rotations, likelier);
+        asj_sort(set->rotations, (size_t)set->rotation_count, sizeof *set->rotations, likelier);
     asj_release(memory, sum);
     return sum != NULL;
 }

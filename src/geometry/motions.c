@@ -4,6 +4,7 @@
  * which of its tiles) the others decide. The best SETTLED that lie apart become what the candidates allow around them
  * (posterior.c). */
 #include "motions.h"
+#include "core/sort.h"
 #include "core/threads.h"
 #include "evidence.h"
 #include "manhattan.h"
@@ -13,7 +14,6 @@
 #include "stop.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define MOST_STARTS (3 * ASJ_FINALISTS)
@@ -116,7 +116,7 @@ static void refine(asj_context *context, const job *j)
 {
     motions *m = j->m;
     asj_parallel(context, context->threads, m->count, 1, refine_some, j);
-    qsort(m->order, (size_t)m->count, sizeof *m->order, asj_by_score);
+    asj_sort(m->order, (size_t)m->count, sizeof *m->order, asj_by_score);
     m->count = asj_pick(m->starts, m->order, m->count, ASJ_FINALISTS, m->picked);
     const int32_t most = m->count < WITH_PLANES ? m->count : WITH_PLANES;
     asj_parallel(context, context->threads, most, 1, add_planes_to_some, j);
@@ -130,7 +130,7 @@ static void settle(asj_context *context, const job *j, uint64_t seed, int32_t mo
     motions *m = j->m;
     for (int32_t k = 0; k < m->count; k++)
         m->order[k] = (asj_ranked){m->picked[k].evidence, k};
-    qsort(m->order, (size_t)m->count, sizeof *m->order, asj_by_score);
+    asj_sort(m->order, (size_t)m->count, sizeof *m->order, asj_by_score);
     const double least = m->count > 0 ? fmax(0, m->order[0].score - UNLIKELY) : 0;
     for (int32_t k = 0, settled = 0; k < m->count && settled < most; k++) {
         asj_model *model = &m->picked[m->order[k].index];

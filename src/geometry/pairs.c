@@ -3,6 +3,7 @@
  * (up to 30 000) give the same poses within what the seed changes. */
 #include "pairs.h"
 #include "core/angle.h"
+#include "core/sort.h"
 #include "elementary.h"
 #include "geometry_options.h"
 #include "labels.h"
@@ -10,7 +11,6 @@
 #include "near.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define FARTHEST 1e6       /* px */
@@ -176,7 +176,7 @@ asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *
                                   c->probability, c->place1, c->place2, (uint32_t)k, colours ? (float)colours[k] : 0, {{{0}}}};
     }
     if (kept > 1)
-        qsort(set->list, kept, sizeof *set->list, likelier);
+        asj_sort(set->list, kept, sizeof *set->list, likelier);
     set->count = (int32_t)(kept < ASJ_MOST_PAIRS ? kept : ASJ_MOST_PAIRS);
     while (set->count > 0 && !(set->list[set->count - 1].prior > 0))
         set->count--;

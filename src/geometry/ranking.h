@@ -10,7 +10,7 @@ typedef struct asj_ranked {
     int32_t index;
 } asj_ranked;
 
-/* For qsort(): the largest score first, then the smallest index. */
+/* For asj_sort(): the largest score first, then the smallest index. */
 int asj_by_score(const void *left, const void *right);
 
 /* The best `most` of models that differ, in the order given; scores of -HUGE_VAL are none. Returns how many. `best` must not

@@ -12,6 +12,7 @@
  * nothing better, lose poses in the first search. */
 #include "search.h"
 #include "core/angle.h"
+#include "core/sort.h"
 #include "core/threads.h"
 #include "counter_random.h"
 #include "evidence.h"
@@ -24,7 +25,6 @@
 #include "turned.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define PRESELECTED 600
@@ -205,9 +205,9 @@ static int32_t draw_samples(const asj_pairs *set, const asj_search *search, work
     set_sums(set, search, first, w->sum);
     const job j = {.set = set, .search = search, .w = w, .models = w->models, .first = first};
     asj_parallel(w->context, w->context->threads, samples, 8, sample_some, &j);
-    qsort(w->order, (size_t)samples, sizeof *w->order, asj_by_score);
+    asj_sort(w->order, (size_t)samples, sizeof *w->order, asj_by_score);
     asj_parallel(w->context, w->context->threads, most, 4, score_some, &j);
-    qsort(w->order, (size_t)most, sizeof *w->order, asj_by_score);
+    asj_sort(w->order, (size_t)most, sizeof *w->order, asj_by_score);
     return most;
 }
 
@@ -262,7 +262,7 @@ static int32_t adjust_some(const asj_pairs *set, work *w, asj_model *models, int
 {
     const job j = {.set = set, .w = w, .models = models, .rounds = rounds};
     asj_parallel(w->context, w->context->threads, count, 1, adjust_each, &j);
-    qsort(w->order, (size_t)count, sizeof *w->order, asj_by_score);
+    asj_sort(w->order, (size_t)count, sizeof *w->order, asj_by_score);
     return asj_pick(models, w->order, count, most, finalists);
 }
 
@@ -281,7 +281,7 @@ static void judge(const asj_pairs *set, work *w, asj_model *finalists, int32_t c
     asj_model copy[ASJ_FINALISTS];
     const job j = {.set = set, .w = w, .models = finalists};
     asj_parallel(w->context, w->context->threads, count, 1, judge_some, &j);
-    qsort(w->order, (size_t)count, sizeof *w->order, asj_by_score);
+    asj_sort(w->order, (size_t)count, sizeof *w->order, asj_by_score);
     memcpy(copy, finalists, sizeof copy);
     for (int32_t n = 0; n < count; n++)
         finalists[n] = copy[w->order[n].index];
@@ -299,7 +299,7 @@ static int32_t run(const asj_pairs *set, const asj_search *search, work *w, asj_
         count = draw_around(set, search, w, w->models, count < centres ? count : centres, round);
         for (int32_t n = 0; n < count; n++)
             w->order[n] = (asj_ranked){w->models[n].score, n};
-        qsort(w->order, (size_t)count, sizeof *w->order, asj_by_score);
+        asj_sort(w->order, (size_t)count, sizeof *w->order, asj_by_score);
         count = asj_pick(w->models, w->order, count, starts, w->starts);
         count = adjust_some(set, w, w->starts, count, FEW_ROUNDS, ASJ_FINALISTS, w->models);
     }
@@ -340,7 +340,7 @@ static int32_t run_turned(const asj_pairs *set, const asj_search *search, work *
     set_sums(set, search, first, w->sum);
     const job j = {.set = set, .search = search, .w = w, .models = w->models, .first = first, .except = except};
     asj_parallel(w->context, w->context->threads, set->rotation_count, 1, turn_some, &j);
-    qsort(w->order, (size_t)set->rotation_count, sizeof *w->order, asj_by_score);
+    asj_sort(w->order, (size_t)set->rotation_count, sizeof *w->order, asj_by_score);
     const int32_t count = asj_pick(w->models, w->order, set->rotation_count, ASJ_TURNED, w->starts);
     return adjust_some(set, w, w->starts, count, ROUNDS, ASJ_TURNED, finalists);
 }

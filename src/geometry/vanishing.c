@@ -11,10 +11,10 @@
 
 #include "core/angle.h"
 #include "core/most_junctions.h"
+#include "core/sort.h"
 #include "small_matrix.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define SQUARE (4 * ASJ_DEGREE)
@@ -131,7 +131,7 @@ static frame frame_of(const asj_vote_search *s, const double first[3], const dou
         point_of(f.axes[a], focal, v);
         f.points[a] = asj_judge_point(s, v);
     }
-    qsort(f.points, 3, sizeof f.points[0], by_nfa);
+    asj_sort(f.points, 3, sizeof f.points[0], by_nfa);
     for (int32_t a = 0; a < 3; a++) {
         direction_of(f.points[a].v, focal, f.axes[a]);
         f.count += f.points[a].log_nfa <= most;
@@ -184,7 +184,7 @@ static void fill(const asj_vote *at, const double direction[3], const asj_camera
 static int32_t distinct(asj_vote *points, int32_t found)
 {
     int32_t kept = 0;
-    qsort(points, (size_t)found, sizeof *points, by_nfa);
+    asj_sort(points, (size_t)found, sizeof *points, by_nfa);
     for (int32_t k = 0; k < found; k++) {
         double d[3], e[3], nearest = 0;
         direction_of(points[k].v, USUAL_FOCAL, d);

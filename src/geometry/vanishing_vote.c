@@ -18,10 +18,10 @@
 #include "vanishing_vote.h"
 #include "core/angle.h"
 #include "core/context.h"
+#include "core/sort.h"
 #include "small_matrix.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define LEAST_LENGTH 10.0            /* px */
@@ -79,7 +79,7 @@ static int32_t keep(asj_vote_line *lines, size_t all, const asj_camera *camera)
 {
     int32_t kept = 0;
     if (all > 1)
-        qsort(lines, all, sizeof *lines, longer);
+        asj_sort(lines, all, sizeof *lines, longer);
     for (size_t i = 0; i < all && kept < ASJ_VOTE_LINES; i++)
         if (!is_known(lines, kept, &lines[i])) {
             lines[kept] = lines[i];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Lists of candidates in order: by L-junction of image 1, then of image 2. */
 #include "candidate.h"
+#include "core/sort.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static int by_pair(const void *left, const void *right)
@@ -16,7 +16,7 @@ static int by_pair(const void *left, const void *right)
 void asj_candidates_sort(asj_candidates *candidates)
 {
     if (candidates->count > 1)
-        qsort(candidates->list, candidates->count, sizeof *candidates->list, by_pair);
+        asj_sort(candidates->list, candidates->count, sizeof *candidates->list, by_pair);
     size_t kept = 0;
     for (size_t k = 0; k < candidates->count; k++)
         if (kept == 0 || by_pair(&candidates->list[k], &candidates->list[kept - 1]) != 0)

@@ -27,9 +27,9 @@
 #include "final_pose.h"
 #include "geometry/model.h"
 #include "geometry/small_matrix.h"
+#include "core/sort.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define MOTION 5
@@ -165,7 +165,7 @@ static double scale_of(const fit *f)
         f->sorted[n] = (distance){fabs(f->sights[n].off), f->sights[n].weight};
         all += f->sights[n].weight;
     }
-    qsort(f->sorted, f->count, sizeof *f->sorted, by_size);
+    asj_sort(f->sorted, f->count, sizeof *f->sorted, by_size);
     size_t middle = 0;
     while (middle + 1 < f->count && below + f->sorted[middle].weight < 0.5 * all)
         below += f->sorted[middle++].weight;

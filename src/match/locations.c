@@ -4,9 +4,8 @@
  * Matches are unique by location, and "another location" in the ratio test means farther than `separation`. Neighbours of a
  * location are the nearest others farther than `separation`, so that a cluster of duplicates is no neighbour of itself. */
 #include "locations.h"
+#include "core/sort.h"
 #include "core/watch.h"
-
-#include <stdlib.h>
 
 #define LEAST_LOCATIONS 32 /* for a thread */
 
@@ -45,7 +44,7 @@ asj_status asj_locations_find(asj_context *context, asj_l_junctions *all)
     }
     for (uint32_t i = 0; i < all->count; i++)
         positions[i] = (position){all->l[i].x, all->l[i].y, i};
-    qsort(positions, all->count, sizeof *positions, by_position);
+    asj_sort(positions, all->count, sizeof *positions, by_position);
     uint32_t locations = 0;
     for (uint32_t i = 0; i < all->count; i++) {
         if (i == 0 || positions[i].x != positions[i - 1].x || positions[i].y != positions[i - 1].y) {

@@ -4,10 +4,10 @@
 #include "common_direction.h"
 #include "geometry_candidate.h"
 #include "segments.h"
+#include "core/sort.h"
 #include "core/watch.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define LEAST_ALONG 0.9 /* cosine of 26 degrees, which a branch seen from the match's location may be off its own direction: a
@@ -133,7 +133,7 @@ static int by_distance(const void *left, const void *right)
 static void sort(asj_junction_match *matches, size_t count)
 {
     if (count > 1)
-        qsort(matches, count, sizeof *matches, by_distance);
+        asj_sort(matches, count, sizeof *matches, by_distance);
 }
 
 /* Choices as matches, smallest distance first; NULL without memory. */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Matches by their place. See places.h. */
 #include "places.h"
+#include "core/sort.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define BAND 32.0  /* px; most squares that are asked for are smaller */
 #define MARGIN 1.0 /* px: more than rounding */
@@ -30,7 +30,7 @@ void asj_places_sort(asj_place *places, const asj_junction_match *matches, uint3
         places[k] = side ? (asj_place){band_of((double)matches[k].y2), matches[k].x2, k}
                          : (asj_place){band_of((double)matches[k].y1), matches[k].x1, k};
     if (count > 1)
-        qsort(places, count, sizeof *places, by_place);
+        asj_sort(places, count, sizeof *places, by_place);
 }
 
 /* The first place in the walk's band, or behind it, that is not left of the square. */

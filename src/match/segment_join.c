@@ -11,6 +11,7 @@
  * ends at a matched corner beside an end of the longer that is less sure, that corner is the end. The paper has no such step: its
  * segments are the branches of the matches. */
 #include "segments/course.h"
+#include "core/sort.h"
 
 #include <asj/match.h>
 
@@ -102,7 +103,7 @@ static int by_names(const asj_segment_match *p, const asj_segment_match *q)
     return p->branch2 < q->branch2 ? -1 : p->branch2 > q->branch2;
 }
 
-/* The last word where nothing else tells two apart, so that no order is left to qsort(). */
+/* The last word where nothing else tells two apart, so that no order is left to asj_sort(). */
 static int by_place(const asj_segment_match *p, const asj_segment_match *q)
 {
     const float one[] = {p->x1, p->y1, p->ex1, p->ey1, p->x2, p->y2, p->ex2, p->ey2};
@@ -155,10 +156,10 @@ size_t asj_join_segment_matches(asj_segment_match *segments, size_t count)
         return 0;
     int again = count > 1;
     while (again) { /* where ends have moved they may reach others */
-        qsort(segments, count, sizeof *segments, by_length);
+        asj_sort(segments, count, sizeof *segments, by_length);
         again = join_once(segments, &count);
     }
     if (count > 1)
-        qsort(segments, count, sizeof *segments, by_match);
+        asj_sort(segments, count, sizeof *segments, by_match);
     return count;
 }

@@ -3,9 +3,9 @@
  * L-junction there; so it may be the edge of something else in front. */
 #include "t_junctions.h"
 #include "core/angle.h"
+#include "core/sort.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define OPPOSITE (-0.978147601) /* cosine of 180 - 12 degrees: half the least opening of branches, and less */
 #define WITHIN 0.2095 /* rad: 12 degrees and a little more */
@@ -39,7 +39,7 @@ static uint32_t sort_spokes(const asj_l_junctions *all, uint32_t location, spoke
             const double *v = all->direction + 4 * (size_t)all->l_of_location[m] + 2 * branch;
             spokes[count++] = (spoke){atan2(v[1], v[0]), all->l_of_location[m], branch};
         }
-    qsort(spokes, count, sizeof *spokes, by_angle);
+    asj_sort(spokes, count, sizeof *spokes, by_angle);
     return count;
 }
 

@@ -24,9 +24,9 @@
 #include "epipolar.h"
 #include "geometry_candidate.h"
 #include "locations.h"
+#include "core/sort.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define LEAST_PROBABILITY 0.5
 #define SURE_PROBABILITY 0.99
@@ -60,7 +60,7 @@ static void find_likely(const asj_wide_run *w, likely_list *all)
         if (w->probability[k] >= LEAST_PROBABILITY)
             all->list[all->count++] = (likely){w->probability[k], k};
     if (all->count > 1)
-        qsort(all->list, all->count, sizeof *all->list, likelier);
+        asj_sort(all->list, all->count, sizeof *all->list, likelier);
 }
 
 /* Does the geometry give a place of this match to another partner, elsewhere? */

@@ -6,9 +6,9 @@
 #include "join_segments.h"
 #include "bent_edge.h"
 #include "one_edge.h"
+#include "core/sort.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static double length2_of(const asj_segment *s)
@@ -199,7 +199,7 @@ static asj_status join_halves(asj_joining *w)
         }
     }
     w->count = kept;
-    qsort(w->segments, w->count, sizeof *w->segments, by_length);
+    asj_sort(w->segments, w->count, sizeof *w->segments, by_length);
     return asj_watch_end(&w->watch);
 }
 
@@ -226,7 +226,7 @@ asj_status asj_join_segments(asj_joining *w)
     if (!make_cells(w))
         return no_memory(w);
     while (moved && status == ASJ_OK) {
-        qsort(w->segments, w->count, sizeof *w->segments, by_length);
+        asj_sort(w->segments, w->count, sizeof *w->segments, by_length);
         status = join_once(w, &moved);
     }
     return status == ASJ_OK ? join_halves(w) : status;
