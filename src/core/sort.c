@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Introsort (Musser 1997): quicksort about the median of three (Singleton 1969), the smaller part first, so that open parts are
- * few; heapsort (Williams 1964) where parts do not get smaller, so that no order of the list takes long; insertion in short parts.
- * */
+ * few; heapsort (Williams 1964) where parts do not get smaller, so that nothing takes long; insertion in short parts. */
 #include "sort.h"
 
 #include <stdint.h>

@@ -167,29 +167,28 @@ static void align_one(const asj_match_run *run, const asj_aligner *aligner, cons
     c->distance2 = combine(c->distance2, c->similarity);
 }
 
-static void drop_unlike(asj_match_run *run, size_t first)
+static void drop_unlike(asj_candidates *candidates)
 {
-    asj_candidates *candidates = &run->candidates;
-    size_t kept = first;
-    for (size_t k = first; k < candidates->count; k++)
+    size_t kept = 0;
+    for (size_t k = 0; k < candidates->count; k++)
         if (candidates->list[k].similarity >= LEAST_SIMILARITY)
             candidates->list[kept++] = candidates->list[k];
     candidates->count = kept;
 }
 
 /* Candidates by the location of their template, those of image 1 before those of image 2: order[start[p]] .. are those of
- * location p, as numbers from `first` on. They are worked on together, so that each template is made once. */
+ * location p. They are worked on together, so that each template is made once. */
 typedef struct grouping {
     uint32_t *start, *order, *group;
 } grouping;
 
-static void group_by_template(const asj_match_run *run, size_t first, const grouping *g)
+static void group_by_template(const asj_match_run *run, const asj_candidates *candidates, const grouping *g)
 {
-    const size_t count = run->candidates.count - first;
+    const size_t count = candidates->count;
     const uint32_t count1 = run->image[0]->l_junctions.location_count;
     const uint32_t locations = count1 + run->image[1]->l_junctions.location_count;
     for (size_t k = 0; k < count; k++) {
-        const asj_candidate *c = &run->candidates.list[first + k];
+        const asj_candidate *c = &candidates->list[k];
         const int32_t side = template_side(c);
         g->group[k] = (side ? count1 : 0) + run->image[side]->l_junctions.location[asj_candidate_l(c, side)];
         g->start[g->group[k] + 2]++;
@@ -201,8 +200,8 @@ static void group_by_template(const asj_match_run *run, size_t first, const grou
 }
 
 typedef struct job {
-    asj_match_run *run;
-    size_t first;
+    const asj_match_run *run;
+    asj_candidate *list;
     const grouping *g;
     const asj_aligner *aligner;
     asj_watch *watch;
@@ -223,15 +222,15 @@ static void align_some(const void *data, const asj_part *part)
         asj_template_create(j->aligner->disc, &features->pyramid, features->l_junctions.location_x[at],
                             features->l_junctions.location_y[at], &t);
         for (uint32_t k = g->start[p]; k < g->start[p + 1] && !asj_watch_stops(j->watch, part); k++)
-            align_one(j->run, j->aligner, &t, side, &j->run->candidates.list[j->first + g->order[k]]);
+            align_one(j->run, j->aligner, &t, side, &j->list[g->order[k]]);
     }
 }
 
-static asj_status align_groups(asj_match_run *run, size_t first, const grouping *g, const asj_aligner *aligner)
+static asj_status align_groups(const asj_match_run *run, asj_candidate *list, const grouping *g, const asj_aligner *aligner)
 {
     asj_watch watch;
     const int64_t locations = (int64_t)run->image[0]->l_junctions.location_count + run->image[1]->l_junctions.location_count;
-    const job j = {run, first, g, aligner, &watch};
+    const job j = {run, list, g, aligner, &watch};
     asj_watch_start(&watch, run->context, ASJ_STAGE_ALIGN);
     asj_parallel(run->context, run->context->threads, locations, 4, align_some, &j);
     return asj_watch_end(&watch);
@@ -243,10 +242,10 @@ int32_t asj_align_steps(const asj_match_run *run)
     return run->options->align_iterations * (enlarged && !run->for_geometry ? ENLARGED_STEPS : 1);
 }
 
-asj_status asj_align_candidates(asj_match_run *run, size_t first)
+asj_status asj_align_candidates(const asj_match_run *run, asj_candidates *candidates)
 {
     asj_memory *memory = &run->context->memory;
-    const size_t count = run->candidates.count - first;
+    const size_t count = candidates->count;
     const size_t locations = (size_t)run->image[0]->l_junctions.location_count + run->image[1]->l_junctions.location_count;
     const grouping g = {asj_allocate_zero(memory, locations + 2, sizeof *g.start), asj_allocate(memory, count, sizeof *g.order),
                         asj_allocate(memory, count, sizeof *g.group)};
@@ -257,10 +256,10 @@ asj_status asj_align_candidates(asj_match_run *run, size_t first)
     } else {
         const asj_aligner aligner = {disc, asj_align_steps(run), run->options->max_move};
         asj_disc_create(run->options->align_radius, disc);
-        group_by_template(run, first, &g);
-        status = align_groups(run, first, &g, &aligner);
+        group_by_template(run, candidates, &g);
+        status = align_groups(run, candidates->list, &g, &aligner);
         if (status == ASJ_OK)
-            drop_unlike(run, first);
+            drop_unlike(candidates);
     }
     asj_release(memory, g.start);
     asj_release(memory, g.order);

@@ -32,8 +32,8 @@ asj_alignment asj_align(const asj_aligner *aligner, const asj_template *t, const
 /* Steps for the candidates of this run. */
 int32_t asj_align_steps(const asj_match_run *run);
 
-/* Aligns every candidate from `first` on (sorted or not): updates map, move1, move2, similarity and distance2, and drops those
- * whose discs do not look alike. */
-asj_status asj_align_candidates(asj_match_run *run, size_t first);
+/* Aligns every candidate of a list of this run: updates map, move1, move2, similarity and distance2, and drops those whose discs do
+ * not look alike. */
+asj_status asj_align_candidates(const asj_match_run *run, asj_candidates *candidates);
 
 #endif

@@ -1,27 +1,43 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Lists of candidates in order: by L-junction of image 1, then of image 2. */
 #include "candidate.h"
-#include "core/sort.h"
+#include "core/watch.h"
 
 #include <string.h>
 
-static int by_pair(const void *left, const void *right)
+#define ROWS 4096 /* that are merged before the caller is asked again */
+
+/* Below 0: p comes before q. */
+static int compare(const asj_candidate *p, const asj_candidate *q)
 {
-    const asj_candidate *p = left, *q = right;
     if (p->i != q->i)
         return p->i < q->i ? -1 : 1;
     return p->j < q->j ? -1 : p->j > q->j;
 }
 
-void asj_candidates_sort(asj_candidates *candidates)
+asj_status asj_candidates_merge(asj_context *context, asj_candidates *candidates, const asj_candidates *others, int32_t stage)
 {
-    if (candidates->count > 1)
-        asj_sort(candidates->list, candidates->count, sizeof *candidates->list, by_pair);
-    size_t kept = 0;
-    for (size_t k = 0; k < candidates->count; k++)
-        if (kept == 0 || by_pair(&candidates->list[k], &candidates->list[kept - 1]) != 0)
-            candidates->list[kept++] = candidates->list[k];
-    candidates->count = kept;
+    const size_t most = candidates->count + others->count;
+    asj_candidates all = {asj_allocate(&context->memory, most, sizeof *all.list), 0, most};
+    if (!all.list)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", most);
+    asj_watch watch;
+    asj_watch_start(&watch, context, stage);
+    size_t k = 0, n = 0;
+    while ((k < candidates->count || n < others->count) && (all.count % ROWS != 0 || !asj_watch_stops(&watch, NULL))) {
+        const int order = k == candidates->count ? 1 : n == others->count ? -1 : compare(&candidates->list[k], &others->list[n]);
+        all.list[all.count++] = order <= 0 ? candidates->list[k] : others->list[n];
+        k += order <= 0;
+        n += order >= 0;
+    }
+    const asj_status status = asj_watch_end(&watch);
+    if (status == ASJ_OK) {
+        asj_release(&context->memory, candidates->list);
+        *candidates = all;
+    } else {
+        asj_release(&context->memory, all.list);
+    }
+    return status;
 }
 
 const asj_candidate *asj_candidates_find(const asj_candidates *candidates, uint32_t i, uint32_t j)

@@ -12,6 +12,7 @@
 #include "compare.h"
 #include "location_grid.h"
 #include "locations.h"
+#include "pair_list.h"
 #include "core/watch.h"
 
 #include <math.h>
@@ -93,25 +94,19 @@ static void ask(const asj_match_run *run, int32_t side, uint32_t l, const guide 
 
 /* --- both directions -------------------------------------------------------------------------------------------------------- */
 
-/* Appends what image `side` proposes to `fresh`. */
-static asj_status collect(const asj_match_run *run, int32_t side, const proposals *all, asj_candidates *fresh)
+/* Adds what image `side` proposes and is no candidate yet. */
+static asj_status collect(const asj_match_run *run, int32_t side, const proposals *all, asj_pair_list *fresh)
 {
-    for (uint32_t l = 0; l < run->image[side]->l_junctions.count; l++)
-        for (uint32_t k = 0; k < all[l].count; k++) {
+    asj_watch watch;
+    asj_status status = ASJ_OK;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_ALIGN);
+    for (uint32_t l = 0; l < run->image[side]->l_junctions.count && status == ASJ_OK && !asj_watch_stops(&watch, NULL); l++)
+        for (uint32_t k = 0; k < all[l].count && status == ASJ_OK; k++) {
             const uint32_t i = side == 0 ? l : all[l].partner[k], j = side == 0 ? all[l].partner[k] : l;
-            if (asj_candidates_find(&run->candidates, i, j))
-                continue;
-            void *list = fresh->list;
-            asj_status status = asj_grow(&run->context->memory, &list, &fresh->capacity, fresh->count + 1, sizeof *fresh->list,
-                                         fresh->count);
-            if (status != ASJ_OK)
-                return asj_fail(run->context, status, "no memory for the guided pass");
-            fresh->list = list;
-            memset(&fresh->list[fresh->count], 0, sizeof *fresh->list);
-            fresh->list[fresh->count].i = i;
-            fresh->list[fresh->count++].j = j;
+            if (!asj_candidates_find(&run->candidates, i, j))
+                status = asj_pair_list_add(run->context, fresh, i, j);
         }
-    return ASJ_OK;
+    return status == ASJ_OK ? asj_watch_end(&watch) : status;
 }
 
 typedef struct job {
@@ -145,7 +140,7 @@ static asj_status ask_all(const asj_match_run *run, int32_t side, const guides *
     return asj_watch_end(&watch);
 }
 
-static asj_status one_side(const asj_match_run *run, int32_t side, const guides *asked, asj_candidates *fresh)
+static asj_status one_side(const asj_match_run *run, int32_t side, const guides *asked, asj_pair_list *fresh)
 {
     asj_memory *memory = &run->context->memory;
     asj_location_grid grid = {.first = NULL};
@@ -173,24 +168,24 @@ static void set_guides(const asj_match_run *run, int32_t side, guides *all)
     }
 }
 
-static asj_status append(asj_match_run *run, asj_candidates *fresh)
+/* What is proposed joins the candidates, compared and aligned as they are. */
+static asj_status append(asj_match_run *run, const asj_pair_list *proposed)
 {
-    asj_candidates *candidates = &run->candidates;
-    const size_t before = candidates->count;
-    asj_candidates_sort(fresh);
-    asj_status status = asj_compare_and_drop(run, fresh);
+    asj_candidates fresh = {NULL, 0, 0};
+    asj_status status = asj_pair_list_candidates(run->context, proposed, run->image[0]->l_junctions.count, ASJ_STAGE_ALIGN, &fresh);
     if (status == ASJ_OK)
-        status = asj_candidates_append(run->context, candidates, fresh);
+        status = asj_compare_and_drop(run, &fresh);
     if (status == ASJ_OK && run->options->align_iterations > 0)
-        status = asj_align_candidates(run, before);
+        status = asj_align_candidates(run, &fresh);
     if (status == ASJ_OK)
-        asj_candidates_sort(candidates);
+        status = asj_candidates_merge(run->context, &run->candidates, &fresh, ASJ_STAGE_ALIGN);
+    asj_release(&run->context->memory, fresh.list);
     return status;
 }
 
 asj_status asj_guided(asj_match_run *run)
 {
-    asj_candidates fresh = {NULL, 0, 0};
+    asj_pair_list fresh = {NULL, 0, 0};
     asj_memory *memory = &run->context->memory;
     guides all = {asj_allocate(memory, run->choices.count, sizeof *all.list),
                   asj_allocate(memory, run->choices.count, sizeof *all.places), 0};
@@ -201,7 +196,7 @@ asj_status asj_guided(asj_match_run *run)
     }
     if (status == ASJ_OK)
         status = append(run, &fresh);
-    asj_release(memory, fresh.list);
+    asj_release(memory, fresh.pairs);
     asj_release(memory, all.list);
     asj_release(memory, all.places);
     return status;

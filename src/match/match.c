@@ -77,7 +77,7 @@ typedef struct step {
 
 static asj_status align(asj_match_run *run)
 {
-    return run->options->align_iterations > 0 ? asj_align_candidates(run, 0) : ASJ_OK;
+    return run->options->align_iterations > 0 ? asj_align_candidates(run, &run->candidates) : ASJ_OK;
 }
 
 static asj_status verify(asj_match_run *run)

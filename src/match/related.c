@@ -51,7 +51,7 @@ static asj_status look(asj_match_run *run, int32_t *related)
     if (status == ASJ_OK)
         status = keep_surest(run);
     if (status == ASJ_OK && run->options->align_iterations > 0)
-        status = asj_align_candidates(run, 0);
+        status = asj_align_candidates(run, &run->candidates);
     if (status == ASJ_OK)
         status = asj_support_find(run);
     if (status == ASJ_OK)

@@ -3,6 +3,7 @@
  * out (guests.c), and for a geometry the less meaningful ones where there are very many (two_view.c). Ties go to the smaller index,
  * so the list depends on nothing but the input. */
 #include "shortlist.h"
+#include "pair_list.h"
 #include "subset.h"
 
 #include <string.h>
@@ -27,23 +28,19 @@ static asj_status collect(asj_match_run *run, const asj_partner *rows, const asj
     const uint32_t count1 = run->image[0]->l_junctions.count, count2 = run->image[1]->l_junctions.count;
     const size_t limit = (size_t)run->options->shortlist, most = count_partners(rows, count1 * limit) +
                                                                  count_partners(columns, count2 * limit);
-    asj_candidates *candidates = &run->candidates;
-    candidates->list = asj_allocate(&run->context->memory, most, sizeof *candidates->list);
-    if (!candidates->list)
+    asj_pair_list list = {asj_allocate(&run->context->memory, most, sizeof *list.pairs), 0, most};
+    if (!list.pairs)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", most);
-    candidates->capacity = most;
-    candidates->count = 0;
     for (uint32_t n = 0; n < count1 + count2; n++) {
-        const asj_partner *list = n < count1 ? rows + n * limit : columns + (n - count1) * limit;
-        for (size_t k = 0; k < limit && list[k].score > ASJ_NO_PARTNER; k++) {
-            asj_candidate *c = &candidates->list[candidates->count++];
-            memset(c, 0, sizeof *c);
-            c->i = n < count1 ? n : list[k].index;
-            c->j = n < count1 ? list[k].index : n - count1;
+        const asj_partner *partners = n < count1 ? rows + n * limit : columns + (n - count1) * limit;
+        for (size_t k = 0; k < limit && partners[k].score > ASJ_NO_PARTNER; k++, list.count++) {
+            list.pairs[list.count][0] = n < count1 ? n : partners[k].index;
+            list.pairs[list.count][1] = n < count1 ? partners[k].index : n - count1;
         }
     }
-    asj_candidates_sort(candidates);
-    return ASJ_OK;
+    const asj_status status = asj_pair_list_candidates(run->context, &list, count1, ASJ_STAGE_DISTANCES, &run->candidates);
+    asj_release(&run->context->memory, list.pairs);
+    return status;
 }
 
 /* Are there L-junctions that are not listed? With induced patches all are. */

@@ -14,6 +14,7 @@
 #include "consensus.h"
 #include "geometry/estimate.h"
 #include "geometry_candidate.h"
+#include "pair_list.h"
 #include "prior.h"
 #include "room_directions.h"
 #include "shortlist.h"
@@ -32,21 +33,21 @@
 static asj_status add_matches(const asj_match_run *run, asj_wide_run *w)
 {
     asj_memory *memory = &run->context->memory;
-    asj_candidates matches = {asj_allocate_zero(memory, run->choices.count, sizeof *matches.list), 0, 0};
-    if (!matches.list)
-        return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for %zu matches", run->choices.count);
-    for (size_t n = 0; n < run->choices.count; n++) {
+    asj_pair_list list = {NULL, 0, 0};
+    asj_candidates matches = {NULL, 0, 0};
+    asj_status status = ASJ_OK;
+    for (size_t n = 0; n < run->choices.count && status == ASJ_OK; n++) {
         const asj_candidate *c = &run->candidates.list[run->choices.list[n].candidate];
-        if (asj_is_of_guests(run, c))
-            continue;
-        matches.list[matches.count].i = c->i;
-        matches.list[matches.count++].j = c->j;
+        if (!asj_is_of_guests(run, c))
+            status = asj_pair_list_add(run->context, &list, c->i, c->j);
     }
-    asj_status status = asj_compare_and_drop(&w->run, &matches);
     if (status == ASJ_OK)
-        status = asj_candidates_append(run->context, &w->run.candidates, &matches);
+        status = asj_pair_list_candidates(run->context, &list, run->image[0]->l_junctions.count, ASJ_STAGE_DISTANCES, &matches);
     if (status == ASJ_OK)
-        asj_candidates_sort(&w->run.candidates);
+        status = asj_compare_and_drop(&w->run, &matches);
+    if (status == ASJ_OK)
+        status = asj_candidates_merge(run->context, &w->run.candidates, &matches, ASJ_STAGE_DISTANCES);
+    asj_release(memory, list.pairs);
     asj_release(memory, matches.list);
     return status;
 }
@@ -57,7 +58,7 @@ static asj_status wide_candidates(const asj_match_run *run, asj_wide_run *w)
     if (status == ASJ_OK)
         status = add_matches(run, w);
     if (status == ASJ_OK && w->options.align_iterations > 0)
-        status = asj_align_candidates(&w->run, 0);
+        status = asj_align_candidates(&w->run, &w->run.candidates);
     if (status == ASJ_OK)
         status = asj_support_find(&w->run);
     return status == ASJ_OK ? asj_consensus(&w->run) : status;

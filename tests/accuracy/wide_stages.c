@@ -124,7 +124,7 @@ static asj_status make_candidates(stage *s)
 {
     asj_status status = asj_shortlist(&s->run);
     if (status == ASJ_OK)
-        status = asj_align_candidates(&s->run, 0);
+        status = asj_align_candidates(&s->run, &s->run.candidates);
     if (status == ASJ_OK)
         status = asj_support_find(&s->run);
     if (status == ASJ_OK)

@@ -120,7 +120,7 @@ static asj_status one_round(asj_context *context, const settings *set, asj_image
     r->refined = run.candidates.count;
     start = asj_clock_ms();
     if (status == ASJ_OK)
-        status = asj_align_candidates(&run, 0);
+        status = asj_align_candidates(&run, &run.candidates);
     least(&r->refinements, start);
     asj_release(&context->memory, run.candidates.list);
     return status;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "random_pair.h"
+#include "core/sort.h"
 #include "match/image_features.h"
 
 #define MOST_JUNCTIONS 256
@@ -104,6 +105,25 @@ static void append(random_pair *pair, synth_random *random, uint32_t i, uint32_t
     all->list[all->count++] = c;
 }
 
+static int by_pair(const void *left, const void *right)
+{
+    const asj_candidate *p = left, *q = right;
+    if (p->i != q->i)
+        return p->i < q->i ? -1 : 1;
+    return p->j < q->j ? -1 : p->j > q->j;
+}
+
+/* In order, each pair once. */
+static void sort(asj_candidates *candidates)
+{
+    size_t kept = 0;
+    asj_sort(candidates->list, candidates->count, sizeof *candidates->list, by_pair);
+    for (size_t k = 0; k < candidates->count; k++)
+        if (kept == 0 || by_pair(&candidates->list[k], &candidates->list[kept - 1]) != 0)
+            candidates->list[kept++] = candidates->list[k];
+    candidates->count = kept;
+}
+
 void random_pair_candidates(uint64_t seed, int32_t others, random_pair *pair)
 {
     const asj_l_junctions *in1 = &pair->image[0].l_junctions, *in2 = &pair->image[1].l_junctions;
@@ -116,7 +136,7 @@ void random_pair_candidates(uint64_t seed, int32_t others, random_pair *pair)
         for (int32_t n = 0; n < others; n++)
             append(pair, &random, i, (uint32_t)synth_random_between(&random, 0, in2->count));
     }
-    asj_candidates_sort(&pair->run.candidates);
+    sort(&pair->run.candidates);
     assert_true(pair->run.candidates.count > in1->count);
 }
 

@@ -105,11 +105,11 @@ static void find_support(int in_two_goes)
             all->list[kept++] = all->list[k];
     }
     if (in_two_goes) {
+        const asj_candidates others = {rest, taken, taken};
         all->count = kept;
         assert_int_equal(asj_support_find(&pair.run), ASJ_OK);
-        memcpy(all->list + kept, rest, taken * sizeof *rest);
-        all->count = kept + taken;
-        asj_candidates_sort(all);
+        assert_int_equal(asj_candidates_merge(pair.run.context, all, &others, ASJ_STAGE_ALIGN), ASJ_OK);
+        assert_int_equal(all->count, kept + taken);
     }
     assert_int_equal(asj_support_find(&pair.run), ASJ_OK);
 }
