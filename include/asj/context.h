@@ -65,8 +65,10 @@ typedef struct asj_allocator {
 typedef void (*asj_log_callback)(void *user, int32_t level, const char *message);
 
 /* Progress of the current call: stage (ASJ_STAGE_...) and how much of the whole call is done, in [0, 1], never falling.
- * Called from the thread that calls the library, a few dozen times a call, and every 50 ms where a step takes longer. Return 0
- * to go on, anything else to stop: the call then returns ASJ_ERROR_CANCELLED. */
+ * Called from the thread that calls the library, a few dozen times a call, and every 50 ms or so where a step takes longer (at 12
+ * megapixels up to 160 ms in detection, 700 ms where millions of pairs are candidates). Return 0 to go on, anything else to stop:
+ * the call then returns ASJ_ERROR_CANCELLED, within some milliseconds. asj_find_segments(), asj_find_vanishing_points() and
+ * asj_geometry_estimate() cannot tell how much is done, and say 0. */
 typedef int32_t (*asj_progress_callback)(void *user, int32_t stage, double done);
 
 /* What a dump hands out: a plane of the pipeline, or a list of points. Valid during the call only. An image that is done once more
@@ -161,11 +163,14 @@ typedef struct asj_context asj_context;
 ASJ_API asj_status asj_context_create(const asj_context_options *options, asj_context **context);
 
 /* Frees a context and sets the pointer to NULL. NULL and a pointer to NULL are fine. Results made with the context stay valid
- * as long as its allocator does. */
+ * as long as its allocator does: any thread may read them, several at once, and any thread may free one with its _free(), whatever
+ * their context does meanwhile; that calls the allocator's release() in that thread. Functions without a context (names, options,
+ * asj_decompose(), asj_match_segments(), asj_join_segment_matches()) are for any thread at any time, too. */
 ASJ_API void asj_context_free(asj_context **context);
 
 /* What went wrong in the context's last failed call, with names and numbers; "" before the first failure. Valid until the next
- * call with this context. For a NULL context a fixed text. */
+ * call with this context. A call from a hook that is refused is a failed call, too, though the one around it succeeds. For a NULL
+ * context a fixed text: a call without a context leaves no message anywhere. */
 ASJ_API const char *asj_context_message(const asj_context *context);
 
 /* Number of threads that the CPU path uses. 0 for a NULL context. */

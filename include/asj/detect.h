@@ -34,14 +34,15 @@ typedef struct asj_detection {
  * options  NULL = preset `default`
  * result   on success *result belongs to the caller until asj_detection_free()
  *
- * Constant images, images of noise and images smaller than any sector are valid and give no junctions. The same image and options
+ * Constant images, images of noise and images smaller than any sector are valid and give no junctions: of images of noise preset
+ * default `epsilon` one on average at most, the others, which take what is weaker, some hundreds. The same image and options
  * give the same result with any number of threads and on every back end.
  * Time: in proportion to the pixels, to the candidates, and to the length of all rays together: a chessboard of 5 px over a
  * megapixel, where those of 39 600 junctions are followed over half of the image, takes 16 s. The caller is asked every 50 ms
  * whether to go on.
  * Memory: about 7 bytes per pixel of the image, whatever the first octave, but 28 with first_octave -1; 2 more with
- * half_octaves, 10 more with seeds from line segments (preset `paper`); plus 7 MB, more where there is much to find
- * (tests/benchmark/README.md).
+ * half_octaves, 10 more with seeds from line segments (preset `paper`); plus 7 MB, and some kB for each
+ * junction where they are many: 12 megapixels with 29 000 junctions of preset match took 245 MB (tests/benchmark/README.md).
  *
  * ASJ_ERROR_ARGUMENT   context, image or result is NULL
  * ASJ_ERROR_IMAGE      data NULL, unknown format, side < 1, stride shorter than a row, NaN or infinity
@@ -78,9 +79,10 @@ typedef struct asj_region {
 ASJ_API asj_status asj_detect_region(asj_context *context, const asj_image *image, const asj_region *region,
                                      const asj_detect_options *options, asj_detection **result);
 
-/* Does ahead what the first asj_detect() with these options and an image of this size would do once: makes tables, allocates,
- * compiles the kernels of the device. It detects the junctions of a test picture of that size, so it takes as long as that.
- * `options` NULL = preset `default`. Never needed; errors and threads as asj_detect(). */
+/* Does ahead what the first asj_detect() with these options and an image of this size would do once: makes tables, allocates what
+ * depends on the size, compiles the kernels of the device. Lists of what an image shows come with the image. It detects the
+ * junctions of a test picture of that size, so it takes as long as that. `options` NULL = preset `default`. Never needed; errors
+ * and threads as asj_detect(). */
 ASJ_API asj_status asj_prepare(asj_context *context, const asj_detect_options *options, int32_t width, int32_t height);
 
 /* Frees a result and sets the pointer to NULL. NULL and a pointer to NULL are fine. */

@@ -72,6 +72,7 @@ typedef struct asj_geometry_options {
     double reserved[13];     /* zero */
 } asj_geometry_options;
 
+/* Fills in the defaults. NULL is left alone. */
 ASJ_API void asj_geometry_options_init(asj_geometry_options *options);
 
 /* Two-view geometry. */

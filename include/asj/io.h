@@ -70,6 +70,8 @@ typedef struct asj_image_file {
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_image_file_read(const char *path, uint64_t max_pixels, asj_image_file **file,
                                        char *message, size_t message_size);
+
+/* Frees it and sets the pointer to NULL. NULL and a pointer to NULL are fine. Any thread. */
 ASJ_API void asj_image_file_free(asj_image_file **file);
 
 /* Writes a view as PNG, 8 or 16 bits as it is. The file appears whole or not at all.
@@ -204,6 +206,8 @@ typedef struct asj_junction_file {
  * ASJ_ERROR_LIMIT     more than 2^24 junctions, a file longer than 2^31 - 1 bytes
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_junctions_read(const char *path, asj_junction_file **file, char *message, size_t message_size);
+
+/* Frees it and sets the pointer to NULL. NULL and a pointer to NULL are fine. Any thread. */
 ASJ_API void asj_junction_file_free(asj_junction_file **file);
 
 /* Features of an image as a file: asj-formats(5), .asjf. Written as asj_output_begin() and asj_output_commit() do.

@@ -26,6 +26,7 @@ typedef struct asj_vanishing_options {
     double reserved[8];       /* zero */
 } asj_vanishing_options;
 
+/* Fills in the defaults. NULL is left alone. */
 ASJ_API void asj_vanishing_options_init(asj_vanishing_options *options);
 
 /* What parallel edges of the scene meet in. */
@@ -54,13 +55,15 @@ typedef struct asj_vanishing_points {
  * junctions   may be NULL when count is 0; only read
  * result      written whole when ASJ_OK is returned
  *
- * src/geometry/vanishing.c says how. Safe in several threads with a context each; the same result every time.
+ * src/geometry/vanishing.c says how. Safe in several threads with a context each; the same result every time. The caller is asked
+ * every 50 ms whether to go on, as ASJ_STAGE_DECOMPOSE: 300 000 junctions take a second or two, those of a photograph some
+ * milliseconds.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction whose location, angles, their deviations or lengths are not finite, or with more
  *                      than ASJ_MAX_BRANCHES branches
  * ASJ_ERROR_LIMIT      more than 2^28 junctions
  * ASJ_ERROR_OPTION     an option outside its range, or a camera that cannot be (asj_geometry_estimate())
- * ASJ_ERROR_MEMORY */
+ * ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED */
 ASJ_API asj_status asj_find_vanishing_points(asj_context *context, const asj_junction *junctions, size_t count,
                                              const asj_vanishing_options *options, asj_vanishing_points *result);
 

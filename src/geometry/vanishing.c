@@ -252,7 +252,7 @@ static asj_status check(asj_context *context, const asj_junction *junctions, siz
 }
 
 asj_status asj_vanishing_points_of(asj_context *context, const asj_junction *junctions, size_t count,
-                                   const asj_vanishing_options *options, asj_vanishing_points *result)
+                                   const asj_vanishing_options *options, int32_t stage, asj_vanishing_points *result)
 {
     const double half = 0.5 * (options->width > options->height ? options->width : options->height);
     const asj_camera guess = {half, half, 0.5 * (options->width - 1), 0.5 * (options->height - 1)};
@@ -261,13 +261,18 @@ asj_status asj_vanishing_points_of(asj_context *context, const asj_junction *jun
     asj_status status = ASJ_OK;
     asj_vanishing_points found;
     asj_vote_search s = {0};
+    asj_watch watch;
     memset(&found, 0, sizeof found);
+    asj_watch_start(&watch, context, stage);
     s.lines = asj_allocate(memory, count, ASJ_MAX_BRANCHES * sizeof *s.lines);
     s.tail = asj_allocate(memory, ASJ_VOTE_LEVELS * (ASJ_VOTE_LINES + 1), sizeof *s.tail);
     if (s.lines && s.tail) {
-        s.count = asj_vanishing_lines(junctions, count, camera, s.lines);
-        answer(&s, options, camera, &found);
-        *result = found;
+        s.count = asj_vanishing_lines(junctions, count, camera, &watch, s.lines);
+        status = asj_watch_end(&watch);
+        if (status == ASJ_OK) {
+            answer(&s, options, camera, &found);
+            *result = found;
+        }
     } else {
         status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the branches of %zu junctions", count);
     }
@@ -283,6 +288,7 @@ asj_status asj_find_vanishing_points(asj_context *context, const asj_junction *j
         return ASJ_ERROR_ARGUMENT;
     if (!options || !result || (!junctions && count > 0))
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "the junctions, the options or the result is NULL");
+    context->progress = 0; /* a call of its own */
     const asj_status status = check(context, junctions, count, options);
-    return status == ASJ_OK ? asj_vanishing_points_of(context, junctions, count, options, result) : status;
+    return status == ASJ_OK ? asj_vanishing_points_of(context, junctions, count, options, ASJ_STAGE_DECOMPOSE, result) : status;
 }

@@ -74,13 +74,13 @@ static void place(asj_vote_line *one, const asj_camera *k)
     one->my = 0.5 * (y + ey);
 }
 
-/* Leaves the longest one of each line, the longest first. Returns how many. */
-static int32_t keep(asj_vote_line *lines, size_t all, const asj_camera *camera)
+/* Leaves the longest one of each line, the longest first. Returns how many. `watch` may be NULL. */
+static int32_t keep(asj_vote_line *lines, size_t all, const asj_camera *camera, asj_watch *watch)
 {
     int32_t kept = 0;
     if (all > 1)
         asj_sort(lines, all, sizeof *lines, longer);
-    for (size_t i = 0; i < all && kept < ASJ_VOTE_LINES; i++)
+    for (size_t i = 0; i < all && kept < ASJ_VOTE_LINES && !(watch && asj_watch_stops(watch, NULL)); i++)
         if (!is_known(lines, kept, &lines[i])) {
             lines[kept] = lines[i];
             place(&lines[kept++], camera);
@@ -89,10 +89,11 @@ static int32_t keep(asj_vote_line *lines, size_t all, const asj_camera *camera)
 }
 
 /* All branches that are known well, the longest of each line. Returns how many. */
-int32_t asj_vanishing_lines(const asj_junction *junctions, size_t count, const asj_camera *camera, asj_vote_line *lines)
+int32_t asj_vanishing_lines(const asj_junction *junctions, size_t count, const asj_camera *camera, asj_watch *watch,
+                            asj_vote_line *lines)
 {
     size_t all = 0;
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count && !asj_watch_stops(watch, NULL); i++)
         for (int32_t b = 0; b < junctions[i].branch_count; b++) {
             const asj_branch *branch = &junctions[i].branches[b];
             const double a = (double)branch->angle, length = (double)branch->length;
@@ -110,7 +111,7 @@ int32_t asj_vanishing_lines(const asj_junction *junctions, size_t count, const a
             one->sd = fmax(sd, 0.1 * ASJ_DEGREE);
             one->source = (uint32_t)all++;
         }
-    return keep(lines, all, camera);
+    return keep(lines, all, camera, watch);
 }
 
 int32_t asj_vote_lines(const asj_straight_edge *edges, size_t count, double shortest, const asj_camera *camera,
@@ -133,7 +134,7 @@ int32_t asj_vote_lines(const asj_straight_edge *edges, size_t count, double shor
         one->sd = ACROSS / length;
         one->source = (uint32_t)all++;
     }
-    return keep(lines, all, camera);
+    return keep(lines, all, camera, NULL);
 }
 
 /* --- the vote ---------------------------------------------------------------------------------------------------------------- */

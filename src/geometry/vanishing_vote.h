@@ -3,6 +3,8 @@
 #ifndef ASJ_SRC_GEOMETRY_VANISHING_VOTE_H
 #define ASJ_SRC_GEOMETRY_VANISHING_VOTE_H
 
+#include "core/watch.h"
+
 #include <asj/vanishing.h>
 
 #include <stddef.h>
@@ -40,8 +42,9 @@ typedef struct asj_vote_search {
     int32_t members[ASJ_VOTE_LEVELS];
 } asj_vote_search;
 
-/* The branches that take part, the longest first; `lines` has room for all branches. Returns how many. */
-int32_t asj_vanishing_lines(const asj_junction *junctions, size_t count, const asj_camera *camera, asj_vote_line *lines);
+/* The branches that take part, the longest first; `lines` has room for all branches. Returns how many, fewer when stopped. */
+int32_t asj_vanishing_lines(const asj_junction *junctions, size_t count, const asj_camera *camera, asj_watch *watch,
+                            asj_vote_line *lines);
 
 /* The edges of at least `shortest` px, in the same way. */
 int32_t asj_vote_lines(const asj_straight_edge *edges, size_t count, double shortest, const asj_camera *camera,

@@ -82,7 +82,7 @@ static asj_status from_branches(asj_context *context, const asj_image_features *
     options.camera = *camera;
     options.width = image->pyramid.width[0];
     options.height = image->pyramid.height[0];
-    const asj_status status = asj_vanishing_points_of(context, list, count, &options, &points);
+    const asj_status status = asj_vanishing_points_of(context, list, count, &options, ASJ_STAGE_ASSIGN, &points);
     asj_release(&context->memory, list);
     if (status != ASJ_OK || points.count < 2)
         return status;

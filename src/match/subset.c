@@ -2,6 +2,7 @@
 #include "subset.h"
 #include "describe.h"
 #include "core/nth_smallest.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <string.h>
@@ -38,11 +39,13 @@ static asj_status find_log10_nfa(asj_context *context, const asj_l_junctions *l,
     return ASJ_OK;
 }
 
-static void fill(const asj_image_features *all, const choice *c, size_t length, asj_subset *s)
+static asj_status fill(asj_context *context, const asj_image_features *all, const choice *c, size_t length, asj_subset *s)
 {
     const asj_l_junctions *l = &all->l_junctions;
     uint32_t count = 0;
-    for (uint32_t i = 0; i < l->count; i++) {
+    asj_watch watch;
+    asj_watch_start(&watch, context, ASJ_STAGE_DISTANCES);
+    for (uint32_t i = 0; i < l->count && !asj_watch_stops(&watch, NULL); i++) {
         const uint32_t f = l->first_frame[i], some = frames_of(l, i, c);
         s->first_frame[i] = count;
         memcpy(s->frames + count, l->frames + f, some * sizeof *s->frames);
@@ -51,6 +54,7 @@ static void fill(const asj_image_features *all, const choice *c, size_t length, 
         count += some;
     }
     s->first_frame[l->count] = count;
+    return asj_watch_end(&watch);
 }
 
 asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t first_only, uint32_t most, asj_subset *s)
@@ -72,7 +76,7 @@ asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t fir
     s->usable = asj_allocate(memory, count, sizeof *s->usable);
     if (!s->frames || !s->first_frame || !s->patches || !s->usable)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for a part of %u L-junctions", (unsigned)l->count);
-    fill(all, &c, length, s);
+    const asj_status filled = fill(run->context, all, &c, length, s);
     s->features = *all;
     s->features.device_copy = 0;
     s->features.patches = s->patches;
@@ -80,7 +84,7 @@ asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t fir
     s->features.l_junctions.frames = s->frames;
     s->features.l_junctions.first_frame = s->first_frame;
     s->features.l_junctions.frame_count = (uint32_t)count;
-    return ASJ_OK;
+    return filled;
 }
 
 void asj_subset_free(asj_memory *memory, asj_subset *s)

@@ -190,12 +190,47 @@ static void bad_input_is_refused(void **state)
     unit_context_free(&counter, &context);
 }
 
+static int32_t stop(void *user, int32_t stage, double done)
+{
+    (void)user;
+    assert_int_equal(stage, ASJ_STAGE_DECOMPOSE);
+    assert_true(done == 0);
+    return 1;
+}
+
+static void it_can_be_cancelled(void **state)
+{
+    enum { MANY = 20000 };
+    asj_junction *many = calloc(MANY, sizeof *many);
+    asj_context_options options;
+    asj_vanishing_options wishes;
+    asj_vanishing_points points = {.count = 7};
+    asj_context *context;
+    (void)state;
+    assert_non_null(many);
+    for (int32_t k = 0; k < MANY; k++) {
+        many[k] = (asj_junction){.x = (float)(k % 1000), .y = (float)(k / 1000), .branch_count = 2};
+        for (int32_t b = 0; b < 2; b++)
+            many[k].branches[b] = (asj_branch){.angle = (float)b, .length = 50 + (float)(k % 97)};
+    }
+    asj_vanishing_options_init(&wishes);
+    wishes.width = 1000;
+    wishes.height = 1000;
+    asj_context_options_init(&options);
+    options.progress = stop;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+    assert_int_equal(asj_find_vanishing_points(context, many, MANY, &wishes, &points), ASJ_ERROR_CANCELLED);
+    assert_int_equal(points.count, 7); /* nothing is written */
+    asj_context_free(&context);
+    free(many);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rooms_have_three_directions), cmocka_unit_test(near_points_are_one),
         cmocka_unit_test(chance_has_no_directions),
-        cmocka_unit_test(bad_input_is_refused),
+        cmocka_unit_test(bad_input_is_refused), cmocka_unit_test(it_can_be_cancelled),
     };
     return cmocka_run_group_tests_name("vanishing points", tests, NULL, NULL);
 }
