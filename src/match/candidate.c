@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Lists of candidates in order: by L-junction of image 1, then of image 2. */
 #include "candidate.h"
+#include "core/sort.h"
 #include "core/watch.h"
 
 #include <string.h>
@@ -13,6 +14,16 @@ static int compare(const asj_candidate *p, const asj_candidate *q)
     if (p->i != q->i)
         return p->i < q->i ? -1 : 1;
     return p->j < q->j ? -1 : p->j > q->j;
+}
+
+static int by_pair(const void *left, const void *right)
+{
+    return compare(left, right);
+}
+
+void asj_candidates_sort(asj_candidates *candidates)
+{
+    asj_sort(candidates->list, candidates->count, sizeof *candidates->list, by_pair);
 }
 
 asj_status asj_candidates_merge(asj_context *context, asj_candidates *candidates, const asj_candidates *others, int32_t stage)

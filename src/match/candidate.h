@@ -40,6 +40,9 @@ static inline const double *asj_candidate_map(const asj_candidate *c, int32_t si
     return side == 0 ? c->map.to : c->map.from;
 }
 
+/* Brings a list of different pairs in order. */
+void asj_candidates_sort(asj_candidates *candidates);
+
 /* Adds others, both lists in order, and so is the outcome; of a pair in both what is there stays. The caller is asked on behalf of
  * `stage`. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED; then nothing has changed. */
 asj_status asj_candidates_merge(asj_context *context, asj_candidates *candidates, const asj_candidates *others, int32_t stage);

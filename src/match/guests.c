@@ -49,9 +49,14 @@ static asj_status start(const asj_match_run *run, asj_match_run *guests, uint8_t
         c->number = 0;
         taken[0][run->image[0]->l_junctions.location[c->i]] = 1;
         taken[1][run->image[1]->l_junctions.location[c->j]] = 1;
-        guests->choices.list[n] = (asj_choice){(uint32_t)n, 0, 0};
     }
     guests->candidates.count = guests->choices.count = count;
+    asj_candidates_sort(&guests->candidates);
+    for (size_t n = 0; n < count; n++) {
+        const asj_candidate *c = &run->candidates.list[run->choices.list[n].candidate];
+        const asj_candidate *own = asj_candidates_find(&guests->candidates, c->i, c->j);
+        guests->choices.list[n] = (asj_choice){(uint32_t)(own - guests->candidates.list), 0, 0};
+    }
     return ASJ_OK;
 }
 

@@ -7,6 +7,7 @@
 #include "core/backend.h"
 #include "core/image.h"
 #include "core/most_junctions.h"
+#include "core/watch.h"
 #include "describe.h"
 #include "finer.h"
 #include "match_options.h"
@@ -20,6 +21,7 @@ typedef struct piece {
 } piece;
 
 #define MOST_PIECES 64
+#define PART ((size_t)8 << 20) /* bytes: a few ms */
 
 /* Of the features of an image that stand `offset` bytes inside of an asj_features. */
 #define PIECE(member, count) \
@@ -79,6 +81,15 @@ static size_t aligned(size_t bytes)
     return (bytes + ASJ_ALIGNMENT - 1) / ASJ_ALIGNMENT * ASJ_ALIGNMENT;
 }
 
+/* In parts, between which the caller is asked. */
+static void copy_bytes(char *to, const char *from, size_t bytes, asj_watch *watch)
+{
+    for (size_t done = 0; done < bytes && !asj_watch_stops(watch, NULL); done += PART) {
+        const size_t left = bytes - done;
+        memcpy(to + done, from + done, left < PART ? left : PART);
+    }
+}
+
 /* All of it in one block: `start` holds pointers to what is copied. */
 static asj_status copy(asj_context *context, asj_features *start, asj_features **features)
 {
@@ -92,17 +103,22 @@ static asj_status copy(asj_context *context, asj_features *start, asj_features *
     if (!block)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu bytes of features", total);
     char *next = block + aligned(sizeof *start);
+    asj_watch watch;
+    asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
     for (size_t n = 0; n < pieces; n++) {
-        const void *from;
+        const char *from;
         memcpy(&from, (const char *)start + list[n].pointer, sizeof from);
-        if (list[n].bytes > 0)
-            memcpy(next, from, list[n].bytes);
+        copy_bytes(next, from, list[n].bytes, &watch);
         memcpy((char *)start + list[n].pointer, &next, sizeof next);
         next += aligned(list[n].bytes);
     }
     start->memory = memory;
-    *features = memcpy(block, start, sizeof *start);
-    return ASJ_OK;
+    const asj_status status = asj_watch_end(&watch);
+    if (status == ASJ_OK)
+        *features = memcpy(block, start, sizeof *start);
+    else
+        asj_release(&memory, block);
+    return status;
 }
 
 asj_status asj_features_keep(asj_context *context, const asj_match_options *options, const asj_junction *junctions, size_t count,
