@@ -11,7 +11,9 @@
  *         asj_detection_free(&found);
  *     }
  *     asj_context_free(&context);
- */
+ *
+ * For generated bindings: structs are plain data, with fields of fixed width and no padding. Constants stand in enumerations
+ * without a name; what holds one is an int32_t, whose comment says which, so some generators ask for a cast. */
 #ifndef ASJ_H
 #define ASJ_H
 

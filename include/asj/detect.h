@@ -34,9 +34,9 @@ typedef struct asj_detection {
  * options  NULL = preset `default`
  * result   on success *result belongs to the caller until asj_detection_free()
  *
- * Constant images, images of noise and images smaller than any sector are valid and give no junctions: of images of noise preset
- * default `epsilon` one on average at most, the others, which take what is weaker, some hundreds. The same image and options
- * give the same result with any number of threads and on every back end.
+ * Constant images, images of noise and images smaller than any sector are valid and give no junctions: in an image of noise preset
+ * default finds `epsilon` junctions on average at most; preset match takes what is weaker, a thousand in 640 x 480 pixels of it.
+ * The same image and options give the same result with any number of threads and on every back end.
  * Time: in proportion to the pixels, to the candidates, and to the length of all rays together: a chessboard of 5 px over a
  * megapixel, where those of 39 600 junctions are followed over half of the image, takes 16 s. The caller is asked every 50 ms
  * whether to go on.
