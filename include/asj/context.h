@@ -66,7 +66,7 @@ typedef void (*asj_log_callback)(void *user, int32_t level, const char *message)
 
 /* Progress of the current call: stage (ASJ_STAGE_...) and how much of the whole call is done, in [0, 1], never falling.
  * Called from the thread that calls the library, a few dozen times a call, and every 50 ms or so where a step takes longer (at 12
- * megapixels up to 160 ms in detection, 700 ms where millions of pairs are candidates). Return 0 to go on, anything else to stop:
+ * megapixels up to 160 ms in detection, 500 ms where 1.6 million pairs are candidates). Return 0 to go on, anything else to stop:
  * the call then returns ASJ_ERROR_CANCELLED, within some milliseconds. asj_find_segments(), asj_find_vanishing_points() and
  * asj_geometry_estimate() cannot tell how much is done, and say 0. */
 typedef int32_t (*asj_progress_callback)(void *user, int32_t stage, double done);

@@ -35,14 +35,14 @@ typedef struct asj_detection {
  * result   on success *result belongs to the caller until asj_detection_free()
  *
  * Constant images, images of noise and images smaller than any sector are valid and give no junctions: in an image of noise preset
- * default finds `epsilon` junctions on average at most; preset match takes what is weaker, a thousand in 640 x 480 pixels of it.
- * The same image and options give the same result with any number of threads and on every back end.
+ * default finds `epsilon` junctions on average at most; preset match takes what is weaker, 600 to 1200 junctions in 640 x 480
+ * pixels of it. The same image and options give the same result with any number of threads and on every back end.
  * Time: in proportion to the pixels, to the candidates, and to the length of all rays together: a chessboard of 5 px over a
  * megapixel, where those of 39 600 junctions are followed over half of the image, takes 16 s. The caller is asked every 50 ms
  * whether to go on.
- * Memory: about 7 bytes per pixel of the image, whatever the first octave, but 28 with first_octave -1; 2 more with
- * half_octaves, 10 more with seeds from line segments (preset `paper`); plus 7 MB, and some kB for each
- * junction where they are many: 12 megapixels with 29 000 junctions of preset match took 245 MB (tests/benchmark/README.md).
+ * Memory: about 7 bytes per pixel of the image, whatever the first octave, but 28 with first_octave -1; 2 more with half_octaves,
+ * 10 more with seeds from line segments (preset `paper`); plus 7 MB, and some kB for each junction where they are many: a
+ * photograph enlarged to 12 megapixels, with 32 000 junctions of preset match, took 285 MB (tests/benchmark/README.md).
  *
  * ASJ_ERROR_ARGUMENT   context, image or result is NULL
  * ASJ_ERROR_IMAGE      data NULL, unknown format, side < 1, stride shorter than a row, NaN or infinity

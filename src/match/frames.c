@@ -83,7 +83,8 @@ static uint32_t number_frames(asj_l_junctions *all)
 static void keep_own_lengths(asj_l_junctions *all)
 {
     for (uint32_t k = 0; k < 2 * all->count; k++)
-        all->lengths[k].count = all->lengths[k].count < 1 ? all->lengths[k].count : 1;
+        if (all->lengths[k].count > 1)
+            all->lengths[k].count = 1;
 }
 
 static void fill_frames(asj_l_junctions *all)

@@ -29,12 +29,6 @@ typedef struct work {
     uint32_t *edge_of; /* for each branch its edge, + 1; 0 = none */
 } work;
 
-static double length2_of(const asj_segment *s)
-{
-    const double dx = (double)s->x2 - (double)s->x1, dy = (double)s->y2 - (double)s->y1;
-    return dx * dx + dy * dy;
-}
-
 /* ---- branches ---- */
 
 static asj_segment segment_of(const asj_junction *junction, uint32_t index, int32_t b)
@@ -119,7 +113,7 @@ static asj_status take_branch(work *w, uint32_t j, int32_t b)
     const size_t first = edge ? asj_branch_number(edge->junction_a, edge->branch_a) : number;
     if (!is_sound(&s, &w->joining.junctions[j].branches[b]))
         return asj_fail(w->joining.context, ASJ_ERROR_ARGUMENT, "branch %d of junction %lu cannot be", (int)b, (unsigned long)j);
-    if (!edge && !(length2_of(&s) > 0))
+    if (!edge && !(asj_segment_length2(&s) > 0))
         return ASJ_OK;
     w->joining.joined[number] = (uint32_t)first;
     if (number != first)

@@ -11,16 +11,10 @@
 #include <math.h>
 #include <string.h>
 
-static double length2_of(const asj_segment *s)
-{
-    const double dx = (double)s->x2 - (double)s->x1, dy = (double)s->y2 - (double)s->y1;
-    return dx * dx + dy * dy;
-}
-
 static int by_length(const void *a, const void *b)
 {
     const asj_segment *p = a, *q = b;
-    const double one = length2_of(p), other = length2_of(q);
+    const double one = asj_segment_length2(p), other = asj_segment_length2(q);
     if (one > other || one < other)
         return one > other ? -1 : 1;
     return asj_branch_of(p) < asj_branch_of(q) ? -1 : asj_branch_of(p) > asj_branch_of(q);
@@ -41,7 +35,7 @@ static asj_status no_memory(const asj_joining *w)
 
 /* ---- pairs ---- */
 
-/* What a segment is compared with: those before `end` in its cells that were not yet. Returns 1 to go on. */
+/* Of the segments before one that pass near it, the first that it makes an edge with: one edge as it is, or one that bends. */
 typedef struct partner_search {
     asj_joining *w;
     const asj_segment *s;
@@ -127,7 +121,8 @@ static asj_status join_once(asj_joining *w, int32_t *moved)
 /* Whether another segment than `other` goes on where the segment begins. */
 static int32_t goes_on(const asj_joining *w, const asj_segment *s, const asj_segment *other)
 {
-    const double dx = (double)s->x1 - (double)s->x2, dy = (double)s->y1 - (double)s->y2, least = ASJ_STRAIGHT * sqrt(length2_of(s));
+    const double dx = (double)s->x1 - (double)s->x2, dy = (double)s->y1 - (double)s->y2;
+    const double least = ASJ_STRAIGHT * sqrt(asj_segment_length2(s));
     if (s->junction1 == ASJ_NO_JUNCTION)
         return 0;
     const asj_junction *corner = &w->junctions[s->junction1];
@@ -161,19 +156,6 @@ static void end_at(asj_segment *s, const asj_end_point *at)
     s->junction2 = ASJ_NO_JUNCTION;
 }
 
-/* From one's own end to the other's. */
-static void become_both(asj_segment *longer, const asj_segment *shorter)
-{
-    const uint32_t branches = (uint32_t)longer->branch_count + shorter->branch_count;
-    longer->x2 = shorter->x1;
-    longer->y2 = shorter->y1;
-    longer->sd2 = shorter->sd1;
-    longer->end2 = shorter->end1;
-    longer->junction2 = shorter->junction1;
-    longer->log10_nfa = fminf(longer->log10_nfa, shorter->log10_nfa);
-    longer->branch_count = (uint16_t)(branches < UINT16_MAX ? branches : UINT16_MAX);
-}
-
 /* Once: what has been cut crosses nobody any more there. */
 static asj_status join_halves(asj_joining *w)
 {
@@ -186,7 +168,8 @@ static asj_status join_halves(asj_joining *w)
         find_longer(&p);
         const uint32_t k = p.best;
         if (k < kept && p.bend.is_straight) {
-            become_both(&w->segments[k], &s);
+            asj_take_end(&w->segments[k], 1, &s, 0); /* from one's own end to the other's */
+            asj_take_branches(&w->segments[k], &s);
             w->joined[asj_branch_of(&s)] = (uint32_t)asj_branch_of(&w->segments[k]);
         } else {
             if (k < kept) {

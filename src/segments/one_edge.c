@@ -25,7 +25,7 @@ int32_t asj_is_one_edge(const asj_segment *longer, const asj_segment *shorter, a
     return asj_course_shared(c) > (inside ? 0 : c->overlap);
 }
 
-static void take_end(asj_segment *s, int32_t end, const asj_segment *t, int32_t from)
+void asj_take_end(asj_segment *s, int32_t end, const asj_segment *t, int32_t from)
 {
     const float x = from == 0 ? t->x1 : t->x2, y = from == 0 ? t->y1 : t->y2, sd = from == 0 ? t->sd1 : t->sd2;
     const int32_t kind = from == 0 ? t->end1 : t->end2;
@@ -34,6 +34,13 @@ static void take_end(asj_segment *s, int32_t end, const asj_segment *t, int32_t 
         s->x1 = x, s->y1 = y, s->sd1 = sd, s->end1 = kind, s->junction1 = junction;
     else
         s->x2 = x, s->y2 = y, s->sd2 = sd, s->end2 = kind, s->junction2 = junction;
+}
+
+void asj_take_branches(asj_segment *longer, const asj_segment *shorter)
+{
+    const uint32_t branches = (uint32_t)longer->branch_count + shorter->branch_count;
+    longer->log10_nfa = fminf(longer->log10_nfa, shorter->log10_nfa);
+    longer->branch_count = (uint16_t)(branches < UINT16_MAX ? branches : UINT16_MAX);
 }
 
 static uint32_t junction_at(const asj_segment *s, int32_t end)
@@ -87,9 +94,7 @@ int32_t asj_become_one_edge(const asj_junction *junctions, asj_segment *longer, 
         is_moved[end] = is_end_of_both(junctions, longer, shorter, c, end, end == 0 ? back : !back);
     for (int32_t end = 0; end < 2; end++)
         if (is_moved[end])
-            take_end(longer, end, shorter, end == 0 ? back : !back);
-    longer->log10_nfa = fminf(longer->log10_nfa, shorter->log10_nfa);
-    const uint32_t branches = (uint32_t)longer->branch_count + shorter->branch_count;
-    longer->branch_count = (uint16_t)(branches < UINT16_MAX ? branches : UINT16_MAX);
+            asj_take_end(longer, end, shorter, end == 0 ? back : !back);
+    asj_take_branches(longer, shorter);
     return is_moved[0] || is_moved[1];
 }

@@ -14,6 +14,19 @@ static inline asj_end_point asj_segment_end(const asj_segment *s, int32_t end)
     return end == 0 ? (asj_end_point){(double)s->x1, (double)s->y1} : (asj_end_point){(double)s->x2, (double)s->y2};
 }
 
+/* The square of its length, px^2. */
+static inline double asj_segment_length2(const asj_segment *s)
+{
+    const double dx = (double)s->x2 - (double)s->x1, dy = (double)s->y2 - (double)s->y1;
+    return dx * dx + dy * dy;
+}
+
+/* The end of one becomes that of another, `from`. */
+void asj_take_end(asj_segment *s, int32_t end, const asj_segment *t, int32_t from);
+
+/* The longer is as sure as either of both, and made of the branches of both. */
+void asj_take_branches(asj_segment *longer, const asj_segment *shorter);
+
 /* 0: they are parts of different edges. Else where the shorter lies along the longer. */
 int32_t asj_is_one_edge(const asj_segment *longer, const asj_segment *shorter, asj_course *c);
 

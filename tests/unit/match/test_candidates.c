@@ -73,18 +73,36 @@ static void each_pair_once_in_order(void **state)
     }
 }
 
+/* Two lists to merge, and pairs. */
+typedef struct lists {
+    asj_candidates first, second;
+    asj_pair_list pairs;
+} lists;
+
+static void lists_make(asj_context *context, lists *all)
+{
+    make(context, 7, 500, in_first, &all->first);
+    make(context, 8, 500, in_second, &all->second);
+    draw(9, 500, in_second, context, &all->pairs);
+}
+
+static void lists_free(asj_context *context, const lists *all)
+{
+    asj_release(&context->memory, all->first.list);
+    asj_release(&context->memory, all->second.list);
+    asj_release(&context->memory, all->pairs.pairs);
+}
+
 static void without_memory_nothing_changes(void **state)
 {
     unit_fixture *f = *state;
-    asj_candidates first, second, none;
-    asj_pair_list list;
-    make(f->context, 7, 500, in_first, &first);
-    make(f->context, 8, 500, in_second, &second);
-    draw(9, 500, in_second, f->context, &list);
+    asj_candidates none;
+    lists all;
+    lists_make(f->context, &all);
     asj_memory_trim(&f->context->memory);
     for (long n = 1, reached = 1; reached; n++) {
         f->counter.fail_at = f->counter.calls + n;
-        const asj_status status = asj_pair_list_candidates(f->context, &list, I, ASJ_STAGE_ALIGN, &none);
+        const asj_status status = asj_pair_list_candidates(f->context, &all.pairs, I, ASJ_STAGE_ALIGN, &none);
         reached = unit_reached(&f->counter);
         assert_int_equal(status, reached ? ASJ_ERROR_MEMORY : ASJ_OK);
         assert_true((none.list == NULL) == (reached != 0) && (none.count > 0) == !reached);
@@ -92,12 +110,10 @@ static void without_memory_nothing_changes(void **state)
         asj_memory_trim(&f->context->memory);
     }
     f->counter.fail_at = f->counter.calls + 1;
-    assert_int_equal(asj_candidates_merge(f->context, &first, &second, ASJ_STAGE_ALIGN), ASJ_ERROR_MEMORY);
+    assert_int_equal(asj_candidates_merge(f->context, &all.first, &all.second, ASJ_STAGE_ALIGN), ASJ_ERROR_MEMORY);
     assert_true(unit_reached(&f->counter));
-    assert_candidates(&first, 0);
-    asj_release(&f->context->memory, first.list);
-    asj_release(&f->context->memory, second.list);
-    asj_release(&f->context->memory, list.pairs);
+    assert_candidates(&all.first, 0);
+    lists_free(f->context, &all);
 }
 
 static int32_t stop(void *user, int32_t stage, double done)
@@ -111,21 +127,17 @@ static int32_t stop(void *user, int32_t stage, double done)
 static void it_can_be_cancelled(void **state)
 {
     unit_fixture *f = *state;
-    asj_candidates first, second, none;
-    asj_pair_list list;
-    make(f->context, 3, 500, in_first, &first);
-    make(f->context, 4, 500, in_second, &second);
-    draw(5, 500, in_second, f->context, &list);
+    asj_candidates none;
+    lists all;
+    lists_make(f->context, &all);
     f->context->options.progress = stop;
-    assert_int_equal(asj_pair_list_candidates(f->context, &list, I, ASJ_STAGE_ALIGN, &none), ASJ_ERROR_CANCELLED);
+    assert_int_equal(asj_pair_list_candidates(f->context, &all.pairs, I, ASJ_STAGE_ALIGN, &none), ASJ_ERROR_CANCELLED);
     assert_null(none.list);
     f->context->asked_ms = 0;
-    assert_int_equal(asj_candidates_merge(f->context, &first, &second, ASJ_STAGE_ALIGN), ASJ_ERROR_CANCELLED);
-    assert_candidates(&first, 0);
+    assert_int_equal(asj_candidates_merge(f->context, &all.first, &all.second, ASJ_STAGE_ALIGN), ASJ_ERROR_CANCELLED);
+    assert_candidates(&all.first, 0);
     f->context->options.progress = NULL;
-    asj_release(&f->context->memory, first.list);
-    asj_release(&f->context->memory, second.list);
-    asj_release(&f->context->memory, list.pairs);
+    lists_free(f->context, &all);
 }
 
 int main(void)
