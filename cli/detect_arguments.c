@@ -162,18 +162,6 @@ static int take_preset(void *target, int id, const char *text)
     return cli_take_preset("detect", "preset", text, &arguments->preset);
 }
 
-static asj_status preset_value(int32_t preset, const char *key, char *text, size_t text_size)
-{
-    asj_detect_options options;
-    asj_status status = asj_detect_options_preset(&options, preset);
-    return status == ASJ_OK ? asj_detect_options_get(&options, key, text, text_size) : status;
-}
-
-static asj_status set_option(void *options, const char *key, const char *text, char *message, size_t message_size)
-{
-    return asj_detect_options_set(options, key, text, message, message_size);
-}
-
 static int check_plot(cli_detect_arguments *arguments)
 {
     if (!arguments->plot)
@@ -265,7 +253,7 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
         {"Preset", preset_options, sizeof preset_options / sizeof preset_options[0], take_preset, arguments},
         {"Running", cli_common_options, cli_common_option_count, cli_common_take, &arguments->common},
     };
-    const cli_table table = {"Detector", "", asj_detect_option_count, asj_detect_option, preset_value, cli_settings_take,
+    const cli_table table = {"Detector", "", asj_detect_option_count, asj_detect_option, cli_detect_option_value, cli_settings_take,
                              &arguments->settings};
     const cli_syntax syntax = {"detect", introduction, conclusion, groups, sizeof groups / sizeof groups[0], &table, 1};
     int result = cli_parse(&syntax, argc, argv, &first);
@@ -282,7 +270,8 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
                                 strcmp(cli_detect_extension(arguments), "asj") == 0;
     if (without_octaves)
         arguments->options.octaves = 1;
-    result = cli_settings_apply(&arguments->settings, "detect", arguments->common.quiet, &arguments->options, set_option);
+    result = cli_settings_apply(&arguments->settings, "detect", arguments->common.quiet, &arguments->options,
+                                cli_set_detect_option);
     if (result == CLI_SUCCESS && arguments->options.octaves == 1 && cli_settings_have(&arguments->settings, "half_octaves"))
         return cli_usage_error("detect", "--half-octaves changes nothing with one octave%s",
                                without_octaves ? ", and an .asj file of --preset match has one: write json" : "");

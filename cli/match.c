@@ -4,6 +4,7 @@
 #include "interrupt.h"
 #include "match_arguments.h"
 #include "match_cameras.h"
+#include "match_checks.h"
 #include "match_input.h"
 #include "message.h"
 #include "platform.h"
@@ -290,6 +291,8 @@ int cli_match(int argc, char **argv)
     cli_match_arguments arguments;
     run r = {0};
     int result = cli_match_arguments_read(argc, argv, &arguments);
+    if (result == CLI_SUCCESS)
+        result = cli_match_check(&arguments);
     if (result == CLI_SUCCESS) {
         r.arguments = &arguments;
         result = run_all(&r);

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The help, the options and the checks of `asj-cli match`. */
+/* The help and the options of `asj-cli match`; what goes with what: match_checks.c. */
 #include "match_arguments.h"
 #include "camera.h"
-#include "ending.h"
 #include "help.h"
 #include "message.h"
-#include "outputs.h"
 
 #include <asj/io.h>
 
@@ -103,7 +101,7 @@ void cli_match_arguments_free(cli_match_arguments *arguments)
     cli_settings_free(&arguments->match_settings);
 }
 
-static const char *const formats[] = {"csv", "json", NULL};
+const char *const cli_match_formats[] = {"csv", "json", NULL};
 
 static int take_output(void *target, int id, const char *text)
 {
@@ -118,7 +116,7 @@ static int take_output(void *target, int id, const char *text)
             return cli_usage_error("match", "--line-ends: '%s' is not cut, inner or both", text);
         break;
     default:
-        if (cli_find_word(formats, text) < 0)
+        if (cli_find_word(cli_match_formats, text) < 0)
             return cli_usage_error("match", "--format: '%s' is not csv or json", text);
         arguments->format = text;
     }
@@ -223,76 +221,6 @@ static int take_preset(void *target, int id, const char *text)
     }
 }
 
-static asj_status detect_value(int32_t preset, const char *key, char *text, size_t text_size)
-{
-    asj_detect_options options;
-    asj_status status = asj_detect_options_preset(&options, preset);
-    return status == ASJ_OK ? asj_detect_options_get(&options, key, text, text_size) : status;
-}
-
-static asj_status match_value(int32_t preset, const char *key, char *text, size_t text_size)
-{
-    asj_match_options options;
-    asj_status status = asj_match_options_preset(&options, preset);
-    return status == ASJ_OK ? asj_match_options_get(&options, key, text, text_size) : status;
-}
-
-static asj_status set_detect_option(void *options, const char *key, const char *text, char *message, size_t message_size)
-{
-    return asj_detect_options_set(options, key, text, message, message_size);
-}
-
-static asj_status set_match_option(void *options, const char *key, const char *text, char *message, size_t message_size)
-{
-    return asj_match_options_set(options, key, text, message, message_size);
-}
-
-/* Will there be junctions of octave -1, or may a file have some? */
-static int may_have_finer(const cli_match_arguments *arguments)
-{
-    int may = arguments->detect_options.first_octave < 0 && arguments->detect_options.octaves > 1;
-    for (int v = 0; v < 2; v++)
-        may = may || arguments->junctions[v] || asj_features_probe(arguments->images[v]);
-    return may;
-}
-
-/* What was given of how enlarged images are looked at; NULL = nothing. Where their partners are looked for matters to junctions of
- * octave -1 as well. */
-static const char *asked_of_enlarged(const cli_match_arguments *arguments)
-{
-    const cli_settings *given = &arguments->match_settings;
-    const int only_enlarged = !may_have_finer(arguments);
-    return cli_settings_have(given, "enlarged_half_octaves")               ? "--enlarged-half-octaves" :
-           cli_settings_have(given, "enlarged_most")                       ? "--enlarged-most" :
-           only_enlarged && cli_settings_have(given, "enlarged_reach")     ? "--enlarged-reach" :
-           only_enlarged && cli_settings_have(given, "enlarged_shortlist") ? "--enlarged-shortlist" : NULL;
-}
-
-/* The same, and of when they are. */
-static const char *asked_of_enlarging(const cli_match_arguments *arguments)
-{
-    return cli_settings_have(&arguments->match_settings, "enlarge_from") ? "--enlarge-from" : asked_of_enlarged(arguments);
-}
-
-/* One octave, or another first one, says how images are looked at. */
-static int check_enlarging(const cli_match_arguments *arguments)
-{
-    const int32_t first = arguments->detect_options.first_octave, one = arguments->detect_options.octaves == 1;
-    const char *asked = asked_of_enlarging(arguments);
-    if (asked && (first != 0 || one))
-        return cli_usage_error("match", "%s changes nothing with %s", asked,
-                               first < 0 ? "--first-octave -1, which enlarges the images anyway" :
-                               first > 0 ? "--first-octave above 0" : "one octave");
-    const char *enlarged = asked_of_enlarged(arguments);
-    if (enlarged && arguments->options.enlarge_from == 0)
-        return cli_usage_error("match", "%s changes nothing with --enlarge-from 0, as it is with the preset paper", enlarged);
-    if (arguments->options.enlarged_reach == 0 && cli_settings_have(&arguments->match_settings, "enlarged_shortlist"))
-        return cli_usage_error("match", "--enlarged-shortlist changes nothing with --enlarged-reach 0");
-    if (one && cli_settings_have(&arguments->detect_settings, "half_octaves"))
-        return cli_usage_error("match", "--half-octaves changes nothing with one octave");
-    return CLI_SUCCESS;
-}
-
 static int apply_settings(cli_match_arguments *arguments)
 {
     const int quiet = arguments->common.quiet;
@@ -300,138 +228,19 @@ static int apply_settings(cli_match_arguments *arguments)
     const int32_t recommended = arguments->preset == ASJ_PRESET_DEFAULT ? ASJ_PRESET_MATCH : arguments->preset;
     asj_detect_options_preset(&arguments->detect_options, arguments->detect_preset < 0 ? recommended : arguments->detect_preset);
     asj_match_options_preset(&arguments->options, arguments->match_preset < 0 ? arguments->preset : arguments->match_preset);
-    int result = cli_settings_apply(&arguments->detect_settings, "match", quiet, &arguments->detect_options, set_detect_option);
+    int result = cli_settings_apply(&arguments->detect_settings, "match", quiet, &arguments->detect_options, cli_set_detect_option);
     if (result == CLI_SUCCESS)
-        result = cli_settings_apply(&arguments->match_settings, "match", quiet, &arguments->options, set_match_option);
-    if (result == CLI_SUCCESS)
-        result = cli_check_detector("match", &arguments->detect_options);
-    return result == CLI_SUCCESS ? check_enlarging(arguments) : result;
+        result = cli_settings_apply(&arguments->match_settings, "match", quiet, &arguments->options, cli_set_match_option);
+    return result;
 }
 
-static int check_files(const cli_match_arguments *arguments)
-{
-    const char *inputs[6];
-    cli_planned outputs[2];
-    size_t input_count = 0, output_count = 0;
-    for (int v = 0; v < 2; v++) {
-        inputs[input_count++] = arguments->images[v];
-        if (arguments->junctions[v])
-            inputs[input_count++] = arguments->junctions[v];
-        if (arguments->regions[v].mask)
-            inputs[input_count++] = arguments->regions[v].mask;
-    }
-    if (arguments->output && strcmp(arguments->output, "-") != 0)
-        outputs[output_count++] = (cli_planned){arguments->output, "the matches", NULL};
-    if (arguments->plot)
-        outputs[output_count++] = (cli_planned){arguments->plot, "the plot", NULL};
-    const int result = cli_check_collisions("match", "", outputs, output_count, inputs, input_count);
-    return result == CLI_SUCCESS ? cli_check_folders(outputs, output_count) : result;
-}
-
-/* Options of the detector when it has nothing to do. */
-static int check_detector(const cli_match_arguments *arguments)
-{
-    int known[2]; /* junctions, which come from a file of their own or with features */
-    for (int v = 0; v < 2; v++)
-        known[v] = arguments->junctions[v] || asj_features_probe(arguments->images[v]);
-    for (int v = 0; v < 2; v++)
-        if (known[v] && (arguments->regions[v].mask || arguments->regions[v].width > 0))
-            return cli_usage_error("match", "--%s%d changes nothing: the junctions of that image come from a file",
-                                   arguments->regions[v].mask ? "mask" : "region", v + 1);
-    if (!known[0] || !known[1])
-        return CLI_SUCCESS;
-    if (arguments->detect_settings.count > 0)
-        return cli_usage_error("match", "%s changes nothing: the junctions of both images come from files",
-                               arguments->detect_settings.list[0].key);
-    if (arguments->detect_preset >= 0)
-        return cli_usage_error("match", "--detect-preset changes nothing: the junctions of both images come from files");
-    return CLI_SUCCESS;
-}
-
-/* Two whole images are looked at together. */
-static int looks_by_itself(const cli_match_arguments *arguments)
-{
-    const int32_t matcher = arguments->match_preset < 0 ? arguments->preset : arguments->match_preset;
-    int images = matcher != ASJ_PRESET_PAPER; /* which has nothing of it */
-    for (int v = 0; v < 2; v++)
-        images = images && !arguments->junctions[v] && !arguments->regions[v].mask && arguments->regions[v].width == 0 &&
-                 !asj_features_probe(arguments->images[v]);
-    return images;
-}
-
-/* The detector runs on stretched images as a whole. */
-static int check_stretch(cli_match_arguments *arguments)
-{
-    if (!arguments->stretch_given)
-        arguments->look = looks_by_itself(arguments);
-    for (int v = 0; v < 2 && arguments->stretch_given; v++) {
-        if (arguments->junctions[v] || asj_features_probe(arguments->images[v]))
-            return cli_usage_error("match", "--stretch looks at images: it does not go with junctions or features from files");
-        if (arguments->regions[v].mask || arguments->regions[v].width > 0)
-            return cli_usage_error("match", "--stretch looks at whole images: it does not go with --%s%d",
-                                   arguments->regions[v].mask ? "mask" : "region", v + 1);
-    }
-    const char *asked = asked_of_enlarging(arguments);
-    if ((!arguments->look || arguments->stretch.x > 0) && asked)
-        return cli_usage_error("match", "%s changes nothing: it is for two whole images, without --stretch and without the preset "
-                               "paper", asked);
-    return CLI_SUCCESS;
-}
-
-/* Options that say how something looks which nobody has asked for. */
-static int check_results(cli_match_arguments *arguments)
-{
-    if (arguments->minimum_end >= 0 && !arguments->lines)
-        return cli_usage_error("match", "--line-ends changes nothing without --lines");
-    if (arguments->join_lines && !arguments->lines)
-        return cli_usage_error("match", "--join-lines changes nothing without --lines");
-    if (arguments->join_lines)
-        arguments->lines = ASJ_LINES_JOINED;
-    if (arguments->minimum_end < 0)
-        arguments->minimum_end = ASJ_END_INNER;
-    if (!arguments->plot)
-        return cli_plot_check_without("match", arguments->plot_option);
-    if (arguments->format && !arguments->output)
-        return cli_usage_error("match", "--format changes nothing: with --plot alone no matches are written (--output - does)");
-    return cli_plot_format_of_name("match", arguments->plot, &arguments->plot_format);
-}
-
-/* Cameras without a geometry that uses them; match_cameras.c looks for the other way round. */
-static int check_geometry(const cli_match_arguments *arguments)
-{
-    const int first = arguments->cameras[0].fx > 0, second = arguments->cameras[1].fx > 0;
-    if ((first || second || arguments->focal_from != CLI_FOCAL_AUTO) && arguments->geometry == ASJ_GEOMETRY_NONE)
-        return cli_usage_error("match", "a camera changes nothing without --geometry");
-    if (arguments->style.epipolar && arguments->geometry == ASJ_GEOMETRY_NONE)
-        return cli_usage_error("match", "--plot-epipolar changes nothing without --geometry");
-    if (arguments->focal_from == CLI_FOCAL_ESTIMATE && (first || second))
-        return cli_usage_error("match", "--focal estimate: --camera%d gives it", first ? 1 : 2);
-    if (arguments->focal_from == CLI_FOCAL_ESTIMATE && arguments->geometry > ASJ_GEOMETRY_ESSENTIAL)
-        return cli_usage_error("match", "--focal estimate changes nothing with this geometry, which has no focal length");
-    return CLI_SUCCESS;
-}
-
-static int check(cli_match_arguments *arguments, char **operands, int operand_count)
+static int take_images(cli_match_arguments *arguments, char **operands, int operand_count)
 {
     if (operand_count != 2)
         return cli_usage_error("match", operand_count == 0 ? "which images?" : "it takes two images, not %d", operand_count);
-    for (int v = 0; v < 2; v++) {
-        arguments->images[v] = operands[v];
-        if (strcmp(operands[v], "-") == 0 || (arguments->junctions[v] && strcmp(arguments->junctions[v], "-") == 0))
-            return cli_usage_error("match", "nothing is read from standard input (a file named - is ./-)");
-    }
-    int result = cli_common_check("match", &arguments->common);
-    if (result == CLI_SUCCESS)
-        result = cli_check_ending("match", "matches", arguments->output, arguments->format, formats);
-    if (result == CLI_SUCCESS)
-        result = check_detector(arguments);
-    if (result == CLI_SUCCESS)
-        result = check_geometry(arguments);
-    if (result == CLI_SUCCESS)
-        result = check_stretch(arguments);
-    if (result == CLI_SUCCESS)
-        result = check_results(arguments);
-    return result == CLI_SUCCESS ? check_files(arguments) : result;
+    arguments->images[0] = operands[0];
+    arguments->images[1] = operands[1];
+    return CLI_SUCCESS;
 }
 
 static void start(cli_match_arguments *arguments)
@@ -458,9 +267,9 @@ int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *argumen
         {"Running", cli_common_options, cli_common_option_count, cli_common_take, &arguments->common},
     };
     const cli_table tables[] = {
-        {"Detector", "detect", asj_detect_option_count, asj_detect_option, detect_value, cli_settings_take,
+        {"Detector", "detect", asj_detect_option_count, asj_detect_option, cli_detect_option_value, cli_settings_take,
          &arguments->detect_settings},
-        {"Matcher", "match", asj_match_option_count, asj_match_option, match_value, cli_settings_take,
+        {"Matcher", "match", asj_match_option_count, asj_match_option, cli_match_option_value, cli_settings_take,
          &arguments->match_settings},
     };
     const cli_syntax syntax = {"match", introduction, conclusion, groups, sizeof groups / sizeof groups[0], tables, 2};
@@ -469,7 +278,7 @@ int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *argumen
         cli_help(&syntax, argc, argv);
     if (result == CLI_SUCCESS)
         result = apply_settings(arguments);
-    return result == CLI_SUCCESS ? check(arguments, argv + first, argc - first) : result;
+    return result == CLI_SUCCESS ? take_images(arguments, argv + first, argc - first) : result;
 }
 
 int32_t cli_match_file_format(const cli_match_arguments *arguments)

@@ -42,8 +42,11 @@ typedef struct cli_match_arguments {
     const char *images[2];
 } cli_match_arguments;
 
-/* Reads argv[1 ..] (argv[0] is "match"). CLI_SUCCESS, CLI_HELP after printing the help, CLI_USAGE or CLI_FAILED after saying why.
- * cli_match_arguments_free() in every case. */
+/* The words of --format, up to NULL. */
+extern const char *const cli_match_formats[];
+
+/* Reads argv[1 ..] (argv[0] is "match"); match_checks.h says what goes with what. CLI_SUCCESS, CLI_HELP after printing the help,
+ * CLI_USAGE or CLI_FAILED after saying why. cli_match_arguments_free() in every case. */
 int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *arguments);
 void cli_match_arguments_free(cli_match_arguments *arguments);
 

@@ -4,6 +4,8 @@
 #include "message.h"
 #include "parse.h"
 
+#include <asj/match.h>
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -48,6 +50,30 @@ int cli_take_preset(const char *command, const char *option, const char *text, i
         return cli_usage_error(command, "--%s: '%s' is not default, paper or match", option, text);
     *preset = word;
     return CLI_SUCCESS;
+}
+
+asj_status cli_detect_option_value(int32_t preset, const char *key, char *text, size_t text_size)
+{
+    asj_detect_options options;
+    const asj_status status = asj_detect_options_preset(&options, preset);
+    return status == ASJ_OK ? asj_detect_options_get(&options, key, text, text_size) : status;
+}
+
+asj_status cli_match_option_value(int32_t preset, const char *key, char *text, size_t text_size)
+{
+    asj_match_options options;
+    const asj_status status = asj_match_options_preset(&options, preset);
+    return status == ASJ_OK ? asj_match_options_get(&options, key, text, text_size) : status;
+}
+
+asj_status cli_set_detect_option(void *options, const char *key, const char *text, char *message, size_t message_size)
+{
+    return asj_detect_options_set(options, key, text, message, message_size);
+}
+
+asj_status cli_set_match_option(void *options, const char *key, const char *text, char *message, size_t message_size)
+{
+    return asj_match_options_set(options, key, text, message, message_size);
 }
 
 int cli_settings_apply(const cli_settings *settings, const char *command, int quiet, void *options,

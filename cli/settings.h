@@ -31,6 +31,14 @@ int cli_check_detector(const char *command, const asj_detect_options *options);
 /* "default", "paper" or "match" as ASJ_PRESET_...; CLI_SUCCESS, or CLI_USAGE after saying why, with the name of the option. */
 int cli_take_preset(const char *command, const char *option, const char *text, int32_t *preset);
 
+/* The `value` of a cli_table: that of an option in a preset. */
+asj_status cli_detect_option_value(int32_t preset, const char *key, char *text, size_t text_size);
+asj_status cli_match_option_value(int32_t preset, const char *key, char *text, size_t text_size);
+
+/* For cli_settings_apply(): one option of asj_detect_options or asj_match_options. */
+asj_status cli_set_detect_option(void *options, const char *key, const char *text, char *message, size_t message_size);
+asj_status cli_set_match_option(void *options, const char *key, const char *text, char *message, size_t message_size);
+
 /* Sets them all, in order. CLI_SUCCESS, or CLI_USAGE after saying why. Former names give a warning, unless `quiet`. */
 int cli_settings_apply(const cli_settings *settings, const char *command, int quiet, void *options,
                        asj_status (*set)(void *options, const char *key, const char *text, char *message, size_t message_size));
