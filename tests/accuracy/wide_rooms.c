@@ -56,15 +56,10 @@ static int detect(const settings *set, const synth_wide_pair *pair, int which, u
 
 static double pose_error(const asj_geometry *g, const synth_wide_pair *pair)
 {
-    double r[9], t[3], trace = 0, dot = 0;
     if (g->status != ASJ_GEOMETRY_ACCEPTED || !g->has_pose)
         return 180;
-    synth_relative_pose(&pair->cameras[0], &pair->cameras[1], r, t);
-    for (int k = 0; k < 9; k++)
-        trace += r[k] * g->rotation[k];
-    for (int k = 0; k < 3; k++)
-        dot += t[k] * g->translation[k];
-    return fmax(acos(fmax(-1, fmin(1, (trace - 1) / 2))), acos(fmin(1, fabs(dot)))) / DEGREE;
+    const synth_pose_error off = synth_pose_off(&pair->cameras[0], &pair->cameras[1], g->rotation, g->translation);
+    return fmax(off.rotation, off.translation);
 }
 
 /* The largest standard deviation of a direction in a block of the told covariance, degrees: by the power method. */
@@ -85,14 +80,9 @@ static double told_sd(const double covariance[36], int first)
 /* Rotation and direction of the translation one by one. */
 static void print_pose(const asj_geometry *g, const synth_wide_pair *pair)
 {
-    double r[9], t[3], trace = 0, dot = 0;
-    synth_relative_pose(&pair->cameras[0], &pair->cameras[1], r, t);
-    for (int k = 0; k < 9; k++)
-        trace += r[k] * g->rotation[k];
-    for (int k = 0; k < 3; k++)
-        dot += t[k] * g->translation[k];
-    printf("  rotation %.2f (%.2f) translation %.2f (%.2f)", acos(fmax(-1, fmin(1, (trace - 1) / 2))) / DEGREE,
-           told_sd(g->covariance, 0), acos(fmax(-1, fmin(1, dot))) / DEGREE, told_sd(g->covariance, 3));
+    const synth_pose_error off = synth_pose_off(&pair->cameras[0], &pair->cameras[1], g->rotation, g->translation);
+    printf("  rotation %.2f (%.2f) translation %.2f (%.2f)", off.rotation, told_sd(g->covariance, 0), off.translation,
+           told_sd(g->covariance, 3));
 }
 
 static uint32_t count_right(const asj_match_result *result, const synth_wide_pair *pair)

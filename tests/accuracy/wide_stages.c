@@ -268,10 +268,8 @@ static void count_places(const synth_wide_pair *pair, stage *s, counts *n)
 
 static double pose_error(const synth_wide_pair *pair, const asj_geometry *g)
 {
-    double r[9], t[3];
-    synth_relative_pose(&pair->cameras[0], &pair->cameras[1], r, t);
-    const double along = asj_dot3(t, g->translation);
-    return fmax(turn_between(r, g->rotation), acos(fmax(-1, fmin(1, along))) / ASJ_DEGREE);
+    const synth_pose_error off = synth_pose_off(&pair->cameras[0], &pair->cameras[1], g->rotation, g->translation);
+    return fmax(off.rotation, off.translation);
 }
 
 static asj_status tell(const settings *set, const synth_wide_pair *pair, stage *s, const counts *n)

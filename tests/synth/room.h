@@ -110,6 +110,13 @@ void synth_fundamental(const synth_camera *first, const synth_camera *second, do
 /* x2 ~ R x1 + t in camera coordinates: R row by row, |t| = 1; t is not finite when both stand at one place. */
 void synth_relative_pose(const synth_camera *first, const synth_camera *second, double rotation[9], double translation[3]);
 
+/* Degrees: how far a rotation and the direction of a translation of length 1 are from those of two cameras. */
+typedef struct synth_pose_error {
+    double rotation, translation;
+} synth_pose_error;
+synth_pose_error synth_pose_off(const synth_camera *first, const synth_camera *second, const double rotation[9],
+                                const double translation[3]);
+
 /* Junctions of two views that are the same point of the room. Writes at most `capacity` and returns how many there are. */
 int32_t synth_correspondences(const synth_view *first, const synth_view *second, synth_correspondence *out, int32_t capacity);
 

@@ -171,6 +171,19 @@ void synth_relative_pose(const synth_camera *first, const synth_camera *second, 
     translation[2] = t.z / length;
 }
 
+synth_pose_error synth_pose_off(const synth_camera *first, const synth_camera *second, const double rotation[9],
+                                const double translation[3])
+{
+    const double degree = 3.14159265358979323846 / 180;
+    double r[9], t[3], trace = 0, along = 0;
+    synth_relative_pose(first, second, r, t);
+    for (int k = 0; k < 9; k++)
+        trace += r[k] * rotation[k];
+    for (int k = 0; k < 3; k++)
+        along += t[k] * translation[k];
+    return (synth_pose_error){acos(fmax(-1, fmin(1, (trace - 1) / 2))) / degree, acos(fmax(-1, fmin(1, along))) / degree};
+}
+
 /* ---- the picture ---- */
 
 /* Light falls from the window's side and fades towards the back and the floor, a few grey levels a metre. */

@@ -71,6 +71,9 @@ def test_part_of_the_image() -> None:
     assert corners(asj.detect(square(), preset="default", region=(0, 0, 100, 200))) == left
     assert corners(asj.detect(square(), preset="default", mask=allowed)) == left
     assert corners(asj.detect(square(), preset="default", mask=allowed[::-1], region=(0, 0, 200, 100))) == left[:1]
+    for region in ((0, 0, 10), (0.5, 0, 10, 10), "abcd", (10**30, 0, 1, 1), 5):
+        with pytest.raises(asj.ArgumentError, match="four whole numbers"):
+            asj.detect(square(), region=region)  # type: ignore[arg-type]
     for region in ((1, 0, 200, 200), (0, 0, 0, 0), (5, 5, 0, 5), (-1, 0, 5, 5)):
         with pytest.raises(ValueError):
             asj.detect(square(), region=region)

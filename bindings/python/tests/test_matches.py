@@ -73,6 +73,9 @@ def test_stretched_images(scene: Scene) -> None:
         assert found.stretch == (stretch if isinstance(stretch, tuple) else (stretch, stretch))
     with pytest.raises(asj.OptionError, match="stretch"):
         asj.match_images(scene, second, stretch=0.4)
+    for wrong in ((1, 2, 3), ("x", "y"), {}):
+        with pytest.raises(asj.ArgumentError, match="one for x and one for y"):
+            asj.match_images(scene, second, stretch=wrong)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="of 0"):
         asj.match_images(scene, second, stretch=(0, 0))
     with pytest.raises(ValueError, match="'much'"):

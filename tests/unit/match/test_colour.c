@@ -285,20 +285,13 @@ static asj_match_result *match(asj_context *context, asj_image image1, asj_image
     return result;
 }
 
-static double rotation_error(const asj_geometry *g)
-{
-    double r[9], t[3], trace = 0;
-    synth_relative_pose(&tiled.pair.cameras[0], &tiled.pair.cameras[1], r, t);
-    for (int32_t k = 0; k < 9; k++)
-        trace += r[k] * g->rotation[k];
-    return acos(fmax(-1, fmin(1, (trace - 1) / 2))) * 180 / UNIT_PI;
-}
-
 static void assert_right(const asj_match_result *result, int32_t which)
 {
     assert_int_equal(result->geometry.status, ASJ_GEOMETRY_ACCEPTED);
     assert_true(result->geometry.has_pose);
-    unit_near("rotation, deg", which, 0, rotation_error(&result->geometry), 0, 1);
+    const synth_pose_error off = synth_pose_off(&tiled.pair.cameras[0], &tiled.pair.cameras[1], result->geometry.rotation,
+                                                result->geometry.translation);
+    unit_near("rotation, deg", which, 0, off.rotation, 0, 1);
 }
 
 /* A floor shifted by a tile is as exact. Neither grey levels between the corners (picture_vote.c) nor colours fit it then, and no

@@ -66,13 +66,8 @@ static asj_match_options with_cameras(const views *v)
 /* Degrees: the larger of the errors of rotation and of the direction of translation. */
 static double pose_error(const asj_geometry *g, const synth_wide_pair *pair)
 {
-    double r[9], t[3], trace = 0, dot = 0;
-    synth_relative_pose(&pair->cameras[0], &pair->cameras[1], r, t);
-    for (int k = 0; k < 9; k++)
-        trace += r[k] * g->rotation[k];
-    for (int k = 0; k < 3; k++)
-        dot += t[k] * g->translation[k];
-    return fmax(acos(fmax(-1, fmin(1, (trace - 1) / 2))), acos(fmin(1, dot))) * 180 / UNIT_PI;
+    const synth_pose_error off = synth_pose_off(&pair->cameras[0], &pair->cameras[1], g->rotation, g->translation);
+    return fmax(off.rotation, off.translation);
 }
 
 static double from_line(const double f[9], const asj_junction_match *m)

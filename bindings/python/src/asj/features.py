@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import arrays, images
 from ._native import ffi, lib
 from .context import Context, current
-from .errors import FormatError, ImageError, OptionError
+from .errors import ArgumentError, FormatError, ImageError, OptionError
 from .options import DETECTOR, MATCHER
 from .output import whole_file
 
@@ -245,7 +246,10 @@ def detect(
     view = images.view(image, white)
     part = ffi.new("asj_region *")
     if region is not None:
-        part.x, part.y, part.width, part.height = region
+        try:
+            part.x, part.y, part.width, part.height = (operator.index(number) for number in region)
+        except (TypeError, ValueError, OverflowError):
+            raise ArgumentError(f"region {region!r}: it takes four whole numbers, x, y, width and height in px") from None
         if part.width == 0:
             raise ImageError("a region without pixels")
     allowed = images.view(mask) if mask is not None else None  # lives until the call has ended

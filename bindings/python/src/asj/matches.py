@@ -236,8 +236,10 @@ def match_images(
     views = (images.view(image1, 0.0), images.view(image2, 0.0))
     if isinstance(stretch, str) and stretch != "auto":
         raise ValueError(f"stretch {stretch!r} is no factor, no pair of factors, and not 'auto'")
-    factor = 0.0 if isinstance(stretch, str) else stretch
-    x, y = factor if isinstance(factor, tuple) else (factor, factor)
+    try:
+        x, y = (0.0, 0.0) if isinstance(stretch, str) else np.broadcast_to(np.asarray(stretch, float), 2)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"stretch {stretch!r}: it takes a factor, or one for x and one for y") from None
     if not isinstance(stretch, str) and x == 0 and y == 0:
         raise ValueError("a stretch of 0")
     factors = ffi.new("asj_stretch *", {"x": float(x), "y": float(y)})
