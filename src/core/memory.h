@@ -35,9 +35,17 @@ void *asj_allocate_list(asj_memory *memory, size_t count, size_t size);
 /* NULL is fine. */
 void asj_release(asj_memory *memory, void *block);
 
+/* The same, but blocks of 4 MB and more are not kept for the next call. For lists of millions of which each step makes a longer
+ * one: what they leave would be more than what is in use, and to touch so much memory again is little beside what is computed to
+ * fill it. */
+void asj_release_much(asj_memory *memory, void *block);
+
 /* A block that grows: makes *block at least `count` elements of `size` bytes large, keeping the first `keep` elements.
  * *capacity (elements) is updated; growth is geometric. On failure nothing changes. */
 asj_status asj_grow(asj_memory *memory, void **block, size_t *capacity, size_t count, size_t size, size_t keep);
+
+/* The same to `most` elements at most, or to `count` if that is more, and with asj_release_much(). */
+asj_status asj_grow_within(asj_memory *memory, void **block, size_t *capacity, size_t count, size_t most, size_t size, size_t keep);
 
 /* Between these two released blocks are kept and handed out again, so that a call that does what the one before did allocates
  * nothing. A block that has been of no use to several calls is given back. */

@@ -26,28 +26,32 @@ void asj_candidates_sort(asj_candidates *candidates)
     asj_sort(candidates->list, candidates->count, sizeof *candidates->list, by_pair);
 }
 
-asj_status asj_candidates_merge(asj_context *context, asj_candidates *candidates, const asj_candidates *others, int32_t stage)
+asj_status asj_candidates_merge(asj_context *context, asj_candidates *candidates, asj_candidates *others, int32_t stage)
 {
-    const size_t most = candidates->count + others->count;
-    asj_candidates all = {asj_allocate(&context->memory, most, sizeof *all.list), 0, most};
+    const size_t most = candidates->count + others->count, count = others->count;
+    const int32_t in_place = others->capacity >= most && most > 0;
+    asj_candidates all = {in_place ? others->list : asj_allocate(&context->memory, most, sizeof *all.list), 0, most};
     if (!all.list)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu candidates", most);
+    /* behind the room for the others: what is written never overtakes what is read */
+    asj_candidate *added = others->list;
+    if (in_place)
+        added = memmove(all.list + candidates->count, all.list, count * sizeof *all.list);
     asj_watch watch;
     asj_watch_start(&watch, context, stage);
     size_t k = 0, n = 0;
-    while ((k < candidates->count || n < others->count) && (all.count % ROWS != 0 || !asj_watch_stops(&watch, NULL))) {
-        const int order = k == candidates->count ? 1 : n == others->count ? -1 : compare(&candidates->list[k], &others->list[n]);
-        all.list[all.count++] = order <= 0 ? candidates->list[k] : others->list[n];
+    while ((k < candidates->count || n < count) && (all.count % ROWS != 0 || !asj_watch_stops(&watch, NULL))) {
+        const int order = k == candidates->count ? 1 : n == count ? -1 : compare(&candidates->list[k], &added[n]);
+        all.list[all.count++] = order <= 0 ? candidates->list[k] : added[n];
         k += order <= 0;
         n += order >= 0;
     }
     const asj_status status = asj_watch_end(&watch);
-    if (status == ASJ_OK) {
-        asj_release(&context->memory, candidates->list);
+    if (in_place)
+        *others = (asj_candidates){NULL, 0, 0};
+    asj_release_much(&context->memory, status == ASJ_OK ? candidates->list : all.list);
+    if (status == ASJ_OK)
         *candidates = all;
-    } else {
-        asj_release(&context->memory, all.list);
-    }
     return status;
 }
 
@@ -69,7 +73,8 @@ asj_status asj_candidates_append(asj_context *context, asj_candidates *candidate
 {
     void *list = candidates->list;
     const size_t count = candidates->count + fresh->count, size = sizeof *candidates->list;
-    const asj_status status = asj_grow(&context->memory, &list, &candidates->capacity, count, size, candidates->count);
+    const asj_status status = asj_grow_within(&context->memory, &list, &candidates->capacity, count, count + count / 8, size,
+                                              candidates->count);
     if (status != ASJ_OK)
         return asj_fail(context, status, "no memory for %zu candidates", count);
     candidates->list = list;

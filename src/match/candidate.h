@@ -43,9 +43,10 @@ static inline const double *asj_candidate_map(const asj_candidate *c, int32_t si
 /* Brings a list of different pairs in order. */
 void asj_candidates_sort(asj_candidates *candidates);
 
-/* Adds others, both lists in order, and so is the outcome; of a pair in both what is there stays. The caller is asked on behalf of
- * `stage`. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED; then nothing has changed. */
-asj_status asj_candidates_merge(asj_context *context, asj_candidates *candidates, const asj_candidates *others, int32_t stage);
+/* Adds others, both lists in order, and so is the outcome; of a pair in both what is there stays. Others that have room for all
+ * give it: their list is taken apart. The caller is asked on behalf of `stage`. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED; then nothing
+ * has been added. */
+asj_status asj_candidates_merge(asj_context *context, asj_candidates *candidates, asj_candidates *others, int32_t stage);
 
 /* That of these two L-junctions in a sorted list, or NULL. */
 const asj_candidate *asj_candidates_find(const asj_candidates *candidates, uint32_t i, uint32_t j);

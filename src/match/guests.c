@@ -109,7 +109,7 @@ static asj_status add_guests(asj_match_run *run)
         status = choose(&guests);
     if (status == ASJ_OK)
         status = add_chosen(run, &guests);
-    asj_release(memory, guests.candidates.list);
+    asj_release_much(memory, guests.candidates.list);
     asj_release(memory, guests.choices.list);
     asj_support_free(memory, &guests.support);
     asj_release(memory, taken[0]);

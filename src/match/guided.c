@@ -172,14 +172,15 @@ static void set_guides(const asj_match_run *run, int32_t side, guides *all)
 static asj_status append(asj_match_run *run, const asj_pair_list *proposed)
 {
     asj_candidates fresh = {NULL, 0, 0};
-    asj_status status = asj_pair_list_candidates(run->context, proposed, run->image[0]->l_junctions.count, ASJ_STAGE_ALIGN, &fresh);
+    asj_status status = asj_pair_list_candidates(run->context, proposed, run->image[0]->l_junctions.count,
+                                                 run->candidates.count, ASJ_STAGE_ALIGN, &fresh);
     if (status == ASJ_OK)
         status = asj_compare_and_drop(run, &fresh);
     if (status == ASJ_OK && run->options->align_iterations > 0)
         status = asj_align_candidates(run, &fresh);
     if (status == ASJ_OK)
         status = asj_candidates_merge(run->context, &run->candidates, &fresh, ASJ_STAGE_ALIGN);
-    asj_release(&run->context->memory, fresh.list);
+    asj_release_much(&run->context->memory, fresh.list);
     return status;
 }
 
@@ -196,7 +197,7 @@ asj_status asj_guided(asj_match_run *run)
     }
     if (status == ASJ_OK)
         status = append(run, &fresh);
-    asj_release(memory, fresh.pairs);
+    asj_release_much(memory, fresh.pairs);
     asj_release(memory, all.list);
     asj_release(memory, all.places);
     return status;

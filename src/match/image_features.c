@@ -48,8 +48,8 @@ void asj_image_features_free(asj_memory *memory, asj_image_features *features)
 {
     asj_l_junctions_free(memory, &features->l_junctions);
     asj_pyramid_free(memory, &features->pyramid);
-    asj_release(memory, features->colours);
-    asj_release(memory, features->patches);
-    asj_release(memory, features->usable);
+    asj_release_much(memory, features->colours);
+    asj_release_much(memory, features->patches);
+    asj_release_much(memory, features->usable);
     memset(features, 0, sizeof *features);
 }

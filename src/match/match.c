@@ -138,6 +138,7 @@ static asj_status match_plainly(asj_match_run *run, stop_watch *watch)
         if (status == ASJ_OK)
             status = run_list(run, again, sizeof again / sizeof *again, watch);
     }
+    asj_support_free(&run->context->memory, &run->support); /* up to 256 MB, and guests have their own */
     if (status == ASJ_OK)
         status = run_list(run, last, sizeof last / sizeof *last, watch);
     return status;
@@ -254,7 +255,7 @@ static asj_status match_features(asj_context *context, const asj_match_options *
     if (status == ASJ_OK)
         (*result)->enlarged = enlarged ? 1 : 0;
     asj_expected_free(&context->memory, &places);
-    asj_release(&context->memory, run.candidates.list);
+    asj_release_much(&context->memory, run.candidates.list);
     asj_release(&context->memory, run.choices.list);
     asj_release(&context->memory, run.rejected.list);
     asj_support_free(&context->memory, &run.support);

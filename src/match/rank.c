@@ -314,12 +314,12 @@ asj_status asj_rank_partners(const asj_match_run *run, asj_partner *rows, asj_pa
     asj_status status = prepare(&t);
     if (status == ASJ_OK)
         status = work(&t);
-    asj_release(memory, t.scores);
-    asj_release(memory, t.least);
-    asj_release(memory, t.owner);
-    asj_release(memory, t.tiles);
-    asj_release(memory, t.left);
-    asj_release(memory, t.right);
+    asj_release_much(memory, t.scores);
+    asj_release_much(memory, t.least);
+    asj_release_much(memory, t.owner);
+    asj_release_much(memory, t.tiles);
+    asj_release_much(memory, t.left);
+    asj_release_much(memory, t.right);
     asj_induced_squares_free(memory, &t.squares);
     return status;
 }

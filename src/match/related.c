@@ -99,7 +99,7 @@ asj_status asj_related(const asj_match_run *run, int32_t *related)
         status = asj_subset_create(run, 1, 1, 0, &parts[1]);
     if (status == ASJ_OK)
         status = look(&some, related);
-    asj_release(memory, some.candidates.list);
+    asj_release_much(memory, some.candidates.list);
     asj_support_free(memory, &some.support);
     asj_subset_free(memory, &parts[0]);
     asj_subset_free(memory, &parts[1]);

@@ -38,8 +38,8 @@ static asj_status collect(asj_match_run *run, const asj_partner *rows, const asj
             list.pairs[list.count][1] = n < count1 ? partners[k].index : n - count1;
         }
     }
-    const asj_status status = asj_pair_list_candidates(run->context, &list, count1, ASJ_STAGE_DISTANCES, &run->candidates);
-    asj_release(&run->context->memory, list.pairs);
+    const asj_status status = asj_pair_list_candidates(run->context, &list, count1, 0, ASJ_STAGE_DISTANCES, &run->candidates);
+    asj_release_much(&run->context->memory, list.pairs);
     return status;
 }
 

@@ -89,8 +89,8 @@ asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t fir
 
 void asj_subset_free(asj_memory *memory, asj_subset *s)
 {
-    asj_release(memory, s->frames);
-    asj_release(memory, s->first_frame);
-    asj_release(memory, s->patches);
-    asj_release(memory, s->usable);
+    asj_release_much(memory, s->frames);
+    asj_release_much(memory, s->first_frame);
+    asj_release_much(memory, s->patches);
+    asj_release_much(memory, s->usable);
 }

@@ -46,8 +46,8 @@ asj_status asj_location_index_create(const asj_match_run *run, int32_t side, uin
 
 void asj_location_index_free(asj_memory *memory, asj_location_index *index)
 {
-    asj_release(memory, index->start);
-    asj_release(memory, index->order);
+    asj_release_much(memory, index->start);
+    asj_release_much(memory, index->order);
     index->start = index->order = NULL;
 }
 
@@ -87,7 +87,7 @@ static asj_status pool_create(const asj_match_run *run, int32_t side, uint32_t l
 static void pool_free(asj_memory *memory, pool *s)
 {
     asj_location_index_free(memory, &s->index);
-    asj_release(memory, s->block);
+    asj_release_much(memory, s->block);
 }
 
 /* --- who does --------------------------------------------------------------------------------------------------------------- */
@@ -233,7 +233,8 @@ static asj_status keep(const search *in, size_t first, size_t end, block *b, asj
     if (total > in->room && in->share == UINT32_MAX)
         return ASJ_ERROR_LIMIT;
     void *memory = found->list;
-    const asj_status status = asj_grow(&in->run->context->memory, &memory, &b->kept, total, sizeof *found->list, b->used);
+    const asj_status status = asj_grow_within(&in->run->context->memory, &memory, &b->kept, total, in->room, sizeof *found->list,
+                                              b->used);
     found->list = memory;
     if (status != ASJ_OK)
         return asj_fail(in->run->context, status, "no memory for %zu pairs of candidates", total);
@@ -267,7 +268,7 @@ static asj_status find_all(const search *in, block *b, asj_supporters *found)
 {
     find_limits(in, b);
     b->used = 0;
-    asj_release(&in->run->context->memory, b->list);
+    asj_release_much(&in->run->context->memory, b->list);
     b->list = asj_allocate(&in->run->context->memory, b->capacity, sizeof *b->list);
     if (!b->list)
         return asj_fail(in->run->context, ASJ_ERROR_MEMORY, "no memory for %zu pairs of candidates", b->capacity);
@@ -308,17 +309,17 @@ static asj_status one_side(search *in, asj_supporters *found)
     }
     pool_free(memory, &in->all);
     pool_free(memory, &in->fresh);
-    asj_release(memory, b.limits);
-    asj_release(memory, b.starts);
-    asj_release(memory, b.list);
+    asj_release_much(memory, b.limits);
+    asj_release_much(memory, b.starts);
+    asj_release_much(memory, b.list);
     return status;
 }
 
 static void supporters_free(asj_memory *memory, asj_supporters *found)
 {
-    asj_release(memory, found->offset);
-    asj_release(memory, found->count);
-    asj_release(memory, found->list);
+    asj_release_much(memory, found->offset);
+    asj_release_much(memory, found->count);
+    asj_release_much(memory, found->list);
     *found = (asj_supporters){NULL, NULL, NULL};
 }
 

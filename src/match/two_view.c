@@ -42,12 +42,13 @@ static asj_status add_matches(const asj_match_run *run, asj_wide_run *w)
             status = asj_pair_list_add(run->context, &list, c->i, c->j);
     }
     if (status == ASJ_OK)
-        status = asj_pair_list_candidates(run->context, &list, run->image[0]->l_junctions.count, ASJ_STAGE_DISTANCES, &matches);
+        status = asj_pair_list_candidates(run->context, &list, run->image[0]->l_junctions.count, 0, ASJ_STAGE_DISTANCES,
+                                          &matches);
     if (status == ASJ_OK)
         status = asj_compare_and_drop(&w->run, &matches);
     if (status == ASJ_OK)
         status = asj_candidates_merge(run->context, &w->run.candidates, &matches, ASJ_STAGE_DISTANCES);
-    asj_release(memory, list.pairs);
+    asj_release_much(memory, list.pairs);
     asj_release(memory, matches.list);
     return status;
 }
@@ -155,7 +156,7 @@ asj_status asj_apply_geometry(asj_match_run *run)
         status = estimate(run, &w);
     if (status == ASJ_OK && run->geometry.status == ASJ_GEOMETRY_ACCEPTED)
         status = asj_apply_verdict(run, &w);
-    asj_release(memory, w.run.candidates.list);
+    asj_release_much(memory, w.run.candidates.list);
     asj_support_free(memory, &w.run.support);
     asj_release(memory, w.given);
     asj_release(memory, w.probability);

@@ -107,6 +107,63 @@ static void test_grow(void **state)
     assert_true(memory.now == 0);
 }
 
+/* Not beyond what is known to be the most, unless more is asked for. */
+static void test_grow_within(void **state)
+{
+    unit_counter counter = {0, 0, 0, 0};
+    asj_memory memory = unit_memory(&counter);
+    void *block = NULL;
+    size_t capacity = 0;
+    (void)state;
+    asj_memory_open(&memory);
+    for (size_t count = 1; count <= 1000; count++) {
+        assert_int_equal(asj_grow_within(&memory, &block, &capacity, count, 1000, sizeof(uint32_t), count - 1), ASJ_OK);
+        assert_in_range(capacity, count, 1000);
+        ((uint32_t *)block)[count - 1] = (uint32_t)(count * 2654435761u);
+    }
+    assert_int_equal(asj_grow_within(&memory, &block, &capacity, 1001, 1000, sizeof(uint32_t), 1000), ASJ_OK);
+    assert_int_equal(capacity, 1001);
+    for (size_t count = 1; count <= 1000; count++)
+        assert_int_equal(((uint32_t *)block)[count - 1], (uint32_t)(count * 2654435761u));
+    asj_release(&memory, block);
+    asj_memory_close(&memory);
+    asj_memory_trim(&memory);
+    assert_true(memory.now == 0);
+}
+
+/* Large blocks are not kept by asj_release_much(), nor what a list of asj_grow_within() has outgrown. */
+static void test_much(void **state)
+{
+    const size_t mega = (size_t)1 << 20;
+    unit_counter counter = {0, 0, 0, 0};
+    asj_memory memory = unit_memory(&counter);
+    size_t capacity = 0;
+    void *block = NULL;
+    (void)state;
+    asj_memory_open(&memory);
+    void *small = asj_allocate(&memory, 3, mega), *five = asj_allocate(&memory, 5, mega), *six = asj_allocate(&memory, 6, mega);
+    assert_true(small && five && six);
+    asj_release_much(&memory, small);
+    asj_release_much(&memory, five);
+    asj_release(&memory, six);
+    asj_release_much(&memory, NULL);
+    assert_int_equal(counter.live, 2);
+    assert_in_range(memory.now, 9 * mega, 10 * mega);
+    assert_ptr_equal(asj_allocate(&memory, 3, mega), small);
+    assert_ptr_equal(asj_allocate(&memory, 5, mega), six);
+    assert_int_equal(counter.calls, 3);
+    for (size_t count = 1; count <= 16; count++)
+        assert_int_equal(asj_grow_within(&memory, &block, &capacity, count, 16, mega, count - 1), ASJ_OK);
+    assert_in_range(memory.now, 25 * mega, 33 * mega); /* it and the two others, and what was smaller than 4 MB */
+    asj_release(&memory, small);
+    asj_release(&memory, six);
+    asj_release_much(&memory, block);
+    asj_memory_close(&memory);
+    asj_memory_trim(&memory);
+    assert_int_equal(counter.live, 0);
+    assert_true(memory.now == 0);
+}
+
 /* While it is open: what is released comes back, if it is large enough and not far too large; after calls without use it goes. */
 static void test_kept(void **state)
 {
@@ -209,6 +266,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_alignment_and_counts), cmocka_unit_test(test_zero), cmocka_unit_test(test_overflow),
         cmocka_unit_test(test_failure),              cmocka_unit_test(test_grow),
+        cmocka_unit_test(test_grow_within),          cmocka_unit_test(test_much),
         cmocka_unit_test(test_kept),
         cmocka_unit_test(test_list),                 cmocka_unit_test(test_shelves),
     };

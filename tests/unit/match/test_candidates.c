@@ -21,11 +21,12 @@ static void draw(uint64_t seed, int32_t count, uint8_t (*in)[J], asj_context *co
     }
 }
 
-static void make(asj_context *context, uint64_t seed, int32_t count, uint8_t (*in)[J], asj_candidates *candidates)
+static void make(asj_context *context, uint64_t seed, int32_t count, uint8_t (*in)[J], size_t more, asj_candidates *candidates)
 {
     asj_pair_list list;
     draw(seed, count, in, context, &list);
-    assert_int_equal(asj_pair_list_candidates(context, &list, I, ASJ_STAGE_ALIGN, candidates), ASJ_OK);
+    assert_int_equal(asj_pair_list_candidates(context, &list, I, more, ASJ_STAGE_ALIGN, candidates), ASJ_OK);
+    assert_int_equal(candidates->capacity, candidates->count + more);
     asj_release(&context->memory, list.pairs);
 }
 
@@ -54,13 +55,16 @@ static void each_pair_once_in_order(void **state)
     unit_fixture *f = *state;
     for (uint64_t seed = 1; seed < 40; seed++) {
         asj_candidates first, second;
-        make(f->context, seed, (int32_t)(seed * seed), in_first, &first);
+        make(f->context, seed, (int32_t)(seed * seed), in_first, 0, &first);
         assert_candidates(&first, 0);
-        make(f->context, 100 + seed, (int32_t)(1600 / seed), in_second, &second);
+        const size_t more = seed % 3 ? first.count : first.count - 1; /* of all others these are merged where they are */
+        make(f->context, 100 + seed, (int32_t)(1600 / seed), in_second, more, &second);
+        const asj_candidate *room = second.list;
         for (size_t k = 0; k < second.count; k++)
             second.list[k].score = 1;
         assert_int_equal(asj_candidates_merge(f->context, &first, &second, ASJ_STAGE_ALIGN), ASJ_OK);
         assert_candidates(&first, 1);
+        assert_true((first.list == room) == (seed % 3 != 0) && (second.list == NULL) == (seed % 3 != 0));
         for (size_t k = 0; k < first.count; k += 2) { /* out of order, and back */
             const asj_candidate kept = first.list[k];
             first.list[k] = first.list[first.count - 1 - k];
@@ -68,6 +72,7 @@ static void each_pair_once_in_order(void **state)
         }
         asj_candidates_sort(&first);
         assert_candidates(&first, 1);
+        assert_true((first.list == room) == (seed % 3 != 0) && (second.list == NULL) == (seed % 3 != 0));
         asj_release(&f->context->memory, first.list);
         asj_release(&f->context->memory, second.list);
     }
@@ -79,10 +84,10 @@ typedef struct lists {
     asj_pair_list pairs;
 } lists;
 
-static void lists_make(asj_context *context, lists *all)
+static void lists_make(asj_context *context, size_t more, lists *all)
 {
-    make(context, 7, 500, in_first, &all->first);
-    make(context, 8, 500, in_second, &all->second);
+    make(context, 7, 500, in_first, 0, &all->first);
+    make(context, 8, 500, in_second, more, &all->second);
     draw(9, 500, in_second, context, &all->pairs);
 }
 
@@ -98,11 +103,11 @@ static void without_memory_nothing_changes(void **state)
     unit_fixture *f = *state;
     asj_candidates none;
     lists all;
-    lists_make(f->context, &all);
+    lists_make(f->context, 0, &all);
     asj_memory_trim(&f->context->memory);
     for (long n = 1, reached = 1; reached; n++) {
         f->counter.fail_at = f->counter.calls + n;
-        const asj_status status = asj_pair_list_candidates(f->context, &all.pairs, I, ASJ_STAGE_ALIGN, &none);
+        const asj_status status = asj_pair_list_candidates(f->context, &all.pairs, I, 0, ASJ_STAGE_ALIGN, &none);
         reached = unit_reached(&f->counter);
         assert_int_equal(status, reached ? ASJ_ERROR_MEMORY : ASJ_OK);
         assert_true((none.list == NULL) == (reached != 0) && (none.count > 0) == !reached);
@@ -129,15 +134,18 @@ static void it_can_be_cancelled(void **state)
     unit_fixture *f = *state;
     asj_candidates none;
     lists all;
-    lists_make(f->context, &all);
-    f->context->options.progress = stop;
-    assert_int_equal(asj_pair_list_candidates(f->context, &all.pairs, I, ASJ_STAGE_ALIGN, &none), ASJ_ERROR_CANCELLED);
-    assert_null(none.list);
-    f->context->asked_ms = 0;
-    assert_int_equal(asj_candidates_merge(f->context, &all.first, &all.second, ASJ_STAGE_ALIGN), ASJ_ERROR_CANCELLED);
-    assert_candidates(&all.first, 0);
-    f->context->options.progress = NULL;
-    lists_free(f->context, &all);
+    for (size_t more = 0; more <= 500; more += 500) {
+        lists_make(f->context, more, &all);
+        f->context->options.progress = stop;
+        f->context->asked_ms = 0;
+        assert_int_equal(asj_pair_list_candidates(f->context, &all.pairs, I, 0, ASJ_STAGE_ALIGN, &none), ASJ_ERROR_CANCELLED);
+        assert_null(none.list);
+        f->context->asked_ms = 0;
+        assert_int_equal(asj_candidates_merge(f->context, &all.first, &all.second, ASJ_STAGE_ALIGN), ASJ_ERROR_CANCELLED);
+        assert_candidates(&all.first, 0);
+        f->context->options.progress = NULL;
+        lists_free(f->context, &all);
+    }
 }
 
 int main(void)

@@ -105,7 +105,7 @@ static void find_support(int in_two_goes)
             all->list[kept++] = all->list[k];
     }
     if (in_two_goes) {
-        const asj_candidates others = {rest, taken, taken};
+        asj_candidates others = {rest, taken, taken};
         all->count = kept;
         assert_int_equal(asj_support_find(&pair.run), ASJ_OK);
         assert_int_equal(asj_candidates_merge(pair.run.context, all, &others, ASJ_STAGE_ALIGN), ASJ_OK);
