@@ -185,15 +185,17 @@ typedef struct asj_match_result {
  * options          NULL = preset `default`
  * result           on success *result belongs to the caller until asj_match_result_free()
  *
- * Each location takes part in one match at most. The result does not depend on the number of threads, and swapping the images swaps
- * matches that are mutual, but for some at the limit of the epipolar test, whose samples go by their order. Memory: 2.7 bytes per
- * pixel of both images, up to 13 of one while it is prepared, the patches (patch_size^2 x 2 bytes for each frame), short lists, up
- * to 400 bytes for each candidate, and who supports whom, up to 540 MB where all agree with all that is near: two images of 12
- * megapixels with 55 000 and 60 000 L-junctions and 1.6 million candidates took 1.0 GB. Time: all pairs of L-junctions are looked
- * at, so twice as many in either image take four times as long (2 000 junctions of five branches at one point, 20 000 L-junctions
- * that all look alike: some ten seconds). With a geometry, four times as many candidates are aligned for it, and it takes a share
- * of its own: two frames of a video with 1150 L-junctions each and their focal length took 1.5 s in place of 0.2 s (one thread of a
- * two-core Xeon; 0.9 s with two). The caller is asked every 50 ms whether to go on. One call at a time for a context.
+ * Each location takes part in one match at most; of those found with junctions of octave -1 no two lie within 1 px of each other in
+ * both images (one corner that several octaves have found). The result does not depend on the number of threads, and swapping the
+ * images swaps matches that are mutual, but for some at the limit of the epipolar test, whose samples go by their order. Memory:
+ * 2.7 bytes per pixel of both images, up to 13 of one while it is prepared, the patches (patch_size^2 x 2 bytes for each frame),
+ * short lists, up to 400 bytes for each candidate, and who supports whom, up to 540 MB where all agree with all that is near: two
+ * images of 12 megapixels with 55 000 and 60 000 L-junctions and 1.6 million candidates took 1.0 GB. Time: all pairs of L-junctions
+ * are looked at, so twice as many in either image take four times as long (2 000 junctions of five branches at one point, 20 000
+ * L-junctions that all look alike: some ten seconds). With a geometry, four times as many candidates are aligned for it, and it
+ * takes a share of its own: two frames of a video with 1150 L-junctions each and their focal length took 1.5 s in place of 0.2 s
+ * (one thread of a two-core Xeon; 0.9 s with two). The caller is asked every 50 ms whether to go on. One call at a time for a
+ * context.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that lies more than ASJ_MAX_OUTSIDE px outside its image, has a wrong branch
  *                      count, an octave that is not -1 .. 15, an angle beyond +-10^6, a length that is not 0 ..

@@ -25,6 +25,7 @@
 #include "finer.h"
 #include "finer_geometry.h"
 #include "result_changes.h"
+#include "same_place.h"
 #include "core/watch.h"
 
 #include <math.h>
@@ -164,7 +165,7 @@ static asj_status join(asj_context *context, asj_match_result *own, asj_match_re
     if (status == ASJ_OK)
         forget_what_is_kept(finer);
     asj_release(&context->memory, rejected);
-    return status;
+    return status == ASJ_OK ? asj_same_place(context, finer) : status;
 }
 
 /* What is left of both, in *own. */

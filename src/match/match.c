@@ -25,7 +25,8 @@
  *   match_result.c   what the caller sees; segments.c: which ends of the branches correspond; common_direction.c:
  *                    where they point
  *
- * All of this once, and where there are junctions of octave -1 once more with them in the enlarged images: finer.c decides.
+ * All of this once, and where there are junctions of octave -1 once more with them in the enlarged images: finer.c decides, and
+ * same_place.c leaves one match for each place.
  *
  * Up to the consensus every aligned candidate is there, several for a location; a step that needs all of them stands before
  * assign.c. */

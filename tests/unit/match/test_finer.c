@@ -3,7 +3,7 @@
  * themselves confirm them; otherwise the result is what there is without them. L-junctions are numbered as all of them are. */
 #include "core/bytes.h"
 #include "finer_views.h"
-#include "match/match_result.h"
+#include "match/same_place.h"
 
 static asj_match_result *match(asj_context *context, const asj_detection *a, const asj_detection *b,
                                const asj_match_options *options)
@@ -100,6 +100,54 @@ static asj_status answer(asj_context *context, const asj_match_options *options,
     asj_detection_free(&found);
     a->finer_count = status == ASJ_OK ? (*result)->match_count : 0;
     return status;
+}
+
+static uint32_t twice_at_one_place(const asj_match_result *r)
+{
+    uint32_t count = 0;
+    for (uint32_t n = 0; n < r->match_count; n++)
+        for (uint32_t m = 0; m < n; m++) {
+            const asj_junction_match *a = &r->matches[n], *b = &r->matches[m];
+            count += fabsf(a->x1 - b->x1) <= 1 && fabsf(a->y1 - b->y1) <= 1 && fabsf(a->x2 - b->x2) <= 1 &&
+                     fabsf(a->y2 - b->y2) <= 1;
+        }
+    return count;
+}
+
+/* Of a corner that octaves -1 and 0 have found, within a pixel in both images, the match that looks most alike. */
+static void one_match_for_each_place(void **state)
+{
+    static const struct { float dx1, dy1, dx2, dy2, similarity; uint32_t left; } moves[] = {
+        {0, 0, 0, 0, 0.5f, 1},  {0.9f, -0.9f, 0.9f, 0.9f, 0.5f, 1}, {-0.9f, 0.9f, 0, -0.9f, 0.9f, 1}, {1.1f, 0, 0, 0, 0.5f, 2},
+        {0, -1.1f, 0, 0, 1, 2}, {0, 0, -1.1f, 0, 0.5f, 2},         {0, 0, 0, 1.1f, 1, 2},
+    };
+    asj_context *context = ((unit_fixture *)*state)->context;
+    for (size_t k = 0; k < UNIT_COUNT(moves); k++) {
+        asj_match_result *r = match(context, views[0].finer, views[1].finer, NULL);
+        asj_junction_match *list = ((asj_own_result *)r)->matches;
+        assert_true(r->match_count > 20);
+        assert_int_equal(twice_at_one_place(r), 0);
+        const uint32_t before = r->match_count;
+        const float x = list[7].x1 = 50 + list[7].x1 / 1000; /* unlike any other */
+        list[7].similarity = 0.7f;
+        list[3] = list[7];
+        list[3].x1 += moves[k].dx1;
+        list[3].y1 += moves[k].dy1;
+        list[3].x2 += moves[k].dx2;
+        list[3].y2 += moves[k].dy2;
+        list[3].similarity = moves[k].similarity;
+        assert_int_equal(asj_same_place(context, r), ASJ_OK);
+        assert_int_equal(before - r->match_count, 2 - moves[k].left);
+        uint32_t left = 0, of_seven = 0;
+        for (uint32_t n = 0; n < r->match_count; n++) {
+            const int is_seven = r->matches[n].x1 == x && r->matches[n].similarity == 0.7f;
+            of_seven += is_seven ? 1 : 0;
+            left += is_seven || r->matches[n].similarity == moves[k].similarity;
+        }
+        assert_int_equal(left, moves[k].left);
+        assert_int_equal(of_seven, moves[k].left == 2 || moves[k].similarity < 0.7f);
+        asj_match_result_free(&r);
+    }
 }
 
 static void only_what_is_confirmed(void **state)
@@ -499,6 +547,7 @@ static void what_is_too_large_to_enlarge_is_left_out(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_match_for_each_place),
         cmocka_unit_test(more_matches),       cmocka_unit_test(only_what_is_confirmed), cmocka_unit_test(a_pose_is_kept),
         cmocka_unit_test(features_and_bytes), cmocka_unit_test(hostile_bytes),          cmocka_unit_test(out_of_memory),
         cmocka_unit_test(colours_and_octaves_come_back), cmocka_unit_test(what_only_the_images_have_remains),
