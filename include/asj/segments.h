@@ -20,7 +20,8 @@ typedef struct asj_segment {
     uint32_t junction1, junction2; /* the junction at this end, if one of its branches runs along the segment; ASJ_NO_JUNCTION =
                                     * none, and with ASJ_BRANCH_END_JUNCTION one that has no such branch */
     float log10_nfa;               /* of the surest of its branches */
-    uint32_t junction;             /* of one of its branches, mostly the longest, which goes from end 1 to end 2 */
+    uint32_t junction;             /* of one of its branches, mostly the longest, which goes from end 1 to end 2, and beyond that
+                                    * where the edge bends */
     uint16_t branch;
     uint16_t branch_count;         /* that are parts of it; 65535 = so many or more */
     uint32_t reserved;
@@ -29,7 +30,9 @@ typedef struct asj_segment {
 typedef struct asj_segment_list {
     const asj_segment *segments;   /* the longest first */
     const uint32_t *of_branches;   /* for junction j and its branch b at [j * ASJ_MAX_BRANCHES + b] the index of the segment that it
-                                    * is a part of; ASJ_NO_SEGMENT where there is no such branch, or one without a length */
+                                    * is a part of, of the two halves of an edge that bends (below) the nearer one, but that which
+                                    * goes by a branch has it; ASJ_NO_SEGMENT where there is no such branch, or one without a
+                                    * length */
     uint32_t count;
     uint32_t junction_count;       /* as given */
     uint64_t reserved[2];

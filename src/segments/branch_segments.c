@@ -49,7 +49,6 @@ static asj_segment segment_of(const asj_junction *junction, uint32_t index, int3
     s.junction2 = ASJ_NO_JUNCTION;
     s.log10_nfa = branch->log10_nfa;
     s.branch = (uint16_t)b;
-    s.branch_count = 1;
     return s;
 }
 
@@ -101,7 +100,6 @@ static void reach_other_end(asj_segment *s, const asj_edge *e, const asj_junctio
     s->end2 = ASJ_BRANCH_END_JUNCTION;
     s->junction2 = e->junction_b;
     s->log10_nfa = fminf(s->log10_nfa, b->branches[e->branch_b].log10_nfa);
-    s->branch_count = 2;
 }
 
 /* A branch, or the edge that it is the first branch of; the second belongs to the first. What has no length is left out. */
@@ -142,6 +140,54 @@ static asj_status take_branches(work *w)
 
 /* ---- the list ---- */
 
+/* px from a point to the nearest of a segment, squared. */
+static double far_from(const asj_segment *s, double x, double y)
+{
+    const asj_end_point a = asj_segment_end(s, 0), b = asj_segment_end(s, 1);
+    const double dx = b.x - a.x, dy = b.y - a.y, length2 = dx * dx + dy * dy;
+    const double along = length2 > 0 ? fmin(1, fmax(0, ((x - a.x) * dx + (y - a.y) * dy) / length2)) : 0;
+    const double off_x = a.x + along * dx - x, off_y = a.y + along * dy - y;
+    return off_x * off_x + off_y * off_y;
+}
+
+/* Of the halves of an edge that bends a branch is a part of that which its middle is nearest to; that which goes by it keeps it. */
+static uint32_t nearest_half(const asj_joining *w, size_t number, const asj_segment *segments, const uint32_t *of_branches)
+{
+    const asj_junction *junction = &w->junctions[number / ASJ_MAX_BRANCHES];
+    const asj_branch *branch = &junction->branches[number % ASJ_MAX_BRANCHES];
+    const double half = 0.5 * (double)branch->length, angle = (double)branch->angle;
+    const double x = (double)junction->x + half * cos(angle), y = (double)junction->y + half * sin(angle);
+    const uint32_t root = asj_joined_branch(w, number);
+    uint32_t nearest = of_branches[root];
+    double least = far_from(&segments[nearest], x, y);
+    if (number == root)
+        return nearest;
+    for (uint32_t cut = w->first_cut[root]; cut != ASJ_NO_SEGMENT; cut = w->cuts[cut].next) {
+        const uint32_t other = of_branches[asj_joined_branch(w, w->cuts[cut].other)];
+        const double far = far_from(&segments[other], x, y);
+        nearest = far < least ? other : nearest;
+        least = fmin(far, least);
+    }
+    return nearest;
+}
+
+/* Which segment each branch is a part of, and of how many branches each segment is. */
+static void tell_branches(const work *w, asj_segment *segments, uint32_t *of_branches)
+{
+    const asj_joining *j = &w->joining;
+    for (uint32_t k = 0; k < j->count; k++) {
+        of_branches[asj_branch_of(&segments[k])] = k;
+        segments[k].branch_count = 0;
+    }
+    for (size_t b = 0; b < w->junction_count * ASJ_MAX_BRANCHES; b++) {
+        const uint32_t root = asj_joined_branch(j, b);
+        const uint32_t k = root == ASJ_NO_SEGMENT ? ASJ_NO_SEGMENT : nearest_half(j, b, segments, of_branches);
+        of_branches[b] = k;
+        if (k != ASJ_NO_SEGMENT && segments[k].branch_count < UINT16_MAX)
+            segments[k].branch_count++;
+    }
+}
+
 static asj_status make_list(work *w, own_list **made)
 {
     const size_t branches = w->junction_count * ASJ_MAX_BRANCHES;
@@ -157,12 +203,7 @@ static asj_status make_list(work *w, own_list **made)
                         (unsigned long)w->joining.count);
     }
     memcpy(segments, w->joining.segments, w->joining.count * sizeof *segments);
-    for (uint32_t k = 0; k < w->joining.count; k++)
-        of_branches[asj_branch_of(&segments[k])] = k;
-    for (size_t b = 0; b < branches; b++) {
-        const uint32_t root = asj_joined_branch(&w->joining, b);
-        of_branches[b] = root == ASJ_NO_SEGMENT ? ASJ_NO_SEGMENT : of_branches[root];
-    }
+    tell_branches(w, segments, of_branches);
     l->memory = memory;
     l->segments = segments;
     l->of_branches = of_branches;
@@ -178,10 +219,12 @@ static asj_status work_on(work *w, own_list **made)
     w->joining.segments = asj_allocate(memory, branches, sizeof *w->joining.segments);
     w->joining.joined = asj_allocate(memory, branches, sizeof *w->joining.joined);
     w->edge_of = asj_allocate(memory, branches, sizeof *w->edge_of);
+    w->joining.first_cut = asj_allocate(memory, branches, sizeof *w->joining.first_cut);
     w->joining.asked = asj_allocate(memory, branches, sizeof *w->joining.asked);
-    if (!w->joining.segments || !w->joining.joined || !w->edge_of || !w->joining.asked)
+    if (!w->joining.segments || !w->joining.joined || !w->edge_of || !w->joining.first_cut || !w->joining.asked)
         return asj_fail(w->joining.context, ASJ_ERROR_MEMORY, "no memory for the branches of %zu junctions", w->junction_count);
     memset(w->joining.joined, 0xff, branches * sizeof *w->joining.joined);
+    memset(w->joining.first_cut, 0xff, branches * sizeof *w->joining.first_cut);
     asj_status status = take_edges(w);
     if (status == ASJ_OK)
         status = take_branches(w);
@@ -210,6 +253,8 @@ asj_status asj_find_segments(asj_context *context, const asj_junction *junctions
     asj_release(&context->memory, w.joining.segments);
     asj_release(&context->memory, w.joining.joined);
     asj_release(&context->memory, w.edge_of);
+    asj_release(&context->memory, w.joining.first_cut);
+    asj_release(&context->memory, w.joining.cuts);
     asj_release(&context->memory, w.joining.asked);
     asj_segment_cells_free(&context->memory, &w.joining.cells);
     if (status == ASJ_OK)

@@ -44,6 +44,7 @@ typedef struct partner_search {
     int32_t (*compare)(struct partner_search *search, uint32_t k);
     asj_course course;
     asj_bend bend;
+    uint32_t beyond[2]; /* with a bend: the branch of what lies beyond the other's corner, of the longer one and of the shorter */
 } partner_search;
 
 static void look_in_cell(partner_search *p, uint32_t first)
@@ -118,21 +119,21 @@ static asj_status join_once(asj_joining *w, int32_t *moved)
 
 /* ---- bent ones ---- */
 
-/* Whether another segment than `other` goes on where the segment begins. */
-static int32_t goes_on(const asj_joining *w, const asj_segment *s, const asj_segment *other)
+/* The branch of another segment than `other` that goes on where the segment begins; ASJ_NO_SEGMENT = none. */
+static uint32_t what_goes_on(const asj_joining *w, const asj_segment *s, const asj_segment *other)
 {
     const double dx = (double)s->x1 - (double)s->x2, dy = (double)s->y1 - (double)s->y2;
     const double least = ASJ_STRAIGHT * sqrt(asj_segment_length2(s));
     if (s->junction1 == ASJ_NO_JUNCTION)
-        return 0;
+        return ASJ_NO_SEGMENT;
     const asj_junction *corner = &w->junctions[s->junction1];
     for (int32_t b = 0; b < corner->branch_count; b++) {
         const double angle = (double)corner->branches[b].angle;
         const uint32_t of = asj_joined_branch(w, asj_branch_number(s->junction1, (uint16_t)b));
         if (dx * cos(angle) + dy * sin(angle) > least && of != ASJ_NO_SEGMENT && of != asj_branch_of(other))
-            return 1;
+            return of;
     }
-    return 0;
+    return ASJ_NO_SEGMENT;
 }
 
 /* What lies beyond the end of its edge must be another's. */
@@ -140,10 +141,30 @@ static int32_t is_bent(partner_search *p, uint32_t k)
 {
     const asj_segment *longer = &p->w->segments[k];
     asj_bend bend;
-    if (!asj_find_bend(longer, p->s, &bend) || (bend.beyond[0] && !goes_on(p->w, longer, p->s)) ||
-        (bend.beyond[1] && !goes_on(p->w, p->s, longer)))
+    if (!asj_find_bend(longer, p->s, &bend))
+        return 0;
+    const uint32_t after = bend.beyond[1] ? what_goes_on(p->w, p->s, longer) : ASJ_NO_SEGMENT; /* beyond the shorter's corner */
+    const uint32_t before = bend.beyond[0] ? what_goes_on(p->w, longer, p->s) : ASJ_NO_SEGMENT;
+    if ((bend.beyond[0] && before == ASJ_NO_SEGMENT) || (bend.beyond[1] && after == ASJ_NO_SEGMENT))
         return 0;
     p->bend = bend;
+    p->beyond[0] = after;
+    p->beyond[1] = before;
+    return 1;
+}
+
+/* other: a branch, or ASJ_NO_SEGMENT. */
+static int32_t add_cut(asj_joining *w, const asj_segment *s, uint32_t other)
+{
+    void *cuts = w->cuts;
+    if (other == ASJ_NO_SEGMENT)
+        return 1;
+    if (asj_grow(&w->context->memory, &cuts, &w->cut_capacity, w->cut_count + 1, sizeof *w->cuts, w->cut_count) != ASJ_OK)
+        return 0;
+    uint32_t *first = &w->first_cut[asj_branch_of(s)];
+    w->cuts = cuts;
+    w->cuts[w->cut_count] = (asj_cut){other, *first};
+    *first = (uint32_t)w->cut_count++;
     return 1;
 }
 
@@ -154,6 +175,15 @@ static void end_at(asj_segment *s, const asj_end_point *at)
     s->sd2 = 0;
     s->end2 = ASJ_BRANCH_END_CROSSING;
     s->junction2 = ASJ_NO_JUNCTION;
+}
+
+/* Each ends where they cross. What lies beyond may be a part of the other, or of what goes on at the other's corner. */
+static int32_t cut_both(asj_joining *w, asj_segment *longer, asj_segment *shorter, const partner_search *p)
+{
+    end_at(longer, &p->bend.at);
+    end_at(shorter, &p->bend.at);
+    return add_cut(w, longer, (uint32_t)asj_branch_of(shorter)) && add_cut(w, shorter, (uint32_t)asj_branch_of(longer)) &&
+           add_cut(w, longer, p->beyond[0]) && add_cut(w, shorter, p->beyond[1]);
 }
 
 /* Once: what has been cut crosses nobody any more there. */
@@ -169,15 +199,12 @@ static asj_status join_halves(asj_joining *w)
         const uint32_t k = p.best;
         if (k < kept && p.bend.is_straight) {
             asj_take_end(&w->segments[k], 1, &s, 0); /* from one's own end to the other's */
-            asj_take_branches(&w->segments[k], &s);
+            asj_take_nfa(&w->segments[k], &s);
             w->joined[asj_branch_of(&s)] = (uint32_t)asj_branch_of(&w->segments[k]);
         } else {
-            if (k < kept) {
-                end_at(&w->segments[k], &p.bend.at);
-                end_at(&s, &p.bend.at);
-            }
+            const int32_t good = k == kept || cut_both(w, &w->segments[k], &s, &p);
             w->segments[kept] = s;
-            if (!add_to_cells(w, kept++))
+            if (!good || !add_to_cells(w, kept++))
                 return no_memory(w);
         }
     }

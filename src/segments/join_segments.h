@@ -9,6 +9,12 @@
 
 #include <asj/segments.h>
 
+/* A segment ends where it crosses another one, the other half of an edge that bends. */
+typedef struct asj_cut {
+    uint32_t other; /* a branch of that one, or of what lies farther on */
+    uint32_t next;  /* cut of the same segment; ASJ_NO_SEGMENT = none */
+} asj_cut;
+
 typedef struct asj_joining {
     asj_context *context;
     const asj_junction *junctions; /* that the branches are of */
@@ -17,6 +23,9 @@ typedef struct asj_joining {
     uint32_t count;
     uint32_t *joined;              /* for each branch that of the segment which its own has joined, itself while it has not, or
                                     * ASJ_NO_SEGMENT: where this ends is the segment's branch */
+    uint32_t *first_cut;           /* for the branch of a segment, or ASJ_NO_SEGMENT */
+    asj_cut *cuts;                 /* the caller frees them */
+    size_t cut_count, cut_capacity;
     uint32_t *asked;               /* scratch, for each segment */
     asj_segment_cells cells;       /* scratch; the caller frees it */
 } asj_joining;

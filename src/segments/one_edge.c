@@ -36,11 +36,9 @@ void asj_take_end(asj_segment *s, int32_t end, const asj_segment *t, int32_t fro
         s->x2 = x, s->y2 = y, s->sd2 = sd, s->end2 = kind, s->junction2 = junction;
 }
 
-void asj_take_branches(asj_segment *longer, const asj_segment *shorter)
+void asj_take_nfa(asj_segment *longer, const asj_segment *shorter)
 {
-    const uint32_t branches = (uint32_t)longer->branch_count + shorter->branch_count;
     longer->log10_nfa = fminf(longer->log10_nfa, shorter->log10_nfa);
-    longer->branch_count = (uint16_t)(branches < UINT16_MAX ? branches : UINT16_MAX);
 }
 
 static uint32_t junction_at(const asj_segment *s, int32_t end)
@@ -95,6 +93,6 @@ int32_t asj_become_one_edge(const asj_junction *junctions, asj_segment *longer, 
     for (int32_t end = 0; end < 2; end++)
         if (is_moved[end])
             asj_take_end(longer, end, shorter, end == 0 ? back : !back);
-    asj_take_branches(longer, shorter);
+    asj_take_nfa(longer, shorter);
     return is_moved[0] || is_moved[1];
 }

@@ -24,8 +24,8 @@ static inline double asj_segment_length2(const asj_segment *s)
 /* The end of one becomes that of another, `from`. */
 void asj_take_end(asj_segment *s, int32_t end, const asj_segment *t, int32_t from);
 
-/* The longer is as sure as either of both, and made of the branches of both. */
-void asj_take_branches(asj_segment *longer, const asj_segment *shorter);
+/* The longer is as sure as either of both. */
+void asj_take_nfa(asj_segment *longer, const asj_segment *shorter);
 
 /* 0: they are parts of different edges. Else where the shorter lies along the longer. */
 int32_t asj_is_one_edge(const asj_segment *longer, const asj_segment *shorter, asj_course *c);

@@ -256,6 +256,27 @@ static void halves_end_where_they_cross(void **state)
     }
 }
 
+/* Of what was joined before, too: a branch along the left one's line beyond the crossing is a part of the right half. */
+static void branches_are_parts_of_the_nearer_half(void **state)
+{
+    unit_fixture *f = *state;
+    add_branch(place(2, 130, 100), 0, 18, ASJ_BRANCH_END_FADED);
+    add_branch(place(3, 40, 100), 0, 30, ASJ_BRANCH_END_FADED);
+    add_branch(place(0, 10, 100), 0, 140, ASJ_BRANCH_END_FADED);
+    add_branch(place(1, 190, 107), UNIT_PI + atan2(7, 90), 130, ASJ_BRANCH_END_FADED);
+    asj_segment_list *list = find(f->context, 4);
+    assert_int_equal(list->count, 2);
+    const uint32_t left = of_branch(list, 0, 0), right = of_branch(list, 1, 0);
+    assert_int_not_equal(left, right);
+    assert_int_equal(of_branch(list, 2, 0), right);
+    assert_int_equal(of_branch(list, 3, 0), left);
+    for (uint32_t k = 0; k < 2; k++) {
+        assert_int_equal(list->segments[k].branch_count, 2);
+        assert_int_equal(list->segments[k].end2, ASJ_BRANCH_END_CROSSING);
+    }
+    asj_segment_list_free(&list);
+}
+
 /* Two ways across, ones that start on the same side, and what has left the edge too far, are two edges. */
 static void what_crosses_otherwise_stays(void **state)
 {
@@ -563,6 +584,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_corner_near_an_end_is_passed, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(a_long_edge_keeps_its_ends, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(a_chain_is_one_edge, unit_set_up, unit_tear_down),
+        cmocka_unit_test_setup_teardown(branches_are_parts_of_the_nearer_half, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(halves_end_where_they_cross, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(what_crosses_otherwise_stays, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(beyond_a_corner_another_must_go_on, unit_set_up, unit_tear_down),
