@@ -56,6 +56,19 @@ static int next_line(text_reader *reader)
     return 0;
 }
 
+enum { MOST_SHOWN = 40 }; /* bytes of a damaged field that are told */
+
+/* A field as it may stand in a message: of a damaged file it may be anything. */
+static const char *shown(const text_field *field, char text[MOST_SHOWN + 1])
+{
+    const size_t length = field->length < MOST_SHOWN ? field->length : MOST_SHOWN;
+    size_t i;
+    for (i = 0; i < length; i++)
+        text[i] = field->text[i] < ' ' || field->text[i] > '~' ? '?' : field->text[i];
+    text[length] = '\0';
+    return text;
+}
+
 /* The next line as `count` numbers; `what` says what they are. */
 static asj_status read_numbers(text_reader *reader, double *numbers, size_t count, const char *what)
 {
@@ -66,9 +79,9 @@ static asj_status read_numbers(text_reader *reader, double *numbers, size_t coun
         return asj_line_fail(reader->message, reader->line, "expected '%s'", what);
     for (i = 0; i < count; i++) {
         const text_field *field = &reader->fields[i];
+        char text[MOST_SHOWN + 1];
         if (!asj_number_parse(field->text, field->length, &numbers[i]) || !asj_fits_float(numbers[i]))
-            return asj_line_fail(reader->message, reader->line, "'%.*s' is no finite number ('%s')",
-                                 field->length > 40 ? 40 : (int)field->length, field->text, what);
+            return asj_line_fail(reader->message, reader->line, "'%s' is no finite number ('%s')", shown(field, text), what);
     }
     return ASJ_OK;
 }

@@ -38,6 +38,7 @@ static const bad_file bad_files[] = {
     {"1\n1 1e39\n2 7 5 -3.5\n0.5 1 10\n2.5 1 20\n", 2, "'1e39'", ASJ_ERROR_FORMAT},
     {"1\n1 1e999\n2 7 5 -3.5\n0.5 1 10\n2.5 1 20\n", 2, "'1e999'", ASJ_ERROR_FORMAT},
     {"1\n1 0x10\n2 7 5 -3.5\n0.5 1 10\n2.5 1 20\n", 2, "'0x10'", ASJ_ERROR_FORMAT},
+    {"1\n468.57\xff" "834 1\n2 7 5 -3.5\n0.5 1 10\n2.5 1 20\n", 2, "'468.57?834'", ASJ_ERROR_FORMAT},
     {"1\n1 1,5\n2 7 5 -3.5\n0.5 1 10\n2.5 1 20\n", 2, "'1,5'", ASJ_ERROR_FORMAT},
     {"1\n1 2\n2 7 5\n0.5 1 10\n2.5 1 20\n", 3, "M scale", ASJ_ERROR_FORMAT},
     {"1\n1 2\n1 7 5 -3.5\n0.5 1 10\n", 3, "2 to 5", ASJ_ERROR_FORMAT},
