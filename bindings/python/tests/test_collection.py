@@ -15,7 +15,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from asj.__main__ import main
+from asj.arrays import struct_type
 from asj.collection import Plan, Store, StoreError, all_pairs, find_images, read_pairs
+from asj.collection.locations import of_store
 from PIL import Image
 
 MODULE = [sys.executable, "-m", "asj", "collect"]
@@ -174,6 +176,12 @@ def test_hdf5(done: Path, photographs: Path, tmp_path: Path) -> None:
         assert "more-d.png" in matches["a.png"]
         moved = features["b.png"]["keypoints"][:][matches0[matches0 >= 0]] - features["a.png"]["keypoints"][:][matches0 >= 0]
         assert np.median(np.linalg.norm(moved - (6, 4), axis=1)) < 1
+        with Store(tmp_path / "h5.work", sqlite3.connect(tmp_path / "h5.work")) as store:
+            places, detected = of_store(store), {number: result.features for number, _, result in store.detected()}
+        assert np.array_equal(features["a.png"]["keypoints"][:], places[1])  # where its matches put them, as in COLMAP
+        assert detected[1] is not None
+        junctions = np.frombuffer(detected[1], struct_type("asj_junction"))
+        assert np.abs(places[1] - np.stack([junctions["x"], junctions["y"]], 1)).max() > 0.05
 
 
 def test_limap(done: Path, tmp_path: Path) -> None:
@@ -203,6 +211,8 @@ def test_bad_use(done: Path, photographs: Path, tmp_path: Path, capsys: pytest.C
     says([str(photographs), *limap, "--set", "minimum_lenght=9"], "did you mean")
     says([str(photographs), "--limap", "/proc/no/folder"], "no folder")
     says([str(photographs), *limap, "--jobs", "0", "--resume"], "jobs is 0")
+    says([str(photographs), "--limap", str(tmp_path / "other"), "--jobs", "0"], "jobs is 0")
+    assert not (tmp_path / "other.work").exists()
     (tmp_path / "file").touch()
     says([str(photographs), "--limap", str(tmp_path / "file")], "no folder")
     (photographs / "more-d.png").write_bytes((photographs / "more" / "d.png").read_bytes())

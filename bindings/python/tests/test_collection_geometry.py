@@ -127,6 +127,60 @@ def test_poses_reach_colmap(rooms: tuple[Path, list[Any]], tmp_path: Path) -> No
     database.close()
 
 
+@pytest.mark.parametrize("focal", ["500", "estimate"])
+def test_focal_lengths_reach_cameras(rooms: tuple[Path, list[Any]], tmp_path: Path, focal: str) -> None:
+    """Stored poses are those of stored cameras; a length that was found with a motion is the camera's, and the pair uncalibrated."""
+    pycolmap = pytest.importorskip("pycolmap")
+    (tmp_path / "pairs.txt").write_text("0.jpg 2.jpg\n")
+    words = ["--pairs", str(tmp_path / "pairs.txt"), "--geometry", "auto", "--focal", focal, "--no-verify", "--quiet", "--jobs", "1"]
+    assert main(["collect", str(rooms[0]), "--colmap", str(tmp_path / "scene.db"), *words]) == 0
+    with sqlite3.connect(tmp_path / "scene.db.work") as connection:
+        stored = json.loads(connection.execute("SELECT geometry FROM pairs").fetchone()[0])
+    database = pycolmap.Database.open(tmp_path / "scene.db")
+    images = [database.read_image_with_name(f"{number}.jpg") for number in (0, 2, 3)]
+    cameras = [database.read_camera(image.camera_id) for image in images]
+    found = database.read_two_view_geometry(images[0].image_id, images[1].image_id)
+    kinds = pycolmap.TwoViewGeometryConfiguration
+    assert stored["status"] == "accepted" and stored["model"] == "essential"
+    if focal == "500":
+        assert [(camera.focal_length, camera.has_prior_focal_length) for camera in cameras] == [(500, True)] * 3
+        assert found.config == kinds.CALIBRATED
+        one, two = (camera.calibration_matrix() for camera in cameras[:2])
+        f = np.linalg.inv(two).T @ found.E @ np.linalg.inv(one)
+        assert np.allclose(f / np.linalg.norm(f), found.F / np.linalg.norm(found.F), atol=1e-6) or np.allclose(
+            f / np.linalg.norm(f), -found.F / np.linalg.norm(found.F), atol=1e-6
+        )
+    else:
+        assert stored["focal_sd"] > 0 and found.config == kinds.UNCALIBRATED
+        # the file says how long it is, and so do the first three images' EXIF data
+        assert all(camera.has_prior_focal_length for camera in cameras[:2]) and not cameras[2].has_prior_focal_length
+    database.close()
+
+
+def test_found_focal_lengths() -> None:
+    """The median of what the pairs of an image have found."""
+    from asj.collection import colmap
+    from asj.collection.tasks import Matched
+
+    class Two:
+        @staticmethod
+        def matched() -> list[tuple[int, int, Matched]]:
+            rows = [(1, 2, 500.0, 0.1), (1, 3, 520.0, 0.2), (2, 3, 400.0, 0.0), (1, 4, 530.0, 0.1)]
+            return [
+                (one, two, Matched(None, b"", None, json.dumps({"status": "accepted", "focal": [f, f + 1], "focal_sd": sd})))
+                for one, two, f, sd in rows
+            ]
+
+    found = colmap._found_focals(Two())  # type: ignore[arg-type]
+    assert found == {1: [500.0, 520.0, 530.0], 2: [501.0], 3: [521.0], 4: [531.0]}
+    pycolmap = pytest.importorskip("pycolmap")
+    from asj.collection.tasks import Detected
+
+    image = Detected(None, 640, 480, None, b"")
+    lengths = [colmap._camera(pycolmap, image, known, found.get(number)).focal_length for known, number in ((None, 1), (600.0, 1), (None, 9))]
+    assert lengths == [520.0, 600.0, 768.0]
+
+
 def test_fundamental_matrix_in_colmaps_pixels() -> None:
     pycolmap = pytest.importorskip("pycolmap")
     from asj.collection import colmap
@@ -136,7 +190,7 @@ def test_fundamental_matrix_in_colmaps_pixels() -> None:
     one = random.uniform(0, 500, (20, 2))
     two = one + random.uniform(0.1, 0.4, (20, 1)) * ([400, 200] - one)
     assert from_lines(matrix, one, two).max() < 1e-9
-    found = {"model": "fundamental", "matrix": matrix.tolist(), "rotation": None, "translation": None}
+    found = {"model": "fundamental", "matrix": matrix.tolist(), "rotation": None, "translation": None, "focal_sd": 0}
     geometry = colmap._geometry(pycolmap, found, np.zeros((0, 2), np.uint32))
     assert geometry.config == pycolmap.TwoViewGeometryConfiguration.UNCALIBRATED
     assert from_lines(geometry.F, one + 0.5, two + 0.5).max() < 1e-9

@@ -60,6 +60,8 @@ def test_floats_need_a_white() -> None:
     bright = square().astype(float)
     with pytest.raises(asj.ImageError, match="white=255"):
         asj.detect(bright)
+    with pytest.raises(asj.ImageError, match="NaN or infinity"):
+        asj.detect(np.where(bright > 100, np.inf, bright))
     assert corners(asj.detect(bright, white=255, preset="default")) == CORNERS
     assert corners(asj.detect(bright / 255 * 1.1, preset="default")) == CORNERS
 
@@ -120,6 +122,8 @@ def test_options() -> None:
         asj.detect(square(), minimum_length=-1)
     with pytest.raises(asj.OptionError, match="did you mean default"):
         asj.detect(square(), preset="defualt")
+    with pytest.raises(asj.OptionError, match="no preset None"):
+        asj.detect(square(), preset=None)  # type: ignore[arg-type]
     assert {"epsilon", "minimum_length"} <= {option.key for option in asj.detect_options()}
     presets = {option.key: option.presets for option in asj.detect_options()}["octaves"]
     assert presets == {preset: asj.detect(square(), preset=preset).options["octaves"] for preset in presets}
@@ -141,6 +145,10 @@ def test_results_outlive_the_context(scene: Scene) -> None:
 def test_pickle(scene: Scene) -> None:
     features = asj.detect(scene, minimum_length=5)
     again = pickle.loads(pickle.dumps(features))
+    wrong = features.junctions.copy()
+    wrong["branch_count"][0] = 1000000
+    with pytest.raises(asj.ArgumentError, match="branches"):
+        asj.Features.from_records(scene, wrong.tobytes())
     assert np.array_equal(again.junctions, features.junctions) and np.array_equal(again.l_junctions, features.l_junctions)
     assert len(features.edges) and np.array_equal(again.edges, features.edges)
     assert np.array_equal(again.image, features.image) and again.options == features.options
@@ -245,6 +253,8 @@ def test_files_keep_their_permissions(tmp_path: Path, scene: Scene) -> None:
     path.touch(mode=0o600)
     features.save(path)
     assert path.stat().st_mode & 0o777 == 0o600
+    with pytest.raises(FileNotFoundError, match="nowhere/x.asjf'$"):
+        features.save(tmp_path / "nowhere" / "x.asjf")
     loaded = asj.load_features(path)
     loaded.save(tmp_path / "again.asjf")
     assert (tmp_path / "again.asjf").read_bytes() == path.read_bytes()

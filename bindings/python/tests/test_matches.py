@@ -166,8 +166,12 @@ def test_features_into_what_is_no_file(tmp_path: Path, pair: tuple[asj.Features,
 
 
 def test_images_are_no_features(pair: tuple[asj.Features, asj.Features]) -> None:
-    with pytest.raises(asj.ArgumentError, match="features are wanted, not ndarray"):
-        asj.match(pair[0], np.zeros((30, 40), np.uint8))  # type: ignore[arg-type]
+    blank = np.zeros((30, 40), np.uint8)
+    for call in (lambda: asj.match(pair[0], blank), lambda: asj.lines(blank), lambda: asj.vanishing_points(blank)):  # type: ignore[arg-type]
+        with pytest.raises(asj.ArgumentError, match="features are wanted, not ndarray"):
+            call()
+    with pytest.raises(TypeError, match=r"send \.matches"):
+        pickle.dumps(asj.match(*pair))
 
 
 def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:
@@ -216,7 +220,19 @@ def test_warning_about_features_for_looking(scene: Scene, pair: tuple[asj.Featur
         asj.match(*pair)
 
 
+def test_presets_of_images(scene: Scene) -> None:
+    second = np.roll(scene, (3, 5), (0, 1))
+    found = asj.match_images(scene, second, preset="paper")
+    plain = asj.match(asj.detect(scene, preset="paper"), asj.detect(second, preset="paper"), preset="paper")
+    assert found.stretch == (1, 1) and np.array_equal(found.matches["x1"], plain.matches["x1"]) and len(found) > 5
+
+
 def test_plots(tmp_path: Path, scene: Scene, pair: tuple[asj.Features, asj.Features]) -> None:
     for number, axes in enumerate((asj.plot(scene, pair[0]), asj.plot_matches(scene, scene, asj.match(*pair)))):
         axes.figure.savefig(tmp_path / f"{number}.png")
         assert (tmp_path / f"{number}.png").stat().st_size > 10000
+    deep = np.repeat(scene[:, :, None], 3, 2).astype(np.uint16) * 257
+    shown = asj.plot(deep, pair[0]).images[0].get_array()
+    assert np.abs(shown[:, :, 1].astype(float) / shown.max() - scene / scene.max()).max() < 0.01
+    with pytest.raises(asj.ImageError, match="pixels"):
+        asj.plot("scene.png", pair[0])

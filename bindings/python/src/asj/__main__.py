@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import signal
 import sqlite3
 import sys
@@ -146,12 +147,15 @@ def _collect(arguments: argparse.Namespace) -> int:
         hdf5.check_names(plan.images)
     progress = None if arguments.quiet or not sys.stderr.isatty() else _progress
     open_store = collection.Store.resume if arguments.resume and place.exists() else collection.Store.create
-    with open_store(place, plan) as store:
+    with contextlib.ExitStack() as open_things:
+        # workers that cannot be had leave no store behind
+        workers: Processes | Dask
         if arguments.dask:
-            with errors.extra("distributed", "dask").Client(arguments.dask) as client:
-                summary = collection.collect(plan, store, Dask(client), progress)
+            workers = Dask(open_things.enter_context(errors.extra("distributed", "dask").Client(arguments.dask)))
         else:
-            summary = collection.collect(plan, store, Processes(arguments.jobs), progress)
+            workers = Processes(arguments.jobs)
+        store = open_things.enter_context(open_store(place, plan))
+        summary = collection.collect(plan, store, workers, progress)
         _write(arguments, store)
     print(summary)
     return 1 if summary.failed_images or summary.failed_pairs else 0

@@ -37,7 +37,7 @@ class Context:
     'cpu'
     """
 
-    def __init__(self, threads: int = 0, backend: str | None = None, device: str | None = None,
+    def __init__(self, threads: int = 0, backend: str | None = None, device: str | int | None = None,
                  progress: Progress | None = None) -> None:  # fmt: skip
         if backend is None:
             backend = "cpu" if device is None else "opencl"
@@ -53,7 +53,7 @@ class Context:
         lib.asj_context_options_init(options)
         options.threads = threads
         options.backend = _BACKENDS[backend]
-        name = ffi.new("char[]", device.encode()) if device is not None else ffi.NULL
+        name = ffi.new("char[]", str(device).encode()) if device is not None else ffi.NULL
         options.device = name
         options.log = lib.asj_python_log
         options.log_user = self._handle

@@ -51,6 +51,8 @@ class Features:
         """Features of an image whose junctions are known: `records` are those of `junctions.tobytes()`, found with these options,
         `edges` those of `edges.tobytes()`."""
         junctions, joined = _records(records, "asj_junction", "junctions"), _records(edges, "asj_edge", "edges")
+        if len(junctions) and not 0 <= junctions["branch_count"].min() <= junctions["branch_count"].max() <= lib.ASJ_MAX_BRANCHES:
+            raise ArgumentError(f"a junction has 0 to {lib.ASJ_MAX_BRANCHES} branches")
         record = DETECTOR.fill(preset, options)
         return cls(images.view(image, white), junctions, _decompose(junctions, record.minimum_opening), joined, record, preset)
 
@@ -134,6 +136,12 @@ class Features:
     def segments(self) -> NDArray[np.float32]:
         """(M, 2, 2) line segments of all branches, in the order of `branches`: the junction, the branch's end."""
         return segments_of(self.junctions)[0]
+
+
+def expect_features(features: object, example: str) -> None:
+    """Raises ArgumentError for anything else."""
+    if not isinstance(features, Features):
+        raise ArgumentError(f"features are wanted, not {type(features).__name__}: {example}")
 
 
 class DescribedFeatures(Features):

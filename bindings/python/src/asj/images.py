@@ -45,7 +45,7 @@ def view(image: ArrayLike, white: float = 0.0) -> View:
         pixels = pixels.astype(pixels.dtype.newbyteorder("="))
     if pixels.dtype.name not in _GRAY:
         raise ImageError(f"an image of type {pixels.dtype.name}: uint8, uint16 or float")
-    if pixels.dtype.kind == "f" and white == 0 and pixels.size and pixels.max() > FLOATS_UP_TO:
+    if pixels.dtype.kind == "f" and white == 0 and pixels.size and FLOATS_UP_TO < pixels.max() < np.inf:
         raise ImageError(f"floats up to {pixels.max():g}: white=255, or what is white here (white=1 cuts them)")
     if pixels.ndim == 3 and pixels.shape[2] == 1:
         pixels = pixels[:, :, 0]

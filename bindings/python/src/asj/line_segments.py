@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from . import arrays
 from ._native import ffi, lib
 from .context import Context, current
-from .features import Features
+from .features import Features, expect_features
 
 
 @dataclass(frozen=True)
@@ -53,6 +53,7 @@ def lines(features: Features, *, context: Context | None = None) -> Lines:
     >>> len(found), np.linalg.norm(found.segments[:, 1] - found.segments[:, 0], axis=1).round(1).tolist()
     (4, [70.0, 70.0, 50.0, 50.0])
     """
+    expect_features(features, "asj.lines(asj.detect(image))")
     return lines_of(features.junctions, features.edges, context or current())
 
 

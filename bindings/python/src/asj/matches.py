@@ -13,7 +13,7 @@ from . import arrays, images
 from ._native import ffi, lib
 from .context import Context, current
 from .errors import ArgumentError
-from .features import Features, detect  # noqa: F401 (detect: the example of match())
+from .features import Features, detect, expect_features  # noqa: F401 (detect: the example of match())
 from .geometry import Camera, Geometry
 from .geometry import fill as fill_geometry
 from .geometry import read as read_geometry
@@ -36,6 +36,9 @@ class Matches:
 
     def __len__(self) -> int:
         return len(self.matches)
+
+    def __reduce__(self) -> Any:
+        raise TypeError("asj.Matches hold a result of the library, and cannot be pickled or copied: send .matches, .geometry or .segments()")
 
     def __repr__(self) -> str:
         return f"<asj.Matches: {len(self)}>"
@@ -196,9 +199,7 @@ def match(
     [30.0, 20.0]
     """
     for features in (features1, features2):
-        if not isinstance(features, Features):
-            what = type(features).__name__
-            raise ArgumentError(f"features are wanted, not {what}: asj.match(asj.detect(image1), asj.detect(image2))")
+        expect_features(features, "asj.match(asj.detect(image1), asj.detect(image2))")
         if features.preset == "default" and preset != "paper":
             warnings.warn('features of asj.detect(preset="default") give fewer matches; use preset="match"', stacklevel=2)
             break
@@ -214,8 +215,8 @@ def match(
 
 def match_images(
     image1: ArrayLike, image2: ArrayLike, *, stretch: float | tuple[float, float] | str = "auto", geometry: str = "none",
-    camera1: Camera | None = None, camera2: Camera | None = None, find_focal: bool = False, context: Context | None = None,
-    **options: object,
+    camera1: Camera | None = None, camera2: Camera | None = None, find_focal: bool = False, preset: str = "default",
+    context: Context | None = None, **options: object,
 ) -> Matches:  # fmt: skip
     """Detects in both images and matches them, enlarged or stretched before; everything comes in pixels of the images as they are.
 
@@ -224,6 +225,7 @@ def match_images(
                "auto": as they are; from `enlarge_from` matches on (8; fewer where a geometry is left open; 0 = never) also enlarged, which :attr:`Matches.enlarged`
                tells; and where nothing comes of it at (1, 3) and (3, 1), then also enlarged; :attr:`Matches.stretch` tells which it
                was
+    preset     "default", or "paper": the published method, detector and matcher; "auto" is as they are then
     options    those of the matcher; the others as for :func:`asj.match`
 
     >>> import numpy as np
@@ -237,18 +239,20 @@ def match_images(
     if isinstance(stretch, str) and stretch != "auto":
         raise ValueError(f"stretch {stretch!r} is no factor, no pair of factors, and not 'auto'")
     try:
-        x, y = (0.0, 0.0) if isinstance(stretch, str) else np.broadcast_to(np.asarray(stretch, float), 2)
+        automatic = 1.0 if preset == "paper" else 0.0
+        x, y = (automatic, automatic) if isinstance(stretch, str) else np.broadcast_to(np.asarray(stretch, float), 2)
     except (TypeError, ValueError):
         raise ArgumentError(f"stretch {stretch!r}: it takes a factor, or one for x and one for y") from None
     if not isinstance(stretch, str) and x == 0 and y == 0:
         raise ValueError("a stretch of 0")
     factors = ffi.new("asj_stretch *", {"x": float(x), "y": float(y)})
-    record = MATCHER.fill("default", options)
+    record = MATCHER.fill(preset, options)
     cameras = (camera1, camera1 if camera2 is None else camera2)
     fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in views], find_focal)
+    detector = DETECTOR.fill("paper" if preset == "paper" else "match", {})
     place = ffi.new("asj_match_result **")
     (context or current()).call(
-        lib.asj_match_images, views[0].pointer, views[1].pointer, factors, DETECTOR.fill("match", {}), record, place
+        lib.asj_match_images, views[0].pointer, views[1].pointer, factors, detector, record, place
     )
     return Matches(ffi.gc(place[0], _free), None)
 

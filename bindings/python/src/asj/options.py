@@ -49,7 +49,7 @@ class _Table:
     def fill(self, preset: str, values: Mapping[str, object]) -> Any:
         """A C struct with the preset's values and those given."""
         if preset not in PRESETS:
-            raise OptionError(f"there is no preset {preset!r}{_like(preset, PRESETS)}: one of {', '.join(PRESETS)}")
+            raise OptionError(f"there is no preset {preset!r}{_like(str(preset), PRESETS)}: one of {', '.join(PRESETS)}")
         options = ffi.new(f"{self.struct} *")
         status = self._preset(options, PRESETS[preset])
         if status != lib.ASJ_OK:

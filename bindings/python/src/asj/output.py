@@ -24,7 +24,10 @@ def whole_file(path: Path) -> Iterator[Path]:
     if path.exists() and not path.is_file():
         yield path
         return
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}-", suffix=".tmp", dir=path.parent)
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}-", suffix=".tmp", dir=path.parent)
+    except OSError as bad:
+        raise type(bad)(bad.errno, bad.strerror, str(path)) from None
     os.close(handle)
     temporary = Path(name)
     try:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .errors import extra
+from .errors import ImageError, extra
 from .features import Features
 from .matches import Matches
 
@@ -37,9 +37,9 @@ def plot(image: ArrayLike, features: Features, axes: Any = None) -> Any:
     Returns matplotlib's axes.
     """
     colours = extra("matplotlib.colors", "plot").LinearSegmentedColormap.from_list("asj", _RAMP)
-    pixels = np.asarray(image)
+    pixels = _pixels(image)
     axes = _axes(axes, pixels.shape[1], pixels.shape[0])
-    _show(axes, pixels)
+    _show(axes, _colour(pixels) if pixels.ndim == 3 else pixels)
     sure = -features.log10_nfa
     collection = extra("matplotlib.collections", "plot").LineCollection
     axes.add_collection(
@@ -74,8 +74,15 @@ def plot_matches(image1: ArrayLike, image2: ArrayLike, matches: Matches, axes: A
     return axes
 
 
-def _colour(image: ArrayLike) -> Any:
+def _pixels(image: ArrayLike) -> Any:
     pixels = np.asarray(image)
+    if pixels.ndim not in (2, 3) or pixels.dtype.kind not in "uifb":
+        raise ImageError(f"not an array of pixels: {image!r:.60}")
+    return pixels
+
+
+def _colour(image: ArrayLike) -> Any:
+    pixels = _pixels(image)
     if pixels.dtype != np.uint8:
         top = float(pixels.max()) or 1.0
         pixels = (pixels / (top if pixels.dtype.kind != "f" else max(top, 1.0)) * 255).astype(np.uint8)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from . import arrays
 from ._native import ffi, lib
 from .context import Context, current
-from .features import Features
+from .features import Features, expect_features
 from .geometry import Camera, numbers
 
 
@@ -53,6 +53,7 @@ def vanishing_points(
     >>> len(asj.vanishing_points(asj.detect(flat)))
     0
     """
+    expect_features(features, "asj.vanishing_points(asj.detect(image))")
     options, result = ffi.new("asj_vanishing_options *"), ffi.new("asj_vanishing_points *")
     lib.asj_vanishing_options_init(options)
     options.width, options.height = features.width, features.height

@@ -4,18 +4,18 @@
 Key points are the junctions, each where all its matches together put it (locations.py), with their affine shape, moved by half a pixel
 (COLMAP's first pixel has its centre at (0.5, 0.5)).
 The shape takes the unit circle to an ellipse along two branches of the junction. Images have a camera each, SIMPLE_RADIAL, with the
-focal length of their EXIF data where they have one (and then it is marked as known) and 1.2 times the longer side elsewhere, as COLMAP
-itself guesses.
+focal length that was given, or that of their EXIF data (and then it is marked as known), or the median of what their pairs have found
+with the motion, and 1.2 times the longer side elsewhere, as COLMAP itself guesses.
 
 Where an epipolar geometry was asked for and accepted, that is the pair's two-view geometry, with all its matches as inliers, since what
-contradicts it has gone. COLMAP's own verification gives the others: a homography speaks for one plane only.
+contradicts it has gone; calibrated, with its pose, where the cameras are those that it was found with. COLMAP's own verification gives
+the others: a homography speaks for one plane only.
 """
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,7 @@ from .. import arrays
 from ..output import whole_file
 from . import locations
 from .store import Store
+from .tasks import Detected
 
 
 def write(store: Store, path: Path, verify: bool = True, refine: bool = True) -> None:
@@ -37,12 +38,14 @@ def write(store: Store, path: Path, verify: bool = True, refine: bool = True) ->
         os.remove(temporary)
         database = pycolmap.Database.open(temporary)
         try:
-            moved = _locations(store) if refine else {}
+            moved = locations.of_store(store) if refine else {}
+            given, found = store.given_focal(), _found_focals(store)
             numbers = {}
             for number, name, detected in store.detected():
                 if detected.features is not None:
-                    numbers[number] = _image(database, pycolmap, name, detected, moved.get(number))
-            for one, two, records in _matches(store):
+                    camera = _camera(pycolmap, detected, given or detected.focal, found.get(number))
+                    numbers[number] = _image(database, pycolmap, name, camera, detected, moved.get(number))
+            for one, two, records in locations.matches_of(store):
                 pairs = np.stack([records["junction1"], records["junction2"]], axis=1)
                 database.write_matches(numbers[one], numbers[two], np.ascontiguousarray(pairs, np.uint32))
         finally:
@@ -87,7 +90,9 @@ def _geometry(pycolmap: Any, found: dict[str, Any], pairs: NDArray[np.uint32]) -
     """As COLMAP has it: x2' F x1 = 0, cam2_from_cam1 = (R, t)."""
     kinds = pycolmap.TwoViewGeometryConfiguration
     geometry = pycolmap.TwoViewGeometry()
-    geometry.config = kinds.CALIBRATED if found["model"] == "essential" and found["rotation"] else kinds.UNCALIBRATED
+    # a focal length that was found belongs to this pair; the image's camera has one for all its pairs
+    calibrated = found["model"] == "essential" and found["rotation"] and not found["focal_sd"]
+    geometry.config = kinds.CALIBRATED if calibrated else kinds.UNCALIBRATED
     geometry.F = _HALF_A_PIXEL.T @ np.array(found["matrix"]) @ _HALF_A_PIXEL
     if geometry.config == kinds.CALIBRATED:
         rotation, t = np.array(found["rotation"]), np.array(found["translation"])
@@ -97,31 +102,28 @@ def _geometry(pycolmap: Any, found: dict[str, Any], pairs: NDArray[np.uint32]) -
     return geometry
 
 
-def _matches(store: Store) -> Iterator[tuple[int, int, NDArray[Any]]]:
+def _found_focals(store: Store) -> dict[int, list[float]]:
+    """Of each image, px: what its pairs have found together with the motion."""
+    found: dict[int, list[float]] = {}
     for one, two, matched in store.matched():
-        if matched.matches:
-            yield one, two, np.frombuffer(matched.matches, arrays.struct_type("asj_junction_match"))
+        geometry = json.loads(matched.geometry) if matched.geometry else None
+        if geometry and geometry["status"] == "accepted" and geometry["focal_sd"] > 0:
+            for image, focal in zip((one, two), geometry["focal"]):
+                found.setdefault(image, []).append(focal)
+    return found
 
 
-def _locations(store: Store) -> dict[int, NDArray[np.float32]]:
-    """Where the junctions of each image stand for all their matches."""
-    detected = {}
-    for number, _, image in store.detected():
-        if image.features is not None:
-            junctions = np.frombuffer(image.features, arrays.struct_type("asj_junction"))
-            detected[number] = np.stack([junctions["x"], junctions["y"]], axis=1)
-    return locations.refine(detected, _matches(store))
+def _camera(pycolmap: Any, detected: Detected, known: float | None, found: list[float] | None) -> Any:
+    width, height = detected.width, detected.height
+    focal = known or (float(np.median(found)) if found else 1.2 * max(width, height))
+    camera = pycolmap.Camera(model="SIMPLE_RADIAL", width=width, height=height, params=[focal, width / 2, height / 2, 0.0])
+    camera.has_prior_focal_length = known is not None
+    return camera
 
 
-def _image(database: Any, pycolmap: Any, name: str, detected: Any, moved: NDArray[np.float32] | None) -> int:
-    focal = detected.focal or 1.2 * max(detected.width, detected.height)
-    camera = pycolmap.Camera(
-        model="SIMPLE_RADIAL", width=detected.width, height=detected.height, params=[focal, detected.width / 2, detected.height / 2, 0.0]
-    )
-    camera.has_prior_focal_length = detected.focal is not None
-    camera_id = database.write_camera(camera)
-    number = database.write_image(pycolmap.Image(name=name, camera_id=camera_id))
-    points = key_points(np.frombuffer(detected.features, arrays.struct_type("asj_junction")))
+def _image(database: Any, pycolmap: Any, name: str, camera: Any, detected: Detected, moved: NDArray[np.float32] | None) -> int:
+    number = database.write_image(pycolmap.Image(name=name, camera_id=database.write_camera(camera)))
+    points = key_points(np.frombuffer(detected.features or b"", arrays.struct_type("asj_junction")))
     if moved is not None:
         points[:, :2] = moved + np.float32(0.5)
     database.write_keypoints(number, points)

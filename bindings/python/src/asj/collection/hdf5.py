@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Features and matches as HDF5 files in the layout of hloc (hierarchical localization).
 
-features: a group an image with `keypoints` (N, 2) float32 in pixels (centre of the first pixel (0, 0)), `scores` (N,), `image_size`
-(width, height). matches: a group for each pair, names with - for /, with `matches0` (N,) int32, -1 = none, and `matching_scores0`.
+features: a group an image with `keypoints` (N, 2) float32 in pixels (centre of the first pixel (0, 0)), the junctions, each where all
+its matches together put it (locations.py), `scores` (N,), `image_size` (width, height). matches: a group for each pair, names with - for /, with `matches0` (N,) int32, -1 = none, and `matching_scores0`.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 
 from .. import arrays
 from ..output import whole_file
+from . import locations
 from .store import Store
 
 
@@ -31,12 +32,13 @@ def write_features(store: Store, path: Path) -> None:
     import h5py
 
     with whole_file(path) as temporary, h5py.File(temporary, "w") as file:
-        for _, name, detected in store.detected():
+        places = locations.of_store(store)
+        for number, name, detected in store.detected():
             if detected.features is None:
                 continue
             junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
             group = file.create_group(name)
-            group["keypoints"] = np.stack([junctions["x"], junctions["y"]], axis=1)
+            group["keypoints"] = places[number]
             group["scores"] = -junctions["log10_nfa"]
             group["image_size"] = np.array([detected.width, detected.height])
 

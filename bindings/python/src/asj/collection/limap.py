@@ -3,7 +3,7 @@
 
 segments/segments_<image>.txt: the count, then x1 y1 x2 y2 score in each line; matches/matches_<image>.npy would hold a dictionary,
 so the pairs are written as text: matches/matches_<image1>_<image2>.txt, two indices, counted from 0, in each line. images.txt says
-which photograph has which number, those of the COLMAP database.
+which photograph has which number, those of the COLMAP database. Segments are the branches as each image by itself has them.
 """
 
 from __future__ import annotations

@@ -15,10 +15,14 @@ aligned points of single matches stay in the store.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from .. import arrays
+from .store import Store
 
 PRIOR = 1.0  # px that a junction may stand wrong
 ALIGNED = 0.1  # px that an alignment may be wrong
@@ -101,3 +105,20 @@ def refine(xy: dict[int, NDArray[np.float32]], matches: Iterable[tuple[int, int,
         constraints.add(image1, image2, records, xy[image2])
     moves = constraints.solve().astype(np.float32)
     return {image: places + moves[first[image] : first[image] + len(places)] for image, places in xy.items()}
+
+
+def matches_of(store: Store) -> Iterator[tuple[int, int, NDArray[Any]]]:
+    """Image 1, image 2 and records of asj_junction_match of all pairs that have some."""
+    for one, two, matched in store.matched():
+        if matched.matches:
+            yield one, two, np.frombuffer(matched.matches, arrays.struct_type("asj_junction_match"))
+
+
+def of_store(store: Store) -> dict[int, NDArray[np.float32]]:
+    """Where the junctions of each image stand for all their matches."""
+    detected = {}
+    for number, _, image in store.detected():
+        if image.features is not None:
+            junctions = np.frombuffer(image.features, arrays.struct_type("asj_junction"))
+            detected[number] = np.stack([junctions["x"], junctions["y"]], axis=1)
+    return refine(detected, matches_of(store))

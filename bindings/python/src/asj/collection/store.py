@@ -97,6 +97,12 @@ class Store:
         """Number and name of every image."""
         return self._connection.execute("SELECT id, name FROM images ORDER BY id").fetchall()
 
+    def given_focal(self) -> float | None:
+        """The focal length in pixels that the user gave for all images."""
+        value: str = self._connection.execute("SELECT value FROM about WHERE key = 'geometry'").fetchone()[0]
+        word = json.loads(value)[1]
+        return None if word in ("exif", "estimate", "none") else float(word)
+
     def waiting_images(self) -> list[tuple[int, str]]:
         """Those without a result."""
         return self._connection.execute("SELECT id, name FROM images WHERE state = 'waiting' ORDER BY id").fetchall()
