@@ -150,7 +150,8 @@ static double far_from(const asj_segment *s, double x, double y)
     return off_x * off_x + off_y * off_y;
 }
 
-/* Of the halves of an edge that bends a branch is a part of that which its middle is nearest to; that which goes by it keeps it. */
+/* Of the halves of an edge that bends a branch is a part of that which its middle is nearest to; that which goes by it keeps it.
+ * From half to half, since what goes on there may have been cut, too. */
 static uint32_t nearest_half(const asj_joining *w, size_t number, const asj_segment *segments, const uint32_t *of_branches)
 {
     const asj_junction *junction = &w->junctions[number / ASJ_MAX_BRANCHES];
@@ -158,15 +159,16 @@ static uint32_t nearest_half(const asj_joining *w, size_t number, const asj_segm
     const double half = 0.5 * (double)branch->length, angle = (double)branch->angle;
     const double x = (double)junction->x + half * cos(angle), y = (double)junction->y + half * sin(angle);
     const uint32_t root = asj_joined_branch(w, number);
-    uint32_t nearest = of_branches[root];
+    uint32_t nearest = of_branches[root], at = ASJ_NO_SEGMENT;
     double least = far_from(&segments[nearest], x, y);
-    if (number == root)
-        return nearest;
-    for (uint32_t cut = w->first_cut[root]; cut != ASJ_NO_SEGMENT; cut = w->cuts[cut].next) {
-        const uint32_t other = of_branches[asj_joined_branch(w, w->cuts[cut].other)];
-        const double far = far_from(&segments[other], x, y);
-        nearest = far < least ? other : nearest;
-        least = fmin(far, least);
+    while (number != root && at != nearest) {
+        at = nearest;
+        for (uint32_t cut = w->first_cut[asj_branch_of(&segments[at])]; cut != ASJ_NO_SEGMENT; cut = w->cuts[cut].next) {
+            const uint32_t other = of_branches[asj_joined_branch(w, w->cuts[cut].other)];
+            const double far = far_from(&segments[other], x, y);
+            nearest = far < least ? other : nearest;
+            least = fmin(far, least);
+        }
     }
     return nearest;
 }

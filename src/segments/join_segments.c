@@ -177,6 +177,15 @@ static void end_at(asj_segment *s, const asj_end_point *at)
     s->junction2 = ASJ_NO_JUNCTION;
 }
 
+/* From one's own end to the other's. */
+static int32_t join_both(asj_joining *w, asj_segment *longer, const asj_segment *shorter, const partner_search *p)
+{
+    asj_take_end(longer, 1, shorter, 0);
+    asj_take_nfa(longer, shorter);
+    w->joined[asj_branch_of(shorter)] = (uint32_t)asj_branch_of(longer);
+    return add_cut(w, longer, p->beyond[0]) && add_cut(w, longer, p->beyond[1]);
+}
+
 /* Each ends where they cross. What lies beyond may be a part of the other, or of what goes on at the other's corner. */
 static int32_t cut_both(asj_joining *w, asj_segment *longer, asj_segment *shorter, const partner_search *p)
 {
@@ -197,16 +206,16 @@ static asj_status join_halves(asj_joining *w)
         partner_search p = {.w = w, .s = &s, .mark = i + 1, .best = kept, .compare = is_bent};
         find_longer(&p);
         const uint32_t k = p.best;
+        int32_t good = 1;
         if (k < kept && p.bend.is_straight) {
-            asj_take_end(&w->segments[k], 1, &s, 0); /* from one's own end to the other's */
-            asj_take_nfa(&w->segments[k], &s);
-            w->joined[asj_branch_of(&s)] = (uint32_t)asj_branch_of(&w->segments[k]);
+            good = join_both(w, &w->segments[k], &s, &p);
         } else {
-            const int32_t good = k == kept || cut_both(w, &w->segments[k], &s, &p);
+            good = k == kept || cut_both(w, &w->segments[k], &s, &p);
             w->segments[kept] = s;
-            if (!good || !add_to_cells(w, kept++))
-                return no_memory(w);
+            good = good && add_to_cells(w, kept++);
         }
+        if (!good)
+            return no_memory(w);
     }
     w->count = kept;
     asj_sort(w->segments, w->count, sizeof *w->segments, by_length);

@@ -314,6 +314,27 @@ static void beyond_a_corner_another_must_go_on(void **state)
     asj_segment_list_free(&list);
 }
 
+/* What was joined beyond that corner is a part of what goes on there: of halves, and of those that are one. */
+static void branches_beyond_are_of_what_goes_on(void **state)
+{
+    unit_fixture *f = *state;
+    for (int32_t straight = 0; straight < 2; straight++) {
+        const double bend = straight ? 3.5 : 5;
+        add_branch(place(2, 195, 100), 0, 14, ASJ_BRANCH_END_FADED); /* along the left one's line */
+        add_branch(place(0, 10, 100), 0, 200, ASJ_BRANCH_END_FADED);
+        asj_junction *j = place(1, 190, 100 + (float)bend);
+        add_branch(j, UNIT_PI + atan2(bend, 90), straight ? 166 : 130, ASJ_BRANCH_END_FADED);
+        add_branch(j, 0.15, 40, ASJ_BRANCH_END_FADED);
+        asj_segment_list *list = find(f->context, 3);
+        assert_int_equal(list->count, straight ? 2 : 3);
+        assert_int_equal(of_branch(list, 0, 0) == of_branch(list, 1, 0), straight);
+        assert_int_equal(of_branch(list, 2, 0), of_branch(list, 1, 1));
+        assert_int_equal(list->segments[of_branch(list, 1, 1)].branch_count, 2);
+        assert_int_equal(list->segments[of_branch(list, 0, 0)].branch_count, straight ? 2 : 1);
+        asj_segment_list_free(&list);
+    }
+}
+
 /* Side by side, one after the other, crossing, touching: not one edge. */
 static void what_only_is_near_stays(void **state)
 {
@@ -584,6 +605,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_corner_near_an_end_is_passed, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(a_long_edge_keeps_its_ends, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(a_chain_is_one_edge, unit_set_up, unit_tear_down),
+        cmocka_unit_test_setup_teardown(branches_beyond_are_of_what_goes_on, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(branches_are_parts_of_the_nearer_half, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(halves_end_where_they_cross, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(what_crosses_otherwise_stays, unit_set_up, unit_tear_down),
