@@ -272,11 +272,15 @@ static void draw_unmatched(cairo_t *cairo, const drawing *d, int v)
 }
 
 /* In the colour of the match. */
+static int shows_epipolar_lines(const drawing *d)
+{
+    const asj_geometry *g = &d->content->result->geometry;
+    return d->style->epipolar && g->status == ASJ_GEOMETRY_ACCEPTED && g->model != ASJ_GEOMETRY_HOMOGRAPHY;
+}
+
 static void draw_epipolar_lines(cairo_t *cairo, const drawing *d)
 {
     const asj_geometry *g = &d->content->result->geometry;
-    if (g->status != ASJ_GEOMETRY_ACCEPTED || g->model == ASJ_GEOMETRY_HOMOGRAPHY)
-        return;
     cairo_set_line_width(cairo, 0.7 * d->line);
     for (size_t k = 0; k < d->count; k++)
         for (int v = 0; v < 2; v++) {
@@ -325,6 +329,7 @@ static void draw_legend(cairo_t *cairo, const drawing *d)
     const char *what[] = {"matches", "match", "line segments", "line segment"};
     const char *name = what[(d->content->segments ? 2 : 0) + (d->count == 1 ? 1 : 0)];
     const char *order = d->beside ? "left to right" : "top to bottom";
+    const char *lines = shows_epipolar_lines(d) ? "; across: epipolar lines" : "";
     unsigned long count = (unsigned long)d->count;
     /* the font inside cairo: the same on every machine, and there is always one */
     cairo_select_font_face(cairo, "@cairo:", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
@@ -336,9 +341,9 @@ static void draw_legend(cairo_t *cairo, const drawing *d)
     const unsigned long found[2] = {(unsigned long)result->l_junction_count1, (unsigned long)result->l_junction_count2};
     if (d->count == 0 && found[0] + found[1] > 0 && d->width >= 40 * d->font)
         snprintf(text, sizeof text, "0 %s%s; grey: the L-junctions, %lu and %lu", name, rejected, found[0], found[1]);
-    else if (d->width >= (d->rejected ? 66 : 56) * d->font && d->count > 1)
-        snprintf(text, sizeof text, "%lu %s   one colour each, by place in the first photograph, %s%s%s", count, name, order,
-                 d->content->segments ? "" : "; branch b is darker", rejected);
+    else if (d->width >= (56 + (d->rejected ? 10 : 0) + (*lines ? 13 : 0)) * d->font && d->count > 1)
+        snprintf(text, sizeof text, "%lu %s   one colour each, by place in the first photograph, %s%s%s%s", count, name, order,
+                 d->content->segments ? "" : "; branch b is darker", lines, rejected);
     else
         snprintf(text, sizeof text, "%lu %s%s", count, name, rejected);
     cairo_move_to(cairo, 0.8 * d->font, d->height + 1.55 * d->font);
@@ -354,7 +359,7 @@ static void draw(cairo_t *cairo, void *user)
     for (int v = 0; v < 2 && d->count == 0; v++)
         draw_unmatched(cairo, d, v);
     draw_rejected(cairo, d);
-    if (d->style->epipolar)
+    if (shows_epipolar_lines(d))
         draw_epipolar_lines(cairo, d);
     if (!d->style->without_lines)
         draw_lines(cairo, d);
