@@ -24,7 +24,7 @@ static const char *const descriptor_words[] = {"raw", "sift", NULL};
 /* ..., range, default, paper, match (the same as default), help */
 static const asj_option_info rows[] = {
     INTEGER(IMAGES, COMMON, enlarge_from, "", 0, 1000000, 8, 0, 8,
-            "matches from which on two images are looked at enlarged, too, unless --stretch says how (fewer where a geometry is "
+            "matches from which on two images are looked at enlarged, too, unless a stretch is given (fewer where a geometry is "
             "asked and left open); 0 = never"),
     SWITCH(IMAGES, COMMON, enlarged_half_octaves, 1, 0, 1,
            "look at enlarged images half-way between their octaves, too: half as many matches again, in 1.3 to 1.6 times the time"),
