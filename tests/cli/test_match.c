@@ -476,6 +476,7 @@ static void views_that_no_camera_has_are_doubted(void **state)
 static void focal_lengths_come_from_exif(void **state)
 {
     static const char *const unsaid[][9] = {{"match", "--geometry", "auto", LENS, NO_LENS},
+                                            {"match", "--geometry", "auto", NO_LENS, LENS},
                                             {"match", "--geometry", "auto", "--focal", "none", LENS, LENS},
                                             {"match", "--geometry", "auto", "--focal", "40", LENS, LENS},
                                             {"match", "--geometry", "homography", LENS, LENS},
@@ -497,6 +498,10 @@ static void focal_lengths_come_from_exif(void **state)
     result = run_cli("match", "--geometry", "essential", "--camera2", "30,30,18,12", LENS, NO_LENS, NULL);
     expect_code(result, 0);
     expect_in(result, result->err, "focal length 30 px");
+    /* what is given counts more: 3 px are doubted */
+    result = run_cli("match", "--geometry", "auto", "--camera1", "3,3,18,12", "--camera2", "30,30,18,12", LENS, LENS, NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "a focal length of 3 px means");
     for (k = 0; k < sizeof unsaid / sizeof unsaid[0]; k++) {
         result = run_cli_list(unsaid[k]);
         expect_code(result, 0);

@@ -4,6 +4,7 @@
 #include "unit_test.h"
 
 #include "core/context.h"
+#include "look.h"
 #include "match/unstretch.h"
 #include "wide_pair.h"
 
@@ -555,11 +556,18 @@ static void what_cannot_be_is_refused(void **state)
         assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &outside[k], NULL, NULL, &r), ASJ_ERROR_OPTION);
         assert_null(r);
     }
+    const asj_stretch least = {0.5, 0.5};
+    assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &least, NULL, NULL, &r), ASJ_OK);
+    assert_true(r->stretch[0] == 0.5 && r->stretch[1] == 0.5);
+    asj_match_result_free(&r);
     assert_int_equal(asj_match_images(context, NULL, &p->images[1], NULL, NULL, NULL, &r), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], NULL, NULL, NULL, NULL), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_match_images(NULL, &p->images[0], &p->images[1], NULL, NULL, NULL, &r), ASJ_ERROR_ARGUMENT);
     const asj_image wide = {p->pixels[0], ASJ_FORMAT_GRAY8, 10000, 8, 0, 0}, empty = {p->pixels[0], ASJ_FORMAT_GRAY8, 0, 8, 0, 0};
     assert_int_equal(asj_match_images(context, &wide, &p->images[1], &most, NULL, NULL, &r), ASJ_ERROR_LIMIT);
+    const asj_image large = {p->pixels[0], ASJ_FORMAT_GRAY8, 16384, 8192, 0, 0};
+    assert_true(asj_look_fits(&large, &(asj_stretch){2, 2}) && !asj_look_fits(&large, &(asj_stretch){2, 2.01}));
+    assert_true(asj_look_fits(&wide, &(asj_stretch){6.5, 1}) && !asj_look_fits(&wide, &(asj_stretch){6.56, 1}));
     assert_int_equal(asj_match_images(context, &p->images[0], &empty, &along, NULL, NULL, &r), ASJ_ERROR_IMAGE);
     assert_null(r);
     unit_context_free(&counter, &context);
