@@ -188,7 +188,7 @@ static void unsound_ones_are_not_written(void **state)
     const char *path = in_folder("never");
     (void)state;
     report.segments = &of_bad;
-    for (int k = 0; k < 7; k++) {
+    for (int k = 0; k < 8; k++) {
         bad = list->segments[0];
         bad.junction = k == 0 ? CORNERS : 0;
         bad.branch = k == 1 ? 2 : 0;
@@ -196,6 +196,7 @@ static void unsound_ones_are_not_written(void **state)
         bad.junction2 = k == 3 ? CORNERS : ASJ_NO_JUNCTION;
         bad.x2 = k == 4 ? NAN : 0;
         bad.sd1 = k == 5 ? INFINITY : 0;
+        bad.sd2 = k == 7 ? NAN : 0;
         bad.log10_nfa = k == 6 ? -INFINITY : 0;
         assert_int_equal(asj_junctions_write(path, k % 2 ? ASJ_FILE_CSV : ASJ_FILE_JSON, &report, message, sizeof message),
                          ASJ_ERROR_ARGUMENT);

@@ -191,6 +191,7 @@ static void test_cancel_between(void **state)
 #ifdef ASJ_HAVE_THREADS
 
 #include <pthread.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -303,6 +304,52 @@ static void test_sleeps(void **state)
     assert_true((double)(clock() - before) / CLOCKS_PER_SEC < 0.1);
 }
 
+/* Which threads take parts. */
+typedef struct crowd {
+    pthread_mutex_t mutex;
+    pthread_t who[8];
+    int count;
+} crowd;
+
+static int threads_that_hold_signals;
+
+static void join_crowd(const void *data, const asj_part *part)
+{
+    crowd *c = *(crowd *const *)data;
+    int known = 0;
+    (void)part;
+    sigset_t held_back;
+    pthread_sigmask(SIG_BLOCK, NULL, &held_back);
+    pthread_mutex_lock(&c->mutex);
+    for (int k = 0; k < c->count; k++)
+        known = known || pthread_equal(c->who[k], pthread_self());
+    if (!known && c->count < 8) {
+        c->who[c->count++] = pthread_self();
+        threads_that_hold_signals += sigismember(&held_back, SIGINT) == 1 && sigismember(&held_back, SIGUSR2) == 1;
+    }
+    pthread_mutex_unlock(&c->mutex);
+    sleep_ms(5);
+}
+
+static int threads_that_work(const asj_context *context, int32_t threads)
+{
+    crowd c = {.count = 0}, *data = &c;
+    threads_that_hold_signals = 0;
+    pthread_mutex_init(&c.mutex, NULL);
+    asj_parallel(context, threads, 40, 1, join_crowd, &data);
+    pthread_mutex_destroy(&c.mutex);
+    return c.count;
+}
+
+/* Signals go to the program's own threads: those of a context hold back all of them. */
+static void test_signals(void **state)
+{
+    unit_fixture *f = *state;
+    const int threads = threads_that_work(f->context, 3);
+    assert_in_range(threads, 2, 3);
+    assert_int_equal(threads_that_hold_signals, threads - 1);
+}
+
 /* A child goes on with the context, and frees it. */
 static void test_fork(void **state)
 {
@@ -312,7 +359,7 @@ static void test_fork(void **state)
     assert_true(runs_all(context, 3, 100, 1));
     const pid_t child = fork();
     if (child == 0) {
-        const int good = runs_all(context, 3, 100, 1) && asj_pool_workers(context) == 2;
+        const int good = runs_all(context, 3, 100, 1) && asj_pool_workers(context) == 2 && threads_that_work(context, 3) > 1;
         asj_context_free(&context);
         _exit(good ? 0 : 1);
     }
@@ -384,6 +431,7 @@ static void test_own_threads(void **state)
 #define MORE_TESTS                                                                                                                 \
     cmocka_unit_test(test_made_when_needed), cmocka_unit_test(test_no_threads_to_be_had), cmocka_unit_test(test_late_thread),      \
         cmocka_unit_test(test_two_contexts), cmocka_unit_test(test_sleeps), cmocka_unit_test(test_fork),                           \
+        cmocka_unit_test(test_signals),                                                                                            \
         cmocka_unit_test(test_own_threads),
 #else
 #define MORE_TESTS

@@ -415,8 +415,16 @@ static void bad_input_is_refused(void **state)
     s->candidates[4].probability = 1.5;
     assert_int_equal(asj_geometry_estimate(context, s->candidates, 5, &o, NULL, &g), ASJ_ERROR_ARGUMENT);
     s->candidates[4].probability = 0.5;
-    s->candidates[4].place1 = UINT32_MAX;
-    assert_int_equal(asj_geometry_estimate(context, s->candidates, 5, &o, NULL, &g), ASJ_ERROR_LIMIT);
+    for (int32_t side = 0; side < 2; side++) {
+        s->candidates[4].place1 = side ? 4 : UINT32_MAX;
+        s->candidates[4].place2 = side ? UINT32_MAX : 4;
+        assert_int_equal(asj_geometry_estimate(context, s->candidates, 5, &o, NULL, &g), ASJ_ERROR_LIMIT);
+    }
+    s->candidates[4].place2 = 4;
+    for (int32_t k = 0; k < 2; k++) {
+        o.samples = k ? 0 : 100001;
+        assert_int_equal(asj_geometry_estimate(context, s->candidates, 5, &o, NULL, &g), ASJ_ERROR_OPTION);
+    }
     free(s);
     unit_context_free(&counter, &context);
 }

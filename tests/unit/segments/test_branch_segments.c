@@ -366,9 +366,12 @@ static void the_graph_says_which_are_one(void **state)
     for (int with = 0; with < 2; with++) {
         add_branch(place(0, 100, 10), 0, 60, ASJ_BRANCH_END_JUNCTION);
         add_branch(place(1, 160, 13), UNIT_PI, 60, ASJ_BRANCH_END_JUNCTION);
+        junctions[1].branches[0].log10_nfa = -70;
         asj_segment_list *list = NULL;
         assert_int_equal(asj_find_segments(f->context, junctions, 2, with ? &edge : NULL, (size_t)with, &list), ASJ_OK);
         assert_int_equal(list->count, with ? 1 : 2);
+        if (with)
+            assert_true(list->segments[0].log10_nfa == -70); /* of the surer one */
         if (with)
             assert_true(list->segments[0].x2 == 160 && list->segments[0].junction2 == 1 && list->segments[0].branch_count == 2);
         assert_int_equal(of_branch(list, 1, 0) == of_branch(list, 0, 0), with);
@@ -518,6 +521,9 @@ static void what_cannot_be_is_refused(void **state)
     assert_int_equal(asj_find_segments(NULL, junctions, 1, NULL, 0, &list), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_find_segments(f->context, junctions, 1, NULL, 0, NULL), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_find_segments(f->context, NULL, 1, NULL, 0, &list), ASJ_ERROR_ARGUMENT);
+    const asj_edge edge = {.junction_a = 7, .junction_b = 8};
+    if (SIZE_MAX > UINT32_MAX) /* told before any is read */
+        assert_int_equal(asj_find_segments(f->context, NULL, 0, &edge, UINT32_MAX, &list), ASJ_ERROR_LIMIT);
     for (int k = 0; k < 9; k++) {
         asj_junction *j = place(0, k == 0 ? NAN : k == 1 ? 3e38f : 5, k == 2 ? INFINITY : 5);
         add_branch(j, k == 3 ? (double)NAN : 0, k == 1 ? 3e38f : k == 4 ? INFINITY : 9, ASJ_BRANCH_END_FADED);
