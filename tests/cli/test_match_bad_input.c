@@ -179,6 +179,12 @@ static void junctions_of_another_image_are_refused(void **state)
     expect_code(run_cli("detect", "-q", "-o", "large.json", "first.png", NULL), 0);
     expect_refusal(run_cli("match", "-o", "never.csv", "--junctions1", "small.json", "first.png", "second.png", NULL),
                    "asj-cli: small.json: ", "60 x 40");
+    write_constant("higher.png", 60, 50);
+    write_constant("wider.png", 70, 40);
+    expect_refusal(run_cli("match", "-o", "never.csv", "--junctions1", "small.json", "higher.png", "second.png", NULL),
+                   "asj-cli: small.json: ", "60 x 40");
+    expect_refusal(run_cli("match", "-o", "never.csv", "--junctions1", "small.json", "wider.png", "second.png", NULL),
+                   "asj-cli: small.json: ", "60 x 40");
     expect_refusal(run_cli("match", "-o", "never.csv", "--junctions1", "large.json", "small.png", "second.png", NULL),
                    "asj-cli: large.json: line ", "outside small.png");
 }

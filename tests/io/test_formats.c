@@ -369,6 +369,7 @@ static void pnm_of_every_kind(void **state)
         {TEXT("P1\n3 2\n1 0 1\n010\n"), ASJ_FORMAT_GRAY8, "\0\xff\0\xff\0\xff", 6},
         {TEXT("P4 3 2\n\xa0\x40"), ASJ_FORMAT_GRAY8, "\0\xff\0\xff\0\xff", 6},
         {TEXT("P2 # a comment\r3 1 # another\n5\n0 5\n1"), ASJ_FORMAT_GRAY8, "\0\xff\x33", 3},
+        {TEXT("P2 3 1 100 1 33 50"), ASJ_FORMAT_GRAY8, "\3\x54\x80", 3},
         {TEXT("P3 1 1 255 1 20 300"), ASJ_FORMAT_RGB8, "\1\x14\xff", 3},
         {TEXT("P5 2 1 15\n\1\xf"), ASJ_FORMAT_GRAY8, "\x11\xff", 2},
         {TEXT("P7\nWIDTH 1\nHEIGHT 2\nDEPTH 2\nMAXVAL 255\nTUPLTYPE GRAYSCALE_ALPHA\nENDHDR\n\1\2\3\4"), ASJ_FORMAT_GRAY8,
@@ -378,7 +379,7 @@ static void pnm_of_every_kind(void **state)
     static const char *const bad[] = {
         "P5 2 1 0\n12", "P5 2 1 65536\n1234", "P5 2 2 255\n123", "P5 2x1 255\n12", "P2 2 1 255\n1 ", "P2 2 1 255\n1 x",
         "P1 2 1 1 2", "P6 1 1 255\n12", "P4 9 1\n1", "Pf 1 1\n1\n123", "Pf 1 1 x\n1234", "P7\nWIDTH 1\nENDHDR\n1",
-        "P7\nWIDTH 1\nHEIGHT 1\nDEPTH 5\nMAXVAL 1\nENDHDR\n11111",
+        "P7\nWIDTH 1\nHEIGHT 1\nDEPTH 5\nMAXVAL 1\nENDHDR\n11111", "P7\nWIDTH 1\nHEIGHT 1\nDEPTH 1\nMAXVAL 65536\nENDHDR\n12",
         "P7\nWIDTH 1\nWIDTH 1\nHEIGHT 1\nDEPTH 1\nMAXVAL 1\nENDHDR\n1"};
     static test_bytes bytes;
     size_t i;

@@ -123,6 +123,14 @@ static void test_colour(void **state)
         }
         assert_int_equal(gray(*state, 0, 0), ASJ_GRAY_MAX);
         assert_int_equal(gray(*state, 1, 0), 0);
+        memset(pixels, 100, sizeof pixels); /* half as bright as what is white */
+        const asj_image dim = {pixels, orders[k].format, WIDTH, HEIGHT, 200, 0};
+        const asj_image flat = {pixels, ASJ_FORMAT_GRAY8, WIDTH, HEIGHT, 200, 0};
+        assert_int_equal(load(*state, &flat), ASJ_OK);
+        const int32_t level = gray(*state, 7, 5);
+        assert_in_range(level, ASJ_GRAY_MAX * 49 / 100, ASJ_GRAY_MAX * 51 / 100);
+        assert_int_equal(load(*state, &dim), ASJ_OK);
+        assert_int_equal(gray(*state, 7, 5), level);
     }
 }
 
