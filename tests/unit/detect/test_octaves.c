@@ -84,6 +84,9 @@ static void test_range(void **state)
     range = asj_octaves_of(&options, 640, 480);
     assert_int_equal(range.first, 3);
     assert_int_equal(range.end, 4);
+    options.first_octave = 4; /* one more than there are */
+    range = asj_octaves_of(&options, 640, 480);
+    assert_true(range.first == 3 && range.end == 4 && range.count == 1);
     range = asj_octaves_of(&options, 1, 1);
     assert_int_equal(range.first, 0);
     assert_int_equal(range.end, 1);

@@ -2,6 +2,7 @@
 /* asj_geometry_estimate() with find_focal: focal lengths that are found, motions that leave them open, what is refused. */
 #include "unit_test.h"
 
+#include "geometry/geometry_options.h"
 #include "geometry/small_matrix.h"
 #include "match/unstretch.h"
 
@@ -89,10 +90,32 @@ static asj_geometry_options blind_options(int32_t model)
     return o;
 }
 
+/* What is accepted or left open says of candidates how probable they are, of all together its inliers. */
+static void check_probabilities(const asj_geometry *g, const double probabilities[COUNT])
+{
+    const int told = g->status == ASJ_GEOMETRY_ACCEPTED || asj_geometry_is_open(g);
+    double sum = 0;
+    for (int k = 0; k < COUNT; k++) {
+        assert_true(probabilities[k] >= 0 && probabilities[k] <= 1);
+        sum += probabilities[k];
+    }
+    unit_near("sum of the probabilities", g->status, g->model, sum, told ? g->inliers : 0, 1e-6 * COUNT);
+}
+
+static double uncertainty(const asj_geometry *g)
+{
+    double trace = 0;
+    for (int k = 0; k < 6; k++)
+        trace += g->covariance[7 * k];
+    return trace;
+}
+
 static asj_geometry estimate(asj_context *context, const scene *s, const asj_geometry_options *o)
 {
     asj_geometry g;
-    assert_int_equal(asj_geometry_estimate(context, s->candidates, COUNT, o, NULL, &g), ASJ_OK);
+    double probabilities[COUNT];
+    assert_int_equal(asj_geometry_estimate(context, s->candidates, COUNT, o, probabilities, &g), ASJ_OK);
+    check_probabilities(&g, probabilities);
     double sum = g.log10_nfa + g.inliers + g.focal[0] + g.focal[1] + g.focal_sd;
     for (int k = 0; k < 36; k++)
         sum += g.covariance[k] + g.matrix[k % 9] + g.rotation[k % 9] + g.translation[k % 3];
@@ -119,6 +142,12 @@ static void focal_lengths_are_found(void **state)
         double rest[9];
         asj_multiply3_transposed(g.rotation, s.rotation, rest);
         unit_near("rotation, deg", i, 0, asj_rotation_angle(rest) * 180 / UNIT_PI, 0, 3);
+        asj_geometry_options known = o; /* who knows the focal length knows the motion better */
+        known.find_focal = 0;
+        for (int v = 0; v < 2; v++)
+            known.cameras[v] = (asj_camera){focal[i], focal[i], 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1)};
+        const asj_geometry surer = estimate(context, &s, &known);
+        assert_true(surer.has_pose && g.has_pose && uncertainty(&surer) > 0 && uncertainty(&g) > 1.1 * uncertainty(&surer));
     }
     unit_context_free(&counter, &context);
 }
@@ -172,7 +201,7 @@ static void what_leaves_it_open_has_none(void **state)
         for (int32_t model = ASJ_GEOMETRY_AUTO; model <= ASJ_GEOMETRY_ESSENTIAL; model++) {
             const asj_geometry_options o = blind_options(model);
             const asj_geometry g = estimate(context, &s, &o);
-            assert_true(g.focal[0] == 0 && g.focal_sd == 0 && !g.has_pose);
+            assert_true(g.focal[0] == 0 && g.focal_sd == 0 && !g.has_pose && uncertainty(&g) == 0);
             if (model == ASJ_GEOMETRY_ESSENTIAL)
                 assert_true(g.status == ASJ_GEOMETRY_DEGENERATE || (i == 1 && g.status == ASJ_GEOMETRY_CHANCE));
             else

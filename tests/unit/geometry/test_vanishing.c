@@ -78,7 +78,8 @@ static void rooms_have_three_directions(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* Without a focal length: points 4 degrees apart are one direction, others two, the surer one first. */
+/* Without a focal length: points 4 degrees apart are one direction, others two, the surer one first; with one, two that are not at
+ * right angles are the surer one. */
 static void near_points_are_one(void **state)
 {
     static const double second[2][2] = {{1800, 420}, {1000, 900}};
@@ -109,6 +110,11 @@ static void near_points_are_one(void **state)
         assert_int_equal(found.count, n + 1);
         unit_near("the surer one", n, 0, found.points[0].point[0] / found.points[0].point[2], second[n][0], 30);
         assert_true(n == 0 || found.points[0].log10_nfa < found.points[1].log10_nfa);
+        options.camera = (asj_camera){500, 500, 319.5, 239.5}; /* 40 degrees apart: the surest alone */
+        assert_int_equal(asj_find_vanishing_points(context, list, 60, &options, &found), ASJ_OK);
+        assert_int_equal(found.focal_source, ASJ_FOCAL_GIVEN);
+        assert_int_equal(found.count, 1);
+        unit_near("the surest one", n, 0, found.points[0].point[0] / found.points[0].point[2], second[n][0], 30);
     }
     unit_context_free(&counter, &context);
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* A room whose images leave the motion open and have no match: the enlarged ones settle it, where they may be looked at. */
+/* A room whose images leave the motion open and have no match: the enlarged ones settle it, where they may be looked at. And which
+ * octaves junctions of enlarged images are of. */
 #include "unit_test.h"
 
+#include "look.h"
 #include "wide_pair.h"
 
 #include <asj/asj.h>
@@ -141,12 +143,39 @@ static void junctions_of_octave_minus_one_settle_it(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Of images looked at enlarged N times: an octave is that of the image, down to 0. */
+static void octaves_are_those_of_the_image(void **state)
+{
+    static const struct { asj_stretch by; int32_t finer; } looks[] = {{{2, 2}, 1}, {{4, 5}, 2}, {{2, 1}, 0}, {{0.5, 0.5}, 0}};
+    const asj_image *const images[2] = {&seen.images[0], &seen.images[1]};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    asj_detect_options detector;
+    (void)state;
+    assert_int_equal(asj_detect_options_preset(&detector, ASJ_PRESET_MATCH), ASJ_OK);
+    for (size_t k = 0; k < UNIT_COUNT(looks); k++) {
+        asj_look look;
+        int32_t coarse = 0;
+        assert_int_equal(asj_look_open(context, images, &looks[k].by, &detector, 0, 1, &look), ASJ_OK);
+        for (int n = 0; n < 2; n++)
+            for (uint32_t i = 0; i < look.views[n].found->junction_count; i++) {
+                const int32_t octave = look.views[n].found->junctions[i].octave, finer = octave - looks[k].finer;
+                assert_int_equal(look.views[n].junctions[i].octave, octave <= 0 ? octave : finer > 0 ? finer : 0);
+                coarse += octave > looks[k].finer;
+            }
+        assert_true(coarse > 3);
+        asj_look_close(&look);
+    }
+    unit_context_free(&counter, &context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(enlarged_images_settle_it),
         cmocka_unit_test(one_octave_leaves_it_open),
         cmocka_unit_test(junctions_of_octave_minus_one_settle_it),
+        cmocka_unit_test(octaves_are_those_of_the_image),
     };
     return cmocka_run_group_tests(tests, look_at_room, forget_room);
 }
