@@ -146,7 +146,7 @@ static const struct {
     {{"match", "--stretch", "nan", "scene.png", "scene.png"}, "--stretch: 'nan'"},
     {{"match", "--junctions1", "scene.asj", "--mask1", "scene.png", "scene.png", "scene.png"}, "--mask1 changes nothing"},
     {{"detect", "--mask", "mask.png", "-f", "asj", "-o", "mask.png", "scene.png"}, "mask.png: is an input file"},
-    {{"match", "--mask2", "mask.png", "--plot", "mask.png", "scene.png", "scene.png"}, "mask.png: is an input file"},
+    {{"match", "--mask2", "mask.png", "-f", "csv", "-o", "mask.png", "scene.png", "scene.png"}, "mask.png: is an input file"},
     {{"match", "--camera1", "500,0,9,9", "--geometry", "auto", "scene.png", "scene.png"}, "--camera1: '500,0,9,9'"},
     {{"match", "--camera2", "0.5,500,9,9", "--geometry", "auto", "scene.png", "scene.png"}, "--camera2: '0.5,500,9,9'"},
 };
