@@ -44,7 +44,7 @@ typedef struct partner_search {
     int32_t (*compare)(struct partner_search *search, uint32_t k);
     asj_course course;
     asj_bend bend;
-    uint32_t beyond[2]; /* with a bend: the branch of what lies beyond the other's corner, of the longer one and of the shorter */
+    uint32_t goes_on[2]; /* where the other one goes on beyond an end (bend.beyond), a branch of what lies there */
 } partner_search;
 
 static void look_in_cell(partner_search *p, uint32_t first)
@@ -143,13 +143,13 @@ static int32_t is_bent(partner_search *p, uint32_t k)
     asj_bend bend;
     if (!asj_find_bend(longer, p->s, &bend))
         return 0;
-    const uint32_t after = bend.beyond[1] ? what_goes_on(p->w, p->s, longer) : ASJ_NO_SEGMENT; /* beyond the shorter's corner */
-    const uint32_t before = bend.beyond[0] ? what_goes_on(p->w, longer, p->s) : ASJ_NO_SEGMENT;
-    if ((bend.beyond[0] && before == ASJ_NO_SEGMENT) || (bend.beyond[1] && after == ASJ_NO_SEGMENT))
-        return 0;
+    const uint32_t there[2] = {bend.beyond[0] ? what_goes_on(p->w, longer, p->s) : ASJ_NO_SEGMENT,
+                               bend.beyond[1] ? what_goes_on(p->w, p->s, longer) : ASJ_NO_SEGMENT};
+    for (int32_t end = 0; end < 2; end++)
+        if (bend.beyond[end] && there[end] == ASJ_NO_SEGMENT)
+            return 0;
     p->bend = bend;
-    p->beyond[0] = after;
-    p->beyond[1] = before;
+    memcpy(p->goes_on, there, sizeof there);
     return 1;
 }
 
@@ -183,7 +183,7 @@ static int32_t join_both(asj_joining *w, asj_segment *longer, const asj_segment 
     asj_take_end(longer, 1, shorter, 0);
     asj_take_nfa(longer, shorter);
     w->joined[asj_branch_of(shorter)] = (uint32_t)asj_branch_of(longer);
-    return add_cut(w, longer, p->beyond[0]) && add_cut(w, longer, p->beyond[1]);
+    return add_cut(w, longer, p->goes_on[0]) && add_cut(w, longer, p->goes_on[1]);
 }
 
 /* Each ends where they cross. What lies beyond may be a part of the other, or of what goes on at the other's corner. */
@@ -192,7 +192,7 @@ static int32_t cut_both(asj_joining *w, asj_segment *longer, asj_segment *shorte
     end_at(longer, &p->bend.at);
     end_at(shorter, &p->bend.at);
     return add_cut(w, longer, (uint32_t)asj_branch_of(shorter)) && add_cut(w, shorter, (uint32_t)asj_branch_of(longer)) &&
-           add_cut(w, longer, p->beyond[0]) && add_cut(w, shorter, p->beyond[1]);
+           add_cut(w, longer, p->goes_on[1]) && add_cut(w, shorter, p->goes_on[0]);
 }
 
 /* Once: what has been cut crosses nobody any more there. */

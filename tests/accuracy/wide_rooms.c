@@ -91,9 +91,8 @@ static uint32_t count_right(const asj_match_result *result, const synth_wide_pai
     uint32_t right = 0;
     synth_fundamental(&pair->cameras[0], &pair->cameras[1], f);
     for (uint32_t k = 0; k < result->match_count; k++) {
-        const double x = (double)result->matches[k].x1, y = (double)result->matches[k].y1;
-        const double a = f[0] * x + f[1] * y + f[2], b = f[3] * x + f[4] * y + f[5], c = f[6] * x + f[7] * y + f[8];
-        right += fabs(a * (double)result->matches[k].x2 + b * (double)result->matches[k].y2 + c) < NEAR * sqrt(a * a + b * b);
+        const asj_junction_match *m = &result->matches[k];
+        right += synth_off_epipolar_line(f, (double)m->x1, (double)m->y1, (double)m->x2, (double)m->y2) < NEAR;
     }
     return right;
 }

@@ -107,6 +107,9 @@ int synth_room_transfer(const synth_room *room, const synth_camera *from, double
 /* F with x2' F x1 = 0 for the images x1, x2 of one point in two cameras; row by row, largest entry 1 or -1. */
 void synth_fundamental(const synth_camera *first, const synth_camera *second, double f[9]);
 
+/* px from (x2, y2) to the epipolar line of (x1, y1). */
+double synth_off_epipolar_line(const double f[9], double x1, double y1, double x2, double y2);
+
 /* x2 ~ R x1 + t in camera coordinates: R row by row, |t| = 1; t is not finite when both stand at one place. */
 void synth_relative_pose(const synth_camera *first, const synth_camera *second, double rotation[9], double translation[3]);
 

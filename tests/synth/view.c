@@ -153,6 +153,12 @@ void synth_fundamental(const synth_camera *first, const synth_camera *second, do
         f[k] /= largest;
 }
 
+double synth_off_epipolar_line(const double f[9], double x1, double y1, double x2, double y2)
+{
+    const double a = f[0] * x1 + f[1] * y1 + f[2], b = f[3] * x1 + f[4] * y1 + f[5], c = f[6] * x1 + f[7] * y1 + f[8];
+    return fabs(a * x2 + b * y2 + c) / sqrt(a * a + b * b);
+}
+
 /* Columns of R2 R1' are the axes of the first camera as the second one sees them; t = R2 (C1 - C2). */
 void synth_relative_pose(const synth_camera *first, const synth_camera *second, double rotation[9], double translation[3])
 {

@@ -142,7 +142,7 @@ static void focal_lengths_are_found(void **state)
         double rest[9];
         asj_multiply3_transposed(g.rotation, s.rotation, rest);
         unit_near("rotation, deg", i, 0, asj_rotation_angle(rest) * 180 / UNIT_PI, 0, 3);
-        asj_geometry_options known = o; /* who knows the focal length knows the motion better */
+        asj_geometry_options known = o; /* who knows the focal length knows the motion better: 1.2 to 2.2 here */
         known.find_focal = 0;
         for (int v = 0; v < 2; v++)
             known.cameras[v] = (asj_camera){focal[i], focal[i], 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1)};

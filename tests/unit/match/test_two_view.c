@@ -72,9 +72,7 @@ static double pose_error(const asj_geometry *g, const synth_wide_pair *pair)
 
 static double from_line(const double f[9], const asj_junction_match *m)
 {
-    const double x = (double)m->x1, y = (double)m->y1;
-    const double a = f[0] * x + f[1] * y + f[2], b = f[3] * x + f[4] * y + f[5], c = f[6] * x + f[7] * y + f[8];
-    return fabs(a * (double)m->x2 + b * (double)m->y2 + c) / sqrt(a * a + b * b);
+    return synth_off_epipolar_line(f, (double)m->x1, (double)m->y1, (double)m->x2, (double)m->y2);
 }
 
 /* Whatever numbers are drawn. */
