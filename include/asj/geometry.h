@@ -64,8 +64,10 @@ typedef struct asj_geometry_options {
                               * the default: not known. With cameras only */
     int32_t find_focal;      /* 1 = no camera is known, but both have pixels as `aspects` says, the principal point in the middle of
                               * the image and the same focal length, as a part of the longer side: it is found with the motion,
-                              * between 0.4 and 4 of the longer side. Model auto and essential only. Where the motion leaves it
-                              * open, auto gives a fundamental matrix or a homography, and essential ends degenerate. 0 */
+                              * between 0.4 and 4 of the longer side. Where images are matched their straight edges are asked, too:
+                              * those of a room are at right angles at its focal length only. Model auto and essential only. Where
+                              * all that leaves it open, auto gives a fundamental matrix or a homography, and essential ends
+                              * degenerate. 0 */
     int32_t reserved_integer;/* zero */
     double aspects[2];       /* of image 1 and image 2: fy / fx of a camera that is not known, 1 = square pixels. The longer side is
                               * that of the image with square pixels as wide as its own. 0.01 .. 100; 1 */

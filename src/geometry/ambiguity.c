@@ -157,8 +157,7 @@ static double compare_with(asj_estimation *e, const asj_model *other)
 
 static int32_t is_overturned(const asj_estimation *e, int32_t best, int32_t rival)
 {
-    const int32_t known = asj_cameras_are_known(e->options);
-    const asj_camera *cameras = known ? e->options->cameras : NULL;
+    const asj_camera *cameras = asj_estimation_cameras(e);
     const asj_model *m = &e->finalists[best], *r = &e->finalists[rival];
     if (m->evidence <= fmax(0, UPRIGHT_AHEAD * r->evidence))
         return 0;
@@ -270,7 +269,9 @@ static asj_status put_in_front(asj_estimation *e, int32_t chosen, int32_t *stand
     asj_model followed = e->finalists[chosen];
     int32_t count = 1;
     strike(e, chosen);
-    if (followed.kind == ASJ_GEOMETRY_ESSENTIAL && chosen != e->focal_at) {
+    if (asj_has_found_focal(e, chosen) && chosen != e->focal_at)
+        status = asj_estimation_refocus(e, chosen);
+    else if (followed.kind == ASJ_GEOMETRY_ESSENTIAL && chosen != e->focal_at) {
         status = asj_refine_motions(e->context, &e->set, followed.cameras, e->options->seed, 1, &followed, &count);
         if (status == ASJ_OK && count == 1 && followed.evidence > e->finalists[chosen].evidence)
             e->finalists[chosen] = followed;

@@ -78,15 +78,15 @@ static int32_t set_pose(asj_estimation *e, int32_t number, asj_geometry *result)
     if (m->view.plane_count == 0 && !(asj_choose_motion(&e->set, e->scratch.probability, m) > -HUGE_VAL))
         return 0;
     double sd = set_covariance(e, number, result->covariance);
-    if (number == e->focal_at && e->focal.is_known)
+    if (asj_has_found_focal(e, number) && e->focal.is_known)
         sd = hypot(sd, add_focal(&e->focal, result));
     memcpy(result->rotation, m->rotation, sizeof result->rotation);
     memcpy(result->translation, m->translation, sizeof result->translation);
     result->focal[0] = m->cameras[0].fx;
     result->focal[1] = m->cameras[1].fx;
     result->has_pose = sd < POSE_SD;
-    if (number == e->focal_at && (sd >= LOOSE_DIRECTION || !e->focal.is_known)) /* a motion that is none tells no focal length */
-        clear_pose(result);
+    if (asj_has_found_focal(e, number) && (sd >= LOOSE_DIRECTION || !e->focal.is_known))
+        clear_pose(result); /* a motion that is none tells no focal length */
     return sd < LOOSE_DIRECTION;
 }
 
@@ -111,7 +111,7 @@ static int32_t instead_of(const asj_estimation *e, int32_t best)
  * explains about as much as anything else. */
 static int32_t is_believed(const asj_estimation *e, int32_t essential, int32_t best)
 {
-    return essential != e->focal_at || e->finalists[essential].evidence > ALMOST * e->finalists[best].evidence;
+    return !asj_has_found_focal(e, essential) || e->finalists[essential].evidence > ALMOST * e->finalists[best].evidence;
 }
 
 /* Which finalist is told, -1 = there is none, with its pose. *determined: 0 when nothing determines its motion. */
@@ -133,7 +133,7 @@ static int32_t choose(asj_estimation *e, asj_geometry *result, int32_t *determin
 
 static int32_t has_open_focal(const asj_estimation *e, int32_t number)
 {
-    return number == e->focal_at && !e->focal.is_known;
+    return asj_has_found_focal(e, number) && !e->focal.is_known;
 }
 
 /* All but its pose; the probabilities of candidates are in the scratch then. */
@@ -151,7 +151,7 @@ static void describe(asj_estimation *e, int32_t number, asj_geometry *result)
 /* Whether the motion that was asked for stays open. */
 static int32_t is_open(const asj_estimation *e, int32_t number, const asj_geometry *result)
 {
-    const int32_t motion = number == asj_estimation_best(e, ASJ_GEOMETRY_ESSENTIAL) && number != e->focal_at;
+    const int32_t motion = number == asj_estimation_best(e, ASJ_GEOMETRY_ESSENTIAL) && !asj_has_found_focal(e, number);
     return (motion && !result->has_pose && result->inliers < FEW_WITHOUT_POSE) ||
            (has_open_focal(e, number) && e->options->model == ASJ_GEOMETRY_ESSENTIAL);
 }

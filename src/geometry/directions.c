@@ -259,28 +259,60 @@ static void search(const scene *s, ranked *all, asj_directions_list *found)
     }
 }
 
-int32_t asj_find_directions(asj_memory *memory, const asj_straight_edge *edges, size_t count, const asj_camera *camera,
-                            double longer, asj_directions_list *found)
+struct asj_directions_scratch {
+    asj_vote_line *lines;
+    ranked *all;
+};
+
+asj_directions_scratch *asj_directions_scratch_create(asj_memory *memory, size_t count)
 {
-    memset(found, 0, sizeof *found);
     const size_t paired = PAIRED * (PAIRED - 1) / 2, turned = MOST_POINTS * STEPS;
-    asj_vote_line *lines = asj_allocate(memory, count, sizeof *lines);
-    ranked *all = asj_allocate(memory, paired > turned ? paired : turned, sizeof *all);
-    const int32_t good = lines && all;
-    if (good) {
-        scene s;
-        s.lines = lines;
-        s.count = asj_vote_lines(edges, count, SHORTEST * longer, camera, lines);
-        s.count = s.count < MOST_EDGES ? s.count : MOST_EDGES;
-        for (int32_t k = 0; k < s.count; k++) {
-            const double sd = hypot(ACROSS / lines[k].length, BENT);
-            s.precision[k] = 1 / (sd * sd);
-            s.peak[k] = ASJ_PI / (sqrt(2 * ASJ_PI) * sd);
-        }
-        if (s.count >= LEAST_EDGES)
-            search(&s, all, found);
+    asj_directions_scratch *scratch = asj_allocate_zero(memory, 1, sizeof *scratch);
+    if (!scratch)
+        return NULL;
+    scratch->lines = asj_allocate(memory, count, sizeof *scratch->lines);
+    scratch->all = asj_allocate(memory, paired > turned ? paired : turned, sizeof *scratch->all);
+    if (scratch->lines && scratch->all)
+        return scratch;
+    asj_directions_scratch_free(memory, scratch);
+    return NULL;
+}
+
+void asj_directions_scratch_free(asj_memory *memory, asj_directions_scratch *scratch)
+{
+    if (!scratch)
+        return;
+    asj_release(memory, scratch->lines);
+    asj_release(memory, scratch->all);
+    asj_release(memory, scratch);
+}
+
+void asj_find_directions_with(asj_directions_scratch *scratch, const asj_edge_list *edges, const asj_camera *camera,
+                              asj_directions_list *found)
+{
+    const double scale = edges->scale;
+    const asj_camera of_level = {camera->fx / scale, camera->fy / scale, (camera->cx + 0.5) / scale - 0.5,
+                                 (camera->cy + 0.5) / scale - 0.5};
+    scene s;
+    memset(found, 0, sizeof *found);
+    s.lines = scratch->lines;
+    s.count = asj_vote_lines(edges->list, edges->count, SHORTEST * edges->longer, &of_level, scratch->lines);
+    s.count = s.count < MOST_EDGES ? s.count : MOST_EDGES;
+    for (int32_t k = 0; k < s.count; k++) {
+        const double sd = hypot(ACROSS / s.lines[k].length, BENT);
+        s.precision[k] = 1 / (sd * sd);
+        s.peak[k] = ASJ_PI / (sqrt(2 * ASJ_PI) * sd);
     }
-    asj_release(memory, all);
-    asj_release(memory, lines);
-    return good;
+    if (s.count >= LEAST_EDGES)
+        search(&s, scratch->all, found);
+}
+
+int32_t asj_find_directions(asj_memory *memory, const asj_edge_list *edges, const asj_camera *camera, asj_directions_list *found)
+{
+    asj_directions_scratch *scratch = asj_directions_scratch_create(memory, edges->count);
+    memset(found, 0, sizeof *found);
+    if (scratch)
+        asj_find_directions_with(scratch, edges, camera, found);
+    asj_directions_scratch_free(memory, scratch);
+    return scratch != NULL;
 }

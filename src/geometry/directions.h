@@ -18,10 +18,25 @@ typedef struct asj_directions_list {
     int32_t count;
 } asj_directions_list;
 
-/* The sets of directions that explain the edges best, the best first; count 0 when there are too few edges. `longer`: longer side
- * of the image, px. 0: no memory. */
-int32_t asj_find_directions(asj_memory *memory, const asj_straight_edge *edges, size_t count, const asj_camera *camera,
-                            double longer, asj_directions_list *found);
+/* The straight edges of an image, px of a level of its pyramid (core/pyramid.h) whose pixels are `scale` pixels of the image wide.
+ * The list is its owner's. */
+typedef struct asj_edge_list {
+    asj_straight_edge *list;
+    size_t count;
+    double scale;
+    double longer; /* side of the level, px */
+} asj_edge_list;
+
+/* The sets of directions that explain the edges best, the best first; count 0 when there are too few edges. camera: of the image,
+ * px. 0: no memory. */
+int32_t asj_find_directions(asj_memory *memory, const asj_edge_list *edges, const asj_camera *camera, asj_directions_list *found);
+
+/* The same in the threads of a loop, each with scratch of its own for lists of at most `count` edges. NULL: no memory. */
+typedef struct asj_directions_scratch asj_directions_scratch;
+asj_directions_scratch *asj_directions_scratch_create(asj_memory *memory, size_t count);
+void asj_directions_scratch_free(asj_memory *memory, asj_directions_scratch *scratch);
+void asj_find_directions_with(asj_directions_scratch *scratch, const asj_edge_list *edges, const asj_camera *camera,
+                              asj_directions_list *found);
 
 /* Adds one set of directions, unless it is there already but for their names, or there is no room. */
 void asj_directions_add(asj_directions_list *found, const asj_directions *more);

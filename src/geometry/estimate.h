@@ -16,6 +16,8 @@ typedef struct asj_geometry_hints {
     const double *branches;            /* of each candidate ASJ_BRANCH_NUMBERS, unit vectors, px: branch a and b of its L-junction
                                         * in image 1, then in image 2 (labels.c). NULL = not known */
     asj_directions_list directions[2]; /* of each image's edges, count 0 = none; options->directions are taken before them */
+    const asj_edge_list *edges;        /* straight ones of both images, where their focal length is looked for; NULL = not
+                                        * known */
     const asj_pyramid *pictures[2];    /* what the images look like (picture_vote.c); NULL = not known */
 } asj_geometry_hints;
 

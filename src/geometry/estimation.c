@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The best finalist, and how often chance brings one: NFA = kinds that were tried x exp(-evidence). */
 #include "estimation.h"
+#include "geometry_options.h"
 
 #include <math.h>
 
@@ -12,6 +13,30 @@ int32_t asj_estimation_best(const asj_estimation *e, int32_t kind)
             (best < 0 || e->finalists[k].evidence > e->finalists[best].evidence))
             best = k;
     return best;
+}
+
+const asj_camera *asj_estimation_cameras(const asj_estimation *e)
+{
+    if (asj_cameras_are_known(e->options))
+        return e->options->cameras;
+    return e->focal_at >= 0 && e->focal.is_known ? e->focal.model.cameras : NULL;
+}
+
+asj_status asj_estimation_refocus(asj_estimation *e, int32_t number)
+{
+    asj_focal found;
+    const asj_status status = asj_find_focal_of(e->focal_search, &e->finalists[number], &found);
+    if (status != ASJ_OK)
+        return status;
+    e->focal = found;
+    e->focal_at = number;
+    e->finalists[number] = found.model;
+    return ASJ_OK;
+}
+
+int32_t asj_has_found_focal(const asj_estimation *e, int32_t number)
+{
+    return e->focal_at >= 0 && e->finalists[number].kind == ASJ_GEOMETRY_ESSENTIAL;
 }
 
 double asj_estimation_log10_nfa(const asj_estimation *e, const asj_model *m)

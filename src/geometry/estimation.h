@@ -9,7 +9,7 @@
 #include "search.h"
 
 #define ASJ_MOST_KINDS 3
-#define ASJ_MOST_MODELS (2 * ASJ_MOST_KINDS * ASJ_FINALISTS)
+#define ASJ_MOST_MODELS ((2 * ASJ_MOST_KINDS + 3) * ASJ_FINALISTS) /* the last three: with a focal length that was found */
 
 /* One call. */
 typedef struct asj_estimation {
@@ -23,9 +23,19 @@ typedef struct asj_estimation {
     double *elsewhere; /* ambiguity.c: of each candidate, how sure its places are matched with something else */
     double *vote;  /* colour_vote.c, ambiguity.c: four numbers of each place */
     asj_pictures *pictures; /* NULL: nobody has shown them */
+    asj_focal_search *focal_search; /* NULL: nobody asks for it */
     asj_focal focal;
-    int32_t focal_at; /* where the finalist with the found focal length stands; -1 = there is none */
+    int32_t focal_at; /* where the finalist that has told the focal length stands; -1 = there is none */
 } asj_estimation;
+
+/* Both cameras as they are known, or have become known with the focal length; NULL = they are not. */
+const asj_camera *asj_estimation_cameras(const asj_estimation *e);
+
+/* Makes another finalist with the focal length the one that tells it. ASJ_ERROR_MEMORY. */
+asj_status asj_estimation_refocus(asj_estimation *e, int32_t number);
+
+/* Is a finalist's focal length found? */
+int32_t asj_has_found_focal(const asj_estimation *e, int32_t number);
 
 /* The finalist with the largest evidence, of a kind or of any (ASJ_GEOMETRY_AUTO); -1 when there is none. */
 int32_t asj_estimation_best(const asj_estimation *e, int32_t kind);

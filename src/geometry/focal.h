@@ -3,21 +3,28 @@
 #ifndef ASJ_SRC_GEOMETRY_FOCAL_H
 #define ASJ_SRC_GEOMETRY_FOCAL_H
 
-#include "core/context.h"
+#include "estimate.h"
+#include "focal_profile.h"
 #include "search.h"
 
-/* The motion at the focal length that explains most. */
-typedef struct asj_focal {
-    asj_model model;     /* its evidence is the mean over all focal lengths; -HUGE_VAL when there is none */
-    double along[6];     /* how rotation (vector, rad) and translation differ when f is longer by one standard deviation */
-    double sd;           /* of the log of the focal length */
-    int32_t is_known;    /* sd is small enough */
-    int32_t reserved;
-} asj_focal;
+/* The search for it, which keeps what it knows of the images. */
+typedef struct asj_focal_search asj_focal_search;
 
-/* flat: homographies that were found already, `count` of them at most ASJ_FINALISTS, whose motions are tried too. search: samples,
- * seed and least count; of its cameras the principal points, and the focal lengths as the longer sides. */
-asj_status asj_find_focal(asj_context *context, const asj_pairs *set, const asj_search *search, const asj_model *flat,
-                          int32_t count, asj_focal *found);
+/* search: samples, seed and least count; of its cameras the principal points, and the focal lengths as the longer sides. hints may
+ * be NULL. From then on set has the directions of the focal length that was looked at last. All is to be freed after a failure,
+ * too. ASJ_ERROR_MEMORY. */
+asj_status asj_focal_search_create(asj_context *context, asj_pairs *set, const asj_geometry_hints *hints, const asj_search *search,
+                                   asj_focal_search **created);
+void asj_focal_search_free(asj_memory *memory, asj_focal_search *s);
+
+/* flat: homographies that were found already, `count` of them at most ASJ_FINALISTS, whose motions are tried too. */
+asj_status asj_find_focal(asj_focal_search *s, const asj_model *flat, int32_t count, asj_focal *found);
+
+/* The same from one motion on, which has a focal length. */
+asj_status asj_find_focal_of(asj_focal_search *s, const asj_model *motion, asj_focal *found);
+
+/* All motions with the focal length that was found, their evidence as that of found->model; list has room for 3 ASJ_FINALISTS. */
+asj_status asj_find_with_focal(asj_focal_search *s, const asj_focal *found, const asj_model *flat, int32_t flat_count,
+                               asj_model *list, int32_t *count);
 
 #endif

@@ -4,7 +4,7 @@
  *   pairs.c       candidates -> places, priors
  *   search.c      samples (minimal.c, five_point.c), scores (likelihood.c), refinement (adjust.c)
  *   motions.c     essential matrices with planes (planes.c), and what the candidates allow around them (posterior.c)
- *   focal.c       the same for a row of focal lengths, where none is known and it is asked for
+ *   focal.c       the same for a row of focal lengths (focal_prior.c, focal_profile.c), where none is known and it is asked for
  *   rivals.c      what explains as much without the candidates of the best one
  *   evidence.c    how often chance brings as much
  *   ambiguity.c   which of these are contradicted (colour_vote.c, picture_vote.c, upright.c); whether one may be right as well
@@ -32,7 +32,8 @@
 static asj_search plan(const asj_estimation *e, int32_t kind)
 {
     const asj_geometry_options *o = e->options;
-    asj_search search = {kind, o->samples, o->seed, {o->cameras[0], o->cameras[1]}, GIVE_UP - log(o->epsilon), NULL, 0, 0};
+    const asj_camera *known = asj_estimation_cameras(e), *cameras = known ? known : o->cameras;
+    asj_search search = {kind, o->samples, o->seed, {cameras[0], cameras[1]}, GIVE_UP - log(o->epsilon), NULL, 0, 0};
     for (int32_t v = 0; v < 2; v++)
         if (!asj_camera_is_known(&search.cameras[v])) {
             const double aspect = o->aspects[v], longer = fmax(o->widths[v], o->heights[v] / aspect);
@@ -50,20 +51,25 @@ static asj_status search_kind(asj_estimation *e, int32_t kind)
     return status;
 }
 
-/* One focal length for both, in place of cameras. */
-static asj_status search_focal(asj_estimation *e)
+/* One focal length for both, in place of cameras: a motion that tells it, and the others that there are with it. */
+static asj_status search_focal(asj_estimation *e, const asj_geometry_hints *hints)
 {
     const asj_search search = plan(e, ASJ_GEOMETRY_ESSENTIAL);
     asj_model flat[ASJ_FINALISTS];
-    int32_t count = 0;
+    int32_t count = 0, more = 0;
     for (int32_t k = 0; k < e->count && count < ASJ_FINALISTS; k++)
         if (e->finalists[k].kind == ASJ_GEOMETRY_HOMOGRAPHY)
             flat[count++] = e->finalists[k];
-    const asj_status status = asj_find_focal(e->context, &e->set, &search, flat, count, &e->focal);
-    if (status == ASJ_OK && e->focal.model.evidence > -HUGE_VAL) {
-        e->focal_at = e->count;
-        e->finalists[e->count++] = e->focal.model;
-    }
+    asj_status status = asj_focal_search_create(e->context, &e->set, hints, &search, &e->focal_search);
+    if (status == ASJ_OK)
+        status = asj_find_focal(e->focal_search, flat, count, &e->focal);
+    if (status != ASJ_OK || !(e->focal.model.evidence > -HUGE_VAL))
+        return status;
+    e->focal_at = e->count;
+    e->finalists[e->count++] = e->focal.model;
+    if (e->focal.is_known)
+        status = asj_find_with_focal(e->focal_search, &e->focal, flat, count, e->finalists + e->count, &more);
+    e->count += more;
     return status;
 }
 
@@ -81,7 +87,7 @@ static int32_t with_homographies(const asj_geometry_options *o)
     return o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_HOMOGRAPHY;
 }
 
-static asj_status search_all(asj_estimation *e)
+static asj_status search_all(asj_estimation *e, const asj_geometry_hints *hints)
 {
     const asj_geometry_options *o = e->options;
     const int32_t epipolar = epipolar_kind(o);
@@ -92,7 +98,7 @@ static asj_status search_all(asj_estimation *e)
         status = search_kind(e, ASJ_GEOMETRY_HOMOGRAPHY);
     if (status == ASJ_OK && epipolar == ASJ_GEOMETRY_ESSENTIAL)
         status = asj_refine_motions(e->context, &e->set, o->cameras, o->seed, ASJ_SETTLED, e->finalists, &e->count);
-    return status == ASJ_OK && o->find_focal ? search_focal(e) : status;
+    return status == ASJ_OK && o->find_focal ? search_focal(e, hints) : status;
 }
 
 static int32_t is_chance(const asj_estimation *e, int32_t number)
@@ -103,7 +109,9 @@ static int32_t is_chance(const asj_estimation *e, int32_t number)
 /* Only what is about to be accepted needs them. */
 static asj_status search_rivals(asj_estimation *e)
 {
-    const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO), epipolar = epipolar_kind(e->options);
+    const asj_camera *cameras = asj_estimation_cameras(e);
+    const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO);
+    const int32_t epipolar = cameras && e->focal_at >= 0 ? ASJ_GEOMETRY_ESSENTIAL : epipolar_kind(e->options);
     asj_search kinds[2];
     int32_t kind_count = 0, more = 0;
     if (is_chance(e, best))
@@ -112,9 +120,15 @@ static asj_status search_rivals(asj_estimation *e)
         kinds[kind_count++] = plan(e, epipolar);
     if (with_homographies(e->options))
         kinds[kind_count++] = plan(e, ASJ_GEOMETRY_HOMOGRAPHY);
-    const asj_camera *cameras = epipolar == ASJ_GEOMETRY_ESSENTIAL ? e->options->cameras : NULL;
+    if (epipolar != ASJ_GEOMETRY_ESSENTIAL)
+        cameras = NULL;
     const asj_status status = asj_find_rivals(e->context, &e->set, kinds, kind_count, cameras, &e->finalists[best],
                                               e->finalists + e->count, &more);
+    for (int32_t k = e->count; k < e->count + more; k++)
+        if (asj_has_found_focal(e, k)) {
+            e->finalists[k].evidence += e->focal.log_share;
+            e->finalists[k].peak += e->focal.log_share;
+        }
     e->count += more;
     return status;
 }
@@ -154,6 +168,7 @@ static void free_estimation(asj_estimation *e)
     asj_release(memory, e->elsewhere);
     asj_release(memory, e->vote);
     asj_pictures_free(memory, e->pictures);
+    asj_focal_search_free(memory, e->focal_search);
     asj_pairs_free(memory, &e->set);
     asj_release(memory, e);
 }
@@ -163,7 +178,7 @@ static asj_status search(asj_estimation *e, const asj_geometry_hints *hints)
 {
     asj_status status = make_scratch(e, hints);
     if (status == ASJ_OK)
-        status = search_all(e);
+        status = search_all(e, hints);
     if (status == ASJ_OK)
         status = search_rivals(e);
     if (status == ASJ_OK)

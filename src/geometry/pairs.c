@@ -119,6 +119,12 @@ static asj_status set_rotations(asj_context *context, const asj_geometry_options
                ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the rotations of the geometry");
 }
 
+static asj_status order_rotations(asj_context *context, asj_pairs *set)
+{
+    return asj_order_rotations(&context->memory, set)
+               ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the labels of %ld candidates", (long)set->count);
+}
+
 static asj_status check_candidates(asj_context *context, const asj_geometry_candidate *candidates, size_t count)
 {
     if (count > MOST_COUNT)
@@ -190,10 +196,29 @@ asj_status asj_pairs_create(asj_context *context, const asj_geometry_candidate *
             return status;
     }
     limit_priors(set);
-    if (set->has_labels && !asj_order_rotations(&context->memory, set))
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the labels of %lu candidates", (unsigned long)set->count);
+    if (set->has_labels && order_rotations(context, set) != ASJ_OK)
+        return ASJ_ERROR_MEMORY;
     return asj_near_prepare(&context->memory, set)
                ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %lu candidates", (unsigned long)set->count);
+}
+
+asj_status asj_pairs_turn(asj_context *context, const asj_directions_list directions[2], const double *branches,
+                          const asj_camera cameras[2], double log_share, asj_pairs *set)
+{
+    asj_release(&context->memory, set->rotations);
+    set->rotations = NULL;
+    set->has_labels = set->has_down = 0;
+    if (branches)
+        asj_set_labels(set, branches, directions, cameras);
+    if (!asj_manhattan_rotations(&context->memory, directions, set))
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the rotations of the geometry");
+    for (int32_t k = 0; k < set->rotation_count; k++) {
+        asj_likely_rotation *r = &set->rotations[k];
+        r->log_share += log_share;
+        for (int32_t n = 0; n < ASJ_ROTATION_SIZES; n++)
+            r->log_top[n] += log_share;
+    }
+    return branches ? order_rotations(context, set) : ASJ_OK;
 }
 
 void asj_pairs_free(asj_memory *memory, asj_pairs *set)

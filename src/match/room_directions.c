@@ -22,31 +22,37 @@ static int32_t longer_side(const asj_pyramid *p, int32_t level)
     return p->width[level] > p->height[level] ? p->width[level] : p->height[level];
 }
 
-static asj_status from_segments(asj_context *context, const asj_pyramid *pyramid, const asj_camera *camera,
-                                asj_directions_list *found)
+asj_status asj_room_edges(asj_context *context, const asj_pyramid *pyramid, asj_edge_list *edges)
 {
     int32_t level = 0;
+    memset(edges, 0, sizeof *edges);
     while (level + 1 < pyramid->levels && longer_side(pyramid, level) > LONGEST)
         level++;
     const asj_frame frame = {.width = pyramid->width[level], .height = pyramid->height[level],
                              .stride = pyramid->width[level] + 1, .gray = pyramid->plane[level]};
-    /* pyramid.h: pixel centres of a level in pixels of the image */
-    const double scale = ldexp(1, level);
-    const asj_camera of_level = {camera->fx / scale, camera->fy / scale, (camera->cx + 0.5) / scale - 0.5,
-                                 (camera->cy + 0.5) / scale - 0.5};
     asj_line_segment *segments;
     size_t count;
     const asj_status status = asj_line_segments_find(context, &frame, ASJ_STAGE_ASSIGN, SEGMENT_EPSILON, &segments, &count);
     if (status != ASJ_OK)
         return status;
-    asj_straight_edge *edges = asj_allocate(&context->memory, count, sizeof *edges);
-    for (size_t k = 0; k < count && edges; k++)
-        edges[k] = (asj_straight_edge){segments[k].x1, segments[k].y1, segments[k].x2, segments[k].y2};
-    const double longer = longer_side(pyramid, level);
-    const int32_t good = edges && asj_find_directions(&context->memory, edges, count, &of_level, longer, found);
-    asj_release(&context->memory, edges);
+    edges->scale = ldexp(1, level);
+    edges->longer = longer_side(pyramid, level);
+    edges->list = asj_allocate(&context->memory, count, sizeof *edges->list);
+    for (size_t k = 0; k < count && edges->list; k++)
+        edges->list[edges->count++] = (asj_straight_edge){segments[k].x1, segments[k].y1, segments[k].x2, segments[k].y2};
     asj_release(&context->memory, segments);
-    return good ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the directions of %lu edges", (unsigned long)count);
+    return edges->list ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu edges", count);
+}
+
+static asj_status from_segments(asj_context *context, const asj_pyramid *pyramid, const asj_camera *camera,
+                                asj_directions_list *found)
+{
+    asj_edge_list edges;
+    asj_status status = asj_room_edges(context, pyramid, &edges);
+    if (status == ASJ_OK && !asj_find_directions(&context->memory, &edges, camera, found))
+        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the directions of %zu edges", edges.count);
+    asj_release(&context->memory, edges.list);
+    return status;
 }
 
 /* The branches of the L-junctions that are no guests. Their angles carry no uncertainty here: vanishing.c takes it from their

@@ -89,8 +89,10 @@ static asj_geometry_candidate clustered(const asj_wide_run *w, const asj_candida
     return g;
 }
 
-/* Sizes and, where both cameras are known, directions of both images, unless the caller gave some. */
-static asj_status complete_options(asj_match_run *run, asj_geometry_options *options, asj_geometry_hints *hints)
+/* Sizes; and, unless the caller gave directions, those of both images where cameras are known, and their straight edges where a
+ * focal length is looked for. */
+static asj_status complete_options(asj_match_run *run, asj_geometry_options *options, asj_geometry_hints *hints,
+                                   asj_edge_list edges[2])
 {
     asj_status status = ASJ_OK;
     double given = 0;
@@ -104,6 +106,9 @@ static asj_status complete_options(asj_match_run *run, asj_geometry_options *opt
     for (int32_t side = 0; side < 2 && given == 0 && status == ASJ_OK; side++)
         if (options->cameras[0].fx > 0 && options->cameras[1].fx > 0)
             status = asj_room_directions(run->context, run->image[side], &options->cameras[side], &hints->directions[side]);
+    for (int32_t side = 0; side < 2 && given == 0 && options->find_focal && status == ASJ_OK; side++)
+        status = asj_room_edges(run->context, &run->image[side]->pyramid, &edges[side]);
+    hints->edges = given == 0 && options->find_focal ? edges : NULL;
     return status;
 }
 
@@ -123,7 +128,7 @@ static asj_status estimate(asj_match_run *run, asj_wide_run *w)
     asj_geometry_hints hints = {.branches = w->branches};
     asj_status status = asj_candidate_priors(&w->run, w->probability, w->colours);
     if (status == ASJ_OK)
-        status = complete_options(run, &options, &hints);
+        status = complete_options(run, &options, &hints, w->edges);
     if (status != ASJ_OK)
         return status;
     for (int32_t side = 0; side < 2; side++)
@@ -164,5 +169,7 @@ asj_status asj_apply_geometry(asj_match_run *run)
     asj_release(memory, w.branches);
     asj_release(memory, w.place[0]);
     asj_release(memory, w.place[1]);
+    asj_release(memory, w.edges[0].list);
+    asj_release(memory, w.edges[1].list);
     return status;
 }

@@ -3,6 +3,7 @@
 #ifndef ASJ_SRC_MATCH_VERDICT_H
 #define ASJ_SRC_MATCH_VERDICT_H
 
+#include "geometry/directions.h"
 #include "match_run.h"
 
 /* The longer list of candidates, and what the geometry says of it (two_view.c). */
@@ -14,6 +15,7 @@ typedef struct asj_wide_run {
     double *colours;    /* how well those of each candidate agree */
     double *branches;   /* of each candidate: geometry/estimate.h */
     uint32_t *place[2]; /* of each location */
+    asj_edge_list edges[2]; /* of either image, where a focal length is looked for */
 } asj_wide_run;
 
 /* Choices that it contradicts become run->rejected, the others have their probability, and new ones come: see verdict.c. */

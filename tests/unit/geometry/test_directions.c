@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Three directions at right angles from straight edges: synthetic edges of known directions among others, none from too few, the
- * density of rotations that they make likely, and which way is up. */
+ * density of rotations that they make likely, which way is up, and the focal length at which they are at right angles. */
 #include "unit_test.h"
 
 #include "geometry/directions.h"
+#include "geometry/focal_prior.h"
 #include "geometry/manhattan.h"
 #include "geometry/planes.h"
 #include "geometry/small_matrix.h"
@@ -78,8 +79,8 @@ static void directions_among_other_edges(void **state)
         for (int k = 0; k < 120; k++)
             edges[k] = k >= 42 ? any_edge(&random)
                                : edge_along(&random, axes + 3 * (k % 3), synth_random_between(&random, 35, 110), 0.4);
-        assert_true(asj_find_directions(&memory, edges, 120, &camera, WIDTH, &found));
-        assert_true(asj_find_directions(&memory, edges, 120, &camera, WIDTH, &again));
+        assert_true(asj_find_directions(&memory, &(asj_edge_list){edges, 120, 1, WIDTH}, &camera, &found));
+        assert_true(asj_find_directions(&memory, &(asj_edge_list){edges, 120, 1, WIDTH}, &camera, &again));
         assert_memory_equal(&found, &again, sizeof found);
         assert_in_range(found.count, 1, 2);
         const double off = apart(found.list[0].axes, axes);
@@ -103,21 +104,21 @@ static void too_few_have_none(void **state)
     asj_straight_edge edges[40];
     asj_directions_list found;
     synth_random_seed(&random, 6);
-    assert_true(asj_find_directions(&memory, NULL, 0, &camera, WIDTH, &found));
+    assert_true(asj_find_directions(&memory, &(asj_edge_list){NULL, 0, 1, WIDTH}, &camera, &found));
     assert_int_equal(found.count, 0);
     for (int k = 0; k < 40; k++) { /* short ones */
         edges[k] = any_edge(&random);
         edges[k].x2 = edges[k].x1 + 0.1 * (edges[k].x2 - edges[k].x1);
         edges[k].y2 = edges[k].y1 + 0.1 * (edges[k].y2 - edges[k].y1);
     }
-    assert_true(asj_find_directions(&memory, edges, 40, &camera, WIDTH, &found));
+    assert_true(asj_find_directions(&memory, &(asj_edge_list){edges, 40, 1, WIDTH}, &camera, &found));
     assert_int_equal(found.count, 0);
     for (int k = 0; k < 40; k++)
         edges[k] = (asj_straight_edge){100, 100, 200, 150}; /* one line */
-    assert_true(asj_find_directions(&memory, edges, 40, &camera, WIDTH, &found));
+    assert_true(asj_find_directions(&memory, &(asj_edge_list){edges, 40, 1, WIDTH}, &camera, &found));
     assert_int_equal(found.count, 0);
     counter.fail_at = counter.calls + 1;
-    assert_false(asj_find_directions(&memory, edges, 40, &camera, WIDTH, &found));
+    assert_false(asj_find_directions(&memory, &(asj_edge_list){edges, 40, 1, WIDTH}, &camera, &found));
 }
 
 static void one_set_is_added_once(void **state)
@@ -271,11 +272,66 @@ static void what_turns_the_room_over(void **state)
     assert_int_equal(asj_turns_over(&set, &plane, cameras), 0);
 }
 
+/* Density of factors and rotations, q being the density of one between directions. */
+static double joint(const asj_focal_prior *prior, double factor, double q)
+{
+    return exp(asj_log_focal_prior(prior, factor)) * (0.5 + 0.5 * exp(asj_log_focal_share(prior, factor)) * q);
+}
+
+/* Forty edges along three directions among others tell the focal length; the density has mass one over factors, and over rotations
+ * at each: whether edges say something or not. */
+static void edges_tell_the_focal_length(void **state)
+{
+    (void)state;
+    const asj_camera unit[2] = {{WIDTH, WIDTH, camera.cx, camera.cy}, {WIDTH, WIDTH, camera.cx, camera.cy}};
+    asj_context *context;
+    synth_random random;
+    asj_straight_edge edges[2][100];
+    int good = 0;
+    assert_int_equal(asj_context_create(NULL, &context), ASJ_OK);
+    synth_random_seed(&random, 15);
+    for (int i = 0; i < 6; i++) {
+        const asj_edge_list lists[2] = {{edges[0], 100, 1, WIDTH}, {edges[1], 100, 1, WIDTH}};
+        const asj_pairs set = {.count = 0};
+        static asj_focal_prior prior;
+        double axes[9], sum = 0;
+        for (int v = 0; v < 2; v++) {
+            random_rotation(&random, axes);
+            for (int k = 0; k < 100; k++)
+                edges[v][k] = k >= 40 ? any_edge(&random)
+                                      : edge_along(&random, axes + 3 * (k % 3), synth_random_between(&random, 50, 150), 0.4);
+        }
+        assert_int_equal(asj_focal_prior_make(context, &set, lists, unit, &prior), ASJ_OK);
+        const int32_t best = asj_likeliest_focal(&prior);
+        good += best >= 0 && fabs(log(asj_focal_factor(best) * WIDTH / camera.fx)) < 1.5 * ASJ_FOCAL_STEP;
+        for (int32_t k = 0; k < ASJ_FOCAL_COUNT; k++) {
+            asj_directions_list again[2];
+            const double f = asj_focal_factor(k), s = 4 * joint(&prior, f, 0) - 1;
+            sum += s / ASJ_FOCAL_COUNT;
+            unit_near("rotations", i, k, joint(&prior, f, 3), 0.25 + s / 4 + 3 * s / 2, 1e-9 * (1 + s));
+            assert_int_equal(asj_focal_directions(context, &prior, f, again), ASJ_OK);
+            assert_memory_equal(&again[1], &prior.directions[1][k], sizeof again[1]);
+        }
+        unit_near("mass", i, 0, sum, 1, 1e-9);
+        const double between = asj_focal_factor(best) * exp(0.4 * ASJ_FOCAL_STEP);
+        unit_near("interpolated", i, 0, asj_log_focal_share(&prior, between) + asj_log_focal_prior(&prior, between),
+                  0.6 * prior.log_edges[best] + 0.4 * prior.log_edges[best + 1], 1e-9);
+    }
+    assert_in_range(good, 5, 6);
+    static asj_focal_prior flat;
+    const asj_pairs set = {.count = 0};
+    assert_int_equal(asj_focal_prior_make(context, &set, NULL, unit, &flat), ASJ_OK);
+    assert_int_equal(asj_likeliest_focal(&flat), -1);
+    unit_near("flat", 0, 0, asj_log_focal_prior(&flat, 0.7), 0, 1e-15);
+    asj_context_free(&context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(directions_among_other_edges), cmocka_unit_test(too_few_have_none),
         cmocka_unit_test(one_set_is_added_once), cmocka_unit_test(rotations_have_a_density),
-        cmocka_unit_test(down_stays_down), cmocka_unit_test(what_turns_the_room_over)};
+        cmocka_unit_test(down_stays_down), cmocka_unit_test(what_turns_the_room_over),
+        cmocka_unit_test(edges_tell_the_focal_length)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

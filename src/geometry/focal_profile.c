@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The motion with most evidence is followed to longer and shorter focal lengths in small steps, refined at each, until LESS nats of
+ * evidence are lost. The evidence of evidence.c is an integral over the parameters, so that over the log of f, with the prior
+ * density p of focal_prior.c, comes on top:
+ *
+ *     evidence = log of (1 / range) integral of exp(evidence(f)) p(f) d log f,
+ *
+ * and trying many of them needs no other count of tests. The same weights give mean and standard deviation of log f. f is known
+ * when that is KNOWN at most and the evidence falls by CLOSE to both sides. Motions that leave f open (Sturm 2001: optical axes
+ * that are parallel, or that meet at the same distance from both cameras; a plane that is seen frontally) have flat evidence, and
+ * so they show, unless edges tell f.
+ *
+ * Each step starts from two guesses, and the better one is kept: where the last step leads, and what leaves a plane where it was.
+ * (The first one alone overshoots where directions have pulled at the last step: one in six profiles broke off so.) */
+#include "focal_profile.h"
+#include "evidence.h"
+#include "labels.h"
+#include "manhattan.h"
+#include "pairs.h"
+#include "posterior.h"
+#include "small_matrix.h"
+#include "stop.h"
+
+#include <math.h>
+#include <string.h>
+
+#define REACH ASJ_FOCAL_REACH
+#define FINE ASJ_FOCAL_STEP
+#define FINER 0.01
+#define TINY 0.1 /* of a step */
+#define FEWEST 5 /* steps within LESS of the best */
+#define LESS 10.0
+#define CLOSE 2.0
+#define KNOWN 0.1
+#define ROUNDS 5
+#define LEAST_SHARE (-3.0) /* below that directions are left out: labels (labels.c) would count in full */
+
+static double factor_of(const asj_focal_profile *p, const asj_model *m)
+{
+    return m->cameras[0].fx / p->prior->cameras[0].fx;
+}
+
+asj_status asj_focal_turn(asj_focal_profile *p, double factor)
+{
+    asj_directions_list directions[2] = {{.count = 0}, {.count = 0}};
+    asj_camera cameras[2];
+    if (!p->prior->edges)
+        return p->status;
+    const double share = asj_log_focal_share(p->prior, factor);
+    const int32_t shown = share >= LEAST_SHARE;
+    if (shown && p->status == ASJ_OK)
+        p->status = asj_focal_directions(p->context, p->prior, factor, directions);
+    asj_focal_cameras(p->prior, factor, cameras);
+    if (p->status == ASJ_OK)
+        p->status = asj_pairs_turn(p->context, directions, shown ? p->branches : NULL, cameras, share, p->set);
+    return p->status;
+}
+
+/* The vector of a small turn from one rotation to another is its antisymmetric part. */
+static void turn_between(const double from[9], const double to[9], double w[3])
+{
+    double turn[9];
+    asj_multiply3_transposed(to, from, turn);
+    for (int32_t k = 0; k < 3; k++)
+        w[k] = 0.5 * (turn[3 * ((k + 2) % 3) + (k + 1) % 3] - turn[3 * ((k + 1) % 3) + (k + 2) % 3]);
+}
+
+/* A guess of the motion of `from` with another focal length, s times as long. `before` NULL: a homography of a plane stays where it
+ * was in pixels, but for the rotation, when t becomes D^-1 t and n becomes D n with D = diag(s, s, 1); |t| = 1 again then. Else on
+ * from `before`, `ratio` times as far as from there to `from`. */
+static void predict(const asj_model *from, const asj_model *before, double ratio, double times, asj_model *to)
+{
+    double turn[9], w[3];
+    for (int32_t v = 0; v < 2; v++) {
+        to->cameras[v].fx = times * from->cameras[v].fx;
+        to->cameras[v].fy = times * from->cameras[v].fy;
+    }
+    if (!before) {
+        to->translation[0] /= times;
+        to->translation[1] /= times;
+        const double length = sqrt(asj_dot3(to->translation, to->translation));
+        for (int32_t k = 0; k < 3 * to->view.plane_count; k++)
+            to->planes[k / 3][k % 3] *= length * (k % 3 < 2 ? times : 1);
+        return;
+    }
+    turn_between(before->rotation, from->rotation, w);
+    for (int32_t k = 0; k < 3; k++) {
+        w[k] *= ratio;
+        to->translation[k] += ratio * (from->translation[k] - before->translation[k]);
+    }
+    for (int32_t k = 0; k < 3 * to->view.plane_count; k++)
+        to->planes[k / 3][k % 3] += ratio * (from->planes[k / 3][k % 3] - before->planes[k / 3][k % 3]);
+    asj_rotation_of(w, turn);
+    asj_multiply3(turn, from->rotation, to->rotation);
+}
+
+/* That motion, refined; 0 when there is none. The set has the directions of its focal length. */
+static int32_t refine(asj_focal_profile *p, const asj_model *from, const asj_model *before, double ratio, double times,
+                      asj_model *to)
+{
+    *to = *from;
+    predict(from, before, ratio, times, to);
+    if (!asj_model_complete(to))
+        return 0;
+    asj_adjust_like(p->set, to, from, ROUNDS, p->scratch);
+    to->evidence = asj_log_evidence(p->set, to, p->scratch) + asj_log_focal_prior(p->prior, factor_of(p, to));
+    return isfinite(to->evidence);
+}
+
+/* The better one of both guesses; 0 when there is none. */
+static int32_t follow(asj_focal_profile *p, const asj_model *from, const asj_model *before, double ratio, double times,
+                      asj_model *to)
+{
+    asj_model other;
+    if (asj_focal_turn(p, times * factor_of(p, from)) != ASJ_OK)
+        return 0;
+    const int32_t stays = refine(p, from, NULL, 0, times, to);
+    if (!before || !refine(p, from, before, ratio, times, &other) || (stays && to->evidence >= other.evidence))
+        return stays;
+    *to = other;
+    return 1;
+}
+
+/* Fills the profile to one side of its middle. The first, tiny step tells the direction of the path. */
+static void fill_side(asj_focal_profile *p, int32_t side, double *most)
+{
+    asj_model tiny, *start = &p->at[REACH];
+    const asj_model *before = &tiny, *from = start;
+    double ratio = -1 / TINY;
+    if (!follow(p, start, NULL, 0, exp(side * TINY * p->step), &tiny))
+        return;
+    for (int32_t k = 1; k <= REACH && !asj_pairs_stop(p->set, NULL); k++) {
+        asj_model *to = &p->at[REACH + side * k];
+        const double factor = factor_of(p, from) * exp(side * p->step);
+        if (factor < ASJ_FOCAL_SHORTEST || factor > asj_focal_factor(ASJ_FOCAL_COUNT - 1) ||
+            !follow(p, from, before, ratio, exp(side * p->step), to))
+            return;
+        p->has[REACH + side * k] = 1;
+        *most = fmax(*most, to->evidence);
+        if (to->evidence < *most - LESS)
+            return;
+        before = from;
+        from = to;
+        ratio = 1;
+    }
+}
+
+/* .. to both; returns how many steps are within LESS of the best. */
+static int32_t fill(asj_focal_profile *p, double step, double *most)
+{
+    int32_t count = 0;
+    memset(p->has, 0, sizeof p->has);
+    p->step = step;
+    p->has[REACH] = 1;
+    *most = p->at[REACH].evidence;
+    fill_side(p, -1, most);
+    fill_side(p, 1, most);
+    for (int32_t k = 0; k <= 2 * REACH; k++)
+        count += p->has[k] && p->at[k].evidence > *most - LESS;
+    return count;
+}
+
+/* 0 when there is no motion with a longer focal length. */
+static int32_t set_along(asj_focal_profile *p, asj_focal *found)
+{
+    asj_model longer;
+    if (!follow(p, &found->model, NULL, 0, exp(found->sd), &longer))
+        return 0;
+    turn_between(found->model.rotation, longer.rotation, found->along);
+    for (int32_t k = 0; k < 3; k++)
+        found->along[3 + k] = longer.translation[k] - found->model.translation[k];
+    return 1;
+}
+
+/* Mean and standard deviation of log f, and the mean evidence. */
+static void judge(asj_focal_profile *p, asj_focal *found)
+{
+    double most;
+    int32_t steps = fill(p, FINE, &most);
+    if (steps < FEWEST) /* very sharp, or a path that breaks off */
+        steps = fill(p, FINER, &most);
+    double sum = 0, first = 0, second = 0;
+    int32_t nearest = REACH, lowest = 2 * REACH, highest = 0;
+    for (int32_t k = 0; k <= 2 * REACH; k++) {
+        const double weight = p->has[k] ? exp(p->at[k].evidence - most) : 0, x = p->step * (k - REACH);
+        lowest = p->has[k] && k < lowest ? k : lowest;
+        highest = p->has[k] ? k : highest;
+        sum += weight;
+        first += weight * x;
+        second += weight * x * x;
+        nearest = p->has[k] && p->at[k].evidence > p->at[nearest].evidence ? k : nearest;
+    }
+    const double mean = first / sum, variance = second / sum - mean * mean, mean_weight = log(sum * p->step / ASJ_FOCAL_RANGE);
+    found->sd = sqrt(fmax(variance, p->step * p->step / 12));
+    /* what the profile's ends cut off would make it wider */
+    const int32_t cut = p->at[lowest].evidence > most - CLOSE || p->at[highest].evidence > most - CLOSE;
+    if (!follow(p, &p->at[nearest], NULL, 0, exp(mean - p->step * (nearest - REACH)), &found->model))
+        found->model = p->at[nearest];
+    found->is_known = steps >= FEWEST && found->sd <= KNOWN && !cut && set_along(p, found);
+    if (asj_focal_turn(p, factor_of(p, &found->model)) != ASJ_OK)
+        return;
+    asj_settle(p->context, p->set, p->seed, p->scratch, &found->model);
+    found->log_share = asj_log_focal_prior(p->prior, factor_of(p, &found->model)) + mean_weight;
+    found->model.evidence += found->log_share;
+    found->model.peak += mean_weight; /* it has the prior */
+}
+
+asj_status asj_focal_follow(asj_focal_profile *p, const asj_model *start, asj_focal *found)
+{
+    memset(found, 0, sizeof *found);
+    p->at[REACH] = *start;
+    judge(p, found);
+    return p->status;
+}
