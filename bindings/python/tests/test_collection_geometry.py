@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from asj.__main__ import main
+from asj.collection import orientation
 from asj.images import focal_length
 from numpy.typing import NDArray
 
@@ -173,17 +174,13 @@ def test_found_focal_lengths() -> None:
 
     found = colmap._found_focals(Two())  # type: ignore[arg-type]
     assert found == {1: [500.0, 520.0, 530.0], 2: [501.0], 3: [521.0], 4: [531.0]}
-    pycolmap = pytest.importorskip("pycolmap")
-    from asj.collection.tasks import Detected
-
-    image = Detected(None, 640, 480, None, b"")
-    lengths = [colmap._camera(pycolmap, image, known, found.get(number)).focal_length for known, number in ((None, 1), (600.0, 1), (None, 9))]
-    assert lengths == [520.0, 600.0, 768.0]
+    assert [colmap.focal_of(known, found.get(number), 640) for known, number in ((None, 1), (600.0, 1), (None, 9))] == [520.0, 600.0, 768.0]
 
 
 def test_fundamental_matrix_in_colmaps_pixels() -> None:
     pycolmap = pytest.importorskip("pycolmap")
     from asj.collection import colmap
+    from asj.collection.tasks import Detected
 
     random = np.random.default_rng(3)
     matrix = np.array([[0, -1e-3, 0.2], [1e-3, 0, -0.4], [-0.2, 0.4, 0]])  # [t]x: every point moves along a line through (400, 200)
@@ -191,9 +188,38 @@ def test_fundamental_matrix_in_colmaps_pixels() -> None:
     two = one + random.uniform(0.1, 0.4, (20, 1)) * ([400, 200] - one)
     assert from_lines(matrix, one, two).max() < 1e-9
     found = {"model": "fundamental", "matrix": matrix.tolist(), "rotation": None, "translation": None, "focal_sd": 0}
-    geometry = colmap._geometry(pycolmap, found, np.zeros((0, 2), np.uint32))
-    assert geometry.config == pycolmap.TwoViewGeometryConfiguration.UNCALIBRATED
-    assert from_lines(geometry.F, one + 0.5, two + 0.5).max() < 1e-9
+    for turned in (1, 3, 6, 7):  # image 2 is stored so
+        views = Detected(None, 500, 400, None, b""), Detected(None, 500, 400, None, b"", turned)
+        geometry = colmap._geometry(pycolmap, found, np.zeros((0, 2), np.uint32), *views)
+        stored = two @ orientation.to_stored(turned, 500, 400)[:2, :2].T + orientation.to_stored(turned, 500, 400)[:2, 2]
+        assert geometry.config == pycolmap.TwoViewGeometryConfiguration.UNCALIBRATED
+        assert from_lines(geometry.F, one + 0.5, stored + 0.5).max() < 1e-9
+
+
+def test_pose_of_turned_cameras() -> None:
+    """x2 ~ R x1 + t in the stored images' own camera coordinates, and their fundamental matrix, agree; a mirrored one has no pose."""
+    pycolmap = pytest.importorskip("pycolmap")
+    from asj.collection import colmap
+    from asj.collection.tasks import Detected
+
+    random = np.random.default_rng(5)
+    rotation, _ = np.linalg.qr(random.normal(size=(3, 3)) * 0.2 + np.eye(3))
+    rotation *= np.sign(np.linalg.det(rotation))
+    t = np.array([0.6, -0.1, 0.3])
+    inverse = np.linalg.inv([[500, 0, 319.5], [0, 500, 239.5], [0, 0, 1]])
+    cross = np.array([[0, -t[2], t[1]], [t[2], 0, -t[0]], [-t[1], t[0], 0]])
+    matrix = inverse.T @ cross @ rotation @ inverse
+    found = {"model": "essential", "matrix": matrix.tolist(), "rotation": rotation.tolist(), "translation": t.tolist(), "focal_sd": 0}
+    for turned in ((1, 1), (6, 8), (3, 6), (2, 1)):
+        views = [Detected(None, 640, 480, None, b"", way) for way in turned]
+        geometry = colmap._geometry(pycolmap, found, np.zeros((0, 2), np.uint32), *views)
+        assert (geometry.config == pycolmap.TwoViewGeometryConfiguration.CALIBRATED) == (turned != (2, 1))
+        if turned == (2, 1):
+            continue
+        sizes = [orientation.stored_size(way, 640, 480) for way in turned]
+        back = [np.linalg.inv([[500, 0, w / 2], [0, 500, h / 2], [0, 0, 1]]) for w, h in sizes]
+        again = back[1].T @ geometry.E @ back[0]
+        assert np.allclose(again / np.linalg.norm(again), geometry.F / np.linalg.norm(geometry.F) * np.sign((again * geometry.F).sum()), atol=1e-9)
 
 
 def test_bad_use(rooms: tuple[Path, list[Any]], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

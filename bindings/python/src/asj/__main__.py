@@ -8,7 +8,7 @@ import contextlib
 import signal
 import sqlite3
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +32,7 @@ def _parser() -> argparse.ArgumentParser:
     outputs = collect.add_argument_group("outputs, at least one")
     outputs.add_argument("--colmap", type=Path, metavar="FILE.db", help="COLMAP database (needs pycolmap)")
     outputs.add_argument("--hdf5", type=Path, metavar="FOLDER", help="features.h5 and matches.h5 as hloc reads them (needs h5py)")
-    outputs.add_argument("--limap", type=Path, metavar="FOLDER", help="line segments and their matches as text, as LIMAP reads them")
+    outputs.add_argument("--limap", type=Path, metavar="FOLDER", help="line segments as LIMAP reads them, their matches as text")
     work = collect.add_argument_group("work")
     work.add_argument("--store", type=Path, metavar="FILE", help="what has been done so far (default: beside the first output)")
     work.add_argument("--resume", action="store_true", help="go on with the store of a run that ended early")
@@ -49,6 +49,10 @@ def _parser() -> argparse.ArgumentParser:
         help="focal lengths for the geometry: of the EXIF data where both images have them (default), one that is found for each pair, "
         "none, or a number of pixels",
     )  # fmt: skip
+    work.add_argument(
+        "--camera", metavar="FX,FY,CX,CY", help="the camera of all images, upright, px: focal lengths and principal point (instead of --focal)"
+    )
+    work.add_argument("--overwrite", action="store_true", help="outputs replace files that something else has written")
     work.add_argument("--quiet", action="store_true", help="no progress")
     return parser
 
@@ -66,6 +70,8 @@ def _options(words: Sequence[str], table: Any, preset: str) -> dict[str, str]:
 
 def _focal(arguments: argparse.Namespace) -> str:
     word: str = arguments.focal
+    if arguments.camera is not None:
+        return _camera(arguments)
     if word not in ("exif", "estimate", "none"):
         try:
             good = 1 <= float(word) <= 1e7
@@ -77,6 +83,19 @@ def _focal(arguments: argparse.Namespace) -> str:
         raise ValueError("--focal changes nothing without --geometry auto or essential")
     if word == "none" and arguments.geometry == "essential":
         raise ValueError("--geometry essential needs focal lengths")
+    return word
+
+
+def _camera(arguments: argparse.Namespace) -> str:
+    word: str = arguments.camera
+    try:
+        numbers = plans.camera_of(word)
+    except ValueError:
+        numbers = []
+    if len(numbers) != 4 or not all(1 <= focal <= 1e7 for focal in numbers[:2]) or not all(abs(place) <= 1e7 for place in numbers[2:]):
+        raise ValueError(f"--camera: {word!r} is not FX,FY,CX,CY in pixels, focal lengths of 1 and more")
+    if arguments.focal != "exif":
+        raise ValueError("--camera and --focal exclude each other")
     return word
 
 
@@ -107,7 +126,7 @@ def _write(arguments: argparse.Namespace, store: collection.Store) -> None:
     if arguments.colmap:
         from .collection import colmap
 
-        colmap.write(store, arguments.colmap, verify=not arguments.no_verify)
+        colmap.write(store, arguments.colmap, verify=not arguments.no_verify, threads=arguments.jobs)
     if arguments.hdf5:
         from .collection import hdf5
 
@@ -138,9 +157,36 @@ def _check_outputs(arguments: argparse.Namespace) -> Path:
     return store or outputs[0].with_name(outputs[0].name + ".work")
 
 
+def _check_replaced(arguments: argparse.Namespace, store: Path, plan: plans.Plan) -> None:
+    """Refuses to write over photographs and the store, and, unasked, over what something else has written."""
+    files: list[tuple[Path, Callable[[Path], bool]]] = []
+    if arguments.colmap:
+        from .collection import colmap
+
+        files.append((arguments.colmap, colmap.is_ours))
+        if logs := colmap.logs_of(arguments.colmap):
+            raise FileExistsError(f"{logs[0]} is there: a program has {arguments.colmap} open, or was killed; open it once, or remove both")
+    if arguments.hdf5:
+        from .collection import hdf5
+
+        files += [(arguments.hdf5 / name, hdf5.is_ours) for name in ("features.h5", "matches.h5")]
+    inputs = {(plan.folder / name).resolve() for name in plan.images}
+    for path, is_ours in files:
+        if path.resolve() in inputs:
+            raise FileExistsError(f"{path} is a photograph of the collection")
+        if path.resolve() == store.resolve():
+            raise FileExistsError(f"{path} is the store of this run")
+        if path.exists() and not arguments.overwrite and not is_ours(path):
+            raise FileExistsError(f"{path} is there, and something else has written it; --overwrite replaces it")
+    if store.resolve() in inputs:
+        raise FileExistsError(f"{store}: the store would be a photograph of the collection")
+
+
 def _collect(arguments: argparse.Namespace) -> int:
     place = _check_outputs(arguments)
     plan = _plan(arguments)
+    _check_replaced(arguments, place, plan)
+    _stop_on_signals()  # here, since pycolmap has put its own in their places
     if arguments.hdf5:
         from .collection import hdf5
 
@@ -161,15 +207,29 @@ def _collect(arguments: argparse.Namespace) -> int:
     return 1 if summary.failed_images or summary.failed_pairs else 0
 
 
+class _Stopped(KeyboardInterrupt):
+    """A signal that ends the run."""
+
+
+def _stop_on_signals() -> None:
+    def stop(number: int, _: Any) -> None:
+        raise _Stopped(number)
+
+    for name in ("SIGTERM", "SIGHUP"):  # not every system has the second one
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), stop)
+
+
 def main(words: Sequence[str] | None = None) -> int:
-    """Exit code 0: everything was done; 1: some inputs failed, the others are done; 2: wrong usage, or the work cannot be done."""
+    """Exit code 0: everything was done; 1: some inputs failed, the others are done; 2: wrong usage, or the work cannot be done; 128
+    and the number of the signal that has ended it."""
     arguments = _parser().parse_args(words)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    _stop_on_signals()
     try:
         return _collect(arguments)
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stopped:
         print("interrupted; --resume goes on", file=sys.stderr)
-        return 130
+        return 128 + (stopped.args[0] if isinstance(stopped, _Stopped) else signal.SIGINT)
     except (errors.Error, collection.StoreError, OSError, ValueError, ImportError, sqlite3.Error) as bad:
         print(f"python -m asj: {bad}", file=sys.stderr)
         return 2

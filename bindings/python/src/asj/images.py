@@ -114,6 +114,18 @@ def read(path: str | os.PathLike[str]) -> NDArray[Any]:
         raise ImageError(f"{os.fspath(path)}: {bad}") from bad
 
 
+def orientation(path: str | os.PathLike[str]) -> int:
+    """The EXIF orientation, 1 to 8, that read() applies; 1 where there is none that can be."""
+    from PIL import Image
+
+    try:
+        with Image.open(path) as file:
+            value = int(file.getexif().get(0x0112, 1))
+    except (OSError, ValueError, SyntaxError, TypeError, KeyError, Image.DecompressionBombError):
+        return 1
+    return value if 1 <= value <= 8 else 1
+
+
 _FILM_DIAGONAL = 43.26661530556787  # mm, of 36 x 24
 _MM_PER_UNIT = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}
 

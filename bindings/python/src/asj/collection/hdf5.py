@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Features and matches as HDF5 files in the layout of hloc (hierarchical localization).
 
-features: a group an image with `keypoints` (N, 2) float32 in pixels (centre of the first pixel (0, 0)), the junctions, each where all
-its matches together put it (locations.py), `scores` (N,), `image_size` (width, height). matches: a group for each pair, names with - for /, with `matches0` (N,) int32, -1 = none, and `matching_scores0`.
+features: a group an image with `keypoints` (N, 2) float32 in pixels of the file (centre of the first pixel (0, 0); orientation.py), the
+junctions, each where all its matches together put it (locations.py), `scores` (N,), `image_size` (width, height). matches: a group for
+each pair, names with - for /, with `matches0` (N,) int32, -1 = none, and `matching_scores0`.
 """
 
 from __future__ import annotations
@@ -12,10 +13,24 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import arrays
+from .. import __version__, arrays
 from ..output import whole_file
-from . import locations
+from . import locations, orientation
 from .store import Store
+
+
+_MARK = "asj"  # attribute of a file that was written here, and may be again
+
+
+def is_ours(path: Path) -> bool:
+    """Was the file written by write_features() or write_matches()?"""
+    import h5py
+
+    try:
+        with h5py.File(path) as file:
+            return _MARK in file.attrs
+    except OSError:
+        return False
 
 
 def check_names(names: Iterable[str]) -> None:
@@ -33,14 +48,16 @@ def write_features(store: Store, path: Path) -> None:
 
     with whole_file(path) as temporary, h5py.File(temporary, "w") as file:
         places = locations.of_store(store)
+        file.attrs[_MARK] = __version__
         for number, name, detected in store.detected():
             if detected.features is None:
                 continue
             junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
             group = file.create_group(name)
-            group["keypoints"] = places[number]
+            size = detected.width, detected.height
+            group["keypoints"] = orientation.turn(orientation.to_stored(detected.orientation, *size), places[number])
             group["scores"] = -junctions["log10_nfa"]
-            group["image_size"] = np.array([detected.width, detected.height])
+            group["image_size"] = np.array(orientation.stored_size(detected.orientation, *size))
 
 
 def write_matches(store: Store, path: Path) -> None:
@@ -50,6 +67,7 @@ def write_matches(store: Store, path: Path) -> None:
     names = dict(store.images())
     sizes = {n: len(d.features or b"") // arrays.struct_type("asj_junction").itemsize for n, _, d in store.detected()}
     with whole_file(path) as temporary, h5py.File(temporary, "w") as file:
+        file.attrs[_MARK] = __version__
         for one, two, matched in store.matched():
             if matched.matches is None:
                 continue

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Line segments and their matches as LIMAP reads them.
+"""Line segments as LIMAP reads them, and their matches as text.
 
-segments/segments_<image>.txt: the count, then x1 y1 x2 y2 score in each line; matches/matches_<image>.npy would hold a dictionary,
-so the pairs are written as text: matches/matches_<image1>_<image2>.txt, two indices, counted from 0, in each line. images.txt says
-which photograph has which number, those of the COLMAP database. Segments are the branches as each image by itself has them.
+segments/segments_<image>.txt: the count, then x1 y1 x2 y2 score in each line, px of the file (orientation.py), the centre of the first
+one at (0, 0). LIMAP keeps matches in matches/matches_<image>.npy, a dictionary; matches/matches_<image1>_<image2>.txt here has two
+indices, counted from 0, in each line. images.txt says which photograph has which number, those of the COLMAP database, in JSON's
+quotes where a name has a line break. Segments are the branches as each image by itself has them.
 """
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -15,11 +17,14 @@ import numpy as np
 from .. import arrays
 from ..features import segments_of
 from ..output import whole_file
+from . import orientation
 from .store import Store
 
 
 def write(store: Store, folder: Path) -> None:
-    """The segments of all images and the matches of all pairs. Files of other images and pairs, from an earlier run, go."""
+    """The segments of all images and the matches of all pairs. Files of images and pairs that an earlier run has written here, as its
+    images.txt says, and this one has not, go; others stay."""
+    earlier = _numbers(folder / "images.txt")
     (folder / "segments").mkdir(parents=True, exist_ok=True)
     (folder / "matches").mkdir(exist_ok=True)
     numbers: dict[int, int] = {}
@@ -29,9 +34,10 @@ def write(store: Store, folder: Path) -> None:
         if detected.features is None:
             continue
         number = numbers[image] = len(numbers) + 1
-        names.append(f"{number} {name}\n")
+        names.append(f"{number} {json.dumps(name) if len(name.splitlines()) > 1 else name}\n")
         junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
         segments, branches = segments_of(junctions)
+        segments = orientation.turn(orientation.to_stored(detected.orientation, detected.width, detected.height), segments)
         written.add(path := folder / "segments" / f"segments_{number}.txt")
         with whole_file(path) as temporary, temporary.open("w", encoding="ascii") as file:
             file.write(f"{len(segments)}\n")
@@ -48,5 +54,13 @@ def write(store: Store, folder: Path) -> None:
             temporary.write_text("".join(f"{i} {j}\n" for i, j in lines.tolist()), encoding="ascii")
     for kind in ("segments", "matches"):
         for path in (folder / kind).glob(f"{kind}_*.txt"):
-            if path not in written:
+            if path not in written and set(path.stem.split("_")[1:]) <= earlier:
                 path.unlink()
+
+
+def _numbers(path: Path) -> set[str]:
+    """Those of an images.txt that was written here."""
+    try:
+        return {line.split(" ", 1)[0] for line in path.read_text(encoding="utf-8").splitlines()}
+    except (OSError, ValueError):
+        return set()

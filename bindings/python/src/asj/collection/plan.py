@@ -22,7 +22,21 @@ class Plan:
     detector: dict[str, str] = field(default_factory=dict)
     matcher: dict[str, str] = field(default_factory=dict)
     geometry: str = "none"
-    focal: str = "exif"  # where cameras are known from; "estimate", "none", or a number of pixels
+    focal: str = "exif"  # where cameras are known from; "estimate", "none", or what camera_of() reads
+
+    @property
+    def camera(self) -> list[float]:
+        """camera_of(focal)."""
+        return camera_of(self.focal)
+
+
+def camera_of(word: str) -> list[float]:
+    """A focal length in pixels, or fx,fy,cx,cy, that all images share; nothing where the word says where to take it from.
+
+    >>> camera_of("520"), camera_of("520,521,319.5,240"), camera_of("exif")
+    ([520.0], [520.0, 521.0, 319.5, 240.0], [])
+    """
+    return [] if word in ("exif", "estimate", "none") else [float(number) for number in word.split(",")]
 
 
 def find_images(folder: Path) -> list[str]:

@@ -6,6 +6,8 @@ from __future__ import annotations
 import concurrent.futures
 import dataclasses
 import multiprocessing
+import os
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -102,7 +104,16 @@ _store: Store | None = None
 
 
 def _begin_process(threads: int) -> None:
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     tasks.start(threads)
+
+
+def _end_with_parent() -> None:
+    """A parent that is killed tells nobody: its workers would wait for work, and keep its pipes open, for ever."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def _detect(folder: Path, number: int, name: str, detector: dict[str, str], matcher: dict[str, str]) -> tuple[int, Detected]:

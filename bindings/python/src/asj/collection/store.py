@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import sqlite3
 from collections.abc import Iterator
@@ -10,15 +11,15 @@ from pathlib import Path
 from types import TracebackType
 
 from .. import __version__
-from .plan import Plan
+from .plan import Plan, camera_of
 from .tasks import Detected, Matched
 
-_FORMAT = "asj-collection-2"
+_FORMAT = "asj-collection-3"
 _SCHEMA = """
 CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT;
 CREATE TABLE images (
     id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, stamp TEXT NOT NULL, state TEXT NOT NULL DEFAULT 'waiting', error TEXT,
-    width INTEGER, height INTEGER, focal REAL, features BLOB) STRICT;
+    width INTEGER, height INTEGER, focal REAL, features BLOB, orientation INTEGER) STRICT;
 CREATE TABLE pairs (
     id INTEGER PRIMARY KEY, image1 INTEGER NOT NULL REFERENCES images(id), image2 INTEGER NOT NULL REFERENCES images(id),
     state TEXT NOT NULL DEFAULT 'waiting', error TEXT, matches BLOB, lines BLOB, geometry TEXT,
@@ -97,11 +98,10 @@ class Store:
         """Number and name of every image."""
         return self._connection.execute("SELECT id, name FROM images ORDER BY id").fetchall()
 
-    def given_focal(self) -> float | None:
-        """The focal length in pixels that the user gave for all images."""
+    def given_camera(self) -> list[float]:
+        """What the user gave for all images, px: a focal length, or two and the principal point, or nothing."""
         value: str = self._connection.execute("SELECT value FROM about WHERE key = 'geometry'").fetchone()[0]
-        word = json.loads(value)[1]
-        return None if word in ("exif", "estimate", "none") else float(word)
+        return camera_of(json.loads(value)[1])
 
     def waiting_images(self) -> list[tuple[int, str]]:
         """Those without a result."""
@@ -134,8 +134,8 @@ class Store:
         """The result of one image, in a transaction of its own."""
         with self._connection:
             self._connection.execute(
-                "UPDATE images SET state = ?, error = ?, width = ?, height = ?, focal = ?, features = ? WHERE id = ?",
-                (_state(result.error), result.error, result.width, result.height, result.focal, result.features, number),
+                "UPDATE images SET state = ?, error = ?, width = ?, height = ?, focal = ?, features = ?, orientation = ? WHERE id = ?",
+                (_state(result.error), *dataclasses.astuple(result), number),
             )
 
     def save_pair(self, number: int, result: Matched) -> None:
@@ -148,14 +148,16 @@ class Store:
 
     def detected(self) -> Iterator[tuple[int, str, Detected]]:
         """Number, name and result of every image that has one, in order."""
-        for number, name, error, width, height, focal, features in self._connection.execute(
-            "SELECT id, name, error, width, height, focal, features FROM images WHERE state <> 'waiting' ORDER BY id"
+        for number, name, error, width, height, focal, features, orientation in self._connection.execute(
+            "SELECT id, name, error, width, height, focal, features, orientation FROM images WHERE state <> 'waiting' ORDER BY id"
         ):
-            yield number, name, Detected(error, width or 0, height or 0, focal, features)
+            yield number, name, Detected(error, width or 0, height or 0, focal, features, orientation or 1)
 
     def features(self, number: int) -> Detected:
         """The result of one image."""
-        row = self._connection.execute("SELECT error, width, height, focal, features FROM images WHERE id = ?", (number,)).fetchone()
+        row = self._connection.execute(
+            "SELECT error, width, height, focal, features, orientation FROM images WHERE id = ?", (number,)
+        ).fetchone()
         return Detected(*row)
 
     def matched(self) -> Iterator[tuple[int, int, Matched]]:

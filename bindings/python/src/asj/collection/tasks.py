@@ -23,13 +23,14 @@ _KEPT = 512 << 20  # bytes of features that a process keeps in memory: a hundred
 
 @dataclass(frozen=True)
 class Detected:
-    """The result of one image: its junctions as the library's records."""
+    """The result of one image: its junctions as the library's records, in the upright image, whose size it tells."""
 
     error: str | None
     width: int
     height: int
     focal: float | None
     features: bytes | None
+    orientation: int = 1  # of the stored pixels: orientation.py
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,8 @@ def detect_image(path: Path, detector: dict[str, str], matcher: dict[str, str]) 
     try:
         pixels = images.read(path)
         features = detect(pixels, **_keywords(detector))
-        result = Detected(None, features.width, features.height, images.focal_length(path), features.junctions.tobytes())
+        focal, orientation = images.focal_length(path), images.orientation(path)
+        result = Detected(None, features.width, features.height, focal, features.junctions.tobytes(), orientation)
         return result, features.without_image(**_keywords(matcher))
     except (errors.Error, OSError, MemoryError) as bad:
         return Detected(_line(bad), 0, 0, None, None), None
@@ -77,7 +79,8 @@ def _cameras(focals: tuple[float | None, float | None], plan: Plan) -> dict[str,
         return {"geometry": plan.geometry, "find_focal": True}
     if plan.focal in ("exif", "none"):
         return {"geometry": plan.geometry, "camera1": focals[0] if known else None, "camera2": focals[1] if known else None}
-    return {"geometry": plan.geometry, "camera1": float(plan.focal)}
+    camera = plan.camera
+    return {"geometry": plan.geometry, "camera1": camera if len(camera) > 1 else camera[0]}
 
 
 def _as_json(geometry: Geometry | None) -> str | None:
