@@ -218,14 +218,8 @@ const char *cli_detect_extension(const cli_detect_arguments *arguments)
 {
     if (arguments->format)
         return arguments->format;
-    const char *dot = arguments->output ? strrchr(arguments->output, '.') : NULL;
-    if (dot && strcmp(dot, ".json") == 0)
-        return "json";
-    if (dot && strcmp(dot, ".asjf") == 0)
-        return "asjf";
-    if (dot && strcmp(dot, ".csv") == 0)
-        return "csv";
-    return arguments->lines && !(dot && strcmp(dot, ".asj") == 0) ? "csv" : "asj";
+    const char *named = cli_format_of_name(arguments->output, formats);
+    return named ? named : arguments->lines ? "csv" : "asj";
 }
 
 static void choose_preset(cli_detect_arguments *arguments)

@@ -16,15 +16,31 @@ static void list_formats(const char *const *formats, char *text, size_t size)
         used += (size_t)snprintf(text + used, size - used, "%s%s", i == 0 ? "" : formats[i + 1] ? ", " : " or ", formats[i]);
 }
 
+/* What follows the last dot of a name, in small letters; "" where nothing does. */
+static void ending_of(const char *name, char *ending, size_t size)
+{
+    const char *base = name ? cli_base_name(name) : "";
+    const char *dot = strrchr(base, '.');
+    size_t i = 0;
+    for (; dot && dot != base && i + 1 < size && dot[1 + i]; i++)
+        ending[i] = (char)(dot[1 + i] >= 'A' && dot[1 + i] <= 'Z' ? dot[1 + i] - 'A' + 'a' : dot[1 + i]);
+    ending[i] = '\0';
+}
+
+const char *cli_format_of_name(const char *name, const char *const *formats)
+{
+    char ending[8];
+    ending_of(name, ending, sizeof ending);
+    const int word = cli_find_word(formats, ending);
+    return word >= 0 ? formats[word] : NULL;
+}
+
 int cli_check_ending(const char *command, const char *what, const char *name, const char *format, const char *const *formats)
 {
-    const char *base = name ? cli_base_name(name) : NULL;
-    const char *dot = base ? strrchr(base, '.') : NULL;
-    char ending[8] = "", list[64];
-    if (format || !dot || dot == base || strcmp(name, "-") == 0 || cli_is_special(name))
+    char ending[8], list[64];
+    ending_of(name, ending, sizeof ending);
+    if (format || !*ending || strcmp(name, "-") == 0 || cli_is_special(name))
         return CLI_SUCCESS;
-    for (size_t i = 0; i + 1 < sizeof ending && dot[1 + i]; i++)
-        ending[i] = (char)(dot[1 + i] >= 'A' && dot[1 + i] <= 'Z' ? dot[1 + i] - 'A' + 'a' : dot[1 + i]);
     if (strcmp(ending, "txt") == 0 || cli_find_word(formats, ending) >= 0)
         return CLI_SUCCESS;
     list_formats(formats, list, sizeof list);

@@ -51,11 +51,12 @@ static void print_version(void)
     printf("plots: %s\n", cli_plot_available() ? "PNG, SVG, PDF" : "none (built without cairo)");
 }
 
-/* The program takes every library of its own major version that is not older than itself. */
+/* The program takes every library that keeps what it was built with (version.h) and is not older than itself. */
 static int check_version(void)
 {
     uint32_t library = asj_version();
-    if (library >> 16 == ASJ_VERSION_MAJOR && library >= (uint32_t)ASJ_VERSION)
+    const int kept = ASJ_VERSION_MAJOR > 0 ? 16 : 8; /* bits that do not count: MINOR and PATCH, or PATCH alone */
+    if (library >> kept == (uint32_t)ASJ_VERSION >> kept && library >= (uint32_t)ASJ_VERSION)
         return 1;
     cli_error("this program was built for libasj %d.%d.%d, but found %s", ASJ_VERSION_MAJOR, ASJ_VERSION_MINOR, ASJ_VERSION_PATCH,
               asj_version_string());

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The help and the options of `asj-cli match`; what goes with what: match_checks.c. */
 #include "match_arguments.h"
+#include "ending.h"
 #include "camera.h"
 #include "help.h"
 #include "message.h"
@@ -283,7 +284,6 @@ int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *argumen
 
 int32_t cli_match_file_format(const cli_match_arguments *arguments)
 {
-    const char *dot = arguments->output ? strrchr(arguments->output, '.') : NULL;
-    const char *word = arguments->format ? arguments->format : dot ? dot + 1 : "csv";
-    return strcmp(word, "json") == 0 ? ASJ_FILE_JSON : ASJ_FILE_CSV;
+    const char *word = arguments->format ? arguments->format : cli_format_of_name(arguments->output, cli_match_formats);
+    return word && strcmp(word, "json") == 0 ? ASJ_FILE_JSON : ASJ_FILE_CSV;
 }

@@ -78,7 +78,9 @@ machine i686 reference i686-linux-gnu-gcc 'qemu-i386 -L /usr/i686-linux-gnu' -O2
 machine musl vectors musl-gcc env -O1 -static
 machine here reference cc env -O1
 if [ "$all" = --all ]; then
-    machine armhf vectors arm-linux-gnueabihf-gcc 'qemu-arm -L /usr/arm-linux-gnueabihf' -O2
+    # as Meson compiles vectors.c: where there is no vector unit gcc makes other code of it at -O3
+    machine armhf vectors arm-linux-gnueabihf-gcc 'qemu-arm -L /usr/arm-linux-gnueabihf' -O3
+    machine armhf-neon vectors arm-linux-gnueabihf-gcc 'qemu-arm -L /usr/arm-linux-gnueabihf' -O3 -mfpu=neon
     machine aarch64 vectors aarch64-linux-gnu-gcc 'qemu-aarch64 -L /usr/aarch64-linux-gnu' -O2
     machine i686-vectors vectors i686-linux-gnu-gcc 'qemu-i386 -L /usr/i686-linux-gnu' -O2 -msse2 -mfpmath=sse
     machine s390x-reference reference s390x-linux-gnu-gcc 'qemu-s390x -L /usr/s390x-linux-gnu' -O2 -fexcess-precision=fast

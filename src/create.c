@@ -4,6 +4,7 @@
 #include "create.h"
 #include "core/device.h"
 #include "core/threads.h"
+#include "core/reserved.h"
 #include "tables.h"
 
 #ifdef ASJ_HAVE_OPENCL
@@ -90,6 +91,8 @@ static asj_status asj_cl_list(asj_memory *memory, const char *library, asj_devic
 static asj_status check_range(asj_context *context)
 {
     const asj_context_options *options = &context->options;
+    if (!asj_is_zero(options->reserved, sizeof options->reserved))
+        return asj_fail(context, ASJ_ERROR_OPTION, ASJ_RESERVED_MESSAGE);
     if (options->backend < ASJ_BACKEND_AUTO || options->backend > ASJ_BACKEND_OPENCL)
         return asj_fail(context, ASJ_ERROR_OPTION, "backend %d: there is no such", (int)options->backend);
     if (options->threads < 0 || options->threads > ASJ_MOST_THREADS)

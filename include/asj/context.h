@@ -109,14 +109,16 @@ typedef struct asj_kernel_cache {
 
 /* Threads of the caller's own, for programs that have a pool already. Calls task(job, number) once for each number 0 .. count - 1,
  * on any threads, at once or one after the other, and returns when all have returned. The tasks take their work from one queue, so
- * one that begins late finds nothing left to do and returns at once. `count` is at most the number of threads of the context.
+ * one that begins late finds nothing left to do and returns at once, and what a pool that is full or closing leaves undone is done
+ * by the calling thread when the callback has returned. `count` is at most the number of threads of the context. Tasks need 32 kB
+ * of stack; the calling thread needs 48 kB, and 128 kB where two-view geometry is asked for.
  * Called from the thread that calls the library, a few dozen times a call. Progress is reported in the middle of a step only while
  * a task runs on that thread. A library that was built without threads does not call it. */
 typedef void (*asj_parallel_task)(void *job, int32_t number);
 typedef void (*asj_parallel_callback)(void *user, int32_t count, asj_parallel_task task, void *job);
 
 /* How a context is made. Fill it with asj_context_options_init() and change what you need: fields added later take their
- * defaults from there. */
+ * defaults from there; what is reserved and not zero is refused (ASJ_ERROR_OPTION). */
 typedef struct asj_context_options {
     int32_t backend;                /* ASJ_BACKEND_..., default auto */
     int32_t threads;                /* threads of the CPU path, 0 .. 256; default 0 = as many as processors. The results do

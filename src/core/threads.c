@@ -253,16 +253,22 @@ static int is_caller(const asj_pool *pool)
     return pthread_equal(pthread_self(), pool->caller) != 0;
 }
 
-/* On threads of the user's own, one task for each. */
+/* On threads of the user's own, one task for each. A task has the number in which it begins, whatever the pool calls it: two with
+ * one number would share scratch. */
 typedef struct tasks {
     queue *queue;
     const asj_pool *pool;
+    int32_t threads;
+    int32_t next;
 } tasks;
 
 static void run_task(void *job, int32_t number)
 {
-    const tasks *t = job;
-    work(t->queue, number, is_caller(t->pool));
+    tasks *t = job;
+    const int32_t own = TAKE(t->next);
+    (void)number;
+    if (own < t->threads)
+        work(t->queue, own, is_caller(t->pool));
 }
 
 static void run(const asj_context *context, int32_t threads, queue *q)
@@ -275,8 +281,9 @@ static void run(const asj_context *context, int32_t threads, queue *q)
     pool->busy = 1;
     pool->caller = pthread_self();
     if (context->options.parallel) {
-        tasks t = {q, pool};
+        tasks t = {q, pool, threads, 0};
         context->options.parallel(context->options.parallel_user, threads, run_task, &t);
+        work(q, 0, 1); /* what a pool has left that is full, or is closing */
     } else {
         share(pool, threads, q);
     }

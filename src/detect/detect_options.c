@@ -6,6 +6,9 @@
  * candidates at every pixel, no strip test, corners that the line fit moves far (a blurred corner, a short branch) stay, and a
  * branch is as long as its junction's scale at least, whatever lies between; and branches end where the scan loses them. */
 #include "detect_options.h"
+#include "core/reserved.h"
+
+#include <stdio.h>
 
 #define OPTIONS_TYPE asj_detect_options
 #define OCTAVES "octaves"
@@ -129,5 +132,9 @@ asj_status asj_detect_options_get(const asj_detect_options *options, const char 
 
 asj_status asj_detect_options_check(const asj_detect_options *options, char *message, size_t message_size)
 {
+    if (!asj_is_zero(options->reserved, sizeof options->reserved)) {
+        snprintf(message, message_size, "%s", ASJ_RESERVED_MESSAGE);
+        return ASJ_ERROR_OPTION;
+    }
     return asj_option_table_check(&table, options, message, message_size);
 }

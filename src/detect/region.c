@@ -7,6 +7,7 @@
  * has_moved_far()); so candidates stay up to `reach` = that, rounded up, and one more around the region. Pixel (i, j) of octave o
  * stands for what lies between i 2^o and (i + 1) 2^o in the image, pixel k from k to k + 1; j likewise. */
 #include "region.h"
+#include "core/reserved.h"
 #include "locate.h"
 
 #include <math.h>
@@ -38,6 +39,8 @@ asj_status asj_region_check(asj_context *context, const asj_image *image, const 
 {
     if (!region)
         return ASJ_OK;
+    if (!asj_is_zero(region->reserved, sizeof region->reserved))
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, ASJ_RESERVED_MESSAGE);
     const int everywhere = region->x == 0 && region->y == 0 && region->width == 0 && region->height == 0;
     if (!everywhere && (!lies_within(region->x, region->width, image->width) ||
                         !lies_within(region->y, region->height, image->height)))

@@ -151,7 +151,7 @@ static void describe(asj_estimation *e, int32_t number, asj_geometry *result)
 /* Whether the motion that was asked for stays open. */
 static int32_t is_open(const asj_estimation *e, int32_t number, const asj_geometry *result)
 {
-    const int32_t motion = number == asj_estimation_best(e, ASJ_GEOMETRY_ESSENTIAL) && !asj_has_found_focal(e, number);
+    const int32_t motion = number == asj_estimation_best(e, ASJ_GEOMETRY_ESSENTIAL) && !has_open_focal(e, number);
     return (motion && !result->has_pose && result->inliers < FEW_WITHOUT_POSE) ||
            (has_open_focal(e, number) && e->options->model == ASJ_GEOMETRY_ESSENTIAL);
 }

@@ -111,7 +111,8 @@ static asj_status search_rivals(asj_estimation *e)
 {
     const asj_camera *cameras = asj_estimation_cameras(e);
     const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO);
-    const int32_t epipolar = cameras && e->focal_at >= 0 ? ASJ_GEOMETRY_ESSENTIAL : epipolar_kind(e->options);
+    const int32_t found = best >= 0 && cameras && asj_has_found_focal(e, best);
+    const int32_t epipolar = found ? ASJ_GEOMETRY_ESSENTIAL : epipolar_kind(e->options);
     asj_search kinds[2];
     int32_t kind_count = 0, more = 0;
     if (is_chance(e, best))

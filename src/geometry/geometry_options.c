@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Options of the geometry, and the names of its models and answers. */
 #include "geometry_options.h"
+#include "core/reserved.h"
 #include "small_matrix.h"
 
 #include <math.h>
@@ -83,6 +84,8 @@ asj_status asj_geometry_wishes_check(asj_context *context, const asj_geometry_op
         return asj_fail(context, ASJ_ERROR_OPTION, "find_focal is %d, not 0 or 1", (int)o->find_focal);
     if (o->find_focal && (asj_camera_is_known(&o->cameras[0]) || asj_camera_is_known(&o->cameras[1])))
         return asj_fail(context, ASJ_ERROR_OPTION, "find_focal: the focal length of a camera is given");
+    if (!asj_is_zero(o->reserved, sizeof o->reserved) || o->reserved_integer)
+        return asj_fail(context, ASJ_ERROR_OPTION, ASJ_RESERVED_MESSAGE);
     if (o->find_focal && o->model > ASJ_GEOMETRY_ESSENTIAL)
         return asj_fail(context, ASJ_ERROR_OPTION, "find_focal: only model auto and essential have a focal length");
     if (o->model == ASJ_GEOMETRY_ESSENTIAL && !o->find_focal && !asj_cameras_are_known(o))

@@ -204,7 +204,6 @@ asj_status asj_features_create(asj_context *context, const asj_image *image, con
                                const asj_match_options *options, asj_features **features)
 {
     asj_match_options defaults;
-    char message[256];
     if (features)
         *features = NULL;
     if (asj_enter(context) != ASJ_OK)
@@ -217,9 +216,9 @@ asj_status asj_features_create(asj_context *context, const asj_image *image, con
         asj_match_options_init(&defaults);
         options = &defaults;
     }
-    if (asj_match_options_check(options, message, sizeof message) != ASJ_OK)
-        return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
-    asj_status status;
+    asj_status status = asj_match_wishes_check(context, options);
+    if (status != ASJ_OK)
+        return status;
     asj_backend_begin(context);
     do
         status = create(context, image, junctions, count, options, features);

@@ -2,8 +2,10 @@
 /* THE option table of the matcher. The reason for each step is told on top of the file that uses its options. */
 #include "match_options.h"
 #include "core/option_table.h"
+#include "core/reserved.h"
 #include "geometry/geometry_options.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #define OPTIONS_TYPE asj_match_options
@@ -125,6 +127,10 @@ asj_status asj_match_options_get(const asj_match_options *options, const char *k
 
 asj_status asj_match_options_check(const asj_match_options *options, char *message, size_t message_size)
 {
+    if (!asj_is_zero(options->reserved, sizeof options->reserved) || options->reserved_integer) {
+        snprintf(message, message_size, "%s", ASJ_RESERVED_MESSAGE);
+        return ASJ_ERROR_OPTION;
+    }
     return asj_option_table_check(&table, options, message, message_size);
 }
 

@@ -59,7 +59,7 @@ static const struct {
     {{"match", "--ratio", "0.5", "first.png", "first.png"}, "ratio: 0.5 is outside"},
     {{"match", "--geometry", "affine", "first.png", "first.png"}, "--geometry: 'affine' is not auto"},
     {{"match", "--geometry", "essential", "first.png", "first.png"}, "--geometry essential needs --camera1 and --camera2"},
-    {{"match", "--focal", "600", "first.png", "first.png"}, "a camera changes nothing without --geometry"},
+    {{"match", "--focal", "600", "first.png", "first.png"}, "a camera or a focal length changes nothing without --geometry"},
     {{"match", "-p", "x.png", "--plot-epipolar", "yes", "first.png", "first.png"}, "--plot-epipolar changes nothing without"},
     {{"match", "--geometry", "auto", "--focal", "0", "first.png", "first.png"}, "--focal: '0' is not a length"},
     {{"match", "--geometry", "homography", "--focal", "estimate", "first.png", "first.png"}, "changes nothing with this geometry"},

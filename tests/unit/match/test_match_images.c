@@ -573,9 +573,9 @@ static void what_cannot_be_is_refused(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* What only stretched images show is found whether or not a focal length is looked for. The page alone is a plane, which tells none;
- * its edges are at right angles at one. In seen() a camera of focal length f at a distance d from the middle of the page, against
- * which it is tilted by t, has f / d = 145, f sin(t) / d = 28 and cos(t) / d = 0.12, so f = 145 cos(t) / 0.12 = 1185.6. */
+/* What only stretched images show is found whether or not a focal length is looked for. The page alone is a plane, which tells
+ * none; its edges are at right angles at one. In seen() a camera of focal length f at a distance d from the middle of the page,
+ * against which it is tilted by t, has f / d = 145, f sin(t) / d = 28 and cos(t) / d = 0.12: f = 145 cos(t) / 0.12 = 1185.6. */
 static void a_focal_length_may_be_looked_for(void **state)
 {
     static const asj_stretch automatic = {0, 0};
@@ -597,7 +597,8 @@ static void a_focal_length_may_be_looked_for(void **state)
         } else {
             assert_int_equal(r->geometry.model, ASJ_GEOMETRY_ESSENTIAL);
             assert_true(r->geometry.focal_sd > 0 && r->geometry.focal_sd < 0.1);
-            unit_near("focal length, in standard deviations", k, 0, log(r->geometry.focal[0] / 1185.6) / r->geometry.focal_sd, 0, 2);
+            const double off = log(r->geometry.focal[0] / 1185.6);
+            unit_near("focal length, in standard deviations", k, 0, off / r->geometry.focal_sd, 0, 2);
         }
         asj_match_result_free(&r);
     }
