@@ -22,7 +22,7 @@ const cli_option cli_common_options[] = {
      "this OpenCL device: its number in 'asj-cli devices', gpu, cpu, accelerator, or a part of its name; implies --backend opencl"},
     {THREADS, 0, "threads", "N",
      "threads on the CPU, 0 .. 256; 0 (the default) is one for each processor; the results do not depend on it"},
-    {SIMD, 0, "simd", "reference|sse2|avx2|avx512|neon|vectors",
+    {SIMD, 0, "simd", "auto|reference|sse2|avx2|avx512|neon|vectors",
      "vector instructions of the CPU, for comparisons; auto (the default): the best that it has; the results do not depend on it"},
     {MAX_MEGAPIXELS, 0, "max-megapixels", "N", "refuse larger images before they are decoded (default 268, at most 536)"},
     {TIME, 0, "time", NULL, "print how long each stage took"},

@@ -48,6 +48,18 @@ use_from() { # NAME: programs against what is installed there
     [ "$(env -u LD_LIBRARY_PATH "$prefix/bin/asj-cli" --version | grep -cF "$version")" -ge 1 ]
 }
 
+# moved, after use_from shared: what is installed may stand elsewhere, and CMake finds it there without pkg-config.
+moved() {
+    command -v cmake > /dev/null || return 0
+    cp -R "$work/shared" "$work/moved"
+    mv "$work/shared" "$work/away"
+    rm -rf "$work/cmake-build"
+    cmake -S "$work/cmake" -B "$work/cmake-build" -DCMAKE_PREFIX_PATH="$work/moved" -DPKG_CONFIG_EXECUTABLE=/nonexistent \
+        > "$work/log" 2>&1 && cmake --build "$work/cmake-build" >> "$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
+    [ "$(env -u LD_LIBRARY_PATH "$work/cmake-build/core")" = "$version" ]
+    mv "$work/away" "$work/shared"
+}
+
 # fully_static, after use_from static: with the C library linked in too there is no dynamic loader, so no OpenCL, and nothing is
 # said about it.
 fully_static() {
@@ -128,6 +140,7 @@ fi
 {
     install_into shared
     install_into static -Ddefault_library=static
+    meson setup "$work/build-of-both" "$root" -Ddefault_library=both -Dauto_features=disabled -Dtests=disabled
 } > "$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
 for file in bin/asj-cli lib/libasj.so lib/libasj-io.so lib/pkgconfig/asj.pc lib/pkgconfig/asj-io.pc lib/cmake/asj/asjConfig.cmake \
     share/man/man1/asj-cli.1 share/man/man5/asj-formats.5 share/man/man7/asj-options.7 share/man/man7/asj-paper.7 \
@@ -138,6 +151,7 @@ for file in lib/libasj.a lib/libasj-io.a; do
     [ -s "$work/static/$file" ] || { echo "not installed: $file"; exit 1; }
 done
 use_from shared
+moved
 [ -z "$(find "$work/static" -name '*.so*')" ] || { echo 'default_library=static has built shared libraries'; exit 1; }
 use_from static
 fully_static

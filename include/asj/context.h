@@ -141,7 +141,7 @@ typedef struct asj_context_options {
     uint64_t reserved[11];          /* zero */
 } asj_context_options;
 
-/* Fills in the defaults. `options` may not be NULL (it is then left alone). */
+/* Fills in the defaults. NULL is left alone. */
 ASJ_API void asj_context_options_init(asj_context_options *options);
 
 /* Everything that lives from call to call: tables, scratch memory, threads, device. A context serves one thread at a time; several

@@ -15,7 +15,7 @@ enum {
     ASJ_DEVICE_ACCELERATOR = 3
 };
 
-/* "cpu", "gpu", "accelerator", "other". A static string. */
+/* "cpu", "gpu", "accelerator"; "other" for any other number. A static string. */
 ASJ_API const char *asj_device_type_name(int32_t type);
 
 /* What is known about an OpenCL device. Texts are one line, cut where they are longer than their field. A platform that has no

@@ -16,11 +16,11 @@
 extern "C" {
 #endif
 
-/* Every function below that can fail takes `message` (may be NULL) with room for `message_size` bytes, and on failure writes one
+/* Every function below that takes `message` (may be NULL) with room for `message_size` bytes, and on failure writes one
  * line there that names the file and the cause. 512 bytes are plenty. */
 
-/* Default limit on the pixels of an image file: 256 megapixels. A file that declares more is refused before its pixels are
- * decoded. */
+/* Default limit on the pixels of an image file: 268 megapixels (2^28 pixels). A file that declares more is refused before its
+ * pixels are decoded. */
 #define ASJ_IO_DEFAULT_MAX_PIXELS 268435456
 
 /* What a focal length from EXIF data rests on. */
@@ -212,7 +212,7 @@ ASJ_API void asj_junction_file_free(asj_junction_file **file);
 
 /* Features of an image as a file: asj-formats(5), .asjf. Written as asj_output_begin() and asj_output_commit() do.
  * ASJ_ERROR_ARGUMENT  a NULL pointer
- * ASJ_ERROR_LIMIT     more than 2^31 - 1 bytes: an image of more than a gigapixel
+ * ASJ_ERROR_LIMIT     more than 2^31 - 1 bytes: millions of L-junctions with colours
  * ASJ_ERROR_FILE      cannot create, disk full, cannot rename
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_features_write(const char *path, const asj_features *features, char *message, size_t message_size);

@@ -194,8 +194,8 @@ typedef struct asj_match_result {
  * are looked at, so twice as many in either image take four times as long (2 000 junctions of five branches at one point, 20 000
  * L-junctions that all look alike: some ten seconds). With a geometry, four times as many candidates are aligned for it, and it
  * takes a share of its own: two frames of a video with 1150 L-junctions each and their focal length took 1.5 s in place of 0.2 s
- * (one thread of a two-core Xeon; 0.9 s with two). The caller is asked every 50 ms whether to go on. One call at a time for a
- * context.
+ * (one thread of a two-core Xeon; 0.9 s with two). How often the caller is asked whether to go on:
+ * asj_progress_callback. One call at a time for a context.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that lies more than ASJ_MAX_OUTSIDE px outside its image, has a wrong branch
  *                      count, an octave that is not -1 .. 15, an angle beyond +-10^6, a length that is not 0 ..

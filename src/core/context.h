@@ -34,7 +34,7 @@ struct asj_context {
     const asj_device_calls *device;
     asj_kept pool;                /* core/threads.h */
     asj_kept tables;              /* tables.h: what the operations above point to */
-    asj_kept detector;            /* detect/detect.h: scratch and tables of the detector */
+    asj_kept detector;            /* detect/detection_run.h: scratch and tables of the detector */
     double progress;              /* last value reported */
     double progress_from, progress_part; /* where the whole stands when a call begins that is a part of it, and how large that part
                                           * is; 0, 0: the call is the whole */

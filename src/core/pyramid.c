@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 7, image pyramids: what patches and alignments are sampled from.
  *
- * Why integers: planes and interpolation weights (8 bits) are exact, so every back end can give the same bits. The loss is below
- * 1/256 of a grey level. */
+ * Why integers: planes and interpolation weights (8 bits) are exact, so every back end can give the same bits. What is lost:
+ * places are cut to 1/256 px, 1/512 px in the mean, and values rounded to 1/128 of a grey level, in each level once. */
 #include "pyramid.h"
 #include "threads.h"
 #include "watch.h"

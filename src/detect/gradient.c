@@ -24,7 +24,7 @@
  * the gray plane repeats there.
  * The window's sum is that of five column sums, which slide down the image, in two halves of 16 bits: the sum of the low bytes of
  * |g| and the sum of the high bytes.
- * ">>" of a negative number is the arithmetic shift on every compiler that we know; asj_gradient() checks it at compile time. */
+ * ">>" of a negative number is the arithmetic shift on every compiler that we know; it is checked below at compile time. */
 #include "gradient.h"
 #include "core/threads.h"
 #include "core/watch.h"

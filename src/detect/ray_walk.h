@@ -69,7 +69,7 @@ int asj_ray_walk_take(const asj_scan *scan, const asj_arc_sums *sums, asj_ray_wa
 
 asj_ray_direction asj_ray_walk_direction(const asj_ray *ray);
 
-/* The last step of a walk: the axial length ends no farther behind the forward one than a crossing may be bridged. */
+/* The last step of a walk: the axial length ends no farther beyond the forward one than a crossing may be bridged. */
 void asj_ray_walk_finish(const asj_scan *scan, asj_ray *ray);
 
 #endif

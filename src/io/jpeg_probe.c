@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The marker structure of a JPEG file (ITU-T T.81, annex B). The decoder behind OpenCV fills what is missing from a truncated file
- * with gray and reports success; a file whose end marker is missing is therefore told here. */
+/* The marker structure of a JPEG file (ITU-T T.81, annex B). Decoders fill what is missing from a truncated file with gray; one
+ * whose end marker is missing is told here, before it is decoded. */
 #include "bytes.h"
 #include "exif.h"
 #include "probe.h"

@@ -2,7 +2,8 @@
 /* JPEG through libjpeg (libjpeg-turbo): gray becomes GRAY8, colour RGB8; four inks (CMYK, YCCK) become RGB8. The inverse transform
  * is libjpeg's accurate integer one and chroma is interpolated: libjpeg's defaults.
  *
- * What libjpeg makes up in place of damaged data it tells by warnings, and goes on; the first of them ends the reading here.
+ * What libjpeg makes up in place of damaged data it tells by warnings, and goes on; the first of them ends the reading here
+ * (is_damage(): broken codes, data that end early or lose their restart markers). Others tell of what does no harm.
  * Errors leave libjpeg by longjmp(): see png_read.c. */
 #include "image_buffer.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* printf and strtod follow the locale of the process in one point only: the decimal separator, which may be several bytes long.
- * It is exchanged here in plain text. newlocale() would do too, but is not everywhere, and setlocale() is not thread safe. */
+ * It is exchanged here in plain text: newlocale() (c_locale.c) is not everywhere, and setlocale() is not thread safe. */
 #include "number.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* How far each stage is from what the machine can do.
  *
- * What a stage works on is counted while it runs, by wrappers around the operations of src/ops.h: pixels of tiles, candidates,
+ * What a stage works on is counted while it runs, by wrappers around the operations of src/core/ops.h: pixels of tiles, candidates,
  * pixels that rays visit. Bytes and operations follow from that and from the tables of the sectors; each is stated beside its line
  * below.
  *

@@ -142,12 +142,35 @@ static void names_that_promise_another_format(void **state)
     expect_code(run_cli("detect", "-q", "-o", "/dev/null", "scene.png", NULL), 0);
 }
 
+static void expect_beginning(const char *path, const char *beginning)
+{
+    char text[16] = "";
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    assert_int_equal(fread(text, 1, strlen(beginning), file), strlen(beginning));
+    fclose(file);
+    assert_string_equal(text, beginning);
+}
+
+/* An ending counts in capitals, too: the check and the choice agree. */
+static void endings_in_capitals(void **state)
+{
+    (void)state;
+    expect_code(run_cli("detect", "-q", "-o", "r.JSON", "scene.png", NULL), 0);
+    expect_beginning("r.JSON", "{");
+    expect_code(run_cli("detect", "-q", "-o", "r.Csv", "scene.png", NULL), 0);
+    expect_beginning("r.Csv", "junction,x,y,");
+    expect_code(run_cli("match", "-q", "-o", "m.JSON", "first.png", "second.png", NULL), 0);
+    expect_beginning("m.JSON", "{");
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_limit_of_file_size_is_an_error), cmocka_unit_test(two_spellings_of_one_output),
         cmocka_unit_test(folders_of_images_are_kept),
         cmocka_unit_test(a_link_to_nothing_yet_is_followed), cmocka_unit_test(names_that_promise_another_format),
+        cmocka_unit_test(endings_in_capitals),
     };
     program_start(argc, argv);
     return program_end(cmocka_run_group_tests(tests, make_files, NULL));

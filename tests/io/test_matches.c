@@ -397,6 +397,12 @@ static void wrong_arguments_are_refused(void **state)
     expect_refusal(in_folder("never"), 4, ASJ_ERROR_ARGUMENT, "no file format");
     expect_refusal(in_folder("nowhere/never.csv"), ASJ_FILE_CSV, ASJ_ERROR_FILE, "nowhere/never.csv");
     assert_int_equal(asj_matches_write(in_folder("never"), ASJ_FILE_CSV, NULL, message, sizeof message), ASJ_ERROR_ARGUMENT);
+    for (int32_t lines = -1; lines < 4; lines += 4) {
+        const int32_t asked = report.lines;
+        report.lines = lines;
+        expect_refusal(in_folder("never"), ASJ_FILE_CSV, ASJ_ERROR_ARGUMENT, "there is no such");
+        report.lines = asked;
+    }
     report.result = NULL;
     expect_refusal(in_folder("never"), ASJ_FILE_CSV, ASJ_ERROR_ARGUMENT, "no matches");
 }

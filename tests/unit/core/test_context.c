@@ -97,6 +97,9 @@ static void test_refused(void **state)
         options.simd = forms[i];
         refuse(&options, "simd ");
     }
+    options = with(&counter);
+    options.reserved[10] = 1;
+    refuse(&options, "a reserved field ");
     assert_int_equal(counter.live, 0);
 }
 

@@ -428,11 +428,37 @@ static void test_own_threads(void **state)
     }
 }
 
+/* Pools that run no task, or one, or all with numbers that are none: everything is done once all the same, by threads that do not
+ * share a number. */
+static void run_some(void *user, int32_t tasks, asj_parallel_task task, void *job)
+{
+    const int *which = user;
+    for (int32_t i = 0; i < (*which == 0 ? 0 : *which == 1 ? 1 : 3 * tasks); i++)
+        task(job, *which == 1 ? tasks - 1 : 1000 - 7 * i);
+}
+
+static void test_pool_that_leaves_work(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; which++) {
+        asj_context_options options;
+        asj_context *context = NULL;
+        asj_context_options_init(&options);
+        options.threads = 4;
+        options.parallel = run_some;
+        options.parallel_user = &which;
+        assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+        for (int32_t items = 1; items < 50; items += 7)
+            assert_true(runs_all(context, 4, items, 1));
+        asj_context_free(&context);
+    }
+}
+
 #define MORE_TESTS                                                                                                                 \
     cmocka_unit_test(test_made_when_needed), cmocka_unit_test(test_no_threads_to_be_had), cmocka_unit_test(test_late_thread),      \
         cmocka_unit_test(test_two_contexts), cmocka_unit_test(test_sleeps), cmocka_unit_test(test_fork),                           \
         cmocka_unit_test(test_signals),                                                                                            \
-        cmocka_unit_test(test_own_threads),
+        cmocka_unit_test(test_own_threads), cmocka_unit_test(test_pool_that_leaves_work),
 #else
 #define MORE_TESTS
 #endif

@@ -244,6 +244,15 @@ static void other_options_are_refused(void **state)
     const asj_junction one = {.branch_count = 2};
     assert_int_equal(asj_features_create(context, &views[0].image, &one, SIZE_MAX / sizeof one, NULL, &raw), ASJ_ERROR_LIMIT);
     assert_int_equal(asj_features_create(context, &views[0].image, NULL, 0, NULL, NULL), ASJ_ERROR_ARGUMENT);
+    asj_match_options bad;
+    for (int what = 0; what < 3; what++) {
+        asj_match_options_init(&bad);
+        bad.geometry.model = what == 0 ? 99 : ASJ_GEOMETRY_AUTO;
+        bad.reserved[16] = what == 1;
+        bad.geometry.reserved[12] = what == 2;
+        assert_int_equal(asj_features_create(context, &views[0].image, NULL, 0, &bad, &raw), ASJ_ERROR_OPTION);
+        assert_null(raw);
+    }
     assert_int_equal(asj_features_load(context, NULL, 0, &raw), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_features_save(NULL, NULL, 0), 0);
 }
