@@ -111,7 +111,7 @@ typedef struct asj_kernel_cache {
  * on any threads, at once or one after the other, and returns when all have returned. The tasks take their work from one queue, so
  * one that begins late finds nothing left to do and returns at once, and what a pool that is full or closing leaves undone is done
  * by the calling thread when the callback has returned. `count` is at most the number of threads of the context. Tasks need 32 kB
- * of stack; the calling thread needs 48 kB, and 128 kB where two-view geometry is asked for.
+ * of stack; the calling thread needs 64 kB, and 128 kB where two-view geometry is asked for.
  * Called from the thread that calls the library, a few dozen times a call. Progress is reported in the middle of a step only while
  * a task runs on that thread. A library that was built without threads does not call it. */
 typedef void (*asj_parallel_task)(void *job, int32_t number);
