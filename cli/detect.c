@@ -170,22 +170,36 @@ static int detect_file(run *r, const char *image, const cli_output *output)
     return result;
 }
 
+/* Are all results of an image there? Files appear whole (asj_output_begin()), so one that is there is done. */
+static int is_done(const cli_output *output)
+{
+    cli_identity found;
+    return (!output->junctions || cli_identify(output->junctions, &found)) && (!output->plot || cli_identify(output->plot, &found));
+}
+
 static int detect_all(run *r, const cli_outputs *outputs)
 {
     const cli_detect_arguments *arguments = r->arguments;
-    int result = cli_session_open(&r->session, &arguments->common, arguments->image_count);
-    for (size_t i = 0; result != CLI_USAGE && i < arguments->image_count && r->session.context; i++) {
-        cli_progress_next(&r->session.progress, i, arguments->images[i]);
-        int one = detect_file(r, arguments->images[i], &outputs->of[i]);
+    size_t skipped = 0;
+    int result = cli_session_open(&r->session, &arguments->common, arguments->images.count);
+    for (size_t i = 0; result != CLI_USAGE && i < arguments->images.count && r->session.context; i++) {
+        if (arguments->skip_existing && is_done(&outputs->of[i])) {
+            skipped++;
+            continue;
+        }
+        cli_progress_next(&r->session.progress, i, arguments->images.names[i]);
+        int one = detect_file(r, arguments->images.names[i], &outputs->of[i]);
         if (cli_interrupted()) {
             cli_progress_clear(&r->session.progress);
-            cli_error("interrupted at %s", arguments->images[i]);
+            cli_error("interrupted at %s", arguments->images.names[i]);
             result = 128 + cli_interrupted();
             break;
         }
         result = one > result ? one : result;
     }
     cli_session_close(&r->session);
+    if (skipped > 0 && !arguments->common.quiet)
+        cli_note("%zu of %zu images had their results in %s already", skipped, arguments->images.count, arguments->out_dir);
     return result;
 }
 

@@ -35,8 +35,8 @@ static const char conclusion[] =
     "More: man asj-cli; all numbers: man asj-options; file formats: man asj-formats\n";
 
 enum {
-    OUTPUT, OUT_DIR, KEEP_FOLDERS, FORMAT, LINES, WHOLE, REGION, MASK, VANISHING_POINTS, CAMERA, PLOT, PLOT_COLOR,
-    PLOT_BACKGROUND, PLOT_SCALE, PRESET, FOR
+    OUTPUT, OUT_DIR, KEEP_FOLDERS, SKIP_EXISTING, FILES_FROM, FORMAT, LINES, WHOLE, REGION, MASK, VANISHING_POINTS, CAMERA,
+    PLOT, PLOT_COLOR, PLOT_BACKGROUND, PLOT_SCALE, PRESET, FOR
 };
 
 static const cli_option output_options[] = {
@@ -45,6 +45,10 @@ static const cli_option output_options[] = {
     {OUT_DIR, 'd', "out-dir", "DIR",
      "folder for the results of one or several images, made where it is missing: photo.jpg gives DIR/photo.asj"},
     {KEEP_FOLDERS, 0, "keep-folders", NULL, "below DIR the folders of the images: kitchen/photo.jpg gives DIR/kitchen/photo.asj"},
+    {SKIP_EXISTING, 0, "skip-existing", NULL,
+     "leave out images whose results are in DIR already: to go on where a run has ended, or with more images"},
+    {FILES_FROM, 0, "files-from", "FILE",
+     "more images: their names, one a line, or as find -print0 writes them; - is standard input"},
     {FORMAT, 'f', "format", "asj|json|csv|asjf",
      "asj: text, one record for each pair of branches; json: everything; csv: one line a branch; asjf: features, all that 'asj-cli "
      "match' needs of the image. Default: by the end of FILE, else asj, and with --lines csv"},
@@ -89,6 +93,7 @@ static const cli_option preset_options[] = {
 void cli_detect_arguments_free(cli_detect_arguments *arguments)
 {
     cli_settings_free(&arguments->settings);
+    cli_image_list_free(&arguments->images);
 }
 
 static const char *const formats[] = {"asj", "json", "csv", "asjf", NULL};
@@ -100,6 +105,8 @@ static int take_output(void *target, int id, const char *text)
     case OUTPUT: arguments->output = text; break;
     case OUT_DIR: arguments->out_dir = text; break;
     case KEEP_FOLDERS: arguments->keep_folders = 1; break;
+    case SKIP_EXISTING: arguments->skip_existing = 1; break;
+    case FILES_FROM: arguments->files_from = text; break;
     case LINES: arguments->lines = 1; break;
     case WHOLE: arguments->whole = 1; break;
     default:
@@ -187,7 +194,9 @@ static int check_lines(const cli_detect_arguments *arguments)
 
 static int check(cli_detect_arguments *arguments)
 {
-    if (arguments->image_count == 0)
+    if (arguments->images.count == 0 && arguments->files_from)
+        return cli_usage_error("detect", "--files-from: %s names no image", arguments->files_from);
+    if (arguments->images.count == 0)
         return cli_usage_error("detect", "which image?");
     if (arguments->output && arguments->out_dir)
         return cli_usage_error("detect", "--output and --out-dir exclude each other");
@@ -197,10 +206,12 @@ static int check(cli_detect_arguments *arguments)
         return cli_usage_error("detect", "--format changes nothing: with --plot alone no junctions are written (--output - does)");
     if (arguments->keep_folders && !arguments->out_dir)
         return cli_usage_error("detect", "--keep-folders changes nothing without --out-dir");
-    if (arguments->image_count > 1 && !arguments->out_dir)
-        return cli_usage_error("detect", "%zu images need --out-dir DIR for their results", arguments->image_count);
-    for (size_t i = 0; i < arguments->image_count; i++)
-        if (strcmp(arguments->images[i], "-") == 0)
+    if (arguments->skip_existing && !arguments->out_dir)
+        return cli_usage_error("detect", "--skip-existing changes nothing without --out-dir");
+    if (arguments->images.count > 1 && !arguments->out_dir)
+        return cli_usage_error("detect", "%zu images need --out-dir DIR for their results", arguments->images.count);
+    for (size_t i = 0; i < arguments->images.count; i++)
+        if (strcmp(arguments->images.names[i], "-") == 0)
             return cli_usage_error("detect", "images are not read from standard input (a file named - is ./-)");
     int result = cli_common_check("detect", &arguments->common);
     if (result == CLI_SUCCESS)
@@ -255,8 +266,9 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
         cli_help(&syntax, argc, argv);
     if (result != CLI_SUCCESS)
         return result;
-    arguments->images = argv + first;
-    arguments->image_count = (size_t)(argc - first);
+    result = cli_image_list_make(argv + first, (size_t)(argc - first), arguments->files_from, &arguments->images);
+    if (result != CLI_SUCCESS)
+        return result;
     choose_preset(arguments);
     asj_detect_options_preset(&arguments->options, arguments->preset);
     /* the file does not say octaves, and the matcher must know which junctions are coarse */

@@ -4,6 +4,7 @@
 #define ASJ_CLI_DETECT_ARGUMENTS_H
 
 #include "common.h"
+#include "image_list.h"
 #include "plot.h"
 #include "region.h"
 #include "settings.h"
@@ -29,8 +30,9 @@ typedef struct cli_detect_arguments {
     int32_t plot_format;   /* CLI_PLOT_... */
     cli_plot_style style;
     const char *plot_option; /* the name of one that says how the plot looks; NULL = none was given */
-    char **images;         /* inside argv */
-    size_t image_count;
+    const char *files_from; /* NULL = none */
+    int skip_existing;     /* images that have their results in out_dir are left out */
+    cli_image_list images;
 } cli_detect_arguments;
 
 /* Reads argv[1 ..] (argv[0] is "detect"). CLI_SUCCESS, CLI_HELP after printing the help, CLI_USAGE or CLI_FAILED after saying why.

@@ -100,7 +100,7 @@ static int name_outputs(const cli_detect_arguments *arguments, cli_outputs *outp
     for (size_t i = 0; i < outputs->count; i++) {
         cli_output *output = &outputs->of[i];
         if (arguments->out_dir) {
-            const char *image = arguments->images[i];
+            const char *image = arguments->images.names[i];
             output->junctions = name_in(arguments, image, cli_detect_extension(arguments));
             if (arguments->plot)
                 output->plot = name_in(arguments, image, plot_extensions[arguments->plot_format]);
@@ -149,9 +149,9 @@ static size_t list_planned(const cli_detect_arguments *arguments, const cli_outp
     size_t n = 0;
     for (size_t i = 0; i < outputs->count; i++) {
         if (outputs->of[i].junctions && strcmp(outputs->of[i].junctions, "-") != 0)
-            list[n++] = (cli_planned){outputs->of[i].junctions, arguments->images[i], NULL};
+            list[n++] = (cli_planned){outputs->of[i].junctions, arguments->images.names[i], NULL};
         if (outputs->of[i].plot)
-            list[n++] = (cli_planned){outputs->of[i].plot, arguments->images[i], NULL};
+            list[n++] = (cli_planned){outputs->of[i].plot, arguments->images.names[i], NULL};
     }
     return n;
 }
@@ -277,14 +277,14 @@ int cli_outputs_plan(const cli_detect_arguments *arguments, cli_outputs *outputs
 {
     int result = CLI_FAILED;
     outputs->count = 0;
-    outputs->of = calloc(arguments->image_count, sizeof *outputs->of);
-    cli_planned *list = calloc(2 * arguments->image_count, sizeof *list);
-    const char **inputs = calloc(arguments->image_count + 1, sizeof *inputs);
-    size_t input_count = arguments->image_count;
+    outputs->of = calloc(arguments->images.count, sizeof *outputs->of);
+    cli_planned *list = calloc(2 * arguments->images.count, sizeof *list);
+    const char **inputs = calloc(arguments->images.count + 1, sizeof *inputs);
+    size_t input_count = arguments->images.count;
     if (outputs->of)
-        outputs->count = arguments->image_count;
+        outputs->count = arguments->images.count;
     if (inputs) {
-        memcpy(inputs, arguments->images, arguments->image_count * sizeof *inputs);
+        memcpy(inputs, arguments->images.names, arguments->images.count * sizeof *inputs);
         inputs[input_count] = arguments->region.mask;
         input_count += arguments->region.mask != NULL;
     }

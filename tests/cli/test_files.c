@@ -164,13 +164,48 @@ static void endings_in_capitals(void **state)
     expect_beginning("m.JSON", "{");
 }
 
+static void more_images_from_a_file(void **state)
+{
+    (void)state;
+    write_bytes("list.txt", "scene.png\r\n\nfirst.png\n./second.png", 34);
+    const outcome *result = run_cli("detect", "-d", "listed", "--files-from", "list.txt", NULL);
+    expect_code(result, 0);
+    assert_true(exists("listed/scene.asj") && exists("listed/first.asj") && exists("listed/second.asj"));
+    assert_int_equal(count_files("listed"), 3);
+    /* names with line breaks, as find -print0 writes them, after those of the command line */
+    assert_int_equal(link("first.png", "two\nlines.png"), 0);
+    write_bytes("list.zero", "two\nlines.png\0second.png", 24);
+    expect_code(run_cli("detect", "-q", "-d", "zero", "--files-from", "list.zero", "scene.png", NULL), 0);
+    assert_true(exists("zero/scene.asj") && exists("zero/two\nlines.asj") && exists("zero/second.asj"));
+    unlink("two\nlines.png");
+    /* what is there is left alone, and said */
+    unlink("listed/first.asj");
+    write_bytes("listed/scene.asj", "mine", 4);
+    result = run_cli("detect", "-d", "listed", "--skip-existing", "--files-from", "list.txt", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "2 of 3 images had their results in listed already");
+    expect_beginning("listed/scene.asj", "mine");
+    assert_true(exists("listed/first.asj"));
+    write_bytes("list.none", "\n\r\n", 3);
+    result = run_cli("detect", "-d", "listed", "--files-from", "list.none", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "list.none names no image");
+    result = run_cli("detect", "-d", "listed", "--files-from", "nowhere.txt", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "nowhere.txt: No such file");
+    result = run_cli("detect", "--skip-existing", "scene.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "changes nothing without --out-dir");
+    expect_code(run_cli("detect", "-d", "listed", "--files-from", ".", NULL), 1);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_limit_of_file_size_is_an_error), cmocka_unit_test(two_spellings_of_one_output),
         cmocka_unit_test(folders_of_images_are_kept),
         cmocka_unit_test(a_link_to_nothing_yet_is_followed), cmocka_unit_test(names_that_promise_another_format),
-        cmocka_unit_test(endings_in_capitals),
+        cmocka_unit_test(endings_in_capitals), cmocka_unit_test(more_images_from_a_file),
     };
     program_start(argc, argv);
     return program_end(cmocka_run_group_tests(tests, make_files, NULL));

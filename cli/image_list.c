@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+#include "image_list.h"
+#include "message.h"
+
+#include <errno.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void cli_image_list_free(cli_image_list *list)
+{
+    free(list->names);
+    free(list->text);
+    memset(list, 0, sizeof *list);
+}
+
+static int out_of_memory(void)
+{
+    cli_error("out of memory");
+    return CLI_FAILED;
+}
+
+/* The whole stream with a zero after it. */
+static int read_all(FILE *stream, const char *name, char **text, size_t *size)
+{
+    size_t room = 0;
+    *size = 0;
+    do {
+        if (*size + 1 >= room) {
+            char *more = room <= SIZE_MAX / 4 ? realloc(*text, room = room ? 2 * room : 65536) : NULL;
+            if (!more)
+                return out_of_memory();
+            *text = more;
+        }
+        *size += fread(*text + *size, 1, room - 1 - *size, stream);
+    } while (!feof(stream) && !ferror(stream));
+    (*text)[*size] = '\0';
+    if (!ferror(stream))
+        return CLI_SUCCESS;
+    cli_error("%s: %s", name, strerror(errno));
+    return CLI_FAILED;
+}
+
+static int read_file(const char *file, char **text, size_t *size)
+{
+    if (strcmp(file, "-") == 0)
+        return read_all(stdin, "standard input", text, size);
+    FILE *stream = fopen(file, "rb");
+    if (!stream) {
+        cli_error("%s: %s", file, strerror(errno));
+        return CLI_FAILED;
+    }
+    const int result = read_all(stream, file, text, size);
+    fclose(stream);
+    return result;
+}
+
+/* Ends each name with a zero, and returns how many ends there are. */
+static size_t cut(char *text, size_t size)
+{
+    const int zeros = memchr(text, '\0', size) != NULL;
+    size_t ends = 1;
+    for (size_t i = 0; i < size; i++) {
+        if (!zeros && text[i] == '\n') {
+            text[i] = '\0';
+            if (i > 0 && text[i - 1] == '\r')
+                text[i - 1] = '\0';
+        }
+        ends += text[i] == '\0';
+    }
+    return ends;
+}
+
+int cli_image_list_make(char **given, size_t given_count, const char *file, cli_image_list *list)
+{
+    size_t size = 0, most = given_count + 1;
+    memset(list, 0, sizeof *list);
+    if (file) {
+        const int result = read_file(file, &list->text, &size);
+        if (result != CLI_SUCCESS)
+            return result;
+        most += cut(list->text, size);
+    }
+    list->names = calloc(most, sizeof *list->names);
+    if (!list->names)
+        return out_of_memory();
+    for (; list->count < given_count; list->count++)
+        list->names[list->count] = given[list->count];
+    for (size_t i = 0; i < size; i += strlen(list->text + i) + 1)
+        if (list->text[i] != '\0')
+            list->names[list->count++] = list->text + i;
+    return CLI_SUCCESS;
+}
