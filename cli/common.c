@@ -13,7 +13,6 @@ enum { BACKEND, DEVICE, THREADS, SIMD, MAX_MEGAPIXELS, TIME, QUIET };
 
 /* The largest image that asj_detect() takes. */
 #define MAX_MEGAPIXELS_LIMIT (ASJ_MAX_PIXELS / 1e6)
-#define MAX_THREADS 256
 
 const cli_option cli_common_options[] = {
     {BACKEND, 0, "backend", "auto|cpu|opencl",
@@ -50,8 +49,8 @@ static int take_backend(cli_common *common, const char *text)
 static int take_threads(cli_common *common, const char *text)
 {
     double number;
-    if (!cli_parse_number(text, 0, MAX_THREADS, &number) || strspn(text, "0123456789") != strlen(text))
-        return cli_usage_error(NULL, "--threads: '%s' is not a whole number in 0 .. %d", text, MAX_THREADS);
+    if (!cli_parse_number(text, 0, ASJ_MAX_THREADS, &number) || strspn(text, "0123456789") != strlen(text))
+        return cli_usage_error(NULL, "--threads: '%s' is not a whole number in 0 .. %d", text, ASJ_MAX_THREADS);
     common->threads = (int32_t)number;
     return CLI_SUCCESS;
 }

@@ -95,8 +95,8 @@ static asj_status check_range(asj_context *context)
         return asj_fail(context, ASJ_ERROR_OPTION, ASJ_RESERVED_MESSAGE);
     if (options->backend < ASJ_BACKEND_AUTO || options->backend > ASJ_BACKEND_OPENCL)
         return asj_fail(context, ASJ_ERROR_OPTION, "backend %d: there is no such", (int)options->backend);
-    if (options->threads < 0 || options->threads > ASJ_MOST_THREADS)
-        return asj_fail(context, ASJ_ERROR_OPTION, "threads %d: 0 .. %d", (int)options->threads, ASJ_MOST_THREADS);
+    if (options->threads < 0 || options->threads > ASJ_MAX_THREADS)
+        return asj_fail(context, ASJ_ERROR_OPTION, "threads %d: 0 .. %d", (int)options->threads, ASJ_MAX_THREADS);
     if (options->simd < ASJ_SIMD_AUTO || options->simd >= ASJ_SIMD_COUNT)
         return asj_fail(context, ASJ_ERROR_OPTION, "simd %d: there is no such", (int)options->simd);
     return ASJ_OK;

@@ -117,12 +117,14 @@ typedef struct asj_kernel_cache {
 typedef void (*asj_parallel_task)(void *job, int32_t number);
 typedef void (*asj_parallel_callback)(void *user, int32_t count, asj_parallel_task task, void *job);
 
+#define ASJ_MAX_THREADS 256 /* of a context */
+
 /* How a context is made. Fill it with asj_context_options_init() and change what you need: fields added later take their
  * defaults from there; what is reserved and not zero is refused (ASJ_ERROR_OPTION). */
 typedef struct asj_context_options {
     int32_t backend;                /* ASJ_BACKEND_..., default auto */
-    int32_t threads;                /* threads of the CPU path, 0 .. 256; default 0 = as many as processors. The results do
-                                     * not depend on it. 1 when the library was built without threads. */
+    int32_t threads;                /* threads of the CPU path, 0 .. ASJ_MAX_THREADS; default 0 = as many as processors. The
+                                     * results do not depend on it. 1 when the library was built without threads. */
     const char *device;             /* which OpenCL device: its number in asj_device_list, "gpu", "cpu", "accelerator", or a part
                                      * of its name or its platform's, upper or lower case; the first that can be used is taken.
                                      * Default NULL = any, GPUs first. ASJ_BACKEND_AUTO looks at GPUs only. */

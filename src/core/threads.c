@@ -65,7 +65,7 @@ typedef struct asj_pool {
     pthread_t caller;
     int32_t workers, most;     /* how many have been made, and how many there can be */
     pid_t process;
-    pthread_t thread[ASJ_MOST_THREADS];
+    pthread_t thread[ASJ_MAX_THREADS];
 } asj_pool;
 
 static void relax(void)
@@ -136,7 +136,7 @@ static void start(asj_pool *pool)
     pthread_cond_init(&pool->done, NULL);
     pool->queue = NULL;
     pool->running = pool->asleep = pool->workers = 0;
-    pool->most = ASJ_MOST_THREADS;
+    pool->most = ASJ_MAX_THREADS;
     pool->process = getpid();
 }
 
@@ -305,7 +305,7 @@ int32_t asj_thread_count(int32_t wanted)
     if (count <= 0)
         count = sysconf(_SC_NPROCESSORS_ONLN);
 #endif
-    return wanted > 0 ? wanted : count < 1 ? 1 : count > ASJ_MOST_THREADS ? ASJ_MOST_THREADS : (int32_t)count;
+    return wanted > 0 ? wanted : count < 1 ? 1 : count > ASJ_MAX_THREADS ? ASJ_MAX_THREADS : (int32_t)count;
 }
 
 #else

@@ -37,8 +37,6 @@ static inline uint16_t *asj_thread_scratch(const asj_scratch *scratch, const asj
     return scratch->memory + (size_t)part->thread * scratch->size;
 }
 
-#define ASJ_MOST_THREADS 256 /* of a context */
-
 /* How many threads a context uses that was asked for `wanted`; 0 = one for each processor that the process may run on. */
 int32_t asj_thread_count(int32_t wanted);
 

@@ -68,7 +68,6 @@ typedef struct asj_two_view {
     double thickness[ASJ_MOST_PLANES];   /* sd of a location on it, as part of that of others: model.c */
     double in_front[ASJ_MOST_PLANES][3]; /* a pixel (x, y, 1) of the plane is in front of camera 1 when its product is positive */
     int32_t has_motion;      /* what follows is known: which side of the cameras a point is */
-    int32_t reserved;
     double rotation[9];
     double turned[9];        /* R K1^-1 */
     double translation[3];

@@ -33,7 +33,7 @@ static asj_search plan(const asj_estimation *e, int32_t kind)
 {
     const asj_geometry_options *o = e->options;
     const asj_camera *known = asj_estimation_cameras(e), *cameras = known ? known : o->cameras;
-    asj_search search = {kind, o->samples, o->seed, {cameras[0], cameras[1]}, GIVE_UP - log(o->epsilon), NULL, 0, 0};
+    asj_search search = {kind, o->samples, o->seed, {cameras[0], cameras[1]}, GIVE_UP - log(o->epsilon), NULL, 0};
     for (int32_t v = 0; v < 2; v++)
         if (!asj_camera_is_known(&search.cameras[v])) {
             const double aspect = o->aspects[v], longer = fmax(o->widths[v], o->heights[v] / aspect);

@@ -162,7 +162,7 @@ asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, d
     const double shear = SHEAR_WIDTH * SHEAR_WIDTH / (2 * ASJ_PI * loose * ASJ_SHEAR_SD * loose * ASJ_SHEAR_SD);
     const double line = 2 * set->spread / (normal * sd) * shape;
     const double plane = set->area / (2 * ASJ_PI * sd * sd) * shape * shear;
-    asj_peaks peaks = {view->planar ? plane : line, plane, loose, !(loose > 1), 0, NULL};
+    asj_peaks peaks = {view->planar ? plane : line, plane, loose, !(loose > 1), NULL};
     if (set->has_labels && view->has_motion)
         peaks.named = asj_named_rotation(set, view->rotation);
     if (!view->planar && view->plane_count > 0) {

@@ -35,7 +35,6 @@ typedef struct asj_peaks {
     double first, plane; /* of part 0, and of the planes if they are as thick as others' errors */
     double loose;
     int32_t fine;        /* residuals have several sizes: where `loose` is 1 */
-    int32_t reserved;
     const asj_likely_rotation *named; /* labels.c; NULL: none */
 } asj_peaks;
 asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, double loose);

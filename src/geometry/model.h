@@ -22,7 +22,6 @@ typedef struct asj_model {
     double peak;              /* the evidence before asj_settle() has seen it */
     double covariance[25];    /* of the motion's parameters, once asj_settle() has seen it */
     int32_t settled;
-    int32_t reserved;
 } asj_model;
 
 /* (x, y, 1) = K^-1 of a pixel. */

@@ -14,7 +14,6 @@ typedef struct asj_seen_cell {
     double x2, y2;     /* where its middle is in image 2 */
     double difference; /* of brightness, after what differs between the images as a whole */
     int32_t seen;      /* 0: on no plane, or outside image 2 */
-    int32_t reserved;
 } asj_seen_cell;
 
 /* A look at the pictures through one geometry. */

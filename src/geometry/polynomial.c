@@ -21,7 +21,7 @@
 /* A piece of [0, 1] and its coefficients. */
 typedef struct piece {
     double low, high;
-    int32_t depth, reserved;
+    int32_t depth;
     double b[ASJ_POLYNOMIAL_DEGREE + 1];
 } piece;
 

@@ -16,7 +16,6 @@ typedef struct asj_search {
     double least; /* nats: when no geometry reaches this score at first sight, there is none */
     const double *weights; /* NULL, or how much of its prior each candidate is drawn by */
     int32_t brief;         /* 1 = fewer of the best samples are followed, and sampled around once only */
-    int32_t reserved;
 } asj_search;
 
 /* The best geometries of the kind, refined, the best score first; finalists has room for ASJ_FINALISTS. *count may be 0. */

@@ -11,7 +11,6 @@ typedef struct asj_turned {
     float *normal; /* for each rotation all x, all y, all z */
     float *weight; /* for each rotation, of each candidate's vote */
     int32_t count;
-    int32_t reserved;
 } asj_turned;
 
 /* weights: NULL, or factors of the priors. 0 without memory; asj_turned_free() in any case. */
