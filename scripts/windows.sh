@@ -32,6 +32,11 @@ configured() {
 try_windows() {
     folder=$work/windows
     parts=$windows_parts
+    version=$(sh scripts/version.sh)
+    case $version in # as src/meson.build has it
+    0.*) dll=libasj-${version%.*}.dll ;;
+    *) dll=libasj-${version%%.*}.dll ;;
+    esac
     if ! command -v $windows_compiler > /dev/null; then
         echo "windows: skipped (no $windows_compiler)"
         return 0
@@ -39,7 +44,7 @@ try_windows() {
     find_wine > "$work/wine.found" || parts="$parts -Doptimization=0" # it is built only, then
     printf "[binaries]\nc = ['%s']\n" "${cache:+$cache', '}$windows_compiler" > "$work/windows.ini"
     if ! { configured "$folder" --cross-file "$root/scripts/mingw-w64.ini" --cross-file "$work/windows.ini" $parts &&
-        ninja -C "$folder" src/libasj-0.dll &&
+        ninja -C "$folder" "src/$dll" &&
         $windows_compiler -std=c99 -O2 -Iinclude tests/machines/machine.c "$folder/src/libasj.dll.a" \
             -o "$folder/src/machine.exe"; } > "$work/windows.log" 2>&1; then
         tail -n 30 "$work/windows.log"
@@ -47,7 +52,7 @@ try_windows() {
         return 1
     fi
     sh tests/api/functions.sh $(ls include/asj/*.h | grep -v '/io\.h$') > "$work/declared"
-    x86_64-w64-mingw32-objdump -p "$folder/src/libasj-0.dll" |
+    x86_64-w64-mingw32-objdump -p "$folder/src/$dll" |
         sed -n '/^\[Ordinal\/Name Pointer\]/,$ s/^[ \t]*\[[ 0-9]*\]\( +base\[[ 0-9]*\] *[0-9a-f]*\)\{0,1\} \([A-Za-z_]*\)/\2/p' |
         sort > "$work/exported"
     if ! diff "$work/declared" "$work/exported"; then
