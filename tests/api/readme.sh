@@ -56,7 +56,7 @@ END
 "$@" -std=c99 -I"$include" "$work/options.c" "$library" -pthread -lm -ldl -o "$work/options" ||
     "$@" -std=c99 -I"$include" "$work/options.c" "$library" -lm -ldl -o "$work/options" || exit 1
 "$work/options" > "$work/keys"
-awk '/^\| you want \| turn \|$/ { on = 1; next } !/^\|/ { on = 0 } on' "$readme" | grep -oE '`[a-z_]+` [0-9]' | tr -d '` 0-9' |
+awk '/^\| goal \| option \|$/ { on = 1; next } !/^\|/ { on = 0 } on' "$readme" | grep -oE '`[a-z_]+` [0-9]' | tr -d '` 0-9' |
     sort -u > "$work/knobs"
 [ "$(wc -l < "$work/knobs")" -ge 5 ] || { echo 'no table of knobs'; exit 1; }
 grep -vxFf "$work/keys" "$work/knobs" && { echo 'those are no options'; exit 1; }
