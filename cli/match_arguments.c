@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The help and the options of `asj-cli match`; what goes with what: match_checks.c. */
 #include "match_arguments.h"
-#include "ending.h"
 #include "camera.h"
+#include "ending.h"
 #include "help.h"
 #include "message.h"
 

@@ -16,8 +16,8 @@
 extern "C" {
 #endif
 
-/* Every function below that takes `message` (may be NULL) with room for `message_size` bytes, and on failure writes one
- * line there that names the file and the cause. 512 bytes are plenty. */
+/* `message` of the functions below may be NULL, or has room for `message_size` bytes: on failure one line is written there, which
+ * names the file and the cause. 512 bytes are plenty. */
 
 /* Default limit on the pixels of an image file: 268 megapixels (2^28 pixels). A file that declares more is refused before its
  * pixels are decoded. */

@@ -35,8 +35,8 @@ int32_t asj_likeliest_focal(const asj_focal_prior *prior);
 /* Log of the density of a factor over the flat one, whatever the rotation. */
 double asj_log_focal_prior(const asj_focal_prior *prior, double factor);
 
-/* How much likelier a rotation between directions is than with cameras that are known, by the log: what its density
- * (asj_likely_rotation) is to be taken times for the product with asj_log_focal_prior() to be that of focal length and rotation. */
+/* Log of what densities of rotations between directions (asj_likely_rotation) are to be multiplied with, so that their prior times
+ * that of the factor is the joint one: focal_prior.c. */
 double asj_log_focal_share(const asj_focal_prior *prior, double factor);
 
 /* Directions of both images with cameras of that factor. ASJ_ERROR_MEMORY. */

@@ -405,18 +405,25 @@ static void run_on_own(void *user, int32_t tasks, asj_parallel_task task, void *
         pthread_join(threads[i], NULL);
 }
 
+/* A context of four threads of the user's. */
+static asj_context *with_pool(asj_parallel_callback parallel, void *user)
+{
+    asj_context_options options;
+    asj_context *context = NULL;
+    asj_context_options_init(&options);
+    options.threads = 4;
+    options.parallel = parallel;
+    options.parallel_user = user;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+    return context;
+}
+
 static void test_own_threads(void **state)
 {
     (void)state;
     for (int threaded = 0; threaded < 2; threaded++) {
         own_pool pool = {0, 0, threaded};
-        asj_context_options options;
-        asj_context *context = NULL;
-        asj_context_options_init(&options);
-        options.threads = 4;
-        options.parallel = run_on_own;
-        options.parallel_user = &pool;
-        assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+        asj_context *context = with_pool(run_on_own, &pool);
         assert_true(runs_all(context, 4, 1, 1));
         assert_int_equal(pool.calls, 0);
         for (int32_t items = 2; items < 50; items += 7)
@@ -441,13 +448,7 @@ static void test_pool_that_leaves_work(void **state)
 {
     (void)state;
     for (int which = 0; which < 3; which++) {
-        asj_context_options options;
-        asj_context *context = NULL;
-        asj_context_options_init(&options);
-        options.threads = 4;
-        options.parallel = run_some;
-        options.parallel_user = &which;
-        assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+        asj_context *context = with_pool(run_some, &which);
         for (int32_t items = 1; items < 50; items += 7)
             assert_true(runs_all(context, 4, items, 1));
         asj_context_free(&context);

@@ -164,8 +164,7 @@ def _check_replaced(arguments: argparse.Namespace, store: Path, plan: plans.Plan
         from .collection import colmap
 
         files.append((arguments.colmap, colmap.is_ours))
-        if logs := colmap.logs_of(arguments.colmap):
-            raise FileExistsError(f"{logs[0]} is there: a program has {arguments.colmap} open, or was killed; open it once, or remove both")
+        colmap.refuse_logs(arguments.colmap)
     if arguments.hdf5:
         from .collection import hdf5
 

@@ -43,6 +43,12 @@ def is_ours(path: Path) -> bool:
     return header.startswith(b"SQLite format 3\0") and int.from_bytes(header[68:72], "big") == _APPLICATION
 
 
+def refuse_logs(path: Path) -> None:
+    """Raises FileExistsError where a database has such logs."""
+    if logs := logs_of(path):
+        raise FileExistsError(f"{logs[0]} is there: another program has {path.name} open, or was killed; open it once, or remove both")
+
+
 def logs_of(path: Path) -> list[Path]:
     """What SQLite keeps beside a database that is open, or whose program was killed; it would take them for those of the next one."""
     return [log for kind in ("-wal", "-shm", "-journal") if (log := path.with_name(path.name + kind)).exists()]
@@ -53,8 +59,7 @@ def write(store: Store, path: Path, verify: bool = True, refine: bool = True, th
     junctions stand where their matches put them, not where each was detected. Raises OSError where it cannot be written."""
     import pycolmap
 
-    if logs := logs_of(path):
-        raise FileExistsError(f"{logs[0]} is there: another program has {path.name} open, or was killed; open it once, or remove both")
+    refuse_logs(path)
     with whole_file(path) as temporary:
         os.remove(temporary)
         try:
