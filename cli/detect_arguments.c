@@ -79,7 +79,7 @@ static const cli_option plot_options[] = {
      "by how sure they are"},
     {PLOT_BACKGROUND, 0, "plot-background", "photo|color|white",
      "over the pale photograph in grey (the default) or in its colours, or on white"},
-    {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of the image, 0.01 .. 16; default: small images are enlarged"},
+    {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of the image, 0.01 .. 16; default: small images are upsampled"},
 };
 
 static const cli_option preset_options[] = {
@@ -272,7 +272,7 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
     choose_preset(arguments);
     asj_detect_options_preset(&arguments->options, arguments->preset);
     /* the file does not say octaves, and the matcher must know which junctions are coarse */
-    const int without_octaves = arguments->options.octave_union && (arguments->output || arguments->out_dir) &&
+    const int without_octaves = arguments->options.independent_octaves && (arguments->output || arguments->out_dir) &&
                                 strcmp(cli_detect_extension(arguments), "asj") == 0;
     if (without_octaves)
         arguments->options.octaves = 1;

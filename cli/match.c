@@ -188,14 +188,14 @@ static void print_stretch(const run *r)
         cli_note("looked at stretched by %g,%g: as they are the images have too little in common", by[0], by[1]);
 }
 
-/* Of matches, where none is accepted. What the images and the enlarged ones tell at odds has rejected some (asj/match.h). */
+/* Of matches, where none is accepted. What the images and the upsampled ones tell at odds has rejected some (asj/match.h). */
 static void print_no_geometry(const run *r)
 {
     const int32_t status = r->result->geometry.status;
     const unsigned long rejected = (unsigned long)r->result->rejected_count;
     char of_matches[96] = "; the matches are those that there are without";
     if (rejected > 0)
-        snprintf(of_matches, sizeof of_matches, "; the images and the enlarged ones tell two; matches left out: %lu", rejected);
+        snprintf(of_matches, sizeof of_matches, "; the images and the upsampled ones tell two; matches left out: %lu", rejected);
     else if (status == ASJ_GEOMETRY_AMBIGUOUS)
         snprintf(of_matches, sizeof of_matches, "; several explain the views as well");
     else if (status == ASJ_GEOMETRY_DEGENERATE)

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* --- enlarged images --------------------------------------------------------------------------------------------------------- */
+/* --- upsampled images --------------------------------------------------------------------------------------------------------- */
 
 /* Will there be junctions of octave -1, or may a file have some? */
 static int may_have_finer(const cli_match_arguments *arguments)
@@ -18,38 +18,38 @@ static int may_have_finer(const cli_match_arguments *arguments)
     return may;
 }
 
-/* What was given of how enlarged images are looked at; NULL = nothing. Where their partners are looked for matters to junctions of
+/* What was given of how upsampled images are looked at; NULL = nothing. Where their partners are looked for matters to junctions of
  * octave -1 as well. */
-static const char *asked_of_enlarged(const cli_match_arguments *arguments)
+static const char *asked_of_upsampled(const cli_match_arguments *arguments)
 {
     const cli_settings *given = &arguments->match_settings;
-    const int only_enlarged = !may_have_finer(arguments);
-    return cli_settings_have(given, "enlarged_half_octaves")               ? "--enlarged-half-octaves" :
-           cli_settings_have(given, "enlarged_most")                       ? "--enlarged-most" :
-           only_enlarged && cli_settings_have(given, "enlarged_reach")     ? "--enlarged-reach" :
-           only_enlarged && cli_settings_have(given, "enlarged_shortlist") ? "--enlarged-shortlist" : NULL;
+    const int only_upsampled = !may_have_finer(arguments);
+    return cli_settings_have(given, "upsampled_half_octaves")               ? "--upsampled-half-octaves" :
+           cli_settings_have(given, "upsampled_max_junctions")                       ? "--upsampled-max-junctions" :
+           only_upsampled && cli_settings_have(given, "upsampled_search_radius")     ? "--upsampled-search-radius" :
+           only_upsampled && cli_settings_have(given, "upsampled_shortlist") ? "--upsampled-shortlist" : NULL;
 }
 
 /* The same, and of when they are. */
-static const char *asked_of_enlarging(const cli_match_arguments *arguments)
+static const char *asked_of_upsampling(const cli_match_arguments *arguments)
 {
-    return cli_settings_have(&arguments->match_settings, "enlarge_from") ? "--enlarge-from" : asked_of_enlarged(arguments);
+    return cli_settings_have(&arguments->match_settings, "upsample_from") ? "--upsample-from" : asked_of_upsampled(arguments);
 }
 
 /* One octave, or another first one, says how images are looked at. */
-static int check_enlarging(const cli_match_arguments *arguments)
+static int check_upsampling(const cli_match_arguments *arguments)
 {
     const int32_t first = arguments->detect_options.first_octave, one = arguments->detect_options.octaves == 1;
-    const char *asked = asked_of_enlarging(arguments);
+    const char *asked = asked_of_upsampling(arguments);
     if (asked && (first != 0 || one))
         return cli_usage_error("match", "%s changes nothing with %s", asked,
-                               first < 0 ? "--first-octave -1, which enlarges the images anyway" :
+                               first < 0 ? "--first-octave -1, which upsamples the images anyway" :
                                first > 0 ? "--first-octave above 0" : "one octave");
-    const char *enlarged = asked_of_enlarged(arguments);
-    if (enlarged && arguments->options.enlarge_from == 0)
-        return cli_usage_error("match", "%s changes nothing with --enlarge-from 0, as it is with the preset paper", enlarged);
-    if (arguments->options.enlarged_reach == 0 && cli_settings_have(&arguments->match_settings, "enlarged_shortlist"))
-        return cli_usage_error("match", "--enlarged-shortlist changes nothing with --enlarged-reach 0");
+    const char *upsampled = asked_of_upsampled(arguments);
+    if (upsampled && arguments->options.upsample_from == 0)
+        return cli_usage_error("match", "%s changes nothing with --upsample-from 0, as it is with the preset paper", upsampled);
+    if (arguments->options.upsampled_search_radius == 0 && cli_settings_have(&arguments->match_settings, "upsampled_shortlist"))
+        return cli_usage_error("match", "--upsampled-shortlist changes nothing with --upsampled-search-radius 0");
     if (one && cli_settings_have(&arguments->detect_settings, "half_octaves"))
         return cli_usage_error("match", "--half-octaves changes nothing with one octave");
     return CLI_SUCCESS;
@@ -120,7 +120,7 @@ static int check_stretch(cli_match_arguments *arguments)
             return cli_usage_error("match", "--stretch looks at whole images: it does not go with --%s%d",
                                    arguments->regions[v].mask ? "mask" : "region", v + 1);
     }
-    const char *asked = asked_of_enlarging(arguments);
+    const char *asked = asked_of_upsampling(arguments);
     if ((!arguments->look || arguments->stretch.x > 0) && asked)
         return cli_usage_error("match", "%s changes nothing: it is for two whole images, without --stretch and without the preset "
                                "paper", asked);
@@ -169,7 +169,7 @@ int cli_match_check(cli_match_arguments *arguments)
     if (result == CLI_SUCCESS)
         result = cli_check_detector("match", &arguments->detect_options);
     if (result == CLI_SUCCESS)
-        result = check_enlarging(arguments);
+        result = check_upsampling(arguments);
     if (result == CLI_SUCCESS)
         result = cli_check_ending("match", "matches", arguments->output, arguments->format, cli_match_formats);
     if (result == CLI_SUCCESS)

@@ -396,7 +396,7 @@ asj_status cli_plot_match(const char *path, int32_t format, const cli_plot_match
                           const cli_plot_match_style *style, char *message, size_t message_size)
 {
     drawing d = {.content = content, .style = style};
-    d.rejected = content->segments ? 0 : (size_t)content->result->rejected_count;
+    d.rejected = content->segments ? 0 : content->result->rejected_count;
     lay_out(&d);
     asj_status status = ASJ_ERROR_MEMORY;
     if (make_pairs(&d))

@@ -99,9 +99,9 @@ build_and_test() {
 
 # What builds for another purpose leave out: suites that take minutes and whose results the goldens stand for, and the README's
 # commands, which do what other tests of the command line do.
-quick_with_finer='--no-suite accuracy --no-suite experiments --no-suite long --no-suite benchmark --no-suite enlarged
+quick_with_upsampled='--no-suite accuracy --no-suite experiments --no-suite long --no-suite benchmark --no-suite upsampled_images
 --no-suite readme'
-quick="$quick_with_finer --no-suite finer"
+quick="$quick_with_upsampled --no-suite upsampled"
 
 # The core alone: no library but libc and libm (the compiler's own run-time library may show up too). Without the accuracy suite:
 # the goldens show that its results are those of the whole build.
@@ -122,7 +122,7 @@ with_clang() {
 }
 
 # Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code, beside the tests. Of
-# enlarged images one test. Without the tests that must fail, which need no sanitizer, without whole images on devices, and without
+# upsampled images one test. Without the tests that must fail, which need no sanitizer, without whole images on devices, and without
 # the benchmarks. Lines of the sources are all that reports need to know (-g1). On alternative signal stacks: LLVM, in PoCL, gives
 # the thread that starts it one of its own where the sanitizer's is smaller, which depends on the processor, and when the thread
 # ends the sanitizer unmaps that in place of its own and fails.
@@ -135,7 +135,8 @@ with_sanitizers() {
     scenes=$!
     trap 'kill "$scenes" 2> /dev/null; exit 130' INT TERM
     state_of_tests=0
-    run_tests build-sanitize $quick_with_finer --no-suite fails --no-suite device-images --timeout-multiplier 4 || state_of_tests=1
+    run_tests build-sanitize $quick_with_upsampled --no-suite fails --no-suite device-images --timeout-multiplier 4 ||
+        state_of_tests=1
     trap - INT TERM
     wait "$scenes" && [ "$state_of_tests" = 0 ]
 }

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* What is small or seen at a glancing angle has too few pixels for junctions, where it is foreshortened and in between as well:
- * stretched along one axis, or enlarged, it has enough (the views of ASIFT, Morel and Yu 2009, are made so that descriptors agree;
- * here patches follow their junctions' affine maps anyway, and it is the detector that gains). Of an enlarged image the octaves
+ * stretched along one axis, or upsampled, it has enough (the views of ASIFT, Morel and Yu 2009, are made so that descriptors agree;
+ * here patches follow their junctions' affine maps anyway, and it is the detector that gains). Of an upsampled image the octaves
  * that are no smaller than the image are matched as one: matches of guests (match/guests.c) are fewer, and less sure. */
 #include "look.h"
 #include "core/image.h"
 #include "core/sort.h"
 #include "core/stretch.h"
-#include "match/finer.h"
+#include "match/upsampled.h"
 #include "match/result_changes.h"
 
 #include <math.h>
@@ -58,7 +58,7 @@ static asj_status detect(asj_context *context, const asj_detect_options *options
         memcpy(v->junctions, v->found->junctions, count * sizeof *v->junctions);
     const int32_t finer = (int32_t)floor(log2(fmax(1, fmin(v->by.x, v->by.y))) + 1e-6);
     for (size_t k = 0; k < count; k++)
-        if (v->junctions[k].octave > 0) /* octave -1 stays what it is: match/finer.c asks whether it holds */
+        if (v->junctions[k].octave > 0) /* octave -1 stays what it is: match/upsampled.c asks whether it holds */
             v->junctions[k].octave = v->junctions[k].octave > finer ? v->junctions[k].octave - finer : 0;
     return ASJ_OK;
 }
@@ -100,7 +100,7 @@ typedef struct junction_list {
     size_t count;
 } junction_list;
 
-/* own: of the enlarged images alone, with their own matches as a witness; NULL: as they are. */
+/* own: of the upsampled images alone, with their own matches as a witness; NULL: as they are. */
 static asj_status match_lists(const asj_look *look, const junction_list lists[2], const asj_match_options *options,
                               const asj_match_result *own, asj_match_result **result)
 {
@@ -132,7 +132,7 @@ asj_status asj_look_match(const asj_look *look, const asj_match_options *options
     return match_lists(look, lists, options, NULL, result);
 }
 
-/* --- enlarged ---------------------------------------------------------------------------------------------------------------- */
+/* --- upsampled ---------------------------------------------------------------------------------------------------------------- */
 
 /* Where the junction of this number stands. */
 typedef struct stand {
@@ -171,14 +171,14 @@ static asj_status sort_by_place(const asj_look *look, int32_t n, int32_t most, a
     return ASJ_OK;
 }
 
-asj_status asj_look_match_enlarged(const asj_look *look, const asj_match_options *options, const asj_match_result *own,
+asj_status asj_look_match_upsampled(const asj_look *look, const asj_match_options *options, const asj_match_result *own,
                                    asj_match_result **result)
 {
     asj_junction *sorted[2] = {NULL, NULL};
     junction_list lists[2];
     asj_status status = ASJ_OK;
     for (int32_t n = 0; n < 2 && status == ASJ_OK; n++)
-        status = sort_by_place(look, n, options->enlarged_most, &sorted[n], &lists[n]);
+        status = sort_by_place(look, n, options->upsampled_max_junctions, &sorted[n], &lists[n]);
     if (status == ASJ_OK)
         status = match_lists(look, lists, options, own, result);
     asj_release(&look->context->memory, sorted[0]);

@@ -36,9 +36,10 @@ asj_status asj_look_open(asj_context *context, const asj_image *const images[2],
  * matching alone. */
 asj_status asj_look_match(const asj_look *look, const asj_match_options *options, asj_match_result **result);
 
-/* The same of images that the detector has enlarged (first_octave -1), and of these alone, of the options->enlarged_most most
- * meaningful junctions of each, where the images' own matches put them: the witness that is to be asked (match/finer.h). */
-asj_status asj_look_match_enlarged(const asj_look *look, const asj_match_options *options, const asj_match_result *own,
+/* The same of images that the detector has upsampled (first_octave -1), and of these alone, of the options->upsampled_max_junctions
+ * most meaningful junctions of each, where the images' own matches put them: the witness that is to be asked
+ * (match/upsampled.h). */
+asj_status asj_look_match_upsampled(const asj_look *look, const asj_match_options *options, const asj_match_result *own,
                                    asj_match_result **result);
 
 /* Adds the times of the detections, by ASJ_STAGE_.... */

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj_match_images(): from two images to their matches, if wanted stretched before.
  *
- * Automatically: as they are; where that gives matches enough, enlarged, too; and where it leaves the images without an answer,
- * stretched to three times their height, then to three times their width; and where that is the answer, stretched and enlarged.
+ * Automatically: as they are; where that gives matches enough, upsampled, too; and where it leaves the images without an answer,
+ * stretched to three times their height, then to three times their width; and where that is the answer, stretched and upsampled.
  *
- * Enlarged. With junctions of octave -1 photographs have three times the matches (match/finer.c, which asks the images' own
- * matches whether those hold), in several times the time. options->enlarge_from own matches are asked, so that pairs without
+ * Upsampled. With junctions of octave -1 photographs have three times the matches (match/upsampled.c, which asks the images' own
+ * matches whether those hold), in several times the time. options->upsample_from own matches are asked, so that pairs without
  * anything in common are answered as before; where they leave a motion open, none is needed, and without cameras one. A pose is
- * estimated again, from more matches, in 1.8 times the time, and match/finer_geometry.c says which one is told. (Rooms seen from
- * far apart, 1000 to 1399, as they are and so: 313 and 336 of 398 poses, of these out by more than 3 degrees 8 and 5, AUC at 5,
- * 10, 20 degrees 67.3 72.7 75.6 and 74.5 79.3 81.7; as they are decided now 350, 5, 78.0 82.9 85.4.) With half octaves
- * (options->enlarged_half_octaves) sixteen pairs have 4468 of 4567 right in place of 3088 of 3148, in 1.3 to 2.3 times the time,
+ * estimated again, from more matches, in 1.8 times the time, and match/upsampled_geometry.c says which one is told. (Rooms seen
+ * from far apart, 1000 to 1399, as they are and so: 313 and 336 of 398 poses, of these out by more than 3 degrees 8 and 5, AUC at
+ * 5, 10, 20 degrees 67.3 72.7 75.6 and 74.5 79.3 81.7; as they are decided now 350, 5, 78.0 82.9 85.4.) With half octaves
+ * (options->upsampled_half_octaves) sixteen pairs have 4468 of 4567 right in place of 3088 of 3148, in 1.3 to 2.3 times the time,
  * and the rooms 336 poses in place of 331; and where these matches are looked for where the images' own ones put them
  * (match/expected.c) 4766 of 4892, in .7 of that time, and the rooms 337 poses, of these 6 out by more than 3 degrees; that is so
  * where no geometry is left open: told there, too, it is 338 and 7. In the images as they are these would add 3 % for a tenth of
@@ -31,8 +31,8 @@
 #include "look.h"
 #include "geometry/geometry_options.h"
 #include "match/final_pose.h"
-#include "match/finer.h"
-#include "match/finer_geometry.h"
+#include "match/upsampled.h"
+#include "match/upsampled_geometry.h"
 #include "match/match_options.h"
 
 #define ENOUGH 16  /* matches. Stretched by 1, 3 or 3, 1, pairs of frames that do not match had up to 7 wrong ones, of which
@@ -41,10 +41,10 @@
                     * is, 6 of them wrong, 720 right ones of 721 stretched) */
 #define HINT 6     /* matches of the trial. On one octave false ones are rarer; the whole look decides */
 #define FIRST 0.2  /* of all the progress, for the look as they are, */
-#define CLOSER 0.4 /* .. and for the enlarged one */
+#define CLOSER 0.4 /* .. and for the upsampled one */
 #define LARGEST 2e6 /* pixels */
 #define TRIAL 0.1  /* of what a stretch has of it */
-#define WHOLE 0.3  /* .. before the enlarged look */
+#define WHOLE 0.3  /* .. before the upsampled look */
 
 static const asj_stretch as_it_is = {1, 1};
 static const asj_stretch glancing[] = {{1, 3}, {3, 1}}, trials[] = {{0.5, 1.5}, {1.5, 0.5}};
@@ -77,7 +77,7 @@ static int32_t goes_on(const search *s)
     return !asj_geometry_is_open(&s->best->geometry) && answered(s, s->best) < enough;
 }
 
-/* own: the images' own matches, of the enlarged ones that are looked at; NULL: these are none. */
+/* own: the images' own matches, of the upsampled ones that are looked at; NULL: these are none. */
 static asj_status look_by(search *s, const asj_match_result *own, const asj_stretch *stretch,
                           const asj_detect_options *detect_options, const asj_match_options *options, double from, double part,
                           asj_match_result **found)
@@ -85,7 +85,7 @@ static asj_status look_by(search *s, const asj_match_result *own, const asj_stre
     asj_look eyes;
     asj_status status = asj_look_open(s->context, s->images, stretch, detect_options, from, part, &eyes);
     if (status == ASJ_OK)
-        status = own ? asj_look_match_enlarged(&eyes, options, own, found) : asj_look_match(&eyes, options, found);
+        status = own ? asj_look_match_upsampled(&eyes, options, own, found) : asj_look_match(&eyes, options, found);
     if (status == ASJ_OK) {
         asj_look_add_times(&eyes, s->stage_ms);
         for (int32_t k = 0; k < ASJ_STAGE_COUNT; k++)
@@ -102,10 +102,10 @@ static asj_status look(search *s, const asj_stretch *stretch, const asj_detect_o
     return look_by(s, NULL, stretch, detect_options, options, from, part, found);
 }
 
-/* --- enlarged ---------------------------------------------------------------------------------------------------------------- */
+/* --- upsampled ---------------------------------------------------------------------------------------------------------------- */
 
-/* Whether to ask the enlarged images for a geometry: a pose, also where the images have a plane without one. Where cameras are
- * known and the images' is chance, that of the enlarged ones is not believed either (accepted then: of 398 pairs of rooms one, of
+/* Whether to ask the upsampled images for a geometry: a pose, also where the images have a plane without one. Where cameras are
+ * known and the images' is chance, that of the upsampled ones is not believed either (accepted then: of 398 pairs of rooms one, of
  * 397 unrelated ones nine). Without cameras it is, when matches come again (of 198 pairs five, of 197 unrelated ones five). */
 static int32_t asks_closer(const search *s)
 {
@@ -116,11 +116,11 @@ static int32_t asks_closer(const search *s)
 }
 
 /* Who asks for one octave, or for another first one, has decided. */
-static int32_t may_enlarge(const search *s, const asj_stretch *stretch)
+static int32_t may_upsample(const search *s, const asj_stretch *stretch)
 {
     const asj_stretch twice = {2 * stretch->x, 2 * stretch->y};
     const asj_detect_options *d = s->detect_options;
-    const int32_t from = s->options->enlarge_from, one_is_enough = asks_closer(s) && answered(s, s->best) == 0;
+    const int32_t from = s->options->upsample_from, one_is_enough = asks_closer(s) && answered(s, s->best) == 0;
     const uint32_t enough = asj_looks_may_settle(s->best) ? 0 : one_is_enough ? 1 : (uint32_t)from;
     int32_t may = d->first_octave == 0 && d->octaves > 1 && from > 0 && s->best->match_count >= enough;
     for (int32_t n = 0; n < 2 && may; n++)
@@ -131,17 +131,17 @@ static int32_t may_enlarge(const search *s, const asj_stretch *stretch)
 /* What was seen with a stretch, with the same one. */
 static asj_status look_closer(search *s, const asj_stretch *stretch, double from, double part)
 {
-    asj_detect_options finer = *s->detect_options;
+    asj_detect_options upsampled = *s->detect_options;
     asj_match_options options = *s->options;
     asj_match_result *found = NULL;
-    if (!may_enlarge(s, stretch))
+    if (!may_upsample(s, stretch))
         return ASJ_OK;
-    finer.first_octave = -1;
-    finer.half_octaves |= s->options->enlarged_half_octaves;
+    upsampled.first_octave = -1;
+    upsampled.half_octaves |= s->options->upsampled_half_octaves;
     if (!asks_closer(s))
         options.geometry.model = ASJ_GEOMETRY_NONE;
-    const asj_status status = look_by(s, s->best, stretch, &finer, &options, from, part, &found);
-    return status == ASJ_OK ? asj_finer_choose(s->context, &s->best, &found, 0) : status;
+    const asj_status status = look_by(s, s->best, stretch, &upsampled, &options, from, part, &found);
+    return status == ASJ_OK ? asj_upsampled_choose(s->context, &s->best, &found, 0) : status;
 }
 
 /* --- stretched --------------------------------------------------------------------------------------------------------------- */
@@ -164,7 +164,7 @@ static asj_status try_stretch(search *s, const asj_stretch *stretch, double from
 /* What a stretch shows takes the place of the best if it is enough, and more. Images too large for it are not looked at so. */
 static asj_status look_again(search *s, int32_t which, double from, double part)
 {
-    const double more = s->detect_options->first_octave < 0 ? 2 : 1; /* the detector enlarges them once more */
+    const double more = s->detect_options->first_octave < 0 ? 2 : 1; /* the detector upsamples them once more */
     const asj_stretch largest = {more * glancing[which].x, more * glancing[which].y};
     asj_match_result *found = NULL;
     int32_t hopeful = 0;
@@ -208,14 +208,14 @@ static int32_t is_automatic(const asj_stretch *stretch)
 
 static int32_t is_factor(double factor)
 {
-    return factor >= ASJ_LEAST_STRETCH && factor <= ASJ_MOST_STRETCH;
+    return factor >= ASJ_MIN_STRETCH && factor <= ASJ_MAX_STRETCH;
 }
 
 static asj_status check(asj_context *context, const asj_stretch *stretch)
 {
     if (!is_automatic(stretch) && !(is_factor(stretch->x) && is_factor(stretch->y)))
         return asj_fail(context, ASJ_ERROR_OPTION, "a stretch of %g, %g is outside %g .. %d", stretch->x, stretch->y,
-                        ASJ_LEAST_STRETCH, ASJ_MOST_STRETCH);
+                        ASJ_MIN_STRETCH, ASJ_MAX_STRETCH);
     return ASJ_OK;
 }
 
@@ -240,7 +240,7 @@ asj_status asj_match_images(asj_context *context, const asj_image *image1, const
     const double start = asj_clock_ms();
     asj_status status = check(context, wanted);
     if (status == ASJ_OK)
-        status = asj_match_wishes_check(context, s.options);
+        status = asj_match_request_check(context, s.options);
     if (status == ASJ_OK)
         status = is_automatic(wanted) ? look_for_answer(&s) : look(&s, wanted, s.detect_options, s.options, 0, 1, &s.best);
     if (status == ASJ_OK)

@@ -21,7 +21,7 @@ extern "C" {
 /* The L-junctions of an image with their frames, neighbours, patches and colours, and the image's pyramid. Complete and never
  * changed once it is made; it needs neither the image nor the junctions nor the context that it was made from. Memory: 2.7 bytes
  * per pixel, and patch_size^2 x 2 bytes for each frame of an L-junction (1 to 9 each with the defaults). With junctions of
- * octave -1 all of this is there twice, once of the image enlarged twice: 15 bytes per pixel. */
+ * octave -1 all of this is there twice, once of the image upsampled by two: 15 bytes per pixel. */
 typedef struct asj_features asj_features;
 
 /* Makes the features of an image: the part of asj_match() that concerns one image.

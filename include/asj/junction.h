@@ -36,9 +36,9 @@ typedef struct asj_branch {
 
 /* What a junction may be, for asj_match() and in files. */
 #define ASJ_MAX_OUTSIDE 10           /* px outside its image: branches may meet beyond the border. The detector's most max_move */
-#define ASJ_LEAST_OCTAVE (-1)        /* the image enlarged twice */
+#define ASJ_LEAST_OCTAVE (-1)        /* the image upsampled by two */
 #define ASJ_LARGEST_OCTAVE 15
-#define ASJ_LONGEST_BRANCH 262140.0f /* px: four times ASJ_MAX_SIDE */
+#define ASJ_MAX_BRANCH_LENGTH 262140.0f /* px: four times ASJ_MAX_SIDE */
 
 /* A junction: a point with two to five branches, in order of angle. */
 typedef struct asj_junction {
@@ -47,8 +47,8 @@ typedef struct asj_junction {
     float log10_nfa;        /* log10 NFA of the isotropic junction */
     float location_sd;      /* px: standard uncertainty of x and of y (root mean square of the two); 0 = not known */
     int32_t branch_count;   /* 2 .. ASJ_MAX_BRANCHES */
-    int32_t octave;         /* that located it: 0 = the image itself, or not known, 1 = its half, 2 = its quarter, .., -1 = enlarged
-                             * twice; half octaves rounded away from 0 */
+    int32_t octave;         /* that located it: 0 = the image itself, or not known, 1 = its half, 2 = its quarter, ..,
+                             * -1 = upsampled by two; half octaves rounded away from 0 */
     asj_branch branches[ASJ_MAX_BRANCHES]; /* those beyond branch_count are zero */
 } asj_junction;
 

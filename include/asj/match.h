@@ -36,10 +36,7 @@ typedef struct asj_match_options {
     int32_t descriptor;          /* ASJ_DESCRIPTOR_...; raw */
     int32_t normalise;           /* 1 = raw patches are brought to zero mean and unit norm. 1; paper 0 */
     int32_t patch_size;          /* samples along a side of a patch, a multiple of 4. 8 .. 24; 16 */
-    int32_t enlarge_from;        /* asj_match_images(), automatically: from so many matches on the images are looked at enlarged,
-                                  * too (octave -1), also from fewer on where a geometry is asked and left open (see
-                                  * asj_match_images()); 0 = never.
-                                  * 0 .. 1000000; 8; paper 0 */
+    int32_t reserved_integer;    /* zero */
     double window_start;         /* a canonical patch reaches from here .. -1 .. 0; -0.25 */
     double window_end;           /* .. to here, in branch lengths. 0.25 .. 2; 1 */
     double patch_radius;         /* px: half a side of an induced patch. 4 .. 64; 16 */
@@ -74,16 +71,17 @@ typedef struct asj_match_options {
     /* line segments */
     double end_tolerance;        /* lengths of branches that explain each other agree within this part, and ends that
                                   * correspond within a sixth of it, or 4 px. 0.01 .. 1; 0.12 */
-    /* asj_match_images() again */
-    int32_t enlarged_half_octaves; /* 1 = enlarged images are looked at half-way between their octaves, too: half as many right
-                                    * matches again, in 1.3 to 1.6 times the time. 1; paper 0 */
-    int32_t enlarged_most;       /* junctions of an enlarged image that take part, the most meaningful ones; 0 = all, which takes a
-                                  * minute where two megapixels are full of texture. 0 .. 1000000; 16000 */
-    double enlarged_reach;       /* of enlarged images L-junctions are compared that lie no farther from where the images' own
-                                  * matches put them, if there are eight and no geometry is left open; in diagonals of the images,
-                                  * and 0.3 of the distance to these matches; 0 = anywhere. 0 .. 1; 0.02; paper 0 */
-    int32_t enlarged_shortlist;  /* .. and then this stands for shortlist; 0 = shortlist does. 0 .. 32; 2; paper 0 */
-    int32_t reserved_integer;    /* zero */
+    /* asj_match_images(): images that are looked at upsampled by two as well, with junctions of octave -1 */
+    int32_t upsample_from; /* automatically: from so many matches on they are, also from fewer on where a geometry is
+                                  * asked and left open; 0 = never. 0 .. 1000000; 8; paper 0 */
+    int32_t upsampled_half_octaves;  /* 1 = also half-way between their octaves: half as many right matches again, in 1.3 to 1.6
+                                  * times the time. 1; paper 0 */
+    double upsampled_search_radius;  /* L-junctions are compared that lie no farther from where the images' own matches put them, if
+                                  * there are eight and no geometry is left open; in diagonals of the images, and 0.3 of the
+                                  * distance to these matches; 0 = anywhere. 0 .. 1; 0.02; paper 0 */
+    int32_t upsampled_shortlist; /* .. and then this stands for shortlist; 0 = shortlist does. 0 .. 32; 2; paper 0 */
+    int32_t upsampled_max_junctions; /* junctions of an upsampled image that take part, the most meaningful ones; 0 = all, which
+                                  * takes a minute where two megapixels are full of texture. 0 .. 1000000; 16000 */
     double reserved[17];         /* zero */
     /* two-view geometry; not among the options with a key. model: none, the default, and then the rest of it does not matter. Sizes
      * of the images are filled in */
@@ -127,7 +125,7 @@ typedef struct asj_junction_match {
     float ratio;            /* how much worse the second best at another place is; HUGE_VAL when there is none */
     float similarity;       /* correlation of the aligned discs, -1 .. 1; 0 when not aligned */
     float support;          /* neighbouring matches that agree, each counted 0 to 1 */
-    float probability;      /* that the match is right, given the accepted geometry and, except in enlarged images, the candidates
+    float probability;      /* that the match is right, given the accepted geometry and, except in upsampled images, the candidates
                              * that are its rivals, of the 4000 most meaningful L-junctions of each image; 0 without a geometry.
                              * Off the plane of a homography it is low, and the match stays: there are other planes */
     float reserved;         /* zero */
@@ -145,15 +143,16 @@ typedef struct asj_match_result {
     double stage_ms[16];               /* by ASJ_STAGE_... */
     uint64_t candidates;               /* pairs that were aligned or compared by the pair's own map */
     asj_geometry geometry;             /* status not asked where options->geometry.model is none */
-    uint64_t own;                      /* the library's; 0 in a result that the caller puts together or copies */
+    uint64_t origin;                   /* the library's, which tells its own results by it; 0 in a result that the caller puts
+                                        * together or copies */
     const asj_junction_match *rejected;/* matches that there would be without the geometry, or by that of one look, and that it
                                         * contradicts; with two at odds (ASJ_GEOMETRY_AMBIGUOUS) what either contradicts; smallest
                                         * distance first */
-    uint64_t rejected_count;
+    uint32_t rejected_count;
+    int32_t upsampled;                 /* 1 = the matches of the upsampled images are among them, with junctions of octave -1
+                                        * (src/match/upsampled.c) */
     double stretch[2];                 /* along x and y, how the images were looked at: asj_match_images(); 1, 1 = as they are */
-    uint64_t enlarged;                 /* 1 = the matches of the enlarged images are among them, with junctions of octave -1
-                                        * (src/match/finer.c) */
-    uint64_t reserved[1];
+    uint64_t reserved[8];
 } asj_match_result;
 
 /* Matches the junctions of two images: the pipeline of the paper, step 7.
@@ -174,8 +173,8 @@ typedef struct asj_match_result {
  * ASJ_GEOMETRY_AMBIGUOUS, and what either contradicts is rejected; of two planes the pose is left out. Where the first one, of
  * known cameras, has rivals or leaves its motion open, the second one holds, whatever its matches, when it accepts the same pose,
  * or another one with a log10 NFA below -35 and 1.25 times the first one's; only then where the first one has no matches; and not
- * when it accepts none, or one that is upside down, or less surely another one of a motion that was open (src/match/finer.c,
- * finer_geometry.c).
+ * when it accepts none, or one that is upside down, or less surely another one of a motion that was open (src/match/upsampled.c,
+ * upsampled_geometry.c).
  * Junctions of octave -1 alone (octaves 1) have no first ones to ask. Everything is in pixels of the images.
  *
  * image1, image2   views; only read, and only during the call
@@ -199,10 +198,10 @@ typedef struct asj_match_result {
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that lies more than ASJ_MAX_OUTSIDE px outside its image, has a wrong branch
  *                      count, an octave that is not -1 .. 15, an angle beyond +-10^6, a length that is not 0 ..
- *                      ASJ_LONGEST_BRANCH, or an end of no known kind
+ *                      ASJ_MAX_BRANCH_LENGTH, or an end of no known kind
  * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED, ASJ_ERROR_DEVICE   as asj_detect()
  * ASJ_ERROR_LIMIT      also with more than 2^24 L-junctions. Junctions of octave -1 are left out instead, where they alone are more
- *                      or where their image is too large to be enlarged: the log tells of it (ASJ_LOG_INFO) */
+ *                      or where their image is too large to be upsampled: the log tells of it (ASJ_LOG_INFO) */
 ASJ_API asj_status asj_match(asj_context *context,
                              const asj_image *image1, const asj_junction *junctions1, size_t count1,
                              const asj_image *image2, const asj_junction *junctions2, size_t count2,
@@ -210,29 +209,29 @@ ASJ_API asj_status asj_match(asj_context *context,
 
 /* How much longer than it is an image is looked at: 1, 1 = as it is; 0, 0 = automatically. */
 typedef struct asj_stretch {
-    double x, y; /* factors along either axis, ASJ_LEAST_STRETCH .. ASJ_MOST_STRETCH */
+    double x, y; /* factors along either axis, ASJ_MIN_STRETCH .. ASJ_MAX_STRETCH */
 } asj_stretch;
-#define ASJ_LEAST_STRETCH 0.5
-#define ASJ_MOST_STRETCH 8
+#define ASJ_MIN_STRETCH 0.5
+#define ASJ_MAX_STRETCH 8
 
-/* From two images to their matches: asj_detect() and asj_match(), on both images stretched. Enlarged twice (2, 2), photographs of
+/* From two images to their matches: asj_detect() and asj_match(), on both images stretched. Upsampled twice (2, 2), photographs of
  * up to some megapixels have about three times the matches, in three to eight times the time; automatically (0, 0), with half
  * octaves, about six times the matches, in five to nine times the time. A surface that is seen at a glancing angle, like a
  * magazine on a table, matches stretched across it (1, 3) where it did not at all (tests/accuracy/README.md). Everything in the
  * result is in pixels of the images as they are. Junctions are numbered as the detector lists them in this call; where it has
- * looked twice (result->enlarged), first those with octave -1, by place, and after them, with their L-junctions, those of the
+ * looked twice (result->upsampled), first those with octave -1, by place, and after them, with their L-junctions, those of the
  * images without it. Times are those of all of it; result->stretch says how the images were looked at.
  *
  * stretch          NULL = as they are. Automatically (0, 0):
  *                  - as they are;
- *                  - where that gives options->enlarge_from matches, also with junctions of octave -1, which hold as asj_match()
- *                    says (result->enlarged), and half octaves (options->enlarged_half_octaves), unless detect_options name another
- *                    first octave, or one octave alone, or an image has more than 2 megapixels. A pose of the images, with known
- *                    cameras also a geometry without one, is estimated again from these matches: of two that agree the surer one
- *                    is told where they hold, two at odds are decided or ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is accepted
- *                    that they accept, too, or that they have much more evidence for. Another geometry of the images judges them.
- *                    Where the images have rivals or leave the motion open, with known cameras no match is needed to look, and
- *                    without, where they have no geometry, one is enough;
+ *                  - where that gives options->upsample_from matches, also with junctions of octave -1, which hold as asj_match()
+ *                    says (result->upsampled), and half octaves (options->upsampled_half_octaves), unless detect_options name
+ *                    another first octave, or one octave alone, or an image has more than 2 megapixels. A pose of the images, with
+ *                    known cameras also a geometry without one, is estimated again from these matches: of two that agree the surer
+ *                    one is told where they hold, two at odds are decided or ASJ_GEOMETRY_AMBIGUOUS, and of rivals the one is
+ *                    accepted that they accept, too, or that they have much more evidence for. Another geometry of the images
+ *                    judges them. Where the images have rivals or leave the motion open, with known cameras no match is needed to
+ *                    look, and without, where they have no geometry, one is enough;
  *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together and 32 where it
  *                    tells no pose, also stretched by 1, 3 and by 3, 1, unless rivals or a motion that stays open
  *                    (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the answer. What comes of that counts from 16 matches on, and when

@@ -50,8 +50,12 @@ typedef struct asj_detect_options {
     int32_t octaves;              /* how many at most, from first_octave on, as long as 48 px of either side are left. 1 .. 16;
                                    * default 16; paper 1; match 4 */
     int32_t first_octave;         /* 0 = the image itself, 1 = its half, ..: large photographs may begin there, smaller ones with
-                                   * the last octave that they have; -1 = the image enlarged twice, which finds corners with
+                                   * the last octave that they have; -1 = the image upsampled by two, which finds corners with
                                    * branches of few pixels. -1 .. 15; 0 */
+    int32_t half_octaves;         /* 1 = the image is looked at half-way between two octaves, too: finds weak and soft corners more
+                                   * surely, for half as much time again and 2 bytes for each pixel of the first octave. 0 */
+    int32_t independent_octaves;  /* 1 = every octave is a detector of its own and keeps what it finds, though a finer one has
+                                   * found the same corner: for the matcher, which takes each corner once. 0; match 1 */
     /* step 1: normalised gradient */
     double gradient_epsilon;      /* grey levels (0..255) per pixel added to the local mean of the gradient norm; what is much
                                    * weaker than this is flat. 0.05 .. 16; default 0.4; paper 0.05 */
@@ -77,8 +81,12 @@ typedef struct asj_detect_options {
     int32_t disjoint_sectors;     /* 1 = the sectors of a junction do not overlap: its branches are 2 Delta apart, not Delta.
                                    * 0; paper 1 */
     int32_t max_branches;         /* branches tested together. 2 .. 5; 5 */
-    int32_t more_branches_win;    /* 1 = among junctions no farther apart than isotropic_apart the one with the most branches stays,
-                                   * not the most meaningful one. 0 */
+    int32_t all_meaningful_branches; /* 1 = a junction has all branches of which two alike would be a meaningful junction;
+                                   * 0 = as many as make it most meaningful. 0; paper 1 */
+    int32_t isotropic_separation; /* px: of junctions no farther apart the most meaningful one stays; 0 = half its radius.
+                                   * 0 .. 15; 2; paper 0 */
+    int32_t more_branches_win;    /* 1 = of junctions that near the one with the most branches stays, not the most meaningful one.
+                                   * 0 */
     double epsilon;               /* NFA allowed for a junction, and for a branch (steps 3 and 5), in coarse octaves for a branch or
                                    * two that open together. 1e-30 .. 1e6; 1; match 1e4 */
     /* step 4: branch lengths */
@@ -100,6 +108,8 @@ typedef struct asj_detect_options {
     double strip_length;          /* px from the junction that the strip test looks at. 10 .. 1000; 60 */
     double near_strength;         /* standard deviations that a branch needs in its first 6 px. -10 .. 10; 0;
                                    * paper -10; match -10 */
+    double max_tilt;              /* deg: a branch that crosses the edges in its strip at a larger angle is turned to them,
+                                   * or is none; 0 = not asked. 0 .. 45; 6; paper 0; match 0 */
     double snap_distance;         /* px of its octave: a branch that ends this close to a junction on its line ends there; if not 0,
                                    * from 4 px in coarse octaves and 8 at corners beyond doubt. 0 .. 30; 2; paper 0; match 8 */
     double end_contrast;          /* an edge ends where it has this share of its own contrast left, or breaks off, unless it goes on
@@ -108,18 +118,8 @@ typedef struct asj_detect_options {
     int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`, in coarse
                                    * octaves alone or together with another one; and stronger edges beside it are told from it when
                                    * its line is fitted. 1; paper 0; match 0 */
-    int32_t octave_union;         /* 1 = every octave is a detector of its own and keeps what it finds, though a finer one has found
-                                   * the same corner: for the matcher, which takes each corner once. 0; match 1 */
-    int32_t all_meaningful_branches; /* step 3: 1 = a junction has all branches of which two alike would be a meaningful junction;
-                                   * 0 = as many as make it most meaningful. 0; paper 1 */
-    int32_t isotropic_apart;      /* step 3: px, of junctions no farther apart the most meaningful one stays; 0 = half its radius.
-                                   * 0 .. 15; 2; paper 0 */
-    double most_tilt;             /* step 5: deg, a branch that crosses the edges in its strip at a larger angle is turned to them,
-                                   * or is none; 0 = not asked. 0 .. 45; 6; paper 0; match 0 */
-    int32_t half_octaves;         /* 1 = the image is looked at half-way between two octaves, too: finds weak and soft corners more
-                                   * surely, for half as much time again and 2 bytes for each pixel of the first octave. 0 */
-    int32_t complete_junctions;   /* step 5: 1 = around every junction branches are looked for that its test has missed, mostly
-                                   * edges much fainter than its others, up to max_branches; without octave_union sharp branches of
+    int32_t complete_junctions;   /* 1 = around every junction branches are looked for that its test has missed, mostly edges much
+                                   * fainter than its others, up to max_branches; without independent_octaves sharp branches of
                                    * coarse octaves join, too, as soft ones and those with an NFA up to 1e-30 do in any case, beyond
                                    * max_branches. In 1.1 to 1.3 times the time; not with ASJ_REFINE_SEARCH. 0 */
     double reserved[16];          /* zero */

@@ -31,7 +31,7 @@ typedef struct asj_frame {
     int16_t *gradient_y;
     int16_t *memory;              /* what the three planes stand in */
     size_t capacity;              /* elements of it */
-    double octave;                /* how often the image was halved to make it, 1/2 by sqrt 2; -1 = it was enlarged twice */
+    double octave;                /* how often the image was halved to make it, 1/2 by sqrt 2; -1 = it was upsampled by two */
     int32_t octaves;              /* that share the false alarms allowed: 1, or more (octaves.c) */
     void *rows;                   /* scratch of asj_gradient() */
     size_t row_capacity;
@@ -82,15 +82,15 @@ int32_t asj_frame_shrinks_in_place(const asj_frame *frame);
 
 #define ASJ_SQRT2 1.4142135623730951
 
-/* Whether a view that asj_image_check() has passed may be enlarged twice: ASJ_ERROR_LIMIT where images are not that large. */
-asj_status asj_enlarge_check(asj_context *context, const asj_image *image);
+/* Whether a view that asj_image_check() has passed may be upsampled by two: ASJ_ERROR_LIMIT where images are not that large. */
+asj_status asj_upsample_check(asj_context *context, const asj_image *image);
 
 /* Repeats the border of gray. */
 void asj_frame_repeat_border(const asj_frame *frame);
 
-/* Makes room for the image enlarged twice and fills frame->gray from the view: interpolated between the four pixels around, so that
- * pixel (i, j) is centred at (i / 2 - 1/4, j / 2 - 1/4) of the image. Becomes octave -1. Statuses as asj_frame_load(). */
-asj_status asj_frame_enlarge(asj_context *context, asj_frame *frame, const asj_image *image);
+/* Makes room for the image upsampled by two and fills frame->gray from the view: interpolated between the four pixels around, so
+ * that pixel (i, j) is centred at (i / 2 - 1/4, j / 2 - 1/4) of the image. Becomes octave -1. Statuses as asj_frame_load(). */
+asj_status asj_frame_upsample(asj_context *context, asj_frame *frame, const asj_image *image);
 
 /* Fills frame->gray from the view (asj_frame_prepare() first). Finds NaN and infinity. */
 asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image);

@@ -216,14 +216,14 @@ asj_status asj_pyramid_create(asj_context *context, const asj_image *image, doub
     return status;
 }
 
-asj_status asj_pyramid_create_enlarged(asj_context *context, const asj_image *image, double smoothing, asj_pyramid *pyramid)
+asj_status asj_pyramid_create_upsampled(asj_context *context, const asj_image *image, double smoothing, asj_pyramid *pyramid)
 {
     asj_frame frame;
     memset(pyramid, 0, sizeof *pyramid);
     memset(&frame, 0, sizeof frame);
     asj_status status = asj_image_check(context, image);
     if (status == ASJ_OK)
-        status = asj_frame_enlarge(context, &frame, image);
+        status = asj_frame_upsample(context, &frame, image);
     if (status == ASJ_OK)
         status = fill(context, &frame, smoothing, pyramid);
     asj_frame_free(&context->memory, &frame);

@@ -21,8 +21,8 @@ typedef struct asj_pyramid {
 /* From an image view: blurred with a Gaussian of standard deviation `smoothing` px (0 = not), then halved. Statuses as
  * asj_detect() has them for images. On failure the caller still frees. */
 asj_status asj_pyramid_create(asj_context *context, const asj_image *image, double smoothing, asj_pyramid *pyramid);
-/* The same of the image enlarged twice (asj_frame_enlarge()). */
-asj_status asj_pyramid_create_enlarged(asj_context *context, const asj_image *image, double smoothing, asj_pyramid *pyramid);
+/* The same of the image upsampled by two (asj_frame_upsample()). */
+asj_status asj_pyramid_create_upsampled(asj_context *context, const asj_image *image, double smoothing, asj_pyramid *pyramid);
 void asj_pyramid_free(asj_memory *memory, asj_pyramid *pyramid);
 
 /* The same in two parts, for a level 0 from elsewhere: room for all levels, and, when level 0 holds its pixels, their borders and

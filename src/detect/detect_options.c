@@ -32,7 +32,7 @@ static const asj_option_info rows[] = {
             "sizes left out: 1 = begin at half the image's size, or at the last one it has; -1 = begin at twice it"),
     SWITCH(OCTAVES, COMMON, half_octaves, 0, 0, 0,
            "look half-way between two octaves, too: finds weak and soft corners more surely, for half as much time again"),
-    SWITCH(OCTAVES, ADVANCED, octave_union, 0, 0, 1,
+    SWITCH(OCTAVES, ADVANCED, independent_octaves, 0, 0, 1,
            "every octave keeps what it finds, though a finer one has found the same corner; for matching"),
 
     NUMBER(GRADIENT, COMMON, gradient_epsilon, "grey/px", 0.05, 16, 0.4, 0.05, 0.4,
@@ -64,7 +64,7 @@ static const asj_option_info rows[] = {
     INTEGER(ISOTROPIC, ADVANCED, max_branches, "", 2, ASJ_MAX_BRANCHES, 5, 5, 5, "branches that are tested together, at most"),
     SWITCH(ISOTROPIC, ADVANCED, all_meaningful_branches, 0, 1, 0,
            "a junction has all branches that are meaningful by themselves"),
-    INTEGER(ISOTROPIC, ADVANCED, isotropic_apart, "px", 0, 15, 2, 0, 2,
+    INTEGER(ISOTROPIC, ADVANCED, isotropic_separation, "px", 0, 15, 2, 0, 2,
             "nearest that two isotropic junctions may be; 0 = half the radius"),
     SWITCH(ISOTROPIC, ADVANCED, more_branches_win, 0, 0, 0, "of nearer ones keep the one with the most branches"),
 
@@ -88,7 +88,7 @@ static const asj_option_info rows[] = {
     NUMBER(REFINE, ADVANCED, strip_length, "px", 10, 1000, 60, 60, 60, "length of that strip at most"),
     NUMBER(REFINE, ADVANCED, near_strength, "sd", -10, 10, 0, -10, -10,
            "strength that a branch needs in its first 6 px: it must reach the junction"),
-    NUMBER(REFINE, ADVANCED, most_tilt, "deg", 0, 45, 6, 0, 0,
+    NUMBER(REFINE, ADVANCED, max_tilt, "deg", 0, 45, 6, 0, 0,
            "angle at which a branch may cross the edges in its strip; it is turned to them, or none; 0 = any"),
     NUMBER(REFINE, ADVANCED, snap_distance, "px", 0, 30, 2, 0, 8,
            "a branch that ends so close (px of its octave) to a junction on its line ends at it"),

@@ -109,7 +109,7 @@ asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context,
         return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
     asj_status status = asj_image_check(context, image);
     if (status == ASJ_OK && run->options->first_octave < 0)
-        status = asj_enlarge_check(context, image);
+        status = asj_upsample_check(context, image);
     if (status != ASJ_OK)
         return status;
     asj_memory_share(&context->memory, (int64_t)image->width * image->height >= SHARING_FROM);
@@ -132,7 +132,7 @@ void asj_detection_run_end(asj_detection_run *run)
 
 int asj_detection_run_is_coarse(const asj_detection_run *run)
 {
-    return run->frame->octave > 0 && !run->options->octave_union;
+    return run->frame->octave > 0 && !run->options->independent_octaves;
 }
 
 void asj_detection_run_clear(asj_detection_run *run)
@@ -153,7 +153,7 @@ asj_status asj_detection_run_known(const asj_detection_run *run, asj_octave_know
 {
     const int32_t width = run->image->width, height = run->image->height;
     *known = (asj_octave_known){.finer = NULL};
-    if (run->all_count == 0 || run->options->octave_union)
+    if (run->all_count == 0 || run->options->independent_octaves)
         return ASJ_OK;
     const size_t count = asj_octave_grid_cells(run->all_count, width, height);
     int32_t *cells = asj_allocate_list(&run->context->memory, count, sizeof *cells);

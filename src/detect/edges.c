@@ -198,7 +198,7 @@ static void mark_end(asj_hypothesis *from, int32_t branch, const asj_hypothesis 
 static void start(graph *g, const asj_detect_options *options, int32_t width, int32_t height, int32_t octaves)
 {
     g->log_epsilon = log(options->epsilon);
-    g->own_octave = options->octave_union;
+    g->own_octave = options->independent_octaves;
     for (double o = ASJ_FIRST_OCTAVE; o < ASJ_MAX_OCTAVES; o += 0.5) {
         const int32_t columns = asj_octave_size(width, o), rows = asj_octave_size(height, o);
         g->log_tests[asj_octave_index(o)] = asj_strip_log_tests(columns > 0 ? columns : 1, rows > 0 ? rows : 1, octaves);

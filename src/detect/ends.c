@@ -137,7 +137,7 @@ static void snap(const asj_ends *ends, size_t index, asj_hypothesis_branch *bran
 {
     const double reach = ends->options->snap_distance, half = reach < SURE_REACH ? 0.5 * branch->length : 0;
     const double least = fmax(ends->options->minimum_length, half);
-    const int own_octave = ends->options->octave_union;
+    const int own_octave = ends->options->independent_octaves;
     const double base = branch->octave > 0 && reach > 0 ? fmax(reach, COARSE_REACH) : reach;
     const question far = ask(ends, index, branch, base, 1, own_octave), near = ask(ends, index, branch, AT_END, 0, own_octave);
     double distance = 0;

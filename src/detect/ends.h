@@ -20,7 +20,7 @@ typedef struct asj_ends {
 void asj_ends_mark(const asj_ends *ends, size_t index);
 
 /* Moves the ends of branches onto junctions that lie on their line within snap_distance of the end, or somewhat farther (ends.c),
- * and tells which end at one. With octave_union junctions of other octaves are none. */
+ * and tells which end at one. With independent_octaves junctions of other octaves are none. */
 void asj_ends_snap(const asj_ends *ends, size_t index);
 
 #endif

@@ -4,11 +4,11 @@
 
 asj_status asj_step_load(asj_detection_run *run)
 {
-    return run->octave < 0 ? asj_frame_enlarge(run->context, run->frame, run->image)
+    return run->octave < 0 ? asj_frame_upsample(run->context, run->frame, run->image)
                            : asj_frame_load(run->context, run->frame, run->image);
 }
 
-/* From the enlarged image to the image itself. */
+/* From the upsampled image to the image itself. */
 static asj_status reduce(asj_detection_run *run)
 {
     const int32_t octaves = run->frame->octaves;

@@ -7,7 +7,7 @@
 #include "core/angle.h"
 
 #define ASJ_MAX_OCTAVES 16 /* numbers of octaves are below this, */
-#define ASJ_FIRST_OCTAVE (-1) /* and not below this: the image enlarged twice */
+#define ASJ_FIRST_OCTAVE (-1) /* and not below this: the image upsampled by two */
 
 #define ASJ_LN_10 2.302585092994046 /* a decade in natural logarithms, which numbers of false alarms are kept in */
 
@@ -72,7 +72,7 @@ typedef struct asj_hypothesis {
     double first;              /* px along the branches: where lines are fitted from, once they are guessed */
     double location_variance;  /* px^2, mean of both axes */
     double explained;          /* share of the gradient around that a blurred corner explains (blurred_corner.c); 0 = none */
-    double octave;             /* that located it: 0 = the image itself, 1/2, 1 = the image halved, .., -1 = enlarged twice */
+    double octave;             /* that located it: 0 = the image itself, 1/2, 1 = the image halved, .., -1 = upsampled by two */
     int32_t branch_count;      /* 0 = rejected */
     int32_t completes;         /* complete_step.c: the junction that its only branch may be one of */
     asj_hypothesis_branch branches[ASJ_MAX_BRANCHES];

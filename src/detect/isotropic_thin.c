@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Thinning of step 3: of isotropic junctions that lie close together the most meaningful one stays. Close is 2 px in the default,
- * half the radius in preset paper (option isotropic_apart).
+ * half the radius in preset paper (option isotropic_separation).
  *
  * ACJ lets M + 1 branches within half a radius replace M, however weak they are (more_branches_win). Then a chance branch at a
  * pixel beside a corner decides where the corner is and which branches it has: on eight photographs under zoom by 0.9, 0.7, 0.5 the
@@ -134,7 +134,7 @@ size_t asj_isotropic_thin(asj_isotropic_junction *junctions, size_t count, const
     const size_t row_bytes = ((size_t)width + 7) / 8;
     rank *ranks = scratch, *spare = ranks + count;
     uint8_t *stays = (uint8_t *)(void *)(spare + count), *taken = stays + count;
-    const double apart = options->isotropic_apart;
+    const double apart = options->isotropic_separation;
     disc around = {.radius = -1};
     size_t kept = 0;
     if (count == 0)

@@ -4,8 +4,8 @@
  * wide and the noise half as strong, so the same steps find there what they miss here. Pixel (i, j) of octave o is centred at
  *     x = (i + 0.5) 2^o - 0.5,  y likewise.
  *
- * Octave -1, when it is asked for, works on the image enlarged twice (core/enlarge.c): the same formula. Corners with branches of
- * fewer pixels than a sector needs are found there.
+ * Octave -1, when it is asked for, works on the image upsampled by two (core/upsample.c): the same formula. Corners with branches
+ * of fewer pixels than a sector needs are found there.
  *
  * With half_octaves there is one half-way between two: the same formula for o + 1/2, made of octave o (core/half_octave.c). What is
  * too soft or too weak for an octave, and too small for the next one, is found between them. Rooms and corners (tests/accuracy,
@@ -26,8 +26,8 @@
  * complete_junctions any), which are too faint for its own octave, in which there is more noise: where walls meet in even light.
  * Ghosts go: octave_ghosts.c.
  *
- * With octave_union nothing of this is done: each octave is a detector of its own, with its own false alarms, whose branches end at
- * its own junctions, and all junctions are listed. So the list without coarser octaves is a part of the list with them. */
+ * With independent_octaves nothing of this is done: each octave is a detector of its own, with its own false alarms, whose branches
+ * end at its own junctions, and all junctions are listed. So the list without coarser octaves is a part of the list with them. */
 #include "octaves.h"
 #include "complete.h"
 #include "octave_ghosts.h"
@@ -91,7 +91,7 @@ void asj_octaves_map(asj_hypothesis *hypothesis, double octave)
 
 int32_t asj_octaves_sharing(const asj_detect_options *options, int32_t width, int32_t height)
 {
-    return options->octave_union ? 1 : asj_octaves_of(options, width, height).count;
+    return options->independent_octaves ? 1 : asj_octaves_of(options, width, height).count;
 }
 
 /* Of the two sharpest branches the less sharp one, px of the octave: two make a junction. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Hypotheses of several octaves become one list. Octave o works on the image halved o times, octave -1 on the image enlarged twice,
- * octave o + 1/2 on that of o made 1 / sqrt 2 as large. */
+/* Hypotheses of several octaves become one list. Octave o works on the image halved o times, octave -1 on the image upsampled by
+ * two, octave o + 1/2 on that of o made 1 / sqrt 2 as large. */
 #ifndef ASJ_SRC_OCTAVES_H
 #define ASJ_SRC_OCTAVES_H
 

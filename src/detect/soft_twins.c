@@ -8,7 +8,7 @@
  * by SURER decades of NFA, where the twin's own is above WEAK. Sharp corners, whose edges tell no width, have no twins, nor have
  * those of preset match, whose octaves are detectors of their own.
  *
- * Sixteen photographs, enlarged 2.5 times and blurred by 4 px: of four that go two are ghosts beside a board's corners, one lies
+ * Sixteen photographs, upsampled 2.5 times and blurred by 4 px: of four that go two are ghosts beside a board's corners, one lies
  * on a bent edge, one may be a corner; with REACH 5 the inner corner of a letter goes, too. As they are the photographs have none.
  * Without WEAK true corners go: of the junctions of eighteen photographs .3 % less repeat at zoom .9. */
 #include "soft_twins.h"
@@ -89,7 +89,7 @@ asj_status asj_drop_soft_twins(asj_detection_run *run)
     size_t soft = 0;
     for (size_t i = 0; i < run->hypothesis_count; i++)
         soft += reach_of(&run->hypotheses[i]) > 0;
-    if (soft == 0 || run->options->octave_union)
+    if (soft == 0 || run->options->independent_octaves)
         return ASJ_OK;
     const size_t count = asj_octave_grid_cells(run->hypothesis_count, run->frame->width, run->frame->height);
     int32_t *cells = asj_allocate_list(&run->context->memory, count + run->hypothesis_count, sizeof *cells);

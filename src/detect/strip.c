@@ -14,7 +14,7 @@
  * The strip also knows whether the branch reaches the junction: the strength of its first NEAR pixels. A branch whose edge only
  * starts some pixels away, across a rim or a gap, has less there than noise would have.
  *
- * Pixels alike. The null model takes pixels for independent. Noise that optics, demosaicing or enlarging have blurred is not:
+ * Pixels alike. The null model takes pixels for independent. Noise that optics, demosaicing or upsampling have blurred is not:
  * blurred by 2 px its gradients agree over 7 px along what looks like an edge, and a strip of 14 px is two samples, not forty. Two
  * measurements tell: the width w of the edge (edge_width.c), which is 0 in white noise and 1.2 px in that, and how the gradient
  * wavers,

@@ -10,7 +10,7 @@
  *     tan phi = sum g_u g_n / sum g_n^2,      rho = |sum g_u g_n| / sqrt(sum g_u^2  sum g_n^2),
  *
  * the slope of g_u over g_n and their correlation about zero. Dark to bright or bright to dark is the same. A branch is tilted when
- * phi is more than most_tilt and rho more than STEADY. Noise makes phi of a weak edge as large, not rho, which is about
+ * phi is more than max_tilt and rho more than STEADY. Noise makes phi of a weak edge as large, not rho, which is about
  * 1 / sqrt(number of pixels) then; a line that is a degree off makes rho as large, not phi.
  *
  * A tilted branch is turned by phi before it is scanned for the last time; it stays turned if its strip has more gamma then and
@@ -40,7 +40,7 @@ static double tangent(const asj_strip_sums *sums)
 
 int asj_is_tilted(const asj_detect_options *options, const asj_strip_sums *sums)
 {
-    return options->most_tilt > 0 && fabs(tangent(sums)) > tan(options->most_tilt * ASJ_DEGREE) &&
+    return options->max_tilt > 0 && fabs(tangent(sums)) > tan(options->max_tilt * ASJ_DEGREE) &&
            fabs(sums->un) > STEADY * sqrt(sums->uu * sums->nn);
 }
 
@@ -78,7 +78,7 @@ void asj_turn_to_edge(const asj_context *context, const asj_frame *frame, const 
                       const asj_hypothesis *hypothesis, double first, double last, asj_hypothesis_branch *branch)
 {
     const double t[2] = {first, last};
-    for (int32_t n = 0; options->most_tilt > 0 && n < TURNS; n++)
+    for (int32_t n = 0; options->max_tilt > 0 && n < TURNS; n++)
         if (!turn(context, frame, options, hypothesis, t, branch))
             return;
 }

@@ -6,7 +6,7 @@
 #include "hypothesis.h"
 #include "strip.h"
 
-/* Whether a strip with these sums crosses edges at an angle of more than most_tilt. Never when that option is 0. */
+/* Whether a strip with these sums crosses edges at an angle of more than max_tilt. Never when that option is 0. */
 int asj_is_tilted(const asj_detect_options *options, const asj_strip_sums *sums);
 
 /* Turns a branch that is tilted to the edges that it crosses, if it then follows one. `first`, `last`: px along it where a line is

@@ -168,8 +168,8 @@ asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)
     if (asj_watch_end(e->set.watch) != ASJ_OK)
         return ASJ_ERROR_CANCELLED; /* rivals that nobody has looked at */
     if (second >= 0) {
-        result->has_second = 1;
-        result->second_log10_nfa = asj_estimation_log10_nfa(e, &e->finalists[second]);
+        result->has_rival = 1;
+        result->rival_log10_nfa = asj_estimation_log10_nfa(e, &e->finalists[second]);
     }
     if (result->log10_nfa > log10(e->options->epsilon))
         return ASJ_OK;

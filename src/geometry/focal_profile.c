@@ -27,7 +27,7 @@
 
 #define REACH ASJ_FOCAL_REACH
 #define FINE ASJ_FOCAL_STEP
-#define FINER 0.01
+#define UPSAMPLED 0.01
 #define TINY 0.1 /* of a step */
 #define FEWEST 5 /* steps within LESS of the best */
 #define LESS 10.0
@@ -179,7 +179,7 @@ static void judge(asj_focal_profile *p, asj_focal *found)
     double most;
     int32_t steps = fill(p, FINE, &most);
     if (steps < FEWEST) /* very sharp, or a path that breaks off */
-        steps = fill(p, FINER, &most);
+        steps = fill(p, UPSAMPLED, &most);
     double sum = 0, first = 0, second = 0;
     int32_t nearest = REACH, lowest = 2 * REACH, highest = 0;
     for (int32_t k = 0; k <= 2 * REACH; k++) {

@@ -67,7 +67,7 @@ static int directions_are_sound(const double d[9])
     return most == 0 || wrong < 1e-3;
 }
 
-asj_status asj_geometry_wishes_check(asj_context *context, const asj_geometry_options *o)
+asj_status asj_geometry_request_check(asj_context *context, const asj_geometry_options *o)
 {
     for (int32_t v = 0; v < 2; v++) {
         const asj_status status = check_camera(context, &o->cameras[v], v + 1);
@@ -101,7 +101,7 @@ asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_o
     for (int32_t v = 0; v < 2; v++)
         if (options->widths[v] < 1 || options->heights[v] < 1)
             return asj_fail(context, ASJ_ERROR_OPTION, "image %d has no size", (int)v + 1);
-    return asj_geometry_wishes_check(context, options);
+    return asj_geometry_request_check(context, options);
 }
 
 const char *asj_geometry_model_name(int32_t model)

@@ -8,7 +8,7 @@
 #include <asj/geometry.h>
 
 /* ASJ_ERROR_OPTION, with a message. The first without the sizes of the images, which the matcher fills in. */
-asj_status asj_geometry_wishes_check(asj_context *context, const asj_geometry_options *options);
+asj_status asj_geometry_request_check(asj_context *context, const asj_geometry_options *options);
 asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_options *options);
 
 int32_t asj_camera_is_known(const asj_camera *camera);

@@ -77,9 +77,9 @@ asj_status asj_junction_list_add(asj_junction_list *list, const asj_junction *ju
     for (b = 0; b < junction->branch_count; b++) {
         if (junction->branches[b].length < 0)
             return asj_line_fail(message, line, "a branch of negative length");
-        if (!(junction->branches[b].length <= ASJ_LONGEST_BRANCH))
+        if (!(junction->branches[b].length <= ASJ_MAX_BRANCH_LENGTH))
             return asj_line_fail(message, line, "a branch of %g px, longer than %d", (double)junction->branches[b].length,
-                                 (int)ASJ_LONGEST_BRANCH);
+                                 (int)ASJ_MAX_BRANCH_LENGTH);
     }
     if (list->count >= ASJ_JUNCTIONS_MAX)
         return asj_message_fail(message, ASJ_ERROR_LIMIT, "more than %u junctions", ASJ_JUNCTIONS_MAX);

@@ -18,7 +18,7 @@ static int is_sound(const asj_junction *junction)
         return 0;
     for (b = 0; b < junction->branch_count; b++) {
         const asj_branch *branch = &junction->branches[b];
-        if (branch->length < 0 || branch->length > ASJ_LONGEST_BRANCH)
+        if (branch->length < 0 || branch->length > ASJ_MAX_BRANCH_LENGTH)
             return 0;
         if (!isfinite(branch->angle) || !isfinite(branch->length) || !isfinite(branch->strength) || !isfinite(branch->log10_nfa) ||
             !isfinite(branch->angle_sd) || !isfinite(branch->width) || !isfinite(branch->length_sd))

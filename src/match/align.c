@@ -24,11 +24,11 @@
 #define LEAST_INCREMENT 0.3   /* determinant of a step's linear part: a step that changes the area threefold is no small one */
 #define MOST_INCREMENT 3.0
 
-/* So many times the steps in enlarged images, where maps and places are off by twice as many px; not for the candidates of a
+/* So many times the steps in upsampled images, where maps and places are off by twice as many px; not for the candidates of a
  * geometry, most of which are wrong, and of which one in a few is enough. Right matches of sixteen pairs 4766 of 4892 -> 4963
  * of 5064 in 1.04 of the time, made smaller by .7 and .5 3056 of 3175 -> 3189 of 3308 and 1697 of 1800 -> 1758 of 1847; three
  * times the steps 5022 of 5138. Rendered rooms: 5961 of 6042 -> 5959 of 6047. */
-#define ENLARGED_STEPS 2
+#define UPSAMPLED_STEPS 2
 
 /* The result: both lengths of a frame wrong by 1.58 change the area by 2.5; ends are wrong by 5 %. */
 #define LEAST_AREA_CHANGE 0.4 /* of the map's area, against the start */
@@ -238,8 +238,8 @@ static asj_status align_groups(const asj_match_run *run, asj_candidate *list, co
 
 int32_t asj_align_steps(const asj_match_run *run)
 {
-    const int32_t enlarged = run->image[0]->l_junctions.enlarged || run->image[1]->l_junctions.enlarged;
-    return run->options->align_iterations * (enlarged && !run->for_geometry ? ENLARGED_STEPS : 1);
+    const int32_t upsampled = run->image[0]->l_junctions.upsampled || run->image[1]->l_junctions.upsampled;
+    return run->options->align_iterations * (upsampled && !run->for_geometry ? UPSAMPLED_STEPS : 1);
 }
 
 asj_status asj_align_candidates(const asj_match_run *run, asj_candidates *candidates)

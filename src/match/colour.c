@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* What colours surround an L-junction: the mean of red, green and blue in six regions, in pixels of the image, or
- * of the image enlarged twice where the L-junctions are (image_features.c).
+ * of the image upsampled by two where the L-junctions are (image_features.c).
  *
  *   strips     rows 3 and 4.5 px beside a branch, from where they leave what is near the other branch to 24 px or its end
  *   sectors    on three rays between the branches, and on three opposite, 6 to 15 px away
@@ -180,7 +180,7 @@ asj_status asj_colours_create(asj_context *context, const asj_image *image, cons
     *colours = NULL;
     if (!picture_of(image, &p))
         return ASJ_OK;
-    p.scale = l_junctions->enlarged ? 0.5 : 1;
+    p.scale = l_junctions->upsampled ? 0.5 : 1;
     asj_colour *made = asj_allocate(&context->memory, l_junctions->count, sizeof *made);
     if (!made)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the colours of %lu L-junctions",

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Step 7, enlarged images: where the images' own matches put the partners of an L-junction.
+/* Step 7, upsampled images: where the images' own matches put the partners of an L-junction.
  *
- * In enlarged images there are some ten times as many L-junctions, and of the best partners by looks among all of them few are near
- * the right place. The matches of the images say where that is: with the nearest GUIDES of them, whose affine maps put a point p at
- * A_k p, and which are d_k away from it, the partners lie in the least upright rectangle around all squares of
+ * In upsampled images there are some ten times as many L-junctions, and of the best partners by looks among all of them few are
+ * near the right place. The matches of the images say where that is: with the nearest GUIDES of them, whose affine maps put a point
+ * p at A_k p, and which are d_k away from it, the partners lie in the least upright rectangle around all squares of
  *     A_k p +- (reach D + SLOPE d_k),          D the diagonal of the images in px (of whichever is larger).
  * Matches that disagree, on two surfaces or because one of them is wrong, make the rectangle larger; the reach lets in what stands
  * before or behind them. Two L-junctions are compared when each lies in the rectangle of the other, so that swapping the images
@@ -64,7 +64,7 @@ static asj_nearest find_guides(const job *j, double x, double y, uint32_t *index
     return near;
 }
 
-/* In px of the other image, enlarged; for (x, y) in px of the image. */
+/* In px of the other image, upsampled; for (x, y) in px of the image. */
 static asj_box box_of(const job *j, double x, double y)
 {
     const asj_stretch *by = &j->by[1 - j->side];
@@ -120,7 +120,7 @@ asj_status asj_expect(const asj_match_run *run, const asj_match_result *known, c
         expected->boxes[side] = asj_allocate(&context->memory, mine->count, sizeof **expected->boxes);
         if (!expected->points[side] || !expected->boxes[side])
             return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the places of %u partners", (unsigned)mine->count);
-        const job j = {run, known, by, run->options->enlarged_reach * diagonal(run, by), side, expected->points[side],
+        const job j = {run, known, by, run->options->upsampled_search_radius * diagonal(run, by), side, expected->points[side],
                        expected->boxes[side], &watch};
         asj_watch_start(&watch, context, ASJ_STAGE_DISTANCES);
         asj_parallel(context, context->threads, mine->location_count, 16, expect_some, &j);

@@ -14,7 +14,7 @@
  *                        angle, length, strength, log10_nfa, angle_sd, width, length_sd: seven floats; u32 end
  *         u16            the image after the blur, with junctions of octave -1 before it, in 1/128 of a grey level, row by row
  *         u16            if any: the colours of each L-junction of octave 0 and up, red, green and blue of six regions (colour.h)
- *         u16            if any: the colours of each L-junction, as the enlarged image has them
+ *         u16            if any: the colours of each L-junction, as the upsampled image has them
  *
  * All numbers with the least significant byte first, floats as IEEE 754.
  *
@@ -30,8 +30,8 @@
 #define ASJ_FEATURES_MAGIC_SIZE 8
 #define ASJ_FEATURES_VERSION 1       /* and .. */
 #define ASJ_FEATURES_COLOURS 1       /* .. so much more where there are colours of the L-junctions of the image itself, */
-#define ASJ_FEATURES_FINER 2         /* .. junctions of octave -1, */
-#define ASJ_FEATURES_FINER_COLOURS 4 /* .. and colours of all L-junctions for the enlarged image */
+#define ASJ_FEATURES_UPSAMPLED 2         /* .. junctions of octave -1, */
+#define ASJ_FEATURES_UPSAMPLED_COLOURS 4 /* .. and colours of all L-junctions for the upsampled image */
 #define ASJ_FEATURES_COLOUR_BYTES (2 * 3 * ASJ_COLOUR_REGIONS)
 #define ASJ_FEATURES_HEADER 40
 #define ASJ_FEATURES_CHECKED 16      /* the checksum is of the bytes from here on */

@@ -5,7 +5,7 @@
 #include "core/bytes.h"
 #include "core/image.h"
 #include "features_bytes.h"
-#include "finer.h"
+#include "upsampled.h"
 #include "kept_features.h"
 #include "l_junctions_create.h"
 #include "match_options.h"
@@ -14,7 +14,7 @@
 #include <string.h>
 
 #define MOST_TEXT 65536 /* bytes of options */
-#define LATEST_VERSION (ASJ_FEATURES_VERSION + ASJ_FEATURES_COLOURS + ASJ_FEATURES_FINER + ASJ_FEATURES_FINER_COLOURS)
+#define LATEST_VERSION (ASJ_FEATURES_VERSION + ASJ_FEATURES_COLOURS + ASJ_FEATURES_UPSAMPLED + ASJ_FEATURES_UPSAMPLED_COLOURS)
 
 /* Bytes that are read one after the other. */
 typedef struct reader {
@@ -23,7 +23,7 @@ typedef struct reader {
     size_t left;
     int32_t width, height;
     uint32_t text, count;
-    int32_t colours, finer, finer_colours;
+    int32_t colours, has_upsampled, upsampled_colours;
 } reader;
 
 static asj_status damaged(const reader *r, const char *what)
@@ -44,11 +44,11 @@ static asj_status read_header(reader *r)
     if (version < ASJ_FEATURES_VERSION || version > LATEST_VERSION)
         return asj_fail(r->context, ASJ_ERROR_UNSUPPORTED, "the features are of version %lu, and this library reads %d to %d",
                         (unsigned long)version, ASJ_FEATURES_VERSION, LATEST_VERSION);
-    if ((parts & (ASJ_FEATURES_FINER | ASJ_FEATURES_FINER_COLOURS)) == ASJ_FEATURES_FINER_COLOURS)
-        return damaged(r, "colours of an enlarged image that there is not");
+    if ((parts & (ASJ_FEATURES_UPSAMPLED | ASJ_FEATURES_UPSAMPLED_COLOURS)) == ASJ_FEATURES_UPSAMPLED_COLOURS)
+        return damaged(r, "colours of an upsampled image that there is not");
     r->colours = (parts & ASJ_FEATURES_COLOURS) != 0;
-    r->finer = (parts & ASJ_FEATURES_FINER) != 0;
-    r->finer_colours = (parts & ASJ_FEATURES_FINER_COLOURS) != 0;
+    r->has_upsampled = (parts & ASJ_FEATURES_UPSAMPLED) != 0;
+    r->upsampled_colours = (parts & ASJ_FEATURES_UPSAMPLED_COLOURS) != 0;
     if (asj_get_u64(start + 16) != size)
         return asj_fail(r->context, ASJ_ERROR_FORMAT, "the features are damaged: %zu bytes where there should be %llu", size,
                         (unsigned long long)asj_get_u64(start + 16));
@@ -116,7 +116,7 @@ static asj_status read_junction(reader *r, asj_junction *j)
     get_floats(r->next, head, 5);
     const uint32_t branches = asj_get_u32(r->next + 20);
     const uint32_t octave = asj_get_u32(r->next + 24);
-    if (octave > ASJ_LARGEST_OCTAVE && !(r->finer && octave == UINT32_MAX))
+    if (octave > ASJ_LARGEST_OCTAVE && !(r->has_upsampled && octave == UINT32_MAX))
         return damaged(r, "a junction of an octave that there is not");
     j->octave = octave == UINT32_MAX ? -1 : (int32_t)octave;
     r->next += ASJ_FEATURES_JUNCTION_BYTES;
@@ -154,7 +154,7 @@ static asj_status read_pixels(reader *r, size_t stride, uint16_t *plane)
 static asj_status check_pixels(const reader *r)
 {
     const size_t bytes = 2 * (size_t)r->width * (size_t)r->height;
-    return r->left < bytes || (!r->colours && !r->finer_colours && r->left > bytes)
+    return r->left < bytes || (!r->colours && !r->upsampled_colours && r->left > bytes)
                ? damaged(r, "the pixels are not all there, or there are more")
                : ASJ_OK;
 }
@@ -202,7 +202,8 @@ static asj_status make_plain(reader *r, const asj_match_options *options, const 
 }
 
 /* From the image as it was: both as they were made. */
-static asj_status make_finer(reader *r, const asj_match_options *options, const asj_junction *junctions, asj_made_features *made)
+static asj_status make_upsampled(reader *r, const asj_match_options *options, const asj_junction *junctions,
+                                 asj_made_features *made)
 {
     asj_status status = check_pixels(r);
     if (status != ASJ_OK)
@@ -215,21 +216,22 @@ static asj_status make_finer(reader *r, const asj_match_options *options, const 
     if (status == ASJ_OK)
         status = asj_image_features_create(r->context, options, &image, junctions, r->count, 1, 0, &made->own);
     if (status == ASJ_OK)
-        status = asj_image_features_create(r->context, options, &image, junctions, r->count, 1, 1, &made->enlarged);
+        status = asj_image_features_create(r->context, options, &image, junctions, r->count, 1, 1, &made->upsampled);
     return status;
 }
 
 static asj_status make(reader *r, const asj_match_options *options, const asj_junction *junctions, asj_made_features *made)
 {
-    if (r->finer != asj_has_finer(junctions, r->count))
+    if (r->has_upsampled != asj_has_upsampled(junctions, r->count))
         return damaged(r, "no junction of octave -1");
-    asj_status status = r->finer ? make_finer(r, options, junctions, made) : make_plain(r, options, junctions, &made->own);
+    asj_status status = r->has_upsampled ? make_upsampled(r, options, junctions, made)
+                                         : make_plain(r, options, junctions, &made->own);
     if (status == ASJ_ERROR_ARGUMENT)
         status = damaged(r, "a junction that cannot be");
     if (status == ASJ_OK && r->colours)
-        status = read_colours(r, !r->finer_colours, &made->own);
-    if (status == ASJ_OK && r->finer_colours)
-        status = read_colours(r, 1, &made->enlarged);
+        status = read_colours(r, !r->upsampled_colours, &made->own);
+    if (status == ASJ_OK && r->upsampled_colours)
+        status = read_colours(r, 1, &made->upsampled);
     return status;
 }
 

@@ -2,7 +2,7 @@
 /* Features to bytes: features_bytes.h. */
 #include "core/bytes.h"
 #include "features_bytes.h"
-#include "finer.h"
+#include "upsampled.h"
 #include "kept_features.h"
 
 #include <stdio.h>
@@ -52,8 +52,8 @@ static uint8_t *put_junction(uint8_t *to, const asj_junction *j)
 static uint8_t *put_plane(uint8_t *to, const asj_features *features)
 {
     const asj_pyramid *pyramid = &features->of_image.pyramid;
-    const size_t width = (size_t)pyramid->width[0], stride = features->finer ? width : width + 1;
-    const uint16_t *plane = features->finer ? features->gray : pyramid->plane[0];
+    const size_t width = (size_t)pyramid->width[0], stride = features->has_upsampled ? width : width + 1;
+    const uint16_t *plane = features->has_upsampled ? features->gray : pyramid->plane[0];
     for (size_t y = 0; y < (size_t)pyramid->height[0]; y++)
         for (size_t x = 0; x < width; x++, to += 2)
             asj_put_u16(to, plane[y * stride + x]);
@@ -77,8 +77,8 @@ static uint32_t version_of(const asj_features *features)
 {
     uint32_t version = ASJ_FEATURES_VERSION;
     version += features->of_image.colours ? ASJ_FEATURES_COLOURS : 0;
-    version += features->finer ? ASJ_FEATURES_FINER : 0;
-    return version + (features->enlarged.colours ? ASJ_FEATURES_FINER_COLOURS : 0);
+    version += features->has_upsampled ? ASJ_FEATURES_UPSAMPLED : 0;
+    return version + (features->upsampled.colours ? ASJ_FEATURES_UPSAMPLED_COLOURS : 0);
 }
 
 size_t asj_features_save(const asj_features *features, void *bytes, size_t capacity)
@@ -90,7 +90,7 @@ size_t asj_features_save(const asj_features *features, void *bytes, size_t capac
     size_t size = ASJ_FEATURES_HEADER + text + ASJ_FEATURES_JUNCTION_BYTES * (size_t)features->junction_count + 2 * pixels;
     for (uint32_t n = 0; n < features->junction_count; n++)
         size += ASJ_FEATURES_BRANCH_BYTES * (size_t)features->junctions[n].branch_count;
-    size += colour_bytes(&features->of_image) + colour_bytes(&features->enlarged);
+    size += colour_bytes(&features->of_image) + colour_bytes(&features->upsampled);
     if (!bytes || capacity < size)
         return size;
     uint8_t *start = bytes, *to = start + ASJ_FEATURES_HEADER + text;
@@ -106,7 +106,7 @@ size_t asj_features_save(const asj_features *features, void *bytes, size_t capac
         to = put_junction(to, &features->junctions[n]);
     to = put_plane(to, features);
     to = put_colours(to, &features->of_image);
-    put_colours(to, &features->enlarged);
+    put_colours(to, &features->upsampled);
     asj_put_u32(start + 12, asj_crc32(start + ASJ_FEATURES_CHECKED, size - ASJ_FEATURES_CHECKED));
     return size;
 }

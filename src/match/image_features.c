@@ -20,7 +20,7 @@ static asj_status create(asj_context *context, const asj_match_options *options,
 {
     asj_status status = asj_l_junctions_create(context, options, junctions, &features->l_junctions);
     if (status == ASJ_OK)
-        status = (junctions->enlarged ? asj_pyramid_create_enlarged : asj_pyramid_create)(context, image, options->smoothing,
+        status = (junctions->upsampled ? asj_pyramid_create_upsampled : asj_pyramid_create)(context, image, options->smoothing,
                                                                                           &features->pyramid);
     if (status == ASJ_OK)
         status = asj_image_features_describe(context, options, features);
@@ -28,16 +28,16 @@ static asj_status create(asj_context *context, const asj_match_options *options,
 }
 
 asj_status asj_image_features_create(asj_context *context, const asj_match_options *options, const asj_image *image,
-                                     const asj_junction *junctions, size_t count, int32_t which, int32_t enlarged,
+                                     const asj_junction *junctions, size_t count, int32_t which, int32_t upsampled,
                                      asj_image_features *features)
 {
     memset(features, 0, sizeof *features);
     asj_status status = asj_image_check(context, image);
-    if (status == ASJ_OK && enlarged)
-        status = asj_enlarge_check(context, image);
+    if (status == ASJ_OK && upsampled)
+        status = asj_upsample_check(context, image);
     if (status != ASJ_OK)
         return status;
-    const asj_image_junctions list = {junctions, count, image->width, image->height, which, enlarged};
+    const asj_image_junctions list = {junctions, count, image->width, image->height, which, upsampled};
     status = create(context, options, image, &list, features);
     if (status != ASJ_OK)
         asj_image_features_free(&context->memory, features);

@@ -9,7 +9,7 @@
 #include "core/most_junctions.h"
 #include "core/watch.h"
 #include "describe.h"
-#include "finer.h"
+#include "upsampled.h"
 #include "match_options.h"
 
 #include <string.h>
@@ -69,11 +69,11 @@ static size_t list_pieces(const asj_features *features, piece *list)
     size_t n = 0;
     list[n++] = (piece){offsetof(asj_features, junctions), features->junction_count * sizeof(asj_junction)};
     n += list_of_image(&features->of_image, offsetof(asj_features, of_image), &features->options, list + n);
-    if (!features->finer)
+    if (!features->has_upsampled)
         return n;
-    list[n++] = (piece){offsetof(asj_features, l_junctions), features->enlarged.l_junctions.count * sizeof(asj_l_junction)};
+    list[n++] = (piece){offsetof(asj_features, l_junctions), features->upsampled.l_junctions.count * sizeof(asj_l_junction)};
     list[n++] = (piece){offsetof(asj_features, gray), pixels * sizeof(uint16_t)};
-    return n + list_of_image(&features->enlarged, offsetof(asj_features, enlarged), &features->options, list + n);
+    return n + list_of_image(&features->upsampled, offsetof(asj_features, upsampled), &features->options, list + n);
 }
 
 static size_t aligned(size_t bytes)
@@ -124,11 +124,11 @@ static asj_status copy(asj_context *context, asj_features *start, asj_features *
 asj_status asj_features_keep(asj_context *context, const asj_match_options *options, const asj_junction *junctions, size_t count,
                              const asj_made_features *made, asj_features **features)
 {
-    asj_features start = {.options = *options, .junction_count = (uint32_t)count, .finer = made->gray != NULL, .gray = made->gray,
-                          .enlarged = made->enlarged, .of_image = made->own};
-    const size_t l_count = start.finer ? made->enlarged.l_junctions.count : 0;
-    start.of_image.device_copy = start.enlarged.device_copy = 0;
-    start.of_image.pyramid.ops = start.enlarged.pyramid.ops = NULL;
+    asj_features start = {.options = *options, .junction_count = (uint32_t)count, .has_upsampled = made->gray != NULL,
+                          .gray = made->gray, .upsampled = made->upsampled, .of_image = made->own};
+    const size_t l_count = start.has_upsampled ? made->upsampled.l_junctions.count : 0;
+    start.of_image.device_copy = start.upsampled.device_copy = 0;
+    start.of_image.pyramid.ops = start.upsampled.pyramid.ops = NULL;
     memcpy(&start.junctions, &junctions, sizeof junctions);
     asj_l_junction *l_junctions = asj_allocate(&context->memory, l_count, sizeof *l_junctions);
     if (!l_junctions)
@@ -141,9 +141,9 @@ asj_status asj_features_keep(asj_context *context, const asj_match_options *opti
     return status;
 }
 
-asj_image_features asj_features_view(const asj_context *context, const asj_features *features, int32_t enlarged)
+asj_image_features asj_features_view(const asj_context *context, const asj_features *features, int32_t upsampled)
 {
-    asj_image_features view = enlarged && features->finer ? features->enlarged : features->of_image;
+    asj_image_features view = upsampled && features->has_upsampled ? features->upsampled : features->of_image;
     view.pyramid.ops = context->ops;
     return view;
 }
@@ -151,7 +151,7 @@ asj_image_features asj_features_view(const asj_context *context, const asj_featu
 void asj_made_features_free(asj_memory *memory, asj_made_features *made)
 {
     asj_image_features_free(memory, &made->own);
-    asj_image_features_free(memory, &made->enlarged);
+    asj_image_features_free(memory, &made->upsampled);
     asj_release(memory, made->gray);
 }
 
@@ -172,25 +172,25 @@ static asj_status copy_gray(asj_context *context, const asj_image *image, uint16
     return status;
 }
 
-static asj_status make(asj_context *context, const asj_image *image, const asj_junction *junctions, size_t count, int32_t enlarged,
+static asj_status make(asj_context *context, const asj_image *image, const asj_junction *junctions, size_t count, int32_t upsampled,
                        const asj_match_options *options, asj_image_features *made)
 {
-    const asj_status status = asj_image_features_create(context, options, image, junctions, count, 1, enlarged, made);
+    const asj_status status = asj_image_features_create(context, options, image, junctions, count, 1, upsampled, made);
     return status == ASJ_OK ? asj_colours_create(context, image, &made->l_junctions, &made->colours) : status;
 }
 
 static asj_status create(asj_context *context, const asj_image *image, const asj_junction *junctions, size_t count,
                          const asj_match_options *options, asj_features **features)
 {
-    const int32_t finer = asj_has_finer(junctions, count);
+    const int32_t has_upsampled = asj_has_upsampled(junctions, count);
     asj_made_features made;
     memset(&made, 0, sizeof made);
     asj_status status = asj_progress(context, ASJ_STAGE_PATCHES, 0);
     if (status == ASJ_OK)
         status = make(context, image, junctions, count, 0, options, &made.own);
-    if (status == ASJ_OK && finer)
-        status = make(context, image, junctions, count, 1, options, &made.enlarged);
-    if (status == ASJ_OK && finer)
+    if (status == ASJ_OK && has_upsampled)
+        status = make(context, image, junctions, count, 1, options, &made.upsampled);
+    if (status == ASJ_OK && has_upsampled)
         status = copy_gray(context, image, &made.gray);
     if (status == ASJ_OK)
         status = asj_features_keep(context, options, junctions, count, &made, features);
@@ -216,7 +216,7 @@ asj_status asj_features_create(asj_context *context, const asj_image *image, con
         asj_match_options_init(&defaults);
         options = &defaults;
     }
-    asj_status status = asj_match_wishes_check(context, options);
+    asj_status status = asj_match_request_check(context, options);
     if (status != ASJ_OK)
         return status;
     asj_backend_begin(context);
@@ -243,13 +243,13 @@ void asj_features_get_info(const asj_features *features, asj_features_info *info
     if (!features)
         return;
     const asj_image_features *of_image = &features->of_image;
-    const asj_l_junctions *l = features->finer ? &features->enlarged.l_junctions : &of_image->l_junctions;
+    const asj_l_junctions *l = features->has_upsampled ? &features->upsampled.l_junctions : &of_image->l_junctions;
     info->width = of_image->pyramid.width[0];
     info->height = of_image->pyramid.height[0];
     info->junction_count = features->junction_count;
     info->junctions = features->junction_count ? features->junctions : NULL;
     info->l_junction_count = l->count;
-    info->l_junctions = l->count == 0 ? NULL : features->finer ? features->l_junctions : l->l;
+    info->l_junctions = l->count == 0 ? NULL : features->has_upsampled ? features->l_junctions : l->l;
     info->options = &features->options;
     info->bytes = features->memory.now;
 }

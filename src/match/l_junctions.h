@@ -18,7 +18,7 @@ typedef struct asj_lengths {
 } asj_lengths;
 
 typedef struct asj_l_junctions {
-    int32_t enlarged;            /* 1: all is in pixels of the image enlarged twice (image_features.c); 0: in its own */
+    int32_t upsampled;            /* 1: all is in pixels of the image upsampled by two (image_features.c); 0: in its own */
     asj_l_junction *l;           /* as asj_decompose() gives them */
     uint32_t count;
     asj_lengths *lengths;        /* [2 * i] of branch a, [2 * i + 1] of branch b */

@@ -32,7 +32,7 @@ static asj_status check(asj_context *context, const asj_image_junctions *input)
             if (branch->end < 0 || branch->end > ASJ_BRANCH_END_BORDER)
                 return asj_fail(context, ASJ_ERROR_ARGUMENT, "branch %d of junction %zu of image %d has an end of kind %d", (int)b,
                                 n, which, (int)branch->end);
-            if (!(branch->length >= 0 && branch->length <= ASJ_LONGEST_BRANCH && fabsf(branch->angle) <= 1e6f))
+            if (!(branch->length >= 0 && branch->length <= ASJ_MAX_BRANCH_LENGTH && fabsf(branch->angle) <= 1e6f))
                 return asj_fail(context, ASJ_ERROR_ARGUMENT, "branch %d of junction %zu of image %d has angle %g, length %g",
                                 (int)b, n, which, (double)branch->angle, (double)branch->length);
         }
@@ -113,8 +113,8 @@ static asj_status set_branches(asj_context *context, const asj_image_junctions *
     return ASJ_OK;
 }
 
-/* To pixels of the image enlarged twice (core/enlarge.c). */
-static void enlarge(asj_l_junctions *all)
+/* To pixels of the image upsampled by two (core/upsample.c). */
+static void upsample(asj_l_junctions *all)
 {
     for (uint32_t i = 0; i < all->count; i++) {
         asj_l_junction *l = &all->l[i];
@@ -139,9 +139,9 @@ asj_status asj_l_junctions_create(asj_context *context, const asj_match_options 
     if (!all->l)
         return no_memory(context);
     all->count = (uint32_t)asj_decompose(input->list, input->count, options->minimum_opening, all->l, total);
-    all->enlarged = input->enlarged;
-    if (all->enlarged)
-        enlarge(all);
+    all->upsampled = input->upsampled;
+    if (all->upsampled)
+        upsample(all);
     else
         all->count = asj_l_junctions_of_image(input->list, all->l, all->count);
     status = set_octaves(context, input, all);

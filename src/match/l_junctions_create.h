@@ -11,7 +11,7 @@ typedef struct asj_image_junctions {
     size_t count;
     int32_t width, height;       /* px: of the image */
     int32_t which;               /* 1 or 2, for messages */
-    int32_t enlarged;            /* 1: L-junctions in pixels of the image enlarged twice; 0: in its own, and none of octave
+    int32_t upsampled;            /* 1: L-junctions in pixels of the image upsampled by two; 0: in its own, and none of octave
                                   * -1 */
 } asj_image_junctions;
 

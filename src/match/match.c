@@ -7,7 +7,7 @@
  *   colour.c         colours around them                         for the geometry only
  *
  * Of the pair, the list below:
- *   expected.c       of enlarged images: where their own matches put the partners
+ *   expected.c       of upsampled images: where their own matches put the partners
  *   related.c        unless the images have nothing in common
  *   shortlist.c      best partners among all pairs               (rank.c; product_bound.c rules most pairs out)
  *   align.c          each candidate's map refined on the images  (disc.c; paper: not done)
@@ -25,8 +25,8 @@
  *   match_result.c   what the caller sees; segments.c: which ends of the branches correspond; common_direction.c:
  *                    where they point
  *
- * All of this once, and where there are junctions of octave -1 once more with them in the enlarged images: finer.c decides, and
- * same_place.c leaves one match for each place.
+ * All of this once, and where there are junctions of octave -1 once more with them in the upsampled images: upsampled.c decides,
+ * and same_place.c leaves one match for each place.
  *
  * Up to the consensus every aligned candidate is there, several for a location; a step that needs all of them stands before
  * assign.c. */
@@ -38,7 +38,7 @@
 #include "epipolar.h"
 #include "expected.h"
 #include "final_pose.h"
-#include "finer.h"
+#include "upsampled.h"
 #include "guests.h"
 #include "guided.h"
 #include "kept_features.h"
@@ -203,36 +203,36 @@ static asj_status finish(const asj_match_run *run, stop_watch *watch, asj_match_
     return ASJ_OK;
 }
 
-/* In pixels of the images, where features are of enlarged ones. */
+/* In pixels of the images, where features are of upsampled ones. */
 static asj_stretch stretch_of(const asj_image_features *features)
 {
-    return features->l_junctions.enlarged ? (asj_stretch){2, 2} : (asj_stretch){1, 1};
+    return features->l_junctions.upsampled ? (asj_stretch){2, 2} : (asj_stretch){1, 1};
 }
 
 static asj_match_options options_for(const asj_match_options *options, const asj_stretch by[2], int32_t expected)
 {
-    asj_match_options enlarged = *options;
+    asj_match_options upsampled = *options;
     for (int32_t n = 0; n < 2; n++)
         if (options->geometry.cameras[n].fx > 0)
-            enlarged.geometry.cameras[n] = asj_stretch_camera(&options->geometry.cameras[n], &by[n]);
-    if (expected && options->enlarged_shortlist > 0)
-        enlarged.shortlist = options->enlarged_shortlist;
-    return enlarged;
+            upsampled.geometry.cameras[n] = asj_stretch_camera(&options->geometry.cameras[n], &by[n]);
+    if (expected && options->upsampled_shortlist > 0)
+        upsampled.shortlist = options->upsampled_shortlist;
+    return upsampled;
 }
 
-/* Do matches that are known say where those of the enlarged images lie? Fewer may all be wrong; and where a geometry was asked that
- * the images leave open, the enlarged ones settle it (finer_geometry.c) and are not told. */
+/* Do matches that are known say where those of the upsampled images lie? Fewer may all be wrong; and where a geometry was asked
+ * that the images leave open, the upsampled ones settle it (upsampled_geometry.c) and are not told. */
 static int32_t says_where(const asj_match_options *options, const asj_known_matches *known)
 {
-    return known && options->enlarged_reach > 0 && known->result->match_count >= ENOUGH_KNOWN &&
+    return known && options->upsampled_search_radius > 0 && known->result->match_count >= ENOUGH_KNOWN &&
            (known->result->geometry.status == ASJ_GEOMETRY_NOT_ASKED || known->result->geometry.status == ASJ_GEOMETRY_ACCEPTED);
 }
 
-static asj_status expect(asj_match_run *run, const asj_known_matches *known, const asj_stretch enlarged[2], asj_expected *expected)
+static asj_status expect(asj_match_run *run, const asj_known_matches *known, const asj_stretch upsampled[2], asj_expected *expected)
 {
     asj_stretch by[2];
     for (int32_t n = 0; n < 2; n++)
-        by[n] = (asj_stretch){known->by[n].x * enlarged[n].x, known->by[n].y * enlarged[n].y};
+        by[n] = (asj_stretch){known->by[n].x * upsampled[n].x, known->by[n].y * upsampled[n].y};
     run->expected = expected;
     return asj_expect(run, known->result, by, expected);
 }
@@ -242,19 +242,19 @@ static asj_status match_features(asj_context *context, const asj_match_options *
                                  const asj_known_matches *known, stop_watch *watch, asj_match_result **result)
 {
     const asj_stretch by[2] = {stretch_of(features[0]), stretch_of(features[1])};
-    const int32_t enlarged = by[0].x > 1 || by[1].x > 1, expected = enlarged && says_where(options, known);
-    const asj_match_options of_enlarged = options_for(options, by, expected);
+    const int32_t upsampled = by[0].x > 1 || by[1].x > 1, expected = upsampled && says_where(options, known);
+    const asj_match_options of_upsampled = options_for(options, by, expected);
     asj_expected places = {{NULL, NULL}, {NULL, NULL}};
-    asj_match_run run = {.context = context, .options = enlarged ? &of_enlarged : options, .image = {features[0], features[1]}};
+    asj_match_run run = {.context = context, .options = upsampled ? &of_upsampled : options, .image = {features[0], features[1]}};
     asj_status status = expected ? expect(&run, known, by, &places) : ASJ_OK;
     if (status == ASJ_OK)
         status = run_steps(&run, watch);
     if (status == ASJ_OK)
         status = finish(&run, watch, result);
-    if (status == ASJ_OK && enlarged)
+    if (status == ASJ_OK && upsampled)
         asj_match_result_unstretch(*result, by);
     if (status == ASJ_OK)
-        (*result)->enlarged = enlarged ? 1 : 0;
+        (*result)->upsampled = upsampled ? 1 : 0;
     asj_expected_free(&context->memory, &places);
     asj_release_much(&context->memory, run.candidates.list);
     asj_release(&context->memory, run.choices.list);
@@ -274,18 +274,19 @@ typedef struct source {
     size_t count;
 } source;
 
-/* Of one image; `enlarged`: of the image enlarged twice, if it has junctions of octave -1. */
+/* Of one image; `upsampled`: of the image upsampled by two, if it has junctions of octave -1. */
 static asj_status make_features(asj_context *context, const asj_match_options *options, const source *s, int32_t n,
-                                int32_t enlarged, asj_image_features *features)
+                                int32_t upsampled, asj_image_features *features)
 {
-    const int32_t finer = enlarged && asj_has_finer(s->junctions, s->count);
-    asj_status status = asj_image_features_create(context, options, s->image, s->junctions, s->count, n + 1, finer, features);
+    const int32_t has_upsampled = upsampled && asj_has_upsampled(s->junctions, s->count);
+    asj_status status = asj_image_features_create(context, options, s->image, s->junctions, s->count, n + 1, has_upsampled,
+                                                  features);
     if (status == ASJ_OK && options->geometry.model != ASJ_GEOMETRY_NONE)
         status = asj_colours_create(context, s->image, &features->l_junctions, &features->colours);
     return status;
 }
 
-static asj_status match_sources(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
+static asj_status match_sources(asj_context *context, const asj_match_options *options, const void *data, int32_t upsampled,
                                 const asj_known_matches *known, asj_match_result **result)
 {
     const source *sources = data;
@@ -295,7 +296,7 @@ static asj_status match_sources(asj_context *context, const asj_match_options *o
     memset(features, 0, sizeof features);
     asj_status status = asj_progress(context, ASJ_STAGE_PATCHES, 0);
     for (int32_t n = 0; n < 2 && status == ASJ_OK; n++)
-        status = make_features(context, options, &sources[n], n, enlarged, &features[n]);
+        status = make_features(context, options, &sources[n], n, upsampled, &features[n]);
     stop(&watch, ASJ_STAGE_PATCHES);
     if (status == ASJ_OK)
         status = match_features(context, options, both, known, &watch, result);
@@ -306,7 +307,7 @@ static asj_status match_sources(asj_context *context, const asj_match_options *o
 
 asj_status asj_match_look(asj_context *context, const asj_image *image1, const asj_junction *junctions1, size_t count1,
                           const asj_image *image2, const asj_junction *junctions2, size_t count2,
-                          const asj_match_options *options, int32_t enlarged, const asj_known_matches *known,
+                          const asj_match_options *options, int32_t upsampled, const asj_known_matches *known,
                           asj_match_result **result)
 {
     const source sources[2] = {{image1, junctions1, count1}, {image2, junctions2, count2}};
@@ -320,16 +321,16 @@ asj_status asj_match_look(asj_context *context, const asj_image *image1, const a
     for (int32_t n = 0; n < 2; n++)
         if (sources[n].count > ASJ_MOST_JUNCTIONS)
             return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions of image %d are too many", sources[n].count, (int)n + 1);
-    const asj_finer_match match = {match_sources,
+    const asj_upsampled_match match = {match_sources,
                                    sources,
                                    {sources[0].junctions, sources[1].junctions},
                                    {sources[0].count, sources[1].count},
-                                   enlarged,
+                                   upsampled,
                                    known};
     asj_status status;
     asj_backend_begin(context);
     do
-        status = asj_match_finer(context, options, &match, result);
+        status = asj_match_upsampled(context, options, &match, result);
     while (asj_backend_retry(context, status));
     return status;
 }
@@ -357,18 +358,18 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
         options = &defaults;
     }
     const double start = asj_clock_ms();
-    asj_status status = asj_match_wishes_check(context, options);
+    asj_status status = asj_match_request_check(context, options);
     if (status == ASJ_OK)
         status = asj_match_look(context, image1, junctions1, count1, image2, junctions2, count2, options, 0, NULL, result);
     return status == ASJ_OK ? finish_call(context, options, start, result) : status;
 }
 
-static asj_status match_kept(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
+static asj_status match_kept(asj_context *context, const asj_match_options *options, const void *data, int32_t upsampled,
                              const asj_known_matches *known, asj_match_result **result)
 {
     const asj_features *const *kept = data;
-    const asj_image_features views[2] = {asj_features_view(context, kept[0], enlarged),
-                                         asj_features_view(context, kept[1], enlarged)};
+    const asj_image_features views[2] = {asj_features_view(context, kept[0], upsampled),
+                                         asj_features_view(context, kept[1], upsampled)};
     const asj_image_features *both[2] = {&views[0], &views[1]};
     stop_watch watch = {.clock = asj_clock_ms()};
     return match_features(context, options, both, known, &watch, result);
@@ -377,7 +378,7 @@ static asj_status match_kept(asj_context *context, const asj_match_options *opti
 /* Features tell what they were made with; the pair's steps read the same options. */
 static asj_status check_options(asj_context *context, const asj_match_options *options, const asj_features *kept[2])
 {
-    const asj_status status = asj_match_wishes_check(context, options);
+    const asj_status status = asj_match_request_check(context, options);
     if (status != ASJ_OK)
         return status;
     for (int32_t n = 0; n < 2; n++) {
@@ -409,7 +410,7 @@ asj_status asj_match_features(asj_context *context, const asj_features *features
     asj_status status = check_options(context, options, kept);
     if (status != ASJ_OK)
         return status;
-    const asj_finer_match match = {match_kept,
+    const asj_upsampled_match match = {match_kept,
                                    kept,
                                    {features1->junctions, features2->junctions},
                                    {features1->junction_count, features2->junction_count},
@@ -417,7 +418,7 @@ asj_status asj_match_features(asj_context *context, const asj_features *features
                                    NULL};
     asj_backend_begin(context);
     do
-        status = asj_match_finer(context, options, &match, result);
+        status = asj_match_upsampled(context, options, &match, result);
     while (asj_backend_retry(context, status));
     return status == ASJ_OK ? finish_call(context, options, start, result) : status;
 }

@@ -25,18 +25,19 @@ static const char *const descriptor_words[] = {"raw", "sift", NULL};
 
 /* ..., range, default, paper, match (the same as default), help */
 static const asj_option_info rows[] = {
-    INTEGER(IMAGES, COMMON, enlarge_from, "", 0, 1000000, 8, 0, 8,
-            "matches from which on two images are looked at enlarged, too, unless a stretch is given (fewer where a geometry is "
+    INTEGER(IMAGES, COMMON, upsample_from, "", 0, 1000000, 8, 0, 8,
+            "matches from which on two images are looked at upsampled, too, unless a stretch is given (fewer where a geometry is "
             "asked and left open); 0 = never"),
-    SWITCH(IMAGES, COMMON, enlarged_half_octaves, 1, 0, 1,
-           "look at enlarged images half-way between their octaves, too: half as many matches again, in 1.3 to 1.6 times the time"),
-    INTEGER(IMAGES, ADVANCED, enlarged_most, "", 0, 1000000, 16000, 16000, 16000,
-            "junctions of an enlarged image that take part, the most meaningful ones; 0 = all"),
-    NUMBER(IMAGES, ADVANCED, enlarged_reach, "", 0, 1, 0.02, 0, 0.02,
-           "enlarged, partners are compared that lie no farther from where eight or more matches of the images put them, in "
+    SWITCH(IMAGES, COMMON, upsampled_half_octaves, 1, 0, 1,
+           "look at upsampled images half-way between their octaves, too: half as many matches again, in 1.3 to 1.6 times the "
+           "time"),
+    INTEGER(IMAGES, ADVANCED, upsampled_max_junctions, "", 0, 1000000, 16000, 16000, 16000,
+            "junctions of an upsampled image that take part, the most meaningful ones; 0 = all"),
+    NUMBER(IMAGES, ADVANCED, upsampled_search_radius, "", 0, 1, 0.02, 0, 0.02,
+           "upsampled, partners are compared that lie no farther from where eight or more matches of the images put them, in "
            "diagonals, and 0.3 of the distance to these; 0 = anywhere"),
-    INTEGER(IMAGES, ADVANCED, enlarged_shortlist, "", 0, 32, 2, 0, 2,
-            "shortlist where enlarged_reach says where partners lie; 0 = as it is"),
+    INTEGER(IMAGES, ADVANCED, upsampled_shortlist, "", 0, 32, 2, 0, 2,
+            "shortlist where upsampled_search_radius says where partners lie; 0 = as it is"),
 
     NUMBER(FRAMES, ADVANCED, minimum_opening, "deg", 0, 80, 20, 20, 20, "branches that open by less give no frame"),
     INTEGER(FRAMES, ADVANCED, length_hypotheses, "", 1, 4, 3, 1, 3,
@@ -134,12 +135,12 @@ asj_status asj_match_options_check(const asj_match_options *options, char *messa
     return asj_option_table_check(&table, options, message, message_size);
 }
 
-asj_status asj_match_wishes_check(asj_context *context, const asj_match_options *options)
+asj_status asj_match_request_check(asj_context *context, const asj_match_options *options)
 {
     char message[256];
     if (asj_match_options_check(options, message, sizeof message) != ASJ_OK)
         return asj_fail(context, ASJ_ERROR_OPTION, "%s", message);
-    return options->geometry.model == ASJ_GEOMETRY_NONE ? ASJ_OK : asj_geometry_wishes_check(context, &options->geometry);
+    return options->geometry.model == ASJ_GEOMETRY_NONE ? ASJ_OK : asj_geometry_request_check(context, &options->geometry);
 }
 
 /* What the frames and patches of an image depend on: two groups, and what neighbours are. */

@@ -11,7 +11,7 @@
 asj_status asj_match_options_check(const asj_match_options *options, char *message, size_t message_size);
 
 /* That, and of the geometry if one is asked for: what a caller's options are checked by, who hears of it from the context. */
-asj_status asj_match_wishes_check(asj_context *context, const asj_match_options *options);
+asj_status asj_match_request_check(asj_context *context, const asj_match_options *options);
 
 /* The first key, in the order of the table, by which features of an image differ that are made with these options; NULL = they are
  * the same features. */

@@ -168,7 +168,7 @@ static void show(const asj_match_run *run, asj_own_result *r)
     const asj_l_junctions *in1 = &run->image[0]->l_junctions, *in2 = &run->image[1]->l_junctions;
     asj_match_result *shown = &r->shown;
     shown->rejected = run->rejected.count ? r->rejected : NULL;
-    shown->rejected_count = run->rejected.count;
+    shown->rejected_count = (uint32_t)run->rejected.count;
     shown->matches = r->count ? r->matches : NULL;
     shown->match_count = r->count;
     shown->l_junctions1 = in1->count ? r->l1 : NULL;
@@ -177,7 +177,7 @@ static void show(const asj_match_run *run, asj_own_result *r)
     shown->l_junction_count2 = in2->count;
     shown->geometry = run->geometry;
     shown->stretch[0] = shown->stretch[1] = 1;
-    shown->own = (uint64_t)(uintptr_t)r;
+    shown->origin = (uint64_t)(uintptr_t)r;
 }
 
 asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **shown)
@@ -219,7 +219,7 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
 void asj_match_result_sort(asj_own_result *r)
 {
     sort(r->matches, r->count);
-    sort(r->rejected, (size_t)r->shown.rejected_count);
+    sort(r->rejected, r->shown.rejected_count);
     for (int32_t side = 0; side < 2; side++)
         asj_places_sort(r->places[side], r->matches, r->count, side);
 }
@@ -228,7 +228,7 @@ asj_around asj_match_result_around(const asj_match_result *shown)
 {
     const asj_own_result *r = (const asj_own_result *)shown;
     asj_around around = {shown->matches, shown->match_count, {NULL, NULL}, 0, NULL};
-    if (shown->own == (uint64_t)(uintptr_t)r && shown->matches == r->matches && shown->match_count <= r->count) {
+    if (shown->origin == (uint64_t)(uintptr_t)r && shown->matches == r->matches && shown->match_count <= r->count) {
         around.places[0] = r->places[0];
         around.places[1] = r->places[1];
         around.place_count = r->count;

@@ -14,7 +14,7 @@ void asj_match_result_unstretch(asj_match_result *shown, const asj_stretch by[2]
     }
     r->farthest /= sqrt(sqrt(by[0].x * by[0].y * by[1].x * by[1].y)); /* the mean scale */
     asj_unstretch_matches(r->matches, shown->match_count, by);
-    asj_unstretch_matches(r->rejected, (size_t)shown->rejected_count, by);
+    asj_unstretch_matches(r->rejected, shown->rejected_count, by);
     asj_unstretch_l_junctions(r->l1, shown->l_junction_count1, &by[0]);
     asj_unstretch_l_junctions(r->l2, shown->l_junction_count2, &by[1]);
     asj_unstretch_geometry(&shown->geometry, by);
@@ -49,7 +49,7 @@ asj_status asj_match_result_number(asj_context *context, asj_match_result *shown
         if (junctions[all[l].junction].octave >= 0)
             number[known++] = l;
     renumber(r->matches, shown->match_count, side, number);
-    renumber(r->rejected, (size_t)shown->rejected_count, side, number);
+    renumber(r->rejected, shown->rejected_count, side, number);
     asj_release(&context->memory, number);
     asj_release(&r->memory, side ? r->l2 : r->l1);
     if (side) {
@@ -66,7 +66,7 @@ asj_status asj_match_result_judge(asj_context *context, asj_match_result *shown,
                                   const float *of_rejected)
 {
     asj_own_result *r = (asj_own_result *)shown;
-    const size_t count = (size_t)(shown->match_count + shown->rejected_count);
+    const size_t count = (size_t)shown->match_count + shown->rejected_count;
     uint32_t kept = 0, gone = 0;
     asj_junction_match *rejected = asj_allocate(&r->memory, count, sizeof *rejected);
     if (!rejected)
@@ -146,7 +146,7 @@ static void join_matches(joined *j, const asj_match_result *shown, const asj_mat
     for (size_t k = 0; k < shown->rejected_count; k++)
         j->rejected[j->rejected_count++] = shown->rejected[k];
     append(j, j->matches, &j->count, other->matches, other->match_count, wanted, first);
-    append(j, j->rejected, &j->rejected_count, other->rejected, (size_t)other->rejected_count, wanted_rejected, first);
+    append(j, j->rejected, &j->rejected_count, other->rejected, other->rejected_count, wanted_rejected, first);
 }
 
 static void exchange(asj_own_result *r, joined *j)
@@ -175,7 +175,7 @@ asj_status asj_match_result_join(asj_context *context, asj_match_result *shown, 
 {
     asj_own_result *r = (asj_own_result *)shown;
     const size_t count = (size_t)shown->match_count + other->match_count;
-    const size_t rejected = (size_t)(shown->rejected_count + other->rejected_count);
+    const size_t rejected = (size_t)shown->rejected_count + other->rejected_count;
     const size_t l_counts[2] = {(size_t)shown->l_junction_count1 + (same_lists ? 0 : other->l_junction_count1),
                                 (size_t)shown->l_junction_count2 + (same_lists ? 0 : other->l_junction_count2)};
     joined j = {.matches = asj_allocate(&r->memory, count, sizeof *j.matches),

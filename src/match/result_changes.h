@@ -11,7 +11,8 @@ asj_status asj_match_result_judge(asj_context *context, asj_match_result *shown,
                                   const float *of_rejected);
 
 /* Adds the matches and rejected ones of another result of the same images that are wanted, with their L-junctions and numbers of
- * junctions of their own, unless both have the same lists. Without a match at one place twice: see finer.c. ASJ_ERROR_MEMORY. */
+ * junctions of their own, unless both have the same lists. Without a match at one place twice: see upsampled.c.
+ * ASJ_ERROR_MEMORY. */
 asj_status asj_match_result_join(asj_context *context, asj_match_result *shown, const asj_match_result *other,
                                  const uint8_t *wanted, const uint8_t *wanted_rejected, int32_t same_lists);
 

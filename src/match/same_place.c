@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Matches at one place in both images: one corner, which several octaves have found.
  *
- * In enlarged images octaves -1 and 0, and those between them, are matched as one (finer.c), so a corner may be two locations a
- * fraction of a pixel apart, each with its match. Of 5140 matches of sixteen pairs 101 lie within .25 px of another one in both
+ * In upsampled images octaves -1 and 0, and those between them, are matched as one (upsampled.c), so a corner may be two locations
+ * a fraction of a pixel apart, each with its match. Of 5140 matches of sixteen pairs 101 lie within .25 px of another one in both
  * images, 180 within .5 and 268 within 1 px; as many of a hundred of these are right as of all. The one that looks most alike
  * stays. Which of two looks is the answer is decided before: two that agree are better witnesses than one. */
 #include "same_place.h"

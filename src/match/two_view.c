@@ -24,9 +24,9 @@
 #include <math.h>
 
 #define WIDE_SHORTLIST 16
-#define MOST_LISTED 4000 /* L-junctions of an image, the most meaningful ones. Enlarged photographs have over 20000, and what all of
-                          * them bring besides takes longer than all other steps: a corridor with cameras 246 matches in 12.0 s, so
-                          * 235 in 6.1, a dense mosaic 6073 in 36.7 s and 6074 in 12.5; rooms of poor texture have fewer anyway */
+#define MOST_LISTED 4000 /* L-junctions of an image, the most meaningful ones. Upsampled photographs have over 20000, and what all
+                          * of them bring besides takes longer than all other steps: a corridor with cameras 246 matches in 12.0 s,
+                          * so 235 in 6.1, a dense mosaic 6073 in 36.7 s and 6074 in 12.5; rooms of poor texture have fewer */
 #define CLUSTER 5.0 /* px */
 
 /* The matches are candidates too, wherever they rank: guided ones (guided.c) stand in no list, and each needs its probability. */

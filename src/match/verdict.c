@@ -18,8 +18,8 @@
  *     the geometry does not contradict it.
  *
  * Each match receives its probability: that of the candidate; of guests, and beyond the likeliest candidates, which are all that a
- * geometry looks at (pairs.c), that under the geometry alone, where ASJ_MATCH_RIGHT of them are right before it, and of enlarged
- * images (finer.c) the larger one of both. It is 0 where a map keeps hardly any area. */
+ * geometry looks at (pairs.c), that under the geometry alone, where ASJ_MATCH_RIGHT of them are right before it, and of upsampled
+ * images (upsampled.c) the larger one of both. It is 0 where a map keeps hardly any area. */
 #include "verdict.h"
 #include "epipolar.h"
 #include "geometry_candidate.h"

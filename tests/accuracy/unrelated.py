@@ -7,7 +7,7 @@
 PAIRS holds folders with 1.png, 2.png and truth.json (K1 and K2, 3 x 3, where the cameras are known). Each image of a folder is
 paired with those of the folders after it, but for folders named by --same, which show one scene. Cameras are given where both are
 known, unless the options of match name a focal length. Features of every image are made once; with --whole, match gets the
-photographs themselves, and looks at them enlarged and stretched by itself. Prints what was accepted or ambiguous, or has matches
+photographs themselves, and looks at them upsampled and stretched by itself. Prints what was accepted or ambiguous, or has matches
 where the options of match say --geometry none; exit code 1 when any was accepted.
 """
 

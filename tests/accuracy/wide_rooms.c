@@ -118,8 +118,8 @@ static void count(const settings *set, const synth_wide_pair *pair, const asj_ma
            (unsigned)result->match_count, result->total_ms);
     if (g->focal_sd > 0)
         printf("  focal length %.0f (%.0f), sd %.3f", g->focal[0], pair->cameras[0].focal, g->focal_sd);
-    if (set->poses && g->has_second)
-        printf("  second %.1f", g->second_log10_nfa);
+    if (set->poses && g->has_rival)
+        printf("  second %.1f", g->rival_log10_nfa);
     if (set->poses && accepted && g->has_pose)
         print_pose(g, pair);
     puts("");

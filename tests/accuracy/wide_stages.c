@@ -305,7 +305,7 @@ static asj_status tell(const settings *set, const synth_wide_pair *pair, stage *
            n->both, n->listed, n->aligned, n->affine, n->prior, explained, nearest, pairs.rotation_count);
     printf(" %7.1f %7.1f %5.1f  %-10s %-11s", -evidence / log(10), -fmax(evidence, m.evidence) / log(10), off,
            asj_geometry_status_name(g.status), asj_geometry_model_name(g.model));
-    printf(" %9.1f %9.1f %6.1f %6.1f %6.1f\n", g.log10_nfa, g.second_log10_nfa, right, all, pose_error(pair, &g));
+    printf(" %9.1f %9.1f %6.1f %6.1f %6.1f\n", g.log10_nfa, g.rival_log10_nfa, right, all, pose_error(pair, &g));
     fflush(stdout);
     free(probability);
     asj_adjust_scratches_free(memory, scratch, set->context->threads);

@@ -333,9 +333,9 @@ static void a_glancing_view_is_stretched_by_itself(void **state)
     free(as_it_is);
 }
 
-/* Where they have matches enough, whole images are looked at enlarged too: more matches, of the same places within what soft and
- * coarse edges are known to (3 px here), told in JSON. With --enlarge-from it is left, or is not reached. */
-static void whole_images_are_enlarged_by_themselves(void **state)
+/* Where they have matches enough, whole images are looked at upsampled too: more matches, of the same places within what soft and
+ * coarse edges are known to (3 px here), told in JSON. With --upsample-from it is left, or is not reached. */
+static void whole_images_are_upsampled_by_themselves(void **state)
 {
     (void)state;
     expect_code(run_cli("match", "-q", "--stretch", "1", "-o", "plain.csv", "first.png", "second.png", NULL), 0);
@@ -343,11 +343,11 @@ static void whole_images_are_enlarged_by_themselves(void **state)
     for (int k = 0; k < 3; k++) {
         static const char *const from[] = {"20", "0", "1000"};
         size_t size = 0;
-        expect_code(run_cli("match", "-q", "--enlarge-from", from[k], "-o", "e.json", "first.png", "second.png", NULL), 0);
+        expect_code(run_cli("match", "-q", "--upsample-from", from[k], "-o", "e.json", "first.png", "second.png", NULL), 0);
         char *text = read_bytes("e.json", &size);
-        expect_code(run_cli("match", "-q", "--enlarge-from", from[k], "-o", "e.csv", "first.png", "second.png", NULL), 0);
+        expect_code(run_cli("match", "-q", "--upsample-from", from[k], "-o", "e.csv", "first.png", "second.png", NULL), 0);
         read_csv("e.csv", &found);
-        assert_non_null(strstr(text, k == 0 ? "\"enlarged\": true" : "\"enlarged\": false"));
+        assert_non_null(strstr(text, k == 0 ? "\"upsampled\": true" : "\"upsampled\": false"));
         assert_true(k == 0 ? found.count > other.count : found.count == other.count);
         for (size_t n = 0; n < found.count; n++) {
             const double *row = found.rows[n];
@@ -360,33 +360,33 @@ static void whole_images_are_enlarged_by_themselves(void **state)
     expect_code(run_cli("match", "-q", "--first-octave", "0", "-o", "named.csv", "first.png", "second.png", NULL), 0);
     read_csv("named.csv", &other);
     assert_true(found.count == other.count && memcmp(found.rows, other.rows, found.count * sizeof found.rows[0]) == 0);
-    const outcome *result = run_cli("match", "--enlarge-from", "9", "--stretch", "1", "first.png", "second.png", NULL);
+    const outcome *result = run_cli("match", "--upsample-from", "9", "--stretch", "1", "first.png", "second.png", NULL);
     expect_code(result, 2);
-    expect_in(result, result->err, "--enlarge-from changes nothing");
-    expect_code(run_cli("match", "--enlarge-from", "9", "--junctions1", "plain.csv", "first.png", "second.png", NULL), 2);
+    expect_in(result, result->err, "--upsample-from changes nothing");
+    expect_code(run_cli("match", "--upsample-from", "9", "--junctions1", "plain.csv", "first.png", "second.png", NULL), 2);
     static const char *const decided[][2] = {{"--first-octave", "-1"}, {"--first-octave", "1"}, {"--octaves", "1"}};
     for (size_t k = 0; k < sizeof decided / sizeof decided[0]; k++) {
-        result = run_cli("match", "--enlarge-from", "9", decided[k][0], decided[k][1], "first.png", "second.png", NULL);
+        result = run_cli("match", "--upsample-from", "9", decided[k][0], decided[k][1], "first.png", "second.png", NULL);
         expect_code(result, 2);
-        expect_in(result, result->err, "--enlarge-from changes nothing");
+        expect_in(result, result->err, "--upsample-from changes nothing");
     }
     static const char *const useless[][2] = {{"--first-octave", "-1"}, {"--octaves", "1"},    {"--stretch", "2"},
-                                             {"--enlarge-from", "0"},  {"--preset", "paper"}, {"--junctions1", "plain.csv"}};
+                                             {"--upsample-from", "0"},  {"--preset", "paper"}, {"--junctions1", "plain.csv"}};
     for (size_t k = 0; k < sizeof useless / sizeof useless[0]; k++) {
-        result = run_cli("match", "--enlarged-half-octaves", "no", useless[k][0], useless[k][1], "first.png", "second.png", NULL);
+        result = run_cli("match", "--upsampled-half-octaves", "no", useless[k][0], useless[k][1], "first.png", "second.png", NULL);
         expect_code(result, 2);
-        expect_in(result, result->err, k == 3 ? "--enlarge-from 0" : "changes nothing");
+        expect_in(result, result->err, k == 3 ? "--upsample-from 0" : "changes nothing");
     }
-    result = run_cli("match", "--enlarged-most", "9", "--enlarge-from", "0", "first.png", "second.png", NULL);
+    result = run_cli("match", "--upsampled-max-junctions", "9", "--upsample-from", "0", "first.png", "second.png", NULL);
     expect_code(result, 2);
-    expect_in(result, result->err, "--enlarged-most changes nothing");
-    expect_code(run_cli("match", "--enlarged-reach", "0", "--first-octave", "-1", "-q", "-o", "wide.csv", "first.png", "second.png",
-                        NULL), 0);
+    expect_in(result, result->err, "--upsampled-max-junctions changes nothing");
+    expect_code(run_cli("match", "--upsampled-search-radius", "0", "--first-octave", "-1", "-q", "-o", "wide.csv", "first.png",
+                        "second.png", NULL), 0);
     for (int k = 0; k < 2; k++) {
-        result = run_cli("match", "--enlarged-shortlist", "2", k ? "--stretch" : "--enlarged-reach", k ? "2" : "0", "first.png",
-                         "second.png", NULL);
+        result = run_cli("match", "--upsampled-shortlist", "2", k ? "--stretch" : "--upsampled-search-radius", k ? "2" : "0",
+                         "first.png", "second.png", NULL);
         expect_code(result, 2);
-        expect_in(result, result->err, "--enlarged-shortlist changes nothing");
+        expect_in(result, result->err, "--upsampled-shortlist changes nothing");
     }
     result = run_cli("match", "--half-octaves", "yes", "--octaves", "1", "first.png", "second.png", NULL);
     expect_code(result, 2);
@@ -689,7 +689,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_surest_junctions_give_a_warning),
         cmocka_unit_test(stretched_images_match_in_their_own_pixels),
         cmocka_unit_test(a_glancing_view_is_stretched_by_itself),
-        cmocka_unit_test(whole_images_are_enlarged_by_themselves),
+        cmocka_unit_test(whole_images_are_upsampled_by_themselves),
         cmocka_unit_test(a_stretch_goes_with_images_alone),
         cmocka_unit_test(features_take_the_place_of_images),
         cmocka_unit_test(what_the_geometry_is_is_told),

@@ -135,7 +135,7 @@ static void the_photograph_keeps_its_colors_on_request(void **state)
     asj_image_file_free(&plot);
 }
 
-static void small_images_are_enlarged(void **state)
+static void small_images_are_upsampled(void **state)
 {
     (void)state;
     static const int sizes[][3] = {{320, 240, 960}, {600, 20, 1200}, {20, 667, 20}, {1, 1, 8}, {1100, 4, 1100}};
@@ -264,7 +264,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(lines_take_the_place_of_branches),
         cmocka_unit_test(the_photograph_is_pale_and_gray),
         cmocka_unit_test(the_photograph_keeps_its_colors_on_request),
-        cmocka_unit_test(small_images_are_enlarged),
+        cmocka_unit_test(small_images_are_upsampled),
         cmocka_unit_test(the_colors_follow_the_option),
         cmocka_unit_test(svg_and_pdf_hold_the_photograph),
         cmocka_unit_test(the_same_image_gives_the_same_plot),

@@ -376,7 +376,7 @@ static void unsound_detections_are_not_written(void **state)
     bad[7].scale = -1;
     bad[8].octave = -2;
     bad[9].branch_count = 1;
-    bad[10].branches[1].length = ASJ_LONGEST_BRANCH + 1;
+    bad[10].branches[1].length = ASJ_MAX_BRANCH_LENGTH + 1;
     bad[11].branches[0].length_sd = bad[0].x;
     wrong.junction_count = 1;
     wrong.l_junction_count = wrong.edge_count = 0;

@@ -82,15 +82,15 @@ def test_stretched_images(scene: Scene) -> None:
         asj.match_images(scene, second, stretch="much")
 
 
-def test_enlarged_by_themselves(scene: Scene) -> None:
+def test_upsampled_by_themselves(scene: Scene) -> None:
     second = panels(shift=(6, 4))
     plain, found = asj.match_images(scene, second, stretch=1), asj.match_images(scene, second)
-    assert found.enlarged and not plain.enlarged and found.stretch == (1, 1)
+    assert found.upsampled and not plain.upsampled and found.stretch == (1, 1)
     assert len(found) > len(plain)
     assert np.mean(np.linalg.norm(found.xy2 - found.xy1 - (6, 4), axis=1) < 1) > 0.9
     assert np.array_equal(found.xy1[:, 0], found.l_junctions1["x"][found.l_indices[:, 0]])
     assert np.array_equal(found.matches, asj.match_images(scene, second, stretch="auto").matches)
-    assert np.array_equal(plain.matches, asj.match_images(scene, second, enlarge_from=0).matches)
+    assert np.array_equal(plain.matches, asj.match_images(scene, second, upsample_from=0).matches)
 
 
 def test_nothing_in_common(scene: Scene) -> None:

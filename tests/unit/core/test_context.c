@@ -242,7 +242,7 @@ static void test_memory(void **state)
     free(pixels);
 }
 
-/* Planes of a large image are given back as all else is that several calls had no use for, enlarged ones too. */
+/* Planes of a large image are given back as all else is that several calls had no use for, upsampled ones too. */
 static void test_large_image_is_forgotten(void **state)
 {
     enum { WIDTH = 90, HEIGHT = 70, LARGE = 900 };

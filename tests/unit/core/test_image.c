@@ -303,7 +303,7 @@ static void test_prepare(void **state)
 }
 
 /* Bilinear between pixel centres, in whole 1/128 of a grey level; the border goes on, and the gradient's margins are empty. */
-static void test_enlarge(void **state)
+static void test_upsample(void **state)
 {
     enum { WIDTH = 19, HEIGHT = 11 };
     static const int32_t sizes[][2] = {{WIDTH, HEIGHT}, {1, 1}, {3, HEIGHT}, {WIDTH, 2}};
@@ -315,7 +315,7 @@ static void test_enlarge(void **state)
         const int32_t w = sizes[k][0], h = sizes[k][1];
         const asj_image image = unit_gray8(pixels, w, h);
         f->frame.octaves = 3;
-        assert_int_equal(asj_frame_enlarge(f->context, &f->frame, &image), ASJ_OK);
+        assert_int_equal(asj_frame_upsample(f->context, &f->frame, &image), ASJ_OK);
         assert_true(f->frame.width == 2 * w && f->frame.height == 2 * h && f->frame.octave == -1 && f->frame.octaves == 3);
         for (int32_t y = -ASJ_GRAY_BORDER; y < 2 * h + ASJ_GRAY_BORDER; y++)
             for (int32_t x = -ASJ_GRAY_BORDER; x < 2 * w + ASJ_GRAY_BORDER; x++) {
@@ -335,7 +335,7 @@ static void test_enlarge(void **state)
     f->counter.fail_at = f->counter.calls + 1;
     const asj_image large = unit_gray8(calloc(300 * 300, 1), 300, 300);
     assert_non_null(large.data);
-    assert_int_equal(asj_frame_enlarge(f->context, &f->frame, &large), ASJ_ERROR_MEMORY);
+    assert_int_equal(asj_frame_upsample(f->context, &f->frame, &large), ASJ_ERROR_MEMORY);
     f->counter.fail_at = 0;
     free((void *)(uintptr_t)large.data);
 }
@@ -434,7 +434,7 @@ int main(void)
         cmocka_unit_test(test_extreme_white), cmocka_unit_test(test_colour),     cmocka_unit_test(test_strides),
         cmocka_unit_test(test_refused),       cmocka_unit_test(test_short_strides),
         cmocka_unit_test(test_bottom_up), cmocka_unit_test(test_not_finite),
-        cmocka_unit_test(test_prepare), cmocka_unit_test(test_enlarge), cmocka_unit_test(test_shrink),
+        cmocka_unit_test(test_prepare), cmocka_unit_test(test_upsample), cmocka_unit_test(test_shrink),
         cmocka_unit_test(test_shrink_in_place),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);

@@ -83,7 +83,7 @@ static void every_format_is_interpolated(void **state)
 }
 
 /* Twice as large: a quarter and three quarters, rounded half up. */
-static void pixels_of_an_enlarged_row(void **state)
+static void pixels_of_an_upsampled_row(void **state)
 {
     static const uint8_t pixels[3] = {0, 100, 255}, expected[6] = {0, 25, 75, 139, 216, 255};
     fixture *f = *state;
@@ -116,7 +116,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_format_is_interpolated),
-        cmocka_unit_test(pixels_of_an_enlarged_row),
+        cmocka_unit_test(pixels_of_an_upsampled_row),
         cmocka_unit_test(memory_may_run_out),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);

@@ -321,7 +321,7 @@ static void test_threads(void **state)
 }
 
 /* What octave -1 adds to a union is all of its own, and the rest is what there was. */
-static void check_enlarged(asj_context *context, const asj_image *image, const asj_detection *all)
+static void check_upsampled(asj_context *context, const asj_image *image, const asj_detection *all)
 {
     asj_detect_options options;
     asj_detection *more = NULL;
@@ -381,8 +381,8 @@ static void test_small_squares(void **state)
     assert_int_equal(found_by[0], 0); /* their sides are shorter than a sector */
 }
 
-/* An enlarged image has a largest size, too. */
-static void test_enlarged_limit(void **state)
+/* An upsampled image has a largest size, too. */
+static void test_upsampled_limit(void **state)
 {
     fixture *f = *state;
     asj_detect_options options;
@@ -398,7 +398,7 @@ static void test_enlarged_limit(void **state)
 }
 
 /* Octaves that are listed each for itself change nothing of each other. */
-static void test_octave_union(void **state)
+static void test_independent_octaves(void **state)
 {
     enum { PICTURES = 3 };
     fixture *f = *state;
@@ -410,7 +410,7 @@ static void test_octave_union(void **state)
         asj_detection *one = NULL, *all = NULL;
         asj_detect_options options;
         assert_int_equal(asj_detect_options_preset(&options, ASJ_PRESET_MATCH), ASJ_OK);
-        assert_true(options.octaves > 1 && options.octave_union);
+        assert_true(options.octaves > 1 && options.independent_octaves);
         assert_int_equal(asj_detect(f->context, &image, &options, &all), ASJ_OK);
         options.octaves = 1;
         assert_int_equal(asj_detect(f->context, &image, &options, &one), ASJ_OK);
@@ -423,7 +423,7 @@ static void test_octave_union(void **state)
             assert_memory_equal(&all->junctions[i], &one->junctions[next++], sizeof *one->junctions);
         }
         assert_int_equal(next, one->junction_count);
-        check_enlarged(f->context, &image, all);
+        check_upsampled(f->context, &image, all);
         asj_detection_free(&one);
         asj_detection_free(&all);
         free(pixels);
@@ -432,7 +432,7 @@ static void test_octave_union(void **state)
 }
 
 /* No branch is shorter, wherever it ends in the end: ends come after branches have been validated. In px of the image, in all
- * octaves: of the enlarged image they are twice as many. */
+ * octaves: of the upsampled image they are twice as many. */
 static void test_minimum_length(void **state)
 {
     enum { LENGTH = 40, PICTURES = 3 };
@@ -744,7 +744,7 @@ int main(void)
         cmocka_unit_test(test_tiny_and_flat),
         cmocka_unit_test(test_noise),  cmocka_unit_test(test_borders),   cmocka_unit_test(test_threads),
         cmocka_unit_test(test_reuse),  cmocka_unit_test(test_quarter_turn), cmocka_unit_test(test_formats),
-        cmocka_unit_test(test_octave_union), cmocka_unit_test(test_small_squares), cmocka_unit_test(test_enlarged_limit),
+        cmocka_unit_test(test_independent_octaves), cmocka_unit_test(test_small_squares), cmocka_unit_test(test_upsampled_limit),
         cmocka_unit_test(test_minimum_length),
         cmocka_unit_test(test_radii), cmocka_unit_test(test_branches_at_the_border),
         cmocka_unit_test(test_arguments), cmocka_unit_test(test_bad_options), cmocka_unit_test(test_extreme_options),

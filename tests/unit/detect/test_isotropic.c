@@ -365,7 +365,7 @@ static size_t naive_thin(asj_isotropic_junction *list, size_t count, const asj_d
                 first = i;
         kept[n] = list[first];
         for (size_t i = 0; i < count; i++)
-            if (!close_to(&kept[n], &list[i], options->isotropic_apart))
+            if (!close_to(&kept[n], &list[i], options->isotropic_separation))
                 list[left++] = list[i];
         count = left;
         n++;
@@ -388,7 +388,7 @@ static void test_thin(void **state)
         void *scratch = malloc(asj_isotropic_thin_scratch(count, width, height));
         assert_non_null(scratch);
         f->options.more_branches_win = round % 2;
-        f->options.isotropic_apart = round / 2 % 4;
+        f->options.isotropic_separation = round / 2 % 4;
         memset(list, 0, sizeof list);
         for (size_t i = 0; i < count; i++) {
             list[i].x = (uint16_t)synth_random_between(&random, 0, width);

@@ -141,9 +141,9 @@ static void test_finest_sharp_one_stays(void **state)
     assert_int_equal(merge(list, 3), 1);
     assert_int_equal(list[0].octave, 0);
     assert_true(list[0].x == 101);
-    asj_hypothesis enlarged[2] = {of_octave(0, 101, 101, 0.7), of_octave(-1, 202.5, 202.5, 1.4)};
-    assert_int_equal(merge(enlarged, 2), 1);
-    assert_int_equal(enlarged[0].octave, -1);
+    asj_hypothesis upsampled[2] = {of_octave(0, 101, 101, 0.7), of_octave(-1, 202.5, 202.5, 1.4)};
+    assert_int_equal(merge(upsampled, 2), 1);
+    assert_int_equal(upsampled[0].octave, -1);
 }
 
 static void test_soft_one_gives_way(void **state)
@@ -152,9 +152,9 @@ static void test_soft_one_gives_way(void **state)
     (void)state;
     assert_int_equal(merge(list, 2), 1);
     assert_int_equal(list[0].octave, 1);
-    asj_hypothesis enlarged[2] = {of_octave(-1, 202.5, 202.5, 2.0), of_octave(0, 101, 101, 1.0)};
-    assert_int_equal(merge(enlarged, 2), 1);
-    assert_int_equal(enlarged[0].octave, 0);
+    asj_hypothesis upsampled[2] = {of_octave(-1, 202.5, 202.5, 2.0), of_octave(0, 101, 101, 1.0)};
+    assert_int_equal(merge(upsampled, 2), 1);
+    assert_int_equal(upsampled[0].octave, 0);
     assert_int_equal(merge(&alone, 1), 1); /* nothing coarser is there */
     assert_int_equal(merge(&wide, 1), 0);  /* a gradient of light */
 }
@@ -270,7 +270,7 @@ static void test_soft_corners(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* A sharp corner is listed once, or, with octave_union, by every octave that has found it; each says its own octave. */
+/* A sharp corner is listed once, or, with independent_octaves, by every octave that has found it; each says its own octave. */
 static void test_union(void **state)
 {
     static const double angles[] = {0.2, 1.8}, grays[] = {160, -1};
@@ -284,7 +284,7 @@ static void test_union(void **state)
     uint8_t *pixels = unit_picture(&scene, 0.9, 1, 3);
     const asj_image image = unit_gray8(pixels, 240, 240);
     asj_detect_options_init(&options);
-    for (options.octave_union = 0; options.octave_union < 2; options.octave_union++) {
+    for (options.independent_octaves = 0; options.independent_octaves < 2; options.independent_octaves++) {
         int32_t there[3] = {0, 0, 0};
         asj_detection *found = NULL;
         assert_int_equal(asj_detect(context, &image, &options, &found), ASJ_OK);
@@ -292,7 +292,7 @@ static void test_union(void **state)
             if (hypot(found->junctions[j].x - 120.3, found->junctions[j].y - 119.6) < 3)
                 there[found->junctions[j].octave]++;
         assert_int_equal(there[0], 1);
-        assert_int_equal(there[1], options.octave_union);
+        assert_int_equal(there[1], options.independent_octaves);
         asj_detection_free(&found);
     }
     free(pixels);

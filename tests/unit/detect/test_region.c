@@ -155,7 +155,7 @@ static void test_octaves(void **state)
     asj_detection_free(&f->whole);
     f->options.half_octaves = 1;
     f->options.octaves = 3; /* -1 to 1, each for itself: what lies outside may contradict what lies inside otherwise */
-    f->options.octave_union = 1;
+    f->options.independent_octaves = 1;
     check(f, &(asj_region){.x = 101, .y = 91, .width = 121, .height = 103}, 4);
     check(f, &(asj_region){.mask = &f->mask_image}, 4);
 }

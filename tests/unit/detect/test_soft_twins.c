@@ -62,7 +62,7 @@ static void test_twins(void **state)
 static void test_matching(void **state)
 {
     fixture *f = *state;
-    f->options.octave_union = 1;
+    f->options.independent_octaves = 1;
     assert_int_equal(left_of(f, corner(54, 53, 10, 80, -1, 2), -40, 2), 2);
     asj_detect_options_init(&f->options);
 }

@@ -69,7 +69,7 @@ static void test_weak(void **state)
         const asj_hypothesis hypothesis = with_branch(degrees);
         const asj_strip_line line = {hypothesis.x, hypothesis.y, hypothesis.branches[0].angle, LENGTH};
         const asj_strip_sums sums = asj_strip_test(f->context, &f->frame, &f->options, &line).sums;
-        steep += fabs(sums.un) > sums.nn * tan(f->options.most_tilt * DEGREE);
+        steep += fabs(sums.un) > sums.nn * tan(f->options.max_tilt * DEGREE);
         assert_false(asj_is_tilted(&f->options, &sums));
     }
     assert_true(steep > 0); /* it is the correlation that tells */
@@ -80,10 +80,10 @@ static void test_weak(void **state)
 static void test_option(void **state)
 {
     fixture *f = *state;
-    f->options.most_tilt = 15;
+    f->options.max_tilt = 15;
     assert_false(is_tilted(f, 12));
     assert_true(is_tilted(f, 20));
-    f->options.most_tilt = 0;
+    f->options.max_tilt = 0;
     assert_false(is_tilted(f, 20));
     asj_hypothesis hypothesis = with_branch(10);
     const asj_hypothesis before = hypothesis;

@@ -151,8 +151,8 @@ static void flat_discs_are_like_nothing(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* Twice as many where either image is enlarged, but not for the candidates of a geometry. */
-static void enlarged_images_take_more_steps(void **state)
+/* Twice as many where either image is upsampled, but not for the candidates of a geometry. */
+static void upsampled_images_take_more_steps(void **state)
 {
     (void)state;
     asj_match_options options;
@@ -161,8 +161,8 @@ static void enlarged_images_take_more_steps(void **state)
     for (int32_t n = 0; n < 8; n++) {
         asj_image_features images[2];
         memset(images, 0, sizeof images);
-        images[0].l_junctions.enlarged = n & 1;
-        images[1].l_junctions.enlarged = n >> 1 & 1;
+        images[0].l_junctions.upsampled = n & 1;
+        images[1].l_junctions.upsampled = n >> 1 & 1;
         const asj_match_run run = {.options = &options, .image = {&images[0], &images[1]}, .for_geometry = n >> 2};
         assert_int_equal(asj_align_steps(&run), n >= 1 && n <= 3 ? 10 : 5);
     }
@@ -175,7 +175,7 @@ int main(void)
         cmocka_unit_test(another_place_stays_unlike),
         cmocka_unit_test(limits_put_the_start_back),
         cmocka_unit_test(flat_discs_are_like_nothing),
-        cmocka_unit_test(enlarged_images_take_more_steps),
+        cmocka_unit_test(upsampled_images_take_more_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -66,7 +66,7 @@ static void assert_box(const asj_box *box, double x, double y, double half_width
     unit_near("bottom", x, y, (double)box->bottom, y + half_height, 1e-3);
 }
 
-/* Of one match: its map's place, +- the reach and 0.3 of the distance, in both directions; in px of images enlarged by 2 and 3. */
+/* Of one match: its map's place, +- the reach and 0.3 of the distance, in both directions; in px of images upsampled by 2 and 3. */
 static void one_match(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
@@ -79,7 +79,7 @@ static void one_match(void **state)
     scene s;
     stand(&match, 1, &l1, &l2);
     set(&s, context, places, 2, 1);
-    s.options.enlarged_reach = 0.02; /* of a diagonal of 500 px */
+    s.options.upsampled_search_radius = 0.02; /* of a diagonal of 500 px */
     assert_int_equal(asj_expect(&s.run, &known, same, &expected), ASJ_OK);
     assert_box(&expected.boxes[0][0], 220, 40, 10, 10);
     assert_box(&expected.boxes[0][1], 340, 120, 10 + 0.3 * 100, 10 + 0.3 * 100);
@@ -88,9 +88,9 @@ static void one_match(void **state)
     asj_expected_free(&context->memory, &expected);
 
     const asj_stretch by[2] = {{2, 2}, {2, 3}};
-    static const float enlarged[1][2] = {{(float)(2 * 100.5 - 0.5), (float)(2 * 50.5 - 0.5)}};
-    set(&s, context, enlarged, 1, 2);
-    s.options.enlarged_reach = 0.02;
+    static const float upsampled[1][2] = {{(float)(2 * 100.5 - 0.5), (float)(2 * 50.5 - 0.5)}};
+    set(&s, context, upsampled, 1, 2);
+    s.options.upsampled_search_radius = 0.02;
     s.features[1].pyramid.height[0] = 1200;
     assert_int_equal(asj_expect(&s.run, &known, by, &expected), ASJ_OK);
     assert_box(&expected.boxes[0][0], 2 * 220.5 - 0.5, 3 * 40.5 - 0.5, 20, 30);
@@ -117,7 +117,7 @@ static void several_matches(void **state)
         matches[k].l1 = matches[k].l2 = k;
     stand(matches, 8, l1, l2);
     set(&s, context, places, 1, 1);
-    s.options.enlarged_reach = 0;
+    s.options.upsampled_search_radius = 0;
     assert_int_equal(asj_expect(&s.run, &known, same, &expected), ASJ_OK);
     unit_near("left", 0, 0, (double)expected.boxes[0][0].left, 120 - 0.3 * 5, 1e-3);
     unit_near("right", 0, 0, (double)expected.boxes[0][0].right, 170 + 0.3 * 2, 1e-3);

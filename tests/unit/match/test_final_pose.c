@@ -80,7 +80,7 @@ static asj_match_result *result_of(unit_counter *counter, const scene *s, double
         assert_non_null(r->places[side]);
         asj_places_sort(r->places[side], r->matches, r->count, side);
     }
-    r->shown.own = (uint64_t)(uintptr_t)r;
+    r->shown.origin = (uint64_t)(uintptr_t)r;
     r->shown.matches = r->matches;
     r->shown.match_count = s->count;
     asj_geometry *g = &r->shown.geometry;

@@ -184,14 +184,14 @@ static void a_page_that_lies_flat_matches_when_it_is_stretched(void **state)
     unit_context_free(&counters[1], &contexts[1]);
 }
 
-/* As they are, or stretched; not enlarged. */
+/* As they are, or stretched; not upsampled. */
 static asj_match_result *look(asj_context *context, const asj_image images[2], const asj_stretch *stretch, int32_t model)
 {
     asj_match_options options;
     asj_match_result *r = NULL;
     asj_match_options_init(&options);
     options.geometry.model = model;
-    options.enlarge_from = 0;
+    options.upsample_from = 0;
     assert_int_equal(asj_match_images(context, &images[0], &images[1], stretch, NULL, &options, &r), ASJ_OK);
     return r;
 }
@@ -233,8 +233,8 @@ static void automatically_the_first_look_that_is_enough_counts(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* What a stretch answers is enlarged too, with the same stretch, under one geometry. */
-static void a_stretched_page_is_enlarged_too(void **state)
+/* What a stretch answers is upsampled too, with the same stretch, under one geometry. */
+static void a_stretched_page_is_upsampled_too(void **state)
 {
     static const asj_stretch automatic = {0, 0};
     static const int32_t models[] = {ASJ_GEOMETRY_NONE, ASJ_GEOMETRY_HOMOGRAPHY};
@@ -250,9 +250,9 @@ static void a_stretched_page_is_enlarged_too(void **state)
         options.geometry.model = models[m];
         assert_int_equal(asj_match_images(context, &images[0], &images[1], &automatic, NULL, &options, &both), ASJ_OK);
         const uint32_t right = count_right(both);
-        print_message("stretched: %u right of %u; enlarged too %u of %u\n", (unsigned)count_right(plain),
+        print_message("stretched: %u right of %u; upsampled too %u of %u\n", (unsigned)count_right(plain),
                       (unsigned)plain->match_count, (unsigned)right, (unsigned)both->match_count);
-        assert_true(plain->enlarged == 0 && both->enlarged == 1 && both->stretch[0] == 1 && both->stretch[1] == 3);
+        assert_true(plain->upsampled == 0 && both->upsampled == 1 && both->stretch[0] == 1 && both->stretch[1] == 3);
         assert_true(2 * right > 3 * count_right(plain) && 20 * right >= 18 * both->match_count);
         assert_int_equal(both->geometry.status, m ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_NOT_ASKED);
         uint32_t probable = 0;
@@ -267,7 +267,7 @@ static void a_stretched_page_is_enlarged_too(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* --- enlarged by themselves -------------------------------------------------------------------------------------------------- */
+/* --- upsampled by themselves -------------------------------------------------------------------------------------------------- */
 
 /* Whether a match of `r` has both places of m (2), one of them (1) or none. */
 static int places_of(const asj_match_result *r, const asj_junction_match *m)
@@ -285,7 +285,7 @@ static int places_of(const asj_match_result *r, const asj_junction_match *m)
 /* One answer of both looks: more matches than the images have, all of theirs that nothing else takes the place of, smallest
  * distance first, with the numbers of their own L-junctions and junctions; also judged by the images' own geometry; with any number
  * of threads. */
-static void automatically_images_are_enlarged_too(void **state)
+static void automatically_images_are_upsampled_too(void **state)
 {
     static const asj_stretch automatic = {0, 0};
     static const int32_t models[] = {ASJ_GEOMETRY_NONE, ASJ_GEOMETRY_HOMOGRAPHY};
@@ -303,8 +303,8 @@ static void automatically_images_are_enlarged_too(void **state)
         expect_equal(found[0], found[1]);
         const asj_match_result *r = found[0];
         expect_consistent(r);
-        print_message("%u matches, enlarged too %u\n", (unsigned)plain->match_count, (unsigned)r->match_count);
-        assert_true(r->enlarged == 1 && plain->enlarged == 0 && 2 * r->match_count > 3 * plain->match_count);
+        print_message("%u matches, upsampled too %u\n", (unsigned)plain->match_count, (unsigned)r->match_count);
+        assert_true(r->upsampled == 1 && plain->upsampled == 0 && 2 * r->match_count > 3 * plain->match_count);
         for (uint32_t k = 0; k < plain->match_count; k++)
             assert_true(places_of(r, &plain->matches[k]) > 0);
         for (uint32_t k = 0; k < r->match_count; k++) {
@@ -323,9 +323,9 @@ static void automatically_images_are_enlarged_too(void **state)
     unit_context_free(&counters[1], &contexts[1]);
 }
 
-/* Half-way between the octaves of the enlarged images there are more matches, which are true, too; the images as they are go
+/* Half-way between the octaves of the upsampled images there are more matches, which are true, too; the images as they are go
  * without, unless half octaves are asked for. */
-static void enlarged_images_have_half_octaves(void **state)
+static void upsampled_images_have_half_octaves(void **state)
 {
     static const asj_stretch automatic = {0, 0};
     const pages *p = *state;
@@ -336,10 +336,10 @@ static void enlarged_images_have_half_octaves(void **state)
     asj_match_result *found[2], *plain[2] = {NULL, NULL};
     asj_match_options_init(&options);
     for (int32_t half = 0; half < 2; half++) {
-        options.enlarged_half_octaves = half;
+        options.upsampled_half_octaves = half;
         assert_int_equal(asj_match_images(context, image, image, &automatic, NULL, &options, &found[half]), ASJ_OK);
         assert_int_equal(asj_match_images(context, image, image, NULL, NULL, &options, &plain[half]), ASJ_OK);
-        assert_true(found[half]->enlarged == 1);
+        assert_true(found[half]->upsampled == 1);
         for (uint32_t k = 0; k < found[half]->match_count; k++) {
             const asj_junction_match *m = &found[half]->matches[k]; /* of an image with itself */
             assert_true(hypot((double)(m->x1 - m->x2), (double)(m->y1 - m->y2)) < 2);
@@ -355,7 +355,7 @@ static void enlarged_images_have_half_octaves(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* Fewer junctions of the enlarged images have fewer matches; as many as there are, and 0, are all of them. */
+/* Fewer junctions of the upsampled images have fewer matches; as many as there are, and 0, are all of them. */
 static void the_most_meaningful_junctions_are_enough(void **state)
 {
     static const asj_stretch automatic = {0, 0};
@@ -368,9 +368,9 @@ static void the_most_meaningful_junctions_are_enough(void **state)
     asj_match_result *found[UNIT_COUNT(most)];
     asj_match_options_init(&options);
     for (size_t k = 0; k < UNIT_COUNT(most); k++) {
-        options.enlarged_most = most[k];
+        options.upsampled_max_junctions = most[k];
         assert_int_equal(asj_match_images(context, image, image, &automatic, NULL, &options, &found[k]), ASJ_OK);
-        assert_true(found[k]->enlarged == 1);
+        assert_true(found[k]->upsampled == 1);
     }
     expect_equal(found[0], found[1]);
     assert_true(found[2]->match_count < found[0]->match_count && found[2]->l_junction_count1 < found[0]->l_junction_count1);
@@ -392,11 +392,11 @@ static void partners_lie_where_they_are_expected(void **state)
     asj_match_options options;
     asj_match_result *found[UNIT_COUNT(reach)];
     asj_match_options_init(&options);
-    options.enlarged_shortlist = 0;
+    options.upsampled_shortlist = 0;
     for (size_t k = 0; k < UNIT_COUNT(reach); k++) {
-        options.enlarged_reach = reach[k];
+        options.upsampled_search_radius = reach[k];
         assert_int_equal(asj_match_images(context, image, image, &automatic, NULL, &options, &found[k]), ASJ_OK);
-        assert_true(found[k]->enlarged == 1);
+        assert_true(found[k]->upsampled == 1);
     }
     print_message("%u matches anywhere, %u near\n", (unsigned)found[0]->match_count, (unsigned)found[2]->match_count);
     expect_equal(found[0], found[1]);
@@ -407,7 +407,7 @@ static void partners_lie_where_they_are_expected(void **state)
 }
 
 /* Who asks for octave -1, for one octave, for more matches than there are or for none of it gets what the images have. */
-static void images_are_not_enlarged_unasked(void **state)
+static void images_are_not_upsampled_unasked(void **state)
 {
     static const asj_stretch automatic = {0, 0};
     const pages *p = *state;
@@ -422,11 +422,11 @@ static void images_are_not_enlarged_unasked(void **state)
         asj_match_options_init(&options);
         detect_options.octaves = k == 0 ? 1 : detect_options.octaves;
         detect_options.first_octave = k == 1 ? -1 : 0;
-        options.enlarge_from = k == 2 ? 100000 : k == 3 ? 0 : options.enlarge_from;
+        options.upsample_from = k == 2 ? 100000 : k == 3 ? 0 : options.upsample_from;
         assert_int_equal(asj_match_images(context, image, image, NULL, &detect_options, &options, &plain), ASJ_OK);
         assert_int_equal(asj_match_images(context, image, image, &automatic, &detect_options, &options, &found), ASJ_OK);
         expect_equal(plain, found);
-        assert_true(found->match_count >= 16 && found->enlarged == (k == 1));
+        assert_true(found->match_count >= 16 && found->upsampled == (k == 1));
         asj_match_result_free(&plain);
         asj_match_result_free(&found);
     }
@@ -463,7 +463,7 @@ static void a_homography_is_of_the_images_as_they_are(void **state)
 }
 
 /* Cameras are those of the images as they are, and so is the fundamental matrix; the pose is that of the cameras. */
-static void a_pose_is_found_in_enlarged_images(void **state)
+static void a_pose_is_found_in_upsampled_images(void **state)
 {
     const asj_stretch stretch = {1.5, 1.25};
     unit_counter counter = {0};
@@ -588,7 +588,7 @@ static void a_focal_length_may_be_looked_for(void **state)
     options.geometry.model = ASJ_GEOMETRY_AUTO;
     for (int32_t k = 0; k < 3; k++) {
         options.geometry.find_focal = k > 0;
-        options.enlarge_from = k < 2 ? 0 : 16;
+        options.upsample_from = k < 2 ? 0 : 16;
         assert_int_equal(asj_match_images(context, &p->images[0], &p->images[1], &automatic, NULL, &options, &r), ASJ_OK);
         assert_true(r->stretch[0] == 1 && r->stretch[1] == 3 && count_right(r) >= 80);
         assert_int_equal(r->geometry.status, ASJ_GEOMETRY_ACCEPTED);
@@ -619,19 +619,19 @@ static void automatically_nothing_is_too_large(void **state)
     assert_int_equal(asj_match_images(context, &images[0], &images[1], &automatic, NULL, NULL, &r), ASJ_OK);
     assert_true(r->match_count == 0 && r->stretch[0] == 1 && r->stretch[1] == 1);
     asj_match_result_free(&r);
-    /* and with octave -1, which enlarges it once more */
-    asj_detect_options finer;
-    asj_detect_options_preset(&finer, ASJ_PRESET_MATCH);
-    finer.first_octave = -1;
+    /* and with octave -1, which upsamples it once more */
+    asj_detect_options upsampled;
+    asj_detect_options_preset(&upsampled, ASJ_PRESET_MATCH);
+    upsampled.first_octave = -1;
     const asj_image flat[2] = {unit_gray8(thin, ASJ_MAX_SIDE / 5, 8), unit_gray8(thin, ASJ_MAX_SIDE / 5, 8)};
-    assert_int_equal(asj_match_images(context, &flat[0], &flat[1], &along, &finer, NULL, &r), ASJ_ERROR_LIMIT);
-    assert_int_equal(asj_match_images(context, &flat[0], &flat[1], &automatic, &finer, NULL, &r), ASJ_OK);
+    assert_int_equal(asj_match_images(context, &flat[0], &flat[1], &along, &upsampled, NULL, &r), ASJ_ERROR_LIMIT);
+    assert_int_equal(asj_match_images(context, &flat[0], &flat[1], &automatic, &upsampled, NULL, &r), ASJ_OK);
     asj_match_result_free(&r);
     unit_context_free(&counter, &context);
 }
 
-/* Octave -1 of an enlarged image is held to what is found without it, as of one that is not. */
-static void octave_minus_one_needs_a_witness_in_enlarged_images(void **state)
+/* Octave -1 of an upsampled image is held to what is found without it, as of one that is not. */
+static void octave_minus_one_needs_a_witness_in_upsampled_images(void **state)
 {
     const asj_stretch twice = {2, 2};
     unit_counter counter = {0};
@@ -654,7 +654,7 @@ static void octave_minus_one_needs_a_witness_in_enlarged_images(void **state)
                 break;
             }
         }
-    print_message("enlarged: %u; with octave -1: %u, of the others %u\n", (unsigned)results[0]->match_count,
+    print_message("upsampled: %u; with octave -1: %u, of the others %u\n", (unsigned)results[0]->match_count,
                   (unsigned)results[1]->match_count, (unsigned)again);
     assert_true(results[0]->match_count > 0 && 10 * again >= 3 * results[0]->match_count);
     asj_match_result_free(&results[0]);
@@ -779,18 +779,18 @@ int main(void)
         cmocka_unit_test(as_they_are_it_is_what_two_calls_give),
         cmocka_unit_test(a_page_that_lies_flat_matches_when_it_is_stretched),
         cmocka_unit_test(automatically_the_first_look_that_is_enough_counts),
-        cmocka_unit_test(a_stretched_page_is_enlarged_too),
-        cmocka_unit_test(automatically_images_are_enlarged_too),
-        cmocka_unit_test(images_are_not_enlarged_unasked), cmocka_unit_test(enlarged_images_have_half_octaves),
+        cmocka_unit_test(a_stretched_page_is_upsampled_too),
+        cmocka_unit_test(automatically_images_are_upsampled_too),
+        cmocka_unit_test(images_are_not_upsampled_unasked), cmocka_unit_test(upsampled_images_have_half_octaves),
         cmocka_unit_test(the_most_meaningful_junctions_are_enough),
         cmocka_unit_test(partners_lie_where_they_are_expected),
         cmocka_unit_test(a_homography_is_of_the_images_as_they_are),
-        cmocka_unit_test(a_pose_is_found_in_enlarged_images),
+        cmocka_unit_test(a_pose_is_found_in_upsampled_images),
         cmocka_unit_test(matrices_are_taken_back),
         cmocka_unit_test(what_cannot_be_is_refused),
         cmocka_unit_test(a_focal_length_may_be_looked_for),
         cmocka_unit_test(automatically_nothing_is_too_large),
-        cmocka_unit_test(octave_minus_one_needs_a_witness_in_enlarged_images),
+        cmocka_unit_test(octave_minus_one_needs_a_witness_in_upsampled_images),
         cmocka_unit_test(progress_never_falls_and_the_caller_may_stop),
         cmocka_unit_test(progress_begins_and_ends_where_it_should),
         cmocka_unit_test(every_allocation_may_fail),

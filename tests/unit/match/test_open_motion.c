@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* A room whose images leave the motion open and have no match: the enlarged ones settle it, where they may be looked at. And which
- * octaves junctions of enlarged images are of. */
+/* A room whose images leave the motion open and have no match: the upsampled ones settle it, where they may be looked at. And which
+ * octaves junctions of upsampled images are of. */
 #include "unit_test.h"
 
 #include "look.h"
@@ -50,7 +50,7 @@ static void expect_open(const asj_match_result *r)
     assert_int_equal(r->geometry.status, ASJ_GEOMETRY_AMBIGUOUS);
     assert_int_equal(r->geometry.model, ASJ_GEOMETRY_ESSENTIAL);
     assert_int_equal(r->match_count, 0);
-    assert_false(r->enlarged);
+    assert_false(r->upsampled);
 }
 
 static void expect_settled(const asj_match_result *r)
@@ -81,8 +81,8 @@ static asj_match_result *match_images(asj_context *context, const asj_match_opti
     return result;
 }
 
-/* Of no match: `enlarge_from` matches are asked of images that have an answer. Unless nobody wants to see them enlarged. */
-static void enlarged_images_settle_it(void **state)
+/* Of no match: `upsample_from` matches are asked of images that have an answer. Unless nobody wants to see them upsampled. */
+static void upsampled_images_settle_it(void **state)
 {
     unit_counter counter = {0};
     asj_context *context = unit_context(&counter, 2);
@@ -90,9 +90,9 @@ static void enlarged_images_settle_it(void **state)
     (void)state;
     asj_match_result *r = match_images(context, &options, NULL);
     expect_settled(r);
-    assert_true(r->enlarged);
+    assert_true(r->upsampled);
     asj_match_result_free(&r);
-    options.enlarge_from = 0;
+    options.upsample_from = 0;
     r = match_images(context, &options, NULL);
     expect_open(r);
     asj_match_result_free(&r);
@@ -110,7 +110,7 @@ static void one_octave_leaves_it_open(void **state)
     detector.octaves = 1;
     asj_match_result *r = match_images(context, &seen.options, &detector);
     assert_int_not_equal(r->geometry.status, ASJ_GEOMETRY_ACCEPTED);
-    assert_false(r->enlarged);
+    assert_false(r->upsampled);
     asj_match_result_free(&r);
     unit_context_free(&counter, &context);
 }
@@ -142,7 +142,7 @@ static void junctions_of_octave_minus_one_settle_it(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* Of images looked at enlarged N times: an octave is that of the image, down to 0. */
+/* Of images looked at upsampled N times: an octave is that of the image, down to 0. */
 static void octaves_are_those_of_the_image(void **state)
 {
     static const struct { asj_stretch by; int32_t finer; } looks[] = {{{2, 2}, 1}, {{4, 5}, 2}, {{2, 1}, 0}, {{0.5, 0.5}, 0}};
@@ -171,7 +171,7 @@ static void octaves_are_those_of_the_image(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(enlarged_images_settle_it),
+        cmocka_unit_test(upsampled_images_settle_it),
         cmocka_unit_test(one_octave_leaves_it_open),
         cmocka_unit_test(junctions_of_octave_minus_one_settle_it),
         cmocka_unit_test(octaves_are_those_of_the_image),

@@ -119,9 +119,9 @@ class Matches:
         return self._result.stretch[0], self._result.stretch[1]
 
     @property
-    def enlarged(self) -> bool:
-        """Whether these are the matches of the enlarged images, with junctions of octave -1."""
-        return bool(self._result.enlarged)
+    def upsampled(self) -> bool:
+        """Whether these are the matches of the upsampled images, with junctions of octave -1."""
+        return bool(self._result.upsampled)
 
     @property
     def rejected(self) -> NDArray[Any]:
@@ -218,12 +218,12 @@ def match_images(
     camera1: Camera | None = None, camera2: Camera | None = None, find_focal: bool = False, preset: str = "default",
     context: Context | None = None, **options: object,
 ) -> Matches:  # fmt: skip
-    """Detects in both images and matches them, enlarged or stretched before; everything comes in pixels of the images as they are.
+    """Detects in both images and matches them, upsampled or stretched before; everything comes in pixels of the images as they are.
 
     stretch    a factor of 0.5 to 8, or one for x and one for y. Photographs of up to some megapixels have about three times the matches
                at 2, in three to eight times the time; what is seen at a glancing angle, like things on a table, matches at (1, 3).
-               "auto": as they are; from `enlarge_from` matches on (8; fewer where a geometry is left open; 0 = never) also enlarged, which :attr:`Matches.enlarged`
-               tells; and where nothing comes of it at (1, 3) and (3, 1), then also enlarged; :attr:`Matches.stretch` tells which it
+               "auto": as they are; from `upsample_from` matches on (8; fewer where a geometry is left open; 0 = never) also upsampled, which :attr:`Matches.upsampled`
+               tells; and where nothing comes of it at (1, 3) and (3, 1), then also upsampled; :attr:`Matches.stretch` tells which it
                was
     preset     "default", or "paper": the published method, detector and matcher; "auto" is as they are then
     options    those of the matcher; the others as for :func:`asj.match`

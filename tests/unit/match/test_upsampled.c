@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Junctions of octave -1: they are matched in the enlarged images, from images, features and bytes alike, and only where the images
- * themselves confirm them; otherwise the result is what there is without them. L-junctions are numbered as all of them are. */
+/* Junctions of octave -1: they are matched in the upsampled images, from images, features and bytes alike, and only where the
+ * images themselves confirm them; otherwise the result is what there is without them. L-junctions are numbered as all of them
+ * are. */
 #include "core/bytes.h"
-#include "finer_views.h"
+#include "upsampled_views.h"
 #include "match/same_place.h"
 
 static asj_match_result *match(asj_context *context, const asj_detection *a, const asj_detection *b,
@@ -39,7 +40,7 @@ static void assert_numbered(const asj_match_result *r, const asj_detection *a, c
     }
 }
 
-static uint32_t fine_ones(const asj_match_result *r, const asj_detection *a)
+static uint32_t upsampled_ones(const asj_match_result *r, const asj_detection *a)
 {
     uint32_t count = 0;
     for (uint32_t k = 0; k < r->match_count; k++)
@@ -51,17 +52,17 @@ static void more_matches(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
     asj_match_result *plain = match(context, views[0].plain, views[1].plain, NULL);
-    asj_match_result *finer = match(context, views[0].finer, views[1].finer, NULL);
-    asj_match_result *mixed = match(context, views[0].finer, views[1].plain, NULL);
-    printf("%u matches, with octave -1 %u, with that of one image %u\n", (unsigned)plain->match_count, (unsigned)finer->match_count,
-           (unsigned)mixed->match_count);
-    assert_true(plain->match_count > 10 && 4 * finer->match_count > 5 * plain->match_count);
-    assert_true(4 * fine_ones(finer, views[0].finer) > finer->match_count);
+    asj_match_result *upsampled = match(context, views[0].upsampled, views[1].upsampled, NULL);
+    asj_match_result *mixed = match(context, views[0].upsampled, views[1].plain, NULL);
+    printf("%u matches, with octave -1 %u, with that of one image %u\n", (unsigned)plain->match_count,
+           (unsigned)upsampled->match_count, (unsigned)mixed->match_count);
+    assert_true(plain->match_count > 10 && 4 * upsampled->match_count > 5 * plain->match_count);
+    assert_true(4 * upsampled_ones(upsampled, views[0].upsampled) > upsampled->match_count);
     assert_numbered(plain, views[0].plain, views[1].plain);
-    assert_numbered(finer, views[0].finer, views[1].finer);
-    assert_numbered(mixed, views[0].finer, views[1].plain);
+    assert_numbered(upsampled, views[0].upsampled, views[1].upsampled);
+    assert_numbered(mixed, views[0].upsampled, views[1].plain);
     asj_match_result_free(&plain);
-    asj_match_result_free(&finer);
+    asj_match_result_free(&upsampled);
     asj_match_result_free(&mixed);
 }
 
@@ -69,13 +70,13 @@ static void more_matches(void **state)
 
 typedef struct answers {
     int32_t passes;
-    int own_is_empty, finer_is_other; /* what they answer */
-    uint32_t finer_count;
+    int own_is_empty, upsampled_is_other; /* what they answer */
+    uint32_t upsampled_count;
 } answers;
 
-/* Matches of the plain junctions for the images themselves; for the enlarged ones of all, right or of the first image with
+/* Matches of the plain junctions for the images themselves; for the upsampled ones of all, right or of the first image with
  * itself upside down. */
-static asj_status answer(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
+static asj_status answer(asj_context *context, const asj_match_options *options, const void *data, int32_t upsampled,
                          const asj_known_matches *known, asj_match_result **result)
 {
     answers *a = *(answers *const *)data;
@@ -83,22 +84,22 @@ static asj_status answer(asj_context *context, const asj_match_options *options,
     asj_detection *found = NULL;
     asj_detect_options how;
     a->passes++;
-    assert_true(!known == !enlarged); /* the images' own matches say where those of the enlarged ones lie */
-    if (!enlarged) {
+    assert_true(!known == !upsampled); /* the images' own matches say where those of the upsampled ones lie */
+    if (!upsampled) {
         const uint32_t count = a->own_is_empty ? 3 : views[0].plain->junction_count;
         return asj_match(context, &views[0].image, views[0].plain->junctions, count, &views[1].image, views[1].plain->junctions,
                          views[1].plain->junction_count, options, result);
     }
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         turned[i] = views[0].pixels[WIDTH * HEIGHT - 1 - i];
-    const asj_image image = unit_gray8(a->finer_is_other ? turned : views[1].pixels, WIDTH, HEIGHT);
+    const asj_image image = unit_gray8(a->upsampled_is_other ? turned : views[1].pixels, WIDTH, HEIGHT);
     asj_detect_options_preset(&how, ASJ_PRESET_MATCH);
     how.epsilon = 1e5; /* and so some more of them */
     assert_int_equal(asj_detect(context, &image, &how, &found), ASJ_OK);
     const asj_status status = asj_match(context, &views[0].image, views[0].plain->junctions, views[0].plain->junction_count, &image,
                                         found->junctions, found->junction_count, options, result);
     asj_detection_free(&found);
-    a->finer_count = status == ASJ_OK ? (*result)->match_count : 0;
+    a->upsampled_count = status == ASJ_OK ? (*result)->match_count : 0;
     return status;
 }
 
@@ -123,7 +124,7 @@ static void one_match_for_each_place(void **state)
     };
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < UNIT_COUNT(moves); k++) {
-        asj_match_result *r = match(context, views[0].finer, views[1].finer, NULL);
+        asj_match_result *r = match(context, views[0].upsampled, views[1].upsampled, NULL);
         asj_junction_match *list = ((asj_own_result *)r)->matches;
         assert_true(r->match_count > 20);
         assert_int_equal(twice_at_one_place(r), 0);
@@ -160,11 +161,11 @@ static void only_what_is_confirmed(void **state)
         answers a = {0, n == 0, n == 1, 0};
         answers *data = &a;
         asj_match_result *result = NULL;
-        const asj_finer_match both = {answer, &data, {views[0].finer->junctions, views[1].finer->junctions},
-                                      {views[0].finer->junction_count, views[1].finer->junction_count}, 0, NULL};
-        assert_int_equal(asj_match_finer(context, &options, &both, &result), ASJ_OK);
+        const asj_upsampled_match both = {answer, &data, {views[0].upsampled->junctions, views[1].upsampled->junctions},
+                                      {views[0].upsampled->junction_count, views[1].upsampled->junction_count}, 0, NULL};
+        assert_int_equal(asj_match_upsampled(context, &options, &both, &result), ASJ_OK);
         assert_int_equal(a.passes, n == 0 ? 1 : 2); /* nothing comes of the images: no second look */
-        assert_true(n == 0 || a.finer_count > plain->match_count); /* enough, of the first image turned */
+        assert_true(n == 0 || a.upsampled_count > plain->match_count); /* enough, of the first image turned */
         assert_int_equal(result->match_count, n == 0 ? 0 : plain->match_count);
         for (uint32_t k = 0; k < result->match_count; k++)
             assert_true(result->matches[k].x1 == plain->matches[k].x1 && result->matches[k].y2 == plain->matches[k].y2 &&
@@ -174,20 +175,20 @@ static void only_what_is_confirmed(void **state)
     asj_match_result_free(&plain);
 }
 
-/* Matches that would do, and geometries as told: a pose for the images themselves, and for the enlarged ones perhaps. */
-static asj_status answer_with_geometry(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
+/* Matches that would do, and geometries as told: a pose for the images themselves, and for the upsampled ones perhaps. */
+static asj_status answer_with_geometry(asj_context *context, const asj_match_options *options, const void *data, int32_t upsampled,
                                        const asj_known_matches *known, asj_match_result **result)
 {
-    const int32_t finer_has_pose = **(const int32_t *const *)data;
+    const int32_t upsampled_has_pose = **(const int32_t *const *)data;
     (void)known;
-    const asj_detection *a = enlarged ? views[0].finer : views[0].plain, *b = enlarged ? views[1].finer : views[1].plain;
+    const asj_detection *a = upsampled ? views[0].upsampled : views[0].plain, *b = upsampled ? views[1].upsampled : views[1].plain;
     const asj_status status = asj_match(context, &views[0].image, a->junctions, a->junction_count, &views[1].image, b->junctions,
                                         b->junction_count, options, result);
     if (status == ASJ_OK) {
         (*result)->geometry.status = ASJ_GEOMETRY_ACCEPTED;
         (*result)->geometry.model = ASJ_GEOMETRY_ESSENTIAL;
-        (*result)->geometry.has_pose = !enlarged || finer_has_pose;
-        (*result)->geometry.log10_nfa = enlarged ? -2 : -1;
+        (*result)->geometry.has_pose = !upsampled || upsampled_has_pose;
+        (*result)->geometry.log10_nfa = upsampled ? -2 : -1;
     }
     return status;
 }
@@ -200,27 +201,28 @@ static void a_pose_is_kept(void **state)
     for (int32_t has_pose = 0; has_pose < 2; has_pose++) {
         const int32_t *data = &has_pose;
         asj_match_result *result = NULL;
-        const asj_finer_match both = {answer_with_geometry, &data, {views[0].finer->junctions, views[1].finer->junctions},
-                                      {views[0].finer->junction_count, views[1].finer->junction_count}, 0, NULL};
-        assert_int_equal(asj_match_finer(context, &options, &both, &result), ASJ_OK);
+        const asj_upsampled_match both = {answer_with_geometry, &data,
+                                          {views[0].upsampled->junctions, views[1].upsampled->junctions},
+                                          {views[0].upsampled->junction_count, views[1].upsampled->junction_count}, 0, NULL};
+        assert_int_equal(asj_match_upsampled(context, &options, &both, &result), ASJ_OK);
         assert_true(result->geometry.has_pose);
-        assert_true(result->geometry.log10_nfa == (has_pose ? -2 : -1)); /* of the enlarged images only with a pose */
+        assert_true(result->geometry.log10_nfa == (has_pose ? -2 : -1)); /* of the upsampled images only with a pose */
         asj_match_result_free(&result);
     }
 }
 
-/* The images' own matches, and those of the left part of the enlarged ones. */
-static asj_status answer_part(asj_context *context, const asj_match_options *options, const void *data, int32_t enlarged,
+/* The images' own matches, and those of the left part of the upsampled ones. */
+static asj_status answer_part(asj_context *context, const asj_match_options *options, const void *data, int32_t upsampled,
                               const asj_known_matches *known, asj_match_result **result)
 {
-    const asj_detection *a = enlarged ? views[0].finer : views[0].plain, *b = enlarged ? views[1].finer : views[1].plain;
+    const asj_detection *a = upsampled ? views[0].upsampled : views[0].plain, *b = upsampled ? views[1].upsampled : views[1].plain;
     asj_junction *left = calloc(a->junction_count, sizeof *left);
     size_t count = 0;
     (void)data;
     (void)known;
     assert_non_null(left);
     for (uint32_t k = 0; k < a->junction_count; k++)
-        if (!enlarged || a->junctions[k].x < 0.7 * WIDTH)
+        if (!upsampled || a->junctions[k].x < 0.7 * WIDTH)
             left[count++] = a->junctions[k];
     const asj_status status = asj_match(context, &views[0].image, left, count, &views[1].image, b->junctions, b->junction_count,
                                         options, result);
@@ -241,7 +243,7 @@ static void count_near(const asj_match_result *r, const asj_junction_match *m, u
     }
 }
 
-/* What the enlarged images do not see remains, as it is in the images; no place has another match for that. */
+/* What the upsampled images do not see remains, as it is in the images; no place has another match for that. */
 static void what_only_the_images_have_remains(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
@@ -257,7 +259,7 @@ static void what_only_the_images_have_remains(void **state)
         count_near(part, &own->matches[k], &one, &both);
         wanted += one == 0;
     }
-    assert_int_equal(asj_finer_choose(context, &own, &part, 0), ASJ_OK);
+    assert_int_equal(asj_upsampled_choose(context, &own, &part, 0), ASJ_OK);
     assert_null(part);
     assert_true(wanted > 3);
     assert_int_equal(own->match_count, part_count + wanted);
@@ -281,27 +283,27 @@ static void what_only_the_images_have_remains(void **state)
     asj_match_result_free(&own);
 }
 
-/* As many matches of the enlarged images moved as make them contradict the images' own, as a period does: the own ones are the
+/* As many matches of the upsampled images moved as make them contradict the images' own, as a period does: the own ones are the
  * answer, although half of them come again. */
 static void what_contradicts_is_no_answer(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
     asj_match_result *own = match(context, views[0].plain, views[1].plain, NULL);
-    asj_match_result *finer = match(context, views[0].finer, views[1].finer, NULL);
-    const uint32_t own_count = own->match_count, finer_count = finer->match_count;
-    assert_true(finer_count > own_count);
+    asj_match_result *upsampled = match(context, views[0].upsampled, views[1].upsampled, NULL);
+    const uint32_t own_count = own->match_count, upsampled_count = upsampled->match_count;
+    assert_true(upsampled_count > own_count);
     for (int32_t moved = 0; moved < 2; moved++) {
         asj_match_result *kept = match(context, views[0].plain, views[1].plain, NULL);
-        asj_match_result *other = match(context, views[0].finer, views[1].finer, NULL);
+        asj_match_result *other = match(context, views[0].upsampled, views[1].upsampled, NULL);
         asj_junction_match *matches = (asj_junction_match *)(uintptr_t)other->matches;
-        for (uint32_t k = 0; moved && k < finer_count; k += 2)
+        for (uint32_t k = 0; moved && k < upsampled_count; k += 2)
             matches[k].x2 += 20;
-        assert_int_equal(asj_finer_choose(context, &kept, &other, 1), ASJ_OK);
-        assert_true(moved ? kept->match_count == own_count : kept->match_count >= finer_count);
+        assert_int_equal(asj_upsampled_choose(context, &kept, &other, 1), ASJ_OK);
+        assert_true(moved ? kept->match_count == own_count : kept->match_count >= upsampled_count);
         asj_match_result_free(&kept);
     }
     asj_match_result_free(&own);
-    asj_match_result_free(&finer);
+    asj_match_result_free(&upsampled);
 }
 
 /* --- features ---------------------------------------------------------------------------------------------------------------- */
@@ -319,8 +321,8 @@ static void assert_same(const asj_match_result *a, const asj_match_result *b)
 static asj_features *features_of(asj_context *context, int32_t n)
 {
     asj_features *features = NULL;
-    assert_int_equal(asj_features_create(context, &views[n].image, views[n].finer->junctions, views[n].finer->junction_count, NULL,
-                                         &features), ASJ_OK);
+    assert_int_equal(asj_features_create(context, &views[n].image, views[n].upsampled->junctions,
+                                         views[n].upsampled->junction_count, NULL, &features), ASJ_OK);
     return features;
 }
 
@@ -340,14 +342,14 @@ static void features_and_bytes(void **state)
     asj_match_options_init(&options);
     for (int32_t model = 0; model < 2; model++) {
         options.geometry.model = model ? ASJ_GEOMETRY_FUNDAMENTAL : ASJ_GEOMETRY_NONE;
-        asj_match_result *expected = match(context, views[0].finer, views[1].finer, &options);
+        asj_match_result *expected = match(context, views[0].upsampled, views[1].upsampled, &options);
         asj_features *made[2], *read[2];
         for (int32_t n = 0; n < 2; n++) {
             size_t size, size2;
             made[n] = features_of(context, n);
             uint8_t *bytes = bytes_of(made[n], &size);
             assert_int_equal(asj_get_u32(bytes + 8), 3); /* no colours */
-            assert_true(size < 2 * WIDTH * HEIGHT + 4096 + 200 * (size_t)views[n].finer->junction_count); /* no enlarged image */
+            assert_true(size < 2 * WIDTH * HEIGHT + 4096 + 200 * (size_t)views[n].upsampled->junction_count); /* no plane of it */
             assert_int_equal(asj_features_load(context, bytes, size, &read[n]), ASJ_OK);
             uint8_t *second = bytes_of(read[n], &size2);
             assert_int_equal(size, size2);
@@ -357,8 +359,9 @@ static void features_and_bytes(void **state)
             asj_features_info info;
             asj_features_get_info(read[n], &info);
             assert_true(info.width == WIDTH && info.height == HEIGHT);
-            assert_int_equal(info.l_junction_count, views[n].finer->l_junction_count);
-            assert_memory_equal(info.l_junctions, views[n].finer->l_junctions, info.l_junction_count * sizeof *info.l_junctions);
+            assert_int_equal(info.l_junction_count, views[n].upsampled->l_junction_count);
+            assert_memory_equal(info.l_junctions, views[n].upsampled->l_junctions,
+                                info.l_junction_count * sizeof *info.l_junctions);
         }
         asj_match_result *result = NULL;
         assert_int_equal(asj_match_features(context, made[0], read[1], &options, &result), ASJ_OK);
@@ -375,7 +378,7 @@ static void features_and_bytes(void **state)
     }
 }
 
-/* Version 8: a file of octave -1 with the colours of the image and of the enlarged one. The image is reddish, and the junctions of
+/* Version 8: a file of octave -1 with the colours of the image and of the upsampled one. The image is reddish, and the junctions of
  * octave -1 come back as such. */
 static void colours_and_octaves_come_back(void **state)
 {
@@ -389,7 +392,7 @@ static void colours_and_octaves_come_back(void **state)
         rgb[3 * n + 2] = gray[n] / 3;
     }
     const asj_image image = {rgb, ASJ_FORMAT_RGB8, WIDTH, HEIGHT, 0, 0};
-    const asj_detection *found = views[0].finer;
+    const asj_detection *found = views[0].upsampled;
     asj_features *made = NULL, *read = NULL;
     assert_int_equal(asj_features_create(context, &image, found->junctions, found->junction_count, NULL, &made), ASJ_OK);
     size_t size, size2;
@@ -402,13 +405,13 @@ static void colours_and_octaves_come_back(void **state)
     asj_features_info info;
     asj_features_get_info(read, &info);
     assert_int_equal(info.junction_count, found->junction_count);
-    uint32_t finer = 0, own = 0;
+    uint32_t upsampled = 0, own = 0;
     for (uint32_t n = 0; n < info.junction_count; n++) {
         assert_int_equal(info.junctions[n].octave, found->junctions[n].octave);
-        finer += info.junctions[n].octave == -1;
+        upsampled += info.junctions[n].octave == -1;
         own += info.junctions[n].octave >= 0;
     }
-    assert_true(finer > 0 && own > 0);
+    assert_true(upsampled > 0 && own > 0);
     free(bytes);
     free(second);
     free(rgb);
@@ -434,7 +437,7 @@ static void hostile_bytes(void **state)
     size_t size;
     uint8_t *bytes = bytes_of(features, &size);
     asj_put_u32(bytes + 8, 5); /* colours of a finer octave, and no finer octave */
-    refuse(context, bytes, size, ASJ_ERROR_FORMAT, "enlarged image");
+    refuse(context, bytes, size, ASJ_ERROR_FORMAT, "upsampled image");
     asj_put_u32(bytes + 8, 9);
     refuse(context, bytes, size, ASJ_ERROR_UNSUPPORTED, "version 9");
     asj_put_u32(bytes + 8, 4);
@@ -467,15 +470,15 @@ static asj_junction *left_part(const asj_detection *detection, float x, uint32_t
 }
 
 /* Every allocation once, each in a run of its own; the library may do without one, and then there is a result. Of a part of the
- * images, which is enough for the enlarged ones to hold. */
+ * images, which is enough for the upsampled ones to hold. */
 static void out_of_memory(void **state)
 {
     (void)state;
-    int reached = 1, enlarged = 0;
+    int reached = 1, upsampled = 0;
     uint32_t counts[2];
     asj_junction *part[2];
     for (int32_t side = 0; side < 2; side++)
-        part[side] = left_part(views[side].finer, PART, &counts[side]);
+        part[side] = left_part(views[side].upsampled, PART, &counts[side]);
     for (long n = 1; n < 2000 && reached; n++) {
         unit_counter counter = {0, 0, 0, 0};
         asj_context *poor = unit_context(&counter, 1);
@@ -485,12 +488,12 @@ static void out_of_memory(void **state)
                                             &result);
         reached = unit_reached(&counter);
         assert_true(status == ASJ_OK ? result != NULL : reached && status == ASJ_ERROR_MEMORY && result == NULL);
-        enlarged = status == ASJ_OK && result->enlarged;
+        upsampled = status == ASJ_OK && result->upsampled;
         asj_match_result_free(&result);
         unit_context_free(&counter, &poor);
     }
     assert_false(reached);
-    assert_true(enlarged);
+    assert_true(upsampled);
     free(part[0]);
     free(part[1]);
 }
@@ -509,8 +512,8 @@ static void keep_lines(void *user, int32_t level, const char *message)
     snprintf(lines->text + used, sizeof lines->text - used, "%s\n", message);
 }
 
-/* An image that is too long to be enlarged: its junctions of octave -1 are left out, which is no error. */
-static void what_is_too_large_to_enlarge_is_left_out(void **state)
+/* An image that is too long to be upsampled: its junctions of octave -1 are left out, which is no error. */
+static void what_is_too_large_to_upsample_is_left_out(void **state)
 {
     enum { LONG = ASJ_MAX_SIDE / 2 + 2, HIGH = 16 };
     log_lines lines = {ASJ_LOG_DEBUG, ""};
@@ -532,7 +535,7 @@ static void what_is_too_large_to_enlarge_is_left_out(void **state)
     options.log_level = ASJ_LOG_INFO;
     assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
     assert_int_equal(asj_match(context, &image, &corner, 1, &image, &corner, 1, NULL, &result), ASJ_OK);
-    assert_int_equal(result->enlarged, 0);
+    assert_int_equal(result->upsampled, 0);
     assert_int_equal(lines.worst, ASJ_LOG_INFO);
     assert_non_null(strstr(lines.text, "left out: an image of 32769 x 16 pixels is too large for octave -1"));
     assert_string_equal(asj_context_message(context), "");
@@ -551,7 +554,7 @@ int main(void)
         cmocka_unit_test(more_matches),       cmocka_unit_test(only_what_is_confirmed), cmocka_unit_test(a_pose_is_kept),
         cmocka_unit_test(features_and_bytes), cmocka_unit_test(hostile_bytes),          cmocka_unit_test(out_of_memory),
         cmocka_unit_test(colours_and_octaves_come_back), cmocka_unit_test(what_only_the_images_have_remains),
-        cmocka_unit_test(what_contradicts_is_no_answer),  cmocka_unit_test(what_is_too_large_to_enlarge_is_left_out),
+        cmocka_unit_test(what_contradicts_is_no_answer),  cmocka_unit_test(what_is_too_large_to_upsample_is_left_out),
     };
     return cmocka_run_group_tests(tests, make_views, free_views);
 }

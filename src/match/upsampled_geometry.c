@@ -1,35 +1,35 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Two looks at the same images, two estimates of their geometry, and one answer.
  *
- * One geometry judges the matches of both: that of the enlarged images, or, where they have none or lose the pose, that of the
+ * One geometry judges the matches of both: that of the upsampled images, or, where they have none or lose the pose, that of the
  * images. Poses are two witnesses of one motion. How often, of 1083 pairs of rooms seen from far apart (wide_rooms, seeds 0 to 343,
  * 360 to 704 and 1000 to 1399):
- *   - Both accepted and at odds: one is wrong. If the enlarged images have OUTWEIGHS times the log evidence it is that of the
- *     images (3 pairs); if one of the two is upside down it is that, unless it has so much more (one pair: the enlarged images',
+ *   - Both accepted and at odds: one is wrong. If the upsampled images have OUTWEIGHS times the log evidence it is that of the
+ *     images (3 pairs); if one of the two is upside down it is that, unless it has so much more (one pair: the upsampled images',
  *     with 1.6 times). Otherwise nothing says which, which is an ambiguous answer, with the matches that neither contradicts. Two
  *     of a plane: the plane is the answer, and its pose is open.
- *   - Both accepted, and they agree as far as they know: the surer one is the answer, where the enlarged images' matches hold
- *     (finer.c); otherwise that of the images is, surer or not.
- *   - The images have rivals or leave the motion open, and what the enlarged ones accept is the images' best: that is the answer,
+ *   - Both accepted, and they agree as far as they know: the surer one is the answer, where the upsampled images' matches hold
+ *     (upsampled.c); otherwise that of the images is, surer or not.
+ *   - The images have rivals or leave the motion open, and what the upsampled ones accept is the images' best: that is the answer,
  *     whether or not matches come again, since what repeats has been matched by the period.
- *   - The images have rivals or leave the motion open, and the enlarged ones accept another motion with SURPASSES times the log
+ *   - The images have rivals or leave the motion open, and the upsampled ones accept another motion with SURPASSES times the log
  *     evidence of the images' best, and SURELY: that is the answer, whether or not matches come again. Where both accept one
- *     motion the enlarged images have 2.06 times as much (median of 772 pairs; 1.27 and more in 98 of 100); where the images' best
+ *     motion the upsampled images have 2.06 times as much (median of 772 pairs; 1.27 and more in 98 of 100); where the images' best
  *     is wrong they have more than that, too, and none of its matches comes again. (20 pairs whose matches do not: 13 have so
  *     much, all within 1 degree, and of the others two are out, by 19 and 90 degrees. It accepts one more of 396 unrelated pairs,
  *     without SURELY three.) Where the images have no match at all a motion is believed only then.
- *   - The images have rivals, and the enlarged ones accept another motion with less: when matches come again.
- *   - The images leave the motion open, and that of the enlarged ones is one that they allow: when matches come again, the enlarged
- *     images know better. (Cameras near each other: their own poses are known to 30 degrees and more, the enlarged images' to one.)
- *     One that they do not allow is no answer.
- *   - The images have rivals or leave the motion open, and that of the enlarged ones is upside down: nothing is settled. Frames and
- *     windows match themselves so, in either look (one pair, with four seeds of six).
+ *   - The images have rivals, and the upsampled ones accept another motion with less: when matches come again.
+ *   - The images leave the motion open, and that of the upsampled ones is one that they allow: when matches come again, the
+ *     upsampled images know better. (Cameras near each other: their own poses are known to 30 degrees and more, the upsampled
+ *     images' to one.) One that they do not allow is no answer.
+ *   - The images have rivals or leave the motion open, and that of the upsampled ones is upside down: nothing is settled. Frames
+ *     and windows match themselves so, in either look (one pair, with four seeds of six).
  *   - The images have a rival that is ASJ_SURE_RIVAL: only OUTNUMBERS times the log evidence settles that. What repeats so much
- *     does so in the enlarged images, too, whose rivals the matcher may have lost: it makes neighbours agree on one period. (Two
- *     pairs with 1.6 and 1.7 times, one out by 42 degrees; facades: where the enlarged images are wrong, up to 1.5 times, and 2.3
+ *     does so in the upsampled images, too, whose rivals the matcher may have lost: it makes neighbours agree on one period. (Two
+ *     pairs with 1.6 and 1.7 times, one out by 42 degrees; facades: where the upsampled images are wrong, up to 1.5 times, and 2.3
  *     and more where stains tell the windows from each other.)
- *   - The images' is accepted, and the enlarged ones have rivals: the images' is the answer (34 pairs, all within 3.4 degrees). */
-#include "finer_geometry.h"
+ *   - The images' is accepted, and the upsampled ones have rivals: the images' is the answer (34 pairs, all within 3.4 degrees). */
+#include "upsampled_geometry.h"
 #include "core/angle.h"
 #include "geometry/ambiguity.h"
 #include "geometry/geometry_options.h"
@@ -45,7 +45,7 @@
 #define SURELY_APART 6.5             /* and no less than so many standard deviations (of others up to 5.9) */
 #define HALF_TURN 1e-6               /* 2 sin of an angle that is 180 degrees */
 
-/* Evidence of the enlarged images: */
+/* Evidence of the upsampled images: */
 #define SURPASSES 1.25 /* times that of the images, */
 #define SURELY (-35)   /* log10 NFA; */
 #define OUTNUMBERS 2.0 /* times that, where the images repeat themselves; */
@@ -127,15 +127,15 @@ static double uncertainty(const asj_geometry *g)
 }
 
 /* A motion that the images leave open says how far; without a focal length, nothing. */
-static int32_t contradicts(const asj_geometry *open, const asj_geometry *finer)
+static int32_t contradicts(const asj_geometry *open, const asj_geometry *upsampled)
 {
-    return uncertainty(open) > 0 && are_at_odds(open, finer);
+    return uncertainty(open) > 0 && are_at_odds(open, upsampled);
 }
 
-/* Has a motion of the enlarged images so much more evidence than the best one of the images, which has rivals or is open? */
-static int32_t surpasses(const asj_geometry *finer, const asj_geometry *own)
+/* Has a motion of the upsampled images so much more evidence than the best one of the images, which has rivals or is open? */
+static int32_t surpasses(const asj_geometry *upsampled, const asj_geometry *own)
 {
-    return finer->log10_nfa < fmin(SURELY, SURPASSES * own->log10_nfa);
+    return upsampled->log10_nfa < fmin(SURELY, SURPASSES * own->log10_nfa);
 }
 
 /* What is up in image 1 is down in image 2. */
@@ -147,7 +147,7 @@ static int32_t is_upside_down(const asj_geometry *g)
 /* Have the images a rival that is no chance by itself? */
 static int32_t repeats(const asj_geometry *own)
 {
-    return own->status == ASJ_GEOMETRY_AMBIGUOUS && own->has_second && own->second_log10_nfa < ASJ_SURE_RIVAL;
+    return own->status == ASJ_GEOMETRY_AMBIGUOUS && own->has_rival && own->rival_log10_nfa < ASJ_SURE_RIVAL;
 }
 
 static int32_t is_answer(const asj_geometry *g)
@@ -156,24 +156,24 @@ static int32_t is_answer(const asj_geometry *g)
 }
 
 /* Of two accepted poses that are at odds. */
-static asj_looks decide(const asj_geometry *own, const asj_geometry *finer)
+static asj_looks decide(const asj_geometry *own, const asj_geometry *upsampled)
 {
-    if (own->model == ASJ_GEOMETRY_HOMOGRAPHY && finer->model == ASJ_GEOMETRY_HOMOGRAPHY)
+    if (own->model == ASJ_GEOMETRY_HOMOGRAPHY && upsampled->model == ASJ_GEOMETRY_HOMOGRAPHY)
         return ASJ_LOOKS_PLANE;
-    if (finer->log10_nfa < OUTWEIGHS * own->log10_nfa)
+    if (upsampled->log10_nfa < OUTWEIGHS * own->log10_nfa)
         return ASJ_LOOKS_SETTLED;
-    if (is_upside_down(finer) && !is_upside_down(own))
+    if (is_upside_down(upsampled) && !is_upside_down(own))
         return ASJ_LOOKS_BY_IMAGES;
-    return is_upside_down(own) && !is_upside_down(finer) && own->log10_nfa > OUTWEIGHS * finer->log10_nfa ? ASJ_LOOKS_SETTLED
-                                                                                                       : ASJ_LOOKS_DISPUTED;
+    return is_upside_down(own) && !is_upside_down(upsampled) && own->log10_nfa > OUTWEIGHS * upsampled->log10_nfa
+               ? ASJ_LOOKS_SETTLED : ASJ_LOOKS_DISPUTED;
 }
 
 /* Of two accepted poses. */
-static asj_looks compare(const asj_geometry *own, const asj_geometry *finer)
+static asj_looks compare(const asj_geometry *own, const asj_geometry *upsampled)
 {
-    if (are_at_odds(own, finer))
-        return decide(own, finer);
-    return uncertainty(finer) <= uncertainty(own) ? ASJ_LOOKS_BY_ENLARGED : ASJ_LOOKS_BY_IMAGES;
+    if (are_at_odds(own, upsampled))
+        return decide(own, upsampled);
+    return uncertainty(upsampled) <= uncertainty(own) ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
 }
 
 int32_t asj_looks_may_settle(const asj_match_result *own)
@@ -181,26 +181,26 @@ int32_t asj_looks_may_settle(const asj_match_result *own)
     return asj_geometry_is_open(&own->geometry) && own->geometry.model == ASJ_GEOMETRY_ESSENTIAL;
 }
 
-asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *finer)
+asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsampled)
 {
-    const asj_geometry *a = &own->geometry, *b = &finer->geometry;
+    const asj_geometry *a = &own->geometry, *b = &upsampled->geometry;
     const int32_t accepted = b->status == ASJ_GEOMETRY_ACCEPTED;
     if (a->status == ASJ_GEOMETRY_ACCEPTED)
         return accepted && a->has_pose && b->has_pose ? compare(a, b) :
-               accepted && !a->has_pose ? ASJ_LOOKS_BY_ENLARGED : ASJ_LOOKS_BY_IMAGES;
+               accepted && !a->has_pose ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
     if (repeats(a) && !(accepted && b->log10_nfa < OUTNUMBERS * a->log10_nfa))
         return ASJ_LOOKS_LOST;
     if (asj_looks_may_settle(own) && own->match_count == 0 && !(accepted && surpasses(b, a)))
         return ASJ_LOOKS_LOST;
     if (!accepted || !asj_looks_may_settle(own))
-        return ASJ_LOOKS_BY_ENLARGED;
+        return ASJ_LOOKS_BY_UPSAMPLED;
     if (is_upside_down(b))
         return ASJ_LOOKS_LOST;
     if (b->has_pose && (have_same_pose(a, b) || surpasses(b, a)))
         return ASJ_LOOKS_SETTLED;
     if (a->status == ASJ_GEOMETRY_DEGENERATE && contradicts(a, b))
         return ASJ_LOOKS_LOST;
-    return b->has_pose ? ASJ_LOOKS_BY_ENLARGED : ASJ_LOOKS_LOST;
+    return b->has_pose ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_LOST;
 }
 
 /* --- a geometry of one result, and matches of the other ----------------------------------------------------------------------- */
@@ -228,7 +228,7 @@ static float probability_of(const asj_match_result *by, double farthest, const a
 /* keep_rejected: whatever it says of those that are rejected. */
 static asj_status judge_by(asj_context *context, const asj_match_result *by, asj_match_result *judged, int32_t keep_rejected)
 {
-    const size_t count = judged->match_count, rejected_count = (size_t)judged->rejected_count;
+    const size_t count = judged->match_count, rejected_count = judged->rejected_count;
     if (!asj_match_result_geometry(by))
         return ASJ_OK;
     const double farthest = farthest_of(by, judged);
@@ -270,32 +270,33 @@ asj_status asj_looks_filter(asj_context *context, const asj_match_result *by, as
     return judge_by(context, by, judged, 1);
 }
 
-void asj_looks_leave_open(const asj_geometry *own, const asj_geometry *finer, asj_match_result *result)
+void asj_looks_leave_open(const asj_geometry *own, const asj_geometry *upsampled, asj_match_result *result)
 {
     forget_probabilities((asj_own_result *)result);
     ((asj_own_result *)result)->is_known = 0;
-    result->geometry = *finer;
+    result->geometry = *upsampled;
     result->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
-    result->geometry.has_second = 1;
-    result->geometry.second_log10_nfa = own->log10_nfa;
+    result->geometry.has_rival = 1;
+    result->geometry.rival_log10_nfa = own->log10_nfa;
 }
 
-/* Rivals of the matches of the enlarged images are many weak corners around them, of which the matcher has chosen one. As for those
- * that another geometry judges, what it has chosen has none. */
-static void judge_without_rivals(asj_match_result *finer)
+/* Rivals of the matches of the upsampled images are many weak corners around them, of which the matcher has chosen one. As for
+ * those that another geometry judges, what it has chosen has none. */
+static void judge_without_rivals(asj_match_result *upsampled)
 {
-    asj_junction_match *matches = ((asj_own_result *)finer)->matches;
-    for (uint32_t k = 0; k < finer->match_count; k++)
-        matches[k].probability = fmaxf(matches[k].probability, probability_of(finer, farthest_of(finer, finer), &matches[k]));
+    asj_junction_match *matches = ((asj_own_result *)upsampled)->matches;
+    for (uint32_t k = 0; k < upsampled->match_count; k++)
+        matches[k].probability = fmaxf(matches[k].probability,
+                                       probability_of(upsampled, farthest_of(upsampled, upsampled), &matches[k]));
 }
 
-asj_status asj_looks_judge_by_enlarged(asj_context *context, asj_match_result *own, asj_match_result *finer)
+asj_status asj_looks_judge_by_upsampled(asj_context *context, asj_match_result *own, asj_match_result *upsampled)
 {
-    const asj_geometry *a = &own->geometry, *b = &finer->geometry;
+    const asj_geometry *a = &own->geometry, *b = &upsampled->geometry;
     if (b->status == ASJ_GEOMETRY_NOT_ASKED || (!is_answer(b) && is_answer(a)))
-        finer->geometry = own->geometry;
-    if (!asj_match_result_geometry(finer))
+        upsampled->geometry = own->geometry;
+    if (!asj_match_result_geometry(upsampled))
         return ASJ_OK;
-    judge_without_rivals(finer);
-    return asj_looks_judge(context, finer, own);
+    judge_without_rivals(upsampled);
+    return asj_looks_judge(context, upsampled, own);
 }

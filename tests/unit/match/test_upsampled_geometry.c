@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The matches of two images and those of the enlarged ones under one geometry, whichever of them has it. */
+/* The matches of two images and those of the upsampled ones under one geometry, whichever of them has it. */
 #include "core/angle.h"
-#include "finer_views.h"
+#include "upsampled_views.h"
 #include "geometry/model.h"
-#include "match/finer_geometry.h"
+#include "match/upsampled_geometry.h"
 #include "match/result_changes.h"
 #include "room.h"
 
@@ -13,23 +13,23 @@ static asj_camera camera_of(int32_t n)
     return (asj_camera){focal, focal, 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1)};
 }
 
-/* Of the enlarged images what lies in the left part of the first one, so that the images have matches that they have not. */
-static asj_match_result *match_known(asj_context *context, int32_t enlarged, int32_t with_geometry, const asj_known_matches *known)
+/* Of the upsampled images what lies in the left part of the first one, so that the images have matches that they have not. */
+static asj_match_result *match_known(asj_context *context, int32_t upsampled, int32_t with_geometry, const asj_known_matches *known)
 {
-    const asj_detection *a = enlarged ? views[0].finer : views[0].plain, *b = enlarged ? views[1].finer : views[1].plain;
+    const asj_detection *a = upsampled ? views[0].upsampled : views[0].plain, *b = upsampled ? views[1].upsampled : views[1].plain;
     asj_junction *left = calloc(a->junction_count, sizeof *left);
     asj_match_options options;
     asj_match_result *result = NULL;
     size_t count = 0;
     assert_non_null(left);
     for (uint32_t k = 0; k < a->junction_count; k++)
-        if (!enlarged || a->junctions[k].x < 0.7 * WIDTH)
+        if (!upsampled || a->junctions[k].x < 0.7 * WIDTH)
             left[count++] = a->junctions[k];
     asj_match_options_init(&options);
     options.geometry.model = with_geometry ? ASJ_GEOMETRY_ESSENTIAL : ASJ_GEOMETRY_NONE;
     for (int32_t n = 0; n < 2; n++)
         options.geometry.cameras[n] = camera_of(n);
-    const asj_status status = enlarged ? asj_match_look(context, &views[0].image, left, count, &views[1].image, b->junctions,
+    const asj_status status = upsampled ? asj_match_look(context, &views[0].image, left, count, &views[1].image, b->junctions,
                                                         b->junction_count, &options, 1, known, &result)
                                        : asj_match(context, &views[0].image, left, count, &views[1].image, b->junctions,
                                                    b->junction_count, &options, &result);
@@ -39,9 +39,9 @@ static asj_match_result *match_known(asj_context *context, int32_t enlarged, int
     return result;
 }
 
-static asj_match_result *match(asj_context *context, int32_t enlarged, int32_t with_geometry)
+static asj_match_result *match(asj_context *context, int32_t upsampled, int32_t with_geometry)
 {
-    return match_known(context, enlarged, with_geometry, NULL);
+    return match_known(context, upsampled, with_geometry, NULL);
 }
 
 static int is_at(const asj_junction_match *a, const asj_junction_match *b, float tolerance)
@@ -70,13 +70,13 @@ static void assert_list(const asj_match_result *r, const asj_junction_match *lis
     }
 }
 
-/* What the images' own geometry contradicts is still there when the enlarged images are the answer, each once: under that geometry,
- * and under another one that contradicts it, too. */
+/* What the images' own geometry contradicts is still there when the upsampled images are the answer, each once: under that
+ * geometry, and under another one that contradicts it, too. */
 static void check_rejected(asj_context *context, int32_t both)
 {
-    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, both);
+    asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, both);
     asj_junction_match *list = (asj_junction_match *)(uintptr_t)own->matches;
-    const uint32_t first = finer->l_junction_count1;
+    const uint32_t first = upsampled->l_junction_count1;
     float *probability = calloc(own->match_count, sizeof *probability);
     assert_non_null(probability);
     assert_true(own->match_count >= 12);
@@ -95,8 +95,8 @@ static void check_rejected(asj_context *context, int32_t both)
     assert_non_null(rejected);
     assert_true(rejected_count >= 4);
     memcpy(rejected, own->rejected, rejected_count * sizeof *rejected);
-    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
-    assert_true(own->l_junction_count1 > first); /* that of the enlarged images */
+    assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
+    assert_true(own->l_junction_count1 > first); /* that of the upsampled images */
     assert_int_equal(own->geometry.status, ASJ_GEOMETRY_ACCEPTED);
     for (size_t k = 0; k < rejected_count; k++)
         assert_int_equal(times_in(own->rejected, (size_t)own->rejected_count, &rejected[k], 0), 1);
@@ -119,7 +119,7 @@ static void what_is_rejected_stays_so(void **state)
 static void what_is_kept_is_not_rejected(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 0);
+    asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 0);
     float *probability = calloc(own->match_count, sizeof *probability);
     assert_non_null(probability);
     for (uint32_t k = 0; k < own->match_count; k++)
@@ -128,28 +128,28 @@ static void what_is_kept_is_not_rejected(void **state)
     free(probability);
     uint32_t again = 0;
     for (size_t k = 0; k < own->rejected_count; k++)
-        again += times_in(finer->matches, finer->match_count, &own->rejected[k], 4) > 0;
+        again += times_in(upsampled->matches, upsampled->match_count, &own->rejected[k], 4) > 0;
     assert_true(again >= 3);
-    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+    assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
     for (size_t k = 0; k < own->rejected_count; k++)
         assert_int_equal(times_in(own->matches, own->match_count, &own->rejected[k], 4), 0);
     assert_list(own, own->rejected, (size_t)own->rejected_count);
     asj_match_result_free(&own);
 }
 
-/* Where the enlarged images lose the pose, or accept nothing, the one of the images judges both. */
+/* Where the upsampled images lose the pose, or accept nothing, the one of the images judges both. */
 static void a_lost_pose_is_that_of_the_images(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
     for (int32_t accepted = 0; accepted < 2; accepted++) {
-        asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
-        const uint32_t first = finer->l_junction_count1;
+        asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
+        const uint32_t first = upsampled->l_junction_count1;
         const asj_geometry wanted = own->geometry;
-        finer->geometry.has_pose = 0;
+        upsampled->geometry.has_pose = 0;
         if (!accepted)
-            finer->geometry.status = ASJ_GEOMETRY_CHANCE;
-        assert_true(wanted.has_pose && wanted.log10_nfa != finer->geometry.log10_nfa);
-        assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+            upsampled->geometry.status = ASJ_GEOMETRY_CHANCE;
+        assert_true(wanted.has_pose && wanted.log10_nfa != upsampled->geometry.log10_nfa);
+        assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
         assert_true(own->l_junction_count1 > first);
         assert_memory_equal(&own->geometry, &wanted, sizeof wanted);
         const asj_known_geometry *known = asj_match_result_geometry(own);
@@ -158,24 +158,24 @@ static void a_lost_pose_is_that_of_the_images(void **state)
     }
 }
 
-/* A geometry that only the enlarged images have judges the images' own matches: a wrong one goes, the others have their
+/* A geometry that only the upsampled images have judges the images' own matches: a wrong one goes, the others have their
  * probability. With one that is asked for both it is the same. */
 static void a_geometry_judges_all(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
     for (int32_t both = 0; both < 2; both++) {
-        asj_match_result *own = match(context, 0, both), *finer = match(context, 1, 1);
-        const uint32_t first = finer->l_junction_count1, own_count = own->match_count;
+        asj_match_result *own = match(context, 0, both), *upsampled = match(context, 1, 1);
+        const uint32_t first = upsampled->l_junction_count1, own_count = own->match_count;
         asj_junction_match *list = (asj_junction_match *)(uintptr_t)own->matches, wrong = {.l1 = UINT32_MAX};
-        const double log10_nfa = finer->geometry.log10_nfa;
+        const double log10_nfa = upsampled->geometry.log10_nfa;
         for (uint32_t k = 0; k < own_count && wrong.l1 == UINT32_MAX; k++)
-            if (list[k].x1 > 0.8F * WIDTH && times_in(finer->matches, finer->match_count, &list[k], 12) == 0) {
+            if (list[k].x1 > 0.8F * WIDTH && times_in(upsampled->matches, upsampled->match_count, &list[k], 12) == 0) {
                 list[k].y2 += 40; /* across the lines of a camera that moves sideways */
                 list[k].affine[5] += 40;
                 wrong = list[k];
             }
         assert_true(wrong.l1 != UINT32_MAX);
-        assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+        assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
         assert_true(own->l_junction_count1 > first);
         assert_true(own->geometry.log10_nfa == log10_nfa);
         assert_int_equal(times_in(own->matches, own->match_count, &wrong, 0), 0);
@@ -191,23 +191,23 @@ static void a_geometry_judges_all(void **state)
     }
 }
 
-/* A geometry that makes matches likely gives the images more of them, but not the enlarged ones, which were asked for none: they
+/* A geometry that makes matches likely gives the images more of them, but not the upsampled ones, which were asked for none: they
  * hold although they have fewer, where there are more of both. */
 static void what_a_geometry_adds_is_no_reason_against(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 0);
-    const uint32_t first = finer->l_junction_count1, own_count = own->match_count;
-    float *probability = calloc(finer->match_count, sizeof *probability);
+    asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 0);
+    const uint32_t first = upsampled->l_junction_count1, own_count = own->match_count;
+    float *probability = calloc(upsampled->match_count, sizeof *probability);
     assert_non_null(probability);
-    assert_true(finer->match_count > own_count);
-    for (uint32_t k = own_count - 1; k < finer->match_count; k++)
+    assert_true(upsampled->match_count > own_count);
+    for (uint32_t k = own_count - 1; k < upsampled->match_count; k++)
         probability[k] = -1;
-    assert_int_equal(asj_match_result_judge(context, finer, probability, NULL), ASJ_OK);
+    assert_int_equal(asj_match_result_judge(context, upsampled, probability, NULL), ASJ_OK);
     free(probability);
-    assert_true(finer->match_count < own_count);
-    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
-    printf("%u matches of the images, with those of the enlarged ones %u\n", (unsigned)own_count, (unsigned)own->match_count);
+    assert_true(upsampled->match_count < own_count);
+    assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
+    printf("%u matches of the images, with those of the upsampled ones %u\n", (unsigned)own_count, (unsigned)own->match_count);
     assert_true(own->l_junction_count1 > first && own->match_count > own_count);
     assert_int_equal(own->geometry.status, ASJ_GEOMETRY_ACCEPTED);
     assert_list(own, own->matches, own->match_count);
@@ -218,12 +218,12 @@ static void what_a_geometry_adds_is_no_reason_against(void **state)
 static void rivals_are_an_answer(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_match_result *own = match(context, 0, 0), *finer = match(context, 1, 0);
-    const uint32_t first = finer->l_junction_count1;
+    asj_match_result *own = match(context, 0, 0), *upsampled = match(context, 1, 0);
+    const uint32_t first = upsampled->l_junction_count1;
     own->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
     own->geometry.log10_nfa = -7;
-    finer->geometry.status = ASJ_GEOMETRY_CHANCE;
-    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+    upsampled->geometry.status = ASJ_GEOMETRY_CHANCE;
+    assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
     assert_true(own->l_junction_count1 > first);
     assert_int_equal(own->geometry.status, ASJ_GEOMETRY_AMBIGUOUS);
     assert_true(own->geometry.log10_nfa == -7);
@@ -278,29 +278,29 @@ static void assert_no_probability(const asj_junction_match *list, size_t count)
         assert_true(list[k].probability == 0);
 }
 
-/* Two motions are no answer: what either contradicts goes, and the weaker one is told as the second. Matches of the enlarged images
- * are there when those of the images come again. */
+/* Two motions are no answer: what either contradicts goes, and the weaker one is told as the second. Matches of the upsampled
+ * images are there when those of the images come again. */
 static void poses_at_odds_are_ambiguous(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
     for (int again = 0; again < 2; again++) {
-        asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
-        const uint32_t count = own->match_count, l_count = own->l_junction_count1, finer_l_count = finer->l_junction_count1;
+        asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
+        const uint32_t count = own->match_count, l_count = own->l_junction_count1, upsampled_l_count = upsampled->l_junction_count1;
         const uint64_t rejected_count = own->rejected_count;
-        const double own_nfa = own->geometry.log10_nfa, nfa = finer->geometry.log10_nfa;
+        const double own_nfa = own->geometry.log10_nfa, nfa = upsampled->geometry.log10_nfa;
         asj_junction_match *list = (asj_junction_match *)(uintptr_t)own->matches;
         if (!again)
             move_along_lines(own);
         list[2].y2 += 40;
         const asj_junction_match off = list[2];
-        printf("standard deviations %.2f and %.2f degrees\n", sd_of_rotation(own), sd_of_rotation(finer));
-        change_pose(own, 3 + 5 * hypot(sd_of_rotation(own), sd_of_rotation(finer)), 1);
-        assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+        printf("standard deviations %.2f and %.2f degrees\n", sd_of_rotation(own), sd_of_rotation(upsampled));
+        change_pose(own, 3 + 5 * hypot(sd_of_rotation(own), sd_of_rotation(upsampled)), 1);
+        assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
         assert_int_equal(own->geometry.status, ASJ_GEOMETRY_AMBIGUOUS);
-        assert_true(own->geometry.log10_nfa == nfa && own->geometry.has_second && own->geometry.second_log10_nfa == own_nfa);
+        assert_true(own->geometry.log10_nfa == nfa && own->geometry.has_rival && own->geometry.rival_log10_nfa == own_nfa);
         assert_int_equal(times_in(own->rejected, (size_t)own->rejected_count, &off, 0), 1);
         assert_true(2 * own->match_count > count);
-        assert_true(again ? own->l_junction_count1 > finer_l_count : own->l_junction_count1 == l_count);
+        assert_true(again ? own->l_junction_count1 > upsampled_l_count : own->l_junction_count1 == l_count);
         assert_true(again || own->match_count + own->rejected_count == count + rejected_count);
         assert_null(asj_match_result_geometry(own));
         assert_list(own, own->matches, own->match_count);
@@ -314,22 +314,22 @@ static void poses_at_odds_are_ambiguous(void **state)
 static void poses_at_odds_are_decided(void **state)
 {
     static const struct {
-        double own, finer, log10_nfa; /* degrees; of the images, where the enlarged ones have -100 */
+        double own, upsampled, log10_nfa; /* degrees; of the images, where the upsampled ones have -100 */
         asj_looks looks;
     } cases[] = {{30, 0, -50, ASJ_LOOKS_DISPUTED},   {30, 0, -35, ASJ_LOOKS_SETTLED},   {180, 0, -90, ASJ_LOOKS_SETTLED},
                  {180, 0, -300, ASJ_LOOKS_DISPUTED}, {0, 180, -62, ASJ_LOOKS_BY_IMAGES}, {0, 180, -35, ASJ_LOOKS_SETTLED},
                  {180, 150, -90, ASJ_LOOKS_DISPUTED}};
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
-        asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+        asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
         change_pose(own, cases[k].own, 1);
-        change_pose(finer, cases[k].finer, 1);
+        change_pose(upsampled, cases[k].upsampled, 1);
         own->geometry.log10_nfa = cases[k].log10_nfa;
-        finer->geometry.log10_nfa = -100;
-        assert_int_equal(asj_looks_of(own, finer), cases[k].looks);
+        upsampled->geometry.log10_nfa = -100;
+        assert_int_equal(asj_looks_of(own, upsampled), cases[k].looks);
         const int32_t disputed = cases[k].looks == ASJ_LOOKS_DISPUTED;
         const double told = cases[k].looks == ASJ_LOOKS_BY_IMAGES ? cases[k].log10_nfa : -100;
-        assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+        assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
         assert_int_equal(own->geometry.status, disputed ? ASJ_GEOMETRY_AMBIGUOUS : ASJ_GEOMETRY_ACCEPTED);
         assert_true(own->geometry.log10_nfa == told && (asj_match_result_geometry(own) == NULL) == disputed);
         assert_list(own, own->matches, own->match_count);
@@ -342,26 +342,26 @@ static void poses_at_odds_are_decided(void **state)
 static void half_a_turn_is_at_odds(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+    asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
     for (int32_t axis = 0; axis < 3; axis++) {
-        own->geometry = finer->geometry;
+        own->geometry = upsampled->geometry;
         for (int32_t k = 0; k < 9; k++)
             own->geometry.rotation[k] *= k / 3 == axis ? 1 : -1;
-        assert_int_equal(asj_looks_of(own, finer), axis == 1 ? ASJ_LOOKS_DISPUTED : ASJ_LOOKS_SETTLED);
+        assert_int_equal(asj_looks_of(own, upsampled), axis == 1 ? ASJ_LOOKS_DISPUTED : ASJ_LOOKS_SETTLED);
     }
     asj_match_result_free(&own);
-    asj_match_result_free(&finer);
+    asj_match_result_free(&upsampled);
 }
 
 /* The pose of a plane is open: the plane stays. */
 static void planes_at_odds_have_no_pose(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
-    const double nfa = finer->geometry.log10_nfa;
-    own->geometry.model = finer->geometry.model = ASJ_GEOMETRY_HOMOGRAPHY;
+    asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
+    const double nfa = upsampled->geometry.log10_nfa;
+    own->geometry.model = upsampled->geometry.model = ASJ_GEOMETRY_HOMOGRAPHY;
     change_pose(own, 30, 1);
-    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+    assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
     assert_int_equal(own->geometry.status, ASJ_GEOMETRY_ACCEPTED);
     assert_int_equal(own->geometry.has_pose, 0);
     assert_true(own->geometry.log10_nfa == nfa);
@@ -379,16 +379,16 @@ static void poses_at_odds_without_memory(void **state)
     for (long n = 1; reached; n++) {
         unit_counter counter = {0};
         asj_context *poor = unit_context(&counter, 1);
-        asj_match_result *own = match(poor, 0, 0), *finer = match(poor, 1, 0);
+        asj_match_result *own = match(poor, 0, 0), *upsampled = match(poor, 1, 0);
         own->geometry = found[0]->geometry;
-        finer->geometry = found[1]->geometry;
-        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_DISPUTED);
+        upsampled->geometry = found[1]->geometry;
+        assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_DISPUTED);
         counter.fail_at = counter.calls + n;
         counter.for_good = 1;
-        const asj_status status = asj_finer_choose(poor, &own, &finer, 0);
+        const asj_status status = asj_upsampled_choose(poor, &own, &upsampled, 0);
         reached = unit_reached(&counter);
         assert_true(status == ASJ_OK || (reached && status == ASJ_ERROR_MEMORY));
-        assert_true(own && !finer);
+        assert_true(own && !upsampled);
         failed += status != ASJ_OK;
         asj_match_result_free(&own);
         unit_context_free(&counter, &poor);
@@ -403,8 +403,8 @@ static void poses_at_odds_without_memory(void **state)
 static void opposite_translations_are_at_odds(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
-    asj_geometry *a = &own->geometry, *b = &finer->geometry;
+    asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
+    asj_geometry *a = &own->geometry, *b = &upsampled->geometry;
     memcpy(b->rotation, a->rotation, sizeof a->rotation);
     for (int k = 0; k < 40; k++) {
         double axes[2][3];
@@ -418,57 +418,58 @@ static void opposite_translations_are_at_odds(void **state)
             a->translation[n] = t[n];
             b->translation[n] = -t[n];
         }
-        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_DISPUTED);
+        assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_DISPUTED);
     }
     asj_match_result_free(&own);
-    asj_match_result_free(&finer);
+    asj_match_result_free(&upsampled);
 }
 
 /* As far apart, and no wonder: neither knows better. And less than 3 degrees, however sure. Then the surer one is the answer. */
 static void poses_that_agree_are_one(void **state)
 {
     static const struct {
-        double own, finer; /* times the standard deviation */
+        double own, upsampled; /* times the standard deviation */
         double degrees;    /* more than 4 standard deviations, if not multiplied; 0 = 2 degrees */
     } cases[] = {{200, 100, 1}, {100, 200, 1}, {0.01, 0.02, 0}, {0.02, 0.01, 0}};
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-        asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
-        const double sd = hypot(sd_of_rotation(own), sd_of_rotation(finer)), ratio = sd_of_rotation(own) / sd_of_rotation(finer);
+        asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
+        const double sd = hypot(sd_of_rotation(own), sd_of_rotation(upsampled));
+        const double ratio = sd_of_rotation(own) / sd_of_rotation(upsampled);
         change_pose(own, cases[k].degrees > 0 ? 3 + 5 * sd : 2, cases[k].own / ratio);
-        change_pose(finer, 0, cases[k].finer);
+        change_pose(upsampled, 0, cases[k].upsampled);
         for (int n = 0; n < 36; n++) /* of rotation alone, so that it is the one that is surer in all */
             if (n / 6 > 2 || n % 6 > 2)
-                own->geometry.covariance[n] = finer->geometry.covariance[n] = 0;
-        memcpy(own->geometry.translation, finer->geometry.translation, sizeof own->geometry.translation);
-        const asj_geometry surer = cases[k].own < cases[k].finer ? own->geometry : finer->geometry;
-        assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+                own->geometry.covariance[n] = upsampled->geometry.covariance[n] = 0;
+        memcpy(own->geometry.translation, upsampled->geometry.translation, sizeof own->geometry.translation);
+        const asj_geometry surer = cases[k].own < cases[k].upsampled ? own->geometry : upsampled->geometry;
+        assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
         assert_int_equal(own->geometry.status, ASJ_GEOMETRY_ACCEPTED);
         assert_memory_equal(own->geometry.rotation, surer.rotation, sizeof surer.rotation);
         asj_match_result_free(&own);
     }
 }
 
-/* The images have rivals, and none of their matches comes again: the enlarged images' motion is the answer when it is the images'
+/* The images have rivals, and none of their matches comes again: the upsampled images' motion is the answer when it is the images'
  * best, or has much more evidence, and otherwise not. */
 static void rivals_are_confirmed(void **state)
 {
     static const struct {
-        double degrees, finer, own; /* log10 NFA */
+        double degrees, upsampled, own; /* log10 NFA */
         int32_t accepted;
     } cases[] = {{1, -40, -40, 1}, {30, -40, -33, 0}, {30, -40, -31, 1}, {30, -34, -17, 0}};
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
-        asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
-        const uint32_t own_count = own->l_junction_count1, finer_count = finer->l_junction_count1;
+        asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
+        const uint32_t own_count = own->l_junction_count1, upsampled_count = upsampled->l_junction_count1;
         move_along_lines(own);
         leave_open(own, ASJ_GEOMETRY_AMBIGUOUS);
         change_pose(own, cases[k].degrees, 1);
         own->geometry.log10_nfa = cases[k].own;
-        finer->geometry.log10_nfa = cases[k].finer;
-        assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+        upsampled->geometry.log10_nfa = cases[k].upsampled;
+        assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
         assert_int_equal(own->geometry.status, cases[k].accepted ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_AMBIGUOUS);
-        assert_true(cases[k].accepted ? own->l_junction_count1 >= finer_count : own->l_junction_count1 == own_count);
+        assert_true(cases[k].accepted ? own->l_junction_count1 >= upsampled_count : own->l_junction_count1 == own_count);
         asj_match_result_free(&own);
     }
 }
@@ -477,50 +478,50 @@ static void rivals_are_confirmed(void **state)
 static void without_matches_much_evidence_counts(void **state)
 {
     static const struct {
-        int32_t status; /* of the enlarged images */
+        int32_t status; /* of the upsampled images */
         double log10_nfa;
         asj_looks looks;
     } cases[] = {{ASJ_GEOMETRY_ACCEPTED, -40, ASJ_LOOKS_SETTLED}, {ASJ_GEOMETRY_ACCEPTED, -34, ASJ_LOOKS_LOST},
                  {ASJ_GEOMETRY_AMBIGUOUS, -40, ASJ_LOOKS_LOST}, {ASJ_GEOMETRY_CHANCE, 0, ASJ_LOOKS_LOST}};
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
-        asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+        asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
         const uint32_t count = own->match_count;
         leave_open(own, ASJ_GEOMETRY_AMBIGUOUS);
         own->match_count = 0;
         own->geometry.log10_nfa = -10;
-        finer->geometry.status = cases[k].status;
-        finer->geometry.log10_nfa = cases[k].log10_nfa;
-        assert_int_equal(asj_looks_of(own, finer), cases[k].looks);
+        upsampled->geometry.status = cases[k].status;
+        upsampled->geometry.log10_nfa = cases[k].log10_nfa;
+        assert_int_equal(asj_looks_of(own, upsampled), cases[k].looks);
         own->geometry.model = ASJ_GEOMETRY_HOMOGRAPHY; /* no motion that could be settled so */
-        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_BY_ENLARGED);
+        assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_BY_UPSAMPLED);
         own->match_count = count;
         asj_match_result_free(&own);
-        asj_match_result_free(&finer);
+        asj_match_result_free(&upsampled);
     }
 }
 
-/* A motion that is open says how far: what the enlarged images accept contradicts it or does not. Without a focal length it says
+/* A motion that is open says how far: what the upsampled images accept contradicts it or does not. Without a focal length it says
  * nothing. */
 static void an_open_motion_is_found(void **state)
 {
     static const struct {
-        double sd, log10_nfa; /* times the standard deviation; of the images, where the enlarged ones have -100 */
+        double sd, log10_nfa; /* times the standard deviation; of the images, where the upsampled ones have -100 */
         asj_looks looks;
-    } cases[] = {{1, -90, ASJ_LOOKS_LOST}, {1000, -90, ASJ_LOOKS_BY_ENLARGED}, {0, -90, ASJ_LOOKS_BY_ENLARGED},
+    } cases[] = {{1, -90, ASJ_LOOKS_LOST}, {1000, -90, ASJ_LOOKS_BY_UPSAMPLED}, {0, -90, ASJ_LOOKS_BY_UPSAMPLED},
                  {1, -70, ASJ_LOOKS_SETTLED}};
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
-        asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+        asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
         leave_open(own, ASJ_GEOMETRY_DEGENERATE);
         change_pose(own, 10, cases[k].sd);
         own->geometry.log10_nfa = cases[k].log10_nfa;
-        finer->geometry.log10_nfa = -100;
+        upsampled->geometry.log10_nfa = -100;
         if (cases[k].sd == 0)
             memset(own->geometry.rotation, 0, sizeof own->geometry.rotation);
-        assert_int_equal(asj_looks_of(own, finer), cases[k].looks);
+        assert_int_equal(asj_looks_of(own, upsampled), cases[k].looks);
         asj_match_result_free(&own);
-        asj_match_result_free(&finer);
+        asj_match_result_free(&upsampled);
     }
 }
 
@@ -529,43 +530,43 @@ static void what_turns_over_settles_nothing(void **state)
 {
     static const int32_t open[] = {ASJ_GEOMETRY_DEGENERATE, ASJ_GEOMETRY_AMBIGUOUS};
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
-    own->geometry = finer->geometry;
+    asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
+    own->geometry = upsampled->geometry;
     for (size_t k = 0; k < UNIT_COUNT(open); k++) {
         own->geometry.status = open[k];
-        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_SETTLED);
+        assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_SETTLED);
         change_pose(own, 180, 1);
-        change_pose(finer, 180, 1);
-        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_LOST);
+        change_pose(upsampled, 180, 1);
+        assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_LOST);
         change_pose(own, 180, 1);
-        change_pose(finer, 180, 1);
+        change_pose(upsampled, 180, 1);
     }
     asj_match_result_free(&own);
-    asj_match_result_free(&finer);
+    asj_match_result_free(&upsampled);
 }
 
-/* Images with a rival that is no chance by itself repeat themselves: the enlarged ones must have twice as much evidence. */
+/* Images with a rival that is no chance by itself repeat themselves: the upsampled ones must have twice as much evidence. */
 static void what_repeats_is_not_settled(void **state)
 {
     static const int32_t models[] = {ASJ_GEOMETRY_ESSENTIAL, ASJ_GEOMETRY_FUNDAMENTAL, ASJ_GEOMETRY_HOMOGRAPHY};
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
-    own->geometry = finer->geometry;
+    asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
+    own->geometry = upsampled->geometry;
     own->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
-    own->geometry.has_second = 1;
+    own->geometry.has_rival = 1;
     own->geometry.log10_nfa = -130;
     for (size_t k = 0; k < UNIT_COUNT(models); k++) {
         own->geometry.model = models[k];
-        finer->geometry.log10_nfa = -255;
-        own->geometry.second_log10_nfa = -99;
-        assert_int_not_equal(asj_looks_of(own, finer), ASJ_LOOKS_LOST);
-        own->geometry.second_log10_nfa = -101;
-        finer->geometry.log10_nfa = -265;
-        assert_int_not_equal(asj_looks_of(own, finer), ASJ_LOOKS_LOST);
-        finer->geometry.log10_nfa = -255;
-        assert_int_equal(asj_looks_of(own, finer), ASJ_LOOKS_LOST);
+        upsampled->geometry.log10_nfa = -255;
+        own->geometry.rival_log10_nfa = -99;
+        assert_int_not_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_LOST);
+        own->geometry.rival_log10_nfa = -101;
+        upsampled->geometry.log10_nfa = -265;
+        assert_int_not_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_LOST);
+        upsampled->geometry.log10_nfa = -255;
+        assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_LOST);
     }
-    assert_int_equal(asj_finer_choose(context, &own, &finer, 1), ASJ_OK);
+    assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 1), ASJ_OK);
     assert_int_equal(own->geometry.status, ASJ_GEOMETRY_AMBIGUOUS);
     asj_match_result_free(&own);
 }
@@ -574,32 +575,32 @@ static void what_repeats_is_not_settled(void **state)
 static void a_plane_decides_no_motion(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_match_result *own = match(context, 0, 1), *finer = match(context, 1, 1);
+    asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
     const uint32_t own_count = own->l_junction_count1;
     leave_open(own, ASJ_GEOMETRY_DEGENERATE);
-    finer->geometry.has_pose = 0;
-    finer->geometry.model = ASJ_GEOMETRY_HOMOGRAPHY;
-    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+    upsampled->geometry.has_pose = 0;
+    upsampled->geometry.model = ASJ_GEOMETRY_HOMOGRAPHY;
+    assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
     assert_int_equal(own->geometry.status, ASJ_GEOMETRY_DEGENERATE);
     assert_int_equal(own->l_junction_count1, own_count);
     asj_match_result_free(&own);
 }
 
-/* The enlarged images were not asked: what the images say stays, also when it is nothing. */
+/* The upsampled images were not asked: what the images say stays, also when it is nothing. */
 static void chance_stays_chance(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_match_result *own = match(context, 0, 0), *finer = match(context, 1, 0);
-    const uint32_t first = finer->l_junction_count1;
+    asj_match_result *own = match(context, 0, 0), *upsampled = match(context, 1, 0);
+    const uint32_t first = upsampled->l_junction_count1;
     own->geometry.status = ASJ_GEOMETRY_CHANCE;
-    assert_int_equal(asj_finer_choose(context, &own, &finer, 0), ASJ_OK);
+    assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
     assert_true(own->l_junction_count1 >= first);
     assert_int_equal(own->geometry.status, ASJ_GEOMETRY_CHANCE);
     asj_match_result_free(&own);
 }
 
-/* The images' own matches say where those of the enlarged ones are looked for, unless the geometry that is asked is open: then the
- * enlarged images are a witness, and are not told. */
+/* The images' own matches say where those of the upsampled ones are looked for, unless the geometry that is asked is open: then the
+ * upsampled images are a witness, and are not told. */
 static void a_witness_is_not_told(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The geometry of the images as they are and that of the upsampled ones: which one is that of both, and what it makes of the
+ * matches of the other look. */
+#ifndef ASJ_SRC_UPSAMPLED_GEOMETRY_H
+#define ASJ_SRC_UPSAMPLED_GEOMETRY_H
+
+#include "match_result.h"
+
+typedef enum asj_looks {
+    ASJ_LOOKS_BY_UPSAMPLED, /* that of the upsampled images, if they have one; otherwise what the images say of theirs */
+    ASJ_LOOKS_BY_IMAGES,   /* the accepted one of the images: it is surer, or the upsampled ones do not keep it, or were not asked,
+                            * or turn it upside down */
+    ASJ_LOOKS_SETTLED,     /* that of the upsampled images, whether or not matches come again: they accept the best one of what the
+                            * images leave open, or have so much more evidence */
+    ASJ_LOOKS_LOST,        /* the images leave open which motion it is, and the upsampled ones accept what tells none, or one that
+                            * is upside down, or, where it is no matter of rivals, another one; or the images have no match, and
+                            * the upsampled ones too little evidence; or the images repeat themselves */
+    ASJ_LOOKS_PLANE,       /* both accept a plane, which leaves its motion open: the upsampled images', without a pose */
+    ASJ_LOOKS_DISPUTED     /* both accept a motion, not the same, and nothing decides: neither, and no match that either
+                            * contradicts */
+} asj_looks;
+
+asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsampled);
+
+/* Do the images leave a motion open that the upsampled ones may settle, even if the images have no match? */
+int32_t asj_looks_may_settle(const asj_match_result *own);
+
+/* The matches of the one by the accepted geometry of the other, which is that of both from now on. ASJ_ERROR_MEMORY. */
+asj_status asj_looks_judge(asj_context *context, const asj_match_result *by, asj_match_result *judged);
+
+/* Both by that of the upsampled images, where they have one, after it has chosen. ASJ_ERROR_MEMORY. */
+asj_status asj_looks_judge_by_upsampled(asj_context *context, asj_match_result *own, asj_match_result *upsampled);
+
+/* The matches of the one that the accepted geometry of the other contradicts are rejected, too. ASJ_ERROR_MEMORY. */
+asj_status asj_looks_filter(asj_context *context, const asj_match_result *by, asj_match_result *judged);
+
+/* Says of a result that its geometry is ambiguous, of two that are at odds; neither is the result's own. */
+void asj_looks_leave_open(const asj_geometry *own, const asj_geometry *upsampled, asj_match_result *result);
+
+#endif
