@@ -79,7 +79,7 @@ static const cli_option plot_options[] = {
      "by how sure they are"},
     {PLOT_BACKGROUND, 0, "plot-background", "photo|color|white",
      "over the pale photograph in grey (the default) or in its colours, or on white"},
-    {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of the image, 0.01 .. 16; default: small images are upsampled"},
+    {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of the image, 0.01 .. 16; default: small images are enlarged"},
 };
 
 static const cli_option preset_options[] = {

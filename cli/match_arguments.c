@@ -60,7 +60,7 @@ static const cli_option input_options[] = {
     {MASK_1, 0, "mask1", "FILE", "no junction where this 8-bit gray image, of the size of IMAGE1, is black (0)"},
     {MASK_2, 0, "mask2", "FILE", "the same for IMAGE2"},
     {STRETCH, 0, "stretch", "N|X,Y|auto",
-     "look at both images upsampled N times (2: about three times the matches, in three to eight times the time; 1: as they "
+     "look at both images enlarged N times (2: about three times the matches, in three to eight times the time; 1: as they "
      "are), or stretched along each axis (1,3: surfaces seen at a glancing angle, like things on a table). auto, the default of "
      "two whole images: as they are; from --upsample-from matches on also upsampled, where these hold; and where nothing comes of "
      "it by 1,3 and 3,1, then also upsampled"},
@@ -85,7 +85,7 @@ static const cli_option plot_options[] = {
      "epipolar lines of the matches, where --geometry found an epipolar geometry; no is the default"},
     {PLOT_LAYOUT, 0, "plot-layout", "auto|beside|below",
      "where the second photograph stands; auto (the default): what fits a screen"},
-    {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of an image, 0.01 .. 16; default: small images are upsampled"},
+    {PLOT_SCALE, 0, "plot-scale", "N", "pixels of the plot for one of an image, 0.01 .. 16; default: small images are enlarged"},
 };
 
 static const cli_option preset_options[] = {

@@ -10,7 +10,7 @@
 /* --- upsampled images --------------------------------------------------------------------------------------------------------- */
 
 /* Will there be junctions of octave -1, or may a file have some? */
-static int may_have_finer(const cli_match_arguments *arguments)
+static int may_have_upsampled(const cli_match_arguments *arguments)
 {
     int may = arguments->detect_options.first_octave < 0 && arguments->detect_options.octaves > 1;
     for (int v = 0; v < 2; v++)
@@ -23,11 +23,11 @@ static int may_have_finer(const cli_match_arguments *arguments)
 static const char *asked_of_upsampled(const cli_match_arguments *arguments)
 {
     const cli_settings *given = &arguments->match_settings;
-    const int only_upsampled = !may_have_finer(arguments);
-    return cli_settings_have(given, "upsampled_half_octaves")               ? "--upsampled-half-octaves" :
-           cli_settings_have(given, "upsampled_max_junctions")                       ? "--upsampled-max-junctions" :
-           only_upsampled && cli_settings_have(given, "upsampled_search_radius")     ? "--upsampled-search-radius" :
-           only_upsampled && cli_settings_have(given, "upsampled_shortlist") ? "--upsampled-shortlist" : NULL;
+    const int only_upsampled = !may_have_upsampled(arguments);
+    return cli_settings_have(given, "upsampled_half_octaves")                    ? "--upsampled-half-octaves" :
+           cli_settings_have(given, "upsampled_max_junctions")                   ? "--upsampled-max-junctions" :
+           only_upsampled && cli_settings_have(given, "upsampled_search_radius") ? "--upsampled-search-radius" :
+           only_upsampled && cli_settings_have(given, "upsampled_shortlist")     ? "--upsampled-shortlist" : NULL;
 }
 
 /* The same, and of when they are. */

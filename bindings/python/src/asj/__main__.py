@@ -35,7 +35,12 @@ def _parser() -> argparse.ArgumentParser:
     outputs.add_argument("--limap", type=Path, metavar="FOLDER", help="line segments as LIMAP reads them, their matches as text")
     work = collect.add_argument_group("work")
     work.add_argument("--store", type=Path, metavar="FILE", help="what has been done so far (default: beside the first output)")
-    work.add_argument("--resume", action="store_true", help="go on with the store of a run that ended early")
+    again = work.add_mutually_exclusive_group()
+    again.add_argument("--resume", action="store_true", help="go on with the store of a run that ended early")
+    again.add_argument(
+        "--update", action="store_true", help="the same for images or pairs that have become others since: what is new or changed is done, "
+        "what is gone is forgotten, and the rest stays",
+    )  # fmt: skip
     work.add_argument("--jobs", type=int, default=2, metavar="N", help="worker processes (default 2)")
     work.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler, for instance tcp://host:8786, instead of processes here")
     work.add_argument("--no-verify", action="store_true", help="COLMAP: no two-view geometries")
@@ -191,7 +196,9 @@ def _collect(arguments: argparse.Namespace) -> int:
 
         hdf5.check_names(plan.images)
     progress = None if arguments.quiet or not sys.stderr.isatty() else _progress
-    open_store = collection.Store.resume if arguments.resume and place.exists() else collection.Store.create
+    open_store = collection.Store.create
+    if place.exists() and (arguments.resume or arguments.update):
+        open_store = collection.Store.update if arguments.update else collection.Store.resume
     with contextlib.ExitStack() as open_things:
         # workers that cannot be had leave no store behind
         workers: Processes | Dask

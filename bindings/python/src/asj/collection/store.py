@@ -58,6 +58,35 @@ class Store:
     @classmethod
     def resume(cls, path: Path, plan: Plan) -> Store:
         """The store of the same work, with what has been done."""
+        store = cls._open(path, plan)
+        try:
+            stamps = store._stamps()
+            if stamps.keys() != set(plan.images) or set(store._pairs()) != set(plan.pairs):
+                raise StoreError(f"{path} is of other work: its images or pairs differ (--update takes them over)")
+            for name, (_, stamp) in stamps.items():
+                if _stamp(plan.folder / name) != stamp:
+                    raise StoreError(f"{path} is of other work: {plan.folder / name} is not the file that it was (--update takes it over)")
+        except BaseException:
+            store.close()
+            raise
+        return store
+
+    @classmethod
+    def update(cls, path: Path, plan: Plan) -> Store:
+        """The store of work whose images or pairs have become others since, with what has been done and still holds: what is new
+        waits, as an image whose file is another one does with its pairs, and what is gone is forgotten."""
+        store = cls._open(path, plan)
+        try:
+            with store._connection:
+                store._take_over(plan)
+        except BaseException:
+            store.close()
+            raise
+        return store
+
+    @classmethod
+    def _open(cls, path: Path, plan: Plan) -> Store:
+        """A store that is there, with results of the same options."""
         if not path.exists():
             raise StoreError(f"{path} is not there: nothing to go on with")
         connection = _connect(path)
@@ -70,19 +99,42 @@ class Store:
             if found.get(key) != wanted:
                 connection.close()
                 raise StoreError(f"{path} is of other work: {key} is {found.get(key)!r} there, and {wanted!r} now")
-        store = cls(path, connection)
-        names = [name for _, name in store.images()]
-        pairs = connection.execute(
-            "SELECT a.name, b.name FROM pairs p JOIN images a ON a.id = image1 JOIN images b ON b.id = image2 ORDER BY p.id"
-        ).fetchall()
-        if names != plan.images or pairs != plan.pairs:
-            connection.close()
-            raise StoreError(f"{path} is of other work: its images or pairs differ")
-        for name, stamp in connection.execute("SELECT name, stamp FROM images").fetchall():
-            if _stamp(plan.folder / name) != stamp:
-                connection.close()
-                raise StoreError(f"{path} is of other work: {plan.folder / name} is not the file that it was")
-        return store
+        return cls(path, connection)
+
+    def _stamps(self) -> dict[str, tuple[int, str]]:
+        """Number and stamp of every image by its name."""
+        return {name: (number, stamp) for number, name, stamp in self._connection.execute("SELECT id, name, stamp FROM images ORDER BY id")}
+
+    def _pairs(self) -> dict[tuple[str, str], int]:
+        """The number of every pair of names."""
+        rows = self._connection.execute(
+            "SELECT a.name, b.name, p.id FROM pairs p JOIN images a ON a.id = image1 JOIN images b ON b.id = image2"
+        )
+        return {(one, two): number for one, two, number in rows}
+
+    def _take_over(self, plan: Plan) -> None:
+        """Makes the images and pairs those of the plan; inside a transaction."""
+        connection, stamps, pairs = self._connection, self._stamps(), self._pairs()
+        now = {name: _stamp(plan.folder / name) for name in plan.images}
+        wanted = set(plan.pairs)
+        connection.executemany("DELETE FROM pairs WHERE id = ?", [(number,) for names, number in pairs.items() if names not in wanted])
+        connection.executemany("DELETE FROM images WHERE id = ?", [(number,) for name, (number, _) in stamps.items() if name not in now])
+        changed = [(now[name], number) for name, (number, stamp) in stamps.items() if name in now and now[name] != stamp]
+        connection.executemany(
+            "UPDATE images SET stamp = ?, state = 'waiting', error = NULL, width = NULL, height = NULL, focal = NULL, features = NULL, "
+            "orientation = NULL WHERE id = ?",
+            changed,
+        )
+        without = "(SELECT id FROM images WHERE state = 'waiting')"
+        connection.execute(
+            "UPDATE pairs SET state = 'waiting', error = NULL, matches = NULL, lines = NULL, geometry = NULL "
+            f"WHERE state <> 'waiting' AND (image1 IN {without} OR image2 IN {without})"
+        )
+        connection.executemany("INSERT INTO images (name, stamp) VALUES (?, ?)", [(name, now[name]) for name in plan.images if name not in stamps])
+        numbers = {name: number for name, (number, _) in self._stamps().items()}
+        connection.executemany(
+            "INSERT INTO pairs (image1, image2) VALUES (?, ?)", [(numbers[one], numbers[two]) for one, two in plan.pairs if (one, two) not in pairs]
+        )
 
     def close(self) -> None:
         """Ends the connection; the write-ahead log goes into the file."""
