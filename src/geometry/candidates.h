@@ -20,7 +20,7 @@ typedef struct asj_pair {
 } asj_pair;
 
 /* A rotation that the images' directions make likely: manhattan.c. */
-#define ASJ_ROTATION_SIZES 2
+#define ASJ_ROTATION_SIZES 3
 typedef struct asj_likely_rotation {
     double matrix[9];
     double precision[ASJ_ROTATION_SIZES][9]; /* rad^-2: inverse covariances of w with exp([w]x) matrix the true one */

@@ -28,14 +28,15 @@ typedef struct asj_edge_list {
 } asj_edge_list;
 
 /* The sets of directions that explain the edges best, the best first; count 0 when there are too few edges. camera: of the image,
- * px. 0: no memory. */
-int32_t asj_find_directions(asj_memory *memory, const asj_edge_list *edges, const asj_camera *camera, asj_directions_list *found);
+ * px; `exact` says that it is known, so that right angles are as right as the edges say. 0: no memory. */
+int32_t asj_find_directions(asj_memory *memory, const asj_edge_list *edges, const asj_camera *camera, int32_t exact,
+                            asj_directions_list *found);
 
 /* The same in the threads of a loop, each with scratch of its own for lists of at most `count` edges. NULL: no memory. */
 typedef struct asj_directions_scratch asj_directions_scratch;
 asj_directions_scratch *asj_directions_scratch_create(asj_memory *memory, size_t count);
 void asj_directions_scratch_free(asj_memory *memory, asj_directions_scratch *scratch);
-void asj_find_directions_with(asj_directions_scratch *scratch, const asj_edge_list *edges, const asj_camera *camera,
+void asj_find_directions_with(asj_directions_scratch *scratch, const asj_edge_list *edges, const asj_camera *camera, int32_t exact,
                               asj_directions_list *found);
 
 /* Adds one set of directions, unless it is there already but for their names, or there is no room. */

@@ -29,7 +29,7 @@
 #include <math.h>
 #include <string.h>
 
-#define COOL 2.0
+#define COOL 2.0 /* as in manhattan.c */
 #define SAME 1e-6 /* of a step */
 
 typedef struct job {
@@ -59,7 +59,7 @@ static void find_some(const void *data, const asj_part *part)
         const int32_t v = (int32_t)(n % 2), k = (int32_t)(n / 2);
         asj_camera cameras[2];
         asj_focal_cameras(j->prior, asj_focal_factor(k), cameras);
-        asj_find_directions_with(j->scratch[part->thread], &j->prior->edges[v], &cameras[v], &j->prior->directions[v][k]);
+        asj_find_directions_with(j->scratch[part->thread], &j->prior->edges[v], &cameras[v], 0, &j->prior->directions[v][k]);
     }
 }
 
@@ -147,7 +147,7 @@ asj_status asj_focal_directions(asj_context *context, const asj_focal_prior *pri
     for (int32_t v = 0; v < 2; v++)
         if (nearest >= 0 && nearest < ASJ_FOCAL_COUNT && fabs(at - nearest) < SAME)
             directions[v] = prior->directions[v][nearest];
-        else if (!asj_find_directions(&context->memory, &prior->edges[v], &cameras[v], &directions[v]))
+        else if (!asj_find_directions(&context->memory, &prior->edges[v], &cameras[v], 0, &directions[v]))
             return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the directions of %zu edges", prior->edges[v].count);
     return ASJ_OK;
 }

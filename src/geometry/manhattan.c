@@ -5,12 +5,12 @@
  *     R = D2' P D1,   P one of the 24 signed permutations that make R a rotation,
  *
  * and when D1 turns by w1 and D2 by w2, both with covariances C1 and C2, R turns by w = w2 - R w1, which has C = C2 + R C1 R'.
- * Edges are not independent (both sides of a board, what is not quite at right angles), so the covariances count `alike` times, and
- * `sd` in each angle comes to them. How much depends on the room and on the camera: rendered rooms have their walls at right
- * angles, and half of the rotations are within .3 degrees of the true one, nine in ten within 1.3; those of video frames are out by
- * 1.4 to 7.5 degrees. So the density of each is a mixture of two normal ones, as with the locations of candidates (likelihood.c).
- * (Rooms 0 to 99 and 200 to 330, two draws of noise: with the wide one alone 10 of 282 poses are out by more than 3 degrees, mostly
- * turned out of the directions by candidates of one wall; with both 2 of 285.)
+ * Directions are not quite at right angles, so the covariances count `alike` times, and `sd` in each angle comes to them. How much
+ * depends on the room and on the camera: rendered rooms have their walls at right angles, and their directions are as sure as they
+ * say; those of video frames are out by 1.4 to 7.5 degrees. So the density of each is a mixture of three normal ones, as with the
+ * locations of candidates (likelihood.c), the narrowest with half the covariances. (Rooms 1000 to 1399, `wide_rooms --stretch 0,0`,
+ * AUC at 1, 2, 5, 10, 20 degrees: without the narrowest 50.9/65.8/78.2/82.9/85.3, with it 55.6/69.0/79.8/83.7/85.8, both before
+ * directions.c asked how straight the edges are; since then 66.2/75.8/82.7/85.2/86.4.)
  *
  * Photographs are taken upright: where in both images a direction lies within 40 degrees of the image's downward axis, it is the
  * same one, down, in nine of ten pairs. That leaves 4 of the 24 names, whose share of the prior is so much larger. (The same rooms:
@@ -18,7 +18,8 @@
  * upright. UPRIGHT leaves room for a camera that was turned between the photographs.)
  *
  * Prior density of rotations: a half of it flat, the other half about all those that the sets of directions of both images give,
- * each pair of sets as likely:
+ * a pair of sets as likely as both are together: of each image EVEN of the whole is shared evenly by its sets, and the rest as
+ * exp(score / COOL), since the edges that a score counts are not independent:
  *
  *     q(R) / flat = 1/2 + 1/2 (8 pi^2) sum of share x (2 pi)^(-3/2) det(C)^(-1/2) exp(-w' C^-1 w / 2),
  *
@@ -38,9 +39,11 @@
 #define UPRIGHT_NAMES 4
 #define UPRIGHT 0.9
 #define DOWN 0.77 /* cos 40 degrees */
+#define COOL 2.0 /* as in focal_prior.c */
+#define EVEN 0.1
 
-static const double sd[ASJ_ROTATION_SIZES] = {0.8 * ASJ_DEGREE, 0.25 * ASJ_DEGREE};
-static const double alike[ASJ_ROTATION_SIZES] = {16, 4};
+static const double sd[ASJ_ROTATION_SIZES] = {0.8 * ASJ_DEGREE, 0.25 * ASJ_DEGREE, 0.1 * ASJ_DEGREE};
+static const double alike[ASJ_ROTATION_SIZES] = {8, 2, 0.5};
 
 void asj_directions_given(const double directions[9], asj_directions_list *list)
 {
@@ -113,18 +116,32 @@ static int32_t add_names(const asj_directions *first, const asj_directions *seco
     return count;
 }
 
+/* Log of the share of each set of directions. */
+static void log_shares_of_sets(const asj_directions_list *of, double log_share[ASJ_MOST_DIRECTIONS])
+{
+    double sum = 0;
+    for (int32_t k = 0; k < of->count; k++)
+        sum += exp((of->list[k].score - of->list[0].score) / COOL);
+    for (int32_t k = 0; k < of->count; k++)
+        log_share[k] = log(EVEN / of->count + (1 - EVEN) * exp((of->list[k].score - of->list[0].score) / COOL) / sum);
+}
+
 int32_t asj_manhattan_rotations(asj_memory *memory, const asj_directions_list directions[2], asj_pairs *set)
 {
     const int32_t pairs = directions[0].count * directions[1].count;
+    double log_share[2][ASJ_MOST_DIRECTIONS];
     set->rotation_count = 0;
     if (pairs == 0)
         return 1;
     set->has_down = find_down(&directions[0].list[0], set->down[0]) && find_down(&directions[1].list[0], set->down[1]);
     set->rotations = asj_allocate_zero(memory, NAMES * (size_t)pairs, sizeof *set->rotations);
+    for (int32_t v = 0; v < 2; v++)
+        log_shares_of_sets(&directions[v], log_share[v]);
     for (int32_t i = 0; i < pairs && set->rotations; i++) {
         const int32_t of_set[2] = {i % directions[0].count, i / directions[0].count};
         asj_likely_rotation *list = &set->rotations[set->rotation_count];
-        const int32_t count = add_names(&directions[0].list[of_set[0]], &directions[1].list[of_set[1]], -log(pairs), list);
+        const int32_t count = add_names(&directions[0].list[of_set[0]], &directions[1].list[of_set[1]],
+                                        log_share[0][of_set[0]] + log_share[1][of_set[1]], list);
         for (int32_t k = 0; k < count; k++)
             memcpy(list[k].of_set, of_set, sizeof of_set);
         set->rotation_count += count;

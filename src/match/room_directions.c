@@ -49,7 +49,7 @@ static asj_status from_segments(asj_context *context, const asj_pyramid *pyramid
 {
     asj_edge_list edges;
     asj_status status = asj_room_edges(context, pyramid, &edges);
-    if (status == ASJ_OK && !asj_find_directions(&context->memory, &edges, camera, found))
+    if (status == ASJ_OK && !asj_find_directions(&context->memory, &edges, camera, 1, found))
         status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the directions of %zu edges", edges.count);
     asj_release(&context->memory, edges.list);
     return status;
@@ -97,6 +97,7 @@ static asj_status from_branches(asj_context *context, const asj_image_features *
     memset(&more, 0, sizeof more);
     memcpy(more.axes, d, 3 * sizeof *d);
     memcpy(more.axes + 3, e, 3 * sizeof *e);
+    more.score = found->count > 0 ? found->list[0].score : 0; /* not comparable: as much as the segments' best */
     for (int32_t k = 0; k < 3; k++)
         more.axes[6 + k] = d[(k + 1) % 3] * e[(k + 2) % 3] - d[(k + 2) % 3] * e[(k + 1) % 3];
     asj_directions_add(found, &more);
