@@ -172,7 +172,7 @@ static asj_status sort_by_place(const asj_look *look, int32_t n, int32_t most, a
 }
 
 asj_status asj_look_match_upsampled(const asj_look *look, const asj_match_options *options, const asj_match_result *own,
-                                   asj_match_result **result)
+                                    asj_match_result **result)
 {
     asj_junction *sorted[2] = {NULL, NULL};
     junction_list lists[2];

@@ -40,7 +40,7 @@ asj_status asj_look_match(const asj_look *look, const asj_match_options *options
  * most meaningful junctions of each, where the images' own matches put them: the witness that is to be asked
  * (match/upsampled.h). */
 asj_status asj_look_match_upsampled(const asj_look *look, const asj_match_options *options, const asj_match_result *own,
-                                   asj_match_result **result);
+                                    asj_match_result **result);
 
 /* Adds the times of the detections, by ASJ_STAGE_.... */
 void asj_look_add_times(const asj_look *look, double *stage_ms);

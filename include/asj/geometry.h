@@ -25,8 +25,7 @@ enum {
     ASJ_GEOMETRY_CHANCE = 2,      /* none stands out from what chance brings */
     ASJ_GEOMETRY_TOO_FEW = 3,     /* fewer than two places with candidates in either image */
     ASJ_GEOMETRY_AMBIGUOUS = 4,   /* another one with other matches explains almost as much, or has a log10 NFA below -100
-                                   * itself: things that repeat; or the images and the upsampled images tell two motions (match.h)
-                                   * */
+                                   * itself: things that repeat; or the images and the upsampled ones tell two motions (match.h) */
     ASJ_GEOMETRY_DEGENERATE = 5   /* what matches leaves it open: a camera that only turns has no translation; or, with cameras that
                                    * are known, fewer than 15 matches that tell no pose */
 };
@@ -84,7 +83,7 @@ typedef struct asj_geometry {
                               * they tell of the best that was found, or are 0 */
     int32_t model;           /* ASJ_GEOMETRY_ESSENTIAL, _FUNDAMENTAL, _HOMOGRAPHY */
     int32_t has_pose;        /* rotation and translation are known */
-    int32_t has_rival;      /* rival_log10_nfa is known */
+    int32_t has_rival;       /* rival_log10_nfa is known */
     double matrix[9];        /* row by row, of norm 1. Homography: image 1 -> image 2. Else the fundamental matrix: x2' F x1 = 0
                               * with pixels (x, y, 1); the essential matrix is K2' F K1 */
     double rotation[9];      /* x2 ~ R x1 + t in camera coordinates (x right, y down, z forward), row by row */
@@ -94,7 +93,7 @@ typedef struct asj_geometry {
                               * from where the matches lie, src/match/final_pose.c) */
     double focal[2];         /* px: of the cameras that were used, given or found; 0 when they are not known */
     double log10_nfa;        /* log10 of how often chance brings such a geometry in a pair of unrelated images */
-    double rival_log10_nfa; /* .. the best other one, which has other matches */
+    double rival_log10_nfa;  /* .. the best other one, which has other matches */
     double inliers;          /* sum of the candidates' probabilities */
     double focal_sd;         /* of the log of the focal length, where it was found; 0 where it was given */
     double reserved[15];

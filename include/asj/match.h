@@ -72,11 +72,11 @@ typedef struct asj_match_options {
     double end_tolerance;        /* lengths of branches that explain each other agree within this part, and ends that
                                   * correspond within a sixth of it, or 4 px. 0.01 .. 1; 0.12 */
     /* asj_match_images(): images that are looked at upsampled by two as well, with junctions of octave -1 */
-    int32_t upsample_from; /* automatically: from so many matches on they are, also from fewer on where a geometry is
+    int32_t upsample_from;       /* automatically: from so many matches on they are, also from fewer on where a geometry is
                                   * asked and left open; 0 = never. 0 .. 1000000; 8; paper 0 */
-    int32_t upsampled_half_octaves;  /* 1 = also half-way between their octaves: half as many right matches again, in 1.3 to 1.6
+    int32_t upsampled_half_octaves; /* 1 = also half-way between their octaves: half as many right matches again, in 1.3 to 1.6
                                   * times the time. 1; paper 0 */
-    double upsampled_search_radius;  /* L-junctions are compared that lie no farther from where the images' own matches put them, if
+    double upsampled_search_radius; /* L-junctions are compared that lie no farther from where the images' own matches put them, if
                                   * there are eight and no geometry is left open; in diagonals of the images, and 0.3 of the
                                   * distance to these matches; 0 = anywhere. 0 .. 1; 0.02; paper 0 */
     int32_t upsampled_shortlist; /* .. and then this stands for shortlist; 0 = shortlist does. 0 .. 32; 2; paper 0 */
@@ -214,7 +214,7 @@ typedef struct asj_stretch {
 #define ASJ_MIN_STRETCH 0.5
 #define ASJ_MAX_STRETCH 8
 
-/* From two images to their matches: asj_detect() and asj_match(), on both images stretched. Upsampled twice (2, 2), photographs of
+/* From two images to their matches: asj_detect() and asj_match(), on both images stretched. Upsampled by two (2, 2), photographs of
  * up to some megapixels have about three times the matches, in three to eight times the time; automatically (0, 0), with half
  * octaves, about six times the matches, in five to nine times the time. A surface that is seen at a glancing angle, like a
  * magazine on a table, matches stretched across it (1, 3) where it did not at all (tests/accuracy/README.md). Everything in the

@@ -228,21 +228,22 @@ static void refine_at(const scene *s, ranked *r)
     }
 }
 
-/* Where no smaller one of BENDS explains the edges better. */
-static void refine(const scene scenes[BENDS], int32_t exact, ranked *r)
+/* With the one of `count` BENDS from `first` on that none smaller explains the edges better than. */
+static void refine(const scene scenes[BENDS], int32_t first, int32_t count, ranked *r)
 {
     ranked next = *r;
-    for (int32_t b = exact ? 0 : SEARCHED; b < (exact ? BENDS : SEARCHED + 1); b++) {
+    for (int32_t b = first; b < first + count; b++) {
         next.bend = b;
         next.score = score_of(&scenes[b], next.axes, 3);
         refine_at(&scenes[b], &next);
-        if (b > 0 && exact && !(next.score > r->score))
+        if (b > first && !(next.score > r->score))
             break;
         *r = next;
     }
-    r->score -= exact ? log(BENDS) : 0;
+    r->score -= log(count);
 }
 
+/* Of the turn that is left; 0 when it has none. */
 static int32_t find_covariance(const scene *s, const double axes[9], double covariance[9])
 {
     double normal[9], right[3];
@@ -281,7 +282,7 @@ static void search(const scene scenes[BENDS], int32_t exact, ranked *all, asj_di
             starts[kept++] = all[n];
     }
     for (int32_t k = 0; k < kept; k++)
-        refine(scenes, exact, &starts[k]);
+        refine(scenes, exact ? 0 : SEARCHED, exact ? BENDS : 1, &starts[k]);
     if (kept > 1)
         asj_sort(starts, (size_t)kept, sizeof *starts, better);
     for (int32_t k = 0; k < kept && found->count < BEST_KEPT; k++) {

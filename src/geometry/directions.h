@@ -7,6 +7,9 @@
 #include "vanishing_vote.h"
 #include "core/memory.h"
 
+/* Edges are not independent (both sides of a board; what is not quite at right angles): scores count by this. */
+#define ASJ_SCORE_COOL 2.0
+
 typedef struct asj_directions {
     double axes[9];       /* rows: directions in camera coordinates */
     double covariance[9]; /* rad^2: of w with exp([w]x) axis the true ones */

@@ -2,16 +2,17 @@
 /* The directions of a room are at right angles (directions.c), and with a wrong focal length they are not: edges that run towards
  * two vanishing points v and w of it give f by (v - c)'(w - c) + f^2 = 0 (Caprile and Torre 1990). No single pair of points is sure
  * enough; but how well the best three directions explain all edges, score(f), is a log likelihood ratio, and its peak stands at the
- * right focal length. (Rendered rooms seen from far apart, 58 pairs, both images, COOL as below: within 3 % in 48, and
+ * right focal length. (Rendered rooms seen from far apart, 58 pairs, both images, ASJ_SCORE_COOL as below: within 3 % in 48, and
  * where the peak's standard deviation is below a tenth, in 46, within 6 %; seven pairs of video frames: within 6 % in four, 11 % in
  * five.)
  *
- * Edges are not independent (both sides of a board; what is not quite at right angles), so their scores count by COOL. Then none
- * of those peaks is out by more than two standard deviations, of rooms or frames, but one of the latter; with 1 five are. (With 4
- * poses of rooms 1000 to 1119 have AUC 33.6/51.6/68.2/74.4/77.6 at 1, 2, 5, 10, 20 degrees, with 2 36.1/53.9/68.4/74.4/78.0.) With
- * it, over a flat density of log f, the edges' own one is
+ * Edges are not independent (both sides of a board; what is not quite at right angles), so their scores count by ASJ_SCORE_COOL.
+ * Then none of those peaks is out by more than two standard deviations, of rooms or frames, but one of the latter; with 1 five are.
+ * (With 4 poses of rooms 1000 to 1119 have AUC 33.6/51.6/68.2/74.4/77.6 at 1, 2, 5, 10, 20 degrees, with 2
+ * 36.1/53.9/68.4/74.4/78.0, both before the narrow part of manhattan.c.) With it, over a flat density of log f, the edges' own one
+ * is
  *
- *     s(f) = exp((score1(f) + score2(f)) / COOL) / mean over f of the same.
+ *     s(f) = exp((score1(f) + score2(f)) / ASJ_SCORE_COOL) / mean over f of the same.
  *
  * A picture may show no room, or something at other angles; or both show directions, but not the same ones. So the prior is a
  * mixture: a quarter of it flat in f and in rotations, a quarter flat in rotations only, and a half with all that directions
@@ -29,7 +30,6 @@
 #include <math.h>
 #include <string.h>
 
-#define COOL 2.0 /* as in manhattan.c */
 #define SAME 1e-6 /* of a step */
 
 typedef struct job {
@@ -83,7 +83,7 @@ static asj_status find_all(asj_context *context, const asj_pairs *set, asj_focal
 
 static double score_of(const asj_directions_list *of)
 {
-    return of->count > 0 ? of->list[0].score / COOL : 0;
+    return of->count > 0 ? of->list[0].score / ASJ_SCORE_COOL : 0;
 }
 
 asj_status asj_focal_prior_make(asj_context *context, const asj_pairs *set, const asj_edge_list *edges, const asj_camera cameras[2],

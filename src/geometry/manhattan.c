@@ -19,7 +19,7 @@
  *
  * Prior density of rotations: a half of it flat, the other half about all those that the sets of directions of both images give,
  * a pair of sets as likely as both are together: of each image EVEN of the whole is shared evenly by its sets, and the rest as
- * exp(score / COOL), since the edges that a score counts are not independent:
+ * exp(score / ASJ_SCORE_COOL), since the edges that a score counts are not independent:
  *
  *     q(R) / flat = 1/2 + 1/2 (8 pi^2) sum of share x (2 pi)^(-3/2) det(C)^(-1/2) exp(-w' C^-1 w / 2),
  *
@@ -39,7 +39,6 @@
 #define UPRIGHT_NAMES 4
 #define UPRIGHT 0.9
 #define DOWN 0.77 /* cos 40 degrees */
-#define COOL 2.0 /* as in focal_prior.c */
 #define EVEN 0.1
 
 static const double sd[ASJ_ROTATION_SIZES] = {0.8 * ASJ_DEGREE, 0.25 * ASJ_DEGREE, 0.1 * ASJ_DEGREE};
@@ -121,9 +120,9 @@ static void log_shares_of_sets(const asj_directions_list *of, double log_share[A
 {
     double sum = 0;
     for (int32_t k = 0; k < of->count; k++)
-        sum += exp((of->list[k].score - of->list[0].score) / COOL);
+        sum += exp((of->list[k].score - of->list[0].score) / ASJ_SCORE_COOL);
     for (int32_t k = 0; k < of->count; k++)
-        log_share[k] = log(EVEN / of->count + (1 - EVEN) * exp((of->list[k].score - of->list[0].score) / COOL) / sum);
+        log_share[k] = log(EVEN / of->count + (1 - EVEN) * exp((of->list[k].score - of->list[0].score) / ASJ_SCORE_COOL) / sum);
 }
 
 int32_t asj_manhattan_rotations(asj_memory *memory, const asj_directions_list directions[2], asj_pairs *set)

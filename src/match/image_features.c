@@ -21,7 +21,7 @@ static asj_status create(asj_context *context, const asj_match_options *options,
     asj_status status = asj_l_junctions_create(context, options, junctions, &features->l_junctions);
     if (status == ASJ_OK)
         status = (junctions->upsampled ? asj_pyramid_create_upsampled : asj_pyramid_create)(context, image, options->smoothing,
-                                                                                          &features->pyramid);
+                                                                                            &features->pyramid);
     if (status == ASJ_OK)
         status = asj_image_features_describe(context, options, features);
     return status;

@@ -245,10 +245,11 @@ static asj_status match_both(asj_context *context, const asj_match_options *opti
 }
 
 asj_status asj_match_upsampled(asj_context *context, const asj_match_options *options, const asj_upsampled_match *match,
-                           asj_match_result **result)
+                               asj_match_result **result)
 {
     const int32_t has_upsampled = asj_has_upsampled(match->junctions[0], match->counts[0]) ||
-                          asj_has_upsampled(match->junctions[1], match->counts[1]);
-    return has_upsampled && !match->upsampled_only ? match_both(context, options, match, result)
-                                          : match->pass(context, options, match->data, has_upsampled, match->known, result);
+                                  asj_has_upsampled(match->junctions[1], match->counts[1]);
+    if (has_upsampled && !match->upsampled_only)
+        return match_both(context, options, match, result);
+    return match->pass(context, options, match->data, has_upsampled, match->known, result);
 }

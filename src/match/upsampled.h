@@ -30,7 +30,7 @@ typedef struct asj_upsampled_match {
 
 /* The passes that are needed, and the result that holds: see upsampled.c. */
 asj_status asj_match_upsampled(asj_context *context, const asj_match_options *options, const asj_upsampled_match *match,
-                           asj_match_result **result);
+                               asj_match_result **result);
 
 /* Leaves in *own what holds of *own, of the images as they are, and *upsampled, of the upsampled ones, which is freed. same_lists:
  * their L-junctions have the same numbers. */
