@@ -93,10 +93,13 @@ typedef struct asj_geometry {
                               * from where the matches lie, src/match/final_pose.c) */
     double focal[2];         /* px: of the cameras that were used, given or found; 0 when they are not known */
     double log10_nfa;        /* log10 of how often chance brings such a geometry in a pair of unrelated images */
-    double rival_log10_nfa;  /* .. the best other one, which has other matches */
+    double rival_log10_nfa;  /* .. the best other one, which has other matches: its rival */
     double inliers;          /* sum of the candidates' probabilities */
     double focal_sd;         /* of the log of the focal length, where it was found; 0 where it was given */
-    double reserved[15];
+    double rival_rotation[9];/* the rival's motion, as the best one's above; zero where it is no essential matrix, or where nothing
+                              * determines its translation */
+    double rival_translation[3];
+    double reserved[3];
 } asj_geometry;
 
 /* Estimates the two-view geometry of candidate matches.

@@ -171,10 +171,10 @@ typedef struct asj_match_result {
  * agree the surer one where the second result holds. Of two at odds the second one is told when it has 2.5 times the log10 NFA,
  * and else the one that is not upside down if the other one is (rotation[4] < 0) and has not so much more; otherwise they are
  * ASJ_GEOMETRY_AMBIGUOUS, and what either contradicts is rejected; of two planes the pose is left out. Where the first one, of
- * known cameras, has rivals or leaves its motion open, the second one holds, whatever its matches, when it accepts the same pose,
- * or another one with a log10 NFA below -35 and 1.25 times the first one's; only then where the first one has no matches; and not
- * when it accepts none, or one that is upside down, or less surely another one of a motion that was open (src/match/upsampled.c,
- * upsampled_geometry.c).
+ * known cameras, has rivals or leaves its motion open, the second one holds, whatever its matches, when it accepts the same pose
+ * or the rival's, or another one with a log10 NFA below -35 and 1.25 times the first one's; only then where the first one has no
+ * matches; and not when it accepts none, or one that is upside down, or less surely another one of a motion that was open
+ * (src/match/upsampled.c, upsampled_geometry.c).
  * Junctions of octave -1 alone (octaves 1) have no first ones to ask. Everything is in pixels of the images.
  *
  * image1, image2   views; only read, and only during the call

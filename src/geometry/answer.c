@@ -156,6 +156,21 @@ static int32_t is_open(const asj_estimation *e, int32_t number, const asj_geomet
            (has_open_focal(e, number) && e->options->model == ASJ_GEOMETRY_ESSENTIAL);
 }
 
+/* The probabilities in the scratch stay those of the best one. */
+static void describe_rival(asj_estimation *e, int32_t number, asj_geometry *result)
+{
+    asj_model *m = &e->finalists[number];
+    result->has_rival = 1;
+    result->rival_log10_nfa = asj_estimation_log10_nfa(e, m);
+    if (m->kind != ASJ_GEOMETRY_ESSENTIAL)
+        return;
+    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->other);
+    if (m->view.plane_count == 0 && !(asj_choose_motion(&e->set, e->other, m) > -HUGE_VAL))
+        return;
+    memcpy(result->rival_rotation, m->rotation, sizeof result->rival_rotation);
+    memcpy(result->rival_translation, m->translation, sizeof result->rival_translation);
+}
+
 asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)
 {
     int32_t determined, doubt = 0;
@@ -167,10 +182,8 @@ asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)
     const int32_t second = asj_strongest_rival(e, best, &doubt);
     if (asj_watch_end(e->set.watch) != ASJ_OK)
         return ASJ_ERROR_CANCELLED; /* rivals that nobody has looked at */
-    if (second >= 0) {
-        result->has_rival = 1;
-        result->rival_log10_nfa = asj_estimation_log10_nfa(e, &e->finalists[second]);
-    }
+    if (second >= 0)
+        describe_rival(e, second, result);
     if (result->log10_nfa > log10(e->options->epsilon))
         return ASJ_OK;
     result->status = determined && !is_open(e, best, result) ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_DEGENERATE;

@@ -71,6 +71,21 @@ static void put_head(asj_json_output *json, const asj_match_report *report, cons
     asj_json_put(json, ",\n\"counts\": ", counts, 0);
 }
 
+static json_t *motion_value(const double rotation[9], const double translation[3], double log10_nfa)
+{
+    const int is_known = translation[0] != 0 || translation[1] != 0 || translation[2] != 0;
+    return json_pack("{s:o, s:o, s:f}", "rotation", is_known ? numbers(rotation, 9) : json_null(), "translation",
+                     is_known ? numbers(translation, 3) : json_null(), "log10_nfa", log10_nfa);
+}
+
+/* The two that an ambiguous geometry stands between. */
+static void put_rivals(asj_json_output *json, const asj_geometry *g)
+{
+    json_t *best = motion_value(g->rotation, g->translation, g->log10_nfa);
+    json_t *rival = motion_value(g->rival_rotation, g->rival_translation, g->rival_log10_nfa);
+    asj_json_put(json, ",\n\"geometry_rivals\": ", json_pack("[o, o]", best, rival), JSON_REAL_PRECISION(15));
+}
+
 /* What was accepted, or null; the status says why not. */
 static void put_geometry(asj_json_output *json, const asj_geometry *g)
 {
@@ -88,6 +103,8 @@ static void put_geometry(asj_json_output *json, const asj_geometry *g)
                           "inliers", g->inliers, "ambiguous", 0);
     asj_json_put(json, ",\n\"geometry\": ", value, JSON_REAL_PRECISION(15));
     asj_json_put(json, ",\n\"geometry_status\": ", json_string(asj_geometry_status_name(g->status)), 0);
+    if (g->status == ASJ_GEOMETRY_AMBIGUOUS && g->has_rival)
+        put_rivals(json, g);
 }
 
 static const char *end_name(int32_t end)

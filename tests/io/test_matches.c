@@ -354,11 +354,41 @@ static void json_has_what_is_rejected_without_a_geometry(void **state)
     assert_true(json_is_null(need(root, "geometry")));
     expect_text(root, "geometry_status", "ambiguous");
     assert_int_equal(json_array_size(need(root, "rejected")), 3);
+    assert_null(json_object_get(root, "geometry_rivals"));
     for (k = 0; k < COUNT; k++)
         expect_match(k < COUNT - 3 ? json_array_get(need(root, "matches"), k) :
                                      json_array_get(need(root, "rejected"), k - (COUNT - 3)), &matches[k]);
     assert_null(json_object_get(json_array_get(need(root, "matches"), 0), "probability"));
     json_decref(root);
+}
+
+/* The two motions that stay, and one of which nothing is known. */
+static void json_has_both_rivals(void **state)
+{
+    const double turn[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+    asj_geometry *g = &result.geometry;
+    size_t k;
+    (void)state;
+    memset(g, 0, sizeof *g);
+    g->status = ASJ_GEOMETRY_AMBIGUOUS;
+    g->has_rival = 1;
+    g->log10_nfa = -33.5;
+    g->rival_log10_nfa = -30.25;
+    memcpy(g->rival_rotation, turn, sizeof turn);
+    g->rival_translation[1] = 1;
+    json_t *root = read_json(write_report("rivals.json", ASJ_FILE_JSON));
+    json_t *rivals = need(root, "geometry_rivals"), *rival = json_array_get(rivals, 1);
+    assert_int_equal(json_array_size(rivals), 2);
+    assert_true(json_is_null(need(json_array_get(rivals, 0), "rotation")));
+    assert_true(json_is_null(need(json_array_get(rivals, 0), "translation")));
+    assert_true(json_real_value(need(json_array_get(rivals, 0), "log10_nfa")) == -33.5);
+    assert_true(json_real_value(need(rival, "log10_nfa")) == -30.25);
+    for (k = 0; k < 9; k++)
+        assert_true(json_number_value(json_array_get(need(rival, "rotation"), k)) == turn[k]);
+    for (k = 0; k < 3; k++)
+        assert_true(json_number_value(json_array_get(need(rival, "translation"), k)) == (k == 1));
+    json_decref(root);
+    memset(g, 0, sizeof *g);
 }
 
 static void json_can_do_with_the_result_alone(void **state)
@@ -451,6 +481,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup(json_says_how_it_came_about, fill),
         cmocka_unit_test_setup(json_has_the_lines_beside_the_matches, fill),
         cmocka_unit_test_setup(json_has_what_is_rejected_without_a_geometry, fill),
+        cmocka_unit_test_setup(json_has_both_rivals, fill),
         cmocka_unit_test_setup(json_can_do_with_the_result_alone, fill),
         cmocka_unit_test_setup(wrong_arguments_are_refused, fill),
         cmocka_unit_test_setup(results_that_cannot_be_read_are_refused, fill),

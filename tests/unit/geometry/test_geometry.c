@@ -118,7 +118,9 @@ static int finite(const asj_geometry *g)
 {
     double sum = g->log10_nfa + g->rival_log10_nfa + g->inliers + g->focal[0] + g->focal[1];
     for (int k = 0; k < 9; k++)
-        sum += g->matrix[k] + g->rotation[k];
+        sum += g->matrix[k] + g->rotation[k] + g->rival_rotation[k];
+    for (int k = 0; k < 3; k++)
+        sum += g->rival_translation[k];
     for (int k = 0; k < 36; k++)
         sum += g->covariance[k];
     return isfinite(sum + g->translation[0] + g->translation[1] + g->translation[2]);
@@ -175,6 +177,51 @@ static void a_motion_is_found_among_wrong_candidates(void **state)
         assert_false(f.has_pose);
     }
     free(s);
+    unit_context_free(&counter, &context);
+}
+
+/* deg: the larger error of rotation and translation. */
+static double motion_error(const double rotation[9], const double translation[3], const scene *s)
+{
+    double turn[9];
+    asj_multiply3_transposed(rotation, s->rotation, turn);
+    const double length = sqrt(asj_dot3(s->translation, s->translation));
+    return fmax(asj_rotation_angle(turn), acos(fmin(1, asj_dot3(translation, s->translation) / length))) * 180 / UNIT_PI;
+}
+
+/* Two motions of the same points, the second of fewer of them: ambiguous, and both are told. */
+static void a_rival_tells_its_motion(void **state)
+{
+    (void)state;
+    const double w[3] = {0, 0.35, -0.1};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    scene *s = malloc(sizeof *s), *second = malloc(sizeof *second);
+    const asj_geometry_options o = options_for(ASJ_GEOMETRY_ESSENTIAL, 1);
+    synth_random random;
+    make(s, SOLID, 40, 1);
+    const asj_geometry alone = estimate(context, s, &o, NULL);
+    assert_false(alone.has_rival && alone.rival_log10_nfa < -5);
+    asj_rotation_of(w, second->rotation);
+    second->translation[0] = -1.5;
+    second->translation[1] = 0.3;
+    second->translation[2] = 0.5;
+    synth_random_seed(&random, 1); /* .. so that the points are those of the first */
+    for (uint32_t k = 0; k < 36; k++) {
+        asj_geometry_candidate c = right_one(second, &random, SOLID, k);
+        assert_true(c.x1 == s->candidates[k].x1 && c.y1 == s->candidates[k].y1);
+        c.place1 = k;
+        c.place2 = 1000 + k;
+        c.probability = 0.2;
+        s->candidates[s->count++] = c;
+    }
+    const asj_geometry g = estimate(context, s, &o, NULL);
+    assert_int_equal(g.status, ASJ_GEOMETRY_AMBIGUOUS);
+    assert_true(g.has_rival && g.rival_log10_nfa < -20 && g.rival_log10_nfa > g.log10_nfa);
+    unit_near("the best one's motion, deg", 1, 0, motion_error(g.rotation, g.translation, s), 0, 2);
+    unit_near("the rival's motion, deg", 1, 0, motion_error(g.rival_rotation, g.rival_translation, second), 0, 2);
+    free(s);
+    free(second);
     unit_context_free(&counter, &context);
 }
 
@@ -457,7 +504,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_motion_is_found_among_wrong_candidates), cmocka_unit_test(errors_are_as_large_as_told),
-        cmocka_unit_test(what_was_accepted_judges_others),
+        cmocka_unit_test(what_was_accepted_judges_others), cmocka_unit_test(a_rival_tells_its_motion),
         cmocka_unit_test(planes_and_turns_are_homographies),
         cmocka_unit_test(too_little_is_no_geometry), cmocka_unit_test(chance_is_not_accepted),
         cmocka_unit_test(threads_and_order_change_nothing), cmocka_unit_test(bad_input_is_refused),

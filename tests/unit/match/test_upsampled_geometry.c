@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The matches of two images and those of the upsampled ones under one geometry, whichever of them has it. */
 #include "core/angle.h"
+#include "core/context.h"
 #include "upsampled_views.h"
 #include "geometry/model.h"
 #include "match/upsampled_geometry.h"
@@ -39,9 +40,50 @@ static asj_match_result *match_known(asj_context *context, int32_t upsampled, in
     return result;
 }
 
+static asj_match_result *found[2][2]; /* of the images and of the upsampled ones, without a geometry and with one */
+
+static int find_all(void **state)
+{
+    const int failed = make_views(state);
+    for (int32_t k = 0; k < 4 && !failed; k++)
+        found[k / 2][k % 2] = match_known(((unit_fixture *)*state)->context, k / 2, k % 2, NULL);
+    return failed;
+}
+
+static int free_all(void **state)
+{
+    for (int32_t k = 0; k < 4; k++)
+        asj_match_result_free(&found[k / 2][k % 2]);
+    return free_views(state);
+}
+
+static void *copy(asj_memory *memory, const void *list, size_t count, size_t size)
+{
+    void *copied = asj_allocate(memory, count, size);
+    assert_non_null(copied);
+    memcpy(copied, list, count * size);
+    return copied;
+}
+
+/* That one, to be changed and freed, as if the context had just made it. */
 static asj_match_result *match(asj_context *context, int32_t upsampled, int32_t with_geometry)
 {
-    return match_known(context, upsampled, with_geometry, NULL);
+    const asj_own_result *from = (const asj_own_result *)found[upsampled][with_geometry];
+    asj_memory memory = {.allocator = context->memory.allocator};
+    asj_own_result *r = copy(&memory, from, 1, sizeof *r);
+    r->memory = memory;
+    r->matches = copy(&memory, from->matches, from->count, sizeof *r->matches);
+    r->rejected = copy(&memory, from->rejected, from->shown.rejected_count, sizeof *r->rejected);
+    r->l1 = copy(&memory, from->l1, from->shown.l_junction_count1, sizeof *r->l1);
+    r->l2 = copy(&memory, from->l2, from->shown.l_junction_count2, sizeof *r->l2);
+    for (int32_t side = 0; side < 2; side++)
+        r->places[side] = copy(&memory, from->places[side], from->count, sizeof *r->places[side]);
+    r->shown.matches = r->matches;
+    r->shown.rejected = r->shown.rejected_count ? r->rejected : NULL;
+    r->shown.l_junctions1 = r->l1;
+    r->shown.l_junctions2 = r->l2;
+    r->shown.origin = (uint64_t)(uintptr_t)r;
+    return &r->shown;
 }
 
 static int is_at(const asj_junction_match *a, const asj_junction_match *b, float tolerance)
@@ -246,6 +288,15 @@ static void change_pose(asj_match_result *r, double degrees, double sd)
         g->covariance[k] *= sd * sd;
 }
 
+/* Its rival has that pose, turned likewise. */
+static void set_rival(asj_match_result *r, const asj_geometry *pose, double degrees)
+{
+    asj_match_result turned = {.geometry = *pose};
+    change_pose(&turned, degrees, 1);
+    memcpy(r->geometry.rival_rotation, turned.geometry.rotation, sizeof turned.geometry.rotation);
+    memcpy(r->geometry.rival_translation, turned.geometry.translation, sizeof turned.geometry.translation);
+}
+
 static double sd_of_rotation(const asj_match_result *r)
 {
     return sqrt(r->geometry.covariance[14]) / ASJ_DEGREE; /* about the optical axis, degrees */
@@ -295,9 +346,12 @@ static void poses_at_odds_are_ambiguous(void **state)
         const asj_junction_match off = list[2];
         printf("standard deviations %.2f and %.2f degrees\n", sd_of_rotation(own), sd_of_rotation(upsampled));
         change_pose(own, 3 + 5 * hypot(sd_of_rotation(own), sd_of_rotation(upsampled)), 1);
+        double turned[9];
+        memcpy(turned, own->geometry.rotation, sizeof turned);
         assert_int_equal(asj_upsampled_choose(context, &own, &upsampled, 0), ASJ_OK);
         assert_int_equal(own->geometry.status, ASJ_GEOMETRY_AMBIGUOUS);
         assert_true(own->geometry.log10_nfa == nfa && own->geometry.has_rival && own->geometry.rival_log10_nfa == own_nfa);
+        assert_memory_equal(own->geometry.rival_rotation, turned, sizeof turned);
         assert_int_equal(times_in(own->rejected, (size_t)own->rejected_count, &off, 0), 1);
         assert_true(2 * own->match_count > count);
         assert_true(again ? own->l_junction_count1 > upsampled_l_count : own->l_junction_count1 == l_count);
@@ -372,16 +426,16 @@ static void planes_at_odds_have_no_pose(void **state)
 static void poses_at_odds_without_memory(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_match_result *found[2] = {match(context, 0, 1), match(context, 1, 1)};
+    asj_match_result *pair[2] = {match(context, 0, 1), match(context, 1, 1)};
     uint32_t failed = 0;
     int reached = 1;
-    change_pose(found[0], 3 + 5 * hypot(sd_of_rotation(found[0]), sd_of_rotation(found[1])), 1);
+    change_pose(pair[0], 3 + 5 * hypot(sd_of_rotation(pair[0]), sd_of_rotation(pair[1])), 1);
     for (long n = 1; reached; n++) {
         unit_counter counter = {0};
         asj_context *poor = unit_context(&counter, 1);
         asj_match_result *own = match(poor, 0, 0), *upsampled = match(poor, 1, 0);
-        own->geometry = found[0]->geometry;
-        upsampled->geometry = found[1]->geometry;
+        own->geometry = pair[0]->geometry;
+        upsampled->geometry = pair[1]->geometry;
         assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_DISPUTED);
         counter.fail_at = counter.calls + n;
         counter.for_good = 1;
@@ -394,8 +448,8 @@ static void poses_at_odds_without_memory(void **state)
         unit_context_free(&counter, &poor);
     }
     assert_true(failed > 0);
-    asj_match_result_free(&found[0]);
-    asj_match_result_free(&found[1]);
+    asj_match_result_free(&pair[0]);
+    asj_match_result_free(&pair[1]);
 }
 
 /* The other way along the same line, where the covariance says nothing: of 40 directions rounding leaves some a variance of 0 or
@@ -451,19 +505,27 @@ static void poses_that_agree_are_one(void **state)
 }
 
 /* The images have rivals, and none of their matches comes again: the upsampled images' motion is the answer when it is the images'
- * best, or has much more evidence, and otherwise not. */
+ * best or that one's rival, or has much more evidence, and otherwise not. */
 static void rivals_are_confirmed(void **state)
 {
     static const struct {
-        double degrees, upsampled, own; /* log10 NFA */
+        double degrees, rival; /* that the images' best, and its rival, are off; rival > 180: it has no motion */
+        double upsampled, own; /* log10 NFA */
         int32_t accepted;
-    } cases[] = {{1, -40, -40, 1}, {30, -40, -33, 0}, {30, -40, -31, 1}, {30, -34, -17, 0}};
+    } cases[] = {{1, 200, -40, -40, 1}, {30, 200, -40, -33, 0}, {30, 200, -40, -31, 1}, {30, 200, -34, -17, 0},
+                 {30, 3, -40, -40, 1},  {30, 5, -40, -40, 0},   {30, 30, -40, -40, 0}};
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
         asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
         const uint32_t own_count = own->l_junction_count1, upsampled_count = upsampled->l_junction_count1;
         move_along_lines(own);
         leave_open(own, ASJ_GEOMETRY_AMBIGUOUS);
+        memset(own->geometry.rival_rotation, 0, sizeof own->geometry.rival_rotation);
+        memset(own->geometry.rival_translation, 0, sizeof own->geometry.rival_translation);
+        if (cases[k].rival <= 180)
+            set_rival(own, &upsampled->geometry, cases[k].rival);
+        own->geometry.has_rival = 1;
+        own->geometry.rival_log10_nfa = 0.9 * cases[k].own;
         change_pose(own, cases[k].degrees, 1);
         own->geometry.log10_nfa = cases[k].own;
         upsampled->geometry.log10_nfa = cases[k].upsampled;
@@ -474,22 +536,27 @@ static void rivals_are_confirmed(void **state)
     }
 }
 
-/* Images without any match: only much more evidence is believed, and matches alone are not. */
-static void without_matches_much_evidence_counts(void **state)
+/* Images without any match: only their own best motion, or its rival, or much more evidence is believed, and matches alone are
+ * not. */
+static void without_matches_a_motion_is_settled(void **state)
 {
     static const struct {
         int32_t status; /* of the upsampled images */
-        double log10_nfa;
+        double log10_nfa, degrees, rival; /* that the images' best, and its rival, are off */
         asj_looks looks;
-    } cases[] = {{ASJ_GEOMETRY_ACCEPTED, -40, ASJ_LOOKS_SETTLED}, {ASJ_GEOMETRY_ACCEPTED, -34, ASJ_LOOKS_LOST},
-                 {ASJ_GEOMETRY_AMBIGUOUS, -40, ASJ_LOOKS_LOST}, {ASJ_GEOMETRY_CHANCE, 0, ASJ_LOOKS_LOST}};
+    } cases[] = {{ASJ_GEOMETRY_ACCEPTED, -40, 30, 30, ASJ_LOOKS_SETTLED}, {ASJ_GEOMETRY_ACCEPTED, -34, 30, 30, ASJ_LOOKS_LOST},
+                 {ASJ_GEOMETRY_ACCEPTED, -12, 1, 30, ASJ_LOOKS_SETTLED},  {ASJ_GEOMETRY_ACCEPTED, -12, 30, 1, ASJ_LOOKS_SETTLED},
+                 {ASJ_GEOMETRY_AMBIGUOUS, -40, 1, 1, ASJ_LOOKS_LOST},     {ASJ_GEOMETRY_CHANCE, 0, 1, 1, ASJ_LOOKS_LOST}};
     asj_context *context = ((unit_fixture *)*state)->context;
     for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
         asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
         const uint32_t count = own->match_count;
         leave_open(own, ASJ_GEOMETRY_AMBIGUOUS);
+        change_pose(own, cases[k].degrees, 1);
+        set_rival(own, &upsampled->geometry, cases[k].rival);
+        own->geometry.has_rival = 1;
         own->match_count = 0;
-        own->geometry.log10_nfa = -10;
+        own->geometry.log10_nfa = own->geometry.rival_log10_nfa = -10;
         upsampled->geometry.status = cases[k].status;
         upsampled->geometry.log10_nfa = cases[k].log10_nfa;
         assert_int_equal(asj_looks_of(own, upsampled), cases[k].looks);
@@ -634,7 +701,7 @@ int main(void)
         cmocka_unit_test(opposite_translations_are_at_odds),
         cmocka_unit_test(poses_that_agree_are_one),
         cmocka_unit_test(rivals_are_confirmed),
-        cmocka_unit_test(without_matches_much_evidence_counts),
+        cmocka_unit_test(without_matches_a_motion_is_settled),
         cmocka_unit_test(an_open_motion_is_found), cmocka_unit_test(what_turns_over_settles_nothing),
         cmocka_unit_test(what_repeats_is_not_settled),
         cmocka_unit_test(a_plane_decides_no_motion),
@@ -642,5 +709,5 @@ int main(void)
         cmocka_unit_test(what_a_geometry_adds_is_no_reason_against),
         cmocka_unit_test(a_witness_is_not_told),
     };
-    return cmocka_run_group_tests(tests, make_views, free_views);
+    return cmocka_run_group_tests(tests, find_all, free_all);
 }

@@ -46,6 +46,11 @@ class Geometry:
     log10_nfa: float
     #: sum of the probabilities of the candidates
     inliers: float
+    #: of the best other geometry, whose matches are others: with status "ambiguous" either may be right. None: there is none
+    rival_log10_nfa: float | None
+    #: its motion; None where it has none
+    rival_rotation: NDArray[np.float64] | None
+    rival_translation: NDArray[np.float64] | None
 
     def __bool__(self) -> bool:
         return self.status == "accepted"
@@ -103,8 +108,11 @@ def read(record: Any) -> Geometry | None:
         return np.array(list(field), np.float64).reshape(shape)
 
     posed = bool(record.has_pose)
+    rival_posed = any(record.rival_translation)
     return Geometry(
         text(lib.asj_geometry_status_name(record.status)), text(lib.asj_geometry_model_name(record.model)), array(record.matrix, 3, 3),
         array(record.rotation, 3, 3) if posed else None, array(record.translation, 3) if posed else None,
         array(record.covariance, 6, 6) if posed else None, (record.focal[0], record.focal[1]), record.focal_sd, record.log10_nfa, record.inliers,
+        record.rival_log10_nfa if record.has_rival else None, array(record.rival_rotation, 3, 3) if rival_posed else None,
+        array(record.rival_translation, 3) if rival_posed else None,
     )  # fmt: skip
