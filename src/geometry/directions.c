@@ -6,7 +6,7 @@
  * axes d_1, d_2, d_3 and the angle a_k between an edge and the vanishing point of d_k, seen from the edge's middle, the likelihood
  * ratio of an edge is
  *
- *     r = 1 - w + w / 3 sum over k of pi N(a_k; 0, s^2),     s^2 = ACROSS^2 / length^2 + b^2,
+ *     r = 1 - w + w / 3 sum over k of pi N(a_k; 0, s^2),     s^2 = (ACROSS pixel / length)^2 + b^2,
  *
  * N the normal density and 1 / pi the flat one: right edges err by what they are out across, and by what is not quite at right
  * angles (walls, lenses), b. How many edges belong to the directions, w, is one of SHARES, each as likely, and so is b one of
@@ -305,7 +305,7 @@ static void set_scene(const asj_vote_line *lines, int32_t count, double bend, sc
     s->lines = lines;
     s->count = count;
     for (int32_t k = 0; k < count; k++) {
-        const double sd = hypot(ACROSS / lines[k].length, bend);
+        const double sd = hypot(ACROSS * lines[k].pixel / lines[k].length, bend);
         s->precision[k] = 1 / (sd * sd);
         s->peak[k] = ASJ_PI / (sqrt(2 * ASJ_PI) * sd);
     }

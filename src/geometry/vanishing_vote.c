@@ -54,9 +54,9 @@ static int32_t is_known(const asj_vote_line *lines, int32_t count, const asj_vot
 {
     for (int32_t k = 0; k < count; k++) {
         const asj_vote_line *o = &lines[k];
-        const double nx = -sin(o->angle), ny = cos(o->angle);
-        if (apart(o->angle, one->angle) < SAME_ANGLE && fabs(nx * (one->x - o->x) + ny * (one->y - o->y)) < SAME_LINE &&
-            fabs(nx * (one->ex - o->x) + ny * (one->ey - o->y)) < SAME_LINE)
+        const double nx = -sin(o->angle), ny = cos(o->angle), same = SAME_LINE * fmax(o->pixel, one->pixel);
+        if (apart(o->angle, one->angle) < SAME_ANGLE && fabs(nx * (one->x - o->x) + ny * (one->y - o->y)) < same &&
+            fabs(nx * (one->ex - o->x) + ny * (one->ey - o->y)) < same)
             return 1;
     }
     return 0;
@@ -108,6 +108,7 @@ int32_t asj_vanishing_lines(const asj_junction *junctions, size_t count, const a
             one->ey = one->y + length * sin(a);
             one->angle = fmod(a, ASJ_PI);
             one->length = length;
+            one->pixel = 1;
             one->sd = fmax(sd, 0.1 * ASJ_DEGREE);
             one->source = (uint32_t)all++;
         }
@@ -131,7 +132,8 @@ int32_t asj_vote_lines(const asj_straight_edge *edges, size_t count, double shor
         one->ey = e->y2;
         one->angle = angle < 0 ? angle + ASJ_PI : angle;
         one->length = length;
-        one->sd = ACROSS / length;
+        one->pixel = e->pixel;
+        one->sd = ACROSS * e->pixel / length;
         one->source = (uint32_t)all++;
     }
     return keep(lines, all, camera, NULL);

@@ -13,16 +13,16 @@
 #define ASJ_VOTE_POINTS 6    /* looked at before right angles */
 #define ASJ_VOTE_LINES 300   /* that take part, at most */
 
-/* A straight edge of the image, px. */
+/* A straight edge, px. `pixel`: how many px wide the pixels are in which it was seen; what it is out grows with them. */
 typedef struct asj_straight_edge {
-    double x1, y1, x2, y2;
+    double x1, y1, x2, y2, pixel;
 } asj_straight_edge;
 
 typedef struct asj_vote_line {
     double l[3];      /* unit normal and distance, in the coordinates of the vote */
     double mx, my;    /* middle */
     double sd;        /* rad */
-    double length;    /* px */
+    double length, pixel; /* px */
     double angle;     /* px coordinates, [0, pi) */
     double x, y, ex, ey; /* px: both ends */
     uint32_t source;

@@ -37,14 +37,14 @@ static asj_straight_edge edge_along(synth_random *random, const double d[3], dou
     const double dx = camera.fx * d[0] + (camera.cx - x) * d[2], dy = camera.fy * d[1] + (camera.cy - y) * d[2];
     const double size = hypot(dx, dy), e = across * normal(random), f = across * normal(random);
     const double ux = dx / size, uy = dy / size;
-    return (asj_straight_edge){x - e * uy, y + e * ux, x + length * ux - f * uy, y + length * uy + f * ux};
+    return (asj_straight_edge){x - e * uy, y + e * ux, x + length * ux - f * uy, y + length * uy + f * ux, 1};
 }
 
 static asj_straight_edge any_edge(synth_random *random)
 {
     const double angle = synth_random_between(random, 0, 2 * UNIT_PI), length = synth_random_between(random, 35, 90);
     const double x = synth_random_between(random, 60, WIDTH - 60), y = synth_random_between(random, 60, HEIGHT - 60);
-    return (asj_straight_edge){x, y, x + length * cos(angle), y + length * sin(angle)};
+    return (asj_straight_edge){x, y, x + length * cos(angle), y + length * sin(angle), 1};
 }
 
 /* rad; whatever the directions are called. */
@@ -95,9 +95,9 @@ static void directions_among_other_edges(void **state)
     unit_near("variance over the one told", 0, 0, square / good, 0.75, 0.75); /* at most 1.5 */
 }
 
-/* Twenty draws of sixty edges along the directions among forty others, turned by `bend` besides: mean square of the error over the
- * told one, and what is told in the mean, degrees. */
-static void errors_of_bent_edges(double bend, int32_t exact, double *square, double *told)
+/* Twenty draws of sixty edges along the directions among forty others, turned by `bend` besides, seen in pixels that wide: mean
+ * square of the error over the told one, and what is told in the mean, degrees. */
+static void errors_of_bent_edges(double bend, double pixel, int32_t exact, double *square, double *told)
 {
     unit_counter counter = {0};
     asj_memory memory = unit_memory(&counter);
@@ -111,7 +111,8 @@ static void errors_of_bent_edges(double bend, int32_t exact, double *square, dou
         random_rotation(&random, axes);
         for (int k = 0; k < 100; k++) {
             edges[k] = k >= 60 ? any_edge(&random)
-                               : edge_along(&random, axes + 3 * (k % 3), synth_random_between(&random, 60, 200), 0.2);
+                               : edge_along(&random, axes + 3 * (k % 3), synth_random_between(&random, 60, 200), 0.2 * pixel);
+            edges[k].pixel = pixel;
             const double off = bend * normal(&random), x = edges[k].x2 - edges[k].x1, y = edges[k].y2 - edges[k].y1;
             edges[k].x2 -= off * y;
             edges[k].y2 += off * x;
@@ -129,15 +130,18 @@ static void errors_of_bent_edges(double bend, int32_t exact, double *square, dou
 static void edges_say_how_exact_they_are(void **state)
 {
     (void)state;
-    double square, straight, bent, of_any;
-    errors_of_bent_edges(0.05 * DEGREE, 1, &square, &straight);
+    double square, straight, bent, of_any, coarse;
+    errors_of_bent_edges(0.05 * DEGREE, 1, 1, &square, &straight);
     unit_near("variance over the one told, straight", 0, 0, square, 0.85, 0.65);
-    errors_of_bent_edges(1.5 * DEGREE, 1, &square, &bent);
+    errors_of_bent_edges(1.5 * DEGREE, 1, 1, &square, &bent);
     unit_near("variance over the one told, bent", 0, 0, square, 0.85, 0.65);
     unit_near("told of bent ones, degrees", 0, 0, bent, 0.6, 0.2);
     assert_true(straight < 0.25 * bent);
-    errors_of_bent_edges(0.05 * DEGREE, 0, &square, &of_any);
+    errors_of_bent_edges(0.05 * DEGREE, 1, 0, &square, &of_any);
     assert_true(of_any > 3 * straight && square < 0.3);
+    errors_of_bent_edges(0.05 * DEGREE, 8, 1, &square, &coarse);
+    unit_near("variance over the one told, seen in pixels 8 px wide", 0, 0, square, 0.85, 0.65);
+    assert_true(coarse > 2 * straight);
 }
 
 static void too_few_have_none(void **state)
@@ -159,7 +163,7 @@ static void too_few_have_none(void **state)
     assert_true(asj_find_directions(&memory, &(asj_edge_list){edges, 40, 1, WIDTH}, &camera, 1, &found));
     assert_int_equal(found.count, 0);
     for (int k = 0; k < 40; k++)
-        edges[k] = (asj_straight_edge){100, 100, 200, 150}; /* one line */
+        edges[k] = (asj_straight_edge){100, 100, 200, 150, 1}; /* one line */
     assert_true(asj_find_directions(&memory, &(asj_edge_list){edges, 40, 1, WIDTH}, &camera, 1, &found));
     assert_int_equal(found.count, 0);
     counter.fail_at = counter.calls + 1;
