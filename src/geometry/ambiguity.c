@@ -256,6 +256,15 @@ static asj_status settle(const asj_estimation *e, asj_model *m)
     return ASJ_OK;
 }
 
+/* As it was before number `chosen` told the focal length. */
+static asj_status focus_back(asj_estimation *e, int32_t chosen, const asj_model *before, const asj_focal *focal, int32_t focal_at)
+{
+    e->focal = *focal;
+    e->focal_at = focal_at;
+    e->finalists[chosen] = *before;
+    return asj_focal_search_turn(e->focal_search, focal);
+}
+
 /* Number `chosen` instead of the best one, and of all others that it contradicts. *stands: 0 when something else would be the best
  * then: what is not believed itself contradicts nothing. */
 static asj_status put_in_front(asj_estimation *e, int32_t chosen, int32_t *stands)
@@ -266,7 +275,10 @@ static asj_status put_in_front(asj_estimation *e, int32_t chosen, int32_t *stand
         evidence[n] = e->finalists[n].evidence;
         peak[n] = e->finalists[n].peak;
     }
-    asj_model followed = e->finalists[chosen];
+    const asj_focal focal = e->focal;
+    const asj_model before = e->finalists[chosen];
+    const int32_t focal_at = e->focal_at;
+    asj_model followed = before;
     int32_t count = 1;
     strike(e, chosen);
     if (asj_has_found_focal(e, chosen) && chosen != e->focal_at)
@@ -284,7 +296,7 @@ static asj_status put_in_front(asj_estimation *e, int32_t chosen, int32_t *stand
             e->finalists[n].evidence = evidence[n];
             e->finalists[n].peak = peak[n];
         }
-    return status;
+    return status == ASJ_OK && !*stands && e->focal_at != focal_at ? focus_back(e, chosen, &before, &focal, focal_at) : status;
 }
 
 asj_status asj_strike_out(asj_estimation *e)

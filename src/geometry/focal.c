@@ -79,12 +79,21 @@ asj_status asj_find_focal_of(asj_focal_search *s, const asj_model *motion, asj_f
     return asj_focal_follow(&s->profile, motion, found);
 }
 
+static double factor_of(const asj_focal_search *s, const asj_focal *found)
+{
+    return found->model.cameras[0].fx / s->prior.cameras[0].fx;
+}
+
+asj_status asj_focal_search_turn(asj_focal_search *s, const asj_focal *found)
+{
+    return asj_focal_turn(&s->profile, factor_of(s, found));
+}
+
 asj_status asj_find_with_focal(asj_focal_search *s, const asj_focal *found, const asj_model *flat, int32_t flat_count,
                                asj_model *list, int32_t *count)
 {
-    const double factor = found->model.cameras[0].fx / s->prior.cameras[0].fx;
     int32_t kept = 0;
-    const asj_status status = search_at(s, factor, flat, flat_count, ASJ_SETTLED, list, count);
+    const asj_status status = search_at(s, factor_of(s, found), flat, flat_count, ASJ_SETTLED, list, count);
     for (int32_t k = 0; k < *count && status == ASJ_OK; k++) {
         asj_model *m = &list[k];
         if (m->kind != ASJ_GEOMETRY_ESSENTIAL || !(m->evidence > -HUGE_VAL))

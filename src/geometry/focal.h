@@ -23,6 +23,9 @@ asj_status asj_find_focal(asj_focal_search *s, const asj_model *flat, int32_t co
 /* The same from one motion on, which has a focal length. */
 asj_status asj_find_focal_of(asj_focal_search *s, const asj_model *motion, asj_focal *found);
 
+/* The set with the directions of a focal length that was found before. ASJ_ERROR_MEMORY. */
+asj_status asj_focal_search_turn(asj_focal_search *s, const asj_focal *found);
+
 /* All motions with the focal length that was found, their evidence as that of found->model; list has room for 3 ASJ_FINALISTS. */
 asj_status asj_find_with_focal(asj_focal_search *s, const asj_focal *found, const asj_model *flat, int32_t flat_count,
                                asj_model *list, int32_t *count);

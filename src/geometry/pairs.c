@@ -104,12 +104,12 @@ static void set_scales(const asj_geometry_options *options, asj_pairs *set)
     set->area = sqrt(w1 * h1) * sqrt(w2 * h2);
 }
 
-/* The caller's directions, or else the images'; and what branches point along. */
+/* The caller's directions, with cameras, or else the images'; and what branches point along. */
 static asj_status set_rotations(asj_context *context, const asj_geometry_options *options, const asj_geometry_hints *hints,
                                 asj_pairs *set)
 {
-    asj_directions_list given[2];
-    for (int32_t v = 0; v < 2; v++)
+    asj_directions_list given[2] = {{.count = 0}, {.count = 0}};
+    for (int32_t v = 0; v < 2 && asj_cameras_are_known(options); v++)
         asj_directions_given(options->directions[v], &given[v]);
     const int32_t from_caller = given[0].count > 0 || given[1].count > 0 || !hints;
     const asj_directions_list *directions = from_caller ? given : hints->directions;

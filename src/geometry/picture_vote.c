@@ -41,7 +41,7 @@
 #define MOST_SLOPE 1.4
 #define STIFF 0.02       /* variance of the brightness from which on the pictures tell the slope */
 #define LEAST_CELLS 8
-#define LEAST_AREA 0.05  /* a map that shrinks or upsamples a cell more than this shows nothing of it */
+#define LEAST_AREA 0.05  /* a map that shrinks or enlarges a cell more than this shows nothing of it */
 #define MOST_AREA 20.0
 #define LEAST_T 1.9
 #define LEAST_SUM 3.0

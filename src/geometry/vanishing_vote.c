@@ -107,6 +107,7 @@ int32_t asj_vanishing_lines(const asj_junction *junctions, size_t count, const a
             one->ex = one->x + length * cos(a);
             one->ey = one->y + length * sin(a);
             one->angle = fmod(a, ASJ_PI);
+            one->angle += one->angle < 0 ? ASJ_PI : 0;
             one->length = length;
             one->pixel = 1;
             one->sd = fmax(sd, 0.1 * ASJ_DEGREE);

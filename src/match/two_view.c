@@ -13,6 +13,7 @@
 #include "compare.h"
 #include "consensus.h"
 #include "geometry/estimate.h"
+#include "geometry/geometry_options.h"
 #include "geometry_candidate.h"
 #include "pair_list.h"
 #include "prior.h"
@@ -95,8 +96,9 @@ static asj_status complete_options(asj_match_run *run, asj_geometry_options *opt
                                    asj_edge_list edges[2])
 {
     asj_status status = ASJ_OK;
+    const int32_t known = asj_cameras_are_known(options);
     double given = 0;
-    for (int32_t k = 0; k < 18; k++)
+    for (int32_t k = 0; k < 18 && known; k++)
         given += fabs(options->directions[k / 9][k % 9]);
     for (int32_t side = 0; side < 2; side++) {
         hints->pictures[side] = &run->image[side]->pyramid;
@@ -104,7 +106,7 @@ static asj_status complete_options(asj_match_run *run, asj_geometry_options *opt
         options->heights[side] = run->image[side]->pyramid.height[0];
     }
     for (int32_t side = 0; side < 2 && given == 0 && status == ASJ_OK; side++)
-        if (options->cameras[0].fx > 0 && options->cameras[1].fx > 0)
+        if (known)
             status = asj_room_directions(run->context, run->image[side], &options->cameras[side], &hints->directions[side]);
     for (int32_t side = 0; side < 2 && given == 0 && options->find_focal && status == ASJ_OK; side++)
         status = asj_room_edges(run->context, &run->image[side]->pyramid, &edges[side]);

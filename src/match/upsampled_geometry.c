@@ -12,8 +12,8 @@
  *     (upsampled.c); otherwise that of the images is, surer or not.
  *   - The images have rivals or leave the motion open, and what the upsampled ones accept is the images' best, or that one's rival:
  *     that is the answer, whether or not matches come again, since what repeats has been matched by the period, and if there are
- *     none: chance does not bring one motion to within SAME_POSE twice. (Rooms 1000 to 1399: two more poses by the rival, one without a
- *     match, all within .4 degrees; of 188 unrelated pairs none.)
+ *     none: chance does not bring one motion to within SAME_POSE twice. (Rooms 1000 to 1399: two more poses by the rival, one
+ *     without a match, all within .4 degrees; of 188 unrelated pairs none.)
  *   - The images have rivals or leave the motion open, and the upsampled ones accept another motion with SURPASSES times the log
  *     evidence of the images' best, and SURELY: that is the answer, whether or not matches come again. Where both accept one
  *     motion the upsampled images have 2.06 times as much (median of 772 pairs; 1.27 and more in 98 of 100); where the images' best

@@ -13,6 +13,8 @@ import asj
 import matplotlib
 import numpy as np
 import pytest
+from asj._native import ffi, lib
+from asj.geometry import read as read_geometry
 from conftest import Scene, panels
 
 matplotlib.use("Agg")
@@ -172,6 +174,20 @@ def test_images_are_no_features(pair: tuple[asj.Features, asj.Features]) -> None
             call()
     with pytest.raises(TypeError, match=r"send \.matches"):
         pickle.dumps(asj.match(*pair))
+
+
+def test_rival_of_a_geometry() -> None:
+    record = ffi.new("asj_geometry *", {"status": lib.ASJ_GEOMETRY_AMBIGUOUS, "model": lib.ASJ_GEOMETRY_ESSENTIAL, "log10_nfa": -30})
+    found = read_geometry(record)
+    assert found is not None and not found and found.status == "ambiguous"
+    assert found.rival_log10_nfa is None and found.rival_rotation is None and found.rival_translation is None
+    record.has_rival, record.rival_log10_nfa = 1, -25.5
+    record.rival_rotation = [0, -1, 0, 1, 0, 0, 0, 0, 1]
+    record.rival_translation = [0, 0, -1]
+    found = read_geometry(record)
+    assert found is not None and found.rival_log10_nfa == -25.5
+    assert found.rival_rotation is not None and (found.rival_rotation @ (1, 0, 0) == (0, 1, 0)).all()
+    assert found.rival_translation is not None and (found.rival_translation == (0, 0, -1)).all()
 
 
 def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:

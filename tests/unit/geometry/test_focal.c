@@ -156,6 +156,24 @@ static void focal_lengths_are_found(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Directions that somebody gives are those of a camera: without one they say nothing. */
+static void directions_need_a_camera(void **state)
+{
+    (void)state;
+    const double turn[3] = {0.15, -0.5, 0.1}, translation[3] = {2, -0.5, 0.8}, any[3] = {0.3, 0.2, 0.1};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    scene s = {.focal = 600};
+    asj_geometry_options o = blind_options(ASJ_GEOMETRY_AUTO);
+    make(&s, turn, translation, 1);
+    const asj_geometry without = estimate(context, &s, &o);
+    asj_rotation_of(any, o.directions[0]);
+    memcpy(o.directions[1], o.directions[0], sizeof o.directions[1]);
+    const asj_geometry with = estimate(context, &s, &o);
+    assert_memory_equal(&with, &without, sizeof with);
+    unit_context_free(&counter, &context);
+}
+
 /* Many matches that are known well tell the focal length more sharply than by the widest steps. (Refused, as of a path that breaks
  * off, before the steps became smaller.) */
 static void many_sharp_matches_tell_it(void **state)
@@ -317,6 +335,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(focal_lengths_are_found), cmocka_unit_test(many_sharp_matches_tell_it),
+        cmocka_unit_test(directions_need_a_camera),
         cmocka_unit_test(pixels_need_not_be_square),
         cmocka_unit_test(what_leaves_it_open_has_none),
         cmocka_unit_test(threads_change_nothing), cmocka_unit_test(bad_options_are_refused),
