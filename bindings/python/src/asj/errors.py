@@ -62,7 +62,7 @@ def extra(module: str, name: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError as missing:
-        raise ImportError(f"this needs {module.partition('.')[0]}: pip install 'asj[{name}]'") from missing
+        raise ImportError(f"this needs {module.partition('.')[0]}: install it, or this package with its extra [{name}]") from missing
 
 
 def text(pointer: object) -> str:

@@ -36,7 +36,8 @@ class Geometry:
     #: (3, 3) and (3,) with x2 ~ R x1 + t in camera coordinates, |t| = 1; None where they are not determined
     rotation: NDArray[np.float64] | None
     translation: NDArray[np.float64] | None
-    #: (6, 6) of rotation (rad) and translation; None as above
+    #: (6, 6) of w (rad), the true rotation being exp([w]x) times this one, and of the translation; from what the candidates allow,
+    #: before the pose was finished from where the matches lie, so that errors are smaller as a rule. None as above
     covariance: NDArray[np.float64] | None
     #: px, of both cameras, given or found; 0 when they are not known
     focal: tuple[float, float]
