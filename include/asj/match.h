@@ -173,8 +173,8 @@ typedef struct asj_match_result {
  * ASJ_GEOMETRY_AMBIGUOUS, and what either contradicts is rejected; of two planes the pose is left out. Where the first one, of
  * known cameras, has rivals or leaves its motion open, the second one holds, whatever its matches, when it accepts the same pose
  * or the rival's, or another one with a log10 NFA below -35 and 1.25 times the first one's; only then where the first one has no
- * matches; and not when it accepts none, or one that is upside down, or less surely another one of a motion that was open
- * (src/match/upsampled.c, upsampled_geometry.c).
+ * matches; and not when it accepts none, or one that is upside down, or less surely another one of a motion that was open;
+ * beside a rival with a log10 NFA below -100 it needs twice the first one's (src/match/upsampled.c, upsampled_geometry.c).
  * Junctions of octave -1 alone (octaves 1) have no first ones to ask. Everything is in pixels of the images.
  *
  * image1, image2   views; only read, and only during the call

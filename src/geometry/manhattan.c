@@ -10,7 +10,7 @@
  * say; those of video frames are out by 1.4 to 7.5 degrees. So the density of each is a mixture of three normal ones, as with the
  * locations of candidates (likelihood.c), the narrowest with half the covariances. (Rooms 1000 to 1399, `wide_rooms --stretch 0,0`,
  * AUC at 1, 2, 5, 10, 20 degrees: without the narrowest 50.9/65.8/78.2/82.9/85.3, with it 55.6/69.0/79.8/83.7/85.8, both before
- * directions.c asked how straight the edges are; since then 66.2/75.8/82.7/85.2/86.4.)
+ * directions.c asked how straight the edges are; 66.2/75.8/82.7/85.2/86.4 with that.)
  *
  * Photographs are taken upright: where in both images a direction lies within 40 degrees of the image's downward axis, it is the
  * same one, down, in nine of ten pairs. That leaves 4 of the 24 names, whose share of the prior is so much larger. (The same rooms:

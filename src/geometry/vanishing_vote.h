@@ -38,7 +38,7 @@ typedef struct asj_vote {
 typedef struct asj_vote_search {
     asj_vote_line *lines;
     int32_t count;
-    double *tail;     /* log binomial tails of the level at hand, by k */
+    double *tail;     /* log binomial tails, by level and k: ASJ_VOTE_LINES + 1 of each level */
     int32_t members[ASJ_VOTE_LEVELS];
 } asj_vote_search;
 
