@@ -96,8 +96,8 @@ typedef struct asj_geometry {
     double rival_log10_nfa;  /* .. the best other one, which has other matches: its rival */
     double inliers;          /* sum of the candidates' probabilities */
     double focal_sd;         /* of the log of the focal length, where it was found; 0 where it was given */
-    double rival_rotation[9];/* the rival's motion, as the best one's above; zero where it is no essential matrix, or where nothing
-                              * determines its translation */
+    double rival_rotation[9];/* the rival's motion, as the best one's above; zero where it has none, or nothing determines its
+                              * translation. How well it is known nobody says */
     double rival_translation[3];
     double reserved[3];
 } asj_geometry;

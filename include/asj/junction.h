@@ -36,7 +36,7 @@ typedef struct asj_branch {
 
 /* What a junction may be, for asj_match() and in files. */
 #define ASJ_MAX_OUTSIDE 10           /* px outside its image: branches may meet beyond the border. The detector's most max_move */
-#define ASJ_LEAST_OCTAVE (-1)           /* the image upsampled by two */
+#define ASJ_LEAST_OCTAVE (-1)        /* the image upsampled by two */
 #define ASJ_LARGEST_OCTAVE 15
 #define ASJ_MAX_BRANCH_LENGTH 262140.0f /* px: four times ASJ_MAX_SIDE */
 

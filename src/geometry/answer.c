@@ -70,18 +70,26 @@ static void clear_pose(asj_geometry *result)
     memset(result->covariance, 0, sizeof result->covariance);
 }
 
+/* Of an essential matrix, whose probabilities it fills in. 0 when nothing determines its translation. */
+static int32_t find_motion(asj_estimation *e, asj_model *m, double *probability, double rotation[9], double translation[3])
+{
+    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, probability);
+    if (m->view.plane_count == 0 && !(asj_choose_motion(&e->set, probability, m) > -HUGE_VAL))
+        return 0;
+    memcpy(rotation, m->rotation, 9 * sizeof *rotation);
+    memcpy(translation, m->translation, 3 * sizeof *translation);
+    return 1;
+}
+
 /* Rotation and translation of an essential matrix. 0 when nothing determines its translation. */
 static int32_t set_pose(asj_estimation *e, int32_t number, asj_geometry *result)
 {
     asj_model *m = &e->finalists[number];
-    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
-    if (m->view.plane_count == 0 && !(asj_choose_motion(&e->set, e->scratch.probability, m) > -HUGE_VAL))
+    if (!find_motion(e, m, e->scratch.probability, result->rotation, result->translation))
         return 0;
     double sd = set_covariance(e, number, result->covariance);
     if (asj_has_found_focal(e, number) && e->focal.is_known)
         sd = hypot(sd, add_focal(&e->focal, result));
-    memcpy(result->rotation, m->rotation, sizeof result->rotation);
-    memcpy(result->translation, m->translation, sizeof result->translation);
     result->focal[0] = m->cameras[0].fx;
     result->focal[1] = m->cameras[1].fx;
     result->has_pose = sd < POSE_SD;
@@ -162,13 +170,8 @@ static void describe_rival(asj_estimation *e, int32_t number, asj_geometry *resu
     asj_model *m = &e->finalists[number];
     result->has_rival = 1;
     result->rival_log10_nfa = asj_estimation_log10_nfa(e, m);
-    if (m->kind != ASJ_GEOMETRY_ESSENTIAL)
-        return;
-    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->other);
-    if (m->view.plane_count == 0 && !(asj_choose_motion(&e->set, e->other, m) > -HUGE_VAL))
-        return;
-    memcpy(result->rival_rotation, m->rotation, sizeof result->rival_rotation);
-    memcpy(result->rival_translation, m->translation, sizeof result->rival_translation);
+    if (m->kind == ASJ_GEOMETRY_ESSENTIAL)
+        find_motion(e, m, e->other, result->rival_rotation, result->rival_translation);
 }
 
 asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#define ASJ_MOST_DIRECTIONS 4 /* sets of them, of one image */
+#define ASJ_MOST_DIRECTIONS 2 /* sets of them, of one image */
 #define ASJ_BRANCH_NUMBERS 8  /* x and y of both branches in both images */
 
 /* A candidate match, px; affine: linear part of the map from image 1 to image 2, row by row. */

@@ -6,14 +6,15 @@
  * axes d_1, d_2, d_3 and the angle a_k between an edge and the vanishing point of d_k, seen from the edge's middle, the likelihood
  * ratio of an edge is
  *
- *     r = 1 - w + w / 3 sum over k of pi N(a_k; 0, s^2),     s^2 = (ACROSS pixel / length)^2 + b^2,
+ *     r = 1 - w + w / 3 sum over k of pi N(a_k; 0, s^2),     s^2 = sd^2 + b^2,
  *
- * N the normal density and 1 / pi the flat one: right edges err by what they are out across, and by what is not quite at right
- * angles (walls, lenses), b. How many edges belong to the directions, w, is one of SHARES, each as likely, and so is b one of
- * BENDS: score = log of the mean over the shares of the product of all r, at the best b. Edges of rendered rooms fit the smallest
- * ones, those of video frames 1 degree and more, and directions are as sure as that. (Rooms 1000 to 1399, `wide_rooms --stretch
- * 0,0`, AUC at 1, 2, 5, 10, 20 degrees: with 1 degree for all of them 55.6/69.0/79.8/83.7/85.8, so 66.2/75.8/82.7/85.2/86.4.) Where
- * the focal length is not known, b is 1 degree: with one that is a little wrong nothing is at right angles.
+ * N the normal density and 1 / pi the flat one: right edges err by what they are out across (sd: vanishing_vote.c), and by what is
+ * not quite at right angles (walls, lenses), b. How many edges belong to the directions, w, is one of SHARES, each as likely, and
+ * so is b one of BENDS: score = log of the mean over the shares of the product of all r, at the best b. Edges of rendered rooms fit
+ * the smallest ones, those of video frames 1 degree and more, and directions are as sure as that. (Rooms 1000 to 1399, `wide_rooms
+ * --stretch 0,0`, AUC at 1, 2, 5, 10, 20 degrees: with 1 degree for all of them 55.6/69.0/79.8/83.7/85.8, so
+ * 66.2/75.8/82.7/85.2/86.4.) Where the focal length is not known, b is 1 degree: with one that is a little wrong nothing is at
+ * right angles.
  *
  * Search: vanishing points that pairs of the PAIRED longest edges define; those MOST_POINTS of them that explain most, more than
  * APART from each other, are one axis, and the other two are turned around it in steps, all that with b = BENDS[SEARCHED]; the best
@@ -23,7 +24,7 @@
  * two axes where a few of them happen to point.
  *
  * A set of directions costs little when it is wrong (manhattan.c), and a room with a desk across has two of them: the best
- * BEST_KEPT are kept. */
+ * ASJ_MOST_DIRECTIONS are kept. */
 #include "directions.h"
 #include "core/angle.h"
 #include "core/context.h"
@@ -36,7 +37,6 @@
 #define SHORTEST 0.045 /* of the longer side: an edge that is looked at, and .. */
 #define LEAST_EDGES 6
 #define MOST_EDGES 200
-#define ACROSS 0.4 /* px */
 #define TOGETHER 2.0 /* edges that err as one: both sides of a board */
 #define BENDS 5
 #define SEARCHED 1
@@ -48,7 +48,6 @@
 #define DIFFERENT (4 * ASJ_DEGREE)
 #define SAME (3 * ASJ_DEGREE)
 #define ROUNDS 8
-#define BEST_KEPT 2
 #define FAR 16.0 /* squared residual beyond which an edge counts as none of an axis */
 #define SHARES 3
 
@@ -285,7 +284,7 @@ static void search(const scene scenes[BENDS], int32_t exact, ranked *all, asj_di
         refine(scenes, exact ? 0 : SEARCHED, exact ? BENDS : 1, &starts[k]);
     if (kept > 1)
         asj_sort(starts, (size_t)kept, sizeof *starts, better);
-    for (int32_t k = 0; k < kept && found->count < BEST_KEPT; k++) {
+    for (int32_t k = 0; k < kept && found->count < ASJ_MOST_DIRECTIONS; k++) {
         asj_directions next;
         memcpy(next.axes, starts[k].axes, sizeof next.axes);
         next.score = starts[k].score;
@@ -305,7 +304,7 @@ static void set_scene(const asj_vote_line *lines, int32_t count, double bend, sc
     s->lines = lines;
     s->count = count;
     for (int32_t k = 0; k < count; k++) {
-        const double sd = hypot(ACROSS * lines[k].pixel / lines[k].length, bend);
+        const double sd = hypot(lines[k].sd, bend);
         s->precision[k] = 1 / (sd * sd);
         s->peak[k] = ASJ_PI / (sqrt(2 * ASJ_PI) * sd);
     }

@@ -105,12 +105,11 @@ static asj_status complete_options(asj_match_run *run, asj_geometry_options *opt
         options->widths[side] = run->image[side]->pyramid.width[0];
         options->heights[side] = run->image[side]->pyramid.height[0];
     }
-    for (int32_t side = 0; side < 2 && given == 0 && status == ASJ_OK; side++)
-        if (known)
-            status = asj_room_directions(run->context, run->image[side], &options->cameras[side], &hints->directions[side]);
-    for (int32_t side = 0; side < 2 && given == 0 && options->find_focal && status == ASJ_OK; side++)
+    for (int32_t side = 0; side < 2 && known && given == 0 && status == ASJ_OK; side++)
+        status = asj_room_directions(run->context, run->image[side], &options->cameras[side], &hints->directions[side]);
+    for (int32_t side = 0; side < 2 && options->find_focal && status == ASJ_OK; side++)
         status = asj_room_edges(run->context, &run->image[side]->pyramid, &edges[side]);
-    hints->edges = given == 0 && options->find_focal ? edges : NULL;
+    hints->edges = options->find_focal ? edges : NULL;
     return status;
 }
 

@@ -95,8 +95,8 @@ static void directions_among_other_edges(void **state)
     unit_near("variance over the one told", 0, 0, square / good, 0.75, 0.75); /* at most 1.5 */
 }
 
-/* Twenty draws of sixty edges along the directions among forty others, turned by `bend` besides, seen in pixels that wide: mean
- * square of the error over the told one, and what is told in the mean, degrees. */
+/* Twenty draws of sixty edges along the directions among forty others, turned by `bend` besides, every other one seen in pixels
+ * that wide: mean square of the error over the told one, and what is told in the mean, degrees. */
 static void errors_of_bent_edges(double bend, double pixel, int32_t exact, double *square, double *told)
 {
     unit_counter counter = {0};
@@ -111,8 +111,9 @@ static void errors_of_bent_edges(double bend, double pixel, int32_t exact, doubl
         random_rotation(&random, axes);
         for (int k = 0; k < 100; k++) {
             edges[k] = k >= 60 ? any_edge(&random)
-                               : edge_along(&random, axes + 3 * (k % 3), synth_random_between(&random, 60, 200), 0.2 * pixel);
-            edges[k].pixel = pixel;
+                               : edge_along(&random, axes + 3 * (k % 3), synth_random_between(&random, 60, 200),
+                                            k % 2 ? 0.2 * pixel : 0.2);
+            edges[k].pixel = k % 2 ? pixel : 1;
             const double off = bend * normal(&random), x = edges[k].x2 - edges[k].x1, y = edges[k].y2 - edges[k].y1;
             edges[k].x2 -= off * y;
             edges[k].y2 += off * x;
@@ -130,7 +131,7 @@ static void errors_of_bent_edges(double bend, double pixel, int32_t exact, doubl
 static void edges_say_how_exact_they_are(void **state)
 {
     (void)state;
-    double square, straight, bent, of_any, coarse;
+    double square, straight, bent, of_any, mixed;
     errors_of_bent_edges(0.05 * DEGREE, 1, 1, &square, &straight);
     unit_near("variance over the one told, straight", 0, 0, square, 0.85, 0.65);
     errors_of_bent_edges(1.5 * DEGREE, 1, 1, &square, &bent);
@@ -139,9 +140,10 @@ static void edges_say_how_exact_they_are(void **state)
     assert_true(straight < 0.25 * bent);
     errors_of_bent_edges(0.05 * DEGREE, 1, 0, &square, &of_any);
     assert_true(of_any > 3 * straight && square < 0.3);
-    errors_of_bent_edges(0.05 * DEGREE, 8, 1, &square, &coarse);
-    unit_near("variance over the one told, seen in pixels 8 px wide", 0, 0, square, 0.85, 0.65);
-    assert_true(coarse > 2 * straight);
+    errors_of_bent_edges(0.05 * DEGREE, 8, 1, &square, &mixed);
+    unit_near("variance over the one told, half of them seen in pixels 8 px wide", 0, 0, square, 0.85, 0.65);
+    printf("told: straight %.3f, half of them coarse %.3f degrees\n", straight, mixed);
+    assert_true(mixed > straight && mixed < 1.8 * straight); /* the others still count in full */
 }
 
 static void too_few_have_none(void **state)
