@@ -14,5 +14,6 @@ PATH=$folder/bin:$PATH auditwheel repair --wheel-dir "$folder/wheelhouse" "$fold
 "$folder/bin/auditwheel" show "$folder"/wheelhouse/asj-*.whl
 "$folder/bin/pip" install --quiet --disable-pip-version-check \
     "$(echo "$folder"/wheelhouse/asj-*.whl)[test,colmap,plot,hdf5,dask]"
-"$folder/bin/pytest" -q -p no:cacheprovider tests asj
+"$folder/bin/pip" install --quiet --disable-pip-version-check pytest-xdist
+"$folder/bin/pytest" -q -n auto -p no:cacheprovider tests asj
 "$folder/bin/mypy" --cache-dir "$folder/mypy"

@@ -12,8 +12,8 @@ usage() {
 usage: sh scripts/test.sh [--all]
 
 Installs what is missing (apt-get), builds everything in build-test/ and runs all tests.
---all, or CI=true in the environment, takes warnings as errors, and also checks the style of the sources, builds with clang, runs
-the tests under the address and undefined-behaviour sanitizers and in builds with fewer parts, a few programs under the thread and
+--all, or CI=true in the environment, takes warnings as errors, and also checks the style of the sources, runs the tests in a build
+by clang under the address and undefined-behaviour sanitizers and in builds with fewer parts, a few programs under the thread and
 the memory sanitizer, half a minute of each fuzzer, runs the tests of the core for 64-bit ARM under emulation, compares results with
 those of other machines, and uses an installed library from other programs.
 Exit code: 0 everything passed, 1 something failed, 2 wrong usage, 3 packages are missing and cannot be installed here.
@@ -97,6 +97,29 @@ build_and_test() {
     build "$folder_wanted" "$@" && run_tests "$folder_wanted" $tests_wanted
 }
 
+# programs_of FOLDER [--no-suite SUITE]...: what the tests of the other suites are built of, as ninja names it.
+programs_of() {
+    python3 - "$@" << 'END'
+import json, os, sys
+
+folder, left_out = sys.argv[1], {"asj:" + suite for suite in sys.argv[3::2]}
+tests, targets = (json.load(open("%s/meson-info/intro-%s.json" % (folder, what))) for what in ("tests", "targets"))
+wanted = {target for test in tests if not left_out & set(test["suite"]) for target in test["depends"]}
+print(*(os.path.relpath(file, folder) for target in targets if target["id"] in wanted for file in target["filename"]))
+END
+}
+
+# build_what_is_tested FOLDER "--no-suite SUITE..." OPTION...: the library and these tests, and nothing else.
+build_what_is_tested() {
+    folder_wanted=$1
+    tests_wanted=$2
+    shift 2
+    say
+    say "Building in $folder_wanted/"
+    configure "$folder_wanted" "$@" && programs=$(programs_of "$folder" $tests_wanted) &&
+        logged "build-$name" ninja -C "$folder" src/libasj.so $programs && run_tests "$folder_wanted" $tests_wanted
+}
+
 # What builds for another purpose leave out: suites that take minutes and whose results the goldens stand for, and the README's
 # commands, which do what other tests of the command line do.
 quick_with_upsampled='--no-suite accuracy --no-suite experiments --no-suite long --no-suite benchmark --no-suite upsampled_images
@@ -106,21 +129,14 @@ quick="$quick_with_upsampled --no-suite upsampled"
 # The core alone: no library but libc and libm (the compiler's own run-time library may show up too). Without the accuracy suite:
 # the goldens show that its results are those of the whole build.
 core_alone() {
-    build_and_test build-core "$quick" -Dauto_features=disabled -Dtests=enabled --werror ||
+    build_what_is_tested build-core "$quick" -Dauto_features=disabled -Dtests=enabled --werror ||
         return 1
     others=$(readelf -d "$folder/src/libasj.so" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | grep -vE '^lib(c|m|gcc_s)\.so|^ld-')
     [ -z "$others" ] || say "libasj.so needs $others"
     [ -z "$others" ]
 }
 
-# The library, made by another compiler: the command line adds nothing to that but time. Last: the compilers stay chosen.
-with_clang() {
-    CC=clang CXX=clang++
-    export CC CXX
-    devices='--no-suite opencl --no-suite device-operations --no-suite device-images'
-    build_and_test build-clang "$quick $devices --no-suite cli --no-suite fails" -Dauto_features=enabled --werror
-}
-
+# By clang, so that the results and the warnings of another compiler are seen, too.
 # Without the accuracy suite, which takes ten minutes then; two scenes of each row visit the same code, beside the tests. Of
 # upsampled images one test. Without the tests that must fail, which need no sanitizer, without whole images on devices, and without
 # the benchmarks. Lines of the sources are all that reports need to know (-g1). On alternative signal stacks: LLVM, in PoCL, gives
@@ -129,8 +145,10 @@ with_clang() {
 with_sanitizers() {
     ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}use_sigaltstack=0
     export ASAN_OPTIONS
-    build build-sanitize -Dauto_features=enabled --buildtype=debugoptimized -Db_sanitize=address,undefined \
-        '-Dc_args=-fno-sanitize-recover=undefined -g1' '-Dcpp_args=-fno-sanitize-recover=undefined -g1' || return 1
+    (CC=clang CXX=clang++ && export CC CXX && build build-sanitize -Dauto_features=enabled --buildtype=debugoptimized --werror \
+        -Db_sanitize=address,undefined -Db_lundef=false '-Dc_args=-fno-sanitize-recover=undefined -g1' \
+        '-Dcpp_args=-fno-sanitize-recover=undefined -g1') || return 1
+    folder=$root/build-sanitize
     logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2 &
     scenes=$!
     trap 'kill "$scenes" 2> /dev/null; exit 130' INT TERM
@@ -149,7 +167,7 @@ fewer_parts() {
     rm -rf "$root/src" "$root/kernels" && mkdir -p "$root" &&
         (cd "$whole" &&
             cp -R -p README.md CHANGELOG.md LICENSE bindings cli include meson.build meson_options.txt scripts src tests "$root") &&
-        rm -rf "$root/src/cl" && build_and_test build-fewer "$quick --no-suite parity --no-suite unit --no-suite fails" \
+        rm -rf "$root/src/cl" && build_what_is_tested build-fewer "$quick --no-suite parity --no-suite unit --no-suite fails" \
         -Djpeg=disabled -Dtiff=disabled -Dwebp=disabled -Djpeg2000=disabled -Dheif=disabled -Dexif=disabled -Dopencv=disabled \
         -Dcairo=disabled -Dthreads=disabled -Dio=enabled -Dcli=enabled -Dtests=enabled --werror
     state_of_fewer=$?
@@ -198,7 +216,6 @@ more_checks() {
     step machines on_machines
     step threads with_thread_sanitizer
     step memory with_memory_sanitizer
-    step clang with_clang
     step fuzzers finish_fuzzers
 }
 
@@ -222,7 +239,7 @@ ASJ_REQUIRE_OPENCL=1 # a test that finds no device fails: PoCL is there
 export ASJ_REQUIRE_OPENCL
 if [ "$everything" = true ]; then
     need cmocka clang mandoc venv opencl pocl oclgrind locale
-    step tests build_and_test build-test '' -Dauto_features=enabled --werror
+    step tests build_and_test build-test '--no-suite faults' -Dauto_features=enabled --werror # faults: under the sanitizers
     more_checks
 else
     need cmocka mandoc venv opencl pocl locale

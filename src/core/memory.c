@@ -44,14 +44,7 @@ int asj_memory_allocator(const asj_context_options *options, asj_allocator *allo
 }
 
 /* What the sanitizer is told about blocks that are kept: nobody may touch them. */
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define ADDRESS_SANITIZER
-#endif
-#elif defined(__SANITIZE_ADDRESS__)
-#define ADDRESS_SANITIZER
-#endif
-#ifdef ADDRESS_SANITIZER
+#ifdef ASJ_ADDRESS_SANITIZER
 #include <sanitizer/asan_interface.h>
 #define FORBID(block, size) ASAN_POISON_MEMORY_REGION(block, size)
 #define ALLOW(block, size) ASAN_UNPOISON_MEMORY_REGION(block, size)

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <sys/resource.h>
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef ASJ_ADDRESS_SANITIZER
 enum { LIMITS_MEMORY = 0 }; /* its shadow memory would not fit */
 #else
 enum { LIMITS_MEMORY = 1 };

@@ -15,7 +15,7 @@
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef ASJ_ADDRESS_SANITIZER
 const bool limits_memory = false; /* its shadow memory would not fit */
 #else
 const bool limits_memory = true;

@@ -77,9 +77,10 @@ static void the_name_or_the_option_chooses_the_format(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         size_t size = 0;
         if (cases[i].format)
-            expect_code(run_cli("match", "-o", cases[i].path, "first.png", "second.png", "--format", cases[i].format, NULL), 0);
+            expect_code(run_cli("match", "--stretch", "1", "-o", cases[i].path, "first.png", "second.png", "--format",
+                                cases[i].format, NULL), 0);
         else
-            expect_code(run_cli("match", "-o", cases[i].path, "first.png", "second.png", NULL), 0);
+            expect_code(run_cli("match", "--stretch", "1", "-o", cases[i].path, "first.png", "second.png", NULL), 0);
         char *bytes = read_bytes(cases[i].path, &size);
         assert_non_null(bytes);
         bytes[strlen(cases[i].beginning)] = '\0';
@@ -445,13 +446,14 @@ static void features_take_the_place_of_images(void **state)
 static void what_the_geometry_is_is_told(void **state)
 {
     (void)state;
-    const outcome *result = run_cli("match", "--geometry", "fundamental", "first.png", "second.png", NULL);
+    const outcome *result = run_cli("match", "--stretch", "1", "--geometry", "fundamental", "first.png", "second.png", NULL);
     expect_code(result, 0);
     expect_in(result, result->err, "\ngeometry: ");
     result = run_cli("match", "--geometry", "essential", "--focal", "300", "first.png", "first.png", NULL);
     expect_in(result, result->err, "geometry: none (degenerate); what matches leaves the motion open");
-    assert_null(strstr(run_cli("match", "-q", "--geometry", "fundamental", "first.png", "second.png", NULL)->err, "geometry"));
-    assert_null(strstr(run_cli("match", "first.png", "second.png", NULL)->err, "geometry"));
+    result = run_cli("match", "-q", "--stretch", "1", "--geometry", "fundamental", "first.png", "second.png", NULL);
+    assert_null(strstr(result->err, "geometry"));
+    assert_null(strstr(run_cli("match", "--stretch", "1", "first.png", "second.png", NULL)->err, "geometry"));
 }
 
 /* A focal length that is none of these pixels is used as it is given, and doubted, also where doubling takes it out of range. */
@@ -460,11 +462,13 @@ static void views_that_no_camera_has_are_doubted(void **state)
     static const char *const focal[] = {"5", "9.9e6", "300"};
     (void)state;
     for (size_t k = 0; k < sizeof focal / sizeof *focal; k++) {
-        const outcome *result = run_cli("match", "--geometry", "auto", "--focal", focal[k], "first.png", "second.png", NULL);
+        const outcome *result = run_cli("match", "--stretch", "1", "--geometry", "auto", "--focal", focal[k], "first.png",
+                                        "second.png", NULL);
         expect_code(result, 0);
         assert_int_equal(strstr(result->err, "is it in pixels of this image?") != NULL, k < 2);
         assert_null(strstr(result->err, "cannot be"));
-        result = run_cli("match", "-q", "--geometry", "auto", "--focal", focal[k], "first.png", "second.png", NULL);
+        result = run_cli("match", "-q", "--stretch", "1", "--geometry", "auto", "--focal", focal[k], "first.png", "second.png",
+                         NULL);
         expect_empty(result, "standard error", result->err);
     }
 }

@@ -17,7 +17,7 @@
 
 enum { SPARE_KB = 64 * 1024, MOST_SECONDS = 1, NOTHING = 99 };
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef ASJ_ADDRESS_SANITIZER
 enum { IS_MEASURED = 0 };
 #else
 enum { IS_MEASURED = 1 };

@@ -13,7 +13,7 @@
 
 enum { WIDTH = 48, HEIGHT = 32, BLOCK = 16, MOST_KB = 64 * 1024 };
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef ASJ_ADDRESS_SANITIZER
 enum { IS_MEASURED = 0 };
 #else
 enum { IS_MEASURED = 1 };

@@ -20,14 +20,6 @@
 
 enum { PICTURES = 40, WARM = 2 * PICTURES, SPARE_KB = 1024 };
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define IS_SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(thread_sanitizer)
-#define IS_SANITIZED 1
-#endif
-#endif
-
 typedef struct heap {
     long live;
     uint32_t failing; /* one in so many calls fails; 0 = none */
@@ -107,7 +99,7 @@ static int open_files(void)
 static long most_memory(void)
 {
     struct rusage use;
-#ifdef IS_SANITIZED
+#ifdef ASJ_IS_SANITIZED
     return 0;
 #endif
     return getrusage(RUSAGE_SELF, &use) == 0 ? use.ru_maxrss : 0;

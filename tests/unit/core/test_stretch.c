@@ -68,7 +68,7 @@ static void every_format_is_interpolated(void **state)
         char pixels[WIDTH * HEIGHT * 4 + 64];
         const ptrdiff_t row = (ptrdiff_t)WIDTH * formats[n].channels * formats[n].bytes;
         for (size_t i = 0; i < sizeof pixels; i++)
-            pixels[i] = (char)(256 * synth_random_unit(&random));
+            pixels[i] = (char)(int)(256 * synth_random_unit(&random) - 128);
         for (int32_t i = 0; i < WIDTH * HEIGHT && formats[n].bytes == 4; i++) {
             const float value = (float)synth_random_unit(&random);
             memcpy(pixels + (size_t)i * sizeof value, &value, sizeof value);

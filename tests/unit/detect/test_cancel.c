@@ -9,7 +9,7 @@
 
 enum { SIDE = 400, SQUARE = 5 };
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef ASJ_IS_SANITIZED
 #define LONGEST 3000.0 /* ms */
 #else
 #define LONGEST 300.0

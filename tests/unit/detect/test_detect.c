@@ -602,6 +602,19 @@ static void test_arguments(void **state)
 }
 
 /* Each option out of its range, on either side: refused by name, by both functions. */
+static void put_option(asj_detect_options *options, const asj_option_info *row, double number, uint32_t radii)
+{
+    char *field = (char *)options + row->offset;
+    if (row->type == ASJ_OPTION_NUMBER)
+        memcpy(field, &number, sizeof number);
+    else if (row->type == ASJ_OPTION_RADII)
+        memcpy(field, &radii, sizeof radii);
+    else {
+        const int32_t integer = (int32_t)number;
+        memcpy(field, &integer, sizeof integer);
+    }
+}
+
 static void test_bad_options(void **state)
 {
     const fixture *f = *state;
@@ -614,16 +627,11 @@ static void test_bad_options(void **state)
             asj_detect_options options;
             asj_detection *found = NULL;
             const double number = above ? row->maximum * 1.0001 + 1e-9 : row->minimum - 1e-9 - 1e-4 * fabs(row->minimum);
-            const int32_t integer = (int32_t)(above ? row->maximum + 1 : row->minimum - 1);
-            const uint32_t bits = above ? 0x80000000u : 0;
             asj_detect_options_init(&options);
-            char *field = (char *)&options + row->offset;
             if (row->type == ASJ_OPTION_NUMBER)
-                memcpy(field, &number, sizeof number);
-            else if (row->type == ASJ_OPTION_RADII)
-                memcpy(field, &bits, sizeof bits);
+                put_option(&options, row, number, 0);
             else
-                memcpy(field, &integer, sizeof integer);
+                put_option(&options, row, above ? row->maximum + 1 : row->minimum - 1, above ? 0x80000000u : 0);
             assert_int_equal(asj_detect(f->context, &image, &options, &found), ASJ_ERROR_OPTION);
             assert_null(found);
             if (strncmp(asj_context_message(f->context), row->key, strlen(row->key)) != 0)
@@ -648,16 +656,8 @@ static void test_extreme_options(void **state)
                 asj_detect_options options;
                 asj_detection *found = NULL;
                 const double number = above ? row->maximum : row->minimum;
-                const int32_t integer = (int32_t)number;
-                const uint32_t bits = above ? 0x7ffffff8u : 1u << 3;
                 asj_detect_options_preset(&options, preset);
-                char *field = (char *)&options + row->offset;
-                if (row->type == ASJ_OPTION_NUMBER)
-                    memcpy(field, &number, sizeof number);
-                else if (row->type == ASJ_OPTION_RADII)
-                    memcpy(field, &bits, sizeof bits);
-                else
-                    memcpy(field, &integer, sizeof integer);
+                put_option(&options, row, number, above ? 0x7ffffff8u : 1u << 3);
                 if (asj_detect(f->context, &image, &options, &found) != ASJ_OK)
                     fail_msg("%s = %g: %s", row->key, number, asj_context_message(f->context));
                 for (uint32_t i = 0; i < found->junction_count; i++) {

@@ -10,7 +10,7 @@
 
 enum { SIDE = 70, MOST_SIDE = 140, STEP = 40, COUNT = SIDE * SIDE, MOST = MOST_SIDE * MOST_SIDE };
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef ASJ_IS_SANITIZED
 #define MOST_SECONDS 1.5
 #else
 #define MOST_SECONDS 0.3 /* 0.03 alone; 7 when every segment is compared with every match (both loaded) */
