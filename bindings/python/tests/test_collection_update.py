@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sqlite3
 from pathlib import Path
@@ -62,7 +63,7 @@ def test_new_changed_and_gone(photographs: Path, tmp_path: Path) -> None:
     assert collect(photographs, tmp_path / "once") == 0
     assert by_name(store) == by_name(tmp_path / "once.work")
     assert all(row[2] == "done" for part in by_name(store) for row in part)  # type: ignore[index]
-    # LIMAP's numbers go by the order in which images came: the same lines, under other numbers
+    # numbers go by the order in which images came: the same lines, under other numbers
     numbers = {line.split(" ")[1]: line.split(" ")[0] for line in (tmp_path / "grown" / "images.txt").read_text().splitlines()}
     once = {line.split(" ")[1]: line.split(" ")[0] for line in (tmp_path / "once" / "images.txt").read_text().splitlines()}
     assert numbers.keys() == once.keys() and numbers != once
@@ -70,6 +71,13 @@ def test_new_changed_and_gone(photographs: Path, tmp_path: Path) -> None:
         segments = (tmp_path / "grown" / "segments" / f"segments_{number}.txt").read_bytes()
         assert segments == (tmp_path / "once" / "segments" / f"segments_{once[name]}.txt").read_bytes()
     assert len(list((tmp_path / "grown" / "segments").iterdir())) == 4 and len(list((tmp_path / "grown" / "matches").iterdir())) == 6
+    # of b, c, more/d and other, other has gone: its number stays free
+    assert numbers == {"a.png": "5", "b.png": "1", "c.png": "2", "more/d.png": "3"}
+    (photographs / "a.png").unlink()
+    assert collect(photographs, tmp_path / "grown", "--update") == 0
+    Image.fromarray(panels(zoom=0.97)).save(photographs / "e.png")
+    assert collect(photographs, tmp_path / "grown", "--update") == 0
+    assert "6 e.png" in (tmp_path / "grown" / "images.txt").read_text().splitlines()
 
 
 def test_nothing_is_done_twice(photographs: Path, tmp_path: Path) -> None:
@@ -97,6 +105,10 @@ def test_database(photographs: Path, tmp_path: Path) -> None:
     os.rename(aside, photographs / "a.png")
     assert main([*words, str(tmp_path / "grown.db"), "--update"]) == 0
     assert main([*words, str(tmp_path / "once.db")]) == 0
+    with contextlib.closing(pycolmap.Database.open(tmp_path / "grown.db")) as database:
+        # those that were there keep their numbers, and so do their cameras
+        found_numbers = {image.name: (image.image_id, image.camera_id) for image in database.read_all_images()}
+    assert found_numbers == {"b.png": (1, 1), "c.png": (2, 2), "more/d.png": (3, 3), "other.png": (4, 4), "a.png": (5, 5)}
     found = []
     for name in ("grown.db", "once.db"):
         database = pycolmap.Database.open(tmp_path / name)

@@ -3,10 +3,10 @@
 
 Key points are the junctions, each where all its matches together put it (locations.py), with their affine shape, in the pixels of the
 file (orientation.py), moved by half a pixel (COLMAP's first pixel has its centre at (0.5, 0.5)).
-The shape takes the unit circle to an ellipse along two branches of the junction. Images have a camera each, SIMPLE_RADIAL, with the
-focal length that was given, or that of their EXIF data (and then it is marked as known), or the median of what their pairs have found
-with the motion, and 1.2 times the longer side elsewhere, as COLMAP itself guesses. Where the whole camera was given, all images of one
-size have that one, PINHOLE.
+The shape takes the unit circle to an ellipse along two branches of the junction. Images have the numbers of the store, which they
+keep, and a camera each of the same number, SIMPLE_RADIAL, with the focal length that was given, or that of their EXIF data (and then it
+is marked as known), or the median of what their pairs have found with the motion, and 1.2 times the longer side elsewhere, as COLMAP
+itself guesses. Where the whole camera was given, all images of one size have that one, PINHOLE, with the number of the first of them.
 
 Where an epipolar geometry was asked for and accepted, that is the pair's two-view geometry, with all its matches as inliers, since what
 contradicts it has gone; calibrated, with its pose, where the cameras are those that it was found with. COLMAP's own verification gives
@@ -76,18 +76,17 @@ def _fill(store: Store, pycolmap: Any, path: Path, refine: bool, threads: int | 
     try:
         moved = locations.of_store(store) if refine else {}
         cameras = _Cameras(pycolmap, database, store)
-        numbers = {}
         for number, name, detected in store.detected():
             if detected.features is not None:
-                numbers[number] = _image(database, pycolmap, name, cameras.of(number, detected), detected, moved.get(number))
+                _image(database, pycolmap, number, name, cameras.of(number, detected), detected, moved.get(number))
         for one, two, records in locations.matches_of(store):
             pairs = np.stack([records["junction1"], records["junction2"]], axis=1)
-            database.write_matches(numbers[one], numbers[two], np.ascontiguousarray(pairs, np.uint32))
+            database.write_matches(one, two, np.ascontiguousarray(pairs, np.uint32))
     finally:
         database.close()
     if threads is not None:
         _verify(pycolmap, path, threads)
-    _write_geometries(store, pycolmap, path, numbers)
+    _write_geometries(store, pycolmap, path)
     with contextlib.closing(sqlite3.connect(path)) as connection:
         connection.execute(f"PRAGMA application_id = {_APPLICATION}")
         connection.commit()
@@ -105,7 +104,7 @@ def _verify(pycolmap: Any, path: Path, threads: int) -> None:
         pycolmap.logging.minloglevel = level
 
 
-def _write_geometries(store: Store, pycolmap: Any, path: Path, numbers: dict[int, int]) -> None:
+def _write_geometries(store: Store, pycolmap: Any, path: Path) -> None:
     """Accepted epipolar geometries, in place of what COLMAP may have found for these pairs."""
     images = {number: replace(image, features=None) for number, _, image in store.detected()}
     database = pycolmap.Database.open(path)
@@ -116,9 +115,9 @@ def _write_geometries(store: Store, pycolmap: Any, path: Path, numbers: dict[int
                 records = np.frombuffer(matched.matches or b"", arrays.struct_type("asj_junction_match"))
                 pairs = np.stack([records["junction1"], records["junction2"]], axis=1)
                 geometry = _geometry(pycolmap, found, pairs, images[one], images[two])
-                if database.exists_two_view_geometry(numbers[one], numbers[two]):
-                    database.delete_two_view_geometry(numbers[one], numbers[two])
-                database.write_two_view_geometry(numbers[one], numbers[two], geometry)
+                if database.exists_two_view_geometry(one, two):
+                    database.delete_two_view_geometry(one, two)
+                database.write_two_view_geometry(one, two, geometry)
     finally:
         database.close()
 
@@ -184,20 +183,22 @@ class _Cameras:
             cx, cy = (_to_stored(detected) @ (cx, cy, 1))[:2] + 0.5
             key = (*size, fx, fy, cx, cy)
             if key not in self._shared:
-                self._shared[key] = self._write("PINHOLE", size, [fx, fy, cx, cy], True)
+                self._shared[key] = self._write(number, "PINHOLE", size, [fx, fy, cx, cy], True)
             return self._shared[key]
         known = self._given[0] if self._given else detected.focal
         focal = focal_of(known, self._found.get(number), max(size))
-        return self._write("SIMPLE_RADIAL", size, [focal, size[0] / 2, size[1] / 2, 0.0], known is not None)
+        return self._write(number, "SIMPLE_RADIAL", size, [focal, size[0] / 2, size[1] / 2, 0.0], known is not None)
 
-    def _write(self, model: str, size: tuple[int, int], parameters: list[float], known: bool) -> int:
-        camera = self._pycolmap.Camera(model=model, width=size[0], height=size[1], params=parameters)
+    def _write(self, number: int, model: str, size: tuple[int, int], parameters: list[float], known: bool) -> int:
+        camera = self._pycolmap.Camera(camera_id=number, model=model, width=size[0], height=size[1], params=parameters)
         camera.has_prior_focal_length = known
-        return int(self._database.write_camera(camera))
+        return int(self._database.write_camera(camera, use_camera_id=True))
 
 
-def _image(database: Any, pycolmap: Any, name: str, camera: int, detected: Detected, moved: NDArray[np.float32] | None) -> int:
-    number = database.write_image(pycolmap.Image(name=name, camera_id=camera))
+def _image(
+    database: Any, pycolmap: Any, number: int, name: str, camera: int, detected: Detected, moved: NDArray[np.float32] | None
+) -> None:
+    database.write_image(pycolmap.Image(image_id=number, name=name, camera_id=camera), use_image_id=True)
     points = key_points(np.frombuffer(detected.features or b"", arrays.struct_type("asj_junction")))
     if moved is not None:
         points[:, :2] = moved + np.float32(0.5)
@@ -205,7 +206,6 @@ def _image(database: Any, pycolmap: Any, name: str, camera: int, detected: Detec
     points[:, :2] = orientation.turn(matrix, points[:, :2] - np.float32(0.5)) + np.float32(0.5)
     points[:, 2:] = (matrix[:2, :2] @ points[:, 2:].reshape(-1, 2, 2)).reshape(-1, 4)
     database.write_keypoints(number, points)
-    return int(number)
 
 
 def key_points(junctions: NDArray[Any]) -> NDArray[np.float32]:

@@ -27,13 +27,11 @@ def write(store: Store, folder: Path) -> None:
     earlier = _numbers(folder / "images.txt")
     (folder / "segments").mkdir(parents=True, exist_ok=True)
     (folder / "matches").mkdir(exist_ok=True)
-    numbers: dict[int, int] = {}
     names = []
     written: set[Path] = set()
-    for image, name, detected in store.detected():
+    for number, name, detected in store.detected():
         if detected.features is None:
             continue
-        number = numbers[image] = len(numbers) + 1
         names.append(f"{number} {json.dumps(name) if len(name.splitlines()) > 1 else name}\n")
         junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
         segments, branches = segments_of(junctions)
@@ -49,7 +47,7 @@ def write(store: Store, folder: Path) -> None:
         if matched.lines is None:
             continue
         lines = np.frombuffer(matched.lines, np.uint32).reshape(-1, 2)
-        written.add(path := folder / "matches" / f"matches_{numbers[one]}_{numbers[two]}.txt")
+        written.add(path := folder / "matches" / f"matches_{one}_{two}.txt")
         with whole_file(path) as temporary:
             temporary.write_text("".join(f"{i} {j}\n" for i, j in lines.tolist()), encoding="ascii")
     for kind in ("segments", "matches"):

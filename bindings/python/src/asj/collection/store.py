@@ -15,6 +15,7 @@ from .plan import Plan, camera_of
 from .tasks import Detected, Matched
 
 _FORMAT = "asj-collection-3"
+_HIGHEST = "highest image"  # the highest number that an image has had: with it, no other image gets one that was in use
 _SCHEMA = """
 CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT;
 CREATE TABLE images (
@@ -47,7 +48,7 @@ class Store:
         numbers = {name: number for number, name in enumerate(plan.images, 1)}
         with connection:
             connection.executescript("BEGIN;" + _SCHEMA)
-            connection.executemany("INSERT INTO about VALUES (?, ?)", _about(plan).items())
+            connection.executemany("INSERT INTO about VALUES (?, ?)", [*_about(plan).items(), (_HIGHEST, str(len(numbers)))])
             rows = [(number, name, _stamp(plan.folder / name)) for name, number in numbers.items()]
             connection.executemany("INSERT INTO images (id, name, stamp) VALUES (?, ?, ?)", rows)
             connection.executemany(
@@ -105,6 +106,11 @@ class Store:
         """Number and stamp of every image by its name."""
         return {name: (number, stamp) for number, name, stamp in self._connection.execute("SELECT id, name, stamp FROM images ORDER BY id")}
 
+    def _highest(self) -> int:
+        """0 in a store of a version that did not keep it."""
+        row = self._connection.execute("SELECT value FROM about WHERE key = ?", (_HIGHEST,)).fetchone()
+        return int(row[0]) if row else 0
+
     def _pairs(self) -> dict[tuple[str, str], int]:
         """The number of every pair of names."""
         rows = self._connection.execute(
@@ -117,6 +123,7 @@ class Store:
         connection, stamps, pairs = self._connection, self._stamps(), self._pairs()
         now = {name: _stamp(plan.folder / name) for name in plan.images}
         wanted = set(plan.pairs)
+        highest = max(self._highest(), *(number for number, _ in stamps.values()), 0)
         connection.executemany("DELETE FROM pairs WHERE id = ?", [(number,) for names, number in pairs.items() if names not in wanted])
         connection.executemany("DELETE FROM images WHERE id = ?", [(number,) for name, (number, _) in stamps.items() if name not in now])
         changed = [(now[name], number) for name, (number, stamp) in stamps.items() if name in now and now[name] != stamp]
@@ -130,7 +137,9 @@ class Store:
             "UPDATE pairs SET state = 'waiting', error = NULL, matches = NULL, lines = NULL, geometry = NULL "
             f"WHERE state <> 'waiting' AND (image1 IN {without} OR image2 IN {without})"
         )
-        connection.executemany("INSERT INTO images (name, stamp) VALUES (?, ?)", [(name, now[name]) for name in plan.images if name not in stamps])
+        new = [(number, name, now[name]) for number, name in enumerate((name for name in plan.images if name not in stamps), highest + 1)]
+        connection.executemany("INSERT INTO images (id, name, stamp) VALUES (?, ?, ?)", new)
+        connection.execute("INSERT OR REPLACE INTO about VALUES (?, ?)", (_HIGHEST, str(highest + len(new))))
         numbers = {name: number for name, (number, _) in self._stamps().items()}
         connection.executemany(
             "INSERT INTO pairs (image1, image2) VALUES (?, ?)", [(numbers[one], numbers[two]) for one, two in plan.pairs if (one, two) not in pairs]
