@@ -82,5 +82,5 @@ on_aarch64() {
     say 'Building in build-aarch64/'
     configure build-aarch64 --cross-file "$arm/cross.ini" -Dio=disabled -Dopencv=disabled -Dcairo=disabled -Dcli=disabled \
         -Dopencl=disabled -Dthreads=enabled -Dsimd=enabled -Dtests=auto --werror &&
-        logged build-build-aarch64 ninja -C "$folder" $targets && run_tests build-aarch64 $wanted --timeout-multiplier 4
+        logged build-build-aarch64 ninja -C "$folder" $targets && run_tests build-aarch64 $wanted --timeout-multiplier 12
 }

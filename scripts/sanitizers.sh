@@ -31,12 +31,10 @@ with_memory_sanitizer() {
 }
 
 all_harnesses='arguments detect match geometry features image junctions probe'
-fuzz_nice= # what runs a fuzzer
-
 # fuzz_one SECONDS HARNESS: leaves one line of what it did.
 fuzz_one() {
     mkdir -p "$root/build-fuzz/found-$2"
-    logged "fuzz-$2" $fuzz_nice "$root/build-fuzz/tests/fuzz/fuzz-$2" -max_total_time="$1" -max_len=4096 -timeout=300 \
+    logged "fuzz-$2" "$root/build-fuzz/tests/fuzz/fuzz-$2" -max_total_time="$1" -max_len=4096 -timeout=300 \
         -rss_limit_mb=4096 -artifact_prefix="$root/build-fuzz/finding-$2-" "$root/build-fuzz/found-$2" \
         "$root/tests/fuzz/corpus/$2" || return 1
     sed -n "s/^Done \([0-9]*\) runs in \([0-9]*\).*/fuzz-$2: \1 executions in \2 s/p" "$logs/fuzz-$2.log"
@@ -50,30 +48,6 @@ build_fuzzers() {
     done
     sanitized build-fuzz "$targets" -Dfuzz=enabled -Db_sanitize=address,undefined -Dthreads=disabled -Dopencl=disabled \
         -Dio=enabled -Dc_args='-fsanitize=fuzzer-no-link -fno-sanitize-recover=undefined'
-}
-
-# start_fuzzers SECONDS: one after the other, for each, with what other steps leave of the processors.
-start_fuzzers() {
-    build_fuzzers $all_harnesses || return 1
-    seconds=$1
-    fuzz_nice='nice -n 19'
-    (
-        state_of_fuzzers=0
-        for harness in $all_harnesses; do
-            fuzz_one "$seconds" "$harness" || state_of_fuzzers=1
-        done
-        exit $state_of_fuzzers
-    ) > "$logs/fuzzers.log" 2>&1 &
-    fuzzers=$!
-}
-
-# What those have done.
-finish_fuzzers() {
-    [ -n "${fuzzers-}" ] || return 1
-    wait "$fuzzers"
-    state_of_fuzzers=$?
-    cat "$logs/fuzzers.log"
-    return $state_of_fuzzers
 }
 
 # with_fuzzer SECONDS [HARNESS...], for each harness, two at a time. What it finds is in build-fuzz/finding-*.

@@ -14,8 +14,8 @@ usage: sh scripts/test.sh [--all]
 Installs what is missing (apt-get), builds everything in build-test/ and runs all tests.
 --all, or CI=true in the environment, takes warnings as errors, and also checks the style of the sources, runs the tests in a build
 by clang under the address and undefined-behaviour sanitizers and in builds with fewer parts, a few programs under the thread and
-the memory sanitizer, half a minute of each fuzzer, runs the tests of the core for 64-bit ARM under emulation, compares results with
-those of other machines, and uses an installed library from other programs.
+the memory sanitizer, a quarter of a minute of each fuzzer, runs the tests of the core for 64-bit ARM under emulation, compares
+results with those of other machines, and uses an installed library from other programs.
 Exit code: 0 everything passed, 1 something failed, 2 wrong usage, 3 packages are missing and cannot be installed here.
 END
 }
@@ -25,6 +25,7 @@ failed=0
 skipped=0
 broken= # names of the steps that failed
 bad_ends= # what the tests that failed have printed last
+patience=1 # how many times longer than alone a test may take
 
 # step NAME COMMAND...: goes on when the command fails, and remembers.
 step() {
@@ -63,7 +64,7 @@ run_tests() {
     record=$folder/meson-logs/testlog.json
     shift
     rm -f "$record"
-    meson test -C "$folder" --no-rebuild --print-errorlogs "$@" < /dev/null
+    meson test -C "$folder" --no-rebuild --print-errorlogs --timeout-multiplier "$patience" "$@" < /dev/null
     state=$?
     [ -e "$record" ] || return 1
     all=$(grep -c '' "$record")
@@ -72,10 +73,10 @@ run_tests() {
     passed=$((passed + good))
     skipped=$((skipped + left_out))
     failed=$((failed + all - good - left_out))
-    what_failed "$record" > "$logs/failed-tests.log"
-    [ ! -s "$logs/failed-tests.log" ] || bad_ends="$bad_ends
+    ends=$(what_failed "$record")
+    [ -z "$ends" ] || bad_ends="$bad_ends
 In $folder/:
-$(cat "$logs/failed-tests.log")"
+$ends"
     # and the reason that the test has printed
     sed -n 's/^{"name": "\([^"]*\)".*"result": "SKIP".*/skipped: \1&/p' "$record" |
         sed 's/{"name".*SKIPPED: \([^"\\]*\).*/: \1/; s/{"name".*//'
@@ -151,11 +152,9 @@ with_sanitizers() {
     folder=$root/build-sanitize
     logged sanitize-accuracy "$folder/tests/accuracy/accuracy" --scenes 2 &
     scenes=$!
-    trap 'kill "$scenes" 2> /dev/null; exit 130' INT TERM
     state_of_tests=0
-    run_tests build-sanitize $quick_with_upsampled --no-suite fails --no-suite device-images --timeout-multiplier 4 ||
+    run_tests build-sanitize $quick_with_upsampled --no-suite fails --no-suite device-images --timeout-multiplier 12 ||
         state_of_tests=1
-    trap - INT TERM
     wait "$scenes" && [ "$state_of_tests" = 0 ]
 }
 
@@ -203,20 +202,52 @@ on_machines() {
     return $state_of_machines
 }
 
-more_checks() {
-    step style sh "$root/scripts/style.sh"
-    step fuzzers-begin start_fuzzers 15 # beside all that follows
+# What takes one processor as a rule, or waits; beside what takes all of them.
+small_checks() {
     step python python_package
-    step sanitizers with_sanitizers
-    step fewer-parts fewer_parts
-    step no-cli build build-no-cli -Dcli=disabled -Dtests=disabled --werror -Doptimization=0 # it need not run
-    step core core_alone
+    step machines on_machines
     step install sh "$root/scripts/install_check.sh"
     step aarch64 on_aarch64
-    step machines on_machines
     step threads with_thread_sanitizer
     step memory with_memory_sanitizer
-    step fuzzers finish_fuzzers
+    step fuzzers with_fuzzer 15
+}
+
+start_small_checks() {
+    : > "$logs/small-checks.ends"
+    echo '0 0 0 small-checks' > "$logs/small-checks.sums"
+    (
+        trap - INT TERM
+        passed=0 failed=0 skipped=0 broken= bad_ends=
+        small_checks
+        printf '%s' "$bad_ends" > "$logs/small-checks.ends"
+        echo "$passed $failed $skipped $broken" > "$logs/small-checks.sums"
+    ) > "$logs/small-checks.log" 2>&1 &
+    small=$!
+    trap 'kill "$small" 2> /dev/null; exit 130' INT TERM
+}
+
+# What those have said, and what they have counted.
+finish_small_checks() {
+    wait "$small"
+    trap - INT TERM
+    say
+    cat "$logs/small-checks.log"
+    read -r more_passed more_failed more_skipped more_broken < "$logs/small-checks.sums"
+    passed=$((passed + more_passed)) failed=$((failed + more_failed)) skipped=$((skipped + more_skipped))
+    broken="$broken${more_broken:+ }$more_broken"
+    bad_ends="$bad_ends$(cat "$logs/small-checks.ends")"
+}
+
+all_checks() {
+    step style sh "$root/scripts/style.sh"
+    start_small_checks
+    step tests build_and_test build-test '--no-suite faults' -Dauto_features=enabled --werror # faults: under the sanitizers
+    step sanitizers with_sanitizers
+    step fewer-parts fewer_parts
+    step core core_alone
+    step no-cli build build-no-cli -Dcli=disabled -Dtests=disabled --werror -Doptimization=0 # it need not run
+    finish_small_checks
 }
 
 everything=${CI-}
@@ -238,9 +269,11 @@ start_of_all=$(date +%s)
 ASJ_REQUIRE_OPENCL=1 # a test that finds no device fails: PoCL is there
 export ASJ_REQUIRE_OPENCL
 if [ "$everything" = true ]; then
-    need cmocka clang mandoc venv opencl pocl oclgrind locale
-    step tests build_and_test build-test '--no-suite faults' -Dauto_features=enabled --werror # faults: under the sanitizers
-    more_checks
+    need cmocka clang mandoc venv opencl pocl oclgrind ccache locale
+    CCACHE_DIR=$root/out/ccache # builds with fewer parts compile much of the same
+    export CCACHE_DIR
+    patience=4
+    all_checks
 else
     need cmocka mandoc venv opencl pocl locale
     step tests build_and_test build-test '' -Dauto_features=enabled
