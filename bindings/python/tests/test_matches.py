@@ -114,6 +114,10 @@ def test_options(pair: tuple[asj.Features, asj.Features]) -> None:
     assert len(asj.match(*pair, ratio=10)) <= len(asj.match(*pair))
     with pytest.raises(asj.OptionError, match="did you mean"):
         asj.match(*pair, ratoi=2)
+    with pytest.raises(asj.OptionError, match="did you mean geometry"):
+        asj.match(*pair, geometri="auto")
+    with pytest.raises(asj.OptionError, match="did you mean stretch"):
+        asj.match_images(pair[0].image, pair[1].image, strech=2)
 
 
 def test_features_are_described_once(pair: tuple[asj.Features, asj.Features]) -> None:

@@ -250,7 +250,7 @@ def detect(
     >>> sorted(np.round(detect(square, preset="default", region=(0, 0, 100, 200)).xy).astype(int).tolist())
     [[60, 60], [60, 140]]
     """
-    record = DETECTOR.fill(preset, options)
+    record = DETECTOR.fill(preset, options, ("preset", "context", "white", "mask", "region"))
     view = images.view(image, white)
     part = ffi.new("asj_region *")
     if region is not None:

@@ -177,6 +177,9 @@ def _first_segments(features: Features) -> NDArray[np.int64]:
     return np.cumsum(counts) - counts
 
 
+_KEYWORDS = ("geometry", "camera1", "camera2", "find_focal", "preset", "context")
+
+
 def match(
     features1: Features, features2: Features, *, geometry: str = "none", camera1: Camera | None = None, camera2: Camera | None = None,
     find_focal: bool = False, preset: str = "default", context: Context | None = None,
@@ -203,7 +206,7 @@ def match(
         if features.preset == "default" and preset != "paper":
             warnings.warn('features of asj.detect(preset="default") give fewer matches; use preset="match"', stacklevel=2)
             break
-    record = MATCHER.fill(preset, options)
+    record = MATCHER.fill(preset, options, _KEYWORDS)
     cameras = (camera1, camera1 if camera2 is None else camera2)
     fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in (features1, features2)], find_focal)
     context = context or current()
@@ -246,7 +249,7 @@ def match_images(
     if not isinstance(stretch, str) and x == 0 and y == 0:
         raise ValueError("a stretch of 0")
     factors = ffi.new("asj_stretch *", {"x": float(x), "y": float(y)})
-    record = MATCHER.fill(preset, options)
+    record = MATCHER.fill(preset, options, ("stretch", *_KEYWORDS))
     cameras = (camera1, camera1 if camera2 is None else camera2)
     fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in views], find_focal)
     detector = DETECTOR.fill("paper" if preset == "paper" else "match", {})

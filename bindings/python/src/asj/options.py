@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import difflib
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
@@ -46,8 +46,9 @@ class _Table:
         self.rows = [_info(info, MappingProxyType({name: of[text(info.key)] for name, of in values.items()})) for info in table]
         self._image_keys = [info.key for info in self.rows if info.group in _IMAGE_GROUPS or info.key in ("neighbours", "separation")]
 
-    def fill(self, preset: str, values: Mapping[str, object]) -> Any:
-        """A C struct with the preset's values and those given."""
+    def fill(self, preset: str, values: Mapping[str, object], keywords: Sequence[str] = ()) -> Any:
+        """A C struct with the preset's values and those given. keywords: what else the function takes, for the hint when a name is
+        mistyped."""
         if preset not in PRESETS:
             raise OptionError(f"there is no preset {preset!r}{_like(str(preset), PRESETS)}: one of {', '.join(PRESETS)}")
         options = ffi.new(f"{self.struct} *")
@@ -55,19 +56,19 @@ class _Table:
         if status != lib.ASJ_OK:
             raise error(status, f"the {self.what} has no preset {preset!r}")
         for key, value in values.items():
-            self._assign(options, key, value)
+            self._assign(options, key, value, keywords)
         return options
 
     def of_an_image(self, options: Any) -> tuple[str, ...]:
         """The values of the matcher's options that concern one image alone (asj_features_create())."""
         return tuple(self._value(options, key) for key in self._image_keys)
 
-    def _assign(self, options: Any, key: str, value: object) -> None:
+    def _assign(self, options: Any, key: str, value: object, keywords: Sequence[str]) -> None:
         message = ffi.new("char[512]")
         status = self._set(options, key.encode(), _written(value).encode(), message, 512)
         said = text(message)
         if status != lib.ASJ_OK:
-            hint = "" if key in self.keys else _like(key, self.keys)
+            hint = "" if key in self.keys else _like(key, [*self.keys, *keywords])
             raise error(status, (said or f"there is no option {key!r}") + hint)
         if said:
             warnings.warn(said, DeprecationWarning, stacklevel=5)
