@@ -46,6 +46,19 @@ static double factor_of(const asj_focal_profile *p, const asj_model *m)
     return m->cameras[0].fx / p->prior->cameras[0].fx;
 }
 
+static int32_t shows_directions(const asj_focal_profile *p, double factor)
+{
+    return p->prior->edges && asj_log_focal_share(p->prior, factor) >= LEAST_SHARE;
+}
+
+/* Of the focal length, as the set is turned to it: where directions are left out, what is left of the density of rotations is the
+ * half without them (focal_prior.c). */
+static double log_prior_of(const asj_focal_profile *p, const asj_model *m)
+{
+    const double factor = factor_of(p, m), rest = p->prior->edges && !shows_directions(p, factor) ? log(0.5) : 0;
+    return asj_log_focal_prior(p->prior, factor) + rest;
+}
+
 asj_status asj_focal_turn(asj_focal_profile *p, double factor)
 {
     asj_directions_list directions[2] = {{.count = 0}, {.count = 0}};
@@ -53,7 +66,7 @@ asj_status asj_focal_turn(asj_focal_profile *p, double factor)
     if (!p->prior->edges)
         return p->status;
     const double share = asj_log_focal_share(p->prior, factor);
-    const int32_t shown = share >= LEAST_SHARE;
+    const int32_t shown = shows_directions(p, factor);
     if (shown && p->status == ASJ_OK)
         p->status = asj_focal_directions(p->context, p->prior, factor, directions);
     asj_focal_cameras(p->prior, factor, cameras);
@@ -109,7 +122,7 @@ static int32_t refine(asj_focal_profile *p, const asj_model *from, const asj_mod
     if (!asj_model_complete(to))
         return 0;
     asj_adjust_like(p->set, to, from, ROUNDS, p->scratch);
-    to->evidence = asj_log_evidence(p->set, to, p->scratch) + asj_log_focal_prior(p->prior, factor_of(p, to));
+    to->evidence = asj_log_evidence(p->set, to, p->scratch) + log_prior_of(p, to);
     return isfinite(to->evidence);
 }
 
@@ -221,7 +234,7 @@ static void judge(asj_focal_profile *p, asj_focal *found)
     found->is_known = steps >= FEWEST && found->sd <= KNOWN && !cut && set_along(p, found);
     if (asj_focal_turn(p, factor_of(p, &found->model)) != ASJ_OK)
         return;
-    const double log_prior = asj_log_focal_prior(p->prior, factor_of(p, &found->model));
+    const double log_prior = log_prior_of(p, &found->model);
     found->model.evidence -= log_prior;
     asj_settle(p->context, p->set, p->seed, p->scratch, &found->model);
     found->log_share = log_prior + mean_weight;
@@ -236,7 +249,10 @@ asj_status asj_focal_follow(asj_focal_profile *p, const asj_model *start, asj_fo
     *middle = *start;
     if (asj_focal_turn(p, factor_of(p, start)) != ASJ_OK)
         return p->status;
-    middle->evidence = asj_log_evidence(p->set, middle, p->scratch) + asj_log_focal_prior(p->prior, factor_of(p, middle));
-    judge(p, found);
+    middle->evidence = asj_log_evidence(p->set, middle, p->scratch) + log_prior_of(p, middle);
+    if (isfinite(middle->evidence))
+        judge(p, found);
+    else
+        found->model = *start;
     return p->status;
 }

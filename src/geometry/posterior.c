@@ -288,6 +288,7 @@ void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_a
     if (model->kind != ASJ_GEOMETRY_ESSENTIAL)
         return;
     asj_climb(set, model, &scratch[0]);
+    model->evidence = asj_log_evidence(set, model, &scratch[0]);
     if (!start(set, model, &scratch[0], &c, &log_planes))
         return;
     if (largest_sd(model->covariance) > MOST_SD) { /* a direction that nothing determines has no middle */
