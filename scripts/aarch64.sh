@@ -56,7 +56,7 @@ END
 }
 
 # Tests that reach vector code or threads; under emulation the others would take as long again and run the same portable C.
-arm_units='memory context image gradient field isotropic line_fit locate scan strip stages allocation patch align consensus'
+arm_units='memory context image gradient field isotropic locate strip stages patch align'
 
 on_aarch64() {
     if ! arm_install; then

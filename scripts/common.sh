@@ -95,7 +95,6 @@ look_for() {
         pocl) want 'pocl-opencl-icd ocl-icd-libopencl1' has_opencl_driver ;;
         locale) want locales has_comma_locale ;;
         oclgrind) want oclgrind oclgrind --version ;;
-        ccache) want ccache ccache --version ;;
         mandoc) want mandoc eval 'printf ".Dd 1 January 2026\n" | mandoc -T lint -W fatal' ;;
         esac
     done
@@ -128,7 +127,7 @@ apt() {
         apt-get -q -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# need [cmocka] [clang] [mandoc] [venv] [opencl] [pocl] [oclgrind] [ccache] [locale]: installs what is missing for the build, and
+# need [cmocka] [clang] [mandoc] [venv] [opencl] [pocl] [oclgrind] [locale]: installs what is missing for the build, and
 # for these.
 need() {
     mkdir -p "$logs" && [ -w "$logs" ] || fail "cannot write into $logs"

@@ -70,14 +70,15 @@ fully_static() {
     [ "$("$work/whole" 2>&1)" = "$version" ] || { echo 'a fully static program fails'; exit 1; }
 }
 
-# subproject: a project that asks for the static library gets it, and no shared one is built.
+# subproject: a project that asks for the static library gets it, and no shared one is built; files are read without the program.
 subproject() {
     mkdir -p "$work/user/subprojects"
     cp "$work/core.c" "$work/user"
     ln -s "$root" "$work/user/subprojects/asj"
     cat > "$work/user/meson.build" << 'END'
 project('user', 'c')
-asj = dependency('asj', static: true, fallback: 'asj', default_options: ['io=disabled', 'tests=disabled', 'optimization=0'])
+asj = dependency('asj', static: true, fallback: 'asj',
+  default_options: ['io=enabled', 'cli=disabled', 'tests=disabled', 'optimization=0'])
 executable('core', 'core.c', dependencies: asj)
 END
     { meson setup "$work/user/build" "$work/user" --force-fallback-for=asj && meson compile -C "$work/user/build"; } \

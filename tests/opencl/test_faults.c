@@ -4,7 +4,7 @@
  * gives the right result in any case. Nothing is left behind: no memory, no object of OpenCL. The same where there is nothing to
  * use: a platform without devices, a library that is none.
  *
- * usage: test_faults PATH-OF-STUB [STEP]. With a step, only the first three calls from each place in the library, and
+ * usage: test_faults PATH-OF-STUB [STEP]. With a step, only the first two calls from each place in the library, and
  * every so many of the others. Exit code 77 = there is no device, unless ASJ_REQUIRE_OPENCL is 1. */
 #define _POSIX_C_SOURCE 200809L
 #include "core/context.h"
@@ -216,13 +216,13 @@ static void trace(const setting *set)
     memcpy(sites, stub->sites, (size_t)traced * sizeof *sites);
 }
 
-/* Is call n among the first three that come from its place in the library? */
+/* Is call n among the first two that come from its place in the library? */
 static int is_new(int64_t n)
 {
     int before = 0;
     for (int64_t i = 0; i < n - 1 && n <= traced; i++)
         before += sites[i] == sites[n - 1];
-    return before < 3;
+    return before < 2;
 }
 
 /* The next call that is to fail. With a step, all that are new, and every so many of the others. */

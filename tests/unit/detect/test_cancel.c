@@ -7,11 +7,11 @@
 
 #include <time.h>
 
-enum { SIDE = 400, SQUARE = 5 };
-
 #ifdef ASJ_IS_SANITIZED
+enum { SIDE = 200, SQUARE = 5 };
 #define LONGEST 3000.0 /* ms */
 #else
+enum { SIDE = 400, SQUARE = 5 };
 #define LONGEST 300.0
 #endif
 
