@@ -55,7 +55,8 @@ endian = 'little'
 END
 }
 
-# Tests that reach vector code or threads; under emulation the others would take as long again and run the same portable C.
+# Parity runs the vector forms of all operations. Of the unit tests some that reach them or threads; under emulation the others
+# would take as long again.
 arm_units='memory context image gradient field isotropic locate strip stages patch align'
 
 on_aarch64() {

@@ -31,6 +31,7 @@ with_memory_sanitizer() {
 }
 
 all_harnesses='arguments detect match geometry features image junctions probe'
+
 # fuzz_one SECONDS HARNESS: leaves one line of what it did.
 fuzz_one() {
     mkdir -p "$root/build-fuzz/found-$2"

@@ -46,6 +46,13 @@ void unit_context_free(unit_counter *counter, asj_context **context);
  * this is 0, not until a call succeeds: what does without some memory would end it too soon. */
 int unit_reached(unit_counter *counter);
 
+/* From one allocation that fails to the next, in tests that take long: under sanitizers every fourth is enough. */
+#ifdef ASJ_IS_SANITIZED
+enum { UNIT_ALLOCATION_STEP = 4 };
+#else
+enum { UNIT_ALLOCATION_STEP = 1 };
+#endif
+
 /* Pixels of a scene, freed with free(); the scene is freed too. Never NULL: fails the test. */
 uint8_t *unit_picture(synth_scene *scene, double blur, double noise, uint64_t seed);
 asj_image unit_gray8(const uint8_t *pixels, int32_t width, int32_t height);

@@ -601,7 +601,7 @@ static void test_arguments(void **state)
     assert_int_equal(asj_detect(f->context, &large, NULL, &found), ASJ_ERROR_LIMIT);
 }
 
-/* Each option out of its range, on either side: refused by name, by both functions. */
+/* `radii` where the option is a set of them, else `number`. */
 static void put_option(asj_detect_options *options, const asj_option_info *row, double number, uint32_t radii)
 {
     char *field = (char *)options + row->offset;
@@ -615,6 +615,7 @@ static void put_option(asj_detect_options *options, const asj_option_info *row, 
     }
 }
 
+/* Each option out of its range, on either side: refused by name, by both functions. */
 static void test_bad_options(void **state)
 {
     const fixture *f = *state;

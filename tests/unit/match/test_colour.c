@@ -412,13 +412,6 @@ static void colours_are_kept(void **state)
     asj_features_free(&loaded[1]);
 }
 
-/* Every allocation once, every fourth where it takes long. */
-#ifdef ASJ_IS_SANITIZED
-enum { STEP = 4 };
-#else
-enum { STEP = 1 };
-#endif
-
 static void every_allocation_may_fail(void **state)
 {
     (void)state;
@@ -434,7 +427,7 @@ static void every_allocation_may_fail(void **state)
     unit_context_free(&plenty, &rich);
     for (int32_t what = 0; what < 3; what++) {
         int reached = 1;
-        for (long n = 1; n < 2000 && reached; n += STEP) {
+        for (long n = 1; n < 2000 && reached; n += UNIT_ALLOCATION_STEP) {
             unit_counter counter = {0};
             asj_context *poor = unit_context(&counter, 1);
             asj_match_result *result = NULL;

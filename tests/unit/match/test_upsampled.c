@@ -469,13 +469,7 @@ static asj_junction *left_part(const asj_detection *detection, float x, uint32_t
     return list;
 }
 
-#ifdef ASJ_IS_SANITIZED
-enum { STEP = 4 };
-#else
-enum { STEP = 1 };
-#endif
-
-/* Every allocation once (every fourth where it takes long), each in a run of its own; the library may do without one, and then
+/* Every allocation once (UNIT_ALLOCATION_STEP), each in a run of its own; the library may do without one, and then
  * there is a result. Of a part of the images, which is enough for the upsampled ones to hold. */
 static void out_of_memory(void **state)
 {
@@ -485,7 +479,7 @@ static void out_of_memory(void **state)
     asj_junction *part[2];
     for (int32_t side = 0; side < 2; side++)
         part[side] = left_part(views[side].upsampled, PART, &counts[side]);
-    for (long n = 1; n < 2000 && reached; n += STEP) {
+    for (long n = 1; n < 2000 && reached; n += UNIT_ALLOCATION_STEP) {
         unit_counter counter = {0, 0, 0, 0};
         asj_context *poor = unit_context(&counter, 1);
         asj_match_result *result = NULL;
