@@ -244,7 +244,7 @@ asj_status asj_match_images(asj_context *context, const asj_image *image1, const
     if (status == ASJ_OK)
         status = is_automatic(wanted) ? look_for_answer(&s) : look(&s, wanted, s.detect_options, s.options, 0, 1, &s.best);
     if (status == ASJ_OK)
-        status = asj_finish_pose(context, &s.options->geometry, &s.best);
+        status = asj_finish_pose(context, &s.best);
     if (status != ASJ_OK) {
         asj_match_result_free(&s.best);
         return status;

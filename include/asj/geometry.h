@@ -91,7 +91,8 @@ typedef struct asj_geometry {
     double covariance[36];   /* of the rotation (vector w with R_true = exp([w]x) R, rad) and the translation, 6 x 6, row by row;
                               * from the spread of all motions that the candidates allow. (asj_match(): before the pose was finished
                               * from where the matches lie, src/match/final_pose.c) */
-    double focal[2];         /* px: fx of the cameras that the motion was estimated with, given or found; 0 without a motion */
+    asj_camera cameras[2];   /* of image 1 and image 2: those that the motion was estimated with, given or found; fx is 0 without a
+                              * motion */
     double log10_nfa;        /* log10 of how often chance brings such a geometry in a pair of unrelated images */
     double rival_log10_nfa;  /* .. the best other one, which has other matches: its rival */
     double inliers;          /* sum of the candidates' probabilities */

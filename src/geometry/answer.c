@@ -64,7 +64,8 @@ static double add_focal(const asj_focal *focal, asj_geometry *result)
 static void clear_pose(asj_geometry *result)
 {
     result->has_pose = 0;
-    result->focal[0] = result->focal[1] = result->focal_sd = 0;
+    result->focal_sd = 0;
+    memset(result->cameras, 0, sizeof result->cameras);
     memset(result->rotation, 0, sizeof result->rotation);
     memset(result->translation, 0, sizeof result->translation);
     memset(result->covariance, 0, sizeof result->covariance);
@@ -90,8 +91,7 @@ static int32_t set_pose(asj_estimation *e, int32_t number, asj_geometry *result)
     double sd = set_covariance(e, number, result->covariance);
     if (asj_has_found_focal(e, number) && e->focal.is_known)
         sd = hypot(sd, add_focal(&e->focal, result));
-    result->focal[0] = m->cameras[0].fx;
-    result->focal[1] = m->cameras[1].fx;
+    memcpy(result->cameras, m->cameras, sizeof result->cameras);
     result->has_pose = sd < POSE_SD;
     if (asj_has_found_focal(e, number) && (sd >= LOOSE_DIRECTION || !e->focal.is_known))
         clear_pose(result); /* a motion that is none tells no focal length */

@@ -86,6 +86,23 @@ static void put_rivals(asj_json_output *json, const asj_geometry *g)
     asj_json_put(json, ",\n\"geometry_rivals\": ", json_pack("[o, o]", best, rival), JSON_REAL_PRECISION(15));
 }
 
+/* fx, fy, cx and cy of both, or null. */
+static json_t *cameras_value(const asj_camera cameras[2])
+{
+    json_t *list = cameras[0].fx > 0 ? json_array() : json_null();
+    for (int v = 0; v < 2 && cameras[0].fx > 0; v++) {
+        const double four[] = {cameras[v].fx, cameras[v].fy, cameras[v].cx, cameras[v].cy};
+        list = asj_json_append(list, numbers(four, 4));
+    }
+    return list;
+}
+
+static json_t *focal_value(const asj_camera cameras[2])
+{
+    const double two[] = {cameras[0].fx, cameras[1].fx};
+    return two[0] > 0 ? numbers(two, 2) : json_null();
+}
+
 /* What was accepted, or null; the status says why not. */
 static void put_geometry(asj_json_output *json, const asj_geometry *g)
 {
@@ -94,11 +111,11 @@ static void put_geometry(asj_json_output *json, const asj_geometry *g)
     if (g->status == ASJ_GEOMETRY_NOT_ASKED)
         return;
     if (accepted)
-        value = json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:b}", "model", asj_geometry_model_name(g->model),
+        value = json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:b}", "model", asj_geometry_model_name(g->model),
                           "matrix", numbers(g->matrix, 9), "rotation", g->has_pose ? numbers(g->rotation, 9) : json_null(),
                           "translation", g->has_pose ? numbers(g->translation, 3) : json_null(),
                           "covariance", g->has_pose ? numbers(g->covariance, 36) : json_null(),
-                          "focal", g->focal[0] > 0 ? numbers(g->focal, 2) : json_null(), "focal_sd",
+                          "cameras", cameras_value(g->cameras), "focal", focal_value(g->cameras), "focal_sd",
                           g->focal_sd > 0 ? json_real(g->focal_sd) : json_null(), "log10_nfa", g->log10_nfa,
                           "inliers", g->inliers, "ambiguous", 0);
     asj_json_put(json, ",\n\"geometry\": ", value, JSON_REAL_PRECISION(15));

@@ -31,7 +31,8 @@ static int is_sound_corner(const asj_l_junction *l)
 
 static int is_sound_geometry(const asj_geometry *g)
 {
-    const double numbers[] = {g->focal[0], g->focal[1], g->focal_sd, g->log10_nfa, g->inliers};
+    const asj_camera *a = &g->cameras[0], *b = &g->cameras[1];
+    const double numbers[] = {a->fx, a->fy, a->cx, a->cy, b->fx, b->fy, b->cx, b->cy, g->focal_sd, g->log10_nfa, g->inliers};
     return g->status != ASJ_GEOMETRY_ACCEPTED ||
            (all_finite(numbers, sizeof numbers / sizeof numbers[0]) && all_finite(g->matrix, 9) && all_finite(g->rotation, 9) &&
             all_finite(g->translation, 3) && all_finite(g->covariance, 36));

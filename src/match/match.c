@@ -336,9 +336,9 @@ asj_status asj_match_look(asj_context *context, const asj_image *image1, const a
 }
 
 /* What comes at the end of a call of the caller's. */
-static asj_status finish_call(asj_context *context, const asj_match_options *options, double start, asj_match_result **result)
+static asj_status finish_call(asj_context *context, double start, asj_match_result **result)
 {
-    const asj_status status = asj_finish_pose(context, &options->geometry, result);
+    const asj_status status = asj_finish_pose(context, result);
     if (status == ASJ_OK)
         (*result)->total_ms = asj_clock_ms() - start;
     return status;
@@ -361,7 +361,7 @@ asj_status asj_match(asj_context *context, const asj_image *image1, const asj_ju
     asj_status status = asj_match_request_check(context, options);
     if (status == ASJ_OK)
         status = asj_match_look(context, image1, junctions1, count1, image2, junctions2, count2, options, 0, NULL, result);
-    return status == ASJ_OK ? finish_call(context, options, start, result) : status;
+    return status == ASJ_OK ? finish_call(context, start, result) : status;
 }
 
 static asj_status match_kept(asj_context *context, const asj_match_options *options, const void *data, int32_t upsampled,
@@ -420,5 +420,5 @@ asj_status asj_match_features(asj_context *context, const asj_features *features
     do
         status = asj_match_upsampled(context, options, &match, result);
     while (asj_backend_retry(context, status));
-    return status == ASJ_OK ? finish_call(context, options, start, result) : status;
+    return status == ASJ_OK ? finish_call(context, start, result) : status;
 }

@@ -110,11 +110,17 @@ void asj_unstretch_fundamental(double matrix[9], const asj_stretch by[2])
     unstretch_matrix(matrix, by, 0);
 }
 
+static void unstretch_camera(asj_camera *c, const asj_stretch *by)
+{
+    *c = (asj_camera){c->fx / by->x, c->fy / by->y, (c->cx + 0.5) / by->x - 0.5, (c->cy + 0.5) / by->y - 0.5};
+}
+
 void asj_unstretch_geometry(asj_geometry *geometry, const asj_stretch by[2])
 {
     unstretch_matrix(geometry->matrix, by, geometry->model == ASJ_GEOMETRY_HOMOGRAPHY);
-    geometry->focal[0] /= by[0].x;
-    geometry->focal[1] /= by[1].x;
+    for (int32_t v = 0; v < 2; v++)
+        if (geometry->cameras[v].fx > 0)
+            unstretch_camera(&geometry->cameras[v], &by[v]);
 }
 
 asj_camera asj_stretch_camera(const asj_camera *camera, const asj_stretch *by)

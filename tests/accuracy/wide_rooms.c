@@ -109,7 +109,7 @@ static void count(const settings *set, const synth_wide_pair *pair, const asj_ma
     sum->wrong += accepted && g->has_pose && error > 3;
     sum->far_off += accepted && g->has_pose && error > 30;
     if (accepted && g->focal_sd > 0)
-        sum->focals[sum->focal_count++] = fabs(g->focal[0] / pair->cameras[0].focal - 1);
+        sum->focals[sum->focal_count++] = fabs(g->cameras[0].fx / pair->cameras[0].focal - 1);
     sum->common += pair->common >= 1.0 / 3;
     sum->common_accepted += pair->common >= 1.0 / 3 && accepted;
     printf("%-7lu angle %2.0f scale %4.2f common %4.2f  %-10s %-11s log10 NFA %7.1f error %6.1f  matches %3u / %3u  %.0f ms",
@@ -117,7 +117,7 @@ static void count(const settings *set, const synth_wide_pair *pair, const asj_ma
            asj_geometry_model_name(g->model), g->log10_nfa, error, set->unrelated ? 0 : (unsigned)count_right(result, pair),
            (unsigned)result->match_count, result->total_ms);
     if (g->focal_sd > 0)
-        printf("  focal length %.0f (%.0f), sd %.3f", g->focal[0], pair->cameras[0].focal, g->focal_sd);
+        printf("  focal length %.0f (%.0f), sd %.3f", g->cameras[0].fx, pair->cameras[0].focal, g->focal_sd);
     if (set->poses && g->has_rival)
         printf("  second %.1f", g->rival_log10_nfa);
     if (set->poses && accepted && g->has_pose)

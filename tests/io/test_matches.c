@@ -362,6 +362,36 @@ static void json_has_what_is_rejected_without_a_geometry(void **state)
     json_decref(root);
 }
 
+/* The cameras that the motion was estimated with; of a geometry without a motion there are none. */
+static void json_has_the_cameras_of_a_motion(void **state)
+{
+    const double wanted[2][4] = {{700.5, 701.25, 319.5, 239.5}, {650, 660, 300.125, 250}};
+    asj_geometry *g = &result.geometry;
+    (void)state;
+    memset(g, 0, sizeof *g);
+    g->status = ASJ_GEOMETRY_ACCEPTED;
+    g->model = ASJ_GEOMETRY_ESSENTIAL;
+    g->has_pose = 1;
+    for (size_t v = 0; v < 2; v++)
+        g->cameras[v] = (asj_camera){wanted[v][0], wanted[v][1], wanted[v][2], wanted[v][3]};
+    json_t *root = read_json(write_report("cameras.json", ASJ_FILE_JSON));
+    json_t *cameras = need(need(root, "geometry"), "cameras"), *focal = need(need(root, "geometry"), "focal");
+    assert_int_equal(json_array_size(cameras), 2);
+    for (size_t v = 0; v < 2; v++) {
+        assert_int_equal(json_array_size(json_array_get(cameras, v)), 4);
+        for (size_t k = 0; k < 4; k++)
+            assert_true(json_number_value(json_array_get(json_array_get(cameras, v), k)) == wanted[v][k]);
+        assert_true(json_number_value(json_array_get(focal, v)) == wanted[v][0]);
+    }
+    json_decref(root);
+    memset(g->cameras, 0, sizeof g->cameras);
+    root = read_json(write_report("no_cameras.json", ASJ_FILE_JSON));
+    assert_true(json_is_null(need(need(root, "geometry"), "cameras")));
+    assert_true(json_is_null(need(need(root, "geometry"), "focal")));
+    json_decref(root);
+    memset(g, 0, sizeof *g);
+}
+
 /* The two motions that stay, and one of which nothing is known. */
 static void json_has_both_rivals(void **state)
 {
@@ -464,6 +494,9 @@ static void results_that_cannot_be_read_are_refused(void **state)
         expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, "geometry");
         result.geometry.matrix[which] = 0;
     }
+    result.geometry.cameras[1].cy = NAN;
+    expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, "geometry");
+    result.geometry.cameras[1].cy = 0;
     result.geometry.status = ASJ_GEOMETRY_NOT_ASKED;
     corners[1][3].bx = NAN;
     expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, "L-junction 3 of image 2");
@@ -481,6 +514,7 @@ int main(int argc, char **argv)
         cmocka_unit_test_setup(json_says_how_it_came_about, fill),
         cmocka_unit_test_setup(json_has_the_lines_beside_the_matches, fill),
         cmocka_unit_test_setup(json_has_what_is_rejected_without_a_geometry, fill),
+        cmocka_unit_test_setup(json_has_the_cameras_of_a_motion, fill),
         cmocka_unit_test_setup(json_has_both_rivals, fill),
         cmocka_unit_test_setup(json_can_do_with_the_result_alone, fill),
         cmocka_unit_test_setup(wrong_arguments_are_refused, fill),

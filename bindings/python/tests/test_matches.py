@@ -185,6 +185,7 @@ def test_rival_of_a_geometry() -> None:
     found = read_geometry(record)
     assert found is not None and not found and found.status == "ambiguous"
     assert found.rival_log10_nfa is None and found.rival_rotation is None and found.rival_translation is None
+    assert found.cameras is None and found.focal == (0, 0)
     record.has_rival, record.rival_log10_nfa = 1, -25.5
     record.rival_rotation = [0, -1, 0, 1, 0, 0, 0, 0, 1]
     record.rival_translation = [0, 0, -1]
@@ -203,6 +204,9 @@ def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:
     assert (found.probability > 0.5).mean() > 0.8 and found.geometry.rotation is None
     for camera in (500.0, (500, 500, 239.5, 179.5), np.array([[500, 0, 239.5], [0, 500, 179.5], [0, 0, 1]])):
         assert asj.match(*pair, geometry="auto", camera1=camera).geometry
+    posed = asj.match(*pair, geometry="essential", camera1=(600, 610, 300, 200), camera2=500).geometry
+    assert posed is not None and posed.cameras is not None and posed.focal == (600, 500)
+    assert posed.cameras[0].tolist() == [600, 610, 300, 200] and posed.cameras[1, 0] == posed.cameras[1, 1] == 500
     with pytest.raises(asj.OptionError, match="auto"):
         asj.match(*pair, geometry="affine")
     with pytest.raises(asj.OptionError, match="changes nothing"):

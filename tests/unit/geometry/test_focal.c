@@ -120,7 +120,7 @@ static asj_geometry estimate(asj_context *context, const scene *s, const asj_geo
     double probabilities[COUNT];
     assert_int_equal(asj_geometry_estimate(context, s->candidates, COUNT, o, probabilities, &g), ASJ_OK);
     check_probabilities(&g, probabilities);
-    double sum = g.log10_nfa + g.inliers + g.focal[0] + g.focal[1] + g.focal_sd;
+    double sum = g.log10_nfa + g.inliers + g.cameras[0].fx + g.cameras[1].fx + g.focal_sd;
     for (int k = 0; k < 36; k++)
         sum += g.covariance[k] + g.matrix[k % 9] + g.rotation[k % 9] + g.translation[k % 3];
     assert_true(isfinite(sum));
@@ -141,8 +141,8 @@ static void focal_lengths_are_found(void **state)
         const asj_geometry g = estimate(context, &s, &o);
         assert_int_equal(g.status, ASJ_GEOMETRY_ACCEPTED);
         assert_int_equal(g.model, ASJ_GEOMETRY_ESSENTIAL);
-        assert_true(g.focal_sd > 0 && g.focal_sd < 0.1 && g.focal[0] == g.focal[1]);
-        unit_near("focal length, in standard deviations", i, focal[i], log(g.focal[0] / focal[i]) / g.focal_sd, 0, 3);
+        assert_true(g.focal_sd > 0 && g.focal_sd < 0.1 && g.cameras[0].fx == g.cameras[1].fx);
+        unit_near("focal length, in standard deviations", i, focal[i], log(g.cameras[0].fx / focal[i]) / g.focal_sd, 0, 3);
         double rest[9];
         asj_multiply3_transposed(g.rotation, s.rotation, rest);
         unit_near("rotation, deg", i, 0, asj_rotation_angle(rest) * 180 / UNIT_PI, 0, 3);
@@ -190,7 +190,7 @@ static void many_sharp_matches_tell_it(void **state)
         assert_int_equal(asj_geometry_estimate(context, s.candidates, 3 * MANY, &o, NULL, &g), ASJ_OK);
         assert_int_equal(g.status, ASJ_GEOMETRY_ACCEPTED);
         assert_true(g.has_pose && g.focal_sd < 0.02);
-        unit_near("focal length, in standard deviations", (double)seed, 600, log(g.focal[0] / 600) / g.focal_sd, 0, 3);
+        unit_near("focal length, in standard deviations", (double)seed, 600, log(g.cameras[0].fx / 600) / g.focal_sd, 0, 3);
     }
     unit_context_free(&counter, &context);
 }
@@ -218,7 +218,7 @@ static void pixels_need_not_be_square(void **state)
         double rest[9];
         assert_int_equal(g.status, ASJ_GEOMETRY_ACCEPTED);
         assert_int_equal(g.model, ASJ_GEOMETRY_ESSENTIAL);
-        unit_near("focal length, in standard deviations", i, 600, log(g.focal[0] / both[0].x / 600) / g.focal_sd, 0, 3);
+        unit_near("focal length, in standard deviations", i, 600, log(g.cameras[0].fx / both[0].x / 600) / g.focal_sd, 0, 3);
         asj_multiply3_transposed(g.rotation, s.rotation, rest);
         unit_near("rotation, deg", i, 0, asj_rotation_angle(rest) * 180 / UNIT_PI, 0, 3);
         /* taken for square, they are another scene */
@@ -244,7 +244,7 @@ static void what_leaves_it_open_has_none(void **state)
         for (int32_t model = ASJ_GEOMETRY_AUTO; model <= ASJ_GEOMETRY_ESSENTIAL; model++) {
             const asj_geometry_options o = blind_options(model);
             const asj_geometry g = estimate(context, &s, &o);
-            assert_true(g.focal[0] == 0 && g.focal_sd == 0 && !g.has_pose && uncertainty(&g) == 0);
+            assert_true(g.cameras[0].fx == 0 && g.focal_sd == 0 && !g.has_pose && uncertainty(&g) == 0);
             if (model == ASJ_GEOMETRY_ESSENTIAL)
                 assert_true(g.status == ASJ_GEOMETRY_DEGENERATE || (i == 1 && g.status == ASJ_GEOMETRY_CHANCE));
             else

@@ -116,7 +116,7 @@ static asj_geometry_options options_for(int32_t model, int with_cameras)
 
 static int finite(const asj_geometry *g)
 {
-    double sum = g->log10_nfa + g->rival_log10_nfa + g->inliers + g->focal[0] + g->focal[1];
+    double sum = g->log10_nfa + g->rival_log10_nfa + g->inliers + g->cameras[0].fx + g->cameras[1].fx;
     for (int k = 0; k < 9; k++)
         sum += g->matrix[k] + g->rotation[k] + g->rival_rotation[k];
     for (int k = 0; k < 3; k++)

@@ -137,7 +137,7 @@ static void matrices_are_taken_back(void **state)
     (void)state;
     synth_random_seed(&random, 3);
     for (int32_t model = ASJ_GEOMETRY_FUNDAMENTAL; model <= ASJ_GEOMETRY_HOMOGRAPHY; model++) {
-        asj_geometry g = {.model = model, .focal = {600, 500}};
+        asj_geometry g = {.model = model, .cameras = {{600, 660, 63.5, 95.5}, {500, 400, 80, 7}}};
         double m[9];
         for (int k = 0; k < 9; k++)
             m[k] = g.matrix[k] = synth_random_between(&random, -1, 1);
@@ -161,8 +161,13 @@ static void matrices_are_taken_back(void **state)
             unit_near("x2' F x1, with the same factor as the line", 0, 0, here * before[1], there * after[1], 1e-9);
             unit_near("line", 0, 0, after[0] * before[1], after[1] * before[0] * 1.25, 1e-9);
         }
-        unit_near("focal length", 0, 0, g.focal[0], 300, 1e-9);
-        unit_near("focal length", 1, 0, g.focal[1], 400, 1e-9);
+        const asj_camera wanted[2] = {{300, 220, 31.5, 31.5}, {400, 400, 63.9, 7}};
+        for (int v = 0; v < 2; v++) {
+            unit_near("fx", v, 0, g.cameras[v].fx, wanted[v].fx, 1e-9);
+            unit_near("fy", v, 0, g.cameras[v].fy, wanted[v].fy, 1e-9);
+            unit_near("cx", v, 0, g.cameras[v].cx, wanted[v].cx, 1e-9);
+            unit_near("cy", v, 0, g.cameras[v].cy, wanted[v].cy, 1e-9);
+        }
     }
 }
 
@@ -187,11 +192,11 @@ static void a_focal_length_may_be_looked_for(void **state)
         assert_true(r->stretch[0] == 1 && r->stretch[1] == 3 && pages_count_right(r) >= 80);
         assert_int_equal(r->geometry.status, ASJ_GEOMETRY_ACCEPTED);
         if (k == 0) {
-            assert_true(r->geometry.model == ASJ_GEOMETRY_HOMOGRAPHY && r->geometry.focal[0] == 0);
+            assert_true(r->geometry.model == ASJ_GEOMETRY_HOMOGRAPHY && r->geometry.cameras[0].fx == 0);
         } else {
             assert_int_equal(r->geometry.model, ASJ_GEOMETRY_ESSENTIAL);
             assert_true(r->geometry.focal_sd > 0 && r->geometry.focal_sd < 0.1);
-            const double off = log(r->geometry.focal[0] / 1185.6);
+            const double off = log(r->geometry.cameras[0].fx / 1185.6);
             unit_near("focal length, in standard deviations", k, 0, off / r->geometry.focal_sd, 0, 2);
         }
         asj_match_result_free(&r);

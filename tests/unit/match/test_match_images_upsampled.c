@@ -232,7 +232,9 @@ static void a_pose_is_found_in_upsampled_images(void **state)
     const synth_pose_error off = synth_pose_off(&pair.cameras[0], &pair.cameras[1], r->geometry.rotation, r->geometry.translation);
     unit_near("rotation, deg", 0, 0, off.rotation, 0, 2);
     unit_near("translation, deg", 0, 0, off.translation, 0, 3);
-    unit_near("focal length", 0, 0, r->geometry.focal[0], pair.cameras[0].focal, 1e-6);
+    unit_near("focal length", 0, 0, r->geometry.cameras[0].fx, pair.cameras[0].focal, 1e-6);
+    unit_near("principal point", 0, 0, r->geometry.cameras[0].cx, 0.5 * (SYNTH_WIDE_WIDTH - 1), 1e-6);
+    unit_near("principal point", 1, 0, r->geometry.cameras[1].cy, 0.5 * (SYNTH_WIDE_HEIGHT - 1), 1e-6);
     synth_fundamental(&pair.cameras[0], &pair.cameras[1], wanted);
     double between = 0, norm = 0;
     for (int k = 0; k < 9; k++) {

@@ -39,8 +39,8 @@ class Geometry:
     #: (6, 6) of w (rad), the true rotation being exp([w]x) times this one, and of the translation; from what the candidates allow,
     #: before the pose was finished from where the matches lie, so that errors are smaller as a rule. None as above
     covariance: NDArray[np.float64] | None
-    #: px, of both cameras, given or found; 0 when they are not known
-    focal: tuple[float, float]
+    #: (2, 4) fx, fy, cx and cy of both cameras, px, given or found; None when they are not known
+    cameras: NDArray[np.float64] | None
     #: standard deviation of the log of the focal length, where it was found; else 0
     focal_sd: float
     #: log10 of how often chance brings such a geometry
@@ -52,6 +52,11 @@ class Geometry:
     #: its motion; None where it has none
     rival_rotation: NDArray[np.float64] | None
     rival_translation: NDArray[np.float64] | None
+
+    @property
+    def focal(self) -> tuple[float, float]:
+        """fx of both cameras, px; 0 when they are not known."""
+        return (0.0, 0.0) if self.cameras is None else (float(self.cameras[0, 0]), float(self.cameras[1, 0]))
 
     def __bool__(self) -> bool:
         return self.status == "accepted"
@@ -109,11 +114,12 @@ def read(record: Any) -> Geometry | None:
         return np.array(list(field), np.float64).reshape(shape)
 
     posed = bool(record.has_pose)
+    cameras = np.array([(one.fx, one.fy, one.cx, one.cy) for one in record.cameras], np.float64)
     rival_posed = any(record.rival_translation)
     return Geometry(
         text(lib.asj_geometry_status_name(record.status)), text(lib.asj_geometry_model_name(record.model)), array(record.matrix, 3, 3),
         array(record.rotation, 3, 3) if posed else None, array(record.translation, 3) if posed else None,
-        array(record.covariance, 6, 6) if posed else None, (record.focal[0], record.focal[1]), record.focal_sd, record.log10_nfa, record.inliers,
-        record.rival_log10_nfa if record.has_rival else None, array(record.rival_rotation, 3, 3) if rival_posed else None,
+        array(record.covariance, 6, 6) if posed else None, cameras if cameras[0, 0] > 0 else None, record.focal_sd,
+        record.log10_nfa, record.inliers, record.rival_log10_nfa if record.has_rival else None, array(record.rival_rotation, 3, 3) if rival_posed else None,
         array(record.rival_translation, 3) if rival_posed else None,
     )  # fmt: skip
