@@ -29,6 +29,26 @@ int32_t asj_look_fits(const asj_image *image, const asj_stretch *wanted)
     return width <= ASJ_MAX_SIDE && height <= ASJ_MAX_SIDE && width * height <= ASJ_MAX_PIXELS;
 }
 
+static int32_t at_least_half(int32_t side, int32_t wanted)
+{
+    return side > 2 * wanted ? side - side / 2 : wanted;
+}
+
+/* The view's image, which is halved until no less than half of it is left. */
+static asj_status resize(asj_context *context, int32_t width, int32_t height, asj_view *v)
+{
+    asj_status status = ASJ_OK;
+    do {
+        const asj_image larger = v->stretched;
+        void *const before = v->pixels;
+        v->pixels = NULL;
+        status = asj_stretch_image(context, &context->memory, &larger, at_least_half(larger.width, width),
+                                   at_least_half(larger.height, height), &v->stretched, &v->pixels);
+        asj_release(&context->memory, before);
+    } while (status == ASJ_OK && (v->stretched.width != width || v->stretched.height != height));
+    return status;
+}
+
 static asj_status stretch(asj_context *context, const asj_image *image, const asj_stretch *wanted, asj_view *v)
 {
     v->stretched = *image;
@@ -42,7 +62,7 @@ static asj_status stretch(asj_context *context, const asj_image *image, const as
         return asj_fail(context, ASJ_ERROR_LIMIT, "an image of %d x %d pixels cannot be stretched to %.0f x %.0f",
                         (int)image->width, (int)image->height, width, height);
     v->by = (asj_stretch){width / image->width, height / image->height};
-    return asj_stretch_image(context, &context->memory, image, (int32_t)width, (int32_t)height, &v->stretched, &v->pixels);
+    return resize(context, (int32_t)width, (int32_t)height, v);
 }
 
 static asj_status detect(asj_context *context, const asj_detect_options *options, asj_view *v)

@@ -232,10 +232,13 @@ typedef struct asj_stretch {
  *                    accepted that they accept, too, or that they have much more evidence for. Another geometry of the images
  *                    judges them. Where the images have rivals or leave the motion open, with known cameras no match is needed to
  *                    look, and without, where they have no geometry, one is enough;
+ *                  - with more than 2 megapixels both, and the same detect_options, also halved until one of them has no more
+ *                    (0.5, 0.5; 0.25, 0.25; ...), and upsampled from there: where it is more matches, with a geometry asked of one
+ *                    that is accepted, that is the answer (photographs with soft pixels have several times the matches);
  *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together and 32 where it
- *                    tells no pose, also stretched by 1, 3 and by 3, 1, unless rivals or a motion that stays open
- *                    (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the answer. What comes of that counts from 16 matches on, and when
- *                    it is twice as many; then it is looked at with octave -1, too, as above.
+ *                    tells no pose, also stretched by 1, 3 and by 3, 1, those halved as above, unless rivals or a motion that stays
+ *                    open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the answer. What comes of that counts from 16 matches on, and
+ *                    when it is twice as many; then it is looked at with octave -1, too, as above.
  *                  A pair that has nothing in common takes about twice as long as without all that (tests/accuracy/README.md).
  *                  Where one of these looks shows more L-junctions than the matcher takes, the answer without it stays
  * detect_options   NULL = preset `match`

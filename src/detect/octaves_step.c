@@ -38,26 +38,42 @@ static asj_status collect(asj_detection_run *run)
     return ASJ_OK;
 }
 
-asj_status asj_step_next_octave(asj_detection_run *run)
-{
-    asj_status status = collect(run);
-    if (status != ASJ_OK)
-        return status;
-    return run->options->half_octaves ? asj_step_half_octave(run) : asj_step_halve(run);
-}
-
 static void confirm(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
     asj_octave_confirm(run->frame, run->options->minimum_opening, hypothesis);
 }
 
+/* Those of the image itself at once: what is not there must not keep coarser octaves from their own (asj_octave_is_known()). */
+static asj_status confirm_own(asj_detection_run *run)
+{
+    run->settled = 0;
+    return run->octave == 0 && run->frame->octaves > 1 ? asj_detection_run_each(run, ASJ_STAGE_REFINE, LEAST_CONFIRMED, confirm)
+                                                       : ASJ_OK;
+}
+
+asj_status asj_step_next_octave(asj_detection_run *run)
+{
+    asj_status status = confirm_own(run);
+    if (status == ASJ_OK)
+        status = collect(run);
+    if (status != ASJ_OK)
+        return status;
+    return run->options->half_octaves ? asj_step_half_octave(run) : asj_step_halve(run);
+}
+
+static void confirm_other(const asj_detection_run *run, asj_hypothesis *hypothesis)
+{
+    if (hypothesis->octave != 0)
+        confirm(run, hypothesis);
+}
+
 /* With the image's own grey plane, made again. */
-static asj_status confirm_all(asj_detection_run *run)
+static asj_status confirm_others(asj_detection_run *run)
 {
     asj_status status = asj_frame_prepare_gray(run->context, run->frame, run->image->width, run->image->height);
     if (status == ASJ_OK)
         status = asj_frame_load(run->context, run->frame, run->image);
-    return status == ASJ_OK ? asj_detection_run_each(run, ASJ_STAGE_REFINE, LEAST_CONFIRMED, confirm) : status;
+    return status == ASJ_OK ? asj_detection_run_each(run, ASJ_STAGE_REFINE, LEAST_CONFIRMED, confirm_other) : status;
 }
 
 static asj_status merge(asj_detection_run *run)
@@ -85,7 +101,7 @@ asj_status asj_step_merge_octaves(asj_detection_run *run)
     run->all_count = run->all_capacity = 0;
     const int one_list = run->frame->octaves > 1;
     if (one_list)
-        status = confirm_all(run);
+        status = confirm_others(run);
     if (status == ASJ_OK && one_list)
         status = merge(run);
     if (status != ASJ_OK)

@@ -3,6 +3,8 @@
 #include "pages.h"
 
 #include "core/context.h"
+#include "core/stretch.h"
+#include "look.h"
 #include "wide_pair.h"
 
 /* What a stretch answers is upsampled too, with the same stretch, under one geometry. */
@@ -249,6 +251,105 @@ static void a_pose_is_found_in_upsampled_images(void **state)
     unit_context_free(&counter, &context);
 }
 
+#define TIMES 3
+
+/* So many times as long, and as soft as that makes it. */
+static asj_image enlarged(asj_context *context, const asj_image *image, void **made)
+{
+    const int32_t width = TIMES * image->width, height = TIMES * image->height;
+    asj_image large;
+    assert_int_equal(asj_stretch_image(context, &context->memory, image, width, height, &large, made), ASJ_OK);
+    return large;
+}
+
+/* How many matches of the enlarged pair are within 2 px of the pair's epipolar lines. */
+static uint32_t count_on_lines(const asj_match_result *r, const double f[9])
+{
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < r->match_count; k++) {
+        const asj_junction_match *m = &r->matches[k];
+        const double x1 = ((double)m->x1 + 0.5) / TIMES - 0.5, y1 = ((double)m->y1 + 0.5) / TIMES - 0.5;
+        const double x2 = ((double)m->x2 + 0.5) / TIMES - 0.5, y2 = ((double)m->y2 + 0.5) / TIMES - 0.5;
+        const double a = f[0] * x1 + f[1] * y1 + f[2], b = f[3] * x1 + f[4] * y1 + f[5], c = f[6] * x1 + f[7] * y1 + f[8];
+        count += fabs(a * x2 + b * y2 + c) < 2 * hypot(a, b);
+    }
+    return count;
+}
+
+/* Large images are looked at halved, and upsampled from there; not where the caller says how, nor where one of them is small. */
+static void large_images_are_halved(void **state)
+{
+    static const asj_stretch automatic = {0, 0};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    synth_wide_pair pair;
+    uint8_t *pixels[2];
+    void *made[2] = {NULL, NULL};
+    asj_image small[2], large[2];
+    asj_detect_options one_octave;
+    asj_match_result *plain = NULL, *found = NULL, *other = NULL;
+    double f[9];
+    (void)state;
+    assert_int_equal(synth_near_pair_make(&pair, 6), 0);
+    synth_fundamental(&pair.cameras[0], &pair.cameras[1], f);
+    for (int k = 0; k < 2; k++) {
+        pixels[k] = synth_wide_picture(&pair, k);
+        assert_non_null(pixels[k]);
+        small[k] = (asj_image){pixels[k], ASJ_FORMAT_RGB8, SYNTH_WIDE_WIDTH, SYNTH_WIDE_HEIGHT, 0, 0};
+        large[k] = enlarged(context, &small[k], &made[k]);
+    }
+    assert_int_equal(asj_match_images(context, &large[0], &large[1], NULL, NULL, NULL, &plain), ASJ_OK);
+    assert_int_equal(asj_match_images(context, &large[0], &large[1], &automatic, NULL, NULL, &found), ASJ_OK);
+    const uint32_t right[2] = {count_on_lines(plain, f), count_on_lines(found, f)};
+    print_message("as they are %u of %u right, automatically %u of %u\n", (unsigned)right[0], (unsigned)plain->match_count,
+                  (unsigned)right[1], (unsigned)found->match_count);
+    assert_true(found->stretch[0] == 0.5 && found->stretch[1] == 0.5 && found->upsampled == 1);
+    assert_true(2 * right[1] > 3 * right[0] && 20 * right[1] >= 19 * found->match_count);
+    assert_int_equal(asj_match_images(context, &large[0], &small[1], &automatic, NULL, NULL, &other), ASJ_OK);
+    assert_true(other->stretch[0] >= 1 && other->stretch[1] >= 1);
+    asj_match_result_free(&other);
+    asj_detect_options_preset(&one_octave, ASJ_PRESET_MATCH);
+    one_octave.octaves = 1;
+    assert_int_equal(asj_match_images(context, &large[0], &large[1], &automatic, &one_octave, NULL, &other), ASJ_OK);
+    assert_true(other->stretch[0] >= 1 && other->stretch[1] >= 1);
+    asj_match_result_free(&other);
+    asj_match_result_free(&found);
+    asj_match_result_free(&plain);
+    for (int k = 0; k < 2; k++) {
+        asj_release(&context->memory, made[k]);
+        free(pixels[k]);
+    }
+    synth_wide_pair_free(&pair);
+    unit_context_free(&counter, &context);
+}
+
+/* A ramp stays one when less than half of it is left: halved first, and the rest of the way then. */
+static void a_quarter_is_half_of_a_half(void **state)
+{
+    enum { WIDTH = 403, HEIGHT = 250 };
+    static uint8_t ramp[WIDTH * HEIGHT];
+    const asj_image image = unit_gray8(ramp, WIDTH, HEIGHT), *const images[2] = {&image, &image};
+    const asj_stretch stretch = {0.2, 0.3};
+    asj_detect_options options;
+    asj_look eyes;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    (void)state;
+    for (int k = 0; k < WIDTH * HEIGHT; k++)
+        ramp[k] = (uint8_t)(k % WIDTH / 2 + k / WIDTH / 10);
+    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
+    assert_int_equal(asj_look_open(context, images, &stretch, &options, 0, 1, &eyes), ASJ_OK);
+    const asj_image *small = &eyes.views[0].stretched;
+    assert_true(small->width == 81 && small->height == 75);
+    for (int y = 1; y < 74; y++)
+        for (int x = 1; x < 80; x++) {
+            const double at_x = (x + 0.5) * WIDTH / 81 - 0.5, at_y = (y + 0.5) * HEIGHT / 75 - 0.5;
+            unit_near("grey level", x, y, ((const uint8_t *)small->data)[81 * y + x], at_x / 2 + at_y / 10, 1.5);
+        }
+    asj_look_close(&eyes);
+    unit_context_free(&counter, &context);
+}
+
 /* Octave -1 of an upsampled image is held to what is found without it, as of one that is not. */
 static void octave_minus_one_needs_a_witness_in_upsampled_images(void **state)
 {
@@ -292,6 +393,8 @@ int main(void)
         cmocka_unit_test(images_are_not_upsampled_unasked),
         cmocka_unit_test(a_pose_is_found_in_upsampled_images),
         cmocka_unit_test(octave_minus_one_needs_a_witness_in_upsampled_images),
+        cmocka_unit_test(large_images_are_halved),
+        cmocka_unit_test(a_quarter_is_half_of_a_half),
     };
     return cmocka_run_group_tests(tests, pages_set_up, pages_tear_down);
 }
