@@ -61,7 +61,7 @@ static int is_meaningful(const asj_detection_run *run, const asj_hypothesis *hyp
     }
     for (int32_t b = 0; b < hypothesis->branch_count; b++)
         log_nfa += log_tail(weakest, sectors[b].pixels);
-    return log_nfa <= run->test->log_epsilon;
+    return log_nfa > -HUGE_VAL && log_nfa <= run->test->log_epsilon; /* -HUGE_VAL: so many have no room side by side */
 }
 
 static void follow_branch(const asj_detection_run *run, const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)

@@ -108,6 +108,6 @@ static void fill_arc(arc_scratch *scratch, double table[ASJ_MAX_ARC + 1][ASJ_NFA
 
 void asj_nfa_fill_arc(asj_nfa *nfa)
 {
-    static arc_scratch scratch; /* some 40 kB; this runs once, in the program that writes the tables */
+    static arc_scratch scratch; /* some 26 kB; this runs once, in the program that writes the tables */
     fill_arc(&scratch, nfa->arc);
 }

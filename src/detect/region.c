@@ -8,6 +8,7 @@
  * stands for what lies between i 2^o and (i + 1) 2^o in the image, pixel k from k to k + 1; j likewise. */
 #include "region.h"
 #include "core/reserved.h"
+#include "core/watch.h"
 #include "locate.h"
 
 #include <math.h>
@@ -89,20 +90,36 @@ void asj_region_rows(const asj_detection_run *run, int32_t *top, int32_t *bottom
     }
 }
 
-/* line[x] = 1 where the mask allows pixel (x, any row first .. end - 1) of the image. */
-static void gather_rows(const asj_image *mask, int32_t first, int32_t end, uint8_t *line)
+/* Rows first .. end - 1 of the mask, which go down it: how many of them allow each column. */
+typedef struct band {
+    int32_t first, end;
+    uint16_t *count;
+} band;
+
+static void move_band(const asj_image *mask, int32_t first, int32_t end, band *b)
 {
-    memset(line, 0, (size_t)mask->width);
-    for (int32_t y = first; y < end; y++) {
-        const uint8_t *row = mask_row(mask, y);
+    for (; b->end < end; b->end++) {
+        const uint8_t *row = mask_row(mask, b->end);
         for (int32_t x = 0; x < mask->width; x++)
-            line[x] |= row[x] != 0;
+            b->count[x] = (uint16_t)(b->count[x] + (row[x] != 0));
+    }
+    for (; b->first < first; b->first++) {
+        const uint8_t *row = mask_row(mask, b->first);
+        for (int32_t x = 0; x < mask->width; x++)
+            b->count[x] = (uint16_t)(b->count[x] - (row[x] != 0));
     }
 }
 
-static int32_t clamp(int32_t value, int32_t size)
+/* The whole number at or below, or at or above, a place, from 0 to `size`. */
+static inline int32_t floor_within(double at, int32_t size)
 {
-    return value < 0 ? 0 : value > size ? size : value;
+    return at <= 0 ? 0 : at >= size ? size : (int32_t)at;
+}
+
+static inline int32_t ceil_within(double at, int32_t size)
+{
+    const int32_t below = floor_within(at, size);
+    return below + (below < size && at > below);
 }
 
 static void clear_bit(uint16_t *bits, int32_t x)
@@ -115,34 +132,34 @@ static void image_range(const asj_detection_run *run, int32_t i, int32_t size, i
 {
     const int32_t reach = reach_of(run), before = i - reach, after = i + reach + 1;
     const double scale = asj_octave_scale(run->octave);
-    *first = clamp((int32_t)floor(before * scale), size);
-    *end = clamp((int32_t)ceil(after * scale), size);
+    *first = floor_within(before * scale, size);
+    *end = ceil_within(after * scale, size);
 }
 
-/* Bits of candidates with nothing of `line` near go. */
-static void clear_far(const asj_detection_run *run, const uint8_t *line, uint16_t *bits)
+/* Bits of candidates with no allowed column near go. */
+static void clear_far(const asj_detection_run *run, const uint16_t *allowed, uint16_t *bits)
 {
     int32_t last = -1; /* the last pixel of the image that is allowed, of those before `next` */
     for (int32_t x = 0, next = 0; x < run->frame->width; x++) {
         int32_t first, end;
         image_range(run, x, run->image->width, &first, &end);
         for (; next < end; next++)
-            last = line[next] ? next : last;
+            last = allowed[next] ? next : last;
         if (last < first)
             clear_bit(bits, x);
     }
 }
 
-/* Row y of the octave: bits of candidates outside left .. right - 1, or with nothing of `line` (NULL = all of it) near, go. */
-static void clear_row(const asj_detection_run *run, int32_t y, int32_t left, int32_t right, const uint8_t *line)
+/* Row y of the octave: bits of candidates outside left .. right - 1, or with no allowed column (NULL = all are) near, go. */
+static void clear_row(const asj_detection_run *run, int32_t y, int32_t left, int32_t right, const uint16_t *allowed)
 {
     uint16_t *bits = run->candidates + (ptrdiff_t)y * run->frame->blocks;
     for (int32_t x = 0; x < left; x++)
         clear_bit(bits, x);
     for (int32_t x = right; x < run->frame->width; x++)
         clear_bit(bits, x);
-    if (line)
-        clear_far(run, line, bits);
+    if (allowed)
+        clear_far(run, allowed, bits);
 }
 
 asj_status asj_region_clear_candidates(asj_detection_run *run)
@@ -150,13 +167,15 @@ asj_status asj_region_clear_candidates(asj_detection_run *run)
     const asj_image *mask = run->region->mask;
     const size_t row_size = (size_t)run->frame->blocks * sizeof *run->candidates;
     int32_t top, bottom, left, right;
-    uint8_t *line = mask ? asj_allocate(&run->context->memory, (size_t)run->image->width, 1) : NULL;
-    if (mask && !line)
+    band near = {.count = mask ? asj_allocate_zero(&run->context->memory, (size_t)mask->width, sizeof *near.count) : NULL};
+    if (mask && !near.count)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for a row of the mask");
+    asj_watch watch;
+    asj_watch_start(&watch, run->context, ASJ_STAGE_CANDIDATES);
     const rectangle r = rectangle_of(run->image, run->region);
     octave_range(run, r.left, r.right, run->frame->width, &left, &right);
     asj_region_rows(run, &top, &bottom);
-    for (int32_t y = 0; y < run->frame->height; y++) {
+    for (int32_t y = 0; y < run->frame->height && !asj_watch_stops(&watch, NULL); y++) {
         if (y < top || y >= bottom) {
             memset(run->candidates + (ptrdiff_t)y * run->frame->blocks, 0, row_size);
             continue;
@@ -164,11 +183,11 @@ asj_status asj_region_clear_candidates(asj_detection_run *run)
         int32_t first, end;
         image_range(run, y, run->image->height, &first, &end);
         if (mask)
-            gather_rows(mask, first, end, line);
-        clear_row(run, y, left, right, line);
+            move_band(mask, first, end, &near);
+        clear_row(run, y, left, right, near.count);
     }
-    asj_release(&run->context->memory, line);
-    return ASJ_OK;
+    asj_release(&run->context->memory, near.count);
+    return asj_watch_end(&watch);
 }
 
 /* The pixel that a location rounds to; the nearest one of the image where a junction lies beyond its border. */

@@ -32,7 +32,6 @@ asj_status asj_scan_cache_prepare(asj_context *context, const asj_frame *frame, 
         }
         cache->capacity = count;
     }
-    cache->threads = threads;
     cache->bits = bits;
     memset(cache->keys, 0, count * sizeof *cache->keys);
     return ASJ_OK;

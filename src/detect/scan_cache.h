@@ -11,7 +11,6 @@
 typedef asj_field_branch asj_pixel_branches[ASJ_FIELD_BRANCHES];
 
 typedef struct asj_scan_cache {
-    int32_t threads;
     int32_t bits;                 /* 2^bits pixels for each thread */
     uint32_t *keys;               /* of the pixels held; 0 = empty */
     asj_pixel_branches *branches;

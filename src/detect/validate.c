@@ -195,7 +195,7 @@ static void judge_pairs(const asj_frame *frame, const asj_detect_options *option
         for (int32_t j = 0; j < count && !keep[i]; j++) {
             const asj_hypothesis_branch *a = &hypothesis->branches[i], *b = &hypothesis->branches[j];
             const double turn = asj_angle_distance(a->angle, b->angle);
-            keep[i] = verdict[i] == WITH_OTHERS && verdict[j] != NOT_AT_ALL && turn >= least && turn <= ASJ_PI - least &&
+            keep[i] = j != i && verdict[i] == WITH_OTHERS && verdict[j] != NOT_AT_ALL && turn >= least && turn <= ASJ_PI - least &&
                       a->log_nfa + b->log_nfa <= limit;
         }
 }

@@ -11,7 +11,6 @@
 #include <asj/segments.h>
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* What stands behind the public struct. */

@@ -208,7 +208,7 @@ static asj_status join_halves(asj_joining *w)
         const uint32_t k = p.best;
         int32_t good = 1;
         if (k < kept && p.bend.is_straight) {
-            good = join_both(w, &w->segments[k], &s, &p);
+            good = join_both(w, &w->segments[k], &s, &p) && add_to_cells(w, k); /* where it reaches now, too */
         } else {
             good = k == kept || cut_both(w, &w->segments[k], &s, &p);
             w->segments[kept] = s;

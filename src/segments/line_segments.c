@@ -122,7 +122,7 @@ asj_status asj_line_segments_find(asj_context *context, const asj_frame *frame, 
     memset(&s, 0, sizeof s);
     *segments = NULL;
     *count = 0;
-    asj_status status = asj_levels_create(context, frame, &s.levels);
+    asj_status status = asj_levels_create(context, frame, stage, &s.levels);
     if (status != ASJ_OK || s.levels.order_count == 0) {
         asj_levels_free(memory, &s.levels);
         return status;

@@ -17,7 +17,7 @@
  * The Gaussian's taps are whole numbers in 1/4096 that sum to one; sums of at most 4096 x 255 x 128 fit 32 bits. Factors are handed
  * to compilers as signed 16-bit numbers, which they multiply several at once: no grey value is above 255 x 128. */
 #include "line_segments_levels.h"
-#include "core/threads.h"
+#include "core/watch.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -110,11 +110,10 @@ static void reduce_row(const asj_frame *frame, int32_t y, int32_t width, const i
     }
 }
 
-/* The samples between two rows of the reduced image. Returns how many level lines are defined. */
-static int32_t level_row(const uint16_t *above, const uint16_t *below, int32_t width, asj_direction *direction, float *norm)
+/* The samples between two rows of the reduced image. */
+static void level_row(const uint16_t *above, const uint16_t *below, int32_t width, asj_direction *direction, float *norm)
 {
     const float unit = 0.5f / ASJ_GRAY_ONE, least = (float)(QUANTISATION / SINE);
-    int32_t defined = 0;
     for (int32_t x = 0; x < width; x++) {
         const int32_t falling = below[x + 1] - above[x], rising = above[x + 1] - below[x];
         const float gx = (float)(falling + rising) * unit, gy = (float)(falling - rising) * unit;
@@ -122,9 +121,7 @@ static int32_t level_row(const uint16_t *above, const uint16_t *below, int32_t w
         const int is = size > least;
         norm[x] = is ? size : 0;
         direction[x] = is ? (asj_direction){-gy / size, gx / size} : (asj_direction){0, 0};
-        defined += is;
     }
-    return defined;
 }
 
 /* Steepest first; in a class from top to bottom, from left to right. */
@@ -151,6 +148,7 @@ static void sort_samples(asj_levels *levels)
 typedef struct job {
     const asj_frame *frame;
     const asj_levels *levels;
+    asj_watch *watch;
     int16_t taps[PHASES][TAPS];
     uint16_t *scratch; /* three rows for each thread */
 } job;
@@ -162,7 +160,7 @@ static void fill_some(const void *data, const asj_part *part)
     const ptrdiff_t row = j->frame->width;
     uint16_t *above = j->scratch + 3 * row * part->thread, *below = above + row, *const column = below + row;
     reduce_row(j->frame, (int32_t)part->first, levels->width + 1, j->taps, column, above);
-    for (int64_t y = part->first; y < part->end; y++) {
+    for (int64_t y = part->first; y < part->end && !asj_watch_stops(j->watch, part); y++) {
         const size_t at = (size_t)y * (size_t)levels->width;
         reduce_row(j->frame, (int32_t)y + 1, levels->width + 1, j->taps, column, below);
         level_row(above, below, levels->width, levels->direction + at, levels->norm + at);
@@ -172,7 +170,7 @@ static void fill_some(const void *data, const asj_part *part)
     }
 }
 
-asj_status asj_levels_create(asj_context *context, const asj_frame *frame, asj_levels *levels)
+asj_status asj_levels_create(asj_context *context, const asj_frame *frame, int32_t stage, asj_levels *levels)
 {
     asj_memory *memory = &context->memory;
     memset(levels, 0, sizeof *levels);
@@ -188,12 +186,18 @@ asj_status asj_levels_create(asj_context *context, const asj_frame *frame, asj_l
     levels->norm = asj_allocate(memory, count, sizeof *levels->norm);
     levels->order = asj_allocate(memory, count, sizeof *levels->order);
     if (scratch && levels->direction && levels->norm && levels->order) {
-        job j = {.frame = frame, .levels = levels, .scratch = scratch};
+        asj_watch watch;
+        job j = {.frame = frame, .levels = levels, .watch = &watch, .scratch = scratch};
         make_taps(j.taps);
+        asj_watch_start(&watch, context, stage);
         asj_parallel(context, context->threads, levels->height, ROWS, fill_some, &j);
-        sort_samples(levels);
         asj_release(memory, scratch);
-        return ASJ_OK;
+        const asj_status status = asj_watch_end(&watch);
+        if (status == ASJ_OK)
+            sort_samples(levels);
+        else
+            asj_levels_free(memory, levels);
+        return status;
     }
     asj_release(memory, scratch);
     asj_levels_free(memory, levels);

@@ -19,7 +19,7 @@ typedef struct asj_support_region {
 /* Grows the region of a sample that is not used; cosine: of the largest angle between a sample that joins and the mean. */
 void asj_region_grow(const asj_levels *levels, int32_t seed, double cosine, asj_support_region *region);
 
-/* Cuts a region to what a rectangle covers well, and gives the rectangle. 0 when nothing is left; the region is then empty. */
+/* Cuts a region to what a rectangle covers well, and gives the rectangle. 0 when nothing is left but its seed. */
 int asj_region_approximate(const asj_levels *levels, asj_support_region *region, asj_rectangle *rectangle);
 
 #endif

@@ -37,17 +37,22 @@ static asj_hypothesis of_octave(double octave, double x, double y, double width)
     return h;
 }
 
+static size_t merge_with(asj_hypothesis *list, size_t count, const asj_detect_options *options)
+{
+    int32_t *cells = malloc(asj_octave_grid_cells(count, 640, 480) * sizeof *cells);
+    assert_non_null(cells);
+    const size_t kept = asj_octaves_merge(list, count, options, 640, 480, cells);
+    free(cells);
+    return kept;
+}
+
 static size_t merge_as(asj_hypothesis *list, size_t count, int32_t complete_junctions)
 {
     asj_detect_options options;
     asj_detect_options_init(&options);
     options.octaves = 16;
     options.complete_junctions = complete_junctions;
-    int32_t *cells = malloc(asj_octave_grid_cells(count, 640, 480) * sizeof *cells);
-    assert_non_null(cells);
-    const size_t kept = asj_octaves_merge(list, count, &options, 640, 480, cells);
-    free(cells);
-    return kept;
+    return merge_with(list, count, &options);
 }
 
 static size_t merge(asj_hypothesis *list, size_t count)
@@ -201,6 +206,26 @@ static void test_soft_branch_joins(void **state)
         assert_int_equal(list[0].branch_count, soft ? 3 : 2);
         if (soft)
             assert_true(list[0].branches[1].octave == 1 && list[0].branches[1].length == 40 && list[0].branches[0].octave == 0);
+    }
+}
+
+/* .. and when it is long enough from there on. */
+static void test_short_branch_does_not_join(void **state)
+{
+    (void)state;
+    for (int is_long = 0; is_long < 2; is_long++) {
+        asj_detect_options options;
+        asj_detect_options_init(&options);
+        options.octaves = 16;
+        options.minimum_length = is_long ? 38 : 39;
+        asj_hypothesis list[2] = {of_octave(0, 102, 100.5, 1), corner(50, 50, 0.8)};
+        list[1].branch_count = 3;
+        list[1].branches[2] = list[1].branches[1];
+        list[1].branches[1].angle = 0.25 * UNIT_PI;
+        list[1].branches[1].width = 1.2;
+        asj_octaves_map(&list[1], 1); /* at (100.5, 100.5), branches of 40 px: 1.06 fewer from the finer one on */
+        assert_int_equal(merge_with(list, 2, &options), 1);
+        assert_int_equal(list[0].branch_count, is_long ? 3 : 2);
     }
 }
 
@@ -421,9 +446,9 @@ static void test_widths(void **state)
     unit_context_free(&counter, &context);
 }
 
-/* A bright rectangle, its corner at (60, 60): how many branches the image confirms of a corner of octave 1 with branches to the
- * right and down, `gap` px to the left of it. */
-static int confirmed(double gap, double width, double blur)
+/* A bright rectangle, its corner at (60, 60): how many branches the image confirms of a corner of this octave and of this log10
+ * NFA with branches to the right and down, `gap` px to the left of it. */
+static int confirmed_of(double octave, double log10_nfa, double gap, double width, double blur)
 {
     unit_counter counter;
     asj_context *context = unit_context(&counter, 1);
@@ -433,14 +458,20 @@ static int confirmed(double gap, double width, double blur)
     synth_scene_init(&scene, 160, 160, 100);
     synth_add_rectangle(&scene, (synth_point){60, 60}, 80, 80, 0, 140);
     unit_frame_of(context, &scene, blur, 2, NULL, &frame);
-    asj_hypothesis h = corner(0, 0, width / 2);
-    asj_octaves_map(&h, 1);
+    asj_hypothesis h = corner(0, 0, width / exp2(octave));
+    asj_octaves_map(&h, octave);
+    h.log_nfa = log10_nfa * log(10);
     h.x = 60 - gap;
     h.y = 60;
     asj_octave_confirm(&frame, 25, &h);
     asj_frame_free(&context->memory, &frame);
     unit_context_free(&counter, &context);
     return h.branch_count;
+}
+
+static int confirmed(double gap, double width, double blur)
+{
+    return confirmed_of(1, -10, gap, width, blur);
 }
 
 /* The image has to show edges where they begin, and as soft as they are said to be. */
@@ -453,6 +484,16 @@ static void test_confirm(void **state)
     assert_int_equal(confirmed(0, 4, 1), 0); /* sharp */
 }
 
+/* What the image's own octave is sure of stays. */
+static void test_sure_ones_are_not_asked(void **state)
+{
+    (void)state;
+    assert_int_equal(confirmed_of(0, -14, 6, 1, 1), 0);
+    assert_int_equal(confirmed_of(0, -16, 6, 1, 1), 2);
+    assert_int_equal(confirmed_of(-1, -16, 6, 1, 1), 2);
+    assert_int_equal(confirmed_of(1, -16, 6, 1, 1), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -460,6 +501,7 @@ int main(void)
         cmocka_unit_test(test_finest_sharp_one_stays), cmocka_unit_test(test_soft_one_gives_way),
         cmocka_unit_test(test_another_has_no_say), cmocka_unit_test(test_others_stay),
         cmocka_unit_test(test_soft_branch_joins), cmocka_unit_test(test_faint_branch_joins),
+        cmocka_unit_test(test_short_branch_does_not_join), cmocka_unit_test(test_sure_ones_are_not_asked),
         cmocka_unit_test(test_widths),         cmocka_unit_test(test_ghosts),
         cmocka_unit_test(test_soft_corners),   cmocka_unit_test(test_confirm),
         cmocka_unit_test(test_union),          cmocka_unit_test(test_half_range),

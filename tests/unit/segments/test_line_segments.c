@@ -72,7 +72,7 @@ static void test_ramps(void **state)
             pixels[i] = (uint8_t)lrint(128 + fmax(-100, fmin(100, slope * along)));
         }
         load(f, pixels, SIDE, SIDE, &frame);
-        assert_int_equal(asj_levels_create(f->context, &frame, &levels), ASJ_OK);
+        assert_int_equal(asj_levels_create(f->context, &frame, ASJ_STAGE_CANDIDATES, &levels), ASJ_OK);
         assert_int_equal(levels.width, SIDE * 4 / 5 - 1);
         const int32_t middle = levels.height / 2 * levels.width + levels.width / 2;
         unit_near("slope", n, 0, (double)levels.norm[middle], slope * 1.25, 0.6);
@@ -97,7 +97,7 @@ static void test_flat(void **state)
     for (int i = 0; i < 30 * 20; i++)
         pixels[i] = (uint8_t)(100 + 2 * (i % 2));
     load(f, pixels, 30, 20, &frame);
-    assert_int_equal(asj_levels_create(f->context, &frame, &levels), ASJ_OK);
+    assert_int_equal(asj_levels_create(f->context, &frame, ASJ_STAGE_CANDIDATES, &levels), ASJ_OK);
     assert_int_equal(levels.order_count, 0);
     asj_levels_free(&f->context->memory, &levels);
     asj_frame_free(&f->context->memory, &frame);
