@@ -12,10 +12,10 @@
  * where no other branch touches it. Measured on rendered rooms (tests/accuracy, row room-n2) without it and with it: recall .948
  * and .945, precision .974 and .990; the soft and weak corners lose none.
  *
- * What the image itself is SURE of stays: it joins nothing that it can tell apart, and round corners, borders one or two pixels wide
- * and a jutting edge leave as little contrast near true corners. (Of 1212 junctions with a log10 NFA below -20 that one octave finds
- * in 32 photographs, 139 had no junction within 5 px in the list of all octaves, nearly all of those looked at true corners; so 48.
- * Rooms, recall .951 -> .952, precision .991 -> .989; the same without any limit .953, .988. Of 26 photographs' junctions
+ * What the image itself is SURE of stays: it joins nothing that it can tell apart, and round corners, borders one or two pixels
+ * wide and a jutting edge leave as little contrast near true corners. (Of 1212 junctions with a log10 NFA below -20 that one octave
+ * finds in 32 photographs, 139 had no junction within 5 px in the list of all octaves, nearly all of those looked at true corners;
+ * so 48. Rooms, recall .951 -> .952, precision .991 -> .989; the same without any limit .953, .988. Of 26 photographs' junctions
  * 74.7 % for 73.6 repeat at zoom .9, 72.7 for 71.2 at .7; with a limit of -10 or -20 and with none fewer.) */
 #include "octave_confirm.h"
 #include "core/angle.h"
