@@ -13,9 +13,9 @@ install_into() { # NAME OPTION...: not optimized, since it runs for seconds only
     prefix=$work/$1
     shift
     meson setup "$work/build" "$root" --prefix="$prefix" --libdir=lib -Dio=enabled -Dcli=enabled -Dtests=disabled \
-        -Doptimization=0 "$@"
-    meson install -C "$work/build"
-    rm -rf "$work/build"
+        -Doptimization=0 "$@" &&
+        meson install -C "$work/build" &&
+        rm -rf "$work/build"
 }
 
 use_from() { # NAME: programs against what is installed there
@@ -139,9 +139,9 @@ if [ -e "$root/README.md" ]; then # every C block with a main function
 fi
 
 {
-    install_into shared
-    install_into static -Ddefault_library=static
-    meson setup "$work/build-of-both" "$root" -Ddefault_library=both -Dauto_features=disabled -Dtests=disabled
+    install_into shared &&
+        install_into static -Ddefault_library=static &&
+        meson setup "$work/build-of-both" "$root" -Ddefault_library=both -Dauto_features=disabled -Dtests=disabled
 } > "$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
 for file in bin/asj-cli lib/libasj.so lib/libasj-io.so lib/pkgconfig/asj.pc lib/pkgconfig/asj-io.pc lib/cmake/asj/asjConfig.cmake \
     share/man/man1/asj-cli.1 share/man/man5/asj-formats.5 share/man/man7/asj-options.7 share/man/man7/asj-paper.7 \

@@ -118,7 +118,7 @@ def test_poses_reach_colmap(rooms: tuple[Path, list[Any]], tmp_path: Path) -> No
     with sqlite3.connect(tmp_path / "scene.db.work") as connection:
         stored = [json.loads(text) for (text,) in connection.execute("SELECT geometry FROM pairs ORDER BY id")]
     assert [(one["status"], one["model"]) for one in stored] == [("accepted", "essential")] * 2 + [("accepted", "homography")]
-    assert stored[0]["focal"][0] == pytest.approx(28 * 800 / DIAGONAL) and stored[2]["focal"] == [0, 0]
+    assert stored[0]["cameras"][0][0] == pytest.approx(28 * 800 / DIAGONAL) and stored[2]["cameras"] is None
     scene.unlink()
     assert main([*words, "--resume"]) == 0  # with COLMAP's verification, for what is not there
     database = pycolmap.Database.open(scene)
@@ -167,10 +167,11 @@ def test_found_focal_lengths() -> None:
         @staticmethod
         def matched() -> list[tuple[int, int, Matched]]:
             rows = [(1, 2, 500.0, 0.1), (1, 3, 520.0, 0.2), (2, 3, 400.0, 0.0), (1, 4, 530.0, 0.1)]
-            return [
-                (one, two, Matched(None, b"", None, json.dumps({"status": "accepted", "focal": [f, f + 1], "focal_sd": sd})))
-                for one, two, f, sd in rows
-            ]
+
+            def told(f: float, sd: float) -> str:
+                return json.dumps({"status": "accepted", "cameras": [[f, f, 0, 0], [f + 1, f + 1, 0, 0]], "focal_sd": sd})
+
+            return [(one, two, Matched(None, b"", None, told(f, sd))) for one, two, f, sd in rows]
 
     found = colmap._found_focals(Two())  # type: ignore[arg-type]
     assert found == {1: [500.0, 520.0, 530.0], 2: [501.0], 3: [521.0], 4: [531.0]}

@@ -155,8 +155,8 @@ def _found_focals(store: Store) -> dict[int, list[float]]:
     for one, two, matched in store.matched():
         geometry = json.loads(matched.geometry) if matched.geometry else None
         if geometry and geometry["status"] == "accepted" and geometry["focal_sd"] > 0:
-            for image, focal in zip((one, two), geometry["focal"]):
-                found.setdefault(image, []).append(focal)
+            for image, camera in zip((one, two), geometry["cameras"]):
+                found.setdefault(image, []).append(camera[0])
     return found
 
 
