@@ -195,7 +195,7 @@ static asj_status look_smaller(search *s, double from, double part)
 
 /* --- stretched --------------------------------------------------------------------------------------------------------------- */
 
-/* Of what large images are when they are smaller. */
+/* Of large images those that are smaller are stretched. */
 static asj_stretch scaled(const search *s, const asj_stretch *stretch)
 {
     return (asj_stretch){s->scale * stretch->x, s->scale * stretch->y};

@@ -24,8 +24,8 @@
 #include <string.h>
 
 /* rad (20 degrees), in whole sectors: of the 43 of the default radius 3 at least from each other, 25 degrees, and 3.5 from being
- * opposite, 29. Larger loses corners that open little, smaller takes the two sectors along a thick or bent edge for two branches.
- * (20 degrees from being opposite are 23 % more candidates and no more corners.) */
+ * opposite, 29. Larger loses corners that open little, smaller takes the two sectors along a thick or bent edge for two
+ * branches. */
 #define APART 0.35
 
 /* Sectors of as many pixels have the same one. */

@@ -55,13 +55,15 @@ static int is_meaningful(const asj_detection_run *run, const asj_hypothesis *hyp
 {
     sector sectors[ASJ_MAX_BRANCHES] = {{0, 0, 0}};
     double weakest = HUGE_VAL, log_nfa = run->test->log_tests[hypothesis->branch_count];
+    if (!(log_nfa > -HUGE_VAL)) /* so many have no room side by side */
+        return 0;
     for (int32_t b = 0; b < hypothesis->branch_count; b++) {
         sectors[b] = strongest(run, hypothesis, hypothesis->branches[b].angle, r);
         weakest = fmin(weakest, sectors[b].sum);
     }
     for (int32_t b = 0; b < hypothesis->branch_count; b++)
         log_nfa += log_tail(weakest, sectors[b].pixels);
-    return log_nfa > -HUGE_VAL && log_nfa <= run->test->log_epsilon; /* -HUGE_VAL: so many have no room side by side */
+    return log_nfa <= run->test->log_epsilon;
 }
 
 static void follow_branch(const asj_detection_run *run, const asj_hypothesis *hypothesis, asj_hypothesis_branch *branch)

@@ -10,11 +10,10 @@
  * Departures of the default: candidates come from the local field (field.c); `seeds` = segments takes those of line segments
  * (seeds.c). Radii {7, 14} instead of all: the same junctions at less than half the cost (5 finds nothing that 7 does not, 10
  * hardly anything). Branches may be as near as Delta; `disjoint_sectors` asks for 2 Delta, which is what #J(M) counts: of K
- * orientations each branch leaves 4 Delta K / 2 pi to no other. So by default #J(M) is short of what is tested, up to five times
- * for M = 5 at radius 7, and each M has the whole epsilon: at epsilon 1 a white noise image of 320 x 240 pixels has .6 of radii
- * {7, 14} and 1.5 of radius 3 or 5 alone (with `disjoint_sectors` .4 and .1). What the steps that follow validate keeps to
- * epsilon (tests/accuracy, "Noise"). Among overlapping junctions the more meaningful one stays, and with `more_branches_win` the
- * one with more branches (isotropic_thin.c).
+ * orientations each branch leaves 4 Delta K / 2 pi to no other. So by default #J(M) is short of what is tested, 5.3 times for M = 5
+ * at radius 7 (each branch leaving 2 Delta), and each M has the whole epsilon: here it is no bound. What the steps that follow
+ * validate keeps to epsilon (tests/accuracy, "Noise"). Among overlapping junctions the more meaningful one stays, and with
+ * `more_branches_win` the one with more branches (isotropic_thin.c).
  *
  * `all_meaningful_branches`: the least NFA over M compares products of different length, and a branch comes or goes as the others
  * get stronger: beside two of ln F = -30 a third of -18 is left out, for at t of the weakest the product of three says less; three

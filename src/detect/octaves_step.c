@@ -17,13 +17,24 @@ static int is_inside(const asj_detection_run *run, const asj_hypothesis *hypothe
            hypothesis->y >= -ASJ_MAX_OUTSIDE && hypothesis->y <= run->image->height - 1 + ASJ_MAX_OUTSIDE;
 }
 
-/* The hypotheses of this octave go to the list of all. */
+static void confirm(const asj_detection_run *run, asj_hypothesis *hypothesis)
+{
+    asj_octave_confirm(run->frame, run->options->minimum_opening, hypothesis);
+}
+
+/* The hypotheses of this octave go to the list of all. Those of the image itself have to show in it first: what does not must not
+ * keep coarser octaves from theirs (asj_octave_is_known()). */
 static asj_status collect(asj_detection_run *run)
 {
     const size_t total = run->all_count + run->hypothesis_count;
     void *list = run->all;
-    asj_status status = asj_grow(&run->context->memory, &list, &run->all_capacity, asj_detection_run_room(total),
-                                 sizeof *run->all, run->all_count);
+    asj_status status = ASJ_OK;
+    if (run->octave == 0 && run->frame->octaves > 1)
+        status = asj_detection_run_each(run, ASJ_STAGE_REFINE, LEAST_CONFIRMED, confirm);
+    if (status != ASJ_OK)
+        return status;
+    status = asj_grow(&run->context->memory, &list, &run->all_capacity, asj_detection_run_room(total), sizeof *run->all,
+                      run->all_count);
     run->all = list;
     if (status != ASJ_OK)
         return asj_fail(run->context, status, "no memory for %zu junctions", total);
@@ -38,24 +49,9 @@ static asj_status collect(asj_detection_run *run)
     return ASJ_OK;
 }
 
-static void confirm(const asj_detection_run *run, asj_hypothesis *hypothesis)
-{
-    asj_octave_confirm(run->frame, run->options->minimum_opening, hypothesis);
-}
-
-/* Those of the image itself at once: what is not there must not keep coarser octaves from their own (asj_octave_is_known()). */
-static asj_status confirm_own(asj_detection_run *run)
-{
-    run->settled = 0;
-    return run->octave == 0 && run->frame->octaves > 1 ? asj_detection_run_each(run, ASJ_STAGE_REFINE, LEAST_CONFIRMED, confirm)
-                                                       : ASJ_OK;
-}
-
 asj_status asj_step_next_octave(asj_detection_run *run)
 {
-    asj_status status = confirm_own(run);
-    if (status == ASJ_OK)
-        status = collect(run);
+    asj_status status = collect(run);
     if (status != ASJ_OK)
         return status;
     return run->options->half_octaves ? asj_step_half_octave(run) : asj_step_halve(run);

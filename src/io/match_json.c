@@ -86,27 +86,16 @@ static void put_rivals(asj_json_output *json, const asj_geometry *g)
     asj_json_put(json, ",\n\"geometry_rivals\": ", json_pack("[o, o]", best, rival), JSON_REAL_PRECISION(15));
 }
 
-/* fx, fy, cx and cy of both, or null. */
-static json_t *cameras_value(const asj_camera cameras[2])
+/* fx, fy, cx and cy of both. */
+static json_t *cameras_value(const asj_camera c[2])
 {
-    json_t *list = cameras[0].fx > 0 ? json_array() : json_null();
-    for (int v = 0; v < 2 && cameras[0].fx > 0; v++) {
-        const double four[] = {cameras[v].fx, cameras[v].fy, cameras[v].cx, cameras[v].cy};
-        list = asj_json_append(list, numbers(four, 4));
-    }
-    return list;
-}
-
-static json_t *focal_value(const asj_camera cameras[2])
-{
-    const double two[] = {cameras[0].fx, cameras[1].fx};
-    return two[0] > 0 ? numbers(two, 2) : json_null();
+    return json_pack("[[f, f, f, f], [f, f, f, f]]", c[0].fx, c[0].fy, c[0].cx, c[0].cy, c[1].fx, c[1].fy, c[1].cx, c[1].cy);
 }
 
 /* What was accepted, or null; the status says why not. */
 static void put_geometry(asj_json_output *json, const asj_geometry *g)
 {
-    const int accepted = g->status == ASJ_GEOMETRY_ACCEPTED;
+    const int accepted = g->status == ASJ_GEOMETRY_ACCEPTED, has_cameras = g->cameras[0].fx > 0;
     json_t *value = json_null();
     if (g->status == ASJ_GEOMETRY_NOT_ASKED)
         return;
@@ -115,7 +104,8 @@ static void put_geometry(asj_json_output *json, const asj_geometry *g)
                           "matrix", numbers(g->matrix, 9), "rotation", g->has_pose ? numbers(g->rotation, 9) : json_null(),
                           "translation", g->has_pose ? numbers(g->translation, 3) : json_null(),
                           "covariance", g->has_pose ? numbers(g->covariance, 36) : json_null(),
-                          "cameras", cameras_value(g->cameras), "focal", focal_value(g->cameras), "focal_sd",
+                          "cameras", has_cameras ? cameras_value(g->cameras) : json_null(), "focal",
+                          has_cameras ? json_pack("[f, f]", g->cameras[0].fx, g->cameras[1].fx) : json_null(), "focal_sd",
                           g->focal_sd > 0 ? json_real(g->focal_sd) : json_null(), "log10_nfa", g->log10_nfa,
                           "inliers", g->inliers, "ambiguous", 0);
     asj_json_put(json, ",\n\"geometry\": ", value, JSON_REAL_PRECISION(15));

@@ -210,19 +210,13 @@ static void add_sight(const sight *s, double share, double scale, const double s
     }
 }
 
-/* The distances at p, and F with its derivatives. */
-static void look(fit *f, double matrix[9], double slopes[MOTION][9])
-{
-    set_matrices(f, matrix, slopes);
-    for (size_t n = 0; n < f->count; n++)
-        measure(matrix, &f->sights[n]);
-}
-
 /* One step; 0 when it moves nothing, or cannot be made. */
 static int32_t step(fit *f)
 {
     double matrix[9], slopes[MOTION][9], normal[MOTION * MOTION], right[MOTION] = {0}, size = 0;
-    look(f, matrix, slopes);
+    set_matrices(f, matrix, slopes);
+    for (size_t n = 0; n < f->count; n++)
+        measure(matrix, &f->sights[n]);
     const double scale = scale_of(f);
     memcpy(normal, f->information, sizeof normal);
     for (int32_t i = 0; i < MOTION; i++)
@@ -237,32 +231,6 @@ static int32_t step(fit *f)
     for (int32_t k = 0; k < MOTION && isfinite(size); k++)
         f->at[k] += right[k];
     return isfinite(size) && size > STILL;
-}
-
-/* What is to be least, at p; *scale: s there, or what it is to be. */
-static double cost(fit *f, double *scale)
-{
-    double matrix[9], slopes[MOTION][9], sum = 0, told = 0;
-    look(f, matrix, slopes);
-    *scale = *scale > 0 ? *scale : scale_of(f);
-    for (size_t n = 0; n < f->count; n++) {
-        const double d = f->sights[n].off / *scale;
-        sum += f->sights[n].weight * log1p(d * d);
-    }
-    for (int32_t i = 0; i < MOTION; i++)
-        for (int32_t k = 0; k < MOTION; k++)
-            told += f->at[i] * f->information[i * MOTION + k] * f->at[k];
-    return f->share * sum + 0.5 * told;
-}
-
-/* Whether the steps have gained anything: the scale changes with each. */
-static int32_t is_better(fit *f)
-{
-    double scale = 0;
-    fit before = *f;
-    memset(before.at, 0, sizeof before.at);
-    const double now = cost(f, &scale);
-    return now < cost(&before, &scale);
 }
 
 static void tell(const fit *f, asj_geometry *g)
@@ -286,8 +254,7 @@ static void run(const asj_match_result *result, fit *f, asj_geometry *g)
         return;
     for (int32_t round = 0; round < MOST_ROUNDS && step(f); round++) {
     }
-    if (is_better(f))
-        tell(f, g);
+    tell(f, g);
 }
 
 asj_status asj_finish_pose(asj_context *context, asj_match_result **result)

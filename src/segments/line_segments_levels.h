@@ -23,8 +23,8 @@ typedef struct asj_levels {
     int32_t order_count;
 } asj_levels;
 
-/* Fills *levels from frame->gray; an image too small for a gradient gives a field without samples. stage: what the
- * caller is told that it is a part of. On failure nothing is held. */
+/* Fills *levels from frame->gray; an image too small for a gradient gives a field without samples. stage:
+ * what the caller is told that it is a part of. On failure nothing is held. */
 asj_status asj_levels_create(asj_context *context, const asj_frame *frame, int32_t stage, asj_levels *levels);
 void asj_levels_free(asj_memory *memory, asj_levels *levels);
 

@@ -205,6 +205,16 @@ static void images_are_not_upsampled_unasked(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Both pictures, to be freed. */
+static void draw_pair(const synth_wide_pair *pair, uint8_t *pixels[2], asj_image images[2])
+{
+    for (int k = 0; k < 2; k++) {
+        pixels[k] = synth_wide_picture(pair, k);
+        assert_non_null(pixels[k]);
+        images[k] = (asj_image){pixels[k], ASJ_FORMAT_RGB8, SYNTH_WIDE_WIDTH, SYNTH_WIDE_HEIGHT, 0, 0};
+    }
+}
+
 /* Cameras are those of the images as they are, and so is the fundamental matrix; the pose is that of the cameras. */
 static void a_pose_is_found_in_upsampled_images(void **state)
 {
@@ -221,11 +231,9 @@ static void a_pose_is_found_in_upsampled_images(void **state)
     assert_int_equal(synth_wide_pair_make(&pair, 6), 0);
     asj_match_options_init(&options);
     options.geometry.model = ASJ_GEOMETRY_AUTO;
+    draw_pair(&pair, pixels, images);
     for (int k = 0; k < 2; k++) {
         const double f = pair.cameras[k].focal;
-        pixels[k] = synth_wide_picture(&pair, k);
-        assert_non_null(pixels[k]);
-        images[k] = (asj_image){pixels[k], ASJ_FORMAT_RGB8, SYNTH_WIDE_WIDTH, SYNTH_WIDE_HEIGHT, 0, 0};
         options.geometry.cameras[k] = (asj_camera){f, f, 0.5 * (SYNTH_WIDE_WIDTH - 1), 0.5 * (SYNTH_WIDE_HEIGHT - 1)};
     }
     assert_int_equal(asj_match_images(context, &images[0], &images[1], &stretch, NULL, &options, &r), ASJ_OK);
@@ -276,6 +284,16 @@ static uint32_t count_on_lines(const asj_match_result *r, const double f[9])
     return count;
 }
 
+static void expect_not_halved(asj_context *context, const asj_image *first, const asj_image *second,
+                              const asj_detect_options *options)
+{
+    static const asj_stretch automatic = {0, 0};
+    asj_match_result *r = NULL;
+    assert_int_equal(asj_match_images(context, first, second, &automatic, options, NULL, &r), ASJ_OK);
+    assert_true(r->stretch[0] >= 1 && r->stretch[1] >= 1);
+    asj_match_result_free(&r);
+}
+
 /* Large images are looked at halved, and upsampled from there; not where the caller says how, nor where one of them is small. */
 static void large_images_are_halved(void **state)
 {
@@ -287,17 +305,14 @@ static void large_images_are_halved(void **state)
     void *made[2] = {NULL, NULL};
     asj_image small[2], large[2];
     asj_detect_options one_octave;
-    asj_match_result *plain = NULL, *found = NULL, *other = NULL;
+    asj_match_result *plain = NULL, *found = NULL;
     double f[9];
     (void)state;
     assert_int_equal(synth_near_pair_make(&pair, 6), 0);
     synth_fundamental(&pair.cameras[0], &pair.cameras[1], f);
-    for (int k = 0; k < 2; k++) {
-        pixels[k] = synth_wide_picture(&pair, k);
-        assert_non_null(pixels[k]);
-        small[k] = (asj_image){pixels[k], ASJ_FORMAT_RGB8, SYNTH_WIDE_WIDTH, SYNTH_WIDE_HEIGHT, 0, 0};
+    draw_pair(&pair, pixels, small);
+    for (int k = 0; k < 2; k++)
         large[k] = enlarged(context, &small[k], &made[k]);
-    }
     assert_int_equal(asj_match_images(context, &large[0], &large[1], NULL, NULL, NULL, &plain), ASJ_OK);
     assert_int_equal(asj_match_images(context, &large[0], &large[1], &automatic, NULL, NULL, &found), ASJ_OK);
     const uint32_t right[2] = {count_on_lines(plain, f), count_on_lines(found, f)};
@@ -305,14 +320,10 @@ static void large_images_are_halved(void **state)
                   (unsigned)right[1], (unsigned)found->match_count);
     assert_true(found->stretch[0] == 0.5 && found->stretch[1] == 0.5 && found->upsampled == 1);
     assert_true(2 * right[1] > 3 * right[0] && 20 * right[1] >= 19 * found->match_count);
-    assert_int_equal(asj_match_images(context, &large[0], &small[1], &automatic, NULL, NULL, &other), ASJ_OK);
-    assert_true(other->stretch[0] >= 1 && other->stretch[1] >= 1);
-    asj_match_result_free(&other);
+    expect_not_halved(context, &large[0], &small[1], NULL);
     asj_detect_options_preset(&one_octave, ASJ_PRESET_MATCH);
     one_octave.octaves = 1;
-    assert_int_equal(asj_match_images(context, &large[0], &large[1], &automatic, &one_octave, NULL, &other), ASJ_OK);
-    assert_true(other->stretch[0] >= 1 && other->stretch[1] >= 1);
-    asj_match_result_free(&other);
+    expect_not_halved(context, &large[0], &large[1], &one_octave);
     asj_match_result_free(&found);
     asj_match_result_free(&plain);
     for (int k = 0; k < 2; k++) {

@@ -358,6 +358,29 @@ static void what_only_is_near_stays(void **state)
     }
 }
 
+/* (0, 0) to (420, 0), whole or as two halves that meet at a slight bend, and an edge that crosses it near its beginning. */
+static void halves_are_cut_as_the_whole_is(void **state)
+{
+    unit_fixture *f = *state;
+    for (int whole = 0; whole < 2; whole++) {
+        uint32_t n = 0;
+        if (whole) {
+            add_branch(place(n++, 420, 0), UNIT_PI, 420, ASJ_BRANCH_END_FADED);
+        } else {
+            add_branch(place(n++, 0, 0), atan2(1.74, 238), 238, ASJ_BRANCH_END_FADED);
+            add_branch(place(n++, 420, 0), atan2(1.92, -240), 240, ASJ_BRANCH_END_FADED);
+        }
+        add_branch(place(n++, 5, -2.3f), atan2(3.85, 40), 40.2f, ASJ_BRANCH_END_FADED);
+        asj_segment_list *list = find(f->context, n);
+        assert_int_equal(list->count, 2);
+        for (uint32_t k = 0; k < 2; k++) {
+            unit_near("where it is cut, x", whole, k, (double)list->segments[k].x2, 28.9, 0.1);
+            unit_near("where it is cut, y", whole, k, (double)list->segments[k].y2, 0, 0.1);
+        }
+        asj_segment_list_free(&list);
+    }
+}
+
 /* Branches 3 px apart, of which the graph says that they are one edge, are one with it. */
 static void the_graph_says_which_are_one(void **state)
 {
@@ -617,6 +640,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(what_crosses_otherwise_stays, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(beyond_a_corner_another_must_go_on, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(what_only_is_near_stays, unit_set_up, unit_tear_down),
+        cmocka_unit_test_setup_teardown(halves_are_cut_as_the_whole_is, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(the_graph_says_which_are_one, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(cells_change_nothing, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(edges_of_the_room_come_once, unit_set_up, unit_tear_down),
