@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* src/detect/follow.c, by what preset paper finds: corners, and none where an edge leaves the image. */
+/* src/detect/follow.c, by what preset paper finds: corners, and none where an edge leaves the image; and by itself: groups of
+ * branches. */
+#include "detect/follow.h"
+#include "detect/steps.h"
 #include "unit_test.h"
 
 #include <math.h>
@@ -59,8 +62,44 @@ static void discs_lie_in_the_image(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Where four squares of a board meet, at a radius of 3 px and with sectors of 2 px: three branches have room side by side, four
+ * have not, however strong they are. */
+static void groups_without_room_are_none(void **state)
+{
+    enum { SIDE = 120, ROOM = 3 };
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    asj_detect_options options;
+    asj_detection_run run;
+    uint8_t pixels[SIDE * SIDE];
+    (void)state;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        pixels[i] = (i % SIDE < SIDE / 2) == (i / SIDE < SIDE / 2) ? 220 : 40;
+    const asj_image image = unit_gray8(pixels, SIDE, SIDE);
+    assert_int_equal(asj_detect_options_preset(&options, ASJ_PRESET_PAPER), ASJ_OK);
+    options.isotropic_radii = 1u << 3;
+    options.sector_width = 2;
+    options.isotropic_persistence = 1;
+    assert_int_equal(asj_detection_run_begin(&run, context, &image, &options, &run), ASJ_OK);
+    assert_int_equal(asj_step_load(&run), ASJ_OK);
+    assert_int_equal(asj_step_gradient(&run), ASJ_OK);
+    for (int32_t count = 2; count <= 4; count++) {
+        asj_hypothesis hypothesis = {.x = SIDE / 2, .y = SIDE / 2, .radius = 3, .branch_count = count};
+        assert_int_equal(run.test->log_tests[count] == -HUGE_VAL, count > ROOM);
+        for (int32_t b = 0; b < count; b++)
+            hypothesis.branches[b].angle = 0.5 * UNIT_PI * b;
+        asj_follow(&run, &hypothesis);
+        assert_int_equal(hypothesis.branch_count, count > ROOM ? 0 : count);
+    }
+    asj_detection_run_end(&run);
+    unit_context_free(&counter, &context);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(discs_lie_in_the_image)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(discs_lie_in_the_image),
+        cmocka_unit_test(groups_without_room_are_none),
+    };
     return cmocka_run_group_tests_name("follow", tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 #include "detect/edge_width.h"
 #include "detect/octave_confirm.h"
 #include "detect/octaves.h"
+#include "detect/steps.h"
 #include "render.h"
 #include "scenes.h"
 #include "unit_test.h"
@@ -494,6 +495,54 @@ static void test_sure_ones_are_not_asked(void **state)
     assert_int_equal(confirmed_of(1, -16, 6, 1, 1), 0);
 }
 
+/* A pass over the same picture that finds nothing but one corner of the image's own octave, `gap` px to the left of it: how many
+ * of its branches are in the list of all octaves. */
+static int32_t listed_of(int32_t first_octave, int32_t octaves, double gap)
+{
+    unit_counter counter;
+    asj_context *context = unit_context(&counter, 1);
+    asj_detect_options options;
+    asj_detection_run run;
+    synth_scene scene;
+    synth_scene_init(&scene, 160, 160, 100);
+    synth_add_rectangle(&scene, (synth_point){60, 60}, 80, 80, 0, 140);
+    uint8_t *pixels = unit_picture(&scene, 1, 2, 7);
+    const asj_image image = unit_gray8(pixels, 160, 160);
+    asj_detect_options_init(&options);
+    options.first_octave = first_octave;
+    options.octaves = octaves;
+    assert_int_equal(asj_detection_run_begin(&run, context, &image, &options, &run), ASJ_OK);
+    assert_int_equal(asj_step_load(&run), ASJ_OK);
+    for (int32_t o = first_octave; o < 0; o++)
+        assert_int_equal(asj_step_next_octave(&run), ASJ_OK);
+    assert_true(run.octave == 0);
+    run.hypotheses = asj_allocate(&context->memory, 1, sizeof *run.hypotheses);
+    assert_non_null(run.hypotheses);
+    run.hypotheses[0] = corner(60 - gap, 60, 1);
+    run.hypothesis_count = 1;
+    for (int32_t o = 1; o < first_octave + octaves; o++)
+        assert_int_equal(asj_step_next_octave(&run), ASJ_OK);
+    assert_int_equal(asj_step_merge_octaves(&run), ASJ_OK);
+    const int32_t count = run.hypothesis_count > 0 ? run.hypotheses[0].branch_count : 0;
+    asj_detection_run_end(&run);
+    free(pixels);
+    unit_context_free(&counter, &context);
+    return count;
+}
+
+/* What the image itself finds has to show in it whether coarser octaves follow or none, and where it is the only octave nothing
+ * asks. */
+static void test_last_octave_is_confirmed(void **state)
+{
+    (void)state;
+    assert_int_equal(listed_of(0, 2, 0), 2);
+    assert_int_equal(listed_of(0, 2, 6), 0);
+    assert_int_equal(listed_of(-1, 3, 6), 0);
+    assert_int_equal(listed_of(-1, 2, 0), 2);
+    assert_int_equal(listed_of(-1, 2, 6), 0);
+    assert_int_equal(listed_of(0, 1, 6), 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -506,6 +555,7 @@ int main(void)
         cmocka_unit_test(test_soft_corners),   cmocka_unit_test(test_confirm),
         cmocka_unit_test(test_union),          cmocka_unit_test(test_half_range),
         cmocka_unit_test(test_half_union),     cmocka_unit_test(test_half_finds_more),
+        cmocka_unit_test(test_last_octave_is_confirmed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

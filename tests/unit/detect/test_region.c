@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* A part of the image, by rectangle and by mask: what is found is what the whole image gives, less what lies outside. */
+#include "detect/region.h"
+#include "detect/steps.h"
 #include "unit_test.h"
 
 #include <asj/asj.h>
@@ -204,6 +206,45 @@ static void test_paper(void **state)
     asj_detection_free(&found);
 }
 
+typedef struct caller {
+    int32_t calls, stops;
+} caller;
+
+static int32_t ask(void *user, int32_t stage, double done)
+{
+    caller *c = user;
+    (void)done;
+    assert_int_equal(stage, ASJ_STAGE_CANDIDATES);
+    c->calls++;
+    return c->stops;
+}
+
+/* Whoever has not been asked for long is asked while candidates far from a mask go, and stops that at once. */
+static void test_stopped(void **state)
+{
+    fixture *f = *state;
+    const asj_region region = {.mask = &f->mask_image};
+    for (int32_t stops = 0; stops < 2; stops++) {
+        caller c = {0, stops};
+        asj_detection_run run;
+        assert_int_equal(asj_detection_run_begin(&run, f->context, &f->image, &f->options, &run), ASJ_OK);
+        const size_t count = (size_t)run.frame->blocks * HEIGHT;
+        run.region = &region;
+        run.candidates = asj_allocate(&f->context->memory, count, sizeof *run.candidates);
+        assert_non_null(run.candidates);
+        memset(run.candidates, 0xff, count * sizeof *run.candidates);
+        f->context->options.progress = ask;
+        f->context->options.progress_user = &c;
+        f->context->asked_ms = asj_clock_ms() - 1000;
+        assert_int_equal(asj_region_clear_candidates(&run), stops ? ASJ_ERROR_CANCELLED : ASJ_OK);
+        assert_true(c.calls >= 1 && (!stops || c.calls == 1));
+        for (size_t i = 0; i < count; i++) /* of an empty mask all go */
+            assert_int_equal(run.candidates[i], stops ? 0xffff : 0);
+        f->context->options.progress = NULL;
+        asj_detection_run_end(&run);
+    }
+}
+
 static void refuse(fixture *f, asj_region region, const char *word)
 {
     asj_detection *found = NULL;
@@ -244,6 +285,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_octaves, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_own_pixels, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_paper, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_stopped, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_refused, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
