@@ -270,11 +270,46 @@ static void test_order_and_opening(void **state)
     assert_int_equal(validated(f, &hypothesis), 0);
 }
 
+/* Weak branches of a coarse octave are meaningful together: either by itself nearly so, and both by a hundred times more than their
+ * place asks for. One alone makes no junction, whatever may open, and in the image itself there are no such pairs. */
+static void test_pairs(void **state)
+{
+    fixture *f = *state;
+    const double places = log(SIZE * SIZE);
+    int together = 0, apart = 0;
+    f->options.minimum_length = f->options.minimum_opening = f->options.max_tilt = 0;
+    for (int n = 0; n < 400; n++) {
+        const double log_epsilon = n % 7, limit = log_epsilon + places - 2 * log(10); /* of one octave */
+        asj_hypothesis hypothesis = corner_hypothesis(corner_x, corner_y, 0);
+        double above[2];
+        for (int b = 0; b < 2; b++) {
+            asj_hypothesis_branch *branch = &hypothesis.branches[b];
+            branch->length = 3 + 0.25 * (b ? n / 20 : n % 20);
+            const asj_strip_line line = {corner_x, corner_y, branch->angle, branch->length};
+            above[b] = asj_strip_test(f->context, &f->frame, &f->options, &line).log_nfa - log_epsilon;
+        }
+        asj_hypothesis alone = hypothesis, fine = hypothesis;
+        alone.branch_count = 1;
+        f->options.epsilon = exp(log_epsilon);
+        const double worst = fmax(above[0], above[1]), both = above[0] + above[1] + 2 * log_epsilon;
+        const int by_themselves = worst <= 0, near = worst <= 0.5 * places, pair = near && both <= limit;
+        assert_int_equal(validated(f, &fine), by_themselves ? 2 : 0);
+        f->frame.octave = 1;
+        const int32_t kept = validated(f, &hypothesis), one = validated(f, &alone);
+        f->frame.octave = 0;
+        assert_int_equal(kept, by_themselves || pair ? 2 : 0);
+        assert_int_equal(one, 0);
+        together += pair && !by_themselves;
+        apart += near && !pair && !by_themselves;
+    }
+    assert_true(together > 50 && apart > 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_sector_strength, reset), cmocka_unit_test_setup(test_line_fit, reset),
-        cmocka_unit_test_setup(test_pulled, reset),
+        cmocka_unit_test_setup(test_pulled, reset),           cmocka_unit_test_setup(test_pairs, reset),
         cmocka_unit_test_setup(test_orient, reset),           cmocka_unit_test_setup(test_reject_early, reset),
         cmocka_unit_test_setup(test_good_corner, reset),      cmocka_unit_test_setup(test_dropped_branches, reset),
         cmocka_unit_test_setup(test_merge, reset),            cmocka_unit_test_setup(test_order_and_opening, reset),
