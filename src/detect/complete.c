@@ -96,7 +96,7 @@ static double strength_of(const asj_context *context, const asj_frame *frame, co
 {
     const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, hypothesis->radius};
     const asj_strip_sums s = asj_strip_add_up(context, frame, &line, options->strip_half_width, 0);
-    return s.pixels > 0 ? fmax((s.gamma - s.pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(s.pixels)), 0) : 0;
+    return fmax(asj_gamma_strength(s.gamma, s.pixels), 0);
 }
 
 void asj_complete_add(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,

@@ -3,11 +3,18 @@
 #ifndef ASJ_SRC_DETECT_NULL_MODEL_H
 #define ASJ_SRC_DETECT_NULL_MODEL_H
 
+#include <math.h>
 #include <stdint.h>
 
 /* Mean and standard deviation of one pairwise junction-ness gamma under the null model (closed forms in nfa.c). */
 #define ASJ_GAMMA_MEAN 0.330494606292647
 #define ASJ_GAMMA_SD 0.504136432767844
+
+/* How strong a sum of gamma over so many pixels is: standard deviations above the null model, 0 of no pixel. */
+static inline double asj_gamma_strength(double sum, int32_t pixels)
+{
+    return pixels > 0 ? (sum - pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(pixels)) : 0;
+}
 
 /* Most samples of an arc: 2 w + 1, w = arc_half_width <= 3. Tails are tabulated for up to as many terms. */
 #define ASJ_MAX_ARC 7

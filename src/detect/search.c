@@ -7,7 +7,7 @@
  * sum. */
 #include "search.h"
 #include "gradient.h"
-#include "nfa.h"
+#include "null_model.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -88,6 +88,6 @@ asj_search_sum asj_search_omega(const asj_frame *frame, double x, double y, doub
 double asj_search_strength(const asj_frame *frame, double x, double y, double angle, double length, double tau)
 {
     const asj_search_sum s = asj_search_omega(frame, x, y, angle, length, tau);
-    return s.pixels > 0 ? (s.gamma - s.pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(s.pixels)) : 0;
+    return asj_gamma_strength(s.gamma, s.pixels);
 }
 

@@ -141,9 +141,8 @@ asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, con
                          const asj_strip_line *line)
 {
     const asj_strip_sums s = add_up(context, frame, options, line, NEAR);
-    asj_strip strip = {log_nfa(frame, s.gamma, s.pixels), s.nn > 0 ? s.uu / s.nn : 0, 0, 1, s};
-    if (s.near_pixels > 0)
-        strip.near_strength = (s.near_gamma - s.near_pixels * ASJ_GAMMA_MEAN) / (ASJ_GAMMA_SD * sqrt(s.near_pixels));
+    const double near_strength = asj_gamma_strength(s.near_gamma, s.near_pixels);
+    asj_strip strip = {log_nfa(frame, s.gamma, s.pixels), s.nn > 0 ? s.uu / s.nn : 0, near_strength, 1, s};
     if (s.near_pixels > 0 && s.gamma > 0)
         strip.near_share = s.near_gamma / s.near_pixels / (s.gamma / s.pixels);
     return strip;
