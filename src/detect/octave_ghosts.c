@@ -59,14 +59,6 @@ void asj_octave_grid_add(asj_octave_grid *grid, const asj_hypothesis *hypotheses
     grid->coarsest = grid->coarsest > hypotheses[index].octave ? grid->coarsest : hypotheses[index].octave;
 }
 
-static int has_direction(const asj_hypothesis *hypothesis, double angle, double turn)
-{
-    for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        if (asj_angle_distance(hypothesis->branches[i].angle, angle) < turn)
-            return 1;
-    return 0;
-}
-
 /* Whether the branch begins at `finer` and not at the junction that it is said to be of. */
 static int begins_at(const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, const asj_hypothesis *finer)
 {
@@ -74,7 +66,8 @@ static int begins_at(const asj_hypothesis *hypothesis, const asj_hypothesis_bran
     const double dx = finer->x - hypothesis->x, dy = finer->y - hypothesis->y;
     const double t = dx * ux + dy * uy, s = dy * ux - dx * uy - branch->offset;
     return t > 0 && t <= BEGINS * scale && fabs(s) <= OFF_LINE * scale + 0.5 * branch->apart &&
-           has_direction(finer, branch->angle, SAME_WAY) && !has_direction(finer, branch->angle + ASJ_PI, OTHER_WAY);
+           !asj_hypothesis_is_free(finer, branch->angle, SAME_WAY) &&
+           asj_hypothesis_is_free(finer, branch->angle + ASJ_PI, OTHER_WAY);
 }
 
 /* keep[b] = 0 for the branches that begin at one of the hypotheses from `first` on. */

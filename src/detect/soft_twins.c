@@ -12,7 +12,6 @@
  * on a bent edge, one may be a corner; with REACH 5 the inner corner of a letter goes, too. As they are the photographs have none.
  * Without WEAK true corners go: of the junctions of eighteen photographs .3 % less repeat at zoom .9. */
 #include "soft_twins.h"
-#include "core/angle.h"
 #include "octave_ghosts.h"
 
 #include <math.h>
@@ -39,20 +38,12 @@ static double reach_of(const asj_hypothesis *hypothesis)
     return best_log_nfa(hypothesis) > WEAK ? REACH * width : 0;
 }
 
-static int goes_that_way(const asj_hypothesis *hypothesis, double angle)
-{
-    for (int32_t i = 0; i < hypothesis->branch_count; i++)
-        if (asj_angle_distance(hypothesis->branches[i].angle, angle) < SAME_WAY)
-            return 1;
-    return 0;
-}
-
 static int is_twin_of(const asj_hypothesis *twin, double reach, const asj_hypothesis *other)
 {
     if (!(hypot(other->x - twin->x, other->y - twin->y) <= reach && best_log_nfa(other) <= best_log_nfa(twin) - SURER))
         return 0;
     for (int32_t i = 0; i < twin->branch_count; i++)
-        if (!goes_that_way(other, twin->branches[i].angle))
+        if (asj_hypothesis_is_free(other, twin->branches[i].angle, SAME_WAY))
             return 0;
     return 1;
 }
