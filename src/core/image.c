@@ -275,13 +275,10 @@ asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_imag
 
 const asj_image_ops asj_image_reference = {.luma = asj_image_luma};
 
-/* Rows move to the front of the same memory. The planes of the gradient stand before them and are half as high and no wider now,
- * so that all rows are written before the first one that is read: in any order, by any thread. */
-static void halve_row(const uint16_t *upper, const uint16_t *lower, int32_t width, uint16_t *to)
+void asj_halve_row(const uint16_t *upper, const uint16_t *lower, int32_t width, uint16_t *to)
 {
     for (int32_t x = 0; x < width; x++)
         to[x] = (uint16_t)((upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1] + 2) >> 2);
-    repeat_columns(to, width);
 }
 
 void asj_frame_repeat_border(const asj_frame *frame)
@@ -298,12 +295,18 @@ typedef struct halve_job {
     asj_watch *watch;
 } halve_job;
 
+/* Rows move to the front of the same memory. The planes of the gradient stand before them and are half as high and no wider now,
+ * so that all rows are written before the first one that is read: in any order, by any thread. */
 static void halve_rows(const void *data, const asj_part *part)
 {
     const halve_job *j = data;
-    for (int64_t y = part->first; y < part->end && !asj_watch_stops(j->watch, part); y++)
-        halve_row(j->from + 2 * y * j->stride, j->from + (2 * y + 1) * j->stride, j->frame->width,
-                  j->frame->gray + y * j->frame->stride);
+    const int32_t width = j->frame->width;
+    for (int64_t y = part->first; y < part->end && !asj_watch_stops(j->watch, part); y++) {
+        const uint16_t *upper = j->from + 2 * y * j->stride;
+        uint16_t *to = j->frame->gray + y * j->frame->stride;
+        asj_halve_row(upper, upper + j->stride, width, to);
+        repeat_columns(to, width);
+    }
 }
 
 asj_gray_plane asj_frame_gray(const asj_frame *frame)

@@ -59,6 +59,9 @@ typedef struct asj_image_ops {
 } asj_image_ops;
 extern const asj_image_ops asj_image_reference;
 
+/* `width` means of 2 x 2 pixels of two rows. */
+void asj_halve_row(const uint16_t *upper, const uint16_t *lower, int32_t width, uint16_t *to);
+
 /* Halves the grey plane in place: means of 2 x 2 pixels, an odd last column or row left out; gradient planes are to be filled
  * anew. */
 asj_status asj_frame_halve(asj_context *context, asj_frame *frame);

@@ -150,10 +150,8 @@ static void halve_rows(const void *data, const asj_part *part)
 {
     const halve_job *j = data;
     for (int64_t y = part->first; y < part->end; y++) {
-        const uint16_t *upper = j->from + 2 * y * j->from_stride, *lower = upper + j->from_stride;
-        uint16_t *to = j->to + y * j->stride;
-        for (int32_t x = 0; x < j->width; x++)
-            to[x] = (uint16_t)((upper[2 * x] + upper[2 * x + 1] + lower[2 * x] + lower[2 * x + 1] + 2) >> 2);
+        const uint16_t *upper = j->from + 2 * y * j->from_stride;
+        asj_halve_row(upper, upper + j->from_stride, j->width, j->to + y * j->stride);
     }
 }
 
