@@ -39,19 +39,13 @@ static uint16_t strength_of_tail(const asj_sectors *s, int32_t k, double log_p, 
     return strength > 0 ? strength : 1;
 }
 
-static int32_t twice(int32_t number)
-{
-    const uint32_t half = (uint32_t)number & 0xffff;
-    return (int32_t)(half << 16 | half);
-}
-
 static void set_limits(asj_field *field)
 {
     const asj_sectors *s = &field->sectors;
     for (int32_t k = 0; k < s->count; k++) {
-        const int32_t limits[4] = {twice(s->mean[k]), twice(s->scale[k]), twice(field->keep[k] - 1),
-                                   twice(field->candidate[k] - 1)};
-        memcpy(field->limits[k], limits, sizeof limits);
+        const int32_t limits[4] = {s->mean[k], s->scale[k], field->keep[k] - 1, field->candidate[k] - 1};
+        for (int32_t i = 0; i < 4; i++)
+            field->limits[k][i] = asj_sector_twice(limits[i]);
     }
 }
 

@@ -106,9 +106,9 @@ static void set_direction(asj_sectors *s, int32_t i, double unit)
     s->uy[i] = (int16_t)(s->dy[i] < 0 ? -uy : uy);
 }
 
-static int32_t twice(int16_t value)
+int32_t asj_sector_twice(int32_t value)
 {
-    const uint32_t half = (uint16_t)value, both = half << 16 | half;
+    const uint32_t half = (uint32_t)value & 0xffff, both = half << 16 | half;
     int32_t word;
     memcpy(&word, &both, sizeof word);
     return word;
@@ -117,10 +117,10 @@ static int32_t twice(int16_t value)
 static void set_factors(asj_sectors *s, int32_t i)
 {
     const asj_direction u = asj_sector_direction(s, i);
-    s->factors[i][0] = twice(u.y);
-    s->factors[i][1] = twice(u.cross_x);
-    s->factors[i][2] = twice(u.x);
-    s->factors[i][3] = twice(u.dot_y);
+    s->factors[i][0] = asj_sector_twice(u.y);
+    s->factors[i][1] = asj_sector_twice(u.cross_x);
+    s->factors[i][2] = asj_sector_twice(u.x);
+    s->factors[i][3] = asj_sector_twice(u.dot_y);
 }
 
 /* The members of sector k are a circular run: finds where it starts, looking from offset `from` on, and how long it is. */

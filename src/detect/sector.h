@@ -49,6 +49,9 @@ static inline asj_direction asj_sector_direction(const asj_sectors *sectors, int
     return (asj_direction){x, y, (int16_t)(sign * x), (int16_t)(-sign * y)};
 }
 
+/* The low half of a word in both halves: what vector forms multiply pairs of pixels by. */
+int32_t asj_sector_twice(int32_t value);
+
 static inline int16_t asj_high_product(int16_t a, int16_t b)
 {
     return (int16_t)((int32_t)a * b >> 16);
