@@ -8,7 +8,9 @@
  *     u = (sqrt(1 - s3^2) v1 +- sqrt(s1^2 - 1) v3) / sqrt(s1^2 - s3^2)
  *
  * N keeps the length of v2 and u, so R carries v2, u, v2 x u to N v2, N u, N v2 x N u; n is along v2 x u and t = (N - R) n (Ma,
- * Soatto, Kosecka and Sastry, "An Invitation to 3-D Vision", theorem 5.19). Of each sign of u one sign of n sees what is there.
+ * Soatto, Kosecka and Sastry, "An Invitation to 3-D Vision", theorem 5.19). Of each sign of u one sign of n sees what is there. R
+ * is no reflection, whatever N is: R = G F' with columns F of v2, u, v2 x u and G of what they become, and its determinant is
+ * |v2 x u|^2 |N v2 x N u|^2.
  *
  * A motion receives planes one by one. Hypotheses: every candidate that the motion makes probable stands for three points (as in
  * minimal.c); with y2 ~ R y1 + s t each has an inverse depth s = n'y1, and three give n. So do a candidate and its two nearest
@@ -131,7 +133,7 @@ int32_t asj_motions_of_homography(const asj_pairs *set, const asj_model *homogra
         m->parameters = 8;
         m->view.plane_count = 1;
         memcpy(m->cameras, cameras, sizeof m->cameras);
-        found += length > NO_PLANE && length < DEEPEST && asj_determinant3(m->rotation) > 0 && asj_model_complete(m);
+        found += length > NO_PLANE && length < DEEPEST && asj_model_complete(m);
     }
     return found;
 }

@@ -32,6 +32,6 @@ int32_t asj_turns_over(const asj_pairs *set, const asj_model *model, const asj_c
     const int32_t count = asj_rotations_of_homography(model, cameras, rotations);
     int32_t upright = count == 0;
     for (int32_t k = 0; k < count; k++)
-        upright = upright || (asj_determinant3(rotations[k]) > 0 && keeps_down(set, rotations[k]));
+        upright = upright || keeps_down(set, rotations[k]);
     return !upright;
 }

@@ -431,6 +431,34 @@ static void a_homography_gives_its_motions(void **state)
     }
 }
 
+/* Of any homography that is not singular, mirrored and ill-conditioned ones too, both are rotations and no reflections. */
+static void a_homography_gives_rotations(void **state)
+{
+    (void)state;
+    synth_random random;
+    synth_random_seed(&random, 31);
+    int some = 0;
+    for (int i = 0; i < 3000; i++) {
+        const double nearly = i % 3 ? pow(10, -0.5 * (i % 9)) : 1; /* as large as what the last row does not have of the others */
+        double n[9], rotations[2][9], unit[9];
+        asj_model plane;
+        random_matrix(&random, n);
+        for (int k = 0; k < 3; k++)
+            n[6 + k] = nearly * n[6 + k] + (1 - nearly) * (n[k] - 0.5 * n[3 + k]);
+        memset(&plane, 0, sizeof plane);
+        asj_pixel_homography(n, cameras, plane.view.matrix);
+        const int32_t count = asj_rotations_of_homography(&plane, cameras, rotations);
+        for (int32_t k = 0; k < count; k++) {
+            unit_near("determinant", i, k, asj_determinant3(rotations[k]), 1, 1e-6);
+            asj_multiply3_transposed(rotations[k], rotations[k], unit);
+            for (int e = 0; e < 9; e++)
+                unit_near("R R'", i, e, unit[e], e % 4 == 0, 1e-6);
+        }
+        some += count;
+    }
+    assert_true(some > 2 * 2500);
+}
+
 #define CROWD 300
 
 /* One right candidate in ten, and a rotation that is known: the others vote for the translation. Where rays are parallel nothing is
@@ -484,8 +512,8 @@ int main(void)
         cmocka_unit_test(systems_are_solved_or_refused), cmocka_unit_test(roots_of_products),
         cmocka_unit_test(five_points_give_the_motion), cmocka_unit_test(right_candidates_have_no_residuals),
         cmocka_unit_test(two_candidates_give_the_motion), cmocka_unit_test(three_candidates_give_the_fundamental_matrix),
-        cmocka_unit_test(two_candidates_give_the_homography), cmocka_unit_test(a_homography_gives_its_motions),
-        cmocka_unit_test(a_vote_gives_the_translation),
+        cmocka_unit_test(two_candidates_give_the_homography), cmocka_unit_test(a_homography_gives_rotations),
+        cmocka_unit_test(a_homography_gives_its_motions), cmocka_unit_test(a_vote_gives_the_translation),
     };
     return cmocka_run_group_tests_name("solvers", tests, NULL, NULL);
 }
