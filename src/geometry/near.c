@@ -42,16 +42,10 @@ typedef struct plan {
     float factor, extra;
 } plan;
 
-static double bound_of(const double row[3], double x, double y)
+/* The matrix for coordinates from the middles. */
+static void move_matrix(const asj_pairs *set, const asj_two_view *view, double m[9])
 {
-    return fabs(row[0]) * x + fabs(row[1]) * y + fabs(row[2]);
-}
-
-static plan plan_of(const asj_pairs *set, const asj_two_view *view, double limit)
-{
-    const double *a = set->middle[0], *b = set->middle[1], *far = set->farthest;
-    double m[9], row[3];
-    plan p;
+    const double *a = set->middle[0], *b = set->middle[1];
     for (ptrdiff_t i = 0; i < 3; i++) { /* x1 = x + a */
         const double *r = view->matrix + 3 * i;
         m[3 * i] = r[0];
@@ -66,24 +60,42 @@ static plan plan_of(const asj_pairs *set, const asj_two_view *view, double limit
             m[6 + k] += b[0] * m[k] + b[1] * m[3 + k];
         }
     }
+}
+
+static double bound_of(const double row[3], double x, double y)
+{
+    return fabs(row[0]) * x + fabs(row[1]) * y + fabs(row[2]);
+}
+
+/* The largest products of the distance and of its normal: b and c are ROUNDING times these. */
+typedef struct largest {
+    double compared, normal;
+} largest;
+
+static largest largest_of(const asj_pairs *set, const asj_two_view *view, const double m[9])
+{
+    const double *far = set->farthest;
+    double row[3];
     for (ptrdiff_t k = 0; k < 3; k++)
         row[k] = bound_of(m + 3 * k, far[0], far[1]);
-    double compared, other;
-    if (view->planar) {
-        compared = row[0] + far[2] * row[2] + row[1] + far[3] * row[2]; /* of both coordinates */
-        other = row[2];
-    } else {
-        compared = row[0] * far[2] + row[1] * far[3] + row[2];
-        const double columns[2] = {fabs(m[0]) * far[2] + fabs(m[3]) * far[3] + fabs(m[6]),
-                                   fabs(m[1]) * far[2] + fabs(m[4]) * far[3] + fabs(m[7])};
-        other = fmax(fmax(row[0], row[1]), fmax(columns[0], columns[1]));
-    }
+    if (view->planar) /* both coordinates */
+        return (largest){row[0] + far[2] * row[2] + row[1] + far[3] * row[2], row[2]};
+    const double columns[2] = {fabs(m[0]) * far[2] + fabs(m[3]) * far[3] + fabs(m[6]),
+                               fabs(m[1]) * far[2] + fabs(m[4]) * far[3] + fabs(m[7])};
+    return (largest){row[0] * far[2] + row[1] * far[3] + row[2], fmax(fmax(row[0], row[1]), fmax(columns[0], columns[1]))};
+}
+
+static plan plan_of(const asj_pairs *set, const asj_two_view *view, double limit)
+{
+    double m[9];
+    plan p;
+    move_matrix(set, view, m);
+    const largest l = largest_of(set, view, m);
+    const double b = ROUNDING * l.compared, c = ROUNDING * l.normal;
     for (ptrdiff_t k = 0; k < 9; k++)
         p.m[k] = (float)m[k];
-    compared *= ROUNDING;
-    other *= ROUNDING;
     p.factor = (float)((1 + SLACK) * (1 + SLACK) * limit);
-    p.extra = (float)((1 + 1 / SLACK) * (compared * compared + (1 + SLACK) * limit * 4 * other * other));
+    p.extra = (float)((1 + 1 / SLACK) * (b * b + (1 + SLACK) * limit * 4 * c * c));
     return p;
 }
 
