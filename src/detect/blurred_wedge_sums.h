@@ -170,63 +170,75 @@ static void add_pixels(wedge_work *w)
 }
 
 /* A plain stretch: the edge alone. In terms of f across, its turn, its widening and f itself, which the parameters change by
- * (across uy) n, -(across ux) n, turned n - f u, wider n and f n. */
-static void add_far(wedge_work *w, int edge)
-{
-    const double ux = w->in->ux[edge], uy = w->in->uy[edge];
-    const float fx = (float)ux, fy = (float)uy, inverse = (float)(1 / w->wedge->p[BLUR]), sign = edge == 0 ? 1 : -1;
-    const float part_x = w->part_x, part_y = w->part_y, last = (float)w->in->last[edge], narrow = (float)(1 / w->in->across);
-    wedge_pixels *p = &w->far;
-    asj_wedge_sums *to = w->to;
-    float across[BATCH], turned[BATCH], wider[BATCH], f[BATCH], by_across[BATCH], by_turned[BATCH], by_wider[BATCH], by_f[BATCH];
+ * (across uy) n, -(across ux) n, turned n - f u, wider n and f n. These of a batch, and the same times the weights; what is seen
+ * along n and u, the weights, and the squares of what is seen times these. */
+typedef struct wedge_far {
+    float across[BATCH], turned[BATCH], wider[BATCH], f[BATCH];
+    float by_across[BATCH], by_turned[BATCH], by_wider[BATCH], by_f[BATCH];
     float along_n[BATCH], along_u[BATCH], weights[BATCH], squares[BATCH];
-    const int angle = FIRST + edge;
-    fill(p);
+} wedge_far;
+
+static inline void look_far(const wedge_work *w, int edge, const wedge_pixels *restrict p, wedge_far *restrict d)
+{
+    const float fx = (float)w->in->ux[edge], fy = (float)w->in->uy[edge], inverse = (float)(1 / w->wedge->p[BLUR]);
+    const float part_x = w->part_x, part_y = w->part_y, last = (float)w->in->last[edge], narrow = (float)(1 / w->in->across);
+    const float sign = edge == 0 ? 1 : -1;
     for (int32_t i = 0; i < BATCH; i++) {
         const float x = (float)p->x[i] - part_x, y = (float)p->y[i] - part_y, t = x * fx + y * fy, beside = y * fx - x * fy;
         const float seen_x = 0.5f * (float)p->seen_x[i], seen_y = 0.5f * (float)p->seen_y[i];
         const float place = beside * narrow, rest = 1 - place * place, inside = 0.5f * (rest + fabsf(rest));
         const float weight = p->weight[i] * inside * inside * is_below(t, last);
-        const float s = beside * inverse, height = bell(s);
-        f[i] = sign * height;
-        across[i] = -f[i] * s * inverse;
-        turned[i] = -across[i] * t;
-        wider[i] = f[i] * s * s * inverse;
-        by_f[i] = weight * f[i];
-        by_across[i] = weight * across[i];
-        by_turned[i] = weight * turned[i];
-        by_wider[i] = weight * wider[i];
-        along_n[i] = seen_y * fx - seen_x * fy;
-        along_u[i] = seen_x * fx + seen_y * fy;
-        weights[i] = weight;
-        squares[i] = weight * (seen_x * seen_x + seen_y * seen_y);
+        const float s = beside * inverse, f = sign * bell(s), across = -f * s * inverse, turned = -across * t;
+        const float wider = f * s * s * inverse;
+        d->across[i] = across;
+        d->turned[i] = turned;
+        d->wider[i] = wider;
+        d->f[i] = f;
+        d->by_across[i] = weight * across;
+        d->by_turned[i] = weight * turned;
+        d->by_wider[i] = weight * wider;
+        d->by_f[i] = weight * f;
+        d->along_n[i] = seen_y * fx - seen_x * fy;
+        d->along_u[i] = seen_x * fx + seen_y * fy;
+        d->weights[i] = weight;
+        d->squares[i] = weight * (seen_x * seen_x + seen_y * seen_y);
     }
-    const double square = dot(by_across, across, BATCH), with_turn = dot(by_across, turned, BATCH);
-    const double with_width = dot(by_across, wider, BATCH), with_f = dot(by_across, f, BATCH), f_square = dot(by_f, f, BATCH);
-    const double seen = dot(by_across, along_n, BATCH);
+}
+
+static void add_far(wedge_work *w, int edge)
+{
+    const double ux = w->in->ux[edge], uy = w->in->uy[edge];
+    const int angle = FIRST + edge;
+    asj_wedge_sums *to = w->to;
+    wedge_far d;
+    fill(&w->far);
+    look_far(w, edge, &w->far, &d);
+    const double square = dot(d.by_across, d.across, BATCH), with_turn = dot(d.by_across, d.turned, BATCH);
+    const double with_width = dot(d.by_across, d.wider, BATCH), with_f = dot(d.by_across, d.f, BATCH);
+    const double f_square = dot(d.by_f, d.f, BATCH), seen = dot(d.by_across, d.along_n, BATCH);
     double (*m)[PARAMETERS] = to->products;
     m[X][X] += square * uy * uy;
     m[Y][X] -= square * ux * uy;
     m[Y][Y] += square * ux * ux;
     m[angle][X] += with_turn * uy;
     m[angle][Y] -= with_turn * ux;
-    m[angle][angle] += dot(by_turned, turned, BATCH) + f_square;
+    m[angle][angle] += dot(d.by_turned, d.turned, BATCH) + f_square;
     m[BLUR][X] += with_width * uy;
     m[BLUR][Y] -= with_width * ux;
-    m[BLUR][angle] += dot(by_turned, wider, BATCH);
-    m[BLUR][BLUR] += dot(by_wider, wider, BATCH);
+    m[BLUR][angle] += dot(d.by_turned, d.wider, BATCH);
+    m[BLUR][BLUR] += dot(d.by_wider, d.wider, BATCH);
     m[STEP][X] += with_f * uy;
     m[STEP][Y] -= with_f * ux;
-    m[STEP][angle] += dot(by_turned, f, BATCH);
-    m[STEP][BLUR] += dot(by_wider, f, BATCH);
+    m[STEP][angle] += dot(d.by_turned, d.f, BATCH);
+    m[STEP][BLUR] += dot(d.by_wider, d.f, BATCH);
     m[STEP][STEP] += f_square;
     to->seen[X] += seen * uy;
     to->seen[Y] -= seen * ux;
-    to->seen[angle] += dot(by_turned, along_n, BATCH) - dot(by_f, along_u, BATCH);
-    to->seen[BLUR] += dot(by_wider, along_n, BATCH);
-    to->seen[STEP] += dot(by_f, along_n, BATCH);
-    to->total += total(squares);
-    to->weight += total(weights);
+    to->seen[angle] += dot(d.by_turned, d.along_n, BATCH) - dot(d.by_f, d.along_u, BATCH);
+    to->seen[BLUR] += dot(d.by_wider, d.along_n, BATCH);
+    to->seen[STEP] += dot(d.by_f, d.along_n, BATCH);
+    to->total += total(d.squares);
+    to->weight += total(d.weights);
 }
 
 /* Returns whether the batch is full. */
