@@ -340,6 +340,24 @@ static void test_upsample(void **state)
     free((void *)(uintptr_t)large.data);
 }
 
+/* Means of 2 x 2 levels, those between two of them rounded up; white too. */
+static void test_halve_row(void **state)
+{
+    enum { WIDTH = 37 };
+    uint16_t rows[2][2 * WIDTH], means[WIDTH + 1];
+    synth_random random;
+    (void)state;
+    synth_random_seed(&random, 4);
+    for (int i = 0; i < 2 * WIDTH; i++)
+        for (int k = 0; k < 2; k++)
+            rows[k][i] = (uint16_t)(i < 4 ? ASJ_GRAY_MAX : synth_random_between(&random, 0, ASJ_GRAY_MAX));
+    means[WIDTH] = 7;
+    asj_halve_row(rows[0], rows[1], WIDTH, means);
+    for (int i = 0; i < WIDTH; i++)
+        assert_int_equal(means[i], floor((rows[0][2 * i] + rows[0][2 * i + 1] + rows[1][2 * i] + rows[1][2 * i + 1]) / 4.0 + 0.5));
+    assert_int_equal(means[WIDTH], 7);
+}
+
 /* The mean of the plane between first and end along both axes, pixel k from k to k + 1. */
 static double mean_between(const uint8_t *pixels, int32_t width, double left, double right, double top, double bottom)
 {
@@ -435,7 +453,7 @@ int main(void)
         cmocka_unit_test(test_refused),       cmocka_unit_test(test_short_strides),
         cmocka_unit_test(test_bottom_up), cmocka_unit_test(test_not_finite),
         cmocka_unit_test(test_prepare), cmocka_unit_test(test_upsample), cmocka_unit_test(test_shrink),
-        cmocka_unit_test(test_shrink_in_place),
+        cmocka_unit_test(test_shrink_in_place), cmocka_unit_test(test_halve_row),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }
