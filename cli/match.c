@@ -208,7 +208,8 @@ static void print_geometry(const run *r)
     const asj_geometry *g = &r->result->geometry;
     if (g->status == ASJ_GEOMETRY_ACCEPTED)
         cli_note("geometry: %s, log10 NFA %.1f%s", asj_geometry_model_name(g->model), g->log10_nfa,
-                 g->model == ASJ_GEOMETRY_HOMOGRAPHY ? "; matches off its plane stay, less probable" : "");
+                 g->only_turns ? ": the camera only turns"
+                 : g->model == ASJ_GEOMETRY_HOMOGRAPHY ? "; matches off its plane stay, less probable" : "");
     else if (g->status != ASJ_GEOMETRY_NOT_ASKED && (r->result->match_count > 0 || r->result->rejected_count > 0))
         print_no_geometry(r);
 }

@@ -83,7 +83,8 @@ static uint32_t answered(const search *s, const asj_match_result *r)
 /* Are the images left without an answer? A geometry of few matches that tells no pose may be of what looks alike. */
 static int32_t goes_on(const search *s)
 {
-    const uint32_t enough = asks_geometry(s) && !s->best->geometry.has_pose ? SURELY_ENOUGH : ENOUGH;
+    const int32_t tells_motion = s->best->geometry.has_pose || s->best->geometry.only_turns;
+    const uint32_t enough = asks_geometry(s) && !tells_motion ? SURELY_ENOUGH : ENOUGH;
     return !asj_geometry_is_open(&s->best->geometry) && answered(s, s->best) < enough;
 }
 
@@ -114,14 +115,14 @@ static asj_status look(search *s, const asj_stretch *stretch, const asj_detect_o
 
 /* --- upsampled ---------------------------------------------------------------------------------------------------------------- */
 
-/* Whether to ask the upsampled images for a geometry: a pose, also where the images have a plane without one. Where cameras are
+/* Whether to ask the upsampled images for a geometry: a motion, also where the images have a plane without one. Where cameras are
  * known and the images' is chance, that of the upsampled ones is not believed either (accepted then: of 398 pairs of rooms one, of
  * 397 unrelated ones nine). Without cameras it is, when matches come again (of 198 pairs five, of 197 unrelated ones five). */
 static int32_t asks_closer(const search *s)
 {
     const asj_geometry *g = &s->best->geometry;
     if (g->status == ASJ_GEOMETRY_ACCEPTED)
-        return g->has_pose || asj_cameras_are_known(&s->options->geometry);
+        return g->has_pose || g->only_turns || asj_cameras_are_known(&s->options->geometry);
     return asks_geometry(s) && (asj_geometry_is_open(g) || !asj_cameras_are_known(&s->options->geometry));
 }
 

@@ -26,8 +26,8 @@ enum {
     ASJ_GEOMETRY_TOO_FEW = 3,     /* fewer than two places with candidates in either image */
     ASJ_GEOMETRY_AMBIGUOUS = 4,   /* another one with other matches explains almost as much, or has a log10 NFA below -100
                                    * itself: things that repeat; or the images and the upsampled ones tell two motions (match.h) */
-    ASJ_GEOMETRY_DEGENERATE = 5   /* what matches leaves it open: a camera that only turns has no translation; or, with cameras that
-                                   * are known, fewer than 15 matches that tell no pose */
+    ASJ_GEOMETRY_DEGENERATE = 5   /* what matches leaves it open: a camera that only turns has no translation where model essential
+                                   * asks for one; or, with cameras that are known, fewer than 15 matches that tell no pose */
 };
 
 /* A pin-hole camera without distortion. px; pixel centres at integers. fx = 0: not known. */
@@ -86,8 +86,9 @@ typedef struct asj_geometry {
     int32_t has_rival;       /* rival_log10_nfa is known */
     double matrix[9];        /* row by row, of norm 1. Homography: image 1 -> image 2. Else the fundamental matrix: x2' F x1 = 0
                               * with pixels (x, y, 1); the essential matrix is K2' F K1 */
-    double rotation[9];      /* x2 ~ R x1 + t in camera coordinates (x right, y down, z forward), row by row */
-    double translation[3];   /* of length 1: how far is not known */
+    double rotation[9];      /* x2 ~ R x1 + t in camera coordinates (x right, y down, z forward), row by row. Known with a pose, and
+                              * where the camera only turns */
+    double translation[3];   /* of length 1: how far is not known. 0 where the camera only turns */
     double covariance[36];   /* of the rotation (vector w with R_true = exp([w]x) R, rad) and the translation, 6 x 6, row by row;
                               * from the spread of all motions that the candidates allow. (asj_match(): before the pose was finished
                               * from where the matches lie, src/match/final_pose.c) */
@@ -98,9 +99,12 @@ typedef struct asj_geometry {
     double inliers;          /* sum of the candidates' probabilities */
     double focal_sd;         /* of the log of the focal length, where it was found; 0 where it was given */
     double rival_rotation[9];/* the rival's motion, as the best one's above; zero where it has none, or nothing determines its
-                              * translation. How well it is known nobody says */
+                              * translation; the translation alone where the camera only turns. How well it is known nobody says */
     double rival_translation[3];
-    double reserved[3];
+    int32_t only_turns;      /* 1 = the camera only turns, as far as matches tell: a homography K2 R K1^-1. The rotation and its
+                              * block of the covariance are known, has_pose is 0. With cameras or find_focal */
+    int32_t reserved_integer;
+    double reserved[2];
 } asj_geometry;
 
 /* Estimates the two-view geometry of candidate matches.

@@ -95,7 +95,7 @@ static int32_t set_up(const asj_pairs *set, const asj_model *model, const double
 /* The prior of rotations pulls towards the likeliest of them. */
 static void add_prior(const asj_pairs *set, const asj_model *model, equations *e)
 {
-    if (model->kind == ASJ_GEOMETRY_ESSENTIAL)
+    if (asj_model_has_rotation(model))
         asj_add_rotation_prior(set, model->rotation, model->parameters, e->normal, e->right);
 }
 

@@ -103,10 +103,11 @@ static double to_compare(const asj_estimation *e, const asj_model *m)
  * repeat, a wrong geometry shares many matches with the right one. Nearly the same motion is no rival for that. */
 static double least_contradiction(const asj_model *best, const asj_model *rival, double share)
 {
-    if (best->kind == ASJ_GEOMETRY_ESSENTIAL && rival->kind == ASJ_GEOMETRY_ESSENTIAL) {
+    if (asj_model_has_rotation(best) && asj_model_has_rotation(rival)) {
         double turn[9];
         asj_multiply3_transposed(rival->rotation, best->rotation, turn);
-        const double along = fabs(asj_dot3(rival->translation, best->translation));
+        const int32_t moves = !asj_model_only_turns(best) && !asj_model_only_turns(rival);
+        const double along = moves ? fabs(asj_dot3(rival->translation, best->translation)) : 1;
         if (asj_rotation_angle(turn) < SIMILAR_MOTION && along > cos(SIMILAR_MOTION))
             return CONTRARY;
     }
@@ -244,18 +245,6 @@ static void strike_rivals(asj_estimation *e)
         }
 }
 
-/* Without that nothing is known of how exact its pose is. */
-static asj_status settle(const asj_estimation *e, asj_model *m)
-{
-    asj_context *context = e->context;
-    asj_adjust_scratch *scratch = asj_adjust_scratches_create(&context->memory, &e->set, context->threads);
-    if (!scratch)
-        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for a second geometry");
-    asj_settle(context, &e->set, e->options->seed, scratch, m);
-    asj_adjust_scratches_free(&context->memory, scratch, context->threads);
-    return ASJ_OK;
-}
-
 /* As it was before number `chosen` told the focal length. */
 static asj_status focus_back(asj_estimation *e, int32_t chosen, const asj_model *before, const asj_focal *focal, int32_t focal_at)
 {
@@ -288,7 +277,7 @@ static asj_status put_in_front(asj_estimation *e, int32_t chosen, int32_t *stand
         if (status == ASJ_OK && count == 1 && followed.evidence > e->finalists[chosen].evidence)
             e->finalists[chosen] = followed;
         else if (status == ASJ_OK && !e->finalists[chosen].settled)
-            status = settle(e, &e->finalists[chosen]);
+            status = asj_estimation_settle(e, &e->finalists[chosen]);
     }
     *stands = asj_estimation_best(e, ASJ_GEOMETRY_AUTO) == chosen;
     for (int32_t n = 0; n < e->count && !*stands; n++)

@@ -107,8 +107,7 @@ static void set_matrix(const asj_model *m, asj_geometry *result)
         result->matrix[k] = m->view.matrix[k] / sqrt(sum);
 }
 
-/* A camera that only turns obeys a homography, and an essential matrix with any translation and a plane far away: where the motion
- * is not known well enough to be told, the homography says what there is to say. */
+/* Where the motion is not known well enough to be told, the homography says what there is to say. */
 static int32_t instead_of(const asj_estimation *e, int32_t best)
 {
     const int32_t flat = asj_estimation_best(e, ASJ_GEOMETRY_HOMOGRAPHY);
@@ -122,20 +121,47 @@ static int32_t is_believed(const asj_estimation *e, int32_t essential, int32_t b
     return !asj_has_found_focal(e, essential) || e->finalists[essential].evidence > ALMOST * e->finalists[best].evidence;
 }
 
+/* Where a camera that only turns explains more than any motion with a translation (pure_rotation.c), that translation suits errors
+ * of locations. */
+static int32_t only_turns(const asj_estimation *e, int32_t essential, int32_t turned)
+{
+    return turned >= 0 && e->finalists[turned].evidence > e->finalists[essential].evidence;
+}
+
+/* In place of what there is of a pose. */
+static void set_rotation(const asj_estimation *e, int32_t turned, asj_geometry *result)
+{
+    const asj_model *m = &e->finalists[turned];
+    result->only_turns = 1;
+    memcpy(result->cameras, m->cameras, sizeof result->cameras);
+    memcpy(result->rotation, m->rotation, sizeof result->rotation);
+    for (int32_t k = 0; k < 9; k++)
+        result->covariance[6 * (k / 3) + k % 3] = m->covariance[k];
+    if (e->rotation_focal.is_known)
+        add_focal(&e->rotation_focal, result);
+}
+
 /* Which finalist is told, -1 = there is none, with its pose. *determined: 0 when nothing determines its motion. */
 static int32_t choose(asj_estimation *e, asj_geometry *result, int32_t *determined)
 {
     const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO);
     const int32_t essential = asj_estimation_best(e, ASJ_GEOMETRY_ESSENTIAL); /* a plane's pose comes from here, too */
+    const int32_t turned = asj_estimation_best_rotation(e);
     int32_t chosen = best;
     *determined = 1;
-    if (best >= 0 && essential >= 0 && is_believed(e, essential, best) &&
+    if (best >= 0 && essential >= 0 && !only_turns(e, essential, turned) && is_believed(e, essential, best) &&
         asj_estimation_log10_nfa(e, &e->finalists[essential]) <= log10(e->options->epsilon))
         *determined = set_pose(e, essential, result);
+    if (best >= 0 && best == turned)
+        set_rotation(e, turned, result);
     if (best >= 0 && best == essential && !result->has_pose)
         chosen = instead_of(e, best);
     if (chosen != essential)
         *determined = 1;
+    if (best >= 0 && best == turned && e->options->model == ASJ_GEOMETRY_ESSENTIAL) {
+        chosen = essential;
+        *determined = 0;
+    }
     return chosen;
 }
 
@@ -172,6 +198,8 @@ static void describe_rival(asj_estimation *e, int32_t number, asj_geometry *resu
     result->rival_log10_nfa = asj_estimation_log10_nfa(e, m);
     if (m->kind == ASJ_GEOMETRY_ESSENTIAL)
         find_motion(e, m, e->other, result->rival_rotation, result->rival_translation);
+    else if (asj_model_only_turns(m))
+        memcpy(result->rival_rotation, m->rotation, sizeof result->rival_rotation);
 }
 
 asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)

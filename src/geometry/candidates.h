@@ -62,7 +62,7 @@ typedef struct asj_pairs {
 /* A two-view geometry as candidates meet it. */
 typedef struct asj_two_view {
     int32_t planar;          /* 0: matrix is fundamental, 1: a homography, image 1 -> image 2 */
-    int32_t plane_count;     /* of a fundamental matrix: planes that lie in it */
+    int32_t plane_count;     /* of a fundamental matrix: planes that lie in it; of a camera that only turns 1, or 0: model.c */
     double matrix[9];
     double planes[ASJ_MOST_PLANES][9]; /* their homographies, positive where they are in front of camera 1 */
     double thickness[ASJ_MOST_PLANES];   /* sd of a location on it, as part of that of others: model.c */

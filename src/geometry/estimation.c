@@ -2,6 +2,7 @@
 /* The best finalist, and how often chance brings one: NFA = kinds that were tried x exp(-evidence). */
 #include "estimation.h"
 #include "geometry_options.h"
+#include "posterior.h"
 
 #include <math.h>
 
@@ -13,6 +14,14 @@ int32_t asj_estimation_best(const asj_estimation *e, int32_t kind)
             (best < 0 || e->finalists[k].evidence > e->finalists[best].evidence))
             best = k;
     return best;
+}
+
+int32_t asj_estimation_best_rotation(const asj_estimation *e)
+{
+    for (int32_t k = 0; k < e->count; k++)
+        if (asj_model_only_turns(&e->finalists[k]) && e->finalists[k].evidence > -HUGE_VAL)
+            return k; /* there is one */
+    return -1;
 }
 
 const asj_camera *asj_estimation_cameras(const asj_estimation *e)
@@ -34,6 +43,17 @@ asj_status asj_estimation_refocus(asj_estimation *e, int32_t number)
     return ASJ_OK;
 }
 
+asj_status asj_estimation_settle(const asj_estimation *e, asj_model *model)
+{
+    asj_context *context = e->context;
+    asj_adjust_scratch *scratch = asj_adjust_scratches_create(&context->memory, &e->set, context->threads);
+    if (!scratch)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the spread of a motion");
+    asj_settle(context, &e->set, e->options->seed, scratch, model);
+    asj_adjust_scratches_free(&context->memory, scratch, context->threads);
+    return ASJ_OK;
+}
+
 int32_t asj_has_found_focal(const asj_estimation *e, int32_t number)
 {
     return e->focal_at >= 0 && e->finalists[number].kind == ASJ_GEOMETRY_ESSENTIAL;
@@ -41,6 +61,7 @@ int32_t asj_has_found_focal(const asj_estimation *e, int32_t number)
 
 double asj_estimation_log10_nfa(const asj_estimation *e, const asj_model *m)
 {
-    const double tried = e->options->model != ASJ_GEOMETRY_AUTO ? 1 : e->options->find_focal ? ASJ_MOST_KINDS : ASJ_MOST_KINDS - 1;
+    const int32_t blind = !e->options->find_focal && !asj_cameras_are_known(e->options); /* no motions, no turns */
+    const double tried = e->options->model != ASJ_GEOMETRY_AUTO ? 1 : blind ? ASJ_MOST_KINDS - 1 : ASJ_MOST_KINDS;
     return (log(tried) - m->evidence) / log(10);
 }

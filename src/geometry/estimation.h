@@ -9,7 +9,8 @@
 #include "search.h"
 
 #define ASJ_MOST_KINDS 3
-#define ASJ_MOST_MODELS ((2 * ASJ_MOST_KINDS + 3) * ASJ_FINALISTS) /* the last three: with a focal length that was found */
+/* The last three: with a focal length that was found. One: a camera that only turns. */
+#define ASJ_MOST_MODELS ((2 * ASJ_MOST_KINDS + 3) * ASJ_FINALISTS + 1)
 
 /* One call. */
 typedef struct asj_estimation {
@@ -25,6 +26,7 @@ typedef struct asj_estimation {
     asj_pictures *pictures; /* NULL: nobody has shown them */
     asj_focal_search *focal_search; /* NULL: nobody asks for it */
     asj_focal focal;
+    asj_focal rotation_focal; /* the same, of a camera that only turns */
     int32_t focal_at; /* where the finalist that has told the focal length stands; -1 = there is none */
 } asj_estimation;
 
@@ -34,11 +36,17 @@ const asj_camera *asj_estimation_cameras(const asj_estimation *e);
 /* Makes another finalist with the focal length the one that tells it. ASJ_ERROR_MEMORY. */
 asj_status asj_estimation_refocus(asj_estimation *e, int32_t number);
 
+/* posterior.c: without that nothing is known of how exact its motion is. ASJ_ERROR_MEMORY. */
+asj_status asj_estimation_settle(const asj_estimation *e, asj_model *model);
+
 /* Is a finalist's focal length found? */
 int32_t asj_has_found_focal(const asj_estimation *e, int32_t number);
 
 /* The finalist with the largest evidence, of a kind or of any (ASJ_GEOMETRY_AUTO); -1 when there is none. */
 int32_t asj_estimation_best(const asj_estimation *e, int32_t kind);
+
+/* .. of a camera that only turns. */
+int32_t asj_estimation_best_rotation(const asj_estimation *e);
 
 /* log10 of how many such geometries chance brings. */
 double asj_estimation_log10_nfa(const asj_estimation *e, const asj_model *m);

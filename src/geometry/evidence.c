@@ -50,7 +50,7 @@ static double width_of(const asj_model *m, int32_t parameter)
         return parameter < 3 ? 4.29 : parameter < 5 ? 3.54 : 3; /* (8 pi^2)^(1/3), sqrt(4 pi), base over distance of a plane */
     if (m->kind == ASJ_GEOMETRY_FUNDAMENTAL)
         return parameter < 6 ? 4.29 : 3;
-    return 3; /* entries of a normalised homography */
+    return asj_model_only_turns(m) ? 4.29 : 3; /* entries of a normalised homography */
 }
 
 double asj_prior_information(const asj_model *model, int32_t parameter)
@@ -62,6 +62,11 @@ double asj_prior_information(const asj_model *model, int32_t parameter)
 double asj_log_volume(const asj_model *model, int32_t parameter)
 {
     return 0.5 * log(2 * ASJ_PI) - log(width_of(model, parameter));
+}
+
+double asj_log_form(const asj_model *model)
+{
+    return asj_model_only_turns(model) ? log(0.5) : 0;
 }
 
 /* The larger share first, then the candidate that was given first. */
@@ -245,7 +250,8 @@ double asj_score_weighed(const asj_pairs *set, const asj_two_view *view, double 
 
 double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch)
 {
-    double information[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], none[ASJ_MODEL_PARAMETERS] = {0}, log_determinant, volume = 0;
+    double information[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], none[ASJ_MODEL_PARAMETERS] = {0}, log_determinant;
+    double volume = asj_log_form(model);
     const int32_t n = model->parameters;
     asj_probabilities(set, &model->view, 1, &scratch->score, scratch->probability);
     asj_information(set, model, scratch->probability, information);
@@ -253,7 +259,7 @@ double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust
         information[p * (n + 1)] += asj_prior_information(model, p);
         volume += asj_log_volume(model, p);
     }
-    if (model->kind == ASJ_GEOMETRY_ESSENTIAL)
+    if (asj_model_has_rotation(model))
         volume += asj_rotation_prior(set, model->rotation);
     if (!asj_cholesky_solve(information, n, none, &log_determinant))
         return -HUGE_VAL;

@@ -16,6 +16,9 @@ double asj_score_weighed(const asj_pairs *set, const asj_two_view *view, double 
 double asj_prior_information(const asj_model *model, int32_t parameter);
 double asj_log_volume(const asj_model *model, int32_t parameter);
 
+/* Log of the share that the form of the model has: of a camera that only turns there are two (pure_rotation.c). */
+double asj_log_form(const asj_model *model);
+
 /* Natural log of the evidence for a geometry of the model's kind near the model: evidence.c. -HUGE_VAL when there is
  * none. */
 double asj_log_evidence(const asj_pairs *set, const asj_model *model, asj_adjust_scratch *scratch);

@@ -7,16 +7,22 @@
  * evidence is followed to longer and shorter focal lengths (focal_profile.c). When that tells the focal length, all motions that
  * there are with it are finalists, as with known cameras.
  *
+ * A camera that only turns tells its focal length by itself (Hartley, "Self-calibration from multiple views with a rotating
+ * camera", ECCV 1994): K^-1 H K is a rotation with the right one. Of the homographies that were found, the factors with which they
+ * are most nearly rotations are where the path may start, and the focal length of the motion.
+ *
  * (Rendered rooms seen from far apart, seeds 1000 to 1119, `wide_rooms --find-focal --stretch 0,0`: 101 poses of 119 pairs, none
  * of them out by more than 3 degrees; without what edges say there were 45 and 18, of 97 and 2 with it.) */
 #include "focal.h"
 #include "motions.h"
+#include "pure_rotation.h"
 
 #include <math.h>
 #include <string.h>
 
 #define COARSE 5
 #define FIRST 6 /* number of a factor: 0.54 of the longer side; the others are .. */
+#define MOST_FLAT 6 /* homographies that may be rotations */
 #define APART 7 /* .. that far from each other, up to 2.19 */
 
 struct asj_focal_search {
@@ -77,6 +83,52 @@ asj_status asj_find_focal(asj_focal_search *s, const asj_model *flat, int32_t co
 asj_status asj_find_focal_of(asj_focal_search *s, const asj_model *motion, asj_focal *found)
 {
     return asj_focal_follow(&s->profile, motion, found);
+}
+
+/* With which K2^-1 H K1 is most nearly a rotation. */
+static double factor_of_rotation(const asj_focal_search *s, const asj_model *homography)
+{
+    double least = HUGE_VAL, best = 1;
+    for (int32_t n = 0; n < ASJ_FOCAL_COUNT; n++) {
+        asj_camera cameras[2];
+        asj_focal_cameras(&s->prior, asj_focal_factor(n), cameras);
+        const double far = asj_far_from_rotation(homography, cameras);
+        if (far < least) {
+            least = far;
+            best = asj_focal_factor(n);
+        }
+    }
+    return best;
+}
+
+/* The rotation near that of a model, with that focal length, when it is better than *best. */
+static asj_status look_at_rotation(asj_focal_search *s, double factor, const asj_model *near, asj_model *best)
+{
+    asj_model rotation;
+    asj_camera cameras[2];
+    int32_t found = 0;
+    asj_focal_cameras(&s->prior, factor, cameras);
+    asj_status status = asj_focal_turn(&s->profile, factor);
+    if (status == ASJ_OK)
+        status = asj_find_pure_rotation(s->profile.context, s->profile.set, cameras, near, 1, &rotation, &found);
+    if (status != ASJ_OK || !found)
+        return status;
+    rotation.evidence += asj_log_focal_prior(&s->prior, factor);
+    if (rotation.evidence > best->evidence)
+        *best = rotation;
+    return ASJ_OK;
+}
+
+asj_status asj_find_focal_of_rotation(asj_focal_search *s, const asj_model *flat, int32_t count, const asj_model *motion,
+                                      asj_focal *found)
+{
+    asj_model best;
+    memset(found, 0, sizeof *found);
+    best.evidence = found->model.evidence = -HUGE_VAL;
+    asj_status status = look_at_rotation(s, motion->cameras[0].fx / s->prior.cameras[0].fx, motion, &best);
+    for (int32_t k = 0; k < count && k < MOST_FLAT && status == ASJ_OK; k++)
+        status = look_at_rotation(s, factor_of_rotation(s, &flat[k]), &flat[k], &best);
+    return status == ASJ_OK && best.evidence > -HUGE_VAL ? asj_focal_follow(&s->profile, &best, found) : status;
 }
 
 static double factor_of(const asj_focal_search *s, const asj_focal *found)

@@ -23,6 +23,11 @@ asj_status asj_find_focal(asj_focal_search *s, const asj_model *flat, int32_t co
 /* The same from one motion on, which has a focal length. */
 asj_status asj_find_focal_of(asj_focal_search *s, const asj_model *motion, asj_focal *found);
 
+/* The same of a camera that only turns, from the homographies on and from the motion, which has a focal length. ->model.evidence is
+ * -HUGE_VAL where there is none. */
+asj_status asj_find_focal_of_rotation(asj_focal_search *s, const asj_model *flat, int32_t count, const asj_model *motion,
+                                      asj_focal *found);
+
 /* The set with the directions of a focal length that was found before. ASJ_ERROR_MEMORY. */
 asj_status asj_focal_search_turn(asj_focal_search *s, const asj_focal *found);
 

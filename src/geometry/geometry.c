@@ -4,6 +4,7 @@
  *   pairs.c       candidates -> places, priors
  *   search.c      samples (minimal.c, five_point.c), scores (likelihood.c), refinement (adjust.c)
  *   motions.c     essential matrices with planes (planes.c), and what the candidates allow around them (posterior.c)
+ *   pure_rotation.c  a camera that only turns
  *   focal.c       the same for a row of focal lengths (focal_prior.c, focal_profile.c), where none is known and it is asked for
  *   rivals.c      what explains as much without the candidates of the best one
  *   evidence.c    how often chance brings as much
@@ -18,6 +19,7 @@
 #include "geometry_options.h"
 #include "motions.h"
 #include "pairs.h"
+#include "pure_rotation.h"
 #include "rivals.h"
 #include "stop.h"
 
@@ -27,6 +29,8 @@
 /* Nats that a score loses at least on the way to an evidence: volume of the parameters, near places. Of 69 pairs of unrelated
  * images 46 stay below; of 46 accepted ones none is within 8 nats of it. */
 #define GIVE_UP 17.0
+
+#define WORTH_A_LOOK 0.6
 
 /* Cameras that are not known have the longer side as focal length, of the image as it is with square pixels. */
 static asj_search plan(const asj_estimation *e, int32_t kind)
@@ -51,6 +55,43 @@ static asj_status search_kind(asj_estimation *e, int32_t kind)
     return status;
 }
 
+/* Does a camera that only turns explain more than any motion? Only then it is a finalist. */
+static int32_t outdoes_motions(asj_estimation *e, const asj_model *rotation)
+{
+    const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_ESSENTIAL);
+    if (best < 0)
+        return 1;
+    const asj_model *motion = &e->finalists[best];
+    return rotation->evidence > motion->evidence &&
+           rotation->evidence > motion->evidence + asj_gain_of_thick_planes(&e->set, motion, &e->scratch);
+}
+
+static asj_status search_pure_rotation(asj_estimation *e, const asj_camera cameras[2])
+{
+    int32_t found = 0;
+    asj_model *rotation = &e->finalists[e->count];
+    asj_status status = asj_find_pure_rotation(e->context, &e->set, cameras, e->finalists, e->count, rotation, &found);
+    if (status == ASJ_OK && found)
+        status = asj_estimation_settle(e, rotation);
+    if (status == ASJ_OK && found && outdoes_motions(e, rotation))
+        e->count++;
+    return status;
+}
+
+/* The same where a focal length is looked for: where homographies explain anything like as much as the motion that was found. */
+static asj_status search_focal_of_rotation(asj_estimation *e, const asj_model *flat, int32_t count)
+{
+    const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_HOMOGRAPHY);
+    if (best < 0 || !(e->finalists[best].evidence > WORTH_A_LOOK * e->focal.model.evidence))
+        return ASJ_OK;
+    asj_status status = asj_find_focal_of_rotation(e->focal_search, flat, count, &e->focal.model, &e->rotation_focal);
+    if (status == ASJ_OK)
+        status = asj_focal_search_turn(e->focal_search, &e->focal); /* back */
+    if (status == ASJ_OK && e->rotation_focal.is_known && outdoes_motions(e, &e->rotation_focal.model))
+        e->finalists[e->count++] = e->rotation_focal.model;
+    return status;
+}
+
 /* One focal length for both, in place of cameras: a motion that tells it, and the others that there are with it. */
 static asj_status search_focal(asj_estimation *e, const asj_geometry_hints *hints)
 {
@@ -70,7 +111,7 @@ static asj_status search_focal(asj_estimation *e, const asj_geometry_hints *hint
     if (e->focal.is_known)
         status = asj_find_with_focal(e->focal_search, &e->focal, flat, count, e->finalists + e->count, &more);
     e->count += more;
-    return status;
+    return status == ASJ_OK ? search_focal_of_rotation(e, flat, count) : status;
 }
 
 /* What is searched: the kind with epipolar lines, ASJ_GEOMETRY_NONE for none; and homographies? */
@@ -98,6 +139,8 @@ static asj_status search_all(asj_estimation *e, const asj_geometry_hints *hints)
         status = search_kind(e, ASJ_GEOMETRY_HOMOGRAPHY);
     if (status == ASJ_OK && epipolar == ASJ_GEOMETRY_ESSENTIAL)
         status = asj_refine_motions(e->context, &e->set, o->cameras, o->seed, ASJ_SETTLED, e->finalists, &e->count);
+    if (status == ASJ_OK && epipolar == ASJ_GEOMETRY_ESSENTIAL)
+        status = search_pure_rotation(e, o->cameras);
     return status == ASJ_OK && o->find_focal ? search_focal(e, hints) : status;
 }
 
@@ -111,7 +154,7 @@ static asj_status search_rivals(asj_estimation *e)
 {
     const asj_camera *cameras = asj_estimation_cameras(e);
     const int32_t best = asj_estimation_best(e, ASJ_GEOMETRY_AUTO);
-    const int32_t found = best >= 0 && cameras && asj_has_found_focal(e, best);
+    const int32_t found = best >= 0 && cameras && e->focal_at >= 0 && asj_model_has_rotation(&e->finalists[best]);
     const int32_t epipolar = found ? ASJ_GEOMETRY_ESSENTIAL : epipolar_kind(e->options);
     asj_search kinds[2];
     int32_t kind_count = 0, more = 0;

@@ -165,7 +165,7 @@ asj_peaks asj_likelihood_peaks(const asj_pairs *set, const asj_two_view *view, d
     asj_peaks peaks = {view->planar ? plane : line, plane, loose, !(loose > 1), NULL};
     if (set->has_labels && view->has_motion)
         peaks.named = asj_named_rotation(set, view->rotation);
-    if (!view->planar && view->plane_count > 0) {
+    if (view->plane_count > 0) {
         peaks.first *= 1 - ON_PLANES;
         peaks.plane *= ON_PLANES / view->plane_count;
     }

@@ -4,7 +4,7 @@
  * essential: R <- exp([w]x) R, and t turned about the two axes at right angles to it; each plane's n by its entries. fundamental:
  * E' = K2' F K1 = U diag(1, s, 0) V', which has seven degrees of freedom: U and V turned, s <- s exp(d) (Bartoli and Sturm,
  * "Nonlinear estimation of the fundamental matrix with minimal parameters", PAMI 2004). homography: the entries of K2^-1 H K1 but
- * the largest, which is 1. */
+ * the largest, which is 1; of a camera that only turns, K2 R K1^-1: R as above. */
 #include "model.h"
 #include "small_matrix.h"
 
@@ -134,7 +134,7 @@ static void complete_planes(asj_model *m, const double k1[9])
             normal[k] = m->rotation[k] + m->translation[k / 3] * m->planes[p][k % 3];
         asj_pixel_homography(normal, m->cameras, m->view.planes[p]);
         asj_apply3_transposed(k1, m->planes[p], m->view.in_front[p]);
-        m->view.thickness[p] = thickness_of(m->planes[p], &m->cameras[1]);
+        m->view.thickness[p] = m->thick ? 1 : thickness_of(m->planes[p], &m->cameras[1]);
     }
 }
 
@@ -161,9 +161,24 @@ static int32_t complete_essential(asj_model *m)
     return 1;
 }
 
+/* What a camera that only turns sees lies where K2 R K1^-1 puts it, as exactly as locations are known or, with view.plane_count 1,
+ * mostly as exactly as on a plane without parallax. */
+static void complete_turn(asj_model *m)
+{
+    static const double everywhere[3] = {0, 0, 1};
+    asj_pixel_homography(m->rotation, m->cameras, m->view.matrix);
+    memcpy(m->view.planes[0], m->view.matrix, sizeof m->view.matrix);
+    memcpy(m->view.in_front[0], everywhere, sizeof everywhere);
+    m->view.thickness[0] = THINNEST;
+    memcpy(m->view.rotation, m->rotation, sizeof m->rotation);
+    m->view.has_motion = 1;
+}
+
 int32_t asj_model_complete(asj_model *m)
 {
     double inverse[9];
+    if (asj_model_only_turns(m))
+        complete_turn(m);
     if (m->kind == ASJ_GEOMETRY_HOMOGRAPHY) {
         m->view.planar = 1;
         return asj_invert3(m->view.matrix, inverse);
@@ -218,6 +233,14 @@ static int32_t move_fundamental(const asj_model *model, const double *delta, asj
     return asj_model_complete(moved);
 }
 
+static int32_t move_turn(const asj_model *model, const double *delta, asj_model *moved)
+{
+    double turn[9];
+    asj_rotation_of(delta, turn);
+    asj_multiply3(turn, model->rotation, moved->rotation);
+    return asj_model_complete(moved);
+}
+
 static int32_t move_homography(const asj_model *model, const double *delta, asj_model *moved)
 {
     double n[9];
@@ -241,5 +264,7 @@ int32_t asj_model_move(const asj_model *model, const double *delta, asj_model *m
     *moved = *model;
     if (model->kind == ASJ_GEOMETRY_ESSENTIAL)
         return move_essential(model, delta, moved);
+    if (asj_model_only_turns(model))
+        return move_turn(model, delta, moved);
     return model->kind == ASJ_GEOMETRY_FUNDAMENTAL ? move_fundamental(model, delta, moved) : move_homography(model, delta, moved);
 }

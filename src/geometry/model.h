@@ -11,18 +11,32 @@
 
 typedef struct asj_model {
     int32_t kind;             /* ASJ_GEOMETRY_ESSENTIAL, _FUNDAMENTAL or _HOMOGRAPHY */
-    int32_t parameters;       /* 5 (essential) and 3 for each plane, 7 (fundamental), 8 (homography) */
+    int32_t parameters;       /* 5 (essential) and 3 for each plane, 7 (fundamental), 8 (homography, or 3 where the
+                               * camera only turns) */
     asj_camera cameras[2];    /* fundamental, homography: what brings pixels to numbers near 1 */
-    double rotation[9];       /* essential: x2 ~ R x1 + t in camera coordinates, |t| = 1 */
+    double rotation[9];       /* essential: x2 ~ R x1 + t in camera coordinates, |t| = 1; of a camera that only turns, too */
     double translation[3];
     double planes[ASJ_MOST_PLANES][3]; /* essential: n of n'X = 1 with |t| = 1, in coordinates of camera 1; view.plane_count */
+    int32_t thick;            /* essential: locations on its planes are known no better than others (pure_rotation.c) */
     asj_two_view view;
     double score;             /* asj_score() */
     double evidence;          /* asj_log_evidence() */
     double peak;              /* the evidence before asj_settle() has seen it */
-    double covariance[25];    /* of the motion's parameters, once asj_settle() has seen it */
+    double covariance[25];    /* of the motion's parameters, once asj_settle() has seen it: 5 x 5, or 3 x 3 of a turn */
     int32_t settled;
 } asj_model;
+
+/* A homography K2 R K1^-1, which has three parameters. */
+static inline int32_t asj_model_only_turns(const asj_model *m)
+{
+    return m->kind == ASJ_GEOMETRY_HOMOGRAPHY && m->parameters == 3;
+}
+
+/* Does it have a rotation, which the images' directions may make likely? */
+static inline int32_t asj_model_has_rotation(const asj_model *m)
+{
+    return m->kind == ASJ_GEOMETRY_ESSENTIAL || asj_model_only_turns(m);
+}
 
 /* (x, y, 1) = K^-1 of a pixel. */
 static inline void asj_ray(const asj_camera *k, double x, double y, double ray[3])
@@ -53,7 +67,7 @@ int32_t asj_model_complete(asj_model *model);
 void asj_translation_axes(const double t[3], double axis[3], double other[3]);
 
 /* The model moved by `delta`, one number for each parameter: radians and entries of the planes' n (essential), radians and the
- * change of the log of a ratio (fundamental), entries (homography). */
+ * change of the log of a ratio (fundamental), entries or, where the camera only turns, radians (homography). */
 int32_t asj_model_move(const asj_model *model, const double *delta, asj_model *moved);
 
 #endif

@@ -138,7 +138,7 @@ int32_t asj_near(const asj_pairs *set, int32_t count, const asj_two_view *view, 
 {
     const plan p = plan_of(set, view, limit);
     const float *at[4];
-    const int32_t exactly = view->plane_count > 0;
+    const int32_t exactly = !view->planar && view->plane_count > 0;
     int32_t found = 0, is_near[BLOCK];
     for (ptrdiff_t n = 0; n < 4; n++)
         at[n] = set->at + n * set->count;

@@ -13,10 +13,11 @@
  * is from rendered rooms: tests/accuracy/README.md. The prior of rotations is not: its edges are no candidates, and manhattan.c
  * counts what they have in common itself.
  *
- * Drawn are the five parameters of the motion (model.c). Planes follow as the equations of adjust.c say, n' = -H_nn^-1 H_nm m', and
- * are integrated over by Laplace's method. Standard deviations of a round: those of the draws so far, times the SPREADS in turn,
- * which the density has all of, so that what lies farther out is found and nothing weighs without bound. Of a covariance of
- * draws, few of which weigh anything at first, LEAST of Laplace's is a part: it is as long and thin as what the candidates allow.
+ * Drawn are the five parameters of the motion (model.c), or the three of a camera that only turns. Planes follow as the equations
+ * of adjust.c say, n' = -H_nn^-1 H_nm m', and are integrated over by Laplace's method. Standard deviations of a round: those of the
+ * draws so far, times the SPREADS in turn, which the density has all of, so that what lies farther out is found and nothing weighs
+ * without bound. Of a covariance of draws, few of which weigh anything at first, LEAST of Laplace's is a part: it is as long and
+ * thin as what the candidates allow.
  * (Where cameras are near each other, turning and moving look alike, and the two together are known far better than either. An sd
  * of 0.06 degrees for all parameters in place of it left hardly a draw that weighed anything: in 149 pairs of rooms seen from 1
  * to 15 degrees apart translations were out by 1.4 told standard deviations in the median and by 4.7 and more in a tenth; with it
@@ -40,7 +41,7 @@
 #define ALL (ROUNDS * DRAWS)
 #define SPREADS 3
 #define TEMPER 0.5
-#define MOTION 5
+#define MOTION 5 /* parameters at most */
 #define LEAST 0.3        /* of Laplace's covariance */
 #define UNSEEN 1.28      /* variance over that of ALL draws: of six right candidates these spread .88 as far as 8000 do, of
                           * many .99 (test_posterior.c) */
@@ -56,6 +57,7 @@ static const double spreads[SPREADS] = {0.8, 1.2, 2};
 
 /* Where motions are drawn from. */
 typedef struct cloud {
+    int32_t size;                 /* n: 5, or 3 where the camera only turns; matrices are n x n */
     double mean[MOTION];
     double root[MOTION * MOTION]; /* lower triangle L of the covariance L L' */
     double log_root;              /* log det L */
@@ -83,37 +85,42 @@ static void normal_numbers(uint64_t seed, uint64_t stream, uint64_t number, doub
 /* Log of the density of the normal distributions of a round together, at x = mean + L y. */
 static double log_density(const cloud *c, const double x[MOTION])
 {
+    const int32_t n = c->size;
     double y[MOTION], square = 0, sum = 0;
-    for (int32_t i = 0; i < MOTION; i++) {
+    for (int32_t i = 0; i < n; i++) {
         y[i] = x[i] - c->mean[i];
         for (int32_t k = 0; k < i; k++)
-            y[i] -= c->root[i * MOTION + k] * y[k];
-        y[i] /= c->root[i * MOTION + i];
+            y[i] -= c->root[i * n + k] * y[k];
+        y[i] /= c->root[i * n + i];
         square += y[i] * y[i];
     }
     for (int32_t k = 0; k < SPREADS; k++) {
         const double s = spreads[k];
-        sum += exp(-0.5 * square / (s * s)) / (s * s * s * s * s);
+        double volume = s;
+        for (int32_t i = 1; i < n; i++)
+            volume *= s;
+        sum += exp(-0.5 * square / (s * s)) / volume;
     }
-    return sum > 0 ? log(sum / SPREADS) - 0.5 * MOTION * log(2 * ASJ_PI) - c->log_root : -HUGE_VAL;
+    return sum > 0 ? log(sum / SPREADS) - 0.5 * n * log(2 * ASJ_PI) - c->log_root : -HUGE_VAL;
 }
 
 /* Of a combination of the parameters. */
-static double largest_sd(const double covariance[MOTION * MOTION])
+static double largest_sd(const double covariance[MOTION * MOTION], int32_t n)
 {
     double values[MOTION], vectors[MOTION * MOTION];
-    asj_symmetric_eigen(covariance, MOTION, values, vectors);
-    return sqrt(fmax(0, values[MOTION - 1]));
+    asj_symmetric_eigen(covariance, n, values, vectors);
+    return sqrt(fmax(0, values[n - 1]));
 }
 
 /* Lower triangle of a covariance, to which its least part is added. */
 static int32_t set_root(double covariance[MOTION * MOTION], cloud *c)
 {
     double none[MOTION] = {0}, log_determinant;
-    for (int32_t k = 0; k < MOTION * MOTION; k++)
+    for (int32_t k = 0; k < c->size * c->size; k++) {
         covariance[k] += c->least[k];
-    memcpy(c->root, covariance, sizeof c->root);
-    if (!asj_cholesky_solve(c->root, MOTION, none, &log_determinant))
+        c->root[k] = covariance[k];
+    }
+    if (!asj_cholesky_solve(c->root, c->size, none, &log_determinant))
         return 0;
     c->log_root = 0.5 * log_determinant;
     return 1;
@@ -124,33 +131,34 @@ static int32_t start(const asj_pairs *set, asj_model *model, asj_adjust_scratch 
 {
     double information[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS], inverse[ASJ_MODEL_PARAMETERS * ASJ_MODEL_PARAMETERS];
     double of_planes[9 * ASJ_MOST_PLANES * ASJ_MOST_PLANES], inverse_planes[9 * ASJ_MOST_PLANES * ASJ_MOST_PLANES];
-    double covariance[MOTION * MOTION], log_determinant = 0;
-    const int32_t n = model->parameters, more = n - MOTION;
+    double covariance[MOTION * MOTION] = {0}, log_determinant = 0;
+    const int32_t n = model->parameters, motion = n < MOTION ? n : MOTION, more = n - motion;
     memset(c, 0, sizeof *c);
+    c->size = motion;
     asj_probabilities(set, &model->view, 1, &scratch->score, scratch->probability);
     asj_information(set, model, scratch->probability, information);
     for (int32_t p = 0; p < n; p++)
         information[p * (n + 1)] += asj_prior_information(model, p);
     if (!asj_invert_positive(information, n, inverse, NULL))
         return 0;
-    for (int32_t i = 0; i < MOTION; i++)
-        for (int32_t k = 0; k < MOTION; k++)
-            covariance[i * MOTION + k] = inverse[i * n + k];
+    for (int32_t i = 0; i < motion; i++)
+        for (int32_t k = 0; k < motion; k++)
+            covariance[i * motion + k] = inverse[i * n + k];
     for (int32_t i = 0; i < more; i++)
         for (int32_t k = 0; k < more; k++)
-            of_planes[i * more + k] = information[(MOTION + i) * n + MOTION + k];
+            of_planes[i * more + k] = information[(motion + i) * n + motion + k];
     if (more > 0 && !asj_invert_positive(of_planes, more, inverse_planes, &log_determinant))
         return 0;
     for (int32_t i = 0; i < more; i++)
-        for (int32_t k = 0; k < MOTION; k++)
+        for (int32_t k = 0; k < motion; k++)
             for (int32_t j = 0; j < more; j++)
-                c->follow[i][k] -= inverse_planes[i * more + j] * information[(MOTION + j) * n + k];
+                c->follow[i][k] -= inverse_planes[i * more + j] * information[(motion + j) * n + k];
     *log_planes = -0.5 * log_determinant;
-    for (int32_t p = MOTION; p < n; p++)
+    for (int32_t p = motion; p < n; p++)
         *log_planes += asj_log_volume(model, p);
     memcpy(model->covariance, covariance, sizeof covariance);
     const int32_t good = set_root(covariance, c);
-    for (int32_t k = 0; k < MOTION * MOTION; k++)
+    for (int32_t k = 0; k < motion * motion; k++)
         c->least[k] = LEAST * covariance[k];
     return good;
 }
@@ -158,10 +166,10 @@ static int32_t start(const asj_pairs *set, asj_model *model, asj_adjust_scratch 
 static int32_t move(const asj_model *model, const cloud *c, const double at[MOTION], asj_model *moved)
 {
     double delta[ASJ_MODEL_PARAMETERS] = {0};
-    memcpy(delta, at, MOTION * sizeof *at);
-    for (int32_t p = MOTION; p < model->parameters; p++)
-        for (int32_t k = 0; k < MOTION; k++)
-            delta[p] += c->follow[p - MOTION][k] * at[k];
+    memcpy(delta, at, (size_t)c->size * sizeof *at);
+    for (int32_t p = c->size; p < model->parameters; p++)
+        for (int32_t k = 0; k < c->size; k++)
+            delta[p] += c->follow[p - c->size][k] * at[k];
     return asj_model_move(model, delta, moved);
 }
 
@@ -185,10 +193,10 @@ static void draw_some(const void *data, const asj_part *part)
         asj_model moved;
         const double scale = n == 0 ? 0 : spreads[n % SPREADS];
         normal_numbers(j->seed, j->stream, (uint64_t)n, y);
-        for (int32_t i = 0; i < MOTION; i++) {
+        for (int32_t i = 0; i < c->size; i++) {
             d->at[i] = c->mean[i];
             for (int32_t k = 0; k <= i; k++)
-                d->at[i] += scale * c->root[i * MOTION + k] * y[k];
+                d->at[i] += scale * c->root[i * c->size + k] * y[k];
         }
         d->score = -HUGE_VAL;
         d->prior = 0;
@@ -229,8 +237,8 @@ static double weigh(const draw *draws, int32_t count, double temper, double *wei
     return largest;
 }
 
-/* Mean and covariance of the draws; 0 when they weigh nothing. */
-static int32_t summarise(const draw *draws, int32_t count, double mean[MOTION], double covariance[MOTION * MOTION])
+/* Mean and covariance of the draws of `size` parameters; 0 when they weigh nothing. */
+static int32_t summarise(const draw *draws, int32_t count, int32_t size, double mean[MOTION], double covariance[MOTION * MOTION])
 {
     double weights[ALL], sum;
     memset(mean, 0, MOTION * sizeof *mean);
@@ -238,12 +246,12 @@ static int32_t summarise(const draw *draws, int32_t count, double mean[MOTION], 
     if (!(weigh(draws, count, TEMPER, weights, &sum) > -HUGE_VAL))
         return 0;
     for (int32_t n = 0; n < count; n++)
-        for (int32_t k = 0; k < MOTION; k++)
+        for (int32_t k = 0; k < size; k++)
             mean[k] += weights[n] / sum * draws[n].at[k];
     for (int32_t n = 0; n < count; n++)
-        for (int32_t i = 0; i < MOTION; i++)
-            for (int32_t k = 0; k < MOTION; k++)
-                covariance[i * MOTION + k] += weights[n] / sum * (draws[n].at[i] - mean[i]) * (draws[n].at[k] - mean[k]);
+        for (int32_t i = 0; i < size; i++)
+            for (int32_t k = 0; k < size; k++)
+                covariance[i * size + k] += weights[n] / sum * (draws[n].at[i] - mean[i]) * (draws[n].at[k] - mean[k]);
     return 1;
 }
 
@@ -265,7 +273,7 @@ static int32_t draw_rounds(asj_context *context, job *j, cloud *last, double cov
         const job of_round = {j->set, j->model, &clouds[round], j->seed, (uint64_t)round, j->scratch, j->draws + round * DRAWS};
         asj_parallel(context, context->threads, DRAWS, 8, draw_some, &of_round);
         set_densities(clouds, round + 1, j->draws, count);
-        if (!summarise(j->draws, count, last->mean, covariance) || !set_root(covariance, last))
+        if (!summarise(j->draws, count, last->size, last->mean, covariance) || !set_root(covariance, last))
             return 0;
     }
     return 1;
@@ -274,9 +282,9 @@ static int32_t draw_rounds(asj_context *context, job *j, cloud *last, double cov
 /* The cloud of Laplace's approximation as wide as TEMPER makes it. */
 static void widen(cloud *c)
 {
-    for (int32_t k = 0; k < MOTION * MOTION; k++)
+    for (int32_t k = 0; k < c->size * c->size; k++)
         c->root[k] /= sqrt(TEMPER);
-    c->log_root -= 0.5 * MOTION * log(TEMPER);
+    c->log_root -= 0.5 * c->size * log(TEMPER);
 }
 
 void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_adjust_scratch *scratch, asj_model *model)
@@ -285,13 +293,13 @@ void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_a
     cloud c;
     asj_model moved;
     double log_planes, covariance[MOTION * MOTION];
-    if (model->kind != ASJ_GEOMETRY_ESSENTIAL)
+    if (!asj_model_has_rotation(model))
         return;
     asj_climb(set, model, &scratch[0]);
     model->evidence = asj_log_evidence(set, model, &scratch[0]);
     if (!start(set, model, &scratch[0], &c, &log_planes))
         return;
-    if (largest_sd(model->covariance) > MOST_SD) { /* a direction that nothing determines has no middle */
+    if (largest_sd(model->covariance, c.size) > MOST_SD) { /* a direction that nothing determines has no middle */
         model->peak = model->evidence;
         model->settled = 1;
         return;
@@ -302,8 +310,8 @@ void asj_settle(asj_context *context, const asj_pairs *set, uint64_t seed, asj_a
     if (!draw_rounds(context, &j, &c, covariance) || !move(model, &c, c.mean, &moved))
         return;
     const double log_mean = log_integral(draws, ALL);
-    double volume = log_planes;
-    for (int32_t p = 0; p < MOTION; p++)
+    double volume = log_planes + asj_log_form(model);
+    for (int32_t p = 0; p < c.size; p++)
         volume += asj_log_volume(model, p) - 0.5 * log(2 * ASJ_PI);
     moved.peak = model->evidence;
     moved.evidence = log_mean + volume;
@@ -365,5 +373,5 @@ double asj_motion_covariance(const asj_model *models, int32_t count, int32_t bes
             for (int32_t k = 0; k < MOTION; k++)
                 covariance[i * MOTION + k] += fmin(1, weight) * at[i] * at[k];
     }
-    return m->settled ? largest_sd(covariance) : HUGE_VAL;
+    return m->settled ? largest_sd(covariance, MOTION) : HUGE_VAL;
 }

@@ -82,7 +82,7 @@ static asj_status find_turned(asj_context *context, const asj_pairs *set, const 
     *count = 0;
     if (set->rotation_count == 0)
         return ASJ_OK;
-    const double *except = best->kind == ASJ_GEOMETRY_ESSENTIAL ? best->rotation : NULL;
+    const double *except = asj_model_has_rotation(best) ? best->rotation : NULL;
     const asj_status status = asj_geometry_search_turned(context, set, search, except, rivals, count);
     return status == ASJ_OK ? asj_refine_motions(context, set, cameras, search->seed, 0, rivals, count) : status;
 }

@@ -5,7 +5,7 @@
  * essential       E' = [t']x R + [t]x R',  R' = [e]x R for a turn about e, t' an axis at right angles to t
  * its planes      N' = R' + t' n' + t n'',  H' = K2 N' K1^-1
  * fundamental     E = U diag(1, s, 0) V':  U' = U [e]x, V' = V [e]x, s' = s
- * homography      an entry of K2^-1 H K1, times the largest one
+ * homography      an entry of K2^-1 H K1, times the largest one; of a camera that only turns R' = [e]x R
  *
  * Epipolar residuals depend on e = x2' F x1, n2 and n1, which are linear in F, and on m = A' n2:
  *
@@ -137,10 +137,27 @@ static int32_t slopes_of_homography(const asj_model *m, asj_model_slopes *s)
     return n[largest] != 0;
 }
 
+/* All parts obey the same homography. */
+static int32_t slopes_of_turn(const asj_model *m, asj_model_slopes *s)
+{
+    for (int32_t part = 0; part <= m->view.plane_count; part++) {
+        s->count[part] = 3;
+        for (int32_t p = 0; p < 3; p++) {
+            double moving[9];
+            turned(m->rotation, p, moving);
+            s->parameter[part][p] = p;
+            asj_pixel_homography(moving, m->cameras, s->along[part][p]);
+        }
+    }
+    return 1;
+}
+
 int32_t asj_model_slopes_of(const asj_model *model, asj_model_slopes *slopes)
 {
     if (model->kind == ASJ_GEOMETRY_ESSENTIAL)
         return slopes_of_essential(model, slopes);
+    if (asj_model_only_turns(model))
+        return slopes_of_turn(model, slopes);
     return model->kind == ASJ_GEOMETRY_FUNDAMENTAL ? slopes_of_fundamental(model, slopes) : slopes_of_homography(model, slopes);
 }
 

@@ -27,7 +27,7 @@ int32_t asj_turns_over(const asj_pairs *set, const asj_model *model, const asj_c
     double rotations[2][9];
     if (!set->has_down || !cameras || model->kind == ASJ_GEOMETRY_FUNDAMENTAL)
         return 0;
-    if (model->kind == ASJ_GEOMETRY_ESSENTIAL)
+    if (asj_model_has_rotation(model))
         return !keeps_down(set, model->rotation);
     const int32_t count = asj_rotations_of_homography(model, cameras, rotations);
     int32_t upright = count == 0;

@@ -180,7 +180,7 @@ static asj_looks decide(const asj_geometry *own, const asj_geometry *upsampled)
                ? ASJ_LOOKS_SETTLED : ASJ_LOOKS_DISPUTED;
 }
 
-/* Of two accepted poses. */
+/* Of two accepted poses, or turns of a camera. */
 static asj_looks compare(const asj_geometry *own, const asj_geometry *upsampled)
 {
     if (are_at_odds(own, upsampled))
@@ -220,8 +220,9 @@ asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsa
 {
     const asj_geometry *a = &own->geometry, *b = &upsampled->geometry;
     const int32_t accepted = b->status == ASJ_GEOMETRY_ACCEPTED;
+    const int32_t alike = (a->has_pose && b->has_pose) || (a->only_turns && b->only_turns);
     if (a->status == ASJ_GEOMETRY_ACCEPTED)
-        return accepted && a->has_pose && b->has_pose ? compare(a, b) :
+        return accepted && alike ? compare(a, b) :
                accepted && !a->has_pose ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
     if (repeats(a) && !(accepted && b->log10_nfa < OUTNUMBERS * a->log10_nfa))
         return ASJ_LOOKS_LOST;

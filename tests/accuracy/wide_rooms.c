@@ -2,18 +2,19 @@
 /* Two-view geometry on rendered rooms seen from far apart, whose cameras are known.
  *
  *     wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--stretch X,Y] [--first N] [--last N]
- *                [--threads N] [--draw N] [--seed N] [--near] [--poses]
+ *                [--threads N] [--draw N] [--seed N] [--near | --turned] [--poses]
  *
  * Pairs of seeds --first (0) to --last (99): status, model, log10 NFA, pose error (the larger of rotation and direction of
  * translation, degrees) and matches within 4 px of their epipolar lines. Then the area under the curve of recall over error up to
  * 1, 2, 5, 10 and 20 degrees, how many of the pairs with a third in common were accepted, and how many of the accepted are wrong by
  * more than 3 degrees. --held-out: seeds that nothing was tuned on. --unrelated: image 1 of a seed with image 2 of the next one.
  * --stretch: by asj_match_images(); 0,0: automatically.
- * --near: the cameras are 1 to 15 degrees apart. --draw: another draw of the images' noise. --seed: of the samples. --poses: log10
+ * --near: the cameras are 1 to 15 degrees apart. --turned: they stand in one place; error: of the rotation, and no pose is right,
+ * since there is no direction of a translation. --draw: another draw of the images' noise. --seed: of the samples. --poses: log10
  * NFA of the strongest rival, and how far rotation and translation are out, in brackets as told (the largest standard deviation of
  * either).
- * --check: exit 1 when fewer poses are right (within 3 degrees) than below, or more are wrong; of cameras whose focal length is
- * found a few may be, for what is not known of it. */
+ * --check: exit 1 when fewer poses (--turned: rotations) are right, within 3 degrees, than below, or more are wrong; of cameras
+ * whose focal length is found a few may be, for what is not known of it. */
 #define _POSIX_C_SOURCE 200809L
 #include "wide_pair.h"
 
@@ -29,11 +30,11 @@
 #define MOST 10000
 #define NEAR 4.0 /* px */
 
-static const double least_right = 0.50; /* of --check: share of all pairs */
+static const double least_right = 0.50, least_turned = 0.90; /* of --check: share of all pairs */
 static const int most_wrong = 0, most_wrong_with_focal = 2, most_far_off = 0;
 
 typedef struct settings {
-    int check, near, held_out, unrelated, no_cameras, find_focal, first_octave, poses, look;
+    int check, near, turned, held_out, unrelated, no_cameras, find_focal, first_octave, poses, look;
     long first, last, draw, seed;
     asj_stretch stretch;
     asj_context *context;
@@ -41,7 +42,7 @@ typedef struct settings {
 
 typedef struct tally {
     double errors[MOST], focals[MOST]; /* relative error of those that were found */
-    int focal_count, pairs, accepted, with_pose, wrong, far_off, common, common_accepted;
+    int focal_count, pairs, accepted, with_pose, turns, wrong, far_off, common, common_accepted;
 } tally;
 
 static int detect(const settings *set, const synth_wide_pair *pair, int which, uint8_t **pixels, asj_image *image,
@@ -53,6 +54,16 @@ static int detect(const settings *set, const synth_wide_pair *pair, int which, u
     *pixels = synth_wide_picture(pair, which);
     *image = (asj_image){*pixels, ASJ_FORMAT_RGB8, SYNTH_WIDE_WIDTH, SYNTH_WIDE_HEIGHT, 0, 0};
     return *pixels && asj_detect(set->context, image, &options, found) == ASJ_OK ? 0 : -1;
+}
+
+/* A camera that only turns. */
+static double turn_error(const asj_geometry *g, const synth_wide_pair *pair)
+{
+    double length = 0;
+    for (int k = 0; k < 9; k++)
+        length += g->rotation[k] * g->rotation[k];
+    return g->status == ASJ_GEOMETRY_ACCEPTED && length > 0
+               ? synth_pose_off(&pair->cameras[0], &pair->cameras[1], g->rotation, g->translation).rotation : 180;
 }
 
 static double pose_error(const asj_geometry *g, const synth_wide_pair *pair)
@@ -86,15 +97,24 @@ static void print_pose(const asj_geometry *g, const synth_wide_pair *pair)
            told_sd(g->covariance, 3));
 }
 
-static uint32_t count_right(const asj_match_result *result, const synth_wide_pair *pair)
+/* How far the second location is from the epipolar line or, where the camera only turns, from its place, px. */
+static double off(const settings *set, const synth_wide_pair *pair, const double f[9], const asj_junction_match *m)
+{
+    synth_point image;
+    if (!set->turned)
+        return synth_off_epipolar_line(f, (double)m->x1, (double)m->y1, (double)m->x2, (double)m->y2);
+    if (!synth_room_transfer(&pair->room, &pair->cameras[0], (double)m->x1, (double)m->y1, &pair->cameras[1], &image))
+        return 1e9;
+    return hypot(image.x - (double)m->x2, image.y - (double)m->y2);
+}
+
+static uint32_t count_right(const settings *set, const asj_match_result *result, const synth_wide_pair *pair)
 {
     double f[9];
     uint32_t right = 0;
     synth_fundamental(&pair->cameras[0], &pair->cameras[1], f);
-    for (uint32_t k = 0; k < result->match_count; k++) {
-        const asj_junction_match *m = &result->matches[k];
-        right += synth_off_epipolar_line(f, (double)m->x1, (double)m->y1, (double)m->x2, (double)m->y2) < NEAR;
-    }
+    for (uint32_t k = 0; k < result->match_count; k++)
+        right += off(set, pair, f, &result->matches[k]) < NEAR;
     return right;
 }
 
@@ -102,11 +122,13 @@ static void count(const settings *set, const synth_wide_pair *pair, const asj_ma
 {
     const asj_geometry *g = &result->geometry;
     const int accepted = g->status == ASJ_GEOMETRY_ACCEPTED;
-    const double error = set->unrelated ? 180 : pose_error(g, pair);
+    const double error = set->unrelated ? 180 : (set->turned ? turn_error : pose_error)(g, pair);
+    const int is_wrong = set->turned || error > 3;
     sum->errors[sum->pairs++] = error;
     sum->accepted += accepted;
     sum->with_pose += accepted && g->has_pose;
-    sum->wrong += accepted && g->has_pose && error > 3;
+    sum->turns += accepted && g->only_turns && error < 3;
+    sum->wrong += accepted && g->has_pose && is_wrong;
     sum->far_off += accepted && g->has_pose && error > 30;
     if (accepted && g->focal_sd > 0)
         sum->focals[sum->focal_count++] = fabs(g->cameras[0].fx / pair->cameras[0].focal - 1);
@@ -114,13 +136,13 @@ static void count(const settings *set, const synth_wide_pair *pair, const asj_ma
     sum->common_accepted += pair->common >= 1.0 / 3 && accepted;
     printf("%-7lu angle %2.0f scale %4.2f common %4.2f  %-10s %-11s log10 NFA %7.1f error %6.1f  matches %3u / %3u  %.0f ms",
            (unsigned long)pair->seed, pair->angle, pair->scale, pair->common, asj_geometry_status_name(g->status),
-           asj_geometry_model_name(g->model), g->log10_nfa, error, set->unrelated ? 0 : (unsigned)count_right(result, pair),
+           asj_geometry_model_name(g->model), g->log10_nfa, error, set->unrelated ? 0 : (unsigned)count_right(set, result, pair),
            (unsigned)result->match_count, result->total_ms);
     if (g->focal_sd > 0)
         printf("  focal length %.0f (%.0f), sd %.3f", g->cameras[0].fx, pair->cameras[0].focal, g->focal_sd);
     if (set->poses && g->has_rival)
         printf("  second %.1f", g->rival_log10_nfa);
-    if (set->poses && accepted && g->has_pose)
+    if (set->poses && accepted && (g->has_pose || g->only_turns))
         print_pose(g, pair);
     puts("");
     fflush(stdout);
@@ -183,6 +205,8 @@ static int report(const settings *set, tally *sum)
 {
     static const double limits[] = {1, 2, 5, 10, 20};
     qsort(sum->errors, (size_t)sum->pairs, sizeof *sum->errors, by_size);
+    if (set->turned)
+        printf("%d cameras only turn and are told to, within 3 degrees\n", sum->turns);
     printf("%d pairs: AUC at 1, 2, 5, 10, 20 degrees", sum->pairs);
     for (size_t k = 0; k < sizeof limits / sizeof limits[0]; k++)
         printf(" %.1f", area(sum->errors, sum->pairs, limits[k]));
@@ -195,8 +219,10 @@ static int report(const settings *set, tally *sum)
                100 * sum->focals[sum->focal_count - 1]);
     if (!set->check)
         return 0;
-    const int right = sum->with_pose - sum->wrong, most = set->find_focal ? most_wrong_with_focal : most_wrong;
-    return right >= least_right * sum->pairs && sum->wrong <= most && sum->far_off <= most_far_off ? 0 : 1;
+    const int right = set->turned ? sum->turns : sum->with_pose - sum->wrong;
+    const int most = set->find_focal ? most_wrong_with_focal : most_wrong;
+    const double least = set->turned ? least_turned : least_right;
+    return right >= least * sum->pairs && sum->wrong <= most && sum->far_off <= most_far_off ? 0 : 1;
 }
 
 static int run(const settings *set)
@@ -207,7 +233,8 @@ static int run(const settings *set)
     int have_last = 0, failed = 0;
     for (long seed = set->first; seed <= set->last && sum.pairs < MOST && !failed; seed++) {
         synth_wide_pair pair;
-        if ((set->near ? synth_near_pair_make : synth_wide_pair_make)(&pair, start + (uint64_t)seed) != 0)
+        if ((set->near ? synth_near_pair_make : set->turned ? synth_turned_pair_make : synth_wide_pair_make)
+            (&pair, start + (uint64_t)seed) != 0)
             continue; /* no such viewpoints in this room */
         for (int v = 0; v < 2; v++)
             pair.exposures[v].noise_seed += 1000003 * (uint64_t)set->draw;
@@ -235,7 +262,7 @@ static int run(const settings *set)
 static int usage(void)
 {
     fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras] [--find-focal] [--stretch X,Y] "
-          "[--first-octave N] [--first N] [--last N] [--threads N] [--draw N] [--seed N] [--near] [--poses]\n", stderr);
+          "[--first-octave N] [--first N] [--last N] [--threads N] [--draw N] [--seed N] [--near | --turned] [--poses]\n", stderr);
     return 2;
 }
 
@@ -245,7 +272,8 @@ int main(int argc, char **argv)
                                           {"no-cameras", 0, NULL, 'n'}, {"stretch", 1, NULL, 's'}, {"first-octave", 1, NULL, '1'},
                                           {"find-focal", 0, NULL, 'o'}, {"first", 1, NULL, 'f'}, {"last", 1, NULL, 'l'},
                                           {"threads", 1, NULL, 't'}, {"draw", 1, NULL, 'd'}, {"seed", 1, NULL, 'e'},
-                                          {"poses", 0, NULL, 'p'}, {"near", 0, NULL, 'r'}, {NULL, 0, NULL, 0}};
+                                          {"poses", 0, NULL, 'p'}, {"near", 0, NULL, 'r'}, {"turned", 0, NULL, 'w'},
+                                          {NULL, 0, NULL, 0}};
     settings set = {.last = 99, .seed = 1};
     asj_context_options how;
     int c;
@@ -269,6 +297,7 @@ int main(int argc, char **argv)
         case 'e': set.seed = strtol(optarg, NULL, 10); break;
         case 'p': set.poses = 1; break;
         case 'r': set.near = 1; break;
+        case 'w': set.turned = 1; break;
         case 't': how.threads = (int32_t)strtol(optarg, NULL, 10); break;
         default: return usage();
         }

@@ -110,7 +110,7 @@ void synth_fundamental(const synth_camera *first, const synth_camera *second, do
 /* px from (x2, y2) to the epipolar line of (x1, y1). */
 double synth_off_epipolar_line(const double f[9], double x1, double y1, double x2, double y2);
 
-/* x2 ~ R x1 + t in camera coordinates: R row by row, |t| = 1; t is not finite when both stand at one place. */
+/* x2 ~ R x1 + t in camera coordinates: R row by row, |t| = 1, or 0 when both stand at one place. */
 void synth_relative_pose(const synth_camera *first, const synth_camera *second, double rotation[9], double translation[3]);
 
 /* Degrees: how far a rotation and the direction of a translation of length 1 are from those of two cameras. */

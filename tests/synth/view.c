@@ -172,9 +172,10 @@ void synth_relative_pose(const synth_camera *first, const synth_camera *second, 
         rotation[3 + k] = seen.y;
         rotation[6 + k] = seen.z;
     }
-    translation[0] = t.x / length;
-    translation[1] = t.y / length;
-    translation[2] = t.z / length;
+    const double over = length > 0 ? 1 / length : 0;
+    translation[0] = t.x * over;
+    translation[1] = t.y * over;
+    translation[2] = t.z * over;
 }
 
 synth_pose_error synth_pose_off(const synth_camera *first, const synth_camera *second, const double rotation[9],

@@ -211,6 +211,24 @@ static int find_near_cameras(synth_wide_pair *pair, synth_random *random)
     return -1;
 }
 
+/* The same place, turned: to the sides by up to 25 degrees, up and down by 10, about its axis by 10. */
+static int find_turned_cameras(synth_wide_pair *pair, synth_random *random)
+{
+    const space s = free_space(&pair->room);
+    const double focal = between(random, 0.8, 1.15) * SYNTH_WIDE_WIDTH;
+    for (int i = 0; i < TRIALS; i++) {
+        synth_vector target;
+        synth_camera *a = &pair->cameras[0], *b = &pair->cameras[1];
+        if (!place_first(pair, &s, focal, random, &target))
+            continue;
+        const double yaw = between(random, -25, 25), pitch = between(random, -10, 10), roll = between(random, -10, 10);
+        *b = stand(a->position, a->yaw + yaw * DEGREE, a->pitch + pitch * DEGREE, a->roll + roll * DEGREE, focal);
+        if (distance(target, a->position) >= 1 && is_good(pair, target))
+            return 0;
+    }
+    return -1;
+}
+
 static void set_exposure(synth_exposure *e, synth_random *random)
 {
     const double shake = between(random, -1, 1) > 0.2 ? between(random, 0, 5) : 0, direction = between(random, 0, 360) * DEGREE;
@@ -252,6 +270,11 @@ int synth_wide_pair_make(synth_wide_pair *pair, uint64_t seed)
 int synth_near_pair_make(synth_wide_pair *pair, uint64_t seed)
 {
     return make(pair, seed, find_near_cameras);
+}
+
+int synth_turned_pair_make(synth_wide_pair *pair, uint64_t seed)
+{
+    return make(pair, seed, find_turned_cameras);
 }
 
 void synth_wide_pair_free(synth_wide_pair *pair)

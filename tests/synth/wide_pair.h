@@ -42,6 +42,8 @@ typedef struct synth_wide_pair {
 int synth_wide_pair_make(synth_wide_pair *pair, uint64_t seed);
 /* The same with cameras near each other, as in a video: under 1 to 15 degrees at most, small angles as often as large ones. */
 int synth_near_pair_make(synth_wide_pair *pair, uint64_t seed);
+/* The same with a camera that only turns. */
+int synth_turned_pair_make(synth_wide_pair *pair, uint64_t seed);
 void synth_wide_pair_free(synth_wide_pair *pair);
 
 /* The picture of camera 0 or 1: RGB, 8 bits, row by row, freed with free(); NULL (memory). */

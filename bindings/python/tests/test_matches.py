@@ -195,6 +195,19 @@ def test_rival_of_a_geometry() -> None:
     assert found.rival_translation is not None and (found.rival_translation == (0, 0, -1)).all()
 
 
+def test_camera_that_only_turns() -> None:
+    record = ffi.new("asj_geometry *", {"status": lib.ASJ_GEOMETRY_ACCEPTED, "model": lib.ASJ_GEOMETRY_HOMOGRAPHY, "only_turns": 1})
+    record.rotation = [0, -1, 0, 1, 0, 0, 0, 0, 1]
+    record.covariance = [0.25] + 35 * [0]
+    found = read_geometry(record)
+    assert found is not None and found and found.only_turns and found.translation is None and "only turns" in repr(found)
+    assert found.rotation is not None and (found.rotation @ (1, 0, 0) == (0, 1, 0)).all()
+    assert found.covariance is not None and found.covariance[0, 0] == 0.25
+    record.only_turns = 0
+    found = read_geometry(record)
+    assert found is not None and not found.only_turns and found.rotation is None and found.covariance is None
+
+
 def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:
     assert asj.match(*pair).geometry is None and not asj.match(*pair).probability.any()
     found = asj.match(*pair, geometry="homography")
