@@ -71,19 +71,11 @@ static void put_head(asj_json_output *json, const asj_match_report *report, cons
     asj_json_put(json, ",\n\"counts\": ", counts, 0);
 }
 
-/* Those that are zero are not known. */
-static json_t *numbers_if_known(const double *values, int32_t count)
-{
-    int32_t known = 0;
-    for (int32_t k = 0; k < count; k++)
-        known = known || values[k] != 0;
-    return known ? numbers(values, count) : json_null();
-}
-
 static json_t *motion_value(const double rotation[9], const double translation[3], double log10_nfa)
 {
-    return json_pack("{s:o, s:o, s:f}", "rotation", numbers_if_known(rotation, 9), "translation", numbers_if_known(translation, 3),
-                     "log10_nfa", log10_nfa);
+    const int is_known = translation[0] != 0 || translation[1] != 0 || translation[2] != 0;
+    return json_pack("{s:o, s:o, s:f}", "rotation", is_known ? numbers(rotation, 9) : json_null(), "translation",
+                     is_known ? numbers(translation, 3) : json_null(), "log10_nfa", log10_nfa);
 }
 
 /* The two that an ambiguous geometry stands between. */
@@ -100,20 +92,29 @@ static json_t *cameras_value(const asj_camera c[2])
     return json_pack("[[f, f, f, f], [f, f, f, f]]", c[0].fx, c[0].fy, c[0].cx, c[0].cy, c[1].fx, c[1].fy, c[1].cx, c[1].cy);
 }
 
+/* Of a camera that only turns. Not as a rotation without a translation: whoever finds one wants the other. */
+static json_t *turn_value(const asj_geometry *g)
+{
+    double covariance[9];
+    for (int32_t k = 0; k < 9; k++)
+        covariance[k] = g->covariance[6 * (k / 3) + k % 3];
+    return json_pack("{s:o, s:o}", "rotation", numbers(g->rotation, 9), "covariance", numbers(covariance, 9));
+}
+
 /* What was accepted, or null; the status says why not. */
 static void put_geometry(asj_json_output *json, const asj_geometry *g)
 {
     const int accepted = g->status == ASJ_GEOMETRY_ACCEPTED, has_cameras = g->cameras[0].fx > 0;
-    const int has_rotation = g->has_pose || g->only_turns;
     json_t *value = json_null();
     if (g->status == ASJ_GEOMETRY_NOT_ASKED)
         return;
     if (accepted)
-        value = json_pack("{s:s, s:o, s:o, s:o, s:o, s:b, s:o, s:o, s:o, s:f, s:f, s:b}",
+        value = json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:b}",
                           "model", asj_geometry_model_name(g->model), "matrix", numbers(g->matrix, 9),
-                          "rotation", has_rotation ? numbers(g->rotation, 9) : json_null(),
+                          "rotation", g->has_pose ? numbers(g->rotation, 9) : json_null(),
                           "translation", g->has_pose ? numbers(g->translation, 3) : json_null(),
-                          "covariance", has_rotation ? numbers(g->covariance, 36) : json_null(), "only_turns", g->only_turns,
+                          "covariance", g->has_pose ? numbers(g->covariance, 36) : json_null(),
+                          "turn", g->only_turns ? turn_value(g) : json_null(),
                           "cameras", has_cameras ? cameras_value(g->cameras) : json_null(), "focal",
                           has_cameras ? json_pack("[f, f]", g->cameras[0].fx, g->cameras[1].fx) : json_null(), "focal_sd",
                           g->focal_sd > 0 ? json_real(g->focal_sd) : json_null(), "log10_nfa", g->log10_nfa,

@@ -200,12 +200,12 @@ def test_camera_that_only_turns() -> None:
     record.rotation = [0, -1, 0, 1, 0, 0, 0, 0, 1]
     record.covariance = [0.25] + 35 * [0]
     found = read_geometry(record)
-    assert found is not None and found and found.only_turns and found.translation is None and "only turns" in repr(found)
-    assert found.rotation is not None and (found.rotation @ (1, 0, 0) == (0, 1, 0)).all()
-    assert found.covariance is not None and found.covariance[0, 0] == 0.25
+    assert found is not None and found and found.rotation is None and found.translation is None and found.covariance is None
+    assert found.turn is not None and (found.turn @ (1, 0, 0) == (0, 1, 0)).all() and "only turns" in repr(found)
+    assert found.turn_covariance is not None and found.turn_covariance.shape == (3, 3) and found.turn_covariance[0, 0] == 0.25
     record.only_turns = 0
     found = read_geometry(record)
-    assert found is not None and not found.only_turns and found.rotation is None and found.covariance is None
+    assert found is not None and found.turn is None and found.turn_covariance is None
 
 
 def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:

@@ -33,16 +33,15 @@ class Geometry:
     model: str
     #: (3, 3) homography from image 1 to image 2, or fundamental matrix F with x2' F x1 = 0; pixels, norm 1
     matrix: NDArray[np.float64]
-    #: (3, 3) and (3,) with x2 ~ R x1 + t in camera coordinates, |t| = 1; None where they are not determined: of a camera that only
-    #: turns the translation
+    #: (3, 3) and (3,) with x2 ~ R x1 + t in camera coordinates, |t| = 1; None where they are not determined
     rotation: NDArray[np.float64] | None
     translation: NDArray[np.float64] | None
     #: (6, 6) of w (rad), the true rotation being exp([w]x) times this one, and of the translation; from what the candidates allow,
-    #: before the pose was finished from where the matches lie, so that errors are smaller as a rule. None without a rotation; of a
-    #: camera that only turns the rotation's block
+    #: before the pose was finished from where the matches lie, so that errors are smaller as a rule. None as above
     covariance: NDArray[np.float64] | None
-    #: the camera only turns, as far as matches tell
-    only_turns: bool
+    #: (3, 3) rotation of a camera that, as far as matches tell, only turns, and (3, 3) the covariance of w. None: it moves, or nobody knows
+    turn: NDArray[np.float64] | None
+    turn_covariance: NDArray[np.float64] | None
     #: (2, 4) fx, fy, cx and cy of both cameras, px, given or found; None when they are not known
     cameras: NDArray[np.float64] | None
     #: standard deviation of the log of the focal length, where it was found; else 0
@@ -66,7 +65,7 @@ class Geometry:
         return self.status == "accepted"
 
     def __repr__(self) -> str:
-        posed = ", with a pose" if self.translation is not None else ", the camera only turns" if self.only_turns else ""
+        posed = ", with a pose" if self.rotation is not None else ", the camera only turns" if self.turn is not None else ""
         return f"<asj.Geometry: {self.status}{f', {self.model}, log10 NFA {self.log10_nfa:.1f}{posed}' if self else ''}>"
 
 
@@ -117,13 +116,14 @@ def read(record: Any) -> Geometry | None:
     def array(field: Any, *shape: int) -> NDArray[np.float64]:
         return np.array(list(field), np.float64).reshape(shape)
 
-    posed, turned = bool(record.has_pose), bool(record.only_turns)
+    posed, turns = bool(record.has_pose), bool(record.only_turns)
     cameras = np.array([(one.fx, one.fy, one.cx, one.cy) for one in record.cameras], np.float64)
-    rival_turned, rival_posed = any(record.rival_rotation), any(record.rival_translation)
+    rival_posed = any(record.rival_translation)
     return Geometry(
         text(lib.asj_geometry_status_name(record.status)), text(lib.asj_geometry_model_name(record.model)), array(record.matrix, 3, 3),
-        array(record.rotation, 3, 3) if posed or turned else None, array(record.translation, 3) if posed else None,
-        array(record.covariance, 6, 6) if posed or turned else None, turned, cameras if cameras[0, 0] > 0 else None, record.focal_sd,
-        record.log10_nfa, record.inliers, record.rival_log10_nfa if record.has_rival else None, array(record.rival_rotation, 3, 3) if rival_turned else None,
+        array(record.rotation, 3, 3) if posed else None, array(record.translation, 3) if posed else None,
+        array(record.covariance, 6, 6) if posed else None, array(record.rotation, 3, 3) if turns else None,
+        array(record.covariance, 6, 6)[:3, :3] if turns else None, cameras if cameras[0, 0] > 0 else None, record.focal_sd,
+        record.log10_nfa, record.inliers, record.rival_log10_nfa if record.has_rival else None, array(record.rival_rotation, 3, 3) if rival_posed else None,
         array(record.rival_translation, 3) if rival_posed else None,
     )  # fmt: skip
