@@ -101,8 +101,9 @@ typedef struct asj_geometry {
     double rival_rotation[9];/* the rival's motion, as the best one's above; zero where it has none, or nothing determines its
                               * translation; the translation alone where the camera only turns. How well it is known nobody says */
     double rival_translation[3];
-    int32_t only_turns;      /* 1 = the camera only turns, as far as matches tell: a homography K2 R K1^-1. The rotation and its
-                              * block of the covariance are known, has_pose is 0. With cameras or find_focal */
+    int32_t only_turns;      /* 1 = the camera only turns, as far as matches tell: a homography K2 R K1^-1, which a wall that a long
+                              * lens sees obeys, too. The rotation and its block of the covariance are known, has_pose is 0. With
+                              * cameras or find_focal; model auto or, where it is degenerate then, essential */
     int32_t reserved_integer;
     double reserved[2];
 } asj_geometry;

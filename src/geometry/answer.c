@@ -111,7 +111,8 @@ static void set_matrix(const asj_model *m, asj_geometry *result)
 static int32_t instead_of(const asj_estimation *e, int32_t best)
 {
     const int32_t flat = asj_estimation_best(e, ASJ_GEOMETRY_HOMOGRAPHY);
-    return flat >= 0 && e->finalists[flat].evidence > ALMOST * e->finalists[best].evidence ? flat : best;
+    const int32_t instead = flat >= 0 && !asj_model_only_turns(&e->finalists[flat]);
+    return instead && e->finalists[flat].evidence > ALMOST * e->finalists[best].evidence ? flat : best;
 }
 
 /* A plane, or a camera that only turns, explains as much with any focal length: one that was found is believed where the motion
@@ -152,8 +153,6 @@ static int32_t choose(asj_estimation *e, asj_geometry *result, int32_t *determin
     if (best >= 0 && essential >= 0 && !only_turns(e, essential, turned) && is_believed(e, essential, best) &&
         asj_estimation_log10_nfa(e, &e->finalists[essential]) <= log10(e->options->epsilon))
         *determined = set_pose(e, essential, result);
-    if (best >= 0 && best == turned)
-        set_rotation(e, turned, result);
     if (best >= 0 && best == essential && !result->has_pose)
         chosen = instead_of(e, best);
     if (chosen != essential)
@@ -162,6 +161,8 @@ static int32_t choose(asj_estimation *e, asj_geometry *result, int32_t *determin
         chosen = essential;
         *determined = 0;
     }
+    if (chosen >= 0 && best == turned)
+        set_rotation(e, turned, result);
     return chosen;
 }
 

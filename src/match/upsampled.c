@@ -199,7 +199,7 @@ asj_status asj_upsampled_choose(asj_context *context, asj_match_result **own, as
     if (looks == ASJ_LOOKS_DISPUTED)
         asj_looks_leave_open(&of_own, &of_upsampled, *own);
     else if (looks == ASJ_LOOKS_PLANE)
-        (*own)->geometry.has_pose = (*own)->geometry.only_turns = 0;
+        (*own)->geometry.has_pose = 0;
     add_times(*own, *upsampled);
     asj_release(&context->memory, found);
     asj_match_result_free(upsampled);

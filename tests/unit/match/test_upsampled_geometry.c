@@ -392,6 +392,43 @@ static void poses_at_odds_are_decided(void **state)
     }
 }
 
+static void make_turn(asj_geometry *g)
+{
+    g->model = ASJ_GEOMETRY_HOMOGRAPHY;
+    g->has_pose = 0;
+    g->only_turns = 1;
+    memset(g->translation, 0, sizeof g->translation);
+}
+
+/* Two turns are compared as two poses are; what the images say of a camera that only turns no motion undoes. */
+static void turns_are_motions(void **state)
+{
+    static const struct {
+        double own;
+        int32_t of_own, of_upsampled, status; /* is it a turn? */
+        asj_looks looks;
+    } cases[] = {{30, 1, 1, ASJ_GEOMETRY_ACCEPTED, ASJ_LOOKS_DISPUTED}, {180, 1, 1, ASJ_GEOMETRY_ACCEPTED, ASJ_LOOKS_SETTLED},
+                 {30, 1, 0, ASJ_GEOMETRY_ACCEPTED, ASJ_LOOKS_BY_IMAGES}, {0, 1, 0, ASJ_GEOMETRY_ACCEPTED, ASJ_LOOKS_BY_IMAGES},
+                 {30, 0, 1, ASJ_GEOMETRY_ACCEPTED, ASJ_LOOKS_BY_IMAGES}, {0, 1, 0, ASJ_GEOMETRY_DEGENERATE, ASJ_LOOKS_LOST}};
+    asj_context *context = ((unit_fixture *)*state)->context;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_match_result *own = match(context, 0, 1), *upsampled = match(context, 1, 1);
+        change_pose(own, cases[k].own, 1);
+        own->geometry.log10_nfa = -50;
+        upsampled->geometry.log10_nfa = -100;
+        if (cases[k].of_own)
+            make_turn(&own->geometry);
+        if (cases[k].of_upsampled)
+            make_turn(&upsampled->geometry);
+        own->geometry.status = cases[k].status;
+        if (cases[k].status == ASJ_GEOMETRY_DEGENERATE)
+            own->geometry.model = ASJ_GEOMETRY_ESSENTIAL;
+        assert_int_equal(asj_looks_of(own, upsampled), cases[k].looks);
+        asj_match_result_free(&own);
+        asj_match_result_free(&upsampled);
+    }
+}
+
 /* The axis of half a turn is that of no antisymmetric part. */
 static void half_a_turn_is_at_odds(void **state)
 {
@@ -695,6 +732,7 @@ int main(void)
         cmocka_unit_test(rivals_are_an_answer),
         cmocka_unit_test(poses_at_odds_are_ambiguous),
         cmocka_unit_test(poses_at_odds_are_decided),
+        cmocka_unit_test(turns_are_motions),
         cmocka_unit_test(half_a_turn_is_at_odds),
         cmocka_unit_test(planes_at_odds_have_no_pose),
         cmocka_unit_test(poses_at_odds_without_memory),
