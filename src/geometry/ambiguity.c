@@ -23,7 +23,6 @@
 #include "geometry_options.h"
 #include "likelihood.h"
 #include "motions.h"
-#include "posterior.h"
 #include "small_matrix.h"
 #include "stop.h"
 #include "upright.h"

@@ -59,11 +59,9 @@ static int detect(const settings *set, const synth_wide_pair *pair, int which, u
 /* A camera that only turns. */
 static double turn_error(const asj_geometry *g, const synth_wide_pair *pair)
 {
-    double length = 0;
-    for (int k = 0; k < 9; k++)
-        length += g->rotation[k] * g->rotation[k];
-    return g->status == ASJ_GEOMETRY_ACCEPTED && length > 0
-               ? synth_pose_off(&pair->cameras[0], &pair->cameras[1], g->rotation, g->translation).rotation : 180;
+    if (g->status != ASJ_GEOMETRY_ACCEPTED || !(g->has_pose || g->only_turns))
+        return 180;
+    return synth_pose_off(&pair->cameras[0], &pair->cameras[1], g->rotation, g->translation).rotation;
 }
 
 static double pose_error(const asj_geometry *g, const synth_wide_pair *pair)

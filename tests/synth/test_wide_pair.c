@@ -56,6 +56,26 @@ static void near_pairs_are_what_they_promise(void **state)
     assert_true(2 * apart > made);
 }
 
+static void turned_pairs_are_what_they_promise(void **state)
+{
+    (void)state;
+    int made = 0;
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        synth_wide_pair pair;
+        double r[9], t[3];
+        if (synth_turned_pair_make(&pair, seed) != 0)
+            continue;
+        made++;
+        synth_relative_pose(&pair.cameras[0], &pair.cameras[1], r, t);
+        assert_true(t[0] == 0 && t[1] == 0 && t[2] == 0);
+        assert_true(r[0] + r[4] + r[8] < 3 - 1e-4 && r[0] + r[4] + r[8] > 1 + 2 * cos(0.6)); /* .6 to 34 degrees */
+        assert_true(fabs(pair.angle) < 1e-3 && fabs(pair.scale - 1) < 1e-9);
+        assert_true(pair.common > 0.15 && pair.corners >= 40);
+        synth_wide_pair_free(&pair);
+    }
+    assert_in_range(made, SEEDS / 2, SEEDS);
+}
+
 /* Whatever compiler made the test: a number drawn earlier or later would be another room. */
 static void a_seed_is_one_room_everywhere(void **state)
 {
@@ -152,6 +172,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pairs_are_what_they_promise),
         cmocka_unit_test(near_pairs_are_what_they_promise),
+        cmocka_unit_test(turned_pairs_are_what_they_promise),
         cmocka_unit_test(a_seed_is_one_room_everywhere),
         cmocka_unit_test(the_pose_is_that_of_the_cameras),
         cmocka_unit_test(pictures_are_in_colour_and_differ),
