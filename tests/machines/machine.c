@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 320, HEIGHT = 240, FINE = 4, PANELS = 14 };
+enum { WIDTH = 320, HEIGHT = 168, FINE = 4, PANELS = 10 };
 
 /* --- pictures --------------------------------------------------------------------------------------------------------------- */
 
@@ -34,7 +34,7 @@ static int covers(const panel *p, int32_t x, int32_t y)
     return 1;
 }
 
-/* Panels on a lattice of 5 x 3, each turned and sheared; the second view is the first one under x' = (71 x - 6 y) / 64 - 100,
+/* Panels on a lattice of 5 x 2, each turned and sheared; the second view is the first one under x' = (71 x - 6 y) / 64 - 100,
  * y' = (5 x + 67 y) / 64 - 90, in 1/FINE px. */
 static void make_panels(panel *panels, int view)
 {
@@ -197,8 +197,6 @@ int main(void)
             add(&hash, pixels[v][i], 1);
     }
     print("pictures", 2, hash);
-    found[0] = detect(context, "default", &images[0], ASJ_PRESET_DEFAULT, 1);
-    asj_detection_free(&found[0]);
     found[0] = detect(context, "octaves", &images[0], ASJ_PRESET_DEFAULT, 16);
     asj_detection_free(&found[0]);
     found[0] = detect(context, "paper", &images[0], ASJ_PRESET_PAPER, 1);
