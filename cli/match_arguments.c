@@ -39,7 +39,7 @@ static const char conclusion[] =
 enum {
     OUTPUT, FORMAT, LINES, LINE_ENDS, JOIN_LINES, JUNCTIONS_1, JUNCTIONS_2, REGION_1, REGION_2, MASK_1, MASK_2, STRETCH, PLOT,
     PLOT_BACKGROUND, PLOT_LINES, PLOT_EPIPOLAR, PLOT_LAYOUT, PLOT_SCALE, PRESET, DETECT_PRESET, MATCH_PRESET, GEOMETRY, CAMERA_1,
-    CAMERA_2, FOCAL
+    CAMERA_2, FOCAL, FOCAL_SD
 };
 
 static const cli_option output_options[] = {
@@ -74,6 +74,9 @@ static const cli_option geometry_options[] = {
     {FOCAL, 0, "focal", "F|exif|estimate|none",
      "focal length of both cameras, px, with the middle of the image as principal point; exif: each image's own, an error "
      "without; estimate: found with the motion. By default EXIF data count where both images have them; none: they do not"},
+    {FOCAL_SD, 0, "focal-sd", "S",
+     "how well focal lengths are known, 0.05: to 5 % (a standard deviation). Above 0 the factor by which both are out is found "
+     "with the motion; 0 (exactly) is the default of lengths that are given, 0.05 of those from EXIF data"},
 };
 
 static const cli_option plot_options[] = {
@@ -179,6 +182,10 @@ static int take_geometry(void *target, int id, const char *text)
         break;
     case CAMERA_1: return cli_take_camera("match", "camera1", text, &arguments->cameras[0]);
     case CAMERA_2: return cli_take_camera("match", "camera2", text, &arguments->cameras[1]);
+    case FOCAL_SD:
+        if (!cli_parse_number(text, 0, CLI_LARGEST_FOCAL_SD, &arguments->focal_sd))
+            return cli_usage_error("match", "--focal-sd: '%s' is not 0 to %g", text, CLI_LARGEST_FOCAL_SD);
+        break;
     default: return take_focal(text, arguments);
     }
     return CLI_SUCCESS;
@@ -251,6 +258,7 @@ static void start(cli_match_arguments *arguments)
     arguments->detect_preset = arguments->match_preset = -1;
     arguments->preset = ASJ_PRESET_MATCH;
     arguments->minimum_end = -1;
+    arguments->focal_sd = -1;
 }
 
 int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *arguments)

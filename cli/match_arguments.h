@@ -13,6 +13,8 @@
 /* Where focal lengths come from that --camera1 and --camera2 do not say. */
 enum { CLI_FOCAL_AUTO = 0 /* EXIF data, if both images have them */, CLI_FOCAL_GIVEN, CLI_FOCAL_EXIF, CLI_FOCAL_ESTIMATE,
        CLI_FOCAL_NONE };
+#define CLI_EXIF_FOCAL_SD 0.05 /* as the help says */
+#define CLI_LARGEST_FOCAL_SD 0.25
 
 typedef struct cli_match_arguments {
     cli_common common;
@@ -32,6 +34,7 @@ typedef struct cli_match_arguments {
     asj_camera cameras[2];    /* fx 0 = not given */
     int32_t focal_from;       /* CLI_FOCAL_... */
     double focal;             /* px, CLI_FOCAL_GIVEN */
+    double focal_sd;          /* of the log of focal lengths; -1 = by where they come from */
     int32_t lines;            /* ASJ_LINES_... */
     int join_lines;
     int32_t minimum_end;      /* ASJ_END_...; -1 until all options are read = inner */

@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* A camera is, in this order: what --camera1 or --camera2 says; --focal; with a geometry that uses cameras and no --focal none, the
+/* Focal lengths from EXIF data are 35 mm equivalents in whole millimetres as a rule, of a lens that changes with the distance that
+ * it is focused at: they are about right, and what they are is found with the motion (--focal-sd).
+ *
+ * A camera is, in this order: what --camera1 or --camera2 says; --focal; with a geometry that uses cameras and no --focal none, the
  * focal length of the image's EXIF data. All but the first have the middle of the image as principal point. Cameras count when both
  * are known. --focal estimate leaves them open. */
 #include "match_cameras.h"
 #include "message.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #define WIDEST 150.0 /* degrees that a pin-hole camera can show in practice: a picture of a fisheye lens is none, */
 #define NARROWEST 0.5 /* .. and a telescope has it */
@@ -30,12 +34,21 @@ static void take_exif(const cli_match_arguments *arguments, const cli_match_inpu
         cli_note("%s: EXIF data not used: damaged, of a larger picture, or of a focal length that cannot be", input->name);
 }
 
+static int some_from_exif(const cli_match_arguments *arguments)
+{
+    const int all_given = arguments->cameras[0].fx > 0 && arguments->cameras[1].fx > 0;
+    return !all_given && (arguments->focal_from == CLI_FOCAL_EXIF || arguments->focal_from == CLI_FOCAL_AUTO);
+}
+
 static void say_exif(const cli_match_arguments *arguments, const cli_match_input inputs[2], const asj_geometry_options *options)
 {
+    char known[40] = "";
+    if (options->focal_sd > 0)
+        snprintf(known, sizeof known, ", known to %.3g %%", 100 * options->focal_sd);
     for (int v = 0; v < 2; v++)
         if (!(arguments->cameras[v].fx > 0) && !arguments->common.quiet)
-            cli_note("%s: focal length %.0f px, from EXIF data%s", inputs[v].name, options->cameras[v].fx,
-                     inputs[v].image->focal_source == ASJ_EXIF_FOCAL_FILM ? " (35 mm equivalent)" : "");
+            cli_note("%s: focal length %.0f px, from EXIF data%s%s", inputs[v].name, options->cameras[v].fx,
+                     inputs[v].image->focal_source == ASJ_EXIF_FOCAL_FILM ? " (35 mm equivalent)" : "", known);
 }
 
 /* A focal length in mm, or of a smaller picture, is a camera of which hardly anything else would tell. */
@@ -78,6 +91,8 @@ int cli_match_cameras(const cli_match_arguments *arguments, const cli_match_inpu
             take_exif(arguments, &inputs[v], &options->cameras[v]);
     }
     if (options->cameras[0].fx > 0 && options->cameras[1].fx > 0) {
+        if (uses_cameras(options->model))
+            options->focal_sd = arguments->focal_sd >= 0 ? arguments->focal_sd : some_from_exif(arguments) ? CLI_EXIF_FOCAL_SD : 0;
         if (exif)
             say_exif(arguments, inputs, options);
         doubt(arguments, inputs, options);
@@ -86,6 +101,8 @@ int cli_match_cameras(const cli_match_arguments *arguments, const cli_match_inpu
     const int given = arguments->cameras[0].fx > 0 || arguments->cameras[1].fx > 0;
     if (given || from == CLI_FOCAL_EXIF || arguments->geometry == ASJ_GEOMETRY_ESSENTIAL)
         return fail(arguments, inputs, options);
+    if (arguments->focal_sd > 0)
+        return cli_usage_error("match", "--focal-sd changes nothing: no focal lengths are known");
     for (int v = 0; v < 2; v++) /* one alone is of no use */
         options->cameras[v] = (asj_camera){0, 0, 0, 0};
     return CLI_SUCCESS;

@@ -71,7 +71,11 @@ typedef struct asj_geometry_options {
     int32_t reserved_integer;/* zero */
     double aspects[2];       /* of image 1 and image 2: fy / fx of a camera that is not known, 1 = square pixels. The longer side is
                               * that of the image with square pixels as wide as its own. 0.01 .. 100; 1 */
-    double reserved[13];     /* zero */
+    double focal_sd;         /* how well the focal lengths of `cameras` are known: the standard deviation of their logarithms, which
+                              * are wrong in the same way (0.03: by 3 %; both by the same factor). More than 0: that factor is found
+                              * with the motion. 0 .. 0.25; 0, exactly. It says nothing without both cameras, or
+                              * of model fundamental and homography */
+    double reserved[12];     /* zero */
 } asj_geometry_options;
 
 /* Fills in the defaults. NULL is left alone. */
@@ -97,7 +101,7 @@ typedef struct asj_geometry {
     double log10_nfa;        /* log10 of how often chance brings such a geometry in a pair of unrelated images */
     double rival_log10_nfa;  /* .. the best other one, which has other matches: its rival */
     double inliers;          /* sum of the candidates' probabilities */
-    double focal_sd;         /* of the log of the focal length, where it was found; 0 where it was given */
+    double focal_sd;         /* of the log of the focal length, where it was found; 0 where it was given exactly */
     double rival_rotation[9];/* the rival's motion, as the best one's above; zero where it has none, or nothing determines its
                               * translation; the translation alone where the camera only turns. How well it is known nobody says */
     double rival_translation[3];
@@ -122,7 +126,8 @@ typedef struct asj_geometry {
  *                      outside 0 .. 1
  * ASJ_ERROR_OPTION     an option outside its range; a camera that is known (fx or fy not 0) with a focal length that is not
  *                      1 .. 10^7 px, or a principal point beyond +-10^7; directions that are not three of length 1 at right
- *                      angles; model essential without cameras; find_focal with one, or with model fundamental or homography
+ *                      angles; model essential without cameras; find_focal with one, with focal_sd, or with model fundamental or
+ *                      homography
  * ASJ_ERROR_LIMIT      more than 2^24 candidates or places
  * ASJ_ERROR_CANCELLED  the progress callback, which is called every 50 ms, wants to stop
  * ASJ_ERROR_MEMORY */

@@ -115,11 +115,12 @@ static int32_t instead_of(const asj_estimation *e, int32_t best)
     return instead && e->finalists[flat].evidence > ALMOST * e->finalists[best].evidence ? flat : best;
 }
 
-/* A plane, or a camera that only turns, explains as much with any focal length: one that was found is believed where the motion
- * explains about as much as anything else. */
+/* A plane, or a camera that only turns, explains as much with any focal length: one that was found, and of which nothing
+ * was known before, is believed where the motion explains about as much as anything else. */
 static int32_t is_believed(const asj_estimation *e, int32_t essential, int32_t best)
 {
-    return !asj_has_found_focal(e, essential) || e->finalists[essential].evidence > ALMOST * e->finalists[best].evidence;
+    const int32_t was_known = !asj_has_found_focal(e, essential) || e->options->focal_sd > 0;
+    return was_known || e->finalists[essential].evidence > ALMOST * e->finalists[best].evidence;
 }
 
 /* Where a camera that only turns explains more than any motion with a translation (pure_rotation.c), that translation suits errors

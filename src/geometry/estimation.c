@@ -26,9 +26,9 @@ int32_t asj_estimation_best_rotation(const asj_estimation *e)
 
 const asj_camera *asj_estimation_cameras(const asj_estimation *e)
 {
-    if (asj_cameras_are_known(e->options))
-        return e->options->cameras;
-    return e->focal_at >= 0 && e->focal.is_known ? e->focal.model.cameras : NULL;
+    if (e->focal_at >= 0 && e->focal.is_known)
+        return e->focal.model.cameras;
+    return asj_cameras_are_known(e->options) ? e->options->cameras : NULL;
 }
 
 asj_status asj_estimation_refocus(asj_estimation *e, int32_t number)

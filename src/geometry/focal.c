@@ -7,6 +7,9 @@
  * evidence is followed to longer and shorter focal lengths (focal_profile.c). When that tells the focal length, all motions that
  * there are with it are finalists, as with known cameras.
  *
+ * Where a focal length is about known, motions are looked for with that one alone, which explains much the same matches, and
+ * followed from there (asj_geometry_options.focal_sd).
+ *
  * A camera that only turns tells its focal length by itself (Hartley, "Self-calibration from multiple views with a rotating
  * camera", ECCV 1994): K^-1 H K is a rotation with the right one. Of the homographies that were found, the factors with which they
  * are most nearly rotations are where the path may start, and the focal length of the motion.
@@ -74,9 +77,12 @@ asj_status asj_find_focal(asj_focal_search *s, const asj_model *flat, int32_t co
     memset(found, 0, sizeof *found);
     memset(&best, 0, sizeof best);
     best.evidence = found->model.evidence = -HUGE_VAL;
-    asj_status status = likeliest >= 0 ? look_at(s, asj_focal_factor(likeliest), flat, count, &best) : ASJ_OK;
-    for (int32_t k = 0; k < COARSE && status == ASJ_OK; k++)
-        status = look_at(s, asj_focal_factor(FIRST + k * APART), flat, count, &best);
+    asj_status status = likeliest >= 0 ? look_at(s, asj_focal_factor(&s->prior, likeliest), flat, count, &best)
+                                       : ASJ_OK;
+    if (s->prior.sd > 0 && status == ASJ_OK)
+        status = look_at(s, 1, flat, count, &best);
+    for (int32_t k = 0; k < COARSE && s->prior.sd == 0 && status == ASJ_OK; k++)
+        status = look_at(s, asj_focal_factor(&s->prior, FIRST + k * APART), flat, count, &best);
     return status == ASJ_OK && best.evidence > -HUGE_VAL ? asj_focal_follow(&s->profile, &best, found) : status;
 }
 
@@ -89,13 +95,13 @@ asj_status asj_find_focal_of(asj_focal_search *s, const asj_model *motion, asj_f
 static double factor_of_rotation(const asj_focal_search *s, const asj_model *homography)
 {
     double least = HUGE_VAL, best = 1;
-    for (int32_t n = 0; n < ASJ_FOCAL_COUNT; n++) {
+    for (int32_t n = 0; n < s->prior.count; n++) {
         asj_camera cameras[2];
-        asj_focal_cameras(&s->prior, asj_focal_factor(n), cameras);
+        asj_focal_cameras(&s->prior, asj_focal_factor(&s->prior, n), cameras);
         const double far = asj_far_from_rotation(homography, cameras);
         if (far < least) {
             least = far;
-            best = asj_focal_factor(n);
+            best = asj_focal_factor(&s->prior, n);
         }
     }
     return best;
@@ -159,7 +165,7 @@ asj_status asj_find_with_focal(asj_focal_search *s, const asj_focal *found, cons
 }
 
 asj_status asj_focal_search_create(asj_context *context, asj_pairs *set, const asj_geometry_hints *hints, const asj_search *search,
-                                   asj_focal_search **created)
+                                   double sd, asj_focal_search **created)
 {
     asj_memory *memory = &context->memory;
     asj_focal_search *s = *created = asj_allocate_zero(memory, 1, sizeof *s);
@@ -174,7 +180,7 @@ asj_status asj_focal_search_create(asj_context *context, asj_pairs *set, const a
     s->profile.scratch = asj_adjust_scratches_create(memory, set, context->threads);
     if (!s->profile.scratch)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the focal length");
-    return asj_focal_prior_make(context, set, hints ? hints->edges : NULL, search->cameras, &s->prior);
+    return asj_focal_prior_make(context, set, hints ? hints->edges : NULL, search->cameras, sd, &s->prior);
 }
 
 void asj_focal_search_free(asj_memory *memory, asj_focal_search *s)

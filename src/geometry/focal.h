@@ -10,11 +10,11 @@
 /* The search for it, which keeps what it knows of the images. */
 typedef struct asj_focal_search asj_focal_search;
 
-/* search: samples, seed and least count; of its cameras the principal points, and the focal lengths as the longer sides. hints may
- * be NULL. From then on set has the directions of the focal length that was looked at last. All is to be freed after a failure,
- * too. ASJ_ERROR_MEMORY. */
+/* search: samples, seed and least count; of its cameras the principal points, and the focal lengths as the longer sides or, with an
+ * sd (of their logarithms, both in the same way), about as they are. hints may be NULL. From then on set has the directions of the
+ * focal length that was looked at last. All is to be freed after a failure, too. ASJ_ERROR_MEMORY. */
 asj_status asj_focal_search_create(asj_context *context, asj_pairs *set, const asj_geometry_hints *hints, const asj_search *search,
-                                   asj_focal_search **created);
+                                   double sd, asj_focal_search **created);
 void asj_focal_search_free(asj_memory *memory, asj_focal_search *s);
 
 /* flat: homographies that were found already, `count` of them at most ASJ_FINALISTS, whose motions are tried too. */

@@ -22,8 +22,12 @@
  *
  * The first factor is asj_log_focal_prior(); the second is the prior of rotations as with known cameras, but for
  * s / (1/2 + s/2), asj_log_focal_share(). So at focal lengths where the edges do not look right their directions count for
- * nothing: taken as they are, three directions explain some edges at any f, and draw motions to where these are. */
+ * nothing: taken as they are, three directions explain some edges at any f, and draw motions to where these are.
+ *
+ * Of focal lengths that are about known the factor is log normal around 1, with the density g over the flat one. Then s is divided
+ * by its mean under g, and p is multiplied by g. */
 #include "focal_prior.h"
+#include "core/angle.h"
 #include "core/threads.h"
 #include "stop.h"
 
@@ -31,6 +35,10 @@
 #include <string.h>
 
 #define SAME 1e-6 /* of a step */
+#define SHORTEST 0.4 /* where nothing is known, */
+#define STEP 0.05    /* .. and so up to 3.99 */
+#define WIDTHS 4     /* standard deviations to either side, where something is, */
+#define PER_WIDTH 2  /* .. in so many steps each at least */
 
 typedef struct job {
     const asj_pairs *set;
@@ -38,9 +46,14 @@ typedef struct job {
     asj_directions_scratch **scratch; /* of each thread */
 } job;
 
-double asj_focal_factor(int32_t n)
+double asj_focal_factor(const asj_focal_prior *prior, int32_t n)
 {
-    return ASJ_FOCAL_SHORTEST * exp(n * ASJ_FOCAL_STEP);
+    return prior->shortest * exp(n * prior->step);
+}
+
+double asj_focal_range(const asj_focal_prior *prior)
+{
+    return (prior->count - 1) * prior->step;
 }
 
 void asj_focal_cameras(const asj_focal_prior *prior, double factor, asj_camera cameras[2])
@@ -58,7 +71,7 @@ static void find_some(const void *data, const asj_part *part)
     for (int64_t n = part->first; n < part->end && !asj_pairs_stop(j->set, part); n++) {
         const int32_t v = (int32_t)(n % 2), k = (int32_t)(n / 2);
         asj_camera cameras[2];
-        asj_focal_cameras(j->prior, asj_focal_factor(k), cameras);
+        asj_focal_cameras(j->prior, asj_focal_factor(j->prior, k), cameras);
         asj_find_directions_with(j->scratch[part->thread], &j->prior->edges[v], &cameras[v], 0, &j->prior->directions[v][k]);
     }
 }
@@ -74,7 +87,7 @@ static asj_status find_all(asj_context *context, const asj_pairs *set, asj_focal
     for (size_t t = 0; t < threads && good; t++)
         good = (j.scratch[t] = asj_directions_scratch_create(memory, most)) != NULL;
     if (good)
-        asj_parallel(context, context->threads, 2 * ASJ_FOCAL_COUNT, 2, find_some, &j);
+        asj_parallel(context, context->threads, 2 * prior->count, 2, find_some, &j);
     for (size_t t = 0; t < threads && j.scratch; t++)
         asj_directions_scratch_free(memory, j.scratch[t]);
     asj_release(memory, j.scratch);
@@ -86,66 +99,104 @@ static double score_of(const asj_directions_list *of)
     return of->count > 0 ? of->list[0].score / ASJ_SCORE_COOL : 0;
 }
 
-asj_status asj_focal_prior_make(asj_context *context, const asj_pairs *set, const asj_edge_list *edges, const asj_camera cameras[2],
-                                asj_focal_prior *prior)
+/* Log of the density of a factor without edges, over the flat one. */
+static double log_given(const asj_focal_prior *prior, double factor)
 {
-    double most = 0, sum = 0;
+    if (prior->sd == 0)
+        return 0;
+    const double off = log(factor) / prior->sd;
+    return log(asj_focal_range(prior) / (prior->sd * sqrt(2 * ASJ_PI))) - 0.5 * off * off;
+}
+
+static void set_factors(double sd, asj_focal_prior *prior)
+{
+    prior->sd = sd;
+    prior->shortest = SHORTEST;
+    prior->step = STEP;
+    prior->count = ASJ_FOCAL_MOST;
+    if (sd == 0)
+        return;
+    prior->step = fmin(STEP, sd / PER_WIDTH);
+    const int32_t steps = (int32_t)ceil(WIDTHS * sd / prior->step);
+    prior->shortest = exp(-steps * prior->step);
+    prior->count = 2 * steps + 1 < ASJ_FOCAL_MOST ? 2 * steps + 1 : ASJ_FOCAL_MOST;
+}
+
+asj_status asj_focal_prior_make(asj_context *context, const asj_pairs *set, const asj_edge_list *edges, const asj_camera cameras[2],
+                                double sd, asj_focal_prior *prior)
+{
+    double most = 0, sum = 0, weights = 0;
     memset(prior, 0, sizeof *prior);
     memcpy(prior->cameras, cameras, sizeof prior->cameras);
+    set_factors(sd, prior);
     prior->edges = edges;
     const asj_status status = edges ? find_all(context, set, prior) : ASJ_OK;
-    for (int32_t k = 0; k < ASJ_FOCAL_COUNT; k++) {
+    for (int32_t k = 0; k < prior->count; k++) {
         prior->log_edges[k] = score_of(&prior->directions[0][k]) + score_of(&prior->directions[1][k]);
         most = fmax(most, prior->log_edges[k]);
     }
-    for (int32_t k = 0; k < ASJ_FOCAL_COUNT; k++)
-        sum += exp(prior->log_edges[k] - most);
-    for (int32_t k = 0; k < ASJ_FOCAL_COUNT; k++)
-        prior->log_edges[k] -= most + log(sum / ASJ_FOCAL_COUNT);
+    for (int32_t k = 0; k < prior->count; k++) {
+        const double weight = exp(log_given(prior, asj_focal_factor(prior, k)));
+        weights += weight;
+        sum += weight * exp(prior->log_edges[k] - most);
+    }
+    for (int32_t k = 0; k < prior->count; k++)
+        prior->log_edges[k] -= most + log(sum / weights);
     return status;
 }
 
 int32_t asj_likeliest_focal(const asj_focal_prior *prior)
 {
-    int32_t best = 0;
-    for (int32_t k = 1; k < ASJ_FOCAL_COUNT; k++)
-        best = prior->log_edges[k] > prior->log_edges[best] ? k : best;
-    return prior->log_edges[best] > 0 ? best : -1; /* the mean of all densities is 1 */
+    int32_t best = -1;
+    double most = 0; /* flat */
+    for (int32_t k = 0; k < prior->count; k++) {
+        const double log_density = prior->log_edges[k] + log_given(prior, asj_focal_factor(prior, k));
+        if (log_density > most) {
+            best = k;
+            most = log_density;
+        }
+    }
+    return best;
 }
 
 /* Where a factor stands among those of the prior. */
-static double place_of(double factor)
+static double place_of(const asj_focal_prior *prior, double factor)
 {
-    return log(factor / ASJ_FOCAL_SHORTEST) / ASJ_FOCAL_STEP;
+    return log(factor / prior->shortest) / prior->step;
 }
 
 /* log s at any factor. */
 static double log_edges_at(const asj_focal_prior *prior, double factor)
 {
-    const double at = fmin(fmax(place_of(factor), 0), ASJ_FOCAL_COUNT - 1);
-    const int32_t k = at < ASJ_FOCAL_COUNT - 2 ? (int32_t)at : ASJ_FOCAL_COUNT - 2;
+    const double at = fmin(fmax(place_of(prior, factor), 0), prior->count - 1);
+    const int32_t k = at < prior->count - 2 ? (int32_t)at : prior->count - 2;
     return prior->log_edges[k] + (at - k) * (prior->log_edges[k + 1] - prior->log_edges[k]);
 }
 
-double asj_log_focal_prior(const asj_focal_prior *prior, double factor)
+static double log_by_edges(const asj_focal_prior *prior, double factor)
 {
     return log(0.5 + 0.5 * exp(log_edges_at(prior, factor)));
 }
 
+double asj_log_focal_prior(const asj_focal_prior *prior, double factor)
+{
+    return log_by_edges(prior, factor) + log_given(prior, factor);
+}
+
 double asj_log_focal_share(const asj_focal_prior *prior, double factor)
 {
-    return log_edges_at(prior, factor) - asj_log_focal_prior(prior, factor);
+    return log_edges_at(prior, factor) - log_by_edges(prior, factor);
 }
 
 asj_status asj_focal_directions(asj_context *context, const asj_focal_prior *prior, double factor,
                                 asj_directions_list directions[2])
 {
-    const double at = place_of(factor);
+    const double at = place_of(prior, factor);
     const int32_t nearest = (int32_t)lround(at);
     asj_camera cameras[2];
     asj_focal_cameras(prior, factor, cameras);
     for (int32_t v = 0; v < 2; v++)
-        if (nearest >= 0 && nearest < ASJ_FOCAL_COUNT && fabs(at - nearest) < SAME)
+        if (nearest >= 0 && nearest < prior->count && fabs(at - nearest) < SAME)
             directions[v] = prior->directions[v][nearest];
         else if (!asj_find_directions(&context->memory, &prior->edges[v], &cameras[v], 0, &directions[v]))
             return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the directions of %zu edges", prior->edges[v].count);

@@ -1,35 +1,37 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* What the straight edges of both images say of the focal length that they share, before any candidate is looked at. */
+/* What is known of the focal length that both images share before any candidate is looked at: that it is near one that was given,
+ * and what straight edges say of it. */
 #ifndef ASJ_SRC_GEOMETRY_FOCAL_PRIOR_H
 #define ASJ_SRC_GEOMETRY_FOCAL_PRIOR_H
 
 #include "core/context.h"
 #include "directions.h"
 
-/* Focal lengths are told as factors of those of a pair of cameras. The prior is known for the COUNT factors from SHORTEST on whose
- * logarithms are STEP apart (up to 3.99), and flat over the logarithm between the first and the last of them. */
-#define ASJ_FOCAL_SHORTEST 0.4
-#define ASJ_FOCAL_STEP 0.05
-#define ASJ_FOCAL_COUNT 47
-#define ASJ_FOCAL_RANGE ((ASJ_FOCAL_COUNT - 1) * ASJ_FOCAL_STEP)
+/* Focal lengths are told as factors of those of a pair of cameras. The prior is known for `count` factors from `shortest` on whose
+ * logarithms are `step` apart; "flat" is flat over the logarithm between the first and the last of them. */
+#define ASJ_FOCAL_MOST 47
 
 typedef struct asj_focal_prior {
     asj_camera cameras[2];      /* of factor 1 */
-    const asj_edge_list *edges; /* of both images; NULL: the prior is flat */
-    asj_directions_list directions[2][ASJ_FOCAL_COUNT];
-    double log_edges[ASJ_FOCAL_COUNT]; /* log of the density by edges alone over the flat one */
+    double sd;                  /* of the log of the factor, around 1; 0: nothing is known of it, 0.4 to 4 */
+    double shortest, step;
+    int32_t count;              /* ASJ_FOCAL_MOST at most */
+    const asj_edge_list *edges; /* of both images; NULL: they say nothing */
+    asj_directions_list directions[2][ASJ_FOCAL_MOST];
+    double log_edges[ASJ_FOCAL_MOST]; /* log of the density by edges over that without them */
 } asj_focal_prior;
 
 /* edges: lists of both images, which stay where they are as long as the prior is used, or NULL. set: who stops is asked there.
  * ASJ_ERROR_MEMORY. */
 asj_status asj_focal_prior_make(asj_context *context, const asj_pairs *set, const asj_edge_list *edges, const asj_camera cameras[2],
-                                asj_focal_prior *prior);
+                                double sd, asj_focal_prior *prior);
 
-/* The n-th factor, 0 .. ASJ_FOCAL_COUNT - 1, and the cameras of any. */
-double asj_focal_factor(int32_t n);
+/* The n-th factor, 0 .. count - 1, how far the logarithms of the first and the last are apart, and the cameras of any factor. */
+double asj_focal_factor(const asj_focal_prior *prior, int32_t n);
+double asj_focal_range(const asj_focal_prior *prior);
 void asj_focal_cameras(const asj_focal_prior *prior, double factor, asj_camera cameras[2]);
 
-/* The number of the likeliest factor; -1 when edges say nothing. */
+/* The number of the likeliest factor; -1 when nothing is known. */
 int32_t asj_likeliest_focal(const asj_focal_prior *prior);
 
 /* Log of the density of a factor over the flat one, whatever the rotation. */

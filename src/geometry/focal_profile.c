@@ -9,9 +9,9 @@
  * to it, since the evidence is rugged: of many matches one focal length stands out, and need not be the right one. (Eighteen scenes
  * as in test_focal.c, of 26 to 400 matches known to .05 to .5 px: found to .8 % in the mean, at worst to 1.5 %, where the weights
  * alone say .1 to 1.) f is known when that is KNOWN at most, the evidence falls by CLOSE to both sides, FEWEST steps are seen, and
- * the path goes on to a longer f. Motions that leave f open (Sturm
- * 2001: optical axes that are parallel, or that meet at the same distance from both cameras; a plane that is seen frontally) have
- * flat evidence, and so they show, unless edges tell f.
+ * the path goes on to a longer f; where it was about known before, it still is when it is not known better now. Motions that leave
+ * f open (Sturm 2001: optical axes that are parallel, or that meet at the same distance from both cameras; a plane that is seen
+ * frontally) have flat evidence, and so they show, unless edges tell f.
  *
  * Each step starts from two guesses, and the better one is kept: where the last step leads, and what leaves a plane where it was.
  * (The first one alone overshoots where directions have pulled at the last step, and profiles break off: rooms 1000 to 1119 had
@@ -29,17 +29,18 @@
 #include <string.h>
 
 #define REACH ASJ_FOCAL_REACH
-#define SIZES 4  /* of steps */
+#define SIZES 3  /* of smaller steps */
 #define TINY 0.1 /* of a step */
 #define FEWEST 5 /* steps within LESS of the best */
 #define LESS 10.0
 #define CLOSE 2.0
 #define KNOWN 0.1
 #define LEAST_SD 0.01
+#define LENS 0.015
 #define ROUNDS 5
 #define LEAST_SHARE (-3.0) /* below that directions are left out: labels (labels.c) would count in full */
 
-static const double sizes[SIZES] = {ASJ_FOCAL_STEP, 0.01, 0.003, 0.001}; /* of log f */
+static const double sizes[SIZES] = {0.01, 0.003, 0.001}; /* of log f; the first ones are those of the prior */
 
 static double factor_of(const asj_focal_profile *p, const asj_model *m)
 {
@@ -151,7 +152,7 @@ static void fill_side(asj_focal_profile *p, int32_t side, double *most)
     for (int32_t k = 1; k <= REACH && !asj_pairs_stop(p->set, NULL); k++) {
         asj_model *to = &p->at[REACH + side * k];
         const double factor = factor_of(p, from) * exp(side * p->step);
-        if (factor < ASJ_FOCAL_SHORTEST || factor > asj_focal_factor(ASJ_FOCAL_COUNT - 1) ||
+        if (factor < p->prior->shortest || factor > asj_focal_factor(p->prior, p->prior->count - 1) ||
             !follow(p, from, before, ratio, exp(side * p->step), to))
             return;
         p->has[REACH + side * k] = 1;
@@ -190,8 +191,10 @@ static int32_t find_best(const asj_focal_profile *p)
 /* Where few steps are within LESS of the best, many matches tell f exactly, or the path breaks off: smaller steps from there. */
 static int32_t fill(asj_focal_profile *p, double *most)
 {
-    int32_t count = fill_with(p, sizes[0], most);
-    for (int32_t n = 1; n < SIZES && count < FEWEST && p->status == ASJ_OK; n++) {
+    int32_t count = fill_with(p, p->prior->step, most);
+    for (int32_t n = 0; n < SIZES && count < FEWEST && p->status == ASJ_OK; n++) {
+        if (sizes[n] >= p->step)
+            continue;
         p->at[REACH] = p->at[find_best(p)];
         count = fill_with(p, sizes[n], most);
     }
@@ -210,11 +213,34 @@ static int32_t set_along(asj_focal_profile *p, asj_focal *found)
     return 1;
 }
 
+/* Mean and variance of log f with what was known before, when images tell no more than to LENS, as lenses are no pin holes. The
+ * profile's are mean and v, relative to what was given, which is known to s; so images alone have the precision d = 1 / v - 1 / s^2
+ * and the mean mean / (v d). With d' = d / (1 + LENS^2 d) in place of d both together have the precision d' + 1 / s^2. */
+static void allow_for_lens(double s, double *mean, double *variance)
+{
+    const double v = *variance, before = 1 / (s * s), d = 1 / v - before;
+    if (!(d > 0))
+        return;
+    const double wider = 1 + LENS * LENS * d;
+    *variance = 1 / (d / wider + before);
+    *mean *= *variance / (v * wider);
+}
+
+/* The step next to a place. */
+static int32_t nearest_to(const asj_focal_profile *p, double place)
+{
+    int32_t nearest = REACH;
+    for (int32_t k = 0; k <= 2 * REACH; k++)
+        nearest = p->has[k] && fabs(k - place) < fabs(nearest - place) ? k : nearest;
+    return nearest;
+}
+
 /* Mean and standard deviation of log f, and the mean evidence. */
 static void judge(asj_focal_profile *p, asj_focal *found)
 {
     double most;
-    const int32_t steps = fill(p, &most), nearest = find_best(p);
+    const int32_t steps = fill(p, &most);
+    const double middle = log(factor_of(p, &p->at[REACH]));
     double sum = 0, first = 0, second = 0;
     int32_t lowest = 2 * REACH, highest = 0;
     for (int32_t k = 0; k <= 2 * REACH; k++) {
@@ -225,13 +251,20 @@ static void judge(asj_focal_profile *p, asj_focal *found)
         first += weight * x;
         second += weight * x * x;
     }
-    const double mean = first / sum, variance = second / sum - mean * mean, mean_weight = log(sum * p->step / ASJ_FOCAL_RANGE);
-    found->sd = sqrt(variance + LEAST_SD * LEAST_SD);
+    double mean = middle + first / sum, variance = second / sum - first / sum * (first / sum) + LEAST_SD * LEAST_SD;
+    const double mean_weight = log(sum * p->step / asj_focal_range(p->prior));
+    if (p->prior->sd > 0)
+        allow_for_lens(p->prior->sd, &mean, &variance);
+    found->sd = sqrt(variance);
     /* what the profile's ends cut off would make it wider */
     const int32_t cut = p->at[lowest].evidence > most - CLOSE || p->at[highest].evidence > most - CLOSE;
-    if (!follow(p, &p->at[nearest], NULL, 0, exp(mean - p->step * (nearest - REACH)), &found->model))
+    const int32_t nearest = p->prior->sd > 0 ? nearest_to(p, REACH + (mean - middle) / p->step) : find_best(p);
+    if (!follow(p, &p->at[nearest], NULL, 0, exp(mean - middle - p->step * (nearest - REACH)), &found->model))
         found->model = p->at[nearest];
-    found->is_known = steps >= FEWEST && found->sd <= KNOWN && !cut && set_along(p, found);
+    const int32_t told = steps >= FEWEST && found->sd <= KNOWN && !cut;
+    if (!told && p->prior->sd > 0)
+        found->sd = p->prior->sd;
+    found->is_known = (told || p->prior->sd > 0) && set_along(p, found);
     if (asj_focal_turn(p, factor_of(p, &found->model)) != ASJ_OK)
         return;
     const double log_prior = log_prior_of(p, &found->model);

@@ -125,16 +125,17 @@ static int32_t with_homographies(const asj_geometry_options *o)
     return o->model == ASJ_GEOMETRY_AUTO || o->model == ASJ_GEOMETRY_HOMOGRAPHY;
 }
 
-/* One focal length for both, in place of cameras: a motion that tells it, and the others that there are with it. */
+/* One focal length for both, in place of cameras or near theirs: a motion that tells it, and the others that there are with it. */
 static asj_status search_focal(asj_estimation *e, const asj_geometry_hints *hints)
 {
     const asj_search search = plan(e, ASJ_GEOMETRY_ESSENTIAL);
+    const double sd = e->options->focal_sd;
     asj_model flat[ASJ_FINALISTS];
     int32_t count = 0, more = 0;
     for (int32_t k = 0; k < e->count && count < ASJ_FINALISTS; k++)
         if (e->finalists[k].kind == ASJ_GEOMETRY_HOMOGRAPHY)
             flat[count++] = e->finalists[k];
-    asj_status status = asj_focal_search_create(e->context, &e->set, hints, &search, &e->focal_search);
+    asj_status status = asj_focal_search_create(e->context, &e->set, hints, &search, sd, &e->focal_search);
     if (status == ASJ_OK)
         status = asj_find_focal(e->focal_search, flat, count, &e->focal);
     if (status != ASJ_OK || !(e->focal.model.evidence > -HUGE_VAL))
@@ -161,17 +162,18 @@ static int32_t epipolar_kind(const asj_geometry_options *o)
 static asj_status search_all(asj_estimation *e, const asj_geometry_hints *hints)
 {
     const asj_geometry_options *o = e->options;
-    const int32_t epipolar = epipolar_kind(o);
+    const int32_t epipolar = epipolar_kind(o), finds_focal = asj_finds_focal(o);
+    const int32_t motions = epipolar == ASJ_GEOMETRY_ESSENTIAL && !finds_focal;
     asj_status status = ASJ_OK;
-    if (epipolar != ASJ_GEOMETRY_NONE)
+    if (motions || epipolar == ASJ_GEOMETRY_FUNDAMENTAL)
         status = search_kind(e, epipolar);
     if (status == ASJ_OK && with_homographies(o))
         status = search_kind(e, ASJ_GEOMETRY_HOMOGRAPHY);
-    if (status == ASJ_OK && epipolar == ASJ_GEOMETRY_ESSENTIAL)
+    if (status == ASJ_OK && motions)
         status = asj_refine_motions(e->context, &e->set, o->cameras, o->seed, ASJ_SETTLED, e->finalists, &e->count);
-    if (status == ASJ_OK && epipolar == ASJ_GEOMETRY_ESSENTIAL)
+    if (status == ASJ_OK && motions)
         status = search_pure_rotation(e, o->cameras);
-    return status == ASJ_OK && o->find_focal ? search_focal(e, hints) : status;
+    return status == ASJ_OK && finds_focal ? search_focal(e, hints) : status;
 }
 
 static int32_t is_chance(const asj_estimation *e, int32_t number)

@@ -37,6 +37,12 @@ int32_t asj_cameras_are_known(const asj_geometry_options *options)
     return asj_camera_is_known(&options->cameras[0]) && asj_camera_is_known(&options->cameras[1]);
 }
 
+int32_t asj_finds_focal(const asj_geometry_options *options)
+{
+    const int32_t asked = options->find_focal || (asj_cameras_are_known(options) && options->focal_sd > 0);
+    return asked && options->model <= ASJ_GEOMETRY_ESSENTIAL;
+}
+
 int32_t asj_geometry_is_open(const asj_geometry *geometry)
 {
     return geometry->status == ASJ_GEOMETRY_AMBIGUOUS || geometry->status == ASJ_GEOMETRY_DEGENERATE;
@@ -84,6 +90,10 @@ asj_status asj_geometry_request_check(asj_context *context, const asj_geometry_o
         return asj_fail(context, ASJ_ERROR_OPTION, "find_focal is %d, not 0 or 1", (int)o->find_focal);
     if (o->find_focal && (asj_camera_is_known(&o->cameras[0]) || asj_camera_is_known(&o->cameras[1])))
         return asj_fail(context, ASJ_ERROR_OPTION, "find_focal: the focal length of a camera is given");
+    if (!within(o->focal_sd, 0, 0.25))
+        return asj_fail(context, ASJ_ERROR_OPTION, "focal_sd is %g, not 0 .. 0.25", o->focal_sd);
+    if (o->find_focal && o->focal_sd > 0)
+        return asj_fail(context, ASJ_ERROR_OPTION, "focal_sd is of focal lengths that are given: find_focal has none");
     if (!asj_is_zero(o->reserved, sizeof o->reserved) || o->reserved_integer)
         return asj_fail(context, ASJ_ERROR_OPTION, ASJ_RESERVED_MESSAGE);
     if (o->find_focal && o->model > ASJ_GEOMETRY_ESSENTIAL)

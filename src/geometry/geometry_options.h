@@ -12,7 +12,10 @@ asj_status asj_geometry_request_check(asj_context *context, const asj_geometry_o
 asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_options *options);
 
 int32_t asj_camera_is_known(const asj_camera *camera);
-int32_t asj_cameras_are_known(const asj_geometry_options *options); /* both */
+int32_t asj_cameras_are_known(const asj_geometry_options *options); /* both, exactly or about */
+
+/* One focal length is found with the motion: nothing is known of it, or the cameras' are about right. */
+int32_t asj_finds_focal(const asj_geometry_options *options);
 
 /* Rivals, or a motion that stays open: an answer, too. */
 int32_t asj_geometry_is_open(const asj_geometry *geometry);

@@ -96,7 +96,7 @@ static asj_status complete_options(asj_match_run *run, asj_geometry_options *opt
                                    asj_edge_list edges[2])
 {
     asj_status status = ASJ_OK;
-    const int32_t known = asj_cameras_are_known(options);
+    const int32_t known = asj_cameras_are_known(options), finds_focal = asj_finds_focal(options);
     double given = 0;
     for (int32_t k = 0; k < 18 && known; k++)
         given += fabs(options->directions[k / 9][k % 9]);
@@ -105,11 +105,11 @@ static asj_status complete_options(asj_match_run *run, asj_geometry_options *opt
         options->widths[side] = run->image[side]->pyramid.width[0];
         options->heights[side] = run->image[side]->pyramid.height[0];
     }
-    for (int32_t side = 0; side < 2 && known && given == 0 && status == ASJ_OK; side++)
+    for (int32_t side = 0; side < 2 && known && !finds_focal && given == 0 && status == ASJ_OK; side++)
         status = asj_room_directions(run->context, run->image[side], &options->cameras[side], &hints->directions[side]);
-    for (int32_t side = 0; side < 2 && options->find_focal && status == ASJ_OK; side++)
+    for (int32_t side = 0; side < 2 && finds_focal && given == 0 && status == ASJ_OK; side++)
         status = asj_room_edges(run->context, &run->image[side]->pyramid, &edges[side]);
-    hints->edges = options->find_focal ? edges : NULL;
+    hints->edges = finds_focal && given == 0 ? edges : NULL;
     return status;
 }
 

@@ -487,17 +487,23 @@ static void focal_lengths_come_from_exif(void **state)
                                             {"match", "-q", "--geometry", "auto", LENS, LENS},
                                             {"match", LENS, LENS}};
     static const struct {
-        const char *arguments[9], *message;
+        const char *arguments[10], *message;
     } missing[] = {
         {{"match", "--geometry", "auto", "--focal", "exif", LENS, NO_LENS}, "gray.png has no focal length"},
         {{"match", "--geometry", "essential", "--focal", "none", LENS, LENS}, "--geometry essential needs"},
         {{"match", "--geometry", "essential", NO_LENS, LENS}, "--camera1 is missing"},
         {{"match", "--geometry", "auto", "--camera1", "30,30,18,12", LENS, NO_LENS}, "--camera2 is missing"},
+        {{"match", "--geometry", "auto", "--focal-sd", "0.1", LENS, NO_LENS}, "--focal-sd changes nothing: no focal"},
+        {{"match", "--geometry", "auto", "--focal", "none", "--focal-sd", "0.1", LENS, LENS}, "changes nothing: no focal"},
     };
     size_t k;
     (void)state;
     const outcome *result = run_cli("match", "--geometry", "auto", LENS, LENS, NULL);
     expect_code(result, 0);
+    expect_in(result, result->err, "lens.png: focal length 30 px, from EXIF data, known to 5 %\n");
+    result = run_cli("match", "--geometry", "auto", "--focal-sd", "0.02", LENS, LENS, NULL);
+    expect_in(result, result->err, "lens.png: focal length 30 px, from EXIF data, known to 2 %\n");
+    result = run_cli("match", "--geometry", "auto", "--focal-sd", "0", LENS, LENS, NULL);
     expect_in(result, result->err, "lens.png: focal length 30 px, from EXIF data\n");
     result = run_cli("match", "--geometry", "essential", "--camera2", "30,30,18,12", LENS, NO_LENS, NULL);
     expect_code(result, 0);

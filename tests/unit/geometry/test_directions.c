@@ -379,28 +379,66 @@ static void edges_tell_the_focal_length(void **state)
                 edges[v][k] = k >= 40 ? any_edge(&random)
                                       : edge_along(&random, axes + 3 * (k % 3), synth_random_between(&random, 50, 150), 0.4);
         }
-        assert_int_equal(asj_focal_prior_make(context, &set, lists, unit, &prior), ASJ_OK);
+        assert_int_equal(asj_focal_prior_make(context, &set, lists, unit, 0, &prior), ASJ_OK);
         const int32_t best = asj_likeliest_focal(&prior);
-        good += best >= 0 && fabs(log(asj_focal_factor(best) * WIDTH / camera.fx)) < 1.5 * ASJ_FOCAL_STEP;
-        for (int32_t k = 0; k < ASJ_FOCAL_COUNT; k++) {
+        good += best >= 0 && fabs(log(asj_focal_factor(&prior, best) * WIDTH / camera.fx)) < 1.5 * prior.step;
+        for (int32_t k = 0; k < prior.count; k++) {
             asj_directions_list again[2];
-            const double f = asj_focal_factor(k), s = 4 * joint(&prior, f, 0) - 1;
-            sum += s / ASJ_FOCAL_COUNT;
+            const double f = asj_focal_factor(&prior, k), s = 4 * joint(&prior, f, 0) - 1;
+            sum += s / prior.count;
             unit_near("rotations", i, k, joint(&prior, f, 3), 0.25 + s / 4 + 3 * s / 2, 1e-9 * (1 + s));
             assert_int_equal(asj_focal_directions(context, &prior, f, again), ASJ_OK);
             assert_memory_equal(&again[1], &prior.directions[1][k], sizeof again[1]);
         }
         unit_near("mass", i, 0, sum, 1, 1e-9);
-        const double between = asj_focal_factor(best) * exp(0.4 * ASJ_FOCAL_STEP);
+        const double between = asj_focal_factor(&prior, best) * exp(0.4 * prior.step);
         unit_near("interpolated", i, 0, asj_log_focal_share(&prior, between) + asj_log_focal_prior(&prior, between),
                   0.6 * prior.log_edges[best] + 0.4 * prior.log_edges[best + 1], 1e-9);
     }
     assert_in_range(good, 5, 6);
     static asj_focal_prior flat;
     const asj_pairs set = {.count = 0};
-    assert_int_equal(asj_focal_prior_make(context, &set, NULL, unit, &flat), ASJ_OK);
+    assert_int_equal(asj_focal_prior_make(context, &set, NULL, unit, 0, &flat), ASJ_OK);
     assert_int_equal(asj_likeliest_focal(&flat), -1);
     unit_near("flat", 0, 0, asj_log_focal_prior(&flat, 0.7), 0, 1e-15);
+    asj_context_free(&context);
+}
+
+/* Where focal lengths are known to a tenth, and are 12 % too long, the likeliest factor lies between 1 and what edges say; without
+ * edges it is 1, and the density is that of a normal distribution; with them the mass is one, too. */
+static void about_known_focal_lengths_have_a_density(void **state)
+{
+    (void)state;
+    const double sd = 0.1, given = 1.12 * camera.fx;
+    const asj_camera about[2] = {{given, given, camera.cx, camera.cy}, {given, given, camera.cx, camera.cy}};
+    const asj_pairs set = {.count = 0};
+    static asj_focal_prior prior;
+    asj_straight_edge edges[2][60];
+    const asj_edge_list lists[2] = {{edges[0], 60, 1, WIDTH}, {edges[1], 60, 1, WIDTH}};
+    asj_context *context;
+    synth_random random;
+    double axes[9];
+    assert_int_equal(asj_context_create(NULL, &context), ASJ_OK);
+    synth_random_seed(&random, 4);
+    for (int v = 0; v < 2; v++) {
+        random_rotation(&random, axes);
+        for (int k = 0; k < 60; k++)
+            edges[v][k] = edge_along(&random, axes + 3 * (k % 3), synth_random_between(&random, 50, 150), 0.4);
+    }
+    for (int with = 0; with < 2; with++) {
+        assert_int_equal(asj_focal_prior_make(context, &set, with ? lists : NULL, about, sd, &prior), ASJ_OK);
+        const double likeliest = log(asj_focal_factor(&prior, asj_likeliest_focal(&prior))), range = asj_focal_range(&prior);
+        double mass = 0;
+        for (int32_t k = 0; k < prior.count; k++) {
+            const double factor = asj_focal_factor(&prior, k), z = log(factor) / sd, s = exp(prior.log_edges[k]);
+            const double normal = exp(-0.5 * z * z) / (sd * sqrt(2 * UNIT_PI));
+            const double density = exp(asj_log_focal_prior(&prior, factor)) / range;
+            unit_near("density", with, k, density, normal * (0.5 + 0.5 * s), 1e-9 * (1 + s));
+            mass += density * prior.step;
+        }
+        unit_near("mass", with, 0, mass, 1, 1e-3);
+        unit_near("likeliest", with, 0, likeliest, with ? -0.08 : 0, with ? 0.06 : 1e-12);
+    }
     asj_context_free(&context);
 }
 
@@ -411,6 +449,6 @@ int main(void)
         cmocka_unit_test(what_explains_more_counts_more), cmocka_unit_test(too_few_have_none),
         cmocka_unit_test(one_set_is_added_once), cmocka_unit_test(rotations_have_a_density),
         cmocka_unit_test(down_stays_down), cmocka_unit_test(what_turns_the_room_over),
-        cmocka_unit_test(edges_tell_the_focal_length)};
+        cmocka_unit_test(edges_tell_the_focal_length), cmocka_unit_test(about_known_focal_lengths_have_a_density)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

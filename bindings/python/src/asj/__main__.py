@@ -51,7 +51,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     work.add_argument(
         "--focal", default="exif", metavar="F|exif|estimate|none",
-        help="focal lengths for the geometry: of the EXIF data where both images have them (default), one that is found for each pair, "
+        help="focal lengths for the geometry: of the EXIF data where both images have them, made better with the motion (default), one that is found for each pair, "
         "none, or a number of pixels",
     )  # fmt: skip
     work.add_argument(

@@ -69,7 +69,9 @@ class Geometry:
         return f"<asj.Geometry: {self.status}{f', {self.model}, log10 NFA {self.log10_nfa:.1f}{posed}' if self else ''}>"
 
 
-def fill(options: Any, model: str, cameras: Sequence[Camera | None], sizes: Sequence[tuple[int, int]], find_focal: bool) -> None:
+def fill(
+    options: Any, model: str, cameras: Sequence[Camera | None], sizes: Sequence[tuple[int, int]], find_focal: bool, focal_sd: float = 0,
+) -> None:  # fmt: skip
     """Sets the geometry of an asj_match_options."""
     if model not in MODELS:
         raise OptionError(f"geometry is {model!r}: one of {', '.join(MODELS)}")
@@ -79,8 +81,11 @@ def fill(options: Any, model: str, cameras: Sequence[Camera | None], sizes: Sequ
         raise OptionError(f'find_focal needs geometry="auto" or "essential", not {model!r}')
     if cameras[0] is None and cameras[1] is not None:
         raise OptionError("camera2 without camera1")
+    if focal_sd and (cameras[0] is None or model not in ("auto", "essential")):
+        raise OptionError('focal_sd changes nothing without camera1 and geometry="auto" or "essential"')
     options.geometry.model = MODELS[model]
     options.geometry.find_focal = int(find_focal)
+    options.geometry.focal_sd = focal_sd
     for place, camera, (width, height) in zip(options.geometry.cameras, cameras, sizes):
         if camera is not None:
             place.fx, place.fy, place.cx, place.cy = numbers(camera, width, height)

@@ -177,12 +177,12 @@ def _first_segments(features: Features) -> NDArray[np.int64]:
     return np.cumsum(counts) - counts
 
 
-_KEYWORDS = ("geometry", "camera1", "camera2", "find_focal", "preset", "context")
+_KEYWORDS = ("geometry", "camera1", "camera2", "find_focal", "focal_sd", "preset", "context")
 
 
 def match(
     features1: Features, features2: Features, *, geometry: str = "none", camera1: Camera | None = None, camera2: Camera | None = None,
-    find_focal: bool = False, preset: str = "default", context: Context | None = None,
+    find_focal: bool = False, focal_sd: float = 0.0, preset: str = "default", context: Context | None = None,
     **options: object,
 ) -> Matches:  # fmt: skip
     """Matches the features of two images.
@@ -192,6 +192,8 @@ def match(
     camera1    of the first image: the matrix K, (fx, fy, cx, cy), or a focal length in pixels; None = not known
     camera2    of the second image; None = as camera1
     find_focal no camera is known: one focal length for both is found with the motion ("auto" and "essential")
+    focal_sd   how well the cameras' focal lengths are known, as a part of them, 0.05 for instance where they are from EXIF data: the
+               factor by which both are out is found with the motion (0 to 0.25; 0: they are exact)
     options    those of the matcher by name (:func:`asj.match_options` lists them), for instance ratio=1.3, descriptor="sift"
 
     >>> import numpy as np
@@ -208,7 +210,7 @@ def match(
             break
     record = MATCHER.fill(preset, options, _KEYWORDS)
     cameras = (camera1, camera1 if camera2 is None else camera2)
-    fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in (features1, features2)], find_focal)
+    fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in (features1, features2)], find_focal, focal_sd)
     context = context or current()
     place = ffi.new("asj_match_result **")
     one, two = features1.described(record, context), features2.described(record, context)
@@ -218,8 +220,8 @@ def match(
 
 def match_images(
     image1: ArrayLike, image2: ArrayLike, *, stretch: float | tuple[float, float] | str = "auto", geometry: str = "none",
-    camera1: Camera | None = None, camera2: Camera | None = None, find_focal: bool = False, preset: str = "default",
-    context: Context | None = None, **options: object,
+    camera1: Camera | None = None, camera2: Camera | None = None, find_focal: bool = False, focal_sd: float = 0.0,
+    preset: str = "default", context: Context | None = None, **options: object,
 ) -> Matches:  # fmt: skip
     """Detects in both images and matches them, upsampled or stretched before; everything comes in pixels of the images as they are.
 
@@ -251,7 +253,7 @@ def match_images(
     factors = ffi.new("asj_stretch *", {"x": float(x), "y": float(y)})
     record = MATCHER.fill(preset, options, ("stretch", *_KEYWORDS))
     cameras = (camera1, camera1 if camera2 is None else camera2)
-    fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in views], find_focal)
+    fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in views], find_focal, focal_sd)
     detector = DETECTOR.fill("paper" if preset == "paper" else "match", {})
     place = ffi.new("asj_match_result **")
     (context or current()).call(

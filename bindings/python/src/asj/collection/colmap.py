@@ -4,9 +4,9 @@
 Key points are the junctions, each where all its matches together put it (locations.py), with their affine shape, in the pixels of the
 file (orientation.py), moved by half a pixel (COLMAP's first pixel has its centre at (0.5, 0.5)).
 The shape takes the unit circle to an ellipse along two branches of the junction. Images have the numbers of the store, which they
-keep, and a camera each of the same number, SIMPLE_RADIAL, with the focal length that was given, or that of their EXIF data (and then it
-is marked as known), or the median of what their pairs have found with the motion, and 1.2 times the longer side elsewhere, as COLMAP
-itself guesses. Where the whole camera was given, all images of one size have that one, PINHOLE, with the number of the first of them.
+keep, and a camera each of the same number, SIMPLE_RADIAL, with the focal length that was given, or the median of what their pairs have
+found with the motion, or that of their EXIF data, and 1.2 times the longer side elsewhere, as COLMAP itself guesses. It is marked as
+known where it was given or EXIF data tell one. Where the whole camera was given, all images of one size have that one, PINHOLE, with the number of the first of them.
 
 Where an epipolar geometry was asked for and accepted, that is the pair's two-view geometry, with all its matches as inliers, since what
 contradicts it has gone; calibrated, with its pose, where the cameras are those that it was found with. COLMAP's own verification gives
@@ -160,9 +160,9 @@ def _found_focals(store: Store) -> dict[int, list[float]]:
     return found
 
 
-def focal_of(known: float | None, found: list[float] | None, longer: float) -> float:
-    """Of an image, px: as it is known, or in the median of what its pairs have found, or as COLMAP guesses it from the longer side."""
-    return known or (float(np.median(found)) if found else 1.2 * longer)
+def focal_of(given: float | None, found: list[float] | None, exif: float | None, longer: float) -> float:
+    """Of an image, px: as it was given, or in the median of what its pairs have found, or from EXIF data, or as COLMAP guesses it."""
+    return given or (float(np.median(found)) if found else exif or 1.2 * longer)
 
 
 class _Cameras:
@@ -185,9 +185,10 @@ class _Cameras:
             if key not in self._shared:
                 self._shared[key] = self._write(number, "PINHOLE", size, [fx, fy, cx, cy], True)
             return self._shared[key]
-        known = self._given[0] if self._given else detected.focal
-        focal = focal_of(known, self._found.get(number), max(size))
-        return self._write(number, "SIMPLE_RADIAL", size, [focal, size[0] / 2, size[1] / 2, 0.0], known is not None)
+        given = self._given[0] if self._given else None
+        focal = focal_of(given, self._found.get(number), detected.focal, max(size))
+        known = given is not None or detected.focal is not None
+        return self._write(number, "SIMPLE_RADIAL", size, [focal, size[0] / 2, size[1] / 2, 0.0], known)
 
     def _write(self, number: int, model: str, size: tuple[int, int], parameters: list[float], known: bool) -> int:
         camera = self._pycolmap.Camera(camera_id=number, model=model, width=size[0], height=size[1], params=parameters)

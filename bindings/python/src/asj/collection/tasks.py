@@ -18,6 +18,7 @@ from ..geometry import Geometry
 from ..matches import Matches, match
 from .plan import Plan
 
+EXIF_FOCAL_SD = 0.05  # whole millimetres on 35 mm film, of a lens that changes with the distance that it is focused at
 _KEPT = 512 << 20  # bytes of features that a process keeps in memory: a hundred photographs of a megapixel
 
 
@@ -77,8 +78,10 @@ def _cameras(focals: tuple[float | None, float | None], plan: Plan) -> dict[str,
     known = plan.focal == "exif" and None not in focals
     if plan.focal == "estimate" or (plan.geometry == "essential" and plan.focal == "exif" and not known):
         return {"geometry": plan.geometry, "find_focal": True}
+    if known:
+        return {"geometry": plan.geometry, "camera1": focals[0], "camera2": focals[1], "focal_sd": EXIF_FOCAL_SD}
     if plan.focal in ("exif", "none"):
-        return {"geometry": plan.geometry, "camera1": focals[0] if known else None, "camera2": focals[1] if known else None}
+        return {"geometry": plan.geometry}
     camera = plan.camera
     return {"geometry": plan.geometry, "camera1": camera if len(camera) > 1 else camera[0]}
 
