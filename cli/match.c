@@ -206,9 +206,12 @@ static void print_no_geometry(const run *r)
 static void print_geometry(const run *r)
 {
     const asj_geometry *g = &r->result->geometry;
-    char focal[60] = "";
-    if (g->focal_sd > 0)
+    char focal[80] = "";
+    if (g->focal_sd > 0 && g->cameras[0].fx == g->cameras[1].fx)
         snprintf(focal, sizeof focal, ", focal length %.0f px to %.1f %%", g->cameras[0].fx, 100 * g->focal_sd);
+    else if (g->focal_sd > 0)
+        snprintf(focal, sizeof focal, ", focal lengths %.0f and %.0f px to %.1f %%", g->cameras[0].fx, g->cameras[1].fx,
+                 100 * g->focal_sd);
     if (g->status == ASJ_GEOMETRY_ACCEPTED)
         cli_note("geometry: %s, log10 NFA %.1f%s%s", asj_geometry_model_name(g->model), g->log10_nfa, focal,
                  g->only_turns ? ": the camera only turns"

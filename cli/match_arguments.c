@@ -76,7 +76,7 @@ static const cli_option geometry_options[] = {
      "without; estimate: found with the motion. By default EXIF data count where both images have them; none: they do not"},
     {FOCAL_SD, 0, "focal-sd", "S",
      "how well focal lengths are known, 0.05: to 5 % (a standard deviation). Above 0 the factor by which both are out is found "
-     "with the motion; 0 (exactly) is the default of lengths that are given, 0.05 of those from EXIF data"},
+     "with the motion; 0.05 is the default where both are from EXIF data, else 0 (exactly)"},
 };
 
 static const cli_option plot_options[] = {

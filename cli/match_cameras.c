@@ -34,10 +34,10 @@ static void take_exif(const cli_match_arguments *arguments, const cli_match_inpu
         cli_note("%s: EXIF data not used: damaged, of a larger picture, or of a focal length that cannot be", input->name);
 }
 
-static int some_from_exif(const cli_match_arguments *arguments)
+static int both_from_exif(const cli_match_arguments *arguments)
 {
-    const int all_given = arguments->cameras[0].fx > 0 && arguments->cameras[1].fx > 0;
-    return !all_given && (arguments->focal_from == CLI_FOCAL_EXIF || arguments->focal_from == CLI_FOCAL_AUTO);
+    const int given = arguments->cameras[0].fx > 0 || arguments->cameras[1].fx > 0;
+    return !given && (arguments->focal_from == CLI_FOCAL_EXIF || arguments->focal_from == CLI_FOCAL_AUTO);
 }
 
 static void say_exif(const cli_match_arguments *arguments, const cli_match_input inputs[2], const asj_geometry_options *options)
@@ -92,7 +92,7 @@ int cli_match_cameras(const cli_match_arguments *arguments, const cli_match_inpu
     }
     if (options->cameras[0].fx > 0 && options->cameras[1].fx > 0) {
         if (uses_cameras(options->model))
-            options->focal_sd = arguments->focal_sd >= 0 ? arguments->focal_sd : some_from_exif(arguments) ? CLI_EXIF_FOCAL_SD : 0;
+            options->focal_sd = arguments->focal_sd >= 0 ? arguments->focal_sd : both_from_exif(arguments) ? CLI_EXIF_FOCAL_SD : 0;
         if (exif)
             say_exif(arguments, inputs, options);
         doubt(arguments, inputs, options);

@@ -25,7 +25,8 @@ enum {
     ASJ_GEOMETRY_CHANCE = 2,      /* none stands out from what chance brings */
     ASJ_GEOMETRY_TOO_FEW = 3,     /* fewer than two places with candidates in either image */
     ASJ_GEOMETRY_AMBIGUOUS = 4,   /* another one with other matches explains almost as much, or has a log10 NFA below -100
-                                   * itself: things that repeat; or the images and the upsampled ones tell two motions (match.h) */
+                                   * itself: things that repeat; or all that is matched lies on a plane on which it repeats; or the
+                                   * images and the upsampled ones tell two motions (match.h) */
     ASJ_GEOMETRY_DEGENERATE = 5   /* what matches leaves it open: a camera that only turns has no translation where model essential
                                    * asks for one; or, with cameras that are known, fewer than 15 matches that tell no pose */
 };
@@ -73,7 +74,7 @@ typedef struct asj_geometry_options {
                               * that of the image with square pixels as wide as its own. 0.01 .. 100; 1 */
     double focal_sd;         /* how well the focal lengths of `cameras` are known: the standard deviation of their logarithms, which
                               * are wrong in the same way (0.03: by 3 %; both by the same factor). More than 0: that factor is found
-                              * with the motion. 0 .. 0.25; 0, exactly. It says nothing without both cameras, or
+                              * with the motion. 0 .. 0.25, below 0.0001 exactly; 0. It says nothing without both cameras, or
                               * of model fundamental and homography */
     double reserved[12];     /* zero */
 } asj_geometry_options;

@@ -15,8 +15,10 @@
 #include "ambiguity.h"
 #include "core/angle.h"
 #include "core/watch.h"
+#include "evidence.h"
 #include "likelihood.h"
 #include "motions.h"
+#include "period.h"
 #include "posterior.h"
 #include "small_matrix.h"
 
@@ -26,6 +28,7 @@
 #define ALMOST 0.8
 #define POSE_SD (6 * ASJ_DEGREE)
 #define FEW_WITHOUT_POSE 15.0
+#define SHIFTED_ROUNDS 3
 #define LOOSE_DIRECTION (30 * ASJ_DEGREE) /* a translation known worse than this is none */
 
 /* Covariance of rotation and translation, 6 x 6, from that of the five parameters of model.c; the largest standard deviation of a
@@ -93,7 +96,7 @@ static int32_t set_pose(asj_estimation *e, int32_t number, asj_geometry *result)
         sd = hypot(sd, add_focal(&e->focal, result));
     memcpy(result->cameras, m->cameras, sizeof result->cameras);
     result->has_pose = sd < POSE_SD;
-    if (asj_has_found_focal(e, number) && (sd >= LOOSE_DIRECTION || !e->focal.is_known))
+    if (asj_has_found_focal(e, number) && ((sd >= LOOSE_DIRECTION && e->options->focal_sd == 0) || !e->focal.is_known))
         clear_pose(result); /* a motion that is none tells no focal length */
     return sd < LOOSE_DIRECTION;
 }
@@ -204,6 +207,31 @@ static void describe_rival(asj_estimation *e, int32_t number, asj_geometry *resu
         memcpy(result->rival_rotation, m->rotation, sizeof result->rival_rotation);
 }
 
+/* Where all that a motion has matched repeats, another one explains it as well (period.c), whatever evidence that has. The
+ * probabilities in the scratch stay those of the best one. */
+static asj_status doubt_what_repeats(asj_estimation *e, int32_t best, asj_geometry *result)
+{
+    const asj_model *m = &e->finalists[best];
+    asj_model shifted;
+    const int32_t found = m->kind == ASJ_GEOMETRY_ESSENTIAL
+                              ? asj_find_period(&e->context->memory, &e->set, m, e->scratch.probability, &shifted) : 0;
+    if (found < 0)
+        return asj_fail(e->context, ASJ_ERROR_MEMORY, "no memory for what repeats");
+    if (found == 0)
+        return ASJ_OK;
+    asj_adjust(&e->set, &shifted, SHIFTED_ROUNDS, &e->scratch);
+    shifted.evidence = asj_log_evidence(&e->set, &shifted, &e->scratch);
+    asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
+    result->status = ASJ_GEOMETRY_AMBIGUOUS;
+    if (shifted.evidence > -HUGE_VAL) {
+        result->has_rival = 1;
+        result->rival_log10_nfa = asj_estimation_log10_nfa(e, &shifted);
+        memcpy(result->rival_rotation, shifted.rotation, sizeof result->rival_rotation);
+        memcpy(result->rival_translation, shifted.translation, sizeof result->rival_translation);
+    }
+    return ASJ_OK;
+}
+
 asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)
 {
     int32_t determined, doubt = 0;
@@ -222,6 +250,8 @@ asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result)
     result->status = determined && !is_open(e, best, result) ? ASJ_GEOMETRY_ACCEPTED : ASJ_GEOMETRY_DEGENERATE;
     if (second >= 0 && asj_is_ambiguous(e, best, second, doubt, result->inliers))
         result->status = ASJ_GEOMETRY_AMBIGUOUS;
+    if (result->status == ASJ_GEOMETRY_ACCEPTED && doubt_what_repeats(e, best, result) != ASJ_OK)
+        return ASJ_ERROR_MEMORY;
     if (judge && result->status == ASJ_GEOMETRY_ACCEPTED)
         *judge = asj_judge_create(&e->finalists[best].view, &e->set);
     return ASJ_OK;

@@ -7,7 +7,7 @@
 #include "judge.h"
 
 /* judge: NULL, or written where the geometry is accepted. Probabilities of its candidates are in e->scratch then, unless it is by
- * chance. Errors: CANCELLED. */
+ * chance. Errors: CANCELLED, MEMORY. */
 asj_status asj_answer(asj_estimation *e, asj_judge *judge, asj_geometry *result);
 
 #endif

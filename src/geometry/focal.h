@@ -17,6 +17,10 @@ asj_status asj_focal_search_create(asj_context *context, asj_pairs *set, const a
                                    double sd, asj_focal_search **created);
 void asj_focal_search_free(asj_memory *memory, asj_focal_search *s);
 
+/* What homographies explain: a focal length that is about known stays as it is, but for what edges say, where that is what the
+ * motion does. Before the search. */
+void asj_focal_search_flat(asj_focal_search *s, const asj_model *flat, int32_t count);
+
 /* flat: homographies that were found already, `count` of them at most ASJ_FINALISTS, whose motions are tried too. */
 asj_status asj_find_focal(asj_focal_search *s, const asj_model *flat, int32_t count, asj_focal *found);
 

@@ -183,6 +183,19 @@ double asj_log_focal_prior(const asj_focal_prior *prior, double factor)
     return log_by_edges(prior, factor) + log_given(prior, factor);
 }
 
+void asj_focal_prior_moments(const asj_focal_prior *prior, double *mean, double *variance)
+{
+    double sum = 0, first = 0, second = 0;
+    for (int32_t k = 0; k < prior->count; k++) {
+        const double factor = asj_focal_factor(prior, k), x = log(factor), weight = exp(asj_log_focal_prior(prior, factor));
+        sum += weight;
+        first += weight * x;
+        second += weight * x * x;
+    }
+    *mean = first / sum;
+    *variance = second / sum - *mean * *mean;
+}
+
 double asj_log_focal_share(const asj_focal_prior *prior, double factor)
 {
     return log_edges_at(prior, factor) - log_by_edges(prior, factor);

@@ -37,6 +37,9 @@ int32_t asj_likeliest_focal(const asj_focal_prior *prior);
 /* Log of the density of a factor over the flat one, whatever the rotation. */
 double asj_log_focal_prior(const asj_focal_prior *prior, double factor);
 
+/* Mean and variance of the log of the factor, whatever the rotation. */
+void asj_focal_prior_moments(const asj_focal_prior *prior, double *mean, double *variance);
+
 /* Log of what densities of rotations between directions (asj_likely_rotation) are to be multiplied with, so that their prior times
  * that of the factor is the joint one: focal_prior.c. */
 double asj_log_focal_share(const asj_focal_prior *prior, double factor);

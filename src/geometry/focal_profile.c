@@ -37,6 +37,7 @@
 #define KNOWN 0.1
 #define LEAST_SD 0.01
 #define LENS 0.015
+#define SMALL 0.02
 #define ROUNDS 5
 #define LEAST_SHARE (-3.0) /* below that directions are left out: labels (labels.c) would count in full */
 
@@ -201,47 +202,32 @@ static int32_t fill(asj_focal_profile *p, double *most)
     return count;
 }
 
-/* 0 when there is no motion with a longer focal length. */
+/* 0 when there is no motion with a longer focal length. By a small step where that differs much, as a path may jump. */
 static int32_t set_along(asj_focal_profile *p, asj_focal *found)
 {
+    const double step = p->prior->sd > 0 ? fmin(found->sd, SMALL) : found->sd, times = found->sd / step;
     asj_model longer;
-    if (!follow(p, &found->model, NULL, 0, exp(found->sd), &longer))
+    if (!follow(p, &found->model, NULL, 0, exp(step), &longer))
         return 0;
     turn_between(found->model.rotation, longer.rotation, found->along);
-    for (int32_t k = 0; k < 3; k++)
-        found->along[3 + k] = longer.translation[k] - found->model.translation[k];
+    for (int32_t k = 0; k < 3; k++) {
+        found->along[k] *= times;
+        found->along[3 + k] = times * (longer.translation[k] - found->model.translation[k]);
+    }
     return 1;
 }
 
-/* Mean and variance of log f with what was known before, when images tell no more than to LENS, as lenses are no pin holes. The
- * profile's are mean and v, relative to what was given, which is known to s; so images alone have the precision d = 1 / v - 1 / s^2
- * and the mean mean / (v d). With d' = d / (1 + LENS^2 d) in place of d both together have the precision d' + 1 / s^2. */
-static void allow_for_lens(double s, double *mean, double *variance)
-{
-    const double v = *variance, before = 1 / (s * s), d = 1 / v - before;
-    if (!(d > 0))
-        return;
-    const double wider = 1 + LENS * LENS * d;
-    *variance = 1 / (d / wider + before);
-    *mean *= *variance / (v * wider);
-}
+/* What the profile says of log f, relative to what was given: mean and variance, and the log of the mean of the evidence. */
+typedef struct summary {
+    double mean, variance, mean_weight;
+    int32_t steps; /* within LESS of the best */
+    int32_t is_cut; /* what its ends cut off would make it wider */
+} summary;
 
-/* The step next to a place. */
-static int32_t nearest_to(const asj_focal_profile *p, double place)
+static summary summarize(asj_focal_profile *p)
 {
-    int32_t nearest = REACH;
-    for (int32_t k = 0; k <= 2 * REACH; k++)
-        nearest = p->has[k] && fabs(k - place) < fabs(nearest - place) ? k : nearest;
-    return nearest;
-}
-
-/* Mean and standard deviation of log f, and the mean evidence. */
-static void judge(asj_focal_profile *p, asj_focal *found)
-{
-    double most;
-    const int32_t steps = fill(p, &most);
-    const double middle = log(factor_of(p, &p->at[REACH]));
-    double sum = 0, first = 0, second = 0;
+    double most, sum = 0, first = 0, second = 0;
+    summary s = {.steps = fill(p, &most)};
     int32_t lowest = 2 * REACH, highest = 0;
     for (int32_t k = 0; k <= 2 * REACH; k++) {
         const double weight = p->has[k] ? exp(p->at[k].evidence - most) : 0, x = p->step * (k - REACH);
@@ -251,20 +237,44 @@ static void judge(asj_focal_profile *p, asj_focal *found)
         first += weight * x;
         second += weight * x * x;
     }
-    double mean = middle + first / sum, variance = second / sum - first / sum * (first / sum) + LEAST_SD * LEAST_SD;
-    const double mean_weight = log(sum * p->step / asj_focal_range(p->prior));
-    if (p->prior->sd > 0)
-        allow_for_lens(p->prior->sd, &mean, &variance);
-    found->sd = sqrt(variance);
-    /* what the profile's ends cut off would make it wider */
-    const int32_t cut = p->at[lowest].evidence > most - CLOSE || p->at[highest].evidence > most - CLOSE;
-    const int32_t nearest = p->prior->sd > 0 ? nearest_to(p, REACH + (mean - middle) / p->step) : find_best(p);
-    if (!follow(p, &p->at[nearest], NULL, 0, exp(mean - middle - p->step * (nearest - REACH)), &found->model))
-        found->model = p->at[nearest];
-    const int32_t told = steps >= FEWEST && found->sd <= KNOWN && !cut;
-    if (!told && p->prior->sd > 0)
-        found->sd = p->prior->sd;
-    found->is_known = (told || p->prior->sd > 0) && set_along(p, found);
+    s.mean = log(factor_of(p, &p->at[REACH])) + first / sum;
+    s.variance = second / sum - first / sum * (first / sum);
+    s.mean_weight = log(sum * p->step / asj_focal_range(p->prior));
+    s.is_cut = p->at[lowest].evidence > most - CLOSE || p->at[highest].evidence > most - CLOSE;
+    return s;
+}
+
+/* Mean and standard deviation of log f with what was known before, when images tell no more than to LENS, as lenses are no pin
+ * holes. The profile's are m and v, relative to what was given, which is known to s; so images alone have the precision
+ * d = 1 / v - 1 / s^2 and the mean m / (v d). With d' = 1 / (1 / d + LEAST_SD^2 + LENS^2) in place of d both together have the
+ * precision d' + 1 / s^2. */
+static void combine(double s, summary *of)
+{
+    const double before = 1 / (s * s), d = 1 / of->variance - before;
+    if (!(d > 0)) { /* images tell nothing */
+        of->mean = 0;
+        of->variance = s * s;
+        return;
+    }
+    const double mean = of->mean / (of->variance * d), wider = 1 / (1 / d + LEAST_SD * LEAST_SD + LENS * LENS);
+    of->variance = 1 / (wider + before);
+    of->mean = mean * wider * of->variance;
+}
+
+/* The motion at that place of log f, from the nearest step on. */
+static void move_to(asj_focal_profile *p, double place, int32_t from_best, asj_model *model)
+{
+    const double middle = log(factor_of(p, &p->at[REACH])), at = REACH + (place - middle) / p->step;
+    int32_t nearest = from_best ? find_best(p) : REACH;
+    for (int32_t k = 0; k <= 2 * REACH && !from_best; k++)
+        nearest = p->has[k] && fabs(k - at) < fabs(nearest - at) ? k : nearest;
+    if (!follow(p, &p->at[nearest], NULL, 0, exp(place - middle - p->step * (nearest - REACH)), model))
+        *model = p->at[nearest];
+}
+
+/* The focal length is that of found->model. Its evidence becomes what the profile has in the mean. */
+static void finish(asj_focal_profile *p, double mean_weight, asj_focal *found)
+{
     if (asj_focal_turn(p, factor_of(p, &found->model)) != ASJ_OK)
         return;
     const double log_prior = log_prior_of(p, &found->model);
@@ -275,7 +285,26 @@ static void judge(asj_focal_profile *p, asj_focal *found)
     found->model.peak += found->log_share;
 }
 
-asj_status asj_focal_follow(asj_focal_profile *p, const asj_model *start, asj_focal *found)
+/* Mean and standard deviation of log f, and the mean evidence. Where it was about known before, and the motion does not tell it
+ * (tells: 0 where it cannot), it stays as it was, but for what edges say. */
+static void judge(asj_focal_profile *p, int32_t tells, asj_focal *found)
+{
+    const double sd = p->prior->sd;
+    summary s = summarize(p);
+    const int32_t told = s.variance + LEAST_SD * LEAST_SD <= KNOWN * KNOWN && !s.is_cut && (s.steps >= FEWEST || sd > 0);
+    if (sd > 0 && !(told && tells))
+        asj_focal_prior_moments(p->prior, &s.mean, &s.variance);
+    if (sd > 0)
+        combine(sd, &s);
+    else
+        s.variance += LEAST_SD * LEAST_SD;
+    found->sd = sqrt(s.variance);
+    move_to(p, s.mean, sd == 0, &found->model);
+    found->is_known = (sd > 0 || (told && (tells || p->prior->edges))) && set_along(p, found);
+    finish(p, s.mean_weight, found);
+}
+
+asj_status asj_focal_follow(asj_focal_profile *p, const asj_model *start, int32_t tells, asj_focal *found)
 {
     asj_model *middle = &p->at[REACH];
     memset(found, 0, sizeof *found);
@@ -284,7 +313,7 @@ asj_status asj_focal_follow(asj_focal_profile *p, const asj_model *start, asj_fo
         return p->status;
     middle->evidence = asj_log_evidence(p->set, middle, p->scratch) + log_prior_of(p, middle);
     if (isfinite(middle->evidence))
-        judge(p, found);
+        judge(p, tells, found);
     else
         found->model = *start;
     return p->status;

@@ -33,8 +33,8 @@ typedef struct asj_focal_profile {
 /* The set with the directions that edges have at a focal length. profile->status, which is returned, tells when memory fails. */
 asj_status asj_focal_turn(asj_focal_profile *profile, double factor);
 
-/* Follows an essential matrix to longer and shorter focal lengths, and says of it what asj_focal says. The set is turned to the
- * focal length found. */
-asj_status asj_focal_follow(asj_focal_profile *profile, const asj_model *start, asj_focal *found);
+/* Follows an essential matrix to longer and shorter focal lengths, and says of it what asj_focal says. tells: 0 where the motion
+ * cannot tell a focal length, so that only edges do, and what was known before. The set is turned to the focal length found. */
+asj_status asj_focal_follow(asj_focal_profile *profile, const asj_model *start, int32_t tells, asj_focal *found);
 
 #endif

@@ -9,6 +9,7 @@
  *   rivals.c      what explains as much without the candidates of the best one
  *   evidence.c    how often chance brings as much
  *   ambiguity.c   which of these are contradicted (colour_vote.c, picture_vote.c, upright.c); whether one may be right as well
+ *   period.c      whether all that is matched repeats
  *   answer.c      which kind, and what is told of it
  *   model.c       what moves when a geometry moves */
 #include "ambiguity.h"
@@ -135,18 +136,21 @@ static asj_status search_focal(asj_estimation *e, const asj_geometry_hints *hint
     for (int32_t k = 0; k < e->count && count < ASJ_FINALISTS; k++)
         if (e->finalists[k].kind == ASJ_GEOMETRY_HOMOGRAPHY)
             flat[count++] = e->finalists[k];
+    const int32_t starts = count;
     asj_status status = asj_focal_search_create(e->context, &e->set, hints, &search, sd, &e->focal_search);
-    if (status == ASJ_OK)
-        status = asj_find_focal(e->focal_search, flat, count, &e->focal);
+    if (status == ASJ_OK && !with_homographies(e->options))
+        status = search_flat(e, flat, &count);
+    if (status == ASJ_OK) {
+        asj_focal_search_flat(e->focal_search, flat, count);
+        status = asj_find_focal(e->focal_search, flat, starts, &e->focal);
+    }
     if (status != ASJ_OK || !(e->focal.model.evidence > -HUGE_VAL))
         return status;
     e->focal_at = e->count;
     e->finalists[e->count++] = e->focal.model;
     if (e->focal.is_known)
-        status = asj_find_with_focal(e->focal_search, &e->focal, flat, count, e->finalists + e->count, &more);
+        status = asj_find_with_focal(e->focal_search, &e->focal, flat, starts, e->finalists + e->count, &more);
     e->count += more;
-    if (status == ASJ_OK && !with_homographies(e->options))
-        status = search_flat(e, flat, &count);
     return status == ASJ_OK ? search_focal_of_rotation(e, flat, count) : status;
 }
 

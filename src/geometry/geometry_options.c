@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#define LEAST_FOCAL_SD 1e-4 /* less is exact */
+
 void asj_geometry_options_init(asj_geometry_options *options)
 {
     if (!options)
@@ -39,7 +41,7 @@ int32_t asj_cameras_are_known(const asj_geometry_options *options)
 
 int32_t asj_finds_focal(const asj_geometry_options *options)
 {
-    const int32_t asked = options->find_focal || (asj_cameras_are_known(options) && options->focal_sd > 0);
+    const int32_t asked = options->find_focal || (asj_cameras_are_known(options) && options->focal_sd >= LEAST_FOCAL_SD);
     return asked && options->model <= ASJ_GEOMETRY_ESSENTIAL;
 }
 
