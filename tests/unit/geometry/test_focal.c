@@ -184,9 +184,9 @@ static void about_known_focal_lengths_become_better(void **state)
     unit_counter counter = {0};
     asj_context *context = unit_context(&counter, 2);
     scene s = {.focal = 600, .is_sharp = 1};
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 2; i++) {
         const double factor = i % 2 ? 1 / 1.06 : 1.06;
-        asj_geometry_options o = about_options(i < 2 ? ASJ_GEOMETRY_AUTO : ASJ_GEOMETRY_ESSENTIAL, s.focal, factor, 0.05);
+        asj_geometry_options o = about_options(i < 1 ? ASJ_GEOMETRY_AUTO : ASJ_GEOMETRY_ESSENTIAL, s.focal, factor, 0.05);
         asj_geometry about, exact, strict;
         make(&s, turn, translation, (uint64_t)i + 1);
         assert_int_equal(asj_geometry_estimate(context, s.candidates, 3 * MANY, &o, NULL, &about), ASJ_OK);
@@ -233,10 +233,10 @@ static void a_plane_tells_none(void **state)
     const double turn[3] = {0.05, -0.4, 0.1}, translation[3] = {1.5, -0.3, 0.5};
     unit_counter counter = {0};
     asj_context *context = unit_context(&counter, 2);
-    for (int i = 0; i < 6; i++) {
-        scene s = {.focal = 600, .is_flat = 1, .is_sharp = i % 2};
+    for (int i = 0; i < 3; i++) {
+        scene s = {.focal = 600, .is_flat = 1, .is_sharp = i == 1};
         const int32_t count = s.is_sharp ? 3 * MANY : COUNT;
-        asj_geometry_options o = about_options(i < 4 ? ASJ_GEOMETRY_AUTO : ASJ_GEOMETRY_ESSENTIAL, s.focal, 1, 0.05);
+        asj_geometry_options o = about_options(i < 2 ? ASJ_GEOMETRY_AUTO : ASJ_GEOMETRY_ESSENTIAL, s.focal, 1, 0.05);
         asj_geometry g;
         make(&s, turn, translation, (uint64_t)i + 20);
         assert_int_equal(asj_geometry_estimate(context, s.candidates, (size_t)count, &o, NULL, &g), ASJ_OK);
