@@ -37,11 +37,11 @@
 #define KNOWN 0.1
 #define LEAST_SD 0.01
 #define LENS 0.015
-#define SMALL 0.02
+#define SMALL 0.02 /* of log f: a step that a path does not jump in */
 #define ROUNDS 5
 #define LEAST_SHARE (-3.0) /* below that directions are left out: labels (labels.c) would count in full */
 
-static const double sizes[SIZES] = {0.01, 0.003, 0.001}; /* of log f; the first ones are those of the prior */
+static const double sizes[SIZES] = {0.01, 0.003, 0.001}; /* of log f; the first steps are those of the prior */
 
 static double factor_of(const asj_focal_profile *p, const asj_model *m)
 {

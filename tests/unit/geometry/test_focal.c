@@ -128,35 +128,6 @@ static asj_geometry estimate(asj_context *context, const scene *s, const asj_geo
     return g;
 }
 
-static void focal_lengths_are_found(void **state)
-{
-    (void)state;
-    const double focal[3] = {350, 600, 1100}, turn[3] = {0.15, -0.5, 0.1}, translation[3] = {2, -0.5, 0.8};
-    unit_counter counter = {0};
-    asj_context *context = unit_context(&counter, 2);
-    scene s = {.focal = 0};
-    for (int i = 0; i < 3; i++) {
-        const asj_geometry_options o = blind_options(i == 1 ? ASJ_GEOMETRY_ESSENTIAL : ASJ_GEOMETRY_AUTO);
-        s.focal = focal[i];
-        make(&s, turn, translation, (uint64_t)i + 1);
-        const asj_geometry g = estimate(context, &s, &o);
-        assert_int_equal(g.status, ASJ_GEOMETRY_ACCEPTED);
-        assert_int_equal(g.model, ASJ_GEOMETRY_ESSENTIAL);
-        assert_true(g.focal_sd > 0 && g.focal_sd < 0.1 && g.cameras[0].fx == g.cameras[1].fx);
-        unit_near("focal length, in standard deviations", i, focal[i], log(g.cameras[0].fx / focal[i]) / g.focal_sd, 0, 3);
-        double rest[9];
-        asj_multiply3_transposed(g.rotation, s.rotation, rest);
-        unit_near("rotation, deg", i, 0, asj_rotation_angle(rest) * 180 / UNIT_PI, 0, 3);
-        asj_geometry_options known = o; /* who knows the focal length knows the motion better: 1.2 to 2.2 here */
-        known.find_focal = 0;
-        for (int v = 0; v < 2; v++)
-            known.cameras[v] = (asj_camera){focal[i], focal[i], 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1)};
-        const asj_geometry surer = estimate(context, &s, &known);
-        assert_true(surer.has_pose && g.has_pose && uncertainty(&surer) > 0 && uncertainty(&g) > 1.1 * uncertainty(&surer));
-    }
-    unit_context_free(&counter, &context);
-}
-
 /* Cameras whose focal lengths are both out by a factor, which are known to sd. */
 static asj_geometry_options about_options(int32_t model, double focal, double factor, double sd)
 {
@@ -173,6 +144,31 @@ static double rotation_off(const asj_geometry *g, const scene *s)
     double rest[9];
     asj_multiply3_transposed(g->rotation, s->rotation, rest);
     return asj_rotation_angle(rest) * 180 / UNIT_PI;
+}
+
+static void focal_lengths_are_found(void **state)
+{
+    (void)state;
+    const double focal[3] = {350, 600, 1100}, turn[3] = {0.15, -0.5, 0.1}, translation[3] = {2, -0.5, 0.8};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    scene s = {.focal = 0};
+    for (int i = 0; i < 3; i++) {
+        const asj_geometry_options o = blind_options(i == 1 ? ASJ_GEOMETRY_ESSENTIAL : ASJ_GEOMETRY_AUTO);
+        s.focal = focal[i];
+        make(&s, turn, translation, (uint64_t)i + 1);
+        const asj_geometry g = estimate(context, &s, &o);
+        assert_int_equal(g.status, ASJ_GEOMETRY_ACCEPTED);
+        assert_int_equal(g.model, ASJ_GEOMETRY_ESSENTIAL);
+        assert_true(g.focal_sd > 0 && g.focal_sd < 0.1 && g.cameras[0].fx == g.cameras[1].fx);
+        unit_near("focal length, in standard deviations", i, focal[i], log(g.cameras[0].fx / focal[i]) / g.focal_sd, 0, 3);
+        unit_near("rotation, deg", i, 0, rotation_off(&g, &s), 0, 3);
+        /* who knows the focal length knows the motion better: 1.2 to 2.2 here */
+        const asj_geometry_options known = about_options(o.model, focal[i], 1, 0);
+        const asj_geometry surer = estimate(context, &s, &known);
+        assert_true(surer.has_pose && g.has_pose && uncertainty(&surer) > 0 && uncertainty(&g) > 1.1 * uncertainty(&surer));
+    }
+    unit_context_free(&counter, &context);
 }
 
 /* Focal lengths that are 6 % too long or short, and known to 5 %, come to within 2 % here, and with them the rotation; taken for
@@ -233,6 +229,7 @@ static void a_plane_tells_none(void **state)
     const double turn[3] = {0.05, -0.4, 0.1}, translation[3] = {1.5, -0.3, 0.5};
     unit_counter counter = {0};
     asj_context *context = unit_context(&counter, 2);
+    int poses = 0;
     for (int i = 0; i < 3; i++) {
         scene s = {.focal = 600, .is_flat = 1, .is_sharp = i == 1};
         const int32_t count = s.is_sharp ? 3 * MANY : COUNT;
@@ -240,6 +237,7 @@ static void a_plane_tells_none(void **state)
         asj_geometry g;
         make(&s, turn, translation, (uint64_t)i + 20);
         assert_int_equal(asj_geometry_estimate(context, s.candidates, (size_t)count, &o, NULL, &g), ASJ_OK);
+        poses += g.has_pose;
         if (g.has_pose) {
             unit_near("focal length", i, 0, g.cameras[0].fx, 600, 1e-6);
             unit_near("known to", i, 0, g.focal_sd, 0.05, 1e-3);
@@ -248,6 +246,7 @@ static void a_plane_tells_none(void **state)
         assert_int_equal(asj_geometry_estimate(context, s.candidates, (size_t)count, &o, NULL, &g), ASJ_OK);
         assert_true(!g.has_pose && g.cameras[0].fx == 0);
     }
+    assert_true(poses > 0);
     unit_context_free(&counter, &context);
 }
 
@@ -332,12 +331,10 @@ static void pixels_need_not_be_square(void **state)
             o.aspects[v] = both[v].y / both[v].x;
         }
         const asj_geometry g = estimate(context, &s, &o);
-        double rest[9];
         assert_int_equal(g.status, ASJ_GEOMETRY_ACCEPTED);
         assert_int_equal(g.model, ASJ_GEOMETRY_ESSENTIAL);
         unit_near("focal length, in standard deviations", i, 600, log(g.cameras[0].fx / both[0].x / 600) / g.focal_sd, 0, 3);
-        asj_multiply3_transposed(g.rotation, s.rotation, rest);
-        unit_near("rotation, deg", i, 0, asj_rotation_angle(rest) * 180 / UNIT_PI, 0, 3);
+        unit_near("rotation, deg", i, 0, rotation_off(&g, &s), 0, 3);
         /* taken for square, they are another scene */
         o.aspects[0] = o.aspects[1] = 1;
         const asj_geometry square = estimate(context, &s, &o);

@@ -51,8 +51,8 @@ def _parser() -> argparse.ArgumentParser:
     )
     work.add_argument(
         "--focal", default="exif", metavar="F|exif|estimate|none",
-        help="focal lengths for the geometry: of the EXIF data where both images have them, made better with the motion (default), one that is found for each pair, "
-        "none, or a number of pixels",
+        help="focal lengths for the geometry: of the EXIF data where both images have them, made better with the motion (default), one "
+        "that is found for each pair, none, or a number of pixels",
     )  # fmt: skip
     work.add_argument(
         "--camera", metavar="FX,FY,CX,CY", help="the camera of all images, upright, px: focal lengths and principal point (instead of --focal)"

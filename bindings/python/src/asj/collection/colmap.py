@@ -6,7 +6,8 @@ file (orientation.py), moved by half a pixel (COLMAP's first pixel has its centr
 The shape takes the unit circle to an ellipse along two branches of the junction. Images have the numbers of the store, which they
 keep, and a camera each of the same number, SIMPLE_RADIAL, with the focal length that was given, or the median of what their pairs have
 found with the motion, or that of their EXIF data, and 1.2 times the longer side elsewhere, as COLMAP itself guesses. It is marked as
-known where it was given or EXIF data tell one. Where the whole camera was given, all images of one size have that one, PINHOLE, with the number of the first of them.
+known where it was given or EXIF data tell one. Where the whole camera was given, all images of one size have that one, PINHOLE, with
+the number of the first of them.
 
 Where an epipolar geometry was asked for and accepted, that is the pair's two-view geometry, with all its matches as inliers, since what
 contradicts it has gone; calibrated, with its pose, where the cameras are those that it was found with. COLMAP's own verification gives
