@@ -3,10 +3,8 @@
  * ends where contrast, gain, noise and zoom happen to put that point. What belongs to the scene is where the edge has lost a share
  * f of its own contrast.
  *
- * Across the line the grey levels g(t, s), s = -HALF .. HALF px, less their mean, are the edge's cross-section times its contrast
- * at t. The cross-section m of unit norm is the principal direction of the means of g over blocks of BLOCK px along the branch:
- * steps, thin lines and soft edges all have one, and a change of sign (a crossing of checkerboard tiles) does not matter to it.
- * Two px to either side see enough of a step; farther out lie the other edges of acute corners. Then
+ * Across the line the grey levels g(t, s) less their mean (edge_rows.c) are the edge's cross-section times its contrast at t. The
+ * cross-section m comes from the means of g over blocks of BLOCK px along the branch, and
  *     a(t) = |<mean of g over t - 2 .. t + 2, m>|
  * is the contrast, and the branch's own contrast c is that of the best quarter of its blocks (the value three quarters of the way
  * up). The end is found in steps, the first two each the change point between an edge and nothing: the T with the largest
@@ -29,13 +27,12 @@
  * without it .854. (Without step 3 a limit of 4 grey levels in place of the share would do the same, but 2 in 100 junctions of the
  * photographs would not repeat any more; step 3 costs none.) */
 #include "end_profile.h"
+#include "edge_rows.h"
 #include "core/sort.h"
 
 #include <math.h>
-#include <string.h>
 
-#define HALF 2
-#define SAMPLES (2 * HALF + 1)
+#define SAMPLES ASJ_EDGE_SAMPLES
 #define BLOCK 8     /* px */
 #define BLOCKS 24   /* of the part that says what the edge looks like, from the junction on */
 #define BEYOND 8    /* px */
@@ -52,69 +49,28 @@
 #define STEADY_MOST 512   /* px: looked at, at most */
 #define EVEN 0.6
 #define SMOOTH 2    /* px to either side */
-#define FIRST 3     /* px: what is nearer to the junction has other edges in it */
-#define NOTHING 1.0 /* square of 1/ASJ_GRAY_ONE grey levels */
-#define TURNS 12    /* of the power iteration: directions that far apart are told, and no other matters */
+#define FIRST ASJ_EDGE_FIRST
 
 #define ROWS (BLOCKS * BLOCK + BEYOND + SMOOTH) /* across the branch, that are held at once */
 #define MORE 8                                  /* that are read ahead beyond them */
-#define LEVEL (SAMPLES * 256.0)                 /* of a sample that is held: 1/ASJ_GRAY_ONE grey levels */
-#define OUTSIDE (ASJ_GRAY_BORDER - 2)           /* px: samples reach no farther than that from the middle of their row */
 
 /* A branch, and what its edge looks like. */
 typedef struct profile {
-    const asj_frame *frame;
-    double x, y, ux, uy, offset;
+    asj_edge_line line;
     double section[SAMPLES];
     double nothing;               /* contrast that may be noise */
     int32_t count;                /* blocks */
     double blocks[BLOCKS][SAMPLES];
     int32_t from, held, ends;     /* rows t = from .. from + held - 1 have been read; `ends`: the next one is outside */
-    int32_t levels[ROWS][SAMPLES]; /* the grey levels across the branch less their mean, in 1/LEVEL */
+    int32_t levels[ROWS][SAMPLES]; /* across the branch */
     double parts[ROWS];           /* of them along the section, once it is known */
 } profile;
-
-/* Bilinear in 1/256 px at a place in 1/65536 px, in 1/256 levels. */
-static int32_t level_at(const asj_frame *frame, int64_t x, int64_t y)
-{
-    const uint16_t *upper = frame->gray + (ptrdiff_t)(y >> 16) * frame->stride + (ptrdiff_t)(x >> 16);
-    const uint16_t *lower = upper + frame->stride;
-    const int32_t wx = (int32_t)(x >> 8 & 255), wy = (int32_t)(y >> 8 & 255);
-    const int32_t above = (256 - wx) * upper[0] + wx * upper[1], below = (256 - wx) * lower[0] + wx * lower[1];
-    return ((256 - wy) * (above >> 1) + wy * (below >> 1)) >> 7;
-}
-
-/* The row t px from the junction. The image's border is repeated around it as far as samples reach. 0 outside the image. */
-static int read_row(const profile *p, int32_t t, int32_t levels[SAMPLES])
-{
-    const double x = p->x + t * p->ux, y = p->y + t * p->uy, first = p->offset - HALF;
-    if (!(x >= 0 && y >= 0 && x <= p->frame->width - 1 && y <= p->frame->height - 1))
-        return 0;
-    const int64_t step_x = (int64_t)(-65536 * p->uy), step_y = (int64_t)(65536 * p->ux);
-    /* whole numbers from a corner that lies before all samples: none is negative, and none rounded up */
-    int64_t at_x = (int64_t)(65536 * (x - first * p->uy + ASJ_GRAY_BORDER)) - ((int64_t)ASJ_GRAY_BORDER << 16);
-    int64_t at_y = (int64_t)(65536 * (y + first * p->ux + ASJ_GRAY_BORDER)) - ((int64_t)ASJ_GRAY_BORDER << 16);
-    int32_t sum = 0;
-    for (int32_t i = 0; i < SAMPLES; i++, at_x += step_x, at_y += step_y)
-        sum += levels[i] = level_at(p->frame, at_x, at_y);
-    for (int32_t i = 0; i < SAMPLES; i++)
-        levels[i] = SAMPLES * levels[i] - sum;
-    return 1;
-}
-
-static double product(const double *a, const double *b)
-{
-    double sum = 0;
-    for (int32_t i = 0; i < SAMPLES; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
 
 /* Rows up to t = `last`, as far as there is room for them and the image goes. */
 static void read_rows(profile *p, int32_t last)
 {
     while (p->held < ROWS && p->from + p->held <= last && !p->ends) {
-        p->ends = !read_row(p, p->from + p->held, p->levels[p->held]);
+        p->ends = !asj_edge_row(&p->line, p->from + p->held, p->levels[p->held]);
         p->held += !p->ends;
     }
 }
@@ -126,7 +82,7 @@ static void project(profile *p, int32_t first)
         double sum = 0;
         for (int32_t i = 0; i < SAMPLES; i++)
             sum += p->levels[k][i] * p->section[i];
-        p->parts[k] = sum / LEVEL;
+        p->parts[k] = sum / ASJ_EDGE_LEVEL;
     }
 }
 
@@ -159,34 +115,9 @@ static void find_blocks(profile *p, int32_t length)
             for (int32_t i = 0; i < SAMPLES; i++)
                 sums[i] += p->levels[k][i];
         for (int32_t i = 0; i < SAMPLES; i++)
-            p->blocks[p->count][i] = sums[i] / (LEVEL * size);
+            p->blocks[p->count][i] = sums[i] / (ASJ_EDGE_LEVEL * size);
         p->count++;
     }
-}
-
-/* The principal direction of the blocks' means, by power iteration from the largest of them. 0 when there is none. */
-static int find_section(profile *p)
-{
-    double largest = NOTHING;
-    for (int32_t k = 0; k < p->count; k++) {
-        const double norm = product(p->blocks[k], p->blocks[k]);
-        if (norm > largest) {
-            largest = norm;
-            memcpy(p->section, p->blocks[k], sizeof p->section);
-        }
-    }
-    for (int32_t turn = 0; turn < TURNS && largest > NOTHING; turn++) {
-        double next[SAMPLES] = {0};
-        for (int32_t k = 0; k < p->count; k++) {
-            const double part = product(p->blocks[k], p->section);
-            for (int32_t i = 0; i < SAMPLES; i++)
-                next[i] += part * p->blocks[k][i];
-        }
-        const double norm = sqrt(product(next, next));
-        for (int32_t i = 0; i < SAMPLES; i++)
-            p->section[i] = norm > 0 ? next[i] / norm : 0;
-    }
-    return largest > NOTHING;
 }
 
 static int rising(const void *a, const void *b)
@@ -199,7 +130,7 @@ static double own_contrast(const profile *p)
 {
     double blocks[BLOCKS];
     for (int32_t k = 0; k < p->count; k++)
-        blocks[k] = fabs(product(p->blocks[k], p->section));
+        blocks[k] = fabs(asj_edge_product(p->blocks[k], p->section));
     asj_sort(blocks, (size_t)p->count, sizeof *blocks, rising);
     return blocks[(3 * p->count) / 4];
 }
@@ -309,17 +240,12 @@ static int32_t end_of_steady(profile *p, int32_t end, int32_t length, double *ow
 static int start(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, int32_t length,
                  profile *p)
 {
-    p->frame = frame;
-    p->x = hypothesis->x;
-    p->y = hypothesis->y;
-    p->ux = cos(branch->angle);
-    p->uy = sin(branch->angle);
-    p->offset = fmin(fmax(branch->offset, HALF - OUTSIDE), OUTSIDE - HALF);
+    p->line = asj_edge_line_of(frame, hypothesis, branch);
     p->from = FIRST;
     p->held = p->ends = 0;
     read_rows(p, (length > FIRST ? length : FIRST) + BEYOND + SMOOTH);
     find_blocks(p, length);
-    if (p->count < 1 || !find_section(p))
+    if (!asj_edge_section(p->blocks[0], p->count, p->section))
         return 0;
     project(p, 0);
     return 1;

@@ -4,6 +4,7 @@
 #include "blurred_corner.h"
 #include "edge_width.h"
 #include "end_kind.h"
+#include "slip.h"
 #include "steps.h"
 #include "suppress.h"
 #include "validate.h"
@@ -24,11 +25,29 @@ asj_status asj_step_orient(asj_detection_run *run)
     return asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, orient);
 }
 
-void asj_step_fit_lines(const asj_detection_run *run, asj_hypothesis *hypothesis)
+static void fit_lines(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
     if (run->frame->octaves > 1 || asj_detection_run_is_coarse(run)) /* soft edges are looked for: how soft? */
         asj_edge_widths(run->frame, hypothesis);
     asj_refine(run->context, run->frame, run->options, hypothesis);
+}
+
+/* Branches that slip become shorter, and all lines are fitted once more from where they were: the lines say where the junction is,
+ * too. Where only whole branches are asked for, that is, max_tilt is not 0. */
+void asj_step_fit_lines(const asj_detection_run *run, asj_hypothesis *hypothesis)
+{
+    asj_hypothesis shortened = *hypothesis;
+    int slips = 0;
+    fit_lines(run, hypothesis);
+    for (int32_t i = 0; i < hypothesis->branch_count && run->options->max_tilt > 0; i++) {
+        const double length = asj_slip_length(run->frame, hypothesis, &hypothesis->branches[i]);
+        slips |= length < shortened.branches[i].length;
+        shortened.branches[i].length = length;
+    }
+    if (!slips)
+        return;
+    *hypothesis = shortened;
+    fit_lines(run, hypothesis);
 }
 
 static void refine(const asj_detection_run *run, asj_hypothesis *hypothesis)

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* The grey levels across a branch, and what its edge looks like in them. */
+#ifndef ASJ_SRC_EDGE_ROWS_H
+#define ASJ_SRC_EDGE_ROWS_H
+
+#include "core/image.h"
+#include "hypothesis.h"
+
+#define ASJ_EDGE_HALF 2 /* px to either side of the line */
+#define ASJ_EDGE_SAMPLES (2 * ASJ_EDGE_HALF + 1)
+#define ASJ_EDGE_LEVEL (ASJ_EDGE_SAMPLES * 256.0) /* of a sample in a row: 1/ASJ_GRAY_ONE grey levels */
+#define ASJ_EDGE_FIRST 3 /* px: what is nearer to the junction has other edges in it */
+
+/* The line of a branch: (x + t ux - offset uy, y + t uy + offset ux), t px from its junction. */
+typedef struct asj_edge_line {
+    const asj_frame *frame;
+    double x, y, ux, uy, offset;
+} asj_edge_line;
+
+asj_edge_line asj_edge_line_of(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch);
+
+/* The row t px from the junction: the grey levels at s = -ASJ_EDGE_HALF .. ASJ_EDGE_HALF less their mean, in 1/ASJ_EDGE_LEVEL. 0
+ * outside the image, whose border is repeated around it as far as samples reach. */
+int asj_edge_row(const asj_edge_line *line, int32_t t, int32_t levels[ASJ_EDGE_SAMPLES]);
+
+double asj_edge_product(const double *a, const double *b);
+
+/* The cross-section of an edge, of norm one, from `count` means of rows along it, in 1/ASJ_GRAY_ONE grey levels; 0 when there
+ * is none. */
+int asj_edge_section(const double *means, int32_t count, double section[ASJ_EDGE_SAMPLES]);
+
+#endif
