@@ -33,7 +33,7 @@ static void fit_lines(const asj_detection_run *run, asj_hypothesis *hypothesis)
 }
 
 /* Branches that slip become shorter, and all lines are fitted once more from where they were: the lines say where the junction is,
- * too. Where only whole branches are asked for, that is, max_tilt is not 0. */
+ * too. Not where max_tilt is 0. */
 void asj_step_fit_lines(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
     asj_hypothesis shortened = *hypothesis;

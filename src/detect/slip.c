@@ -16,17 +16,17 @@
  * real axis: a change of sign, a crossing of checkerboard tiles, takes it through zero, noise takes it back and forth, and a bent
  * edge turns it by less than half a turn before it is lost. So along the branch
  *
- *     turned(T) = sum over t <= T of Im(conj(z(t)) z(t + STEP)) / mean of |z|^2,
+ *     turned(T) = sum over t <= T of Im(conj(z(t)) z(t + STEP)) / max(|z(t) z(t + STEP)|, mean of |z|^2),
  *
- * in which what has hardly any contrast hardly counts. A branch that has turned by a PERIOD in all has slipped. It ends where it
- * had last turned by no more than STAYS, and its line is fitted again up to there (refine_step.c).
+ * the sine of each step, in which what has hardly any contrast hardly counts, and what turns by more than FASTEST, a cable across
+ * the edge, noise, not at all. A branch that has turned by SLIPPED in all has left its edge. It ends where it had last turned by no
+ * more than STAYS, and its line is fitted again up to there (refine_step.c).
  *
  * Conductors that turn by 40 degrees side by side, 5, 6 and 8 px from one to the next: of the branches' length 58, 30 and 14 % was
- * more than a degree off, 31, 17 and 6 is. A circuit board loses the tenth of its junctions that was drawn across conductors. Of 26
- * photographs' junctions .4 % more repeat under zoom in the mean, of six others .2 % fewer. The branches that turn by 3 to 6 are
- * mostly right ones, long edges with another one beside them: with half a PERIOD the 26 gain another .3 %, and the six lose another
- * .5. Rendered rooms have none that slips. Not in presets that take weak corners: pairs of photographs have as many right matches
- * with it, and a quarter more wrong ones. */
+ * more than a degree off, 18, 17 and 3 is. A circuit board loses the tenth of its junctions that was drawn across conductors. With
+ * a whole turn in place of SLIPPED 9 % of the last ones are off; with less, long edges with another one beside them become shorter.
+ * Rendered rooms have next to none that slips. Not in presets that take weak corners: pairs of photographs have as many right
+ * matches with it, and a quarter more wrong ones. */
 #include "slip.h"
 #include "edge_rows.h"
 
@@ -39,8 +39,9 @@
 #define BLOCKS 24         /* and so many of them do, from the junction on */
 #define ROWS 340          /* at most; what is farther is not looked at */
 #define LEAST_ROWS 10     /* in less nothing slips */
-#define PERIOD (2 * ASJ_PI)
+#define SLIPPED (1.5 * ASJ_PI) /* three quarters of a period: nearer to the next edge like it than to its own */
 #define STAYS (ASJ_PI / 3)
+#define FASTEST 0.6       /* sine of a step: a period of 5 px at 6 degrees takes 16 of them. What turns faster lies across */
 #define LEAST_NORM 1e-4   /* of m' beside m: a section that does not change when it moves */
 
 typedef struct rows {
@@ -48,7 +49,7 @@ typedef struct rows {
     int32_t levels[ROWS][SAMPLES];
 } rows;
 
-/* z, times a positive number. */
+/* z, times a positive number that is the same along the branch. */
 typedef struct phase {
     double real, imaginary;
 } phase;
@@ -97,28 +98,43 @@ static phase phase_at(const rows *r, int32_t first, const double m[SAMPLES], con
     return z;
 }
 
+/* z along the branch; returns the mean of |z|^2. */
+static double find_phases(const rows *r, const double m[SAMPLES], const double d[SAMPLES], phase z[ROWS], int32_t count)
+{
+    double sum = 0;
+    for (int32_t k = 0; k < count; k++) {
+        z[k] = phase_at(r, k, m, d);
+        sum += z[k].real * z[k].real + z[k].imaginary * z[k].imaginary;
+    }
+    return sum / count;
+}
+
+/* How far z turns from one row to the next. */
+static double step_of(const phase *from, const phase *to, double mean)
+{
+    const double along = from->real * to->real + from->imaginary * to->imaginary;
+    const double across = from->real * to->imaginary - from->imaginary * to->real;
+    const double sizes = sqrt(along * along + across * across);
+    return along > 0 && fabs(across) <= FASTEST * sizes ? across / fmax(sizes, mean) : 0;
+}
+
 double asj_slip_length(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
 {
     const asj_edge_line line = asj_edge_line_of(frame, hypothesis, branch);
-    double m[SAMPLES], d[SAMPLES], turned[ROWS], square = 0, sum = 0;
+    double m[SAMPLES], d[SAMPLES], turned[ROWS] = {0};
+    phase z[ROWS];
     rows r;
     read_rows(&line, branch->length, &r);
     const int32_t count = r.count - SMOOTH + 1;
     if (r.count < LEAST_ROWS || !find_directions(&r, m, d))
         return branch->length;
-    phase before = phase_at(&r, 0, m, d);
-    for (int32_t k = 0; k < count; k++) {
-        const phase z = phase_at(&r, k, m, d);
-        sum += before.real * z.imaginary - before.imaginary * z.real;
-        square += z.real * z.real + z.imaginary * z.imaginary;
-        turned[k] = sum;
-        before = z;
-    }
-    const double mean = square / count;
-    if (!(fabs(sum) >= PERIOD * mean))
-        return branch->length;
+    const double mean = find_phases(&r, m, d, z, count);
+    for (int32_t k = 1; k < count && mean > 0; k++)
+        turned[k] = turned[k - 1] + step_of(&z[k - 1], &z[k], mean);
     int32_t last = count - 1;
-    while (fabs(turned[last]) > STAYS * mean)
+    if (fabs(turned[last]) < SLIPPED)
+        return branch->length;
+    while (fabs(turned[last]) > STAYS)
         last--;
     return fmin(ASJ_EDGE_FIRST + (last + SMOOTH / 2) * STEP, branch->length);
 }

@@ -16,8 +16,8 @@
  * since there is no direction of a translation. --draw: another draw of the images' noise. --seed: of the samples. --poses: log10
  * NFA of the strongest rival, and how far rotation and translation are out, in brackets as told (the largest standard deviation of
  * either).
- * --check: exit 1 when fewer poses (--turned: rotations) are right, within 3 degrees, than below, or more are wrong; of cameras
- * whose focal length is found a few may be, for what is not known of it. */
+ * --check: exit 1 when fewer poses (--turned: rotations) are right, within 3 degrees, than below, or more are wrong, or too many
+ * matches are; of cameras whose focal length is found a few poses may be, for what is not known of it. */
 #define _POSIX_C_SOURCE 200809L
 #include "wide_pair.h"
 
@@ -34,6 +34,7 @@
 #define NEAR 4.0 /* px */
 
 static const double least_right = 0.50, least_turned = 0.90; /* of --check: share of all pairs */
+static const double least_matches = 0.90;                    /* and of the matches of those that are accepted */
 static const int most_wrong = 0, most_wrong_with_focal = 2, most_far_off = 0;
 
 typedef struct settings {
@@ -47,6 +48,7 @@ typedef struct settings {
 typedef struct tally {
     double errors[MOST], focals[MOST]; /* relative error of those that were found */
     int focal_count, pairs, accepted, with_pose, turns, wrong, far_off, common, common_accepted;
+    uint32_t matches, right_matches; /* of those that are accepted */
 } tally;
 
 static int detect(const settings *set, const synth_wide_pair *pair, int which, uint8_t **pixels, asj_image *image,
@@ -128,6 +130,9 @@ static void count(const settings *set, const synth_wide_pair *pair, const asj_ma
     const int is_wrong = set->turned || error > 3;
     sum->errors[sum->pairs++] = error;
     sum->accepted += accepted;
+    const uint32_t right = set->unrelated ? 0 : count_right(set, result, pair);
+    sum->matches += accepted ? result->match_count : 0;
+    sum->right_matches += accepted ? right : 0;
     sum->with_pose += accepted && g->has_pose;
     sum->turns += accepted && g->only_turns && error < 3;
     sum->wrong += accepted && g->has_pose && is_wrong;
@@ -138,7 +143,7 @@ static void count(const settings *set, const synth_wide_pair *pair, const asj_ma
     sum->common_accepted += pair->common >= 1.0 / 3 && accepted;
     printf("%-7lu angle %2.0f scale %4.2f common %4.2f  %-10s %-11s log10 NFA %7.1f error %6.1f  matches %3u / %3u  %.0f ms",
            (unsigned long)pair->seed, pair->angle, pair->scale, pair->common, asj_geometry_status_name(g->status),
-           asj_geometry_model_name(g->model), g->log10_nfa, error, set->unrelated ? 0 : (unsigned)count_right(set, result, pair),
+           asj_geometry_model_name(g->model), g->log10_nfa, error, (unsigned)right,
            (unsigned)result->match_count, result->total_ms);
     if (g->focal_sd > 0)
         printf("  focal length %.0f (%.0f), sd %.3f", g->cameras[0].fx, pair->cameras[0].focal, g->focal_sd);
@@ -214,7 +219,8 @@ static int report(const settings *set, tally *sum)
     for (size_t k = 0; k < sizeof limits / sizeof limits[0]; k++)
         printf(" %.1f", area(sum->errors, sum->pairs, limits[k]));
     printf("; accepted %d, of those with a third in common %d of %d; with a pose %d, of these off by more than 3 degrees %d, "
-           "30 degrees %d\n", sum->accepted, sum->common_accepted, sum->common, sum->with_pose, sum->wrong, sum->far_off);
+           "30 degrees %d; of the matches of the accepted right %u of %u\n", sum->accepted, sum->common_accepted, sum->common,
+           sum->with_pose, sum->wrong, sum->far_off, (unsigned)sum->right_matches, (unsigned)sum->matches);
     qsort(sum->focals, (size_t)sum->focal_count, sizeof *sum->focals, by_size);
     if (sum->focal_count > 0)
         printf("focal lengths found %d: error median %.1f %%, three quarters within %.1f %%, largest %.1f %%\n", sum->focal_count,
@@ -225,7 +231,8 @@ static int report(const settings *set, tally *sum)
     const int right = set->turned ? sum->turns : sum->with_pose - sum->wrong;
     const int most = set->find_focal || set->focal_sd > 0 ? most_wrong_with_focal : most_wrong;
     const double least = set->turned ? least_turned : least_right;
-    return right >= least * sum->pairs && sum->wrong <= most && sum->far_off <= most_far_off ? 0 : 1;
+    return right >= least * sum->pairs && sum->wrong <= most && sum->far_off <= most_far_off &&
+           sum->right_matches >= least_matches * sum->matches ? 0 : 1;
 }
 
 static int run(const settings *set)

@@ -185,6 +185,37 @@ static int32_t validated(const fixture *f, asj_hypothesis *hypothesis)
     return hypothesis->branch_count;
 }
 
+/* Branches kept of the corner with sides cut to `length`, in an octave, when its location has this standard deviation, px. */
+static int32_t kept_at(const fixture *f, int octave, double length, double sd, asj_hypothesis *corner)
+{
+    fixture in_octave = *f;
+    in_octave.frame.octave = octave;
+    *corner = corner_hypothesis(corner_x, corner_y, 0);
+    corner->location_variance = sd * sd;
+    for (int b = 0; b < 2; b++)
+        corner->branches[b].length = fmin(length, sides[b]);
+    return validated(&in_octave, corner);
+}
+
+/* How uncertain a corner may be: in the image itself, and in a coarse octave with a branch that is sure and without. */
+static void test_uncertain(void **state)
+{
+    const fixture *f = *state;
+    asj_hypothesis corner;
+    double weak = 0;
+    assert_int_equal(kept_at(f, 0, 100, 0.41, &corner), 2);
+    assert_int_equal(kept_at(f, 0, 100, 0.43, &corner), 0);
+    assert_int_equal(kept_at(f, 1, 100, 0.34, &corner), 2);
+    assert_int_equal(kept_at(f, 1, 100, 0.36, &corner), 0);
+    for (double length = 4; length < 20; length += 0.5)
+        if (kept_at(f, 1, length, 0.1, &corner) == 2 &&
+            fmin(corner.branches[0].log_nfa, corner.branches[1].log_nfa) > -10 * ASJ_LN_10)
+            weak = length;
+    assert_true(weak > 0);
+    assert_int_equal(kept_at(f, 1, weak, 0.59, &corner), 2);
+    assert_int_equal(kept_at(f, 1, weak, 0.61, &corner), 0);
+}
+
 static void test_good_corner(void **state)
 {
     const fixture *f = *state;
@@ -311,6 +342,7 @@ int main(void)
         cmocka_unit_test_setup(test_sector_strength, reset), cmocka_unit_test_setup(test_line_fit, reset),
         cmocka_unit_test_setup(test_pulled, reset),           cmocka_unit_test_setup(test_pairs, reset),
         cmocka_unit_test_setup(test_orient, reset),           cmocka_unit_test_setup(test_reject_early, reset),
+        cmocka_unit_test_setup(test_uncertain, reset),
         cmocka_unit_test_setup(test_good_corner, reset),      cmocka_unit_test_setup(test_dropped_branches, reset),
         cmocka_unit_test_setup(test_merge, reset),            cmocka_unit_test_setup(test_order_and_opening, reset),
     };

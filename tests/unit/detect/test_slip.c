@@ -7,7 +7,7 @@
 
 #define DEGREE (UNIT_PI / 180)
 
-enum { WIDTH = 420, HEIGHT = 300, SLATS = 8 /* px from one to the next */, TILE = 20, CONDUCTORS = 16, PITCH = 6 };
+enum { WIDTH = 1040, HEIGHT = 300, SLATS = 8 /* px from one to the next */, TILE = 20, BOARD = 420, CONDUCTORS = 16, PITCH = 6 };
 
 static const synth_point start = {30.2, 144.3}; /* on an edge of a slat, of the half plane and of tiles */
 
@@ -72,12 +72,34 @@ static void test_slats(void **state)
         unit_near("length", follows[n], 0, length_along(*state, follows[n], 300), 300, 0);
 }
 
-/* Beside one edge there is none to slip to, whether the line leaves it or not; across the corners of tiles it goes on. */
+/* Beside one edge there is none to slip to, whether the line leaves it or not. */
 static void test_alone(void **state)
 {
-    static const double angles[] = {0, 0.5, -0.5, 1, -1};
-    for (size_t n = 0; n < UNIT_COUNT(angles); n++)
+    static const double angles[] = {0, 0.5, -0.5, 1, -1, 1.5, -1.5, 2, -2};
+    for (size_t n = 0; n < UNIT_COUNT(angles); n++) {
         unit_near("length", angles[n], 0, length_along(*state, angles[n], 300.25), 300.25, 0);
+        unit_near("length", angles[n], 0, length_along(*state, angles[n], 1000), 1000, 0);
+    }
+}
+
+/* A faint edge that something strong and thin crosses is one edge. */
+static int set_up_crossed(void **state)
+{
+    synth_scene scene;
+    synth_scene_init(&scene, WIDTH, HEIGHT, 120);
+    synth_add_rectangle(&scene, (synth_point){-10, start.y}, WIDTH + 20, HEIGHT, 0, 140);
+    for (int degrees = 20; degrees <= 90; degrees += 10) {
+        const double x = 30 + 2.6 * 4 * degrees, turn = degrees * DEGREE;
+        synth_add_rectangle(&scene, (synth_point){x - 200 * cos(turn), start.y - 200 * sin(turn)}, 400, 4, turn, 230);
+    }
+    return unit_set_up_scene(state, &scene, 0.8, 1);
+}
+
+static void test_crossed(void **state)
+{
+    unit_near("length", 0, 0, length_along(*state, 0, 1000), 1000, 0);
+    for (double length = 60; length < 1000; length += 60)
+        unit_near("length", length, 0, length_along(*state, 0, length), length, 0);
 }
 
 static void test_tiles(void **state)
@@ -90,15 +112,11 @@ static void test_tiles(void **state)
 static void test_noise(void **state)
 {
     int slips = 0;
-    for (int degrees = -40; degrees < 40; degrees++) {
-        const double length = length_along(*state, degrees, 150);
-        slips += length < 150;
-        assert_true(length >= 0 && length <= 150);
-    }
-    assert_true(slips < 80 / 3);
+    for (int degrees = -40; degrees < 40; degrees++)
+        slips += length_along(*state, degrees, 150) < 150;
+    assert_true(slips <= 12);
     unit_near("length", 0, 0, length_along(*state, 0, 20), 20, 0);
     unit_near("length", 0, 0, length_along(*state, 0, 0), 0, 0);
-    assert_true(length_along(*state, 20, 1e5) <= 1e5); /* far outside the image */
 }
 
 /* Conductors that turn by 40 degrees side by side, as in a board. */
@@ -138,25 +156,24 @@ static void test_conductors(void **state)
     const unit_fixture *f = *state;
     asj_detect_options options;
     synth_scene scene;
-    synth_scene_init(&scene, WIDTH, HEIGHT, 90);
+    synth_scene_init(&scene, BOARD, HEIGHT, 90);
     draw_conductors(&scene);
     uint8_t *pixels = unit_picture(&scene, 0.6, 2, 1);
-    const asj_image image = unit_gray8(pixels, WIDTH, HEIGHT);
+    const asj_image image = unit_gray8(pixels, BOARD, HEIGHT);
     asj_detect_options_init(&options);
-    const double with = wrong_part(f, &image, &options);
-    options.max_tilt = 0;
-    const double without = wrong_part(f, &image, &options);
+    const double wrong = wrong_part(f, &image, &options);
     free(pixels);
-    assert_true(with < 0.2 && without > 0.3);
+    assert_true(wrong < 0.2); /* .31 where branches may slip */
 }
 
 int main(void)
 {
     const struct CMUnitTest slats[] = {cmocka_unit_test(test_slats), cmocka_unit_test(test_conductors)};
     const struct CMUnitTest edge[] = {cmocka_unit_test(test_alone)}, tiles[] = {cmocka_unit_test(test_tiles)};
-    const struct CMUnitTest noise[] = {cmocka_unit_test(test_noise)};
+    const struct CMUnitTest noise[] = {cmocka_unit_test(test_noise)}, crossed[] = {cmocka_unit_test(test_crossed)};
     return cmocka_run_group_tests(slats, set_up_slats, unit_tear_down) +
            cmocka_run_group_tests(edge, set_up_edge, unit_tear_down) +
+           cmocka_run_group_tests(crossed, set_up_crossed, unit_tear_down) +
            cmocka_run_group_tests(tiles, set_up_tiles, unit_tear_down) +
            cmocka_run_group_tests(noise, set_up_noise, unit_tear_down);
 }
