@@ -16,9 +16,8 @@
  * and 6 of 6 of their shifted places filled and over .9 of the candidates: two of them are wrong, by 27 and 6 degrees of the
  * translation, which are told to .3, and one is right, on a floor that does not say so. Of others
  * whose places are filled so (rooms 9, 12, 69) two fifths and more of the matches lie elsewhere or have no other candidate. With
- * any vector by which it is so, in place of the one by which most have another candidate, of 324 motions of rooms 1000 to 1399 two
- * more are ambiguous: one is wrong, turned by 90 degrees; the other is right, and so are its 51 matches, in place of which 36
- * others that are not come then.) */
+ * any vector by which it is so, in place of the one by which most have another candidate, three more motions of 396 pairs, rooms
+ * 1000 to 1399, are ambiguous: one is wrong, turned by 90 degrees, and two are right.) */
 #include "period.h"
 #include "small_matrix.h"
 
