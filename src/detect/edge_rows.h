@@ -23,7 +23,17 @@ asj_edge_line asj_edge_line_of(const asj_frame *frame, const asj_hypothesis *hyp
  * outside the image, whose border is repeated around it as far as samples reach. */
 int asj_edge_row(const asj_edge_line *line, int32_t t, int32_t levels[ASJ_EDGE_SAMPLES]);
 
+/* Of two cross-sections. */
 double asj_edge_product(const double *a, const double *b);
+
+/* How much of a row lies along a cross-section, in 1/ASJ_EDGE_LEVEL. */
+static inline double asj_edge_part(const int32_t levels[ASJ_EDGE_SAMPLES], const double section[ASJ_EDGE_SAMPLES])
+{
+    double sum = 0;
+    for (int32_t i = 0; i < ASJ_EDGE_SAMPLES; i++)
+        sum += levels[i] * section[i];
+    return sum;
+}
 
 /* The cross-section of an edge, of norm one, from `count` means of rows along it, in 1/ASJ_GRAY_ONE grey levels; 0 when there
  * is none. */

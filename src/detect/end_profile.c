@@ -78,12 +78,8 @@ static void read_rows(profile *p, int32_t last)
 /* Their parts along the section, from number `first` on. */
 static void project(profile *p, int32_t first)
 {
-    for (int32_t k = first; k < p->held; k++) {
-        double sum = 0;
-        for (int32_t i = 0; i < SAMPLES; i++)
-            sum += p->levels[k][i] * p->section[i];
-        p->parts[k] = sum / ASJ_EDGE_LEVEL;
-    }
+    for (int32_t k = first; k < p->held; k++)
+        p->parts[k] = asj_edge_part(p->levels[k], p->section) / ASJ_EDGE_LEVEL;
 }
 
 /* Makes rows around t be held, if there are such. */

@@ -22,11 +22,11 @@
  * the edge, noise, not at all. A branch that has turned by SLIPPED in all has left its edge. It ends where it had last turned by no
  * more than STAYS, and its line is fitted again up to there (refine_step.c).
  *
- * Conductors that turn by 40 degrees side by side, 5, 6 and 8 px from one to the next: of the branches' length 58, 30 and 14 % was
- * more than a degree off, 18, 17 and 3 is. A circuit board loses the tenth of its junctions that was drawn across conductors. With
- * a whole turn in place of SLIPPED 9 % of the last ones are off; with less, long edges with another one beside them become shorter.
- * Rendered rooms have next to none that slips. Not in presets that take weak corners: pairs of photographs have as many right
- * matches with it, and a quarter more wrong ones. */
+ * Conductors that turn by 40 degrees side by side (test_slip.c), 5, 6 and 8 px from one to the next: of the branches' length .59,
+ * .31 and .02 is more than a degree off without this, .26, .15 and .00 with it; with a whole turn in place of SLIPPED .33, .16 and
+ * .00. With less long edges with another one beside them become shorter. Of the 138 junctions of a photograph of a circuit board
+ * 131 are left: the others were drawn across conductors. Rendered rooms have next to none that slips. Not in presets that take weak
+ * corners: sixteen pairs of photographs have 4666 of 4751 right matches with it for 4688 of 4784. */
 #include "slip.h"
 #include "edge_rows.h"
 
@@ -90,11 +90,10 @@ static int find_directions(const rows *r, double m[SAMPLES], double d[SAMPLES])
 static phase phase_at(const rows *r, int32_t first, const double m[SAMPLES], const double d[SAMPLES])
 {
     phase z = {0, 0};
-    for (int32_t k = first; k < first + SMOOTH; k++)
-        for (int32_t i = 0; i < SAMPLES; i++) {
-            z.real += r->levels[k][i] * m[i];
-            z.imaginary += r->levels[k][i] * d[i];
-        }
+    for (int32_t k = first; k < first + SMOOTH; k++) {
+        z.real += asj_edge_part(r->levels[k], m);
+        z.imaginary += asj_edge_part(r->levels[k], d);
+    }
     return z;
 }
 

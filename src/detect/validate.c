@@ -44,14 +44,14 @@
  * others make it is a branch. */
 #define LEAST_IMAGE_SHARE 0.38
 
-/* px of the octave: a standard deviation of the location beyond which nothing is a junction. Lines that follow an arc, a texture or
- * what compression leaves do not meet anywhere in particular: of the junctions that twenty-three photographs have in the image
- * itself 33 % of those beyond .42 were found again at zoom .9, of the others 71 %. Noise on weak corners does less, and where it
- * does more the next octave sees them better. In coarse octaves a corner of 5 grey levels in noise of 2 has up to .6, and no branch
- * that is SURE. Where one is, it is the corner that is uncertain: a long edge that other things come near. (Of the junctions of 32
- * photographs found in octave 1 29 % of those beyond .45 were found again at zoom .9, of the others 66 %; in the coarser ones 14 %
- * of those beyond .22. A limit between, for all of them: with .3 and .42 fewer repeat.) MOST_SD is that of octave 0 and of a finer
- * one. */
+/* px of the octave: a standard deviation of the location beyond which nothing is a junction. Lines that follow an arc, a texture
+ * or what compression leaves do not meet anywhere in particular: of the junctions that twenty-three photographs have in the
+ * image itself 33 % of those beyond .42 were found again at zoom .9, of the others 71 %. Noise on weak corners does less, and
+ * where it does more the next octave sees them better. In coarse octaves a corner of 5 grey levels in noise of 2 has up to .6,
+ * and no branch that is SURE. Where one is, it is the corner that is uncertain: a long edge that other things come near. (Of the
+ * junctions of 32 photographs found in octave 1 29 % of those beyond .45 were found again at zoom .9, of the others 66 %; in the
+ * coarser ones 14 % of those beyond .22. A limit between, for all of them: with .3 fewer of 26 photographs repeat, with .42
+ * fewer of six others.) MOST_SD is that of octave 0 and of a finer one. */
 #define MOST_SD 0.42
 #define MOST_COARSE_SD 0.35
 #define MOST_SD_OF_WEAK 0.6

@@ -98,6 +98,7 @@ static double probability_of(const asj_match_run *run, const asj_wide_run *w, co
     return probability > 0 ? probability : probability_by_itself(run, c);
 }
 
+/* px */
 static double off_line(const asj_match_run *run, const asj_candidate *c)
 {
     const asj_geometry_candidate at = asj_candidate_for_geometry(run, c, 0);
@@ -109,14 +110,17 @@ static int32_t is_off_line(const asj_match_run *run, const asj_candidate *c)
     return off_line(run, c) > asj_farthest_from_line(run);
 }
 
-/* More candidates speak for them than matches against: cameras that are not quite what they are said to be, and lenses. */
+/* More candidates speak for them than matches against, as those of lenses do, and of cameras that are not quite what they are said
+ * to be. */
 static int32_t are_lines_believed(const asj_match_run *run)
 {
-    const double most = asj_cameras_are_known(&run->options->geometry) ? fmax(ELSEWHERE, asj_farthest_from_line(run)) : HUGE_VAL;
+    const double farthest = asj_farthest_from_line(run);
+    const double most = asj_cameras_are_known(&run->options->geometry) ? fmax(ELSEWHERE, farthest) : HUGE_VAL;
     double against = 0;
     for (size_t n = 0; n < run->choices.count; n++) {
         const asj_candidate *c = asj_chosen(run, n);
-        against += !asj_is_of_guests(run, c) && is_off_line(run, c) && off_line(run, c) <= most;
+        const double off = off_line(run, c);
+        against += !asj_is_of_guests(run, c) && off > farthest && off <= most;
     }
     return against <= run->geometry.inliers;
 }

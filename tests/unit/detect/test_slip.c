@@ -108,13 +108,13 @@ static void test_tiles(void **state)
     unit_near("length", 0.2, 0, length_along(*state, 0.2, 300), 300, 0);
 }
 
-/* Noise goes back and forth: lines through it slip now and then only, and keep a length. Short ones are left alone. */
+/* Noise goes back and forth: of 80 lines through it none slips here. Short ones are left alone. */
 static void test_noise(void **state)
 {
     int slips = 0;
     for (int degrees = -40; degrees < 40; degrees++)
         slips += length_along(*state, degrees, 150) < 150;
-    assert_true(slips <= 12);
+    assert_true(slips <= 2);
     unit_near("length", 0, 0, length_along(*state, 0, 20), 20, 0);
     unit_near("length", 0, 0, length_along(*state, 0, 0), 0, 0);
 }
@@ -134,11 +134,11 @@ static void draw_conductors(synth_scene *scene)
 }
 
 /* px of branches that are more than a degree off both ways of the conductors, as a part of all. */
-static double wrong_part(const unit_fixture *f, const asj_image *image, const asj_detect_options *options)
+static double wrong_part(const unit_fixture *f, const asj_image *image)
 {
     asj_detection *found = NULL;
     double wrong = 0, all = 0;
-    assert_int_equal(asj_detect(f->context, image, options, &found), ASJ_OK);
+    assert_int_equal(asj_detect(f->context, image, NULL, &found), ASJ_OK);
     for (uint32_t n = 0; n < found->junction_count; n++)
         for (int32_t b = 0; b < found->junctions[n].branch_count; b++) {
             const asj_branch *branch = &found->junctions[n].branches[b];
@@ -154,16 +154,14 @@ static double wrong_part(const unit_fixture *f, const asj_image *image, const as
 static void test_conductors(void **state)
 {
     const unit_fixture *f = *state;
-    asj_detect_options options;
     synth_scene scene;
     synth_scene_init(&scene, BOARD, HEIGHT, 90);
     draw_conductors(&scene);
     uint8_t *pixels = unit_picture(&scene, 0.6, 2, 1);
     const asj_image image = unit_gray8(pixels, BOARD, HEIGHT);
-    asj_detect_options_init(&options);
-    const double wrong = wrong_part(f, &image, &options);
+    const double wrong = wrong_part(f, &image);
     free(pixels);
-    assert_true(wrong < 0.2); /* .31 where branches may slip */
+    assert_true(wrong < 0.2); /* .15; where branches may slip .31 */
 }
 
 int main(void)
