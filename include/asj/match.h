@@ -267,8 +267,9 @@ typedef struct asj_segment_match {
 
 /* The matches as line-segment matches: the two branches of each match, then the other branches of the same two junctions that
  * the map takes to each other, in their directions as detected; those whose far ends correspond at least as `minimum_end` says
- * (ASJ_END_...); what is at the ends of those other branches is not asked. A pair found from both its ends comes once. Writes at
- * most `capacity` of them and returns how many there are in all (ASJ_MAX_BRANCHES x match_count at most). Time: proportional to the
+ * (ASJ_END_...), by the end_tolerance of the call that made the result, or the default where the caller has put it together or
+ * copied it; what is at the ends of those other branches is not asked. A pair found from both its ends comes once. Writes at most
+ * `capacity` of them and returns how many there are in all (ASJ_MAX_BRANCHES x match_count at most). Time: proportional to the
  * matches (20 000 of two branches: 40 ms, 10 000 of three: .2 s); for a result that the caller has put together or copied, to their
  * square (20 000 of two: 4 s). */
 ASJ_API size_t asj_match_segments(const asj_match_result *result, int32_t minimum_end,

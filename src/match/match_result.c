@@ -202,6 +202,7 @@ asj_status asj_match_result_create(const asj_match_run *run, asj_match_result **
     }
     for (int32_t side = 0; side < 2; side++)
         asj_places_sort(r->places[side], r->matches, r->count, side);
+    r->end_tolerance = run->options->end_tolerance;
     r->farthest = asj_farthest_from_line(run);
     r->has_epipolar = run->has_epipolar;
     memcpy(r->epipolar, run->epipolar, sizeof r->epipolar);
@@ -224,11 +225,17 @@ void asj_match_result_sort(asj_own_result *r)
         asj_places_sort(r->places[side], r->matches, r->count, side);
 }
 
+/* One that asj_match_result_create() has made, still where it was. */
+static int is_own(const asj_match_result *shown)
+{
+    return shown->origin == (uint64_t)(uintptr_t)shown;
+}
+
 asj_around asj_match_result_around(const asj_match_result *shown)
 {
     const asj_own_result *r = (const asj_own_result *)shown;
     asj_around around = {shown->matches, shown->match_count, {NULL, NULL}, 0, NULL};
-    if (shown->origin == (uint64_t)(uintptr_t)r && shown->matches == r->matches && shown->match_count <= r->count) {
+    if (is_own(shown) && shown->matches == r->matches && shown->match_count <= r->count) {
         around.places[0] = r->places[0];
         around.places[1] = r->places[1];
         around.place_count = r->count;
@@ -241,6 +248,15 @@ const asj_known_geometry *asj_match_result_geometry(const asj_match_result *show
 {
     const asj_own_result *r = (const asj_own_result *)shown;
     return r->is_known ? &r->known : NULL;
+}
+
+double asj_match_result_end_tolerance(const asj_match_result *shown)
+{
+    asj_match_options options;
+    if (is_own(shown))
+        return ((const asj_own_result *)shown)->end_tolerance;
+    asj_match_options_init(&options);
+    return options.end_tolerance;
 }
 
 double asj_match_result_farthest(const asj_match_result *shown)

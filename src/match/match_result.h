@@ -33,12 +33,17 @@ typedef struct asj_own_result {
     asj_l_junction *l1, *l2;
     asj_place *places[2]; /* of `count` matches, in image 1 and image 2 */
     uint32_t count;
+    double end_tolerance;     /* asj_match_options.end_tolerance, that its ends were judged by */
     double farthest;          /* px of the images from an epipolar line that its matches may be: asj_farthest_from_line() */
     asj_known_geometry known; /* the one that is accepted, */
     int32_t is_known;         /* .. if there is one */
     int32_t has_epipolar;     /* is the fundamental matrix of the matches known (epipolar.c), */
     double epipolar[9];       /* .. of the images, by rows */
 } asj_own_result;
+
+/* asj_match_options.end_tolerance of its call; the default for a result that the caller has put together or copied, which does not
+ * say. */
+double asj_match_result_end_tolerance(const asj_match_result *shown);
 
 /* px from an epipolar line that its matches may be. */
 double asj_match_result_farthest(const asj_match_result *shown);

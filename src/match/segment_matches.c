@@ -17,7 +17,6 @@
 #include <math.h>
 
 #define LEAST_TURN_COSINE 0.978147601       /* cosine of 12 degrees: half the least opening of branches of the detector, and less */
-#define END_TOLERANCE 0.12     /* as the option's default */
 #define ROUNDING 1e-6          /* of a coordinate: more than single precision is off */
 #define SLOTS ASJ_MAX_BRANCHES /* segment pairs of one match: its branches a and b, then others */
 
@@ -26,6 +25,7 @@ typedef struct search {
     const asj_match_result *result;
     const asj_around *around;
     int32_t minimum_end;
+    double end_tolerance;
 } search;
 
 /* Branches of one junction, as its L-junctions name them: ends relative to the location. */
@@ -122,7 +122,7 @@ static asj_segment_match segment_along(const search *in, const other_branch *oth
     const asj_lengths own[2] = {{1, {(float)other->length[0]}, ASJ_BRANCH_END_UNKNOWN},
                                 {1, {(float)other->length[1]}, ASJ_BRANCH_END_UNKNOWN}};
     const asj_lengths *lengths[2] = {&own[0], &own[1]};
-    const asj_common_end end = asj_find_common_end(in->around, line, lengths, END_TOLERANCE);
+    const asj_common_end end = asj_find_common_end(in->around, line, lengths, in->end_tolerance);
     double x[2], y[2];
     for (int32_t side = 0; side < 2; side++) {
         x[side] = line->x[side] + end.length[side] * line->ux[side];
@@ -257,7 +257,7 @@ static int duplicate(const search *in, const asj_segment_match *s, int32_t slot)
 size_t asj_segment_matches(const asj_match_result *result, const asj_around *around, int32_t minimum_end,
                            asj_segment_match *segments, size_t capacity)
 {
-    const search in = {result, around, minimum_end};
+    const search in = {result, around, minimum_end, asj_match_result_end_tolerance(result)};
     size_t count = 0;
     for (uint32_t k = 0; k < result->match_count; k++)
         for (int32_t n = 0; n < SLOTS; n++) {

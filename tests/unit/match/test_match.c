@@ -505,6 +505,65 @@ static void segments_of_other_branches(void **state)
     assert_int_equal(asj_match_segments(&result, ASJ_END_BOTH, NULL, 0), 2);
 }
 
+/* A branch between the two others: to 48 px in the first picture, and `beyond` px farther. */
+static void add_third_branches(scene *s, const double m[4], double beyond)
+{
+    const double d = m[0] * m[3] - m[1] * m[2], x = (m[3] - m[1]) / d, y = (m[0] - m[2]) / d;
+    for (size_t n = 0; n < s->count; n++) {
+        asj_junction *j = &s->junctions[n];
+        j->branch_count = 3;
+        j->branches[2] = j->branches[1];
+        j->branches[1].angle = (float)atan2(y, x);
+        j->branches[1].length = (float)(48 * hypot(x, y) / sqrt(2) + beyond);
+    }
+}
+
+/* Of the third branches of matches of the other two those whose ends correspond; of how many. */
+static size_t third_ends(const asj_match_result *r, size_t *all)
+{
+    asj_segment_match s[ASJ_MAX_BRANCHES * CORNERS];
+    const size_t count = asj_match_segments(r, ASJ_END_CUT, s, sizeof s / sizeof *s);
+    size_t ends = 0;
+    *all = 0;
+    for (size_t n = 0; n < count; n++) {
+        const asj_l_junction *l = &r->l_junctions1[r->matches[s[n].match].l1];
+        if (s[n].branch1 != 1 || s[n].branch2 != 1 || l->branch_a == 1 || l->branch_b == 1)
+            continue;
+        ends += s[n].end == ASJ_END_BOTH;
+        ++*all;
+    }
+    return ends;
+}
+
+/* Other branches are judged by the options of the call, too; a copy of the result does not know them. */
+static void end_tolerance_is_that_of_the_call(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    static const double tolerances[] = {0.01, 1};
+    scene a, b;
+    scene_make(identity, 1, &a);
+    scene_make(oblique, 1, &b);
+    add_third_branches(&a, identity, 0);
+    add_third_branches(&b, oblique, 6); /* more than 4 px, less than a sixth of the length */
+    for (int k = 0; k < 2; k++) {
+        asj_match_options options;
+        size_t all, of_copy;
+        asj_match_options_init(&options);
+        options.end_tolerance = tolerances[k];
+        asj_match_result *r = match(context, &a, &b, &options);
+        const asj_match_result copy = *r;
+        const size_t ends = third_ends(r, &all);
+        printf("end_tolerance %g: %zu of %zu\n", tolerances[k], ends, all);
+        assert_true(all >= 5);
+        assert_int_equal(ends, k ? all : 0);
+        assert_int_equal(third_ends(&copy, &of_copy), 0);
+        assert_int_equal(of_copy, all);
+        asj_match_result_free(&r);
+    }
+    free(a.pixels);
+    free(b.pixels);
+}
+
 static void out_of_memory(void **state)
 {
     (void)state;
@@ -577,6 +636,7 @@ int main(void)
         cmocka_unit_test(bad_input_is_refused),
         cmocka_unit_test(segments_of_matches),
         cmocka_unit_test(segments_of_other_branches),
+        cmocka_unit_test(end_tolerance_is_that_of_the_call),
         cmocka_unit_test(out_of_memory),
         cmocka_unit_test(options_are_read_and_written),
     };
