@@ -137,11 +137,12 @@ typedef struct asj_detection_report {
 } asj_detection_report;
 
 /* Writes junctions as asj_output_begin() and asj_output_commit() do.
- * ASJ_ERROR_ARGUMENT  a NULL pointer, no such file format, or a detection that no reader would take: NaN or infinity, a
- *                     branch_count not 2 .. ASJ_MAX_BRANCHES, a negative scale, a length that is not 0 .. ASJ_MAX_BRANCH_LENGTH, an
- *                     octave that is not -1 .. 15, an L-junction, edge or segment of a junction or branch that is not there, a
- *                     branch of two edges; JSON: a width or height that is not 1 .. ASJ_MAX_SIDE. (Readers of JSON refuse a
- *                     location far outside of the image, too, and edges of branches that stand in no order of angle.)
+ * ASJ_ERROR_ARGUMENT  a NULL pointer, no such file format, or a detection that no reader would take: a junction that cannot be
+ *                     (asj_junction_check()) or has fewer than two branches, NaN or infinity, an L-junction, edge or segment of a
+ *                     junction or branch that is not there, a branch of two edges; JSON: a width or height that is not
+ *                     1 .. ASJ_MAX_SIDE. (Readers of JSON refuse a location more than ASJ_MAX_OUTSIDE px outside of the image, too,
+ *                     and edges of branches that stand in no order of angle.)
+ * ASJ_ERROR_OPTION    a reserved field of the report that is not zero
  * ASJ_ERROR_FILE      cannot create, disk full, cannot rename
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_detection_report *report,
@@ -199,10 +200,10 @@ typedef struct asj_junction_file {
  * On failure the message names file, line and cause.
  * ASJ_ERROR_ARGUMENT  path or file is NULL
  * ASJ_ERROR_FILE      missing, a directory, unreadable
- * ASJ_ERROR_FORMAT    empty, not such a file, wrong counts, NaN, infinity, a negative scale, a length that is not
- *                     0 .. ASJ_MAX_BRANCH_LENGTH, fewer than 2 or more than ASJ_MAX_BRANCHES branches, text after the end; JSON: a
- *                     location more than ASJ_MAX_OUTSIDE px outside the image, an octave that is not one of -1, 0, .. 15, edges of
- *                     branches that are not there, stand in no order of angle or are part of two edges
+ * ASJ_ERROR_FORMAT    empty, not such a file, wrong counts, a junction that cannot be (asj_junction_check(), its angles brought
+ *                     into range before) or has fewer than two branches, text after the end; JSON: a location more than
+ *                     ASJ_MAX_OUTSIDE px outside the image, edges of branches that are not there, stand in no order of angle or are
+ *                     part of two edges
  * ASJ_ERROR_LIMIT     more than 2^24 junctions, a file longer than 2^31 - 1 bytes
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_junctions_read(const char *path, asj_junction_file **file, char *message, size_t message_size);

@@ -34,11 +34,13 @@ typedef struct asj_branch {
     int32_t end;      /* ASJ_BRANCH_END_...: what is there */
 } asj_branch;
 
-/* What a junction may be, for asj_match() and in files. */
-#define ASJ_MAX_OUTSIDE 10           /* px outside its image: branches may meet beyond the border. The detector's most max_move */
+/* What a junction may be: asj_junction_check(). */
 #define ASJ_LEAST_OCTAVE (-1)        /* the image upsampled by two */
 #define ASJ_LARGEST_OCTAVE 15
 #define ASJ_MAX_BRANCH_LENGTH 262140.0f /* px: four times ASJ_MAX_SIDE */
+#define ASJ_MAX_BRANCH_ANGLE 1e6f    /* rad, of either sign: turns of a float that still say where it points */
+#define ASJ_MAX_OUTSIDE 10           /* px outside its image, where that is known (asj_match(), JSON): branches may meet beyond the
+                                      * border. The detector's most max_move */
 
 /* A junction: a point with two to five branches, in order of angle. */
 typedef struct asj_junction {
@@ -51,6 +53,16 @@ typedef struct asj_junction {
                              * -1 = upsampled by two; half octaves rounded away from 0 */
     asj_branch branches[ASJ_MAX_BRANCHES]; /* those beyond branch_count are zero */
 } asj_junction;
+
+/* Whether there can be such a junction. Every function that takes junctions with a context, reads or writes them asks this of each
+ * (asj_decompose() passes over what has a wrong count): all its numbers and those of its branches are finite; the scale is not
+ * negative, the octave ASJ_LEAST_OCTAVE .. ASJ_LARGEST_OCTAVE, the branch_count 0 .. ASJ_MAX_BRANCHES (files: 2 or more); of each
+ * branch the length is 0 .. ASJ_MAX_BRANCH_LENGTH, the angle within +-ASJ_MAX_BRANCH_ANGLE, the end an ASJ_BRANCH_END_....
+ * Branches in another order, and angles outside of [0, 2 pi), are no fault.
+ *
+ * ASJ_ERROR_ARGUMENT: it cannot be, or is NULL. If message is not NULL, message_size bytes there receive what it has that cannot be
+ * ("6 branches"), or "". Any thread, any time. */
+ASJ_API asj_status asj_junction_check(const asj_junction *junction, char *message, size_t message_size);
 
 /* An L-junction: two branches of a junction, ordered so that turning from a to b in the sense of growing angles (clockwise on
  * the screen) takes less than pi. The order is unique and survives every affine map that does not mirror. */

@@ -196,9 +196,8 @@ typedef struct asj_match_result {
  * (one thread of a two-core Xeon; 0.9 s with two). How often the caller is asked whether to go on:
  * asj_progress_callback. One call at a time for a context.
  *
- * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that lies more than ASJ_MAX_OUTSIDE px outside its image, has a wrong branch
- *                      count, an octave that is not -1 .. 15, an angle beyond +-10^6, a length that is not 0 ..
- *                      ASJ_MAX_BRANCH_LENGTH, or an end of no known kind
+ * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that cannot be (asj_junction_check()), or lies more than ASJ_MAX_OUTSIDE px
+ *                      outside its image
  * ASJ_ERROR_IMAGE, ASJ_ERROR_LIMIT, ASJ_ERROR_OPTION, ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED, ASJ_ERROR_DEVICE   as asj_detect()
  * ASJ_ERROR_LIMIT      also with more than 2^24 L-junctions. Junctions of octave -1 are left out instead, where they alone are more
  *                      or where their image is too large to be upsampled: the log tells of it (ASJ_LOG_INFO) */

@@ -59,9 +59,7 @@ typedef struct asj_segment_list {
  * Memory while it works: 550 bytes a junction with two branches of 30 px, 870 with two of 300, 1620 with two of 1000.
  * Thread safety: one call at a time per context.
  *
- * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction whose location is not finite, or with more than ASJ_MAX_BRANCHES branches; a
- *                      branch with a negative length, or with an angle, length, log10 NFA, uncertainty or end that is not finite;
- *                      an edge of a branch that is not there
+ * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that cannot be (asj_junction_check()); an edge of a branch that is not there
  * ASJ_ERROR_LIMIT      more than 2^28 junctions or 2^32 - 2 edges
  * ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED */
 ASJ_API asj_status asj_find_segments(asj_context *context, const asj_junction *junctions, size_t count, const asj_edge *edges,

@@ -58,8 +58,7 @@ typedef struct asj_vanishing_points {
  * src/geometry/vanishing.c says how. Safe in several threads with a context each; the same result every time. The caller is asked
  * every 50 ms whether to go on, as ASJ_STAGE_DECOMPOSE: 300 000 junctions took .4 s.
  *
- * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction whose location, angles, their deviations or lengths are not finite, or with more
- *                      than ASJ_MAX_BRANCHES branches
+ * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that cannot be (asj_junction_check())
  * ASJ_ERROR_LIMIT      more than 2^28 junctions
  * ASJ_ERROR_OPTION     an option outside its range, or a camera that cannot be (asj_geometry_estimate())
  * ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED */

@@ -229,6 +229,7 @@ static void answer(asj_vote_search *s, const asj_vanishing_options *options, con
 static asj_status check(asj_context *context, const asj_junction *junctions, size_t count, const asj_vanishing_options *o)
 {
     const asj_camera *c = &o->camera;
+    char fault[128];
     const int32_t none = c->fx == 0 && c->fy == 0;
     if (o->width < 1 || o->height < 1)
         return asj_fail(context, ASJ_ERROR_OPTION, "the image has no size");
@@ -238,16 +239,9 @@ static asj_status check(asj_context *context, const asj_junction *junctions, siz
         return asj_fail(context, ASJ_ERROR_OPTION, "the camera cannot be: fx %g, fy %g, cx %g, cy %g", c->fx, c->fy, c->cx, c->cy);
     if (count > ASJ_MOST_JUNCTIONS)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions are too many", count);
-    for (size_t k = 0; k < count; k++) {
-        const asj_junction *j = &junctions[k];
-        double sum = (double)j->x + (double)j->y;
-        if (j->branch_count < 0 || j->branch_count > ASJ_MAX_BRANCHES)
-            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu has %d branches", k, (int)j->branch_count);
-        for (int32_t b = 0; b < j->branch_count; b++)
-            sum += (double)j->branches[b].angle + (double)j->branches[b].length + (double)j->branches[b].angle_sd;
-        if (!isfinite(sum))
-            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu is not finite", k);
-    }
+    for (size_t k = 0; k < count; k++)
+        if (asj_junction_check(&junctions[k], fault, sizeof fault) != ASJ_OK)
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu has %s", k, fault);
     return ASJ_OK;
 }
 

@@ -70,17 +70,10 @@ static asj_status make_room(asj_junction_list *list, const asj_message *message)
 asj_status asj_junction_list_add(asj_junction_list *list, const asj_junction *junction, size_t line, const asj_message *message)
 {
     asj_status status;
-    int32_t b;
+    char fault[128];
 
-    if (junction->scale < 0)
-        return asj_line_fail(message, line, "a negative scale");
-    for (b = 0; b < junction->branch_count; b++) {
-        if (junction->branches[b].length < 0)
-            return asj_line_fail(message, line, "a branch of negative length");
-        if (!(junction->branches[b].length <= ASJ_MAX_BRANCH_LENGTH))
-            return asj_line_fail(message, line, "a branch of %g px, longer than %d", (double)junction->branches[b].length,
-                                 (int)ASJ_MAX_BRANCH_LENGTH);
-    }
+    if (asj_junction_check(junction, fault, sizeof fault) != ASJ_OK)
+        return asj_line_fail(message, line, "a junction with %s", fault);
     if (list->count >= ASJ_JUNCTIONS_MAX)
         return asj_message_fail(message, ASJ_ERROR_LIMIT, "more than %u junctions", ASJ_JUNCTIONS_MAX);
     status = make_room(list, message);

@@ -31,7 +31,7 @@ int asj_fits_float(double value);
 /* Sets the angle of a branch, brought into [0, 2 pi). */
 void asj_set_angle(asj_branch *branch, double angle);
 
-/* Checks what no junction may have (a negative length or scale), sorts the branches by angle and adds it.
+/* Checks the junction (asj_junction_check()), sorts the branches by angle and adds it.
  * ASJ_ERROR_FORMAT, ASJ_ERROR_LIMIT, ASJ_ERROR_MEMORY */
 asj_status asj_junction_list_add(asj_junction_list *list, const asj_junction *junction, size_t line, const asj_message *message);
 

@@ -6,25 +6,20 @@
 
 #include <math.h>
 
-static int is_sound(const asj_junction *junction)
+/* Readers want two branches of each. */
+static asj_status check_junctions(const asj_detection *detection, const asj_message *message)
 {
-    int32_t b;
-    if (junction->branch_count < 2 || junction->branch_count > ASJ_MAX_BRANCHES)
-        return 0;
-    if (junction->scale < 0 || junction->octave < ASJ_LEAST_OCTAVE || junction->octave > ASJ_LARGEST_OCTAVE)
-        return 0;
-    if (!isfinite(junction->x) || !isfinite(junction->y) || !isfinite(junction->scale) || !isfinite(junction->log10_nfa) ||
-        !isfinite(junction->location_sd))
-        return 0;
-    for (b = 0; b < junction->branch_count; b++) {
-        const asj_branch *branch = &junction->branches[b];
-        if (branch->length < 0 || branch->length > ASJ_MAX_BRANCH_LENGTH)
-            return 0;
-        if (!isfinite(branch->angle) || !isfinite(branch->length) || !isfinite(branch->strength) || !isfinite(branch->log10_nfa) ||
-            !isfinite(branch->angle_sd) || !isfinite(branch->width) || !isfinite(branch->length_sd))
-            return 0;
+    char fault[128];
+    uint32_t i;
+    for (i = 0; i < detection->junction_count; i++) {
+        const asj_junction *junction = &detection->junctions[i];
+        if (asj_junction_check(junction, fault, sizeof fault) != ASJ_OK)
+            return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: junction %lu has %s", (unsigned long)i, fault);
+        if (junction->branch_count < 2)
+            return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: junction %lu has less than two branches",
+                                    (unsigned long)i);
     }
-    return 1;
+    return ASJ_OK;
 }
 
 static int is_sound_pair(const asj_detection *detection, const asj_l_junction *pair)
@@ -89,6 +84,7 @@ static asj_status check_edges(const asj_detection *detection, const asj_message 
 
 static asj_status check(const asj_detection *detection, int32_t file_format, const asj_message *message)
 {
+    asj_status status;
     uint32_t i;
     if ((detection->junction_count && !detection->junctions) || (detection->l_junction_count && !detection->l_junctions) ||
         (detection->edge_count && !detection->edges))
@@ -97,11 +93,9 @@ static asj_status check(const asj_detection *detection, int32_t file_format, con
                                          detection->height > ASJ_MAX_SIDE))
         return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: an image of %d x %d pixels", (int)detection->width,
                                 (int)detection->height);
-    for (i = 0; i < detection->junction_count; i++)
-        if (!is_sound(&detection->junctions[i]))
-            return asj_message_fail(message, ASJ_ERROR_ARGUMENT,
-                                    "not written: junction %lu has NaN, infinity, a wrong number of branches, an octave or a "
-                                    "length that cannot be", (unsigned long)i);
+    status = check_junctions(detection, message);
+    if (status != ASJ_OK)
+        return status;
     for (i = 0; i < detection->l_junction_count; i++)
         if (!is_sound_pair(detection, &detection->l_junctions[i]))
             return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: L-junction %lu has NaN, infinity or a wrong index",

@@ -108,17 +108,24 @@ static void get_floats(const uint8_t *from, float *const *to, size_t count)
         *to[n] = asj_get_float(from + 4 * n);
 }
 
+/* In two's complement, as it was put there. */
+static int32_t get_i32(const uint8_t *from)
+{
+    const uint32_t bits = asj_get_u32(from);
+    return bits <= INT32_MAX ? (int32_t)bits : -(int32_t)(UINT32_MAX - bits) - 1;
+}
+
 static asj_status read_junction(reader *r, asj_junction *j)
 {
+    char fault[128];
     float *const head[] = {&j->x, &j->y, &j->scale, &j->log10_nfa, &j->location_sd};
     if (r->left < ASJ_FEATURES_JUNCTION_BYTES)
         return damaged(r, "the junctions are truncated");
     get_floats(r->next, head, 5);
     const uint32_t branches = asj_get_u32(r->next + 20);
-    const uint32_t octave = asj_get_u32(r->next + 24);
-    if (octave > ASJ_LARGEST_OCTAVE && !(r->has_upsampled && octave == UINT32_MAX))
+    j->octave = get_i32(r->next + 24);
+    if (j->octave < 0 && !r->has_upsampled)
         return damaged(r, "a junction of an octave that there is not");
-    j->octave = octave == UINT32_MAX ? -1 : (int32_t)octave;
     r->next += ASJ_FEATURES_JUNCTION_BYTES;
     r->left -= ASJ_FEATURES_JUNCTION_BYTES;
     if (branches > ASJ_MAX_BRANCHES || r->left < branches * (size_t)ASJ_FEATURES_BRANCH_BYTES)
@@ -129,11 +136,10 @@ static asj_status read_junction(reader *r, asj_junction *j)
         float *const values[] = {&branch->angle, &branch->length, &branch->strength, &branch->log10_nfa, &branch->angle_sd,
                                  &branch->width, &branch->length_sd};
         get_floats(r->next, values, 7);
-        const uint32_t end = asj_get_u32(r->next + 28);
-        if (end > ASJ_BRANCH_END_BORDER)
-            return damaged(r, "an end of a branch of no known kind");
-        branch->end = (int32_t)end;
+        branch->end = get_i32(r->next + 28);
     }
+    if (asj_junction_check(j, fault, sizeof fault) != ASJ_OK)
+        return asj_fail(r->context, ASJ_ERROR_FORMAT, "the features are damaged: a junction that cannot be, with %s", fault);
     return ASJ_OK;
 }
 

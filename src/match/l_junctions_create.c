@@ -6,7 +6,6 @@
 #include "locations.h"
 #include "t_junctions.h"
 
-#include <math.h>
 #include <string.h>
 
 #define MOST_L_JUNCTIONS 0x1000000 /* frames, up to sixteen for each, are numbered in 32 bits */
@@ -16,26 +15,15 @@
 static asj_status check(asj_context *context, const asj_image_junctions *input)
 {
     const int which = (int)input->which;
+    char fault[128];
     for (size_t n = 0; n < input->count; n++) {
         const asj_junction *j = &input->list[n];
+        if (asj_junction_check(j, fault, sizeof fault) != ASJ_OK)
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d has %s", n, which, fault);
         if (!(j->x >= -MOST_OUTSIDE && j->y >= -MOST_OUTSIDE && j->x <= (float)(input->width - 1) + MOST_OUTSIDE &&
               j->y <= (float)(input->height - 1) + MOST_OUTSIDE))
             return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d at (%g, %g) lies outside its %d x %d pixels",
                             n, which, (double)j->x, (double)j->y, (int)input->width, (int)input->height);
-        if (j->branch_count < 0 || j->branch_count > ASJ_MAX_BRANCHES)
-            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d has %d branches", n, which,
-                            (int)j->branch_count);
-        if (j->octave < ASJ_LEAST_OCTAVE || j->octave > ASJ_LARGEST_OCTAVE)
-            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d is of octave %d", n, which, (int)j->octave);
-        for (int32_t b = 0; b < j->branch_count; b++) {
-            const asj_branch *branch = &j->branches[b];
-            if (branch->end < 0 || branch->end > ASJ_BRANCH_END_BORDER)
-                return asj_fail(context, ASJ_ERROR_ARGUMENT, "branch %d of junction %zu of image %d has an end of kind %d", (int)b,
-                                n, which, (int)branch->end);
-            if (!(branch->length >= 0 && branch->length <= ASJ_MAX_BRANCH_LENGTH && fabsf(branch->angle) <= 1e6f))
-                return asj_fail(context, ASJ_ERROR_ARGUMENT, "branch %d of junction %zu of image %d has angle %g, length %g",
-                                (int)b, n, which, (double)branch->angle, (double)branch->length);
-        }
     }
     return ASJ_OK;
 }
@@ -89,10 +77,8 @@ static asj_status set_meaning(asj_context *context, const asj_image_junctions *i
     all->log10_nfa = asj_allocate(&context->memory, all->count, sizeof *all->log10_nfa);
     if (!all->log10_nfa)
         return no_memory(context);
-    for (uint32_t i = 0; i < all->count; i++) {
-        const float log10_nfa = input->list[all->l[i].junction].log10_nfa;
-        all->log10_nfa[i] = isnan(log10_nfa) ? INFINITY : log10_nfa;
-    }
+    for (uint32_t i = 0; i < all->count; i++)
+        all->log10_nfa[i] = input->list[all->l[i].junction].log10_nfa;
     return ASJ_OK;
 }
 

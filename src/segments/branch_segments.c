@@ -51,12 +51,6 @@ static asj_segment segment_of(const asj_junction *junction, uint32_t index, int3
     return s;
 }
 
-static int is_sound(const asj_segment *s, const asj_branch *branch)
-{
-    return branch->length >= 0 && isfinite(s->x2) && isfinite(s->y2) && isfinite(s->sd1) && isfinite(s->sd2) &&
-           isfinite(s->log10_nfa);
-}
-
 /* Does the branch go from its junction to the other one, and end there? */
 static int ends_at(const asj_junction *junction, uint16_t branch, const asj_junction *other)
 {
@@ -102,39 +96,28 @@ static void reach_other_end(asj_segment *s, const asj_edge *e, const asj_junctio
 }
 
 /* A branch, or the edge that it is the first branch of; the second belongs to the first. What has no length is left out. */
-static asj_status take_branch(work *w, uint32_t j, int32_t b)
+static void take_branch(work *w, uint32_t j, int32_t b)
 {
     asj_segment s = segment_of(&w->joining.junctions[j], j, b);
     const size_t number = asj_branch_of(&s);
     const asj_edge *edge = w->edge_of[number] ? &w->edges[w->edge_of[number] - 1] : NULL;
     const size_t first = edge ? asj_branch_number(edge->junction_a, edge->branch_a) : number;
-    if (!is_sound(&s, &w->joining.junctions[j].branches[b]))
-        return asj_fail(w->joining.context, ASJ_ERROR_ARGUMENT, "branch %d of junction %lu cannot be", (int)b, (unsigned long)j);
     if (!edge && !(asj_segment_length2(&s) > 0))
-        return ASJ_OK;
+        return;
     w->joining.joined[number] = (uint32_t)first;
     if (number != first)
-        return ASJ_OK;
+        return;
     if (edge)
         reach_other_end(&s, edge, w->joining.junctions);
     w->joining.segments[w->joining.count++] = s;
-    return ASJ_OK;
 }
 
 /* In the order of the junctions. */
-static asj_status take_branches(work *w)
+static void take_branches(work *w)
 {
-    asj_status status = ASJ_OK;
-    for (size_t j = 0; j < w->junction_count && status == ASJ_OK; j++) {
-        const int32_t branches = w->joining.junctions[j].branch_count;
-        if (branches < 0 || branches > ASJ_MAX_BRANCHES)
-            return asj_fail(w->joining.context, ASJ_ERROR_ARGUMENT, "junction %zu has %d branches", j, (int)branches);
-        if (!isfinite(w->joining.junctions[j].x) || !isfinite(w->joining.junctions[j].y))
-            return asj_fail(w->joining.context, ASJ_ERROR_ARGUMENT, "junction %zu is nowhere", j);
-        for (int32_t b = 0; b < branches && status == ASJ_OK; b++)
-            status = take_branch(w, (uint32_t)j, b);
-    }
-    return status;
+    for (size_t j = 0; j < w->junction_count; j++)
+        for (int32_t b = 0; b < w->joining.junctions[j].branch_count; b++)
+            take_branch(w, (uint32_t)j, b);
 }
 
 /* ---- the list ---- */
@@ -213,6 +196,15 @@ static asj_status make_list(work *w, own_list **made)
     return ASJ_OK;
 }
 
+static asj_status check(const work *w)
+{
+    char fault[128];
+    for (size_t j = 0; j < w->junction_count; j++)
+        if (asj_junction_check(&w->joining.junctions[j], fault, sizeof fault) != ASJ_OK)
+            return asj_fail(w->joining.context, ASJ_ERROR_ARGUMENT, "junction %zu has %s", j, fault);
+    return ASJ_OK;
+}
+
 static asj_status work_on(work *w, own_list **made)
 {
     asj_memory *memory = &w->joining.context->memory;
@@ -226,11 +218,13 @@ static asj_status work_on(work *w, own_list **made)
         return asj_fail(w->joining.context, ASJ_ERROR_MEMORY, "no memory for the branches of %zu junctions", w->junction_count);
     memset(w->joining.joined, 0xff, branches * sizeof *w->joining.joined);
     memset(w->joining.first_cut, 0xff, branches * sizeof *w->joining.first_cut);
-    asj_status status = take_edges(w);
+    asj_status status = check(w);
     if (status == ASJ_OK)
-        status = take_branches(w);
-    if (status == ASJ_OK)
+        status = take_edges(w);
+    if (status == ASJ_OK) {
+        take_branches(w);
         status = asj_join_segments(&w->joining);
+    }
     return status == ASJ_OK ? make_list(w, made) : status;
 }
 

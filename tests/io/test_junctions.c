@@ -357,14 +357,14 @@ static void a_name_that_is_no_utf8(void **state)
 
 static void unsound_detections_are_not_written(void **state)
 {
-    asj_junction bad[12];
+    asj_junction bad[15];
     asj_vanishing_points nowhere = {.count = 1};
     asj_detection wrong = detection;
     asj_edge edge, twice[2];
     const char *path = in_folder("never");
     size_t i;
     (void)state;
-    for (i = 0; i < 12; i++)
+    for (i = 0; i < 15; i++)
         bad[i] = junctions[1];
     bad[0].x = 0.0f / (float)(random_state & 0);
     bad[1].branches[1].length = 3e38f * (10.0f + random_float(0, 1));
@@ -378,10 +378,13 @@ static void unsound_detections_are_not_written(void **state)
     bad[9].branch_count = 1;
     bad[10].branches[1].length = ASJ_MAX_BRANCH_LENGTH + 1;
     bad[11].branches[0].length_sd = bad[0].x;
+    bad[12].branches[0].end = 42; /* which JSON would leave out */
+    bad[13].branches[1].angle = 2e6f;
+    bad[14].scale = bad[0].x;
     wrong.junction_count = 1;
     wrong.l_junction_count = wrong.edge_count = 0;
     report.detection = &wrong;
-    for (i = 0; i < 12; i++) {
+    for (i = 0; i < 15; i++) {
         wrong.junctions = &bad[i];
         assert_int_equal(asj_junctions_write(path, ASJ_FILE_JSON, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
         assert_non_null(strstr(message, "junction 0"));

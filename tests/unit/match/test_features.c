@@ -350,9 +350,13 @@ static void hostile_bytes(void **state)
     refuse_number(context, bytes, size, 40, 0x61616161, ASJ_ERROR_FORMAT, "option that cannot be");
     refuse_number(context, bytes, size, junctions, 0x7fc00000, ASJ_ERROR_FORMAT, "a junction that cannot be"); /* x is NaN */
     refuse_number(context, bytes, size, junctions + 20, 6, ASJ_ERROR_FORMAT, "too many branches");
-    refuse_number(context, bytes, size, junctions + 24, 256, ASJ_ERROR_FORMAT, "an octave that there is not");
+    refuse_number(context, bytes, size, junctions + 24, 256, ASJ_ERROR_FORMAT, "cannot be, with octave 256");
     refuse_number(context, bytes, size, junctions + 24, UINT32_MAX, ASJ_ERROR_FORMAT, "an octave that there is not"); /* -1 */
     refuse_number(context, bytes, size, junctions + 28 + 4, 0xff800000, ASJ_ERROR_FORMAT, "a junction that cannot be"); /* -inf */
+    refuse_number(context, bytes, size, junctions + 28 + 4, 0x48927c00, ASJ_ERROR_FORMAT, "a length of 300000"); /* 3e5f */
+    refuse_number(context, bytes, size, junctions + 28, 0x49f42400, ASJ_ERROR_FORMAT, "an angle of 2e+06"); /* 2e6f */
+    refuse_number(context, bytes, size, junctions + 28 + 28, 42, ASJ_ERROR_FORMAT, "an end of kind 42");
+    refuse_number(context, bytes, size, junctions + 28 + 28, 0xfffffffe, ASJ_ERROR_FORMAT, "an end of kind -2");
     refuse_number(context, bytes, size, size - 4, 0xffffffff, ASJ_ERROR_FORMAT, "whiter than white");
     free(bytes);
     asj_features_free(&features);

@@ -399,10 +399,10 @@ static void bad_input_is_refused(void **state)
     refuse(context, &broken, &a, NULL, ASJ_ERROR_ARGUMENT, "junction 4 of image 1");
     broken = b;
     broken.junctions[2].branches[1].length = -1;
-    refuse(context, &a, &broken, NULL, ASJ_ERROR_ARGUMENT, "branch 1 of junction 2");
+    refuse(context, &a, &broken, NULL, ASJ_ERROR_ARGUMENT, "junction 2 of image 2 has a branch 1 with a length of -1");
     broken = b;
     broken.junctions[2].branches[0].angle = HUGE_VALF;
-    refuse(context, &a, &broken, NULL, ASJ_ERROR_ARGUMENT, "branch 0 of junction 2");
+    refuse(context, &a, &broken, NULL, ASJ_ERROR_ARGUMENT, "junction 2 of image 2 has a branch 0 with an angle");
     broken = b;
     broken.junctions[2].branches[1].end = INT32_MIN;
     refuse(context, &a, &broken, NULL, ASJ_ERROR_ARGUMENT, "an end of kind");

@@ -446,7 +446,7 @@ static void hostile_bytes(void **state)
     const size_t octave = 40 + asj_get_u32(bytes + 32) + 24; /* of the first junction */
     const uint32_t right = asj_get_u32(bytes + octave);
     asj_put_u32(bytes + octave, (uint32_t)-2);
-    refuse(context, bytes, size, ASJ_ERROR_FORMAT, "an octave that there is not");
+    refuse(context, bytes, size, ASJ_ERROR_FORMAT, "cannot be, with octave -2");
     asj_put_u32(bytes + octave, right);
     refuse(context, bytes, size - 2, ASJ_ERROR_FORMAT, "damaged");
     asj_put_u16(bytes + size - 2, 0xffff);
