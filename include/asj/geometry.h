@@ -31,7 +31,8 @@ enum {
                                    * asks for one; or, with cameras that are known, fewer than 15 matches that tell no pose */
 };
 
-/* A pin-hole camera without distortion. px; pixel centres at integers. fx = 0: not known. */
+/* A pin-hole camera without distortion. px; pixel centres at integers. fx = fy = 0: not known, and then cx and cy say nothing. A
+ * camera that a caller gives has focal lengths of 1 .. 10^7 and a principal point within +-10^7, else ASJ_ERROR_OPTION. */
 typedef struct asj_camera {
     double fx, fy; /* focal lengths */
     double cx, cy; /* principal point */
@@ -125,10 +126,9 @@ typedef struct asj_geometry {
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a candidate that is not finite, lies 10^6 px away, mirrors or collapses, or a probability
  *                      outside 0 .. 1
- * ASJ_ERROR_OPTION     an option outside its range; a camera that is known (fx or fy not 0) with a focal length that is not
- *                      1 .. 10^7 px, or a principal point beyond +-10^7; directions that are not three of length 1 at right
- *                      angles; model essential without cameras; find_focal with one, with focal_sd, or with model fundamental or
- *                      homography
+ * ASJ_ERROR_OPTION     an option outside its range; a camera that cannot be (asj_camera); directions that are not three of
+ *                      length 1 at right angles; model essential without cameras; find_focal with one, with focal_sd, or with model
+ *                      fundamental or homography; a reserved field that is not zero
  * ASJ_ERROR_LIMIT      more than 2^24 candidates or places
  * ASJ_ERROR_CANCELLED  the progress callback, which is called every 50 ms, wants to stop
  * ASJ_ERROR_MEMORY */

@@ -20,7 +20,8 @@ enum {
 
 /* Fill with asj_vanishing_options_init(), then change fields. */
 typedef struct asj_vanishing_options {
-    asj_camera camera;        /* fx = 0, the default: not known; square pixels and the principal point in the middle are assumed */
+    asj_camera camera;        /* fx = fy = 0, the default: not known; square pixels and the principal point in the middle are
+                               * assumed */
     int32_t width, height;    /* px of the image; must be given */
     double epsilon;           /* of chance directions in an image of branches without any: 1e-12 .. 1; 0.01 */
     double reserved[8];       /* zero */

@@ -29,6 +29,12 @@ static int32_t within(double value, double low, double high)
     return value >= low && value <= high;
 }
 
+int32_t asj_camera_can_be(const asj_camera *c)
+{
+    const int32_t is_known = !(c->fx == 0 && c->fy == 0); /* where it is not, nobody asks for the principal point */
+    return !is_known || (within(c->fx, 1, 1e7) && within(c->fy, 1, 1e7) && within(c->cx, -1e7, 1e7) && within(c->cy, -1e7, 1e7));
+}
+
 int32_t asj_camera_is_known(const asj_camera *c)
 {
     return c->fx > 0;
@@ -50,16 +56,6 @@ int32_t asj_geometry_is_open(const asj_geometry *geometry)
     return geometry->status == ASJ_GEOMETRY_AMBIGUOUS || geometry->status == ASJ_GEOMETRY_DEGENERATE;
 }
 
-static asj_status check_camera(asj_context *context, const asj_camera *c, int32_t number)
-{
-    if (c->fx == 0 && c->fy == 0 && isfinite(c->cx) && isfinite(c->cy))
-        return ASJ_OK;
-    if (!within(c->fx, 1, 1e7) || !within(c->fy, 1, 1e7) || !within(fabs(c->cx), 0, 1e7) || !within(fabs(c->cy), 0, 1e7))
-        return asj_fail(context, ASJ_ERROR_OPTION, "camera %d cannot be: fx %g, fy %g, cx %g, cy %g", (int)number,
-                        c->fx, c->fy, c->cx, c->cy);
-    return ASJ_OK;
-}
-
 /* None, or three of length 1 at right angles. */
 static int directions_are_sound(const double d[9])
 {
@@ -78,9 +74,10 @@ static int directions_are_sound(const double d[9])
 asj_status asj_geometry_request_check(asj_context *context, const asj_geometry_options *o)
 {
     for (int32_t v = 0; v < 2; v++) {
-        const asj_status status = check_camera(context, &o->cameras[v], v + 1);
-        if (status != ASJ_OK)
-            return status;
+        const asj_camera *c = &o->cameras[v];
+        if (!asj_camera_can_be(c))
+            return asj_fail(context, ASJ_ERROR_OPTION, "camera %d cannot be: fx %g, fy %g, cx %g, cy %g", (int)v + 1, c->fx, c->fy,
+                            c->cx, c->cy);
         if (!within(o->aspects[v], 0.01, 100))
             return asj_fail(context, ASJ_ERROR_OPTION, "pixels of image %d cannot be: aspect %g", (int)v + 1, o->aspects[v]);
         if (!directions_are_sound(o->directions[v]))

@@ -11,6 +11,8 @@
 asj_status asj_geometry_request_check(asj_context *context, const asj_geometry_options *options);
 asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_options *options);
 
+/* Of a caller: not known, or within the ranges of asj_camera. */
+int32_t asj_camera_can_be(const asj_camera *camera);
 int32_t asj_camera_is_known(const asj_camera *camera);
 int32_t asj_cameras_are_known(const asj_geometry_options *options); /* both, exactly or about */
 

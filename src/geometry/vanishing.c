@@ -7,6 +7,7 @@
  * f^2 = -(v1 - c)'(v2 - c) (Caprile and Torre 1990): the pair and focal length are taken that have the largest sum, with the vote
  * for the third direction that they define. */
 #include "vanishing.h"
+#include "geometry_options.h"
 #include "vanishing_vote.h"
 
 #include "core/angle.h"
@@ -230,12 +231,11 @@ static asj_status check(asj_context *context, const asj_junction *junctions, siz
 {
     const asj_camera *c = &o->camera;
     char fault[128];
-    const int32_t none = c->fx == 0 && c->fy == 0;
     if (o->width < 1 || o->height < 1)
         return asj_fail(context, ASJ_ERROR_OPTION, "the image has no size");
     if (!(o->epsilon >= 1e-12 && o->epsilon <= 1))
         return asj_fail(context, ASJ_ERROR_OPTION, "epsilon %g is not 1e-12 .. 1", o->epsilon);
-    if (!(fabs(c->cx) <= 1e7 && fabs(c->cy) <= 1e7) || (!none && !(c->fx >= 1 && c->fx <= 1e7 && c->fy >= 1 && c->fy <= 1e7)))
+    if (!asj_camera_can_be(c))
         return asj_fail(context, ASJ_ERROR_OPTION, "the camera cannot be: fx %g, fy %g, cx %g, cy %g", c->fx, c->fy, c->cx, c->cy);
     if (count > ASJ_MOST_JUNCTIONS)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions are too many", count);

@@ -430,6 +430,9 @@ static void bad_input_is_refused(void **state)
     asj_geometry_options o = options_for(ASJ_GEOMETRY_AUTO, 1);
     o.cameras[1].cx = NAN;
     assert_int_equal(asj_geometry_estimate(context, s->candidates, s->count, &o, NULL, &g), ASJ_ERROR_OPTION);
+    o.cameras[0] = o.cameras[1] = (asj_camera){0, 0, NAN, 1e8}; /* not known: nobody asks for the rest */
+    assert_int_equal(asj_geometry_estimate(context, s->candidates, s->count, &o, NULL, &g), ASJ_OK);
+    assert_int_equal(g.status, ASJ_GEOMETRY_ACCEPTED);
     const double bad_directions[4] = {NAN, HUGE_VAL, 1e308, 2};
     for (int k = 0; k < 4; k++) {
         o = options_for(ASJ_GEOMETRY_AUTO, 1);

@@ -184,7 +184,11 @@ static void bad_input_is_refused(void **state)
     assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_OPTION);
     options.camera.fx = options.camera.fy = NAN;
     assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_OPTION);
-    options.camera.fx = options.camera.fy = 0;
+    options.camera = (asj_camera){500, 500, NAN, 0};
+    assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_OPTION);
+    options.camera = (asj_camera){0, 0, 1e8, NAN}; /* not known */
+    assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_OK);
+    options.camera = (asj_camera){0, 0, 0, 0};
     options.epsilon = 0;
     assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_OPTION);
     options.epsilon = 1;
