@@ -75,7 +75,8 @@ typedef struct asj_region {
  * junctions at its border may differ, where a junction outside is not there to end a branch at or to compete with.) Time: step 1
  * stays, step 2 is that of the rows of the rectangle, all others that of the junctions inside.
  * `region` NULL = everywhere. Errors as asj_detect(), and
- * ASJ_ERROR_ARGUMENT   the rectangle leaves the image or is empty; a mask that is not gray8, or not of the image's size */
+ * ASJ_ERROR_ARGUMENT   the rectangle leaves the image or is empty; a mask that is not gray8, or not of the image's size
+ * ASJ_ERROR_OPTION     also a reserved field of the region that is not zero */
 ASJ_API asj_status asj_detect_region(asj_context *context, const asj_image *image, const asj_region *region,
                                      const asj_detect_options *options, asj_detection **result);
 

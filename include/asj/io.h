@@ -178,6 +178,7 @@ typedef struct asj_match_report {
  *                is null.
  * ASJ_ERROR_ARGUMENT  a NULL pointer, another file format, or a result that no reader would take: NaN or infinity, an
  *                     L-junction that is not there
+ * ASJ_ERROR_OPTION    a reserved field of the report that is not zero
  * ASJ_ERROR_FILE      cannot create, disk full, cannot rename
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_matches_write(const char *path, int32_t file_format, const asj_match_report *report,

@@ -61,7 +61,7 @@ typedef struct asj_vanishing_points {
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that cannot be (asj_junction_check())
  * ASJ_ERROR_LIMIT      more than 2^28 junctions
- * ASJ_ERROR_OPTION     an option outside its range, or a camera that cannot be (asj_geometry_estimate())
+ * ASJ_ERROR_OPTION     an option outside its range, a camera that cannot be (asj_camera), or a reserved field that is not zero
  * ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED */
 ASJ_API asj_status asj_find_vanishing_points(asj_context *context, const asj_junction *junctions, size_t count,
                                              const asj_vanishing_options *options, asj_vanishing_points *result);

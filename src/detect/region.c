@@ -41,7 +41,7 @@ asj_status asj_region_check(asj_context *context, const asj_image *image, const 
     if (!region)
         return ASJ_OK;
     if (!asj_is_zero(region->reserved, sizeof region->reserved))
-        return asj_fail(context, ASJ_ERROR_ARGUMENT, ASJ_RESERVED_MESSAGE);
+        return asj_fail(context, ASJ_ERROR_OPTION, ASJ_RESERVED_MESSAGE);
     const int everywhere = region->x == 0 && region->y == 0 && region->width == 0 && region->height == 0;
     if (!everywhere && (!lies_within(region->x, region->width, image->width) ||
                         !lies_within(region->y, region->height, image->height)))

@@ -12,6 +12,7 @@
 
 #include "core/angle.h"
 #include "core/most_junctions.h"
+#include "core/reserved.h"
 #include "core/sort.h"
 #include "small_matrix.h"
 
@@ -231,6 +232,8 @@ static asj_status check(asj_context *context, const asj_junction *junctions, siz
 {
     const asj_camera *c = &o->camera;
     char fault[128];
+    if (!asj_is_zero(o->reserved, sizeof o->reserved))
+        return asj_fail(context, ASJ_ERROR_OPTION, ASJ_RESERVED_MESSAGE);
     if (o->width < 1 || o->height < 1)
         return asj_fail(context, ASJ_ERROR_OPTION, "the image has no size");
     if (!(o->epsilon >= 1e-12 && o->epsilon <= 1))

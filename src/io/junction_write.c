@@ -114,7 +114,9 @@ asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no path or no detection");
     if (file_format < ASJ_FILE_ASJ || file_format > ASJ_FILE_CSV)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "%d is no file format", (int)file_format);
-    status = check(report->detection, file_format, &message);
+    status = asj_message_reserved(&message, report->reserved);
+    if (status == ASJ_OK)
+        status = check(report->detection, file_format, &message);
     if (status == ASJ_OK && report->segments)
         status = check_segments(report->detection, report->segments, &message);
     if (status == ASJ_OK && report->vanishing_points)

@@ -109,7 +109,9 @@ asj_status asj_matches_write(const char *path, int32_t file_format, const asj_ma
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "%d is no file format for matches", (int)file_format);
     if (report->lines < ASJ_LINES_NONE || report->lines > ASJ_LINES_JOINED)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "lines %d: there is no such", (int)report->lines);
-    status = check(report->result, &message);
+    status = asj_message_reserved(&message, report->reserved);
+    if (status == ASJ_OK)
+        status = check(report->result, &message);
     if (status == ASJ_OK)
         status = find_segments(report, &segments, &message);
     if (status != ASJ_OK)

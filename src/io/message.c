@@ -55,6 +55,14 @@ static int is_of_memory(const char *complaint)
     return 0;
 }
 
+asj_status asj_message_reserved(const asj_message *message, const uint64_t reserved[2])
+{
+    if (!reserved[0] && !reserved[1])
+        return ASJ_OK;
+    return asj_message_fail(message, ASJ_ERROR_OPTION,
+                            "not written: a reserved field of the report is not zero: never cleared, or of a later version");
+}
+
 asj_status asj_decoder_fail(const asj_message *message, const char *what, const char *complaint)
 {
     if (is_of_memory(complaint))

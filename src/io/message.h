@@ -26,6 +26,9 @@ asj_message asj_message_start(char *text, size_t size, const char *path);
 /* Writes "path: cause" and returns `status`. Control characters, which a hostile file name or file may hold, become '?'. */
 asj_status asj_message_fail(const asj_message *message, asj_status status, const char *format, ...) ASJ_IO_PRINTF(3, 4);
 
+/* ASJ_ERROR_OPTION, with a line that says so, where a reserved field of a report is not zero. */
+asj_status asj_message_reserved(const asj_message *message, const uint64_t reserved[2]);
+
 /* Writes "path: what: complaint" of a decoder that has no status for memory that runs out, and returns ASJ_ERROR_FORMAT; where its
  * complaint is one of memory, or there is none, ASJ_ERROR_MEMORY. `complaint` has no line ends. */
 asj_status asj_decoder_fail(const asj_message *message, const char *what, const char *complaint);

@@ -429,6 +429,10 @@ static void unsound_detections_are_not_written(void **state)
     assert_int_equal(asj_junctions_write(path, ASJ_FILE_JSON, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
     assert_non_null(strstr(message, "vanishing points"));
     report.vanishing_points = NULL;
+    report.reserved[0] = 1;
+    assert_int_equal(asj_junctions_write(path, ASJ_FILE_ASJ, &report, message, sizeof message), ASJ_ERROR_OPTION);
+    assert_non_null(strstr(message, "reserved"));
+    report.reserved[0] = 0;
     assert_int_equal(asj_junctions_write(path, 4, &report, NULL, 0), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_junctions_write(path, -1, &report, NULL, 0), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_junctions_write(path, 0, NULL, NULL, 0), ASJ_ERROR_ARGUMENT);

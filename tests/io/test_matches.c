@@ -490,6 +490,9 @@ static void wrong_arguments_are_refused(void **state)
         expect_refusal(in_folder("never"), ASJ_FILE_CSV, ASJ_ERROR_ARGUMENT, "there is no such");
         report.lines = asked;
     }
+    report.reserved[1] = 1;
+    expect_refusal(in_folder("never"), ASJ_FILE_CSV, ASJ_ERROR_OPTION, "reserved");
+    report.reserved[1] = 0;
     report.result = NULL;
     expect_refusal(in_folder("never"), ASJ_FILE_CSV, ASJ_ERROR_ARGUMENT, "no matches");
 }

@@ -273,6 +273,8 @@ static void test_refused(void **state)
     mask.data = NULL;
     assert_int_equal(asj_detect_region(f->context, &f->image, &(asj_region){.mask = &mask}, NULL, &found), ASJ_ERROR_IMAGE);
     assert_non_null(strstr(asj_context_message(f->context), "the mask has no data"));
+    assert_int_equal(asj_detect_region(f->context, &f->image, &(asj_region){.reserved[3] = 1}, NULL, &found), ASJ_ERROR_OPTION);
+    assert_non_null(strstr(asj_context_message(f->context), "reserved"));
     assert_int_equal(asj_detect_region(NULL, &f->image, NULL, NULL, &found), ASJ_ERROR_ARGUMENT);
 }
 

@@ -189,6 +189,10 @@ static void bad_input_is_refused(void **state)
     options.camera = (asj_camera){0, 0, 1e8, NAN}; /* not known */
     assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_OK);
     options.camera = (asj_camera){0, 0, 0, 0};
+    options.reserved[7] = 1;
+    assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_OPTION);
+    assert_non_null(strstr(asj_context_message(context), "reserved"));
+    options.reserved[7] = 0;
     options.epsilon = 0;
     assert_int_equal(asj_find_vanishing_points(context, &one, 1, &options, &found), ASJ_ERROR_OPTION);
     options.epsilon = 1;
