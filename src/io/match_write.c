@@ -29,10 +29,14 @@ static int is_sound_corner(const asj_l_junction *l)
     return all_finite(numbers, 6);
 }
 
+/* What is written of an accepted geometry, and of an ambiguous one (asj_write_match_json()). */
 static int is_sound_geometry(const asj_geometry *g)
 {
     const asj_camera *a = &g->cameras[0], *b = &g->cameras[1];
     const double numbers[] = {a->fx, a->fy, a->cx, a->cy, b->fx, b->fy, b->cx, b->cy, g->focal_sd, g->log10_nfa, g->inliers};
+    if (g->status == ASJ_GEOMETRY_AMBIGUOUS && g->has_rival)
+        return isfinite(g->log10_nfa) && isfinite(g->rival_log10_nfa) && all_finite(g->rotation, 9) &&
+               all_finite(g->translation, 3) && all_finite(g->rival_rotation, 9) && all_finite(g->rival_translation, 3);
     return g->status != ASJ_GEOMETRY_ACCEPTED ||
            (all_finite(numbers, sizeof numbers / sizeof numbers[0]) && all_finite(g->matrix, 9) && all_finite(g->rotation, 9) &&
             all_finite(g->translation, 3) && all_finite(g->covariance, 36));

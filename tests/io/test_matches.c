@@ -527,6 +527,20 @@ static void results_that_cannot_be_read_are_refused(void **state)
     result.geometry.cameras[1].cy = NAN;
     expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, "geometry");
     result.geometry.cameras[1].cy = 0;
+    result.geometry.status = ASJ_GEOMETRY_AMBIGUOUS; /* of which JSON has both motions */
+    result.geometry.has_rival = 1;
+    {
+        double *const written[] = {&result.geometry.log10_nfa, &result.geometry.rival_log10_nfa, &result.geometry.rotation[4],
+                                   &result.geometry.translation[2], &result.geometry.rival_rotation[8],
+                                   &result.geometry.rival_translation[0]};
+        for (which = 0; which < 6; which++) {
+            const double before = *written[which];
+            *written[which] = which % 2 ? NAN : INFINITY;
+            expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, "geometry");
+            *written[which] = before;
+        }
+    }
+    result.geometry.has_rival = 0;
     result.geometry.status = ASJ_GEOMETRY_NOT_ASKED;
     corners[1][3].bx = NAN;
     expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, "L-junction 3 of image 2");
