@@ -91,6 +91,11 @@ static asj_status asj_cl_list(asj_memory *memory, const char *library, asj_devic
 static asj_status check_range(asj_context *context)
 {
     const asj_context_options *options = &context->options;
+    const int32_t level = options->log_level;
+    if (level < ASJ_LOG_ERROR || level > ASJ_LOG_DEBUG) {
+        context->options.log_level = ASJ_LOG_ERROR; /* that passes on what follows */
+        return asj_fail(context, ASJ_ERROR_OPTION, "log_level %d: there is no such", (int)level);
+    }
     if (!asj_is_zero(options->reserved, sizeof options->reserved))
         return asj_fail(context, ASJ_ERROR_OPTION, ASJ_RESERVED_MESSAGE);
     if (options->backend < ASJ_BACKEND_AUTO || options->backend > ASJ_BACKEND_OPENCL)

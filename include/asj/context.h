@@ -131,7 +131,7 @@ typedef struct asj_context_options {
     asj_allocator allocator;        /* default: malloc and free */
     asj_log_callback log;           /* default NULL = silence */
     void *log_user;
-    int32_t log_level;              /* most detailed level wanted, default ASJ_LOG_WARNING */
+    int32_t log_level;              /* ASJ_LOG_...: most detailed level wanted, default ASJ_LOG_WARNING */
     int32_t simd;                   /* ASJ_SIMD_...: forces the form of what the CPU does, for comparisons; default auto. */
     asj_progress_callback progress; /* default NULL */
     void *progress_user;
@@ -160,7 +160,7 @@ typedef struct asj_context asj_context;
 
 /* Makes a context. `options` NULL = the defaults. On success the caller owns *context until asj_context_free().
  * ASJ_ERROR_ARGUMENT  context is NULL, or only one of the allocator's functions is given
- * ASJ_ERROR_OPTION    backend, threads or simd out of range: the log says which
+ * ASJ_ERROR_OPTION    backend, threads, simd or log_level out of range, a reserved field that is not zero: the log says which
  * ASJ_ERROR_MEMORY
  * ASJ_ERROR_DEVICE    ASJ_BACKEND_OPENCL, and there is no such device: the log has the reason of each, one line for each; or vector
  *                     instructions (simd) that this processor or this build lacks: the log says which of both */

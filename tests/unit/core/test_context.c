@@ -81,7 +81,7 @@ static void test_refused(void **state)
     options.allocator.allocate = NULL;
     assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_ARGUMENT);
     static const int32_t backends[] = {-1, 3, INT32_MAX}, threads[] = {-1, 257, INT32_MIN, INT32_MAX};
-    static const int32_t forms[] = {-1, ASJ_SIMD_COUNT, INT32_MAX};
+    static const int32_t forms[] = {-1, ASJ_SIMD_COUNT, INT32_MAX}, levels[] = {-1, 77, INT32_MIN};
     for (size_t i = 0; i < UNIT_COUNT(backends); i++) {
         options = with(&counter);
         options.backend = backends[i];
@@ -96,6 +96,11 @@ static void test_refused(void **state)
         options = with(&counter);
         options.simd = forms[i];
         refuse(&options, "simd ");
+    }
+    for (size_t i = 0; i < UNIT_COUNT(levels); i++) {
+        options = with(&counter);
+        options.log_level = levels[i];
+        refuse(&options, "log_level ");
     }
     options = with(&counter);
     options.reserved[10] = 1;
