@@ -12,8 +12,9 @@
  *     }
  *     asj_context_free(&context);
  *
- * For generated bindings: structs are plain data, with fields of fixed width and no padding. Constants stand in enumerations
- * without a name; what holds one is an int32_t, whose comment says which, so some generators ask for a cast. */
+ * For generated bindings: structs are plain data, with fields of fixed width and no padding where pointers have 64 bits. Constants
+ * stand in enumerations without a name; what holds one is an int32_t, whose comment says which, so some generators ask for a
+ * cast. */
 #ifndef ASJ_H
 #define ASJ_H
 

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# Every public header alone, first in its file and twice: strict C99, and C++ where there is a compiler.
+# Every public header alone, first in its file and twice: strict C99, without padding (asj.h) where pointers have 64 bits, and C++
+# where there is a compiler.
 # headers.sh INCLUDE_DIRECTORY "C COMPILER" ["C++ COMPILER"]
 set -u
 strict='-Wall -Wextra -Wpedantic -Wconversion -Wundef -Werror -fsyntax-only'
@@ -15,7 +16,9 @@ check() { # COMPILER AND OPTIONS
     done
 }
 include=$1
-check "$2 -x c -std=c99"
+padded=
+[ "$(echo __SIZEOF_POINTER__ | $2 -x c -E -P -)" != 8 ] || padded=-Wpadded
+check "$2 -x c -std=c99 $padded"
 if [ $# -gt 2 ] && [ -n "$3" ]; then
     check "$3 -x c++ -std=c++11"
 else
