@@ -19,7 +19,7 @@ typedef struct asj_detection {
     uint32_t l_junction_count;
     int32_t width, height;             /* of the image */
     int32_t backend;                   /* ASJ_BACKEND_CPU or ASJ_BACKEND_OPENCL: what did the work */
-    uint32_t edge_count;
+    uint32_t edge_count;               /* of `edges` */
     double total_ms;                   /* wall time of the call */
     double stage_ms[16];               /* by ASJ_STAGE_... */
     uint64_t candidates;               /* pixels that reached the isotropic test */
@@ -45,7 +45,8 @@ typedef struct asj_detection {
  * photograph enlarged to 12 megapixels, with 32 000 junctions of preset match, took 285 MB (tests/benchmark/README.md).
  *
  * ASJ_ERROR_ARGUMENT   context, image or result is NULL
- * ASJ_ERROR_IMAGE      data NULL, unknown format, side < 1, stride shorter than a row, NaN or infinity
+ * ASJ_ERROR_IMAGE      data NULL, unknown format, side < 1, stride shorter than a row or, times the height, beyond PTRDIFF_MAX;
+ *                      `white` negative, NaN or infinite; floats that are NaN or infinite
  * ASJ_ERROR_LIMIT      more than ASJ_MAX_SIDE or ASJ_MAX_PIXELS, also of the upsampled image with first_octave -1
  * ASJ_ERROR_OPTION     an option out of range
  * ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED, ASJ_ERROR_DEVICE
@@ -76,7 +77,8 @@ typedef struct asj_region {
  * stays, step 2 is that of the rows of the rectangle, all others that of the junctions inside.
  * `region` NULL = everywhere. Errors as asj_detect(), and
  * ASJ_ERROR_ARGUMENT   the rectangle leaves the image or is empty; a mask that is not gray8, or not of the image's size
- * ASJ_ERROR_OPTION     also a reserved field of the region that is not zero */
+ * ASJ_ERROR_OPTION     also a reserved field of the region that is not zero
+ * ASJ_ERROR_IMAGE      also a mask without data, or with a stride shorter than a row */
 ASJ_API asj_status asj_detect_region(asj_context *context, const asj_image *image, const asj_region *region,
                                      const asj_detect_options *options, asj_detection **result);
 
@@ -90,7 +92,7 @@ ASJ_API asj_status asj_prepare(asj_context *context, const asj_detect_options *o
 ASJ_API void asj_detection_free(asj_detection **result);
 
 /* Step 6 alone, for junctions from elsewhere (a file, another detector): every pair of branches of a junction that opens by at
- * least `minimum_opening` degrees and at most 180 minus that, in order.
+ * least `minimum_opening` degrees and at most 180 minus that, in order; never one within 1e-6 rad of parallel.
  * Writes at most `capacity` L-junctions and returns how many there are in all (10 for each junction at most), so a first call with
  * capacity 0 tells the size. Junctions with a branch_count outside 0 .. ASJ_MAX_BRANCHES are passed over. */
 ASJ_API size_t asj_decompose(const asj_junction *junctions, size_t junction_count, double minimum_opening,

@@ -29,8 +29,8 @@ typedef struct asj_device {
     char reason[192];        /* why it cannot be used; "" when it can */
     int32_t type;            /* ASJ_DEVICE_... */
     int32_t usable;          /* 1 = a context can use it */
-    int32_t compute_units;
-    int32_t clock_mhz;
+    int32_t compute_units;   /* multiprocessors or cores, as the device counts them */
+    int32_t clock_mhz;       /* the most */
     uint64_t global_memory;  /* bytes */
     uint64_t local_memory;   /* bytes for a work-group */
     uint64_t largest_buffer; /* bytes */

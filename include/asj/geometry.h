@@ -117,8 +117,9 @@ typedef struct asj_geometry {
 /* Estimates the two-view geometry of candidate matches.
  *
  * candidates     may be NULL when count is 0; only read
- * probabilities  NULL, or room for `count` numbers: the probability of each candidate given the geometry; 0 where there is none,
- *                and of all but the 3000 likeliest candidates, which are all that is looked at
+ * probabilities  NULL, or room for `count` numbers: the probability of each candidate given the geometry, with ambiguous and
+ *                degenerate under the best one; 0 with any other status that is not accepted, and of all but the 3000
+ *                likeliest candidates, which are all that is looked at
  * result         it and the probabilities are written when ASJ_OK is returned
  *
  * src/geometry/likelihood.c says what is maximised, search.c how, evidence.c what log10_nfa rests on. The result depends on the

@@ -34,8 +34,8 @@ typedef struct asj_image {
     int32_t format;     /* ASJ_FORMAT_... */
     int32_t width;      /* pixels, 1 .. ASJ_MAX_SIDE */
     int32_t height;     /* pixels, 1 .. ASJ_MAX_SIDE */
-    float white;        /* sample value that means white; 0 = the format's: 255, 65535, or 1.0 for floats. A 10-bit camera
-                         * in 16-bit samples has 1023. Values above it are cut, and so are those below 0. */
+    float white;        /* sample value that means white: finite, not negative; 0 = the format's: 255, 65535, or 1.0 for floats. A
+                         * 10-bit camera in 16-bit samples has 1023. Values above it are cut, and so are those below 0. */
     ptrdiff_t stride;   /* bytes from one row to the one below it, at least a row long; 0 = rows without gaps. Negative where images
                          * are stored bottom-up: `data` then points into the last row of the memory */
 } asj_image;

@@ -65,8 +65,11 @@ typedef struct asj_image_file {
  * ASJ_ERROR_ARGUMENT     path or file is NULL
  * ASJ_ERROR_FILE         missing, a directory, unreadable
  * ASJ_ERROR_FORMAT       empty, not an image, no pixels, truncated, damaged (a wrong PNG checksum included)
- * ASJ_ERROR_LIMIT        more than max_pixels, a side longer than ASJ_MAX_SIDE, a file longer than 2^31 - 1 bytes
- * ASJ_ERROR_UNSUPPORTED  an image format that this build cannot read
+ * ASJ_ERROR_LIMIT        more than max_pixels, a side longer than ASJ_MAX_SIDE, a file longer than 2^31 - 1 bytes, a JPEG of more
+ *                        than 100 scans, a TIFF with a tile far larger than the image
+ * ASJ_ERROR_UNSUPPORTED  an image format that this build cannot read; of one that it can, TIFF with samples or compression that
+ *                        are not read, moving WebP, unusual JPEG 2000, HEIF or AVIF whose codec is missing; or the format's program
+ *                        is not installed
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_image_file_read(const char *path, uint64_t max_pixels, asj_image_file **file,
                                        char *message, size_t message_size);

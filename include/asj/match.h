@@ -111,7 +111,7 @@ enum {
 /* Two L-junctions that show the same corner. */
 typedef struct asj_junction_match {
     uint32_t l1, l2;        /* L-junctions, as asj_decompose() numbers them with options.minimum_opening */
-    uint32_t junction1, junction2;
+    uint32_t junction1, junction2; /* whose they are: indices of those given; of asj_match_images() as it says */
     double affine[6];       /* h11 h12 h13 h21 h22 h23: x2 = h11 x1 + h12 y1 + h13, y2 = h21 x1 + h22 y1 + h23 */
     float x1, y1;           /* px: junction in image 1, as detected */
     float x2, y2;           /* px: where the aligned map puts it in image 2; as detected when it was not aligned */

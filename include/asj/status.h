@@ -27,7 +27,8 @@ enum {
     ASJ_OK = 0,
     ASJ_ERROR_ARGUMENT = -1,    /* a null pointer, or arguments that contradict each other */
     ASJ_ERROR_OPTION = -2,      /* an option that does not exist, is out of range, or is not a number */
-    ASJ_ERROR_IMAGE = -3,       /* an image view that cannot be: zero size, short stride, unknown format, NaN, infinity */
+    ASJ_ERROR_IMAGE = -3,       /* an image view that cannot be: no data, no size, a stride too short or too long, unknown format,
+                                 * a white level that is none, NaN, infinity */
     ASJ_ERROR_LIMIT = -4,       /* larger than a documented limit (image side, number of pixels, file size, ..) */
     ASJ_ERROR_MEMORY = -5,      /* the allocator returned NULL */
     ASJ_ERROR_CANCELLED = -6,   /* the progress callback asked to stop */
