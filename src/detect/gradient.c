@@ -153,52 +153,102 @@ static size_t gradient_scratch(int32_t width)
     return 8 * asj_gradient_row_length(width);
 }
 
-/* The paper's standardisation: each axis to zero mean and unit variance over the image, in whole numbers:
- * g' = ((g - mean) factor + 2^11) >> 12, factor = round(4096 x 1024 / sd), cut where its norm could exceed ASJ_GRADIENT_LIMIT: at
- * 2.45 standard deviations. The paper does not cut; sums of sectors are 16 bits here. */
-static void standardise(const asj_frame *frame, int16_t *plane)
-{
-    int64_t sum = 0, squares = 0, count = (int64_t)frame->width * frame->height;
-    for (int32_t y = 0; y < frame->height; y++)
-        for (int32_t x = 0; x < frame->width; x++) {
-            int32_t g = plane[(ptrdiff_t)y * frame->stride + x];
-            sum += g;
-            squares += g * g;
-        }
-    double mean = (double)sum / (double)count;
-    double variance = (double)squares / (double)count - mean * mean;
-    if (!(variance > 0))
-        return;
-    const int32_t shift = (int32_t)lrint(mean);
-    const int64_t factor = llrint(4096 * ASJ_GRADIENT_ONE / sqrt(variance));
-    const int32_t limit = (int32_t)(ASJ_GRADIENT_LIMIT * ASJ_GRADIENT_ONE * 0.7); /* each axis: norm below the limit */
-    for (int32_t y = 0; y < frame->height; y++)
-        for (int32_t x = 0; x < frame->width; x++) {
-            int16_t *g = plane + (ptrdiff_t)y * frame->stride + x;
-            int64_t value = ((int64_t)(*g - shift) * factor + 2048) >> 12;
-            *g = (int16_t)(value > limit ? limit : value < -limit ? -limit : value);
-        }
-}
-
+/* What a loop over bands of rows works on. */
 typedef struct job {
     const asj_gradient_ops *ops;
     const asj_frame *frame;
     uint32_t epsilon;
-    int32_t bands;
+    int32_t threads, bands;
     asj_scratch scratch;
     asj_watch *watch;
 } job;
+
+static int32_t first_row(const job *j, int64_t band)
+{
+    return (int32_t)(j->frame->height * band / j->bands);
+}
 
 static void do_bands(const void *data, const asj_part *part)
 {
     const job *j = data;
     for (int64_t band = part->first; band < part->end && !asj_watch_stops(j->watch, part); band++) {
-        const int32_t first = (int32_t)(j->frame->height * band / j->bands);
-        const int32_t last = (int32_t)(j->frame->height * (band + 1) / j->bands);
         uint16_t *scratch = asj_thread_scratch(&j->scratch, part);
         memset(scratch, 0, j->scratch.size * sizeof *scratch);
-        gradient_band(j->ops, j->frame, j->epsilon, first, last, scratch);
+        gradient_band(j->ops, j->frame, j->epsilon, first_row(j, band), first_row(j, band + 1), scratch);
     }
+}
+
+/* ---- the paper's standardisation ----
+ *
+ * Each axis to zero mean and unit variance over the image, in whole numbers:
+ * g' = ((g - mean) factor + 2^11) >> 12, factor = round(4096 x 1024 / sd), cut where its norm could exceed ASJ_GRADIENT_LIMIT: at
+ * 2.45 standard deviations. The paper does not cut; sums of sectors are 16 bits here. */
+
+/* Whole numbers: threads may add them up in any order. */
+typedef struct moments {
+    int64_t sum, squares;
+} moments;
+
+typedef struct axis {
+    const job *j;
+    int16_t *plane;
+    int32_t shift;
+    int64_t factor;
+} axis;
+
+/* In the thread's scratch, of which every row is longer. */
+static moments *moments_of(const job *j, int32_t thread)
+{
+    return (moments *)(void *)(j->scratch.memory + (size_t)thread * j->scratch.size);
+}
+
+static void sum_bands(const void *data, const asj_part *part)
+{
+    const axis *a = data;
+    const asj_frame *frame = a->j->frame;
+    moments sums = *moments_of(a->j, part->thread);
+    for (int64_t band = part->first; band < part->end && !asj_watch_stops(a->j->watch, part); band++)
+        for (int32_t y = first_row(a->j, band); y < first_row(a->j, band + 1); y++)
+            for (int32_t x = 0; x < frame->width; x++) {
+                const int32_t g = a->plane[(ptrdiff_t)y * frame->stride + x];
+                sums.sum += g;
+                sums.squares += g * g;
+            }
+    *moments_of(a->j, part->thread) = sums;
+}
+
+static void scale_bands(const void *data, const asj_part *part)
+{
+    const axis *a = data;
+    const asj_frame *frame = a->j->frame;
+    const int32_t limit = (int32_t)(ASJ_GRADIENT_LIMIT * ASJ_GRADIENT_ONE * 0.7); /* each axis: norm below the limit */
+    for (int64_t band = part->first; band < part->end && !asj_watch_stops(a->j->watch, part); band++)
+        for (int32_t y = first_row(a->j, band); y < first_row(a->j, band + 1); y++)
+            for (int32_t x = 0; x < frame->width; x++) {
+                int16_t *g = a->plane + (ptrdiff_t)y * frame->stride + x;
+                const int64_t value = ((int64_t)(*g - a->shift) * a->factor + 2048) >> 12;
+                *g = (int16_t)(value > limit ? limit : value < -limit ? -limit : value);
+            }
+}
+
+static void standardise(asj_context *context, const job *j, int16_t *plane)
+{
+    const double count = (double)j->frame->width * j->frame->height;
+    axis a = {j, plane, 0, 0};
+    moments all = {0, 0};
+    for (int32_t t = 0; t < j->threads; t++)
+        *moments_of(j, t) = (moments){0, 0};
+    asj_parallel(context, j->threads, j->bands, 1, sum_bands, &a);
+    for (int32_t t = 0; t < j->threads; t++) {
+        all.sum += moments_of(j, t)->sum;
+        all.squares += moments_of(j, t)->squares;
+    }
+    const double mean = (double)all.sum / count, variance = (double)all.squares / count - mean * mean;
+    if (!(variance > 0) || j->watch->stopped)
+        return;
+    a.shift = (int32_t)lrint(mean);
+    a.factor = llrint(4096 * ASJ_GRADIENT_ONE / sqrt(variance));
+    asj_parallel(context, j->threads, j->bands, 1, scale_bands, &a);
 }
 
 asj_status asj_gradient(asj_context *context, asj_frame *frame, const asj_detect_options *options)
@@ -213,11 +263,11 @@ asj_status asj_gradient(asj_context *context, asj_frame *frame, const asj_detect
         return asj_fail(context, status, "no memory for the gradient's rows");
     asj_watch watch;
     asj_watch_start(&watch, context, ASJ_STAGE_GRADIENT);
-    const job j = {context->ops->gradient, frame, epsilon, bands, {frame->rows, size}, &watch};
+    const job j = {context->ops->gradient, frame, epsilon, threads, bands, {frame->rows, size}, &watch};
     asj_parallel(context, threads, bands, 1, do_bands, &j);
     if (options->standardise) {
-        standardise(frame, frame->gradient_x);
-        standardise(frame, frame->gradient_y);
+        standardise(context, &j, frame->gradient_x);
+        standardise(context, &j, frame->gradient_y);
     }
     return asj_watch_end(&watch);
 }

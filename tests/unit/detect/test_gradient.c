@@ -224,7 +224,33 @@ static void test_standardise_flat(void **state)
     asj_detect_options_init(&f->options);
 }
 
-/* Bands of rows by thread, also more bands than rows. */
+static int32_t stop(void *user, int32_t stage, double done)
+{
+    (void)user;
+    (void)done;
+    assert_int_equal(stage, ASJ_STAGE_GRADIENT);
+    return 1;
+}
+
+/* A caller who stops it waits for no pass over the image: the planes are left as they were. */
+static void test_standardise_stops(void **state)
+{
+    fixture *f = *state;
+    asj_frame frame;
+    noise_frame(f, 64, 64, 60, 8, &frame);
+    const int16_t x = frame.gradient_x[20], y = frame.gradient_y[20];
+    frame.gradient_x[20] = (int16_t)(x + 1);
+    f->options.standardise = 1;
+    f->context->options.progress = stop;
+    f->context->asked_ms = -1e9; /* long ago */
+    assert_int_equal(asj_gradient(f->context, &frame, &f->options), ASJ_ERROR_CANCELLED);
+    assert_true(frame.gradient_x[20] == x + 1 && frame.gradient_y[20] == y);
+    f->context->options.progress = NULL;
+    f->options.standardise = 0;
+    asj_frame_free(&f->context->memory, &frame);
+}
+
+/* Bands of rows by thread, also more bands than rows; with and without standardisation. */
 static void check_threads(fixture *f, int32_t width, int32_t height)
 {
     static const int32_t threads[] = {2, 3, 7, 50};
@@ -247,9 +273,13 @@ static void check_threads(fixture *f, int32_t width, int32_t height)
 
 static void test_threads(void **state)
 {
-    check_threads(*state, 61, 23);
-    check_threads(*state, 700, 301);
-    check_threads(*state, 60001, 3);
+    fixture *f = *state;
+    for (f->options.standardise = 0; f->options.standardise <= 1; f->options.standardise++) {
+        check_threads(f, 61, 23);
+        check_threads(f, 700, 301);
+        check_threads(f, 60001, 3);
+    }
+    asj_detect_options_init(&f->options);
 }
 
 static void test_out_of_memory(void **state)
@@ -279,6 +309,7 @@ int main(void)
         cmocka_unit_test(test_cut),         cmocka_unit_test(test_flat_and_margin),
         cmocka_unit_test(test_loss),        cmocka_unit_test(test_noise_has_unit_variance),
         cmocka_unit_test(test_standardise), cmocka_unit_test(test_standardise_flat),
+        cmocka_unit_test(test_standardise_stops),
         cmocka_unit_test(test_threads),     cmocka_unit_test(test_out_of_memory),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
