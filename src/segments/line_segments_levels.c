@@ -124,24 +124,34 @@ static void level_row(const uint16_t *above, const uint16_t *below, int32_t widt
     }
 }
 
-/* Steepest first; in a class from top to bottom, from left to right. */
-static void sort_samples(asj_levels *levels)
+/* Steepest first; in a class from top to bottom, from left to right. One thread: what comes next, segment after segment, takes far
+ * longer and is of one, too. */
+static asj_status sort_samples(asj_levels *levels, asj_watch *watch)
 {
-    const int32_t count = levels->width * levels->height;
     int32_t starts[CLASSES + 1] = {0};
     float most = 0;
-    for (int32_t i = 0; i < count; i++)
-        most = levels->norm[i] > most ? levels->norm[i] : most;
+    for (int32_t y = 0; y < levels->height && !asj_watch_stops(watch, NULL); y++) {
+        const float *norm = levels->norm + (size_t)y * (size_t)levels->width;
+        for (int32_t x = 0; x < levels->width; x++)
+            most = norm[x] > most ? norm[x] : most;
+    }
     const float classes = most > 0 ? (CLASSES - 1) / most : 0;
-    for (int32_t i = 0; i < count; i++)
-        if (levels->norm[i] > 0)
-            starts[CLASSES - (int32_t)(levels->norm[i] * classes)]++;
+    for (int32_t y = 0; y < levels->height && !asj_watch_stops(watch, NULL); y++) {
+        const float *norm = levels->norm + (size_t)y * (size_t)levels->width;
+        for (int32_t x = 0; x < levels->width; x++)
+            if (norm[x] > 0)
+                starts[CLASSES - (int32_t)(norm[x] * classes)]++;
+    }
     for (int32_t c = 0; c < CLASSES; c++)
         starts[c + 1] += starts[c];
     levels->order_count = starts[CLASSES];
-    for (int32_t i = 0; i < count; i++)
-        if (levels->norm[i] > 0)
-            levels->order[starts[CLASSES - 1 - (int32_t)(levels->norm[i] * classes)]++] = i;
+    for (int32_t y = 0; y < levels->height && !asj_watch_stops(watch, NULL); y++) {
+        const float *norm = levels->norm + (size_t)y * (size_t)levels->width;
+        for (int32_t x = 0; x < levels->width; x++)
+            if (norm[x] > 0)
+                levels->order[starts[CLASSES - 1 - (int32_t)(norm[x] * classes)]++] = y * levels->width + x;
+    }
+    return asj_watch_end(watch);
 }
 
 /* What a loop over rows works on. */
@@ -192,10 +202,8 @@ asj_status asj_levels_create(asj_context *context, const asj_frame *frame, int32
         asj_watch_start(&watch, context, stage);
         asj_parallel(context, context->threads, levels->height, ROWS, fill_some, &j);
         asj_release(memory, scratch);
-        const asj_status status = asj_watch_end(&watch);
-        if (status == ASJ_OK)
-            sort_samples(levels);
-        else
+        const asj_status status = asj_watch_end(&watch) == ASJ_OK ? sort_samples(levels, &watch) : asj_watch_end(&watch);
+        if (status != ASJ_OK)
             asj_levels_free(memory, levels);
         return status;
     }
