@@ -60,6 +60,12 @@ static void sink(const list *l, char *first, size_t at, size_t count)
     }
 }
 
+void asj_heap_sink(void *heap, size_t at, size_t count, size_t size, int (*compare)(const void *, const void *))
+{
+    const list l = {size, compare};
+    sink(&l, heap, at, count);
+}
+
 static void sort_heap(const list *l, char *first, size_t count)
 {
     for (size_t at = count / 2; at-- > 0;)

@@ -147,7 +147,7 @@ static frame best_frame(const asj_vote_search *s, const asj_vote *points, int32_
 {
     frame best;
     memset(&best, 0, sizeof best);
-    for (int32_t i = 0; i < found; i++)
+    for (int32_t i = 0; i < found && !asj_watch_stops(s->watch, NULL); i++)
         for (int32_t k = 0; k < i; k++) {
             const double *p = points[k].v, *q = points[i].v;
             double f = focal, d[3], e[3];
@@ -257,19 +257,18 @@ asj_status asj_vanishing_points_of(asj_context *context, const asj_junction *jun
     asj_memory *memory = &context->memory;
     asj_status status = ASJ_OK;
     asj_vanishing_points found;
-    asj_vote_search s = {0};
     asj_watch watch;
+    asj_vote_search s = {.watch = &watch};
     memset(&found, 0, sizeof found);
     asj_watch_start(&watch, context, stage);
     s.lines = asj_allocate(memory, count, ASJ_MAX_BRANCHES * sizeof *s.lines);
     s.tail = asj_allocate(memory, ASJ_VOTE_LEVELS * (ASJ_VOTE_LINES + 1), sizeof *s.tail);
     if (s.lines && s.tail) {
         s.count = asj_vanishing_lines(junctions, count, camera, &watch, s.lines);
+        answer(&s, options, camera, &found);
         status = asj_watch_end(&watch);
-        if (status == ASJ_OK) {
-            answer(&s, options, camera, &found);
+        if (status == ASJ_OK)
             *result = found;
-        }
     } else {
         status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the branches of %zu junctions", count);
     }

@@ -30,17 +30,19 @@
 #define SAME_LINE 2.0                /* px, and .. */
 #define SAME_ANGLE (1.5 * ASJ_DEGREE) /* .. branches nearer than that are on one line */
 #define ROUNDS 4
+#define AT_ONCE 1024                 /* lines, before the caller may be asked whether to go on */
 
 static const double tau[ASJ_VOTE_LEVELS] = {0.5 * ASJ_DEGREE, 1.0 * ASJ_DEGREE, 2.0 * ASJ_DEGREE};
 
 /* --- lines ------------------------------------------------------------------------------------------------------------------- */
 
-static int longer(const void *left, const void *right)
+/* The longest last; of equals the first. */
+static int by_length(const void *left, const void *right)
 {
     const asj_vote_line *p = left, *q = right;
     if (p->length != q->length)
-        return p->length > q->length ? -1 : 1;
-    return p->source < q->source ? -1 : p->source > q->source;
+        return p->length < q->length ? -1 : 1;
+    return p->source > q->source ? -1 : p->source < q->source;
 }
 
 static double apart(double a, double b)
@@ -74,18 +76,37 @@ static void place(asj_vote_line *one, const asj_camera *k)
     one->my = 0.5 * (y + ey);
 }
 
-/* Leaves the longest one of each line, the longest first. Returns how many. `watch` may be NULL. */
+static int stops(asj_watch *watch)
+{
+    return watch && asj_watch_stops(watch, NULL);
+}
+
+static void swap(asj_vote_line *a, asj_vote_line *b)
+{
+    const asj_vote_line kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+/* Leaves the longest one of each line, the longest first. Returns how many. `watch` may be NULL. From a heap, since of very many
+ * only the first few hundred are looked at; what is kept stands behind it, the last one first. */
 static int32_t keep(asj_vote_line *lines, size_t all, const asj_camera *camera, asj_watch *watch)
 {
-    int32_t kept = 0;
-    if (all > 1)
-        asj_sort(lines, all, sizeof *lines, longer);
-    for (size_t i = 0; i < all && kept < ASJ_VOTE_LINES && !(watch && asj_watch_stops(watch, NULL)); i++)
-        if (!is_known(lines, kept, &lines[i])) {
-            lines[kept] = lines[i];
-            place(&lines[kept++], camera);
+    size_t kept = 0;
+    for (size_t at = all / 2; at-- > 0 && (at % AT_ONCE != 0 || !stops(watch));)
+        asj_heap_sink(lines, at, all, sizeof *lines, by_length);
+    for (size_t left = all; left > 0 && kept < ASJ_VOTE_LINES && !stops(watch); left--) {
+        const asj_vote_line longest = lines[0];
+        lines[0] = lines[left - 1];
+        asj_heap_sink(lines, 0, left - 1, sizeof *lines, by_length);
+        if (!is_known(&lines[all - kept], (int32_t)kept, &longest)) {
+            lines[all - ++kept] = longest;
+            place(&lines[all - kept], camera);
         }
-    return kept;
+    }
+    for (size_t k = 0; k < kept && k < all / 2; k++)
+        swap(&lines[k], &lines[all - 1 - k]);
+    return (int32_t)kept;
 }
 
 /* All branches that are known well, the longest of each line. Returns how many. */
@@ -240,7 +261,7 @@ static int32_t find_best(asj_vote_search *s, asj_vote *best)
     for (int32_t k = 0; k < s->count && count < LONGEST; k++)
         if (!s->lines[k].taken)
             index[count++] = k;
-    for (int32_t i = 0; i < count; i++)
+    for (int32_t i = 0; i < count && !stops(s->watch); i++)
         for (int32_t k = 0; k < i; k++) {
             double v[3];
             asj_cross3(s->lines[index[i]].l, s->lines[index[k]].l, v);
@@ -260,7 +281,7 @@ static int32_t find_best(asj_vote_search *s, asj_vote *best)
 int32_t asj_vote_points(asj_vote_search *s, double most, asj_vote *points)
 {
     int32_t found = 0;
-    while (found < ASJ_VOTE_POINTS) {
+    while (found < ASJ_VOTE_POINTS && !stops(s->watch)) {
         count_members(s);
         if (!find_best(s, &points[found]) || !(points[found].log_nfa <= most))
             break;

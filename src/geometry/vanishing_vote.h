@@ -40,6 +40,7 @@ typedef struct asj_vote_search {
     int32_t count;
     double *tail;     /* log binomial tails, by level and k: ASJ_VOTE_LINES + 1 of each level */
     int32_t members[ASJ_VOTE_LEVELS];
+    asj_watch *watch; /* NULL = nobody asks whether to go on */
 } asj_vote_search;
 
 /* The branches that take part, the longest first; `lines` has room for all branches. Returns how many, fewer when stopped. */
@@ -56,7 +57,7 @@ int32_t asj_line_votes_for(const asj_vote_line *one, const double v[3], int32_t 
 /* The votes that v has, at the level where they are least likely by chance. */
 asj_vote asj_judge_point(const asj_vote_search *s, const double v[3]);
 
-/* The points with a log NFA of at most `most`, the surest first; room for ASJ_VOTE_POINTS. Returns how many. */
+/* The points with a log NFA of at most `most`, the surest first; room for ASJ_VOTE_POINTS. Returns how many, fewer when stopped. */
 int32_t asj_vote_points(asj_vote_search *s, double most, asj_vote *points);
 
 #endif

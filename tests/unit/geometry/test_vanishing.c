@@ -239,12 +239,47 @@ static void it_can_be_cancelled(void **state)
     free(many);
 }
 
+/* 300 000 junctions whose branches lie on few lines: most of the longest are looked at and left. */
+static void it_asks_often(void **state)
+{
+    enum { MANY = 300000 };
+    asj_junction *many = calloc(MANY, sizeof *many);
+    asj_context_options options;
+    asj_vanishing_options wishes;
+    asj_vanishing_points points;
+    asj_context *context;
+    unit_pauses pauses = {-1, 0};
+    uint32_t random = 1;
+    (void)state;
+    assert_non_null(many);
+    for (int32_t k = 0; k < MANY; k++) {
+        many[k] = (asj_junction){.x = (float)(k % 1000), .y = (float)(k / 1000), .branch_count = 2};
+        for (int32_t b = 0; b < 2; b++) {
+            random = random * 1664525u + 1013904223u;
+            many[k].branches[b] = (asj_branch){.angle = (float)b, .length = 50 + (float)(random >> 24)};
+        }
+    }
+    asj_vanishing_options_init(&wishes);
+    wishes.width = wishes.height = 1000;
+    asj_context_options_init(&options);
+    options.progress = unit_measure_pause;
+    options.progress_user = &pauses;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
+    assert_int_equal(asj_find_vanishing_points(context, many, MANY, &wishes, &points), ASJ_OK);
+    unit_measure_pause(&pauses, ASJ_STAGE_DECOMPOSE, 1);
+    print_message("%.0f ms at most between two questions\n", pauses.longest);
+    assert_true(pauses.longest < 100);
+    asj_context_free(&context);
+    free(many);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rooms_have_three_directions), cmocka_unit_test(near_points_are_one),
         cmocka_unit_test(chance_has_no_directions),
         cmocka_unit_test(bad_input_is_refused), cmocka_unit_test(it_can_be_cancelled),
+        cmocka_unit_test(it_asks_often),
     };
     return cmocka_run_group_tests_name("vanishing points", tests, NULL, NULL);
 }
