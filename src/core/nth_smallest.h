@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-/* 1 <= n <= count; none is NaN. Sorts them. */
+/* 1 <= n <= count; none is NaN. Puts them into another order. */
 float asj_nth_smallest(float *values, size_t count, size_t n);
 
 #endif

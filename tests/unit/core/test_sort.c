@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj_sort(): every length and size of elements, orders that are hard for quicksort, nothing lost, no order that takes long. */
 #include "unit_test.h"
+#include "core/nth_smallest.h"
 #include "core/sort.h"
 
 #include <math.h>
@@ -150,9 +151,35 @@ static void no_order_takes_long(void **state)
         assert_true(value[list[n - 1]] <= value[list[n]]);
 }
 
+/* Each of them, in orders that are hard, is what sorting finds there. */
+static void the_nth_is_found(void **state)
+{
+    static const int counts[] = {1, 2, 3, 16, 17, 18, 33, 100, 257};
+    static float values[MOST], sorted[MOST];
+    (void)state;
+    for (size_t c = 0; c < UNIT_COUNT(counts); c++)
+        for (int order = 0; order < 10; order++)
+            for (int n = 1; n <= counts[c]; n++) {
+                uint32_t random = 7;
+                for (int k = 0; k < counts[c]; k++) {
+                    random = random * 1664525u + 1013904223u;
+                    values[k] = sorted[k] = order == 8   ? (float)(random >> 8)
+                                            : order == 9 ? -(float)(random >> 29)
+                                                         : (float)key_in_order(order, k);
+                }
+                for (int k = 1; k < counts[c]; k++) /* plainly */
+                    for (int m = k; m > 0 && sorted[m] < sorted[m - 1]; m--) {
+                        const float swap = sorted[m];
+                        sorted[m] = sorted[m - 1];
+                        sorted[m - 1] = swap;
+                    }
+                assert_true(asj_nth_smallest(values, (size_t)counts[c], (size_t)n) == sorted[n - 1]);
+            }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_length_and_size), cmocka_unit_test(orders_that_are_hard),
-                                       cmocka_unit_test(no_order_takes_long)};
+                                       cmocka_unit_test(no_order_takes_long), cmocka_unit_test(the_nth_is_found)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
