@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* The counting, aligned allocations that everything else stands on. */
+#include "core/context.h"
 #include "unit_test.h"
 
 static void test_alignment_and_counts(void **state)
@@ -261,13 +262,33 @@ static void test_shelves(void **state)
     assert_true(memory.now == 0 && !memory.shelves);
 }
 
+/* A list that grows from call to call leaves no block behind. */
+static void test_outgrown(void **state)
+{
+    unit_counter counter = {0, 0, 0, 0};
+    asj_context *context = unit_context(&counter, 1);
+    uint64_t before, now;
+    (void)state;
+    asj_context_memory(context, &before, NULL);
+    for (size_t bytes = 100000; bytes < 1000000; bytes += bytes / 2) {
+        asj_memory_open(&context->memory);
+        void *list = asj_allocate(&context->memory, bytes, 1);
+        assert_non_null(list);
+        asj_release(&context->memory, list);
+        asj_memory_close(&context->memory);
+        asj_context_memory(context, &now, NULL);
+        assert_true(now >= before + bytes && now <= before + bytes + 1000);
+    }
+    unit_context_free(&counter, &context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_alignment_and_counts), cmocka_unit_test(test_zero), cmocka_unit_test(test_overflow),
         cmocka_unit_test(test_failure),              cmocka_unit_test(test_grow),
         cmocka_unit_test(test_grow_within),          cmocka_unit_test(test_much),
-        cmocka_unit_test(test_kept),
+        cmocka_unit_test(test_kept),                 cmocka_unit_test(test_outgrown),
         cmocka_unit_test(test_list),                 cmocka_unit_test(test_shelves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
