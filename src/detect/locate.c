@@ -61,39 +61,49 @@ static void move(asj_hypothesis *hypothesis, const asj_rough_line *lines, double
         hypothesis->branches[i].offset -= -lines[i].uy * dx + lines[i].ux * dy;
 }
 
-/* Whether the lines, weighted like this, determine a point. n is of length 1: xx + yy is the sum of weights. */
-static int determine_point(const asj_rough_line *lines, const double *weights, int32_t count)
+/* Of lines with weights: sum of weight n n'. n is of length 1, so xx + yy is the sum of weights. */
+typedef struct normal_matrix {
+    double xx, xy, yy;
+} normal_matrix;
+
+static normal_matrix add_up(const asj_rough_line *lines, const double *weights, int32_t count)
 {
-    double xx = 0, xy = 0, yy = 0;
+    normal_matrix n = {0, 0, 0};
     for (int32_t i = 0; i < count; i++) {
         const double nx = -lines[i].uy, ny = lines[i].ux, weight = weights[i];
-        xx += weight * nx * nx;
-        xy += weight * nx * ny;
-        yy += weight * ny * ny;
+        n.xx += weight * nx * nx;
+        n.xy += weight * nx * ny;
+        n.yy += weight * ny * ny;
     }
-    return xx * yy - xy * xy > LEAST_DETERMINANT * (xx + yy) * (xx + yy);
+    return n;
+}
+
+static double determinant(const normal_matrix *n)
+{
+    return n->xx * n->yy - n->xy * n->xy;
+}
+
+static int determines_point(const normal_matrix *n)
+{
+    return determinant(n) > LEAST_DETERMINANT * (n->xx + n->yy) * (n->xx + n->yy);
 }
 
 typedef struct meeting {
     double dx, dy, variance;
 } meeting;
 
-/* Each line says n.(p - p0) = offset with weight 1 / variance: covariance of the location the inverse of the normal matrix. */
-static int meet_lines(const asj_rough_line *lines, const double *weights, int32_t count, meeting *m)
+/* Each line says n.(p - p0) = offset with weight 1 / variance: covariance of the location the inverse of their normal matrix. */
+static int meet_lines(const asj_rough_line *lines, const double *weights, int32_t count, const normal_matrix *n, meeting *m)
 {
-    double xx = 0, xy = 0, yy = 0, bx = 0, by = 0;
+    const double area = determinant(n);
+    double bx = 0, by = 0;
     for (int32_t i = 0; i < count; i++) {
-        const double nx = -lines[i].uy, ny = lines[i].ux, weight = weights[i];
-        xx += weight * nx * nx;
-        xy += weight * nx * ny;
-        yy += weight * ny * ny;
-        bx += weight * nx * lines[i].offset;
-        by += weight * ny * lines[i].offset;
+        bx += weights[i] * -lines[i].uy * lines[i].offset;
+        by += weights[i] * lines[i].ux * lines[i].offset;
     }
-    const double determinant = xx * yy - xy * xy;
-    if (!(determinant > 0))
+    if (!(area > 0))
         return 0;
-    *m = (meeting){(yy * bx - xy * by) / determinant, (xx * by - xy * bx) / determinant, (xx + yy) / (2 * determinant)};
+    *m = (meeting){(n->yy * bx - n->xy * by) / area, (n->xx * by - n->xy * bx) / area, (n->xx + n->yy) / (2 * area)};
     return 1;
 }
 
@@ -108,8 +118,9 @@ int asj_locate_meet(const asj_frame *frame, const asj_detect_options *options, a
         weights[i] = 1 / hypothesis->branches[i].offset_variance;
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         ones[i] = 1;
-    if (!determine_point(lines, alike ? ones : weights, hypothesis->branch_count) ||
-        !meet_lines(lines, weights, hypothesis->branch_count, &m))
+    const normal_matrix normal = add_up(lines, weights, hypothesis->branch_count);
+    const normal_matrix shape = alike ? add_up(lines, ones, hypothesis->branch_count) : normal;
+    if (!determines_point(&shape) || !meet_lines(lines, weights, hypothesis->branch_count, &normal, &m))
         return 0;
     move(hypothesis, lines, m.dx, m.dy);
     hypothesis->location_variance = m.variance;
@@ -200,7 +211,10 @@ static int guess_meeting(const asj_detect_options *options, const asj_rough_line
     double weights[ASJ_MAX_BRANCHES];
     for (int32_t i = 0; i < count; i++)
         weights[i] = 1;
-    return have_opening(lines, count, least) && determine_point(lines, weights, count) && meet_lines(lines, weights, count, m) &&
+    if (!have_opening(lines, count, least))
+        return 0;
+    const normal_matrix normal = add_up(lines, weights, count);
+    return determines_point(&normal) && meet_lines(lines, weights, count, &normal, m) &&
            hypot(m->dx, m->dy) <= most_move(options, lines, count) + GUESS_MOVE;
 }
 
