@@ -3,6 +3,7 @@
 #include "image.h"
 #include "threads.h"
 #include "watch.h"
+#include "shared/pixels.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,7 +12,6 @@
 #define LEAST_HALVED 16384 /* of the smaller image: 20 us */
 
 typedef struct format_info {
-    int32_t bytes_per_pixel;
     float white;
     const char *name;
 } format_info;
@@ -19,17 +19,12 @@ typedef struct format_info {
 static const format_info *find_format(int32_t format)
 {
     static const format_info table[] = {
-        [ASJ_FORMAT_GRAY8] = {1, 255, "gray8"},   [ASJ_FORMAT_GRAY16] = {2, 65535, "gray16"},
-        [ASJ_FORMAT_RGB8] = {3, 255, "rgb8"},     [ASJ_FORMAT_BGR8] = {3, 255, "bgr8"},
-        [ASJ_FORMAT_RGBA8] = {4, 255, "rgba8"},   [ASJ_FORMAT_BGRA8] = {4, 255, "bgra8"},
-        [ASJ_FORMAT_GRAY_FLOAT] = {4, 1, "gray float"},
+        [ASJ_FORMAT_GRAY8] = {255, "gray8"}, [ASJ_FORMAT_GRAY16] = {65535, "gray16"},
+        [ASJ_FORMAT_RGB8] = {255, "rgb8"},   [ASJ_FORMAT_BGR8] = {255, "bgr8"},
+        [ASJ_FORMAT_RGBA8] = {255, "rgba8"}, [ASJ_FORMAT_BGRA8] = {255, "bgra8"},
+        [ASJ_FORMAT_GRAY_FLOAT] = {1, "gray float"},
     };
     return format >= ASJ_FORMAT_GRAY8 && format <= ASJ_FORMAT_GRAY_FLOAT ? &table[format] : NULL;
-}
-
-int32_t asj_bytes_per_pixel(int32_t format)
-{
-    return find_format(format)->bytes_per_pixel;
 }
 
 asj_status asj_image_check(asj_context *context, const asj_image *image)
@@ -45,7 +40,7 @@ asj_status asj_image_check(asj_context *context, const asj_image *image)
         (int64_t)image->width * image->height > ASJ_MAX_PIXELS)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%d x %d pixels are more than the library takes (side %d, %d pixels in all)",
                         (int)image->width, (int)image->height, ASJ_MAX_SIDE, ASJ_MAX_PIXELS);
-    ptrdiff_t row = (ptrdiff_t)image->width * format->bytes_per_pixel;
+    ptrdiff_t row = (ptrdiff_t)image->width * asj_pixel_size(image->format);
     if (image->stride != 0 && image->stride < row && image->stride > -row)
         return asj_fail(context, ASJ_ERROR_IMAGE, "stride %lld is shorter than a row of %d %s pixels (%lld bytes)",
                         (long long)image->stride, (int)image->width, format->name, (long long)row);
@@ -125,7 +120,7 @@ void asj_frame_free(asj_memory *memory, asj_frame *frame)
 void asj_image_luma(const uint8_t *pixel, int32_t width, int32_t step, int32_t red, uint16_t *gray)
 {
     for (int32_t x = 0; x < width; x++, pixel += step)
-        gray[x] = (uint16_t)((77 * pixel[red] + 150 * pixel[1] + 29 * pixel[2 - red] + 128) >> 8 << 7);
+        gray[x] = (uint16_t)(asj_luma16(pixel[red], pixel[1], pixel[2 - red]) << 7);
 }
 
 /* A level rounded and cut. With a white level next to zero the scale is infinite, and black times that is NaN: black. */
@@ -256,7 +251,7 @@ static void load_rows(const void *data, const asj_part *part)
 
 asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image)
 {
-    const ptrdiff_t row_bytes = (ptrdiff_t)image->width * asj_bytes_per_pixel(image->format);
+    const ptrdiff_t row_bytes = (ptrdiff_t)image->width * asj_pixel_size(image->format);
     const ptrdiff_t stride = image->stride ? image->stride : row_bytes;
     const int32_t height = image->height;
     int32_t failed = 0;

@@ -40,16 +40,13 @@ typedef struct asj_frame {
 /* Checks a view: ASJ_OK, or the status and message that asj_detect() documents. Does not look at the pixels. */
 asj_status asj_image_check(asj_context *context, const asj_image *image);
 
-/* Of a format that asj_image_check() has passed. */
-int32_t asj_bytes_per_pixel(int32_t format);
-
 /* Makes room for an image of this size; keeps the memory when it is large enough. */
 asj_status asj_frame_prepare(asj_context *context, asj_frame *frame, int32_t width, int32_t height);
 /* The same for gray levels alone: the gradient must not be read. */
 asj_status asj_frame_prepare_gray(asj_context *context, asj_frame *frame, int32_t width, int32_t height);
 void asj_frame_free(asj_memory *memory, asj_frame *frame);
 
-/* 8-bit colour to luma, BT.601 weights in 8 bits: (77 R + 150 G + 29 B + 128) >> 8 grey levels. `step` bytes from pixel to pixel,
+/* 8-bit colour to luma (shared/pixels.h), grey levels. `step` bytes from pixel to pixel,
  * red at byte 0 or 2, blue at the other, green between them. */
 void asj_image_luma(const uint8_t *pixels, int32_t width, int32_t step, int32_t red, uint16_t *gray);
 

@@ -8,6 +8,7 @@
 #include "image.h"
 #include "stretch.h"
 #include "watch.h"
+#include "shared/pixels.h"
 
 #include <math.h>
 #include <string.h>
@@ -103,7 +104,7 @@ static void stretch_rows(const void *data, const asj_part *part)
 static void describe(job *j, int32_t format)
 {
     j->sample = format == ASJ_FORMAT_GRAY16 ? 2 : format == ASJ_FORMAT_GRAY_FLOAT ? (int32_t)sizeof(float) : 1;
-    j->channels = asj_bytes_per_pixel(format) / j->sample;
+    j->channels = asj_pixel_size(format) / j->sample;
 }
 
 asj_status asj_stretch_image(asj_context *context, asj_memory *memory, const asj_image *image, int32_t width, int32_t height,

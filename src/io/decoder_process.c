@@ -165,7 +165,8 @@ static asj_status receive(const talk *with, const asj_image_probe *probe, uint64
     if (!format || !is_expected(&answer, probe))
         return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged or unusual %s", probe->name);
     status = asj_image_allocate(buffer, answer.width, answer.height, format, max_pixels, message);
-    if (status == ASJ_OK && !receive_all(with, buffer->pixels, (size_t)(answer.width * answer.height) * asj_pixel_size(format)))
+    const size_t bytes = (size_t)(answer.width * answer.height) * (size_t)asj_pixel_size(format);
+    if (status == ASJ_OK && !receive_all(with, buffer->pixels, bytes))
         return asj_message_fail(message, ASJ_ERROR_FORMAT, "damaged %s: its decoder gave up", probe->name);
     return status;
 }

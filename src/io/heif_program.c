@@ -6,6 +6,7 @@
  * Up to 8 bits a sample RGB8, more than that GRAY16 (colour as luma), spread over the range of the format. The image is turned and
  * cropped as the file says; its EXIF has no say in that. Transparency is ignored. */
 #include "decoder_answer.h"
+#include "shared/pixels.h"
 
 #include <libheif/heif.h>
 
@@ -52,11 +53,11 @@ static uint32_t spread(const uint8_t *two, int bits)
     return ((value > most ? most : value) * 65535u + most / 2) / most;
 }
 
-/* Luma of deep colour, with the weights of image_buffer.c. */
+/* Luma of deep colour. */
 static void convert_row(const uint8_t *row, int width, int bits, uint16_t *gray)
 {
     for (int x = 0; x < width; x++, row += 6)
-        gray[x] = (uint16_t)((77 * spread(row, bits) + 150 * spread(row + 2, bits) + 29 * spread(row + 4, bits) + 128) >> 8);
+        gray[x] = asj_luma16(spread(row, bits), spread(row + 2, bits), spread(row + 4, bits));
 }
 
 static int write_all(const void *bytes, size_t size)

@@ -4,30 +4,6 @@
 
 #include <stdlib.h>
 
-size_t asj_pixel_size(int32_t format)
-{
-    switch (format) {
-    case ASJ_FORMAT_GRAY8: return 1;
-    case ASJ_FORMAT_GRAY16: return 2;
-    case ASJ_FORMAT_RGB8:
-    case ASJ_FORMAT_BGR8: return 3;
-    case ASJ_FORMAT_RGBA8:
-    case ASJ_FORMAT_BGRA8:
-    case ASJ_FORMAT_GRAY_FLOAT: return 4;
-    default: return 0;
-    }
-}
-
-uint16_t asj_luma16(uint32_t red, uint32_t green, uint32_t blue)
-{
-    return (uint16_t)((77 * red + 150 * green + 29 * blue + 128) >> 8);
-}
-
-float asj_luma_float(float red, float green, float blue)
-{
-    return (77.0f * red + 150.0f * green + 29.0f * blue) / 256.0f;
-}
-
 asj_status asj_check_declared_size(uint64_t width, uint64_t height, uint64_t max_pixels, const asj_message *message)
 {
     unsigned long long w = width, h = height, limit = max_pixels;
@@ -50,7 +26,7 @@ asj_status asj_image_allocate(asj_image_buffer *buffer, uint64_t width, uint64_t
     buffer->width = (int32_t)width;
     buffer->height = (int32_t)height;
     buffer->format = format;
-    buffer->pixels = height > SIZE_MAX / (width * asj_pixel_size(format)) ? NULL
-                     : malloc((size_t)height * ((size_t)width * asj_pixel_size(format)));
+    const size_t pixel = (size_t)asj_pixel_size(format);
+    buffer->pixels = height > SIZE_MAX / (width * pixel) ? NULL : malloc((size_t)height * ((size_t)width * pixel));
     return buffer->pixels ? ASJ_OK : asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for the pixels");
 }

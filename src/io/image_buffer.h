@@ -7,6 +7,7 @@
 
 #include "lens.h"
 #include "probe.h"
+#include "shared/pixels.h"
 
 typedef struct asj_image_buffer {
     unsigned char *pixels; /* malloc; rows without gaps */
@@ -16,21 +17,12 @@ typedef struct asj_image_buffer {
     asj_lens lens;         /* EXIF */
 } asj_image_buffer;
 
-/* Bytes of one pixel, or 0 for an unknown format. */
-size_t asj_pixel_size(int32_t format);
-
 /* ASJ_OK, or ASJ_ERROR_FORMAT for a side of 0, or ASJ_ERROR_LIMIT, for the size that a file declares. */
 asj_status asj_check_declared_size(uint64_t width, uint64_t height, uint64_t max_pixels, const asj_message *message);
 
 /* Memory for an image whose size is checked as above. ASJ_ERROR_MEMORY too. */
 asj_status asj_image_allocate(asj_image_buffer *buffer, uint64_t width, uint64_t height, int32_t format, uint64_t max_pixels,
                               const asj_message *message);
-
-/* Luma of 16-bit colour, with the weights that the core uses for 8 bits (image.h), so that depth is not thrown away. */
-uint16_t asj_luma16(uint32_t red, uint32_t green, uint32_t blue);
-
-/* The same of floats. */
-float asj_luma_float(float red, float green, float blue);
 
 /* Decodes a file's bytes. What is in buffer->pixels belongs to the caller, whatever happened.
  * ASJ_ERROR_FORMAT, ASJ_ERROR_LIMIT, ASJ_ERROR_UNSUPPORTED, ASJ_ERROR_MEMORY */

@@ -17,7 +17,7 @@ typedef struct owned_image {
 /* Exchanges the pixels for an upright copy. */
 static asj_status turn_upright(asj_image_buffer *buffer, const asj_message *message)
 {
-    size_t size = asj_pixel_size(buffer->format);
+    size_t size = (size_t)asj_pixel_size(buffer->format);
     int32_t width = buffer->width;
     unsigned char *copy;
 

@@ -125,7 +125,7 @@ static void read_pixels(jpeg_reader *reader)
 {
     struct jpeg_decompress_struct *jpeg = &reader->jpeg;
     asj_image_buffer *buffer = reader->buffer;
-    size_t row = (size_t)buffer->width * asj_pixel_size(buffer->format);
+    size_t row = (size_t)buffer->width * (size_t)asj_pixel_size(buffer->format);
     JSAMPARRAY inks = NULL;
 
     jpeg_start_decompress(jpeg);

@@ -3,6 +3,7 @@
  * libasj-io (decoder_process.c) and nobody else. The only C++ of the project. What is wrong with a file is told by an answer that
  * does not come. It limits its own memory to what an image of PIXELS needs, and its own time. */
 #include "decoder_answer.h"
+#include "shared/pixels.h"
 
 #include <opencv2/imgcodecs.hpp>
 
@@ -48,14 +49,14 @@ std::vector<unsigned char> read_input()
     return bytes;
 }
 
-/* Colour in floats becomes luma, as image_buffer.h has it. */
+/* Colour in floats becomes luma. */
 cv::Mat luma_of(const cv::Mat &matrix)
 {
     cv::Mat gray(matrix.rows, matrix.cols, CV_32FC1);
     for (int y = 0; y < matrix.rows; y++)
         for (int x = 0; x < matrix.cols; x++) {
             const cv::Vec3f bgr = matrix.at<cv::Vec3f>(y, x);
-            gray.at<float>(y, x) = (77.0f * bgr[2] + 150.0f * bgr[1] + 29.0f * bgr[0]) / 256.0f;
+            gray.at<float>(y, x) = asj_luma_float(bgr[2], bgr[1], bgr[0]);
         }
     return gray;
 }

@@ -157,7 +157,7 @@ static void reduce_row(uint16_t *gray, const unsigned char *rgb, int32_t width)
 static void read_pixels(png_reader *reader)
 {
     asj_image_buffer *buffer = reader->buffer;
-    size_t row = (size_t)buffer->width * asj_pixel_size(buffer->format);
+    size_t row = (size_t)buffer->width * (size_t)asj_pixel_size(buffer->format);
     int passes = png_set_interlace_handling(reader->png), pass;
     int32_t y;
 

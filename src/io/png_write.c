@@ -61,7 +61,7 @@ static void write_all(png_writer *writer)
 {
     const asj_image *image = writer->image;
     const uint16_t one = 1;
-    ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)((size_t)image->width * asj_pixel_size(image->format));
+    ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)((size_t)image->width * (size_t)asj_pixel_size(image->format));
     int32_t y;
 
     png_set_write_fn(writer->png, writer, on_write, on_flush);
@@ -92,7 +92,7 @@ static asj_status encode(png_writer *writer)
 
 static asj_status check_view(const asj_image *image, const asj_message *message)
 {
-    size_t size = asj_pixel_size(image->format);
+    size_t size = (size_t)asj_pixel_size(image->format);
 
     if (!size || image->format == ASJ_FORMAT_GRAY_FLOAT)
         return asj_message_fail(message, ASJ_ERROR_IMAGE, "pixel format %d cannot be written as PNG", (int)image->format);

@@ -123,7 +123,7 @@ asj_status asj_pnm_decode(const asj_input *input, const asj_image_probe *probe, 
     status = asj_image_allocate(buffer, reader.header.width, reader.header.height, format, max_pixels, message);
     if (status != ASJ_OK)
         return status;
-    row = (size_t)buffer->width * asj_pixel_size(format);
+    row = (size_t)buffer->width * (size_t)asj_pixel_size(format);
     for (y = 0; y < buffer->height && !reader.is_bad; y++) {
         if (format == ASJ_FORMAT_GRAY_FLOAT) /* the bottom row comes first */
             read_float_row(&reader, buffer, buffer->pixels + (size_t)(buffer->height - 1 - y) * row);

@@ -14,15 +14,16 @@ import sys
 ALLOWED = {
     "include/asj": [],
     "kernels": [],  # the header that kernels and their hosts share
-    "src/core": [],
+    "src/shared": [],  # what the core and libasj-io have to agree about
+    "src/core": ["src/shared"],
     "src/segments": ["src/core"],
     "src/detect": ["src/core", "src/segments"],
     "src/geometry": ["src/core"],
     "src/match": ["src/core", "src/segments", "src/geometry"],  # and detect's results, which are public
-    "src/simd": ["src/core", "src/segments", "src/detect", "src/match"],
+    "src/simd": ["src/shared", "src/core", "src/segments", "src/detect", "src/match"],
     "src/cl": ["src/core", "src/segments", "src/detect", "src/match", "kernels"],
     "src": ["src/core", "src/segments", "src/detect", "src/geometry", "src/match", "src/simd", "src/cl"],
-    "src/io": [],
+    "src/io": ["src/shared"],
     "cli": [],  # the library through its public headers
 }
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<(asj/[^>]+)>)', re.MULTILINE)

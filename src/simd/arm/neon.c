@@ -9,13 +9,14 @@
 #include "simd/patch_kernels.h"
 #include "simd/sample_kernels.h"
 #include "core/image.h"
+#include "shared/pixels.h"
 #include "simd/variants.h"
 
 /* Colour to luma: 8 pixels at once. Sums stay below 2^16. Name as in the reference, image.c. */
 static inline uint16x8_t luma(uint8x8_t red, uint8x8_t green, uint8x8_t blue)
 {
-    const uint16x8_t sum = vmlal_u8(vmlal_u8(vmull_u8(red, vdup_n_u8(77)), green, vdup_n_u8(150)), blue, vdup_n_u8(29));
-    return vshll_n_u8(vrshrn_n_u16(sum, 8), 7);
+    const uint16x8_t red_green = vmlal_u8(vmull_u8(red, vdup_n_u8(ASJ_LUMA_RED)), green, vdup_n_u8(ASJ_LUMA_GREEN));
+    return vshll_n_u8(vrshrn_n_u16(vmlal_u8(red_green, blue, vdup_n_u8(ASJ_LUMA_BLUE)), ASJ_LUMA_BITS), 7);
 }
 
 static void image_luma_neon(const uint8_t *pixels, int32_t width, int32_t step, int32_t red, uint16_t *gray)
