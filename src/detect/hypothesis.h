@@ -5,11 +5,10 @@
 
 #include "isotropic.h"
 #include "core/angle.h"
+#include "core/decade.h"
 
 #define ASJ_MAX_OCTAVES 16 /* numbers of octaves are below this, */
 #define ASJ_FIRST_OCTAVE (-1) /* and not below this: the image upsampled by two */
-
-#define ASJ_LN_10 2.302585092994046 /* a decade in natural logarithms, which numbers of false alarms are kept in */
 
 /* Branches that turn by no more than this are of one edge: the default of merge_angle, below which two of a junction would be one;
  * whatever that option says, since the two belong to different junctions. */

@@ -2,6 +2,7 @@
 /* asj_local_field(): the very local junctions of step 2 at every pixel of the image itself, no other octave. */
 #include "core/angle.h"
 #include "core/backend.h"
+#include "core/decade.h"
 #include "nfa.h"
 #include "steps.h"
 
@@ -21,7 +22,7 @@ static asj_local_branch local_branch(const asj_detection_run *run, asj_field_bra
     const double sum = n * ASJ_GAMMA_MEAN + strength * ASJ_GAMMA_SD * sqrt(n);
     out.angle = (float)(branch.angle * (ASJ_TWO_PI / 65536));
     out.strength = (float)strength;
-    out.log10_nfa = (float)((log(s->count) + asj_nfa_log_sector_tail(asj_nfa_tables(), sum, n)) / log(10));
+    out.log10_nfa = (float)((log(s->count) + asj_nfa_log_sector_tail(asj_nfa_tables(), sum, n)) / ASJ_LN_10);
     return out;
 }
 

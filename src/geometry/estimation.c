@@ -3,6 +3,7 @@
 #include "estimation.h"
 #include "geometry_options.h"
 #include "posterior.h"
+#include "core/decade.h"
 
 #include <math.h>
 
@@ -63,5 +64,5 @@ double asj_estimation_log10_nfa(const asj_estimation *e, const asj_model *m)
 {
     const int32_t blind = !e->options->find_focal && !asj_cameras_are_known(e->options); /* no motions, no turns */
     const double tried = e->options->model != ASJ_GEOMETRY_AUTO ? 1 : blind ? ASJ_MOST_KINDS - 1 : ASJ_MOST_KINDS;
-    return (log(tried) - m->evidence) / log(10);
+    return (log(tried) - m->evidence) / ASJ_LN_10;
 }

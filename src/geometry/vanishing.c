@@ -11,6 +11,7 @@
 #include "vanishing_vote.h"
 
 #include "core/angle.h"
+#include "core/decade.h"
 #include "core/most_junctions.h"
 #include "core/reserved.h"
 #include "core/sort.h"
@@ -178,7 +179,7 @@ static void fill(const asj_vote *at, const double direction[3], const asj_camera
     asj_normalise3(out->point);
     if (direction)
         memcpy(out->direction, direction, sizeof out->direction);
-    out->log10_nfa = at->log_nfa / log(10);
+    out->log10_nfa = at->log_nfa / ASJ_LN_10;
     out->branch_count = (uint32_t)at->votes;
 }
 

@@ -66,9 +66,18 @@ static void test_opening(void **state)
     assert_true(has_opening(0, 0.05, 1, 3, 0.1));
 }
 
+/* One constant stands for what the C library would compute. */
+static void a_decade_is_log_10(void **state)
+{
+    volatile double ten = 10; /* not computed by the compiler */
+    (void)state;
+    assert_true(log(ten) == ASJ_LN_10 && log(10) == ASJ_LN_10);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_decade_is_log_10),
         cmocka_unit_test(test_angles),
         cmocka_unit_test(test_select),
         cmocka_unit_test(test_opening),
