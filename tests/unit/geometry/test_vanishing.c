@@ -119,6 +119,44 @@ static void near_points_are_one(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Two points of directions at right angles, seen `angle` degrees and 90 less that from the optical axis of a camera of 1000 px, to
+ * either side: the focal length is uncertain by 2 % at 80 degrees, by 7 % at 87, and known worse than 5 % it is none. */
+static void a_focal_length_is_known_or_not(void **state)
+{
+    enum { MANY = 60 };
+    static const struct {
+        double angle;
+        int32_t source;
+    } cases[] = {{80, ASJ_FOCAL_FOUND}, {87, ASJ_FOCAL_UNKNOWN}};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 1);
+    (void)state;
+    for (size_t n = 0; n < UNIT_COUNT(cases); n++) {
+        const double tangent = tan(cases[n].angle * UNIT_PI / 180), middle = 499.5;
+        const double at[2] = {middle + 1000 * tangent, middle - 1000 / tangent};
+        asj_junction list[MANY];
+        asj_vanishing_options options;
+        asj_vanishing_points found;
+        synth_random random;
+        synth_random_seed(&random, 79);
+        memset(list, 0, sizeof list);
+        for (int32_t k = 0; k < MANY; k++) {
+            list[k].x = (float)synth_random_between(&random, 0, 1000);
+            list[k].y = (float)synth_random_between(&random, 0, 1000);
+            list[k].branch_count = 1;
+            list[k].branches[0] = (asj_branch){.length = 50, .angle_sd = 0.004F};
+            list[k].branches[0].angle = (float)atan2(middle - (double)list[k].y, at[k % 2] - (double)list[k].x);
+        }
+        asj_vanishing_options_init(&options);
+        options.width = options.height = 1000;
+        assert_int_equal(asj_find_vanishing_points(context, list, MANY, &options, &found), ASJ_OK);
+        assert_int_equal(found.focal_source, cases[n].source);
+        assert_true(found.count >= 2);
+        unit_near("focal length", cases[n].angle, 0, found.camera.fx, cases[n].source == ASJ_FOCAL_FOUND ? 1000 : 0, 30);
+    }
+    unit_context_free(&counter, &context);
+}
+
 /* Branches of any direction at any place: what is found is a false alarm; epsilon 0.01 allows none of 40 images, nearly always. */
 static void chance_has_no_directions(void **state)
 {
@@ -277,6 +315,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rooms_have_three_directions), cmocka_unit_test(near_points_are_one),
+        cmocka_unit_test(a_focal_length_is_known_or_not),
         cmocka_unit_test(chance_has_no_directions),
         cmocka_unit_test(bad_input_is_refused), cmocka_unit_test(it_can_be_cancelled),
         cmocka_unit_test(it_asks_often),
