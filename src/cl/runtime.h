@@ -89,7 +89,7 @@ asj_status asj_cl_kernel_limits(asj_context *context, const char *kernel, size_t
 /* Waits until everything in the queue is done. */
 asj_status asj_cl_finish(asj_context *context);
 
-/* ---- device time ---- */
+/* ---- device time: what tests and benchmarks ask; the library itself never does ---- */
 
 typedef struct asj_cl_time {
     const char *name; /* of the kernel, or "write", "read", "zero"; a static string */
