@@ -75,8 +75,9 @@ ASJ_API void asj_features_get_info(const asj_features *features, asj_features_in
  * call with capacity 0 tells the size; 0 for NULL features. */
 ASJ_API size_t asj_features_save(const asj_features *features, void *bytes, size_t capacity);
 
-/* Features from bytes. What is not among the bytes is computed once more, so that they equal those that were saved, but for the
- * geometry of the options, which concerns pairs and is that of preset `default` again; and damaged or hostile bytes can do no more
+/* Features from bytes. What is not among the bytes is computed once more, so that they equal those that were saved (where the C
+ * library is another one, whose cos or log may differ in the last digit: but for that), except the geometry of the options, which
+ * concerns pairs and is that of preset `default` again; and damaged or hostile bytes can do no more
  * than any other image and junctions. On success *features belongs to the caller until asj_features_free(). One call at a time for
  * a context.
  *
