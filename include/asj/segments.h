@@ -55,8 +55,9 @@ typedef struct asj_segment_list {
  *
  * Made for junctions of preset default: those of preset match have many weak branches and are of all octaves side by side, which
  * the segments then show, too. The same junctions give the same list. Progress comes as ASJ_STAGE_DECOMPOSE. Time: 50 ms for 19 000
- * branches of a photograph; for 100 000 that lie anywhere in 16 megapixels .5 s where they are 30 px long, 10 s where they are 300.
- * Memory while it works: 550 bytes a junction with two branches of 30 px, 870 with two of 300, 1620 with two of 1000.
+ * branches of a photograph; for 100 000 that lie anywhere in 16 megapixels 1 s where they are 30 px long, 4 s where they are 300,
+ * 25 where they are 1000, growing with their number squared (tests/benchmark/README.md).
+ * Memory while it works: 580 bytes a junction with two branches of 30 px, 900 with two of 300, 2110 with two of 1000.
  * Thread safety: one call at a time per context.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that cannot be (asj_junction_check()); an edge of a branch that is not there

@@ -18,7 +18,6 @@
 #include <math.h>
 
 #define BESIDE 6.0    /* px */
-#define MOST_TURN 0.1 /* sine of the angle between them: 6 degrees */
 
 static double cross(asj_end_point d, asj_end_point from, asj_end_point to)
 {
@@ -47,7 +46,7 @@ int32_t asj_find_bend(const asj_segment *longer, const asj_segment *shorter, asj
         return 0;
     const asj_end_point d = {(end.x - a.x) / length, (end.y - a.y) / length};
     const double beside_b = cross(d, a, b), beside_far = cross(d, a, far);
-    if (!(beside_b * beside_far < 0 && fabs(beside_far - beside_b) <= MOST_TURN * of_shorter))
+    if (!(beside_b * beside_far < 0 && fabs(beside_far - beside_b) <= ASJ_BEND_TURN * of_shorter))
         return 0;
     const double at_b = along(d, a, b), at_far = along(d, a, far);
     const double at = at_b + (at_far - at_b) * beside_b / (beside_b - beside_far);

@@ -13,6 +13,8 @@ typedef struct asj_bend {
     int32_t beyond[2];   /* whether the other one goes on beyond the longer's own end, and beyond the shorter's */
 } asj_bend;
 
+#define ASJ_BEND_TURN 0.1 /* sine of the largest angle between them: 6 degrees */
+
 /* Whether both are such halves. A segment's own end is its first. */
 int32_t asj_find_bend(const asj_segment *longer, const asj_segment *shorter, asj_bend *bend);
 

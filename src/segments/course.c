@@ -3,6 +3,7 @@
  *
  *     across = (d x (p - a)) / |d|,   along = d . (p - a) / |d|. */
 #include "course.h"
+#include "core/angle.h"
 
 #include <math.h>
 
@@ -31,6 +32,14 @@ int32_t asj_course_along(const asj_end_point longer[2], const asj_end_point shor
     c->same_end = asj_same_end(c->length);
     c->overlap = asj_same_end(of_shorter);
     return fabs(c->at[1] - c->at[0]) >= ALONG * of_shorter && length2 > 0;
+}
+
+/* Both ends within ASJ_OFF_LINE of the line, and ALONG. */
+double asj_course_most_turn(double of_shorter)
+{
+    if (!(of_shorter > 0))
+        return ASJ_PI;
+    return fmin(acos(ALONG), asin(fmin(1, 2 * ASJ_OFF_LINE / of_shorter)));
 }
 
 int32_t asj_course_is_back(const asj_course *c)

@@ -30,6 +30,9 @@ typedef struct asj_course {
  * such line. */
 int32_t asj_course_along(const asj_end_point longer[2], const asj_end_point shorter[2], asj_course *c);
 
+/* rad: a shorter one of this length is turned by no more, or by half a turn and no more, when it lies along. */
+double asj_course_most_turn(double of_shorter);
+
 /* Whether the shorter goes the other way. */
 int32_t asj_course_is_back(const asj_course *c);
 

@@ -42,12 +42,13 @@ typedef struct partner_search {
     uint32_t mark; /* of this search, in `asked` */
     uint32_t best; /* the first that the segment is a part of an edge with; at first one beyond all */
     int32_t (*compare)(struct partner_search *search, uint32_t k);
+    double turn; /* rad: what is turned by more is none */
     asj_course course;
     asj_bend bend;
     uint32_t goes_on[2]; /* where the other one goes on beyond an end (bend.beyond), a branch of what lies there */
 } partner_search;
 
-static void look_in_cell(partner_search *p, uint32_t first)
+static void look_in_class(partner_search *p, uint32_t first)
 {
     for (uint32_t at = first; at; at = p->w->cells.entries[at].next) {
         const uint32_t k = p->w->cells.entries[at].segment;
@@ -59,17 +60,24 @@ static void look_in_cell(partner_search *p, uint32_t first)
     }
 }
 
+static void look_in_cell(partner_search *p, const uint32_t *first_of, asj_cell_classes classes)
+{
+    for (int32_t n = 0, class = classes.next; n < classes.count; n++, class = class + 1 < p->w->cells.classes ? class + 1 : 0)
+        look_in_class(p, first_of[class]);
+}
+
 /* The longest before that it is a part of an edge with. */
 static void find_longer(partner_search *p)
 {
     const asj_segment_cells *cells = &p->w->cells;
     const asj_end_point ends[2] = {asj_segment_end(p->s, 0), asj_segment_end(p->s, 1)};
+    const asj_cell_classes classes = asj_segment_cells_classes(cells, ends, p->turn);
     int32_t first, last;
     asj_segment_cells_rows(cells, ends, 0, &first, &last);
     for (int32_t row = first; row <= last; row++) {
         const asj_cell_run run = asj_segment_cells_run(cells, ends, 0, row);
         for (int32_t column = run.first; column <= run.last; column++)
-            look_in_cell(p, cells->first[(size_t)row * (size_t)cells->columns + (size_t)column]);
+            look_in_cell(p, asj_segment_cells_first(cells, row, column), classes);
     }
 }
 
@@ -99,7 +107,8 @@ static asj_status join_once(asj_joining *w, int32_t *moved)
     asj_segment_cells_clear(&w->cells);
     for (uint32_t i = 0; i < w->count && !asj_watch_stops(&w->watch, NULL); i++) {
         const asj_segment s = w->segments[i];
-        partner_search p = {.w = w, .s = &s, .mark = i + 1, .best = kept, .compare = is_one_edge};
+        partner_search p = {.w = w, .s = &s, .mark = i + 1, .best = kept, .compare = is_one_edge,
+                            .turn = asj_course_most_turn(sqrt(asj_segment_length2(&s)))};
         find_longer(&p);
         const uint32_t k = p.best;
         int32_t changed = k == kept;
@@ -203,7 +212,7 @@ static asj_status join_halves(asj_joining *w)
     asj_segment_cells_clear(&w->cells);
     for (uint32_t i = 0; i < w->count && !asj_watch_stops(&w->watch, NULL); i++) {
         asj_segment s = w->segments[i];
-        partner_search p = {.w = w, .s = &s, .mark = i + 1, .best = kept, .compare = is_bent};
+        partner_search p = {.w = w, .s = &s, .mark = i + 1, .best = kept, .compare = is_bent, .turn = asin(ASJ_BEND_TURN)};
         find_longer(&p);
         const uint32_t k = p.best;
         int32_t good = 1;
@@ -233,7 +242,7 @@ static int32_t make_cells(asj_joining *w)
         left = fmin(left, p.x), right = fmax(right, p.x);
         top = fmin(top, p.y), bottom = fmax(bottom, p.y);
     }
-    return asj_segment_cells_make(&w->context->memory, left, top, right, bottom, &w->cells);
+    return asj_segment_cells_make(&w->context->memory, left, top, right, bottom, w->count, &w->cells);
 }
 
 asj_status asj_join_segments(asj_joining *w)

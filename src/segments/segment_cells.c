@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* A segment is in the cells that its strip, `margin` px to all sides, reaches: of each row of cells those columns between which the
  * part of the segment lies that is within `margin` of the row. So two segments that come within `margin` px of each other share a
- * cell when one was added with that margin and the other is asked for without. (SLACK: rounding.) */
+ * cell when one was added with that margin and the other is asked for without. (SLACK: rounding.)
+ *
+ * Where many long ones cross, most of those in a cell go another way: each is kept by its direction, too, in as many classes as
+ * make CLASS_SHARE of them for each segment, over all cells. */
 #include "segment_cells.h"
+#include "core/angle.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,21 +15,29 @@
 #define MOST 256  /* .. where so many cover the width and the height */
 #define SLACK 0.01 /* px */
 #define FEW 256    /* entries to begin with */
+#define MOST_CLASSES 64
+#define CLASS_SHARE 4
+#define SLACK_TURN 0.01 /* rad: rounding, but of .. */
+#define TOO_SHORT 1e-9  /* .. what is shorter than this part of it all, whose direction rounding may decide */
 
 static int32_t cells_over(double length, double side)
 {
     return (int32_t)fmin(floor(length / side) + 1, MOST + 1);
 }
 
-int32_t asj_segment_cells_make(asj_memory *memory, double left, double top, double right, double bottom, asj_segment_cells *cells)
+int32_t asj_segment_cells_make(asj_memory *memory, double left, double top, double right, double bottom, size_t segments,
+                               asj_segment_cells *cells)
 {
     memset(cells, 0, sizeof *cells);
     cells->left = left;
     cells->top = top;
-    cells->side = fmax(SIDE, fmax(right - left, bottom - top) / MOST);
+    cells->extent = fmax(right - left, bottom - top);
+    cells->side = fmax(SIDE, cells->extent / MOST);
     cells->columns = cells_over(right - left, cells->side);
     cells->rows = cells_over(bottom - top, cells->side);
-    cells->first = asj_allocate_zero(memory, (size_t)cells->columns * (size_t)cells->rows, sizeof *cells->first);
+    const size_t places = (size_t)cells->columns * (size_t)cells->rows, classes = CLASS_SHARE * segments / places;
+    cells->classes = classes < 1 ? 1 : classes < MOST_CLASSES ? (int32_t)classes : MOST_CLASSES;
+    cells->first = asj_allocate_zero(memory, places * (size_t)cells->classes, sizeof *cells->first);
     cells->entries = asj_allocate(memory, FEW, sizeof *cells->entries);
     cells->capacity = FEW;
     cells->count = 1;
@@ -37,7 +49,7 @@ int32_t asj_segment_cells_make(asj_memory *memory, double left, double top, doub
 
 void asj_segment_cells_clear(asj_segment_cells *cells)
 {
-    memset(cells->first, 0, (size_t)cells->columns * (size_t)cells->rows * sizeof *cells->first);
+    memset(cells->first, 0, (size_t)cells->columns * (size_t)cells->rows * (size_t)cells->classes * sizeof *cells->first);
     cells->count = 1;
 }
 
@@ -77,7 +89,24 @@ asj_cell_run asj_segment_cells_run(const asj_segment_cells *cells, const asj_end
                           cell_of(fmax(one, other) + margin - cells->left, cells->side, cells->columns)};
 }
 
-static int32_t add_to_run(asj_memory *memory, asj_segment_cells *cells, asj_cell_run run, uint32_t segment)
+/* In classes, from 0 on; what has no length goes some way. */
+static double direction_of(const asj_segment_cells *cells, const asj_end_point ends[2])
+{
+    const double angle = atan2(ends[1].y - ends[0].y, ends[1].x - ends[0].x);
+    return (angle < 0 ? angle + ASJ_PI : angle) / ASJ_PI * cells->classes;
+}
+
+asj_cell_classes asj_segment_cells_classes(const asj_segment_cells *cells, const asj_end_point ends[2], double turn)
+{
+    const double length = hypot(ends[1].x - ends[0].x, ends[1].y - ends[0].y), middle = direction_of(cells, ends);
+    const double aside = (turn + SLACK_TURN) / ASJ_PI * cells->classes;
+    const int32_t first = (int32_t)floor(middle - aside), count = (int32_t)floor(middle + aside) - first + 1;
+    if (count >= cells->classes || !(length > TOO_SHORT * cells->extent))
+        return (asj_cell_classes){0, cells->classes};
+    return (asj_cell_classes){(first + cells->classes) % cells->classes, count};
+}
+
+static int32_t add_to_run(asj_memory *memory, asj_segment_cells *cells, asj_cell_run run, int32_t class, uint32_t segment)
 {
     void *entries = cells->entries;
     const size_t more = (size_t)(run.last - run.first) + 1;
@@ -86,7 +115,7 @@ static int32_t add_to_run(asj_memory *memory, asj_segment_cells *cells, asj_cell
         return 0;
     cells->entries = entries;
     for (int32_t column = run.first; column <= run.last; column++) {
-        uint32_t *first = &cells->first[(size_t)run.row * (size_t)cells->columns + (size_t)column];
+        uint32_t *first = asj_segment_cells_first(cells, run.row, column) + class;
         cells->entries[cells->count] = (asj_cell_entry){segment, *first};
         *first = (uint32_t)cells->count++;
     }
@@ -95,9 +124,10 @@ static int32_t add_to_run(asj_memory *memory, asj_segment_cells *cells, asj_cell
 
 int32_t asj_segment_cells_add(asj_memory *memory, asj_segment_cells *cells, const asj_end_point ends[2], uint32_t segment)
 {
+    const int32_t class = (int32_t)direction_of(cells, ends) % cells->classes; /* half a turn is none */
     int32_t first, last, added = 1;
     asj_segment_cells_rows(cells, ends, ASJ_OFF_LINE, &first, &last);
     for (int32_t row = first; row <= last && added; row++)
-        added = add_to_run(memory, cells, asj_segment_cells_run(cells, ends, ASJ_OFF_LINE, row), segment);
+        added = add_to_run(memory, cells, asj_segment_cells_run(cells, ends, ASJ_OFF_LINE, row), class, segment);
     return added;
 }
