@@ -67,8 +67,8 @@ static const cli_option region_options[] = {
 static const cli_option direction_options[] = {
     {VANISHING_POINTS, 0, "vanishing-points", NULL, "json: where parallel edges of the scene meet, up to three directions"},
     {CAMERA, 0, "camera", "FX,FY,CX,CY",
-     "focal lengths and principal point, px: then the directions are at right angles. Default: the focal length is found where two "
-     "directions determine it"},
+     "focal lengths and principal point, px; pixel centres are at integers (COLMAP's CX and CY less 0.5). Then the directions are "
+     "at right angles. Default: the focal length is found where two directions determine it"},
 };
 
 static const cli_option plot_options[] = {
