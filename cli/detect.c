@@ -203,12 +203,12 @@ static int detect_all(run *r, const cli_outputs *outputs)
     return result;
 }
 
-int cli_detect(int argc, char **argv)
+int cli_detect(int argc, char **argv, const cli_other *other)
 {
     cli_detect_arguments arguments;
     cli_outputs outputs = {0};
     run r = {0};
-    int result = cli_detect_arguments_read(argc, argv, &arguments);
+    int result = cli_detect_arguments_read(argc, argv, other, &arguments);
     if (result == CLI_SUCCESS) {
         r.arguments = &arguments;
         result = cli_region_read_mask(&r.session, &arguments.region, arguments.common.max_pixels, &r.mask); /* before any folder */

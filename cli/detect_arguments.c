@@ -242,14 +242,14 @@ static void choose_preset(cli_detect_arguments *arguments)
         cli_note("asj-cli detect: warning: features of --preset default give fewer matches than those of --preset match");
 }
 
-int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *arguments)
+typedef struct detect_syntax {
+    cli_group groups[6];
+    cli_table table;
+    cli_syntax syntax;
+} detect_syntax;
+
+static void fill_syntax(cli_detect_arguments *arguments, const cli_other *other, detect_syntax *room)
 {
-    int first = argc;
-    memset(arguments, 0, sizeof *arguments);
-    cli_common_init(&arguments->common);
-    arguments->preset = -1;
-    if (!cli_settings_create(&arguments->settings, argc))
-        return CLI_FAILED;
     const cli_group groups[] = {
         {"Results", output_options, sizeof output_options / sizeof output_options[0], take_output, arguments},
         {"Where", region_options, sizeof region_options / sizeof region_options[0], take_region, arguments},
@@ -258,12 +258,34 @@ int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *argum
         {"Preset", preset_options, sizeof preset_options / sizeof preset_options[0], take_preset, arguments},
         {"Running", cli_common_options, cli_common_option_count, cli_common_take, &arguments->common},
     };
-    const cli_table table = {"Detector", "", asj_detect_option_count, asj_detect_option, cli_detect_option_value, cli_settings_take,
-                             &arguments->settings};
-    const cli_syntax syntax = {"detect", introduction, conclusion, groups, sizeof groups / sizeof groups[0], &table, 1};
-    int result = cli_parse(&syntax, argc, argv, &first);
+    memcpy(room->groups, groups, sizeof groups);
+    room->table = (cli_table){"Detector", "", asj_detect_option_count, asj_detect_option, cli_detect_option_value,
+                              cli_settings_take, &arguments->settings};
+    room->syntax = (cli_syntax){"detect", introduction, conclusion, room->groups, sizeof groups / sizeof groups[0], &room->table, 1,
+                                other};
+}
+
+int cli_detect_has_option(const char *name, size_t length)
+{
+    cli_detect_arguments arguments;
+    detect_syntax room;
+    fill_syntax(&arguments, NULL, &room);
+    return cli_has_option(&room.syntax, name, length);
+}
+
+int cli_detect_arguments_read(int argc, char **argv, const cli_other *other, cli_detect_arguments *arguments)
+{
+    int first = argc;
+    detect_syntax room;
+    memset(arguments, 0, sizeof *arguments);
+    cli_common_init(&arguments->common);
+    arguments->preset = -1;
+    if (!cli_settings_create(&arguments->settings, argc))
+        return CLI_FAILED;
+    fill_syntax(arguments, other, &room);
+    int result = cli_parse(&room.syntax, argc, argv, &first);
     if (result == CLI_HELP)
-        cli_help(&syntax, argc, argv);
+        cli_help(&room.syntax, argc, argv);
     if (result != CLI_SUCCESS)
         return result;
     result = cli_image_list_make(argv + first, (size_t)(argc - first), arguments->files_from, &arguments->images);

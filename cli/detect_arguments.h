@@ -5,6 +5,7 @@
 
 #include "common.h"
 #include "image_list.h"
+#include "parse.h"
 #include "plot.h"
 #include "region.h"
 #include "settings.h"
@@ -37,8 +38,11 @@ typedef struct cli_detect_arguments {
 
 /* Reads argv[1 ..] (argv[0] is "detect"). CLI_SUCCESS, CLI_HELP after printing the help, CLI_USAGE or CLI_FAILED after saying why.
  * cli_detect_arguments_free() in every case. */
-int cli_detect_arguments_read(int argc, char **argv, cli_detect_arguments *arguments);
+int cli_detect_arguments_read(int argc, char **argv, const cli_other *other, cli_detect_arguments *arguments);
 void cli_detect_arguments_free(cli_detect_arguments *arguments);
+
+/* Whether `asj-cli detect` has an option of that name, `length` characters without the dashes. */
+int cli_detect_has_option(const char *name, size_t length);
 
 /* The format of the result files: ASJ_FILE_... or this one, and the end of their names. */
 #define CLI_FILE_FEATURES 100

@@ -71,8 +71,9 @@ static int print_list(void)
     return CLI_SUCCESS;
 }
 
-int cli_devices(int argc, char **argv)
+int cli_devices(int argc, char **argv, const cli_other *other)
 {
+    (void)other;
     if (argc == 1)
         return print_list();
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {

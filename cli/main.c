@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj-cli: the library's functions as a program. */
 #include "detect.h"
+#include "detect_arguments.h"
 #include "devices.h"
 #include "interrupt.h"
 #include "match.h"
+#include "match_arguments.h"
 #include "message.h"
 #include "plot.h"
 #include "spelling.h"
@@ -17,13 +19,14 @@
 typedef struct command {
     const char *name;
     const char *summary;
-    int (*run)(int argc, char **argv);
+    int (*run)(int argc, char **argv, const cli_other *other);
+    cli_other other; /* whose options may be meant for this one */
 } command;
 
 static const command commands[] = {
-    {"detect", "find the junctions in photographs", cli_detect},
-    {"match", "find the same corners in two photographs", cli_match},
-    {"devices", "list what can compute", cli_devices},
+    {"detect", "find the junctions in photographs", cli_detect, {"match", cli_match_has_option}},
+    {"match", "find the same corners in two photographs", cli_match, {"detect", cli_detect_has_option}},
+    {"devices", "list what can compute", cli_devices, {NULL, NULL}},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
@@ -103,7 +106,7 @@ static int run_command(int argc, char **argv)
     }
     for (size_t i = 0; i < COMMAND_COUNT; i++)
         if (strcmp(commands[i].name, name) == 0)
-            return commands[i].run(argc - 1, argv + 1);
+            return commands[i].run(argc - 1, argv + 1, &commands[i].other);
     return say_unknown(argc, argv);
 }
 

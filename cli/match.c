@@ -293,11 +293,11 @@ static int run_all(run *r)
     return result;
 }
 
-int cli_match(int argc, char **argv)
+int cli_match(int argc, char **argv, const cli_other *other)
 {
     cli_match_arguments arguments;
     run r = {0};
-    int result = cli_match_arguments_read(argc, argv, &arguments);
+    int result = cli_match_arguments_read(argc, argv, other, &arguments);
     if (result == CLI_SUCCESS)
         result = cli_match_check(&arguments);
     if (result == CLI_SUCCESS) {

@@ -2,7 +2,9 @@
 #ifndef ASJ_CLI_MATCH_H
 #define ASJ_CLI_MATCH_H
 
-/* `asj-cli match`: argv[0] is "match". Returns the exit code. */
-int cli_match(int argc, char **argv);
+#include "parse.h"
+
+/* `asj-cli match`: argv[0] is "match". `other` may have options that it lacks. Returns the exit code. */
+int cli_match(int argc, char **argv, const cli_other *other);
 
 #endif

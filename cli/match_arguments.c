@@ -262,12 +262,14 @@ static void start(cli_match_arguments *arguments)
     arguments->focal_sd = -1;
 }
 
-int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *arguments)
+typedef struct match_syntax {
+    cli_group groups[6];
+    cli_table tables[2];
+    cli_syntax syntax;
+} match_syntax;
+
+static void fill_syntax(cli_match_arguments *arguments, const cli_other *other, match_syntax *room)
 {
-    int first = argc;
-    start(arguments);
-    if (!cli_settings_create(&arguments->detect_settings, argc) || !cli_settings_create(&arguments->match_settings, argc))
-        return CLI_FAILED;
     const cli_group groups[] = {
         {"Results", output_options, sizeof output_options / sizeof output_options[0], take_output, arguments},
         {"Junctions", input_options, sizeof input_options / sizeof input_options[0], take_input, arguments},
@@ -282,10 +284,31 @@ int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *argumen
         {"Matcher", "match", asj_match_option_count, asj_match_option, cli_match_option_value, cli_settings_take,
          &arguments->match_settings},
     };
-    const cli_syntax syntax = {"match", introduction, conclusion, groups, sizeof groups / sizeof groups[0], tables, 2};
-    int result = cli_parse(&syntax, argc, argv, &first);
+    memcpy(room->groups, groups, sizeof groups);
+    memcpy(room->tables, tables, sizeof tables);
+    room->syntax = (cli_syntax){"match", introduction, conclusion, room->groups, sizeof groups / sizeof groups[0], room->tables, 2,
+                                other};
+}
+
+int cli_match_has_option(const char *name, size_t length)
+{
+    cli_match_arguments arguments;
+    match_syntax room;
+    fill_syntax(&arguments, NULL, &room);
+    return cli_has_option(&room.syntax, name, length);
+}
+
+int cli_match_arguments_read(int argc, char **argv, const cli_other *other, cli_match_arguments *arguments)
+{
+    int first = argc;
+    match_syntax room;
+    start(arguments);
+    if (!cli_settings_create(&arguments->detect_settings, argc) || !cli_settings_create(&arguments->match_settings, argc))
+        return CLI_FAILED;
+    fill_syntax(arguments, other, &room);
+    int result = cli_parse(&room.syntax, argc, argv, &first);
     if (result == CLI_HELP)
-        cli_help(&syntax, argc, argv);
+        cli_help(&room.syntax, argc, argv);
     if (result == CLI_SUCCESS)
         result = apply_settings(arguments);
     return result == CLI_SUCCESS ? take_images(arguments, argv + first, argc - first) : result;

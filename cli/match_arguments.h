@@ -4,6 +4,7 @@
 #define ASJ_CLI_MATCH_ARGUMENTS_H
 
 #include "common.h"
+#include "parse.h"
 #include "plot_match.h"
 #include "region.h"
 #include "settings.h"
@@ -50,8 +51,11 @@ extern const char *const cli_match_formats[];
 
 /* Reads argv[1 ..] (argv[0] is "match"); match_checks.h says what goes with what. CLI_SUCCESS, CLI_HELP after printing the help,
  * CLI_USAGE or CLI_FAILED after saying why. cli_match_arguments_free() in every case. */
-int cli_match_arguments_read(int argc, char **argv, cli_match_arguments *arguments);
+int cli_match_arguments_read(int argc, char **argv, const cli_other *other, cli_match_arguments *arguments);
 void cli_match_arguments_free(cli_match_arguments *arguments);
+
+/* Whether `asj-cli match` has an option of that name, `length` characters without the dashes. */
+int cli_match_has_option(const char *name, size_t length);
 
 /* ASJ_FILE_CSV or ASJ_FILE_JSON */
 int32_t cli_match_file_format(const cli_match_arguments *arguments);

@@ -147,6 +147,24 @@ static int make_tables(const cli_syntax *syntax, getopt_tables *tables)
     return 1;
 }
 
+static int has_name(const getopt_tables *tables, const char *name, size_t length)
+{
+    for (const struct option *option = tables->long_options; option->name; option++)
+        if (strlen(option->name) == length && memcmp(option->name, name, length) == 0)
+            return 1;
+    return 0;
+}
+
+int cli_has_option(const cli_syntax *syntax, const char *name, size_t length)
+{
+    getopt_tables tables;
+    if (!make_tables(syntax, &tables))
+        return 0;
+    const int has = has_name(&tables, name, length);
+    free_tables(&tables);
+    return has;
+}
+
 /* With the names that are spelled most nearly like the first `length` characters of `text`. */
 static int say_like(const cli_syntax *syntax, const getopt_tables *tables, const char *text, size_t length)
 {
@@ -159,8 +177,24 @@ static int say_like(const cli_syntax *syntax, const getopt_tables *tables, const
             best = option->name;
         }
     }
-    return cli_usage_error(syntax->command, "there is no option '%s'%s%s", text, best ? "; did you mean: --" : "",
-                           best ? best : "");
+    const int elsewhere = length > 2 && syntax->other->has_option(text + 2, length - 2);
+    return cli_usage_error(syntax->command, "there is no option '%s'%s%s%s%s", text, elsewhere ? ": it is one of asj-cli " : "",
+                           elsewhere ? syntax->other->command : "", best ? "; did you mean: --" : "", best ? best : "");
+}
+
+/* With the names that begin so, or the first of them. */
+static int say_ambiguous(const cli_syntax *syntax, const getopt_tables *tables, const char *text, size_t length, size_t beginnings)
+{
+    enum { MOST = 8 };
+    char names[MOST * (CLI_NAME_SIZE + 4) + 16] = "";
+    size_t used = 0, n = 0;
+    for (const struct option *option = tables->long_options; option->name && n < MOST; option++)
+        if (strncmp(option->name, text + 2, length - 2) == 0) {
+            const char *before = n == 0 ? "" : n + 1 == beginnings ? " or " : ", ";
+            used += (size_t)snprintf(names + used, sizeof names - used, "%s--%.*s", before, CLI_NAME_SIZE - 1, option->name);
+            n++;
+        }
+    return cli_usage_error(syntax->command, "'%s' could be %s%s", text, names, beginnings > MOST ? ", ..." : "");
 }
 
 /* What was wrong with the option that getopt_long() stopped at: `text` is "--name" or "--name=value", or holds "-x". */
@@ -174,7 +208,7 @@ static int say_unknown(const cli_syntax *syntax, const getopt_tables *tables, co
     for (const struct option *option = tables->long_options; option->name && length > 2; option++)
         beginnings += strncmp(option->name, text + 2, length - 2) == 0;
     if (beginnings > 1)
-        return cli_usage_error(syntax->command, "'%s' could be one of several options", text);
+        return say_ambiguous(syntax, tables, text, length, beginnings);
     return say_like(syntax, tables, text, length);
 }
 

@@ -33,6 +33,12 @@ typedef struct cli_table {
     void *target;
 } cli_table;
 
+/* Another command, which may have an option that this one lacks. */
+typedef struct cli_other {
+    const char *command;
+    int (*has_option)(const char *name, size_t length); /* cli_has_option() with its syntax */
+} cli_other;
+
 typedef struct cli_syntax {
     const char *command;      /* "detect" */
     const char *introduction; /* of the help: synopsis, what it does, examples */
@@ -41,6 +47,7 @@ typedef struct cli_syntax {
     size_t group_count;
     const cli_table *tables;
     size_t table_count;
+    const cli_other *other;
 } cli_syntax;
 
 /* Longest name of a table row on the command line, with its end. */
@@ -54,6 +61,9 @@ void cli_option_name(const cli_syntax *syntax, size_t table, const char *key, ch
  * the first. Returns CLI_SUCCESS, CLI_HELP (--help, --advanced or --list-options was met; the rest is not looked at), CLI_USAGE or
  * CLI_FAILED (no memory). May be called once. */
 int cli_parse(const cli_syntax *syntax, int argc, char **argv, int *first_operand);
+
+/* Whether there is an option of exactly that name, `length` characters without the dashes. */
+int cli_has_option(const cli_syntax *syntax, const char *name, size_t length);
 
 /* The words of a choice: index of `text` in the NULL-terminated `words`, or -1. */
 int cli_find_word(const char *const *words, const char *text);
