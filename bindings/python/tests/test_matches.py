@@ -226,6 +226,12 @@ def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:
         asj.match(*pair, camera1=500)
     for wrong in ((1, 2), -5.0, np.full((3, 3), np.nan)):
         with pytest.raises(asj.ArgumentError):
+    matrix = np.array([[500, 0, 239.5], [0, 500, 179.5], [0, 0, 1]])
+    for bad, why in ((matrix.T, r"last row of a matrix K is \(0, 0, 1\), not \(239.5, 179.5, 1\): is it transposed"),
+                     (matrix * [[1], [1], [0]], "last row"), (matrix + [[0, 0, 0], [9, 0, 0], [0, 0, 0]], "second row, not 9")):
+        with pytest.raises(asj.ArgumentError, match=why):
+            asj.match(*pair, geometry="auto", camera1=bad)
+    assert asj.match(*pair, geometry="auto", camera1=2 * matrix).geometry  # of any scale
             asj.match(*pair, geometry="auto", camera1=wrong)
 
 

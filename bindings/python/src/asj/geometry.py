@@ -92,13 +92,22 @@ def fill(
 
 
 LARGEST_SKEW = 1e-3  # of the focal length: less is no half pixel at the border
+LARGEST_LAST = 1e-9  # of what is 0 in the last row: rounding
 
 
 def numbers(camera: ArrayLike, width: int, height: int) -> tuple[float, float, float, float]:
-    """Focal lengths and principal point of a matrix K, of (fx, fy, cx, cy), or of a focal length alone."""
+    """Focal lengths and principal point of a matrix K of any scale, of (fx, fy, cx, cy), or of a focal length alone."""
     values = np.asarray(camera, np.float64)
+    if not np.isfinite(values).all():
+        raise ArgumentError("a camera must have finite numbers")
     if values.shape == (3, 3):
         values = values / values[2, 2] if values[2, 2] else values
+        if not np.allclose(values[2], (0, 0, 1), rtol=0, atol=LARGEST_LAST):
+            raise ArgumentError(
+                f"the last row of a matrix K is (0, 0, 1), not ({', '.join(f'{number:g}' for number in values[2])}): is it transposed?"
+            )
+        if abs(values[1, 0]) > LARGEST_SKEW * abs(values[1, 1]):
+            raise ArgumentError(f"a matrix K has 0 in the first column of its second row, not {values[1, 0]:g}")
         if abs(values[0, 1]) > LARGEST_SKEW * abs(values[0, 0]):
             raise ArgumentError("a camera with skew: undistort the image, or leave the skew out")
         numbers = [values[0, 0], values[1, 1], values[0, 2], values[1, 2]]
@@ -108,8 +117,8 @@ def numbers(camera: ArrayLike, width: int, height: int) -> tuple[float, float, f
         numbers = [float(values), float(values), (width - 1) / 2, (height - 1) / 2]
     else:
         raise ArgumentError(f"a camera of shape {values.shape}: a matrix K (3, 3), (fx, fy, cx, cy), or a focal length in pixels")
-    if not np.isfinite(numbers).all() or numbers[0] <= 0 or numbers[1] <= 0:
-        raise ArgumentError("a camera must have finite numbers and focal lengths above 0")
+    if numbers[0] <= 0 or numbers[1] <= 0:
+        raise ArgumentError("a camera must have focal lengths above 0")
     return float(numbers[0]), float(numbers[1]), float(numbers[2]), float(numbers[3])
 
 

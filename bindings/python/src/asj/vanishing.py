@@ -44,8 +44,8 @@ def vanishing_points(
 ) -> VanishingPoints:
     """Where the parallel edges of the scene meet, by the branches of an image's junctions.
 
-    camera    a matrix K (3, 3), (fx, fy, cx, cy) or a focal length in pixels. Without one the focal length is found where two
-              directions determine it
+    camera    a matrix K (3, 3), (fx, fy, cx, cy) or a focal length in pixels; pixel centres are at integers (COLMAP's cx and cy less
+              0.5). Without one the focal length is found where two directions determine it
     epsilon   how many chance directions an image without any may show on average
 
     >>> import asj, numpy as np
