@@ -118,6 +118,8 @@ def test_options() -> None:
     assert asj.detect(square(), isotropic_radii=(5, 9), strip_test=False).options["isotropic_radii"] == "5,9"
     with pytest.raises(asj.OptionError, match="did you mean minimum_length"):
         asj.detect(square(), minimum_lenght=3)
+    with pytest.raises(asj.OptionError, match=r"'ratio': it is one of asj.match\(\)"):
+        asj.detect(square(), ratio=1.8)
     with pytest.raises(asj.OptionError, match="did you mean region"):
         asj.detect(square(), regoin=(0, 0, 9, 9))
     with pytest.raises(asj.OptionError, match="0 .. 1000"):

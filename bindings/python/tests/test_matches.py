@@ -114,6 +114,8 @@ def test_options(pair: tuple[asj.Features, asj.Features]) -> None:
     assert len(asj.match(*pair, ratio=10)) <= len(asj.match(*pair))
     with pytest.raises(asj.OptionError, match="did you mean"):
         asj.match(*pair, ratoi=2)
+    with pytest.raises(asj.OptionError, match=r"'minimum_length': it is one of asj.detect\(\)"):
+        asj.match(*pair, minimum_length=9)
     with pytest.raises(asj.OptionError, match="did you mean geometry"):
         asj.match(*pair, geometri="auto")
     with pytest.raises(asj.OptionError, match="did you mean stretch"):

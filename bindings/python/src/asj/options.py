@@ -68,7 +68,7 @@ class _Table:
         status = self._set(options, key.encode(), _written(value).encode(), message, 512)
         said = text(message)
         if status != lib.ASJ_OK:
-            hint = "" if key in self.keys else _like(key, [*self.keys, *keywords])
+            hint = "" if key in self.keys else _elsewhere(self, key) or _like(key, [*self.keys, *keywords])
             raise error(status, (said or f"there is no option {key!r}") + hint)
         if said:
             warnings.warn(said, DeprecationWarning, stacklevel=5)
@@ -113,6 +113,12 @@ def _written(value: object) -> str:
 def _like(word: str, words: Iterable[str]) -> str:
     close = difflib.get_close_matches(word.replace("-", "_"), list(words), 2)
     return f"; did you mean {' or '.join(close)}?" if close else ""
+
+
+def _elsewhere(table: _Table, key: str) -> str:
+    """Where an option belongs that this table has not."""
+    other, function = (MATCHER, "match") if table is DETECTOR else (DETECTOR, "detect")
+    return f": it is one of asj.{function}()" if key in other.keys else ""
 
 
 PRESETS: dict[str, int] = {
