@@ -226,14 +226,14 @@ def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:
         asj.match(*pair, geometry="affine")
     with pytest.raises(asj.OptionError, match="changes nothing"):
         asj.match(*pair, camera1=500)
-    for wrong in ((1, 2), -5.0, np.full((3, 3), np.nan)):
-        with pytest.raises(asj.ArgumentError):
     matrix = np.array([[500, 0, 239.5], [0, 500, 179.5], [0, 0, 1]])
     for bad, why in ((matrix.T, r"last row of a matrix K is \(0, 0, 1\), not \(239.5, 179.5, 1\): is it transposed"),
                      (matrix * [[1], [1], [0]], "last row"), (matrix + [[0, 0, 0], [9, 0, 0], [0, 0, 0]], "second row, not 9")):
         with pytest.raises(asj.ArgumentError, match=why):
             asj.match(*pair, geometry="auto", camera1=bad)
     assert asj.match(*pair, geometry="auto", camera1=2 * matrix).geometry  # of any scale
+    for wrong in ((1, 2), -5.0, np.full((3, 3), np.nan)):
+        with pytest.raises(asj.ArgumentError):
             asj.match(*pair, geometry="auto", camera1=wrong)
 
 
@@ -276,6 +276,17 @@ def test_plots(tmp_path: Path, scene: Scene, pair: tuple[asj.Features, asj.Featu
     for number, axes in enumerate((asj.plot(scene, pair[0]), asj.plot_matches(scene, scene, asj.match(*pair)))):
         axes.figure.savefig(tmp_path / f"{number}.png")
         assert (tmp_path / f"{number}.png").stat().st_size > 10000
+    from asj.plot import _hues
+
+    with_legend, without = asj.plot(scene, pair[0]), asj.plot(scene, pair[0], legend=False)
+    assert len(without.child_axes) == 0 and "log10 NFA" in with_legend.child_axes[0].child_axes[0].get_xlabel()
+    assert len(asj.plot(scene[:100, :100], asj.detect(scene[:100, :100], preset="default")).child_axes) == 0  # no room
+    places = np.random.default_rng(1).uniform(0, 640, 300)  # neighbours have hues that differ, wherever they are
+    hues = _hues(places)[np.argsort(places)]
+    for step in (1, 2, 3):
+        apart = np.abs(hues[step:] - hues[:-step])
+        assert np.minimum(apart, 1 - apart).min() > 0.1
+    assert len(_hues(places[:0])) == 0
     deep = np.repeat(scene[:, :, None], 3, 2).astype(np.uint16) * 257
     shown = asj.plot(deep, pair[0]).images[0].get_array()
     assert np.abs(shown[:, :, 1].astype(float) / shown.max() - scene / scene.max()).max() < 0.01

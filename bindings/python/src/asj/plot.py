@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .errors import ImageError, extra
 from .features import Features
@@ -15,6 +15,12 @@ from .matches import Matches
 # The colours of asj-cli's plots: lightness falls all the way (cli/plot_color.c).
 _RAMP = ("#f4b00c", "#fb8b09", "#f9653b", "#e44a65", "#c63983", "#a1309a", "#772ba7", "#4a27a8", "#08259b")
 _SURE = 100  # -log10 NFA
+_LEGEND = 1.7, 0.36  # inches
+_WHEEL = (
+    "#e23439", "#c85d02", "#ab7302", "#928103", "#6c8e03", "#059a46", "#07957c", "#009298", "#098db2", "#0683df", "#616bfa", "#9657e8",
+    "#bb46c3",
+)  # fmt: skip
+_TURN = 0.6180339887498949  # of the hues from one match to the next: the golden section keeps any few in a row apart
 
 
 def _axes(axes: Any, width: float, height: float) -> Any:
@@ -31,8 +37,23 @@ def _show(axes: Any, image: ArrayLike) -> None:
     axes.set_autoscale_on(False)  # the picture's own frame, whatever is drawn
 
 
-def plot(image: ArrayLike, features: Features, axes: Any = None) -> Any:
-    """Junctions as dots and branches to their ends over the image, from orange (barely) to dark blue (log10 NFA of -100 and less).
+def _legend(axes: Any, colours: Any) -> None:
+    """A bar of what the colours mean, in the lower left corner of the picture, where that has room for it."""
+    width, height = np.array(_LEGEND) * axes.figure.dpi / axes.get_window_extent().size
+    if width > 0.6 or height > 0.3:
+        return
+    box = axes.inset_axes((0.01, 0.01, width, height), zorder=9, xticks=[], yticks=[], facecolor=(1, 1, 1, 0.8))
+    bar = box.inset_axes((0.06, 0.66, 0.88, 0.24))
+    bar.imshow(np.linspace(0, 1, 256)[None], cmap=colours, aspect="auto", extent=(0, _SURE, 0, 1))
+    bar.set(yticks=[], xticks=[0, _SURE / 2, _SURE], xticklabels=["0", f"-{_SURE // 2}", f"-{_SURE} and less"])
+    bar.get_xticklabels()[-1].set_horizontalalignment("right")
+    bar.tick_params(labelsize=6, length=2, pad=1)
+    bar.set_xlabel("log10 NFA", fontsize=6, labelpad=0)
+
+
+def plot(image: ArrayLike, features: Features, axes: Any = None, legend: bool = True) -> Any:
+    """Junctions as dots and branches to their ends over the image, from orange (barely) to dark blue (log10 NFA of -100 and less), which
+    the `legend` says where there is room for it.
 
     Returns matplotlib's axes.
     """
@@ -46,11 +67,14 @@ def plot(image: ArrayLike, features: Features, axes: Any = None) -> Any:
         collection(list(features.segments), array=sure[features.branches["junction"]], cmap=colours, linewidths=1, clim=(0, _SURE))
     )
     axes.scatter(features.xy[:, 0], features.xy[:, 1], s=9, c=sure, cmap=colours, vmin=0, vmax=_SURE)
+    if legend:
+        _legend(axes, colours)
     return axes
 
 
 def plot_matches(image1: ArrayLike, image2: ArrayLike, matches: Matches, axes: Any = None) -> Any:
-    """Both images side by side, their matched corners joined by a line and of one colour, by place in the first image.
+    """Both images side by side, their matched corners joined by a line and of one colour: the hues in turn, from left to right in the first
+    image, so that neighbours differ.
 
     Returns matplotlib's axes.
     """
@@ -61,17 +85,29 @@ def plot_matches(image1: ArrayLike, image2: ArrayLike, matches: Matches, axes: A
     canvas[: len(two), one.shape[1] :] = two
     axes = _axes(axes, canvas.shape[1], canvas.shape[0])
     _show(axes, canvas)
-    colour = 0.85 * matches.matches["x1"] / one.shape[1]  # of the circle of hues, so that left and right are not both red
+    colour = _hues(matches.matches["x1"])
+    hues = extra("matplotlib.colors", "plot").LinearSegmentedColormap.from_list("asj-order", _WHEEL)
     shift = np.array([one.shape[1], 0])
     corners = [np.stack([matches.matches["x" + side], matches.matches["y" + side]], 1) for side in "12"]
     corners[1] = corners[1] + shift
-    axes.add_collection(collection(list(np.stack(corners, 1)), array=colour, cmap="hsv", clim=(0, 1), linewidths=0.5, alpha=0.4))
+    axes.add_collection(collection(list(np.stack(corners, 1)), array=colour, cmap=hues, clim=(0, 1), linewidths=0.5, alpha=0.4))
     for side, offset, centre in zip("12", (0 * shift, shift), corners):
         for end in "ab":
             tip = np.stack([matches.matches[f"{end}x{side}"], matches.matches[f"{end}y{side}"]], 1) + offset
-            axes.add_collection(collection(list(np.stack([centre, tip], 1)), array=colour, cmap="hsv", clim=(0, 1), linewidths=1.2))
-        axes.scatter(centre[:, 0], centre[:, 1], s=9, c=colour, cmap="hsv", vmin=0, vmax=1)
+            axes.add_collection(collection(list(np.stack([centre, tip], 1)), array=colour, cmap=hues, clim=(0, 1), linewidths=1.2))
+        axes.scatter(centre[:, 0], centre[:, 1], s=9, c=colour, cmap=hues, vmin=0, vmax=1)
     return axes
+
+
+def _hues(x: NDArray[Any]) -> NDArray[np.float64]:
+    """Places among the hues, by rank.
+
+    >>> _hues(np.array([30.0, 10.0, 20.0])).round(2).tolist()
+    [0.24, 0.0, 0.62]
+    """
+    hues = np.empty(len(x))
+    hues[np.argsort(x, kind="stable")] = np.arange(len(x)) * _TURN % 1
+    return hues
 
 
 def _pixels(image: ArrayLike) -> Any:
