@@ -48,7 +48,7 @@ def test_names_and_pairs(photographs: Path, tmp_path: Path) -> None:
     assert read_pairs(listed, names) == [("a.png", "b.png"), ("a.png", "more/d.png")]
     listed.write_text('"a hall.png" a.png\n"more/d.png" "a hall.png" # "far\n')
     assert read_pairs(listed, ["a hall.png", *names]) == [("a hall.png", "a.png"), ("more/d.png", "a hall.png")]
-    refused = {"a.png": "two names", "a.png z.png": "no image z.png", "a.png a.png": "itself", 'a.png "b.png': "a quote that"}
+    refused = {"a.png": "two names", "a hall.png b.png": "3 words .a name with blanks stands in double", "a.png z.png": "no image z.png", "a.png a.png": "itself", 'a.png "b.png': "a quote that"}
     for text, why in refused.items():
         listed.write_text(text)
         with pytest.raises(ValueError, match=why):

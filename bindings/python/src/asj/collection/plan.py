@@ -91,7 +91,7 @@ def read_pairs(path: Path, names: Iterable[str]) -> list[tuple[str, str]]:
         if not words:
             continue
         if len(words) != 2:
-            raise ValueError(f"{path}, line {number}: two names of images, not {len(words)} words")
+            raise ValueError(f"{path}, line {number}: two names of images, not {len(words)} words (a name with blanks stands in double quotes)")
         for word in words:
             if word not in known:
                 raise ValueError(f"{path}, line {number}: there is no image {word}")
