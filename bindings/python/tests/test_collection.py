@@ -207,7 +207,10 @@ def test_bad_use(done: Path, photographs: Path, tmp_path: Path, capsys: pytest.C
     says([str(photographs)], "no output")
     says([str(tmp_path / "nowhere"), *limap], "not a folder")
     says([str(photographs), *limap], "is there already")
-    says([str(photographs), *limap, "--resume", "--set", "minimum_length=9"], "other work")
+    other = "limap.work is of other work: no --set there, --set minimum_length=9 now; name another --store, or delete limap.work"
+    says([str(photographs), *limap, "--resume", "--set", "minimum_length=9"], other)
+    says([str(photographs), *limap, "--resume", "--match-set", "ratio=2"], "no --match-set there, --match-set ratio=2 now")
+    says([str(photographs), *limap, "--resume", "--geometry", "auto"], "--geometry none there, --geometry auto --focal exif now")
     says([str(photographs), *limap, "--set", "minimum_lenght=9"], "did you mean")
     says([str(photographs), "--limap", "/proc/no/folder"], "no folder")
     says([str(photographs), *limap, "--jobs", "0", "--resume"], "jobs is 0")

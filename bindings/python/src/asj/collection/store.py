@@ -14,7 +14,8 @@ from .. import __version__
 from .plan import Plan, camera_of
 from .tasks import Detected, Matched
 
-_FORMAT = "asj-collection-3"
+_FORMAT = "asj-collection-4"
+_FOCAL = "focal"  # Plan.focal, for outputs
 _HIGHEST = "highest image"  # the highest number that an image has had: with it, no other image gets one that was in use
 _SCHEMA = """
 CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT;
@@ -48,7 +49,7 @@ class Store:
         numbers = {name: number for number, name in enumerate(plan.images, 1)}
         with connection:
             connection.executescript("BEGIN;" + _SCHEMA)
-            connection.executemany("INSERT INTO about VALUES (?, ?)", [*_about(plan).items(), (_HIGHEST, str(len(numbers)))])
+            connection.executemany("INSERT INTO about VALUES (?, ?)", [*_about(plan).items(), (_FOCAL, plan.focal), (_HIGHEST, str(len(numbers)))])
             rows = [(number, name, _stamp(plan.folder / name)) for name, number in numbers.items()]
             connection.executemany("INSERT INTO images (id, name, stamp) VALUES (?, ?, ?)", rows)
             connection.executemany(
@@ -99,7 +100,13 @@ class Store:
         for key, wanted in _about(plan).items():
             if found.get(key) != wanted:
                 connection.close()
-                raise StoreError(f"{path} is of other work: {key} is {found.get(key)!r} there, and {wanted!r} now")
+                there, now = _in_words(key, found.get(key)), _in_words(key, wanted)
+                raise StoreError(
+                    f"{path} is of other work: {there} there, {now} now; name another --store, or delete {path.name} to begin anew"
+                )
+        if found.get(_FOCAL) != plan.focal:  # no match depends on it
+            with connection:
+                connection.execute("INSERT OR REPLACE INTO about VALUES (?, ?)", (_FOCAL, plan.focal))
         return cls(path, connection)
 
     def _stamps(self) -> dict[str, tuple[int, str]]:
@@ -161,8 +168,8 @@ class Store:
 
     def given_camera(self) -> list[float]:
         """What the user gave for all images, px: a focal length, or two and the principal point, or nothing."""
-        value: str = self._connection.execute("SELECT value FROM about WHERE key = 'geometry'").fetchone()[0]
-        return camera_of(json.loads(value)[1])
+        value: str = self._connection.execute("SELECT value FROM about WHERE key = ?", (_FOCAL,)).fetchone()[0]
+        return camera_of(value)
 
     def waiting_images(self) -> list[tuple[int, str]]:
         """Those without a result."""
@@ -263,11 +270,27 @@ def _about(plan: Plan) -> dict[str, str]:
         "version": __version__,
         "detector": json.dumps(plan.detector, sort_keys=True),
         "matcher": json.dumps(plan.matcher, sort_keys=True),
-        "geometry": json.dumps([plan.geometry, plan.focal]),
+        # a camera that no match depends on is none of what the results are of
+        "geometry": json.dumps([plan.geometry, plan.focal] if plan.geometry in ("auto", "essential") else [plan.geometry]),
     }
 
 
 def _connect(path: Path) -> sqlite3.Connection:
+def _in_words(key: str, value: str | None) -> str:
+    """A row of _about() as the options that ask for it.
+
+    >>> _in_words("geometry", '["auto", "520"]'), _in_words("detector", '{"octaves": "1", "preset": "match"}'), _in_words("version", "1.0")
+    ('--geometry auto --focal 520', '--set octaves=1', 'version 1.0')
+    """
+    if value is None or key in ("format", "version"):
+        return f"{key} {value}"
+    if key == "geometry":
+        model, *focal = json.loads(value)
+        return " ".join([f"--geometry {model}", *(f"--{'camera' if len(camera_of(word)) > 1 else 'focal'} {word}" for word in focal)])
+    option = "--set" if key == "detector" else "--match-set"
+    return " ".join(f"{option} {name}={word}" for name, word in json.loads(value).items() if name != "preset") or f"no {option}"
+
+
     try:
         connection = sqlite3.connect(path, timeout=60)
         connection.execute("PRAGMA journal_mode = WAL")
