@@ -173,8 +173,8 @@ def test_found_focal_lengths() -> None:
 
     found = colmap._found_focals(Two())  # type: ignore[arg-type]
     assert found == {1: [500.0, 520.0, 530.0], 2: [501.0], 3: [521.0], 4: [531.0]}
-    cases = ((None, 1, 500.0), (600.0, 1, 500.0), (None, 9, 500.0), (None, 9, None))
-    assert [colmap.focal_of(given, found.get(number), exif, 640) for given, number, exif in cases] == [520.0, 600.0, 500.0, 768.0]
+    cases: tuple[tuple[float | None, int, list[float]], ...] = ((None, 1, [500.0]), (600.0, 1, [500.0]), (None, 9, [500.0, 502.0]), (None, 9, []))
+    assert [colmap.focal_of(given, found.get(number, []), exif, 640) for given, number, exif in cases] == [520.0, 600.0, 501.0, 768.0]
 
 
 def test_fundamental_matrix_in_colmaps_pixels() -> None:

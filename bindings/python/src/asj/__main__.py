@@ -14,6 +14,7 @@ from typing import Any
 
 from . import __version__, collection, errors
 from .collection import plan as plans
+from .collection.colmap import CAMERA_MODES
 from .collection.run import Dask, Processes
 from .geometry import MODELS
 from .options import DETECTOR, MATCHER
@@ -31,6 +32,11 @@ def _parser() -> argparse.ArgumentParser:
     which.add_argument("--pairs", type=Path, metavar="FILE", help="pairs from a file: two names a line, with blanks in double quotes")
     outputs = collect.add_argument_group("outputs, at least one")
     outputs.add_argument("--colmap", type=Path, metavar="FILE.db", help="COLMAP database (needs pycolmap)")
+    outputs.add_argument(
+        "--camera-mode", choices=CAMERA_MODES, default="auto",
+        help="COLMAP: which images have one camera, refined as one. auto (default): those whose EXIF data tell the same make, model, focal "
+        "length and size, any other image has its own; single: all; per-folder: those of a folder; per-image: none",
+    )  # fmt: skip
     outputs.add_argument("--hdf5", type=Path, metavar="FOLDER", help="features.h5 and matches.h5 as hloc reads them (needs h5py)")
     outputs.add_argument("--limap", type=Path, metavar="FOLDER", help="line segments as LIMAP reads them, their matches as text")
     work = collect.add_argument_group("work")
@@ -55,8 +61,10 @@ def _parser() -> argparse.ArgumentParser:
         "that is found for each pair, none, or a number of pixels",
     )  # fmt: skip
     work.add_argument(
-        "--camera", metavar="FX,FY,CX,CY", help="the camera of all images, upright, px: focal lengths and principal point (instead of --focal)"
-    )
+        "--camera", metavar="FX,FY,CX,CY",
+        help="the camera of all images, upright, px: focal lengths and principal point, pixel centres at integers (COLMAP's CX and CY less "
+        "0.5), instead of --focal",
+    )  # fmt: skip
     work.add_argument("--overwrite", action="store_true", help="outputs replace files that something else has written")
     work.add_argument("--quiet", action="store_true", help="no progress")
     return parser
@@ -131,7 +139,7 @@ def _write(arguments: argparse.Namespace, store: collection.Store) -> None:
     if arguments.colmap:
         from .collection import colmap
 
-        colmap.write(store, arguments.colmap, verify=not arguments.no_verify, threads=arguments.jobs)
+        colmap.write(store, arguments.colmap, verify=not arguments.no_verify, threads=arguments.jobs, camera_mode=arguments.camera_mode)
     if arguments.hdf5:
         from .collection import hdf5
 
@@ -149,6 +157,10 @@ def _check_outputs(arguments: argparse.Namespace) -> Path:
     outputs = [path for path in (arguments.colmap, arguments.hdf5, arguments.limap) if path]
     if not outputs:
         raise ValueError("no output: name --colmap, --hdf5 or --limap")
+    if arguments.camera_mode != "auto" and not arguments.colmap:
+        raise ValueError("--camera-mode changes nothing without --colmap")
+    if arguments.camera_mode != "auto" and arguments.camera is not None:
+        raise ValueError("--camera is one camera of all images: --camera-mode changes nothing")
     if arguments.colmap:
         errors.extra("pycolmap", "colmap")
     if arguments.hdf5:

@@ -126,6 +126,22 @@ def orientation(path: str | os.PathLike[str]) -> int:
     return value if 1 <= value <= 8 else 1
 
 
+def camera_name(path: str | os.PathLike[str]) -> str | None:
+    """Make, model and focal lengths (on 35 mm film, and in mm) of the EXIF data as a line of text, which tells cameras apart as COLMAP's
+    CameraMode.AUTO does; None where make, model or both focal lengths are missing."""
+    from PIL import Image
+
+    try:
+        with Image.open(path) as file:
+            data = file.getexif()
+            lens = data.get_ifd(0x8769)
+        names = [" ".join(str(data.get(tag, "")).replace("\0", " ").split()) for tag in (0x010F, 0x0110)]
+        lengths = [float(lens.get(tag, 0)) for tag in (0xA405, 0x920A)]
+    except (OSError, ValueError, SyntaxError, TypeError, ArithmeticError, KeyError, Image.DecompressionBombError):
+        return None
+    return "; ".join([*names, *(f"{length:g}" for length in lengths)]) if all(names) and max(lengths) > 0 else None
+
+
 _FILM_DIAGONAL = 43.26661530556787  # mm, of 36 x 24
 _MM_PER_UNIT = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}
 

@@ -4,10 +4,10 @@
 Key points are the junctions, each where all its matches together put it (locations.py), with their affine shape, in the pixels of the
 file (orientation.py), moved by half a pixel (COLMAP's first pixel has its centre at (0.5, 0.5)).
 The shape takes the unit circle to an ellipse along two branches of the junction. Images have the numbers of the store, which they
-keep, and a camera each of the same number, SIMPLE_RADIAL, with the focal length that was given, or the median of what their pairs have
-found with the motion, or that of their EXIF data, and 1.2 times the longer side elsewhere, as COLMAP itself guesses. It is marked as
-known where it was given or EXIF data tell one. Where the whole camera was given, all images of one size have that one, PINHOLE, with
-the number of the first of them.
+keep. Their cameras are SIMPLE_RADIAL, with the focal length that was given, or the median of what the pairs of their images have found
+with the motion, or that of the EXIF data, and 1.2 times the longer side elsewhere, as COLMAP itself guesses. It is marked as known where
+it was given or EXIF data tell one. Which images have one camera is asked for in the words of pycolmap.CameraMode (CAMERA_MODES); it has
+the number of the first of them. Where the whole camera was given, all images of one size have that one, PINHOLE.
 
 Where an epipolar geometry was asked for and accepted, that is the pair's two-view geometry, with all its matches as inliers, since what
 contradicts it has gone; calibrated, with its pose, where the cameras are those that it was found with. COLMAP's own verification gives
@@ -20,6 +20,7 @@ import contextlib
 import json
 import os
 import sqlite3
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,9 @@ from . import locations, orientation
 from .store import Store
 from .tasks import Detected
 
+
+#: by equal make, model, focal lengths and size in EXIF data, and else an image a camera; one for all; one for each folder; one for each
+CAMERA_MODES = ("auto", "single", "per-folder", "per-image")
 
 _APPLICATION = int.from_bytes(b"asj\0", "big")  # of a database that was written here, and may be again
 
@@ -55,16 +59,23 @@ def logs_of(path: Path) -> list[Path]:
     return [log for kind in ("-wal", "-shm", "-journal") if (log := path.with_name(path.name + kind)).exists()]
 
 
-def write(store: Store, path: Path, verify: bool = True, refine: bool = True, threads: int = -1) -> None:
-    """Everything in the store; with `verify` also two-view geometries, which reconstruction needs, by so many `threads`. `refine`:
-    junctions stand where their matches put them, not where each was detected. Raises OSError where it cannot be written."""
+def write(
+    store: Store, path: Path, verify: bool = True, refine: bool = True, threads: int = -1, camera_mode: str = "auto"
+) -> None:
+    """Everything in the store, in place of a database that is there; with `verify` also two-view geometries, which reconstruction needs,
+    by so many `threads`. `refine`: junctions stand where their matches put them, not where each was detected. `camera_mode`: which images
+    have one camera, refined as one (CAMERA_MODES, as in COLMAP): "auto" those whose EXIF data tell the same make, model, focal length
+    and size; "single" all; "per-folder" those of a folder; "per-image" none. Raises ValueError where these are of several sizes, and
+    OSError where the database cannot be written."""
     import pycolmap
 
+    if camera_mode not in CAMERA_MODES:
+        raise ValueError(f"there is no camera mode {camera_mode!r}: one of {', '.join(CAMERA_MODES)}")
     refuse_logs(path)
     with whole_file(path) as temporary:
         os.remove(temporary)
         try:
-            _fill(store, pycolmap, temporary, refine, threads if verify else None)
+            _fill(store, pycolmap, temporary, refine, threads if verify else None, camera_mode)
         except RuntimeError as bad:  # SQLite's errors, by way of pycolmap
             raise OSError(f"{path}: {str(bad).splitlines()[0]}") from bad
         finally:
@@ -72,14 +83,14 @@ def write(store: Store, path: Path, verify: bool = True, refine: bool = True, th
                 log.unlink()
 
 
-def _fill(store: Store, pycolmap: Any, path: Path, refine: bool, threads: int | None) -> None:
+def _fill(store: Store, pycolmap: Any, path: Path, refine: bool, threads: int | None, camera_mode: str) -> None:
     database = pycolmap.Database.open(path)
     try:
         moved = locations.of_store(store) if refine else {}
-        cameras = _Cameras(pycolmap, database, store)
+        cameras = _write_cameras(pycolmap, database, store, camera_mode)
         for number, name, detected in store.detected():
             if detected.features is not None:
-                _image(database, pycolmap, number, name, cameras.of(number, detected), detected, moved.get(number))
+                _image(database, pycolmap, number, name, cameras[number], detected, moved.get(number))
         for one, two, records in locations.matches_of(store):
             pairs = np.stack([records["junction1"], records["junction2"]], axis=1)
             database.write_matches(one, two, np.ascontiguousarray(pairs, np.uint32))
@@ -161,40 +172,67 @@ def _found_focals(store: Store) -> dict[int, list[float]]:
     return found
 
 
-def focal_of(given: float | None, found: list[float] | None, exif: float | None, longer: float) -> float:
-    """Of an image, px: as it was given, or in the median of what its pairs have found, or from EXIF data, or as COLMAP guesses it."""
-    return given or (float(np.median(found)) if found else exif or 1.2 * longer)
+def focal_of(given: float | None, found: Sequence[float], exif: Sequence[float], longer: float) -> float:
+    """Of a camera, px: as it was given, or in the median of what the pairs of its images have found, or of EXIF data, or as COLMAP
+    guesses it."""
+    return given or (float(np.median(found or exif)) if found or exif else 1.2 * longer)
 
 
-class _Cameras:
-    """A camera for each image; one for all of one size where the user has given all four numbers of it."""
+def shared_by(mode: str, number: int, name: str, image: Detected) -> tuple[object, ...]:
+    """Equal for images that have one camera. What was cut, and has no focal length therefore, may have been cut differently each time."""
+    if mode == "single":
+        return ()
+    if mode == "per-folder":
+        return (name.rpartition("/")[0],)
+    if mode == "auto" and image.camera and image.focal:
+        return (image.camera, image.focal, *_size(image))
+    return (number,)
 
-    def __init__(self, pycolmap: Any, database: Any, store: Store) -> None:
-        self._pycolmap, self._database = pycolmap, database
-        self._given, self._found = store.given_camera(), _found_focals(store)
-        self._shared: dict[tuple[float, ...], int] = {}
 
-    def of(self, number: int, detected: Detected) -> int:
-        """Its number in the database."""
-        size = orientation.stored_size(detected.orientation, detected.width, detected.height)
-        if len(self._given) == 4:
-            fx, fy, cx, cy = self._given
-            if size != (detected.width, detected.height):
-                fx, fy = fy, fx
-            cx, cy = (_to_stored(detected) @ (cx, cy, 1))[:2] + 0.5
-            key = (*size, fx, fy, cx, cy)
-            if key not in self._shared:
-                self._shared[key] = self._write(number, "PINHOLE", size, [fx, fy, cx, cy], True)
-            return self._shared[key]
-        given = self._given[0] if self._given else None
-        focal = focal_of(given, self._found.get(number), detected.focal, max(size))
-        known = given is not None or detected.focal is not None
-        return self._write(number, "SIMPLE_RADIAL", size, [focal, size[0] / 2, size[1] / 2, 0.0], known)
+def _size(image: Detected) -> tuple[int, int]:
+    return orientation.stored_size(image.orientation, image.width, image.height)
 
-    def _write(self, number: int, model: str, size: tuple[int, int], parameters: list[float], known: bool) -> int:
-        camera = self._pycolmap.Camera(camera_id=number, model=model, width=size[0], height=size[1], params=parameters)
+
+def _write_cameras(pycolmap: Any, database: Any, store: Store, mode: str) -> dict[int, int]:
+    """The number of each image's camera."""
+    given, found = store.given_camera(), _found_focals(store)
+    sharing: dict[tuple[object, ...], list[tuple[int, str, Detected]]] = {}
+    for number, name, detected in store.detected():
+        if detected.features is not None:
+            image = replace(detected, features=None)
+            key = (*_size(image), *_given_camera(given, image)) if len(given) == 4 else shared_by(mode, number, name, image)
+            sharing.setdefault(key, []).append((number, name, image))
+    cameras = {}
+    for images in sharing.values():
+        first, name, image = images[0]
+        for _, other, view in images:
+            if _size(view) != _size(image):
+                sizes = [f"{wide} x {high}" for wide, high in (_size(image), _size(view))]
+                raise ValueError(
+                    f"camera mode {mode}: {name} has {sizes[0]} pixels and {other} {sizes[1]}: they are of two cameras "
+                    "(--resume with another --camera-mode writes the database)"
+                )
+        if len(given) == 4:
+            model, parameters, known = "PINHOLE", _given_camera(given, image), True
+        else:
+            told = [view.focal for _, _, view in images if view.focal is not None]
+            together = [focal for number, _, _ in images for focal in found.get(number, [])]
+            focal = focal_of(given[0] if given else None, together, told, max(_size(image)))
+            model, parameters, known = "SIMPLE_RADIAL", [focal, _size(image)[0] / 2, _size(image)[1] / 2, 0.0], bool(given or told)
+        camera = pycolmap.Camera(camera_id=first, model=model, width=_size(image)[0], height=_size(image)[1], params=parameters)
         camera.has_prior_focal_length = known
-        return int(self._database.write_camera(camera, use_camera_id=True))
+        database.write_camera(camera, use_camera_id=True)
+        cameras.update({number: first for number, _, _ in images})
+    return cameras
+
+
+def _given_camera(given: list[float], image: Detected) -> list[float]:
+    """Of the stored image, in COLMAP's pixels."""
+    fx, fy, cx, cy = given
+    if _size(image) != (image.width, image.height):
+        fx, fy = fy, fx
+    cx, cy = (_to_stored(image) @ (cx, cy, 1))[:2] + 0.5
+    return [fx, fy, float(cx), float(cy)]
 
 
 def _image(

@@ -21,7 +21,7 @@ _SCHEMA = """
 CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT;
 CREATE TABLE images (
     id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, stamp TEXT NOT NULL, state TEXT NOT NULL DEFAULT 'waiting', error TEXT,
-    width INTEGER, height INTEGER, focal REAL, features BLOB, orientation INTEGER) STRICT;
+    width INTEGER, height INTEGER, focal REAL, features BLOB, orientation INTEGER, camera TEXT) STRICT;
 CREATE TABLE pairs (
     id INTEGER PRIMARY KEY, image1 INTEGER NOT NULL REFERENCES images(id), image2 INTEGER NOT NULL REFERENCES images(id),
     state TEXT NOT NULL DEFAULT 'waiting', error TEXT, matches BLOB, lines BLOB, geometry TEXT,
@@ -136,7 +136,7 @@ class Store:
         changed = [(now[name], number) for name, (number, stamp) in stamps.items() if name in now and now[name] != stamp]
         connection.executemany(
             "UPDATE images SET stamp = ?, state = 'waiting', error = NULL, width = NULL, height = NULL, focal = NULL, features = NULL, "
-            "orientation = NULL WHERE id = ?",
+            "orientation = NULL, camera = NULL WHERE id = ?",
             changed,
         )
         without = "(SELECT id FROM images WHERE state = 'waiting')"
@@ -202,7 +202,8 @@ class Store:
         """The result of one image, in a transaction of its own."""
         with self._connection:
             self._connection.execute(
-                "UPDATE images SET state = ?, error = ?, width = ?, height = ?, focal = ?, features = ?, orientation = ? WHERE id = ?",
+                "UPDATE images SET state = ?, error = ?, width = ?, height = ?, focal = ?, features = ?, orientation = ?, camera = ? "
+                "WHERE id = ?",
                 (_state(result.error), *dataclasses.astuple(result), number),
             )
 
@@ -216,15 +217,15 @@ class Store:
 
     def detected(self) -> Iterator[tuple[int, str, Detected]]:
         """Number, name and result of every image that has one, in order."""
-        for number, name, error, width, height, focal, features, orientation in self._connection.execute(
-            "SELECT id, name, error, width, height, focal, features, orientation FROM images WHERE state <> 'waiting' ORDER BY id"
+        for number, name, error, width, height, focal, features, orientation, camera in self._connection.execute(
+            "SELECT id, name, error, width, height, focal, features, orientation, camera FROM images WHERE state <> 'waiting' ORDER BY id"
         ):
-            yield number, name, Detected(error, width or 0, height or 0, focal, features, orientation or 1)
+            yield number, name, Detected(error, width or 0, height or 0, focal, features, orientation or 1, camera)
 
     def features(self, number: int) -> Detected:
         """The result of one image."""
         row = self._connection.execute(
-            "SELECT error, width, height, focal, features, orientation FROM images WHERE id = ?", (number,)
+            "SELECT error, width, height, focal, features, orientation, camera FROM images WHERE id = ?", (number,)
         ).fetchone()
         return Detected(*row)
 
@@ -275,7 +276,6 @@ def _about(plan: Plan) -> dict[str, str]:
     }
 
 
-def _connect(path: Path) -> sqlite3.Connection:
 def _in_words(key: str, value: str | None) -> str:
     """A row of _about() as the options that ask for it.
 
@@ -291,6 +291,7 @@ def _in_words(key: str, value: str | None) -> str:
     return " ".join(f"{option} {name}={word}" for name, word in json.loads(value).items() if name != "preset") or f"no {option}"
 
 
+def _connect(path: Path) -> sqlite3.Connection:
     try:
         connection = sqlite3.connect(path, timeout=60)
         connection.execute("PRAGMA journal_mode = WAL")

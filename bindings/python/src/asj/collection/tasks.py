@@ -32,6 +32,7 @@ class Detected:
     focal: float | None
     features: bytes | None
     orientation: int = 1  # of the stored pixels: orientation.py
+    camera: str | None = None  # images.camera_name()
 
 
 @dataclass(frozen=True)
@@ -54,8 +55,8 @@ def detect_image(path: Path, detector: dict[str, str], matcher: dict[str, str]) 
     try:
         pixels = images.read(path)
         features = detect(pixels, **_keywords(detector))
-        focal, orientation = images.focal_length(path), images.orientation(path)
-        result = Detected(None, features.width, features.height, focal, features.junctions.tobytes(), orientation)
+        exif = images.focal_length(path), features.junctions.tobytes(), images.orientation(path), images.camera_name(path)
+        result = Detected(None, features.width, features.height, *exif)
         return result, features.without_image(**_keywords(matcher))
     except (errors.Error, OSError, MemoryError) as bad:
         return Detected(_line(bad), 0, 0, None, None), None
