@@ -81,6 +81,20 @@ def test_killed_and_resumed(done: Path, photographs: Path, tmp_path: Path) -> No
     assert content(tmp_path / "killed.work") == content(done)
 
 
+def test_ended_before_the_store_was_whole(photographs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Killed(BaseException):
+        pass
+
+    def end(path: Path) -> str:
+        raise Killed
+
+    with monkeypatch.context() as patched, pytest.raises(Killed):
+        patched.setattr("asj.collection.store._stamp", end)
+        Store.create(tmp_path / "early.work", Plan(photographs, ["a.png"], []))
+    assert not (tmp_path / "early.work").exists()  # and --resume begins
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["photographs"]
+
+
 def test_dask_with_a_lost_worker(done: Path, photographs: Path, tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed")
     from asj.collection import collect

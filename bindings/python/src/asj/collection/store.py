@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import json
 import sqlite3
@@ -11,6 +12,7 @@ from pathlib import Path
 from types import TracebackType
 
 from .. import __version__
+from ..output import whole_file
 from .plan import Plan, camera_of
 from .tasks import Detected, Matched
 
@@ -42,20 +44,20 @@ class Store:
 
     @classmethod
     def create(cls, path: Path, plan: Plan) -> Store:
-        """A new store with all work waiting."""
+        """A new store with all work waiting; it is there whole, or not yet: a run that ends before goes on as well."""
         if path.exists():
             raise StoreError(f"{path} is there already: go on with it, or write its outputs again (--resume), or remove it")
-        connection = _connect(path)
         numbers = {name: number for number, name in enumerate(plan.images, 1)}
-        with connection:
+        with whole_file(path) as temporary, contextlib.closing(_connect(temporary)) as connection, connection:
             connection.executescript("BEGIN;" + _SCHEMA)
-            connection.executemany("INSERT INTO about VALUES (?, ?)", [*_about(plan).items(), (_FOCAL, plan.focal), (_HIGHEST, str(len(numbers)))])
+            about = [*_about(plan).items(), (_FOCAL, plan.focal), (_HIGHEST, str(len(numbers)))]
+            connection.executemany("INSERT INTO about VALUES (?, ?)", about)
             rows = [(number, name, _stamp(plan.folder / name)) for name, number in numbers.items()]
             connection.executemany("INSERT INTO images (id, name, stamp) VALUES (?, ?, ?)", rows)
             connection.executemany(
                 "INSERT INTO pairs (image1, image2) VALUES (?, ?)", [(numbers[one], numbers[two]) for one, two in plan.pairs]
             )
-        return cls(path, connection)
+        return cls(path, _connect(path))
 
     @classmethod
     def resume(cls, path: Path, plan: Plan) -> Store:
