@@ -5,6 +5,7 @@
 #include "decoder_answer.h"
 #include "shared/pixels.h"
 
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include <cstdio>
@@ -28,7 +29,24 @@ void limit(int resource, rlim_t most)
     setrlimit(static_cast<decltype(RLIMIT_CPU)>(resource), &both);
 }
 
-/* OpenCV decodes BMP from memory, the others from a named file only: here one that has no name but this. */
+/* One channel of colours that are all gray. */
+cv::Mat gray_where_it_is(const cv::Mat &matrix)
+{
+    cv::Mat gray;
+    if (matrix.type() != CV_8UC3)
+        return matrix;
+    for (int y = 0; y < matrix.rows; y++)
+        for (int x = 0; x < matrix.cols; x++) {
+            const cv::Vec3b bgr = matrix.at<cv::Vec3b>(y, x);
+            if (bgr[0] != bgr[1] || bgr[1] != bgr[2])
+                return matrix;
+        }
+    cv::extractChannel(matrix, gray, 0);
+    return gray;
+}
+
+/* OpenCV decodes BMP from memory, the others from a named file only: here one that has no name but this. Of a gray Sun raster file
+ * without a colour map it makes zeros when it may answer in gray (4.6), so it must answer in colour there. */
 cv::Mat decode(const std::vector<unsigned char> &bytes)
 {
     const int flags = cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION;
@@ -37,7 +55,10 @@ cv::Mat decode(const std::vector<unsigned char> &bytes)
     std::FILE *file = std::tmpfile();
     if (!file || std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size() || std::fflush(file) != 0)
         return cv::Mat();
-    return cv::imread("/dev/fd/" + std::to_string(fileno(file)), flags);
+    const std::string name = "/dev/fd/" + std::to_string(fileno(file));
+    const bool is_sun_raster = bytes.size() > 4 && bytes[0] == 0x59 && bytes[1] == 0xa6;
+    return is_sun_raster ? gray_where_it_is(cv::imread(name, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION))
+                         : cv::imread(name, flags);
 }
 
 std::vector<unsigned char> read_input()

@@ -503,6 +503,30 @@ static void bmp_through_opencv(void **state)
     assert_image_refused(write_bytes("dicm.bmp", bytes.bytes, 132), 0, ASJ_ERROR_UNSUPPORTED, "DICOM");
 }
 
+/* 5 x 3 pixels, 8 bits, gray without a colour map, rows padded to 6 bytes. */
+static void gray_sun_raster_through_opencv(void **state)
+{
+    static const unsigned char head[32] = {0x59, 0xa6, 0x6a, 0x95, 0, 0, 0, 5, 0, 0, 0, 3, 0, 0, 0, 8, 0, 0, 0, 18, 0, 0, 0, 1};
+    static test_bytes bytes;
+    asj_image_file *file;
+    int32_t x, y;
+    (void)state;
+    bytes.size = 0;
+    append(&bytes, head, sizeof head);
+    for (y = 0; y < 3; y++) {
+        unsigned char row[6] = {0};
+        for (x = 0; x < 5; x++)
+            row[x] = (unsigned char)picture_sample(x, y, 0, 8);
+        append(&bytes, row, sizeof row);
+    }
+    file = read_image("x.ras", &bytes);
+    assert_int_equal(file->image.format, ASJ_FORMAT_GRAY8);
+    for (y = 0; y < 3; y++)
+        for (x = 0; x < 5; x++)
+            assert_int_equal(((const uint8_t *)file->image.data)[5 * y + x], picture_sample(x, y, 0, 8));
+    asj_image_file_free(&file);
+}
+
 /* The verdict hangs on no descriptor and on no message: the test runs in a process of its own whose standard error is closed and
  * whose table of open files is full but for one. */
 static void damage_is_seen_without_descriptors(void **state)
@@ -554,7 +578,7 @@ int main(void)
     const struct CMUnitTest changed[] = {cmocka_unit_test(any_byte_changed)};
     const struct CMUnitTest of_webp[] = {cmocka_unit_test(webp_pixels)};
     const struct CMUnitTest of_jpeg2000[] = {cmocka_unit_test(jpeg2000_pixels)};
-    const struct CMUnitTest opencv[] = {cmocka_unit_test(bmp_through_opencv)};
+    const struct CMUnitTest opencv[] = {cmocka_unit_test(bmp_through_opencv), cmocka_unit_test(gray_sun_raster_through_opencv)};
     int failed = cmocka_run_group_tests_name("io: formats", always, make_folder, remove_folder);
     if (is_read("JPEG"))
         failed += cmocka_run_group_tests_name("io: JPEG", jpeg, make_folder, remove_folder);
