@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* The best finalist, and how often chance brings one: NFA = kinds that were tried x exp(-evidence). */
+/* The best finalist, and how often chance brings one: NFA = kinds that were tried x searches x exp(-evidence). */
 #include "estimation.h"
 #include "geometry_options.h"
 #include "posterior.h"
@@ -64,5 +64,5 @@ double asj_estimation_log10_nfa(const asj_estimation *e, const asj_model *m)
 {
     const int32_t blind = !e->options->find_focal && !asj_cameras_are_known(e->options); /* no motions, no turns */
     const double tried = e->options->model != ASJ_GEOMETRY_AUTO ? 1 : blind ? ASJ_MOST_KINDS - 1 : ASJ_MOST_KINDS;
-    return (log(tried) - m->evidence) / ASJ_LN_10;
+    return (log(tried * (1 + e->again)) - m->evidence) / ASJ_LN_10;
 }

@@ -19,6 +19,7 @@ typedef struct asj_estimation {
     asj_pairs set;
     asj_model finalists[ASJ_MOST_MODELS]; /* and their rivals */
     int32_t count;
+    int32_t again; /* 1: these were found when they were looked for once more */
     asj_adjust_scratch scratch;
     double *other; /* probabilities under a second geometry */
     double *elsewhere; /* ambiguity.c: of each candidate, how sure its places are matched with something else */

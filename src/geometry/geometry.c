@@ -31,16 +31,19 @@
  * images 46 stay below; of 46 accepted ones none is within 8 nats of it. */
 #define GIVE_UP 17.0
 
+#define MORE_SAMPLES 2 /* of the second search over the first */
 #define WORTH_A_LOOK 0.6 /* of a motion's evidence, that of a homography which may be a rotation */
 #define LOST 6.0         /* of a motion's matches, which some wrong ones suit as well, a camera that only turns may lose so many, */
 #define LOST_SHARE 0.15  /* or such a part */
 
-/* Cameras that are not known have the longer side as focal length, of the image as it is with square pixels. */
-static asj_search plan(const asj_estimation *e, int32_t kind)
+/* Cameras that are not known have the longer side as focal length, of the image as it is with square pixels. `again`: with other
+ * samples, and more. */
+static asj_search plan(const asj_estimation *e, int32_t kind, int32_t again)
 {
     const asj_geometry_options *o = e->options;
     const asj_camera *known = asj_estimation_cameras(e), *cameras = known ? known : o->cameras;
-    asj_search search = {kind, o->samples, o->seed, {cameras[0], cameras[1]}, GIVE_UP - log(o->epsilon), NULL, 0};
+    asj_search search = {kind, again ? MORE_SAMPLES * o->samples : o->samples, again ? ~o->seed : o->seed, {cameras[0], cameras[1]},
+                         GIVE_UP - log(o->epsilon), NULL, 0};
     for (int32_t v = 0; v < 2; v++)
         if (!asj_camera_is_known(&search.cameras[v])) {
             const double aspect = o->aspects[v], longer = fmax(o->widths[v], o->heights[v] / aspect);
@@ -49,9 +52,9 @@ static asj_search plan(const asj_estimation *e, int32_t kind)
     return search;
 }
 
-static asj_status search_kind(asj_estimation *e, int32_t kind)
+static asj_status search_kind(asj_estimation *e, int32_t kind, int32_t again)
 {
-    const asj_search search = plan(e, kind);
+    const asj_search search = plan(e, kind, again);
     int32_t count = 0;
     const asj_status status = asj_geometry_search(e->context, &e->set, &search, e->finalists + e->count, &count);
     e->count += count;
@@ -117,7 +120,7 @@ static asj_status search_focal_of_rotation(asj_estimation *e, const asj_model *f
 /* Homographies that are no finalists themselves, where only motions are asked for. */
 static asj_status search_flat(asj_estimation *e, asj_model flat[ASJ_FINALISTS], int32_t *count)
 {
-    const asj_search search = plan(e, ASJ_GEOMETRY_HOMOGRAPHY);
+    const asj_search search = plan(e, ASJ_GEOMETRY_HOMOGRAPHY, 0);
     return asj_geometry_search(e->context, &e->set, &search, flat, count);
 }
 
@@ -129,7 +132,7 @@ static int32_t with_homographies(const asj_geometry_options *o)
 /* One focal length for both, in place of cameras or near theirs: a motion that tells it, and the others that there are with it. */
 static asj_status search_focal(asj_estimation *e, const asj_geometry_hints *hints)
 {
-    const asj_search search = plan(e, ASJ_GEOMETRY_ESSENTIAL);
+    const asj_search search = plan(e, ASJ_GEOMETRY_ESSENTIAL, 0);
     const double sd = e->options->focal_sd;
     asj_model flat[ASJ_FINALISTS];
     int32_t count = 0, more = 0;
@@ -163,26 +166,36 @@ static int32_t epipolar_kind(const asj_geometry_options *o)
     return o->model == ASJ_GEOMETRY_FUNDAMENTAL || o->model == best ? o->model : ASJ_GEOMETRY_NONE;
 }
 
-static asj_status search_all(asj_estimation *e, const asj_geometry_hints *hints)
-{
-    const asj_geometry_options *o = e->options;
-    const int32_t epipolar = epipolar_kind(o), finds_focal = asj_finds_focal(o);
-    const int32_t motions = epipolar == ASJ_GEOMETRY_ESSENTIAL && !finds_focal;
-    asj_status status = ASJ_OK;
-    if (motions || epipolar == ASJ_GEOMETRY_FUNDAMENTAL)
-        status = search_kind(e, epipolar);
-    if (status == ASJ_OK && with_homographies(o))
-        status = search_kind(e, ASJ_GEOMETRY_HOMOGRAPHY);
-    if (status == ASJ_OK && motions)
-        status = asj_refine_motions(e->context, &e->set, o->cameras, o->seed, ASJ_SETTLED, e->finalists, &e->count);
-    if (status == ASJ_OK && motions)
-        status = search_pure_rotation(e, o->cameras);
-    return status == ASJ_OK && finds_focal ? search_focal(e, hints) : status;
-}
-
 static int32_t is_chance(const asj_estimation *e, int32_t number)
 {
     return number < 0 || asj_estimation_log10_nfa(e, &e->finalists[number]) > log10(e->options->epsilon);
+}
+
+static asj_status search_kinds(asj_estimation *e, int32_t again)
+{
+    const asj_geometry_options *o = e->options;
+    const int32_t epipolar = epipolar_kind(o), motions = epipolar == ASJ_GEOMETRY_ESSENTIAL && !asj_finds_focal(o);
+    asj_status status = ASJ_OK;
+    e->again = again;
+    e->count = 0;
+    if (motions || epipolar == ASJ_GEOMETRY_FUNDAMENTAL)
+        status = search_kind(e, epipolar, again);
+    if (status == ASJ_OK && with_homographies(o))
+        status = search_kind(e, ASJ_GEOMETRY_HOMOGRAPHY, again);
+    if (status == ASJ_OK && motions)
+        status = asj_refine_motions(e->context, &e->set, o->cameras, o->seed, ASJ_SETTLED, e->finalists, &e->count);
+    return status == ASJ_OK && motions ? search_pure_rotation(e, o->cameras) : status;
+}
+
+/* Of a geometry that few candidates tell, a thousand samples may miss all that is near it: the order of the images, which decides
+ * what is drawn, then decided whether there is one (scannet0744). So before it is called chance it is looked for once more. */
+static asj_status search_all(asj_estimation *e, const asj_geometry_hints *hints)
+{
+    const int32_t finds_focal = asj_finds_focal(e->options);
+    asj_status status = search_kinds(e, 0);
+    if (status == ASJ_OK && !finds_focal && is_chance(e, asj_estimation_best(e, ASJ_GEOMETRY_AUTO)))
+        status = search_kinds(e, 1);
+    return status == ASJ_OK && finds_focal ? search_focal(e, hints) : status;
 }
 
 /* Only what is about to be accepted needs them. */
@@ -197,9 +210,9 @@ static asj_status search_rivals(asj_estimation *e)
     if (is_chance(e, best))
         return ASJ_OK;
     if (epipolar != ASJ_GEOMETRY_NONE)
-        kinds[kind_count++] = plan(e, epipolar);
+        kinds[kind_count++] = plan(e, epipolar, 0);
     if (with_homographies(e->options))
-        kinds[kind_count++] = plan(e, ASJ_GEOMETRY_HOMOGRAPHY);
+        kinds[kind_count++] = plan(e, ASJ_GEOMETRY_HOMOGRAPHY, 0);
     if (epipolar != ASJ_GEOMETRY_ESSENTIAL)
         cameras = NULL;
     const asj_status status = asj_find_rivals(e->context, &e->set, kinds, kind_count, cameras, &e->finalists[best],

@@ -387,6 +387,27 @@ static void chance_is_not_accepted(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* Samples that miss what there is are not the last word: with 10 of them 19 of 60 seeds find this motion at once, 44 in all. */
+static void what_samples_miss_is_looked_for_again(void **state)
+{
+    (void)state;
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    scene *s = malloc(sizeof *s);
+    int accepted = 0;
+    make(s, SOLID, 24, 57);
+    for (uint64_t seed = 1; seed <= 60; seed++) {
+        asj_geometry_options o = options_for(ASJ_GEOMETRY_ESSENTIAL, 1);
+        o.samples = 10;
+        o.seed = seed;
+        const asj_geometry g = estimate(context, s, &o, NULL);
+        accepted += g.status == ASJ_GEOMETRY_ACCEPTED;
+    }
+    assert_true(accepted >= 38);
+    free(s);
+    unit_context_free(&counter, &context);
+}
+
 static void threads_and_order_change_nothing(void **state)
 {
     (void)state;
@@ -510,7 +531,7 @@ int main(void)
         cmocka_unit_test(what_was_accepted_judges_others), cmocka_unit_test(a_rival_tells_its_motion),
         cmocka_unit_test(planes_and_turns_are_homographies),
         cmocka_unit_test(too_little_is_no_geometry), cmocka_unit_test(chance_is_not_accepted),
-        cmocka_unit_test(threads_and_order_change_nothing), cmocka_unit_test(bad_input_is_refused),
+        cmocka_unit_test(what_samples_miss_is_looked_for_again), cmocka_unit_test(threads_and_order_change_nothing), cmocka_unit_test(bad_input_is_refused),
         cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests_name("geometry", tests, NULL, NULL);
