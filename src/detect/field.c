@@ -13,9 +13,11 @@
  * radius 7 in a photograph of 0.8 megapixels: what the paper's number of tests would be if it counted one line of the image.
  *
  * The fits that follow move a junction by a pixel or two, and a clear corner has a hundred candidates. So every other pixel of
- * every other row is enough (candidate_step = 1 takes them all), for half the time up to the fits. What is found is the same but
- * for corners so weak that few of their pixels reach candidate_strength; a little less of that (2.4 instead of 3) brings most of
- * them back. */
+ * every other row is enough (candidate_step = 1 takes them all), for half the time up to the fits. Corners so weak that few
+ * of their pixels reach candidate_strength are not found then; a little less of that (2.4 instead of 3) brings most of them back.
+ * And which of the junctions of a crowded place are found hangs on which pixels were asked: with one more column at the left, in 32
+ * photographs, 240 of 2188 junctions with a log10 NFA below -10 have none within 4 px (with candidate_step 1 89 of 2459, and 5 of
+ * 2673 with one octave). Under a change of scale both repeat alike (tests/accuracy/README.md). */
 #include "field.h"
 #include "nfa.h"
 #include "core/angle.h"
