@@ -186,9 +186,9 @@ typedef struct asj_match_result {
  *
  * Each location takes part in one match at most; of those found with junctions of octave -1 no two lie within 1 px of each other in
  * both images (one corner that several octaves have found). The result does not depend on the number of threads, and swapping the
- * images swaps matches that are mutual, but for some at the limit of the epipolar test, whose samples go by their order. (So do those
- * of a geometry: poses of both orders differ by about what they tell of their errors, and a pair at the limit of chance may be
- * accepted in one order alone. Of matches in upsampled images up to a tenth differ.) Memory:
+ * images swaps matches that are mutual, but for some at the limit of the epipolar test, whose samples go by their order. (So do
+ * those of a geometry: poses of both orders differ by about what they tell of their errors, and a pair at the limit of chance may
+ * be accepted in one order alone. Of matches in upsampled images up to a tenth differ.) Memory:
  * 2.7 bytes per pixel of both images, up to 13 of one while it is prepared, the patches (patch_size^2 x 2 bytes for each frame),
  * short lists, up to 400 bytes for each candidate, and who supports whom, up to 540 MB where all agree with all that is near: two
  * images of 12 megapixels with 55 000 and 60 000 L-junctions and 1.6 million candidates took 1.0 GB. Time: all pairs of L-junctions

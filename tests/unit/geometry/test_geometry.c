@@ -531,7 +531,8 @@ int main(void)
         cmocka_unit_test(what_was_accepted_judges_others), cmocka_unit_test(a_rival_tells_its_motion),
         cmocka_unit_test(planes_and_turns_are_homographies),
         cmocka_unit_test(too_little_is_no_geometry), cmocka_unit_test(chance_is_not_accepted),
-        cmocka_unit_test(what_samples_miss_is_looked_for_again), cmocka_unit_test(threads_and_order_change_nothing), cmocka_unit_test(bad_input_is_refused),
+        cmocka_unit_test(what_samples_miss_is_looked_for_again),
+        cmocka_unit_test(threads_and_order_change_nothing), cmocka_unit_test(bad_input_is_refused),
         cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests_name("geometry", tests, NULL, NULL);
