@@ -5,6 +5,7 @@
 #include "core/device.h"
 #include "core/threads.h"
 #include "core/reserved.h"
+#include "core/watch.h"
 #include "tables.h"
 
 #ifdef ASJ_HAVE_OPENCL
@@ -124,6 +125,7 @@ asj_status asj_context_create_from(const char *library, const asj_context_option
         return ASJ_ERROR_MEMORY;
     context->memory = memory;
     context->options = *options;
+    context->pause_ms = ASJ_PAUSE;
     asj_status status = check_range(context);
     if (status == ASJ_OK) {
         context->threads = asj_thread_count(options->threads);

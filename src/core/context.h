@@ -38,7 +38,8 @@ struct asj_context {
     double progress;              /* last value reported */
     double progress_from, progress_part; /* where the whole stands when a call begins that is a part of it, and how large that part
                                           * is; 0, 0: the call is the whole */
-    double asked_ms;              /* when the caller was last asked whether to go on */
+    double asked_ms;              /* when the caller was last asked whether to go on, */
+    double pause_ms;              /* and how long not to ask again: ASJ_PAUSE; tests that count questions have 0 */
     int32_t in_hook;              /* > 0 while a function of the caller's runs (log, progress, dump, kernel cache) */
     int32_t device_failures;      /* backend.h */
     int32_t optional;             /* > 0 in steps that the answer does not need: asj_optional_begin() */

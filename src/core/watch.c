@@ -2,14 +2,12 @@
 /* A loop of many threads asks the caller whether to go on: one of them asks, the others see the answer. See watch.h. */
 #include "watch.h"
 
-#define PAUSE 50 /* ms */
-
 void asj_watch_start(asj_watch *watch, asj_context *context, int32_t stage)
 {
     watch->context = context;
     watch->stage = stage;
     watch->stopped = 0;
-    watch->next_ms = context->asked_ms + PAUSE; /* not from now on: many short loops in a row would never ask */
+    watch->next_ms = context->asked_ms + context->pause_ms; /* not from now on: many short loops in a row would never ask */
 }
 
 int asj_watch_stops(asj_watch *watch, const asj_part *part)
@@ -20,7 +18,7 @@ int asj_watch_stops(asj_watch *watch, const asj_part *part)
     if (stopped || (part && !part->caller) || asj_clock_ms() < watch->next_ms)
         return stopped;
     stopped = asj_progress(watch->context, watch->stage, 0) != ASJ_OK; /* no farther than before: progress never falls */
-    watch->next_ms = asj_clock_ms() + PAUSE;
+    watch->next_ms = asj_clock_ms() + watch->context->pause_ms;
     __atomic_store_n(&watch->stopped, stopped, __ATOMIC_RELAXED);
     return stopped;
 }

@@ -6,6 +6,8 @@
 
 #include "threads.h"
 
+#define ASJ_PAUSE 50.0 /* ms */
+
 typedef struct asj_watch {
     asj_context *context;
     int32_t stage;

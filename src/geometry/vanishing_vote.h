@@ -40,7 +40,7 @@ typedef struct asj_vote_search {
     int32_t count;
     double *tail;     /* log binomial tails, by level and k: ASJ_VOTE_LINES + 1 of each level */
     int32_t members[ASJ_VOTE_LEVELS];
-    asj_watch *watch; /* NULL = nobody asks whether to go on */
+    asj_watch *watch; /* asks whether to go on */
 } asj_vote_search;
 
 /* The branches that take part, the longest first; `lines` has room for all branches. Returns how many, fewer when stopped. */

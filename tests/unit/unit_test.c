@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "unit_test.h"
 
-#include <time.h>
-
 #include "core/context.h"
 #include "detect/gradient.h"
 #include "room.h"
@@ -55,14 +53,11 @@ asj_context *unit_context(unit_counter *counter, int32_t threads)
     return context;
 }
 
-int32_t unit_measure_pause(void *user, int32_t stage, double done)
+int32_t unit_count_question(void *user, int32_t stage, double done)
 {
-    unit_pauses *p = user;
-    const double now = 1e3 * (double)clock() / CLOCKS_PER_SEC;
     (void)stage;
     (void)done;
-    p->longest = p->last < 0 ? 0 : fmax(p->longest, now - p->last);
-    p->last = now;
+    ++*(long *)user;
     return 0;
 }
 

@@ -46,12 +46,8 @@ void unit_context_free(unit_counter *counter, asj_context **context);
  * this is 0, not until a call succeeds: what does without some memory would end it too soon. */
 int unit_reached(unit_counter *counter);
 
-/* Progress function, `user` a unit_pauses: the longest time between two questions in ms of the processor, since on a machine that
- * has other work too wall time says nothing. Starts with the first question where `last` is < 0; call it at the end, too. */
-typedef struct unit_pauses {
-    double last, longest;
-} unit_pauses;
-int32_t unit_measure_pause(void *user, int32_t stage, double done);
+/* Progress function, `user` a long that counts the questions: wherever one may be asked, with a context whose pause_ms is 0. */
+int32_t unit_count_question(void *user, int32_t stage, double done);
 
 /* From one allocation that fails to the next, in tests that take long: under sanitizers every fourth is enough. */
 #ifdef ASJ_IS_SANITIZED

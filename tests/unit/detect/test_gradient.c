@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Step 1 against its formula in double precision. */
+#include "core/watch.h"
 #include "detect/gradient.h"
 #include "unit_test.h"
 
@@ -250,6 +251,28 @@ static void test_standardise_stops(void **state)
     asj_frame_free(&f->context->memory, &frame);
 }
 
+/* Each axis is looked at twice more, in as many bands; by default a small image is one. */
+static void test_standardise_asks(void **state)
+{
+    fixture *f = *state;
+    long asked[2] = {0, 0};
+    asj_frame frame;
+    noise_frame(f, 64, 64, 60, 8, &frame);
+    f->context->options.progress = unit_count_question;
+    f->context->pause_ms = 0;
+    for (int32_t standardise = 0; standardise < 2; standardise++) {
+        f->options.standardise = standardise;
+        f->context->options.progress_user = &asked[standardise];
+        assert_int_equal(asj_gradient(f->context, &frame, &f->options), ASJ_OK);
+    }
+    assert_int_equal(asked[1], 5 * asked[0]);
+    assert_true(asked[0] > 0);
+    f->context->pause_ms = ASJ_PAUSE;
+    f->context->options.progress = NULL;
+    f->options.standardise = 0;
+    asj_frame_free(&f->context->memory, &frame);
+}
+
 /* Bands of rows by thread, also more bands than rows; with and without standardisation. */
 static void check_threads(fixture *f, int32_t width, int32_t height)
 {
@@ -310,6 +333,7 @@ int main(void)
         cmocka_unit_test(test_loss),        cmocka_unit_test(test_noise_has_unit_variance),
         cmocka_unit_test(test_standardise), cmocka_unit_test(test_standardise_flat),
         cmocka_unit_test(test_standardise_stops),
+        cmocka_unit_test(test_standardise_asks),
         cmocka_unit_test(test_threads),     cmocka_unit_test(test_out_of_memory),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
