@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import random
 import shutil
@@ -92,7 +93,52 @@ def test_ended_before_the_store_was_whole(photographs: Path, tmp_path: Path, mon
         patched.setattr("asj.collection.store._stamp", end)
         Store.create(tmp_path / "early.work", Plan(photographs, ["a.png"], []))
     assert not (tmp_path / "early.work").exists()  # and --resume begins
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["photographs"]
+
+
+def test_a_store_without_tables_is_none(photographs: Path, tmp_path: Path) -> None:
+    path, plan = tmp_path / "early.work", Plan(photographs, ["a.png"], [])
+    for journal in ("DELETE", "WAL"):  # killed before and after the first page was written
+        with contextlib.closing(sqlite3.connect(path)) as begun:
+            begun.execute(f"PRAGMA journal_mode = {journal}")
+        assert path.exists() and not Store.is_there(path)
+    with pytest.raises(StoreError, match="not there"):
+        Store.resume(path, plan)
+    with Store.create(path, plan) as store:
+        assert store.counts("images") == {"waiting": 1} and Store.is_there(path)
+    with pytest.raises(StoreError, match="there already"):
+        Store.create(path, plan)
+
+
+def test_another_run_begins_meanwhile(photographs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, plan = tmp_path / "two.work", Plan(photographs, ["a.png"], [])
+    others = []
+
+    def begin(_: Path) -> str:
+        monkeypatch.undo()
+        others.append(Store.create(path, plan))
+        return "late"
+
+    monkeypatch.setattr("asj.collection.store._stamp", begin)
+    with pytest.raises(StoreError, match="there already"):
+        Store.create(path, plan)
+    with others[0] as store:
+        assert store._stamps()["a.png"][1] != "late"
+
+
+def test_the_log_of_a_deleted_store_is_not_played_into_the_next(photographs: Path, tmp_path: Path) -> None:
+    path, plan = tmp_path / "next.work", Plan(photographs, ["a.png"], [])
+    killed = (
+        "import os, pathlib, sys; from asj.collection import Plan, Store; from asj.collection.tasks import Detected;"
+        "store = Store.create(pathlib.Path(sys.argv[1]), Plan(pathlib.Path(sys.argv[2]), ['a.png'], []));"
+        "store.save_image(1, Detected('bad', 0, 0, None, None)); os._exit(9)"
+    )
+    assert subprocess.run([sys.executable, "-c", killed, str(path), str(photographs)]).returncode == 9
+    assert path.with_name("next.work-wal").stat().st_size > 0
+    path.unlink()
+    with Store.create(path, plan) as store:
+        assert store.counts("images") == {"waiting": 1}
+    with contextlib.closing(sqlite3.connect(path)) as connection:
+        assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
 
 
 def test_dask_with_a_lost_worker(done: Path, photographs: Path, tmp_path: Path) -> None:

@@ -209,7 +209,7 @@ def _collect(arguments: argparse.Namespace) -> int:
         hdf5.check_names(plan.images)
     progress = None if arguments.quiet or not sys.stderr.isatty() else _progress
     open_store = collection.Store.create
-    if place.exists() and (arguments.resume or arguments.update):
+    if (arguments.resume or arguments.update) and collection.Store.is_there(place):
         open_store = collection.Store.update if arguments.update else collection.Store.resume
     with contextlib.ExitStack() as open_things:
         # workers that cannot be had leave no store behind

@@ -12,7 +12,6 @@ from pathlib import Path
 from types import TracebackType
 
 from .. import __version__
-from ..output import whole_file
 from .plan import Plan, camera_of
 from .tasks import Detected, Matched
 
@@ -44,20 +43,42 @@ class Store:
 
     @classmethod
     def create(cls, path: Path, plan: Plan) -> Store:
-        """A new store with all work waiting; it is there whole, or not yet: a run that ends before goes on as well."""
-        if path.exists():
-            raise StoreError(f"{path} is there already: go on with it, or write its outputs again (--resume), or remove it")
+        """A new store with all work waiting, in one transaction. In its place, and not written beside it and renamed: so SQLite itself
+        lets one of two runs begin, and removes the log of a store that was killed and deleted."""
+        there = f"{path} is there already: go on with it, or write its outputs again (--resume), or remove it"
+        if cls.is_there(path):
+            raise StoreError(there)
         numbers = {name: number for number, name in enumerate(plan.images, 1)}
-        with whole_file(path) as temporary, contextlib.closing(_connect(temporary)) as connection, connection:
-            connection.executescript("BEGIN;" + _SCHEMA)
-            about = [*_about(plan).items(), (_FOCAL, plan.focal), (_HIGHEST, str(len(numbers)))]
-            connection.executemany("INSERT INTO about VALUES (?, ?)", about)
-            rows = [(number, name, _stamp(plan.folder / name)) for name, number in numbers.items()]
-            connection.executemany("INSERT INTO images (id, name, stamp) VALUES (?, ?, ?)", rows)
-            connection.executemany(
-                "INSERT INTO pairs (image1, image2) VALUES (?, ?)", [(numbers[one], numbers[two]) for one, two in plan.pairs]
-            )
-        return cls(path, _connect(path))
+        images = [(number, name, _stamp(plan.folder / name)) for name, number in numbers.items()]
+        about = [*_about(plan).items(), (_FOCAL, plan.focal), (_HIGHEST, str(len(numbers)))]
+        connection = _connect(path)
+        try:
+            with connection:
+                connection.execute("BEGIN IMMEDIATE")
+                if _has_tables(connection):  # of another run, meanwhile
+                    raise StoreError(there)
+                for table in _SCHEMA.split(";")[:-1]:
+                    connection.execute(table)
+                connection.executemany("INSERT INTO about VALUES (?, ?)", about)
+                connection.executemany("INSERT INTO images (id, name, stamp) VALUES (?, ?, ?)", images)
+                connection.executemany(
+                    "INSERT INTO pairs (image1, image2) VALUES (?, ?)", [(numbers[one], numbers[two]) for one, two in plan.pairs]
+                )
+        except BaseException:
+            connection.close()
+            raise
+        return cls(path, connection)
+
+    @staticmethod
+    def is_there(path: Path) -> bool:
+        """A file without tables, which a run leaves that is killed as it begins, is as good as none."""
+        if not path.exists():
+            return False
+        try:
+            with contextlib.closing(sqlite3.connect(path, timeout=60)) as connection:
+                return _has_tables(connection)
+        except sqlite3.DatabaseError:
+            return True  # something else
 
     @classmethod
     def resume(cls, path: Path, plan: Plan) -> Store:
@@ -91,7 +112,7 @@ class Store:
     @classmethod
     def _open(cls, path: Path, plan: Plan) -> Store:
         """A store that is there, with results of the same options."""
-        if not path.exists():
+        if not cls.is_there(path):
             raise StoreError(f"{path} is not there: nothing to go on with")
         connection = _connect(path)
         try:
@@ -291,6 +312,10 @@ def _in_words(key: str, value: str | None) -> str:
         return " ".join([f"--geometry {model}", *(f"--{'camera' if len(camera_of(word)) > 1 else 'focal'} {word}" for word in focal)])
     option = "--set" if key == "detector" else "--match-set"
     return " ".join(f"{option} {name}={word}" for name, word in json.loads(value).items() if name != "preset") or f"no {option}"
+
+
+def _has_tables(connection: sqlite3.Connection) -> bool:
+    return bool(connection.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()[0])
 
 
 def _connect(path: Path) -> sqlite3.Connection:
