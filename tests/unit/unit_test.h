@@ -49,9 +49,9 @@ int unit_reached(unit_counter *counter);
 /* Progress function, `user` a long that counts the questions: wherever one may be asked, with a context whose pause_ms is 0. */
 int32_t unit_count_question(void *user, int32_t stage, double done);
 
-/* From one allocation that fails to the next, in tests that take long: under sanitizers every fourth is enough. */
+/* From one allocation that fails to the next, in tests that take long: under sanitizers every sixth is enough. */
 #ifdef ASJ_IS_SANITIZED
-enum { UNIT_ALLOCATION_STEP = 4 };
+enum { UNIT_ALLOCATION_STEP = 6 };
 #else
 enum { UNIT_ALLOCATION_STEP = 1 };
 #endif
