@@ -78,7 +78,7 @@ static void place(asj_vote_line *one, const asj_camera *k)
 
 static int stops(asj_watch *watch)
 {
-    return asj_watch_stops(watch, NULL);
+    return watch && asj_watch_stops(watch, NULL);
 }
 
 static void swap(asj_vote_line *a, asj_vote_line *b)
@@ -88,8 +88,8 @@ static void swap(asj_vote_line *a, asj_vote_line *b)
     *b = kept;
 }
 
-/* Leaves the longest one of each line, the longest first. Returns how many. From a heap, since of very many
- * only the first few hundred are looked at; what is kept stands behind it, the last one first. */
+/* Leaves the longest one of each line, the longest first. Returns how many. `watch` may be NULL. From a heap, since of very
+ * many only the first few hundred are looked at; what is kept stands behind it, the last one first. */
 static int32_t keep(asj_vote_line *lines, size_t all, const asj_camera *camera, asj_watch *watch)
 {
     size_t kept = 0;
