@@ -202,7 +202,7 @@ asj_status asj_levels_create(asj_context *context, const asj_frame *frame, int32
         asj_watch_start(&watch, context, stage);
         asj_parallel(context, context->threads, levels->height, ROWS, fill_some, &j);
         asj_release(memory, scratch);
-        const asj_status status = asj_watch_end(&watch) == ASJ_OK ? sort_samples(levels, &watch) : asj_watch_end(&watch);
+        const asj_status status = sort_samples(levels, &watch); /* nothing, once it is to stop */
         if (status != ASJ_OK)
             asj_levels_free(memory, levels);
         return status;

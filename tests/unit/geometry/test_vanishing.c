@@ -307,7 +307,7 @@ static void it_asks_all_the_time(void **state)
     assert_int_equal(asj_context_create(&options, &context), ASJ_OK);
     context->pause_ms = 0;
     assert_int_equal(asj_find_vanishing_points(context, many, MANY, &wishes, &points), ASJ_OK);
-    assert_true(asked >= MANY + 20 + 384 + 60); /* checked; put in order; the longest; paired */
+    assert_true(asked >= MANY + 20 + 384 + 60); /* checked; put in order; until 300 are kept; paired */
     asj_context_free(&context);
     free(many);
 }
