@@ -226,11 +226,30 @@ static int parse(const asj_option_info *row, const char *text, double *value)
     }
 }
 
+/* Which words there are. */
+static void say_words(const asj_option_info *row, const char *text, char *message, size_t message_size)
+{
+    char words[256] = "";
+    size_t used = 0;
+    for (int i = 0; row->choices[i] && used < sizeof words; i++)
+        used += (size_t)snprintf(words + used, sizeof words - used, "%s%s", i > 0 ? ", " : "", row->choices[i]);
+    say(message, message_size, "%s: '%s' is none of %s", row->key, text, words);
+}
+
+/* What it should have been. */
+static void say_kind(const asj_option_info *row, const char *text, char *message, size_t message_size)
+{
+    static const char *const kinds[] = {"", "a number", "a whole number", "yes or no", "",
+                                        "a set of radii such as 5,7,10 or 3-12"};
+    if (row->type == ASJ_OPTION_CHOICE)
+        say_words(row, text, message, message_size);
+    else
+        say(message, message_size, "%s: '%s' is not %s", row->key, text, kinds[row->type]);
+}
+
 asj_status asj_option_table_set(const asj_option_table *table, void *options, const char *key, const char *text,
                                 char *message, size_t message_size)
 {
-    static const char *const kinds[] = {"", "a number", "a whole number", "yes or no", "one of its words",
-                                        "a set of radii such as 5,7,10 or 3-12"};
     say(message, message_size, "%s", "");
     if (!options || !key || !text)
         return ASJ_ERROR_ARGUMENT;
@@ -241,7 +260,7 @@ asj_status asj_option_table_set(const asj_option_table *table, void *options, co
     }
     double value = 0;
     if (!parse(row, text, &value)) {
-        say(message, message_size, "%s: '%s' is not %s", row->key, text, kinds[row->type]);
+        say_kind(row, text, message, message_size);
         return ASJ_ERROR_OPTION;
     }
     if (!in_range(row, value)) {

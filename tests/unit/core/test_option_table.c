@@ -270,6 +270,23 @@ static void test_refused(void **state)
     check_refused("radii", digits);
 }
 
+/* What an option takes is told in full. */
+static void test_refusals_say_what_is_taken(void **state)
+{
+    static const char *const wanted[][3] = {{"a_number", "x", "a_number: 'x' is not a number"},
+                                            {"an_integer", "1.5", "an_integer: '1.5' is not a whole number"},
+                                            {"a_switch", "maybe", "a_switch: 'maybe' is not yes or no"},
+                                            {"a_word", "four", "a_word: 'four' is none of one, two, three_four"},
+                                            {"radii", "5-", "radii: '5-' is not a set of radii such as 5,7,10 or 3-12"}};
+    (void)state;
+    for (size_t i = 0; i < UNIT_COUNT(wanted); i++) {
+        set s = filled(0);
+        char message[128];
+        assert_int_equal(asj_option_table_set(&table, &s, wanted[i][0], wanted[i][1], message, sizeof message), ASJ_ERROR_OPTION);
+        assert_string_equal(message, wanted[i][2]);
+    }
+}
+
 static void test_keys(void **state)
 {
     static const char *const unknown[] = {"", "a", "a_numbe", "a_numbers", "A_number", "a__number", "a number", "_", "-"};
@@ -433,7 +450,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(test_fill),     cmocka_unit_test(test_numbers), cmocka_unit_test(test_number_round_trip),
         cmocka_unit_test(test_integers), cmocka_unit_test(test_switches), cmocka_unit_test(test_words),
         cmocka_unit_test(test_radii),    cmocka_unit_test(test_refused), cmocka_unit_test(test_keys),
-        cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_refusals_say_what_is_taken), cmocka_unit_test(test_steps),
         cmocka_unit_test(test_former_keys), cmocka_unit_test(test_short_buffers), cmocka_unit_test(test_check),
     };
     if (argument_count > 1 && !strcmp(arguments[1], "comma") && !set_comma_locale()) {
