@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-2-Clause
+"""Poses and matches of pairs with known poses, as render.py makes them.
+
+    score.py ASJ_CLI FOLDER [--verbose] [-- OPTIONS OF MATCH]
+    score.py --sift FOLDER [--verbose]
+
+Matches every pair of FOLDER that has K1, K2 and pose in its truth.json, cameras given; with --sift OpenCV's SIFT does (5000 key
+points at most, ratio test .8, essential matrix by MAGSAC++ with 1 px, matches of it). Errors are the larger one of rotation's and
+translation's direction, degrees, 180 where there is no pose. Prints the area under recall over error at 1, 2, 5, 10, 20 degrees,
+how many are accepted (of those with a third in common), how many of these are out by more than 3 degrees, and how many matches lie
+within 3 px of both true epipolar lines.
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+LIMITS = (1, 2, 5, 10, 20)
+NO_POSE = 180.0
+WRONG = 3.0  # degrees
+THIRD = 1 / 3
+
+
+def degrees(cosine):
+    return float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
+
+
+def by_library(cli, options, folder, truth):
+    """Rotation and translation, or None; whether a geometry is accepted; matches x1 y1 x2 y2."""
+    cameras = []
+    for which in (1, 2):
+        inner = truth[f"K{which}"]
+        cameras.append(f"--camera{which}={inner[0][0]},{inner[1][1]},{inner[0][2]},{inner[1][2]}")
+    with tempfile.TemporaryDirectory() as place:
+        out = pathlib.Path(place) / "matches.json"
+        subprocess.run([cli, "match", "-q", "--geometry", "auto", *cameras, *options, "-o", str(out), str(folder / "1.png"),
+                        str(folder / "2.png")], check=True)
+        found = json.loads(out.read_text())
+    geometry = found["geometry"] or {}
+    rotation, translation = geometry.get("rotation"), geometry.get("translation")
+    pose = (np.reshape(rotation, (3, 3)), np.array(translation)) if rotation and translation else None
+    places = np.array([[m["x1"], m["y1"], m["x2"], m["y2"]] for m in found["matches"]]).reshape(-1, 4)
+    return pose, found["geometry_status"] == "accepted", places
+
+
+def by_sift(folder, truth):
+    import cv2
+
+    sift, inner = cv2.SIFT_create(5000), [np.array(truth[f"K{which}"]) for which in (1, 2)]
+    sides = [sift.detectAndCompute(cv2.imread(str(folder / f"{which}.png"), 0), None) for which in (1, 2)]
+    pairs = cv2.BFMatcher().knnMatch(sides[0][1], sides[1][1], k=2)
+    good = [pair[0] for pair in pairs if len(pair) == 2 and pair[0].distance < 0.8 * pair[1].distance]
+    places = np.array([[*sides[0][0][m.queryIdx].pt, *sides[1][0][m.trainIdx].pt] for m in good]).reshape(-1, 4)
+    if len(places) < 6:
+        return None, False, places[:0]
+    rays = [((places[:, 2 * k : 2 * k + 2] - inner[k][:2, 2]) / inner[k][[0, 1], [0, 1]]) for k in (0, 1)]
+    matrix, inliers = cv2.findEssentialMat(*rays, np.eye(3), cv2.USAC_MAGSAC, 0.9999, 1 / inner[0][0, 0])
+    if matrix is None or matrix.shape != (3, 3):
+        return None, False, places[:0]
+    _, rotation, translation, _ = cv2.recoverPose(matrix, *rays, np.eye(3), mask=inliers.copy())
+    return (rotation, translation.ravel()), True, places[inliers.ravel() > 0]
+
+
+def error_of(pose, truth):
+    if pose is None:
+        return NO_POSE
+    rotation, translation = pose
+    true = np.array(truth["pose"])
+    turn = degrees((np.trace(rotation.T @ true[:, :3]) - 1) / 2)
+    cosine = translation @ true[:, 3] / np.linalg.norm(translation) / np.linalg.norm(true[:, 3])
+    return max(turn, degrees(abs(cosine)))
+
+
+def count_right(places, truth):
+    ones = np.ones(len(places))
+    first, second = np.column_stack([places[:, :2], ones]), np.column_stack([places[:, 2:], ones])
+    matrix = np.array(truth["F"])
+    lines1, lines2 = second @ matrix, first @ matrix.T
+    product = np.abs(np.sum(second * lines2, axis=1))
+    return int(np.sum(product < 3 * np.minimum(np.hypot(*lines1[:, :2].T), np.hypot(*lines2[:, :2].T))))
+
+
+def area(errors, limit):
+    """Percent."""
+    ordered = np.sort([e for e in errors if e < limit])
+    recall = np.arange(len(ordered) + 1) / len(errors)
+    x, y = np.r_[0, ordered, limit], np.r_[recall, recall[-1]]
+    return 100 * float(np.sum(np.diff(x) * (y[1:] + y[:-1]) / 2)) / limit
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("cli", nargs="?")
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--sift", action="store_true")
+    parser.add_argument("--verbose", action="store_true")
+    words = sys.argv[1:]
+    cut = words.index("--") if "--" in words else len(words)
+    given = parser.parse_args(words[:cut])
+    if bool(given.cli) == given.sift:
+        parser.error("either ASJ_CLI or --sift")
+    rows = []
+    for folder in sorted(path.parent for path in given.folder.glob("*/truth.json")):
+        truth = json.loads((folder / "truth.json").read_text())
+        if "pose" not in truth:
+            continue
+        pose, accepted, places = by_sift(folder, truth) if given.sift else by_library(given.cli, words[cut + 1 :], folder, truth)
+        row = (error_of(pose, truth), accepted, truth.get("common", 0) >= THIRD, count_right(places, truth), len(places))
+        rows.append(row)
+        if given.verbose:
+            print(f"{folder.name} common {truth.get('common', 0):.2f} error {row[0]:.1f} matches {row[3]}/{row[4]}", flush=True)
+    if not rows:
+        sys.exit(f"{given.folder} has no pairs with poses")
+    errors, accepted, third, right, matches = map(np.array, zip(*rows))
+    print(f"{len(rows)} pairs: AUC at 1, 2, 5, 10, 20 degrees", *(f"{area(errors, limit):.1f}" for limit in LIMITS),
+          f"accepted {accepted.sum()}, of those with a third in common {(accepted & third).sum()} of {third.sum()}; "
+          f"out by more than 3 degrees {((errors > WRONG) & (errors < NO_POSE)).sum()};",
+          f"matches {right.sum()} of {matches.sum()} right")
+
+
+if __name__ == "__main__":
+    main()
