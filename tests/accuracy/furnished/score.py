@@ -8,8 +8,9 @@
 Matches every pair of FOLDER that has K1, K2 and pose in its truth.json, cameras given; with --sift OpenCV's SIFT does (5000 key
 points at most, ratio test .8, essential matrix by MAGSAC++ with 1 px, matches of it). Errors are the larger one of rotation's and
 translation's direction, degrees, 180 where there is no pose. Prints the area under recall over error at 1, 2, 5, 10, 20 degrees,
-how many are accepted (of those with a third in common), how many of these are out by more than 3 degrees, and how many matches lie
-within 3 px of both true epipolar lines.
+how many are accepted (of those with a third in common), how many of these are out by more than 3 degrees, how many matches lie
+within 3 px of both true epipolar lines, and errors over told standard deviations (of all three axes together): the median and nine
+of ten, of rotations and of translations.
 """
 
 import argparse
@@ -32,7 +33,7 @@ def degrees(cosine):
 
 
 def by_library(cli, options, folder, truth):
-    """Rotation and translation, or None; whether a geometry is accepted; matches x1 y1 x2 y2."""
+    """Rotation, translation and told deviations of both, degrees, or None; is a geometry accepted?; matches x1 y1 x2 y2."""
     cameras = []
     for which in (1, 2):
         inner = truth[f"K{which}"]
@@ -44,7 +45,11 @@ def by_library(cli, options, folder, truth):
         found = json.loads(out.read_text())
     geometry = found["geometry"] or {}
     rotation, translation = geometry.get("rotation"), geometry.get("translation")
-    pose = (np.reshape(rotation, (3, 3)), np.array(translation)) if rotation and translation else None
+    pose = None
+    if rotation and translation:
+        variances = np.diag(np.reshape(geometry["covariance"], (6, 6)))
+        told = np.degrees(np.sqrt([variances[:3].sum(), variances[3:].sum()]))
+        pose = np.reshape(rotation, (3, 3)), np.array(translation), told
     places = np.array([[m["x1"], m["y1"], m["x2"], m["y2"]] for m in found["matches"]]).reshape(-1, 4)
     return pose, found["geometry_status"] == "accepted", places
 
@@ -64,17 +69,17 @@ def by_sift(folder, truth):
     if matrix is None or matrix.shape != (3, 3):
         return None, False, places[:0]
     _, rotation, translation, _ = cv2.recoverPose(matrix, *rays, np.eye(3), mask=inliers.copy())
-    return (rotation, translation.ravel()), True, places[inliers.ravel() > 0]
+    return (rotation, translation.ravel(), None), True, places[inliers.ravel() > 0]
 
 
-def error_of(pose, truth):
+def errors_of(pose, truth):
+    """Of the rotation and of the translation's direction, degrees."""
     if pose is None:
-        return NO_POSE
-    rotation, translation = pose
+        return NO_POSE, NO_POSE
+    rotation, translation, _ = pose
     true = np.array(truth["pose"])
-    turn = degrees((np.trace(rotation.T @ true[:, :3]) - 1) / 2)
     cosine = translation @ true[:, 3] / np.linalg.norm(translation) / np.linalg.norm(true[:, 3])
-    return max(turn, degrees(abs(cosine)))
+    return degrees((np.trace(rotation.T @ true[:, :3]) - 1) / 2), degrees(abs(cosine))
 
 
 def count_right(places, truth):
@@ -105,13 +110,16 @@ def main():
     given = parser.parse_args(words[:cut])
     if bool(given.cli) == given.sift:
         parser.error("either ASJ_CLI or --sift")
-    rows = []
+    rows, over_told = [], []
     for folder in sorted(path.parent for path in given.folder.glob("*/truth.json")):
         truth = json.loads((folder / "truth.json").read_text())
         if "pose" not in truth:
             continue
         pose, accepted, places = by_sift(folder, truth) if given.sift else by_library(given.cli, words[cut + 1 :], folder, truth)
-        row = (error_of(pose, truth), accepted, truth.get("common", 0) >= THIRD, count_right(places, truth), len(places))
+        apart = errors_of(pose, truth)
+        if pose and pose[2] is not None:
+            over_told.append(np.divide(apart, pose[2]))
+        row = (max(apart), accepted, truth.get("common", 0) >= THIRD, count_right(places, truth), len(places))
         rows.append(row)
         if given.verbose:
             print(f"{folder.name} common {truth.get('common', 0):.2f} error {row[0]:.1f} matches {row[3]}/{row[4]}", flush=True)
@@ -122,6 +130,9 @@ def main():
           f"accepted {accepted.sum()}, of those with a third in common {(accepted & third).sum()} of {third.sum()}; "
           f"out by more than 3 degrees {((errors > WRONG) & (errors < NO_POSE)).sum()};",
           f"matches {right.sum()} of {matches.sum()} right")
+    if over_told:
+        (turn, way), (most_turn, most_way) = np.quantile(over_told, (0.5, 0.9), axis=0)
+        print(f"errors over told deviations: rotation {turn:.2f}, {most_turn:.2f}; translation {way:.2f}, {most_way:.2f}")
 
 
 if __name__ == "__main__":
