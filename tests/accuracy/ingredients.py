@@ -21,6 +21,7 @@ from asj import matches as of_matches
 from asj._native import ffi, lib
 from asj.context import current
 from asj.options import MATCHER
+from pose_judge import area, count_right, errors
 
 LOOSE = {"ratio": 1, "mutual": 0, "minimum_support": 0.5, "verify_agreement": 0, "guided_rounds": 0, "shortlist": 16}
 ROWS = [
@@ -38,24 +39,6 @@ ROWS = [
     ("as it is, SIFT descriptors of the patches", {"descriptor": "sift"}, {}),
     ("as it is, focal length not known", {}, {"find_focal": 1}),
 ]
-
-
-def turn(cosine):
-    return float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
-
-
-def error(rotation, translation, truth):
-    direction = abs(translation @ truth[:, 3]) / np.linalg.norm(translation) / np.linalg.norm(truth[:, 3])
-    return max(turn((np.trace(rotation.T @ truth[:, :3]) - 1) / 2), turn(direction))
-
-
-def area(errors, limit):
-    """Percent: mean recall up to `limit` degrees; the recall rises linearly from error to error."""
-    sorted_errors = np.r_[0, np.sort(errors)]
-    recall = np.arange(len(sorted_errors)) / len(errors)
-    below = np.searchsorted(sorted_errors, limit)
-    x, y = np.r_[sorted_errors[:below], limit], np.r_[recall[:below], recall[below - 1]]
-    return 100 * float(((x[1:] - x[:-1]) * (y[1:] + y[:-1]) / 2).sum()) / limit
 
 
 def match(features, cameras, options, geometry, seed):
@@ -92,13 +75,6 @@ def ransac(found, cameras, seed):
     return rotation, translation[:, 0]
 
 
-def right(found, fundamental):
-    points = [np.c_[xy, np.ones(len(xy))] for xy in (found.xy1.astype(float), found.xy2.astype(float))]
-    lines = [points[1] @ fundamental, points[0] @ fundamental.T]
-    off = np.abs((lines[1] * points[1]).sum(axis=1))
-    return int((off / np.minimum(*(np.hypot(line[:, 0], line[:, 1]) for line in lines)) < 10).sum()) if len(found) else 0
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pairs", type=pathlib.Path)
@@ -115,7 +91,7 @@ def main():
     for name, options, geometry in ROWS:
         if given.only not in name:
             continue
-        errors, told, wrong, good, total = [], 0, 0, 0, 0
+        apart, told, wrong, good, total = [], 0, 0, 0, 0
         for seed in range(1, given.seeds + 1):
             for both, truth in zip(in_grey if geometry and "grey" in geometry else features, truths):
                 cameras = [np.array(truth[key]) for key in ("K1", "K2")]
@@ -124,13 +100,13 @@ def main():
                 pose = ransac(found, cameras, seed) if of_pair is None else None
                 if of_pair and of_pair.rotation is not None:
                     pose = of_pair.rotation, of_pair.translation
-                errors.append(error(*pose, np.array(truth["pose"])) if pose else 180.0)
+                apart.append(max(errors(*pose, np.array(truth["pose"]))) if pose else 180.0)
                 told += pose is not None
-                wrong += pose is not None and errors[-1] > 10
-                good += right(found, np.array(truth["F"]))
+                wrong += pose is not None and apart[-1] > 10
+                good += count_right(found.xy1, found.xy2, np.array(truth["F"]), 10)
                 total += len(found)
         n = given.seeds
-        areas = " / ".join(f"{area(errors, limit):.1f}" for limit in (5, 10, 20))
+        areas = " / ".join(f"{area(apart, limit):.1f}" for limit in (5, 10, 20))
         print(f"| {name} | {areas} | {told / n:g} of {len(folders)}, {wrong / n:g} | {good / n:g} of {total / n:g} |", flush=True)
 
 

@@ -22,14 +22,14 @@ import tempfile
 
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from pose_judge import area, count_right, errors
+
 LIMITS = (1, 2, 5, 10, 20)
 NO_POSE = 180.0
 WRONG = 3.0  # degrees
+NEAR = 3.0  # px
 THIRD = 1 / 3
-
-
-def degrees(cosine):
-    return float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
 
 
 def by_library(cli, options, folder, truth):
@@ -72,33 +72,6 @@ def by_sift(folder, truth):
     return (rotation, translation.ravel(), None), True, places[inliers.ravel() > 0]
 
 
-def errors_of(pose, truth):
-    """Of the rotation and of the translation's direction, degrees."""
-    if pose is None:
-        return NO_POSE, NO_POSE
-    rotation, translation, _ = pose
-    true = np.array(truth["pose"])
-    cosine = translation @ true[:, 3] / np.linalg.norm(translation) / np.linalg.norm(true[:, 3])
-    return degrees((np.trace(rotation.T @ true[:, :3]) - 1) / 2), degrees(abs(cosine))
-
-
-def count_right(places, truth):
-    ones = np.ones(len(places))
-    first, second = np.column_stack([places[:, :2], ones]), np.column_stack([places[:, 2:], ones])
-    matrix = np.array(truth["F"])
-    lines1, lines2 = second @ matrix, first @ matrix.T
-    product = np.abs(np.sum(second * lines2, axis=1))
-    return int(np.sum(product < 3 * np.minimum(np.hypot(*lines1[:, :2].T), np.hypot(*lines2[:, :2].T))))
-
-
-def area(errors, limit):
-    """Percent."""
-    ordered = np.sort([e for e in errors if e < limit])
-    recall = np.arange(len(ordered) + 1) / len(errors)
-    x, y = np.r_[0, ordered, limit], np.r_[recall, recall[-1]]
-    return 100 * float(np.sum(np.diff(x) * (y[1:] + y[:-1]) / 2)) / limit
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cli", nargs="?")
@@ -116,19 +89,20 @@ def main():
         if "pose" not in truth:
             continue
         pose, accepted, places = by_sift(folder, truth) if given.sift else by_library(given.cli, words[cut + 1 :], folder, truth)
-        apart = errors_of(pose, truth)
+        apart = errors(*pose[:2], np.array(truth["pose"])) if pose else (NO_POSE, NO_POSE)
         if pose and pose[2] is not None:
             over_told.append(np.divide(apart, pose[2]))
-        row = (max(apart), accepted, truth.get("common", 0) >= THIRD, count_right(places, truth), len(places))
-        rows.append(row)
+        right = count_right(places[:, :2], places[:, 2:], np.array(truth["F"]), NEAR)
+        common = truth.get("common", 0)
+        rows.append((max(apart), accepted, common >= THIRD, right, len(places)))
         if given.verbose:
-            print(f"{folder.name} common {truth.get('common', 0):.2f} error {row[0]:.1f} matches {row[3]}/{row[4]}", flush=True)
+            print(f"{folder.name} common {common:.2f} error {max(apart):.1f} matches {right}/{len(places)}", flush=True)
     if not rows:
         sys.exit(f"{given.folder} has no pairs with poses")
-    errors, accepted, third, right, matches = map(np.array, zip(*rows))
-    print(f"{len(rows)} pairs: AUC at 1, 2, 5, 10, 20 degrees", *(f"{area(errors, limit):.1f}" for limit in LIMITS),
+    worst, accepted, third, right, matches = map(np.array, zip(*rows))
+    print(f"{len(rows)} pairs: AUC at 1, 2, 5, 10, 20 degrees", *(f"{area(worst, limit):.1f}" for limit in LIMITS),
           f"accepted {accepted.sum()}, of those with a third in common {(accepted & third).sum()} of {third.sum()}; "
-          f"out by more than 3 degrees {((errors > WRONG) & (errors < NO_POSE)).sum()};",
+          f"out by more than 3 degrees {((worst > WRONG) & (worst < NO_POSE)).sum()};",
           f"matches {right.sum()} of {matches.sum()} right")
     if over_told:
         (turn, way), (most_turn, most_way) = np.quantile(over_told, (0.5, 0.9), axis=0)
