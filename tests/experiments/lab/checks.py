@@ -45,8 +45,13 @@ def _check_score(lib):
     far = p + [[0, 30.0], [0, 30.0]]
     _expect("segments with swapped ends", list(judge.segments(p, far, far + [7, 0], p + [7, 0])), [0.0, 0.0])
     _expect("the same, in any order", list(judge.segments(p, far, far + [7, 0], p + [7, 0], True)), [1.0, 1.0])
+    end = [score.DIRECTION_LENGTH * np.array([np.cos(turn), np.sin(turn)]) for turn in np.radians([9.5, 10.5])]
+    _expect("branches that turn by 9.5 and 10.5 degrees", list(judge.directions(p, p + [50.0, 0], p + [7, 0], p + [7, 0] + end)),
+            [True, False])
     rows = pairs.Pair("rows", pairs.FUNDAMENTAL, "", "", np.array([[0.0, 0, 0], [0, 0, -1], [0, 1, 0]]))
     _expect("epipolar lines that are rows", list(score.Judge(lib, rows).points(p, p + [[50, 2.9], [50, 3.1]])), [True, False])
+    _expect("branches whose ends are 4.9 and 5.1 px off their rows",
+            list(score.Judge(lib, rows).directions(p, far, p, far + [[9, 4.9], [9, 5.1]])), [True, False])
     labels = {"segments1": [[0, 0, 100, 0], [0, 50, 100, 50]], "segments2": [[0, 9, 100, 9], [0, 59, 100, 59]],
               "matches": [[[0], [0]], [[1], [1]]]}
     judge = score.Judge(lib, pairs.Pair("labels", pairs.LINES, "", "", labels=labels))

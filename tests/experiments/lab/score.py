@@ -17,6 +17,9 @@ from . import pairs
 POINT_LIMIT = {pairs.HOMOGRAPHY: 5.0, pairs.FUNDAMENTAL: 3.0, pairs.ROOM: 4.0}
 END_LIMIT = {pairs.HOMOGRAPHY: 10.0, pairs.FUNDAMENTAL: 3.0, pairs.ROOM: 8.0}
 END_SHARE = 0.05       # homography: of the segment's length in image 2
+DIRECTION_LIMIT = 10.0      # deg
+DIRECTION_LENGTH = 20.0     # px
+DIRECTION_END_LIMIT = 5.0   # px
 ALONG_DISTANCE = 3.0   # px: mean distance of a labelled segment's ends from the line; each at most twice that
 ALONG_ANGLE = 5.0      # deg
 
@@ -25,11 +28,15 @@ def _homogeneous(p):
     return np.column_stack([p, np.ones(len(p))])
 
 
-def _transfer_error(pair, p1, p2):
-    q = _homogeneous(p1) @ pair.matrix.T
+def _mapped(pair, p):
+    """By the homography; NaN where points are not visible"""
+    q = _homogeneous(p) @ pair.matrix.T
     with np.errstate(all="ignore"):
-        error = np.hypot(*(q[:, :2] / q[:, 2:] - p2).T)
-    return np.where(np.sign(q[:, 2]) == pair.side, error, np.inf)
+        return np.where(np.sign(q[:, 2:]) == pair.side, q[:, :2] / q[:, 2:], np.nan)
+
+
+def _transfer_error(pair, p1, p2):
+    return np.nan_to_num(np.hypot(*(_mapped(pair, p1) - p2).T), nan=np.inf)
 
 
 def _epipolar_error(pair, p1, p2):
@@ -64,6 +71,17 @@ class Judge:
         if self.pair.kind == pairs.LINES:
             return None
         return self._near(p1, p2, POINT_LIMIT[self.pair.kind])
+
+    def directions(self, p1, a1, p2, a2):
+        """Whether branches from p to a point the same way: within 10 degrees (homography, from what it makes of the branch's first
+        20 px), or the end within 5 px of its epipolar line."""
+        if self.pair.kind != pairs.HOMOGRAPHY:
+            return self._near(a1, a2, DIRECTION_END_LIMIT)
+        with np.errstate(all="ignore"):
+            length = np.hypot(*(a1 - p1).T)[:, None]
+            q, r = (_mapped(self.pair, p) for p in (p1, p1 + (a1 - p1) * np.minimum(1, DIRECTION_LENGTH / length)))
+            cosine = ((r - q) * (a2 - p2)).sum(1) / np.hypot(*(r - q).T) / np.hypot(*(a2 - p2).T)
+        return np.nan_to_num(cosine, nan=-1) > np.cos(np.radians(DIRECTION_LIMIT))
 
     def segments(self, a1, b1, a2, b2, any_order=False):
         """1 right, 0 wrong, NaN not judged."""

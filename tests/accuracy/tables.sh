@@ -1,0 +1,114 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-2-Clause
+# The figures of README.md here: sh tests/accuracy/tables.sh BUILD OUT [PAIRS [PART...]]
+#
+# Runs the commands that stand above its tables and writes what they print into the folder OUT, a file for each part, in about two
+# hours with two processors. What is in OUT already stays as it is, so a run that was stopped goes on. BUILD: a build folder with
+# tests. PAIRS: a folder of pairs of photographs (tests/experiments/README.md); parts that need some are left out without. PYTHON
+# names a Python that has numpy and OpenCV. Exit code 1 when a part failed.
+set -eu
+build=$1
+out=$2
+photographs=${3:-}
+[ $# -gt 3 ] && shift 3 || set --
+here=$(cd "$(dirname "$0")" && pwd)
+python=${PYTHON:-python3}
+tool=$build/tests/accuracy
+cli=$build/cli/asj-cli
+mkdir -p "$out"
+
+# The six indoor photographs that repeatability was worked on with, and the others.
+some=
+others=
+if [ -n "$photographs" ]; then
+    for name in drawer textureless_corridor lowTexture occlusion glasscaseb scannet0758; do
+        some="$some $photographs/$name/1.png"
+    done
+    for file in "$photographs"/*/[12].png; do
+        case " $some " in *" $file "*) ;; *) others="$others $file" ;; esac
+    done
+fi
+
+# part NAME COMMAND...: OUT/NAME.txt, unless it is there or parts were asked for and this is none of them.
+wanted=$*
+part() {
+    name=$1
+    shift
+    case " $wanted " in "  " | *" $name "*) ;; *) return 0 ;; esac
+    [ -e "$out/$name.txt" ] && return 0
+    if "$@" > "$out/.$name" 2>&1; then
+        mv "$out/.$name" "$out/$name.txt"
+        echo "$name"
+    else
+        echo "$name: FAILED, see $out/.$name" >&2
+        failed=1
+    fi
+}
+failed=0
+
+# Detection, on what is rendered.
+part corners "$tool/accuracy" --scenes 100
+part corners-one-octave "$tool/accuracy" --scenes 100 octaves=1
+part corners-half-octaves "$tool/accuracy" --scenes 100 half_octaves=1
+part corners-complete "$tool/accuracy" --scenes 100 complete_junctions=1
+part corners-finer "$tool/accuracy" --scenes 100 first_octave=-1
+part noise-images "$tool/accuracy" --scenes 1000 --row noise
+part noise-finer "$tool/accuracy" --scenes 1000 --row noise first_octave=-1
+part lines "$tool/lines"
+part lines-complete "$tool/lines" complete_junctions=1
+part lines-half-octaves "$tool/lines" half_octaves=1
+part lines-finer "$tool/lines" first_octave=-1
+part lines-one-octave "$tool/lines" octaves=1
+part lines-noise "$tool/lines" --noise 5
+part lines-blur "$tool/lines" --blur 2
+part lines-peers "$python" "$here/line_peers.py" "$tool/lines"
+
+# Matching of what is rendered.
+part room "$tool/match_room"
+part rooms "$tool/match_room" --rooms --last 40
+part rooms-fresh "$tool/match_room" --rooms --first 101 --last 140
+part rooms-finer "$tool/match_room" --rooms --first-octave -1 --last 48
+
+# Two views far apart.
+part far-as-they-are "$tool/wide_rooms" --poses --first 1000 --last 1399
+part far "$tool/wide_rooms" --poses --stretch 0,0 --first 1000 --last 1399
+part far-fresh "$tool/wide_rooms" --poses --stretch 0,0 --first 5740 --last 5899
+part near "$tool/wide_rooms" --poses --stretch 0,0 --near --first 3000 --last 3149
+part turned "$tool/wide_rooms" --turned --first 0 --last 99
+part turned-focal "$tool/wide_rooms" --turned --find-focal --first 0 --last 99
+part find-focal "$tool/wide_rooms" --poses --stretch 0,0 --find-focal --first 1000 --last 1199
+for error in 0 0.03 -0.03; do
+    part "focal-$error-exact" "$tool/wide_rooms" --poses --focal-error $error --first 1000 --last 1078
+    part "focal-$error-about" "$tool/wide_rooms" --poses --focal-error $error --focal-sd 0.05 --first 1000 --last 1078
+done
+part unrelated-rooms "$tool/wide_rooms" --stretch 0,0 --unrelated --first 1000 --last 1399
+part stages "$tool/wide_stages" --first 0 --last 99
+part facades "$python" "$here/facades.py" "$cli" --seeds 6 --stains 0,6,10,15
+
+# Photographs.
+[ -n "$photographs" ] || exit $failed
+part repeatability "$tool/repeatability" $some
+part repeatability-others "$tool/repeatability" $others
+part zoom "$python" "$here/zoom.py" "$cli" $some
+part zoom-others "$python" "$here/zoom.py" "$cli" $others
+part zoom-half-octaves "$python" "$here/zoom.py" "$cli" $some -- --half-octaves yes
+part zoom-others-half-octaves "$python" "$here/zoom.py" "$cli" $others -- --half-octaves yes
+part zoom-finer "$python" "$here/zoom.py" "$cli" $some -- --first-octave -1
+part losses "$tool/losses" octaves=16 $some
+part losses-every-pixel "$tool/losses" octaves=16 candidate_step=1 $some
+part crossing-lines "$python" "$here/crossing_lines.py" "$cli" $some $others
+part pairs-as-they-are "$python" "$here/pairs.py" "$cli" "$photographs" -- --stretch 1
+part pairs "$python" "$here/pairs.py" "$cli" "$photographs"
+part pairs-fewer-octaves "$python" "$here/pairs.py" "$cli" "$photographs" -- --upsampled-half-octaves no
+part pairs-geometry "$python" "$here/pairs.py" "$cli" "$photographs" -- --geometry auto
+part pairs-paper "$python" "$here/pairs.py" "$cli" "$photographs" -- --preset paper
+part pairs-paper-sift "$python" "$here/pairs.py" "$cli" "$photographs" -- --preset paper --descriptor sift
+for ends in both inner cut; do
+    part "lines-$ends" "$python" "$here/pairs.py" "$cli" "$photographs" -- --lines --line-ends $ends
+done
+part lines-joined "$python" "$here/pairs.py" "$cli" "$photographs" -- --lines --join-lines
+part frames "$python" "$here/pairs.py" "$cli" "$photographs" --cameras -- --geometry auto
+part frames-as-they-are "$python" "$here/pairs.py" "$cli" "$photographs" --cameras -- --geometry auto --upsample-from 0
+part unrelated "$python" "$here/unrelated.py" "$cli" "$photographs" --every 3
+part unrelated-matches "$python" "$here/unrelated.py" "$cli" "$photographs" --every 3 -- --geometry none
+exit $failed
