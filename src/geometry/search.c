@@ -8,7 +8,7 @@
  * that have nothing in common, nothing more is looked for. Sample n draws its numbers from stream n, so that threads change
  * nothing. Before rivals were looked for by themselves (rivals.c), fewer STARTS and CENTRES missed them: of unrelated rooms with
  * tiled floors, one in 29 was accepted with 8 and 4. With rivals looked for, the search of rivals itself does with the BRIEF ones:
- * 189 pairs, two seeds (tests/accuracy/README.md). AROUND 1, LOCAL 20, FEW_ROUNDS 2, or no second round where the first one finds
+ * 189 pairs, two seeds (tests/benchmark/tried.md). AROUND 1, LOCAL 20, FEW_ROUNDS 2, or no second round where the first one finds
  * nothing better, lose poses in the first search. */
 #include "search.h"
 #include "core/angle.h"

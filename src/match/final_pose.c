@@ -26,7 +26,7 @@
  * to 1119, 101 poses: 37 rotations nearer, 45 farther, translations 40 and 39): the pose stays.
  *
  * The covariance stays C: errors of locations are shared by more than those of a place (an edge that is thick, a lens), and what
- * the curvature above promises is half of what poses err by. (tests/accuracy/README.md, "Where the matches lie".) */
+ * the curvature above promises is half of what poses err by. (tests/accuracy/tried/geometry.md, "Where the matches lie".) */
 #include "final_pose.h"
 #include "geometry/model.h"
 #include "geometry/small_matrix.h"

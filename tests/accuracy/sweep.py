@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""The sensitivity table of README.md here: every number of the matcher a fifth lower and a fifth higher, the others as they are.
+"""The table of sensitivity.md here: every number of the matcher a fifth lower and a fifth higher, the others as they are.
 
     sweep.py [--last SEED] BUILD PAIRS
 

@@ -89,10 +89,13 @@ part facades "$python" "$here/facades.py" "$cli" --seeds 6 --stains 0,6,10,15
 [ -n "$photographs" ] || exit $failed
 part repeatability "$tool/repeatability" $some
 part repeatability-others "$tool/repeatability" $others
+part repeatability-surest "$tool/repeatability" epsilon=1e-15 $some
+part repeatability-others-surest "$tool/repeatability" epsilon=1e-15 $others
 part zoom "$python" "$here/zoom.py" "$cli" $some
 part zoom-others "$python" "$here/zoom.py" "$cli" $others
 part zoom-half-octaves "$python" "$here/zoom.py" "$cli" $some -- --half-octaves yes
 part zoom-others-half-octaves "$python" "$here/zoom.py" "$cli" $others -- --half-octaves yes
+part zoom-others-surest "$python" "$here/zoom.py" "$cli" $others -- --epsilon 1e-15
 part zoom-finer "$python" "$here/zoom.py" "$cli" $some -- --first-octave -1
 part losses "$tool/losses" octaves=16 $some
 part losses-every-pixel "$tool/losses" octaves=16 candidate_step=1 $some
