@@ -10,7 +10,7 @@
  * anything in common are answered as before; where they leave a motion open, none is needed, and without cameras one. A pose is
  * estimated again, from more matches, in 1.8 times the time, and match/upsampled_geometry.c says which one is told. (Rooms seen
  * from far apart, 1000 to 1399, as they are and so: 313 and 336 of 398 poses, of these out by more than 3 degrees 8 and 5, AUC at
- * 5, 10, 20 degrees 67.3 72.7 75.6 and 74.5 79.3 81.7; as they are decided now 359, 3, 84.3 87.0 88.3.) With half octaves
+ * 5, 10, 20 degrees 67.3 72.7 75.6 and 74.5 79.3 81.7; as they are decided now 356, 2, 84.0 86.6 87.9.) With half octaves
  * (options->upsampled_half_octaves) sixteen pairs have 4468 of 4567 right in place of 3088 of 3148, in 1.3 to 2.3 times the time,
  * and the rooms 336 poses in place of 331; and where these matches are looked for where the images' own ones put them
  * (match/expected.c) 4766 of 4892, in .7 of that time, and the rooms 337 poses, of these 6 out by more than 3 degrees; that is so

@@ -56,7 +56,7 @@ typedef struct asj_segment_list {
  * Made for junctions of preset default: those of preset match have many weak branches and are of all octaves side by side, which
  * the segments then show, too. The same junctions give the same list. Progress comes as ASJ_STAGE_DECOMPOSE. Time: 50 ms for 19 000
  * branches of a photograph; for 100 000 that lie anywhere in 16 megapixels 1 s where they are 30 px long, 4 s where they are 300,
- * 25 where they are 1000, and two to three times as long for twice as many (tests/benchmark/README.md).
+ * 24 where they are 1000, and two to three times as long for twice as many (tests/benchmark/README.md).
  * Memory while it works: 580 bytes a junction with two branches of 30 px, 900 with two of 300, 2110 with two of 1000.
  * Thread safety: one call at a time per context.
  *

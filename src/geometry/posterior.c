@@ -10,8 +10,8 @@
  * whole region. Mean and covariance of the pose are those of exp(TEMPER score): candidates of one wall, one border or one kind of
  * corner err together, and a product of likelihoods that takes them for independent is too sharp. Raised to a power below 1 it
  * spreads as widely as poses err (composite likelihoods: Pauli, Racugno and Ventura 2011; Ribatet, Cooley and Davison 2012). TEMPER
- * is from rendered rooms: tests/accuracy/README.md. The prior of rotations is not: its edges are no candidates, and manhattan.c
- * counts what they have in common itself.
+ * is from rendered rooms (tests/accuracy/wide_rooms --poses: errors over what is told). The prior of rotations is not: its edges
+ * are no candidates, and manhattan.c counts what they have in common itself.
  *
  * Drawn are the five parameters of the motion (model.c), or the three of a camera that only turns. Planes follow as the equations
  * of adjust.c say, n' = -H_nn^-1 H_nm m', and are integrated over by Laplace's method. Standard deviations of a round: those of the

@@ -25,7 +25,7 @@ from pose_judge import area, count_right, errors
 
 LOOSE = {"ratio": 1, "mutual": 0, "minimum_support": 0.5, "verify_agreement": 0, "guided_rounds": 0, "shortlist": 16}
 ROWS = [
-    ("matches of today, five-point RANSAC", {}, None),
+    ("matches by default, five-point RANSAC", {}, None),
     ("loose options, five-point RANSAC", LOOSE, None),
     ("points alone: no angle or scale of affine maps, no directions of the room", {},
      {"angle_sd": 45, "scale_sd": 1, "no_directions": 1}),
@@ -81,7 +81,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--only", default="")
     given = parser.parse_args()
-    folders = [path for path in sorted(given.pairs.iterdir()) if "pose" in json.loads((path / "truth.json").read_text())]
+    folders = [path.parent for path in sorted(given.pairs.glob("*/truth.json")) if "pose" in json.loads(path.read_text())]
     truths = [json.loads((folder / "truth.json").read_text()) for folder in folders]
     images = [[asj.read_image(folder / f"{k}.png") for k in (1, 2)] for folder in folders]
     features = [[asj.detect(image) for image in both] for both in images]

@@ -6,9 +6,10 @@ PAIRS: folders in the format of tests/experiments/README.md, whose lab/score.py 
 junctions (key points both of whose branches point the same way), line segments (the two branches of each match; with --lines among
 the options its lines), right of all. Below them the sums, and the mean of the pairs' shares.
 
---cameras: pairs whose truth.json has K1, K2 and pose, these only, with their cameras; also the error of the pose (the larger one of
-rotation and direction of translation, degrees; 180 where there is none), the area under recall over error, and how many matches are
-within 10 px of both epipolar lines. Needs numpy.
+--cameras, with --geometry among the options: only pairs whose truth.json has F, K1, K2 and pose, with their cameras; also the error
+of the pose (the larger one of rotation and direction of translation, degrees; 180 where there is none), the area under recall over
+error, and how many matches are within 10 px of both epipolar lines. Exit code 1 when there is no such pair, or match fails. Needs
+numpy.
 """
 
 import argparse
@@ -57,6 +58,15 @@ def camera_options(truth):
     return [f"--camera{k}={m[0][0]},{m[1][1]},{m[0][2]},{m[1][2]}" for k, m in ((1, truth["K1"]), (2, truth["K2"]))]
 
 
+def match(cli, pair, options):
+    with tempfile.TemporaryDirectory() as place:
+        out = pathlib.Path(place) / "matches.json"
+        ended = subprocess.run([cli, "match", "-q", *options, "--format", "json", "-o", str(out), pair.image1, pair.image2])
+        if ended.returncode != 0:
+            sys.exit(f"pairs.py: {pair.name}: match failed")
+        return json.loads(out.read_text())
+
+
 def pose_error(found, truth):
     geometry = found.get("geometry") or {}
     if not geometry.get("rotation"):
@@ -89,15 +99,13 @@ def main():
     cut = words.index("--") if "--" in words else len(words)
     given, options = parser.parse_args(words[:cut]), words[cut + 1 :]
     table, poses = [], []
+    if not given.folder.is_dir():
+        parser.error(f"{given.folder} is no folder")
     for pair in pairs.read_folder(given.folder):
         truth = json.loads((given.folder / pair.name / "truth.json").read_text())
-        if given.cameras and "pose" not in truth:
+        if given.cameras and not (pair.kind == pairs.FUNDAMENTAL and all(truth.get(key) for key in ("K1", "K2", "pose"))):
             continue
-        with tempfile.TemporaryDirectory() as place:
-            out = pathlib.Path(place) / "matches.json"
-            cameras = camera_options(truth) if given.cameras else []
-            subprocess.run([given.cli, "match", "-q", *cameras, *options, "-o", str(out), pair.image1, pair.image2], check=True)
-            found = json.loads(out.read_text())
+        found = match(given.cli, pair, [*options, *(camera_options(truth) if given.cameras else [])])
         table.append(judge(pair, found, "--lines" in options))
         told = [f"{name} {v.sum()} / {len(v)}" for name, v in table[-1].items()]
         if given.cameras:

@@ -1,12 +1,29 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-2-Clause
-# The figures of README.md here: sh tests/accuracy/tables.sh BUILD OUT [PAIRS [PART...]]
-#
-# Runs the commands that stand above its tables and writes what they print into the folder OUT, a file for each part, in about two
-# hours with two processors. What is in OUT already stays as it is, so a run that was stopped goes on. BUILD: a build folder with
-# tests. PAIRS: a folder of pairs of photographs (tests/experiments/README.md); parts that need some are left out without. PYTHON
-# names a Python that has numpy and OpenCV. Exit code 1 when a part failed.
+# The figures of README.md here.
 set -eu
+
+usage() {
+    cat << 'END'
+usage: sh tests/accuracy/tables.sh BUILD OUT [PAIRS [PART...]]
+
+Runs the commands that stand above the tables of tests/accuracy/README.md and writes what they print into the folder OUT, a file for
+each part; all of them take about three hours with two processors. What is in OUT already stays as it is, so a run that was stopped
+goes on. BUILD: a build folder with tests. PAIRS: a folder of pairs of photographs (tests/experiments/README.md); parts that need
+some are left out without ("": none, to name parts). PYTHON in the environment names a Python with numpy, OpenCV and its contributed
+modules, and, for the part ingredients, the asj package. Exit code: 1 when a part failed, 2 wrong usage.
+END
+}
+
+wrong() {
+    echo "tables.sh: $1" >&2
+    exit 2
+}
+
+case ${1:--h} in
+    -*) usage && exit 0 ;;
+esac
+[ $# -ge 2 ] || wrong "OUT is missing"
 build=$1
 out=$2
 photographs=${3:-}
@@ -15,24 +32,36 @@ here=$(cd "$(dirname "$0")" && pwd)
 python=${PYTHON:-python3}
 tool=$build/tests/accuracy
 cli=$build/cli/asj-cli
+[ -x "$tool/accuracy" ] && [ -x "$cli" ] || wrong "$build is no build folder with tests"
+[ -z "$photographs" ] || [ -d "$photographs" ] || wrong "$photographs is no folder"
+case $photographs in *[[:space:]]*) wrong "a path with white space: $photographs" ;; esac
 mkdir -p "$out"
+
+# Results of two programs are not to stand side by side.
+program=$(cksum "$cli" "$build"/src/libasj*.so.*.*.* 2> /dev/null || true)
+if [ -e "$out/program" ] && [ "$(cat "$out/program")" != "$program" ]; then
+    wrong "$out has results of another program"
+fi
+echo "$program" > "$out/program"
 
 # The six indoor photographs that repeatability was worked on with, and the others.
 some=
 others=
-if [ -n "$photographs" ]; then
-    for name in drawer textureless_corridor lowTexture occlusion glasscaseb scannet0758; do
-        some="$some $photographs/$name/1.png"
-    done
-    for file in "$photographs"/*/[12].png; do
-        case " $some " in *" $file "*) ;; *) others="$others $file" ;; esac
-    done
-fi
+for name in drawer textureless_corridor lowTexture occlusion glasscaseb scannet0758; do
+    [ -e "$photographs/$name/1.png" ] && some="$some $photographs/$name/1.png"
+done
+for file in "$photographs"/*/[12].png; do
+    case " $some " in *" $file "*) ;; *) [ -e "$file" ] && others="$others $file" ;; esac
+done
+
+wanted=$*
+known=
+failed=0
 
 # part NAME COMMAND...: OUT/NAME.txt, unless it is there or parts were asked for and this is none of them.
-wanted=$*
 part() {
     name=$1
+    known="$known $name"
     shift
     case " $wanted " in "  " | *" $name "*) ;; *) return 0 ;; esac
     [ -e "$out/$name.txt" ] && return 0
@@ -44,7 +73,23 @@ part() {
         failed=1
     fi
 }
-failed=0
+
+# of_some and of_others NAME COMMAND...: the same for a command that ends with the names of such photographs, unless there are none.
+of_some() {
+    [ -z "$some" ] || part "$@" $some
+}
+
+of_others() {
+    [ -z "$others" ] || part "$@" $others
+}
+
+# Asked for, and no part of this script, or none without PAIRS.
+unknown() {
+    for name in $wanted; do
+        case " $known " in *" $name "*) ;; *) wrong "$name is no part that can be made" ;; esac
+    done
+    exit $failed
+}
 
 # Detection, on what is rendered.
 part corners "$tool/accuracy" --scenes 100
@@ -54,6 +99,8 @@ part corners-complete "$tool/accuracy" --scenes 100 complete_junctions=1
 part corners-finer "$tool/accuracy" --scenes 100 first_octave=-1
 part noise-images "$tool/accuracy" --scenes 1000 --row noise
 part noise-finer "$tool/accuracy" --scenes 1000 --row noise first_octave=-1
+part noise "$tool/noise" --images 1000
+part noise-paper "$tool/noise" --images 1000 --preset paper --ways scanned,detector,everywhere
 part lines "$tool/lines"
 part lines-complete "$tool/lines" complete_junctions=1
 part lines-half-octaves "$tool/lines" half_octaves=1
@@ -86,20 +133,21 @@ part stages "$tool/wide_stages" --first 0 --last 99
 part facades "$python" "$here/facades.py" "$cli" --seeds 6 --stains 0,6,10,15
 
 # Photographs.
-[ -n "$photographs" ] || exit $failed
-part repeatability "$tool/repeatability" $some
-part repeatability-others "$tool/repeatability" $others
-part repeatability-surest "$tool/repeatability" epsilon=1e-15 $some
-part repeatability-others-surest "$tool/repeatability" epsilon=1e-15 $others
-part zoom "$python" "$here/zoom.py" "$cli" $some
-part zoom-others "$python" "$here/zoom.py" "$cli" $others
-part zoom-half-octaves "$python" "$here/zoom.py" "$cli" $some -- --half-octaves yes
-part zoom-others-half-octaves "$python" "$here/zoom.py" "$cli" $others -- --half-octaves yes
-part zoom-others-surest "$python" "$here/zoom.py" "$cli" $others -- --epsilon 1e-15
-part zoom-finer "$python" "$here/zoom.py" "$cli" $some -- --first-octave -1
-part losses "$tool/losses" octaves=16 $some
-part losses-every-pixel "$tool/losses" octaves=16 candidate_step=1 $some
-part crossing-lines "$python" "$here/crossing_lines.py" "$cli" $some $others
+[ -n "$photographs" ] || unknown
+of_some repeatability "$tool/repeatability"
+of_others repeatability-others "$tool/repeatability"
+of_some repeatability-surest "$tool/repeatability" epsilon=1e-15
+of_others repeatability-others-surest "$tool/repeatability" epsilon=1e-15
+of_some zoom "$python" "$here/zoom.py" "$cli"
+of_others zoom-others "$python" "$here/zoom.py" "$cli"
+[ -z "$some" ] || part zoom-half-octaves "$python" "$here/zoom.py" "$cli" $some -- --half-octaves yes
+[ -z "$others" ] || part zoom-others-half-octaves "$python" "$here/zoom.py" "$cli" $others -- --half-octaves yes
+[ -z "$others" ] || part zoom-others-surer "$python" "$here/zoom.py" "$cli" $others -- --epsilon 1e-10
+[ -z "$others" ] || part zoom-others-surest "$python" "$here/zoom.py" "$cli" $others -- --epsilon 1e-15
+[ -z "$some" ] || part zoom-finer "$python" "$here/zoom.py" "$cli" $some -- --first-octave -1
+of_some losses "$tool/losses" octaves=16
+of_some losses-every-pixel "$tool/losses" octaves=16 candidate_step=1
+[ -z "$some$others" ] || part crossing-lines "$python" "$here/crossing_lines.py" "$cli" $some $others
 part pairs-as-they-are "$python" "$here/pairs.py" "$cli" "$photographs" -- --stretch 1
 part pairs "$python" "$here/pairs.py" "$cli" "$photographs"
 part pairs-fewer-octaves "$python" "$here/pairs.py" "$cli" "$photographs" -- --upsampled-half-octaves no
@@ -113,5 +161,7 @@ part lines-joined "$python" "$here/pairs.py" "$cli" "$photographs" -- --lines --
 part frames "$python" "$here/pairs.py" "$cli" "$photographs" --cameras -- --geometry auto
 part frames-as-they-are "$python" "$here/pairs.py" "$cli" "$photographs" --cameras -- --geometry auto --upsample-from 0
 part unrelated "$python" "$here/unrelated.py" "$cli" "$photographs" --every 3
-part unrelated-matches "$python" "$here/unrelated.py" "$cli" "$photographs" --every 3 -- --geometry none
-exit $failed
+part unrelated-matches "$python" "$here/unrelated.py" "$cli" "$photographs" --every 3 --whole -- --geometry none
+part ingredients "$python" "$here/ingredients.py" --seeds 2 "$photographs"
+part agreement "$tool/agreement" --check --preset=paper "$photographs"
+unknown

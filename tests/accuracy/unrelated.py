@@ -45,6 +45,8 @@ def main():
     images = [(folder, which) for folder in folders for which in (1, 2)]
     chosen = [(a, b) for a, b in itertools.combinations(images, 2) if a[0] != b[0] and not {a[0].name, b[0].name} <= same]
     chosen = chosen[:: given.every][: given.limit]
+    if not chosen:
+        sys.exit(f"{given.pairs} has no two folders with images of different things")
     ended, counts, begin = collections.Counter(), [], time.monotonic()
     with tempfile.TemporaryDirectory() as place:
         for folder, which in {image for pair in chosen for image in pair if not given.whole}:
