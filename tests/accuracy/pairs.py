@@ -24,7 +24,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "experiments"))
 
 from lab import pairs, score  # noqa: E402
-from pose_judge import area, count_right, errors  # noqa: E402
+from pose_judge import area, camera_options, count_right, errors  # noqa: E402
 
 LOOSE = 10.0  # px: poses of video frames are known to a few degrees
 NO_POSE = 180.0
@@ -52,10 +52,6 @@ def judge(pair, found, lines):
     else:
         out["segments"] = np.concatenate([judge_of.segments(*branch) for branch in branches])
     return {name: verdict[~np.isnan(verdict.astype(float))].astype(bool) for name, verdict in out.items()}
-
-
-def camera_options(truth):
-    return [f"--camera{k}={m[0][0]},{m[1][1]},{m[0][2]},{m[1][2]}" for k, m in ((1, truth["K1"]), (2, truth["K2"]))]
 
 
 def match(cli, pair, options):

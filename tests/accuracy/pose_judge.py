@@ -4,6 +4,11 @@
 import numpy as np
 
 
+def camera_options(truth):
+    """Of asj-cli match: the cameras K1 and K2 (3 x 3) of a pair's truth."""
+    return [f"--camera{k}={m[0][0]},{m[1][1]},{m[0][2]},{m[1][2]}" for k, m in ((1, truth["K1"]), (2, truth["K2"]))]
+
+
 def degrees(cosine):
     return float(np.degrees(np.arccos(np.clip(cosine, -1, 1))))
 

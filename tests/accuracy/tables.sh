@@ -8,7 +8,7 @@ usage() {
 usage: sh tests/accuracy/tables.sh BUILD OUT [PAIRS [PART...]]
 
 Runs the commands that stand above the tables of tests/accuracy/README.md and writes what they print into the folder OUT, a file for
-each part; all of them take about three hours with two processors. What is in OUT already stays as it is, so a run that was stopped
+each part; all of them take some hours. What is in OUT already stays as it is, so a run that was stopped
 goes on. BUILD: a build folder with tests. PAIRS: a folder of pairs of photographs (tests/experiments/README.md); parts that need
 some are left out without ("": none, to name parts). PYTHON in the environment names a Python with numpy, OpenCV and its contributed
 modules, and, for the part ingredients, the asj package. Exit code: 1 when a part failed, 2 wrong usage.
@@ -83,8 +83,8 @@ of_others() {
     [ -z "$others" ] || part "$@" $others
 }
 
-# Asked for, and no part of this script, or none without PAIRS.
-unknown() {
+# Ends the script; wrong when something asked for is no part of it, or none without PAIRS.
+finish() {
     for name in $wanted; do
         case " $known " in *" $name "*) ;; *) wrong "$name is no part that can be made" ;; esac
     done
@@ -133,7 +133,7 @@ part stages "$tool/wide_stages" --first 0 --last 99
 part facades "$python" "$here/facades.py" "$cli" --seeds 6 --stains 0,6,10,15
 
 # Photographs.
-[ -n "$photographs" ] || unknown
+[ -n "$photographs" ] || finish
 of_some repeatability "$tool/repeatability"
 of_others repeatability-others "$tool/repeatability"
 of_some repeatability-surest "$tool/repeatability" epsilon=1e-15
@@ -164,4 +164,4 @@ part unrelated "$python" "$here/unrelated.py" "$cli" "$photographs" --every 3
 part unrelated-matches "$python" "$here/unrelated.py" "$cli" "$photographs" --every 3 --whole -- --geometry none
 part ingredients "$python" "$here/ingredients.py" --seeds 2 "$photographs"
 part agreement "$tool/agreement" --check --preset=paper "$photographs"
-unknown
+finish

@@ -23,7 +23,7 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-from pose_judge import area, count_right, errors
+from pose_judge import area, camera_options, count_right, errors
 
 LIMITS = (1, 2, 5, 10, 20)
 NO_POSE = 180.0
@@ -34,14 +34,10 @@ THIRD = 1 / 3
 
 def by_library(cli, options, folder, truth):
     """Rotation, translation and told deviations of both, degrees, or None; is a geometry accepted?; matches x1 y1 x2 y2."""
-    cameras = []
-    for which in (1, 2):
-        inner = truth[f"K{which}"]
-        cameras.append(f"--camera{which}={inner[0][0]},{inner[1][1]},{inner[0][2]},{inner[1][2]}")
     with tempfile.TemporaryDirectory() as place:
         out = pathlib.Path(place) / "matches.json"
-        subprocess.run([cli, "match", "-q", "--geometry", "auto", *cameras, *options, "-o", str(out), str(folder / "1.png"),
-                        str(folder / "2.png")], check=True)
+        subprocess.run([cli, "match", "-q", "--geometry", "auto", *camera_options(truth), *options, "-o", str(out),
+                        str(folder / "1.png"), str(folder / "2.png")], check=True)
         found = json.loads(out.read_text())
     geometry = found["geometry"] or {}
     rotation, translation = geometry.get("rotation"), geometry.get("translation")
