@@ -148,9 +148,10 @@ ASJ_API void asj_context_options_init(asj_context_options *options);
 
 /* Everything that lives from call to call: tables, scratch memory, threads, device. A context serves one thread at a time; several
  * contexts may run at once, and there is no state outside them but a lock under which OpenCL starts. About 1 MB, plus scratch
- * memory of the detector and the matcher, which is kept for the next call: a call that does what the one before did allocates
- * nothing but its result, and, in the matcher, its lists of 4 MB and more. What several calls in a row had no use for is given
- * back. Without an allocator of the caller's smaller blocks share up to four pages of 2 MB once an image has 0.6 megapixels.
+ * memory of the detector and the matcher, which is kept for the next call: a detection or matching that does what the one
+ * before did allocates nothing but its result, and, in the matcher, its lists of 4 MB and more. What several calls in a row had no
+ * use for is given back. Without an allocator of the caller's smaller blocks share up to four pages of 2 MB once an image has 0.6
+ * megapixels.
  * Threads, one less than `threads`, are made by the first call that is worth them; when the system gives fewer, these do. They
  * sleep when there is no call, block all signals, and end in asj_context_free(). The child of a fork() that did not come in the
  * middle of a call may go on with a context that has no device, and makes threads of its own.

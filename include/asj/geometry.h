@@ -51,7 +51,7 @@ typedef struct asj_geometry_candidate {
 typedef struct asj_geometry_options {
     int32_t model;           /* ASJ_GEOMETRY_...; auto */
     int32_t samples;         /* minimal sets of candidates that are tried for each kind: 1 .. 100000; 1000. Where all that
-                              * these find is chance, others too, but with find_focal */
+                              * these find is chance, others too, but with find_focal or a focal_sd */
     uint64_t seed;           /* of the samples; 1 */
     asj_camera cameras[2];   /* of image 1 and image 2; not known. Without them the middle of the image and the larger side as focal
                               * length serve as a guess for samples, which nothing rests on */

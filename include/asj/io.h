@@ -88,7 +88,8 @@ ASJ_API const char *asj_io_image_formats(void);
  * asj_output_commit(). So a file that was there before stays until then, and stays for good when anything fails. "-" and
  * /dev/stdout are standard output; that, pipes and devices are written directly. A protected file is not replaced, a symbolic link
  * is followed, even to a file that is not there yet, and the permissions of a file that was there before are kept, where root
- * writes it its owner, too. A process that is killed in between leaves a file named .asj-NUMBER-NUMBER.tmp. Under Windows a
+ * writes it its owner, too. A process that is killed in between leaves a file named .asj-NUMBER-NUMBER.tmp. What has been
+ * committed is with the system, not on the disk: who fears for the power calls fsync() on file and folder. Under Windows a
  * symbolic link is replaced, and NUL and consoles are what is written directly. Thread safety: one thread at a time per output. */
 typedef struct asj_output asj_output;
 

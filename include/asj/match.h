@@ -67,7 +67,8 @@ typedef struct asj_match_options {
     int32_t verify_neighbours;   /* nearest matches, in either image, asked about a match; 0 = none, and the epipolar lines of 20
                                   * matches and more are not asked either (src/match/epipolar.c). 0 .. 64; 16; paper 0 */
     double verify_distance;      /* px at which such a neighbour counts by half. 10 .. 10000; 100 */
-    double verify_agreement;     /* mean agreement with them that a match needs. 0 .. 1; 0.28; paper 0 */
+    double verify_agreement;     /* mean agreement with them that a match needs, of T-junctions half as much again. 0 .. 1, but
+                                  * from 0.92 on none stays (src/match/verify.c); 0.28; paper 0 */
     /* line segments */
     double end_tolerance;        /* lengths of branches that explain each other agree within this part, and ends that
                                   * correspond within a sixth of it, or 4 px. 0.01 .. 1; 0.12 */
@@ -141,7 +142,8 @@ typedef struct asj_match_result {
     int32_t backend;                   /* ASJ_BACKEND_...: what did the work */
     double total_ms;                   /* wall time of the call */
     double stage_ms[16];               /* by ASJ_STAGE_... */
-    uint64_t candidates;               /* pairs that were aligned or compared by the pair's own map */
+    uint64_t candidates;               /* pairs among which the matches were chosen: aligned or compared by the pair's own map,
+                                        * those that other matches or a geometry proposed too */
     asj_geometry geometry;             /* status not asked where options->geometry.model is none */
     uint64_t origin;                   /* the library's, which tells its own results by it; 0 in a result that the caller puts
                                         * together or copies */

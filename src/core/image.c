@@ -41,10 +41,10 @@ asj_status asj_image_check(asj_context *context, const asj_image *image)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%d x %d pixels are more than the library takes (side %d, %d pixels in all)",
                         (int)image->width, (int)image->height, ASJ_MAX_SIDE, ASJ_MAX_PIXELS);
     ptrdiff_t row = (ptrdiff_t)image->width * asj_pixel_size(image->format);
-    if (image->stride != 0 && image->stride < row && image->stride > -row)
+    if (!asj_stride_holds_row(image))
         return asj_fail(context, ASJ_ERROR_IMAGE, "stride %lld is shorter than a row of %d %s pixels (%lld bytes)",
                         (long long)image->stride, (int)image->width, format->name, (long long)row);
-    if (image->stride > PTRDIFF_MAX / image->height || image->stride < -(PTRDIFF_MAX / image->height))
+    if (!asj_stride_fits_memory(image))
         return asj_fail(context, ASJ_ERROR_IMAGE, "%d rows with a stride of %lld are more than memory", (int)image->height,
                         (long long)image->stride);
     if (!(image->white >= 0) || isinf(image->white))

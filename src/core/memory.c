@@ -312,9 +312,11 @@ static asj_status grow(asj_memory *memory, void **block, size_t *capacity, size_
         wanted = count <= SIZE_MAX / 4 ? count + more_of(memory, count) : count;
     if (wanted > most)
         wanted = most > count ? most : count;
-    void *larger = asj_allocate(memory, wanted, size);
+    void *larger = take(memory, count, size, wanted - count); /* a kept block that holds `count` will do */
     if (!larger)
         return ASJ_ERROR_MEMORY;
+    const size_t room = size_of((header *)larger - 1) / size;
+    wanted = room < wanted ? room : wanted;
     if (keep)
         memcpy(larger, *block, keep * size);
     release(memory, *block);

@@ -82,15 +82,38 @@ const asj_option_info *asj_option_table_row(const asj_option_table *table, size_
     return index < table->count ? &table->rows[index] : NULL;
 }
 
+static int print_radii(char *text, size_t size, uint32_t bits)
+{
+    char buffer[128] = "";
+    int used = 0;
+    for (int r = 0; r < 31; r++) {
+        if (!(bits >> r & 1))
+            continue;
+        int last = r;
+        while (last < 30 && (bits >> (last + 1) & 1))
+            last++;
+        const char *comma = used ? "," : "";
+        if (last - r >= 2)
+            used += snprintf(buffer + used, sizeof buffer - (size_t)used, "%s%d-%d", comma, r, last);
+        else
+            used += snprintf(buffer + used, sizeof buffer - (size_t)used, last > r ? "%s%d,%d" : "%s%d", comma, r, last);
+        r = last;
+    }
+    return snprintf(text, size, "%s", buffer);
+}
+
 asj_status asj_option_table_check(const asj_option_table *table, const void *options, char *message, size_t message_size)
 {
     for (size_t i = 0; i < table->count; i++) {
         const asj_option_info *row = &table->rows[i];
         double value = asj_option_load(row, options);
         if (!in_range(row, value)) {
-            char number[32];
-            snprintf(number, sizeof number, "%.9g", value);
-            say_range(row, number, message, message_size);
+            char text[128];
+            if (row->type == ASJ_OPTION_RADII)
+                print_radii(text, sizeof text, (uint32_t)value);
+            else
+                snprintf(text, sizeof text, "%.9g", value);
+            say_range(row, text[0] ? text : "an empty set", message, message_size);
             return ASJ_ERROR_OPTION;
         }
     }
@@ -288,26 +311,6 @@ static int print_number(char *text, size_t size, double value)
     if (!at)
         return snprintf(text, size, "%s", buffer);
     return snprintf(text, size, "%.*s.%s", (int)(at - buffer), buffer, at + strlen(point));
-}
-
-static int print_radii(char *text, size_t size, uint32_t bits)
-{
-    char buffer[128];
-    int used = 0;
-    for (int r = 0; r < 31; r++) {
-        if (!(bits >> r & 1))
-            continue;
-        int last = r;
-        while (last < 30 && (bits >> (last + 1) & 1))
-            last++;
-        const char *comma = used ? "," : "";
-        if (last - r >= 2)
-            used += snprintf(buffer + used, sizeof buffer - (size_t)used, "%s%d-%d", comma, r, last);
-        else
-            used += snprintf(buffer + used, sizeof buffer - (size_t)used, last > r ? "%s%d,%d" : "%s%d", comma, r, last);
-        r = last;
-    }
-    return snprintf(text, size, "%s", buffer);
 }
 
 asj_status asj_option_table_get(const asj_option_table *table, const void *options, const char *key,

@@ -11,14 +11,13 @@
 #include <string.h>
 
 #define WEIGHT_BITS 14
-#define LARGEST_RADIUS ASJ_BLUR_RADIUS
 #define LEAST_PIXELS 32768 /* for a thread */
 
 /* Taps of a Gaussian over 2 radius + 1 pixels that sum to 2^14 exactly: the centre takes what rounding leaves. */
 static int32_t gaussian(double sigma, int32_t *taps)
 {
     int32_t radius = (int32_t)ceil(3 * sigma);
-    double weight[LARGEST_RADIUS + 1], sum = 0;
+    double weight[ASJ_BLUR_RADIUS + 1], sum = 0;
     for (int32_t i = 0; i <= radius; i++) {
         weight[i] = i == 0 ? 1 : exp(-0.5 * i * i / (sigma * sigma));
         sum += i == 0 ? weight[i] : 2 * weight[i];
@@ -89,7 +88,7 @@ static void blur_lines(const void *data, const asj_part *part)
     const blur_job *j = data;
     const int32_t width = j->frame->width;
     for (int64_t y = part->first; y < part->end && !asj_watch_stops(j->watch, part); y++) {
-        uint16_t *line = asj_thread_scratch(&j->scratch, part) + LARGEST_RADIUS;
+        uint16_t *line = asj_thread_scratch(&j->scratch, part) + ASJ_BLUR_RADIUS;
         memcpy(line, j->frame->gray + y * j->frame->stride, (size_t)width * sizeof *line);
         for (int32_t i = 1; i <= j->radius; i++) {
             line[-i] = line[0];
@@ -117,9 +116,9 @@ static asj_status fill_base(asj_context *context, const asj_frame *frame, double
             memcpy(pyramid->plane[0] + y * stride, frame->gray + y * frame->stride, (size_t)width * sizeof(uint16_t));
         return ASJ_OK;
     }
-    int32_t taps[LARGEST_RADIUS + 1];
+    int32_t taps[ASJ_BLUR_RADIUS + 1];
     const int32_t radius = gaussian(smoothing, taps);
-    const size_t padded = (size_t)width + 2 * LARGEST_RADIUS;
+    const size_t padded = (size_t)width + 2 * ASJ_BLUR_RADIUS;
     uint16_t *across = asj_allocate(&context->memory, (size_t)height * (size_t)stride, sizeof *across);
     uint16_t *scratch = asj_allocate(&context->memory, (size_t)context->threads, padded * sizeof *scratch);
     if (!across || !scratch) {

@@ -53,11 +53,11 @@ typedef struct asj_detection_run {
     size_t settled;                  /* hypotheses at the front that the first choice has validated */
     asj_hypothesis *all;             /* of the octaves that are done, in pixels of the image */
     size_t all_count, all_capacity;
+    size_t candidate_total, isotropic_total; /* and how many of these they had */
     asj_evidence *evidence;          /* of branches of all octaves, by asj_hypothesis_branch.evidence */
     size_t evidence_count, evidence_capacity;
     asj_edge *edges;                 /* between hypotheses */
     size_t edge_count;
-    size_t candidate_total, isotropic_total; /* and how many they had */
 
     double done, share;              /* progress: of the whole before this octave, and by it */
     double stage_ms[16];             /* time spent in each stage (ASJ_STAGE_...) up to `clock`, in milliseconds */

@@ -44,7 +44,6 @@ typedef struct graph {
 /* One branch, seen from its junction. */
 typedef struct way {
     size_t junction;
-    int32_t branch;
     const asj_hypothesis *from;
     const asj_hypothesis_branch *along;
     double ux, uy;
@@ -165,7 +164,7 @@ static int32_t find_nearest(const graph *g, size_t junction, int32_t branch)
 {
     const asj_hypothesis *from = &g->hypotheses[junction];
     const asj_hypothesis_branch *along = &from->branches[branch];
-    const way w = {junction, branch, from, along, cos(along->angle), sin(along->angle)};
+    const way w = {junction, from, along, cos(along->angle), sin(along->angle)};
     const double last = 2 * along->length + end_tolerance(along);
     const int32_t columns = g->grid->columns, rows = g->grid->rows;
     const int32_t ring = (int32_t)ceil(hypot(off_tolerance(along, last), ASJ_GRID_CELL / 2) / ASJ_GRID_CELL);

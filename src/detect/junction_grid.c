@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "junction_grid.h"
+#include "detection_run.h"
 #include "core/memory.h"
 
 #include <string.h>
@@ -38,7 +39,7 @@ asj_status asj_junction_grid_make(asj_context *context, const asj_hypothesis *ju
     grid->rows = cells_of(height);
     const size_t cells = (size_t)grid->columns * (size_t)grid->rows;
     grid->first = asj_allocate(&context->memory, cells + 2, sizeof *grid->first);
-    grid->places = asj_allocate_list(&context->memory, count, sizeof *grid->places);
+    grid->places = asj_allocate_list(&context->memory, asj_detection_run_room(count), sizeof *grid->places);
     if (!grid->first || !grid->places) {
         asj_junction_grid_free(context, grid);
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for where %zu junctions are", count);

@@ -8,7 +8,7 @@
 static asj_status make_room(asj_memory *memory, const asj_sectors *s, asj_sector_plan *plan)
 {
     const size_t offsets = (size_t)s->offset_count, sectors = (size_t)s->count;
-    plan->memory = asj_allocate_zero(memory, 6 * offsets + 4 * sectors + 1, sizeof(int16_t));
+    plan->memory = asj_allocate_zero(memory, 6 * offsets + 3 * sectors + 1, sizeof(int16_t));
     if (!plan->memory)
         return ASJ_ERROR_MEMORY;
     plan->a = plan->memory;

@@ -121,10 +121,11 @@ static int32_t step(const asj_pairs *set, asj_model *model, const double *probab
     if (!asj_cholesky_solve(e.normal, n, e.right, NULL))
         return 0;
     double size = 0;
-    for (int32_t p = 0; p < n; p++)
+    for (int32_t p = 0; p < n; p++) {
+        if (!isfinite(e.right[p]))
+            return 0;
         size = fmax(size, fabs(e.right[p]));
-    if (!isfinite(size))
-        return 0;
+    }
     for (int32_t p = 0; p < n && size > 0.3; p++)
         e.right[p] *= 0.3 / size;
     asj_model moved;

@@ -14,8 +14,8 @@
  * memory. */
 asj_status asj_strike_out(asj_estimation *e);
 
-/* The finalist with the largest evidence that contradicts number `best`, whose probabilities are in scratch, and that the colours
- * do not contradict; -1 = none. *doubt: 1 when they are rather for it. */
+/* The finalist with the largest evidence that contradicts number `best`, whose probabilities are in scratch afterwards, and that
+ * neither colours nor pictures contradict; -1 = none. *doubt: 1 when they are rather for it. */
 int32_t asj_strongest_rival(asj_estimation *e, int32_t best, int32_t *doubt);
 
 /* May the rival be the right one as well? inliers: of the best one. */

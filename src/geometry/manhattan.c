@@ -156,11 +156,7 @@ int32_t asj_rotation_is_near(const asj_pairs *set, int32_t k, const double rotat
     if (trace < 1 + 2 * cos(NEAR))
         return 0;
     asj_multiply3_transposed(m, rotation, turn);
-    const double angle = asj_rotation_angle(turn);
-    const double factor = angle > 1e-6 ? angle / (2 * sin(angle)) : 0.5; /* of the axis times twice the sine of the angle */
-    w[0] = factor * (turn[7] - turn[5]);
-    w[1] = factor * (turn[2] - turn[6]);
-    w[2] = factor * (turn[3] - turn[1]);
+    asj_vector_of_rotation(turn, w);
     return 1;
 }
 

@@ -21,7 +21,7 @@ typedef struct asj_model {
     asj_two_view view;
     double score;             /* asj_score() */
     double evidence;          /* asj_log_evidence() */
-    double peak;              /* the evidence before asj_settle() has seen it */
+    double peak;              /* the evidence by Laplace's method, from the peak alone (asj_settle() has climbed to it) */
     double covariance[25];    /* of the motion's parameters, once asj_settle() has seen it: 5 x 5, or 3 x 3 of a turn */
     int32_t settled;
 } asj_model;

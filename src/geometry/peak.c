@@ -3,8 +3,9 @@
  * told from each other. The more candidates there are, the narrower the peak: of three thousand it is .01 degrees wide, and a
  * motion that those rounds leave off it by ten widths loses a hundred nats and more. What posterior.c draws around it then all
  * lies on one slope, of 360 draws one weighs anything, and a pose is told to .01 degrees that is out by .2. So the steps go on
- * while the score rises that the draws are weighed by. (Such a pair of textured things: score 2776 -> 2919, draws that weigh 1 ->
- * 55. Of 60 pairs of clean renderings nine tenths of rotations are out by less than 3.8 told standard deviations; 6.2 without.) */
+ * while score and prior rise, from whose peak the draws are taken. (Such a pair of textured things: score 2776 ->
+ * 2919, draws that weigh 1 -> 55. Of 60 pairs of clean renderings nine tenths of rotations are out by less than 3.8 told standard
+ * deviations; 6.2 without.) */
 #include "peak.h"
 #include "evidence.h"
 #include "manhattan.h"

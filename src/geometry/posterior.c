@@ -327,13 +327,10 @@ static int32_t difference(const asj_model *model, const asj_model *other, double
 {
     double turn[9], axes[2][3];
     asj_multiply3_transposed(other->rotation, model->rotation, turn);
-    const double angle = asj_rotation_angle(turn), factor = angle > 1e-6 ? angle / (2 * sin(angle)) : 0.5;
     const double along = asj_dot3(other->translation, model->translation);
-    if (angle > MOST_TURN || !(along > cos(MOST_TURN)))
+    if (asj_rotation_angle(turn) > MOST_TURN || !(along > cos(MOST_TURN)))
         return 0;
-    at[0] = factor * (turn[7] - turn[5]);
-    at[1] = factor * (turn[2] - turn[6]);
-    at[2] = factor * (turn[3] - turn[1]);
+    asj_vector_of_rotation(turn, at);
     asj_translation_axes(model->translation, axes[0], axes[1]);
     for (int32_t k = 0; k < 2; k++)
         at[3 + k] = asj_dot3(axes[k], other->translation) / along;

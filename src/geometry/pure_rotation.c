@@ -32,7 +32,7 @@ typedef struct job {
     asj_model *starts;
 } job;
 
-/* 0 when it has none. */
+/* Of an essential matrix or a homography; 0 when it has none. */
 static int32_t rotation_near(const asj_model *model, const asj_camera cameras[2], double rotation[9])
 {
     double n[9], u[9], s[3], v[9];
@@ -40,8 +40,6 @@ static int32_t rotation_near(const asj_model *model, const asj_camera cameras[2]
         memcpy(rotation, model->rotation, sizeof model->rotation);
         return 1;
     }
-    if (model->kind != ASJ_GEOMETRY_HOMOGRAPHY)
-        return 0;
     asj_normal_homography(model->view.matrix, cameras, n);
     asj_svd3(n, u, s, v); /* u and v are rotations */
     asj_multiply3_transposed(u, v, rotation);

@@ -145,7 +145,6 @@ static int32_t samples_of(const asj_search *search)
 
 typedef struct work {
     asj_context *context;
-    asj_memory *memory;
     asj_model *models, *starts;
     asj_ranked *order;
     double *sum;
@@ -350,7 +349,7 @@ static asj_status search_some(asj_context *context, const asj_pairs *set, const 
 {
     asj_memory *memory = &context->memory;
     const int32_t threads = context->threads;
-    work w = {.context = context, .memory = memory};
+    work w = {.context = context};
     *count = 0;
     const size_t around = CENTRES * (LOCAL + 1), room = around > SHORT ? around : SHORT;
     const size_t samples = (size_t)samples_of(search) > room ? (size_t)samples_of(search) : room;

@@ -86,6 +86,14 @@ double asj_rotation_angle(const double r[9])
     return atan2(sqrt(asj_dot3(axis, axis)), r[0] + r[4] + r[8] - 1);
 }
 
+void asj_vector_of_rotation(const double r[9], double vector[3])
+{
+    const double angle = asj_rotation_angle(r), factor = angle > 1e-6 ? angle / (2 * sin(angle)) : 0.5;
+    vector[0] = factor * (r[7] - r[5]); /* what is antisymmetric is the axis times twice the sine of the angle */
+    vector[1] = factor * (r[2] - r[6]);
+    vector[2] = factor * (r[3] - r[1]);
+}
+
 /* --- decompositions ---------------------------------------------------------------------------------------------------------- */
 
 /* One rotation of Jacobi's method in the plane of rows p and q (Golub and Van Loan, "Matrix Computations", 8.5). */

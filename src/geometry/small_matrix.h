@@ -53,6 +53,9 @@ int32_t asj_normalise3(double v[3]);
 void asj_rotation_of(const double w[3], double rotation[9]);
 double asj_rotation_angle(const double rotation[9]);
 
+/* Its axis times its angle, which is less than half a turn. */
+void asj_vector_of_rotation(const double rotation[9], double vector[3]);
+
 /* M = U diag(s) V', det U = det V = 1, s[0] >= s[1] >= |s[2]|: for det U = 1 the last one may be negative. */
 void asj_svd3(const double m[9], double u[9], double s[3], double v[9]);
 

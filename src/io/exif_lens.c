@@ -12,6 +12,7 @@
 #include <string.h>
 
 enum { LONGEST_BLOCK = 65533 - 6 }; /* EXIF 2.3, 4.5.4: one APP1 segment, less its name */
+enum { NO_UNIT = 6 };               /* of lens.c: what a file says may be any number */
 
 static void on_log(ExifLog *log, ExifLogCode code, const char *domain, const char *format, va_list arguments, void *data)
 {
@@ -64,7 +65,8 @@ void asj_exif_lens(const unsigned char *block, size_t size, asj_lens *lens)
         lens->film_mm = number(exif, EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM);
         lens->mm = number(exif, EXIF_TAG_FOCAL_LENGTH);
         lens->per_unit = number(exif, EXIF_TAG_FOCAL_PLANE_X_RESOLUTION);
-        lens->unit = (int32_t)number(exif, EXIF_TAG_FOCAL_PLANE_RESOLUTION_UNIT);
+        const double unit = number(exif, EXIF_TAG_FOCAL_PLANE_RESOLUTION_UNIT);
+        lens->unit = unit < NO_UNIT ? (int32_t)unit : NO_UNIT;
         lens->width = number(exif, EXIF_TAG_PIXEL_X_DIMENSION);
         lens->height = number(exif, EXIF_TAG_PIXEL_Y_DIMENSION);
         if (lens->per_unit > 0 && lens->unit == 0)

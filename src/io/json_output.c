@@ -59,7 +59,7 @@ json_t *asj_json_set(json_t *object, const char *key, json_t *value)
 /* Microseconds are more than a clock can tell, and short to read. */
 static double round_ms(double ms)
 {
-    return isfinite(ms) ? floor(ms * 1000.0 + 0.5) / 1000.0 : 0.0;
+    return isfinite(ms * 1000.0) ? floor(ms * 1000.0 + 0.5) / 1000.0 : 0.0;
 }
 
 json_t *asj_json_timing(double total_ms, const double *stage_ms, int32_t first, int32_t last)

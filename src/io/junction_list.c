@@ -47,23 +47,22 @@ static int sort_branches(asj_junction *junction)
     return moved;
 }
 
-static asj_status make_room(asj_junction_list *list, const asj_message *message)
+/* For one element more of `size` bytes, and the number of its line. */
+static asj_status make_room(void **elements, uint32_t **lines, size_t count, size_t *capacity, size_t size, const char *what,
+                            const asj_message *message)
 {
-    size_t wanted = list->capacity ? 2 * list->capacity : 64;
-    asj_junction *junctions;
-    uint32_t *lines;
-
-    if (list->count < list->capacity)
+    const size_t wanted = *capacity ? 2 * *capacity : 64;
+    if (count < *capacity)
         return ASJ_OK;
-    junctions = realloc(list->junctions, wanted * sizeof *junctions);
-    if (junctions)
-        list->junctions = junctions;
-    lines = realloc(list->lines, wanted * sizeof *lines);
-    if (lines)
-        list->lines = lines;
-    if (!junctions || !lines)
-        return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for %zu junctions", wanted);
-    list->capacity = wanted;
+    void *more = realloc(*elements, wanted * size);
+    if (more)
+        *elements = more;
+    uint32_t *more_lines = realloc(*lines, wanted * sizeof **lines);
+    if (more_lines)
+        *lines = more_lines;
+    if (!more || !more_lines)
+        return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for %zu %s", wanted, what);
+    *capacity = wanted;
     return ASJ_OK;
 }
 
@@ -76,7 +75,9 @@ asj_status asj_junction_list_add(asj_junction_list *list, const asj_junction *ju
         return asj_line_fail(message, line, "a junction with %s", fault);
     if (list->count >= ASJ_JUNCTIONS_MAX)
         return asj_message_fail(message, ASJ_ERROR_LIMIT, "more than %u junctions", ASJ_JUNCTIONS_MAX);
-    status = make_room(list, message);
+    void *elements = list->junctions;
+    status = make_room(&elements, &list->lines, list->count, &list->capacity, sizeof *list->junctions, "junctions", message);
+    list->junctions = elements;
     if (status != ASJ_OK)
         return status;
     list->junctions[list->count] = *junction;
@@ -86,32 +87,14 @@ asj_status asj_junction_list_add(asj_junction_list *list, const asj_junction *ju
     return ASJ_OK;
 }
 
-static asj_status make_edge_room(asj_junction_list *list, const asj_message *message)
-{
-    size_t wanted = list->edge_capacity ? 2 * list->edge_capacity : 64;
-    asj_edge *edges;
-    uint32_t *lines;
-
-    if (list->edge_count < list->edge_capacity)
-        return ASJ_OK;
-    edges = realloc(list->edges, wanted * sizeof *edges);
-    if (edges)
-        list->edges = edges;
-    lines = realloc(list->edge_lines, wanted * sizeof *lines);
-    if (lines)
-        list->edge_lines = lines;
-    if (!edges || !lines)
-        return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for %zu edges", wanted);
-    list->edge_capacity = wanted;
-    return ASJ_OK;
-}
-
 asj_status asj_junction_list_add_edge(asj_junction_list *list, const asj_edge *edge, size_t line, const asj_message *message)
 {
     asj_status status;
     if (list->edge_count >= ASJ_EDGES_MAX)
         return asj_message_fail(message, ASJ_ERROR_LIMIT, "more than %u edges", ASJ_EDGES_MAX);
-    status = make_edge_room(list, message);
+    void *elements = list->edges;
+    status = make_room(&elements, &list->edge_lines, list->edge_count, &list->edge_capacity, sizeof *list->edges, "edges", message);
+    list->edges = elements;
     if (status != ASJ_OK)
         return status;
     list->edges[list->edge_count] = *edge;

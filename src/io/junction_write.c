@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Junction files: checks what is to be written, opens the output, calls the writer of the format. */
+#include "finite.h"
 #include "junction_graph.h"
 #include "junction_list.h"
 #include "junction_output.h"
@@ -117,6 +118,8 @@ asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_
     status = asj_message_reserved(&message, report->reserved);
     if (status == ASJ_OK)
         status = check(report->detection, file_format, &message);
+    if (status == ASJ_OK && !asj_options_are_finite(report->options, asj_detect_option_count(), asj_detect_option))
+        status = asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "not written: the options have NaN or infinity");
     if (status == ASJ_OK && report->segments)
         status = check_segments(report->detection, report->segments, &message);
     if (status == ASJ_OK && report->vanishing_points)

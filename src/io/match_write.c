@@ -1,32 +1,23 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Match files: checks what is to be written, opens the output, calls the writer of the format. */
+#include "finite.h"
 #include "match_output.h"
 
-#include <math.h>
 #include <stdlib.h>
-
-static int all_finite(const double *numbers, size_t count)
-{
-    size_t i;
-    for (i = 0; i < count; i++)
-        if (!isfinite(numbers[i]))
-            return 0;
-    return 1;
-}
 
 static int is_sound(const asj_match_result *result, const asj_junction_match *m)
 {
     const double numbers[] = {(double)m->x1, (double)m->y1, (double)m->ax1, (double)m->ay1, (double)m->bx1, (double)m->by1,
                               (double)m->x2, (double)m->y2, (double)m->ax2, (double)m->ay2, (double)m->bx2, (double)m->by2,
                               (double)m->distance, (double)m->similarity, (double)m->support, (double)m->probability};
-    return all_finite(numbers, sizeof numbers / sizeof numbers[0]) && all_finite(m->affine, 6) && !isnan(m->ratio) &&
+    return asj_all_finite(numbers, sizeof numbers / sizeof numbers[0]) && asj_all_finite(m->affine, 6) && !isnan(m->ratio) &&
            m->l1 < result->l_junction_count1 && m->l2 < result->l_junction_count2;
 }
 
 static int is_sound_corner(const asj_l_junction *l)
 {
     const double numbers[] = {(double)l->x, (double)l->y, (double)l->ax, (double)l->ay, (double)l->bx, (double)l->by};
-    return all_finite(numbers, 6);
+    return asj_all_finite(numbers, 6);
 }
 
 /* What is written of an accepted geometry, and of an ambiguous one (asj_write_match_json()). */
@@ -35,11 +26,11 @@ static int is_sound_geometry(const asj_geometry *g)
     const asj_camera *a = &g->cameras[0], *b = &g->cameras[1];
     const double numbers[] = {a->fx, a->fy, a->cx, a->cy, b->fx, b->fy, b->cx, b->cy, g->focal_sd, g->log10_nfa, g->inliers};
     if (g->status == ASJ_GEOMETRY_AMBIGUOUS && g->has_rival)
-        return isfinite(g->log10_nfa) && isfinite(g->rival_log10_nfa) && all_finite(g->rotation, 9) &&
-               all_finite(g->translation, 3) && all_finite(g->rival_rotation, 9) && all_finite(g->rival_translation, 3);
+        return isfinite(g->log10_nfa) && isfinite(g->rival_log10_nfa) && asj_all_finite(g->rotation, 9) &&
+               asj_all_finite(g->translation, 3) && asj_all_finite(g->rival_rotation, 9) && asj_all_finite(g->rival_translation, 3);
     return g->status != ASJ_GEOMETRY_ACCEPTED ||
-           (all_finite(numbers, sizeof numbers / sizeof numbers[0]) && all_finite(g->matrix, 9) && all_finite(g->rotation, 9) &&
-            all_finite(g->translation, 3) && all_finite(g->covariance, 36));
+           (asj_all_finite(numbers, sizeof numbers / sizeof numbers[0]) && asj_all_finite(g->matrix, 9) &&
+            asj_all_finite(g->rotation, 9) && asj_all_finite(g->translation, 3) && asj_all_finite(g->covariance, 36));
 }
 
 static asj_status check(const asj_match_result *result, const asj_message *message)
@@ -67,6 +58,16 @@ static asj_status check(const asj_match_result *result, const asj_message *messa
                 return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: L-junction %lu of image %d has NaN or infinity",
                                         (unsigned long)i, v + 1);
     return ASJ_OK;
+}
+
+static asj_status check_report(const asj_match_report *report, const asj_message *message)
+{
+    if (!asj_all_finite(report->stretch, 2))
+        return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the stretch has NaN or infinity");
+    if (!asj_options_are_finite(report->options, asj_match_option_count(), asj_match_option) ||
+        !asj_options_are_finite(report->detect_options, asj_detect_option_count(), asj_detect_option))
+        return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the options have NaN or infinity");
+    return check(report->result, message);
 }
 
 static asj_status find_segments(const asj_match_report *report, asj_match_lines *segments, const asj_message *message)
@@ -115,7 +116,7 @@ asj_status asj_matches_write(const char *path, int32_t file_format, const asj_ma
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "lines %d: there is no such", (int)report->lines);
     status = asj_message_reserved(&message, report->reserved);
     if (status == ASJ_OK)
-        status = check(report->result, &message);
+        status = check_report(report, &message);
     if (status == ASJ_OK)
         status = find_segments(report, &segments, &message);
     if (status != ASJ_OK)

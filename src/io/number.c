@@ -115,7 +115,7 @@ int asj_number_parse_integer(const char *text, size_t length, long long *value)
     if (i == length)
         return 0;
     for (; i < length; i++) {
-        if (!is_digit(text[i]) || number > 100000000000000LL)
+        if (!is_digit(text[i]) || number >= 100000000000000LL)
             return 0;
         number = 10 * number + (text[i] - '0');
     }

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <exception>
 #include <string>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <vector>
 
@@ -45,6 +46,17 @@ cv::Mat gray_where_it_is(const cv::Mat &matrix)
     return gray;
 }
 
+/* In memory where the system has that: folders for temporary files may be full, or not writable. */
+std::FILE *nameless_file()
+{
+#ifdef MFD_CLOEXEC
+    const int descriptor = memfd_create("image", 0);
+    if (descriptor >= 0)
+        return fdopen(descriptor, "w+b");
+#endif
+    return std::tmpfile();
+}
+
 /* OpenCV decodes BMP from memory, the others from a named file only: here one that has no name but this. Of a gray Sun raster file
  * without a colour map it makes zeros when it may answer in gray (4.6), so it must answer in colour there. */
 cv::Mat decode(const std::vector<unsigned char> &bytes)
@@ -52,7 +64,7 @@ cv::Mat decode(const std::vector<unsigned char> &bytes)
     const int flags = cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR | cv::IMREAD_IGNORE_ORIENTATION;
     if (bytes.size() > 2 && bytes[0] == 'B')
         return cv::imdecode(bytes, flags);
-    std::FILE *file = std::tmpfile();
+    std::FILE *file = nameless_file();
     if (!file || std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size() || std::fflush(file) != 0)
         return cv::Mat();
     const std::string name = "/dev/fd/" + std::to_string(fileno(file));

@@ -157,6 +157,8 @@ asj_status asj_system_resolve(const char *path, char *target, size_t target_size
     const char *slash, *name;
     int length = -1;
 
+    if (!*path)
+        return ASJ_ERROR_FILE;
     file = follow_links(path);
     if (!file)
         return errno == ENOMEM ? ASJ_ERROR_MEMORY : ASJ_ERROR_FILE;
@@ -168,7 +170,7 @@ asj_status asj_system_resolve(const char *path, char *target, size_t target_size
     absolute = folder ? realpath(folder, NULL) : NULL;
     const int no_memory = !folder || (!absolute && errno == ENOMEM);
     if (absolute)
-        length = snprintf(target, target_size, "%s/%s", absolute, name);
+        length = snprintf(target, target_size, "%s/%s", absolute[1] ? absolute : "", name); /* "/" ends in its slash */
     free(absolute);
     free(folder);
     free(file);

@@ -16,12 +16,28 @@ typedef struct png_writer {
     png_infop info;
     const asj_image *image;
     asj_output *output;
+    int out_of_memory; /* libpng has no status for it */
 } png_writer;
+
+static png_voidp on_allocate(png_structp png, png_alloc_size_t size)
+{
+    png_writer *writer = png_get_mem_ptr(png);
+    void *block = malloc(size);
+    writer->out_of_memory |= !block;
+    return block;
+}
+
+static void on_release(png_structp png, png_voidp block)
+{
+    (void)png;
+    free(block);
+}
 
 static void on_error(png_structp png, png_const_charp text)
 {
     png_writer *writer = png_get_error_ptr(png);
-    writer->status = asj_message_fail(writer->message, ASJ_ERROR_FILE, "cannot write PNG: %s", text);
+    writer->status = writer->out_of_memory ? asj_message_fail(writer->message, ASJ_ERROR_MEMORY, "out of memory for PNG")
+                                           : asj_message_fail(writer->message, ASJ_ERROR_FILE, "cannot write PNG: %s", text);
     longjmp(writer->error_exit, 1);
 }
 
@@ -82,7 +98,7 @@ static asj_status encode(png_writer *writer)
 {
     if (setjmp(writer->error_exit))
         return writer->status;
-    writer->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, writer, on_error, on_warning);
+    writer->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, writer, on_error, on_warning, writer, on_allocate, on_release);
     writer->info = writer->png ? png_create_info_struct(writer->png) : NULL;
     if (!writer->info)
         return asj_message_fail(writer->message, ASJ_ERROR_MEMORY, "out of memory");
@@ -92,15 +108,14 @@ static asj_status encode(png_writer *writer)
 
 static asj_status check_view(const asj_image *image, const asj_message *message)
 {
-    size_t size = (size_t)asj_pixel_size(image->format);
-
-    if (!size || image->format == ASJ_FORMAT_GRAY_FLOAT)
+    if (!asj_pixel_size(image->format) || image->format == ASJ_FORMAT_GRAY_FLOAT)
         return asj_message_fail(message, ASJ_ERROR_IMAGE, "pixel format %d cannot be written as PNG", (int)image->format);
     if (!image->data || image->width < 1 || image->height < 1 || image->width > ASJ_MAX_SIDE || image->height > ASJ_MAX_SIDE)
         return asj_message_fail(message, ASJ_ERROR_IMAGE, "no pixels, or a side outside 1 .. %d", ASJ_MAX_SIDE);
-    const ptrdiff_t row = (ptrdiff_t)((size_t)image->width * size);
-    if (image->stride && image->stride < row && image->stride > -row)
+    if (!asj_stride_holds_row(image))
         return asj_message_fail(message, ASJ_ERROR_IMAGE, "the stride is shorter than a row");
+    if (!asj_stride_fits_memory(image))
+        return asj_message_fail(message, ASJ_ERROR_IMAGE, "the rows are more than memory");
     return ASJ_OK;
 }
 

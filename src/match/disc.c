@@ -125,8 +125,6 @@ static void project(const asj_disc *disc, const float *value, float energy, floa
 void asj_template_create(const asj_disc *disc, const asj_pyramid *pyramid, double x, double y, asj_template *t)
 {
     uint16_t grid[GRID_SIDE * GRID_SIDE];
-    t->x = x;
-    t->y = y;
     t->usable = asj_disc_inside(sample_grid(disc, pyramid, x, y, grid), GRID_SIDE * GRID_SIDE);
     const float half = 0.5f / disc->step, inverse = 1 / disc->radius;
     for (int32_t i = 0; i < ASJ_DISC_SAMPLES; i++) {

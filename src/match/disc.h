@@ -22,7 +22,6 @@ typedef struct asj_disc {
 
 /* What is known about the disc around one location, once for all its candidates. */
 typedef struct asj_template {
-    double x, y;
     float value[ASJ_DISC_SAMPLES];      /* zero mean, unit norm */
     float descent[6][ASJ_DISC_SAMPLES]; /* change of the normalised sample with t_x, t_y, and the linear part times radius */
     double factor[36];                  /* Cholesky factor of their damped normal equations */

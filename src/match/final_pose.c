@@ -14,9 +14,9 @@
  *     sum of w_k log(1 + (d_k / s)^2) + 1/2 p' C^-1 p,
  *
  * p = (turn, two parts of the translation) from the pose that was found, C what is told of it: what candidates say of planes and
- * of maps stays in there. Distances have Cauchy's distribution, some few matches being wrong, and s is their median times 1.48,
- * w_k one over how many matches lie within SAME_PLACE of match k in an image: corners of one place err together. Weights of the
- * squares are 2 w / (s^2 + d^2) (iteratively reweighted least squares; Holland and Welsch 1977).
+ * of maps stays in there. Distances are about normal, with Cauchy's tails, some few matches being wrong, and s is
+ * their median times 1.48, w_k one over how many such matches lie within SAME_PLACE of match k in an image: corners of one place
+ * err together. Weights of the squares are 2 w / (s^2 + d^2) (iteratively reweighted least squares; Holland and Welsch 1977).
  *
  * The scale s is that of few where places are few, and these lie on edges that err together: the first sum counts a share of what
  * it says, 0 up to FEW places (the sum of the w_k), rising to 1 at MANY. (306 pairs of rooms, each as it is, half of them with 25
@@ -81,6 +81,8 @@ static double weight_of(const asj_around *around, uint32_t n)
         asj_place_walk walk = asj_places_near(around->places[side], around->place_count, x, y, (double)SAME_PLACE);
         for (uint32_t k; asj_places_next(&walk, &k);) {
             const asj_junction_match *o = &around->matches[k];
+            if (o->probability <= LEAST_PROBABLE)
+                continue;
             const int in1 = fabsf(o->x1 - m->x1) <= SAME_PLACE && fabsf(o->y1 - m->y1) <= SAME_PLACE;
             const int in2 = fabsf(o->x2 - m->x2) <= SAME_PLACE && fabsf(o->y2 - m->y2) <= SAME_PLACE;
             near += side == 0 ? in1 : (in2 && !in1);
@@ -226,11 +228,14 @@ static int32_t step(fit *f)
         add_sight(&f->sights[n], f->share, scale, (const double (*)[9])slopes, normal, right);
     if (!asj_cholesky_solve(normal, MOTION, right, NULL))
         return 0;
-    for (int32_t k = 0; k < MOTION; k++)
+    for (int32_t k = 0; k < MOTION; k++) {
+        if (!isfinite(right[k]))
+            return 0;
         size = fmax(size, fabs(right[k]));
-    for (int32_t k = 0; k < MOTION && isfinite(size); k++)
+    }
+    for (int32_t k = 0; k < MOTION; k++)
         f->at[k] += right[k];
-    return isfinite(size) && size > STILL;
+    return size > STILL;
 }
 
 static void tell(const fit *f, asj_geometry *g)

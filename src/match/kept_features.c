@@ -135,7 +135,7 @@ asj_status asj_features_keep(asj_context *context, const asj_match_options *opti
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for %zu L-junctions", l_count);
     if (l_count > 0)
         asj_decompose(junctions, count, options->minimum_opening, l_junctions, l_count);
-    start.l_junctions = l_junctions;
+    start.l_junctions = start.has_upsampled ? l_junctions : NULL;
     const asj_status status = copy(context, &start, features);
     asj_release(&context->memory, l_junctions);
     return status;

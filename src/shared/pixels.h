@@ -38,4 +38,17 @@ static inline int32_t asj_pixel_size(int32_t format)
     }
 }
 
+/* Of a view of a known format with sides from 1 on: does the stride hold a row, and do all rows fit into memory? */
+static inline int asj_stride_holds_row(const asj_image *image)
+{
+    const ptrdiff_t row = (ptrdiff_t)image->width * asj_pixel_size(image->format);
+    return image->stride == 0 || image->stride >= row || image->stride <= -row;
+}
+
+static inline int asj_stride_fits_memory(const asj_image *image)
+{
+    const ptrdiff_t longest = PTRDIFF_MAX / image->height;
+    return image->stride <= longest && image->stride >= -longest;
+}
+
 #endif

@@ -77,7 +77,7 @@ static void make_block(test_bytes *to, const says *s)
     put_entry(to, 0xa002, 4, s->width);
     put_entry(to, 0xa003, 4, s->height);
     put_entry(to, 0xa20e, 5, 136);
-    put_entry(to, 0xa210, 3, s->unit);
+    put_entry(to, 0xa210, s->unit > 65535 ? 4 : 3, s->unit);
     put_entry(to, 0xa405, 3, s->film);
     put_entry(to, 0xa217, 3, 1);
     append_big32(to, 0);
@@ -118,6 +118,7 @@ static void values(void **state)
         {{1, 0, 5, 2032, 10, 0, 0, 0}, ASJ_EXIF_FOCAL_PLANE, 40},
         {{1, 0, 5, 80, 10000, 5, 0, 0}, ASJ_EXIF_FOCAL_PLANE, 40},
         {{1, 0, 5, 80, 10, 7, 0, 0}, ASJ_EXIF_FOCAL_NONE, 0}, /* no such unit */
+        {{1, 0, 5, 80, 10, 4294967295u, 0, 0}, ASJ_EXIF_FOCAL_NONE, 0},
         {{1, 0, 5, 80, 0, 4, 0, 0}, ASJ_EXIF_FOCAL_NONE, 0},  /* divided by zero */
         {{1, 0, 0, 80, 10, 4, 0, 0}, ASJ_EXIF_FOCAL_NONE, 0},
         {{1, 0, 5, 0, 10, 4, 0, 0}, ASJ_EXIF_FOCAL_NONE, 0},

@@ -383,6 +383,15 @@ static void unsound_detections_are_not_written(void **state)
     bad[14].scale = bad[0].x;
     wrong.junction_count = 1;
     wrong.l_junction_count = wrong.edge_count = 0;
+    {
+        asj_detect_options unreadable;
+        asj_detect_options_init(&unreadable);
+        unreadable.epsilon = (double)bad[0].x;
+        report.options = &unreadable;
+        assert_int_equal(asj_junctions_write(path, ASJ_FILE_JSON, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
+        assert_non_null(strstr(message, "options"));
+        report.options = NULL;
+    }
     report.detection = &wrong;
     for (i = 0; i < 15; i++) {
         wrong.junctions = &bad[i];

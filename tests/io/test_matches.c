@@ -542,6 +542,20 @@ static void results_that_cannot_be_read_are_refused(void **state)
     }
     result.geometry.has_rival = 0;
     result.geometry.status = ASJ_GEOMETRY_NOT_ASKED;
+    for (which = 0; which < 3; which++) {
+        asj_match_options unreadable;
+        asj_detect_options also;
+        asj_match_report before = report;
+        asj_match_options_init(&unreadable);
+        asj_detect_options_init(&also);
+        unreadable.ratio = which == 0 ? NAN : 1;
+        also.epsilon = which == 1 ? INFINITY : 1;
+        report.options = &unreadable;
+        report.detect_options = &also;
+        report.stretch[1] = which == 2 ? NAN : 1;
+        expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, which == 2 ? "stretch" : "options");
+        report = before;
+    }
     corners[1][3].bx = NAN;
     expect_refusal(in_folder("never"), ASJ_FILE_JSON, ASJ_ERROR_ARGUMENT, "L-junction 3 of image 2");
     result.matches = NULL;

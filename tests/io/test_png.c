@@ -189,7 +189,9 @@ static void bad_views_are_not_written(void **state)
     unsigned char pixel[64] = {0};
     const asj_image views[] = {{pixel, ASJ_FORMAT_GRAY_FLOAT, 2, 2, 0, 0}, {pixel, 99, 2, 2, 0, 0},
                                {NULL, ASJ_FORMAT_GRAY8, 2, 2, 0, 0},       {pixel, ASJ_FORMAT_GRAY8, 0, 2, 0, 0},
-                               {pixel, ASJ_FORMAT_GRAY8, 2, -1, 0, 0},     {pixel, ASJ_FORMAT_RGB8, 2, 2, 0, 5}};
+                               {pixel, ASJ_FORMAT_GRAY8, 2, -1, 0, 0},     {pixel, ASJ_FORMAT_RGB8, 2, 2, 0, 5},
+                               {pixel, ASJ_FORMAT_GRAY8, 1, 4, 0, PTRDIFF_MAX / 2},
+                               {pixel, ASJ_FORMAT_GRAY8, 1, 4, 0, PTRDIFF_MIN}};
     char message[512];
     size_t i;
     (void)state;

@@ -161,6 +161,31 @@ static void test_stream(void **state)
 }
 
 /* A result that is used again is emptied first, also when nothing comes of the call. */
+/* Lists that grow by a little find room in the blocks that are kept. */
+static void test_stream_that_grows(void **state)
+{
+    enum { FRAMES = 14, BOARD_WIDTH = 200, BOARD_HEIGHT = 150, TILE = 9 };
+    static uint8_t pixels[BOARD_WIDTH * BOARD_HEIGHT];
+    unit_counter counter;
+    asj_context *context = unit_context(&counter, 1);
+    asj_detection *found = NULL;
+    asj_detect_options options;
+    long calls = 0;
+    (void)state;
+    asj_detect_options_preset(&options, ASJ_PRESET_MATCH);
+    for (int frame = 0; frame < FRAMES; frame++) {
+        const asj_image image = unit_gray8(pixels, BOARD_WIDTH, BOARD_HEIGHT);
+        for (int n = 0; n < BOARD_WIDTH * BOARD_HEIGHT; n++)
+            pixels[n] = ((n % BOARD_WIDTH + frame) / TILE + (n / BOARD_WIDTH + frame / 2) / TILE) % 2 ? 180 : 60;
+        assert_int_equal(asj_detect_into(context, &image, &options, &found), ASJ_OK);
+        if (frame > 0)
+            assert_int_equal(counter.calls, calls);
+        calls = counter.calls;
+    }
+    asj_detection_free(&found);
+    unit_context_free(&counter, &context);
+}
+
 static void test_into(void **state)
 {
     uint8_t *pixels = picture(WIDTH, HEIGHT);
@@ -222,6 +247,7 @@ int main(void)
         cmocka_unit_test(test_detect),
         cmocka_unit_test(test_local_field),
         cmocka_unit_test(test_stream),
+        cmocka_unit_test(test_stream_that_grows),
         cmocka_unit_test(test_into),
         cmocka_unit_test(test_into_without_memory),
     };
