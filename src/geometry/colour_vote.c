@@ -68,7 +68,5 @@ double asj_colours_against(const asj_pairs *set, const double *first, const doub
         add(set, side, room, &v);
     }
     /* a place of one image meets one of the other: each is there twice */
-    if (!(v.sum > 0))
-        return 0;
-    return fmin(v.sum / (2 * LEAST_SUM), v.sum / fmax(LEAST_MEAN * v.weight, LEAST_T * sqrt(2 * v.square)));
+    return v.sum / fmax(2 * LEAST_SUM, fmax(LEAST_MEAN * v.weight, LEAST_T * sqrt(2 * v.square)));
 }

@@ -298,5 +298,5 @@ double asj_pictures_against(const asj_look *first, const asj_look *second)
             sum += d;
             square += d * d;
         }
-    return sum > 0 ? fmin(sum / LEAST_SUM, fmin(sum / (LEAST_MEAN * voters), sum / (LEAST_T * sqrt(square)))) : 0;
+    return fmax(0, sum / fmax(LEAST_SUM, fmax(LEAST_MEAN * voters, LEAST_T * sqrt(square))));
 }
