@@ -199,6 +199,20 @@ static void more_images_from_a_file(void **state)
     expect_code(run_cli("detect", "-d", "listed", "--files-from", ".", NULL), 1);
 }
 
+/* Nothing takes the place of the list itself, in whatever spelling. */
+static void a_list_of_images_is_not_overwritten(void **state)
+{
+    (void)state;
+    mkdir("lists", 0777);
+    write_bytes("lists/scene.csv", "scene.png\n", 10);
+    const outcome *result = run_cli("detect", "--files-from", "lists/scene.csv", "-o", "./lists/scene.csv", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "lists/scene.csv: is an input file, and would be overwritten");
+    expect_code(run_cli("detect", "-f", "csv", "--files-from", "lists/scene.csv", "-d", "lists", NULL), 2);
+    expect_beginning("lists/scene.csv", "scene.png\n");
+    expect_code(run_cli("detect", "-q", "-f", "json", "--files-from", "lists/scene.csv", "-d", "lists", NULL), 0);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -206,6 +220,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(folders_of_images_are_kept),
         cmocka_unit_test(a_link_to_nothing_yet_is_followed), cmocka_unit_test(names_that_promise_another_format),
         cmocka_unit_test(endings_in_capitals), cmocka_unit_test(more_images_from_a_file),
+        cmocka_unit_test(a_list_of_images_is_not_overwritten),
     };
     program_start(argc, argv);
     return program_end(cmocka_run_group_tests(tests, make_files, NULL));
