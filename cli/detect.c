@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj-cli detect: image by image, read, detect, write; one that fails does not stop the others. */
 #include "detect.h"
+#include "camera.h"
 #include "detect_arguments.h"
 #include "interrupt.h"
 #include "message.h"
@@ -23,6 +24,7 @@ typedef struct run {
     cli_session session;
     asj_image_file *mask; /* of all images; NULL: none */
     double read_ms, lines_ms;
+    int camera_doubted; /* once for all images */
 } run;
 
 static asj_status write_features(run *r, const char *path, const asj_image *pixels, const asj_detection *detection, char *message)
@@ -149,6 +151,23 @@ static int detect_pixels(run *r, const char *image, const cli_output *output, co
     return result;
 }
 
+static int check_camera(run *r, const char *image, const asj_image *pixels)
+{
+    char message[MESSAGE_SIZE], line[MESSAGE_SIZE];
+    const asj_camera *camera = &r->arguments->camera;
+    const int verdict = camera->fx > 0 ? cli_judge_camera(camera, pixels, message, sizeof message) : CLI_CAMERA_GOOD;
+    if (verdict == CLI_CAMERA_WRONG) {
+        snprintf(line, sizeof line, "--camera: %.256s", message);
+        return cli_session_fail(&r->session, image, line, ASJ_ERROR_ARGUMENT);
+    }
+    if (verdict == CLI_CAMERA_DOUBTFUL && !r->camera_doubted && !r->arguments->common.quiet) {
+        cli_progress_clear(&r->session.progress);
+        cli_note("asj-cli detect: warning: %s: --camera: %s", image, message);
+        r->camera_doubted = 1;
+    }
+    return CLI_SUCCESS;
+}
+
 static int detect_part(run *r, const char *image, const cli_output *output, const asj_image *pixels)
 {
     asj_region region;
@@ -165,7 +184,9 @@ static int detect_file(run *r, const char *image, const cli_output *output)
     r->read_ms = cli_now_ms() - start;
     if (status != ASJ_OK)
         return cli_session_fail(&r->session, image, message, status);
-    int result = detect_part(r, image, output, &file->image);
+    int result = check_camera(r, image, &file->image);
+    if (result == CLI_SUCCESS)
+        result = detect_part(r, image, output, &file->image);
     asj_image_file_free(&file);
     return result;
 }

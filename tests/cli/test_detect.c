@@ -154,7 +154,8 @@ static void the_preset_comes_first_wherever_it_stands(void **state)
 static void directions_are_written_on_request(void **state)
 {
     (void)state;
-    const outcome *result = run_cli("detect", "-f", "json", "--vanishing-points", "--camera", "600,600,320,240", "scene.png", NULL);
+    const outcome *result = run_cli("detect", "-f", "json", "--vanishing-points", "--camera", "600,600,159.5,119.5", "scene.png",
+                                    NULL);
     expect_code(result, 0);
     expect_in(result, result->out, "\"vanishing_points\": {\"focal_source\": \"given\", \"camera\": [600");
     expect_in(result, result->out, "\"points\": []");
@@ -163,12 +164,43 @@ static void directions_are_written_on_request(void **state)
     result = run_cli("detect", "--vanishing-points", "scene.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "--vanishing-points go into JSON");
-    result = run_cli("detect", "-f", "json", "--camera", "600,600,320,240", "scene.png", NULL);
+    result = run_cli("detect", "-f", "json", "--camera", "600,600,159.5,119.5", "scene.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "a camera changes nothing without --vanishing-points");
     result = run_cli("detect", "-f", "json", "--vanishing-points", "--camera", "0,600,320,240", "scene.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "is not FX,FY,CX,CY");
+}
+
+/* Numbers in another order, or of another size, are no camera of this image. */
+static void a_camera_of_another_image_is_refused(void **state)
+{
+    static const struct {
+        const char *camera, *message;
+        int code;
+    } cases[] = {
+        {"160,120,600,600", "scene.png: --camera: the principal point 600,600 lies outside of the image of 320 x 240 pixels; "
+                            "FX,FY,CX,CY: is this CX,CY,FX,FY?\n", 1},
+        {"1200,1200,500,120", "is it a camera of the picture at another size?\n", 1},
+        {"300,300,-1,120", "the principal point -1,120 lies outside", 1},
+        {"160,120,200,200", "warning: scene.png: --camera: the principal point 200,200 is far from the middle of the image of "
+                            "320 x 240 pixels: FX,FY,CX,CY: is this CX,CY,FX,FY?\n", 0},
+        {"150,150,79,60", "is far from the middle of the image of 320 x 240 pixels: is it a camera of the picture at another", 0},
+        {"160,120,180,140", "the focal lengths 160 and 120 differ; FX,FY,CX,CY: is this CX,CY,FX,FY?\n", 0},
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        const outcome *result = run_cli("detect", "-f", "json", "--vanishing-points", "--camera", cases[k].camera, "scene.png",
+                                        NULL);
+        expect_code(result, cases[k].code);
+        expect_in(result, result->err, cases[k].message);
+        result = run_cli("detect", "-q", "-f", "json", "--vanishing-points", "--camera", cases[k].camera, "scene.png", NULL);
+        assert_int_equal(*result->err != 0, cases[k].code != 0);
+    }
+    static const char *const good[] = {"300,300,160,120", "300,310,80,60", "300,300,240,180"};
+    for (size_t k = 0; k < sizeof good / sizeof good[0]; k++)
+        assert_null(strstr(run_cli("detect", "-f", "json", "--vanishing-points", "--camera", good[k], "scene.png", NULL)->err,
+                           "--camera"));
 }
 
 /* The square of the scene: eight branches, four edges. */
@@ -485,7 +517,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_name_or_the_option_chooses_the_format),
         cmocka_unit_test(whole_junctions_are_written_on_request),
         cmocka_unit_test(the_preset_comes_first_wherever_it_stands),
-        cmocka_unit_test(directions_are_written_on_request), cmocka_unit_test(lines_come_each_once),
+        cmocka_unit_test(directions_are_written_on_request),
+        cmocka_unit_test(a_camera_of_another_image_is_refused), cmocka_unit_test(lines_come_each_once),
         cmocka_unit_test(an_option_reaches_the_detector),
         cmocka_unit_test(times_are_printed_on_request),
         cmocka_unit_test(no_progress_without_a_terminal),

@@ -196,6 +196,20 @@ static void junctions_of_another_image_are_refused(void **state)
                    "asj-cli: large.json: line ", "outside small.png");
 }
 
+static void cameras_of_other_images_are_refused(void **state)
+{
+    (void)state;
+    expect_refusal(run_cli("match", "-o", "never.csv", "--geometry", "auto", "--camera1", "300,300,160,120", "--camera2",
+                           "160,120,300,300", "first.png", "second.png", NULL),
+                   "asj-cli: second.png: --camera2: the principal point 300,300 lies outside of the image of 320 x 240 pixels",
+                   "FX,FY,CX,CY: is this CX,CY,FX,FY?\n");
+    const outcome *result = run_cli("match", "--stretch", "1", "--geometry", "auto", "--camera1", "300,300,79,60", "--camera2",
+                                    "300,300,160,120", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "asj-cli match: warning: first.png: --camera1: the principal point 79,60 is far from");
+    assert_null(strstr(result->err, "--camera2"));
+}
+
 static void bad_images_are_refused(void **state)
 {
     (void)state;
@@ -283,6 +297,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(bad_junction_files_are_refused),
         cmocka_unit_test(junctions_beside_the_image_are_taken),
         cmocka_unit_test(junctions_of_another_image_are_refused),
+        cmocka_unit_test(cameras_of_other_images_are_refused),
         cmocka_unit_test(bad_images_are_refused),
         cmocka_unit_test(bad_features_are_refused),
         cmocka_unit_test(results_that_cannot_be_written_are_errors),
