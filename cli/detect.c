@@ -16,8 +16,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MESSAGE_SIZE = 1024 };
-
 /* One image after the other with one context. */
 typedef struct run {
     const cli_detect_arguments *arguments;
@@ -33,9 +31,9 @@ static asj_status write_features(run *r, const char *path, const asj_image *pixe
     asj_status status = asj_features_create(r->session.context, pixels, detection->junctions, detection->junction_count, NULL,
                                             &features);
     if (status != ASJ_OK)
-        snprintf(message, MESSAGE_SIZE, "%s", asj_context_message(r->session.context));
+        snprintf(message, CLI_MESSAGE_SIZE, "%s", asj_context_message(r->session.context));
     else
-        status = asj_features_write(path, features, message, MESSAGE_SIZE);
+        status = asj_features_write(path, features, message, CLI_MESSAGE_SIZE);
     asj_features_free(&features);
     return status;
 }
@@ -51,7 +49,7 @@ static asj_status find_directions(run *r, const asj_image *pixels, const asj_det
     const asj_status status = asj_find_vanishing_points(r->session.context, detection->junctions, detection->junction_count,
                                                         &options, points);
     if (status != ASJ_OK)
-        snprintf(message, MESSAGE_SIZE, "%s", asj_context_message(r->session.context));
+        snprintf(message, CLI_MESSAGE_SIZE, "%s", asj_context_message(r->session.context));
     return status;
 }
 
@@ -70,14 +68,14 @@ static asj_status write_junctions(run *r, const char *image, const char *path, c
             return status;
         report.vanishing_points = &points;
     }
-    return asj_junctions_write(path, format, &report, message, MESSAGE_SIZE);
+    return asj_junctions_write(path, format, &report, message, CLI_MESSAGE_SIZE);
 }
 
 static int write_results(run *r, const char *image, const cli_output *output, const asj_image *pixels,
                          const asj_detection *detection, const asj_segment_list *segments)
 {
     const cli_detect_arguments *arguments = r->arguments;
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE] = "";
     int result = CLI_SUCCESS;
     if (output->junctions) {
         asj_status status = write_junctions(r, image, output->junctions, pixels, detection, segments, message);
@@ -153,7 +151,7 @@ static int detect_pixels(run *r, const char *image, const cli_output *output, co
 
 static int check_camera(run *r, const char *image, const asj_image *pixels)
 {
-    char message[MESSAGE_SIZE], line[MESSAGE_SIZE];
+    char message[CLI_MESSAGE_SIZE], line[CLI_MESSAGE_SIZE];
     const asj_camera *camera = &r->arguments->camera;
     const int verdict = camera->fx > 0 ? cli_judge_camera(camera, pixels, message, sizeof message) : CLI_CAMERA_GOOD;
     if (verdict == CLI_CAMERA_WRONG) {
@@ -178,7 +176,7 @@ static int detect_part(run *r, const char *image, const cli_output *output, cons
 static int detect_file(run *r, const char *image, const cli_output *output)
 {
     asj_image_file *file = NULL;
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE] = "";
     double start = cli_now_ms();
     asj_status status = asj_image_file_read(image, r->arguments->common.max_pixels, &file, message, sizeof message);
     r->read_ms = cli_now_ms() - start;

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FEW = 8, MESSAGE_SIZE = 1024, STEPS = 3 /* on the progress line: two detections and the matching */ };
+enum { FEW = 8, STEPS = 3 /* on the progress line: two detections and the matching */ };
 
 typedef struct run {
     const cli_match_arguments *arguments;
@@ -79,7 +79,7 @@ static asj_status match_looks(run *r, const asj_match_options *options)
 
 static int match(run *r)
 {
-    char both[2 * MESSAGE_SIZE];
+    char both[2 * CLI_MESSAGE_SIZE];
     asj_match_options options = r->arguments->options;
     const int features = r->inputs[0].features || r->inputs[1].features;
     options.geometry = r->geometry;
@@ -116,7 +116,7 @@ static int find_segments(run *r)
 static int write_matches(run *r, const char *path)
 {
     const cli_match_arguments *arguments = r->arguments;
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE] = "";
     asj_match_report report;
     memset(&report, 0, sizeof report);
     report.result = r->result;
@@ -140,7 +140,7 @@ static int write_matches(run *r, const char *path)
 static int write_plot(run *r)
 {
     const cli_match_arguments *arguments = r->arguments;
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE] = "";
     cli_plot_match_content content = {.images = {&r->inputs[0].pixels, &r->inputs[1].pixels},
                                       .result = r->result,
                                       .segments = r->segments,

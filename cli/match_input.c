@@ -7,8 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { MESSAGE_SIZE = 1024 };
-
 static int is_outside(const asj_junction *junction, const asj_image *image)
 {
     return junction->x < -ASJ_MAX_OUTSIDE || junction->y < -ASJ_MAX_OUTSIDE ||
@@ -17,7 +15,7 @@ static int is_outside(const asj_junction *junction, const asj_image *image)
 
 static int check_places(cli_session *session, const char *path, const cli_match_input *input)
 {
-    char message[MESSAGE_SIZE];
+    char message[CLI_MESSAGE_SIZE];
     const asj_junction_file *file = input->file;
     const asj_image *image = &input->image->image;
     for (uint32_t i = 0; i < file->junction_count; i++)
@@ -58,7 +56,7 @@ static void warn_of_few(cli_session *session, const char *path, const asj_juncti
 
 static int read_features(cli_session *session, cli_match_input *input, const char *junctions)
 {
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE] = "";
     asj_features_info info;
     if (junctions)
         return cli_usage_error("match", "%s changes nothing: %s is a file of features, which has its junctions", junctions,
@@ -74,7 +72,7 @@ static int read_features(cli_session *session, cli_match_input *input, const cha
 
 int cli_match_input_read(cli_session *session, const cli_match_arguments *arguments, int v, cli_match_input *input)
 {
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE] = "";
     const char *path = arguments->junctions[v];
     double start = cli_now_ms();
     input->name = arguments->images[v];

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MESSAGE_SIZE = 1024 };
-
 int cli_region_take(const char *command, const char *name, const char *text, cli_region *region)
 {
     int32_t values[4];
@@ -37,14 +35,14 @@ int cli_region_take(const char *command, const char *name, const char *text, cli
 
 static int fail(cli_session *session, const char *name, const char *problem, const asj_image *image)
 {
-    char message[MESSAGE_SIZE];
+    char message[CLI_MESSAGE_SIZE];
     snprintf(message, sizeof message, "%s an image of %d x %d pixels", problem, (int)image->width, (int)image->height);
     return cli_session_fail(session, name, message, ASJ_ERROR_ARGUMENT);
 }
 
 int cli_region_read_mask(cli_session *session, const cli_region *region, uint64_t max_pixels, asj_image_file **mask)
 {
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE] = "";
     if (!region->mask)
         return CLI_SUCCESS;
     const asj_status status = asj_image_file_read(region->mask, max_pixels, mask, message, sizeof message);

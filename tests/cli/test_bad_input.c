@@ -151,6 +151,57 @@ static void control_characters_stay_out_of_messages(void **state)
     assert_null(strchr(result->err, '\033'));
 }
 
+/* C1 controls in UTF-8: CSI, which many terminals take for ESC [. Other characters stay. */
+static void controls_in_utf_8_stay_out_of_messages(void **state)
+{
+    (void)state;
+    write_bytes("c\302\2331.png", "This is not an image.\n", 22);
+    static const char *const names[] = {"c\302\2331.png", "no\302\2331.png", "k\303\274che \302\240.png"};
+    static const char *const told[] = {"c??1.png", "no??1.png", "k\303\274che \302\240.png"};
+    for (size_t i = 0; i < 3; i++) {
+        char beginning[64];
+        snprintf(beginning, sizeof beginning, "asj-cli: %s: ", told[i]);
+        const outcome *result = run_cli("detect", names[i], NULL);
+        expect_code(result, 1);
+        assert_int_equal(strncmp(result->err, beginning, strlen(beginning)), 0);
+        assert_null(strstr(result->err + strlen(beginning), told[i]));
+    }
+    char message[512];
+    asj_image_file *file = NULL;
+    assert_int_equal(asj_image_file_read(names[1], 0, &file, message, sizeof message), ASJ_ERROR_FILE);
+    assert_int_equal(strncmp(message, "no??1.png: cannot open", 22), 0);
+}
+
+/* The middle of a long name goes, not the cause. */
+static void a_long_path_leaves_room_for_the_cause(void **state)
+{
+    (void)state;
+    static char path[9001];
+    char message[512];
+    asj_image_file *file = NULL;
+    const size_t lengths[] = {340, 351, 352, 1100, 3000, 9000};
+    for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+        for (size_t k = 0; k < lengths[i]; k++) /* two bytes each */
+            path[k] = k % 2 ? '\274' : '\303';
+        memcpy(path, "begin", 5);
+        memcpy(path + lengths[i] - 3, "end", 4);
+        const outcome *result = run_cli("detect", path, NULL);
+        expect_code(result, 1);
+        expect_in(result, result->err, "asj-cli: begin");
+        expect_in(result, result->err, "end: cannot open: File name too long\n");
+        assert_true(strstr(strstr(result->err, "begin") + 1, "begin") == NULL);
+        result = run_cli("detect", "-o", path, "good.png", NULL);
+        expect_code(result, 1);
+        expect_in(result, result->err, "File name too long\n");
+        assert_int_equal(asj_image_file_read(path, 0, &file, message, sizeof message), ASJ_ERROR_FILE);
+        const char *cause = strstr(message, "end: cannot open: File name too long");
+        assert_true(cause && strncmp(message, "begin", 5) == 0);
+        assert_int_equal(strstr(message, "...") != NULL, lengths[i] > 350);
+    }
+    assert_int_equal(asj_image_file_read(path, 0, &file, message, 20), ASJ_ERROR_FILE);
+    assert_string_equal(message, "be...nd: cannot ope");
+}
+
 static void an_output_folder_is_made_or_refused_before_any_work(void **state)
 {
     (void)state;
@@ -252,6 +303,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(an_unreadable_file_is_named),
         cmocka_unit_test(the_limit_on_pixels_can_be_moved),
         cmocka_unit_test(control_characters_stay_out_of_messages),
+        cmocka_unit_test(controls_in_utf_8_stay_out_of_messages),
+        cmocka_unit_test(a_long_path_leaves_room_for_the_cause),
         cmocka_unit_test(an_output_folder_is_made_or_refused_before_any_work),
         cmocka_unit_test(a_full_device_is_reported),
         cmocka_unit_test(a_closed_pipe_fails_without_a_word),
