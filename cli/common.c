@@ -9,10 +9,13 @@
 
 #include <string.h>
 
-enum { BACKEND, DEVICE, THREADS, SIMD, MAX_MEGAPIXELS, TIME, QUIET };
+enum { BACKEND, DEVICE, THREADS, SIMD, MAX_MEGAPIXELS, WHITE, TIME, QUIET };
 
 /* The largest image that asj_detect() takes. */
 #define MAX_MEGAPIXELS_LIMIT (ASJ_MAX_PIXELS / 1e6)
+
+#define LEAST_WHITE 1e-6 /* floats may have any unit */
+#define LARGEST_WHITE 1e9
 
 const cli_option cli_common_options[] = {
     {BACKEND, 0, "backend", "auto|cpu|opencl",
@@ -24,6 +27,9 @@ const cli_option cli_common_options[] = {
     {SIMD, 0, "simd", "auto|reference|sse2|avx2|avx512|neon|vectors",
      "vector instructions of the CPU, for comparisons; auto (the default): the best that it has; the results do not depend on it"},
     {MAX_MEGAPIXELS, 0, "max-megapixels", "N", "refuse larger images before they are decoded (default 268, at most 536)"},
+    {WHITE, 0, "white", "N",
+     "the sample value that means white: 1023 or 4095 for cameras of 10 or 12 bits in 16-bit files; default: 65535, 255 in 8 bits, "
+     "1 in floats"},
     {TIME, 0, "time", NULL, "print how long each stage took"},
     {QUIET, 'q', "quiet", NULL, "print nothing but errors (and what was asked for)"},
 };
@@ -75,6 +81,13 @@ static int take_max_megapixels(cli_common *common, const char *text)
     return CLI_SUCCESS;
 }
 
+static int take_white(cli_common *common, const char *text)
+{
+    if (!cli_parse_number(text, LEAST_WHITE, LARGEST_WHITE, &common->white))
+        return cli_usage_error(NULL, "--white: '%s' is not a number in %g .. %g", text, LEAST_WHITE, LARGEST_WHITE);
+    return CLI_SUCCESS;
+}
+
 int cli_common_take(void *target, int id, const char *text)
 {
     cli_common *common = target;
@@ -84,6 +97,7 @@ int cli_common_take(void *target, int id, const char *text)
     case THREADS: return take_threads(common, text);
     case SIMD: return take_simd(common, text);
     case MAX_MEGAPIXELS: return take_max_megapixels(common, text);
+    case WHITE: return take_white(common, text);
     case TIME: common->time = 1; break;
     default: common->quiet = 1; break;
     }

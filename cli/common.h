@@ -15,6 +15,7 @@ typedef struct cli_common {
     int32_t simd;
     const char *device;
     uint64_t max_pixels;
+    double white; /* the sample value that means white; 0 = as the image's format has it */
     int time;
     int quiet;
 } cli_common;

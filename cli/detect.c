@@ -7,6 +7,7 @@
 #include "message.h"
 #include "outputs.h"
 #include "platform.h"
+#include "read_image.h"
 #include "timing.h"
 
 #include <asj/detect.h>
@@ -95,8 +96,19 @@ static int write_results(run *r, const char *image, const cli_output *output, co
     return result;
 }
 
-static void print_summary(const char *image, const cli_output *output, const asj_detect_options *options,
-                          const asj_detection *detection, const asj_segment_list *segments)
+/* Why there is little or nothing, and what may help. */
+static void print_hint(const char *image, const asj_image *pixels, const asj_detect_options *options,
+                       const asj_detection *detection)
+{
+    const uint32_t dark = cli_dark_level(pixels);
+    if (dark > 0)
+        cli_note_dark(image, dark);
+    else if (detection->junction_count == 0 && (options->epsilon < 100 || options->candidate_strength > 2))
+        cli_note("%s: weaker corners are found with --epsilon 100 --candidate-strength 2", image);
+}
+
+static void print_summary(const char *image, const cli_output *output, const asj_detection *detection,
+                          const asj_segment_list *segments)
 {
     const char *junctions = output->junctions && strcmp(output->junctions, "-") != 0 ? output->junctions : NULL;
     char lines[64] = "";
@@ -105,8 +117,6 @@ static void print_summary(const char *image, const cli_output *output, const asj
     cli_note("%s: %lu junction%s%s%s%s%s%s", image, (unsigned long)detection->junction_count,
              detection->junction_count == 1 ? "" : "s", lines, junctions || output->plot ? " -> " : "", junctions ? junctions : "",
              junctions && output->plot ? ", " : "", output->plot ? output->plot : "");
-    if (detection->junction_count == 0 && (options->epsilon < 100 || options->candidate_strength > 2))
-        cli_note("%s: weaker corners are found with --epsilon 100 --candidate-strength 2", image);
 }
 
 static int finish_image(run *r, const char *image, const cli_output *output, const asj_image *pixels,
@@ -116,8 +126,10 @@ static int finish_image(run *r, const char *image, const cli_output *output, con
     int result = write_results(r, image, output, pixels, detection, segments);
     double write_ms = cli_now_ms() - start;
     cli_progress_clear(&r->session.progress);
-    if (result == CLI_SUCCESS && !r->arguments->common.quiet)
-        print_summary(image, output, &r->arguments->options, detection, segments);
+    if (result == CLI_SUCCESS && !r->arguments->common.quiet) {
+        print_summary(image, output, detection, segments);
+        print_hint(image, pixels, &r->arguments->options, detection);
+    }
     if (result == CLI_SUCCESS && r->arguments->common.time) {
         cli_timing_detection(image, r->session.context, detection);
         if (segments)
@@ -176,13 +188,12 @@ static int detect_part(run *r, const char *image, const cli_output *output, cons
 static int detect_file(run *r, const char *image, const cli_output *output)
 {
     asj_image_file *file = NULL;
-    char message[CLI_MESSAGE_SIZE] = "";
-    double start = cli_now_ms();
-    asj_status status = asj_image_file_read(image, r->arguments->common.max_pixels, &file, message, sizeof message);
+    const double start = cli_now_ms();
+    int result = cli_read_image(&r->session, &r->arguments->common, image, &file);
     r->read_ms = cli_now_ms() - start;
-    if (status != ASJ_OK)
-        return cli_session_fail(&r->session, image, message, status);
-    int result = check_camera(r, image, &file->image);
+    if (result != CLI_SUCCESS)
+        return result;
+    result = check_camera(r, image, &file->image);
     if (result == CLI_SUCCESS)
         result = detect_part(r, image, output, &file->image);
     asj_image_file_free(&file);
@@ -230,7 +241,7 @@ int cli_detect(int argc, char **argv, const cli_other *other)
     int result = cli_detect_arguments_read(argc, argv, other, &arguments);
     if (result == CLI_SUCCESS) {
         r.arguments = &arguments;
-        result = cli_region_read_mask(&r.session, &arguments.region, arguments.common.max_pixels, &r.mask); /* before any folder */
+        result = cli_region_read_mask(&r.session, &arguments.common, &arguments.region, &r.mask); /* before any folder */
         if (result == CLI_SUCCESS)
             result = cli_outputs_plan(&arguments, &outputs);
         if (result == CLI_SUCCESS)

@@ -8,6 +8,7 @@
 #include "match_input.h"
 #include "message.h"
 #include "platform.h"
+#include "read_image.h"
 #include "timing.h"
 
 #include <stdio.h>
@@ -227,6 +228,19 @@ static int without_focal(const asj_geometry_options *geometry)
            (geometry->model == ASJ_GEOMETRY_AUTO || geometry->model == ASJ_GEOMETRY_ESSENTIAL);
 }
 
+/* Images far darker than white, which explain that there is little or nothing. Returns how many. */
+static int print_dark(const run *r)
+{
+    int count = 0;
+    for (int v = 0; v < 2; v++) {
+        const uint32_t level = cli_dark_level(&r->inputs[v].pixels);
+        if (level > 0)
+            cli_note_dark(r->inputs[v].name, level);
+        count += level > 0;
+    }
+    return count;
+}
+
 /* Why there are none, as far as it can be told, and what to try. */
 static void print_hint(const run *r)
 {
@@ -286,7 +300,8 @@ static int run_all(run *r)
         print_summary(r);
         print_stretch(r);
         print_geometry(r);
-        print_hint(r);
+        if (print_dark(r) == 0)
+            print_hint(r);
     }
     if (result == CLI_SUCCESS && r->arguments->common.time)
         print_times(r, write_ms);

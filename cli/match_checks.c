@@ -87,6 +87,8 @@ static int check_detector(const cli_match_arguments *arguments)
         if (known[v] && (arguments->regions[v].mask || arguments->regions[v].width > 0))
             return cli_usage_error("match", "--%s%d changes nothing: the junctions of that image come from a file",
                                    arguments->regions[v].mask ? "mask" : "region", v + 1);
+    if (arguments->common.white > 0 && asj_features_probe(arguments->images[0]) && asj_features_probe(arguments->images[1]))
+        return cli_usage_error("match", "--white changes nothing: features have no pixels");
     if (!known[0] || !known[1])
         return CLI_SUCCESS;
     if (arguments->detect_settings.count > 0)

@@ -3,6 +3,7 @@
 #include "match_input.h"
 #include "message.h"
 #include "platform.h"
+#include "read_image.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -81,10 +82,10 @@ int cli_match_input_read(cli_session *session, const cli_match_arguments *argume
         input->read_ms = cli_now_ms() - start;
         return result;
     }
-    asj_status status = asj_image_file_read(input->name, arguments->common.max_pixels, &input->image, message, sizeof message);
-    if (status != ASJ_OK)
-        return cli_session_fail(session, input->name, message, status);
+    if (cli_read_image(session, &arguments->common, input->name, &input->image) != CLI_SUCCESS)
+        return CLI_FAILED;
     input->pixels = input->image->image;
+    asj_status status = ASJ_OK;
     if (path && (status = asj_junctions_read(path, &input->file, message, sizeof message)) != ASJ_OK)
         return cli_session_fail(session, path, message, status);
     input->read_ms = cli_now_ms() - start;
@@ -114,7 +115,7 @@ int cli_match_input_detect(cli_session *session, const cli_match_arguments *argu
     if (input->file || input->features)
         return CLI_SUCCESS;
     const asj_image *image = &input->image->image;
-    int result = cli_region_read_mask(session, &arguments->regions[v], arguments->common.max_pixels, &mask);
+    int result = cli_region_read_mask(session, &arguments->common, &arguments->regions[v], &mask);
     if (result == CLI_SUCCESS)
         result = cli_region_of(session, &arguments->regions[v], mask, input->name, image, &region);
     if (result == CLI_SUCCESS)

@@ -2,6 +2,7 @@
 /* --region and --mask. */
 #include "region.h"
 #include "message.h"
+#include "read_image.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,14 +41,13 @@ static int fail(cli_session *session, const char *name, const char *problem, con
     return cli_session_fail(session, name, message, ASJ_ERROR_ARGUMENT);
 }
 
-int cli_region_read_mask(cli_session *session, const cli_region *region, uint64_t max_pixels, asj_image_file **mask)
+int cli_region_read_mask(cli_session *session, const cli_common *common, const cli_region *region,
+                         asj_image_file **mask)
 {
-    char message[CLI_MESSAGE_SIZE] = "";
     if (!region->mask)
         return CLI_SUCCESS;
-    const asj_status status = asj_image_file_read(region->mask, max_pixels, mask, message, sizeof message);
-    if (status != ASJ_OK)
-        return cli_session_fail(session, region->mask, message, status);
+    if (cli_read_image(session, common, region->mask, mask) != CLI_SUCCESS)
+        return CLI_FAILED;
     if ((*mask)->image.format != ASJ_FORMAT_GRAY8)
         return cli_session_fail(session, region->mask, "a mask is an 8-bit gray image", ASJ_ERROR_ARGUMENT);
     return CLI_SUCCESS;

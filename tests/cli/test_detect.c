@@ -503,6 +503,38 @@ static void only_a_part_of_the_image_on_request(void **state)
     expect_in(result, result->err, ": 0 matches");
 }
 
+/* Samples of 10 bits in 16: corners are far too weak, which is told, until white is. */
+static void white_can_be_told(void **state)
+{
+    (void)state;
+    write_deep_scene("deep.png", 1023);
+    write_deep_scene("full.png", 65535);
+    const outcome *result = run_cli("detect", "deep.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "deep.png: brightest pixel is 1.5 % of white: --white 1023?\n");
+    assert_null(strstr(result->err, "weaker corners"));
+    expect_code(run_cli("detect", "-o", "deep.asj", "--white", "1023", "deep.png", NULL), 0);
+    expect_code(run_cli("detect", "-o", "full.asj", "full.png", NULL), 0);
+    result = run_cli("detect", "--white", "1023", "deep.png", NULL);
+    expect_in(result, result->err, "deep.png: 4 junctions\n");
+    assert_null(strstr(result->err, "--white"));
+    result = run_cli("detect", "--white", "255", "scene.png", NULL);
+    expect_in(result, result->err, "scene.png: 4 junctions\n");
+    assert_null(strstr(run_cli("detect", "full.png", NULL)->err, "--white"));
+    expect_empty(result, "standard error", run_cli("detect", "-q", "deep.png", NULL)->err);
+    result = run_cli("match", "deep.png", "deep.png", NULL);
+    expect_in(result, result->err, "deep.png: brightest pixel is 1.5 % of white: --white 1023?\n");
+    assert_null(strstr(result->err, "hint"));
+    assert_null(strstr(run_cli("match", "--white", "1023", "deep.png", "full.png", NULL)->err, "of white"));
+    expect_code(run_cli("detect", "-q", "-o", "deep.asjf", "--white", "1023", "deep.png", NULL), 0);
+    result = run_cli("match", "--white", "1023", "deep.asjf", "deep.asjf", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--white changes nothing: features have no pixels");
+    result = run_cli("detect", "--white", "0", "deep.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--white: '0' is not a number in 1e-06 .. 1e+09");
+}
+
 static int make_files(void **state)
 {
     (void)state;
@@ -518,6 +550,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(whole_junctions_are_written_on_request),
         cmocka_unit_test(the_preset_comes_first_wherever_it_stands),
         cmocka_unit_test(directions_are_written_on_request),
+        cmocka_unit_test(white_can_be_told),
         cmocka_unit_test(a_camera_of_another_image_is_refused), cmocka_unit_test(lines_come_each_once),
         cmocka_unit_test(an_option_reaches_the_detector),
         cmocka_unit_test(times_are_printed_on_request),
