@@ -8,6 +8,7 @@
 #include "outputs.h"
 #include "platform.h"
 #include "read_image.h"
+#include "tally.h"
 #include "timing.h"
 
 #include <asj/detect.h>
@@ -24,6 +25,7 @@ typedef struct run {
     asj_image_file *mask; /* of all images; NULL: none */
     double read_ms, lines_ms;
     int camera_doubted; /* once for all images */
+    cli_tally tally;
 } run;
 
 static asj_status write_features(run *r, const char *path, const asj_image *pixels, const asj_detection *detection, char *message)
@@ -96,17 +98,6 @@ static int write_results(run *r, const char *image, const cli_output *output, co
     return result;
 }
 
-/* Why there is little or nothing, and what may help. */
-static void print_hint(const char *image, const asj_image *pixels, const asj_detect_options *options,
-                       const asj_detection *detection)
-{
-    const uint32_t dark = cli_dark_level(pixels);
-    if (dark > 0)
-        cli_note_dark(image, dark);
-    else if (detection->junction_count == 0 && (options->epsilon < 100 || options->candidate_strength > 2))
-        cli_note("%s: weaker corners are found with --epsilon 100 --candidate-strength 2", image);
-}
-
 static void print_summary(const char *image, const cli_output *output, const asj_detection *detection,
                           const asj_segment_list *segments)
 {
@@ -128,7 +119,7 @@ static int finish_image(run *r, const char *image, const cli_output *output, con
     cli_progress_clear(&r->session.progress);
     if (result == CLI_SUCCESS && !r->arguments->common.quiet) {
         print_summary(image, output, detection, segments);
-        print_hint(image, pixels, &r->arguments->options, detection);
+        cli_tally_image(&r->tally, image, pixels, detection, &r->arguments->options);
     }
     if (result == CLI_SUCCESS && r->arguments->common.time) {
         cli_timing_detection(image, r->session.context, detection);
@@ -211,6 +202,7 @@ static int detect_all(run *r, const cli_outputs *outputs)
 {
     const cli_detect_arguments *arguments = r->arguments;
     size_t skipped = 0;
+    r->tally.total = arguments->images.count;
     int result = cli_session_open(&r->session, &arguments->common, arguments->images.count);
     for (size_t i = 0; result != CLI_USAGE && i < arguments->images.count && r->session.context; i++) {
         if (arguments->skip_existing && is_done(&outputs->of[i])) {
@@ -225,9 +217,13 @@ static int detect_all(run *r, const cli_outputs *outputs)
             result = 128 + cli_interrupted();
             break;
         }
+        r->tally.done += one == CLI_SUCCESS;
+        r->tally.failed += one != CLI_SUCCESS;
         result = one > result ? one : result;
     }
     cli_session_close(&r->session);
+    if (r->tally.done + r->tally.failed > 0 && r->tally.total > 1 && !cli_interrupted() && !arguments->common.quiet)
+        cli_tally_print(&r->tally, &arguments->options);
     if (skipped > 0 && !arguments->common.quiet)
         cli_note("%zu of %zu images had their results in %s already", skipped, arguments->images.count, arguments->out_dir);
     return result;

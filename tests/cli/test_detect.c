@@ -535,6 +535,31 @@ static void white_can_be_told(void **state)
     expect_in(result, result->err, "--white: '0' is not a number in 1e-06 .. 1e+09");
 }
 
+/* One image has its hint at once; many have one line for all of them, at the end. */
+static void many_images_have_one_line_of_hints(void **state)
+{
+    (void)state;
+    write_constant("flat.png", 60, 40);
+    write_constant("tiny.png", 15, 60);
+    write_deep_scene("dim.png", 1023);
+    write_deep_scene("dimmer.png", 600);
+    const outcome *result = run_cli("detect", "-d", "hinted", "flat.png", NULL);
+    expect_in(result, result->err, "flat.png: weaker corners are found with --epsilon 100 --candidate-strength 2\n");
+    assert_null(strstr(result->err, "done"));
+    result = run_cli("detect", "-d", "hinted", "tiny.png", NULL);
+    assert_null(strstr(result->err, "weaker"));
+    result = run_cli("detect", "-d", "hinted", "flat.png", "tiny.png", "dim.png", "none.png", "dimmer.png", "scene.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "\n5 images done, 1 failed, 1 without a junction (weaker corners are found with --epsilon 100 "
+                                   "--candidate-strength 2), 2 far darker than white (--white 1023?)\n");
+    assert_null(strstr(result->err, "flat.png: weaker"));
+    assert_null(strstr(result->err, "dim.png: brightest"));
+    result = run_cli("detect", "-d", "hinted", "--epsilon", "100", "--candidate-strength", "2", "flat.png", "scene.png", NULL);
+    expect_in(result, result->err, "\n2 images done, 1 without a junction\n");
+    expect_in(result, run_cli("detect", "-d", "hinted", "none.png", "nor.png", NULL)->err, "\n0 images done, 2 failed\n");
+    expect_empty(result, "standard error", run_cli("detect", "-q", "-d", "hinted", "flat.png", "scene.png", NULL)->err);
+}
+
 static int make_files(void **state)
 {
     (void)state;
@@ -551,6 +576,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_preset_comes_first_wherever_it_stands),
         cmocka_unit_test(directions_are_written_on_request),
         cmocka_unit_test(white_can_be_told),
+        cmocka_unit_test(many_images_have_one_line_of_hints),
         cmocka_unit_test(a_camera_of_another_image_is_refused), cmocka_unit_test(lines_come_each_once),
         cmocka_unit_test(an_option_reaches_the_detector),
         cmocka_unit_test(times_are_printed_on_request),
