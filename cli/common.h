@@ -9,6 +9,9 @@
 
 #include <asj/context.h>
 
+/* What --max-megapixels goes up to: the largest image that asj_detect() takes. */
+#define CLI_LARGEST_MEGAPIXELS 536
+
 typedef struct cli_common {
     int32_t backend;
     int32_t threads;

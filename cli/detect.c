@@ -176,10 +176,24 @@ static int detect_part(run *r, const char *image, const cli_output *output, cons
     return result != CLI_SUCCESS ? result : cli_interrupted() ? CLI_FAILED : detect_pixels(r, image, output, pixels, &region);
 }
 
+/* With two ways to all images in it. */
+static int refuse_folder(run *r, const char *folder)
+{
+    int length = (int)strlen(folder);
+    while (length > 1 && cli_is_separator(folder[length - 1]))
+        length--;
+    cli_progress_clear(&r->session.progress);
+    cli_error("%s: is a directory; its images are %.*s/*.jpg, or: find %.*s -name '*.jpg' | asj-cli detect --files-from - -d DIR",
+              folder, length, folder, length, folder);
+    return CLI_FAILED;
+}
+
 static int detect_file(run *r, const char *image, const cli_output *output)
 {
     asj_image_file *file = NULL;
     const double start = cli_now_ms();
+    if (cli_is_folder(image))
+        return refuse_folder(r, image);
     int result = cli_read_image(&r->session, &r->arguments->common, image, &file);
     r->read_ms = cli_now_ms() - start;
     if (result != CLI_SUCCESS)

@@ -75,6 +75,29 @@ static void each_bad_file_has_one_line(void **state)
     }
 }
 
+/* What is given in place of images, and what to do instead. */
+static void results_and_folders_in_place_of_images(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"j.json", "j.asj", "lines.json"};
+    expect_code(run_cli("detect", "-q", "-o", "j.json", "good.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "-o", "j.asj", "good.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "--lines", "-o", "lines.json", "good.png", NULL), 0);
+    expect_code(run_cli("match", "-q", "-o", "m.json", "good.png", "good.png", NULL), 0);
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        const outcome *result = run_cli("match", files[i], "good.png", NULL);
+        expect_code(result, 1);
+        expect_in(result, result->err, ": junctions, not an image: 'asj-cli match' takes them with --junctions1 FILE --junctions2");
+        assert_int_equal(count_lines(result->err), 1);
+    }
+    const outcome *result = run_cli("detect", "m.json", NULL);
+    expect_in(result, result->err, "asj-cli: m.json: matches, not an image\n");
+    result = run_cli("detect", "folder.png//", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: folder.png//: is a directory; its images are folder.png/*.jpg, or: find folder.png "
+                                   "-name '*.jpg' | asj-cli detect --files-from - -d DIR\n");
+}
+
 /* Nor is its name told twice where it cannot be told as it is. */
 static void a_name_with_a_newline_is_told_once(void **state)
 {
@@ -138,7 +161,12 @@ static void the_limit_on_pixels_can_be_moved(void **state)
     (void)state;
     const outcome *result = run_cli("detect", "--max-megapixels", "0.05", "good.png", NULL); /* it has 0.0768 */
     expect_code(result, 1);
-    expect_in(result, result->err, "asj-cli: good.png: ");
+    expect_in(result, result->err, "asj-cli: good.png: 320 x 240 pixels are more than the limit of 50000 (--max-megapixels 1)\n");
+    result = run_cli("detect", "bomb.png", NULL);
+    expect_in(result, result->err, " (--max-megapixels goes up to 536)\n");
+    write_png_header("large.png", 20000, 15000);
+    result = run_cli("match", "large.png", "good.png", NULL);
+    expect_in(result, result->err, "large.png: 20000 x 15000 pixels are more than the limit of 268435456 (--max-megapixels 300)\n");
     expect_code(run_cli("detect", "--max-megapixels", "0.0768", "good.png", NULL), 0);
 }
 
@@ -297,7 +325,8 @@ static void an_opencl_device_that_is_not_there_is_an_error(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_bad_file_has_one_line), cmocka_unit_test(a_name_with_a_newline_is_told_once),
+        cmocka_unit_test(each_bad_file_has_one_line),
+        cmocka_unit_test(results_and_folders_in_place_of_images), cmocka_unit_test(a_name_with_a_newline_is_told_once),
         cmocka_unit_test(bad_files_do_not_stop_the_others),
         cmocka_unit_test(a_failure_keeps_the_old_result),
         cmocka_unit_test(an_unreadable_file_is_named),
