@@ -204,6 +204,16 @@ static void print_no_geometry(const run *r)
     cli_note("geometry: none (%s)%s", asj_geometry_status_name(status), of_matches);
 }
 
+/* CSV and plots have neither. */
+static const char *what_json_has(const run *r)
+{
+    const cli_match_arguments *arguments = r->arguments;
+    const int written = arguments->output || !arguments->plot;
+    if (written && cli_match_file_format(arguments) == ASJ_FILE_JSON)
+        return "";
+    return r->result->geometry.has_pose ? " (pose and probabilities: -o FILE.json)" : " (matrix and probabilities: -o FILE.json)";
+}
+
 static void print_geometry(const run *r)
 {
     const asj_geometry *g = &r->result->geometry;
@@ -214,9 +224,9 @@ static void print_geometry(const run *r)
         snprintf(focal, sizeof focal, ", focal lengths %.0f and %.0f px to %.1f %%", g->cameras[0].fx, g->cameras[1].fx,
                  100 * g->focal_sd);
     if (g->status == ASJ_GEOMETRY_ACCEPTED)
-        cli_note("geometry: %s, log10 NFA %.1f%s%s", asj_geometry_model_name(g->model), g->log10_nfa, focal,
+        cli_note("geometry: %s, log10 NFA %.1f%s%s%s", asj_geometry_model_name(g->model), g->log10_nfa, focal,
                  g->only_turns ? ": the camera only turns"
-                 : g->model == ASJ_GEOMETRY_HOMOGRAPHY ? "; matches off its plane stay, less probable" : "");
+                 : g->model == ASJ_GEOMETRY_HOMOGRAPHY ? "; matches off its plane stay, less probable" : "", what_json_has(r));
     else if (g->status != ASJ_GEOMETRY_NOT_ASKED && (r->result->match_count > 0 || r->result->rejected_count > 0))
         print_no_geometry(r);
 }

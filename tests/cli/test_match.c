@@ -451,6 +451,11 @@ static void what_the_geometry_is_is_told(void **state)
     expect_in(result, result->err, "\ngeometry: ");
     result = run_cli("match", "--geometry", "essential", "--focal", "300", "first.png", "first.png", NULL);
     expect_in(result, result->err, "geometry: none (degenerate); what matches leaves the motion open");
+    result = run_cli("match", "--stretch", "1", "--geometry", "homography", "first.png", "second.png", NULL);
+    expect_in(result, result->err, "\ngeometry: homography, log10 NFA ");
+    expect_in(result, result->err, " (matrix and probabilities: -o FILE.json)\n");
+    result = run_cli("match", "-f", "json", "--stretch", "1", "--geometry", "homography", "first.png", "second.png", NULL);
+    assert_null(strstr(result->err, "-o FILE.json"));
     result = run_cli("match", "-q", "--stretch", "1", "--geometry", "fundamental", "first.png", "second.png", NULL);
     assert_null(strstr(result->err, "geometry"));
     assert_null(strstr(run_cli("match", "--stretch", "1", "first.png", "second.png", NULL)->err, "geometry"));
