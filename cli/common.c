@@ -35,9 +35,10 @@ const cli_option cli_common_options[] = {
 };
 const size_t cli_common_option_count = sizeof cli_common_options / sizeof cli_common_options[0];
 
-void cli_common_init(cli_common *common)
+void cli_common_init(cli_common *common, const char *command)
 {
     memset(common, 0, sizeof *common);
+    common->command = command;
     common->backend = ASJ_BACKEND_AUTO;
     common->max_pixels = ASJ_IO_DEFAULT_MAX_PIXELS;
 }
@@ -47,7 +48,7 @@ static int take_backend(cli_common *common, const char *text)
     static const char *const words[] = {"auto", "cpu", "opencl", NULL}; /* in the order of ASJ_BACKEND_... */
     int word = cli_find_word(words, text);
     if (word < 0)
-        return cli_usage_error(NULL, "--backend: '%s' is not auto, cpu or opencl", text);
+        return cli_usage_error(common->command, "--backend: '%s' is not auto, cpu or opencl", text);
     common->backend = word;
     return CLI_SUCCESS;
 }
@@ -56,7 +57,7 @@ static int take_threads(cli_common *common, const char *text)
 {
     double number;
     if (!cli_parse_number(text, 0, ASJ_MAX_THREADS, &number) || strspn(text, "0123456789") != strlen(text))
-        return cli_usage_error(NULL, "--threads: '%s' is not a whole number in 0 .. %d", text, ASJ_MAX_THREADS);
+        return cli_usage_error(common->command, "--threads: '%s' is not a whole number in 0 .. %d", text, ASJ_MAX_THREADS);
     common->threads = (int32_t)number;
     return CLI_SUCCESS;
 }
@@ -68,14 +69,14 @@ static int take_simd(cli_common *common, const char *text)
             common->simd = simd;
             return CLI_SUCCESS;
         }
-    return cli_usage_error(NULL, "--simd: '%s' is not auto, reference, sse2, avx2, avx512, neon or vectors", text);
+    return cli_usage_error(common->command, "--simd: '%s' is not auto, reference, sse2, avx2, avx512, neon or vectors", text);
 }
 
 static int take_max_megapixels(cli_common *common, const char *text)
 {
     double number;
     if (!cli_parse_number(text, 1e-6, MAX_MEGAPIXELS_LIMIT, &number))
-        return cli_usage_error(NULL, "--max-megapixels: '%s' is not a number in 0.000001 .. %.0f", text,
+        return cli_usage_error(common->command, "--max-megapixels: '%s' is not a number in 0.000001 .. %.0f", text,
                                MAX_MEGAPIXELS_LIMIT - 0.5);
     common->max_pixels = (uint64_t)(number * 1e6 + 0.5);
     return CLI_SUCCESS;
@@ -84,7 +85,7 @@ static int take_max_megapixels(cli_common *common, const char *text)
 static int take_white(cli_common *common, const char *text)
 {
     if (!cli_parse_number(text, LEAST_WHITE, LARGEST_WHITE, &common->white))
-        return cli_usage_error(NULL, "--white: '%s' is not a number in %g .. %g", text, LEAST_WHITE, LARGEST_WHITE);
+        return cli_usage_error(common->command, "--white: '%s' is not a number in %g .. %g", text, LEAST_WHITE, LARGEST_WHITE);
     return CLI_SUCCESS;
 }
 
@@ -116,10 +117,10 @@ static void print_log(void *user, int32_t level, const char *message)
     session->errors += level == ASJ_LOG_ERROR;
 }
 
-int cli_common_check(const char *command, cli_common *common)
+int cli_common_check(cli_common *common)
 {
     if (common->device && common->backend == ASJ_BACKEND_CPU)
-        return cli_usage_error(command, "--device is an OpenCL device, and --backend cpu excludes those");
+        return cli_usage_error(common->command, "--device is an OpenCL device, and --backend cpu excludes those");
     if (common->device)
         common->backend = ASJ_BACKEND_OPENCL;
     return CLI_SUCCESS;

@@ -213,7 +213,7 @@ static int check(cli_detect_arguments *arguments)
     for (size_t i = 0; i < arguments->images.count; i++)
         if (strcmp(arguments->images.names[i], "-") == 0)
             return cli_usage_error("detect", "images are not read from standard input (a file named - is ./-)");
-    int result = cli_common_check("detect", &arguments->common);
+    int result = cli_common_check(&arguments->common);
     if (result == CLI_SUCCESS)
         result = cli_check_ending("detect", "junctions", arguments->output, arguments->format, formats);
     if (result == CLI_SUCCESS)
@@ -278,7 +278,7 @@ int cli_detect_arguments_read(int argc, char **argv, const cli_other *other, cli
     int first = argc;
     detect_syntax room;
     memset(arguments, 0, sizeof *arguments);
-    cli_common_init(&arguments->common);
+    cli_common_init(&arguments->common, "detect");
     arguments->preset = -1;
     if (!cli_settings_create(&arguments->settings, argc))
         return CLI_FAILED;

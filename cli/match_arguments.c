@@ -256,7 +256,7 @@ static int take_images(cli_match_arguments *arguments, char **operands, int oper
 static void start(cli_match_arguments *arguments)
 {
     memset(arguments, 0, sizeof *arguments);
-    cli_common_init(&arguments->common);
+    cli_common_init(&arguments->common, "match");
     arguments->detect_preset = arguments->match_preset = -1;
     arguments->preset = ASJ_PRESET_MATCH;
     arguments->minimum_end = -1;

@@ -170,7 +170,7 @@ int cli_match_check(cli_match_arguments *arguments)
     for (int v = 0; v < 2; v++)
         if (strcmp(arguments->images[v], "-") == 0 || (arguments->junctions[v] && strcmp(arguments->junctions[v], "-") == 0))
             return cli_usage_error("match", "nothing is read from standard input (a file named - is ./-)");
-    int result = cli_common_check("match", &arguments->common);
+    int result = cli_common_check(&arguments->common);
     if (result == CLI_SUCCESS)
         result = cli_check_detector("match", &arguments->detect_options);
     if (result == CLI_SUCCESS)
