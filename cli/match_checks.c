@@ -185,5 +185,10 @@ int cli_match_check(cli_match_arguments *arguments)
         result = check_stretch(arguments);
     if (result == CLI_SUCCESS)
         result = check_results(arguments);
-    return result == CLI_SUCCESS ? check_files(arguments) : result;
+    if (result == CLI_SUCCESS)
+        result = check_files(arguments);
+    if (result == CLI_SUCCESS && arguments->output && !arguments->common.quiet)
+        cli_warn_ending("match", arguments->output, arguments->format,
+                        cli_match_file_format(arguments) == ASJ_FILE_JSON ? "json" : "csv");
+    return result;
 }

@@ -495,7 +495,13 @@ static void only_a_part_of_the_image_on_request(void **state)
     expect_in(result, result->err, "small.png: this mask has another size than an image of 320 x 240 pixels");
     result = run_cli("detect", "--region", "100,100,221,20", "scene.png", NULL);
     expect_code(result, 1);
-    expect_in(result, result->err, "scene.png: the region leaves an image of 320 x 240 pixels");
+    expect_in(result, result->err, "scene.png: the region 100,100,221,20 is not within the image of 320 x 240 pixels\n");
+    write_deep_scene("deep_mask.png", 65535);
+    result = run_cli("detect", "--mask", "deep_mask.png", "scene.png", NULL);
+    expect_in(result, result->err, "deep_mask.png: a mask is an 8-bit gray image, and this one has 16 bits\n");
+    write_bytes("colour.ppm", "P3 1 1 255 1 2 3\n", 17);
+    result = run_cli("detect", "--mask", "colour.ppm", "scene.png", NULL);
+    expect_in(result, result->err, "colour.ppm: a mask is an 8-bit gray image, and this one is in colour\n");
     memset(pixels, 0, sizeof pixels);
     assert_int_equal(asj_png_write("black.png", &mask, message, sizeof message), ASJ_OK);
     result = run_cli("match", "--region1", "0,0,160,240", "--mask2", "black.png", "-o", "m.csv", "scene.png", "scene.png", NULL);
