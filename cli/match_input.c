@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* An image and its junctions, or its features, for match. */
 #include "match_input.h"
+#include "image_name.h"
 #include "message.h"
 #include "platform.h"
 #include "read_image.h"
@@ -55,6 +56,19 @@ static void warn_of_few(cli_session *session, const char *path, const asj_juncti
              "finds what match needs", path);
 }
 
+/* Junctions are in pixels of their own image: in another one they match nothing, or the wrong things. */
+static void warn_of_swap(cli_session *session, const cli_match_arguments *arguments, int v)
+{
+    char name[CLI_MESSAGE_SIZE];
+    const char *path = arguments->junctions[v];
+    if (!cli_image_name_read(path, name, sizeof name) ||
+        !cli_image_name_is_of(name, arguments->images[1 - v], arguments->images[v]))
+        return;
+    cli_progress_clear(&session->progress);
+    cli_note("asj-cli match: warning: --junctions%d: %s has the junctions of %s, which is IMAGE%d: are they swapped?", v + 1, path,
+             name, 2 - v);
+}
+
 static int read_features(cli_session *session, cli_match_input *input, const char *junctions)
 {
     char message[CLI_MESSAGE_SIZE] = "";
@@ -89,6 +103,8 @@ int cli_match_input_read(cli_session *session, const cli_match_arguments *argume
     if (path && (status = asj_junctions_read(path, &input->file, message, sizeof message)) != ASJ_OK)
         return cli_session_fail(session, path, message, status);
     input->read_ms = cli_now_ms() - start;
+    if (path && !arguments->common.quiet)
+        warn_of_swap(session, arguments, v);
     const int result = path ? check_places(session, path, input) : CLI_SUCCESS;
     if (path && result == CLI_SUCCESS && !arguments->common.quiet && arguments->match_preset != ASJ_PRESET_PAPER)
         warn_of_few(session, path, input->file);

@@ -14,6 +14,8 @@
 
 #include <cmocka.h>
 
+#include <sys/stat.h>
+
 static int count_lines(const char *text)
 {
     int lines = 0;
@@ -196,6 +198,38 @@ static void junctions_of_another_image_are_refused(void **state)
                    "asj-cli: large.json: line ", "outside small.png");
 }
 
+static void swapped_junctions_are_doubted(void **state)
+{
+    (void)state;
+    static const char *const cases[][4] = { /* of image 1, of image 2, image 1, image 2 */
+        {"b.json", "a.json", "first.png", "second.png"},
+        {"a.json", "a.json", "first.png", "second.png"},
+        {"a.json", "b.json", "first.png", "second.png"},
+        {"a.json", "c.json", "first.png", "fo\"l\\der/first.png"},
+        {"c.json", "a.json", "first.png", "fo\"l\\der/first.png"},
+        {"a.json", "a.json", "./first.png", "first.png"},
+        {"b.json", "good.asj", "other/first.png", "other/second.png"},
+    };
+    static const int warned[][2] = {{1, 1}, {0, 1}, {0, 0}, {0, 0}, {1, 1}, {0, 0}, {1, 0}};
+    mkdir("fo\"l\\der", 0777);
+    mkdir("other", 0777);
+    write_views("fo\"l\\der/first.png", "fo\"l\\der/second.png");
+    write_views("other/first.png", "other/second.png");
+    expect_code(run_cli("detect", "-q", "-o", "a.json", "first.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "-o", "b.json", "second.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "-o", "c.json", "fo\"l\\der/first.png", NULL), 0);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const outcome *result = run_cli("match", "--junctions1", cases[i][0], "--junctions2", cases[i][1], cases[i][2], cases[i][3],
+                                        NULL);
+        expect_code(result, 0);
+        if (i == 0)
+            expect_in(result, result->err, "warning: --junctions1: b.json has the junctions of second.png, which is IMAGE2: are "
+                                           "they swapped?\n");
+        assert_int_equal(strstr(result->err, "--junctions1: ") != NULL, warned[i][0]);
+        assert_int_equal(strstr(result->err, "--junctions2: ") != NULL, warned[i][1]);
+    }
+}
+
 static void cameras_of_other_images_are_refused(void **state)
 {
     (void)state;
@@ -297,6 +331,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(bad_junction_files_are_refused),
         cmocka_unit_test(junctions_beside_the_image_are_taken),
         cmocka_unit_test(junctions_of_another_image_are_refused),
+        cmocka_unit_test(swapped_junctions_are_doubted),
         cmocka_unit_test(cameras_of_other_images_are_refused),
         cmocka_unit_test(bad_images_are_refused),
         cmocka_unit_test(bad_features_are_refused),
