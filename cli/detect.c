@@ -236,7 +236,8 @@ static int detect_all(run *r, const cli_outputs *outputs)
         result = one > result ? one : result;
     }
     cli_session_close(&r->session);
-    if (r->tally.done + r->tally.failed > 0 && r->tally.total > 1 && !cli_interrupted() && !arguments->common.quiet)
+    const int whole = result != CLI_USAGE && !cli_interrupted() && r->tally.done + r->tally.failed > 0;
+    if (whole && r->tally.total > 1 && !arguments->common.quiet)
         cli_tally_print(&r->tally, &arguments->options);
     if (skipped > 0 && !arguments->common.quiet)
         cli_note("%zu of %zu images had their results in %s already", skipped, arguments->images.count, arguments->out_dir);
