@@ -9,10 +9,13 @@
 
 #include <string.h>
 
-enum { BACKEND, DEVICE, THREADS, SIMD, MAX_MEGAPIXELS, TIME, QUIET };
+enum { BACKEND, DEVICE, THREADS, SIMD, MAX_MEGAPIXELS, WHITE, TIME, QUIET };
 
 /* The largest image that asj_detect() takes. */
 #define MAX_MEGAPIXELS_LIMIT (ASJ_MAX_PIXELS / 1e6)
+
+#define LEAST_WHITE 1e-6 /* floats may have any unit */
+#define LARGEST_WHITE 1e9
 
 const cli_option cli_common_options[] = {
     {BACKEND, 0, "backend", "auto|cpu|opencl",
@@ -24,14 +27,18 @@ const cli_option cli_common_options[] = {
     {SIMD, 0, "simd", "auto|reference|sse2|avx2|avx512|neon|vectors",
      "vector instructions of the CPU, for comparisons; auto (the default): the best that it has; the results do not depend on it"},
     {MAX_MEGAPIXELS, 0, "max-megapixels", "N", "refuse larger images before they are decoded (default 268, at most 536)"},
+    {WHITE, 0, "white", "N",
+     "the sample value that means white: 1023 or 4095 for cameras of 10 or 12 bits in 16-bit files; default: 65535, 255 in 8 bits, "
+     "1 in floats"},
     {TIME, 0, "time", NULL, "print how long each stage took"},
     {QUIET, 'q', "quiet", NULL, "print nothing but errors (and what was asked for)"},
 };
 const size_t cli_common_option_count = sizeof cli_common_options / sizeof cli_common_options[0];
 
-void cli_common_init(cli_common *common)
+void cli_common_init(cli_common *common, const char *command)
 {
     memset(common, 0, sizeof *common);
+    common->command = command;
     common->backend = ASJ_BACKEND_AUTO;
     common->max_pixels = ASJ_IO_DEFAULT_MAX_PIXELS;
 }
@@ -41,7 +48,7 @@ static int take_backend(cli_common *common, const char *text)
     static const char *const words[] = {"auto", "cpu", "opencl", NULL}; /* in the order of ASJ_BACKEND_... */
     int word = cli_find_word(words, text);
     if (word < 0)
-        return cli_usage_error(NULL, "--backend: '%s' is not auto, cpu or opencl", text);
+        return cli_usage_error(common->command, "--backend: '%s' is not auto, cpu or opencl", text);
     common->backend = word;
     return CLI_SUCCESS;
 }
@@ -50,7 +57,7 @@ static int take_threads(cli_common *common, const char *text)
 {
     double number;
     if (!cli_parse_number(text, 0, ASJ_MAX_THREADS, &number) || strspn(text, "0123456789") != strlen(text))
-        return cli_usage_error(NULL, "--threads: '%s' is not a whole number in 0 .. %d", text, ASJ_MAX_THREADS);
+        return cli_usage_error(common->command, "--threads: '%s' is not a whole number in 0 .. %d", text, ASJ_MAX_THREADS);
     common->threads = (int32_t)number;
     return CLI_SUCCESS;
 }
@@ -62,16 +69,23 @@ static int take_simd(cli_common *common, const char *text)
             common->simd = simd;
             return CLI_SUCCESS;
         }
-    return cli_usage_error(NULL, "--simd: '%s' is not auto, reference, sse2, avx2, avx512, neon or vectors", text);
+    return cli_usage_error(common->command, "--simd: '%s' is not auto, reference, sse2, avx2, avx512, neon or vectors", text);
 }
 
 static int take_max_megapixels(cli_common *common, const char *text)
 {
     double number;
     if (!cli_parse_number(text, 1e-6, MAX_MEGAPIXELS_LIMIT, &number))
-        return cli_usage_error(NULL, "--max-megapixels: '%s' is not a number in 0.000001 .. %.0f", text,
+        return cli_usage_error(common->command, "--max-megapixels: '%s' is not a number in 0.000001 .. %.0f", text,
                                MAX_MEGAPIXELS_LIMIT - 0.5);
     common->max_pixels = (uint64_t)(number * 1e6 + 0.5);
+    return CLI_SUCCESS;
+}
+
+static int take_white(cli_common *common, const char *text)
+{
+    if (!cli_parse_number(text, LEAST_WHITE, LARGEST_WHITE, &common->white))
+        return cli_usage_error(common->command, "--white: '%s' is not a number in %g .. %g", text, LEAST_WHITE, LARGEST_WHITE);
     return CLI_SUCCESS;
 }
 
@@ -84,6 +98,7 @@ int cli_common_take(void *target, int id, const char *text)
     case THREADS: return take_threads(common, text);
     case SIMD: return take_simd(common, text);
     case MAX_MEGAPIXELS: return take_max_megapixels(common, text);
+    case WHITE: return take_white(common, text);
     case TIME: common->time = 1; break;
     default: common->quiet = 1; break;
     }
@@ -102,10 +117,10 @@ static void print_log(void *user, int32_t level, const char *message)
     session->errors += level == ASJ_LOG_ERROR;
 }
 
-int cli_common_check(const char *command, cli_common *common)
+int cli_common_check(cli_common *common)
 {
     if (common->device && common->backend == ASJ_BACKEND_CPU)
-        return cli_usage_error(command, "--device is an OpenCL device, and --backend cpu excludes those");
+        return cli_usage_error(common->command, "--device is an OpenCL device, and --backend cpu excludes those");
     if (common->device)
         common->backend = ASJ_BACKEND_OPENCL;
     return CLI_SUCCESS;

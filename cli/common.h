@@ -9,17 +9,22 @@
 
 #include <asj/context.h>
 
+/* What --max-megapixels goes up to: the largest image that asj_detect() takes. */
+#define CLI_LARGEST_MEGAPIXELS 536
+
 typedef struct cli_common {
+    const char *command; /* that they were given to: "detect" */
     int32_t backend;
     int32_t threads;
     int32_t simd;
     const char *device;
     uint64_t max_pixels;
+    double white; /* the sample value that means white; 0 = as the image's format has it */
     int time;
     int quiet;
 } cli_common;
 
-void cli_common_init(cli_common *common);
+void cli_common_init(cli_common *common, const char *command);
 
 /* The rows and the `take` of their group. */
 extern const cli_option cli_common_options[];
@@ -27,7 +32,7 @@ extern const size_t cli_common_option_count;
 int cli_common_take(void *common, int id, const char *text);
 
 /* After all options are read: --device asks for OpenCL. CLI_SUCCESS, or CLI_USAGE after saying why. */
-int cli_common_check(const char *command, cli_common *common);
+int cli_common_check(cli_common *common);
 
 /* The library's context and the progress line that belongs to it. */
 typedef struct cli_session {

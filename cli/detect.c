@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* asj-cli detect: image by image, read, detect, write; one that fails does not stop the others. */
 #include "detect.h"
+#include "camera.h"
 #include "detect_arguments.h"
 #include "interrupt.h"
 #include "message.h"
 #include "outputs.h"
 #include "platform.h"
+#include "read_image.h"
+#include "tally.h"
 #include "timing.h"
 
 #include <asj/detect.h>
@@ -15,14 +18,14 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MESSAGE_SIZE = 1024 };
-
 /* One image after the other with one context. */
 typedef struct run {
     const cli_detect_arguments *arguments;
     cli_session session;
     asj_image_file *mask; /* of all images; NULL: none */
     double read_ms, lines_ms;
+    int camera_doubted; /* once for all images */
+    cli_tally tally;
 } run;
 
 static asj_status write_features(run *r, const char *path, const asj_image *pixels, const asj_detection *detection, char *message)
@@ -31,9 +34,9 @@ static asj_status write_features(run *r, const char *path, const asj_image *pixe
     asj_status status = asj_features_create(r->session.context, pixels, detection->junctions, detection->junction_count, NULL,
                                             &features);
     if (status != ASJ_OK)
-        snprintf(message, MESSAGE_SIZE, "%s", asj_context_message(r->session.context));
+        snprintf(message, CLI_MESSAGE_SIZE, "%s", asj_context_message(r->session.context));
     else
-        status = asj_features_write(path, features, message, MESSAGE_SIZE);
+        status = asj_features_write(path, features, message, CLI_MESSAGE_SIZE);
     asj_features_free(&features);
     return status;
 }
@@ -49,7 +52,7 @@ static asj_status find_directions(run *r, const asj_image *pixels, const asj_det
     const asj_status status = asj_find_vanishing_points(r->session.context, detection->junctions, detection->junction_count,
                                                         &options, points);
     if (status != ASJ_OK)
-        snprintf(message, MESSAGE_SIZE, "%s", asj_context_message(r->session.context));
+        snprintf(message, CLI_MESSAGE_SIZE, "%s", asj_context_message(r->session.context));
     return status;
 }
 
@@ -68,14 +71,14 @@ static asj_status write_junctions(run *r, const char *image, const char *path, c
             return status;
         report.vanishing_points = &points;
     }
-    return asj_junctions_write(path, format, &report, message, MESSAGE_SIZE);
+    return asj_junctions_write(path, format, &report, message, CLI_MESSAGE_SIZE);
 }
 
 static int write_results(run *r, const char *image, const cli_output *output, const asj_image *pixels,
                          const asj_detection *detection, const asj_segment_list *segments)
 {
     const cli_detect_arguments *arguments = r->arguments;
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE] = "";
     int result = CLI_SUCCESS;
     if (output->junctions) {
         asj_status status = write_junctions(r, image, output->junctions, pixels, detection, segments, message);
@@ -95,8 +98,8 @@ static int write_results(run *r, const char *image, const cli_output *output, co
     return result;
 }
 
-static void print_summary(const char *image, const cli_output *output, const asj_detect_options *options,
-                          const asj_detection *detection, const asj_segment_list *segments)
+static void print_summary(const char *image, const cli_output *output, const asj_detection *detection,
+                          const asj_segment_list *segments)
 {
     const char *junctions = output->junctions && strcmp(output->junctions, "-") != 0 ? output->junctions : NULL;
     char lines[64] = "";
@@ -105,8 +108,6 @@ static void print_summary(const char *image, const cli_output *output, const asj
     cli_note("%s: %lu junction%s%s%s%s%s%s", image, (unsigned long)detection->junction_count,
              detection->junction_count == 1 ? "" : "s", lines, junctions || output->plot ? " -> " : "", junctions ? junctions : "",
              junctions && output->plot ? ", " : "", output->plot ? output->plot : "");
-    if (detection->junction_count == 0 && (options->epsilon < 100 || options->candidate_strength > 2))
-        cli_note("%s: weaker corners are found with --epsilon 100 --candidate-strength 2", image);
 }
 
 static int finish_image(run *r, const char *image, const cli_output *output, const asj_image *pixels,
@@ -116,8 +117,10 @@ static int finish_image(run *r, const char *image, const cli_output *output, con
     int result = write_results(r, image, output, pixels, detection, segments);
     double write_ms = cli_now_ms() - start;
     cli_progress_clear(&r->session.progress);
-    if (result == CLI_SUCCESS && !r->arguments->common.quiet)
-        print_summary(image, output, &r->arguments->options, detection, segments);
+    if (result == CLI_SUCCESS && !r->arguments->common.quiet) {
+        print_summary(image, output, detection, segments);
+        cli_tally_image(&r->tally, image, pixels, detection, &r->arguments->options);
+    }
     if (result == CLI_SUCCESS && r->arguments->common.time) {
         cli_timing_detection(image, r->session.context, detection);
         if (segments)
@@ -149,6 +152,23 @@ static int detect_pixels(run *r, const char *image, const cli_output *output, co
     return result;
 }
 
+static int check_camera(run *r, const char *image, const asj_image *pixels)
+{
+    char message[CLI_MESSAGE_SIZE], line[CLI_MESSAGE_SIZE];
+    const asj_camera *camera = &r->arguments->camera;
+    const int verdict = camera->fx > 0 ? cli_judge_camera(camera, pixels, message, sizeof message) : CLI_CAMERA_GOOD;
+    if (verdict == CLI_CAMERA_WRONG) {
+        snprintf(line, sizeof line, "--camera: %.256s", message);
+        return cli_session_fail(&r->session, image, line, ASJ_ERROR_ARGUMENT);
+    }
+    if (verdict == CLI_CAMERA_DOUBTFUL && !r->camera_doubted && !r->arguments->common.quiet) {
+        cli_progress_clear(&r->session.progress);
+        cli_note("asj-cli detect: warning: %s: --camera: %s", image, message);
+        r->camera_doubted = 1;
+    }
+    return CLI_SUCCESS;
+}
+
 static int detect_part(run *r, const char *image, const cli_output *output, const asj_image *pixels)
 {
     asj_region region;
@@ -156,16 +176,31 @@ static int detect_part(run *r, const char *image, const cli_output *output, cons
     return result != CLI_SUCCESS ? result : cli_interrupted() ? CLI_FAILED : detect_pixels(r, image, output, pixels, &region);
 }
 
+/* With two ways to all images in it. */
+static int refuse_folder(run *r, const char *folder)
+{
+    int length = (int)strlen(folder);
+    while (length > 1 && cli_is_separator(folder[length - 1]))
+        length--;
+    cli_progress_clear(&r->session.progress);
+    cli_error("%s: is a directory; its images are %.*s/*.jpg, or: find %.*s -name '*.jpg' | asj-cli detect --files-from - -d DIR",
+              folder, length, folder, length, folder);
+    return CLI_FAILED;
+}
+
 static int detect_file(run *r, const char *image, const cli_output *output)
 {
     asj_image_file *file = NULL;
-    char message[MESSAGE_SIZE] = "";
-    double start = cli_now_ms();
-    asj_status status = asj_image_file_read(image, r->arguments->common.max_pixels, &file, message, sizeof message);
+    const double start = cli_now_ms();
+    if (cli_is_folder(image))
+        return refuse_folder(r, image);
+    int result = cli_read_image(&r->session, &r->arguments->common, image, &file);
     r->read_ms = cli_now_ms() - start;
-    if (status != ASJ_OK)
-        return cli_session_fail(&r->session, image, message, status);
-    int result = detect_part(r, image, output, &file->image);
+    if (result != CLI_SUCCESS)
+        return result;
+    result = check_camera(r, image, &file->image);
+    if (result == CLI_SUCCESS)
+        result = detect_part(r, image, output, &file->image);
     asj_image_file_free(&file);
     return result;
 }
@@ -181,6 +216,7 @@ static int detect_all(run *r, const cli_outputs *outputs)
 {
     const cli_detect_arguments *arguments = r->arguments;
     size_t skipped = 0;
+    r->tally.total = arguments->images.count;
     int result = cli_session_open(&r->session, &arguments->common, arguments->images.count);
     for (size_t i = 0; result != CLI_USAGE && i < arguments->images.count && r->session.context; i++) {
         if (arguments->skip_existing && is_done(&outputs->of[i])) {
@@ -195,9 +231,14 @@ static int detect_all(run *r, const cli_outputs *outputs)
             result = 128 + cli_interrupted();
             break;
         }
+        r->tally.done += one == CLI_SUCCESS;
+        r->tally.failed += one != CLI_SUCCESS;
         result = one > result ? one : result;
     }
     cli_session_close(&r->session);
+    const int whole = result != CLI_USAGE && !cli_interrupted() && r->tally.done + r->tally.failed > 0;
+    if (whole && r->tally.total > 1 && !arguments->common.quiet)
+        cli_tally_print(&r->tally, &arguments->options);
     if (skipped > 0 && !arguments->common.quiet)
         cli_note("%zu of %zu images had their results in %s already", skipped, arguments->images.count, arguments->out_dir);
     return result;
@@ -211,7 +252,7 @@ int cli_detect(int argc, char **argv, const cli_other *other)
     int result = cli_detect_arguments_read(argc, argv, other, &arguments);
     if (result == CLI_SUCCESS) {
         r.arguments = &arguments;
-        result = cli_region_read_mask(&r.session, &arguments.region, arguments.common.max_pixels, &r.mask); /* before any folder */
+        result = cli_region_read_mask(&r.session, &arguments.common, &arguments.region, &r.mask); /* before any folder */
         if (result == CLI_SUCCESS)
             result = cli_outputs_plan(&arguments, &outputs);
         if (result == CLI_SUCCESS)

@@ -48,7 +48,8 @@ static const cli_option output_options[] = {
     {SKIP_EXISTING, 0, "skip-existing", NULL,
      "leave out images whose results are in DIR already: to go on where a run has ended, or with more images"},
     {FILES_FROM, 0, "files-from", "FILE",
-     "more images: their names, one a line, or as find -print0 writes them; - is standard input"},
+     "more images: their names, one a line, or as find -print0 writes them; there are no comments, a name may begin with #; - is "
+     "standard input"},
     {FORMAT, 'f', "format", "asj|json|csv|asjf",
      "asj: text, one record for each pair of branches; json: everything; csv: one line a branch; asjf: features, all that 'asj-cli "
      "match' needs of the image. Default: by the end of FILE, else asj, and with --lines csv"},
@@ -213,7 +214,7 @@ static int check(cli_detect_arguments *arguments)
     for (size_t i = 0; i < arguments->images.count; i++)
         if (strcmp(arguments->images.names[i], "-") == 0)
             return cli_usage_error("detect", "images are not read from standard input (a file named - is ./-)");
-    int result = cli_common_check("detect", &arguments->common);
+    int result = cli_common_check(&arguments->common);
     if (result == CLI_SUCCESS)
         result = cli_check_ending("detect", "junctions", arguments->output, arguments->format, formats);
     if (result == CLI_SUCCESS)
@@ -278,7 +279,7 @@ int cli_detect_arguments_read(int argc, char **argv, const cli_other *other, cli
     int first = argc;
     detect_syntax room;
     memset(arguments, 0, sizeof *arguments);
-    cli_common_init(&arguments->common);
+    cli_common_init(&arguments->common, "detect");
     arguments->preset = -1;
     if (!cli_settings_create(&arguments->settings, argc))
         return CLI_FAILED;
@@ -305,7 +306,11 @@ int cli_detect_arguments_read(int argc, char **argv, const cli_other *other, cli
                                without_octaves ? ", and an .asj file of --preset match has one: write json" : "");
     if (result == CLI_SUCCESS)
         result = cli_check_detector("detect", &arguments->options);
-    return result == CLI_SUCCESS ? check(arguments) : result;
+    if (result == CLI_SUCCESS)
+        result = check(arguments);
+    if (result == CLI_SUCCESS && arguments->output && !arguments->common.quiet)
+        cli_warn_ending("detect", arguments->output, arguments->format, cli_detect_extension(arguments));
+    return result;
 }
 
 int32_t cli_detect_file_format(const cli_detect_arguments *arguments)

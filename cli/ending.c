@@ -46,3 +46,16 @@ int cli_check_ending(const char *command, const char *what, const char *name, co
     list_formats(formats, list, sizeof list);
     return cli_usage_error(command, "--output: %s: %s are written as %s (a picture: --plot)", name, what, list);
 }
+
+void cli_warn_ending(const char *command, const char *name, const char *format, const char *written)
+{
+    static const char *const known[] = {"asj", "json", "csv", "asjf", "png", "svg", "pdf", "jpg", "jpeg", NULL};
+    char ending[8];
+    ending_of(name, ending, sizeof ending);
+    if (!*ending || cli_is_special(name) || strcmp(ending, written) == 0)
+        return;
+    if (cli_find_word(known, ending) >= 0)
+        cli_note("asj-cli %s: warning: %s is written as %s, whatever its name ends in", command, name, written);
+    else if (!format && strcmp(ending, "txt") == 0)
+        cli_note("asj-cli %s: warning: %s is written as %s: --format asks for others", command, name, written);
+}

@@ -11,4 +11,8 @@ const char *cli_format_of_name(const char *name, const char *const *formats);
  * file pass. `what` is written: "junctions". CLI_SUCCESS, or CLI_USAGE after saying why. */
 int cli_check_ending(const char *command, const char *what, const char *name, const char *format, const char *const *formats);
 
+/* Warns where the ending of --output NAME names another format that is known than the one that is `written`, and says what is in a
+ * .txt that nobody asked a format for (`format` NULL). */
+void cli_warn_ending(const char *command, const char *name, const char *format, const char *written);
+
 #endif

@@ -40,7 +40,7 @@ static void print_help(void)
     for (size_t i = 0; i < COMMAND_COUNT; i++)
         printf("  asj-cli %-10s %s\n", commands[i].name, commands[i].summary);
     fputs("\n"
-          "  asj-cli COMMAND --help   how to use a command\n"
+          "  asj-cli COMMAND --help   how to use a command; asj-cli help COMMAND is the same\n"
           "  asj-cli --version        version, and what this build can do\n"
           "\n"
           "The first try:  asj-cli detect --plot corners.png photo.png\n", stdout);
@@ -91,23 +91,40 @@ static int say_unknown(int argc, char **argv)
     return cli_usage_error(NULL, "there is no command '%s'", name);
 }
 
+/* argv[1] is a command. */
+static int run_named(int argc, char **argv)
+{
+    for (size_t i = 0; i < COMMAND_COUNT; i++)
+        if (strcmp(commands[i].name, argv[1]) == 0)
+            return commands[i].run(argc - 1, argv + 1, &commands[i].other);
+    return say_unknown(argc, argv);
+}
+
+/* "help detect ..." becomes "detect --help ...". */
+static int help(int argc, char **argv)
+{
+    static char option[] = "--help";
+    if (argc < 3 || strcmp(argv[2], "--advanced") == 0) {
+        print_help();
+        return CLI_SUCCESS;
+    }
+    argv[1] = argv[2];
+    argv[2] = option;
+    return run_named(argc, argv);
+}
+
 static int run_command(int argc, char **argv)
 {
     if (argc < 2)
         return cli_usage_error(NULL, "which command?");
     const char *name = argv[1];
-    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
-        print_help();
-        return CLI_SUCCESS;
-    }
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0)
+        return help(argc, argv);
     if (strcmp(name, "--version") == 0) {
         print_version();
         return CLI_SUCCESS;
     }
-    for (size_t i = 0; i < COMMAND_COUNT; i++)
-        if (strcmp(commands[i].name, name) == 0)
-            return commands[i].run(argc - 1, argv + 1, &commands[i].other);
-    return say_unknown(argc, argv);
+    return run_named(argc, argv);
 }
 
 int main(int argc, char **argv)

@@ -8,13 +8,14 @@
 #include "match_input.h"
 #include "message.h"
 #include "platform.h"
+#include "read_image.h"
 #include "timing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { FEW = 8, MESSAGE_SIZE = 1024, STEPS = 3 /* on the progress line: two detections and the matching */ };
+enum { FEW = 8, STEPS = 3 /* on the progress line: two detections and the matching */ };
 
 typedef struct run {
     const cli_match_arguments *arguments;
@@ -79,7 +80,7 @@ static asj_status match_looks(run *r, const asj_match_options *options)
 
 static int match(run *r)
 {
-    char both[2 * MESSAGE_SIZE];
+    char both[2 * CLI_MESSAGE_SIZE];
     asj_match_options options = r->arguments->options;
     const int features = r->inputs[0].features || r->inputs[1].features;
     options.geometry = r->geometry;
@@ -116,7 +117,7 @@ static int find_segments(run *r)
 static int write_matches(run *r, const char *path)
 {
     const cli_match_arguments *arguments = r->arguments;
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE] = "";
     asj_match_report report;
     memset(&report, 0, sizeof report);
     report.result = r->result;
@@ -140,7 +141,7 @@ static int write_matches(run *r, const char *path)
 static int write_plot(run *r)
 {
     const cli_match_arguments *arguments = r->arguments;
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE] = "";
     cli_plot_match_content content = {.images = {&r->inputs[0].pixels, &r->inputs[1].pixels},
                                       .result = r->result,
                                       .segments = r->segments,
@@ -203,6 +204,16 @@ static void print_no_geometry(const run *r)
     cli_note("geometry: none (%s)%s", asj_geometry_status_name(status), of_matches);
 }
 
+/* CSV and plots have neither. */
+static const char *what_json_has(const run *r)
+{
+    const cli_match_arguments *arguments = r->arguments;
+    const int written = arguments->output || !arguments->plot;
+    if (written && cli_match_file_format(arguments) == ASJ_FILE_JSON)
+        return "";
+    return r->result->geometry.has_pose ? " (pose and probabilities: -o FILE.json)" : " (matrix and probabilities: -o FILE.json)";
+}
+
 static void print_geometry(const run *r)
 {
     const asj_geometry *g = &r->result->geometry;
@@ -213,9 +224,9 @@ static void print_geometry(const run *r)
         snprintf(focal, sizeof focal, ", focal lengths %.0f and %.0f px to %.1f %%", g->cameras[0].fx, g->cameras[1].fx,
                  100 * g->focal_sd);
     if (g->status == ASJ_GEOMETRY_ACCEPTED)
-        cli_note("geometry: %s, log10 NFA %.1f%s%s", asj_geometry_model_name(g->model), g->log10_nfa, focal,
+        cli_note("geometry: %s, log10 NFA %.1f%s%s%s", asj_geometry_model_name(g->model), g->log10_nfa, focal,
                  g->only_turns ? ": the camera only turns"
-                 : g->model == ASJ_GEOMETRY_HOMOGRAPHY ? "; matches off its plane stay, less probable" : "");
+                 : g->model == ASJ_GEOMETRY_HOMOGRAPHY ? "; matches off its plane stay, less probable" : "", what_json_has(r));
     else if (g->status != ASJ_GEOMETRY_NOT_ASKED && (r->result->match_count > 0 || r->result->rejected_count > 0))
         print_no_geometry(r);
 }
@@ -225,6 +236,19 @@ static int without_focal(const asj_geometry_options *geometry)
 {
     return geometry->cameras[0].fx <= 0 && !geometry->find_focal &&
            (geometry->model == ASJ_GEOMETRY_AUTO || geometry->model == ASJ_GEOMETRY_ESSENTIAL);
+}
+
+/* Images far darker than white, which explain that there is little or nothing. Returns how many. */
+static int print_dark(const run *r)
+{
+    int count = 0;
+    for (int v = 0; v < 2; v++) {
+        const uint32_t level = cli_dark_level(&r->inputs[v].pixels);
+        if (level > 0)
+            cli_note_dark(r->inputs[v].name, level);
+        count += level > 0;
+    }
+    return count;
 }
 
 /* Why there are none, as far as it can be told, and what to try. */
@@ -286,7 +310,8 @@ static int run_all(run *r)
         print_summary(r);
         print_stretch(r);
         print_geometry(r);
-        print_hint(r);
+        if (print_dark(r) == 0)
+            print_hint(r);
     }
     if (result == CLI_SUCCESS && r->arguments->common.time)
         print_times(r, write_ms);

@@ -68,7 +68,8 @@ static const cli_option input_options[] = {
 
 static const cli_option geometry_options[] = {
     {GEOMETRY, 0, "geometry", "auto|essential|fundamental|homography|none",
-     "estimate what relates the two views, and let it decide which matches hold; none is the default"},
+     "estimate what relates the two views, and let it decide which matches hold; json has its matrix, the pose where cameras are "
+     "known, and how probable each match is; none is the default"},
     {CAMERA_1, 0, "camera1", "FX,FY,CX,CY",
      "focal lengths and principal point of the camera of IMAGE1, px; pixel centres are at integers (COLMAP's CX and CY less 0.5)"},
     {CAMERA_2, 0, "camera2", "FX,FY,CX,CY", "the same for IMAGE2"},
@@ -255,7 +256,7 @@ static int take_images(cli_match_arguments *arguments, char **operands, int oper
 static void start(cli_match_arguments *arguments)
 {
     memset(arguments, 0, sizeof *arguments);
-    cli_common_init(&arguments->common);
+    cli_common_init(&arguments->common, "match");
     arguments->detect_preset = arguments->match_preset = -1;
     arguments->preset = ASJ_PRESET_MATCH;
     arguments->minimum_end = -1;

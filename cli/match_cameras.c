@@ -6,6 +6,7 @@
  * focal length of the image's EXIF data. All but the first have the middle of the image as principal point. Cameras count when both
  * are known. --focal estimate leaves them open. */
 #include "match_cameras.h"
+#include "camera.h"
 #include "message.h"
 
 #include <math.h>
@@ -64,6 +65,23 @@ static void doubt(const cli_match_arguments *arguments, const cli_match_input in
     }
 }
 
+/* The cameras of the command line. */
+static int check_given(const cli_match_arguments *arguments, const cli_match_input inputs[2])
+{
+    char message[256] = "";
+    int result = CLI_SUCCESS;
+    for (int v = 0; v < 2; v++) {
+        const asj_camera *camera = &arguments->cameras[v];
+        const int verdict = camera->fx > 0 ? cli_judge_camera(camera, &inputs[v].pixels, message, sizeof message) : CLI_CAMERA_GOOD;
+        if (verdict == CLI_CAMERA_WRONG)
+            cli_error("%s: --camera%d: %s", inputs[v].name, v + 1, message);
+        else if (verdict == CLI_CAMERA_DOUBTFUL && !arguments->common.quiet)
+            cli_note("asj-cli match: warning: %s: --camera%d: %s", inputs[v].name, v + 1, message);
+        result = verdict == CLI_CAMERA_WRONG ? CLI_FAILED : result;
+    }
+    return result;
+}
+
 /* One camera without the other, or none where they must be. */
 static int fail(const cli_match_arguments *arguments, const cli_match_input inputs[2], const asj_geometry_options *options)
 {
@@ -83,6 +101,8 @@ int cli_match_cameras(const cli_match_arguments *arguments, const cli_match_inpu
     options->find_focal = from == CLI_FOCAL_ESTIMATE;
     if (options->find_focal)
         return CLI_SUCCESS;
+    if (check_given(arguments, inputs) != CLI_SUCCESS)
+        return CLI_FAILED;
     for (int v = 0; v < 2; v++) {
         options->cameras[v] = arguments->cameras[v];
         if (from == CLI_FOCAL_GIVEN && !(options->cameras[v].fx > 0))

@@ -6,7 +6,8 @@
 #include "match_arguments.h"
 #include "match_input.h"
 
-/* Fills the model and the cameras; says what came from EXIF data. CLI_SUCCESS, or CLI_USAGE after saying what is missing. */
+/* Fills the model and the cameras; says what came from EXIF data. CLI_SUCCESS, CLI_USAGE after saying what is
+ * missing, or CLI_FAILED after saying which camera cannot be that of its image. */
 int cli_match_cameras(const cli_match_arguments *arguments, const cli_match_input inputs[2], asj_geometry_options *options);
 
 #endif

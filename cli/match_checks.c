@@ -87,6 +87,8 @@ static int check_detector(const cli_match_arguments *arguments)
         if (known[v] && (arguments->regions[v].mask || arguments->regions[v].width > 0))
             return cli_usage_error("match", "--%s%d changes nothing: the junctions of that image come from a file",
                                    arguments->regions[v].mask ? "mask" : "region", v + 1);
+    if (arguments->common.white > 0 && asj_features_probe(arguments->images[0]) && asj_features_probe(arguments->images[1]))
+        return cli_usage_error("match", "--white changes nothing: features have no pixels");
     if (!known[0] || !known[1])
         return CLI_SUCCESS;
     if (arguments->detect_settings.count > 0)
@@ -168,7 +170,7 @@ int cli_match_check(cli_match_arguments *arguments)
     for (int v = 0; v < 2; v++)
         if (strcmp(arguments->images[v], "-") == 0 || (arguments->junctions[v] && strcmp(arguments->junctions[v], "-") == 0))
             return cli_usage_error("match", "nothing is read from standard input (a file named - is ./-)");
-    int result = cli_common_check("match", &arguments->common);
+    int result = cli_common_check(&arguments->common);
     if (result == CLI_SUCCESS)
         result = cli_check_detector("match", &arguments->detect_options);
     if (result == CLI_SUCCESS)
@@ -183,5 +185,10 @@ int cli_match_check(cli_match_arguments *arguments)
         result = check_stretch(arguments);
     if (result == CLI_SUCCESS)
         result = check_results(arguments);
-    return result == CLI_SUCCESS ? check_files(arguments) : result;
+    if (result == CLI_SUCCESS)
+        result = check_files(arguments);
+    if (result == CLI_SUCCESS && arguments->output && !arguments->common.quiet)
+        cli_warn_ending("match", arguments->output, arguments->format,
+                        cli_match_file_format(arguments) == ASJ_FILE_JSON ? "json" : "csv");
+    return result;
 }

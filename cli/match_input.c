@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* An image and its junctions, or its features, for match. */
 #include "match_input.h"
+#include "image_name.h"
 #include "message.h"
 #include "platform.h"
+#include "read_image.h"
 
 #include <math.h>
 #include <stdio.h>
-
-enum { MESSAGE_SIZE = 1024 };
 
 static int is_outside(const asj_junction *junction, const asj_image *image)
 {
@@ -17,7 +17,7 @@ static int is_outside(const asj_junction *junction, const asj_image *image)
 
 static int check_places(cli_session *session, const char *path, const cli_match_input *input)
 {
-    char message[MESSAGE_SIZE];
+    char message[CLI_MESSAGE_SIZE];
     const asj_junction_file *file = input->file;
     const asj_image *image = &input->image->image;
     for (uint32_t i = 0; i < file->junction_count; i++)
@@ -56,9 +56,22 @@ static void warn_of_few(cli_session *session, const char *path, const asj_juncti
              "finds what match needs", path);
 }
 
+/* Junctions are in pixels of their own image: in another one they match nothing, or the wrong things. */
+static void warn_of_swap(cli_session *session, const cli_match_arguments *arguments, int v)
+{
+    char name[CLI_MESSAGE_SIZE];
+    const char *path = arguments->junctions[v];
+    if (!cli_image_name_read(path, name, sizeof name) ||
+        !cli_image_name_is_of(name, arguments->images[1 - v], arguments->images[v]))
+        return;
+    cli_progress_clear(&session->progress);
+    cli_note("asj-cli match: warning: --junctions%d: %s has the junctions of %s, which is IMAGE%d: are they swapped?", v + 1, path,
+             name, 2 - v);
+}
+
 static int read_features(cli_session *session, cli_match_input *input, const char *junctions)
 {
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE] = "";
     asj_features_info info;
     if (junctions)
         return cli_usage_error("match", "%s changes nothing: %s is a file of features, which has its junctions", junctions,
@@ -74,7 +87,7 @@ static int read_features(cli_session *session, cli_match_input *input, const cha
 
 int cli_match_input_read(cli_session *session, const cli_match_arguments *arguments, int v, cli_match_input *input)
 {
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE] = "";
     const char *path = arguments->junctions[v];
     double start = cli_now_ms();
     input->name = arguments->images[v];
@@ -83,13 +96,15 @@ int cli_match_input_read(cli_session *session, const cli_match_arguments *argume
         input->read_ms = cli_now_ms() - start;
         return result;
     }
-    asj_status status = asj_image_file_read(input->name, arguments->common.max_pixels, &input->image, message, sizeof message);
-    if (status != ASJ_OK)
-        return cli_session_fail(session, input->name, message, status);
+    if (cli_read_image(session, &arguments->common, input->name, &input->image) != CLI_SUCCESS)
+        return CLI_FAILED;
     input->pixels = input->image->image;
+    asj_status status = ASJ_OK;
     if (path && (status = asj_junctions_read(path, &input->file, message, sizeof message)) != ASJ_OK)
         return cli_session_fail(session, path, message, status);
     input->read_ms = cli_now_ms() - start;
+    if (path && !arguments->common.quiet)
+        warn_of_swap(session, arguments, v);
     const int result = path ? check_places(session, path, input) : CLI_SUCCESS;
     if (path && result == CLI_SUCCESS && !arguments->common.quiet && arguments->match_preset != ASJ_PRESET_PAPER)
         warn_of_few(session, path, input->file);
@@ -116,7 +131,7 @@ int cli_match_input_detect(cli_session *session, const cli_match_arguments *argu
     if (input->file || input->features)
         return CLI_SUCCESS;
     const asj_image *image = &input->image->image;
-    int result = cli_region_read_mask(session, &arguments->regions[v], arguments->common.max_pixels, &mask);
+    int result = cli_region_read_mask(session, &arguments->common, &arguments->regions[v], &mask);
     if (result == CLI_SUCCESS)
         result = cli_region_of(session, &arguments->regions[v], mask, input->name, image, &region);
     if (result == CLI_SUCCESS)

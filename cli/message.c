@@ -6,21 +6,42 @@
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* File names may hold newlines and terminal controls: a message stays one line, and harmless. */
-static char harmless(char c)
+/* File names may hold newlines and terminal controls: a message stays one line, and harmless. Controls are single bytes, and in
+ * UTF-8 the pairs C2 80 to C2 9F. */
+static char harmless(char before, char c, char after)
 {
-    return (unsigned char)c < 0x20 || c == 0x7f ? '?' : c;
+    const unsigned char b = (unsigned char)before, here = (unsigned char)c, a = (unsigned char)after;
+    const int pair = (here == 0xc2 && a >= 0x80 && a <= 0x9f) || (b == 0xc2 && here >= 0x80 && here <= 0x9f);
+    return here < 0x20 || here == 0x7f || pair ? '?' : c;
 }
 
+void cli_make_harmless(char *text)
+{
+    for (char before = 0, here; *text; text++, before = here) {
+        here = *text;
+        *text = harmless(before, here, text[1]);
+    }
+}
+
+/* However long it is: the cause stands at its end. */
 static void print_line(const char *prefix, const char *format, va_list arguments)
 {
-    char line[4096];
-    vsnprintf(line, sizeof line, format, arguments);
-    for (char *c = line; *c; c++)
-        *c = harmless(*c);
+    char room[1024], *line = room;
+    va_list again;
+    va_copy(again, arguments);
+    const int length = vsnprintf(room, sizeof room, format, arguments);
+    if (length >= (int)sizeof room && (line = malloc((size_t)length + 1)) != NULL)
+        vsnprintf(line, (size_t)length + 1, format, again);
+    va_end(again);
+    if (!line)
+        line = room; /* its beginning */
+    cli_make_harmless(line);
     fprintf(stderr, "%s%s\n", prefix, line);
+    if (line != room)
+        free(line);
 }
 
 void cli_error(const char *format, ...)
@@ -31,12 +52,14 @@ void cli_error(const char *format, ...)
     va_end(arguments);
 }
 
-/* Whether the message begins with the path, which the library has made harmless perhaps. */
+/* Whether the message begins with the path, which the library has made harmless perhaps, and shortened where it is long. */
 static int tells(const char *message, const char *path)
 {
-    for (; *path && (*message == *path || *message == harmless(*path)); path++)
-        message++;
-    return *path == 0;
+    enum { LONG = 80 };
+    size_t i = 0;
+    while (path[i] && (message[i] == path[i] || message[i] == harmless(i ? path[i - 1] : 0, path[i], path[i + 1])))
+        i++;
+    return path[i] == 0 || (i >= LONG && strncmp(message + i, "...", 3) == 0);
 }
 
 void cli_file_error(const char *path, const char *message)

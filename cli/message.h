@@ -14,6 +14,12 @@
 /* Exit codes, and what the functions of the command line return. */
 enum { CLI_SUCCESS = 0, CLI_FAILED = 1, CLI_USAGE = 2, CLI_HELP = 3 /* --help was met; never an exit code */ };
 
+/* Room for what the library says of a file: its longest path and the cause. */
+#define CLI_MESSAGE_SIZE 8192
+
+/* Replaces what would move the cursor of a terminal, or end the line, by '?'. */
+void cli_make_harmless(char *text);
+
 /* "asj-cli: TEXT" */
 void cli_error(const char *format, ...) CLI_PRINTF(1, 2);
 

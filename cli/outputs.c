@@ -273,21 +273,28 @@ static int make_folders(const cli_detect_arguments *arguments, const cli_planned
     return result;
 }
 
+/* Every file that is read: a list of images is one, and a result in its place would end later runs. */
+static size_t list_inputs(const cli_detect_arguments *arguments, const char **inputs)
+{
+    size_t n = arguments->images.count;
+    memcpy(inputs, arguments->images.names, n * sizeof *inputs);
+    if (arguments->region.mask)
+        inputs[n++] = arguments->region.mask;
+    if (arguments->files_from && strcmp(arguments->files_from, "-") != 0)
+        inputs[n++] = arguments->files_from;
+    return n;
+}
+
 int cli_outputs_plan(const cli_detect_arguments *arguments, cli_outputs *outputs)
 {
     int result = CLI_FAILED;
     outputs->count = 0;
     outputs->of = calloc(arguments->images.count, sizeof *outputs->of);
     cli_planned *list = calloc(2 * arguments->images.count, sizeof *list);
-    const char **inputs = calloc(arguments->images.count + 1, sizeof *inputs);
-    size_t input_count = arguments->images.count;
+    const char **inputs = calloc(arguments->images.count + 2, sizeof *inputs);
+    const size_t input_count = inputs ? list_inputs(arguments, inputs) : 0;
     if (outputs->of)
         outputs->count = arguments->images.count;
-    if (inputs) {
-        memcpy(inputs, arguments->images.names, arguments->images.count * sizeof *inputs);
-        inputs[input_count] = arguments->region.mask;
-        input_count += arguments->region.mask != NULL;
-    }
     if (!outputs->of || !list || !inputs || !name_outputs(arguments, outputs)) {
         cli_error("out of memory");
     } else {

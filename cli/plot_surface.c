@@ -1,61 +1,65 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* Plot files: a drawing on a surface of each format, streamed into an output of libasj-io. */
+/* Plot files: a drawing on a surface of each format, and its bytes in an output of libasj-io. */
 #include "plot_surface.h"
 #include "plot_format.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 
+#include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { LARGEST_SURFACE = 32767 };
 
-/* cairo knows no titles: they go in front of the last line of an SVG, so the end of what was written is kept back. */
+/* cairo knows no titles: they go in front of the last line of an SVG. */
 #define SVG_END "</svg>\n"
-enum { KEPT = sizeof SVG_END - 1 };
+enum { END = sizeof SVG_END - 1, FIRST_ROOM = 65536 };
 
+/* The whole file, in memory: the drawing library may end the process, and no output is begun while it runs. */
 typedef struct stream {
-    asj_output *output;
-    unsigned char kept[KEPT];
-    size_t keep, count; /* how many bytes to keep back, and how many there are */
+    unsigned char *bytes;
+    size_t count, room;
+    int out_of_memory;
     int (*stopped)(void);
 } stream;
 
 static cairo_status_t write_stream(void *user, const unsigned char *data, unsigned size)
 {
     stream *s = user;
-    asj_status status = ASJ_OK;
     if (s->stopped && s->stopped())
         return CAIRO_STATUS_WRITE_ERROR;
-    for (; s->keep > 0 && size > 0 && status == ASJ_OK; data++, size--) {
-        if (size > KEPT && s->count == 0) { /* in one piece what is not the end in any case */
-            status = asj_output_write(s->output, data, size - KEPT);
-            data += size - KEPT;
-            size = KEPT;
+    if (size > s->room - s->count) {
+        size_t room = s->room > 0 ? s->room : FIRST_ROOM;
+        while (room - s->count < size && room <= SIZE_MAX / 2)
+            room *= 2;
+        unsigned char *more = room - s->count < size ? NULL : realloc(s->bytes, room);
+        if (!more) {
+            s->out_of_memory = 1;
+            return CAIRO_STATUS_WRITE_ERROR;
         }
-        if (s->count == KEPT) {
-            if (status == ASJ_OK)
-                status = asj_output_write(s->output, s->kept, 1);
-            memmove(s->kept, s->kept + 1, --s->count);
-        }
-        s->kept[s->count++] = *data;
+        s->bytes = more;
+        s->room = room;
     }
-    if (s->keep == 0)
-        status = asj_output_write(s->output, data, size);
-    return status == ASJ_OK ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+    if (size > 0)
+        memcpy(s->bytes + s->count, data, size);
+    s->count += size;
+    return CAIRO_STATUS_SUCCESS;
 }
 
-/* What was kept back, with the titles in front of it. */
-static void end_stream(stream *s, const cli_plot_content *content)
+/* The file with the titles in it. */
+static void put_stream(const stream *s, int32_t format, const cli_plot_content *content, asj_output *output)
 {
-    const int whole = s->count == KEPT && memcmp(s->kept, SVG_END, KEPT) == 0;
-    if (whole) {
-        asj_output_text(s->output, "<g fill=\"none\" stroke=\"none\">\n");
-        content->annotate(s->output, content->user);
-        asj_output_text(s->output, "</g>\n");
-    }
-    asj_output_write(s->output, s->kept, s->count);
+    const int titles = format == CLI_PLOT_SVG && content->annotate && s->count >= END &&
+                       memcmp(s->bytes + s->count - END, SVG_END, END) == 0;
+    const size_t before = titles ? s->count - END : s->count;
+    asj_output_write(output, s->bytes, before);
+    if (!titles)
+        return;
+    asj_output_text(output, "<g fill=\"none\" stroke=\"none\">\n");
+    content->annotate(output, content->user);
+    asj_output_text(output, "</g>\n" SVG_END);
 }
 
 void cli_plot_hot_dot(asj_output *output, double x, double y, double radius)
@@ -92,48 +96,54 @@ static cairo_surface_t *create_surface(stream *output, int32_t format, int32_t w
     }
 }
 
-static cairo_status_t draw_on(asj_output *output, int32_t format, int32_t width, int32_t height, const cli_plot_content *content)
+static cairo_status_t draw_on(stream *to, int32_t format, int32_t width, int32_t height, const cli_plot_content *content)
 {
-    stream to = {.output = output, .keep = format == CLI_PLOT_SVG && content->annotate ? KEPT : 0,
-                 .stopped = content->stopped};
-    cairo_surface_t *surface = create_surface(&to, format, width, height);
+    cairo_surface_t *surface = create_surface(to, format, width, height);
     cairo_t *cairo = cairo_create(surface);
     content->draw(cairo, content->user);
     cairo_status_t status = cairo_status(cairo);
     cairo_destroy(cairo);
     if (status == CAIRO_STATUS_SUCCESS && format == CLI_PLOT_PNG)
-        status = cairo_surface_write_to_png_stream(surface, write_stream, &to);
+        status = cairo_surface_write_to_png_stream(surface, write_stream, to);
     cairo_surface_finish(surface);
     if (status == CAIRO_STATUS_SUCCESS)
         status = cairo_surface_status(surface);
     cairo_surface_destroy(surface);
-    if (to.keep > 0)
-        end_stream(&to, content);
     return status;
+}
+
+/* Makes the file of what was drawn, unless that failed. */
+static asj_status put_file(const char *path, int32_t format, const stream *drawn, cairo_status_t status,
+                           const cli_plot_content *content, char *message, size_t message_size)
+{
+    asj_output *output = NULL;
+    if (content->stopped && content->stopped()) {
+        snprintf(message, message_size, "interrupted");
+        return ASJ_ERROR_CANCELLED;
+    }
+    if (status != CAIRO_STATUS_SUCCESS) {
+        const int memory = drawn->out_of_memory || status == CAIRO_STATUS_NO_MEMORY;
+        snprintf(message, message_size, "cannot draw: %s", memory ? "out of memory" : cairo_status_to_string(status));
+        return memory ? ASJ_ERROR_MEMORY : ASJ_ERROR_FILE;
+    }
+    const asj_status begun = asj_output_begin(path, &output, message, message_size);
+    if (begun != ASJ_OK)
+        return begun;
+    put_stream(drawn, format, content, output);
+    return asj_output_commit(&output, message, message_size); /* after a write error this fails too, and says why */
 }
 
 asj_status cli_plot_file(const char *path, int32_t format, int32_t width, int32_t height, const cli_plot_content *content,
                          char *message, size_t message_size)
 {
-    asj_output *output = NULL;
+    stream to = {.stopped = content->stopped};
     if (format == CLI_PLOT_PNG && (width > LARGEST_SURFACE || height > LARGEST_SURFACE)) {
         snprintf(message, message_size, "a plot of %d x %d pixels is too large: take a smaller --plot-scale", (int)width,
                  (int)height);
         return ASJ_ERROR_LIMIT;
     }
-    asj_status status = asj_output_begin(path, &output, message, message_size);
-    if (status != ASJ_OK)
-        return status;
-    cairo_status_t drawn = draw_on(output, format, width, height, content);
-    if (content->stopped && content->stopped()) {
-        asj_output_abort(&output);
-        snprintf(message, message_size, "interrupted");
-        return ASJ_ERROR_CANCELLED;
-    }
-    /* after a write error committing fails too, and says why */
-    if (drawn == CAIRO_STATUS_SUCCESS || drawn == CAIRO_STATUS_WRITE_ERROR)
-        return asj_output_commit(&output, message, message_size);
-    asj_output_abort(&output);
-    snprintf(message, message_size, "cannot draw: %s", cairo_status_to_string(drawn));
-    return drawn == CAIRO_STATUS_NO_MEMORY ? ASJ_ERROR_MEMORY : ASJ_ERROR_FILE;
+    const cairo_status_t drawn = draw_on(&to, format, width, height, content);
+    const asj_status status = put_file(path, format, &to, drawn, content, message, message_size);
+    free(to.bytes);
+    return status;
 }

@@ -2,6 +2,7 @@
 /* A line of progress, on terminals only. */
 #include "progress.h"
 #include "interrupt.h"
+#include "message.h"
 #include "platform.h"
 
 #include <asj/context.h>
@@ -31,9 +32,7 @@ static void draw(cli_progress *progress, int32_t stage, double done)
 {
     char name[NAME_WIDTH + 1];
     snprintf(name, sizeof name, "%s", progress->name);
-    for (char *c = name; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?';
+    cli_make_harmless(name);
     fputs("\r\033[K", stderr);
     if (progress->image_count > 1)
         fprintf(stderr, "[%zu/%zu] ", progress->image + 1, progress->image_count);

@@ -2,12 +2,11 @@
 /* --region and --mask. */
 #include "region.h"
 #include "message.h"
+#include "read_image.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { MESSAGE_SIZE = 1024 };
 
 int cli_region_take(const char *command, const char *name, const char *text, cli_region *region)
 {
@@ -37,22 +36,34 @@ int cli_region_take(const char *command, const char *name, const char *text, cli
 
 static int fail(cli_session *session, const char *name, const char *problem, const asj_image *image)
 {
-    char message[MESSAGE_SIZE];
+    char message[CLI_MESSAGE_SIZE];
     snprintf(message, sizeof message, "%s an image of %d x %d pixels", problem, (int)image->width, (int)image->height);
     return cli_session_fail(session, name, message, ASJ_ERROR_ARGUMENT);
 }
 
-int cli_region_read_mask(cli_session *session, const cli_region *region, uint64_t max_pixels, asj_image_file **mask)
+static int fail_outside(cli_session *session, const cli_region *region, const char *name, const asj_image *image)
 {
-    char message[MESSAGE_SIZE] = "";
+    char message[CLI_MESSAGE_SIZE];
+    snprintf(message, sizeof message, "the region %d,%d,%d,%d is not within the image of %d x %d pixels", (int)region->x,
+             (int)region->y, (int)region->width, (int)region->height, (int)image->width, (int)image->height);
+    return cli_session_fail(session, name, message, ASJ_ERROR_ARGUMENT);
+}
+
+int cli_region_read_mask(cli_session *session, const cli_common *common, const cli_region *region,
+                         asj_image_file **mask)
+{
     if (!region->mask)
         return CLI_SUCCESS;
-    const asj_status status = asj_image_file_read(region->mask, max_pixels, mask, message, sizeof message);
-    if (status != ASJ_OK)
-        return cli_session_fail(session, region->mask, message, status);
-    if ((*mask)->image.format != ASJ_FORMAT_GRAY8)
-        return cli_session_fail(session, region->mask, "a mask is an 8-bit gray image", ASJ_ERROR_ARGUMENT);
-    return CLI_SUCCESS;
+    if (cli_read_image(session, common, region->mask, mask) != CLI_SUCCESS)
+        return CLI_FAILED;
+    const int32_t format = (*mask)->image.format;
+    if (format == ASJ_FORMAT_GRAY8)
+        return CLI_SUCCESS;
+    return cli_session_fail(session, region->mask,
+                            format == ASJ_FORMAT_GRAY16     ? "a mask is an 8-bit gray image, and this one has 16 bits" :
+                            format == ASJ_FORMAT_GRAY_FLOAT ? "a mask is an 8-bit gray image, and this one is in floats" :
+                                                              "a mask is an 8-bit gray image, and this one is in colour",
+                            ASJ_ERROR_ARGUMENT);
 }
 
 int cli_region_of(cli_session *session, const cli_region *region, const asj_image_file *mask, const char *name,
@@ -61,7 +72,7 @@ int cli_region_of(cli_session *session, const cli_region *region, const asj_imag
     memset(result, 0, sizeof *result);
     if (region->width > 0 && (region->x >= image->width || region->width > image->width - region->x ||
                               region->y >= image->height || region->height > image->height - region->y))
-        return fail(session, name, "the region leaves", image);
+        return fail_outside(session, region, name, image);
     if (mask && (mask->image.width != image->width || mask->image.height != image->height))
         return fail(session, region->mask, "this mask has another size than", image);
     result->x = region->x;

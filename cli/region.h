@@ -18,7 +18,8 @@ int cli_region_take(const char *command, const char *name, const char *text, cli
 
 /* Reads the mask, if any, which the caller frees. CLI_SUCCESS, or CLI_FAILED after saying why: it cannot be read or is not 8-bit
  * gray. */
-int cli_region_read_mask(cli_session *session, const cli_region *region, uint64_t max_pixels, asj_image_file **mask);
+int cli_region_read_mask(cli_session *session, const cli_common *common, const cli_region *region,
+                         asj_image_file **mask);
 
 /* What asj_detect_region() takes for this image; `mask` as read, NULL for none. CLI_SUCCESS, or CLI_FAILED after saying why: a mask
  * of another size, a rectangle that leaves the image. */

@@ -16,26 +16,56 @@ asj_message asj_message_start(char *text, size_t size, const char *path)
     return message;
 }
 
+/* Writes "path: ", and of a path that is too long its beginning and its end, in whole characters of UTF-8: what went wrong is worth
+ * more than the middle of a name. Returns the length. */
+static size_t put_path(char *text, size_t size, const char *path)
+{
+    enum { CAUSE = 160 }; /* bytes that stay for it, its end included, or half of a shorter text */
+    const size_t length = strlen(path), least = size / 2 < CAUSE ? size / 2 : CAUSE;
+    const size_t most = size - least > 2 ? size - least - 2 : 0;
+    size_t head = most > 3 ? (most - 3) / 2 : 0, tail = length > head ? length - head : length;
+    int n;
+
+    if (length <= most) {
+        n = snprintf(text, size, "%s: ", path);
+        return n < 0 ? 0 : (size_t)n;
+    }
+    while (head > 0 && ((unsigned char)path[head] & 0xc0) == 0x80)
+        head--;
+    while (((unsigned char)path[tail] & 0xc0) == 0x80)
+        tail++;
+    n = snprintf(text, size, "%.*s...%s: ", (int)head, path, path + tail);
+    return n < 0 ? 0 : (size_t)n;
+}
+
+/* Control characters end or hide a line, and so do those that UTF-8 writes as C2 80 to C2 9F. */
+static void make_harmless(char *text)
+{
+    unsigned char before = 0, here;
+    for (; *text; text++, before = here) {
+        here = (unsigned char)*text;
+        if (here < 32 || here == 127)
+            *text = '?';
+        if (before == 0xc2 && here >= 0x80 && here <= 0x9f)
+            text[-1] = text[0] = '?';
+    }
+}
+
 asj_status asj_message_fail(const asj_message *message, asj_status status, const char *format, ...)
 {
     va_list arguments;
     size_t used = 0;
-    char *c;
 
     if (!message->text || !message->size)
         return status;
-    if (message->path) {
-        int n = snprintf(message->text, message->size, "%s: ", message->path);
-        used = n < 0 ? 0 : (size_t)n;
-    }
+    if (message->path)
+        used = put_path(message->text, message->size, message->path);
     if (used < message->size) {
         va_start(arguments, format);
         vsnprintf(message->text + used, message->size - used, format, arguments);
         va_end(arguments);
     }
-    for (c = message->text; *c; c++)
-        if ((unsigned char)*c < 32 || *c == 127)
-            *c = '?';
+    make_harmless(message->text);
     return status;
 }
 

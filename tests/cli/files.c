@@ -111,6 +111,17 @@ void write_scene(const char *path)
     write_light(path, rectangle);
 }
 
+void write_deep_scene(const char *path, int white)
+{
+    static uint16_t pixels[SCENE_WIDTH * SCENE_HEIGHT];
+    char message[512] = "";
+    asj_image image = {pixels, ASJ_FORMAT_GRAY16, SCENE_WIDTH, SCENE_HEIGHT, 0, 0};
+    for (int i = 0; i < SCENE_WIDTH * SCENE_HEIGHT; i++)
+        pixels[i] = (uint16_t)((0.4 + 0.55 * rectangle(i % SCENE_WIDTH, i / SCENE_WIDTH)) * white + 0.5);
+    if (asj_png_write(path, &image, message, sizeof message) != ASJ_OK)
+        fail_msg("%s", message);
+}
+
 void write_crossing(const char *path)
 {
     write_light(path, crossing);

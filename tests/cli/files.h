@@ -21,6 +21,9 @@ void write_views(const char *first, const char *second);
 int make_views(void **state); /* before a group of tests: first.png and second.png */
 void write_flat_views(const char *first, const char *second, int rows); /* so many rows are one, as of a wall seen from below */
 
+/* The scene in 16-bit samples of which this is white. */
+void write_deep_scene(const char *path, int white);
+
 /* A PNG of one grey level. */
 void write_constant(const char *path, int width, int height);
 

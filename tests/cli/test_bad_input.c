@@ -75,6 +75,29 @@ static void each_bad_file_has_one_line(void **state)
     }
 }
 
+/* What is given in place of images, and what to do instead. */
+static void results_and_folders_in_place_of_images(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"j.json", "j.asj", "lines.json"};
+    expect_code(run_cli("detect", "-q", "-o", "j.json", "good.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "-o", "j.asj", "good.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "--lines", "-o", "lines.json", "good.png", NULL), 0);
+    expect_code(run_cli("match", "-q", "-o", "m.json", "good.png", "good.png", NULL), 0);
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        const outcome *result = run_cli("match", files[i], "good.png", NULL);
+        expect_code(result, 1);
+        expect_in(result, result->err, ": junctions, not an image: 'asj-cli match' takes them with --junctions1 FILE --junctions2");
+        assert_int_equal(count_lines(result->err), 1);
+    }
+    const outcome *result = run_cli("detect", "m.json", NULL);
+    expect_in(result, result->err, "asj-cli: m.json: matches, not an image\n");
+    result = run_cli("detect", "folder.png//", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "asj-cli: folder.png//: is a directory; its images are folder.png/*.jpg, or: find folder.png "
+                                   "-name '*.jpg' | asj-cli detect --files-from - -d DIR\n");
+}
+
 /* Nor is its name told twice where it cannot be told as it is. */
 static void a_name_with_a_newline_is_told_once(void **state)
 {
@@ -138,7 +161,12 @@ static void the_limit_on_pixels_can_be_moved(void **state)
     (void)state;
     const outcome *result = run_cli("detect", "--max-megapixels", "0.05", "good.png", NULL); /* it has 0.0768 */
     expect_code(result, 1);
-    expect_in(result, result->err, "asj-cli: good.png: ");
+    expect_in(result, result->err, "asj-cli: good.png: 320 x 240 pixels are more than the limit of 50000 (--max-megapixels 1)\n");
+    result = run_cli("detect", "bomb.png", NULL);
+    expect_in(result, result->err, " (--max-megapixels goes up to 536)\n");
+    write_png_header("large.png", 20000, 15000);
+    result = run_cli("match", "large.png", "good.png", NULL);
+    expect_in(result, result->err, "large.png: 20000 x 15000 pixels are more than the limit of 268435456 (--max-megapixels 300)\n");
     expect_code(run_cli("detect", "--max-megapixels", "0.0768", "good.png", NULL), 0);
 }
 
@@ -149,6 +177,57 @@ static void control_characters_stay_out_of_messages(void **state)
     expect_code(result, 1);
     assert_int_equal(count_lines(result->err), 1);
     assert_null(strchr(result->err, '\033'));
+}
+
+/* C1 controls in UTF-8: CSI, which many terminals take for ESC [. Other characters stay. */
+static void controls_in_utf_8_stay_out_of_messages(void **state)
+{
+    (void)state;
+    write_bytes("c\302\2331.png", "This is not an image.\n", 22);
+    static const char *const names[] = {"c\302\2331.png", "no\302\2331.png", "k\303\274che \302\240.png"};
+    static const char *const told[] = {"c??1.png", "no??1.png", "k\303\274che \302\240.png"};
+    for (size_t i = 0; i < 3; i++) {
+        char beginning[64];
+        snprintf(beginning, sizeof beginning, "asj-cli: %s: ", told[i]);
+        const outcome *result = run_cli("detect", names[i], NULL);
+        expect_code(result, 1);
+        assert_int_equal(strncmp(result->err, beginning, strlen(beginning)), 0);
+        assert_null(strstr(result->err + strlen(beginning), told[i]));
+    }
+    char message[512];
+    asj_image_file *file = NULL;
+    assert_int_equal(asj_image_file_read(names[1], 0, &file, message, sizeof message), ASJ_ERROR_FILE);
+    assert_int_equal(strncmp(message, "no??1.png: cannot open", 22), 0);
+}
+
+/* The middle of a long name goes, not the cause. */
+static void a_long_path_leaves_room_for_the_cause(void **state)
+{
+    (void)state;
+    static char path[9001];
+    char message[512];
+    asj_image_file *file = NULL;
+    const size_t lengths[] = {340, 351, 352, 1100, 3000, 9000};
+    for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+        for (size_t k = 0; k < lengths[i]; k++) /* two bytes each */
+            path[k] = k % 2 ? '\274' : '\303';
+        memcpy(path, "begin", 5);
+        memcpy(path + lengths[i] - 3, "end", 4);
+        const outcome *result = run_cli("detect", path, NULL);
+        expect_code(result, 1);
+        expect_in(result, result->err, "asj-cli: begin");
+        expect_in(result, result->err, "end: cannot open: File name too long\n");
+        assert_true(strstr(strstr(result->err, "begin") + 1, "begin") == NULL);
+        result = run_cli("detect", "-o", path, "good.png", NULL);
+        expect_code(result, 1);
+        expect_in(result, result->err, "File name too long\n");
+        assert_int_equal(asj_image_file_read(path, 0, &file, message, sizeof message), ASJ_ERROR_FILE);
+        const char *cause = strstr(message, "end: cannot open: File name too long");
+        assert_true(cause && strncmp(message, "begin", 5) == 0);
+        assert_int_equal(strstr(message, "...") != NULL, lengths[i] > 350);
+    }
+    assert_int_equal(asj_image_file_read(path, 0, &file, message, 20), ASJ_ERROR_FILE);
+    assert_string_equal(message, "be...nd: cannot ope");
 }
 
 static void an_output_folder_is_made_or_refused_before_any_work(void **state)
@@ -246,12 +325,15 @@ static void an_opencl_device_that_is_not_there_is_an_error(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_bad_file_has_one_line), cmocka_unit_test(a_name_with_a_newline_is_told_once),
+        cmocka_unit_test(each_bad_file_has_one_line),
+        cmocka_unit_test(results_and_folders_in_place_of_images), cmocka_unit_test(a_name_with_a_newline_is_told_once),
         cmocka_unit_test(bad_files_do_not_stop_the_others),
         cmocka_unit_test(a_failure_keeps_the_old_result),
         cmocka_unit_test(an_unreadable_file_is_named),
         cmocka_unit_test(the_limit_on_pixels_can_be_moved),
         cmocka_unit_test(control_characters_stay_out_of_messages),
+        cmocka_unit_test(controls_in_utf_8_stay_out_of_messages),
+        cmocka_unit_test(a_long_path_leaves_room_for_the_cause),
         cmocka_unit_test(an_output_folder_is_made_or_refused_before_any_work),
         cmocka_unit_test(a_full_device_is_reported),
         cmocka_unit_test(a_closed_pipe_fails_without_a_word),

@@ -154,7 +154,8 @@ static void the_preset_comes_first_wherever_it_stands(void **state)
 static void directions_are_written_on_request(void **state)
 {
     (void)state;
-    const outcome *result = run_cli("detect", "-f", "json", "--vanishing-points", "--camera", "600,600,320,240", "scene.png", NULL);
+    const outcome *result = run_cli("detect", "-f", "json", "--vanishing-points", "--camera", "600,600,159.5,119.5", "scene.png",
+                                    NULL);
     expect_code(result, 0);
     expect_in(result, result->out, "\"vanishing_points\": {\"focal_source\": \"given\", \"camera\": [600");
     expect_in(result, result->out, "\"points\": []");
@@ -163,12 +164,43 @@ static void directions_are_written_on_request(void **state)
     result = run_cli("detect", "--vanishing-points", "scene.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "--vanishing-points go into JSON");
-    result = run_cli("detect", "-f", "json", "--camera", "600,600,320,240", "scene.png", NULL);
+    result = run_cli("detect", "-f", "json", "--camera", "600,600,159.5,119.5", "scene.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "a camera changes nothing without --vanishing-points");
     result = run_cli("detect", "-f", "json", "--vanishing-points", "--camera", "0,600,320,240", "scene.png", NULL);
     expect_code(result, 2);
     expect_in(result, result->err, "is not FX,FY,CX,CY");
+}
+
+/* Numbers in another order, or of another size, are no camera of this image. */
+static void a_camera_of_another_image_is_refused(void **state)
+{
+    static const struct {
+        const char *camera, *message;
+        int code;
+    } cases[] = {
+        {"160,120,600,600", "scene.png: --camera: the principal point 600,600 lies outside of the image of 320 x 240 pixels; "
+                            "FX,FY,CX,CY: is this CX,CY,FX,FY?\n", 1},
+        {"1200,1200,500,120", "is it a camera of the picture at another size?\n", 1},
+        {"300,300,-1,120", "the principal point -1,120 lies outside", 1},
+        {"160,120,200,200", "warning: scene.png: --camera: the principal point 200,200 is far from the middle of the image of "
+                            "320 x 240 pixels: FX,FY,CX,CY: is this CX,CY,FX,FY?\n", 0},
+        {"150,150,79,60", "is far from the middle of the image of 320 x 240 pixels: is it a camera of the picture at another", 0},
+        {"160,120,180,140", "the focal lengths 160 and 120 differ; FX,FY,CX,CY: is this CX,CY,FX,FY?\n", 0},
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        const outcome *result = run_cli("detect", "-f", "json", "--vanishing-points", "--camera", cases[k].camera, "scene.png",
+                                        NULL);
+        expect_code(result, cases[k].code);
+        expect_in(result, result->err, cases[k].message);
+        result = run_cli("detect", "-q", "-f", "json", "--vanishing-points", "--camera", cases[k].camera, "scene.png", NULL);
+        assert_int_equal(*result->err != 0, cases[k].code != 0);
+    }
+    static const char *const good[] = {"300,300,160,120", "300,310,80,60", "300,300,240,180"};
+    for (size_t k = 0; k < sizeof good / sizeof good[0]; k++)
+        assert_null(strstr(run_cli("detect", "-f", "json", "--vanishing-points", "--camera", good[k], "scene.png", NULL)->err,
+                           "--camera"));
 }
 
 /* The square of the scene: eight branches, four edges. */
@@ -463,12 +495,75 @@ static void only_a_part_of_the_image_on_request(void **state)
     expect_in(result, result->err, "small.png: this mask has another size than an image of 320 x 240 pixels");
     result = run_cli("detect", "--region", "100,100,221,20", "scene.png", NULL);
     expect_code(result, 1);
-    expect_in(result, result->err, "scene.png: the region leaves an image of 320 x 240 pixels");
+    expect_in(result, result->err, "scene.png: the region 100,100,221,20 is not within the image of 320 x 240 pixels\n");
+    write_deep_scene("deep_mask.png", 65535);
+    result = run_cli("detect", "--mask", "deep_mask.png", "scene.png", NULL);
+    expect_in(result, result->err, "deep_mask.png: a mask is an 8-bit gray image, and this one has 16 bits\n");
+    write_bytes("colour.ppm", "P3 1 1 255 1 2 3\n", 17);
+    result = run_cli("detect", "--mask", "colour.ppm", "scene.png", NULL);
+    expect_in(result, result->err, "colour.ppm: a mask is an 8-bit gray image, and this one is in colour\n");
     memset(pixels, 0, sizeof pixels);
     assert_int_equal(asj_png_write("black.png", &mask, message, sizeof message), ASJ_OK);
     result = run_cli("match", "--region1", "0,0,160,240", "--mask2", "black.png", "-o", "m.csv", "scene.png", "scene.png", NULL);
     expect_code(result, 0);
     expect_in(result, result->err, ": 0 matches");
+}
+
+/* Samples of 10 bits in 16: corners are far too weak, which is told, until white is. */
+static void white_can_be_told(void **state)
+{
+    (void)state;
+    write_deep_scene("deep.png", 1023);
+    write_deep_scene("full.png", 65535);
+    const outcome *result = run_cli("detect", "deep.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "deep.png: brightest pixel is 1.5 % of white: --white 1023?\n");
+    assert_null(strstr(result->err, "weaker corners"));
+    expect_code(run_cli("detect", "-o", "deep.asj", "--white", "1023", "deep.png", NULL), 0);
+    expect_code(run_cli("detect", "-o", "full.asj", "full.png", NULL), 0);
+    result = run_cli("detect", "--white", "1023", "deep.png", NULL);
+    expect_in(result, result->err, "deep.png: 4 junctions\n");
+    assert_null(strstr(result->err, "--white"));
+    result = run_cli("detect", "--white", "255", "scene.png", NULL);
+    expect_in(result, result->err, "scene.png: 4 junctions\n");
+    assert_null(strstr(run_cli("detect", "full.png", NULL)->err, "--white"));
+    expect_empty(result, "standard error", run_cli("detect", "-q", "deep.png", NULL)->err);
+    result = run_cli("match", "deep.png", "deep.png", NULL);
+    expect_in(result, result->err, "deep.png: brightest pixel is 1.5 % of white: --white 1023?\n");
+    assert_null(strstr(result->err, "hint"));
+    assert_null(strstr(run_cli("match", "--white", "1023", "deep.png", "full.png", NULL)->err, "of white"));
+    expect_code(run_cli("detect", "-q", "-o", "deep.asjf", "--white", "1023", "deep.png", NULL), 0);
+    result = run_cli("match", "--white", "1023", "deep.asjf", "deep.asjf", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--white changes nothing: features have no pixels");
+    result = run_cli("detect", "--white", "0", "deep.png", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "--white: '0' is not a number in 1e-06 .. 1e+09");
+}
+
+/* One image has its hint at once; many have one line for all of them, at the end. */
+static void many_images_have_one_line_of_hints(void **state)
+{
+    (void)state;
+    write_constant("flat.png", 60, 40);
+    write_constant("tiny.png", 15, 60);
+    write_deep_scene("dim.png", 1023);
+    write_deep_scene("dimmer.png", 600);
+    const outcome *result = run_cli("detect", "-d", "hinted", "flat.png", NULL);
+    expect_in(result, result->err, "flat.png: weaker corners are found with --epsilon 100 --candidate-strength 2\n");
+    assert_null(strstr(result->err, "done"));
+    result = run_cli("detect", "-d", "hinted", "tiny.png", NULL);
+    assert_null(strstr(result->err, "weaker"));
+    result = run_cli("detect", "-d", "hinted", "flat.png", "tiny.png", "dim.png", "none.png", "dimmer.png", "scene.png", NULL);
+    expect_code(result, 1);
+    expect_in(result, result->err, "\n5 images done, 1 failed, 1 without a junction (weaker corners are found with --epsilon 100 "
+                                   "--candidate-strength 2), 2 far darker than white (--white 1023?)\n");
+    assert_null(strstr(result->err, "flat.png: weaker"));
+    assert_null(strstr(result->err, "dim.png: brightest"));
+    result = run_cli("detect", "-d", "hinted", "--epsilon", "100", "--candidate-strength", "2", "flat.png", "scene.png", NULL);
+    expect_in(result, result->err, "\n2 images done, 1 without a junction\n");
+    expect_in(result, run_cli("detect", "-d", "hinted", "none.png", "nor.png", NULL)->err, "\n0 images done, 2 failed\n");
+    expect_empty(result, "standard error", run_cli("detect", "-q", "-d", "hinted", "flat.png", "scene.png", NULL)->err);
 }
 
 static int make_files(void **state)
@@ -485,7 +580,10 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_name_or_the_option_chooses_the_format),
         cmocka_unit_test(whole_junctions_are_written_on_request),
         cmocka_unit_test(the_preset_comes_first_wherever_it_stands),
-        cmocka_unit_test(directions_are_written_on_request), cmocka_unit_test(lines_come_each_once),
+        cmocka_unit_test(directions_are_written_on_request),
+        cmocka_unit_test(white_can_be_told),
+        cmocka_unit_test(many_images_have_one_line_of_hints),
+        cmocka_unit_test(a_camera_of_another_image_is_refused), cmocka_unit_test(lines_come_each_once),
         cmocka_unit_test(an_option_reaches_the_detector),
         cmocka_unit_test(times_are_printed_on_request),
         cmocka_unit_test(no_progress_without_a_terminal),

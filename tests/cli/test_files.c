@@ -142,6 +142,35 @@ static void names_that_promise_another_format(void **state)
     expect_code(run_cli("detect", "-q", "-o", "/dev/null", "scene.png", NULL), 0);
 }
 
+/* What a name does not say, or says wrongly, is told. */
+static void other_formats_than_names_tell(void **state)
+{
+    static const struct {
+        const char *command, *name, *format, *warning; /* NULL: none */
+    } cases[] = {
+        {"detect", "e.json", "csv", "asj-cli detect: warning: e.json is written as csv, whatever its name ends in\n"},
+        {"detect", "e.png", "json", "e.png is written as json"}, {"match", "e.asj", "json", "e.asj is written as json"},
+        {"detect", "e.txt", NULL, "e.txt is written as asj: --format asks for others\n"},
+        {"match", "e.txt", NULL, "asj-cli match: warning: e.txt is written as csv"}, {"match", "e.txt", "csv", NULL},
+        {"detect", "e.JSON", "json", NULL}, {"detect", "e.json", NULL, NULL}, {"match", "e", NULL, NULL},
+        {"detect", "e.what", "csv", NULL}, {"match", "/dev/null", "json", NULL},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const char *arguments[] = {cases[i].command, "-o", cases[i].name, "scene.png", "scene.png", "-f", cases[i].format, NULL};
+        if (*cases[i].command == 'd')
+            arguments[4] = "--threads=1";
+        if (!cases[i].format)
+            arguments[5] = NULL;
+        const outcome *result = run_cli_list(arguments);
+        expect_code(result, 0);
+        if (cases[i].warning)
+            expect_in(result, result->err, cases[i].warning);
+        else
+            assert_null(strstr(result->err, "warning"));
+    }
+}
+
 static void expect_beginning(const char *path, const char *beginning)
 {
     char text[16] = "";
@@ -178,6 +207,11 @@ static void more_images_from_a_file(void **state)
     expect_code(run_cli("detect", "-q", "-d", "zero", "--files-from", "list.zero", "scene.png", NULL), 0);
     assert_true(exists("zero/scene.asj") && exists("zero/two\nlines.asj") && exists("zero/second.asj"));
     unlink("two\nlines.png");
+    /* no comments */
+    assert_int_equal(link("first.png", "# first.png"), 0);
+    write_bytes("list.hash", "# first.png\n", 12);
+    expect_code(run_cli("detect", "-q", "-d", "hash", "--files-from", "list.hash", NULL), 0);
+    assert_true(exists("hash/# first.asj"));
     /* what is there is left alone, and said */
     unlink("listed/first.asj");
     write_bytes("listed/scene.asj", "mine", 4);
@@ -199,13 +233,29 @@ static void more_images_from_a_file(void **state)
     expect_code(run_cli("detect", "-d", "listed", "--files-from", ".", NULL), 1);
 }
 
+/* Nothing takes the place of the list itself, in whatever spelling. */
+static void a_list_of_images_is_not_overwritten(void **state)
+{
+    (void)state;
+    mkdir("lists", 0777);
+    write_bytes("lists/scene.csv", "scene.png\n", 10);
+    const outcome *result = run_cli("detect", "--files-from", "lists/scene.csv", "-o", "./lists/scene.csv", NULL);
+    expect_code(result, 2);
+    expect_in(result, result->err, "lists/scene.csv: is an input file, and would be overwritten");
+    expect_code(run_cli("detect", "-f", "csv", "--files-from", "lists/scene.csv", "-d", "lists", NULL), 2);
+    expect_beginning("lists/scene.csv", "scene.png\n");
+    expect_code(run_cli("detect", "-q", "-f", "json", "--files-from", "lists/scene.csv", "-d", "lists", NULL), 0);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_limit_of_file_size_is_an_error), cmocka_unit_test(two_spellings_of_one_output),
         cmocka_unit_test(folders_of_images_are_kept),
         cmocka_unit_test(a_link_to_nothing_yet_is_followed), cmocka_unit_test(names_that_promise_another_format),
+        cmocka_unit_test(other_formats_than_names_tell),
         cmocka_unit_test(endings_in_capitals), cmocka_unit_test(more_images_from_a_file),
+        cmocka_unit_test(a_list_of_images_is_not_overwritten),
     };
     program_start(argc, argv);
     return program_end(cmocka_run_group_tests(tests, make_files, NULL));

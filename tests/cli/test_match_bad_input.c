@@ -14,6 +14,8 @@
 
 #include <cmocka.h>
 
+#include <sys/stat.h>
+
 static int count_lines(const char *text)
 {
     int lines = 0;
@@ -196,6 +198,52 @@ static void junctions_of_another_image_are_refused(void **state)
                    "asj-cli: large.json: line ", "outside small.png");
 }
 
+static void swapped_junctions_are_doubted(void **state)
+{
+    (void)state;
+    static const char *const cases[][4] = { /* of image 1, of image 2, image 1, image 2 */
+        {"b.json", "a.json", "first.png", "second.png"},
+        {"a.json", "a.json", "first.png", "second.png"},
+        {"a.json", "b.json", "first.png", "second.png"},
+        {"a.json", "c.json", "first.png", "fo\"l\\der/first.png"},
+        {"c.json", "a.json", "first.png", "fo\"l\\der/first.png"},
+        {"a.json", "a.json", "./first.png", "first.png"},
+        {"b.json", "good.asj", "other/first.png", "other/second.png"},
+    };
+    static const int warned[][2] = {{1, 1}, {0, 1}, {0, 0}, {0, 0}, {1, 1}, {0, 0}, {1, 0}};
+    mkdir("fo\"l\\der", 0777);
+    mkdir("other", 0777);
+    write_views("fo\"l\\der/first.png", "fo\"l\\der/second.png");
+    write_views("other/first.png", "other/second.png");
+    expect_code(run_cli("detect", "-q", "-o", "a.json", "first.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "-o", "b.json", "second.png", NULL), 0);
+    expect_code(run_cli("detect", "-q", "-o", "c.json", "fo\"l\\der/first.png", NULL), 0);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const outcome *result = run_cli("match", "--junctions1", cases[i][0], "--junctions2", cases[i][1], cases[i][2], cases[i][3],
+                                        NULL);
+        expect_code(result, 0);
+        if (i == 0)
+            expect_in(result, result->err, "warning: --junctions1: b.json has the junctions of second.png, which is IMAGE2: are "
+                                           "they swapped?\n");
+        assert_int_equal(strstr(result->err, "--junctions1: ") != NULL, warned[i][0]);
+        assert_int_equal(strstr(result->err, "--junctions2: ") != NULL, warned[i][1]);
+    }
+}
+
+static void cameras_of_other_images_are_refused(void **state)
+{
+    (void)state;
+    expect_refusal(run_cli("match", "-o", "never.csv", "--geometry", "auto", "--camera1", "300,300,160,120", "--camera2",
+                           "160,120,300,300", "first.png", "second.png", NULL),
+                   "asj-cli: second.png: --camera2: the principal point 300,300 lies outside of the image of 320 x 240 pixels",
+                   "FX,FY,CX,CY: is this CX,CY,FX,FY?\n");
+    const outcome *result = run_cli("match", "--stretch", "1", "--geometry", "auto", "--camera1", "300,300,79,60", "--camera2",
+                                    "300,300,160,120", "first.png", "second.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, "asj-cli match: warning: first.png: --camera1: the principal point 79,60 is far from");
+    assert_null(strstr(result->err, "--camera2"));
+}
+
 static void bad_images_are_refused(void **state)
 {
     (void)state;
@@ -283,6 +331,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(bad_junction_files_are_refused),
         cmocka_unit_test(junctions_beside_the_image_are_taken),
         cmocka_unit_test(junctions_of_another_image_are_refused),
+        cmocka_unit_test(swapped_junctions_are_doubted),
+        cmocka_unit_test(cameras_of_other_images_are_refused),
         cmocka_unit_test(bad_images_are_refused),
         cmocka_unit_test(bad_features_are_refused),
         cmocka_unit_test(results_that_cannot_be_written_are_errors),

@@ -10,6 +10,7 @@
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -57,6 +58,33 @@ static void help_names_the_options_of_the_library(void **state)
     expect_in(result, result->out, "options more with --help --advanced");
     expect_help(run_cli("detect", "--help", "--advanced", NULL), 1);
     expect_help(run_cli("detect", "--advanced", "-h", NULL), 1);
+}
+
+static void expect_same_help(const char *const *one, const char *const *other)
+{
+    char *text = NULL;
+    const outcome *result = run_cli_list(one);
+    expect_code(result, 0);
+    assert_non_null(text = malloc(result->out_size + 1));
+    strcpy(text, result->out);
+    result = run_cli_list(other);
+    expect_code(result, 0);
+    assert_string_equal(result->out, text);
+    free(text);
+}
+
+static void help_has_the_help_of_a_command(void **state)
+{
+    (void)state;
+    static const char *const pairs[][2][5] = {
+        {{"help", "detect"}, {"detect", "--help"}},
+        {{"help", "match", "--advanced"}, {"match", "--help", "--advanced"}},
+        {{"--help", "devices"}, {"devices", "--help"}},
+        {{"help"}, {"--help"}},
+        {{"-h", "--advanced"}, {"--help"}},
+    };
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++)
+        expect_same_help(pairs[i][0], pairs[i][1]);
 }
 
 static void help_of_detect_wins_over_what_follows(void **state)
@@ -111,6 +139,9 @@ static const struct {
     {{"detect", "--backend", "cuda", "scene.png"}, "--backend: 'cuda'"},
     {{"detect", "--threads", "-1", "scene.png"}, "--threads: '-1'"},
     {{"detect", "--threads", "257", "scene.png"}, "--threads: '257'"},
+    {{"detect", "--threads", "257", "scene.png"}, "Try 'asj-cli detect --help'"},
+    {{"match", "--max-megapixels", "0", "scene.png", "scene.png"}, "asj-cli match: --max-megapixels: '0'"},
+    {{"help", "detcet"}, "no command 'detcet'; did you mean: asj-cli detect\n"},
     {{"detect", "--threads", "1e1", "scene.png"}, "--threads: '1e1'"},
     {{"detect", "--simd", "mmx", "scene.png"}, "--simd: 'mmx'"},
     {{"match", "--simd", "AVX2", "scene.png", "scene.png"}, "--simd: 'AVX2'"},
@@ -179,6 +210,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(general_help_and_version),
         cmocka_unit_test(help_names_the_options_of_the_library),
+        cmocka_unit_test(help_has_the_help_of_a_command),
         cmocka_unit_test(help_of_detect_wins_over_what_follows),
         cmocka_unit_test(wrong_usage_ends_with_2_and_says_why),
     };

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Reads images for detect and match. */
+#include "read_image.h"
+#include "message.h"
+#include "platform.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { WHITE_16 = 65535, DARK = 8 /* times darker than white */ };
+
+/* Adds the option that moves the limit to the library's "W x H pixels are more than the limit", which does not know it. */
+static void name_limit_option(char *message, size_t size)
+{
+    const char *end = NULL, *start;
+    unsigned long long width, height;
+    for (const char *found = message; (found = strstr(found, " pixels are more than the limit of ")) != NULL; found++)
+        end = found;
+    if (!end)
+        return;
+    for (start = end; start > message && strchr("0123456789x ", start[-1]);)
+        start--;
+    if (sscanf(start, "%llu x %llu", &width, &height) != 2)
+        return;
+    const double megapixels = ceil((double)width * (double)height / 1e6);
+    const size_t used = strlen(message);
+    if (megapixels <= CLI_LARGEST_MEGAPIXELS)
+        snprintf(message + used, size - used, " (--max-megapixels %.0f)", megapixels);
+    else
+        snprintf(message + used, size - used, " (--max-megapixels goes up to %d)", CLI_LARGEST_MEGAPIXELS);
+}
+
+/* Results of this program are no images: what to do with them instead. NULL: it is none of them. */
+static const char *find_result(const char *path)
+{
+    char message[CLI_MESSAGE_SIZE], head[512] = "";
+    asj_junction_file *file = NULL;
+    FILE *stream = cli_is_special(path) ? NULL : fopen(path, "rb"); /* a pipe has been read */
+    const size_t size = stream ? fread(head, 1, sizeof head - 1, stream) : 0;
+    if (stream)
+        fclose(stream);
+    if (size == 0 || memchr(head, 0, size))
+        return NULL;
+    const int junctions = strstr(head, "\"asj-junctions-1\"") || asj_junctions_read(path, &file, message, sizeof message) == ASJ_OK;
+    asj_junction_file_free(&file);
+    if (junctions)
+        return "junctions, not an image: 'asj-cli match' takes them with --junctions1 FILE --junctions2 FILE beside the images; or "
+               "write features ('asj-cli detect -f asjf'), which stand for images";
+    return strstr(head, "\"asj-matches-1\"") ? "matches, not an image" : NULL;
+}
+
+int cli_read_image(cli_session *session, const cli_common *common, const char *path, asj_image_file **file)
+{
+    char message[CLI_MESSAGE_SIZE] = "";
+    const asj_status status = asj_image_file_read(path, common->max_pixels, file, message, sizeof message);
+    const char *result = status == ASJ_ERROR_FORMAT ? find_result(path) : NULL;
+    if (status == ASJ_ERROR_LIMIT)
+        name_limit_option(message, sizeof message);
+    if (status != ASJ_OK)
+        return cli_session_fail(session, path, result ? result : message, status);
+    (*file)->image.white = (float)common->white;
+    return CLI_SUCCESS;
+}
+
+uint32_t cli_dark_level(const asj_image *image)
+{
+    uint16_t level, brightest = 0;
+    if (!image->data || image->format != ASJ_FORMAT_GRAY16 || image->white > 0)
+        return 0;
+    const ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)sizeof level * image->width;
+    for (int32_t y = 0; y < image->height; y++)
+        for (int32_t x = 0; x < image->width; x++) {
+            memcpy(&level, (const unsigned char *)image->data + y * stride + (ptrdiff_t)sizeof level * x, sizeof level);
+            brightest = level > brightest ? level : brightest;
+        }
+    return brightest < WHITE_16 / DARK ? brightest : 0;
+}
+
+uint32_t cli_likely_white(uint32_t level)
+{
+    uint32_t white = 255;
+    while (white < level)
+        white = 2 * white + 1;
+    return white;
+}
+
+void cli_note_dark(const char *name, uint32_t level)
+{
+    cli_note("%s: brightest pixel is %.2g %% of white: --white %lu?", name, 100.0 * level / WHITE_16,
+             (unsigned long)cli_likely_white(level));
+}

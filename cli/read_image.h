@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Images as the options of the command line want them read, and what their levels tell. */
+#ifndef ASJ_CLI_READ_IMAGE_H
+#define ASJ_CLI_READ_IMAGE_H
+
+#include "common.h"
+
+#include <asj/io.h>
+
+/* An image file no larger than --max-megapixels, its white that of --white. CLI_SUCCESS, or CLI_FAILED after saying why. */
+int cli_read_image(cli_session *session, const cli_common *common, const char *path, asj_image_file **file);
+
+/* The brightest level of a 16-bit image far darker than the white that its format has; 0: there is none, or its white was given.
+ * Samples of 10 or 12 bits are such images, in which corners are too weak to be found. */
+uint32_t cli_dark_level(const asj_image *image);
+
+/* The white of a camera whose brightest level this is: 1023, 4095. */
+uint32_t cli_likely_white(uint32_t level);
+
+/* Says so of an image, with what may help. */
+void cli_note_dark(const char *name, uint32_t level);
+
+#endif

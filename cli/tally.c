@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Counts images, and says what they came to. */
+#include "tally.h"
+#include "message.h"
+#include "read_image.h"
+
+#include <stdio.h>
+
+enum { SMALLEST = 16 /* px, of a side: below it there is no room for the branches of a junction */ };
+#define WEAKER "weaker corners are found with --epsilon 100 --candidate-strength 2"
+
+/* Would these options find no more? */
+static int is_strict(const asj_detect_options *options)
+{
+    return options->epsilon < 100 || options->candidate_strength > 2;
+}
+
+void cli_tally_image(cli_tally *tally, const char *name, const asj_image *image, const asj_detection *detection,
+                     const asj_detect_options *options)
+{
+    const uint32_t dark = cli_dark_level(image);
+    const int bare = dark == 0 && detection->junction_count == 0 && image->width >= SMALLEST && image->height >= SMALLEST;
+    tally->dark += dark > 0;
+    tally->dark_level = dark > tally->dark_level ? dark : tally->dark_level;
+    tally->bare += bare != 0;
+    if (tally->total > 1)
+        return;
+    if (dark > 0)
+        cli_note_dark(name, dark);
+    else if (bare && is_strict(options))
+        cli_note("%s: " WEAKER, name);
+}
+
+void cli_tally_print(const cli_tally *tally, const asj_detect_options *options)
+{
+    char failed[48] = "", bare[160] = "", dark[96] = "";
+    if (tally->failed > 0)
+        snprintf(failed, sizeof failed, ", %zu failed", tally->failed);
+    if (tally->bare > 0)
+        snprintf(bare, sizeof bare, ", %zu without a junction%s", tally->bare, is_strict(options) ? " (" WEAKER ")" : "");
+    if (tally->dark > 0)
+        snprintf(dark, sizeof dark, ", %zu far darker than white (--white %lu?)", tally->dark,
+                 (unsigned long)cli_likely_white(tally->dark_level));
+    cli_note("%zu image%s done%s%s%s", tally->done, tally->done == 1 ? "" : "s", failed, bare, dark);
+}

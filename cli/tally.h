@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* What came of many images: hints for each of them would flood a log, so they are counted and told once, at the end. */
+#ifndef ASJ_CLI_TALLY_H
+#define ASJ_CLI_TALLY_H
+
+#include <asj/detect.h>
+#include <asj/options.h>
+
+typedef struct cli_tally {
+    size_t total;         /* images of the run; one alone has its hint at once */
+    size_t done, failed;
+    size_t bare;          /* without a junction, and large enough for one */
+    size_t dark;          /* far darker than white */
+    uint32_t dark_level;  /* the brightest of these */
+} cli_tally;
+
+/* After an image: counts what there is to say of it, or says it where there is only one image. */
+void cli_tally_image(cli_tally *tally, const char *name, const asj_image *image, const asj_detection *detection,
+                     const asj_detect_options *options);
+
+/* After the last of several images: one line. */
+void cli_tally_print(const cli_tally *tally, const asj_detect_options *options);
+
+#endif
