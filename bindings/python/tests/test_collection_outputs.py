@@ -4,6 +4,7 @@ killed."""
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import signal
@@ -77,7 +78,54 @@ def test_files_of_others_stay(pair: Path, tmp_path: Path, capsys: pytest.Capture
     refused([*both, "--resume"], "scene.db-wal is there", capsys)
 
 
-def test_limap_of_others_stays(pair: Path, tmp_path: Path) -> None:
+def test_outputs_of_another_collection_stay(pair: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Only the store that they were written from may write them again."""
+    pycolmap, h5py = pytest.importorskip("pycolmap"), pytest.importorskip("h5py")
+    other, first, second = tmp_path / "other", tmp_path / "1.store", tmp_path / "2.store"
+    other.mkdir()
+    Image.fromarray(panels(seed=5)).save(other / "c.png")
+    outputs = {"--colmap": tmp_path / "x.db", "--hdf5": tmp_path / "h5", "--limap": tmp_path / "lines"}
+    every = [word for name, path in outputs.items() for word in (name, str(path))]
+    run = ["--jobs", "1", "--quiet"]
+    assert main(["collect", str(pair), *every, *run, "--store", str(first)]) == 0
+
+    def content() -> dict[Path, bytes]:
+        return {path: path.read_bytes() for place in outputs.values() for path in (place, *place.rglob("*")) if path.is_file()}
+
+    before = content()
+    assert len(before) == 1 + 2 + 5
+    for name, path in outputs.items():
+        for folder in (other, pair):
+            refused([str(folder), name, str(path), "--store", str(second)], "another collection has written it, not that of", capsys)
+    assert content() == before and not second.exists()
+    shutil.copy(tmp_path / "x.db", tmp_path / "by_another_version.db")
+    with contextlib.closing(sqlite3.connect(tmp_path / "by_another_version.db")) as connection:
+        connection.execute("DROP TABLE asj_store")
+    refused([str(pair), "--colmap", str(tmp_path / "by_another_version.db"), "--store", str(second)], "something else", capsys)
+    for again in ("--resume", "--update"):
+        assert main(["collect", str(pair), *every, *run, "--store", str(first), again]) == 0
+    Image.fromarray(panels(shift=(3, 1))).save(pair / "c.png")
+    assert main(["collect", str(pair), *every, *run, "--store", str(first), "--update"]) == 0
+    assert main(["collect", str(other), *every, *run, "--store", str(second), "--overwrite"]) == 0
+    assert main(["collect", str(other), *every, *run, "--store", str(second), "--resume"]) == 0
+    assert sorted(path.name for path in outputs["--limap"].rglob("*.txt")) == ["images.txt", "segments_1.txt", "store.txt"]
+    with h5py.File(tmp_path / "h5" / "features.h5") as features:
+        assert list(features) == ["c.png"]  # what reads them sees no group more
+    database = pycolmap.Database.open(tmp_path / "x.db")
+    assert [image.name for image in database.read_all_images()] == ["c.png"]
+    database.close()
+    refused([str(pair), *every, "--store", str(first), "--resume"], "another collection", capsys)
+
+
+def test_a_store_without_an_identity_gets_one(pair: Path, tmp_path: Path) -> None:
+    words = ["collect", str(pair), "--limap", str(tmp_path / "lines"), "--jobs", "1", "--quiet"]
+    assert main(words) == 0
+    with sqlite3.connect(tmp_path / "lines.work") as connection:
+        connection.execute("DELETE FROM about WHERE key = 'identity'")
+    assert main([*words, "--resume", "--overwrite"]) == 0 and main([*words, "--resume"]) == 0
+
+
+def test_limap_of_others_stays(pair: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "lines"
     (folder / "segments").mkdir(parents=True)
     (folder / "matches").mkdir()
@@ -90,9 +138,12 @@ def test_limap_of_others_stays(pair: Path, tmp_path: Path) -> None:
     assert (folder / "images.txt").read_text().splitlines() == ["1 a.png", "2 b.png", '3 "c\\nd.png"']
     assert (folder / "segments" / "segments_3.txt").exists() and (folder / "matches" / "matches_1_3.txt").exists()
     (pair / "c\nd.png").unlink()
-    assert main(["collect", str(pair), *words, "--store", str(tmp_path / "second.work")]) == 0
+    assert main(["collect", str(pair), *words, "--store", str(tmp_path / "second.work"), "--overwrite"]) == 0
     assert not (folder / "segments" / "segments_3.txt").exists() and not (folder / "matches" / "matches_1_3.txt").exists()
     assert all(path.read_text() == "not ours\n" for path in others)
+    (tmp_path / "new" / "matches").mkdir(parents=True)
+    (tmp_path / "new" / "matches" / "matches_1_2.txt").write_text("not ours\n")
+    refused([str(pair), "--limap", str(tmp_path / "new")], "matches_1_2.txt is there, and something else", capsys)
 
 
 def test_orientations(tmp_path: Path) -> None:

@@ -65,7 +65,7 @@ def _parser() -> argparse.ArgumentParser:
         help="the camera of all images, upright, px: focal lengths and principal point, pixel centres at integers (COLMAP's CX and CY less "
         "0.5), instead of --focal",
     )  # fmt: skip
-    work.add_argument("--overwrite", action="store_true", help="outputs replace files that something else has written")
+    work.add_argument("--overwrite", action="store_true", help="outputs replace files that something else, or another collection, has written")
     work.add_argument("--quiet", action="store_true", help="no progress")
     return parser
 
@@ -175,27 +175,40 @@ def _check_outputs(arguments: argparse.Namespace) -> Path:
 
 
 def _check_replaced(arguments: argparse.Namespace, store: Path, plan: plans.Plan) -> None:
-    """Refuses to write over photographs and the store, and, unasked, over what something else has written."""
-    files: list[tuple[Path, Callable[[Path], bool]]] = []
+    """Refuses to write over photographs and the store, and, unasked, over what something else, or another collection, has written."""
+    files: list[tuple[Path, Callable[[Path], str | None]]] = []
     if arguments.colmap:
         from .collection import colmap
 
-        files.append((arguments.colmap, colmap.is_ours))
+        files.append((arguments.colmap, colmap.written_from))
         colmap.refuse_logs(arguments.colmap)
     if arguments.hdf5:
         from .collection import hdf5
 
-        files += [(arguments.hdf5 / name, hdf5.is_ours) for name in ("features.h5", "matches.h5")]
+        files += [(arguments.hdf5 / name, hdf5.written_from) for name in ("features.h5", "matches.h5")]
     inputs = {(plan.folder / name).resolve() for name in plan.images}
-    for path, is_ours in files:
+    identity, highest = collection.Store.before_outputs(store, plan)
+    for path, written_from in files:
         if path.resolve() in inputs:
             raise FileExistsError(f"{path} is a photograph of the collection")
         if path.resolve() == store.resolve():
             raise FileExistsError(f"{path} is the store of this run")
-        if path.exists() and not arguments.overwrite and not is_ours(path):
-            raise FileExistsError(f"{path} is there, and something else has written it; --overwrite replaces it")
+        if path.exists() and not arguments.overwrite:
+            _check_writer(path, written_from(path), store, identity)
+    if arguments.limap and not arguments.overwrite:
+        from .collection import limap
+
+        for path in limap.foreign_files(arguments.limap, identity, highest):
+            _check_writer(path, limap.written_from(arguments.limap) if path.parent == arguments.limap else None, store, identity)
     if store.resolve() in inputs:
         raise FileExistsError(f"{store}: the store would be a photograph of the collection")
+
+
+def _check_writer(path: Path, writer: str | None, store: Path, identity: str | None) -> None:
+    if writer is None:
+        raise FileExistsError(f"{path} is there, and something else has written it; --overwrite replaces it")
+    if writer != identity:
+        raise FileExistsError(f"{path} is there, and another collection has written it, not that of {store}; --overwrite replaces it")
 
 
 def _collect(arguments: argparse.Namespace) -> int:

@@ -38,14 +38,22 @@ from .tasks import Detected
 #: by equal make, model, focal lengths and size in EXIF data, and else an image a camera; one for all; one for each folder; one for each
 CAMERA_MODES = ("auto", "single", "per-folder", "per-image")
 
-_APPLICATION = int.from_bytes(b"asj\0", "big")  # of a database that was written here, and may be again
+_APPLICATION = int.from_bytes(b"asj\0", "big")  # of a database that was written here
+_STORE = "asj_store"  # a table of our own, which COLMAP passes over: the identity of the store that the database was written from
 
 
-def is_ours(path: Path) -> bool:
-    """Was the database written by write()?"""
-    with path.open("rb") as file:  # SQLite itself would leave logs beside it
+def written_from(path: Path) -> str | None:
+    """The identity of the store that write() wrote the database from; None where something else has written it."""
+    with path.open("rb") as file:
         header = file.read(100)
-    return header.startswith(b"SQLite format 3\0") and int.from_bytes(header[68:72], "big") == _APPLICATION
+    if not header.startswith(b"SQLite format 3\0") or int.from_bytes(header[68:72], "big") != _APPLICATION:
+        return None
+    try:  # "immutable": SQLite leaves no logs beside it
+        with contextlib.closing(sqlite3.connect(f"{path.absolute().as_uri()}?immutable=1", uri=True)) as connection:
+            row = connection.execute(f"SELECT identity FROM {_STORE}").fetchone()
+    except sqlite3.DatabaseError:
+        return None
+    return str(row[0]) if row else None
 
 
 def refuse_logs(path: Path) -> None:
@@ -101,6 +109,8 @@ def _fill(store: Store, pycolmap: Any, path: Path, refine: bool, threads: int | 
     _write_geometries(store, pycolmap, path)
     with contextlib.closing(sqlite3.connect(path)) as connection:
         connection.execute(f"PRAGMA application_id = {_APPLICATION}")
+        connection.execute(f"CREATE TABLE {_STORE} (identity TEXT NOT NULL)")
+        connection.execute(f"INSERT INTO {_STORE} VALUES (?)", (store.identity(),))
         connection.commit()
 
 

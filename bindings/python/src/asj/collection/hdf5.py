@@ -19,18 +19,19 @@ from . import locations, orientation
 from .store import Store
 
 
-_MARK = "asj"  # attribute of a file that was written here, and may be again
+_MARK = "asj"  # attribute of a file that was written here: the version
+_STORE = "asj_store"  # another one: the identity of the store that the file was written from
 
 
-def is_ours(path: Path) -> bool:
-    """Was the file written by write_features() or write_matches()?"""
+def written_from(path: Path) -> str | None:
+    """The identity of the store that write_features() or write_matches() wrote the file from; None where something else has written it."""
     import h5py
 
     try:
         with h5py.File(path) as file:
-            return _MARK in file.attrs
+            return str(file.attrs[_STORE]) if _STORE in file.attrs else None
     except OSError:
-        return False
+        return None
 
 
 def check_names(names: Iterable[str]) -> None:
@@ -48,7 +49,7 @@ def write_features(store: Store, path: Path) -> None:
 
     with whole_file(path) as temporary, h5py.File(temporary, "w") as file:
         places = locations.of_store(store)
-        file.attrs[_MARK] = __version__
+        file.attrs[_MARK], file.attrs[_STORE] = __version__, store.identity()
         for number, name, detected in store.detected():
             if detected.features is None:
                 continue
@@ -67,7 +68,7 @@ def write_matches(store: Store, path: Path) -> None:
     names = dict(store.images())
     sizes = {n: len(d.features or b"") // arrays.struct_type("asj_junction").itemsize for n, _, d in store.detected()}
     with whole_file(path) as temporary, h5py.File(temporary, "w") as file:
-        file.attrs[_MARK] = __version__
+        file.attrs[_MARK], file.attrs[_STORE] = __version__, store.identity()
         for one, two, matched in store.matched():
             if matched.matches is None:
                 continue
