@@ -56,6 +56,43 @@ def test_image_types(same: Any) -> None:
     assert corners(asj.detect(same(square()), preset="default")) == CORNERS
 
 
+@pytest.mark.parametrize("mode", ["1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", "CMYK", "YCbCr", "HSV", "I", "I;16", "F"])
+def test_images_of_pillow(tmp_path: Path, mode: str) -> None:
+    """Samples of a palette, hues and inks are no grey levels."""
+    from PIL import Image
+
+    gray = Image.fromarray(np.where(square() > 0, 255, 0).astype(np.uint8))
+    if mode == "P":
+        image = Image.fromarray(np.where(square() > 0, 3, 200).astype(np.uint8))  # numbers of a palette that say nothing
+        image.putpalette([255 if number == 3 else 0 for number in range(256) for _ in range(3)])
+    elif mode in ("I;16", "F"):
+        image = Image.fromarray(square().astype(np.uint16) * 257 if mode == "I;16" else square().astype(np.float32) / 255)
+    elif mode == "I":
+        image = Image.fromarray(square().astype(np.int32) * 257)
+    else:
+        image = gray.convert("P" if mode == "PA" else "RGB" if mode in ("CMYK", "YCbCr", "HSV", "RGBX") else mode).convert(mode)
+    assert image.mode == mode and corners(asj.detect(image, preset="default")) == CORNERS
+
+
+def test_images_of_pillow_are_as_their_files(tmp_path: Path, scene: Scene) -> None:
+    from PIL import Image
+
+    picture = Image.fromarray(scene[:200]).convert("RGB").quantize(64)
+    data = Image.Exif()
+    data[0x0112] = 6
+    picture.save(tmp_path / "turned.png", exif=data)
+    read = asj.read_image(tmp_path / "turned.png")
+    with Image.open(tmp_path / "turned.png") as file:
+        assert file.mode == "P"
+        found = asj.detect(file)
+        assert asj.plot(file, found).images[0].get_array().shape == read.shape
+    assert read.shape == (480, 200, 3) and (found.width, found.height) == (200, 480) and np.array_equal(found.image, read)
+    with pytest.raises(asj.ImageError, match="an image of mode La: "):
+        asj.detect(Image.new("La", (40, 30)))
+    with pytest.raises(asj.ImageError, match="16 bits"):
+        asj.detect(Image.fromarray(np.full((30, 40), 70000, np.int32)))
+
+
 def test_floats_need_a_white() -> None:
     bright = square().astype(float)
     with pytest.raises(asj.ImageError, match="white=255"):

@@ -232,7 +232,9 @@ def detect(
     region: tuple[int, int, int, int] | None = None,
     **options: object,
 ) -> Features:
-    """Finds the junctions of an image: an array of HxW, HxWx3 or HxWx4 (red, green, blue), uint8, uint16 or float (1.0 is white).
+    """Finds the junctions of an image: an array of HxW, HxWx3 or HxWx4 (red, green, blue), uint8, uint16 or float (1.0 is white); or an
+    image of Pillow, which is taken as :func:`asj.read_image` takes its file: converted by its mode, and upright where it has an EXIF
+    orientation, with locations in the upright image (:attr:`Features.image`).
 
     preset   "match" for features that are to be matched: weaker junctions too, since the matcher tells the false ones. "default"
              for junctions that are to be looked at; "paper" for the published method

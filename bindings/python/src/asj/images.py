@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from dataclasses import dataclass
 from typing import Any
 
@@ -32,9 +33,9 @@ def view(image: ArrayLike, white: float = 0.0) -> View:
     """HxW of uint8, uint16 or float (1.0 is white), or HxWx3 or HxWx4 of uint8, uint16 or float in the order red, green, blue.
 
     `white` is the value that means white, if it is not the type's: 1023 for a 10-bit camera in uint16. Floats far above 1 are refused
-    without it: most of them would be cut.
+    without it: most of them would be cut. An image of Pillow is taken as read() takes its file.
     """
-    pixels = np.asarray(image)
+    pixels = as_array(image)
     if pixels.dtype.kind in "USO":
         raise ImageError(f"not an array of pixels: {image!r:.60}; asj.read_image() reads files")
     if pixels.dtype == np.bool_:
@@ -92,6 +93,28 @@ def _deep(pixels: NDArray[Any]) -> NDArray[Any]:
     return pixels.astype(np.uint16)
 
 
+def as_array(image: Any) -> NDArray[Any]:
+    """The numbers of an image. Those of Pillow are converted by their mode, since the samples of most are no grey and no colours: numbers
+    of a palette, hues, inks."""
+    pillow = sys.modules.get("PIL.Image")  # where nobody has loaded it, this is no image of it
+    if pillow is not None and isinstance(image, pillow.Image):
+        try:
+            return _of_pillow(image)
+        except (OSError, ValueError, SyntaxError) as bad:
+            raise ImageError(f"an image of mode {image.mode}: {bad}") from bad
+    return np.asarray(image)
+
+
+def _of_pillow(image: Any) -> NDArray[Any]:
+    """Upright; gray, or red, green and blue."""
+    from PIL import ImageOps
+
+    upright = ImageOps.exif_transpose(image)
+    if upright.mode in ("F", "I") or upright.mode.startswith("I;16"):
+        return _deep(np.array(upright))
+    return np.array(upright.convert("L" if upright.mode in ("1", "L", "LA") else "RGB"))
+
+
 def read(path: str | os.PathLike[str]) -> NDArray[Any]:
     """An image file as an array, upright (its EXIF orientation is applied): HxW, or HxWx3 in the order red, green, blue; uint8, of
     gray files of more bits uint16 or float32.
@@ -99,15 +122,12 @@ def read(path: str | os.PathLike[str]) -> NDArray[Any]:
     Needs Pillow. Damaged files raise ImageError.
     """
     try:
-        from PIL import Image, ImageOps
+        from PIL import Image
     except ImportError as missing:  # pragma: no cover
         raise ImportError("asj.read_image() needs Pillow: pip install pillow") from missing
     try:
         with Image.open(path) as file:
-            upright = ImageOps.exif_transpose(file)
-            if upright.mode in ("F", "I") or upright.mode.startswith("I;16"):
-                return _deep(np.array(upright))
-            return np.array(upright.convert("L" if upright.mode in ("1", "L", "LA") else "RGB"))
+            return _of_pillow(file)
     except FileNotFoundError:
         raise
     except (OSError, ValueError, SyntaxError, MemoryError, Image.DecompressionBombError) as bad:
