@@ -12,11 +12,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from . import __version__, collection, errors
+from . import __version__, collection, errors, geometry, images
 from .collection import plan as plans
 from .collection.colmap import CAMERA_MODES
 from .collection.run import Dask, Processes
-from .geometry import MODELS
 from .options import DETECTOR, MATCHER
 
 
@@ -53,7 +52,7 @@ def _parser() -> argparse.ArgumentParser:
     work.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="detector", help="an option of the detector")
     work.add_argument("--match-set", action="append", default=[], metavar="NAME=VALUE", dest="matcher", help="an option of the matcher")
     work.add_argument(
-        "--geometry", choices=list(MODELS), default="none", help="estimate what relates the images of a pair, and let it decide which matches hold"
+        "--geometry", choices=list(geometry.MODELS), default="none", help="estimate what relates the images of a pair, and let it decide which matches hold"
     )
     work.add_argument(
         "--focal", default="exif", metavar="F|exif|estimate|none",
@@ -110,6 +109,24 @@ def _camera(arguments: argparse.Namespace) -> str:
     if arguments.focal != "exif":
         raise ValueError("--camera and --focal exclude each other")
     return word
+
+
+def _check_camera(plan: plans.Plan) -> None:
+    """Refuses a --camera whose principal point lies outside of an image; says where it is far from the middle of one."""
+    said = False
+    checked: set[tuple[int, int] | None] = {None}
+    _, _, cx, cy = plan.camera
+    for name in plan.images:
+        size = images.size(plan.folder / name)
+        if size is None or size in checked:
+            continue
+        checked.add(size)
+        cannot_be, why = geometry.doubt(cx, cy, *size)
+        if cannot_be:
+            raise ValueError(f"--camera: {why} ({name})")
+        if why and not said:
+            print(f"python -m asj: warning: --camera: {why} ({name})", file=sys.stderr)
+            said = True
 
 
 def _plan(arguments: argparse.Namespace) -> plans.Plan:
@@ -214,6 +231,8 @@ def _check_writer(path: Path, writer: str | None, store: Path, identity: str | N
 def _collect(arguments: argparse.Namespace) -> int:
     place = _check_outputs(arguments)
     plan = _plan(arguments)
+    if arguments.camera is not None:
+        _check_camera(plan)
     _check_replaced(arguments, place, plan)
     _stop_on_signals()  # here, since pycolmap has put its own in their places
     if arguments.hdf5:

@@ -146,6 +146,18 @@ def orientation(path: str | os.PathLike[str]) -> int:
     return value if 1 <= value <= 8 else 1
 
 
+def size(path: str | os.PathLike[str]) -> tuple[int, int] | None:
+    """Width and height of the upright image, from the head of the file; None where it cannot be read."""
+    from PIL import Image
+
+    try:
+        with Image.open(path) as file:
+            width, height = file.size
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        return None
+    return (height, width) if orientation(path) in (5, 6, 7, 8) else (width, height)
+
+
 def camera_name(path: str | os.PathLike[str]) -> str | None:
     """Make, model and focal lengths (on 35 mm film, and in mm) of the EXIF data as a line of text, which tells cameras apart as COLMAP's
     CameraMode.AUTO does; None where make, model or both focal lengths are missing."""

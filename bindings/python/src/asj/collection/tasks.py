@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import warnings
 from collections import OrderedDict
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,6 +48,7 @@ class Matched:
 
 def start(threads: int) -> None:
     """Called once in a worker process."""
+    warnings.filterwarnings("ignore", "the principal point")  # the command has said so, once
     context.set_current(context.Context(threads=threads))
 
 
