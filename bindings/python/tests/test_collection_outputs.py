@@ -117,6 +117,16 @@ def test_outputs_of_another_collection_stay(pair: Path, tmp_path: Path, capsys: 
     refused([str(pair), *every, "--store", str(first), "--resume"], "another collection", capsys)
 
 
+def test_protected_outputs_are_told_of_before_the_work(
+    pair: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("pycolmap")
+    (tmp_path / "x.db").touch(mode=0o444)
+    monkeypatch.setattr("asj.output._may_write", lambda path: False)  # root may write everything
+    refused([str(pair), "--colmap", str(tmp_path / "x.db"), "--overwrite"], "Permission denied", capsys)
+    assert not (tmp_path / "x.db.work").exists()
+
+
 def test_a_store_without_an_identity_gets_one(pair: Path, tmp_path: Path) -> None:
     words = ["collect", str(pair), "--limap", str(tmp_path / "lines"), "--jobs", "1", "--quiet"]
     assert main(words) == 0
@@ -278,7 +288,7 @@ def test_full_disk_names_the_file(pair: Path, tmp_path: Path, capsys: pytest.Cap
         refused([str(pair), "--colmap", str(tmp_path / "x.db")], "x.db: [database_sqlite.cc:1] SQLite error", capsys)
     finally:
         pycolmap.Database = keep
-    assert sorted(path.name for path in tmp_path.iterdir() if path.name.startswith((".x", "x.db"))) == ["x.db.work"]
+    assert sorted(path.name for path in tmp_path.iterdir() if path.name.startswith((".asj", "x.db"))) == ["x.db.work"]
 
 
 def test_cameras_that_cannot_be(pair: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import pickle
 import signal
 import threading
@@ -302,6 +303,28 @@ def test_files_keep_their_permissions(tmp_path: Path, scene: Scene) -> None:
     for refused in (loaded.without_image, lambda **options: loaded.save(path, **options)):
         with pytest.raises(asj.OptionError, match="other options"):
             refused(descriptor="sift")
+
+
+def test_protected_files_stay(tmp_path: Path, scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    features, path = asj.detect(scene), tmp_path / "kept.asjf"
+    path.write_bytes(b"of last year")
+    path.chmod(0o444)
+    if os.geteuid() == 0:  # root may write everything
+        monkeypatch.setattr("asj.output._may_write", lambda path: False)
+    with pytest.raises(PermissionError, match="kept.asjf'$"):
+        features.save(path)
+    assert path.read_bytes() == b"of last year" and list(tmp_path.iterdir()) == [path]
+    monkeypatch.undo()
+    path.chmod(0o644)
+    features.save(path)
+    assert path.stat().st_size > 1000
+
+
+def test_long_names(tmp_path: Path, scene: Scene) -> None:
+    path = tmp_path / ("n" * 250 + ".asjf")
+    features = asj.detect(scene)
+    features.save(path)
+    assert len(asj.load_features(path)) == len(features) and list(tmp_path.iterdir()) == [path]
 
 
 def test_short_words_for_long_arrays(scene: Scene) -> None:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from . import __version__, collection, errors, geometry, images
+from . import __version__, collection, errors, geometry, images, output
 from .collection import plan as plans
 from .collection.colmap import CAMERA_MODES
 from .collection.run import Dask, Processes
@@ -210,6 +210,7 @@ def _check_replaced(arguments: argparse.Namespace, store: Path, plan: plans.Plan
             raise FileExistsError(f"{path} is a photograph of the collection")
         if path.resolve() == store.resolve():
             raise FileExistsError(f"{path} is the store of this run")
+        output.refuse_protected(path)
         if path.exists() and not arguments.overwrite:
             _check_writer(path, written_from(path), store, identity)
     if arguments.limap and not arguments.overwrite:
