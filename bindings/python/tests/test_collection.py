@@ -56,6 +56,29 @@ def test_names_and_pairs(photographs: Path, tmp_path: Path) -> None:
             read_pairs(listed, names)
 
 
+def test_what_is_left_out_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """By their ending, or since outputs cannot have their names."""
+    folder = tmp_path / os.fsdecode(b"photos \xe9")
+    folder.mkdir()
+    (folder / "a.png").write_bytes(b"no image")
+    Image.fromarray(np.full((90, 120), 128, np.uint8)).save(folder / "b.PNG")
+    for name in ("c.gif", "d.GIF", "notes", "e.txt"):
+        (folder / name).touch()
+    words = ["collect", str(folder), "--limap", str(tmp_path / "limap"), "--jobs", "1", "--quiet"]
+    assert main([*words, "--overwrite"]) == 1
+    said = capsys.readouterr().out.splitlines()
+    assert said[1].startswith("  a.png: ") and "photos \\xe9/a.png" in said[1].replace("udce9", "xe9")
+    assert said[2:] == ["not looked at, by their ending: 2 .gif, 1 without, 1 .txt"]
+    (folder / "a.png").unlink()
+    assert main([*words, "--update"]) == 0
+    shutil.copy(folder / "b.PNG", folder / os.fsdecode(b"c\xff.png"))
+    assert main([*words, "--resume"]) == 1
+    assert capsys.readouterr().out.splitlines()[-2:] == ["  c\\xff.png: its name is not UTF-8, as outputs want it: rename it", said[2]]
+    (folder / "b.PNG").unlink()
+    assert main([*words, "--resume"]) == 2
+    assert "no images there; c\\xff.png: its name is not UTF-8" in capsys.readouterr().err
+
+
 def test_results(done: Path) -> None:
     images, pairs = content(done)
     assert [row[1] for row in images] == ["done", "done", "failed", "done", "done", "done"]  # type: ignore[attr-defined]

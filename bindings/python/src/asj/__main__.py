@@ -129,10 +129,10 @@ def _check_camera(plan: plans.Plan) -> None:
             said = True
 
 
-def _plan(arguments: argparse.Namespace) -> plans.Plan:
-    names = plans.find_images(arguments.folder)
+def _plan(arguments: argparse.Namespace, found: plans.Found) -> plans.Plan:
+    names = found.images
     if not names:
-        raise ValueError(f"{arguments.folder}: no images there")
+        raise ValueError("; ".join([f"{arguments.folder}: no images there", *map(str.strip, _left_out(found))]))
     if arguments.pairs:
         pairs = plans.read_pairs(arguments.pairs, names)
     elif arguments.sequential is not None:
@@ -145,6 +145,12 @@ def _plan(arguments: argparse.Namespace) -> plans.Plan:
         arguments.folder, names, pairs, _options(arguments.detector, DETECTOR, "match"), _options(arguments.matcher, MATCHER, "default"),
         arguments.geometry, _focal(arguments),
     )  # fmt: skip
+
+
+def _left_out(found: plans.Found) -> list[str]:
+    """Lines about the files that are not looked at."""
+    lines = [f"  {name}: its name is not UTF-8, as outputs want it: rename it" for name in found.misnamed]
+    return [*lines, *filter(None, [found.left_out()])]
 
 
 def _progress(what: str, done: int, total: int, left: float) -> None:
@@ -231,7 +237,8 @@ def _check_writer(path: Path, writer: str | None, store: Path, identity: str | N
 
 def _collect(arguments: argparse.Namespace) -> int:
     place = _check_outputs(arguments)
-    plan = _plan(arguments)
+    found = plans.look_in(arguments.folder)
+    plan = _plan(arguments, found)
     if arguments.camera is not None:
         _check_camera(plan)
     _check_replaced(arguments, place, plan)
@@ -254,8 +261,8 @@ def _collect(arguments: argparse.Namespace) -> int:
         store = open_things.enter_context(open_store(place, plan))
         summary = collection.collect(plan, store, workers, progress)
         _write(arguments, store)
-    print(summary)
-    return 1 if summary.failed_images or summary.failed_pairs else 0
+    print("\n".join([str(summary), *_left_out(found)]))
+    return 1 if summary.failed_images or summary.failed_pairs or found.misnamed else 0
 
 
 class _Stopped(KeyboardInterrupt):
@@ -282,7 +289,7 @@ def main(words: Sequence[str] | None = None) -> int:
         print("interrupted; --resume goes on", file=sys.stderr)
         return 128 + (stopped.args[0] if isinstance(stopped, _Stopped) else signal.SIGINT)
     except (errors.Error, collection.StoreError, OSError, ValueError, ImportError, sqlite3.Error) as bad:
-        print(f"python -m asj: {bad}", file=sys.stderr)
+        print(f"python -m asj: {bad}".encode("utf-8", "backslashreplace").decode(), file=sys.stderr)
         return 2
 
 

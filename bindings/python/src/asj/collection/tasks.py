@@ -131,4 +131,5 @@ def _keywords(options: dict[str, str]) -> dict[str, Any]:
 
 
 def _line(bad: BaseException) -> str:
-    return (str(bad) or type(bad).__name__).replace("\n", "; ")
+    line = (str(bad) or type(bad).__name__).replace("\n", "; ")
+    return line.encode("utf-8", "backslashreplace").decode()  # the store has text; a folder's name need not be UTF-8
