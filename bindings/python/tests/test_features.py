@@ -128,6 +128,14 @@ def test_views_are_not_copied(scene: Scene) -> None:
     assert np.shares_memory(asj.detect(part[::-1]).image, padded)
 
 
+def test_a_single_row_or_column() -> None:
+    """numpy gives them any stride."""
+    image = np.arange(60, dtype=np.uint8).reshape(6, 10)
+    for part in (image[2:3], image.T[3:4], image[:, 4:5], image[::-1][:1], np.lib.stride_tricks.as_strided(image, (1, 10), (1, 1)),
+                 np.lib.stride_tricks.as_strided(image, (10, 1), (1, 77)), np.broadcast_to(image[:1], (3, 10))):
+        assert len(asj.detect(part)) == 0 and np.array_equal(asj.detect(part).image, part)
+
+
 def test_colour_order() -> None:
     image = np.zeros((200, 200, 3), np.uint8)
     image[:, :, 2] = square() // 2  # blue is dark: 29 of 256

@@ -63,7 +63,7 @@ def view(image: ArrayLike, white: float = 0.0) -> View:
     record.format = _GRAY[pixels.dtype.name] if pixels.ndim == 2 else _COLOUR[pixels.shape[2]]
     record.height, record.width = pixels.shape[:2]
     record.white = white
-    record.stride = pixels.strides[0]
+    record.stride = pixels.strides[0] if record.height > 1 else 0  # that of a single row says nothing
     return View(pixels, record, record.width, record.height)
 
 
@@ -72,7 +72,7 @@ def _fits(pixels: NDArray[Any]) -> bool:
     channels = 1 if pixels.ndim == 2 else pixels.shape[2]
     inner = pixels.strides[1] == channels * pixels.itemsize and (pixels.ndim == 2 or pixels.strides[2] == pixels.itemsize)
     row = pixels.shape[1] * channels * pixels.itemsize
-    return inner and abs(pixels.strides[0]) >= row and pixels.strides[0] % pixels.itemsize == 0
+    return inner and (pixels.shape[0] == 1 or (abs(pixels.strides[0]) >= row and pixels.strides[0] % pixels.itemsize == 0))
 
 
 def _luma(pixels: NDArray[Any]) -> NDArray[Any]:
