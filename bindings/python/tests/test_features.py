@@ -283,6 +283,30 @@ def test_numbers_of_numpy() -> None:
         asj.detect(square(), epsilon=b"2")
 
 
+def test_words_that_c_would_cut() -> None:
+    for options in ({"epsilon": "2\0, and more"}, {"epsilon\0": 2}, {"epsilon": "\udcff"}, {"\udcff": 2}):
+        with pytest.raises(asj.OptionError, match="NUL|UTF-8"):
+            asj.detect(square(), **options)  # type: ignore[arg-type]
+    for device in ("gpu\0", "\udcff"):
+        with pytest.raises(asj.OptionError, match="device: .*(NUL|UTF-8)"):
+            asj.Context(device=device)
+
+
+def test_what_is_no_context() -> None:
+    for threads in (10**12, -(10**12)):
+        with pytest.raises(asj.OptionError, match="threads is -?10000"):
+            asj.Context(threads=threads)
+    features = asj.detect(square())
+    calls = (
+        lambda: asj.detect(square(), context=5), lambda: asj.match(features, features, context=0), lambda: asj.lines(features, context="cpu"),
+        lambda: asj.vanishing_points(features, context=asj.Context), lambda: features.without_image(context=5), lambda: asj.set_current(5),
+        lambda: asj.match_images(square(), square(), context=5),
+    )  # fmt: skip
+    for call in calls:
+        with pytest.raises(TypeError, match="an asj.Context is wanted, not"):
+            call()
+
+
 def test_a_callback_that_calls_its_context() -> None:
     context = asj.Context(progress=lambda stage, done: len(asj.detect(square(), context=context)) < 0)
     with pytest.raises(asj.Error):

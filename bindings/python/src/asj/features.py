@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import arrays, images
 from ._native import ffi, lib
-from .context import Context, current
+from .context import Context, current, given
 from .errors import ArgumentError, FormatError, ImageError, OptionError
 from .options import DETECTOR, MATCHER
 from .output import whole_file
@@ -73,7 +73,7 @@ class Features:
     def without_image(self, *, preset: str = "default", context: Context | None = None, **options: object) -> Features:
         """What matching needs, and no more: to keep many, and to send them elsewhere. `options` as for :meth:`save`."""
         self._check_options(preset, options)
-        return DescribedFeatures(self.described(MATCHER.fill(preset, options), context or current()))
+        return DescribedFeatures(self.described(MATCHER.fill(preset, options), given(context)))
 
     def save(self, path: str | os.PathLike[str], *, preset: str = "default", context: Context | None = None, **options: object) -> None:
         """Writes a file of features (.asjf), all that matching needs: :func:`asj.load_features` and `asj-cli match` read it.
@@ -81,7 +81,7 @@ class Features:
         options   those of the matcher that concern one image, for instance descriptor="sift"
         """
         self._check_options(preset, options)
-        handle = self.described(MATCHER.fill(preset, options), context or current())
+        handle = self.described(MATCHER.fill(preset, options), given(context))
         size = lib.asj_features_save(handle, ffi.NULL, 0)
         data = ffi.new("char[]", size)
         lib.asj_features_save(handle, data, size)
@@ -265,7 +265,7 @@ def detect(
     allowed = images.view(mask) if mask is not None else None  # lives until the call has ended
     part.mask = allowed.pointer if allowed else ffi.NULL
     place = ffi.new("asj_detection **")
-    (context or current()).call(lib.asj_detect_region, view.pointer, part, record, place)
+    given(context).call(lib.asj_detect_region, view.pointer, part, record, place)
     found = ffi.gc(place[0], _free)
     junctions = arrays.view(found.junctions, found.junction_count, "asj_junction", found)
     l_junctions = arrays.view(found.l_junctions, found.l_junction_count, "asj_l_junction", found)

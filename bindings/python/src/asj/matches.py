@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import arrays, images
 from ._native import ffi, lib
-from .context import Context, current
+from .context import Context, given
 from .errors import ArgumentError
 from .features import Features, detect, expect_features  # noqa: F401 (detect: the example of match())
 from .geometry import Camera, Geometry
@@ -213,7 +213,7 @@ def match(
     record = MATCHER.fill(preset, options, _KEYWORDS)
     cameras = (camera1, camera1 if camera2 is None else camera2)
     fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in (features1, features2)], find_focal, focal_sd)
-    context = context or current()
+    context = given(context)
     place = ffi.new("asj_match_result **")
     one, two = features1.described(record, context), features2.described(record, context)
     context.call(lib.asj_match_features, one, two, record, place)
@@ -258,7 +258,7 @@ def match_images(
     fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in views], find_focal, focal_sd)
     detector = DETECTOR.fill("paper" if preset == "paper" else "match", {})
     place = ffi.new("asj_match_result **")
-    (context or current()).call(
+    given(context).call(
         lib.asj_match_images, views[0].pointer, views[1].pointer, factors, detector, record, place
     )
     return Matches(ffi.gc(place[0], _free), None)

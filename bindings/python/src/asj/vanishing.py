@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import arrays
 from ._native import ffi, lib
-from .context import Context, current
+from .context import Context, given
 from .features import Features, expect_features
 from .geometry import Camera, numbers
 
@@ -64,7 +64,7 @@ def vanishing_points(
         place = options.camera
         place.fx, place.fy, place.cx, place.cy = numbers(camera, features.width, features.height, stacklevel=3)
     source = arrays.pointer(features.junctions, "asj_junction")
-    (context or current()).call(lib.asj_find_vanishing_points, source, len(features.junctions), options, result)
+    given(context).call(lib.asj_find_vanishing_points, source, len(features.junctions), options, result)
     points = [result.points[i] for i in range(result.count)]
     sources = {lib.ASJ_FOCAL_UNKNOWN: "unknown", lib.ASJ_FOCAL_GIVEN: "given", lib.ASJ_FOCAL_FOUND: "found"}
     known = result.focal_source != lib.ASJ_FOCAL_UNKNOWN
