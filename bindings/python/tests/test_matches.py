@@ -211,7 +211,11 @@ def test_camera_that_only_turns() -> None:
 
 
 def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:
-    assert asj.match(*pair).geometry is None and not asj.match(*pair).probability.any()
+    plain = asj.match(*pair)
+    assert plain.geometry is None and plain.probability.shape == (len(plain),) and plain.probability.dtype == np.float32
+    assert np.isnan(plain.probability).all() and not plain.probability.flags.writeable
+    apart = asj.match(pair[0], asj.detect(panels(seed=9)), geometry="essential", camera1=500)
+    assert not apart.geometry and not apart.probability.any()
     found = asj.match(*pair, geometry="homography")
     assert found.geometry and found.geometry.model == "homography" and found.geometry.log10_nfa < -7
     moved = found.geometry.matrix @ (100, 50, 1)
