@@ -117,6 +117,19 @@ def test_outputs_of_another_collection_stay(pair: Path, tmp_path: Path, capsys: 
     refused([str(pair), *every, "--store", str(first), "--resume"], "another collection", capsys)
 
 
+@pytest.mark.parametrize(("module", "words"), [
+    ("PIL.Image", ["--limap", "x"]), ("pycolmap", ["--colmap", "x"]), ("h5py", ["--hdf5", "x"]), ("distributed", ["--limap", "x", "--dask", "tcp://nowhere:1"]),
+])  # fmt: skip
+def test_what_is_missing_is_told_before_the_work(
+    pair: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], module: str, words: list[str]
+) -> None:
+    """A store would block the next try."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, module, None)
+    refused([str(pair), *words], f"this needs {module.replace('PIL.Image', 'Pillow')}: install it", capsys)
+    assert [path.name for path in tmp_path.iterdir()] == ["pair"]
+
+
 def test_protected_outputs_are_told_of_before_the_work(
     pair: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -184,10 +184,13 @@ def _check_outputs(arguments: argparse.Namespace) -> Path:
         raise ValueError("--camera-mode changes nothing without --colmap")
     if arguments.camera_mode != "auto" and arguments.camera is not None:
         raise ValueError("--camera is one camera of all images: --camera-mode changes nothing")
+    errors.extra("PIL.Image", "images")
     if arguments.colmap:
         errors.extra("pycolmap", "colmap")
     if arguments.hdf5:
         errors.extra("h5py", "hdf5")
+    if arguments.dask:
+        errors.extra("distributed", "dask")
     for path in outputs:
         if path.exists() and path.is_dir() == (path == arguments.colmap):
             raise FileExistsError(f"{path} is there, and is {'a folder' if path.is_dir() else 'no folder'}")

@@ -62,7 +62,8 @@ def extra(module: str, name: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError as missing:
-        raise ImportError(f"this needs {module.partition('.')[0]}: install it, or this package with its extra [{name}]") from missing
+        package = module.partition(".")[0].replace("PIL", "Pillow")
+        raise ImportError(f"this needs {package}: install it, or this package with its extra [{name}]") from missing
 
 
 def as_bytes(word: str, what: str) -> bytes:
