@@ -318,6 +318,25 @@ def test_bad_use(done: Path, photographs: Path, tmp_path: Path, capsys: pytest.C
         Store.create(done, plan)
 
 
+@pytest.mark.parametrize(("table", "column", "begin", "instead", "what"), [
+    ("images", "features", 1001, b"", "junctions of a.png"), ("images", "features", 20, b"\xff" * 4, "junctions of a.png"),
+    ("pairs", "matches", 101, b"", "matches of a.png and b.png"), ("pairs", "lines", 6, b"", "matches of a.png and b.png"),
+])  # fmt: skip
+def test_damaged_results(
+    done: Path, photographs: Path, capsys: pytest.CaptureFixture[str], table: str, column: str, begin: int, instead: bytes, what: str
+) -> None:
+    """Cut, or with a number of branches that cannot be."""
+    with contextlib.closing(sqlite3.connect(done)) as connection, connection:
+        data = connection.execute(f"SELECT {column} FROM {table} WHERE id = 1").fetchone()[0]
+        damaged = data[:begin] + (instead + data[begin + len(instead) :] if instead else b"")
+        connection.execute(f"UPDATE {table} SET {column} = ? WHERE id = 1", (damaged,))
+    capsys.readouterr()
+    for output in ("--limap", "--colmap", "--hdf5"):
+        words = [output, f"{done.parent / 'limap'}{'' if output == '--limap' else output}", "--store", str(done), "--resume", "--quiet"]
+        assert main(["collect", str(photographs), *words]) == 2
+        assert f"limap.work is damaged: the {what} are no whole records" in capsys.readouterr().err
+
+
 def test_full_disk(photographs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     if not Path("/dev/full").exists():
         pytest.skip("no /dev/full here")

@@ -28,7 +28,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import arrays
 from ..output import whole_file
 from . import locations, orientation
 from .store import Store
@@ -134,7 +133,7 @@ def _write_geometries(store: Store, pycolmap: Any, path: Path) -> None:
         for one, two, matched in store.matched():
             found = json.loads(matched.geometry) if matched.geometry and matched.matches else None
             if found and found["status"] == "accepted" and found["model"] != "homography":
-                records = np.frombuffer(matched.matches or b"", arrays.struct_type("asj_junction_match"))
+                records = matched.junction_matches
                 pairs = np.stack([records["junction1"], records["junction2"]], axis=1)
                 geometry = _geometry(pycolmap, found, pairs, images[one], images[two])
                 if database.exists_two_view_geometry(one, two):
@@ -249,7 +248,7 @@ def _image(
     database: Any, pycolmap: Any, number: int, name: str, camera: int, detected: Detected, moved: NDArray[np.float32] | None
 ) -> None:
     database.write_image(pycolmap.Image(image_id=number, name=name, camera_id=camera), use_image_id=True)
-    points = key_points(np.frombuffer(detected.features or b"", arrays.struct_type("asj_junction")))
+    points = key_points(detected.junctions)
     if moved is not None:
         points[:, :2] = moved + np.float32(0.5)
     matrix = _to_stored(detected)

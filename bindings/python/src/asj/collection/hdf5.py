@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import __version__, arrays
+from .. import __version__
 from ..output import whole_file
 from . import locations, orientation
 from .store import Store
@@ -53,7 +53,7 @@ def write_features(store: Store, path: Path) -> None:
         for number, name, detected in store.detected():
             if detected.features is None:
                 continue
-            junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
+            junctions = detected.junctions
             group = file.create_group(name)
             size = detected.width, detected.height
             group["keypoints"] = orientation.turn(orientation.to_stored(detected.orientation, *size), places[number])
@@ -66,13 +66,13 @@ def write_matches(store: Store, path: Path) -> None:
     import h5py
 
     names = dict(store.images())
-    sizes = {n: len(d.features or b"") // arrays.struct_type("asj_junction").itemsize for n, _, d in store.detected()}
+    sizes = {n: len(d.junctions) for n, _, d in store.detected()}
     with whole_file(path) as temporary, h5py.File(temporary, "w") as file:
         file.attrs[_MARK], file.attrs[_STORE] = __version__, store.identity()
         for one, two, matched in store.matched():
             if matched.matches is None:
                 continue
-            records = np.frombuffer(matched.matches, arrays.struct_type("asj_junction_match"))
+            records = matched.junction_matches
             matches = np.full(sizes[one], -1, np.int32)
             scores = np.zeros(sizes[one], np.float32)
             matches[records["junction1"]] = records["junction2"]

@@ -16,7 +16,6 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import arrays
 from ..features import segments_of
 from ..output import whole_file
 from . import orientation
@@ -68,7 +67,7 @@ def write(store: Store, folder: Path) -> None:
         if detected.features is None:
             continue
         names.append(f"{number} {json.dumps(name) if len(name.splitlines()) > 1 else name}\n")
-        junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
+        junctions = detected.junctions
         segments, branches = segments_of(junctions)
         segments = orientation.turn(orientation.to_stored(detected.orientation, detected.width, detected.height), segments)
         written.add(path := folder / "segments" / f"segments_{number}.txt")
@@ -83,7 +82,7 @@ def write(store: Store, folder: Path) -> None:
     for one, two, matched in store.matched():
         if matched.lines is None:
             continue
-        lines = np.frombuffer(matched.lines, np.uint32).reshape(-1, 2)
+        lines = matched.segment_indices
         written.add(path := folder / "matches" / f"matches_{one}_{two}.txt")
         with whole_file(path) as temporary:
             temporary.write_text("".join(f"{i} {j}\n" for i, j in lines.tolist()), encoding="ascii")

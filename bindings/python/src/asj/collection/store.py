@@ -267,21 +267,32 @@ class Store:
         for number, name, error, width, height, focal, features, orientation, camera in self._connection.execute(
             "SELECT id, name, error, width, height, focal, features, orientation, camera FROM images WHERE state <> 'waiting' ORDER BY id"
         ):
-            yield number, name, Detected(error, width or 0, height or 0, focal, features, orientation or 1, camera)
+            detected = Detected(error, width or 0, height or 0, focal, features, orientation or 1, camera)
+            self._refuse_damaged(detected, name)
+            yield number, name, detected
 
     def features(self, number: int) -> Detected:
         """The result of one image."""
-        row = self._connection.execute(
-            "SELECT error, width, height, focal, features, orientation, camera FROM images WHERE id = ?", (number,)
+        name, *row = self._connection.execute(
+            "SELECT name, error, width, height, focal, features, orientation, camera FROM images WHERE id = ?", (number,)
         ).fetchone()
-        return Detected(*row)
+        detected = Detected(*row)
+        self._refuse_damaged(detected, name)
+        return detected
+
+    def _refuse_damaged(self, result: Detected | Matched, *names: str) -> None:
+        if result.is_damaged:
+            what = "junctions" if isinstance(result, Detected) else "matches"
+            raise StoreError(f"{self.path} is damaged: the {what} of {' and '.join(names)} are no whole records; delete it to begin anew")
 
     def matched(self) -> Iterator[tuple[int, int, Matched]]:
         """Numbers of both images and result of every pair that has one, ordered by the images."""
         for one, two, error, matches, lines, geometry in self._connection.execute(
             "SELECT image1, image2, error, matches, lines, geometry FROM pairs WHERE state <> 'waiting' ORDER BY image1, image2"
         ):
-            yield one, two, Matched(error, matches, lines, geometry)
+            matched = Matched(error, matches, lines, geometry)
+            self._refuse_damaged(matched, *(name for number, name in (self.images() if matched.is_damaged else []) if number in (one, two)))
+            yield one, two, matched
 
     def counts(self, table: str) -> dict[str, int]:
         """How many images or pairs are in which state."""

@@ -12,8 +12,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .. import context, errors, images
+from .. import arrays, context, errors, images
+from .._native import lib
 from ..features import DescribedFeatures, Features, detect
 from ..geometry import Geometry
 from ..matches import Matches, match
@@ -35,6 +37,18 @@ class Detected:
     orientation: int = 1  # of the stored pixels: orientation.py
     camera: str | None = None  # images.camera_name()
 
+    @property
+    def junctions(self) -> NDArray[Any]:
+        """(N,) records of the library's asj_junction, as Features.junctions; none of an image that failed."""
+        return np.frombuffer(self.features or b"", arrays.struct_type("asj_junction"))
+
+    @property
+    def is_damaged(self) -> bool:
+        """Whether the records cannot be what was saved."""
+        if len(self.features or b"") % arrays.struct_type("asj_junction").itemsize:
+            return True
+        return bool((self.junctions["branch_count"] > lib.ASJ_MAX_BRANCHES).any() or (self.junctions["branch_count"] < 0).any())
+
 
 @dataclass(frozen=True)
 class Matched:
@@ -44,6 +58,21 @@ class Matched:
     matches: bytes | None
     lines: bytes | None
     geometry: str | None
+
+    @property
+    def junction_matches(self) -> NDArray[Any]:
+        """(K,) records of the library's asj_junction_match, as Matches.matches; none of a pair that failed."""
+        return np.frombuffer(self.matches or b"", arrays.struct_type("asj_junction_match"))
+
+    @property
+    def segment_indices(self) -> NDArray[np.uint32]:
+        """(S, 2) which branches match, as Matches.segment_indices("cut")."""
+        return np.frombuffer(self.lines or b"", np.uint32).reshape(-1, 2)
+
+    @property
+    def is_damaged(self) -> bool:
+        """Whether the records cannot be what was saved."""
+        return bool(len(self.matches or b"") % arrays.struct_type("asj_junction_match").itemsize or len(self.lines or b"") % 8)
 
 
 def start(threads: int) -> None:
