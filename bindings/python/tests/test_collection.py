@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import os
 import random
+import re
 import shutil
 import sqlite3
 import subprocess
@@ -13,6 +14,7 @@ import sys
 import time
 from pathlib import Path
 
+import asj
 import numpy as np
 import pytest
 from asj.__main__ import main
@@ -335,6 +337,39 @@ def test_damaged_results(
         words = [output, f"{done.parent / 'limap'}{'' if output == '--limap' else output}", "--store", str(done), "--resume", "--quiet"]
         assert main(["collect", str(photographs), *words]) == 2
         assert f"limap.work is damaged: the {what} are no whole records" in capsys.readouterr().err
+
+
+def test_the_example_of_the_readme(photographs: Path, tmp_path: Path) -> None:
+    """As it stands there, in a folder with photos/."""
+    pytest.importorskip("pycolmap")
+    (photographs / "broken.png").unlink()
+    photographs.rename(tmp_path / "photos")
+    text = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+    run, read = (block for block in re.findall("```python\n(.*?)```", text, re.S) if "Store." in block)
+    (tmp_path / "run.py").write_text(run)
+    (tmp_path / "read.py").write_text("from pathlib import Path\nfrom asj.collection import Store\n" + read)
+    result = subprocess.run([sys.executable, "run.py"], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert "5 images, 10 pairs in" in result.stdout and (tmp_path / "scene.db").exists()
+    lines = subprocess.run([sys.executable, "read.py"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout.splitlines()
+    assert re.fullmatch(r"1 a.png \d\d+ 480 360", lines[0]) and len(lines) > 5 + 3 and lines[5].startswith("a.png ")
+    with Store.read(tmp_path / "scene.work") as store:
+        _, name, image = next(store.detected())
+        assert image.features is not None
+        again = asj.Features.from_records(asj.read_image(tmp_path / "photos" / name), image.features)
+        assert np.array_equal(again.junctions, image.junctions) and len(again) == len(image.junctions)
+
+
+def test_stores_to_read(done: Path, tmp_path: Path) -> None:
+    with Store.read(done) as store:
+        assert len(list(store.detected())) == 6 and len(list(store.matched())) == 10
+    (tmp_path / "junk").write_bytes(b"this is no database" * 100)
+    for path, why in ((tmp_path / "nothing", "is not there"), (tmp_path / "junk", "file is not a database")):
+        with pytest.raises(StoreError, match=why):
+            Store.read(path)
+    with contextlib.closing(sqlite3.connect(done)) as connection, connection:
+        connection.execute("UPDATE about SET value = 'asj-collection-0' WHERE key = 'format'")
+    with pytest.raises(StoreError, match="asj-collection-0, not"):
+        Store.read(done)
 
 
 def test_full_disk(photographs: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -98,6 +98,24 @@ class Store:
         return None, len(plan.images)
 
     @classmethod
+    def read(cls, path: Path) -> Store:
+        """The store of any work, to read its results: detected(), matched(), failures()."""
+        if not cls.is_there(path):
+            raise StoreError(f"{path} is not there")
+        connection = _connect(path)
+        try:
+            found = connection.execute("SELECT value FROM about WHERE key = 'format'").fetchone()
+            if not found or found[0] != _FORMAT:
+                raise StoreError(f"{path} is of another version of stores: {found[0] if found else 'none is told'}, not {_FORMAT}")
+        except sqlite3.DatabaseError as bad:
+            connection.close()
+            raise StoreError(f"{path} is no store of a collection: {bad}") from bad
+        except BaseException:
+            connection.close()
+            raise
+        return cls(path, connection)
+
+    @classmethod
     def resume(cls, path: Path, plan: Plan) -> Store:
         """The store of the same work, with what has been done."""
         store = cls._open(path, plan)
