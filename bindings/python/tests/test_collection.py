@@ -20,7 +20,9 @@ import pytest
 from asj.__main__ import main
 from asj.arrays import struct_type
 from asj.collection import Plan, Store, StoreError, all_pairs, find_images, read_pairs
+from asj.collection.limap import merge
 from asj.collection.locations import of_store
+from asj.features import segments_of
 from PIL import Image
 
 MODULE = [sys.executable, "-m", "asj", "collect"]
@@ -278,9 +280,38 @@ def test_limap(done: Path, tmp_path: Path) -> None:
     assert int(first[0]) == len(first) - 1
     one, two = (np.array([line.split() for line in lines[1:]], float) for lines in (first, second))
     pairs = np.array([line.split() for line in (tmp_path / "limap" / "matches" / "matches_1_2.txt").read_text().splitlines()], int)
-    moved = two[pairs[:, 1], :2] - one[pairs[:, 0], :2]
-    turned = np.arctan2(*(two[pairs[:, 1], 2:4] - two[pairs[:, 1], :2]).T) - np.arctan2(*(one[pairs[:, 0], 2:4] - one[pairs[:, 0], :2]).T)
+    first_end, begin, end = one[pairs[:, 0], :2], two[pairs[:, 1], :2], two[pairs[:, 1], 2:4]
+    swapped = np.linalg.norm(begin - first_end - (6, 4), axis=1) > np.linalg.norm(end - first_end - (6, 4), axis=1)  # either order
+    moved = np.where(swapped[:, None], end, begin) - first_end
+    turned = np.arctan2(*(end - begin).T) - np.arctan2(*(one[pairs[:, 0], 2:4] - first_end).T)
     assert len(pairs) > 30 and np.mean(np.linalg.norm(moved - (6, 4), axis=1) < 1.5) > 0.9 and np.median(np.abs(np.sin(turned))) < 0.02
+
+
+def test_limap_has_each_edge_once(done: Path, tmp_path: Path) -> None:
+    lines = {n: np.loadtxt(tmp_path / "limap" / "segments" / f"segments_{n}.txt", skiprows=1) for n in (1, 2, 4, 5, 6)}
+    with Store.read(done) as store:
+        detected = {number: image.junctions for number, _, image in store.detected() if image.error is None}
+        branches = {number: segments_of(junctions) for number, junctions in detected.items()}
+        matched = {(one, two): pair.segment_indices for one, two, pair in store.matched()}
+    assert detected.keys() == lines.keys()
+    for number, (segments, records) in branches.items():
+        kept, places = merge(segments, records["log10_nfa"])
+        written = lines[number][:, :4].reshape(-1, 2, 2)
+        assert len(kept) == len(written) < 0.75 * len(segments)
+        own = written[places]  # of each branch: both its ends are there
+        apart = np.minimum(*(np.linalg.norm(segments - ends, axis=2).max(axis=1) for ends in (own, own[:, ::-1])))
+        assert apart.max() <= 1.001 and (lines[number][places, 4] >= -records["log10_nfa"] - 1e-4).all()
+        ends = np.linalg.norm(written[:, None] - np.stack([written, written[:, ::-1]])[:, None, :], axis=-1).max(axis=-1).min(axis=0)
+        assert (ends + 9 * np.eye(len(written)) > 1).all()  # none twice
+    of_image = {n: np.load(tmp_path / "limap" / "matches" / f"matches_{n}.npy", allow_pickle=True).item() for n in lines}
+    for (one, two), pairs in matched.items():
+        places_one, places_two = (merge(branches[n][0], branches[n][1]["log10_nfa"])[1] for n in (one, two))
+        expected = {(places_one[i], places_two[j]) for i, j in pairs}
+        text = (tmp_path / "limap" / "matches" / f"matches_{one}_{two}.txt").read_text().splitlines()
+        assert {tuple(map(int, line.split())) for line in text} == expected and len(text) == len(expected)
+        assert of_image[one][two].tolist() == [[int(word) for word in line.split()] for line in text]
+        assert np.array_equal(of_image[two][one], of_image[one][two][:, ::-1])
+    assert all(neighbours.keys() == lines.keys() - {n} for n, neighbours in of_image.items())
 
 
 def test_bad_use(done: Path, photographs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

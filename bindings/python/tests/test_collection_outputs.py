@@ -93,7 +93,7 @@ def test_outputs_of_another_collection_stay(pair: Path, tmp_path: Path, capsys: 
         return {path: path.read_bytes() for place in outputs.values() for path in (place, *place.rglob("*")) if path.is_file()}
 
     before = content()
-    assert len(before) == 1 + 2 + 5
+    assert len(before) == 1 + 2 + 7
     for name, path in outputs.items():
         for folder in (other, pair):
             refused([str(folder), name, str(path), "--store", str(second)], "another collection has written it, not that of", capsys)
@@ -108,7 +108,7 @@ def test_outputs_of_another_collection_stay(pair: Path, tmp_path: Path, capsys: 
     assert main(["collect", str(pair), *every, *run, "--store", str(first), "--update"]) == 0
     assert main(["collect", str(other), *every, *run, "--store", str(second), "--overwrite"]) == 0
     assert main(["collect", str(other), *every, *run, "--store", str(second), "--resume"]) == 0
-    assert sorted(path.name for path in outputs["--limap"].rglob("*.txt")) == ["images.txt", "segments_1.txt", "store.txt"]
+    assert sorted(path.name for path in outputs["--limap"].rglob("*.*")) == ["images.txt", "matches_1.npy", "segments_1.txt", "store.txt"]
     with h5py.File(tmp_path / "h5" / "features.h5") as features:
         assert list(features) == ["c.png"]  # what reads them sees no group more
     database = pycolmap.Database.open(tmp_path / "x.db")

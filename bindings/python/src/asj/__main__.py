@@ -37,7 +37,7 @@ def _parser() -> argparse.ArgumentParser:
         "length and size, any other image has its own; single: all; per-folder: those of a folder; per-image: none",
     )  # fmt: skip
     outputs.add_argument("--hdf5", type=Path, metavar="FOLDER", help="features.h5 and matches.h5 as hloc reads them (needs h5py)")
-    outputs.add_argument("--limap", type=Path, metavar="FOLDER", help="line segments as LIMAP reads them, their matches as text")
+    outputs.add_argument("--limap", type=Path, metavar="FOLDER", help="line segments and their matches as LIMAP reads them, matches also as text")
     work = collect.add_argument_group("work")
     work.add_argument("--store", type=Path, metavar="FILE", help="what has been done so far (default: beside the first output)")
     again = work.add_mutually_exclusive_group()
