@@ -9,6 +9,7 @@ import pickle
 import signal
 import threading
 import time
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -273,6 +274,25 @@ def test_deep_files(tmp_path: Path, scene: Scene, kind: str) -> None:
     assert image.dtype == (np.float32 if kind == "float.tiff" else np.uint16)
     assert np.allclose(image / (1.0 if kind == "float.tiff" else 65535.0), scene / 255, atol=1e-6)
     assert len(asj.detect(image)) > 30
+
+
+def test_files_of_many_pixels(tmp_path: Path, scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Up to what the library takes, without Pillow's warnings; more is refused by the head of the file."""
+    from PIL import Image
+    from asj import images
+
+    head = b"P5\n%d %d\n255\n"
+    (tmp_path / "large.pgm").write_bytes(head % (60000, 8947) + b"cut off")
+    (tmp_path / "larger.pgm").write_bytes(head % (60000, 8948) + b"cut off")
+    Image.fromarray(scene).save(tmp_path / "scene.png")
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 1000)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert images.size(tmp_path / "large.pgm") == (60000, 8947) and images.size(tmp_path / "larger.pgm") is None
+        assert np.array_equal(asj.read_image(tmp_path / "scene.png"), scene)
+        with pytest.raises(asj.LimitError, match="larger.pgm: 60000 x 8948 pixels; the library takes 536870912"):
+            asj.read_image(tmp_path / "larger.pgm")
+    assert Image.MAX_IMAGE_PIXELS == 1000 and images.orientation(tmp_path / "larger.pgm") == 1
 
 
 def test_numbers_of_numpy() -> None:
