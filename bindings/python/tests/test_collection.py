@@ -77,7 +77,8 @@ def test_what_is_left_out_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert main([*words, "--update"]) == 0
     shutil.copy(folder / "b.PNG", folder / os.fsdecode(b"c\xff.png"))
     assert main([*words, "--resume"]) == 1
-    assert capsys.readouterr().out.splitlines()[-2:] == ["  c\\xff.png: its name is not UTF-8, as outputs want it: rename it", said[2]]
+    misnamed = "  c\\xff.png: its name is not UTF-8, as outputs want it: rename it"
+    assert capsys.readouterr().out.splitlines()[-2:] == [misnamed, said[2]]
     (folder / "b.PNG").unlink()
     assert main([*words, "--resume"]) == 2
     assert "no images there; c\\xff.png: its name is not UTF-8" in capsys.readouterr().err
@@ -301,8 +302,9 @@ def test_limap_has_each_edge_once(done: Path, tmp_path: Path) -> None:
         own = written[places]  # of each branch: both its ends are there
         apart = np.minimum(*(np.linalg.norm(segments - ends, axis=2).max(axis=1) for ends in (own, own[:, ::-1])))
         assert apart.max() <= 1.001 and (lines[number][places, 4] >= -records["log10_nfa"] - 1e-4).all()
-        ends = np.linalg.norm(written[:, None] - np.stack([written, written[:, ::-1]])[:, None, :], axis=-1).max(axis=-1).min(axis=0)
-        assert (ends + 9 * np.eye(len(written)) > 1).all()  # none twice
+        for other in (written, written[:, ::-1]):  # none twice
+            ends = np.linalg.norm(written[:, None] - other, axis=-1).max(axis=-1)
+            assert (ends + 9 * np.eye(len(written)) > 1).all()
     of_image = {n: np.load(tmp_path / "limap" / "matches" / f"matches_{n}.npy", allow_pickle=True).item() for n in lines}
     for (one, two), pairs in matched.items():
         places_one, places_two = (merge(branches[n][0], branches[n][1]["log10_nfa"])[1] for n in (one, two))
@@ -356,7 +358,8 @@ def test_bad_use(done: Path, photographs: Path, tmp_path: Path, capsys: pytest.C
     ("pairs", "matches", 101, b"", "matches of a.png and b.png"), ("pairs", "lines", 6, b"", "matches of a.png and b.png"),
 ])  # fmt: skip
 def test_damaged_results(
-    done: Path, photographs: Path, capsys: pytest.CaptureFixture[str], table: str, column: str, begin: int, instead: bytes, what: str
+    done: Path, photographs: Path, capsys: pytest.CaptureFixture[str], table: str, column: str, begin: int, instead: bytes,
+    what: str,
 ) -> None:
     """Cut, or with a number of branches that cannot be."""
     with contextlib.closing(sqlite3.connect(done)) as connection, connection:
@@ -365,8 +368,8 @@ def test_damaged_results(
         connection.execute(f"UPDATE {table} SET {column} = ? WHERE id = 1", (damaged,))
     capsys.readouterr()
     for output in ("--limap", "--colmap", "--hdf5"):
-        words = [output, f"{done.parent / 'limap'}{'' if output == '--limap' else output}", "--store", str(done), "--resume", "--quiet"]
-        assert main(["collect", str(photographs), *words]) == 2
+        place = f"{done.parent / 'limap'}{'' if output == '--limap' else output}"
+        assert main(["collect", str(photographs), output, place, "--store", str(done), "--resume", "--quiet"]) == 2
         assert f"limap.work is damaged: the {what} are no whole records" in capsys.readouterr().err
 
 
@@ -379,9 +382,13 @@ def test_the_example_of_the_readme(photographs: Path, tmp_path: Path) -> None:
     run, read = (block for block in re.findall("```python\n(.*?)```", text, re.S) if "Store." in block)
     (tmp_path / "run.py").write_text(run)
     (tmp_path / "read.py").write_text("from pathlib import Path\nfrom asj.collection import Store\n" + read)
-    result = subprocess.run([sys.executable, "run.py"], cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert "5 images, 10 pairs in" in result.stdout and (tmp_path / "scene.db").exists()
-    lines = subprocess.run([sys.executable, "read.py"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout.splitlines()
+
+    def said_by(script: str) -> list[str]:
+        result = subprocess.run([sys.executable, script], cwd=tmp_path, stdout=subprocess.PIPE, text=True, check=True)
+        return result.stdout.splitlines()
+
+    assert "5 images, 10 pairs in" in said_by("run.py")[0] and (tmp_path / "scene.db").exists()
+    lines = said_by("read.py")
     assert re.fullmatch(r"1 a.png \d\d+ 480 360", lines[0]) and len(lines) > 5 + 3 and lines[5].startswith("a.png ")
     with Store.read(tmp_path / "scene.work") as store:
         _, name, image = next(store.detected())

@@ -96,7 +96,7 @@ def test_outputs_of_another_collection_stay(pair: Path, tmp_path: Path, capsys: 
     assert len(before) == 1 + 2 + 7
     for name, path in outputs.items():
         for folder in (other, pair):
-            refused([str(folder), name, str(path), "--store", str(second)], "another collection has written it, not that of", capsys)
+            refused([str(folder), name, str(path), "--store", str(second)], "another collection has written it, not", capsys)
     assert content() == before and not second.exists()
     shutil.copy(tmp_path / "x.db", tmp_path / "by_another_version.db")
     with contextlib.closing(sqlite3.connect(tmp_path / "by_another_version.db")) as connection:
@@ -108,7 +108,8 @@ def test_outputs_of_another_collection_stay(pair: Path, tmp_path: Path, capsys: 
     assert main(["collect", str(pair), *every, *run, "--store", str(first), "--update"]) == 0
     assert main(["collect", str(other), *every, *run, "--store", str(second), "--overwrite"]) == 0
     assert main(["collect", str(other), *every, *run, "--store", str(second), "--resume"]) == 0
-    assert sorted(path.name for path in outputs["--limap"].rglob("*.*")) == ["images.txt", "matches_1.npy", "segments_1.txt", "store.txt"]
+    names = sorted(path.name for path in outputs["--limap"].rglob("*.*"))
+    assert names == ["images.txt", "matches_1.npy", "segments_1.txt", "store.txt"]
     with h5py.File(tmp_path / "h5" / "features.h5") as features:
         assert list(features) == ["c.png"]  # what reads them sees no group more
     database = pycolmap.Database.open(tmp_path / "x.db")
@@ -118,7 +119,8 @@ def test_outputs_of_another_collection_stay(pair: Path, tmp_path: Path, capsys: 
 
 
 @pytest.mark.parametrize(("module", "words"), [
-    ("PIL.Image", ["--limap", "x"]), ("pycolmap", ["--colmap", "x"]), ("h5py", ["--hdf5", "x"]), ("distributed", ["--limap", "x", "--dask", "tcp://nowhere:1"]),
+    ("PIL.Image", ["--limap", "x"]), ("pycolmap", ["--colmap", "x"]), ("h5py", ["--hdf5", "x"]),
+    ("distributed", ["--limap", "x", "--dask", "tcp://nowhere:1"]),
 ])  # fmt: skip
 def test_what_is_missing_is_told_before_the_work(
     pair: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], module: str, words: list[str]
@@ -313,4 +315,5 @@ def test_cameras_that_cannot_be(pair: Path, tmp_path: Path, capsys: pytest.Captu
     assert not (tmp_path / "x.work").exists()
     assert main(["collect", *words, "--quiet", "--camera", "500,500,380,180", "--geometry", "auto"]) == 0
     said = capsys.readouterr().err
-    assert said.count("warning: --camera: the principal point cx, cy = 380, 180 lies far from the middle of an image of 480 x 360") == 1
+    far = "warning: --camera: the principal point cx, cy = 380, 180 lies far from the middle of an image of 480 x 360"
+    assert said.count(far) == 1

@@ -95,6 +95,18 @@ def test_images_of_pillow_are_as_their_files(tmp_path: Path, scene: Scene) -> No
         asj.detect(Image.fromarray(np.full((30, 40), 70000, np.int32)))
 
 
+def test_colours_of_other_types(scene: Scene) -> None:
+    """Greys give the same junctions whatever the type; colours nearly so, since their grey is rounded."""
+    kinds = (lambda pixels: pixels, lambda pixels: pixels.astype(np.uint16) * 257, lambda pixels: pixels / 255)
+    gray = [asj.detect(kind(scene)).junctions for kind in kinds]
+    assert np.array_equal(gray[0], gray[1]) and np.array_equal(gray[0], gray[2])
+    coloured = np.stack([scene, np.roll(scene, 3, 0), scene // 2], 2)
+    eight, *others = (asj.detect(kind(coloured), preset="default").xy for kind in kinds)
+    for other in others:
+        apart = np.linalg.norm(eight[:, None] - other[None], axis=2).min(axis=1)
+        assert (apart < 0.5).mean() > 0.95 and abs(len(eight) - len(other)) <= 3
+
+
 def test_floats_need_a_white() -> None:
     bright = square().astype(float)
     with pytest.raises(asj.ImageError, match="white=255"):
@@ -318,8 +330,9 @@ def test_what_is_no_context() -> None:
             asj.Context(threads=threads)
     features = asj.detect(square())
     calls = (
-        lambda: asj.detect(square(), context=5), lambda: asj.match(features, features, context=0), lambda: asj.lines(features, context="cpu"),
-        lambda: asj.vanishing_points(features, context=asj.Context), lambda: features.without_image(context=5), lambda: asj.set_current(5),
+        lambda: asj.detect(square(), context=5), lambda: asj.match(features, features, context=0),
+        lambda: asj.lines(features, context="cpu"), lambda: asj.vanishing_points(features, context=asj.Context),
+        lambda: features.without_image(context=5), lambda: asj.set_current(5),
         lambda: asj.match_images(square(), square(), context=5),
     )  # fmt: skip
     for call in calls:

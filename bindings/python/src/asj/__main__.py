@@ -29,6 +29,7 @@ def _parser() -> argparse.ArgumentParser:
     which.add_argument("--all-pairs", action="store_true", help="every pair of images (default)")
     which.add_argument("--sequential", type=int, metavar="N", help="each image with the N images after it, by name")
     which.add_argument("--pairs", type=Path, metavar="FILE", help="pairs from a file: two names a line, with blanks in double quotes")
+    which.add_argument("--no-pairs", action="store_true", help="junctions alone: no pair is matched")
     outputs = collect.add_argument_group("outputs, at least one")
     outputs.add_argument("--colmap", type=Path, metavar="FILE.db", help="COLMAP database (needs pycolmap)")
     outputs.add_argument(
@@ -37,7 +38,9 @@ def _parser() -> argparse.ArgumentParser:
         "length and size, any other image has its own; single: all; per-folder: those of a folder; per-image: none",
     )  # fmt: skip
     outputs.add_argument("--hdf5", type=Path, metavar="FOLDER", help="features.h5 and matches.h5 as hloc reads them (needs h5py)")
-    outputs.add_argument("--limap", type=Path, metavar="FOLDER", help="line segments and their matches as LIMAP reads them, matches also as text")
+    outputs.add_argument(
+        "--limap", type=Path, metavar="FOLDER", help="line segments and their matches as LIMAP reads them, matches also as text"
+    )
     work = collect.add_argument_group("work")
     work.add_argument("--store", type=Path, metavar="FILE", help="what has been done so far (default: beside the first output)")
     again = work.add_mutually_exclusive_group()
@@ -52,8 +55,9 @@ def _parser() -> argparse.ArgumentParser:
     work.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="detector", help="an option of the detector")
     work.add_argument("--match-set", action="append", default=[], metavar="NAME=VALUE", dest="matcher", help="an option of the matcher")
     work.add_argument(
-        "--geometry", choices=list(geometry.MODELS), default="none", help="estimate what relates the images of a pair, and let it decide which matches hold"
-    )
+        "--geometry", choices=list(geometry.MODELS), default="none",
+        help="estimate what relates the images of a pair, and let it decide which matches hold",
+    )  # fmt: skip
     work.add_argument(
         "--focal", default="exif", metavar="F|exif|estimate|none",
         help="focal lengths for the geometry: of the EXIF data where both images have them, made better with the motion (default), one "
@@ -64,7 +68,9 @@ def _parser() -> argparse.ArgumentParser:
         help="the camera of all images, upright, px: focal lengths and principal point, pixel centres at integers (COLMAP's CX and CY less "
         "0.5), instead of --focal",
     )  # fmt: skip
-    work.add_argument("--overwrite", action="store_true", help="outputs replace files that something else, or another collection, has written")
+    work.add_argument(
+        "--overwrite", action="store_true", help="outputs replace files that something else, or another collection, has written"
+    )
     work.add_argument("--quiet", action="store_true", help="no progress")
     return parser
 
@@ -133,7 +139,9 @@ def _plan(arguments: argparse.Namespace, found: plans.Found) -> plans.Plan:
     names = found.images
     if not names:
         raise ValueError("; ".join([f"{arguments.folder}: no images there", *map(str.strip, _left_out(found))]))
-    if arguments.pairs:
+    if arguments.no_pairs:
+        pairs = []
+    elif arguments.pairs:
         pairs = plans.read_pairs(arguments.pairs, names)
     elif arguments.sequential is not None:
         if arguments.sequential < 1:
@@ -201,7 +209,7 @@ def _check_outputs(arguments: argparse.Namespace) -> Path:
 
 
 def _check_replaced(arguments: argparse.Namespace, store: Path, plan: plans.Plan) -> None:
-    """Refuses to write over photographs and the store, and, unasked, over what something else, or another collection, has written."""
+    """Refuses to write over photographs and the store, and, unasked, over what something else or another collection has written."""
     files: list[tuple[Path, Callable[[Path], str | None]]] = []
     if arguments.colmap:
         from .collection import colmap
@@ -235,7 +243,8 @@ def _check_writer(path: Path, writer: str | None, store: Path, identity: str | N
     if writer is None:
         raise FileExistsError(f"{path} is there, and something else has written it; --overwrite replaces it")
     if writer != identity:
-        raise FileExistsError(f"{path} is there, and another collection has written it, not that of {store}; --overwrite replaces it")
+        another = f"another collection has written it, not that of {store}"
+        raise FileExistsError(f"{path} is there, and {another}; --overwrite replaces it")
 
 
 def _collect(arguments: argparse.Namespace) -> int:

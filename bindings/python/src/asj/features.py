@@ -232,15 +232,18 @@ def detect(
     region: tuple[int, int, int, int] | None = None,
     **options: object,
 ) -> Features:
-    """Finds the junctions of an image: an array of HxW, HxWx3 or HxWx4 (red, green, blue), uint8, uint16 or float (1.0 is white); or an
-    image of Pillow, which is taken as :func:`asj.read_image` takes its file: converted by its mode, and upright where it has an EXIF
-    orientation, with locations in the upright image (:attr:`Features.image`).
+    """Finds the junctions of an image: an array of HxW, HxWx3 or HxWx4 (red, green, blue), uint8, uint16 or float (1.0 is white);
+    or an image of Pillow, which is taken as :func:`asj.read_image` takes its file: converted by its mode, and upright where it has
+    an EXIF orientation, with locations in the upright image (:attr:`Features.image`).
 
     preset   "match" for features that are to be matched: weaker junctions too, since the matcher tells the false ones. "default"
              for junctions that are to be looked at; "paper" for the published method
     mask     HxW of bool or uint8: no junction where it is 0
     region   x, y, width, height: only junctions in this part of the image; branches may leave it
     options  those of the detector by name (:func:`asj.detect_options` lists them), for instance minimum_length=30
+
+    Colours count by their grey (77 R + 150 G + 29 B of 256), which is rounded as the type's numbers are: the same colours in 8 bits
+    and in 16 bits or floats may differ by a few junctions; the same greys do not.
 
     The array is not copied, and matching and saving look at it: pass image.copy() where a buffer is filled anew meanwhile, or take
     :meth:`Features.without_image` before.

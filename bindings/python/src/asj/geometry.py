@@ -113,8 +113,8 @@ def doubt(cx: float, cy: float, width: int, height: int) -> tuple[bool, str]:
 
 
 def numbers(camera: ArrayLike, width: int, height: int, stacklevel: int = 4) -> tuple[float, float, float, float]:
-    """Focal lengths and principal point of a matrix K of any scale, of (fx, fy, cx, cy), or of a focal length alone. `stacklevel`: of
-    a warning about a principal point, so that it names the line of the user."""
+    """Focal lengths and principal point of a matrix K of any scale, of (fx, fy, cx, cy), or of a focal length alone. `stacklevel`:
+    of a warning about a principal point, so that it names the line of the user."""
     values = np.asarray(camera, np.float64)
     if not np.isfinite(values).all():
         raise ArgumentError("a camera must have finite numbers")

@@ -97,8 +97,8 @@ def _deep(pixels: NDArray[Any]) -> NDArray[Any]:
 
 
 def as_array(image: Any) -> NDArray[Any]:
-    """The numbers of an image. Those of Pillow are converted by their mode, since the samples of most are no grey and no colours: numbers
-    of a palette, hues, inks."""
+    """The numbers of an image. Those of Pillow are converted by their mode, since the samples of most are no grey and no colours:
+    numbers of a palette, hues, inks."""
     pillow = sys.modules.get("PIL.Image")  # where nobody has loaded it, this is no image of it
     if pillow is not None and isinstance(image, pillow.Image):
         try:
@@ -140,8 +140,8 @@ _limit = threading.Lock()
 
 @contextlib.contextmanager
 def _opened(path: str | os.PathLike[str]) -> Iterator[Any]:
-    """A file of Pillow, of up to as many pixels as the library takes. Pillow's own limit, of a sixth of that, is the whole process's, and
-    a warning: it is put aside while the head of the file is read."""
+    """A file of Pillow, of up to as many pixels as the library takes. Pillow's own limit, of a sixth of that, is the whole
+    process's, and a warning: it is put aside while the head of the file is read."""
     image = extra("PIL.Image", "images")
     with _limit:
         former, image.MAX_IMAGE_PIXELS = image.MAX_IMAGE_PIXELS, None

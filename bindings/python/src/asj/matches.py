@@ -110,8 +110,8 @@ class Matches:
 
     @property
     def probability(self) -> NDArray[np.float32]:
-        """(K,) that the match is right, given the geometry; 0 where none was accepted, low off the plane of a homography. NaN where none
-        was asked for: ask for one (geometry="auto") to have it."""
+        """(K,) that the match is right, given the geometry; 0 where none was accepted, low off the plane of a homography. NaN where
+        none was asked for: ask for one (geometry="auto") to have it."""
         if self._result.geometry.status != lib.ASJ_GEOMETRY_NOT_ASKED:
             return np.asarray(self.matches["probability"])
         unknown = np.full(len(self), np.nan, np.float32)

@@ -19,8 +19,8 @@ os.umask(_MASK)
 @contextlib.contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
     """A name beside `path` to write to; it becomes `path` when the block ends without an exception, and vanishes otherwise. A link
-    stays one and a file that was there gives its permissions; one that is protected against writing is not replaced. What is no file
-    (a pipe, a device) is not either: `path` itself is written to."""
+    stays one and a file that was there gives its permissions; one that is protected against writing is not replaced. What is no
+    file (a pipe, a device) is not either: `path` itself is written to."""
     path = path.resolve()
     if path.exists() and not path.is_file():
         yield path

@@ -7,6 +7,6 @@ from .store import Store, StoreError
 from .tasks import Detected, Matched
 
 __all__ = [
-    "Dask", "Detected", "Matched", "Plan", "Processes", "Store", "StoreError", "Summary", "Workers", "all_pairs", "collect", "find_images",
-    "read_pairs", "sequential_pairs",
+    "Dask", "Detected", "Matched", "Plan", "Processes", "Store", "StoreError", "Summary", "Workers", "all_pairs", "collect",
+    "find_images", "read_pairs", "sequential_pairs",
 ]  # fmt: skip

@@ -24,7 +24,7 @@ _STORE = "asj_store"  # another one: the identity of the store that the file was
 
 
 def written_from(path: Path) -> str | None:
-    """The identity of the store that write_features() or write_matches() wrote the file from; None where something else has written it."""
+    """The identity of the store that write_features() or write_matches() wrote the file from; None where something else has."""
     import h5py
 
     try:

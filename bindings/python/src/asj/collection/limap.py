@@ -2,12 +2,12 @@
 """Line segments and their matches as LIMAP reads them.
 
 segments/segments_<image>.txt: the count, then x1 y1 x2 y2 score in each line, px of the file (orientation.py), the centre of the first
-one at (0, 0). Most edges are seen from both their corners, and stand here once, in the direction of the surer corner: their ends come in
-either order. matches/matches_<image>.npy: a dictionary, by the number of each other image that the image makes a pair with, of (K, 2)
-indices of segments, counted from 0, of the image and of the other one (numpy.load(path, allow_pickle=True).item()); every pair stands in
-the files of both its images. matches/matches_<image1>_<image2>.txt: the same indices of one pair as text, two in each line. images.txt says which photograph has which number, those of the COLMAP database, in JSON's
-quotes where a name has a line break; store.txt which store all this was written from. Segments are the branches as each image by
-itself has them.
+one at (0, 0). Most edges are seen from both their corners, and stand here once, in the direction of the surer corner: their ends
+come in either order. matches/matches_<image>.npy: a dictionary, by the number of each other image that the image makes a pair with,
+of (K, 2) indices of segments, counted from 0, of the image and of the other one (numpy.load(path, allow_pickle=True).item()); every
+pair stands in the files of both its images. matches/matches_<image1>_<image2>.txt: the same indices of one pair as text, two in
+each line. images.txt says which photograph has which number, those of the COLMAP database, in JSON's quotes where a name has a line
+break; store.txt which store all this was written from. Segments are the branches as each image by itself has them.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ def written_from(folder: Path) -> str | None:
 
 
 def foreign_files(folder: Path, identity: str | None, highest: int) -> Iterator[Path]:
-    """What is there under a name that write() writes to, and the store of that identity, whose images have numbers up to `highest`, has
-    not written."""
+    """What is there under a name that write() writes to, and the store of that identity, whose images have numbers up to `highest`,
+    has not written."""
     ours = identity is not None and written_from(folder) == identity
     earlier = _numbers(folder / "images.txt") if ours else set()
     if not ours:
@@ -108,15 +108,16 @@ def _write_matches(store: Store, folder: Path, of_branches: dict[int, NDArray[np
     for number, neighbours in of_image.items():
         yield (path := folder / f"matches_{number}.npy")
         with whole_file(path) as temporary, temporary.open("wb") as file:
-            np.save(file, np.array({other: np.ascontiguousarray(pairs) for other, pairs in neighbours.items()}, object), allow_pickle=True)
+            whole = {other: np.ascontiguousarray(pairs) for other, pairs in neighbours.items()}
+            np.save(file, np.array(whole, object), allow_pickle=True)
 
 
 SAME_END = 1.0  # px, between ends of what is one edge seen from both its corners
 
 
 def merge(segments: NDArray[np.float32], log10_nfa: NDArray[np.float32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Which segments (M, 2, 2) are kept so that each edge is there once, and of each segment the place of its own edge among these. Two
-    are one where both their ends agree, in either order; the surest is kept.
+    """Which segments (M, 2, 2) are kept so that each edge is there once, and of each segment the place of its own edge among these.
+    Two are one where both their ends agree, in either order; the surest is kept.
 
     >>> seen = np.array([[[0, 0], [50, 0]], [[0, 0], [0, 30]], [[50.3, 0.4], [0.2, 0]], [[50.3, 0.4], [90, 0]]], np.float32)
     >>> [places.tolist() for places in merge(seen, np.array([-20, -9, -30, -5], np.float32))]

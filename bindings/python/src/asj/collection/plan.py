@@ -16,8 +16,8 @@ _TILE = 16  # images along a side of a tile of pairs: a process keeps that many 
 
 @dataclass(frozen=True)
 class Plan:
-    """The work: images by name below a folder, pairs of names, options of detector and matcher by name, as text (with "preset", that of
-    the matcher "default"), the geometry."""
+    """The work: images by name below a folder, pairs of names, options of detector and matcher by name, as text (with "preset",
+    that of the matcher "default"), the geometry."""
 
     folder: Path
     images: list[str]

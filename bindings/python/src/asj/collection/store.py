@@ -84,8 +84,8 @@ class Store:
 
     @staticmethod
     def before_outputs(path: Path, plan: Plan) -> tuple[str | None, int]:
-        """Of the store that is there: its identity, None where there is no store, or one of a version that had none; and the highest
-        number that an image of the plan will have."""
+        """Of the store that is there: its identity, None where there is no store, or one of a version that had none; and the
+        highest number that an image of the plan will have."""
         try:
             if Store.is_there(path):
                 with contextlib.closing(sqlite3.connect(path, timeout=60)) as connection:
@@ -301,7 +301,8 @@ class Store:
     def _refuse_damaged(self, result: Detected | Matched, *names: str) -> None:
         if result.is_damaged:
             what = "junctions" if isinstance(result, Detected) else "matches"
-            raise StoreError(f"{self.path} is damaged: the {what} of {' and '.join(names)} are no whole records; delete it to begin anew")
+            of = " and ".join(names)
+            raise StoreError(f"{self.path} is damaged: the {what} of {of} are no whole records; delete it to begin anew")
 
     def matched(self) -> Iterator[tuple[int, int, Matched]]:
         """Numbers of both images and result of every pair that has one, ordered by the images."""
@@ -309,7 +310,9 @@ class Store:
             "SELECT image1, image2, error, matches, lines, geometry FROM pairs WHERE state <> 'waiting' ORDER BY image1, image2"
         ):
             matched = Matched(error, matches, lines, geometry)
-            self._refuse_damaged(matched, *(name for number, name in (self.images() if matched.is_damaged else []) if number in (one, two)))
+            if matched.is_damaged:
+                names = dict(self.images())
+                self._refuse_damaged(matched, names[one], names[two])
             yield one, two, matched
 
     def counts(self, table: str) -> dict[str, int]:
