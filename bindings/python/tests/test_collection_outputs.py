@@ -142,6 +142,23 @@ def test_protected_outputs_are_told_of_before_the_work(
     assert not (tmp_path / "x.db.work").exists()
 
 
+def test_killed_while_lines_are_written(pair: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was written till then is its own."""
+    class Killed(BaseException):
+        pass
+
+    def end(*_: object) -> Any:
+        raise Killed
+
+    words = ["collect", str(pair), "--limap", str(tmp_path / "lines"), "--jobs", "1", "--quiet"]
+    with monkeypatch.context() as patched, pytest.raises(Killed):
+        patched.setattr("asj.collection.limap._write_matches", end)
+        main(words)
+    (tmp_path / "lines" / "images.txt").unlink()  # as if it were earlier
+    assert (tmp_path / "lines" / "segments" / "segments_1.txt").exists()
+    assert main([*words, "--resume"]) == 0
+
+
 def test_a_store_without_an_identity_gets_one(pair: Path, tmp_path: Path) -> None:
     words = ["collect", str(pair), "--limap", str(tmp_path / "lines"), "--jobs", "1", "--quiet"]
     assert main(words) == 0

@@ -36,15 +36,11 @@ def written_from(folder: Path) -> str | None:
 def foreign_files(folder: Path, identity: str | None, highest: int) -> Iterator[Path]:
     """What is there under a name that write() writes to, and the store of that identity, whose images have numbers up to `highest`,
     has not written."""
-    ours = identity is not None and written_from(folder) == identity
-    earlier = _numbers(folder / "images.txt") if ours else set()
-    if not ours:
-        yield from (path for name in ("images.txt", "store.txt") if (path := folder / name).exists())
+    if identity is not None and written_from(folder) == identity:
+        return  # also where a run was killed while it wrote: the mark is there first
+    yield from (path for name in ("images.txt", "store.txt") if (path := folder / name).exists())
     wanted = {str(number) for number in range(1, highest + 1)}
-    for path in _numbered(folder):
-        numbers = _numbers_of(path)
-        if numbers <= wanted and not numbers <= earlier:
-            yield path
+    yield from (path for path in _numbered(folder) if _numbers_of(path) <= wanted)
 
 
 def _numbered(folder: Path) -> Iterator[Path]:
@@ -64,6 +60,8 @@ def write(store: Store, folder: Path) -> None:
     earlier = _numbers(folder / "images.txt")
     (folder / "segments").mkdir(parents=True, exist_ok=True)
     (folder / "matches").mkdir(exist_ok=True)
+    with whole_file(folder / "store.txt") as temporary:
+        temporary.write_text(store.identity() + "\n", encoding="ascii")
     names = []
     written: set[Path] = set()
     of_branches: dict[int, NDArray[np.int64]] = {}
@@ -71,24 +69,25 @@ def write(store: Store, folder: Path) -> None:
         if detected.features is None:
             continue
         names.append(f"{number} {json.dumps(name) if len(name.splitlines()) > 1 else name}\n")
-        junctions = detected.junctions
-        segments, branches = segments_of(junctions)
+        segments, branches = segments_of(detected.junctions)
         kept, of_branches[number] = merge(segments, branches["log10_nfa"])
         scores = -branches["log10_nfa"][kept]
         segments = orientation.turn(orientation.to_stored(detected.orientation, detected.width, detected.height), segments[kept])
         written.add(path := folder / "segments" / f"segments_{number}.txt")
-        with whole_file(path) as temporary, temporary.open("w", encoding="ascii") as file:
-            file.write(f"{len(segments)}\n")
-            for (start, end), score in zip(segments.tolist(), scores.tolist()):
-                file.write(f"{start[0]:.6f} {start[1]:.6f} {end[0]:.6f} {end[1]:.6f} {score:.6f}\n")
+        _write_segments(path, segments, scores)
     with whole_file(folder / "images.txt") as temporary:
         temporary.write_text("".join(names), encoding="utf-8")
-    with whole_file(folder / "store.txt") as temporary:
-        temporary.write_text(store.identity() + "\n", encoding="ascii")
     written.update(_write_matches(store, folder / "matches", of_branches))
     for path in _numbered(folder):
         if path not in written and _numbers_of(path) <= earlier:
             path.unlink()
+
+
+def _write_segments(path: Path, segments: NDArray[np.float32], scores: NDArray[np.float32]) -> None:
+    with whole_file(path) as temporary, temporary.open("w", encoding="ascii") as file:
+        file.write(f"{len(segments)}\n")
+        for (start, end), score in zip(segments.tolist(), scores.tolist()):
+            file.write(f"{start[0]:.6f} {start[1]:.6f} {end[0]:.6f} {end[1]:.6f} {score:.6f}\n")
 
 
 def _write_matches(store: Store, folder: Path, of_branches: dict[int, NDArray[np.int64]]) -> Iterator[Path]:
