@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import os
 import random
+import re
 import shutil
 import sqlite3
 import subprocess
@@ -13,12 +14,15 @@ import sys
 import time
 from pathlib import Path
 
+import asj
 import numpy as np
 import pytest
 from asj.__main__ import main
 from asj.arrays import struct_type
 from asj.collection import Plan, Store, StoreError, all_pairs, find_images, read_pairs
+from asj.collection.limap import merge
 from asj.collection.locations import of_store
+from asj.features import segments_of
 from PIL import Image
 
 MODULE = [sys.executable, "-m", "asj", "collect"]
@@ -56,6 +60,30 @@ def test_names_and_pairs(photographs: Path, tmp_path: Path) -> None:
             read_pairs(listed, names)
 
 
+def test_what_is_left_out_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """By their ending, or since outputs cannot have their names."""
+    folder = tmp_path / os.fsdecode(b"photos \xe9")
+    folder.mkdir()
+    (folder / "a.png").write_bytes(b"no image")
+    Image.fromarray(np.full((90, 120), 128, np.uint8)).save(folder / "b.PNG")
+    for name in ("c.gif", "d.GIF", "notes", "e.txt"):
+        (folder / name).touch()
+    words = ["collect", str(folder), "--limap", str(tmp_path / "limap"), "--jobs", "1", "--quiet"]
+    assert main([*words, "--overwrite"]) == 1
+    said = capsys.readouterr().out.splitlines()
+    assert said[1].startswith("  a.png: ") and "photos \\xe9/a.png" in said[1].replace("udce9", "xe9")
+    assert said[2:] == ["not looked at, by their ending: 2 .gif, 1 without, 1 .txt"]
+    (folder / "a.png").unlink()
+    assert main([*words, "--update"]) == 0
+    shutil.copy(folder / "b.PNG", folder / os.fsdecode(b"c\xff.png"))
+    assert main([*words, "--resume"]) == 1
+    misnamed = "  c\\xff.png: its name is not UTF-8, as outputs want it: rename it"
+    assert capsys.readouterr().out.splitlines()[-2:] == [misnamed, said[2]]
+    (folder / "b.PNG").unlink()
+    assert main([*words, "--resume"]) == 2
+    assert "no images there; c\\xff.png: its name is not UTF-8" in capsys.readouterr().err
+
+
 def test_results(done: Path) -> None:
     images, pairs = content(done)
     assert [row[1] for row in images] == ["done", "done", "failed", "done", "done", "done"]  # type: ignore[attr-defined]
@@ -66,7 +94,7 @@ def test_results(done: Path) -> None:
 def test_several_processes(done: Path, photographs: Path, tmp_path: Path) -> None:
     assert main(["collect", str(photographs), "--limap", str(tmp_path / "again"), "--jobs", "3", "--quiet"]) == 1
     assert content(tmp_path / "again.work") == content(done)
-    for file in (tmp_path / "limap").rglob("*.txt"):
+    for file in (tmp_path / "limap").glob("*/*.txt"):
         assert file.read_bytes() == (tmp_path / "again" / file.relative_to(tmp_path / "limap")).read_bytes()
 
 
@@ -253,9 +281,39 @@ def test_limap(done: Path, tmp_path: Path) -> None:
     assert int(first[0]) == len(first) - 1
     one, two = (np.array([line.split() for line in lines[1:]], float) for lines in (first, second))
     pairs = np.array([line.split() for line in (tmp_path / "limap" / "matches" / "matches_1_2.txt").read_text().splitlines()], int)
-    moved = two[pairs[:, 1], :2] - one[pairs[:, 0], :2]
-    turned = np.arctan2(*(two[pairs[:, 1], 2:4] - two[pairs[:, 1], :2]).T) - np.arctan2(*(one[pairs[:, 0], 2:4] - one[pairs[:, 0], :2]).T)
+    first_end, begin, end = one[pairs[:, 0], :2], two[pairs[:, 1], :2], two[pairs[:, 1], 2:4]
+    swapped = np.linalg.norm(begin - first_end - (6, 4), axis=1) > np.linalg.norm(end - first_end - (6, 4), axis=1)  # either order
+    moved = np.where(swapped[:, None], end, begin) - first_end
+    turned = np.arctan2(*(end - begin).T) - np.arctan2(*(one[pairs[:, 0], 2:4] - first_end).T)
     assert len(pairs) > 30 and np.mean(np.linalg.norm(moved - (6, 4), axis=1) < 1.5) > 0.9 and np.median(np.abs(np.sin(turned))) < 0.02
+
+
+def test_limap_has_each_edge_once(done: Path, tmp_path: Path) -> None:
+    lines = {n: np.loadtxt(tmp_path / "limap" / "segments" / f"segments_{n}.txt", skiprows=1) for n in (1, 2, 4, 5, 6)}
+    with Store.read(done) as store:
+        detected = {number: image.junctions for number, _, image in store.detected() if image.error is None}
+        branches = {number: segments_of(junctions) for number, junctions in detected.items()}
+        matched = {(one, two): pair.segment_indices for one, two, pair in store.matched()}
+    assert detected.keys() == lines.keys()
+    for number, (segments, records) in branches.items():
+        kept, places = merge(segments, records["log10_nfa"])
+        written = lines[number][:, :4].reshape(-1, 2, 2)
+        assert len(kept) == len(written) < 0.75 * len(segments)
+        own = written[places]  # of each branch: both its ends are there
+        apart = np.minimum(*(np.linalg.norm(segments - ends, axis=2).max(axis=1) for ends in (own, own[:, ::-1])))
+        assert apart.max() <= 1.001 and (lines[number][places, 4] >= -records["log10_nfa"] - 1e-4).all()
+        for other in (written, written[:, ::-1]):  # none twice
+            ends = np.linalg.norm(written[:, None] - other, axis=-1).max(axis=-1)
+            assert (ends + 9 * np.eye(len(written)) > 1).all()
+    of_image = {n: np.load(tmp_path / "limap" / "matches" / f"matches_{n}.npy", allow_pickle=True).item() for n in lines}
+    for (one, two), pairs in matched.items():
+        places_one, places_two = (merge(branches[n][0], branches[n][1]["log10_nfa"])[1] for n in (one, two))
+        expected = {(places_one[i], places_two[j]) for i, j in pairs}
+        text = (tmp_path / "limap" / "matches" / f"matches_{one}_{two}.txt").read_text().splitlines()
+        assert {tuple(map(int, line.split())) for line in text} == expected and len(text) == len(expected)
+        assert of_image[one][two].tolist() == [[int(word) for word in line.split()] for line in text]
+        assert np.array_equal(of_image[two][one], of_image[one][two][:, ::-1])
+    assert all(neighbours.keys() == lines.keys() - {n} for n, neighbours in of_image.items())
 
 
 def test_bad_use(done: Path, photographs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -293,6 +351,63 @@ def test_bad_use(done: Path, photographs: Path, tmp_path: Path, capsys: pytest.C
     plan = Plan(photographs, ["a.png"], [])
     with pytest.raises(StoreError):
         Store.create(done, plan)
+
+
+@pytest.mark.parametrize(("table", "column", "begin", "instead", "what"), [
+    ("images", "features", 1001, b"", "junctions of a.png"), ("images", "features", 20, b"\xff" * 4, "junctions of a.png"),
+    ("pairs", "matches", 101, b"", "matches of a.png and b.png"), ("pairs", "lines", 6, b"", "matches of a.png and b.png"),
+])  # fmt: skip
+def test_damaged_results(
+    done: Path, photographs: Path, capsys: pytest.CaptureFixture[str], table: str, column: str, begin: int, instead: bytes,
+    what: str,
+) -> None:
+    """Cut, or with a number of branches that cannot be."""
+    with contextlib.closing(sqlite3.connect(done)) as connection, connection:
+        data = connection.execute(f"SELECT {column} FROM {table} WHERE id = 1").fetchone()[0]
+        damaged = data[:begin] + (instead + data[begin + len(instead) :] if instead else b"")
+        connection.execute(f"UPDATE {table} SET {column} = ? WHERE id = 1", (damaged,))
+    capsys.readouterr()
+    for output in ("--limap", "--colmap", "--hdf5"):
+        place = f"{done.parent / 'limap'}{'' if output == '--limap' else output}"
+        assert main(["collect", str(photographs), output, place, "--store", str(done), "--resume", "--quiet"]) == 2
+        assert f"limap.work is damaged: the {what} are no whole records" in capsys.readouterr().err
+
+
+def test_the_example_of_the_readme(photographs: Path, tmp_path: Path) -> None:
+    """As it stands there, in a folder with photos/."""
+    pytest.importorskip("pycolmap")
+    (photographs / "broken.png").unlink()
+    photographs.rename(tmp_path / "photos")
+    text = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+    run, read = (block for block in re.findall("```python\n(.*?)```", text, re.S) if "Store." in block)
+    (tmp_path / "run.py").write_text(run)
+    (tmp_path / "read.py").write_text("from pathlib import Path\nfrom asj.collection import Store\n" + read)
+
+    def said_by(script: str) -> list[str]:
+        result = subprocess.run([sys.executable, script], cwd=tmp_path, stdout=subprocess.PIPE, text=True, check=True)
+        return result.stdout.splitlines()
+
+    assert "5 images, 10 pairs in" in said_by("run.py")[0] and (tmp_path / "scene.db").exists()
+    lines = said_by("read.py")
+    assert re.fullmatch(r"1 a.png \d\d+ 480 360", lines[0]) and len(lines) > 5 + 3 and lines[5].startswith("a.png ")
+    with Store.read(tmp_path / "scene.work") as store:
+        _, name, image = next(store.detected())
+        assert image.features is not None
+        again = asj.Features.from_records(asj.read_image(tmp_path / "photos" / name), image.features)
+        assert np.array_equal(again.junctions, image.junctions) and len(again) == len(image.junctions)
+
+
+def test_stores_to_read(done: Path, tmp_path: Path) -> None:
+    with Store.read(done) as store:
+        assert len(list(store.detected())) == 6 and len(list(store.matched())) == 10
+    (tmp_path / "junk").write_bytes(b"this is no database" * 100)
+    for path, why in ((tmp_path / "nothing", "is not there"), (tmp_path / "junk", "file is not a database")):
+        with pytest.raises(StoreError, match=why):
+            Store.read(path)
+    with contextlib.closing(sqlite3.connect(done)) as connection, connection:
+        connection.execute("UPDATE about SET value = 'asj-collection-0' WHERE key = 'format'")
+    with pytest.raises(StoreError, match="asj-collection-0, not"):
+        Store.read(done)
 
 
 def test_full_disk(photographs: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -146,9 +146,10 @@ def test_camera_that_no_match_depends_on(views: Path, tmp_path: Path, capsys: py
         assert [list(c.params) for c in cameras(scene)[1].values()] == [[500 + again] * 2 + [240, 180]]
     assert main([*words, "--resume"]) == 0
     assert len(cameras(scene)[1]) == 4
-    assert main([*words, "--geometry", "auto", "--store", str(tmp_path / "auto.work"), "--camera", "500,500,239.5,179.5"]) == 0
+    again = [*words, "--geometry", "auto", "--store", str(tmp_path / "auto.work"), "--overwrite"]
+    assert main([*again, "--camera", "500,500,239.5,179.5"]) == 0
     capsys.readouterr()
-    assert main([*words, "--geometry", "auto", "--store", str(tmp_path / "auto.work"), "--camera", "501,501,239.5,179.5", "--resume"]) == 2
+    assert main([*again, "--camera", "501,501,239.5,179.5", "--resume"]) == 2
     said = capsys.readouterr().err
     assert "--geometry auto --camera 500,500,239.5,179.5 there, --geometry auto --camera 501,501,239.5,179.5 now" in said
     assert "name another --store, or delete auto.work" in said

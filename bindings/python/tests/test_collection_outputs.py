@@ -4,6 +4,7 @@ killed."""
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import signal
@@ -77,7 +78,96 @@ def test_files_of_others_stay(pair: Path, tmp_path: Path, capsys: pytest.Capture
     refused([*both, "--resume"], "scene.db-wal is there", capsys)
 
 
-def test_limap_of_others_stays(pair: Path, tmp_path: Path) -> None:
+def test_outputs_of_another_collection_stay(pair: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Only the store that they were written from may write them again."""
+    pycolmap, h5py = pytest.importorskip("pycolmap"), pytest.importorskip("h5py")
+    other, first, second = tmp_path / "other", tmp_path / "1.store", tmp_path / "2.store"
+    other.mkdir()
+    Image.fromarray(panels(seed=5)).save(other / "c.png")
+    outputs = {"--colmap": tmp_path / "x.db", "--hdf5": tmp_path / "h5", "--limap": tmp_path / "lines"}
+    every = [word for name, path in outputs.items() for word in (name, str(path))]
+    run = ["--jobs", "1", "--quiet"]
+    assert main(["collect", str(pair), *every, *run, "--store", str(first)]) == 0
+
+    def content() -> dict[Path, bytes]:
+        return {path: path.read_bytes() for place in outputs.values() for path in (place, *place.rglob("*")) if path.is_file()}
+
+    before = content()
+    assert len(before) == 1 + 2 + 7
+    for name, path in outputs.items():
+        for folder in (other, pair):
+            refused([str(folder), name, str(path), "--store", str(second)], "another collection has written it, not", capsys)
+    assert content() == before and not second.exists()
+    shutil.copy(tmp_path / "x.db", tmp_path / "by_another_version.db")
+    with contextlib.closing(sqlite3.connect(tmp_path / "by_another_version.db")) as connection:
+        connection.execute("DROP TABLE asj_store")
+    refused([str(pair), "--colmap", str(tmp_path / "by_another_version.db"), "--store", str(second)], "something else", capsys)
+    for again in ("--resume", "--update"):
+        assert main(["collect", str(pair), *every, *run, "--store", str(first), again]) == 0
+    Image.fromarray(panels(shift=(3, 1))).save(pair / "c.png")
+    assert main(["collect", str(pair), *every, *run, "--store", str(first), "--update"]) == 0
+    assert main(["collect", str(other), *every, *run, "--store", str(second), "--overwrite"]) == 0
+    assert main(["collect", str(other), *every, *run, "--store", str(second), "--resume"]) == 0
+    names = sorted(path.name for path in outputs["--limap"].rglob("*.*"))
+    assert names == ["images.txt", "matches_1.npy", "segments_1.txt", "store.txt"]
+    with h5py.File(tmp_path / "h5" / "features.h5") as features:
+        assert list(features) == ["c.png"]  # what reads them sees no group more
+    database = pycolmap.Database.open(tmp_path / "x.db")
+    assert [image.name for image in database.read_all_images()] == ["c.png"]
+    database.close()
+    refused([str(pair), *every, "--store", str(first), "--resume"], "another collection", capsys)
+
+
+@pytest.mark.parametrize(("module", "words"), [
+    ("PIL.Image", ["--limap", "x"]), ("pycolmap", ["--colmap", "x"]), ("h5py", ["--hdf5", "x"]),
+    ("distributed", ["--limap", "x", "--dask", "tcp://nowhere:1"]),
+])  # fmt: skip
+def test_what_is_missing_is_told_before_the_work(
+    pair: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], module: str, words: list[str]
+) -> None:
+    """A store would block the next try."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, module, None)
+    refused([str(pair), *words], f"this needs {module.replace('PIL.Image', 'Pillow')}: install it", capsys)
+    assert [path.name for path in tmp_path.iterdir()] == ["pair"]
+
+
+def test_protected_outputs_are_told_of_before_the_work(
+    pair: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("pycolmap")
+    (tmp_path / "x.db").touch(mode=0o444)
+    monkeypatch.setattr("asj.output._may_write", lambda path: False)  # root may write everything
+    refused([str(pair), "--colmap", str(tmp_path / "x.db"), "--overwrite"], "Permission denied", capsys)
+    assert not (tmp_path / "x.db.work").exists()
+
+
+def test_killed_while_lines_are_written(pair: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was written till then is its own."""
+    class Killed(BaseException):
+        pass
+
+    def end(*_: object) -> Any:
+        raise Killed
+
+    words = ["collect", str(pair), "--limap", str(tmp_path / "lines"), "--jobs", "1", "--quiet"]
+    with monkeypatch.context() as patched, pytest.raises(Killed):
+        patched.setattr("asj.collection.limap._write_matches", end)
+        main(words)
+    (tmp_path / "lines" / "images.txt").unlink()  # as if it were earlier
+    assert (tmp_path / "lines" / "segments" / "segments_1.txt").exists()
+    assert main([*words, "--resume"]) == 0
+
+
+def test_a_store_without_an_identity_gets_one(pair: Path, tmp_path: Path) -> None:
+    words = ["collect", str(pair), "--limap", str(tmp_path / "lines"), "--jobs", "1", "--quiet"]
+    assert main(words) == 0
+    with sqlite3.connect(tmp_path / "lines.work") as connection:
+        connection.execute("DELETE FROM about WHERE key = 'identity'")
+    assert main([*words, "--resume", "--overwrite"]) == 0 and main([*words, "--resume"]) == 0
+
+
+def test_limap_of_others_stays(pair: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "lines"
     (folder / "segments").mkdir(parents=True)
     (folder / "matches").mkdir()
@@ -90,9 +180,12 @@ def test_limap_of_others_stays(pair: Path, tmp_path: Path) -> None:
     assert (folder / "images.txt").read_text().splitlines() == ["1 a.png", "2 b.png", '3 "c\\nd.png"']
     assert (folder / "segments" / "segments_3.txt").exists() and (folder / "matches" / "matches_1_3.txt").exists()
     (pair / "c\nd.png").unlink()
-    assert main(["collect", str(pair), *words, "--store", str(tmp_path / "second.work")]) == 0
+    assert main(["collect", str(pair), *words, "--store", str(tmp_path / "second.work"), "--overwrite"]) == 0
     assert not (folder / "segments" / "segments_3.txt").exists() and not (folder / "matches" / "matches_1_3.txt").exists()
     assert all(path.read_text() == "not ours\n" for path in others)
+    (tmp_path / "new" / "matches").mkdir(parents=True)
+    (tmp_path / "new" / "matches" / "matches_1_2.txt").write_text("not ours\n")
+    refused([str(pair), "--limap", str(tmp_path / "new")], "matches_1_2.txt is there, and something else", capsys)
 
 
 def test_orientations(tmp_path: Path) -> None:
@@ -227,7 +320,7 @@ def test_full_disk_names_the_file(pair: Path, tmp_path: Path, capsys: pytest.Cap
         refused([str(pair), "--colmap", str(tmp_path / "x.db")], "x.db: [database_sqlite.cc:1] SQLite error", capsys)
     finally:
         pycolmap.Database = keep
-    assert sorted(path.name for path in tmp_path.iterdir() if path.name.startswith((".x", "x.db"))) == ["x.db.work"]
+    assert sorted(path.name for path in tmp_path.iterdir() if path.name.startswith((".asj", "x.db"))) == ["x.db.work"]
 
 
 def test_cameras_that_cannot_be(pair: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -235,3 +328,9 @@ def test_cameras_that_cannot_be(pair: Path, tmp_path: Path, capsys: pytest.Captu
     for camera in ("500", "500,500,240", "0,500,240,180", "500,nan,240,180", "f,500,240,180", "500,500,1e9,180"):
         refused([*words, "--camera", camera], "is not FX,FY,CX,CY", capsys)
     refused([*words, "--geometry", "auto", "--focal", "500", "--camera", "500,500,240,180"], "exclude each other", capsys)
+    refused([*words, "--camera", "240,180,500,500"], "480 x 360: the order is fx,fy,cx,cy - is this cx,cy,fx,fy? (a.png)", capsys)
+    assert not (tmp_path / "x.work").exists()
+    assert main(["collect", *words, "--quiet", "--camera", "500,500,380,180", "--geometry", "auto"]) == 0
+    said = capsys.readouterr().err
+    far = "warning: --camera: the principal point cx, cy = 380, 180 lies far from the middle of an image of 480 x 360"
+    assert said.count(far) == 1

@@ -70,7 +70,8 @@ def test_new_changed_and_gone(photographs: Path, tmp_path: Path) -> None:
     for name, number in numbers.items():
         segments = (tmp_path / "grown" / "segments" / f"segments_{number}.txt").read_bytes()
         assert segments == (tmp_path / "once" / "segments" / f"segments_{once[name]}.txt").read_bytes()
-    assert len(list((tmp_path / "grown" / "segments").iterdir())) == 4 and len(list((tmp_path / "grown" / "matches").iterdir())) == 6
+    assert len(list((tmp_path / "grown" / "segments").iterdir())) == 4
+    assert sorted(path.suffix for path in (tmp_path / "grown" / "matches").iterdir()) == [".npy"] * 4 + [".txt"] * 6
     # of b, c, more/d and other, other has gone: its number stays free
     assert numbers == {"a.png": "5", "b.png": "1", "c.png": "2", "more/d.png": "3"}
     (photographs / "a.png").unlink()
@@ -93,6 +94,20 @@ def test_nothing_is_done_twice(photographs: Path, tmp_path: Path) -> None:
     assert {row[:2] for row in by_name(store)[1]} == set(sequential_pairs(names, 1))  # type: ignore[index]
     assert collect(photographs, tmp_path / "out", "--update") == 1
     assert by_name(store) == before
+
+
+def test_no_pairs_first(photographs: Path, tmp_path: Path) -> None:
+    pycolmap, _ = pytest.importorskip("pycolmap"), pytest.importorskip("h5py")
+    words = ["--colmap", str(tmp_path / "x.db"), "--hdf5", str(tmp_path / "h5")]
+    assert collect(photographs, tmp_path / "out", *words, "--no-pairs") == 1
+    images, pairs = by_name(tmp_path / "x.db.work")
+    assert len(images) == 6 and pairs == []
+    with contextlib.closing(pycolmap.Database.open(tmp_path / "x.db")) as database:
+        assert database.num_images() == 5 and database.num_keypoints() > 100
+    (tmp_path / "pairs.txt").write_text("a.png b.png\n")
+    assert collect(photographs, tmp_path / "out", *words, "--update", "--pairs", str(tmp_path / "pairs.txt")) == 1
+    again, pairs = by_name(tmp_path / "x.db.work")
+    assert again == images and [row[2] for row in pairs] == ["done"]  # type: ignore[index]
 
 
 def test_database(photographs: Path, tmp_path: Path) -> None:

@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import gc
+import os
 import pickle
 import signal
 import threading
 import time
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +58,55 @@ def test_image_types(same: Any) -> None:
     assert corners(asj.detect(same(square()), preset="default")) == CORNERS
 
 
+@pytest.mark.parametrize("mode", ["1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", "CMYK", "YCbCr", "HSV", "I", "I;16", "F"])
+def test_images_of_pillow(tmp_path: Path, mode: str) -> None:
+    """Samples of a palette, hues and inks are no grey levels."""
+    from PIL import Image
+
+    gray = Image.fromarray(np.where(square() > 0, 255, 0).astype(np.uint8))
+    if mode == "P":
+        image = Image.fromarray(np.where(square() > 0, 3, 200).astype(np.uint8))  # numbers of a palette that say nothing
+        image.putpalette([255 if number == 3 else 0 for number in range(256) for _ in range(3)])
+    elif mode in ("I;16", "F"):
+        image = Image.fromarray(square().astype(np.uint16) * 257 if mode == "I;16" else square().astype(np.float32) / 255)
+    elif mode == "I":
+        image = Image.fromarray(square().astype(np.int32) * 257)
+    else:
+        image = gray.convert("P" if mode == "PA" else "RGB" if mode in ("CMYK", "YCbCr", "HSV", "RGBX") else mode).convert(mode)
+    assert image.mode == mode and corners(asj.detect(image, preset="default")) == CORNERS
+
+
+def test_images_of_pillow_are_as_their_files(tmp_path: Path, scene: Scene) -> None:
+    from PIL import Image
+
+    picture = Image.fromarray(scene[:200]).convert("RGB").quantize(64)
+    data = Image.Exif()
+    data[0x0112] = 6
+    picture.save(tmp_path / "turned.png", exif=data)
+    read = asj.read_image(tmp_path / "turned.png")
+    with Image.open(tmp_path / "turned.png") as file:
+        assert file.mode == "P"
+        found = asj.detect(file)
+        assert asj.plot(file, found).images[0].get_array().shape == read.shape
+    assert read.shape == (480, 200, 3) and (found.width, found.height) == (200, 480) and np.array_equal(found.image, read)
+    with pytest.raises(asj.ImageError, match="an image of mode La: "):
+        asj.detect(Image.new("La", (40, 30)))
+    with pytest.raises(asj.ImageError, match="16 bits"):
+        asj.detect(Image.fromarray(np.full((30, 40), 70000, np.int32)))
+
+
+def test_colours_of_other_types(scene: Scene) -> None:
+    """Greys give the same junctions whatever the type; colours nearly so, since their grey is rounded."""
+    kinds = (lambda pixels: pixels, lambda pixels: pixels.astype(np.uint16) * 257, lambda pixels: pixels / 255)
+    gray = [asj.detect(kind(scene)).junctions for kind in kinds]
+    assert np.array_equal(gray[0], gray[1]) and np.array_equal(gray[0], gray[2])
+    coloured = np.stack([scene, np.roll(scene, 3, 0), scene // 2], 2)
+    eight, *others = (asj.detect(kind(coloured), preset="default").xy for kind in kinds)
+    for other in others:
+        apart = np.linalg.norm(eight[:, None] - other[None], axis=2).min(axis=1)
+        assert (apart < 0.5).mean() > 0.95 and abs(len(eight) - len(other)) <= 3
+
+
 def test_floats_need_a_white() -> None:
     bright = square().astype(float)
     with pytest.raises(asj.ImageError, match="white=255"):
@@ -88,6 +139,14 @@ def test_views_are_not_copied(scene: Scene) -> None:
     part = padded[5:-5, 5:-5]
     assert np.shares_memory(asj.detect(part).image, padded)
     assert np.shares_memory(asj.detect(part[::-1]).image, padded)
+
+
+def test_a_single_row_or_column() -> None:
+    """numpy gives them any stride."""
+    image = np.arange(60, dtype=np.uint8).reshape(6, 10)
+    for part in (image[2:3], image.T[3:4], image[:, 4:5], image[::-1][:1], np.lib.stride_tricks.as_strided(image, (1, 10), (1, 1)),
+                 np.lib.stride_tricks.as_strided(image, (10, 1), (1, 77)), np.broadcast_to(image[:1], (3, 10))):
+        assert len(asj.detect(part)) == 0 and np.array_equal(asj.detect(part).image, part)
 
 
 def test_colour_order() -> None:
@@ -229,12 +288,56 @@ def test_deep_files(tmp_path: Path, scene: Scene, kind: str) -> None:
     assert len(asj.detect(image)) > 30
 
 
+def test_files_of_many_pixels(tmp_path: Path, scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Up to what the library takes, without Pillow's warnings; more is refused by the head of the file."""
+    from PIL import Image
+    from asj import images
+
+    head = b"P5\n%d %d\n255\n"
+    (tmp_path / "large.pgm").write_bytes(head % (60000, 8947) + b"cut off")
+    (tmp_path / "larger.pgm").write_bytes(head % (60000, 8948) + b"cut off")
+    Image.fromarray(scene).save(tmp_path / "scene.png")
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 1000)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert images.size(tmp_path / "large.pgm") == (60000, 8947) and images.size(tmp_path / "larger.pgm") is None
+        assert np.array_equal(asj.read_image(tmp_path / "scene.png"), scene)
+        with pytest.raises(asj.LimitError, match="larger.pgm: 60000 x 8948 pixels; the library takes 536870912"):
+            asj.read_image(tmp_path / "larger.pgm")
+    assert Image.MAX_IMAGE_PIXELS == 1000 and images.orientation(tmp_path / "larger.pgm") == 1
+
+
 def test_numbers_of_numpy() -> None:
     same = asj.detect(square(), epsilon=2.0, half_octaves=True)
     assert asj.detect(square(), epsilon=np.float64(2), half_octaves=np.bool_(True)).options == same.options
     assert asj.detect(square(), epsilon=np.float32(2), half_octaves=np.int64(1)).options == same.options
     with pytest.raises(asj.OptionError, match="text is str"):
         asj.detect(square(), epsilon=b"2")
+
+
+def test_words_that_c_would_cut() -> None:
+    for options in ({"epsilon": "2\0, and more"}, {"epsilon\0": 2}, {"epsilon": "\udcff"}, {"\udcff": 2}):
+        with pytest.raises(asj.OptionError, match="NUL|UTF-8"):
+            asj.detect(square(), **options)  # type: ignore[arg-type]
+    for device in ("gpu\0", "\udcff"):
+        with pytest.raises(asj.OptionError, match="device: .*(NUL|UTF-8)"):
+            asj.Context(device=device)
+
+
+def test_what_is_no_context() -> None:
+    for threads in (10**12, -(10**12)):
+        with pytest.raises(asj.OptionError, match="threads is -?10000"):
+            asj.Context(threads=threads)
+    features = asj.detect(square())
+    calls = (
+        lambda: asj.detect(square(), context=5), lambda: asj.match(features, features, context=0),
+        lambda: asj.lines(features, context="cpu"), lambda: asj.vanishing_points(features, context=asj.Context),
+        lambda: features.without_image(context=5), lambda: asj.set_current(5),
+        lambda: asj.match_images(square(), square(), context=5),
+    )  # fmt: skip
+    for call in calls:
+        with pytest.raises(TypeError, match="an asj.Context is wanted, not"):
+            call()
 
 
 def test_a_callback_that_calls_its_context() -> None:
@@ -265,6 +368,28 @@ def test_files_keep_their_permissions(tmp_path: Path, scene: Scene) -> None:
     for refused in (loaded.without_image, lambda **options: loaded.save(path, **options)):
         with pytest.raises(asj.OptionError, match="other options"):
             refused(descriptor="sift")
+
+
+def test_protected_files_stay(tmp_path: Path, scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    features, path = asj.detect(scene), tmp_path / "kept.asjf"
+    path.write_bytes(b"of last year")
+    path.chmod(0o444)
+    if os.geteuid() == 0:  # root may write everything
+        monkeypatch.setattr("asj.output._may_write", lambda path: False)
+    with pytest.raises(PermissionError, match="kept.asjf'$"):
+        features.save(path)
+    assert path.read_bytes() == b"of last year" and list(tmp_path.iterdir()) == [path]
+    monkeypatch.undo()
+    path.chmod(0o644)
+    features.save(path)
+    assert path.stat().st_size > 1000
+
+
+def test_long_names(tmp_path: Path, scene: Scene) -> None:
+    path = tmp_path / ("n" * 250 + ".asjf")
+    features = asj.detect(scene)
+    features.save(path)
+    assert len(asj.load_features(path)) == len(features) and list(tmp_path.iterdir()) == [path]
 
 
 def test_short_words_for_long_arrays(scene: Scene) -> None:

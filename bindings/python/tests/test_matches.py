@@ -211,7 +211,11 @@ def test_camera_that_only_turns() -> None:
 
 
 def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:
-    assert asj.match(*pair).geometry is None and not asj.match(*pair).probability.any()
+    plain = asj.match(*pair)
+    assert plain.geometry is None and plain.probability.shape == (len(plain),) and plain.probability.dtype == np.float32
+    assert np.isnan(plain.probability).all() and not plain.probability.flags.writeable
+    apart = asj.match(pair[0], asj.detect(panels(seed=9)), geometry="essential", camera1=500)
+    assert not apart.geometry and not apart.probability.any()
     found = asj.match(*pair, geometry="homography")
     assert found.geometry and found.geometry.model == "homography" and found.geometry.log10_nfa < -7
     moved = found.geometry.matrix @ (100, 50, 1)
@@ -235,6 +239,27 @@ def test_geometry(pair: tuple[asj.Features, asj.Features]) -> None:
     for wrong in ((1, 2), -5.0, np.full((3, 3), np.nan)):
         with pytest.raises(asj.ArgumentError):
             asj.match(*pair, geometry="auto", camera1=wrong)
+
+
+def test_cameras_with_swapped_numbers(pair: tuple[asj.Features, asj.Features]) -> None:
+    """cx, cy, fx, fy would give a pose, and a wrong one."""
+    swapped = (239.5, 179.5, 500, 500)
+    question = "is this cx,cy,fx,fy"
+    for camera in (swapped, (500, 500, -1, 179.5), (500, 500, 239.5, 360), [[500, 0, 500], [0, 500, 179.5], [0, 0, 1]]):
+        with pytest.raises(asj.ArgumentError, match=question):
+            asj.match(*pair, geometry="essential", camera1=camera)  # type: ignore[arg-type]
+        with pytest.raises(asj.ArgumentError, match=question):
+            asj.vanishing_points(pair[0], camera=camera)  # type: ignore[arg-type]
+    with pytest.raises(asj.ArgumentError, match="lies outside of an image of 480 x 360"):
+        asj.match(*pair, geometry="essential", camera1=500, camera2=swapped)
+    aside = (500, 500, 380, 179.5)  # farther from the middle than a quarter of the width
+    for call in (lambda: asj.match(*pair, geometry="auto", camera1=aside), lambda: asj.vanishing_points(pair[0], camera=aside)):
+        with pytest.warns(UserWarning, match=question) as seen:
+            call()
+        assert seen[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        asj.match(*pair, geometry="auto", camera1=(500, 500, 350, 95))
 
 
 def test_geometry_with_colours(scene: Scene, tmp_path: Path) -> None:

@@ -12,11 +12,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from . import __version__, collection, errors
+from . import __version__, collection, errors, geometry, images, output
 from .collection import plan as plans
 from .collection.colmap import CAMERA_MODES
 from .collection.run import Dask, Processes
-from .geometry import MODELS
 from .options import DETECTOR, MATCHER
 
 
@@ -30,6 +29,7 @@ def _parser() -> argparse.ArgumentParser:
     which.add_argument("--all-pairs", action="store_true", help="every pair of images (default)")
     which.add_argument("--sequential", type=int, metavar="N", help="each image with the N images after it, by name")
     which.add_argument("--pairs", type=Path, metavar="FILE", help="pairs from a file: two names a line, with blanks in double quotes")
+    which.add_argument("--no-pairs", action="store_true", help="junctions alone: no pair is matched")
     outputs = collect.add_argument_group("outputs, at least one")
     outputs.add_argument("--colmap", type=Path, metavar="FILE.db", help="COLMAP database (needs pycolmap)")
     outputs.add_argument(
@@ -38,7 +38,9 @@ def _parser() -> argparse.ArgumentParser:
         "length and size, any other image has its own; single: all; per-folder: those of a folder; per-image: none",
     )  # fmt: skip
     outputs.add_argument("--hdf5", type=Path, metavar="FOLDER", help="features.h5 and matches.h5 as hloc reads them (needs h5py)")
-    outputs.add_argument("--limap", type=Path, metavar="FOLDER", help="line segments as LIMAP reads them, their matches as text")
+    outputs.add_argument(
+        "--limap", type=Path, metavar="FOLDER", help="line segments and their matches as LIMAP reads them, matches also as text"
+    )
     work = collect.add_argument_group("work")
     work.add_argument("--store", type=Path, metavar="FILE", help="what has been done so far (default: beside the first output)")
     again = work.add_mutually_exclusive_group()
@@ -53,8 +55,9 @@ def _parser() -> argparse.ArgumentParser:
     work.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="detector", help="an option of the detector")
     work.add_argument("--match-set", action="append", default=[], metavar="NAME=VALUE", dest="matcher", help="an option of the matcher")
     work.add_argument(
-        "--geometry", choices=list(MODELS), default="none", help="estimate what relates the images of a pair, and let it decide which matches hold"
-    )
+        "--geometry", choices=list(geometry.MODELS), default="none",
+        help="estimate what relates the images of a pair, and let it decide which matches hold",
+    )  # fmt: skip
     work.add_argument(
         "--focal", default="exif", metavar="F|exif|estimate|none",
         help="focal lengths for the geometry: of the EXIF data where both images have them, made better with the motion (default), one "
@@ -65,7 +68,9 @@ def _parser() -> argparse.ArgumentParser:
         help="the camera of all images, upright, px: focal lengths and principal point, pixel centres at integers (COLMAP's CX and CY less "
         "0.5), instead of --focal",
     )  # fmt: skip
-    work.add_argument("--overwrite", action="store_true", help="outputs replace files that something else has written")
+    work.add_argument(
+        "--overwrite", action="store_true", help="outputs replace files that something else, or another collection, has written"
+    )
     work.add_argument("--quiet", action="store_true", help="no progress")
     return parser
 
@@ -112,11 +117,31 @@ def _camera(arguments: argparse.Namespace) -> str:
     return word
 
 
-def _plan(arguments: argparse.Namespace) -> plans.Plan:
-    names = plans.find_images(arguments.folder)
+def _check_camera(plan: plans.Plan) -> None:
+    """Refuses a --camera whose principal point lies outside of an image; says where it is far from the middle of one."""
+    said = False
+    checked: set[tuple[int, int] | None] = {None}
+    _, _, cx, cy = plan.camera
+    for name in plan.images:
+        size = images.size(plan.folder / name)
+        if size is None or size in checked:
+            continue
+        checked.add(size)
+        cannot_be, why = geometry.doubt(cx, cy, *size)
+        if cannot_be:
+            raise ValueError(f"--camera: {why} ({name})")
+        if why and not said:
+            print(f"python -m asj: warning: --camera: {why} ({name})", file=sys.stderr)
+            said = True
+
+
+def _plan(arguments: argparse.Namespace, found: plans.Found) -> plans.Plan:
+    names = found.images
     if not names:
-        raise ValueError(f"{arguments.folder}: no images there")
-    if arguments.pairs:
+        raise ValueError("; ".join([f"{arguments.folder}: no images there", *map(str.strip, _left_out(found))]))
+    if arguments.no_pairs:
+        pairs = []
+    elif arguments.pairs:
         pairs = plans.read_pairs(arguments.pairs, names)
     elif arguments.sequential is not None:
         if arguments.sequential < 1:
@@ -128,6 +153,12 @@ def _plan(arguments: argparse.Namespace) -> plans.Plan:
         arguments.folder, names, pairs, _options(arguments.detector, DETECTOR, "match"), _options(arguments.matcher, MATCHER, "default"),
         arguments.geometry, _focal(arguments),
     )  # fmt: skip
+
+
+def _left_out(found: plans.Found) -> list[str]:
+    """Lines about the files that are not looked at."""
+    lines = [f"  {name}: its name is not UTF-8, as outputs want it: rename it" for name in found.misnamed]
+    return [*lines, *filter(None, [found.left_out()])]
 
 
 def _progress(what: str, done: int, total: int, left: float) -> None:
@@ -161,10 +192,13 @@ def _check_outputs(arguments: argparse.Namespace) -> Path:
         raise ValueError("--camera-mode changes nothing without --colmap")
     if arguments.camera_mode != "auto" and arguments.camera is not None:
         raise ValueError("--camera is one camera of all images: --camera-mode changes nothing")
+    errors.extra("PIL.Image", "images")
     if arguments.colmap:
         errors.extra("pycolmap", "colmap")
     if arguments.hdf5:
         errors.extra("h5py", "hdf5")
+    if arguments.dask:
+        errors.extra("distributed", "dask")
     for path in outputs:
         if path.exists() and path.is_dir() == (path == arguments.colmap):
             raise FileExistsError(f"{path} is there, and is {'a folder' if path.is_dir() else 'no folder'}")
@@ -175,32 +209,50 @@ def _check_outputs(arguments: argparse.Namespace) -> Path:
 
 
 def _check_replaced(arguments: argparse.Namespace, store: Path, plan: plans.Plan) -> None:
-    """Refuses to write over photographs and the store, and, unasked, over what something else has written."""
-    files: list[tuple[Path, Callable[[Path], bool]]] = []
+    """Refuses to write over photographs and the store, and, unasked, over what something else or another collection has written."""
+    files: list[tuple[Path, Callable[[Path], str | None]]] = []
     if arguments.colmap:
         from .collection import colmap
 
-        files.append((arguments.colmap, colmap.is_ours))
+        files.append((arguments.colmap, colmap.written_from))
         colmap.refuse_logs(arguments.colmap)
     if arguments.hdf5:
         from .collection import hdf5
 
-        files += [(arguments.hdf5 / name, hdf5.is_ours) for name in ("features.h5", "matches.h5")]
+        files += [(arguments.hdf5 / name, hdf5.written_from) for name in ("features.h5", "matches.h5")]
     inputs = {(plan.folder / name).resolve() for name in plan.images}
-    for path, is_ours in files:
+    identity, highest = collection.Store.before_outputs(store, plan)
+    for path, written_from in files:
         if path.resolve() in inputs:
             raise FileExistsError(f"{path} is a photograph of the collection")
         if path.resolve() == store.resolve():
             raise FileExistsError(f"{path} is the store of this run")
-        if path.exists() and not arguments.overwrite and not is_ours(path):
-            raise FileExistsError(f"{path} is there, and something else has written it; --overwrite replaces it")
+        output.refuse_protected(path)
+        if path.exists() and not arguments.overwrite:
+            _check_writer(path, written_from(path), store, identity)
+    if arguments.limap and not arguments.overwrite:
+        from .collection import limap
+
+        for path in limap.foreign_files(arguments.limap, identity, highest):
+            _check_writer(path, limap.written_from(arguments.limap) if path.parent == arguments.limap else None, store, identity)
     if store.resolve() in inputs:
         raise FileExistsError(f"{store}: the store would be a photograph of the collection")
 
 
+def _check_writer(path: Path, writer: str | None, store: Path, identity: str | None) -> None:
+    if writer is None:
+        raise FileExistsError(f"{path} is there, and something else has written it; --overwrite replaces it")
+    if writer != identity:
+        another = f"another collection has written it, not that of {store}"
+        raise FileExistsError(f"{path} is there, and {another}; --overwrite replaces it")
+
+
 def _collect(arguments: argparse.Namespace) -> int:
     place = _check_outputs(arguments)
-    plan = _plan(arguments)
+    found = plans.look_in(arguments.folder)
+    plan = _plan(arguments, found)
+    if arguments.camera is not None:
+        _check_camera(plan)
     _check_replaced(arguments, place, plan)
     _stop_on_signals()  # here, since pycolmap has put its own in their places
     if arguments.hdf5:
@@ -221,8 +273,8 @@ def _collect(arguments: argparse.Namespace) -> int:
         store = open_things.enter_context(open_store(place, plan))
         summary = collection.collect(plan, store, workers, progress)
         _write(arguments, store)
-    print(summary)
-    return 1 if summary.failed_images or summary.failed_pairs else 0
+    print("\n".join([str(summary), *_left_out(found)]))
+    return 1 if summary.failed_images or summary.failed_pairs or found.misnamed else 0
 
 
 class _Stopped(KeyboardInterrupt):
@@ -249,7 +301,7 @@ def main(words: Sequence[str] | None = None) -> int:
         print("interrupted; --resume goes on", file=sys.stderr)
         return 128 + (stopped.args[0] if isinstance(stopped, _Stopped) else signal.SIGINT)
     except (errors.Error, collection.StoreError, OSError, ValueError, ImportError, sqlite3.Error) as bad:
-        print(f"python -m asj: {bad}", file=sys.stderr)
+        print(f"python -m asj: {bad}".encode("utf-8", "backslashreplace").decode(), file=sys.stderr)
         return 2
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ._native import ffi, lib
-from .errors import OptionError, error, text
+from .errors import OptionError, as_bytes, error, text
 
 log = logging.getLogger("asj")
 _LEVELS = {
@@ -51,9 +51,12 @@ class Context:
         self._handle = ffi.new_handle(self)
         options = ffi.new("asj_context_options *")
         lib.asj_context_options_init(options)
-        options.threads = threads
+        try:
+            options.threads = threads
+        except OverflowError:
+            raise OptionError(f"threads is {threads}: 0 or as many as there should be") from None
         options.backend = _BACKENDS[backend]
-        name = ffi.new("char[]", str(device).encode()) if device is not None else ffi.NULL
+        name = ffi.new("char[]", as_bytes(str(device), "device")) if device is not None else ffi.NULL
         options.device = name
         options.log = lib.asj_python_log
         options.log_user = self._handle
@@ -138,7 +141,19 @@ def current() -> Context:
     return context
 
 
+def given(context: Context | None) -> Context:
+    """A function's argument, or the context of this thread."""
+    return current() if context is None else _expect(context)
+
+
+def _expect(context: object) -> Context:
+    if not isinstance(context, Context):
+        raise TypeError(f"an asj.Context is wanted, not {context!r:.60}")
+    return context
+
+
 def set_current(context: Context) -> None:
     """Lets the functions of this package use that context in this thread, when they are given none."""
+    _expect(context)
     _local.context = context
     _local.process = os.getpid()

@@ -62,7 +62,19 @@ def extra(module: str, name: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError as missing:
-        raise ImportError(f"this needs {module.partition('.')[0]}: install it, or this package with its extra [{name}]") from missing
+        package = module.partition(".")[0].replace("PIL", "Pillow")
+        raise ImportError(f"this needs {package}: install it, or this package with its extra [{name}]") from missing
+
+
+def as_bytes(word: str, what: str) -> bytes:
+    """A word as a C string, which ends at its first NUL."""
+    try:
+        data = word.encode()
+    except UnicodeEncodeError:
+        raise OptionError(f"{what}: {word!r} is no text that can be encoded as UTF-8") from None
+    if b"\0" in data:
+        raise OptionError(f"{what}: {word!r} holds a NUL")
+    return data
 
 
 def text(pointer: object) -> str:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import arrays, images
 from ._native import ffi, lib
-from .context import Context, current
+from .context import Context, current, given
 from .errors import ArgumentError, FormatError, ImageError, OptionError
 from .options import DETECTOR, MATCHER
 from .output import whole_file
@@ -73,7 +73,7 @@ class Features:
     def without_image(self, *, preset: str = "default", context: Context | None = None, **options: object) -> Features:
         """What matching needs, and no more: to keep many, and to send them elsewhere. `options` as for :meth:`save`."""
         self._check_options(preset, options)
-        return DescribedFeatures(self.described(MATCHER.fill(preset, options), context or current()))
+        return DescribedFeatures(self.described(MATCHER.fill(preset, options), given(context)))
 
     def save(self, path: str | os.PathLike[str], *, preset: str = "default", context: Context | None = None, **options: object) -> None:
         """Writes a file of features (.asjf), all that matching needs: :func:`asj.load_features` and `asj-cli match` read it.
@@ -81,7 +81,7 @@ class Features:
         options   those of the matcher that concern one image, for instance descriptor="sift"
         """
         self._check_options(preset, options)
-        handle = self.described(MATCHER.fill(preset, options), context or current())
+        handle = self.described(MATCHER.fill(preset, options), given(context))
         size = lib.asj_features_save(handle, ffi.NULL, 0)
         data = ffi.new("char[]", size)
         lib.asj_features_save(handle, data, size)
@@ -232,13 +232,18 @@ def detect(
     region: tuple[int, int, int, int] | None = None,
     **options: object,
 ) -> Features:
-    """Finds the junctions of an image: an array of HxW, HxWx3 or HxWx4 (red, green, blue), uint8, uint16 or float (1.0 is white).
+    """Finds the junctions of an image: an array of HxW, HxWx3 or HxWx4 (red, green, blue), uint8, uint16 or float (1.0 is white);
+    or an image of Pillow, which is taken as :func:`asj.read_image` takes its file: converted by its mode, and upright where it has
+    an EXIF orientation, with locations in the upright image (:attr:`Features.image`).
 
     preset   "match" for features that are to be matched: weaker junctions too, since the matcher tells the false ones. "default"
              for junctions that are to be looked at; "paper" for the published method
     mask     HxW of bool or uint8: no junction where it is 0
     region   x, y, width, height: only junctions in this part of the image; branches may leave it
     options  those of the detector by name (:func:`asj.detect_options` lists them), for instance minimum_length=30
+
+    Colours count by their grey (77 R + 150 G + 29 B of 256), which is rounded as the type's numbers are: the same colours in 8 bits
+    and in 16 bits or floats may differ by a few junctions; the same greys do not.
 
     The array is not copied, and matching and saving look at it: pass image.copy() where a buffer is filled anew meanwhile, or take
     :meth:`Features.without_image` before.
@@ -263,7 +268,7 @@ def detect(
     allowed = images.view(mask) if mask is not None else None  # lives until the call has ended
     part.mask = allowed.pointer if allowed else ffi.NULL
     place = ffi.new("asj_detection **")
-    (context or current()).call(lib.asj_detect_region, view.pointer, part, record, place)
+    given(context).call(lib.asj_detect_region, view.pointer, part, record, place)
     found = ffi.gc(place[0], _free)
     junctions = arrays.view(found.junctions, found.junction_count, "asj_junction", found)
     l_junctions = arrays.view(found.l_junctions, found.l_junction_count, "asj_l_junction", found)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Union
@@ -93,10 +94,27 @@ def fill(
 
 LARGEST_SKEW = 1e-3  # of the focal length: less is no half pixel at the border
 LARGEST_LAST = 1e-9  # of what is 0 in the last row: rounding
+FARTHEST_CENTRE = 0.25  # of the width and of the height, from the middle to a principal point: no lens is that far out
 
 
-def numbers(camera: ArrayLike, width: int, height: int) -> tuple[float, float, float, float]:
-    """Focal lengths and principal point of a matrix K of any scale, of (fx, fy, cx, cy), or of a focal length alone."""
+def doubt(cx: float, cy: float, width: int, height: int) -> tuple[bool, str]:
+    """Whether a principal point cannot be that of an image of that size, and what to say about it; nothing where it is a usual one.
+
+    >>> doubt(320, 240, 640, 480), doubt(700, 700, 640, 480)[0], doubt(500, 240, 640, 480)[1][:36]
+    ((False, ''), True, 'the principal point cx, cy = 500, 24')
+    """
+    outside = not (-0.5 <= cx <= width - 0.5 and -0.5 <= cy <= height - 0.5)
+    aside = abs(cx - (width - 1) / 2) > FARTHEST_CENTRE * width or abs(cy - (height - 1) / 2) > FARTHEST_CENTRE * height
+    if not outside and not aside:
+        return False, ""
+    where = "outside of" if outside else "far from the middle of"
+    order = "the order is fx,fy,cx,cy - is this cx,cy,fx,fy?"
+    return outside, f"the principal point cx, cy = {cx:g}, {cy:g} lies {where} an image of {width} x {height}: {order}"
+
+
+def numbers(camera: ArrayLike, width: int, height: int, stacklevel: int = 4) -> tuple[float, float, float, float]:
+    """Focal lengths and principal point of a matrix K of any scale, of (fx, fy, cx, cy), or of a focal length alone. `stacklevel`:
+    of a warning about a principal point, so that it names the line of the user."""
     values = np.asarray(camera, np.float64)
     if not np.isfinite(values).all():
         raise ArgumentError("a camera must have finite numbers")
@@ -119,6 +137,11 @@ def numbers(camera: ArrayLike, width: int, height: int) -> tuple[float, float, f
         raise ArgumentError(f"a camera of shape {values.shape}: a matrix K (3, 3), (fx, fy, cx, cy), or a focal length in pixels")
     if numbers[0] <= 0 or numbers[1] <= 0:
         raise ArgumentError("a camera must have focal lengths above 0")
+    cannot_be, why = doubt(numbers[2], numbers[3], width, height)
+    if cannot_be:
+        raise ArgumentError(why)
+    if why:
+        warnings.warn(why, stacklevel=stacklevel)
     return float(numbers[0]), float(numbers[1]), float(numbers[2]), float(numbers[3])
 
 

@@ -3,7 +3,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import sys
+import threading
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._native import ffi, lib
-from .errors import ImageError
+from .errors import ImageError, LimitError, extra
 
 _GRAY = {"uint8": lib.ASJ_FORMAT_GRAY8, "uint16": lib.ASJ_FORMAT_GRAY16, "float32": lib.ASJ_FORMAT_GRAY_FLOAT}
 FLOATS_UP_TO = 2  # what overshoots 1.0 a little, resampled or sharpened, may
@@ -32,9 +36,9 @@ def view(image: ArrayLike, white: float = 0.0) -> View:
     """HxW of uint8, uint16 or float (1.0 is white), or HxWx3 or HxWx4 of uint8, uint16 or float in the order red, green, blue.
 
     `white` is the value that means white, if it is not the type's: 1023 for a 10-bit camera in uint16. Floats far above 1 are refused
-    without it: most of them would be cut.
+    without it: most of them would be cut. An image of Pillow is taken as read() takes its file.
     """
-    pixels = np.asarray(image)
+    pixels = as_array(image)
     if pixels.dtype.kind in "USO":
         raise ImageError(f"not an array of pixels: {image!r:.60}; asj.read_image() reads files")
     if pixels.dtype == np.bool_:
@@ -62,7 +66,7 @@ def view(image: ArrayLike, white: float = 0.0) -> View:
     record.format = _GRAY[pixels.dtype.name] if pixels.ndim == 2 else _COLOUR[pixels.shape[2]]
     record.height, record.width = pixels.shape[:2]
     record.white = white
-    record.stride = pixels.strides[0]
+    record.stride = pixels.strides[0] if record.height > 1 else 0  # that of a single row says nothing
     return View(pixels, record, record.width, record.height)
 
 
@@ -71,7 +75,7 @@ def _fits(pixels: NDArray[Any]) -> bool:
     channels = 1 if pixels.ndim == 2 else pixels.shape[2]
     inner = pixels.strides[1] == channels * pixels.itemsize and (pixels.ndim == 2 or pixels.strides[2] == pixels.itemsize)
     row = pixels.shape[1] * channels * pixels.itemsize
-    return inner and abs(pixels.strides[0]) >= row and pixels.strides[0] % pixels.itemsize == 0
+    return inner and (pixels.shape[0] == 1 or (abs(pixels.strides[0]) >= row and pixels.strides[0] % pixels.itemsize == 0))
 
 
 def _luma(pixels: NDArray[Any]) -> NDArray[Any]:
@@ -92,52 +96,96 @@ def _deep(pixels: NDArray[Any]) -> NDArray[Any]:
     return pixels.astype(np.uint16)
 
 
+def as_array(image: Any) -> NDArray[Any]:
+    """The numbers of an image. Those of Pillow are converted by their mode, since the samples of most are no grey and no colours:
+    numbers of a palette, hues, inks."""
+    pillow = sys.modules.get("PIL.Image")  # where nobody has loaded it, this is no image of it
+    if pillow is not None and isinstance(image, pillow.Image):
+        try:
+            return _of_pillow(image)
+        except UNREADABLE as bad:
+            raise ImageError(f"an image of mode {image.mode}: {bad}") from bad
+    return np.asarray(image)
+
+
+def _of_pillow(image: Any) -> NDArray[Any]:
+    """Upright; gray, or red, green and blue."""
+    from PIL import ImageOps
+
+    upright = ImageOps.exif_transpose(image)
+    if upright.mode in ("F", "I") or upright.mode.startswith("I;16"):
+        return _deep(np.array(upright))
+    return np.array(upright.convert("L" if upright.mode in ("1", "L", "LA") else "RGB"))
+
+
 def read(path: str | os.PathLike[str]) -> NDArray[Any]:
     """An image file as an array, upright (its EXIF orientation is applied): HxW, or HxWx3 in the order red, green, blue; uint8, of
     gray files of more bits uint16 or float32.
 
-    Needs Pillow. Damaged files raise ImageError.
+    Needs Pillow. Damaged files raise ImageError, and those of more pixels than the library takes (2^29) LimitError, before they are
+    decoded.
     """
     try:
-        from PIL import Image, ImageOps
-    except ImportError as missing:  # pragma: no cover
-        raise ImportError("asj.read_image() needs Pillow: pip install pillow") from missing
-    try:
-        with Image.open(path) as file:
-            upright = ImageOps.exif_transpose(file)
-            if upright.mode in ("F", "I") or upright.mode.startswith("I;16"):
-                return _deep(np.array(upright))
-            return np.array(upright.convert("L" if upright.mode in ("1", "L", "LA") else "RGB"))
+        with _opened(path) as file:
+            return _of_pillow(file)
     except FileNotFoundError:
         raise
-    except (OSError, ValueError, SyntaxError, MemoryError, Image.DecompressionBombError) as bad:
+    except (*UNREADABLE, MemoryError) as bad:
         raise ImageError(f"{os.fspath(path)}: {bad}") from bad
+
+
+UNREADABLE = OSError, ValueError, SyntaxError  # what Pillow raises
+_limit = threading.Lock()
+
+
+@contextlib.contextmanager
+def _opened(path: str | os.PathLike[str]) -> Iterator[Any]:
+    """A file of Pillow, of up to as many pixels as the library takes. Pillow's own limit, of a sixth of that, is the whole
+    process's, and a warning: it is put aside while the head of the file is read."""
+    image = extra("PIL.Image", "images")
+    with _limit:
+        former, image.MAX_IMAGE_PIXELS = image.MAX_IMAGE_PIXELS, None
+        try:
+            file = image.open(path)
+        finally:
+            image.MAX_IMAGE_PIXELS = former
+    with file:
+        width, height = file.size
+        if width * height > lib.ASJ_MAX_PIXELS:
+            raise LimitError(f"{os.fspath(path)}: {width} x {height} pixels; the library takes {lib.ASJ_MAX_PIXELS}")
+        yield file
 
 
 def orientation(path: str | os.PathLike[str]) -> int:
     """The EXIF orientation, 1 to 8, that read() applies; 1 where there is none that can be."""
-    from PIL import Image
-
     try:
-        with Image.open(path) as file:
+        with _opened(path) as file:
             value = int(file.getexif().get(0x0112, 1))
-    except (OSError, ValueError, SyntaxError, TypeError, KeyError, Image.DecompressionBombError):
+    except (*UNREADABLE, LimitError, TypeError, KeyError):
         return 1
     return value if 1 <= value <= 8 else 1
+
+
+def size(path: str | os.PathLike[str]) -> tuple[int, int] | None:
+    """Width and height of the upright image, from the head of the file; None where it cannot be read."""
+    try:
+        with _opened(path) as file:
+            width, height = file.size
+    except (*UNREADABLE, LimitError):
+        return None
+    return (height, width) if orientation(path) in (5, 6, 7, 8) else (width, height)
 
 
 def camera_name(path: str | os.PathLike[str]) -> str | None:
     """Make, model and focal lengths (on 35 mm film, and in mm) of the EXIF data as a line of text, which tells cameras apart as COLMAP's
     CameraMode.AUTO does; None where make, model or both focal lengths are missing."""
-    from PIL import Image
-
     try:
-        with Image.open(path) as file:
+        with _opened(path) as file:
             data = file.getexif()
             lens = data.get_ifd(0x8769)
         names = [" ".join(str(data.get(tag, "")).replace("\0", " ").split()) for tag in (0x010F, 0x0110)]
         lengths = [float(lens.get(tag, 0)) for tag in (0xA405, 0x920A)]
-    except (OSError, ValueError, SyntaxError, TypeError, ArithmeticError, KeyError, Image.DecompressionBombError):
+    except (*UNREADABLE, LimitError, TypeError, ArithmeticError, KeyError):
         return None
     return "; ".join([*names, *(f"{length:g}" for length in lengths)]) if all(names) and max(lengths) > 0 else None
 
@@ -152,16 +200,14 @@ def focal_length(path: str | os.PathLike[str]) -> float | None:
     From the focal length on 35 mm film, by the diagonal, or else from the focal length and the resolution on the focal plane. A picture
     that was cut since has none. The same as the library's asj_image_file.focal_length (src/io/lens.c).
     """
-    from PIL import Image
-
     try:
-        with Image.open(path) as file:
+        with _opened(path) as file:
             longer, shorter = max(file.size), min(file.size)
             exif = file.getexif().get_ifd(0x8769)
         was = [float(exif.get(tag, 0)) for tag in (0xA002, 0xA003)]
         film, mm, per_unit = (float(exif.get(tag, 0)) for tag in (0xA405, 0x920A, 0xA20E))
         unit = _MM_PER_UNIT.get(int(exif.get(0xA210, 2)), 0.0)
-    except (OSError, ValueError, SyntaxError, TypeError, ArithmeticError, KeyError, Image.DecompressionBombError):
+    except (*UNREADABLE, LimitError, TypeError, ArithmeticError, KeyError):
         return None
     if min(was) > 0 and not abs(max(was) * shorter / (min(was) * longer) - 1) <= 0.01:
         return None

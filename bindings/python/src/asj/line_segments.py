@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from . import arrays
 from ._native import ffi, lib
-from .context import Context, current
+from .context import Context, given
 from .features import Features, expect_features
 
 
@@ -54,7 +54,7 @@ def lines(features: Features, *, context: Context | None = None) -> Lines:
     (4, [70.0, 70.0, 50.0, 50.0])
     """
     expect_features(features, "asj.lines(asj.detect(image))")
-    return lines_of(features.junctions, features.edges, context or current())
+    return lines_of(features.junctions, features.edges, given(context))
 
 
 def lines_of(junctions: NDArray[Any], edges: NDArray[Any], context: Context) -> Lines:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import arrays, images
 from ._native import ffi, lib
-from .context import Context, current
+from .context import Context, given
 from .errors import ArgumentError
 from .features import Features, detect, expect_features  # noqa: F401 (detect: the example of match())
 from .geometry import Camera, Geometry
@@ -110,8 +110,13 @@ class Matches:
 
     @property
     def probability(self) -> NDArray[np.float32]:
-        """(K,) that the match is right, given the geometry; 0 where none was accepted, low off the plane of a homography."""
-        return np.asarray(self.matches["probability"])
+        """(K,) that the match is right, given the geometry; 0 where none was accepted, low off the plane of a homography. NaN where
+        none was asked for: ask for one (geometry="auto") to have it."""
+        if self._result.geometry.status != lib.ASJ_GEOMETRY_NOT_ASKED:
+            return np.asarray(self.matches["probability"])
+        unknown = np.full(len(self), np.nan, np.float32)
+        unknown.flags.writeable = False
+        return unknown
 
     @property
     def stretch(self) -> tuple[float, float]:
@@ -190,7 +195,8 @@ def match(
     geometry   "auto", "essential", "fundamental" or "homography": estimates what relates the two views, drops matches that contradict
                it and adds those that it makes likely; "none" does not
     camera1    of the first image: the matrix K, (fx, fy, cx, cy), or a focal length in pixels; None = not known. Pixel centres are at
-               integers: cx and cy are those of COLMAP less 0.5
+               integers: cx and cy are those of COLMAP less 0.5. A principal point outside of the image is refused, and one farther
+               from its middle than a quarter of its size is warned of: mostly these are cx, cy, fx, fy
     camera2    of the second image; None = as camera1
     find_focal no camera is known: one focal length for both is found with the motion ("auto" and "essential")
     focal_sd   how well the cameras' focal lengths are known, as a part of them, 0.05 for instance where they are from EXIF data: the
@@ -212,7 +218,7 @@ def match(
     record = MATCHER.fill(preset, options, _KEYWORDS)
     cameras = (camera1, camera1 if camera2 is None else camera2)
     fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in (features1, features2)], find_focal, focal_sd)
-    context = context or current()
+    context = given(context)
     place = ffi.new("asj_match_result **")
     one, two = features1.described(record, context), features2.described(record, context)
     context.call(lib.asj_match_features, one, two, record, place)
@@ -257,7 +263,7 @@ def match_images(
     fill_geometry(record, geometry, cameras, [(one.width, one.height) for one in views], find_focal, focal_sd)
     detector = DETECTOR.fill("paper" if preset == "paper" else "match", {})
     place = ffi.new("asj_match_result **")
-    (context or current()).call(
+    given(context).call(
         lib.asj_match_images, views[0].pointer, views[1].pointer, factors, detector, record, place
     )
     return Matches(ffi.gc(place[0], _free), None)

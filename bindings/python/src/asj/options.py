@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ._native import ffi, lib
-from .errors import OptionError, error, text
+from .errors import OptionError, as_bytes, error, text
 
 
 _IMAGE_GROUPS = ("frames of L-junctions", "description")
@@ -65,7 +65,7 @@ class _Table:
 
     def _assign(self, options: Any, key: str, value: object, keywords: Sequence[str]) -> None:
         message = ffi.new("char[512]")
-        status = self._set(options, key.encode(), _written(value).encode(), message, 512)
+        status = self._set(options, as_bytes(key, "an option"), as_bytes(_written(value), key), message, 512)
         said = text(message)
         if status != lib.ASJ_OK:
             hint = "" if key in self.keys else _elsewhere(self, key) or _like(key, [*self.keys, *keywords])

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import stat
 import tempfile
@@ -18,14 +19,15 @@ os.umask(_MASK)
 @contextlib.contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
     """A name beside `path` to write to; it becomes `path` when the block ends without an exception, and vanishes otherwise. A link
-    stays one and a file that was there gives its permissions; what is no file (a pipe, a device) is not replaced: `path` itself is
-    written to."""
+    stays one and a file that was there gives its permissions; one that is protected against writing is not replaced. What is no
+    file (a pipe, a device) is not either: `path` itself is written to."""
     path = path.resolve()
     if path.exists() and not path.is_file():
         yield path
         return
-    try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}-", suffix=".tmp", dir=path.parent)
+    refuse_protected(path)
+    try:  # a short name, as the library's own: that of the target may be as long as names can be
+        handle, name = tempfile.mkstemp(prefix=f".asj-{os.getpid()}-", suffix=".tmp", dir=path.parent)
     except OSError as bad:
         raise type(bad)(bad.errno, bad.strerror, str(path)) from None
     os.close(handle)
@@ -37,3 +39,14 @@ def whole_file(path: Path) -> Iterator[Path]:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def refuse_protected(path: Path) -> None:
+    """Raises PermissionError for a file that is there and protected against writing."""
+    if path.exists() and not _may_write(path):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+
+
+def _may_write(path: Path) -> bool:
+    """A rename asks the folder alone, and would replace a protected file."""
+    return os.access(path, os.W_OK, effective_ids=os.access in os.supports_effective_ids)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import ImageError, extra
 from .features import Features
+from .images import as_array
 from .matches import Matches
 
 # The colours of asj-cli's plots: lightness falls all the way (cli/plot_color.c).
@@ -31,7 +32,7 @@ def _axes(axes: Any, width: float, height: float) -> Any:
 
 
 def _show(axes: Any, image: ArrayLike) -> None:
-    pixels = np.asarray(image)
+    pixels = as_array(image)
     axes.imshow(pixels, cmap="gray" if pixels.ndim == 2 else None, interpolation="nearest")
     axes.set_axis_off()
     axes.set_autoscale_on(False)  # the picture's own frame, whatever is drawn
@@ -111,7 +112,7 @@ def _hues(x: NDArray[Any]) -> NDArray[np.float64]:
 
 
 def _pixels(image: ArrayLike) -> Any:
-    pixels = np.asarray(image)
+    pixels = as_array(image)
     if pixels.ndim not in (2, 3) or pixels.dtype.kind not in "uifb":
         raise ImageError(f"not an array of pixels: {image!r:.60}")
     return pixels

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import arrays
 from ._native import ffi, lib
-from .context import Context, current
+from .context import Context, given
 from .features import Features, expect_features
 from .geometry import Camera, numbers
 
@@ -45,7 +45,8 @@ def vanishing_points(
     """Where the parallel edges of the scene meet, by the branches of an image's junctions.
 
     camera    a matrix K (3, 3), (fx, fy, cx, cy) or a focal length in pixels; pixel centres are at integers (COLMAP's cx and cy less
-              0.5). Without one the focal length is found where two directions determine it
+              0.5), and the principal point in the image (:func:`asj.match`). Without one the focal length is found where two
+              directions determine it
     epsilon   how many chance directions an image without any may show on average
 
     >>> import asj, numpy as np
@@ -61,9 +62,9 @@ def vanishing_points(
         options.epsilon = epsilon
     if camera is not None:
         place = options.camera
-        place.fx, place.fy, place.cx, place.cy = numbers(camera, features.width, features.height)
+        place.fx, place.fy, place.cx, place.cy = numbers(camera, features.width, features.height, stacklevel=3)
     source = arrays.pointer(features.junctions, "asj_junction")
-    (context or current()).call(lib.asj_find_vanishing_points, source, len(features.junctions), options, result)
+    given(context).call(lib.asj_find_vanishing_points, source, len(features.junctions), options, result)
     points = [result.points[i] for i in range(result.count)]
     sources = {lib.ASJ_FOCAL_UNKNOWN: "unknown", lib.ASJ_FOCAL_GIVEN: "given", lib.ASJ_FOCAL_FOUND: "found"}
     known = result.focal_source != lib.ASJ_FOCAL_UNKNOWN

@@ -28,7 +28,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import arrays
 from ..output import whole_file
 from . import locations, orientation
 from .store import Store
@@ -38,14 +37,22 @@ from .tasks import Detected
 #: by equal make, model, focal lengths and size in EXIF data, and else an image a camera; one for all; one for each folder; one for each
 CAMERA_MODES = ("auto", "single", "per-folder", "per-image")
 
-_APPLICATION = int.from_bytes(b"asj\0", "big")  # of a database that was written here, and may be again
+_APPLICATION = int.from_bytes(b"asj\0", "big")  # of a database that was written here
+_STORE = "asj_store"  # a table of our own, which COLMAP passes over: the identity of the store that the database was written from
 
 
-def is_ours(path: Path) -> bool:
-    """Was the database written by write()?"""
-    with path.open("rb") as file:  # SQLite itself would leave logs beside it
+def written_from(path: Path) -> str | None:
+    """The identity of the store that write() wrote the database from; None where something else has written it."""
+    with path.open("rb") as file:
         header = file.read(100)
-    return header.startswith(b"SQLite format 3\0") and int.from_bytes(header[68:72], "big") == _APPLICATION
+    if not header.startswith(b"SQLite format 3\0") or int.from_bytes(header[68:72], "big") != _APPLICATION:
+        return None
+    try:  # "immutable": SQLite leaves no logs beside it
+        with contextlib.closing(sqlite3.connect(f"{path.absolute().as_uri()}?immutable=1", uri=True)) as connection:
+            row = connection.execute(f"SELECT identity FROM {_STORE}").fetchone()
+    except sqlite3.DatabaseError:
+        return None
+    return str(row[0]) if row else None
 
 
 def refuse_logs(path: Path) -> None:
@@ -101,6 +108,8 @@ def _fill(store: Store, pycolmap: Any, path: Path, refine: bool, threads: int | 
     _write_geometries(store, pycolmap, path)
     with contextlib.closing(sqlite3.connect(path)) as connection:
         connection.execute(f"PRAGMA application_id = {_APPLICATION}")
+        connection.execute(f"CREATE TABLE {_STORE} (identity TEXT NOT NULL)")
+        connection.execute(f"INSERT INTO {_STORE} VALUES (?)", (store.identity(),))
         connection.commit()
 
 
@@ -124,7 +133,7 @@ def _write_geometries(store: Store, pycolmap: Any, path: Path) -> None:
         for one, two, matched in store.matched():
             found = json.loads(matched.geometry) if matched.geometry and matched.matches else None
             if found and found["status"] == "accepted" and found["model"] != "homography":
-                records = np.frombuffer(matched.matches or b"", arrays.struct_type("asj_junction_match"))
+                records = matched.junction_matches
                 pairs = np.stack([records["junction1"], records["junction2"]], axis=1)
                 geometry = _geometry(pycolmap, found, pairs, images[one], images[two])
                 if database.exists_two_view_geometry(one, two):
@@ -239,7 +248,7 @@ def _image(
     database: Any, pycolmap: Any, number: int, name: str, camera: int, detected: Detected, moved: NDArray[np.float32] | None
 ) -> None:
     database.write_image(pycolmap.Image(image_id=number, name=name, camera_id=camera), use_image_id=True)
-    points = key_points(np.frombuffer(detected.features or b"", arrays.struct_type("asj_junction")))
+    points = key_points(detected.junctions)
     if moved is not None:
         points[:, :2] = moved + np.float32(0.5)
     matrix = _to_stored(detected)

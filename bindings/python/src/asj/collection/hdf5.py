@@ -13,24 +13,25 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import __version__, arrays
+from .. import __version__
 from ..output import whole_file
 from . import locations, orientation
 from .store import Store
 
 
-_MARK = "asj"  # attribute of a file that was written here, and may be again
+_MARK = "asj"  # attribute of a file that was written here: the version
+_STORE = "asj_store"  # another one: the identity of the store that the file was written from
 
 
-def is_ours(path: Path) -> bool:
-    """Was the file written by write_features() or write_matches()?"""
+def written_from(path: Path) -> str | None:
+    """The identity of the store that write_features() or write_matches() wrote the file from; None where something else has."""
     import h5py
 
     try:
         with h5py.File(path) as file:
-            return _MARK in file.attrs
+            return str(file.attrs[_STORE]) if _STORE in file.attrs else None
     except OSError:
-        return False
+        return None
 
 
 def check_names(names: Iterable[str]) -> None:
@@ -48,11 +49,11 @@ def write_features(store: Store, path: Path) -> None:
 
     with whole_file(path) as temporary, h5py.File(temporary, "w") as file:
         places = locations.of_store(store)
-        file.attrs[_MARK] = __version__
+        file.attrs[_MARK], file.attrs[_STORE] = __version__, store.identity()
         for number, name, detected in store.detected():
             if detected.features is None:
                 continue
-            junctions = np.frombuffer(detected.features, arrays.struct_type("asj_junction"))
+            junctions = detected.junctions
             group = file.create_group(name)
             size = detected.width, detected.height
             group["keypoints"] = orientation.turn(orientation.to_stored(detected.orientation, *size), places[number])
@@ -65,13 +66,13 @@ def write_matches(store: Store, path: Path) -> None:
     import h5py
 
     names = dict(store.images())
-    sizes = {n: len(d.features or b"") // arrays.struct_type("asj_junction").itemsize for n, _, d in store.detected()}
+    sizes = {n: len(d.junctions) for n, _, d in store.detected()}
     with whole_file(path) as temporary, h5py.File(temporary, "w") as file:
-        file.attrs[_MARK] = __version__
+        file.attrs[_MARK], file.attrs[_STORE] = __version__, store.identity()
         for one, two, matched in store.matched():
             if matched.matches is None:
                 continue
-            records = np.frombuffer(matched.matches, arrays.struct_type("asj_junction_match"))
+            records = matched.junction_matches
             matches = np.full(sizes[one], -1, np.int32)
             scores = np.zeros(sizes[one], np.float32)
             matches[records["junction1"]] = records["junction2"]

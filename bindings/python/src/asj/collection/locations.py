@@ -21,7 +21,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import arrays
 from .store import Store
 
 PRIOR = 1.0  # px that a junction may stand wrong
@@ -111,7 +110,7 @@ def matches_of(store: Store) -> Iterator[tuple[int, int, NDArray[Any]]]:
     """Image 1, image 2 and records of asj_junction_match of all pairs that have some."""
     for one, two, matched in store.matched():
         if matched.matches:
-            yield one, two, np.frombuffer(matched.matches, arrays.struct_type("asj_junction_match"))
+            yield one, two, matched.junction_matches
 
 
 def of_store(store: Store) -> dict[int, NDArray[np.float32]]:
@@ -119,6 +118,6 @@ def of_store(store: Store) -> dict[int, NDArray[np.float32]]:
     detected = {}
     for number, _, image in store.detected():
         if image.features is not None:
-            junctions = np.frombuffer(image.features, arrays.struct_type("asj_junction"))
+            junctions = image.junctions
             detected[number] = np.stack([junctions["x"], junctions["y"]], axis=1)
     return refine(detected, matches_of(store))

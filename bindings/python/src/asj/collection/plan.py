@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import os
 import shlex
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,7 +16,8 @@ _TILE = 16  # images along a side of a tile of pairs: a process keeps that many 
 
 @dataclass(frozen=True)
 class Plan:
-    """The work: images by name below a folder, pairs of names, options of detector and matcher, the geometry."""
+    """The work: images by name below a folder, pairs of names, options of detector and matcher by name, as text (with "preset",
+    that of the matcher "default"), the geometry."""
 
     folder: Path
     images: list[str]
@@ -39,11 +42,52 @@ def camera_of(word: str) -> list[float]:
     return [] if word in ("exif", "estimate", "none") else [float(number) for number in word.split(",")]
 
 
-def find_images(folder: Path) -> list[str]:
-    """Names of the image files below the folder, sorted, with / between folders."""
+@dataclass(frozen=True)
+class Found:
+    """What there is below a folder."""
+
+    images: list[str]  # names of the image files, sorted, with / between folders
+    misnamed: list[str]  # image files whose names are not UTF-8, which no output can have; what is not is written as \x..
+    endings: dict[str, int]  # of the other files, in small letters, and how many have it; "" is none
+
+    def left_out(self) -> str:
+        """A line about the other files; empty where there are none.
+
+        >>> Found([], [], {".txt": 1, "": 1, ".gif": 12}).left_out()
+        'not looked at, by their ending: 12 .gif, 1 without, 1 .txt'
+        """
+        counts = sorted(self.endings.items(), key=lambda item: (-item[1], item[0]))
+        words = ", ".join(f"{count} {ending or 'without'}" for ending, count in counts)
+        return f"not looked at, by their ending: {words}" if words else ""
+
+
+def look_in(folder: Path) -> Found:
+    """The images below the folder, and what is left out."""
     if not folder.is_dir():
         raise NotADirectoryError(f"{folder} is not a folder")
-    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.suffix.lower() in ENDINGS and path.is_file())
+    images, misnamed, endings = [], [], Counter[str]()
+    for path in folder.rglob("*"):
+        if not path.is_file():
+            continue
+        if path.suffix.lower() not in ENDINGS:
+            endings[_printable(path.suffix.lower())] += 1
+            continue
+        name = path.relative_to(folder).as_posix()
+        if _printable(name) == name:
+            images.append(name)
+        else:
+            misnamed.append(_printable(name))
+    return Found(sorted(images), sorted(misnamed), dict(endings))
+
+
+def _printable(name: str) -> str:
+    """A name of the file system as text: what is not UTF-8 in it as \\x.."""
+    return os.fsencode(name).decode("utf-8", "backslashreplace")
+
+
+def find_images(folder: Path) -> list[str]:
+    """Names of the image files below the folder, sorted, with / between folders."""
+    return look_in(folder).images
 
 
 def all_pairs(names: list[str]) -> list[tuple[str, str]]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import json
+import secrets
 import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,6 +18,7 @@ from .tasks import Detected, Matched
 
 _FORMAT = "asj-collection-4"
 _FOCAL = "focal"  # Plan.focal, for outputs
+_IDENTITY = "identity"  # by chance: outputs have it too, so that no other collection's are replaced
 _HIGHEST = "highest image"  # the highest number that an image has had: with it, no other image gets one that was in use
 _SCHEMA = """
 CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT;
@@ -50,7 +52,7 @@ class Store:
             raise StoreError(there)
         numbers = {name: number for number, name in enumerate(plan.images, 1)}
         images = [(number, name, _stamp(plan.folder / name)) for name, number in numbers.items()]
-        about = [*_about(plan).items(), (_FOCAL, plan.focal), (_HIGHEST, str(len(numbers)))]
+        about = [*_about(plan).items(), (_FOCAL, plan.focal), (_HIGHEST, str(len(numbers))), (_IDENTITY, _new_identity())]
         connection = _connect(path)
         try:
             with connection:
@@ -79,6 +81,39 @@ class Store:
                 return _has_tables(connection)
         except sqlite3.DatabaseError:
             return True  # something else
+
+    @staticmethod
+    def before_outputs(path: Path, plan: Plan) -> tuple[str | None, int]:
+        """Of the store that is there: its identity, None where there is no store, or one of a version that had none; and the
+        highest number that an image of the plan will have."""
+        try:
+            if Store.is_there(path):
+                with contextlib.closing(sqlite3.connect(path, timeout=60)) as connection:
+                    about = dict(connection.execute("SELECT key, value FROM about"))
+                    known = dict(connection.execute("SELECT name, id FROM images"))
+                new = sum(name not in known for name in plan.images)
+                return about.get(_IDENTITY), max(int(about.get(_HIGHEST, 0)), *known.values(), 0) + new
+        except sqlite3.DatabaseError:
+            pass  # something else: opening it tells what
+        return None, len(plan.images)
+
+    @classmethod
+    def read(cls, path: Path) -> Store:
+        """The store of any work, to read its results: detected(), matched(), failures()."""
+        if not cls.is_there(path):
+            raise StoreError(f"{path} is not there")
+        connection = _connect(path)
+        try:
+            found = connection.execute("SELECT value FROM about WHERE key = 'format'").fetchone()
+            if not found or found[0] != _FORMAT:
+                raise StoreError(f"{path} is of another version of stores: {found[0] if found else 'none is told'}, not {_FORMAT}")
+        except sqlite3.DatabaseError as bad:
+            connection.close()
+            raise StoreError(f"{path} is no store of a collection: {bad}") from bad
+        except BaseException:
+            connection.close()
+            raise
+        return cls(path, connection)
 
     @classmethod
     def resume(cls, path: Path, plan: Plan) -> Store:
@@ -127,9 +162,11 @@ class Store:
                 raise StoreError(
                     f"{path} is of other work: {there} there, {now} now; name another --store, or delete {path.name} to begin anew"
                 )
-        if found.get(_FOCAL) != plan.focal:  # no match depends on it
-            with connection:
+        with connection:
+            if found.get(_FOCAL) != plan.focal:  # no match depends on it
                 connection.execute("INSERT OR REPLACE INTO about VALUES (?, ?)", (_FOCAL, plan.focal))
+            if _IDENTITY not in found:
+                connection.execute("INSERT INTO about VALUES (?, ?)", (_IDENTITY, _new_identity()))
         return cls(path, connection)
 
     def _stamps(self) -> dict[str, tuple[int, str]]:
@@ -189,6 +226,11 @@ class Store:
         """Number and name of every image."""
         return self._connection.execute("SELECT id, name FROM images ORDER BY id").fetchall()
 
+    def identity(self) -> str:
+        """What tells this store from any other one; its outputs have it too."""
+        value: str = self._connection.execute("SELECT value FROM about WHERE key = ?", (_IDENTITY,)).fetchone()[0]
+        return value
+
     def given_camera(self) -> list[float]:
         """What the user gave for all images, px: a focal length, or two and the principal point, or nothing."""
         value: str = self._connection.execute("SELECT value FROM about WHERE key = ?", (_FOCAL,)).fetchone()[0]
@@ -243,21 +285,35 @@ class Store:
         for number, name, error, width, height, focal, features, orientation, camera in self._connection.execute(
             "SELECT id, name, error, width, height, focal, features, orientation, camera FROM images WHERE state <> 'waiting' ORDER BY id"
         ):
-            yield number, name, Detected(error, width or 0, height or 0, focal, features, orientation or 1, camera)
+            detected = Detected(error, width or 0, height or 0, focal, features, orientation or 1, camera)
+            self._refuse_damaged(detected, name)
+            yield number, name, detected
 
     def features(self, number: int) -> Detected:
         """The result of one image."""
-        row = self._connection.execute(
-            "SELECT error, width, height, focal, features, orientation, camera FROM images WHERE id = ?", (number,)
+        name, *row = self._connection.execute(
+            "SELECT name, error, width, height, focal, features, orientation, camera FROM images WHERE id = ?", (number,)
         ).fetchone()
-        return Detected(*row)
+        detected = Detected(*row)
+        self._refuse_damaged(detected, name)
+        return detected
+
+    def _refuse_damaged(self, result: Detected | Matched, *names: str) -> None:
+        if result.is_damaged:
+            what = "junctions" if isinstance(result, Detected) else "matches"
+            of = " and ".join(names)
+            raise StoreError(f"{self.path} is damaged: the {what} of {of} are no whole records; delete it to begin anew")
 
     def matched(self) -> Iterator[tuple[int, int, Matched]]:
         """Numbers of both images and result of every pair that has one, ordered by the images."""
         for one, two, error, matches, lines, geometry in self._connection.execute(
             "SELECT image1, image2, error, matches, lines, geometry FROM pairs WHERE state <> 'waiting' ORDER BY image1, image2"
         ):
-            yield one, two, Matched(error, matches, lines, geometry)
+            matched = Matched(error, matches, lines, geometry)
+            if matched.is_damaged:
+                names = dict(self.images())
+                self._refuse_damaged(matched, names[one], names[two])
+            yield one, two, matched
 
     def counts(self, table: str) -> dict[str, int]:
         """How many images or pairs are in which state."""
@@ -273,6 +329,10 @@ class Store:
             "WHERE p.state = 'failed' ORDER BY p.id"
         ).fetchall()
         return rows
+
+
+def _new_identity() -> str:
+    return secrets.token_hex(16)
 
 
 def _stamp(path: Path) -> str:

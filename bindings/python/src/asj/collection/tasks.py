@@ -5,14 +5,17 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import warnings
 from collections import OrderedDict
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .. import context, errors, images
+from .. import arrays, context, errors, images
+from .._native import lib
 from ..features import DescribedFeatures, Features, detect
 from ..geometry import Geometry
 from ..matches import Matches, match
@@ -34,6 +37,18 @@ class Detected:
     orientation: int = 1  # of the stored pixels: orientation.py
     camera: str | None = None  # images.camera_name()
 
+    @property
+    def junctions(self) -> NDArray[Any]:
+        """(N,) records of the library's asj_junction, as Features.junctions; none of an image that failed."""
+        return np.frombuffer(self.features or b"", arrays.struct_type("asj_junction"))
+
+    @property
+    def is_damaged(self) -> bool:
+        """Whether the records cannot be what was saved."""
+        if len(self.features or b"") % arrays.struct_type("asj_junction").itemsize:
+            return True
+        return bool((self.junctions["branch_count"] > lib.ASJ_MAX_BRANCHES).any() or (self.junctions["branch_count"] < 0).any())
+
 
 @dataclass(frozen=True)
 class Matched:
@@ -44,9 +59,25 @@ class Matched:
     lines: bytes | None
     geometry: str | None
 
+    @property
+    def junction_matches(self) -> NDArray[Any]:
+        """(K,) records of the library's asj_junction_match, as Matches.matches; none of a pair that failed."""
+        return np.frombuffer(self.matches or b"", arrays.struct_type("asj_junction_match"))
+
+    @property
+    def segment_indices(self) -> NDArray[np.uint32]:
+        """(S, 2) which branches match, as Matches.segment_indices("cut")."""
+        return np.frombuffer(self.lines or b"", np.uint32).reshape(-1, 2)
+
+    @property
+    def is_damaged(self) -> bool:
+        """Whether the records cannot be what was saved."""
+        return bool(len(self.matches or b"") % arrays.struct_type("asj_junction_match").itemsize or len(self.lines or b"") % 8)
+
 
 def start(threads: int) -> None:
     """Called once in a worker process."""
+    warnings.filterwarnings("ignore", "the principal point")  # the command has said so, once
     context.set_current(context.Context(threads=threads))
 
 
@@ -129,4 +160,5 @@ def _keywords(options: dict[str, str]) -> dict[str, Any]:
 
 
 def _line(bad: BaseException) -> str:
-    return (str(bad) or type(bad).__name__).replace("\n", "; ")
+    line = (str(bad) or type(bad).__name__).replace("\n", "; ")
+    return line.encode("utf-8", "backslashreplace").decode()  # the store has text; a folder's name need not be UTF-8
