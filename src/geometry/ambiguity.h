@@ -10,8 +10,8 @@
  * pairs of rooms none is accepted beside one of -66 or less.) */
 #define ASJ_SURE_RIVAL (-100)
 
-/* Takes the evidence from geometries that colours and pictures contradict in favour of others: what is best then is the answer. Errors:
- * memory. */
+/* Takes the evidence from geometries that colours and pictures contradict in favour of others: what is best then is the answer.
+ * Errors: memory. */
 asj_status asj_strike_out(asj_estimation *e);
 
 /* The finalist with the largest evidence that contradicts number `best`, whose probabilities are in scratch afterwards, and that
