@@ -205,7 +205,7 @@ static void many_places_decide(void **state)
         bad[k] = 0.1 + 0.5 * synth_random_between(&random, -1, 1);
     }
     assert_true(vote(good, bad, PLACES));
-    assert_float_equal(speak(bad, good, PLACES), -speak(good, bad, PLACES), 1e-9); /* they speak for the second one */
+    assert_true(speak(bad, good, PLACES) < -1); /* they speak for the second one */
     assert_false(vote(good, bad, 4));      /* of too few */
     assert_false(vote(none, none, PLACES));
     int32_t decided = 0;
