@@ -311,11 +311,39 @@ static void likely_rotations_count(void **state)
     assert_true(near >= 18);
 }
 
+/* A second motion, as likely, that the parameters of the first do not reach: nothing is known then, whichever way it lies. */
+static void a_far_motion_leaves_all_open(void **state)
+{
+    static const double apart[] = {0.8, -0.8}; /* rad */
+    (void)state;
+    for (int32_t axis = 0; axis < 3; axis++)
+        for (size_t n = 0; n < sizeof apart / sizeof apart[0]; n++) {
+            scene s = {.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .translation = {1, 0, 0}};
+            asj_model models[2];
+            double vector[3] = {0}, covariance[25];
+            set_model(&s, &models[0]);
+            vector[axis] = apart[n];
+            asj_rotation_of(vector, s.rotation);
+            set_model(&s, &models[1]);
+            for (int32_t k = 0; k < 2; k++) {
+                models[k].settled = 1;
+                for (int32_t p = 0; p < MOTION; p++)
+                    models[k].covariance[p * (MOTION + 1)] = 1e-6;
+            }
+            const double largest = asj_motion_covariance(models, 2, 0, covariance);
+            assert_true(largest >= 0.8);
+            for (int32_t i = 0; i < MOTION; i++)
+                for (int32_t k = 0; k < MOTION; k++)
+                    unit_near("covariance", i, k, covariance[i * MOTION + k], i == k ? largest * largest : 0, 1e-9);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(few_draws_spread_as_many_do),
                                        cmocka_unit_test(few_draws_of_near_cameras_spread_as_many_do),
                                        cmocka_unit_test(a_motion_beside_its_peak_comes_back),
-                                       cmocka_unit_test(likely_rotations_count)};
+                                       cmocka_unit_test(likely_rotations_count),
+                                       cmocka_unit_test(a_far_motion_leaves_all_open)};
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }
