@@ -53,8 +53,9 @@ static const cli_option output_options[] = {
      "more images: their names, one a line, or as find -print0 writes them; there are no comments, a name may begin with #; - is "
      "standard input"},
     {FORMAT, 'f', "format", "asj|json|jsonl|csv|asjf",
-     "asj: text, one record for each pair of branches; json: everything; jsonl: one file of all images, a line of JSON each, also of "
-     "those that fail; csv: one line a branch; asjf: features, all that 'asj-cli match' needs of the image. Default: by the end of FILE, else asj, and with --lines csv"},
+     "asj: text, one record for each pair of branches; json: everything; jsonl: one file of all images, a line of JSON each, also "
+     "of those that fail; csv: one line a branch; asjf: features, all that 'asj-cli match' needs of the image. Default: by the end "
+     "of FILE, else asj, and with --lines csv"},
     {LINES, 0, "lines", NULL,
      "straight edges from end to end, each once, whichever corners have a branch along it: csv has them in place of the branches, "
      "json beside them; a plot shows them"},
