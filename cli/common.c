@@ -173,6 +173,6 @@ int cli_session_fail(cli_session *session, const char *path, const char *message
     }
     message = *message ? message : asj_status_string(status);
     cli_file_message(path, message, session->failure, sizeof session->failure);
-    cli_error("%s", session->failure);
+    cli_file_error(path, message);
     return CLI_FAILED;
 }

@@ -185,7 +185,7 @@ static int detect_part(run *r, const char *image, const cli_output *output, cons
 /* With two ways to all images in it. */
 static int refuse_folder(run *r, const char *folder)
 {
-    char line[CLI_MESSAGE_SIZE];
+    char line[2 * CLI_MESSAGE_SIZE];
     int length = (int)strlen(folder);
     while (length > 1 && cli_is_separator(folder[length - 1]))
         length--;
