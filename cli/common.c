@@ -171,6 +171,8 @@ int cli_session_fail(cli_session *session, const char *path, const char *message
         path = "standard output";
         message += strncmp(message, "-: ", 3) == 0 ? 3 : 0;
     }
-    cli_file_error(path, *message ? message : asj_status_string(status));
+    message = *message ? message : asj_status_string(status);
+    cli_file_message(path, message, session->failure, sizeof session->failure);
+    cli_file_error(path, message);
     return CLI_FAILED;
 }

@@ -4,6 +4,7 @@
 #define ASJ_CLI_COMMON_H
 
 #include "kernel_cache.h"
+#include "message.h"
 #include "parse.h"
 #include "progress.h"
 
@@ -40,6 +41,7 @@ typedef struct cli_session {
     cli_progress progress;
     cli_kernel_cache cache;
     int errors; /* said by the library's log while it made the context */
+    char failure[2 * CLI_MESSAGE_SIZE]; /* what cli_session_fail() said last */
 } cli_session;
 
 /* Makes the context for a run over `image_count` images; the library's warnings go to standard error. CLI_SUCCESS, or CLI_FAILED

@@ -4,6 +4,7 @@
 #include "camera.h"
 #include "detect_arguments.h"
 #include "interrupt.h"
+#include "json_lines.h"
 #include "message.h"
 #include "outputs.h"
 #include "platform.h"
@@ -23,6 +24,7 @@ typedef struct run {
     const cli_detect_arguments *arguments;
     cli_session session;
     asj_image_file *mask; /* of all images; NULL: none */
+    cli_json_lines lines; /* of all images */
     double read_ms, lines_ms;
     int camera_doubted; /* once for all images */
     cli_tally tally;
@@ -71,6 +73,8 @@ static asj_status write_junctions(run *r, const char *image, const char *path, c
             return status;
         report.vanishing_points = &points;
     }
+    if (format == CLI_FILE_JSON_LINES)
+        return cli_json_lines_add(&r->lines, &report, message, CLI_MESSAGE_SIZE);
     return asj_junctions_write(path, format, &report, message, CLI_MESSAGE_SIZE);
 }
 
@@ -80,12 +84,14 @@ static int write_results(run *r, const char *image, const cli_output *output, co
     const cli_detect_arguments *arguments = r->arguments;
     char message[CLI_MESSAGE_SIZE] = "";
     int result = CLI_SUCCESS;
-    if (output->junctions) {
+    if (output->junctions || r->lines.output) {
         asj_status status = write_junctions(r, image, output->junctions, pixels, detection, segments, message);
         if (status == ASJ_ERROR_CANCELLED)
             return CLI_FAILED;
+        if (r->lines.broken)
+            return CLI_FAILED; /* cli_json_lines_end() will say why */
         if (status != ASJ_OK)
-            result = cli_session_fail(&r->session, output->junctions, message, status);
+            result = cli_session_fail(&r->session, output->junctions ? output->junctions : image, message, status);
     }
     if (output->plot && !cli_interrupted()) {
         asj_status status = cli_plot_write(output->plot, arguments->plot_format, pixels, detection, segments, &arguments->style,
@@ -179,13 +185,13 @@ static int detect_part(run *r, const char *image, const cli_output *output, cons
 /* With two ways to all images in it. */
 static int refuse_folder(run *r, const char *folder)
 {
+    char line[2 * CLI_MESSAGE_SIZE];
     int length = (int)strlen(folder);
     while (length > 1 && cli_is_separator(folder[length - 1]))
         length--;
-    cli_progress_clear(&r->session.progress);
-    cli_error("%s: is a directory; its images are %.*s/*.jpg, or: find %.*s -name '*.jpg' | asj-cli detect --files-from - -d DIR",
-              folder, length, folder, length, folder);
-    return CLI_FAILED;
+    snprintf(line, sizeof line, "is a directory; its images are %.*s/*.jpg, or: find %.*s -name '*.jpg' | asj-cli detect "
+             "--files-from - %s", length, folder, length, folder, r->lines.output ? "-f jsonl" : "-d DIR");
+    return cli_session_fail(&r->session, folder, line, ASJ_ERROR_FILE);
 }
 
 static int detect_file(run *r, const char *image, const cli_output *output)
@@ -212,15 +218,14 @@ static int is_done(const cli_output *output)
     return (!output->junctions || cli_identify(output->junctions, &found)) && (!output->plot || cli_identify(output->plot, &found));
 }
 
-static int detect_all(run *r, const cli_outputs *outputs)
+/* Image by image. Returns the exit code. */
+static int detect_each(run *r, const cli_outputs *outputs, size_t *skipped)
 {
     const cli_detect_arguments *arguments = r->arguments;
-    size_t skipped = 0;
-    r->tally.total = arguments->images.count;
-    int result = cli_session_open(&r->session, &arguments->common, arguments->images.count);
-    for (size_t i = 0; result != CLI_USAGE && i < arguments->images.count && r->session.context; i++) {
+    int result = CLI_SUCCESS;
+    for (size_t i = 0; result != CLI_USAGE && i < arguments->images.count && !r->lines.broken; i++) {
         if (arguments->skip_existing && is_done(&outputs->of[i])) {
-            skipped++;
+            ++*skipped;
             continue;
         }
         cli_progress_next(&r->session.progress, i, arguments->images.names[i]);
@@ -228,15 +233,31 @@ static int detect_all(run *r, const cli_outputs *outputs)
         if (cli_interrupted()) {
             cli_progress_clear(&r->session.progress);
             cli_error("interrupted at %s", arguments->images.names[i]);
-            result = 128 + cli_interrupted();
-            break;
+            return 128 + cli_interrupted();
         }
+        if (r->lines.output && r->lines.count == i && one == CLI_FAILED && !r->lines.broken)
+            cli_json_lines_add_failure(&r->lines, arguments->images.names[i], r->session.failure);
         r->tally.done += one == CLI_SUCCESS;
         r->tally.failed += one != CLI_SUCCESS;
         result = one > result ? one : result;
     }
+    return result;
+}
+
+static int detect_all(run *r, const cli_outputs *outputs)
+{
+    const cli_detect_arguments *arguments = r->arguments;
+    size_t skipped = 0;
+    r->tally.total = arguments->images.count;
+    int result = cli_session_open(&r->session, &arguments->common, arguments->images.count);
+    if (result == CLI_SUCCESS && outputs->of_all)
+        result = cli_json_lines_begin(&r->lines, &r->session, outputs->of_all);
+    if (result == CLI_SUCCESS)
+        result = detect_each(r, outputs, &skipped);
+    if (r->lines.output && cli_json_lines_end(&r->lines, &r->session, result <= CLI_FAILED) != CLI_SUCCESS)
+        result = CLI_FAILED;
     cli_session_close(&r->session);
-    const int whole = result != CLI_USAGE && !cli_interrupted() && r->tally.done + r->tally.failed > 0;
+    const int whole = result != CLI_USAGE && !cli_interrupted() && !r->lines.broken && r->tally.done + r->tally.failed > 0;
     if (whole && r->tally.total > 1 && !arguments->common.quiet)
         cli_tally_print(&r->tally, &arguments->options);
     if (skipped > 0 && !arguments->common.quiet)

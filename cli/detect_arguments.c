@@ -22,6 +22,7 @@ static const char introduction[] =
     "  asj-cli detect --out-dir out --plot png *.jpg       a result and a plot for every photograph\n"
     "  asj-cli detect --epsilon 0.01 photo.jpg             only the surest junctions\n"
     "  asj-cli detect --lines -o lines.csv photo.jpg       straight edges from end to end, each once\n"
+    "  asj-cli detect -o all.jsonl *.jpg                   one line of JSON for every photograph\n"
     "  asj-cli detect -o photo.asjf photo.jpg              features: all that 'asj-cli match' needs of it\n"
     "\n"
     "Images: PNG, PNM, and the formats that asj-cli --version lists. A file that cannot be read is\n"
@@ -41,7 +42,8 @@ enum {
 
 static const cli_option output_options[] = {
     {OUTPUT, 'o', "output", "FILE",
-     "where the junctions of one image go; - is standard output (the default for one image without a plot)"},
+     "where the junctions of one image go, or as jsonl of all; - is standard output (the default for one image without a plot, and "
+     "for jsonl)"},
     {OUT_DIR, 'd', "out-dir", "DIR",
      "folder for the results of one or several images, made where it is missing: photo.jpg gives DIR/photo.asj"},
     {KEEP_FOLDERS, 0, "keep-folders", NULL, "below DIR the folders of the images: kitchen/photo.jpg gives DIR/kitchen/photo.asj"},
@@ -50,9 +52,10 @@ static const cli_option output_options[] = {
     {FILES_FROM, 0, "files-from", "FILE",
      "more images: their names, one a line, or as find -print0 writes them; there are no comments, a name may begin with #; - is "
      "standard input"},
-    {FORMAT, 'f', "format", "asj|json|csv|asjf",
-     "asj: text, one record for each pair of branches; json: everything; csv: one line a branch; asjf: features, all that 'asj-cli "
-     "match' needs of the image. Default: by the end of FILE, else asj, and with --lines csv"},
+    {FORMAT, 'f', "format", "asj|json|jsonl|csv|asjf",
+     "asj: text, one record for each pair of branches; json: everything; jsonl: one file of all images, a line of JSON each, also "
+     "of those that fail; csv: one line a branch; asjf: features, all that 'asj-cli match' needs of the image. Default: by the end "
+     "of FILE, else asj, and with --lines csv"},
     {LINES, 0, "lines", NULL,
      "straight edges from end to end, each once, whichever corners have a branch along it: csv has them in place of the branches, "
      "json beside them; a plot shows them"},
@@ -97,7 +100,7 @@ void cli_detect_arguments_free(cli_detect_arguments *arguments)
     cli_image_list_free(&arguments->images);
 }
 
-static const char *const formats[] = {"asj", "json", "csv", "asjf", NULL};
+static const char *const formats[] = {"asj", "json", "jsonl", "csv", "asjf", NULL};
 
 static int take_output(void *target, int id, const char *text)
 {
@@ -112,7 +115,7 @@ static int take_output(void *target, int id, const char *text)
     case WHOLE: arguments->whole = 1; break;
     default:
         if (cli_find_word(formats, text) < 0)
-            return cli_usage_error("detect", "--format: '%s' is not asj, json, csv or asjf", text);
+            return cli_usage_error("detect", "--format: '%s' is not asj, json, jsonl, csv or asjf", text);
         arguments->format = text;
     }
     return CLI_SUCCESS;
@@ -183,13 +186,33 @@ static int check_plot(cli_detect_arguments *arguments)
     return CLI_SUCCESS;
 }
 
+static int is_json(int32_t format)
+{
+    return format == ASJ_FILE_JSON || format == CLI_FILE_JSON_LINES;
+}
+
 static int check_lines(const cli_detect_arguments *arguments)
 {
     const int32_t format = cli_detect_file_format(arguments);
-    if (arguments->lines && format != ASJ_FILE_CSV && format != ASJ_FILE_JSON)
+    if (arguments->lines && format != ASJ_FILE_CSV && !is_json(format))
         return cli_usage_error("detect", "--lines go into CSV or JSON: --format csv, or --output FILE.json");
     if (arguments->lines && arguments->style.color != CLI_PLOT_COLOR_NFA)
         return cli_usage_error("detect", "--plot-color: with --lines it takes nfa alone");
+    return CLI_SUCCESS;
+}
+
+/* Several images need a folder, but that one file can be of all of them. */
+static int check_places(const cli_detect_arguments *arguments)
+{
+    const size_t count = arguments->images.count;
+    const int of_all = cli_detect_file_format(arguments) == CLI_FILE_JSON_LINES;
+    if (of_all && arguments->out_dir)
+        return cli_usage_error("detect", "jsonl is one file of all images: --output FILE in place of --out-dir DIR");
+    if (of_all && count > 1 && arguments->plot)
+        return cli_usage_error("detect", "--plot: the plots of %zu images need --out-dir DIR, and jsonl goes without", count);
+    if (!of_all && count > 1 && !arguments->out_dir)
+        return cli_usage_error("detect", "%zu images need --out-dir DIR for their results (or --format jsonl, a line of JSON each)",
+                               count);
     return CLI_SUCCESS;
 }
 
@@ -209,8 +232,8 @@ static int check(cli_detect_arguments *arguments)
         return cli_usage_error("detect", "--keep-folders changes nothing without --out-dir");
     if (arguments->skip_existing && !arguments->out_dir)
         return cli_usage_error("detect", "--skip-existing changes nothing without --out-dir");
-    if (arguments->images.count > 1 && !arguments->out_dir)
-        return cli_usage_error("detect", "%zu images need --out-dir DIR for their results", arguments->images.count);
+    if (check_places(arguments) != CLI_SUCCESS)
+        return CLI_USAGE;
     for (size_t i = 0; i < arguments->images.count; i++)
         if (strcmp(arguments->images.names[i], "-") == 0)
             return cli_usage_error("detect", "images are not read from standard input (a file named - is ./-)");
@@ -219,7 +242,7 @@ static int check(cli_detect_arguments *arguments)
         result = cli_check_ending("detect", "junctions", arguments->output, arguments->format, formats);
     if (result == CLI_SUCCESS)
         result = check_lines(arguments);
-    if (result == CLI_SUCCESS && arguments->vanishing_points && cli_detect_file_format(arguments) != ASJ_FILE_JSON)
+    if (result == CLI_SUCCESS && arguments->vanishing_points && !is_json(cli_detect_file_format(arguments)))
         return cli_usage_error("detect", "--vanishing-points go into JSON: --format json, or --output FILE.json");
     if (result == CLI_SUCCESS && arguments->camera.fx > 0 && !arguments->vanishing_points)
         return cli_usage_error("detect", "a camera changes nothing without --vanishing-points");
@@ -318,6 +341,8 @@ int32_t cli_detect_file_format(const cli_detect_arguments *arguments)
     const char *extension = cli_detect_extension(arguments);
     if (strcmp(extension, "json") == 0)
         return ASJ_FILE_JSON;
+    if (strcmp(extension, "jsonl") == 0)
+        return CLI_FILE_JSON_LINES;
     if (strcmp(extension, "csv") == 0)
         return ASJ_FILE_CSV;
     if (strcmp(extension, "asjf") == 0)

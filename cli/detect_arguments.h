@@ -21,7 +21,7 @@ typedef struct cli_detect_arguments {
     const char *output;    /* -o; NULL = none */
     const char *out_dir;   /* NULL = none */
     int keep_folders;      /* results stand in the folders of their images, below out_dir */
-    const char *format;    /* "asj", "json", "csv", "asjf"; NULL = by the name of `output` */
+    const char *format;    /* "asj", "json", "jsonl", "csv", "asjf"; NULL = by the name of `output` */
     int whole;
     int lines;             /* straight edges: CSV and plot have them in place of the branches, JSON beside them */
     int vanishing_points;  /* into JSON */
@@ -44,8 +44,9 @@ void cli_detect_arguments_free(cli_detect_arguments *arguments);
 /* Whether `asj-cli detect` has an option of that name, `length` characters without the dashes. */
 int cli_detect_has_option(const char *name, size_t length);
 
-/* The format of the result files: ASJ_FILE_... or this one, and the end of their names. */
+/* The format of the result files: ASJ_FILE_... or one of these, and the end of their names. */
 #define CLI_FILE_FEATURES 100
+#define CLI_FILE_JSON_LINES 101 /* all images in one file */
 int32_t cli_detect_file_format(const cli_detect_arguments *arguments);
 const char *cli_detect_extension(const cli_detect_arguments *arguments);
 

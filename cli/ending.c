@@ -49,7 +49,7 @@ int cli_check_ending(const char *command, const char *what, const char *name, co
 
 void cli_warn_ending(const char *command, const char *name, const char *format, const char *written)
 {
-    static const char *const known[] = {"asj", "json", "csv", "asjf", "png", "svg", "pdf", "jpg", "jpeg", NULL};
+    static const char *const known[] = {"asj", "json", "jsonl", "csv", "asjf", "png", "svg", "pdf", "jpg", "jpeg", NULL};
     char ending[8];
     ending_of(name, ending, sizeof ending);
     if (!*ending || cli_is_special(name) || strcmp(ending, written) == 0)

@@ -62,6 +62,11 @@ static int tells(const char *message, const char *path)
     return path[i] == 0 || (i >= LONG && strncmp(message + i, "...", 3) == 0);
 }
 
+void cli_file_message(const char *path, const char *message, char *text, size_t text_size)
+{
+    snprintf(text, text_size, "%s%s%s", tells(message, path) ? "" : path, tells(message, path) ? "" : ": ", message);
+}
+
 void cli_file_error(const char *path, const char *message)
 {
     if (tells(message, path))

@@ -3,6 +3,8 @@
 #ifndef ASJ_CLI_MESSAGE_H
 #define ASJ_CLI_MESSAGE_H
 
+#include <stddef.h>
+
 #if defined(__MINGW32__) /* as in src/core/context.h */
 #define CLI_PRINTF(text, first) __attribute__((format(gnu_printf, text, first)))
 #elif defined(__GNUC__)
@@ -23,7 +25,10 @@ void cli_make_harmless(char *text);
 /* "asj-cli: TEXT" */
 void cli_error(const char *format, ...) CLI_PRINTF(1, 2);
 
-/* "asj-cli: PATH: MESSAGE"; the path is not repeated where the message already starts with it. */
+/* "PATH: MESSAGE"; the path is not repeated where the message already starts with it. */
+void cli_file_message(const char *path, const char *message, char *text, size_t text_size);
+
+/* The same as an error. */
 void cli_file_error(const char *path, const char *message);
 
 /* TEXT alone. */

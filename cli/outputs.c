@@ -18,7 +18,9 @@ void cli_outputs_free(cli_outputs *outputs)
         free(outputs->of[i].plot);
     }
     free(outputs->of);
+    free(outputs->of_all);
     outputs->of = NULL;
+    outputs->of_all = NULL;
     outputs->count = 0;
 }
 
@@ -97,6 +99,9 @@ static char *name_in(const cli_detect_arguments *arguments, const char *image, c
 static int name_outputs(const cli_detect_arguments *arguments, cli_outputs *outputs)
 {
     static const char *const plot_extensions[] = {"plot.png", "plot.svg", "plot.pdf"};
+    const int of_all = cli_detect_file_format(arguments) == CLI_FILE_JSON_LINES;
+    if (of_all && !(outputs->of_all = copy(arguments->output ? arguments->output : "-")))
+        return 0;
     for (size_t i = 0; i < outputs->count; i++) {
         cli_output *output = &outputs->of[i];
         if (arguments->out_dir) {
@@ -105,12 +110,12 @@ static int name_outputs(const cli_detect_arguments *arguments, cli_outputs *outp
             if (arguments->plot)
                 output->plot = name_in(arguments, image, plot_extensions[arguments->plot_format]);
         } else {
-            if (arguments->output || !arguments->plot)
+            if (!of_all && (arguments->output || !arguments->plot))
                 output->junctions = copy(arguments->output ? arguments->output : "-");
             if (arguments->plot)
                 output->plot = copy(arguments->plot);
         }
-        if ((!output->junctions && (arguments->out_dir || arguments->output)) || (!output->plot && arguments->plot))
+        if ((!output->junctions && !of_all && (arguments->out_dir || arguments->output)) || (!output->plot && arguments->plot))
             return 0;
     }
     return 1;
@@ -147,6 +152,8 @@ static int compare_identity(const void *a, const void *b)
 static size_t list_planned(const cli_detect_arguments *arguments, const cli_outputs *outputs, cli_planned *list)
 {
     size_t n = 0;
+    if (outputs->of_all && strcmp(outputs->of_all, "-") != 0)
+        list[n++] = (cli_planned){outputs->of_all, "all images", NULL}; /* beside which only one image has a plot */
     for (size_t i = 0; i < outputs->count; i++) {
         if (outputs->of[i].junctions && strcmp(outputs->of[i].junctions, "-") != 0)
             list[n++] = (cli_planned){outputs->of[i].junctions, arguments->images.names[i], NULL};

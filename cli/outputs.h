@@ -28,6 +28,7 @@ typedef struct cli_output {
 typedef struct cli_outputs {
     cli_output *of; /* one for each image */
     size_t count;
+    char *of_all; /* one file of all images in place of their junctions, "-" = standard output; NULL = none */
 } cli_outputs;
 
 /* Plans all files of `detect` before any work. CLI_SUCCESS, or CLI_USAGE or CLI_FAILED (no such folder, no memory) after saying

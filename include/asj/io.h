@@ -152,6 +152,21 @@ typedef struct asj_detection_report {
 ASJ_API asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_detection_report *report,
                                        char *message, size_t message_size);
 
+/* JSON lines, for very many images in one file: adds one line to an output, the object of ASJ_FILE_JSON without white space and
+ * without its options and timing, which repeat. Whole lines are handed on at once, for who reads standard output or a pipe. The
+ * caller keeps the output, and commits or aborts it. Nothing is written where the report is refused, and other lines may follow.
+ * ASJ_ERROR_ARGUMENT  a NULL pointer, or a detection that asj_junctions_write() refuses as JSON
+ * ASJ_ERROR_OPTION    a reserved field of the report that is not zero
+ * ASJ_ERROR_FILE      this or an earlier write failed; no message: asj_output_commit() will fail too, and say why
+ * ASJ_ERROR_MEMORY    where that is within the line, asj_output_commit() will fail too */
+ASJ_API asj_status asj_junctions_write_line(asj_output *output, const asj_detection_report *report,
+                                            char *message, size_t message_size);
+
+/* The line of an image without a detection: {"schema": "asj-junctions-1", "image": {"name": ...}, "error": cause}. Both texts have
+ * bytes that are no UTF-8 replaced. The rest is as above; ASJ_ERROR_ARGUMENT is a NULL pointer. */
+ASJ_API asj_status asj_junctions_write_failed_line(asj_output *output, const char *image_name, const char *cause,
+                                                   char *message, size_t message_size);
+
 /* Line segments of matches (asj_match_report.lines). */
 enum {
     ASJ_LINES_NONE = 0,

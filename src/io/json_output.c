@@ -12,10 +12,21 @@ static int on_text(const char *text, size_t size, void *user)
     return 0;
 }
 
+void asj_json_text(asj_json_output *json, const char *text)
+{
+    while (json->compact && *text) {
+        const size_t length = strcspn(text, " \n");
+        asj_output_write(json->output, text, length);
+        text += length;
+        text += strspn(text, " \n");
+    }
+    asj_output_text(json->output, text);
+}
+
 void asj_json_put(asj_json_output *json, const char *before, json_t *value, size_t flags)
 {
-    asj_output_text(json->output, before);
-    if (!value || json_dump_callback(value, on_text, json->output, flags | JSON_ENCODE_ANY))
+    asj_json_text(json, before);
+    if (!value || json_dump_callback(value, on_text, json->output, flags | JSON_ENCODE_ANY | (json->compact ? JSON_COMPACT : 0)))
         json->out_of_memory = 1;
     json_decref(value);
 }

@@ -14,9 +14,13 @@
 typedef struct asj_json_output {
     asj_output *output;
     int out_of_memory;
+    int compact; /* without white space, which is in no key: one line */
 } asj_json_output;
 
-/* Writes a value after some text, and lets go of it. NULL: jansson had no memory for it. */
+/* Writes text of the frame. */
+void asj_json_text(asj_json_output *json, const char *text);
+
+/* Writes a value after some text of the frame, and lets go of it. NULL: jansson had no memory for it. */
 void asj_json_put(asj_json_output *json, const char *before, json_t *value, size_t flags);
 
 /* The list or the object with the value in it, which it owns then; NULL, and nothing is left of either, when there is no memory. */

@@ -1,13 +1,28 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* JSON, schema "asj-junctions-1": asj-formats(5). */
+/* JSON, schema "asj-junctions-1", as a file and as a line of many: asj-formats(5). */
 #include "junction_output.h"
 
 #include "c_locale.h"
 #include "json_options.h"
 #include "json_output.h"
 #include "junction_graph.h"
+#include "output.h"
 
 #include <asj/version.h>
+
+#include <errno.h>
+
+/* These repeat from image to image: lines have none. */
+static void put_options_and_timing(asj_json_output *json, const asj_detection_report *report)
+{
+    const asj_detection *found = report->detection;
+    if (report->options) {
+        json_t *options = asj_json_options(report->options, asj_detect_option_count(), asj_detect_option);
+        asj_json_put(json, ",\n\"options\": ", options, asj_json_precision(options));
+    }
+    asj_json_put(json, ",\n\"timing\": ",
+        asj_json_timing(found->total_ms, found->stage_ms, ASJ_STAGE_GRADIENT, ASJ_STAGE_DECOMPOSE), JSON_REAL_PRECISION(15));
+}
 
 static void put_head(asj_json_output *json, const asj_detection_report *report)
 {
@@ -25,12 +40,8 @@ static void put_head(asj_json_output *json, const asj_detection_report *report)
         json_pack("{s:s, s:s, s:s, s:s, s:s}", "locations and lengths", "px", "angles", "rad", "strength", "standard deviations",
                   "log10_nfa", "log10 of the number of false alarms", "times", "ms"), 0);
     asj_json_put(json, ",\n\"backend\": ", json_string(asj_json_backend(found->backend)), 0);
-    if (report->options) {
-        json_t *options = asj_json_options(report->options, asj_detect_option_count(), asj_detect_option);
-        asj_json_put(json, ",\n\"options\": ", options, asj_json_precision(options));
-    }
-    asj_json_put(json, ",\n\"timing\": ",
-        asj_json_timing(found->total_ms, found->stage_ms, ASJ_STAGE_GRADIENT, ASJ_STAGE_DECOMPOSE), JSON_REAL_PRECISION(15));
+    if (!json->compact)
+        put_options_and_timing(json, report);
     asj_json_put(json, ",\n\"counts\": ",
         json_pack("{s:I, s:I, s:I, s:I, s:o*, s:I}", "candidates", (json_int_t)found->candidates, "isotropic",
                   (json_int_t)found->isotropic, "junctions", (json_int_t)found->junction_count, "edges",
@@ -103,33 +114,77 @@ static void put_vanishing_points(asj_json_output *json, const asj_vanishing_poin
                  JSON_REAL_PRECISION(15));
 }
 
-asj_status asj_write_json(asj_output *output, const asj_detection_report *report, const asj_message *message)
+/* The object, without what ends its line. */
+static void put_object(asj_json_output *json, const asj_detection_report *report)
 {
     const asj_detection *found = report->detection;
-    asj_json_output json = {output, 0};
-    asj_c_locale locale;
-    asj_status status = asj_c_locale_begin(&locale, message);
     uint32_t i;
+    put_head(json, report);
+    if (report->vanishing_points)
+        put_vanishing_points(json, report->vanishing_points);
+    asj_json_text(json, ",\n\"junctions\": [");
+    for (i = 0; i < found->junction_count && !json->out_of_memory; i++)
+        asj_json_put(json, i ? ",\n" : "\n", junction_value(&found->junctions[i]), ASJ_JSON_FLOATS);
+    asj_json_text(json, "],\n\"edges\": [");
+    for (i = 0; i < found->edge_count && !json->out_of_memory; i++)
+        asj_json_put(json, i ? ",\n" : "\n", edge_value(&found->edges[i]), ASJ_JSON_FLOATS);
+    if (report->segments)
+        asj_json_text(json, "],\n\"lines\": [");
+    for (i = 0; report->segments && i < report->segments->count && !json->out_of_memory; i++)
+        asj_json_put(json, i ? ",\n" : "\n", segment_value(&report->segments->segments[i]), ASJ_JSON_FLOATS);
+    asj_json_text(json, "],\n\"l_junctions\": [");
+    for (i = 0; i < found->l_junction_count && !json->out_of_memory; i++)
+        asj_json_put(json, i ? ",\n" : "\n", asj_json_l_junction(&found->l_junctions[i]), ASJ_JSON_FLOATS);
+    asj_json_text(json, "]\n}");
+}
 
+static asj_status no_memory(const asj_message *message)
+{
+    return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for JSON");
+}
+
+asj_status asj_write_json(asj_output *output, const asj_detection_report *report, const asj_message *message)
+{
+    asj_json_output json = {output, 0, 0};
+    asj_c_locale locale;
+    const asj_status status = asj_c_locale_begin(&locale, message);
     if (status != ASJ_OK)
         return status;
-    put_head(&json, report);
-    if (report->vanishing_points)
-        put_vanishing_points(&json, report->vanishing_points);
-    asj_output_text(output, ",\n\"junctions\": [");
-    for (i = 0; i < found->junction_count && !json.out_of_memory; i++)
-        asj_json_put(&json, i ? ",\n" : "\n", junction_value(&found->junctions[i]), ASJ_JSON_FLOATS);
-    asj_output_text(output, "],\n\"edges\": [");
-    for (i = 0; i < found->edge_count && !json.out_of_memory; i++)
-        asj_json_put(&json, i ? ",\n" : "\n", edge_value(&found->edges[i]), ASJ_JSON_FLOATS);
-    if (report->segments)
-        asj_output_text(output, "],\n\"lines\": [");
-    for (i = 0; report->segments && i < report->segments->count && !json.out_of_memory; i++)
-        asj_json_put(&json, i ? ",\n" : "\n", segment_value(&report->segments->segments[i]), ASJ_JSON_FLOATS);
-    asj_output_text(output, "],\n\"l_junctions\": [");
-    for (i = 0; i < found->l_junction_count && !json.out_of_memory; i++)
-        asj_json_put(&json, i ? ",\n" : "\n", asj_json_l_junction(&found->l_junctions[i]), ASJ_JSON_FLOATS);
-    asj_output_text(output, "]\n}\n");
+    put_object(&json, report);
+    asj_output_text(output, "\n");
     asj_c_locale_end(&locale);
-    return json.out_of_memory ? asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for JSON") : ASJ_OK;
+    return json.out_of_memory ? no_memory(message) : ASJ_OK;
+}
+
+/* A line has a reader as soon as it is there, and half of one has none. */
+static asj_status end_line(asj_json_output *json, const asj_message *message)
+{
+    asj_output_text(json->output, "\n");
+    if (json->out_of_memory) {
+        asj_output_spoil(json->output, ENOMEM);
+        return no_memory(message);
+    }
+    return asj_output_flush(json->output);
+}
+
+asj_status asj_write_json_line(asj_output *output, const asj_detection_report *report, const asj_message *message)
+{
+    asj_json_output json = {output, 0, 1};
+    asj_c_locale locale;
+    const asj_status status = asj_c_locale_begin(&locale, message);
+    if (status != ASJ_OK)
+        return status;
+    put_object(&json, report);
+    asj_c_locale_end(&locale);
+    return end_line(&json, message);
+}
+
+asj_status asj_write_json_failure(asj_output *output, const char *image_name, const char *cause, const asj_message *message)
+{
+    asj_json_output json = {output, 0, 1};
+    asj_json_put(&json, "{\"schema\": ", json_string("asj-junctions-1"), 0);
+    asj_json_put(&json, ",\"image\": ", asj_json_set(json_object(), "name", asj_json_name(image_name)), 0);
+    asj_json_put(&json, ",\"error\": ", asj_json_name(cause), 0);
+    asj_json_text(&json, "}");
+    return end_line(&json, message);
 }

@@ -4,6 +4,7 @@
 #include "junction_graph.h"
 #include "junction_list.h"
 #include "junction_output.h"
+#include "output.h"
 
 #include <math.h>
 
@@ -104,6 +105,20 @@ static asj_status check(const asj_detection *detection, int32_t file_format, con
     return check_edges(detection, message);
 }
 
+static asj_status check_report(const asj_detection_report *report, int32_t file_format, const asj_message *message)
+{
+    asj_status status = asj_message_reserved(message, report->reserved);
+    if (status == ASJ_OK)
+        status = check(report->detection, file_format, message);
+    if (status == ASJ_OK && !asj_options_are_finite(report->options, asj_detect_option_count(), asj_detect_option))
+        status = asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the options have NaN or infinity");
+    if (status == ASJ_OK && report->segments)
+        status = check_segments(report->detection, report->segments, message);
+    if (status == ASJ_OK && report->vanishing_points)
+        status = check_vanishing(report->vanishing_points, message);
+    return status;
+}
+
 asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_detection_report *report,
                                char *text, size_t text_size)
 {
@@ -115,15 +130,7 @@ asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no path or no detection");
     if (file_format < ASJ_FILE_ASJ || file_format > ASJ_FILE_CSV)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "%d is no file format", (int)file_format);
-    status = asj_message_reserved(&message, report->reserved);
-    if (status == ASJ_OK)
-        status = check(report->detection, file_format, &message);
-    if (status == ASJ_OK && !asj_options_are_finite(report->options, asj_detect_option_count(), asj_detect_option))
-        status = asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "not written: the options have NaN or infinity");
-    if (status == ASJ_OK && report->segments)
-        status = check_segments(report->detection, report->segments, &message);
-    if (status == ASJ_OK && report->vanishing_points)
-        status = check_vanishing(report->vanishing_points, &message);
+    status = check_report(report, file_format, &message);
     if (status == ASJ_OK)
         status = asj_output_begin(path, &output, text, text_size);
     if (status != ASJ_OK)
@@ -141,4 +148,25 @@ asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_
         return status;
     }
     return asj_output_commit(&output, text, text_size);
+}
+
+asj_status asj_junctions_write_line(asj_output *output, const asj_detection_report *report, char *text, size_t text_size)
+{
+    asj_message message = asj_message_start(text, text_size, output ? asj_output_path(output) : NULL);
+    asj_status status;
+
+    if (!output || !report || !report->detection)
+        return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no output or no detection");
+    status = check_report(report, ASJ_FILE_JSON, &message);
+    return status == ASJ_OK ? asj_write_json_line(output, report, &message) : status;
+}
+
+asj_status asj_junctions_write_failed_line(asj_output *output, const char *image_name, const char *cause,
+                                           char *text, size_t text_size)
+{
+    asj_message message = asj_message_start(text, text_size, output ? asj_output_path(output) : NULL);
+
+    if (!output || !image_name || !cause)
+        return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no output, no name of the image or no cause");
+    return asj_write_json_failure(output, image_name, cause, &message);
 }

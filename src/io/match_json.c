@@ -173,7 +173,7 @@ asj_status asj_write_match_json(asj_output *output, const asj_match_report *repo
 {
     const asj_match_result *result = report->result;
     const int geometry = result->geometry.status == ASJ_GEOMETRY_ACCEPTED;
-    asj_json_output json = {output, 0};
+    asj_json_output json = {output, 0, 0};
     asj_c_locale locale;
     asj_status status = asj_c_locale_begin(&locale, message);
     size_t i;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Output files that appear whole or not at all: written under another name in the same folder, renamed at the end. What is no
  * regular file (standard output, a pipe, a device) cannot be renamed over and is written directly. */
-#include <asj/io.h>
+#include "output.h"
 
 #include "message.h"
 #include "place.h"
@@ -79,6 +79,25 @@ asj_status asj_output_write(asj_output *output, const void *data, size_t size)
 asj_status asj_output_text(asj_output *output, const char *text)
 {
     return text ? asj_output_write(output, text, strlen(text)) : ASJ_ERROR_ARGUMENT;
+}
+
+const char *asj_output_path(const asj_output *output)
+{
+    return output->path;
+}
+
+asj_status asj_output_flush(asj_output *output)
+{
+    errno = 0;
+    if (!output->error && fflush(output->stream))
+        output->error = errno ? errno : EIO;
+    return output->error ? ASJ_ERROR_FILE : ASJ_OK;
+}
+
+void asj_output_spoil(asj_output *output, int error)
+{
+    if (!output->error)
+        output->error = error;
 }
 
 asj_status asj_output_commit(asj_output **output, char *text, size_t text_size)

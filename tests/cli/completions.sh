@@ -26,8 +26,8 @@ completes() { # EXPECTED WORD...: what bash offers for the last word
 }
 cd "$work" && : > photo.png
 completes detect asj-cli det
-completes json asj-cli detect -f j
-completes json asj-cli detect --format j
+completes "json jsonl" asj-cli detect -f j
+completes "json jsonl" asj-cli detect --format j
 completes "--plot --plot-color --plot-background --plot-scale" asj-cli detect --plot
 completes --guided-rounds asj-cli match --guided
 completes "line_fit search" asj-cli detect --refinement ""

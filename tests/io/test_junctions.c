@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define COUNT 300
 
@@ -449,6 +450,200 @@ static void unsound_detections_are_not_written(void **state)
     assert_null(fopen(path, "rb"));
 }
 
+/* The next line, without its end, as a JSON value. */
+static json_t *next_line(char **at)
+{
+    char *line = *at, *end = strchr(line, '\n');
+    json_t *root;
+    assert_non_null(end);
+    *end = '\0';
+    *at = end + 1;
+    root = load_json_text(line);
+    assert_non_null(root);
+    return root;
+}
+
+/* What the JSON file of the report has, without what repeats. */
+static json_t *file_without_repetitions(void)
+{
+    json_t *root = load_json_file(write_report("one.json", ASJ_FILE_JSON), JSON_REJECT_DUPLICATES);
+    assert_int_equal(json_object_del(root, "options"), 0);
+    assert_int_equal(json_object_del(root, "timing"), 0);
+    return root;
+}
+
+static void expect_next_line(char **at)
+{
+    json_t *line = next_line(at), *file = file_without_repetitions();
+    assert_true(json_equal(line, file));
+    json_decref(line);
+    json_decref(file);
+}
+
+static void add_line(asj_output *output)
+{
+    if (asj_junctions_write_line(output, &report, message, sizeof message) != ASJ_OK)
+        fail_msg("%s", message);
+    assert_string_equal(message, "");
+}
+
+static char *text_of_file(const char *path)
+{
+    static char text[1000000];
+    FILE *file = fopen(path, "rb");
+    size_t size;
+    assert_non_null(file);
+    size = fread(text, 1, sizeof text - 1, file);
+    fclose(file);
+    assert_in_range(size, 1, sizeof text - 2);
+    text[size] = '\0';
+    return text;
+}
+
+/* Each has what the file of JSON has, in the order of the calls; with a name of blanks, quotes and line ends. */
+static void lines_have_what_files_have(void **state)
+{
+    static const char failed[] = "{\"schema\":\"asj-junctions-1\",\"image\":{\"name\":\"a \\\"b\\\"\\n\"},"
+                                 "\"error\":\"no: \\\\ \\t?\"}\n";
+    const asj_detection_report first = report;
+    asj_vanishing_points points = {.count = 1};
+    asj_detection empty = {.width = 1, .height = 1};
+    const char *path = in_folder("all.jsonl");
+    asj_output *output;
+    char *at;
+    (void)state;
+    points.points[0].log10_nfa = -1.0 / 3.0;
+    assert_int_equal(asj_output_begin(path, &output, message, sizeof message), ASJ_OK);
+    add_line(output);
+    assert_int_equal(asj_junctions_write_failed_line(output, "a \"b\"\n", "no: \\ \t\xff", message, sizeof message), ASJ_OK);
+    assert_string_equal(message, "");
+    report.vanishing_points = &points;
+    report.image_name = NULL;
+    add_line(output);
+    report.detection = &empty;
+    add_line(output);
+    assert_null(fopen(path, "rb")); /* whole or not at all */
+    assert_int_equal(asj_output_commit(&output, message, sizeof message), ASJ_OK);
+
+    at = text_of_file(path);
+    report = first;
+    expect_next_line(&at);
+    assert_memory_equal(at, failed, sizeof failed - 1);
+    json_decref(next_line(&at));
+    report.vanishing_points = &points;
+    report.image_name = NULL;
+    expect_next_line(&at);
+    report.detection = &empty;
+    expect_next_line(&at);
+    assert_string_equal(at, "");
+}
+
+/* A line is a file of JSON, too. */
+static void a_line_reads_as_a_file(void **state)
+{
+    const char *path = in_folder("line.jsonl");
+    asj_junction_file *file;
+    asj_output *output;
+    (void)state;
+    assert_int_equal(asj_output_begin(path, &output, message, sizeof message), ASJ_OK);
+    add_line(output);
+    assert_int_equal(asj_output_commit(&output, message, sizeof message), ASJ_OK);
+    file = read_back(path);
+    assert_int_equal(file->junction_count, COUNT);
+    assert_memory_equal(file->junctions, junctions, sizeof junctions);
+    assert_memory_equal(file->edges, edges, COUNT / 2 * sizeof *edges);
+    asj_junction_file_free(&file);
+}
+
+static void expect_refused_line(asj_output *output, asj_status status, const char *cause)
+{
+    assert_int_equal(asj_junctions_write_line(output, &report, message, sizeof message), status);
+    assert_non_null(strstr(message, "unharmed.jsonl: not written: "));
+    assert_non_null(strstr(message, cause));
+}
+
+/* What is refused leaves nothing in the output, and the next line may come. */
+static void unsound_lines_are_not_written(void **state)
+{
+    const char *path = in_folder("unharmed.jsonl");
+    asj_detection wrong = detection;
+    asj_detect_options unreadable = options;
+    asj_vanishing_points nowhere = {.count = 1};
+    asj_segment segment = {.x1 = 1e38f * (10.0f + random_float(0, 1))};
+    asj_segment_list segments = {.count = 1, .segments = &segment};
+    asj_output *output;
+    char *at;
+    (void)state;
+    assert_int_equal(asj_output_begin(path, &output, message, sizeof message), ASJ_OK);
+    add_line(output);
+    report.detection = &wrong;
+    wrong.width = 0;
+    expect_refused_line(output, ASJ_ERROR_ARGUMENT, "0 x 800 pixels");
+    wrong.width = 1000;
+    wrong.junction_count = 1;
+    expect_refused_line(output, ASJ_ERROR_ARGUMENT, "L-junction");
+    report.detection = &detection;
+    unreadable.epsilon = (double)segment.x1;
+    report.options = &unreadable;
+    expect_refused_line(output, ASJ_ERROR_ARGUMENT, "options");
+    report.options = NULL;
+    report.segments = &segments;
+    expect_refused_line(output, ASJ_ERROR_ARGUMENT, "segment 0");
+    report.segments = NULL;
+    nowhere.points[0].log10_nfa = (double)segment.x1;
+    report.vanishing_points = &nowhere;
+    expect_refused_line(output, ASJ_ERROR_ARGUMENT, "vanishing points");
+    report.vanishing_points = NULL;
+    report.reserved[1] = 1;
+    expect_refused_line(output, ASJ_ERROR_OPTION, "reserved");
+    report.reserved[1] = 0;
+    assert_int_equal(asj_junctions_write_line(output, NULL, NULL, 0), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(asj_junctions_write_line(NULL, &report, message, sizeof message), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(asj_junctions_write_failed_line(output, NULL, "a", NULL, 0), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(asj_junctions_write_failed_line(output, "a", NULL, NULL, 0), ASJ_ERROR_ARGUMENT);
+    assert_int_equal(asj_junctions_write_failed_line(NULL, "a", "b", message, sizeof message), ASJ_ERROR_ARGUMENT);
+    add_line(output);
+    assert_int_equal(asj_output_commit(&output, message, sizeof message), ASJ_OK);
+    report.options = &options;
+    at = text_of_file(path);
+    expect_next_line(&at);
+    expect_next_line(&at);
+    assert_string_equal(at, "");
+}
+
+/* Whoever reads a pipe has a line as soon as it is written; what cannot be written is told, then and at the end. */
+static void lines_arrive_at_once(void **state)
+{
+    static char text[1000];
+    char path[32];
+    asj_detection empty = {.width = 1, .height = 1};
+    asj_output *output;
+    int ends[2];
+    ssize_t size;
+    (void)state;
+    report.detection = &empty;
+    report.options = NULL;
+    assert_int_equal(pipe(ends), 0);
+    snprintf(path, sizeof path, "/dev/fd/%d", ends[1]);
+    assert_int_equal(asj_output_begin(path, &output, message, sizeof message), ASJ_OK);
+    add_line(output);
+    size = read(ends[0], text, sizeof text);
+    assert_true(size > 2 && text[0] == '{' && text[size - 1] == '\n' && memchr(text, '\n', (size_t)size) == text + size - 1);
+    assert_int_equal(asj_junctions_write_failed_line(output, "a", "b", message, sizeof message), ASJ_OK);
+    size = read(ends[0], text, sizeof text);
+    assert_true(size > 2 && text[0] == '{' && text[size - 1] == '\n');
+    assert_int_equal(asj_output_commit(&output, message, sizeof message), ASJ_OK);
+    close(ends[0]);
+    close(ends[1]);
+    if (access("/dev/full", W_OK))
+        return;
+    assert_int_equal(asj_output_begin("/dev/full", &output, message, sizeof message), ASJ_OK);
+    assert_int_equal(asj_junctions_write_line(output, &report, message, sizeof message), ASJ_ERROR_FILE);
+    assert_int_equal(asj_junctions_write_failed_line(output, "a", "b", message, sizeof message), ASJ_ERROR_FILE);
+    assert_int_equal(asj_output_commit(&output, message, sizeof message), ASJ_ERROR_FILE);
+    assert_non_null(strstr(message, "/dev/full: cannot write"));
+}
+
 static void the_authors_files_are_read(void **state)
 {
     const char *folder = getenv("ASJ_PAIRS");
@@ -498,6 +693,10 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test_setup(options_read_back_to_every_bit, fresh),
     cmocka_unit_test_setup(a_name_that_is_no_utf8, fresh),
     cmocka_unit_test_setup(unsound_detections_are_not_written, fresh),
+    cmocka_unit_test_setup(lines_have_what_files_have, fresh),
+    cmocka_unit_test_setup(a_line_reads_as_a_file, fresh),
+    cmocka_unit_test_setup(unsound_lines_are_not_written, fresh),
+    cmocka_unit_test_setup(lines_arrive_at_once, fresh),
     cmocka_unit_test_setup(the_authors_files_are_read, fresh),
 };
 

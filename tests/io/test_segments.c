@@ -154,6 +154,23 @@ static void json_has_them_beside_the_branches(void **state)
     asj_junction_file_free(&file);
 }
 
+static void a_line_of_many_has_them_too(void **state)
+{
+    json_t *file = load_json_file(write_report("one.json", ASJ_FILE_JSON), 0), *line;
+    const char *path = in_folder("all.jsonl");
+    asj_output *output;
+    (void)state;
+    assert_int_equal(asj_output_begin(path, &output, message, sizeof message), ASJ_OK);
+    assert_int_equal(asj_junctions_write_line(output, &report, message, sizeof message), ASJ_OK);
+    assert_int_equal(asj_output_commit(&output, message, sizeof message), ASJ_OK);
+    line = load_json_file(path, JSON_REJECT_DUPLICATES);
+    assert_int_equal(json_array_size(json_object_get(line, "lines")), list->count);
+    json_object_del(file, "timing");
+    assert_true(json_equal(line, file));
+    json_decref(line);
+    json_decref(file);
+}
+
 static void text_has_none(void **state)
 {
     test_bytes with, without;
@@ -213,6 +230,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(csv_has_one_line_for_each),
         cmocka_unit_test(json_has_them_beside_the_branches),
+        cmocka_unit_test(a_line_of_many_has_them_too),
         cmocka_unit_test(text_has_none),
         cmocka_unit_test(no_edge_is_an_empty_list),
         cmocka_unit_test(unsound_ones_are_not_written),
