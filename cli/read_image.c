@@ -79,7 +79,7 @@ uint32_t cli_dark_level(const asj_image *image)
 
 uint32_t cli_likely_white(uint32_t level)
 {
-    uint32_t white = 255;
+    uint32_t white = 1023; /* no camera has fewer bits in 16 */
     while (white < level)
         white = 2 * white + 1;
     return white;
