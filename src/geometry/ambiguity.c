@@ -128,11 +128,8 @@ static double against(const asj_estimation *e, const double *first, const double
     const double colours = e->set.has_colours ? asj_colours_against(&e->set, first, second, e->vote) : 0;
     if (!e->pictures || !(contrary > CONTRARY_SEEN))
         return colours;
-    double inliers = 0;
-    for (int32_t k = 0; k < e->set.count; k++)
-        inliers += e->scratch.probability[k];
     const double seen = asj_pictures_against(&e->pictures->looks[first_look], &e->pictures->looks[1 - first_look]);
-    return colours + (inliers < FEW ? seen / OF_FEW : seen);
+    return colours + (asj_inliers(&e->set, e->scratch.probability) < FEW ? seen / OF_FEW : seen);
 }
 
 /* Look 0 is of the geometry that others are compared with, 1 of the other. */

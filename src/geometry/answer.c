@@ -183,8 +183,7 @@ static void describe(asj_estimation *e, int32_t number, asj_geometry *result)
     result->log10_nfa = asj_estimation_log10_nfa(e, m);
     set_matrix(m, result);
     asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
-    for (int32_t k = 0; k < e->set.count; k++)
-        result->inliers += e->scratch.probability[k];
+    result->inliers = asj_inliers(&e->set, e->scratch.probability);
 }
 
 /* Whether the motion that was asked for stays open. */

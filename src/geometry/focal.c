@@ -77,11 +77,8 @@ static double inliers_of(const asj_focal_search *s, const asj_model *m)
 {
     const asj_pairs *set = s->profile.set;
     asj_adjust_scratch *scratch = &s->profile.scratch[0];
-    double sum = 0;
     asj_probabilities(set, &m->view, 1, &scratch->score, scratch->probability);
-    for (int32_t k = 0; k < set->count; k++)
-        sum += scratch->probability[k];
-    return sum;
+    return asj_inliers(set, scratch->probability);
 }
 
 /* One plane alone explains the same whatever the focal length is, and what a motion makes of a few tenths of a pixel then is noise.

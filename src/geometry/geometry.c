@@ -63,11 +63,8 @@ static asj_status search_kind(asj_estimation *e, int32_t kind, int32_t again)
 
 static double inliers_of(asj_estimation *e, const asj_model *m)
 {
-    double sum = 0;
     asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
-    for (int32_t k = 0; k < e->set.count; k++)
-        sum += e->scratch.probability[k];
-    return sum;
+    return asj_inliers(&e->set, e->scratch.probability);
 }
 
 /* Does a camera that only turns explain more than any motion, and the same matches? Only then it is a finalist: what says where a

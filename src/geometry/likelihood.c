@@ -309,3 +309,11 @@ void asj_probabilities(const asj_pairs *set, const asj_two_view *view, double lo
     for (int32_t v = 0; v < 2; v++)
         memset(scratch->sum[v], 0, (size_t)set->place_count[v] * sizeof *scratch->sum[v]);
 }
+
+double asj_inliers(const asj_pairs *set, const double *probability)
+{
+    double sum = 0;
+    for (int32_t k = 0; k < set->count; k++)
+        sum += probability[k];
+    return sum;
+}

@@ -61,6 +61,9 @@ typedef struct asj_score_scratch {
 /* Log of likelihood with the geometry over likelihood without: likelihood.c. Of the first `count` candidates. */
 double asj_score(const asj_pairs *set, int32_t count, const asj_two_view *view, double loose, asj_score_scratch *scratch);
 
+/* Sum of the probabilities of all candidates. */
+double asj_inliers(const asj_pairs *set, const double *probability);
+
 /* For every candidate the probability that it is right, given the geometry and its rivals at both places. */
 void asj_probabilities(const asj_pairs *set, const asj_two_view *view, double loose, asj_score_scratch *scratch,
                        double *probability);

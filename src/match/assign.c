@@ -30,16 +30,6 @@ static int better(const asj_candidate *list, uint32_t left, uint32_t right)
     return list[left].score > list[right].score || (list[left].score == list[right].score && left < right);
 }
 
-/* Where the candidate has the location of its L-junction of image `side` in the other image. */
-static void partner(const asj_match_run *run, const asj_candidate *c, int32_t side, double at[2])
-{
-    const asj_l_junction *l = asj_match_run_l(run, c, 1 - side);
-    const double *mine = side == 0 ? c->move1 : c->move2, *theirs = side == 0 ? c->move2 : c->move1;
-    const double *map = asj_candidate_map(c, side);
-    at[0] = (double)l->x + theirs[0] - map[0] * mine[0] - map[1] * mine[1];
-    at[1] = (double)l->y + theirs[1] - map[2] * mine[0] - map[3] * mine[1];
-}
-
 /* Of candidates order[0] .. order[count - 1], which are those of one location of image `side`. */
 static winner find_winner(const asj_match_run *run, int32_t side, const uint32_t *order, uint32_t count)
 {
@@ -51,10 +41,10 @@ static winner find_winner(const asj_match_run *run, int32_t side, const uint32_t
     for (uint32_t m = 1; m < count; m++)
         best.candidate = better(list, order[m], best.candidate) ? order[m] : best.candidate;
     double at[2], to[2];
-    partner(run, &list[best.candidate], side, at);
+    asj_match_run_partner(run, &list[best.candidate], side, at);
     for (uint32_t m = 0; m < count; m++) {
         const asj_candidate *c = &list[order[m]];
-        partner(run, c, side, to);
+        asj_match_run_partner(run, c, side, to);
         const double dx = to[0] - at[0], dy = to[1] - at[1];
         if (dx * dx + dy * dy > separation * separation && c->score > best.second)
             best.second = c->score;

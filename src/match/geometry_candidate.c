@@ -13,12 +13,13 @@
 
 asj_geometry_candidate asj_candidate_for_geometry(const asj_match_run *run, const asj_candidate *c, double prior)
 {
-    const asj_l_junction *l1 = asj_match_run_l(run, c, 0), *l2 = asj_match_run_l(run, c, 1);
+    const asj_l_junction *l1 = asj_match_run_l(run, c, 0);
     const double *t = c->map.to;
+    double at[2];
+    asj_match_run_partner(run, c, 0, at);
     return (asj_geometry_candidate){
         run->image[0]->l_junctions.location[c->i], run->image[1]->l_junctions.location[c->j],
-        (double)l1->x, (double)l1->y, (double)l2->x + c->move2[0] - (t[0] * c->move1[0] + t[1] * c->move1[1]),
-        (double)l2->y + c->move2[1] - (t[2] * c->move1[0] + t[3] * c->move1[1]), {t[0], t[1], t[2], t[3]}, prior};
+        (double)l1->x, (double)l1->y, at[0], at[1], {t[0], t[1], t[2], t[3]}, prior};
 }
 
 void asj_candidate_branches(const asj_match_run *run, const asj_candidate *c, double *branches)

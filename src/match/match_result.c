@@ -13,34 +13,26 @@
 #define LEAST_ALONG 0.9 /* cosine of 26 degrees, which a branch seen from the match's location may be off its own direction: a
                          * location half as far off the line as the end is away says nothing of that */
 
-/* Where the aligned map puts the junction of image 1. When image 1 was the one that moved, the map takes its moved
- * location to the other's: q = p2 - A (p1 + move - p1). */
-static void refined_location(const asj_candidate *c, const asj_l_junction *l2, double *x, double *y)
-{
-    *x = (double)l2->x + c->move2[0] - (c->map.to[0] * c->move1[0] + c->map.to[1] * c->move1[1]);
-    *y = (double)l2->y + c->move2[1] - (c->map.to[2] * c->move1[0] + c->map.to[3] * c->move1[1]);
-}
-
 /* All but the ends of the branches. */
 static void fill(const asj_match_run *run, const asj_choice *choice, asj_junction_match *m)
 {
     const asj_candidate *c = &run->candidates.list[choice->candidate];
     const asj_l_junction *l1 = asj_match_run_l(run, c, 0), *l2 = asj_match_run_l(run, c, 1);
     const double *t = c->map.to;
-    double x, y;
-    refined_location(c, l2, &x, &y);
+    double at[2];
+    asj_match_run_partner(run, c, 0, at);
     memset(m, 0, sizeof *m);
     m->l1 = c->i;
     m->l2 = c->j;
     m->junction1 = l1->junction;
     m->junction2 = l2->junction;
-    const double affine[6] = {t[0], t[1], x - t[0] * (double)l1->x - t[1] * (double)l1->y,
-                              t[2], t[3], y - t[2] * (double)l1->x - t[3] * (double)l1->y};
+    const double affine[6] = {t[0], t[1], at[0] - t[0] * (double)l1->x - t[1] * (double)l1->y,
+                              t[2], t[3], at[1] - t[2] * (double)l1->x - t[3] * (double)l1->y};
     memcpy(m->affine, affine, sizeof affine);
     m->x1 = l1->x;
     m->y1 = l1->y;
-    m->x2 = (float)x;
-    m->y2 = (float)y;
+    m->x2 = (float)at[0];
+    m->y2 = (float)at[1];
     m->distance = sqrtf(c->distance2);
     m->ratio = choice->ratio;
     m->similarity = c->similarity;

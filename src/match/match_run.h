@@ -33,6 +33,17 @@ static inline const asj_l_junction *asj_match_run_l(const asj_match_run *run, co
     return &run->image[side]->l_junctions.l[asj_candidate_l(c, side)];
 }
 
+/* Where the candidate's map puts its L-junction of image `side` in the other image. Alignment has moved either: where it was this
+ * one, the map takes the moved location to that of the other, so q = p2 + move2 - A move1 of image 1. */
+static inline void asj_match_run_partner(const asj_match_run *run, const asj_candidate *c, int32_t side, double at[2])
+{
+    const asj_l_junction *l = asj_match_run_l(run, c, 1 - side);
+    const double *mine = side == 0 ? c->move1 : c->move2, *theirs = side == 0 ? c->move2 : c->move1;
+    const double *map = asj_candidate_map(c, side);
+    at[0] = (double)l->x + theirs[0] - (map[0] * mine[0] + map[1] * mine[1]);
+    at[1] = (double)l->y + theirs[1] - (map[2] * mine[0] + map[3] * mine[1]);
+}
+
 /* The candidate of choice n. */
 static inline const asj_candidate *asj_chosen(const asj_match_run *run, size_t n)
 {
