@@ -43,30 +43,26 @@ static int is_inside(double x, double y, const asj_image *image)
     return x >= -0.5 && y >= -0.5 && x <= image->width && y <= image->height;
 }
 
-static int is_central(const asj_camera *camera, const asj_image *image)
+static int is_central(double x, double y, const asj_image *image)
 {
-    return fabs(camera->cx - 0.5 * image->width) <= FARTHEST * image->width + 0.5 &&
-           fabs(camera->cy - 0.5 * image->height) <= FARTHEST * image->height + 0.5;
+    return fabs(x - 0.5 * image->width) <= FARTHEST * image->width + 0.5 &&
+           fabs(y - 0.5 * image->height) <= FARTHEST * image->height + 0.5;
 }
 
 int cli_judge_camera(const asj_camera *camera, const asj_image *image, char *message, size_t size)
 {
-    static const char swapped[] = "FX,FY,CX,CY: is this CX,CY,FX,FY?", resized[] = "is it a camera of the picture at another size?";
-    const int width = (int)image->width, height = (int)image->height;
-    const int oblong = fmax(camera->fx, camera->fy) > SQUAREST * fmin(camera->fx, camera->fy);
-    if (!is_inside(camera->cx, camera->cy, image)) {
-        snprintf(message, size, "the principal point %g,%g lies outside of the image of %d x %d pixels; %s", camera->cx, camera->cy,
-                 width, height, is_inside(camera->fx, camera->fy, image) ? swapped : resized);
-        return CLI_CAMERA_WRONG;
-    }
-    if (!is_central(camera, image)) {
-        snprintf(message, size, "the principal point %g,%g is far from the middle of the image of %d x %d pixels: %s", camera->cx,
-                 camera->cy, width, height, oblong ? swapped : resized);
-        return CLI_CAMERA_DOUBTFUL;
-    }
-    if (oblong) {
-        snprintf(message, size, "the focal lengths %g and %g differ; %s", camera->fx, camera->fy, swapped);
-        return CLI_CAMERA_DOUBTFUL;
-    }
-    return CLI_CAMERA_GOOD;
+    const double fx = camera->fx, fy = camera->fy, cx = camera->cx, cy = camera->cy;
+    const int inside = is_inside(cx, cy, image), central = is_central(cx, cy, image);
+    const int oblong = fmax(fx, fy) > SQUAREST * fmin(fx, fy);
+    /* the other order would be a camera, and this one is hardly one */
+    const int swapped = cx > 0 && cy > 0 && (inside ? oblong && is_central(fx, fy, image) : is_inside(fx, fy, image));
+    if (central && !swapped)
+        return CLI_CAMERA_GOOD;
+    snprintf(message, size, "%s; %s", central ? "the focal lengths differ" : inside ? "the principal point is far from the middle" :
+             "the principal point is outside of the image", swapped ? "FX,FY,CX,CY: is this CX,CY,FX,FY?" :
+             "is it the camera of the picture at another size, or before it was cut?");
+    char *end = message + strlen(message);
+    snprintf(end, size - (size_t)(end - message), " (%g,%g,%g,%g, image %d x %d)", fx, fy, cx, cy, (int)image->width,
+             (int)image->height);
+    return swapped && !inside ? CLI_CAMERA_WRONG : CLI_CAMERA_DOUBTFUL;
 }

@@ -28,8 +28,8 @@ const cli_option cli_common_options[] = {
      "vector instructions of the CPU, for comparisons; auto (the default): the best that it has; the results do not depend on it"},
     {MAX_MEGAPIXELS, 0, "max-megapixels", "N", "refuse larger images before they are decoded (default 268, at most 536)"},
     {WHITE, 0, "white", "N",
-     "the sample value that means white: 1023 or 4095 for cameras of 10 or 12 bits in 16-bit files; default: 65535, 255 in 8 bits, "
-     "1 in floats"},
+     "the sample value that means white, of images of 16 bits with no brighter samples and of floats: 1023 or 4095 for cameras of "
+     "10 or 12 bits; default: 65535, 1 in floats"},
     {TIME, 0, "time", NULL, "print how long each stage took"},
     {QUIET, 'q', "quiet", NULL, "print nothing but errors (and what was asked for)"},
 };

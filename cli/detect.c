@@ -88,8 +88,8 @@ static int write_results(run *r, const char *image, const cli_output *output, co
         asj_status status = write_junctions(r, image, output->junctions, pixels, detection, segments, message);
         if (status == ASJ_ERROR_CANCELLED)
             return CLI_FAILED;
-        if (r->lines.broken)
-            return CLI_FAILED; /* cli_json_lines_end() will say why */
+        if (r->lines.broken) /* where there is no message, cli_json_lines_end() will say why */
+            return message[0] ? cli_session_fail(&r->session, image, message, status) : CLI_FAILED;
         if (status != ASJ_OK)
             result = cli_session_fail(&r->session, output->junctions ? output->junctions : image, message, status);
     }
@@ -189,7 +189,7 @@ static int refuse_folder(run *r, const char *folder)
     int length = (int)strlen(folder);
     while (length > 1 && cli_is_separator(folder[length - 1]))
         length--;
-    snprintf(line, sizeof line, "is a directory; its images are %.*s/*.jpg, or: find %.*s -name '*.jpg' | asj-cli detect "
+    snprintf(line, sizeof line, "is a directory; its images are \"%.*s\"/*.jpg, or: find \"%.*s\" -name '*.jpg' | asj-cli detect "
              "--files-from - %s", length, folder, length, folder, r->lines.output ? "-f jsonl" : "-d DIR");
     return cli_session_fail(&r->session, folder, line, ASJ_ERROR_FILE);
 }

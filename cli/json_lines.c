@@ -15,6 +15,7 @@ int cli_json_lines_begin(cli_json_lines *lines, cli_session *session, const char
 static void note(cli_json_lines *lines, asj_status status)
 {
     lines->count += status == ASJ_OK;
+    lines->short_of_memory |= status == ASJ_ERROR_MEMORY;
     lines->broken |= status == ASJ_ERROR_FILE || status == ASJ_ERROR_MEMORY;
 }
 
@@ -33,9 +34,9 @@ void cli_json_lines_add_failure(cli_json_lines *lines, const char *image, const 
 int cli_json_lines_end(cli_json_lines *lines, cli_session *session, int keep)
 {
     char message[CLI_MESSAGE_SIZE];
-    if (!keep) {
+    if (!keep || lines->short_of_memory) { /* which was said with its line */
         asj_output_abort(&lines->output);
-        return CLI_SUCCESS;
+        return keep ? CLI_FAILED : CLI_SUCCESS;
     }
     const asj_status status = asj_output_commit(&lines->output, message, sizeof message);
     return status == ASJ_OK ? CLI_SUCCESS : cli_session_fail(session, lines->path, message, status);

@@ -12,7 +12,8 @@ typedef struct cli_json_lines {
     asj_output *output;
     const char *path;
     size_t count; /* lines so far */
-    int broken;   /* no line can be written any more */
+    int broken;   /* no line can be written any more, .. */
+    int short_of_memory; /* .. for want of memory */
 } cli_json_lines;
 
 /* CLI_SUCCESS, or CLI_FAILED after saying why. */

@@ -310,7 +310,7 @@ static int run_all(run *r)
         print_summary(r);
         print_stretch(r);
         print_geometry(r);
-        if (print_dark(r) == 0)
+        if (r->result->match_count >= FEW || print_dark(r) == 0)
             print_hint(r);
     }
     if (result == CLI_SUCCESS && r->arguments->common.time)

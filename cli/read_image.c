@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WHITE_16 = 65535, DARK = 8 /* times darker than white */ };
+enum { WHITE_16 = 65535, DARK = 4095 /* 12 bits: brighter images are dark by themselves */ };
 
 /* Adds the option that moves the limit to the library's "W x H pixels are more than the limit", which does not know it. */
 static void name_limit_option(char *message, size_t size)
@@ -44,10 +44,33 @@ static const char *find_result(const char *path)
         return NULL;
     const int junctions = strstr(head, "\"asj-junctions-1\"") || asj_junctions_read(path, &file, message, sizeof message) == ASJ_OK;
     asj_junction_file_free(&file);
+    if (junctions && strncmp(head, "{\"schema\":", 10) == 0)
+        return "junctions as JSON lines, not an image; a line alone is what --junctions1 of 'asj-cli match' takes";
     if (junctions)
         return "junctions, not an image: 'asj-cli match' takes them with --junctions1 FILE --junctions2 FILE beside the images; or "
                "write features ('asj-cli detect -f asjf'), which stand for images";
     return strstr(head, "\"asj-matches-1\"") ? "matches, not an image" : NULL;
+}
+
+/* Of a 16-bit image; 0 of others. */
+static uint32_t brightest(const asj_image *image)
+{
+    uint16_t level, most = 0;
+    if (!image->data || image->format != ASJ_FORMAT_GRAY16)
+        return 0;
+    const ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)sizeof level * image->width;
+    for (int32_t y = 0; y < image->height; y++)
+        for (int32_t x = 0; x < image->width; x++) {
+            memcpy(&level, (const unsigned char *)image->data + y * stride + (ptrdiff_t)sizeof level * x, sizeof level);
+            most = level > most ? level : most;
+        }
+    return most;
+}
+
+/* Images of a run may have other white: 8 bits always, and those of 16 bits that are brighter than the one that was given. */
+static int has_white(const asj_image *image, double white)
+{
+    return image->format == ASJ_FORMAT_GRAY_FLOAT || (image->format == ASJ_FORMAT_GRAY16 && brightest(image) <= white);
 }
 
 int cli_read_image(cli_session *session, const cli_common *common, const char *path, asj_image_file **file)
@@ -59,22 +82,15 @@ int cli_read_image(cli_session *session, const cli_common *common, const char *p
         name_limit_option(message, sizeof message);
     if (status != ASJ_OK)
         return cli_session_fail(session, path, result ? result : message, status);
-    (*file)->image.white = (float)common->white;
+    if (common->white > 0 && has_white(&(*file)->image, common->white))
+        (*file)->image.white = (float)common->white;
     return CLI_SUCCESS;
 }
 
 uint32_t cli_dark_level(const asj_image *image)
 {
-    uint16_t level, brightest = 0;
-    if (!image->data || image->format != ASJ_FORMAT_GRAY16 || image->white > 0)
-        return 0;
-    const ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)sizeof level * image->width;
-    for (int32_t y = 0; y < image->height; y++)
-        for (int32_t x = 0; x < image->width; x++) {
-            memcpy(&level, (const unsigned char *)image->data + y * stride + (ptrdiff_t)sizeof level * x, sizeof level);
-            brightest = level > brightest ? level : brightest;
-        }
-    return brightest < WHITE_16 / DARK ? brightest : 0;
+    const uint32_t level = brightest(image);
+    return image->white > 0 || level > DARK ? 0 : level;
 }
 
 uint32_t cli_likely_white(uint32_t level)

@@ -143,9 +143,9 @@ typedef struct asj_detection_report {
 /* Writes junctions as asj_output_begin() and asj_output_commit() do.
  * ASJ_ERROR_ARGUMENT  a NULL pointer, no such file format, or a detection that no reader would take: a junction that cannot be
  *                     (asj_junction_check()) or has fewer than two branches, NaN or infinity, an L-junction, edge or segment of a
- *                     junction or branch that is not there, a branch of two edges; JSON: a width or height that is not
- *                     1 .. ASJ_MAX_SIDE. (Readers of JSON refuse a location more than ASJ_MAX_OUTSIDE px outside of the image, too,
- *                     and edges of branches that stand in no order of angle.)
+ *                     junction or branch that is not there, a branch of two edges; JSON: options with NaN or infinity, a width or
+ *                     height that is not 1 .. ASJ_MAX_SIDE. (Readers of JSON refuse a location more than ASJ_MAX_OUTSIDE px outside
+ *                     of the image, too, and edges of branches that stand in no order of angle.)
  * ASJ_ERROR_OPTION    a reserved field of the report that is not zero
  * ASJ_ERROR_FILE      cannot create, disk full, cannot rename
  * ASJ_ERROR_MEMORY */

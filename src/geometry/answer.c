@@ -221,7 +221,7 @@ static asj_status doubt_what_repeats(asj_estimation *e, int32_t best, asj_geomet
     asj_adjust(&e->set, &shifted, SHIFTED_ROUNDS, &e->scratch);
     shifted.evidence = asj_log_evidence(&e->set, &shifted, &e->scratch);
     asj_probabilities(&e->set, &m->view, 1, &e->scratch.score, e->scratch.probability);
-    if (asj_contradicts(e, &shifted))
+    if (shifted.evidence > -HUGE_VAL && asj_contradicts(e, &shifted))
         return ASJ_OK;
     result->status = ASJ_GEOMETRY_AMBIGUOUS;
     if (shifted.evidence > -HUGE_VAL) {

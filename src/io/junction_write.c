@@ -105,12 +105,13 @@ static asj_status check(const asj_detection *detection, int32_t file_format, con
     return check_edges(detection, message);
 }
 
-static asj_status check_report(const asj_detection_report *report, int32_t file_format, const asj_message *message)
+/* options: whether they will be written. */
+static asj_status check_report(const asj_detection_report *report, int32_t file_format, int options, const asj_message *message)
 {
     asj_status status = asj_message_reserved(message, report->reserved);
     if (status == ASJ_OK)
         status = check(report->detection, file_format, message);
-    if (status == ASJ_OK && !asj_options_are_finite(report->options, asj_detect_option_count(), asj_detect_option))
+    if (status == ASJ_OK && options && !asj_options_are_finite(report->options, asj_detect_option_count(), asj_detect_option))
         status = asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the options have NaN or infinity");
     if (status == ASJ_OK && report->segments)
         status = check_segments(report->detection, report->segments, message);
@@ -130,7 +131,7 @@ asj_status asj_junctions_write(const char *path, int32_t file_format, const asj_
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no path or no detection");
     if (file_format < ASJ_FILE_ASJ || file_format > ASJ_FILE_CSV)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "%d is no file format", (int)file_format);
-    status = check_report(report, file_format, &message);
+    status = check_report(report, file_format, file_format == ASJ_FILE_JSON, &message);
     if (status == ASJ_OK)
         status = asj_output_begin(path, &output, text, text_size);
     if (status != ASJ_OK)
@@ -157,7 +158,7 @@ asj_status asj_junctions_write_line(asj_output *output, const asj_detection_repo
 
     if (!output || !report || !report->detection)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no output or no detection");
-    status = check_report(report, ASJ_FILE_JSON, &message);
+    status = check_report(report, ASJ_FILE_JSON, 0, &message);
     return status == ASJ_OK ? asj_write_json_line(output, report, &message) : status;
 }
 

@@ -60,8 +60,10 @@ static asj_status check(const asj_match_result *result, const asj_message *messa
     return ASJ_OK;
 }
 
-static asj_status check_report(const asj_match_report *report, const asj_message *message)
+static asj_status check_report(const asj_match_report *report, int32_t file_format, const asj_message *message)
 {
+    if (file_format != ASJ_FILE_JSON) /* which alone has the rest */
+        return check(report->result, message);
     if (!asj_all_finite(report->stretch, 2))
         return asj_message_fail(message, ASJ_ERROR_ARGUMENT, "not written: the stretch has NaN or infinity");
     if (!asj_options_are_finite(report->options, asj_match_option_count(), asj_match_option) ||
@@ -116,7 +118,7 @@ asj_status asj_matches_write(const char *path, int32_t file_format, const asj_ma
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "lines %d: there is no such", (int)report->lines);
     status = asj_message_reserved(&message, report->reserved);
     if (status == ASJ_OK)
-        status = check_report(report, &message);
+        status = check_report(report, file_format, &message);
     if (status == ASJ_OK)
         status = find_segments(report, &segments, &message);
     if (status != ASJ_OK)

@@ -94,8 +94,8 @@ static void results_and_folders_in_place_of_images(void **state)
     expect_in(result, result->err, "asj-cli: m.json: matches, not an image\n");
     result = run_cli("detect", "folder.png//", NULL);
     expect_code(result, 1);
-    expect_in(result, result->err, "asj-cli: folder.png//: is a directory; its images are folder.png/*.jpg, or: find folder.png "
-                                   "-name '*.jpg' | asj-cli detect --files-from - -d DIR\n");
+    expect_in(result, result->err, "asj-cli: folder.png//: is a directory; its images are \"folder.png\"/*.jpg, or: find "
+                                   "\"folder.png\" -name '*.jpg' | asj-cli detect --files-from - -d DIR\n");
 }
 
 /* Nor is its name told twice where it cannot be told as it is. */

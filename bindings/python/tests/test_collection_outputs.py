@@ -328,9 +328,9 @@ def test_cameras_that_cannot_be(pair: Path, tmp_path: Path, capsys: pytest.Captu
     for camera in ("500", "500,500,240", "0,500,240,180", "500,nan,240,180", "f,500,240,180", "500,500,1e9,180"):
         refused([*words, "--camera", camera], "is not FX,FY,CX,CY", capsys)
     refused([*words, "--geometry", "auto", "--focal", "500", "--camera", "500,500,240,180"], "exclude each other", capsys)
-    refused([*words, "--camera", "240,180,500,500"], "480 x 360: the order is fx,fy,cx,cy - is this cx,cy,fx,fy? (a.png)", capsys)
+    refused([*words, "--camera", "240,180,500,500"], "is this cx,cy,fx,fy? (240,180,500,500, image 480 x 360) (a.png)", capsys)
     assert not (tmp_path / "x.work").exists()
     assert main(["collect", *words, "--quiet", "--camera", "500,500,380,180", "--geometry", "auto"]) == 0
     said = capsys.readouterr().err
-    far = "warning: --camera: the principal point cx, cy = 380, 180 lies far from the middle of an image of 480 x 360"
+    far = "warning: --camera: the principal point is far from the middle of the image: the camera of another size"
     assert said.count(far) == 1

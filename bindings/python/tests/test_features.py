@@ -93,6 +93,8 @@ def test_images_of_pillow_are_as_their_files(tmp_path: Path, scene: Scene) -> No
         asj.detect(Image.new("La", (40, 30)))
     with pytest.raises(asj.ImageError, match="16 bits"):
         asj.detect(Image.fromarray(np.full((30, 40), 70000, np.int32)))
+    with pytest.raises(asj.ImageError, match="convert it to L"):
+        asj.detect(Image.fromarray(scene).convert("L").convert("I"))
 
 
 def test_colours_of_other_types(scene: Scene) -> None:

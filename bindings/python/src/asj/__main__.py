@@ -118,16 +118,15 @@ def _camera(arguments: argparse.Namespace) -> str:
 
 
 def _check_camera(plan: plans.Plan) -> None:
-    """Refuses a --camera whose principal point lies outside of an image; says where it is far from the middle of one."""
+    """Refuses a --camera whose numbers are in another order; says where it may be that of another image."""
     said = False
     checked: set[tuple[int, int] | None] = {None}
-    _, _, cx, cy = plan.camera
     for name in plan.images:
         size = images.size(plan.folder / name)
         if size is None or size in checked:
             continue
         checked.add(size)
-        cannot_be, why = geometry.doubt(cx, cy, *size)
+        cannot_be, why = geometry.doubt(*plan.camera, *size)
         if cannot_be:
             raise ValueError(f"--camera: {why} ({name})")
         if why and not said:

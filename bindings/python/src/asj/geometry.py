@@ -94,22 +94,36 @@ def fill(
 
 LARGEST_SKEW = 1e-3  # of the focal length: less is no half pixel at the border
 LARGEST_LAST = 1e-9  # of what is 0 in the last row: rounding
-FARTHEST_CENTRE = 0.25  # of the width and of the height, from the middle to a principal point: no lens is that far out
+FARTHEST_CENTRE = 0.25  # of a side, from the middle to the principal point: beyond it few pictures are, but some cut ones
+SQUAREST = 1.1  # one focal length over the other: swapped numbers have the ratio of the sides here
 
 
-def doubt(cx: float, cy: float, width: int, height: int) -> tuple[bool, str]:
-    """Whether a principal point cannot be that of an image of that size, and what to say about it; nothing where it is a usual one.
+def doubt(fx: float, fy: float, cx: float, cy: float, width: int, height: int) -> tuple[bool, str]:
+    """Whether this cannot be the camera of an image of that size, and what to say about it; nothing where it may be.
 
-    >>> doubt(320, 240, 640, 480), doubt(700, 700, 640, 480)[0], doubt(500, 240, 640, 480)[1][:36]
-    ((False, ''), True, 'the principal point cx, cy = 500, 24')
+    >>> doubt(500, 500, 320, 240, 640, 480), doubt(320, 240, 700, 700, 640, 480)[0], doubt(500, 500, -20, 240, 640, 480)[0]
+    ((False, ''), True, False)
     """
-    outside = not (-0.5 <= cx <= width - 0.5 and -0.5 <= cy <= height - 0.5)
-    aside = abs(cx - (width - 1) / 2) > FARTHEST_CENTRE * width or abs(cy - (height - 1) / 2) > FARTHEST_CENTRE * height
-    if not outside and not aside:
+
+    def is_central(x: float, y: float) -> bool:
+        return abs(x - width / 2) <= FARTHEST_CENTRE * width + 0.5 and abs(y - height / 2) <= FARTHEST_CENTRE * height + 0.5
+
+    def is_inside(x: float, y: float) -> bool:
+        return -0.5 <= x <= width and -0.5 <= y <= height
+
+    inside, central = is_inside(cx, cy), is_central(cx, cy)
+    oblong = max(fx, fy) > SQUAREST * min(fx, fy)
+    likely = oblong and is_central(fx, fy) if inside else is_inside(fx, fy)
+    swapped = cx > 0 and cy > 0 and likely  # the other order would be a camera, and this one is hardly one
+    if central and not swapped:
         return False, ""
-    where = "outside of" if outside else "far from the middle of"
-    order = "the order is fx,fy,cx,cy - is this cx,cy,fx,fy?"
-    return outside, f"the principal point cx, cy = {cx:g}, {cy:g} lies {where} an image of {width} x {height}: {order}"
+    what = (
+        "the focal lengths differ"
+        if central
+        else f"the principal point is {'far from the middle of' if inside else 'outside of'} the image"
+    )
+    why = "the order is fx,fy,cx,cy - is this cx,cy,fx,fy?" if swapped else "the camera of another size, or before the image was cut?"
+    return swapped and not inside, f"{what}: {why} ({fx:g},{fy:g},{cx:g},{cy:g}, image {width} x {height})"
 
 
 def numbers(camera: ArrayLike, width: int, height: int, stacklevel: int = 4) -> tuple[float, float, float, float]:
@@ -137,7 +151,7 @@ def numbers(camera: ArrayLike, width: int, height: int, stacklevel: int = 4) -> 
         raise ArgumentError(f"a camera of shape {values.shape}: a matrix K (3, 3), (fx, fy, cx, cy), or a focal length in pixels")
     if numbers[0] <= 0 or numbers[1] <= 0:
         raise ArgumentError("a camera must have focal lengths above 0")
-    cannot_be, why = doubt(numbers[2], numbers[3], width, height)
+    cannot_be, why = doubt(*(float(number) for number in numbers), width, height)
     if cannot_be:
         raise ArgumentError(why)
     if why:

@@ -102,6 +102,8 @@ def as_array(image: Any) -> NDArray[Any]:
     pillow = sys.modules.get("PIL.Image")  # where nobody has loaded it, this is no image of it
     if pillow is not None and isinstance(image, pillow.Image):
         try:
+            if image.mode == "I" and image.size[0] * image.size[1] and image.getextrema()[1] <= 255:
+                raise ValueError("no sample is above 255: white is 65535 there; convert it to L")
             return _of_pillow(image)
         except UNREADABLE as bad:
             raise ImageError(f"an image of mode {image.mode}: {bad}") from bad
