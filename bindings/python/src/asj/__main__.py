@@ -126,7 +126,7 @@ def _check_camera(plan: plans.Plan) -> None:
         if size is None or size in checked:
             continue
         checked.add(size)
-        cannot_be, why = geometry.doubt(*plan.camera, *size)
+        cannot_be, why = geometry.doubt(plan.camera, *size)
         if cannot_be:
             raise ValueError(f"--camera: {why} ({name})")
         if why and not said:

@@ -98,12 +98,13 @@ FARTHEST_CENTRE = 0.25  # of a side, from the middle to the principal point: bey
 SQUAREST = 1.1  # one focal length over the other: swapped numbers have the ratio of the sides here
 
 
-def doubt(fx: float, fy: float, cx: float, cy: float, width: int, height: int) -> tuple[bool, str]:
-    """Whether this cannot be the camera of an image of that size, and what to say about it; nothing where it may be.
+def doubt(camera: Sequence[float], width: int, height: int) -> tuple[bool, str]:
+    """Whether (fx, fy, cx, cy) cannot be the camera of an image of that size, and what to say about it; nothing where it may be.
 
-    >>> doubt(500, 500, 320, 240, 640, 480), doubt(320, 240, 700, 700, 640, 480)[0], doubt(500, 500, -20, 240, 640, 480)[0]
+    >>> doubt((500, 500, 320, 240), 640, 480), doubt((320, 240, 700, 700), 640, 480)[0], doubt((500, 500, -20, 240), 640, 480)[0]
     ((False, ''), True, False)
     """
+    fx, fy, cx, cy = camera
 
     def is_central(x: float, y: float) -> bool:
         return abs(x - width / 2) <= FARTHEST_CENTRE * width + 0.5 and abs(y - height / 2) <= FARTHEST_CENTRE * height + 0.5
@@ -151,7 +152,7 @@ def numbers(camera: ArrayLike, width: int, height: int, stacklevel: int = 4) -> 
         raise ArgumentError(f"a camera of shape {values.shape}: a matrix K (3, 3), (fx, fy, cx, cy), or a focal length in pixels")
     if numbers[0] <= 0 or numbers[1] <= 0:
         raise ArgumentError("a camera must have focal lengths above 0")
-    cannot_be, why = doubt(*(float(number) for number in numbers), width, height)
+    cannot_be, why = doubt([float(number) for number in numbers], width, height)
     if cannot_be:
         raise ArgumentError(why)
     if why:
