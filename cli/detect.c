@@ -160,11 +160,11 @@ static int detect_pixels(run *r, const char *image, const cli_output *output, co
 
 static int check_camera(run *r, const char *image, const asj_image *pixels)
 {
-    char message[CLI_MESSAGE_SIZE], line[CLI_MESSAGE_SIZE];
+    char message[256], line[300];
     const asj_camera *camera = &r->arguments->camera;
     const int verdict = camera->fx > 0 ? cli_judge_camera(camera, pixels, message, sizeof message) : CLI_CAMERA_GOOD;
     if (verdict == CLI_CAMERA_WRONG) {
-        snprintf(line, sizeof line, "--camera: %.256s", message);
+        snprintf(line, sizeof line, "--camera: %s", message);
         return cli_session_fail(&r->session, image, line, ASJ_ERROR_ARGUMENT);
     }
     if (verdict == CLI_CAMERA_DOUBTFUL && !r->camera_doubted && !r->arguments->common.quiet) {

@@ -7,7 +7,8 @@
 
 #include <asj/io.h>
 
-/* An image file no larger than --max-megapixels, its white that of --white. CLI_SUCCESS, or CLI_FAILED after saying why. */
+/* An image file no larger than --max-megapixels, its white that of --white where that may be its own. CLI_SUCCESS, or CLI_FAILED
+ * after saying why. */
 int cli_read_image(cli_session *session, const cli_common *common, const char *path, asj_image_file **file);
 
 /* The brightest level of a 16-bit image far darker than the white that its format has; 0: there is none, or its white was given.

@@ -86,11 +86,11 @@ static int print_radii(char *text, size_t size, uint32_t bits)
 {
     char buffer[128] = "";
     int used = 0;
-    for (int r = 0; r < 31; r++) {
+    for (int r = 0; r < 32; r++) {
         if (!(bits >> r & 1))
             continue;
         int last = r;
-        while (last < 30 && (bits >> (last + 1) & 1))
+        while (last < 31 && (bits >> (last + 1) & 1))
             last++;
         const char *comma = used ? "," : "";
         if (last - r >= 2)

@@ -143,16 +143,25 @@ static asj_status no_memory(const asj_message *message)
     return asj_message_fail(message, ASJ_ERROR_MEMORY, "out of memory for JSON");
 }
 
-asj_status asj_write_json(asj_output *output, const asj_detection_report *report, const asj_message *message)
+/* Nothing is written when it fails. */
+static asj_status put_in_c_locale(asj_json_output *json, const asj_detection_report *report, const asj_message *message)
 {
-    asj_json_output json = {output, 0, 0};
     asj_c_locale locale;
     const asj_status status = asj_c_locale_begin(&locale, message);
     if (status != ASJ_OK)
         return status;
-    put_object(&json, report);
-    asj_output_text(output, "\n");
+    put_object(json, report);
     asj_c_locale_end(&locale);
+    return ASJ_OK;
+}
+
+asj_status asj_write_json(asj_output *output, const asj_detection_report *report, const asj_message *message)
+{
+    asj_json_output json = {output, 0, 0};
+    const asj_status status = put_in_c_locale(&json, report, message);
+    if (status != ASJ_OK)
+        return status;
+    asj_output_text(output, "\n");
     return json.out_of_memory ? no_memory(message) : ASJ_OK;
 }
 
@@ -170,13 +179,8 @@ static asj_status end_line(asj_json_output *json, const asj_message *message)
 asj_status asj_write_json_line(asj_output *output, const asj_detection_report *report, const asj_message *message)
 {
     asj_json_output json = {output, 0, 1};
-    asj_c_locale locale;
-    const asj_status status = asj_c_locale_begin(&locale, message);
-    if (status != ASJ_OK)
-        return status;
-    put_object(&json, report);
-    asj_c_locale_end(&locale);
-    return end_line(&json, message);
+    const asj_status status = put_in_c_locale(&json, report, message);
+    return status == ASJ_OK ? end_line(&json, message) : status;
 }
 
 asj_status asj_write_json_failure(asj_output *output, const char *image_name, const char *cause, const asj_message *message)

@@ -195,8 +195,8 @@ def match(
     geometry   "auto", "essential", "fundamental" or "homography": estimates what relates the two views, drops matches that contradict
                it and adds those that it makes likely; "none" does not
     camera1    of the first image: the matrix K, (fx, fy, cx, cy), or a focal length in pixels; None = not known. Pixel centres are at
-               integers: cx and cy are those of COLMAP less 0.5. A principal point outside of the image is refused, and one farther
-               from its middle than a quarter of its size is warned of: mostly these are cx, cy, fx, fy
+               integers: cx and cy are those of COLMAP less 0.5. What is a camera in the order cx, cy, fx, fy only is refused, and
+               a principal point outside of the image, or farther from its middle than a quarter of its size, is warned of
     camera2    of the second image; None = as camera1
     find_focal no camera is known: one focal length for both is found with the motion ("auto" and "essential")
     focal_sd   how well the cameras' focal lengths are known, as a part of them, 0.05 for instance where they are from EXIF data: the

@@ -45,7 +45,7 @@ def vanishing_points(
     """Where the parallel edges of the scene meet, by the branches of an image's junctions.
 
     camera    a matrix K (3, 3), (fx, fy, cx, cy) or a focal length in pixels; pixel centres are at integers (COLMAP's cx and cy less
-              0.5), and the principal point in the image (:func:`asj.match`). Without one the focal length is found where two
+              0.5), judged as :func:`asj.match` does. Without one the focal length is found where two
               directions determine it
     epsilon   how many chance directions an image without any may show on average
 

@@ -77,7 +77,7 @@ class Matched:
 
 def start(threads: int) -> None:
     """Called once in a worker process."""
-    warnings.filterwarnings("ignore", "the principal point")  # the command has said so, once
+    warnings.filterwarnings("ignore", "the (principal point|focal lengths)")  # the command has said so, once
     context.set_current(context.Context(threads=threads))
 
 
