@@ -110,6 +110,21 @@ static int looks_by_itself(const cli_match_arguments *arguments)
     return images;
 }
 
+/* Colours are looked at where a geometry is asked and not found. */
+static int check_colours(const cli_match_arguments *arguments)
+{
+    if (!cli_settings_have(&arguments->match_settings, "look_at_colours"))
+        return CLI_SUCCESS;
+    if (arguments->geometry == ASJ_GEOMETRY_NONE)
+        return cli_usage_error("match", "--look-at-colours changes nothing without --geometry");
+    if (arguments->detect_options.colours)
+        return cli_usage_error("match", "--look-at-colours changes nothing with --colours, which looks at them anyway");
+    if (!arguments->look || arguments->stretch.x > 0)
+        return cli_usage_error("match", "--look-at-colours changes nothing: it is for two whole images, without --stretch and "
+                               "without the preset paper");
+    return CLI_SUCCESS;
+}
+
 /* The detector runs on stretched images as a whole. */
 static int check_stretch(cli_match_arguments *arguments)
 {
@@ -126,7 +141,7 @@ static int check_stretch(cli_match_arguments *arguments)
     if ((!arguments->look || arguments->stretch.x > 0) && asked)
         return cli_usage_error("match", "%s changes nothing: it is for two whole images, without --stretch and without the preset "
                                "paper", asked);
-    return CLI_SUCCESS;
+    return check_colours(arguments);
 }
 
 /* Options that say how something looks which nobody has asked for. */

@@ -35,6 +35,7 @@
  * Images that have nothing in common match at a few places now and then, and so do things that repeat; the more looks the more
  * often. So a stretched look needs ENOUGH matches, and as many more than there are. */
 #include "look.h"
+#include "core/colour_plane.h"
 #include "geometry/geometry_options.h"
 #include "match/final_pose.h"
 #include "match/upsampled.h"
@@ -42,6 +43,7 @@
 #include "match/match_options.h"
 
 #include <math.h>
+#include <string.h>
 
 #define ENOUGH 16  /* matches. Stretched by 1, 3 or 3, 1, pairs of frames that do not match had up to 7 wrong ones, of which
                     * no geometry was left; planes at extreme angles 95 to 190 right ones */
@@ -58,6 +60,8 @@
 static const asj_stretch as_it_is = {1, 1};
 static const asj_stretch glancing[] = {{1, 3}, {3, 1}}, trials[] = {{0.5, 1.5}, {1.5, 0.5}};
 enum { GLANCING = sizeof glancing / sizeof glancing[0] };
+
+#define COLOURED 0.2 /* .. and for the colours, where they are looked at */
 
 typedef struct search {
     asj_context *context;
@@ -194,6 +198,56 @@ static asj_status look_smaller(search *s, double from, double part)
     return status;
 }
 
+/* --- colours ------------------------------------------------------------------------------------------------------------------ */
+
+static asj_status have_colours(const search *s, int32_t *both)
+{
+    asj_status status = ASJ_OK;
+    *both = 1;
+    for (int32_t n = 0; n < 2 && status == ASJ_OK && *both; n++) {
+        asj_colour_planes planes;
+        status = asj_colour_planes_look(s->context, s->images[n], &planes);
+        *both = planes.count > 1;
+    }
+    return status;
+}
+
+/* Not where the images have rivals: corners of colour repeat as those of luma do. */
+static int32_t may_look_at_colours(const search *s)
+{
+    const int32_t status = s->best->geometry.status;
+    return s->options->look_at_colours && !s->detect_options->colours && asks_geometry(s) &&
+           status != ASJ_GEOMETRY_ACCEPTED && status != ASJ_GEOMETRY_AMBIGUOUS;
+}
+
+/* Does what is found with colours hold? Where the images' own best is chance that it is accepted is enough. Where they leave the
+ * motion open it has to be settled as upsampled images settle it, by evidence alone: junctions of the luma take part in either
+ * look, so that the same motion again says nothing. */
+static int32_t is_believed(const asj_match_result *own, const asj_match_result *coloured)
+{
+    if (coloured->geometry.status != ASJ_GEOMETRY_ACCEPTED)
+        return 0;
+    return own->geometry.status != ASJ_GEOMETRY_DEGENERATE || asj_looks_surpass(own, coloured);
+}
+
+static asj_status look_at_colours(search *s, double from, double part)
+{
+    asj_detect_options with_colours = *s->detect_options;
+    search other = *s;
+    with_colours.colours = 1;
+    other.detect_options = &with_colours;
+    other.best = NULL;
+    asj_status status = look(&other, &as_it_is, &with_colours, other.options, from, FIRST * part, &other.best);
+    if (status == ASJ_OK && other.best->geometry.status != ASJ_GEOMETRY_AMBIGUOUS)
+        status = look_closer(&other, &as_it_is, from + FIRST * part, (1 - FIRST) * part);
+    memcpy(s->stage_ms, other.stage_ms, sizeof s->stage_ms);
+    const int32_t believed = status == ASJ_OK && is_believed(s->best, other.best);
+    asj_match_result_free(believed ? &s->best : &other.best);
+    if (believed)
+        s->best = other.best;
+    return status;
+}
+
 /* --- stretched --------------------------------------------------------------------------------------------------------------- */
 
 /* Of large images those that are smaller are stretched. */
@@ -245,16 +299,25 @@ static asj_status look_again(search *s, int32_t which, double from, double part)
 /* Where a further look shows more than can be matched, what was seen before stays the answer. */
 static asj_status look_for_answer(search *s)
 {
-    const double part = (1 - FIRST - CLOSER) / GLANCING;
+    double done = FIRST + CLOSER, part;
+    int32_t coloured = 0;
     asj_status status = look(s, &as_it_is, s->detect_options, s->options, 0, FIRST, &s->best);
     if (status == ASJ_OK) {
         asj_optional_begin(s->context);
         status = asj_optional_end(s->context, s->scale < 1 ? look_smaller(s, FIRST, CLOSER)
                                                            : look_closer(s, &as_it_is, FIRST, CLOSER));
     }
+    if (status == ASJ_OK && may_look_at_colours(s))
+        status = have_colours(s, &coloured);
+    if (status == ASJ_OK && coloured) {
+        asj_optional_begin(s->context);
+        status = asj_optional_end(s->context, look_at_colours(s, done, COLOURED));
+        done += COLOURED;
+    }
+    part = (1 - done) / GLANCING;
     for (int32_t k = 0; k < GLANCING && status == ASJ_OK && goes_on(s); k++) {
         asj_optional_begin(s->context);
-        status = asj_optional_end(s->context, look_again(s, k, FIRST + CLOSER + k * part, part));
+        status = asj_optional_end(s->context, look_again(s, k, done + k * part, part));
     }
     return status == ASJ_OK ? asj_progress(s->context, ASJ_STAGE_ASSIGN, 1) : status;
 }

@@ -83,7 +83,10 @@ typedef struct asj_match_options {
     int32_t upsampled_shortlist; /* .. and then this stands for shortlist; 0 = shortlist does. 0 .. 32; 2; paper 0 */
     int32_t upsampled_max_junctions; /* junctions of an upsampled image that take part, the most meaningful ones; 0 = all, which
                                   * takes a minute where two megapixels are full of texture. 0 .. 1000000; 16000 */
-    double reserved[17];         /* zero */
+    int32_t look_at_colours;     /* 1 = automatically: where a geometry is asked and none is accepted, colour images are looked at
+                                  * once more, with asj_detect_options.colours, in twice the time. 1; paper 0 */
+    int32_t reserved_switch;     /* zero */
+    double reserved[16];         /* zero */
     /* two-view geometry; not among the options with a key. model: none, the default, and then the rest of it does not matter. Sizes
      * of the images are filled in */
     asj_geometry_options geometry;

@@ -56,6 +56,10 @@ typedef struct asj_detect_options {
                                    * surely, for half as much time again and 2 bytes for each pixel of the first octave. 0 */
     int32_t independent_octaves;  /* 1 = every octave is a detector of its own and keeps what it finds, though a finer one has
                                    * found the same corner: for the matcher, which takes each corner once. 0; match 1 */
+    int32_t colours;              /* 1 = colour images are also looked at in two planes of opponent colours, red against green and
+                                   * blue against yellow: finds corners between surfaces that hardly differ in luma, in three times
+                                   * the time; with independent_octaves the others stay where they are. 0 */
+    int32_t reserved_integer;     /* zero */
     /* step 1: normalised gradient */
     double gradient_epsilon;      /* grey levels (0..255) per pixel added to the local mean of the gradient norm; what is much
                                    * weaker than this is flat. 0.05 .. 16; default 0.4; paper 0.05 */
@@ -123,7 +127,7 @@ typedef struct asj_detect_options {
                                    * fainter than its others, up to max_branches; without independent_octaves sharp branches of
                                    * coarse octaves join, too, as soft ones and those with an NFA up to 1e-30 do in any case, beyond
                                    * max_branches. In 1.1 to 1.3 times the time; not with ASJ_REFINE_SEARCH. 0 */
-    double reserved[16];          /* zero */
+    double reserved[15];          /* zero */
 } asj_detect_options;
 
 enum { ASJ_SEEDS_FIELD = 0, ASJ_SEEDS_SEGMENTS = 1 };

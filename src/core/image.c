@@ -163,22 +163,26 @@ static void load_bytes(uint16_t *gray, const uint8_t *bytes, int32_t width, cons
             gray[x] = (uint16_t)(bytes[x] * ASJ_GRAY_ONE);
 }
 
-static void load_colour(const asj_image_ops *ops, uint16_t *gray, const uint8_t *bytes, int32_t width, int32_t step, int32_t red,
-                        const uint16_t *levels)
-{
-    ops->luma(bytes, width, step, red, gray);
-    if (levels)
-        for (int32_t x = 0; x < width; x++)
-            gray[x] = levels[gray[x] / ASJ_GRAY_ONE];
-}
-
 /* How samples become levels. */
 typedef struct conversion {
     const asj_image_ops *ops;
+    int32_t plane;
     float scale;
     const uint16_t *levels; /* of 8-bit samples; NULL = level 255 is white */
     uint16_t table[256];
 } conversion;
+
+static void load_colour(const conversion *c, uint16_t *gray, const uint8_t *bytes, int32_t width, int32_t step, int32_t red)
+{
+    if (c->plane != ASJ_PLANE_LUMA) {
+        asj_colour_row(bytes, width, step, red, c->levels, c->plane, gray);
+        return;
+    }
+    c->ops->luma(bytes, width, step, red, gray);
+    if (c->levels)
+        for (int32_t x = 0; x < width; x++)
+            gray[x] = c->levels[gray[x] / ASJ_GRAY_ONE];
+}
 
 static void repeat_columns(uint16_t *gray, int32_t width)
 {
@@ -207,20 +211,21 @@ static int load_row(const conversion *c, uint16_t *gray, const void *row, const 
     switch (image->format) {
     case ASJ_FORMAT_GRAY8: load_bytes(gray, row, width, c->levels); break;
     case ASJ_FORMAT_GRAY16: load_words(gray, row, width, c->scale); break;
-    case ASJ_FORMAT_RGB8: load_colour(c->ops, gray, row, width, 3, 0, c->levels); break;
-    case ASJ_FORMAT_BGR8: load_colour(c->ops, gray, row, width, 3, 2, c->levels); break;
-    case ASJ_FORMAT_RGBA8: load_colour(c->ops, gray, row, width, 4, 0, c->levels); break;
-    case ASJ_FORMAT_BGRA8: load_colour(c->ops, gray, row, width, 4, 2, c->levels); break;
+    case ASJ_FORMAT_RGB8: load_colour(c, gray, row, width, 3, 0); break;
+    case ASJ_FORMAT_BGR8: load_colour(c, gray, row, width, 3, 2); break;
+    case ASJ_FORMAT_RGBA8: load_colour(c, gray, row, width, 4, 0); break;
+    case ASJ_FORMAT_BGRA8: load_colour(c, gray, row, width, 4, 2); break;
     default: finite = load_float(gray, row, width, c->scale); break;
     }
     repeat_columns(gray, width);
     return finite;
 }
 
-static void prepare_conversion(const asj_context *context, const asj_image *image, conversion *c)
+static void prepare_conversion(const asj_context *context, const asj_image *image, int32_t plane, conversion *c)
 {
     const float standard = find_format(image->format)->white, white = image->white > 0 ? image->white : standard;
     c->ops = context->ops->image;
+    c->plane = plane;
     c->scale = (float)ASJ_GRAY_MAX / white;
     for (int i = 0; i < 256; i++)
         c->table[i] = cut((float)i * c->scale);
@@ -249,14 +254,14 @@ static void load_rows(const void *data, const asj_part *part)
             __atomic_store_n(j->failed, 1, __ATOMIC_RELAXED);
 }
 
-asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image)
+asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image, int32_t plane)
 {
     const ptrdiff_t row_bytes = (ptrdiff_t)image->width * asj_pixel_size(image->format);
     const ptrdiff_t stride = image->stride ? image->stride : row_bytes;
     const int32_t height = image->height;
     int32_t failed = 0;
     conversion c;
-    prepare_conversion(context, image, &c);
+    prepare_conversion(context, image, plane, &c);
     asj_watch watch;
     asj_watch_start(&watch, context, ASJ_STAGE_GRADIENT);
     const job j = {&c, frame, image, stride, &failed, &watch};

@@ -3,11 +3,8 @@
 #ifndef ASJ_SRC_IMAGE_H
 #define ASJ_SRC_IMAGE_H
 
-#include "context.h"
-
-/* Gray levels are held as whole numbers in 1/128 of a grey level: 0 .. 255 * 128. */
-#define ASJ_GRAY_ONE 128
-#define ASJ_GRAY_MAX (255 * ASJ_GRAY_ONE)
+#include "colour_plane.h"
+#include "gray_level.h"
 
 /* Samples of the gray plane on either side of a row that may be read: ASJ_GRAY_BORDER times the border pixel again, then anything.
  * As many rows above and below repeat the first and the last one. So line fits near the border read what is there (line_sums.c). */
@@ -88,11 +85,12 @@ asj_status asj_upsample_check(asj_context *context, const asj_image *image);
 /* Repeats the border of gray. */
 void asj_frame_repeat_border(const asj_frame *frame);
 
-/* Makes room for the image upsampled by two and fills frame->gray from the view: interpolated between the four pixels around, so
- * that pixel (i, j) is centred at (i / 2 - 1/4, j / 2 - 1/4) of the image. Becomes octave -1. Statuses as asj_frame_load(). */
-asj_status asj_frame_upsample(asj_context *context, asj_frame *frame, const asj_image *image);
+/* Makes room for the image upsampled by two and fills frame->gray with a plane of the view: interpolated between the four pixels
+ * around, so that pixel (i, j) is centred at (i / 2 - 1/4, j / 2 - 1/4) of the image. Becomes octave -1. Statuses as
+ * asj_frame_load(). */
+asj_status asj_frame_upsample(asj_context *context, asj_frame *frame, const asj_image *image, int32_t plane);
 
-/* Fills frame->gray from the view (asj_frame_prepare() first). Finds NaN and infinity. */
-asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image);
+/* Fills frame->gray with a plane of the view, ASJ_PLANE_... (asj_frame_prepare() first). Finds NaN and infinity. */
+asj_status asj_frame_load(asj_context *context, asj_frame *frame, const asj_image *image, int32_t plane);
 
 #endif

@@ -206,7 +206,7 @@ asj_status asj_pyramid_create(asj_context *context, const asj_image *image, doub
     if (status == ASJ_OK)
         status = asj_frame_prepare_gray(context, &frame, image->width, image->height);
     if (status == ASJ_OK)
-        status = asj_frame_load(context, &frame, image);
+        status = asj_frame_load(context, &frame, image, ASJ_PLANE_LUMA);
     if (status == ASJ_OK)
         status = fill(context, &frame, smoothing, pyramid);
     asj_frame_free(&context->memory, &frame);
@@ -220,7 +220,7 @@ asj_status asj_pyramid_create_upsampled(asj_context *context, const asj_image *i
     memset(&frame, 0, sizeof frame);
     asj_status status = asj_image_check(context, image);
     if (status == ASJ_OK)
-        status = asj_frame_upsample(context, &frame, image);
+        status = asj_frame_upsample(context, &frame, image, ASJ_PLANE_LUMA);
     if (status == ASJ_OK)
         status = fill(context, &frame, smoothing, pyramid);
     asj_frame_free(&context->memory, &frame);

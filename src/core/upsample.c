@@ -48,7 +48,7 @@ asj_status asj_upsample_check(asj_context *context, const asj_image *image)
 }
 
 /* The image itself stands where the gradient will, which has nothing to say before. */
-asj_status asj_frame_upsample(asj_context *context, asj_frame *frame, const asj_image *image)
+asj_status asj_frame_upsample(asj_context *context, asj_frame *frame, const asj_image *image, int32_t plane)
 {
     const int32_t width = 2 * image->width, height = 2 * image->height, octaves = frame->octaves;
     asj_status status = asj_frame_prepare_gray(context, frame, width, height);
@@ -58,7 +58,7 @@ asj_status asj_frame_upsample(asj_context *context, asj_frame *frame, const asj_
     own.width = image->width;
     own.height = image->height;
     own.gray = (uint16_t *)frame->gradient_x + ASJ_GRAY_BORDER * (frame->stride + 1);
-    status = asj_frame_load(context, &own, image);
+    status = asj_frame_load(context, &own, image, plane);
     if (status != ASJ_OK)
         return status;
     asj_watch watch;

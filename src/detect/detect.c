@@ -78,19 +78,36 @@ static asj_status run_octave(asj_detection_run *run)
 static asj_status run_octaves(asj_detection_run *run)
 {
     const asj_octave_range range = asj_octaves_of(run->options, run->image->width, run->image->height);
+    const double pixels = range.pixels * run->planes.count;
     asj_status status = asj_step_load(run);
     while (run->octave < range.first && status == ASJ_OK)
         status = asj_step_halve(run);
     for (;;) {
-        run->done += run->octave > range.first ? run->share : 0;
-        run->share = (double)run->frame->width * run->frame->height / range.pixels;
+        run->done += run->plane > 0 || run->octave > range.first ? run->share : 0;
+        run->share = (double)run->frame->width * run->frame->height / pixels;
         status = status == ASJ_OK ? run_octave(run) : status;
         if (status != ASJ_OK || run->octave + 1 >= range.end)
             break;
         status = asj_step_next_octave(run);
     }
+    return status == ASJ_OK ? asj_step_merge_octaves(run) : status;
+}
+
+/* The luma, and planes of colour where there are some. */
+static asj_status run_planes(asj_detection_run *run)
+{
+    asj_status status = ASJ_OK;
+    for (run->plane = 0; run->plane < run->planes.count && status == ASJ_OK; run->plane++) {
+        if (run->plane > 0)
+            status = asj_detection_run_start_plane(run);
+        if (status == ASJ_OK)
+            status = run_octaves(run);
+        if (status == ASJ_OK)
+            status = asj_step_merge_planes(run);
+    }
+    run->plane = 0;
     if (status == ASJ_OK)
-        status = asj_step_merge_octaves(run);
+        status = asj_step_list(run);
     if (status == ASJ_OK)
         status = asj_step_join(run);
     asj_detection_run_time(run, ASJ_STAGE_REFINE);
@@ -127,7 +144,7 @@ static asj_status detect(asj_context *context, const asj_image *image, const asj
     if (status == ASJ_OK)
         status = asj_region_check(context, image, region);
     if (status == ASJ_OK)
-        status = run_octaves(&run);
+        status = run_planes(&run);
     if (status == ASJ_OK)
         status = finish(&run, start, result);
     asj_detection_run_end(&run);

@@ -34,6 +34,8 @@ static const asj_option_info rows[] = {
            "look half-way between two octaves, too: finds weak and soft corners more surely, for half as much time again"),
     SWITCH(OCTAVES, ADVANCED, independent_octaves, 0, 0, 1,
            "every octave keeps what it finds, though a finer one has found the same corner; for matching"),
+    SWITCH(OCTAVES, COMMON, colours, 0, 0, 0,
+           "look at the colours, too: finds corners between surfaces of different colours that are equally bright"),
 
     NUMBER(GRADIENT, COMMON, gradient_epsilon, "grey/px", 0.05, 16, 0.4, 0.05, 0.4,
            "gradient below which a surface counts as flat; raise it against compression noise"),
@@ -133,7 +135,7 @@ asj_status asj_detect_options_get(const asj_detect_options *options, const char 
 
 asj_status asj_detect_options_check(const asj_detect_options *options, char *message, size_t message_size)
 {
-    if (!asj_is_zero(options->reserved, sizeof options->reserved)) {
+    if (options->reserved_integer != 0 || !asj_is_zero(options->reserved, sizeof options->reserved)) {
         snprintf(message, message_size, "%s", ASJ_RESERVED_MESSAGE);
         return ASJ_ERROR_OPTION;
     }

@@ -48,6 +48,15 @@ static asj_status make_tables(asj_context *context, const asj_detect_options *op
     return ASJ_OK;
 }
 
+asj_status asj_detection_run_start_plane(asj_detection_run *run)
+{
+    run->octave = run->options->first_octave < 0 ? ASJ_FIRST_OCTAVE : 0;
+    const asj_status status = asj_frame_prepare(run->context, run->frame, asj_octave_size(run->image->width, run->octave),
+                                                asj_octave_size(run->image->height, run->octave));
+    run->frame->octaves = run->sharing;
+    return status == ASJ_OK ? asj_detection_run_set_size(run) : status;
+}
+
 asj_status asj_detection_run_set_size(asj_detection_run *run)
 {
     asj_context *context = run->context;
@@ -81,14 +90,19 @@ static asj_status prepare(asj_detection_run *run)
     run->field = &detector->field;
     run->test = &detector->isotropic;
     run->scan = &detector->scan;
-    run->octave = run->options->first_octave < 0 ? ASJ_FIRST_OCTAVE : 0;
-    status = asj_frame_prepare(run->context, run->frame, asj_octave_size(run->image->width, run->octave),
-                               asj_octave_size(run->image->height, run->octave));
-    if (status != ASJ_OK)
-        return status;
-    run->frame->octaves = asj_octaves_sharing(run->options, run->image->width, run->image->height);
-    status = asj_detection_run_set_size(run);
+    status = asj_detection_run_start_plane(run);
     return status == ASJ_OK ? make_scratch(run) : status;
+}
+
+static asj_status look_at_planes(asj_detection_run *run)
+{
+    const asj_detect_options *options = run->options;
+    run->planes.count = 1;
+    const asj_status status = options->colours ? asj_colour_planes_look(run->context, run->image, &run->planes) : ASJ_OK;
+    const int32_t octaves = asj_octaves_sharing(options, run->image->width, run->image->height);
+    run->one_list = octaves > 1;
+    run->sharing = options->independent_octaves ? 1 : octaves * run->planes.count;
+    return status;
 }
 
 asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context, const asj_image *image,
@@ -110,6 +124,8 @@ asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context,
     asj_status status = asj_image_check(context, image);
     if (status == ASJ_OK && run->options->first_octave < 0)
         status = asj_upsample_check(context, image);
+    if (status == ASJ_OK)
+        status = look_at_planes(run);
     if (status != ASJ_OK)
         return status;
     asj_memory_share(&context->memory, (int64_t)image->width * image->height >= SHARING_FROM);
@@ -124,6 +140,7 @@ void asj_detection_run_end(asj_detection_run *run)
     asj_release(memory, run->evidence);
     asj_release(memory, run->candidates);
     asj_release(memory, run->all);
+    asj_release(memory, run->found);
     asj_release(memory, run->scratch.memory);
     asj_release(memory, run->kept.levels);
     if (run->frame)

@@ -8,6 +8,7 @@
 #include "octaves.h"
 #include "scan.h"
 #include "scan_cache.h"
+#include "core/image.h"
 
 /* What a context keeps from image to image. The tables hold for a set of options; only their numbers of tests depend on the size
  * of the image, and asj_isotropic_set_size() and asj_scan_set_size() change those. */
@@ -32,6 +33,10 @@ typedef struct asj_detection_run {
     asj_detect_options defaults;     /* what `options` points to when the caller gives none */
     const asj_image *image;
     const asj_region *region;        /* NULL = everywhere */
+    asj_colour_planes planes;        /* that are looked at, one after the other, */
+    int32_t plane;                   /* ASJ_PLANE_... of them */
+    int32_t one_list;                /* 1 = the octaves of a plane become one list, and share the false alarms */
+    int32_t sharing;                 /* octaves of all planes that do */
     asj_frame *frame;                /* its planes, or those of the image made 2^-octave as large: step 1 fills them */
     double octave;
     asj_gray_plane kept;             /* with half_octaves: grey plane of the whole octave while the one half-way is looked at */
@@ -53,6 +58,8 @@ typedef struct asj_detection_run {
     size_t settled;                  /* hypotheses at the front that the first choice has validated */
     asj_hypothesis *all;             /* of the octaves that are done, in pixels of the image */
     size_t all_count, all_capacity;
+    asj_hypothesis *found;           /* of the planes that are done, likewise */
+    size_t found_count, found_capacity;
     size_t candidate_total, isotropic_total; /* and how many of these they had */
     asj_evidence *evidence;          /* of branches of all octaves, by asj_hypothesis_branch.evidence */
     size_t evidence_count, evidence_capacity;
@@ -77,6 +84,9 @@ typedef struct asj_detection_run {
 asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context, const asj_image *image,
                                    const asj_detect_options *options, const void *output);
 void asj_detection_run_end(asj_detection_run *run);
+
+/* Sets the frame up for the first octave of a plane. */
+asj_status asj_detection_run_start_plane(asj_detection_run *run);
 
 /* What the octaves that are done know; the caller releases known->grid.heads. */
 asj_status asj_detection_run_known(const asj_detection_run *run, asj_octave_known *known);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Edges over an image: memory around edges.c. */
 #include "edges.h"
-#include "octaves.h"
 #include "steps.h"
 
 static size_t count_branches(const asj_detection_run *run)
@@ -17,7 +16,6 @@ asj_status asj_step_join(asj_detection_run *run)
     asj_memory *memory = &run->context->memory;
     const int32_t width = run->image->width, height = run->image->height;
     const size_t count = run->hypothesis_count, most = asj_detection_run_room(count_branches(run) / 2);
-    const int32_t octaves = asj_octaves_sharing(run->options, width, height);
     asj_junction_grid grid;
     asj_status status = asj_junction_grid_make(run->context, run->hypotheses, count, width, height, &grid);
     if (status != ASJ_OK)
@@ -27,7 +25,7 @@ asj_status asj_step_join(asj_detection_run *run)
     asj_watch watch;
     asj_watch_start(&watch, run->context, ASJ_STAGE_REFINE);
     if (scratch && run->edges) {
-        run->edge_count = asj_edges_join(&watch, run->options, width, height, octaves, run->evidence, &grid, run->hypotheses,
+        run->edge_count = asj_edges_join(&watch, run->options, width, height, run->sharing, run->evidence, &grid, run->hypotheses,
                                          count, scratch, run->edges);
         status = asj_watch_end(&watch);
     } else

@@ -2,10 +2,16 @@
 /* Step 1 over an image: grey plane, of each octave, and its normalised gradient. */
 #include "steps.h"
 
+/* In colour planes whose noise is smooth (core/colour_plane.c) a surface counts as flat up to so many times gradient_epsilon. Nine
+ * photographs, key points right of all without colours 830 of 851; with them 932 of 969 by 1, 909 of 940 by 1.75, 899 of 925 by 2,
+ * 873 of 898 by 2.5, 865 of 890 by 4. In planes of independent noise it costs what is gained: of 398 pairs of rooms 329 poses
+ * without colours, 341 by 1, 339 by 1.5, 331 by 2. */
+#define SMOOTH_EPSILON 2
+
 asj_status asj_step_load(asj_detection_run *run)
 {
-    return run->octave < 0 ? asj_frame_upsample(run->context, run->frame, run->image)
-                           : asj_frame_load(run->context, run->frame, run->image);
+    return run->octave < 0 ? asj_frame_upsample(run->context, run->frame, run->image, run->plane)
+                           : asj_frame_load(run->context, run->frame, run->image, run->plane);
 }
 
 /* From the upsampled image to the image itself. */
@@ -52,7 +58,10 @@ asj_status asj_step_half_octave(asj_detection_run *run)
 asj_status asj_step_gradient(asj_detection_run *run)
 {
     asj_frame *frame = run->frame;
-    asj_status status = run->context->ops->gradient->planes(run->context, frame, run->options);
+    asj_detect_options of_plane = *run->options;
+    if (run->planes.smooth[run->plane])
+        of_plane.gradient_epsilon *= SMOOTH_EPSILON;
+    asj_status status = run->context->ops->gradient->planes(run->context, frame, &of_plane);
     if (status != ASJ_OK)
         return status;
     asj_detection_run_dump_plane(run, ASJ_DUMP_PLANE_U16, "gray", frame->gray, 1.0 / ASJ_GRAY_ONE);

@@ -3,9 +3,7 @@
 #include "octaves.h"
 #include "octave_confirm.h"
 #include "ends.h"
-#include "region.h"
 #include "steps.h"
-#include "suppress.h"
 
 #include <string.h>
 
@@ -29,7 +27,7 @@ static asj_status collect(asj_detection_run *run)
     const size_t total = run->all_count + run->hypothesis_count;
     void *list = run->all;
     asj_status status = ASJ_OK;
-    if (run->octave == 0 && run->frame->octaves > 1)
+    if (run->octave == 0 && run->one_list)
         status = asj_detection_run_each(run, ASJ_STAGE_REFINE, LEAST_CONFIRMED, confirm);
     if (status != ASJ_OK)
         return status;
@@ -68,7 +66,7 @@ static asj_status confirm_others(asj_detection_run *run)
 {
     asj_status status = asj_frame_prepare_gray(run->context, run->frame, run->image->width, run->image->height);
     if (status == ASJ_OK)
-        status = asj_frame_load(run->context, run->frame, run->image);
+        status = asj_frame_load(run->context, run->frame, run->image, run->plane);
     return status == ASJ_OK ? asj_detection_run_each(run, ASJ_STAGE_REFINE, LEAST_CONFIRMED, confirm_other) : status;
 }
 
@@ -91,19 +89,10 @@ asj_status asj_step_merge_octaves(asj_detection_run *run)
         return status;
     run->hypotheses = run->all;
     run->hypothesis_count = run->all_count;
-    run->candidate_count = run->candidate_total;
-    run->isotropic_count = run->isotropic_total;
+    run->hypothesis_capacity = run->all_capacity;
     run->all = NULL;
     run->all_count = run->all_capacity = 0;
-    const int one_list = run->frame->octaves > 1;
-    if (one_list)
+    if (run->one_list)
         status = confirm_others(run);
-    if (status == ASJ_OK && one_list)
-        status = merge(run);
-    if (status != ASJ_OK)
-        return status;
-    if (run->region)
-        run->hypothesis_count = asj_region_keep(run->image, run->region, run->hypotheses, run->hypothesis_count);
-    asj_suppress_sort(run->hypotheses, run->hypothesis_count);
-    return asj_step_snap(run);
+    return status == ASJ_OK && run->one_list ? merge(run) : status;
 }

@@ -27,7 +27,7 @@ asj_status asj_step_orient(asj_detection_run *run)
 
 static void fit_lines(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
-    if (run->frame->octaves > 1 || asj_detection_run_is_coarse(run)) /* soft edges are looked for: how soft? */
+    if (run->one_list || asj_detection_run_is_coarse(run)) /* soft edges are looked for: how soft? */
         asj_edge_widths(run->frame, hypothesis);
     asj_refine(run->context, run->frame, run->options, hypothesis);
 }

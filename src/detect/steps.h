@@ -24,7 +24,9 @@ asj_status asj_step_complete(asj_detection_run *run);   /* complete_step.c: bran
 asj_status asj_step_ends(asj_detection_run *run);       /* ends_step.c: what is at the ends of branches, evidence along them */
 asj_status asj_step_snap(asj_detection_run *run);       /* ends_step.c: ends moved onto junctions */
 asj_status asj_step_next_octave(asj_detection_run *run);  /* octaves_step.c: hypotheses put by, the next octave's grey plane */
-asj_status asj_step_merge_octaves(asj_detection_run *run);/* octaves_step.c: one list of hypotheses; ends of branches */
+asj_status asj_step_merge_octaves(asj_detection_run *run);/* octaves_step.c: one list of a plane's hypotheses */
+asj_status asj_step_merge_planes(asj_detection_run *run); /* planes_step.c: those that are new, put by */
+asj_status asj_step_list(asj_detection_run *run);         /* planes_step.c: the hypotheses of all planes; ends of branches */
 asj_status asj_step_join(asj_detection_run *run);       /* edges_step.c: edges between junctions */
 
 #endif

@@ -165,7 +165,7 @@ static asj_status copy_gray(asj_context *context, const asj_image *image, uint16
     asj_status status = *gray ? asj_frame_prepare_gray(context, &frame, image->width, image->height)
                               : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the image of features");
     if (status == ASJ_OK)
-        status = asj_frame_load(context, &frame, image);
+        status = asj_frame_load(context, &frame, image, ASJ_PLANE_LUMA);
     for (size_t y = 0; y < height && status == ASJ_OK; y++)
         memcpy(*gray + y * width, frame.gray + (ptrdiff_t)y * frame.stride, width * sizeof **gray);
     asj_frame_free(&context->memory, &frame);

@@ -38,6 +38,8 @@ static const asj_option_info rows[] = {
            "diagonals, and 0.3 of the distance to these; 0 = anywhere"),
     INTEGER(IMAGES, ADVANCED, upsampled_shortlist, "", 0, 32, 2, 0, 2,
             "shortlist where upsampled_search_radius says where partners lie; 0 = as it is"),
+    SWITCH(IMAGES, COMMON, look_at_colours, 1, 0, 1,
+           "look at colour images once more, with the detector's colours, where a geometry is asked and none is found"),
 
     NUMBER(FRAMES, ADVANCED, minimum_opening, "deg", 0, 80, 20, 20, 20, "branches that open by less give no frame"),
     INTEGER(FRAMES, ADVANCED, length_hypotheses, "", 1, 4, 3, 1, 3,
@@ -128,7 +130,7 @@ asj_status asj_match_options_get(const asj_match_options *options, const char *k
 
 asj_status asj_match_options_check(const asj_match_options *options, char *message, size_t message_size)
 {
-    if (!asj_is_zero(options->reserved, sizeof options->reserved) || options->reserved_integer) {
+    if (!asj_is_zero(options->reserved, sizeof options->reserved) || options->reserved_integer || options->reserved_switch) {
         snprintf(message, message_size, "%s", ASJ_RESERVED_MESSAGE);
         return ASJ_ERROR_OPTION;
     }

@@ -22,6 +22,10 @@ typedef enum asj_looks {
 
 asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsampled);
 
+/* Of images that leave their motion open: does what another look accepts have so much more evidence that it is the answer,
+ * whichever motion the images themselves had in front? */
+int32_t asj_looks_surpass(const asj_match_result *own, const asj_match_result *other);
+
 /* Do the images leave a motion open that the upsampled ones may settle, even if the images have no match? */
 int32_t asj_looks_may_settle(const asj_match_result *own);
 

@@ -85,7 +85,7 @@ static int prepare(experiment *e)
 
 static int load(experiment *e, const asj_image *image, uint64_t seed)
 {
-    asj_status status = asj_frame_load(e->context, &e->frame, image);
+    asj_status status = asj_frame_load(e->context, &e->frame, image, ASJ_PLANE_LUMA);
     if (status == ASJ_OK)
         status = asj_scan_cache_prepare(e->context, &e->frame, asj_context_threads(e->context), &e->cache);
     if (status == ASJ_OK)

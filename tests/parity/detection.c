@@ -48,9 +48,10 @@ static asj_detection *detect(run_state *state, target *t, const asj_image *image
     return found;
 }
 
-static void compare(run_state *state, const char *name, const uint8_t *pixels, int32_t width, int32_t height)
+static void compare_image(run_state *state, const char *name, const asj_image *given)
 {
-    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, width, height, 0, 0};
+    const asj_image image = *given;
+    const int32_t width = image.width, height = image.height;
     asj_detection *expected = detect(state, &state->list.targets[0], &image);
     for (int32_t i = 1; i < state->list.count && expected; i++) {
         target *t = &state->list.targets[i];
@@ -70,11 +71,35 @@ static void compare(run_state *state, const char *name, const uint8_t *pixels, i
     asj_detection_free(&expected);
 }
 
+static void compare(run_state *state, const char *name, const uint8_t *pixels, int32_t width, int32_t height)
+{
+    const asj_image image = {pixels, ASJ_FORMAT_GRAY8, width, height, 0, 0};
+    compare_image(state, name, &image);
+}
+
+/* The levels as red and, the other way round, as green and blue: with little luma. */
+static void compare_colours(run_state *state, const char *name, const uint8_t *pixels, int32_t width, int32_t height)
+{
+    const size_t count = (size_t)width * (size_t)height;
+    uint8_t *rgb = malloc(3 * count);
+    const asj_image image = {rgb, ASJ_FORMAT_RGB8, width, height, 0, 0};
+    for (size_t k = 0; rgb && k < count; k++) {
+        rgb[3 * k] = pixels[k];
+        rgb[3 * k + 1] = (uint8_t)(192 - pixels[k] / 2);
+        rgb[3 * k + 2] = (uint8_t)(255 - pixels[k]);
+    }
+    if (rgb)
+        compare_image(state, name, &image);
+    else
+        state->failed = 1;
+    free(rgb);
+}
+
 static void compare_scene(run_state *state, const char *name, synth_scene *scene, double blur, double noise, uint64_t seed)
 {
     uint8_t *pixels = synth_photograph(scene, blur, noise, seed);
     if (pixels)
-        compare(state, name, pixels, scene->width, scene->height);
+        (state->options.colours ? compare_colours : compare)(state, name, pixels, scene->width, scene->height);
     else
         state->failed = 1;
     free(pixels);
@@ -140,6 +165,10 @@ static void settings(run_state *state, int quick)
     asj_detect_options_init(&state->options);
     state->options.complete_junctions = 1;
     state->setting = "complete_junctions=1";
+    scenes(state, quick ? 1 : 3);
+    asj_detect_options_init(&state->options);
+    state->options.colours = 1;
+    state->setting = "colours=1";
     scenes(state, quick ? 1 : 3);
     asj_detect_options_init(&state->options);
     state->setting = "default";

@@ -88,13 +88,13 @@ static int fill_picture(subject *s)
     for (int32_t i = 0; ok && i < 4 * width; i++)
         s->colours[i] = s->content == CONTENT_SATURATED ? 255 : (uint8_t)(synth_random_bits(&s->random) >> 40);
     ok = ok && asj_frame_prepare(s->context, s->picture, width, height) == ASJ_OK &&
-         asj_frame_load(s->context, s->picture, &image) == ASJ_OK;
+         asj_frame_load(s->context, s->picture, &image, ASJ_PLANE_LUMA) == ASJ_OK;
     if (ok && s->content == CONTENT_SCENE) {
         const asj_ops *ops = s->context->ops;
         asj_tables reference;
         asj_tables_fill(ASJ_SIMD_REFERENCE, &reference);
         s->context->ops = &reference.ops;
-        ok = asj_frame_load(s->context, &s->frame, &image) == ASJ_OK &&
+        ok = asj_frame_load(s->context, &s->frame, &image, ASJ_PLANE_LUMA) == ASJ_OK &&
              asj_gradient(s->context, &s->frame, &s->options) == ASJ_OK;
         s->context->ops = ops;
     }

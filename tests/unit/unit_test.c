@@ -108,7 +108,7 @@ void unit_frame(asj_context *context, const asj_image *image, const asj_detect_o
     asj_detect_options_init(&defaults);
     memset(frame, 0, sizeof *frame);
     assert_int_equal(asj_frame_prepare(context, frame, image->width, image->height), ASJ_OK);
-    assert_int_equal(asj_frame_load(context, frame, image), ASJ_OK);
+    assert_int_equal(asj_frame_load(context, frame, image, ASJ_PLANE_LUMA), ASJ_OK);
     assert_int_equal(asj_gradient(context, frame, options ? options : &defaults), ASJ_OK);
 }
 

@@ -9,7 +9,7 @@ static asj_status load(fixture *f, const asj_image *image)
     asj_status status = asj_image_check(f->context, image);
     if (status == ASJ_OK)
         status = asj_frame_prepare(f->context, &f->frame, image->width, image->height);
-    return status == ASJ_OK ? asj_frame_load(f->context, &f->frame, image) : status;
+    return status == ASJ_OK ? asj_frame_load(f->context, &f->frame, image, ASJ_PLANE_LUMA) : status;
 }
 
 static int32_t gray(const fixture *f, int32_t x, int32_t y)
@@ -315,7 +315,7 @@ static void test_upsample(void **state)
         const int32_t w = sizes[k][0], h = sizes[k][1];
         const asj_image image = unit_gray8(pixels, w, h);
         f->frame.octaves = 3;
-        assert_int_equal(asj_frame_upsample(f->context, &f->frame, &image), ASJ_OK);
+        assert_int_equal(asj_frame_upsample(f->context, &f->frame, &image, ASJ_PLANE_LUMA), ASJ_OK);
         assert_true(f->frame.width == 2 * w && f->frame.height == 2 * h && f->frame.octave == -1 && f->frame.octaves == 3);
         for (int32_t y = -ASJ_GRAY_BORDER; y < 2 * h + ASJ_GRAY_BORDER; y++)
             for (int32_t x = -ASJ_GRAY_BORDER; x < 2 * w + ASJ_GRAY_BORDER; x++) {
@@ -335,7 +335,7 @@ static void test_upsample(void **state)
     f->counter.fail_at = f->counter.calls + 1;
     const asj_image large = unit_gray8(calloc(300 * 300, 1), 300, 300);
     assert_non_null(large.data);
-    assert_int_equal(asj_frame_upsample(f->context, &f->frame, &large), ASJ_ERROR_MEMORY);
+    assert_int_equal(asj_frame_upsample(f->context, &f->frame, &large, ASJ_PLANE_LUMA), ASJ_ERROR_MEMORY);
     f->counter.fail_at = 0;
     free((void *)(uintptr_t)large.data);
 }
@@ -384,7 +384,7 @@ static void test_shrink(void **state)
         for (int i = 0; i < w * h; i++)
             pixels[i] = (uint8_t)(same ? 255 : i * 89 % 251);
         assert_int_equal(asj_frame_prepare(f->context, &f->frame, w, h), ASJ_OK);
-        assert_int_equal(asj_frame_load(f->context, &f->frame, &image), ASJ_OK);
+        assert_int_equal(asj_frame_load(f->context, &f->frame, &image, ASJ_PLANE_LUMA), ASJ_OK);
         f->frame.octave = 2;
         f->frame.octaves = 7;
         assert_int_equal(asj_gray_plane_keep(f->context, &f->frame, &kept), ASJ_OK);
@@ -424,7 +424,7 @@ static void test_shrink_in_place(void **state)
         for (int in_place = 0; in_place < 2; in_place++) {
             asj_gray_plane plane;
             assert_int_equal(asj_frame_prepare(f->context, &f->frame, w, h), ASJ_OK);
-            assert_int_equal(asj_frame_load(f->context, &f->frame, &image), ASJ_OK);
+            assert_int_equal(asj_frame_load(f->context, &f->frame, &image, ASJ_PLANE_LUMA), ASJ_OK);
             assert_true(asj_frame_shrinks_in_place(&f->frame));
             plane = asj_frame_gray(&f->frame);
             if (!in_place)

@@ -45,13 +45,16 @@ static void check_detect(int32_t preset, int fresh, int for_good, int dump, int3
 {
     asj_detect_options detect_options;
     uint8_t *pixels = picture(WIDTH, HEIGHT);
-    const asj_image image = unit_gray8(pixels, WIDTH, HEIGHT);
+    static uint8_t rgb[WIDTH * HEIGHT][3];
+    for (int k = 0; k < WIDTH * HEIGHT; k++)
+        rgb[k][0] = rgb[k][1] = (uint8_t)(255 - (rgb[k][2] = pixels[k]));
+    const asj_image image = more ? (asj_image){rgb, ASJ_FORMAT_RGB8, WIDTH, HEIGHT, 0, 0} : unit_gray8(pixels, WIDTH, HEIGHT);
     unit_counter counter;
     asj_context *context = NULL;
     int reached = 1;
     long n = 1;
     asj_detect_options_preset(&detect_options, preset);
-    detect_options.half_octaves = detect_options.complete_junctions = more;
+    detect_options.half_octaves = detect_options.complete_junctions = detect_options.colours = more;
     for (; reached && n < MOST; n++) {
         asj_detection *found = (asj_detection *)pixels;
         if (!context) {

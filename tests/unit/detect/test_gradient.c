@@ -314,7 +314,7 @@ static void test_out_of_memory(void **state)
     asj_frame frame = {0};
     const long live = f->counter.live;
     assert_int_equal(asj_frame_prepare(f->context, &frame, 8, 8), ASJ_OK);
-    assert_int_equal(asj_frame_load(f->context, &frame, &image), ASJ_OK);
+    assert_int_equal(asj_frame_load(f->context, &frame, &image, ASJ_PLANE_LUMA), ASJ_OK);
     f->counter.fail_at = f->counter.calls + 1;
     assert_int_equal(asj_gradient(f->context, &frame, &f->options), ASJ_ERROR_MEMORY);
     f->counter.fail_at = 0;

@@ -431,7 +431,7 @@ static void test_widths(void **state)
         uint8_t *pixels = unit_picture(&scene, blurs[i], 0, 1);
         const asj_image image = unit_gray8(pixels, 80, 80);
         assert_int_equal(asj_frame_prepare(context, &frame, 80, 80), ASJ_OK);
-        assert_int_equal(asj_frame_load(context, &frame, &image), ASJ_OK);
+        assert_int_equal(asj_frame_load(context, &frame, &image, ASJ_PLANE_LUMA), ASJ_OK);
         for (int beside = 0; beside < 2; beside++) {
             asj_hypothesis h = corner(20, 39.5 + 0.5 * beside, 0);
             h.branch_count = 1;

@@ -248,7 +248,7 @@ static void other_options_are_refused(void **state)
     for (int what = 0; what < 3; what++) {
         asj_match_options_init(&bad);
         bad.geometry.model = what == 0 ? 99 : ASJ_GEOMETRY_AUTO;
-        bad.reserved[16] = what == 1;
+        bad.reserved[15] = what == 1;
         bad.geometry.reserved[11] = what == 2;
         assert_int_equal(asj_features_create(context, &views[0].image, NULL, 0, &bad, &raw), ASJ_ERROR_OPTION);
         assert_null(raw);

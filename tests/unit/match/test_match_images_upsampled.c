@@ -259,6 +259,59 @@ static void a_pose_is_found_in_upsampled_images(void **state)
     unit_context_free(&counter, &context);
 }
 
+/* A pair whose geometry the luma leaves to chance, with cameras. */
+static void find_with_colours(asj_context *context, const asj_image images[2], const synth_wide_pair *pair, int32_t look_at_colours,
+                              asj_match_result **r)
+{
+    static const asj_stretch automatic = {0, 0};
+    asj_match_options options;
+    asj_match_options_init(&options);
+    assert_int_equal(options.look_at_colours, 1);
+    options.look_at_colours = look_at_colours;
+    options.geometry.model = ASJ_GEOMETRY_AUTO;
+    for (int k = 0; k < 2; k++) {
+        const double f = pair->cameras[k].focal;
+        options.geometry.cameras[k] = (asj_camera){f, f, 0.5 * (SYNTH_WIDE_WIDTH - 1), 0.5 * (SYNTH_WIDE_HEIGHT - 1)};
+    }
+    assert_int_equal(asj_match_images(context, &images[0], &images[1], &automatic, NULL, &options, r), ASJ_OK);
+}
+
+/* Where the luma leaves the geometry to chance the colours are looked at, unless that is not wanted, or there are none. */
+static void colours_are_looked_at_where_nothing_is_found(void **state)
+{
+    synth_wide_pair pair;
+    uint8_t *pixels[2];
+    asj_image images[2];
+    asj_match_result *r[3] = {NULL, NULL, NULL};
+    unit_counter counter = {0};
+    asj_context *context = unit_context(&counter, 2);
+    (void)state;
+    assert_int_equal(synth_wide_pair_make(&pair, 1127), 0);
+    draw_pair(&pair, pixels, images);
+    find_with_colours(context, images, &pair, 0, &r[0]);
+    find_with_colours(context, images, &pair, 1, &r[1]);
+    assert_int_equal(r[0]->geometry.status, ASJ_GEOMETRY_CHANCE);
+    assert_int_equal(r[1]->geometry.status, ASJ_GEOMETRY_ACCEPTED);
+    assert_true(r[1]->geometry.has_pose && r[1]->match_count > r[0]->match_count);
+    const asj_geometry *g = &r[1]->geometry;
+    const synth_pose_error off = synth_pose_off(&pair.cameras[0], &pair.cameras[1], g->rotation, g->translation);
+    unit_near("rotation, deg", 0, 0, off.rotation, 0, 2);
+    unit_near("translation, deg", 0, 0, off.translation, 0, 3);
+    for (int v = 0; v < 2; v++) /* without colours */
+        for (size_t k = 0; k < (size_t)SYNTH_WIDE_WIDTH * SYNTH_WIDE_HEIGHT; k++) {
+            uint8_t *p = pixels[v] + 3 * k;
+            p[0] = p[1] = p[2] = (uint8_t)((77 * p[0] + 150 * p[1] + 29 * p[2] + 128) >> 8);
+        }
+    find_with_colours(context, images, &pair, 1, &r[2]);
+    assert_int_equal(r[2]->geometry.status, ASJ_GEOMETRY_CHANCE);
+    for (int k = 0; k < 3; k++)
+        asj_match_result_free(&r[k]);
+    synth_wide_pair_free(&pair);
+    free(pixels[0]);
+    free(pixels[1]);
+    unit_context_free(&counter, &context);
+}
+
 #define TIMES 3
 
 /* So many times as long, and as soft as that makes it. */
@@ -404,6 +457,7 @@ int main(void)
         cmocka_unit_test(images_are_not_upsampled_unasked),
         cmocka_unit_test(a_pose_is_found_in_upsampled_images),
         cmocka_unit_test(octave_minus_one_needs_a_witness_in_upsampled_images),
+        cmocka_unit_test(colours_are_looked_at_where_nothing_is_found),
         cmocka_unit_test(large_images_are_halved),
         cmocka_unit_test(a_quarter_is_half_of_a_half),
     };

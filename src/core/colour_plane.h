@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* What an image's colours show beside its luma, as planes of grey levels. */
+#ifndef ASJ_SRC_COLOUR_PLANE_H
+#define ASJ_SRC_COLOUR_PLANE_H
+
+#include "context.h"
+
+/* Planes of an image. Grey images, and colour images without a colour, have the first one only. */
+enum { ASJ_PLANE_LUMA = 0, ASJ_PLANE_RED_GREEN = 1, ASJ_PLANE_BLUE_YELLOW = 2, ASJ_PLANES = 3 };
+
+/* What is known of an image's planes. */
+typedef struct asj_colour_planes {
+    int32_t count;               /* ASJ_PLANES, or 1 */
+    int32_t smooth[ASJ_PLANES];  /* 1 = neighbouring pixels of its noise are alike: see colour_plane.c; luma: 0 */
+} asj_colour_planes;
+
+/* Of a view that asj_image_check() has passed. ASJ_ERROR_MEMORY. */
+asj_status asj_colour_planes_look(asj_context *context, const asj_image *image, asj_colour_planes *planes);
+
+/* `width` pixels of a colour plane. `step` bytes from pixel to pixel, red at byte 0 or 2, blue at the other, green between them.
+ * levels: of 8-bit samples, in 1/ASJ_GRAY_ONE of a grey level; NULL = they are grey levels. */
+void asj_colour_row(const uint8_t *pixels, int32_t width, int32_t step, int32_t red, const uint16_t *levels, int32_t plane,
+                    uint16_t *to);
+
+#endif
