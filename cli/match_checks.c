@@ -120,8 +120,8 @@ static int check_colours(const cli_match_arguments *arguments)
     if (arguments->detect_options.colours)
         return cli_usage_error("match", "--look-at-colours changes nothing with --colours, which looks at them anyway");
     if (!arguments->look || arguments->stretch.x > 0)
-        return cli_usage_error("match", "--look-at-colours changes nothing: it is for two whole images, without --stretch and "
-                               "without the preset paper");
+        return cli_usage_error("match", "--look-at-colours changes nothing: it is for two whole images, without --stretch, "
+                               "junctions or features from files, regions, masks and the preset paper");
     return CLI_SUCCESS;
 }
 

@@ -14,7 +14,10 @@ typedef struct asj_colour_planes {
     int32_t smooth[ASJ_PLANES];  /* 1 = neighbouring pixels of its noise are alike: see colour_plane.c; luma: 0 */
 } asj_colour_planes;
 
-/* Of a view that asj_image_check() has passed. ASJ_ERROR_MEMORY. */
+/* Whether any pixel of a view that asj_image_check() has passed has a colour. ASJ_ERROR_CANCELLED. */
+asj_status asj_image_has_colours(asj_context *context, const asj_image *image, int32_t *has);
+
+/* Of such a view. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED. */
 asj_status asj_colour_planes_look(asj_context *context, const asj_image *image, asj_colour_planes *planes);
 
 /* `width` pixels of a colour plane. `step` bytes from pixel to pixel, red at byte 0 or 2, blue at the other, green between them.

@@ -35,7 +35,8 @@ static const asj_option_info rows[] = {
     SWITCH(OCTAVES, ADVANCED, independent_octaves, 0, 0, 1,
            "every octave keeps what it finds, though a finer one has found the same corner; for matching"),
     SWITCH(OCTAVES, COMMON, colours, 0, 0, 0,
-           "look at the colours, too: finds corners between surfaces of different colours that are equally bright"),
+           "look at 8-bit colours, too: corners between surfaces of different colours that are equally bright, in 1.2 to 1.7 times "
+           "the time; they match where a geometry is asked"),
 
     NUMBER(GRADIENT, COMMON, gradient_epsilon, "grey/px", 0.05, 16, 0.4, 0.05, 0.4,
            "gradient below which a surface counts as flat; raise it against compression noise"),

@@ -3,11 +3,12 @@
  * they find becomes one list.
  *
  * Corners of the luma are corners of colour, too, mostly, and known better there. So a junction of a colour plane that is as close
- * as CLOSE to one that is known is left out, whatever octave either is of; what is left are corners between surfaces that differ in
- * colour and hardly in luma. Where the two planes of colour see one the first of them has it.
+ * as CLOSE to one of an earlier plane is left out; what is left are corners between surfaces that differ in colour and hardly in
+ * luma. With independent_octaves it stays where the earlier plane has that corner in coarser octaves only: the matcher takes the
+ * finest octave of each corner.
  *
- * Each plane counts its tests as octaves do (octaves.c): with independent_octaves by itself, so that the list without colours is a
- * part of the list with them; else all planes have the false alarms of one together. */
+ * Each plane counts its tests as octaves do (octaves.c): with independent_octaves by itself, so that colours leave every junction
+ * of the luma where it is; else all planes have the false alarms of one together. Branches end at junctions of all planes. */
 #include "octaves.h"
 #include "region.h"
 #include "steps.h"
@@ -21,20 +22,22 @@
 #define SURE 0.0
 #define SURE_SMOOTH (-3 * ASJ_LN_10)
 
-#define CLOSE 4.0 /* px. (398 pairs of rooms: with 4 as well as it goes; less lists corners twice) */
+#define CLOSE 4.0 /* px of the image */
 
-static int is_known(const asj_octave_grid *grid, const asj_hypothesis *found, const asj_hypothesis *hypothesis)
+static int is_known(const asj_detection_run *run, const asj_octave_grid *grid, const asj_hypothesis *hypothesis)
 {
+    const double coarsest = run->options->independent_octaves ? hypothesis->octave : HUGE_VAL;
+    const asj_hypothesis *found = run->found;
     const asj_octave_cells w = asj_octave_grid_around(grid, hypothesis, CLOSE);
     for (int32_t row = w.top; row <= w.bottom; row++)
         for (int32_t column = w.left; column <= w.right; column++)
             for (int32_t i = grid->heads[row * grid->columns + column]; i >= 0; i = grid->next[i])
-                if (hypot(found[i].x - hypothesis->x, found[i].y - hypothesis->y) < CLOSE)
+                if (found[i].octave <= coarsest && hypot(found[i].x - hypothesis->x, found[i].y - hypothesis->y) < CLOSE)
                     return 1;
     return 0;
 }
 
-/* The plane's hypotheses that are new go to the end of the list, the most meaningful ones first. */
+/* The plane's hypotheses that are new go to the end of the list. */
 static void add(asj_detection_run *run, int32_t *cells)
 {
     asj_octave_grid grid = asj_octave_grid_start(run->image->width, run->image->height, cells);
@@ -42,10 +45,8 @@ static void add(asj_detection_run *run, int32_t *cells)
         asj_octave_grid_add(&grid, run->found, i);
     const double most = run->planes.smooth[run->plane] ? SURE_SMOOTH : SURE;
     for (size_t i = 0; i < run->hypothesis_count; i++)
-        if (run->hypotheses[i].log_nfa <= most && !is_known(&grid, run->found, &run->hypotheses[i])) {
-            run->found[run->found_count] = run->hypotheses[i];
-            asj_octave_grid_add(&grid, run->found, run->found_count++);
-        }
+        if (run->hypotheses[i].log_nfa <= most && !is_known(run, &grid, &run->hypotheses[i]))
+            run->found[run->found_count++] = run->hypotheses[i];
 }
 
 static asj_status merge(asj_detection_run *run)
@@ -66,7 +67,6 @@ static asj_status merge(asj_detection_run *run)
 
 asj_status asj_step_merge_planes(asj_detection_run *run)
 {
-    asj_suppress_sort(run->hypotheses, run->hypothesis_count);
     if (run->plane > ASJ_PLANE_LUMA) {
         const asj_status status = merge(run);
         asj_detection_run_clear(run);

@@ -193,6 +193,77 @@ static void formats_and_threads_agree(void **state)
     asj_detection_free(&first);
 }
 
+/* Wherever octaves begin and however many there are, with sources of the paper, and in a part of the image. */
+static void other_options_go_with_colours(void **state)
+{
+    static picture pixels;
+    fixture *f = *state;
+    const asj_image image = view(pixels, ASJ_FORMAT_RGB8);
+    draw_square(pixels, grey, reddish);
+    add_noise(pixels, 2, 0, 23);
+    for (int k = 0; k < 4; k++) {
+        asj_detection *found = NULL;
+        asj_region region = {.x = END - 20, .y = END - 20, .width = 40, .height = 40};
+        asj_detect_options_init(&f->options);
+        f->options.colours = 1;
+        f->options.first_octave = k == 0 ? -1 : k == 1 ? 1 : 0;
+        f->options.octaves = k == 2 ? 1 : 16;
+        assert_int_equal(asj_detect(f->context, &image, &f->options, &found), ASJ_OK);
+        assert_int_equal(corners_found(found), 4);
+        assert_int_equal(asj_detect_region(f->context, &image, &region, &f->options, &found), ASJ_OK);
+        assert_int_equal(corners_found(found), 1);
+        assert_int_equal(found->junction_count, 1);
+        asj_detection_free(&found);
+    }
+}
+
+/* A board of colours of equal luma is seen in as many octaves as a grey one, where each is a detector of its own. */
+static void each_octave_has_its_own(void **state)
+{
+    static picture pixels;
+    fixture *f = *state;
+    const asj_image image = view(pixels, ASJ_FORMAT_RGB8);
+    uint32_t counts[2][3] = {{0}};
+    for (int coloured = 0; coloured < 2; coloured++) {
+        asj_detection *found = NULL;
+        for (int k = 0; k < PIXELS; k++) {
+            const int odd = (k % SIDE / 32 + k / SIDE / 32) % 2;
+            memcpy(pixels[k], odd ? grey : coloured ? reddish : (const uint8_t[]){90, 90, 91}, 3);
+        }
+        add_noise(pixels, 2, 0, 29);
+        asj_detect_options_preset(&f->options, ASJ_PRESET_MATCH);
+        f->options.colours = 1;
+        assert_int_equal(asj_detect(f->context, &image, &f->options, &found), ASJ_OK);
+        for (uint32_t k = 0; k < found->junction_count; k++) {
+            const asj_junction *j = &found->junctions[k];
+            const double x = (double)j->x + 0.5, y = (double)j->y + 0.5;
+            const double across = x - 32 * floor(x / 32 + 0.5), down = y - 32 * floor(y / 32 + 0.5);
+            if (j->octave <= 2 && hypot(across, down) < 2 && x > 16 && y > 16 && x < SIDE - 16 && y < SIDE - 16)
+                counts[coloured][j->octave]++;
+        }
+        asj_detection_free(&found);
+    }
+    for (int octave = 0; octave < 2; octave++)
+        assert_true(counts[0][octave] >= 14 && counts[1][octave] >= 14 && counts[1][octave] <= 18);
+}
+
+/* White is white in each channel. */
+static void white_levels_scale_colours(void **state)
+{
+    static picture pixels;
+    fixture *f = *state;
+    asj_detection *found = NULL;
+    asj_image image = view(pixels, ASJ_FORMAT_RGB8);
+    const uint8_t dark[] = {12, 12, 12}, red[] = {17, 9, 12};
+    draw_square(pixels, dark, red);
+    image.white = 24;
+    asj_detect_options_init(&f->options);
+    f->options.colours = 1;
+    assert_int_equal(asj_detect(f->context, &image, &f->options, &found), ASJ_OK);
+    assert_int_equal(corners_found(found), 4);
+    asj_detection_free(&found);
+}
+
 /* As many false alarms as epsilon allows: in 30 images none, whether neighbouring pixels are alike or not. */
 static void noise_has_no_corners(void **state)
 {
@@ -248,6 +319,17 @@ static void noise_of_planes(void **state)
     pixels[PIXELS - 1][2]++; /* one pixel with a colour */
     assert_int_equal(asj_colour_planes_look(f->context, &image, &planes), ASJ_OK);
     assert_int_equal(planes.count, ASJ_PLANES);
+    for (int along = 0; along < 2; along++) { /* smooth along one direction is smooth */
+        draw_square(pixels, grey, reddish);
+        add_noise(pixels, 3, 0, 19);
+        for (int k = 0; k < PIXELS; k += 2)
+            for (int c = 0; c < 3; c++) {
+                const int at = along ? k / 2 % SIDE + k / 2 / SIDE * 2 * SIDE : k, next = at + (along ? SIDE : 1);
+                pixels[at][c] = pixels[next][c] = (uint8_t)((pixels[at][c] + pixels[next][c]) / 2);
+            }
+        assert_int_equal(asj_colour_planes_look(f->context, &image, &planes), ASJ_OK);
+        assert_true(planes.smooth[1] == 1 && planes.smooth[2] == 1);
+    }
     for (int smooth = 0; smooth < 2; smooth++) {
         draw_square(pixels, grey, reddish);
         add_noise(pixels, 3, smooth, 17);
@@ -270,6 +352,9 @@ int main(void)
         cmocka_unit_test(grey_images_stay_as_they_are),
         cmocka_unit_test(colours_add_to_the_luma),
         cmocka_unit_test(formats_and_threads_agree),
+        cmocka_unit_test(other_options_go_with_colours),
+        cmocka_unit_test(each_octave_has_its_own),
+        cmocka_unit_test(white_levels_scale_colours),
         cmocka_unit_test(noise_has_no_corners),
     };
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);

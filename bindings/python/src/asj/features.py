@@ -243,7 +243,8 @@ def detect(
     options  those of the detector by name (:func:`asj.detect_options` lists them), for instance minimum_length=30
 
     Colours count by their grey (77 R + 150 G + 29 B of 256), which is rounded as the type's numbers are: the same colours in 8 bits
-    and in 16 bits or floats may differ by a few junctions; the same greys do not.
+    and in 16 bits or floats may differ by a few junctions; the same greys do not. With `colours` those of 8 bits are looked at, too:
+    corners between surfaces that are equally bright.
 
     The array is not copied, and matching and saving look at it: pass image.copy() where a buffer is filled anew meanwhile, or take
     :meth:`Features.without_image` before.
