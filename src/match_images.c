@@ -245,8 +245,10 @@ static asj_status look_at_colours(search *s, double from, double part)
     memcpy(s->stage_ms, other.stage_ms, sizeof s->stage_ms);
     const int32_t believed = status == ASJ_OK && is_believed(s->best, other.best);
     asj_match_result_free(believed ? &s->best : &other.best);
-    if (believed)
+    if (believed) {
         s->best = other.best;
+        s->best->coloured = 1;
+    }
     return status;
 }
 

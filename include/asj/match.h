@@ -158,7 +158,9 @@ typedef struct asj_match_result {
     int32_t upsampled;                 /* 1 = the matches of the upsampled images are among them, with junctions of octave -1
                                         * (src/match/upsampled.c) */
     double stretch[2];                 /* along x and y, how the images were looked at: asj_match_images(); 1, 1 = as they are */
-    uint64_t reserved[8];
+    int32_t coloured;                  /* 1 = found with the detector's colours, which were looked at by themselves */
+    int32_t reserved_integer;
+    uint64_t reserved[7];
 } asj_match_result;
 
 /* Matches the junctions of two images: the pipeline of the paper, step 7.

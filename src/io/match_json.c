@@ -62,6 +62,7 @@ static void put_head(asj_json_output *json, const asj_match_report *report, cons
     if (report->stretch[0] > 0)
         asj_json_put(json, ",\n\"stretch\": ", numbers(report->stretch, 2), JSON_REAL_PRECISION(15));
     asj_json_put(json, ",\n\"upsampled\": ", json_boolean(result->upsampled), 0);
+    asj_json_put(json, ",\n\"coloured\": ", json_boolean(result->coloured), 0);
     asj_json_put(json, ",\n\"units\": ", json_pack("{s:s, s:s, s:s}", "locations and lengths", "px", "affine",
                  "x2 = h11 x1 + h12 y1 + h13, y2 = h21 x1 + h22 y1 + h23", "times", "ms"), 0);
     asj_json_put(json, ",\n\"backend\": ", json_string(asj_json_backend(result->backend)), 0);

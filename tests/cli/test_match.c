@@ -349,6 +349,7 @@ static void whole_images_are_upsampled_by_themselves(void **state)
         expect_code(run_cli("match", "-q", "--upsample-from", from[k], "-o", "e.csv", "first.png", "second.png", NULL), 0);
         read_csv("e.csv", &found);
         assert_non_null(strstr(text, k == 0 ? "\"upsampled\": true" : "\"upsampled\": false"));
+        assert_non_null(strstr(text, "\"coloured\": false"));
         assert_true(k == 0 ? found.count > other.count : found.count == other.count);
         for (size_t n = 0; n < found.count; n++) {
             const double *row = found.rows[n];

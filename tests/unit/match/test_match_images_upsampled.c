@@ -292,7 +292,7 @@ static void colours_are_looked_at_where_nothing_is_found(void **state)
     find_with_colours(context, images, &pair, 1, &r[1]);
     assert_int_equal(r[0]->geometry.status, ASJ_GEOMETRY_CHANCE);
     assert_int_equal(r[1]->geometry.status, ASJ_GEOMETRY_ACCEPTED);
-    assert_true(r[1]->geometry.has_pose && r[1]->match_count > r[0]->match_count);
+    assert_true(r[1]->geometry.has_pose && r[1]->match_count > r[0]->match_count && r[1]->coloured && !r[0]->coloured);
     const asj_geometry *g = &r[1]->geometry;
     const synth_pose_error off = synth_pose_off(&pair.cameras[0], &pair.cameras[1], g->rotation, g->translation);
     unit_near("rotation, deg", 0, 0, off.rotation, 0, 2);

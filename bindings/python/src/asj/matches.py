@@ -129,6 +129,11 @@ class Matches:
         return bool(self._result.upsampled)
 
     @property
+    def coloured(self) -> bool:
+        """Whether colours, looked at where a geometry was not found without, are what it was found by."""
+        return bool(self._result.coloured)
+
+    @property
     def rejected(self) -> NDArray[Any]:
         """Records of what would match without the geometry, and contradicts it; of two at odds ("ambiguous") either one."""
         return arrays.view(self._result.rejected, self._result.rejected_count, "asj_junction_match", self._result)
@@ -236,7 +241,8 @@ def match_images(
                at 2, in three to eight times the time; what is seen at a glancing angle, like things on a table, matches at (1, 3).
                "auto": as they are; from `upsample_from` matches on (8; fewer where a geometry is left open; 0 = never) also upsampled,
                which :attr:`Matches.upsampled` tells; images of more than 2 megapixels also halved, and upsampled from there; where no
-               geometry is found also with colours (`look_at_colours`); and where nothing comes of it at (1, 3) and (3, 1), then also upsampled; :attr:`Matches.stretch` tells which it was
+               geometry is found also with colours (`look_at_colours`), which :attr:`Matches.coloured` tells; and where nothing comes
+               of it at (1, 3) and (3, 1), then also upsampled; :attr:`Matches.stretch` tells which it was
     preset     "default", or "paper": the published method, detector and matcher; "auto" is as they are then
     options    those of the matcher; the others as for :func:`asj.match`
 
