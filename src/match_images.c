@@ -222,13 +222,12 @@ static int32_t may_look_at_colours(const search *s)
 }
 
 /* Does what is found with colours hold? Where the images' own best is chance that it is accepted is enough. Where they leave the
- * motion open it has to be settled as upsampled images settle it, by evidence alone: junctions of the luma take part in either
- * look, so that the same motion again says nothing. */
+ * motion open it has to be one that they allow, or have much more evidence. */
 static int32_t is_believed(const asj_match_result *own, const asj_match_result *coloured)
 {
     if (coloured->geometry.status != ASJ_GEOMETRY_ACCEPTED)
         return 0;
-    return own->geometry.status != ASJ_GEOMETRY_DEGENERATE || asj_looks_surpass(own, coloured);
+    return own->geometry.status != ASJ_GEOMETRY_DEGENERATE || asj_looks_close(own, coloured);
 }
 
 static asj_status look_at_colours(search *s, double from, double part)

@@ -232,10 +232,11 @@ asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsa
     return asj_looks_may_settle(own) ? look_beyond(own, b) : ASJ_LOOKS_BY_UPSAMPLED;
 }
 
-int32_t asj_looks_surpass(const asj_match_result *own, const asj_match_result *other)
+int32_t asj_looks_close(const asj_match_result *own, const asj_match_result *other)
 {
     const asj_geometry *a = &own->geometry, *b = &other->geometry;
-    return b->status == ASJ_GEOMETRY_ACCEPTED && b->has_pose && !is_upside_down(b) && !a->only_turns && surpasses(b, a);
+    return b->status == ASJ_GEOMETRY_ACCEPTED && b->has_pose && !is_upside_down(b) && !a->only_turns &&
+           (!contradicts(a, b) || surpasses(b, a));
 }
 
 /* --- a geometry of one result, and matches of the other ----------------------------------------------------------------------- */

@@ -624,6 +624,15 @@ static void an_open_motion_is_found(void **state)
         if (cases[k].sd == 0)
             memset(own->geometry.rotation, 0, sizeof own->geometry.rotation);
         assert_int_equal(asj_looks_of(own, upsampled), cases[k].looks);
+        assert_int_equal(asj_looks_close(own, upsampled), cases[k].looks != ASJ_LOOKS_LOST);
+        own->geometry.only_turns = 1;
+        assert_int_equal(asj_looks_close(own, upsampled), 0);
+        own->geometry.only_turns = 0;
+        upsampled->geometry.has_pose = 0;
+        assert_int_equal(asj_looks_close(own, upsampled), 0);
+        upsampled->geometry.has_pose = 1;
+        upsampled->geometry.status = ASJ_GEOMETRY_CHANCE;
+        assert_int_equal(asj_looks_close(own, upsampled), 0);
         asj_match_result_free(&own);
         asj_match_result_free(&upsampled);
     }
@@ -642,6 +651,7 @@ static void what_turns_over_settles_nothing(void **state)
         change_pose(own, 180, 1);
         change_pose(upsampled, 180, 1);
         assert_int_equal(asj_looks_of(own, upsampled), ASJ_LOOKS_LOST);
+        assert_int_equal(asj_looks_close(own, upsampled), 0);
         change_pose(own, 180, 1);
         change_pose(upsampled, 180, 1);
     }
