@@ -56,12 +56,10 @@ typedef struct asj_detect_options {
                                    * surely, for half as much time again and 2 bytes for each pixel of the first octave. 0 */
     int32_t independent_octaves;  /* 1 = every octave is a detector of its own and keeps what it finds, though a finer one has
                                    * found the same corner: for the matcher, which takes each corner once. 0; match 1 */
-    int32_t colours;              /* 1 = colour images are also looked at in two planes of opponent colours, red against green and
-                                   * blue against yellow: finds corners between surfaces that hardly differ in luma, in 1.2 to 1.7
-                                   * times the time. They need an NFA of 1, or epsilon if that is less, and .001 where the noise of
-                                   * colours is smooth, as that of JPEG is. With independent_octaves the others stay where they are;
-                                   * without, all planes share the false alarms of one, and a few of the others go. 8-bit colour
-                                   * alone: other images, and grey ones, have no colours. 0 */
+    int32_t colours;              /* 1 = 8-bit colour images are also looked at in two planes of opponent colours, red against green
+                                   * and blue against yellow: finds corners between surfaces that hardly differ in luma, in 1.2 to
+                                   * 1.7 times the time. These need an NFA of 1, .001 where the noise of colours is smooth as that of
+                                   * JPEG is, or epsilon if that is less; where octaves share false alarms all planes do. 0 */
     int32_t reserved_integer;     /* zero */
     /* step 1: normalised gradient */
     double gradient_epsilon;      /* grey levels (0..255) per pixel added to the local mean of the gradient norm; what is much

@@ -75,7 +75,8 @@ static asj_status local_field(asj_context *context, const asj_image *image, cons
     asj_detect_options of_image;
     if (options) {
         of_image = *options;
-        of_image.colours = 0; /* the field is that of the luma */
+        if (of_image.colours == 1) /* the field is that of the luma; other numbers are refused */
+            of_image.colours = 0;
         if (of_image.first_octave == ASJ_FIRST_OCTAVE) /* no larger than the image */
             of_image.first_octave = 0;
     }

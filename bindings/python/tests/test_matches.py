@@ -87,7 +87,7 @@ def test_stretched_images(scene: Scene) -> None:
 def test_upsampled_by_themselves(scene: Scene) -> None:
     second = panels(shift=(6, 4))
     plain, found = asj.match_images(scene, second, stretch=1), asj.match_images(scene, second)
-    assert found.upsampled and not plain.upsampled and found.stretch == (1, 1)
+    assert found.upsampled and not plain.upsampled and found.stretch == (1, 1) and not found.coloured
     assert len(found) > len(plain)
     assert np.mean(np.linalg.norm(found.xy2 - found.xy1 - (6, 4), axis=1) < 1) > 0.9
     assert np.array_equal(found.xy1[:, 0], found.l_junctions1["x"][found.l_indices[:, 0]])
