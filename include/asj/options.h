@@ -58,8 +58,8 @@ typedef struct asj_detect_options {
                                    * found the same corner: for the matcher, which takes each corner once. 0; match 1 */
     int32_t colours;              /* 1 = 8-bit colour images are also looked at in two planes of opponent colours, red against green
                                    * and blue against yellow: finds corners between surfaces that hardly differ in luma, in 1.2 to
-                                   * 1.7 times the time. These need an NFA of 1, .001 where the noise of colours is smooth as that of
-                                   * JPEG is, or epsilon if that is less; where octaves share false alarms all planes do. 0 */
+                                   * 1.7 times the time. These need an NFA of 1, .001 where the noise of colours is smooth as that
+                                   * of JPEG is, or epsilon if that is less; where octaves share false alarms all planes do. 0 */
     int32_t reserved_integer;     /* zero */
     /* step 1: normalised gradient */
     double gradient_epsilon;      /* grey levels (0..255) per pixel added to the local mean of the gradient norm; what is much
