@@ -110,21 +110,6 @@ static int looks_by_itself(const cli_match_arguments *arguments)
     return images;
 }
 
-/* Colours are looked at where a geometry is asked and not found. */
-static int check_colours(const cli_match_arguments *arguments)
-{
-    if (!cli_settings_have(&arguments->match_settings, "look_at_colours"))
-        return CLI_SUCCESS;
-    if (arguments->geometry == ASJ_GEOMETRY_NONE)
-        return cli_usage_error("match", "--look-at-colours changes nothing without --geometry");
-    if (arguments->detect_options.colours)
-        return cli_usage_error("match", "--look-at-colours changes nothing with --colours, which looks at them anyway");
-    if (!arguments->look || arguments->stretch.x > 0)
-        return cli_usage_error("match", "--look-at-colours changes nothing: it is for two whole images, without --stretch, "
-                               "junctions or features from files, regions, masks and the preset paper");
-    return CLI_SUCCESS;
-}
-
 /* The detector runs on stretched images as a whole. */
 static int check_stretch(cli_match_arguments *arguments)
 {
@@ -141,7 +126,22 @@ static int check_stretch(cli_match_arguments *arguments)
     if ((!arguments->look || arguments->stretch.x > 0) && asked)
         return cli_usage_error("match", "%s changes nothing: it is for two whole images, without --stretch and without the preset "
                                "paper", asked);
-    return check_colours(arguments);
+    return CLI_SUCCESS;
+}
+
+/* Colours are looked at where a geometry is asked and not found. */
+static int check_colours(const cli_match_arguments *arguments)
+{
+    if (!cli_settings_have(&arguments->match_settings, "look_at_colours"))
+        return CLI_SUCCESS;
+    if (arguments->geometry == ASJ_GEOMETRY_NONE)
+        return cli_usage_error("match", "--look-at-colours changes nothing without --geometry");
+    if (arguments->detect_options.colours)
+        return cli_usage_error("match", "--look-at-colours changes nothing with --colours, which looks at them anyway");
+    if (!arguments->look || arguments->stretch.x > 0)
+        return cli_usage_error("match", "--look-at-colours changes nothing: it is for two whole images, without --stretch, "
+                               "junctions or features from files, regions, masks and the preset paper");
+    return CLI_SUCCESS;
 }
 
 /* Options that say how something looks which nobody has asked for. */
@@ -198,6 +198,8 @@ int cli_match_check(cli_match_arguments *arguments)
         result = check_geometry(arguments);
     if (result == CLI_SUCCESS)
         result = check_stretch(arguments);
+    if (result == CLI_SUCCESS)
+        result = check_colours(arguments);
     if (result == CLI_SUCCESS)
         result = check_results(arguments);
     if (result == CLI_SUCCESS)

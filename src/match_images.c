@@ -34,8 +34,8 @@
  *
  * Colours. Where a geometry is asked, and neither look has one, the detector looks at colours, too (detect/planes_step.c), before
  * anything is stretched: between surfaces that are equally bright there are corners that only these show. (Rooms 1000 to 1399: six
- * more poses, none of them out by more than .8 degrees, of 23 pairs that were chance or open; of 257
- * unrelated pairs 13 are accepted for 11.)
+ * more poses, none of them out by more than .8 degrees, of 23 pairs that were chance or open; of 257 unrelated pairs 13 are
+ * accepted for 11.)
  *
  * Images that have nothing in common match at a few places now and then, and so do things that repeat; the more looks the more
  * often. So a stretched look needs ENOUGH matches, and as many more than there are. */
@@ -57,6 +57,7 @@
 #define HINT 6     /* matches of the trial. On one octave false ones are rarer; the whole look decides */
 #define FIRST 0.2  /* of all the progress, for the look as they are, */
 #define CLOSER 0.4 /* .. and for the upsampled one */
+#define COLOURED 0.2 /* .. and for the colours */
 #define LARGEST 2e6 /* pixels */
 #define SMALLER 0.3 /* of what smaller images have of it, before the upsampled look */
 #define TRIAL 0.1  /* of what a stretch has of it */
@@ -65,8 +66,6 @@
 static const asj_stretch as_it_is = {1, 1};
 static const asj_stretch glancing[] = {{1, 3}, {3, 1}}, trials[] = {{0.5, 1.5}, {1.5, 0.5}};
 enum { GLANCING = sizeof glancing / sizeof glancing[0] };
-
-#define COLOURED 0.2 /* .. and for the colours, where they are looked at */
 
 typedef struct search {
     asj_context *context;
@@ -231,7 +230,7 @@ static int32_t is_believed(const asj_match_result *own, const asj_match_result *
     return own->geometry.status != ASJ_GEOMETRY_DEGENERATE || asj_looks_close(own, coloured);
 }
 
-static asj_status look_at_colours(search *s, double from, double part)
+static asj_status look_with_colours(search *s, double from, double part)
 {
     const asj_stretch stretch = {s->scale, s->scale};
     asj_detect_options with_colours = *s->detect_options;
@@ -250,6 +249,13 @@ static asj_status look_at_colours(search *s, double from, double part)
         s->best->coloured = 1;
     }
     return status;
+}
+
+static asj_status look_at_colours(search *s, double from, double part)
+{
+    int32_t both = 0;
+    const asj_status status = may_look_at_colours(s) ? have_colours(s, &both) : ASJ_OK;
+    return both && status == ASJ_OK ? look_with_colours(s, from, part) : status;
 }
 
 /* --- stretched --------------------------------------------------------------------------------------------------------------- */
@@ -303,22 +309,17 @@ static asj_status look_again(search *s, int32_t which, double from, double part)
 /* Where a further look shows more than can be matched, what was seen before stays the answer. */
 static asj_status look_for_answer(search *s)
 {
-    double done = FIRST + CLOSER, part;
-    int32_t coloured = 0;
+    const double done = FIRST + CLOSER + COLOURED, part = (1 - done) / GLANCING;
     asj_status status = look(s, &as_it_is, s->detect_options, s->options, 0, FIRST, &s->best);
     if (status == ASJ_OK) {
         asj_optional_begin(s->context);
         status = asj_optional_end(s->context, s->scale < 1 ? look_smaller(s, FIRST, CLOSER)
                                                            : look_closer(s, &as_it_is, FIRST, CLOSER));
     }
-    if (status == ASJ_OK && may_look_at_colours(s))
-        status = have_colours(s, &coloured);
-    if (status == ASJ_OK && coloured) {
+    if (status == ASJ_OK) {
         asj_optional_begin(s->context);
-        status = asj_optional_end(s->context, look_at_colours(s, done, COLOURED));
-        done += COLOURED;
+        status = asj_optional_end(s->context, look_at_colours(s, FIRST + CLOSER, COLOURED));
     }
-    part = (1 - done) / GLANCING;
     for (int32_t k = 0; k < GLANCING && status == ASJ_OK && goes_on(s); k++) {
         asj_optional_begin(s->context);
         status = asj_optional_end(s->context, look_again(s, k, done + k * part, part));

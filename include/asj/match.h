@@ -245,8 +245,8 @@ typedef struct asj_stretch {
  *                    (0.5, 0.5; 0.25, 0.25; ...), and upsampled from there: where it is more matches, with a geometry asked of one
  *                    that is accepted, that is the answer (photographs with soft pixels have several times the matches);
  *                  - where a geometry is asked, none is accepted, and no rivals are told, also with the detector's colours, if
- *                    both images have some (options->look_at_colours): where that is accepted, of a motion that stays open with
- *                    much more evidence, it is the answer;
+ *                    both images have some (options->look_at_colours): where that is accepted it is the answer; of a motion that
+ *                    stays open where that allows it, or where it has much more evidence;
  *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together and 32 where it
  *                    tells no pose, also stretched by 1, 3 and by 3, 1, those halved as above, unless rivals or a motion that stays
  *                    open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the answer. What comes of that counts from 16 matches on, and

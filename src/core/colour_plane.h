@@ -5,6 +5,17 @@
 
 #include "context.h"
 
+/* Where the channels of an 8-bit colour image stand: red at byte 0 or 2 of a pixel, blue at the other, green between them. */
+typedef struct asj_channels {
+    const uint8_t *first;     /* of the top row */
+    ptrdiff_t stride;         /* bytes from row to row */
+    int32_t width, height;
+    int32_t step, red;        /* bytes from pixel to pixel; of red in it */
+} asj_channels;
+
+/* Of a view that asj_image_check() has passed. 0 = it is grey. */
+int32_t asj_channels_of(const asj_image *image, asj_channels *channels);
+
 /* Planes of an image. Grey images, and colour images without a colour, have the first one only. */
 enum { ASJ_PLANE_LUMA = 0, ASJ_PLANE_RED_GREEN = 1, ASJ_PLANE_BLUE_YELLOW = 2, ASJ_PLANES = 3 };
 

@@ -211,11 +211,8 @@ static int load_row(const conversion *c, uint16_t *gray, const void *row, const 
     switch (image->format) {
     case ASJ_FORMAT_GRAY8: load_bytes(gray, row, width, c->levels); break;
     case ASJ_FORMAT_GRAY16: load_words(gray, row, width, c->scale); break;
-    case ASJ_FORMAT_RGB8: load_colour(c, gray, row, width, 3, 0); break;
-    case ASJ_FORMAT_BGR8: load_colour(c, gray, row, width, 3, 2); break;
-    case ASJ_FORMAT_RGBA8: load_colour(c, gray, row, width, 4, 0); break;
-    case ASJ_FORMAT_BGRA8: load_colour(c, gray, row, width, 4, 2); break;
-    default: finite = load_float(gray, row, width, c->scale); break;
+    case ASJ_FORMAT_GRAY_FLOAT: finite = load_float(gray, row, width, c->scale); break;
+    default: load_colour(c, gray, row, width, asj_pixel_size(image->format), asj_red_of(image->format)); break;
     }
     repeat_columns(gray, width);
     return finite;

@@ -12,6 +12,7 @@
  * Sums of whole numbers at places that are rounded once: the same on every machine. Neither exposure nor white balance is known
  * here: what two images differ in as a whole is seen when they are compared. */
 #include "colour.h"
+#include "core/colour_plane.h"
 #include "core/watch.h"
 
 #include <math.h>
@@ -29,11 +30,8 @@
 #define LEVEL_ONE 128
 #define LARGEST_OCTAVE 4
 
-/* Where the channels of a pixel stand. */
 typedef struct picture {
-    const uint8_t *data;
-    ptrdiff_t stride;
-    int32_t width, height, step, red;
+    asj_channels channels;
     int32_t cut; /* from this level on a channel is cut */
     double scale; /* px for one of the L-junctions' */
 } picture;
@@ -44,29 +42,21 @@ typedef struct sums {
 
 static int32_t picture_of(const asj_image *image, picture *p)
 {
-    const int32_t format = image->format;
-    if (format < ASJ_FORMAT_RGB8 || format > ASJ_FORMAT_BGRA8)
-        return 0;
-    p->step = format == ASJ_FORMAT_RGB8 || format == ASJ_FORMAT_BGR8 ? 3 : 4;
-    p->red = format == ASJ_FORMAT_RGB8 || format == ASJ_FORMAT_RGBA8 ? 0 : 2;
     p->cut = image->white > 0 && image->white < CUT ? (int32_t)ceilf(image->white) : CUT;
-    p->data = image->data;
-    p->width = image->width;
-    p->height = image->height;
-    p->stride = image->stride ? image->stride : (ptrdiff_t)image->width * p->step;
-    return 1;
+    return asj_channels_of(image, &p->channels);
 }
 
 static void add(const picture *p, double x, double y, sums *s)
 {
+    const asj_channels *c = &p->channels;
     s->tried++;
     x = (x + 0.5) * p->scale - 0.5;
     y = (y + 0.5) * p->scale - 0.5;
-    if (!(x > -0.5 && y > -0.5 && x < p->width - 0.5 && y < p->height - 0.5))
+    if (!(x > -0.5 && y > -0.5 && x < c->width - 0.5 && y < c->height - 0.5))
         return;
-    const int32_t column = (int32_t)fmin(x + 0.5, p->width - 1), row = (int32_t)fmin(y + 0.5, p->height - 1);
-    const uint8_t *pixel = p->data + row * p->stride + (ptrdiff_t)column * p->step;
-    const uint8_t red = pixel[p->red], green = pixel[1], blue = pixel[2 - p->red];
+    const int32_t column = (int32_t)fmin(x + 0.5, c->width - 1), row = (int32_t)fmin(y + 0.5, c->height - 1);
+    const uint8_t *pixel = c->first + row * c->stride + (ptrdiff_t)column * c->step;
+    const uint8_t red = pixel[c->red], green = pixel[1], blue = pixel[2 - c->red];
     if (red >= p->cut || green >= p->cut || blue >= p->cut)
         return;
     s->channel[0] += red;

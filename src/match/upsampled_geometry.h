@@ -22,7 +22,7 @@ typedef enum asj_looks {
 
 asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsampled);
 
-/* Of images that leave their motion open: is what another look accepts the answer? It is when they allow that motion, and when it
+/* Of images that leave their motion open: is what another look accepts the answer? It is when they allow that motion, or when it
  * has so much more evidence that it does not matter which one they had in front. */
 int32_t asj_looks_close(const asj_match_result *own, const asj_match_result *other);
 

@@ -38,6 +38,18 @@ static inline int32_t asj_pixel_size(int32_t format)
     }
 }
 
+/* Byte of a pixel of 8-bit colour at which red stands; blue is at 2 minus that, green between them. -1 = no such format. */
+static inline int32_t asj_red_of(int32_t format)
+{
+    switch (format) {
+    case ASJ_FORMAT_RGB8:
+    case ASJ_FORMAT_RGBA8: return 0;
+    case ASJ_FORMAT_BGR8:
+    case ASJ_FORMAT_BGRA8: return 2;
+    default: return -1;
+    }
+}
+
 /* Of a view of a known format with sides from 1 on: does the stride hold a row, and do all rows fit into memory? */
 static inline int asj_stride_holds_row(const asj_image *image)
 {

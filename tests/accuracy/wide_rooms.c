@@ -3,7 +3,7 @@
  *
  *     wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras | --find-focal | --focal-error E] [--focal-sd S]
  *                [--stretch X,Y] [--first-octave N] [--first N] [--last N] [--threads N] [--draw N] [--seed N]
- *                [--near | --turned] [--poses] [--colours]
+ *                [--near | --turned] [--poses] [--colours yes|no]
  *
  * Pairs of seeds --first (0) to --last (99): status, model, log10 NFA, pose error (the larger of rotation and direction of
  * translation, degrees) and matches within 4 px of their epipolar lines. Then the area under the curve of recall over error up to
@@ -15,7 +15,7 @@
  * --near: the cameras are 1 to 15 degrees apart. --turned: they stand in one place; error: of the rotation, and no pose is right,
  * since there is no direction of a translation. --draw: another draw of the images' noise. --seed: of the samples. --poses: log10
  * NFA of the strongest rival, and how far rotation and translation are out, in brackets as told (the largest standard deviation of
- * either). --colours: the detector looks at colours, too.
+ * either). --colours: the detector always looks at them, or asj_match_images() never.
  * --check: exit 1 when fewer poses (--turned: rotations) are right, within 3 degrees, than below, or more are wrong, or too many
  * matches are; of cameras whose focal length is found a few poses may be, for what is not known of it. */
 #define _POSIX_C_SOURCE 200809L
@@ -38,7 +38,7 @@ static const double least_matches = 0.90;                    /* and of the match
 static const int most_wrong = 0, most_wrong_with_focal = 2, most_far_off = 0;
 
 typedef struct settings {
-    int check, near, turned, held_out, unrelated, no_cameras, find_focal, first_octave, poses, look, colours;
+    int check, near, turned, held_out, unrelated, no_cameras, find_focal, first_octave, poses, look, colours, no_colours;
     long first, last, draw, seed;
     double focal_error, focal_sd;
     asj_stretch stretch;
@@ -169,6 +169,7 @@ static int match(const settings *set, const synth_wide_pair *first, const synth_
     asj_detect_options_preset(&detect_options, ASJ_PRESET_MATCH);
     detect_options.colours = set->colours;
     asj_match_options_init(&options);
+    options.look_at_colours = !set->no_colours;
     options.geometry.model = ASJ_GEOMETRY_AUTO;
     options.geometry.find_focal = set->find_focal;
     options.geometry.focal_sd = set->focal_sd;
@@ -278,7 +279,7 @@ static int usage(void)
 {
     fputs("usage: wide_rooms [--check] [--held-out] [--unrelated] [--no-cameras | --find-focal | --focal-error E] "
           "[--focal-sd S] [--stretch X,Y] [--first-octave N] [--first N] [--last N] [--threads N] [--draw N] [--seed N] "
-          "[--near | --turned] [--poses] [--colours]\n", stderr);
+          "[--near | --turned] [--poses] [--colours yes|no]\n", stderr);
     return 2;
 }
 
@@ -290,7 +291,7 @@ int main(int argc, char **argv)
                                           {"first", 1, NULL, 'f'}, {"last", 1, NULL, 'l'},
                                           {"threads", 1, NULL, 't'}, {"draw", 1, NULL, 'd'}, {"seed", 1, NULL, 'e'},
                                           {"poses", 0, NULL, 'p'}, {"near", 0, NULL, 'r'}, {"turned", 0, NULL, 'w'},
-                                          {"colours", 0, NULL, 'C'},
+                                          {"colours", 1, NULL, 'C'},
                                           {NULL, 0, NULL, 0}};
     settings set = {.last = 99, .seed = 1};
     asj_context_options how;
@@ -318,7 +319,12 @@ int main(int argc, char **argv)
         case 'p': set.poses = 1; break;
         case 'r': set.near = 1; break;
         case 'w': set.turned = 1; break;
-        case 'C': set.colours = 1; break;
+        case 'C':
+            set.colours = strcmp(optarg, "yes") == 0;
+            set.no_colours = strcmp(optarg, "no") == 0;
+            if (!set.colours && !set.no_colours)
+                return usage();
+            break;
         case 't': how.threads = (int32_t)strtol(optarg, NULL, 10); break;
         default: return usage();
         }

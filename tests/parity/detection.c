@@ -48,20 +48,18 @@ static asj_detection *detect(run_state *state, target *t, const asj_image *image
     return found;
 }
 
-static void compare_image(run_state *state, const char *name, const asj_image *given)
+static void compare_image(run_state *state, const char *name, const asj_image *image)
 {
-    const asj_image image = *given;
-    const int32_t width = image.width, height = image.height;
-    asj_detection *expected = detect(state, &state->list.targets[0], &image);
+    asj_detection *expected = detect(state, &state->list.targets[0], image);
     for (int32_t i = 1; i < state->list.count && expected; i++) {
         target *t = &state->list.targets[i];
         if (!t->context)
             continue;
-        asj_detection *found = detect(state, t, &image);
+        asj_detection *found = detect(state, t, image);
         t->compared++;
         if (found && !same(found, expected)) {
-            printf("FAIL %s differs from the reference: %s, %d x %d, options %s\n", t->name, name, (int)width, (int)height,
-                   state->setting);
+            printf("FAIL %s differs from the reference: %s, %d x %d, options %s\n", t->name, name, (int)image->width,
+                   (int)image->height, state->setting);
             state->failed = 1;
         }
         asj_detection_free(&found);
