@@ -192,11 +192,15 @@ static void print_stretch(const run *r)
 /* Of matches, where none is accepted. What the images and the upsampled ones tell at odds has rejected some (asj/match.h). */
 static void print_no_geometry(const run *r)
 {
-    const int32_t status = r->result->geometry.status;
+    const asj_geometry *g = &r->result->geometry;
+    const int32_t status = g->status;
     const unsigned long rejected = (unsigned long)r->result->rejected_count;
     char of_matches[96] = "; the matches are those that there are without";
     if (rejected > 0)
         snprintf(of_matches, sizeof of_matches, "; the images and the upsampled ones tell two; matches left out: %lu", rejected);
+    else if (status == ASJ_GEOMETRY_AMBIGUOUS && g->has_rival)
+        snprintf(of_matches, sizeof of_matches, "; several explain the views: log10 NFA %.1f and %.1f", g->log10_nfa,
+                 g->rival_log10_nfa);
     else if (status == ASJ_GEOMETRY_AMBIGUOUS)
         snprintf(of_matches, sizeof of_matches, "; several explain the views as well");
     else if (status == ASJ_GEOMETRY_DEGENERATE)
@@ -214,6 +218,15 @@ static const char *what_json_has(const run *r)
     return r->result->geometry.has_pose ? " (pose and probabilities: -o FILE.json)" : " (matrix and probabilities: -o FILE.json)";
 }
 
+static const char *what_is_left_open(const asj_geometry *g)
+{
+    if (g->only_turns)
+        return ": the camera only turns";
+    if (g->model == ASJ_GEOMETRY_HOMOGRAPHY)
+        return "; matches off its plane stay, less probable";
+    return g->model == ASJ_GEOMETRY_ESSENTIAL && !g->has_pose ? "; its pose stays open" : "";
+}
+
 static void print_geometry(const run *r)
 {
     const asj_geometry *g = &r->result->geometry;
@@ -225,8 +238,7 @@ static void print_geometry(const run *r)
                  100 * g->focal_sd);
     if (g->status == ASJ_GEOMETRY_ACCEPTED)
         cli_note("geometry: %s, log10 NFA %.1f%s%s%s", asj_geometry_model_name(g->model), g->log10_nfa, focal,
-                 g->only_turns ? ": the camera only turns"
-                 : g->model == ASJ_GEOMETRY_HOMOGRAPHY ? "; matches off its plane stay, less probable" : "", what_json_has(r));
+                 what_is_left_open(g), what_json_has(r));
     else if (g->status != ASJ_GEOMETRY_NOT_ASKED && (r->result->match_count > 0 || r->result->rejected_count > 0))
         print_no_geometry(r);
 }

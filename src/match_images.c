@@ -32,10 +32,9 @@
  * a quarter or more of its matches are there (two magazines at extreme angles: 42 of 113, 49 of 194), in an eighth of the time, and
  * where the images have nothing in common that is answered at once (match/related.c).
  *
- * Colours. Where a geometry is asked, and neither look has one, the detector looks at colours, too (detect/planes_step.c), before
- * anything is stretched: between surfaces that are equally bright there are corners that only these show. (Rooms 1000 to 1399: six
- * more poses, none of them out by more than .8 degrees, of 23 pairs that were chance or open; of 257 unrelated pairs 13 are
- * accepted for 11.)
+ * Colours. Where a geometry is asked, and neither look has one, or has a motion without its pose, the detector looks at colours,
+ * too (detect/planes_step.c), before anything is stretched: between surfaces that are equally bright there are corners that only
+ * these show. match/upsampled_geometry.c says what is believed.
  *
  * Images that have nothing in common match at a few places now and then, and so do things that repeat; the more looks the more
  * often. So a stretched look needs ENOUGH matches, and as many more than there are. */
@@ -213,21 +212,9 @@ static asj_status have_colours(const search *s, int32_t *both)
     return status;
 }
 
-/* Not where the images have rivals: corners of colour repeat as those of luma do. */
 static int32_t may_look_at_colours(const search *s)
 {
-    const int32_t status = s->best->geometry.status;
-    return s->options->look_at_colours && !s->detect_options->colours && asks_geometry(s) &&
-           status != ASJ_GEOMETRY_ACCEPTED && status != ASJ_GEOMETRY_AMBIGUOUS;
-}
-
-/* Does what is found with colours hold? Where the images' own best is chance that it is accepted is enough. Where they leave the
- * motion open it has to be one that they allow, or have much more evidence. */
-static int32_t is_believed(const asj_match_result *own, const asj_match_result *coloured)
-{
-    if (coloured->geometry.status != ASJ_GEOMETRY_ACCEPTED)
-        return 0;
-    return own->geometry.status != ASJ_GEOMETRY_DEGENERATE || asj_looks_close(own, coloured);
+    return s->options->look_at_colours && !s->detect_options->colours && asks_geometry(s) && asj_looks_may_close(s->best);
 }
 
 static asj_status look_with_colours(search *s, double from, double part)
@@ -239,10 +226,10 @@ static asj_status look_with_colours(search *s, double from, double part)
     other.detect_options = &with_colours;
     other.best = NULL;
     asj_status status = look(&other, &stretch, &with_colours, other.options, from, FIRST * part, &other.best);
-    if (status == ASJ_OK && other.best->geometry.status != ASJ_GEOMETRY_AMBIGUOUS)
+    if (status == ASJ_OK)
         status = look_closer(&other, &stretch, from + FIRST * part, (1 - FIRST) * part);
     memcpy(s->stage_ms, other.stage_ms, sizeof s->stage_ms);
-    const int32_t believed = status == ASJ_OK && is_believed(s->best, other.best);
+    const int32_t believed = status == ASJ_OK && asj_looks_close(s->best, other.best);
     asj_match_result_free(believed ? &s->best : &other.best);
     if (believed) {
         s->best = other.best;

@@ -53,7 +53,8 @@ enum {
 /* "gradient", "candidates", ...; "unknown" outside the range. A static string. */
 ASJ_API const char *asj_stage_name(int32_t stage);
 
-/* Memory. Both functions or neither. `allocate` returns at least `size` bytes aligned for any C type, or NULL; `release`
+/* Memory. Both functions or neither: asj_context_options_init() leaves
+ * the C library's here, so replace both. `allocate` returns at least `size` bytes aligned for any C type, or NULL; `release`
  * takes what `allocate` gave (never NULL). They are called from the thread that calls the library only. */
 typedef struct asj_allocator {
     void *(*allocate)(void *user, size_t size);
@@ -124,7 +125,8 @@ typedef void (*asj_parallel_callback)(void *user, int32_t count, asj_parallel_ta
 typedef struct asj_context_options {
     int32_t backend;                /* ASJ_BACKEND_..., default auto */
     int32_t threads;                /* threads of the CPU path, 0 .. ASJ_MAX_THREADS; default 0 = as many as processors. The
-                                     * results do not depend on it. 1 when the library was built without threads. */
+                                     * results do not depend on it. Each takes memory of its own, about 1 MB (detect.h). 1 when the
+                                     * library was built without threads. */
     const char *device;             /* which OpenCL device: its number in asj_device_list, "gpu", "cpu", "accelerator", or a part
                                      * of its name or its platform's, upper or lower case; the first that can be used is taken.
                                      * Default NULL = any, GPUs first. ASJ_BACKEND_AUTO looks at GPUs only. */

@@ -19,7 +19,8 @@ typedef struct asj_local_branch {
 
 /* The dense field, for those who want step 2 alone: `branches` receives width x height x ASJ_FIELD_BRANCHES records, row by
  * row, owned by the caller. Uses the options of steps 1 and 2; octaves are none of these: it is the field of the image as it is.
- * One call at a time for a context. Statuses as asj_detect(); ASJ_ERROR_ARGUMENT also when branches is NULL. */
+ * One call at a time for a context. Statuses as asj_detect(); ASJ_ERROR_ARGUMENT also when branches is NULL. After
+ * ASJ_ERROR_CANCELLED and ASJ_ERROR_DEVICE a part of `branches` may have been written. */
 ASJ_API asj_status asj_local_field(asj_context *context, const asj_image *image, const asj_detect_options *options,
                                    asj_local_branch *branches);
 

@@ -89,7 +89,7 @@ typedef struct asj_geometry {
     int32_t status;          /* ASJ_GEOMETRY_ACCEPTED, ...: only when accepted are the fields below those of an answer; otherwise
                               * they tell of the best that was found, or are 0 */
     int32_t model;           /* ASJ_GEOMETRY_ESSENTIAL, _FUNDAMENTAL, _HOMOGRAPHY */
-    int32_t has_pose;        /* rotation and translation are known */
+    int32_t has_pose;        /* rotation and translation are known, to 10 degrees or better: the covariance says how well */
     int32_t has_rival;       /* rival_log10_nfa is known */
     double matrix[9];        /* row by row, of norm 1. Homography: image 1 -> image 2. Else the fundamental matrix: x2' F x1 = 0
                               * with pixels (x, y, 1); the essential matrix is K2' F K1 */

@@ -9,8 +9,9 @@ extern "C" {
 #endif
 
 /* Pixel formats. Channels are interleaved; 16-bit samples and floats are in the machine's byte order.
- * Colour is reduced to luma as (77 R + 150 G + 29 B + 128) >> 8 (BT.601 weights in 8 bits); alpha is ignored. Only a
- * match with a geometry (match.h) and features look at the colours themselves. */
+ * Colour is reduced to luma as (77 R + 150 G + 29 B + 128) >> 8 (BT.601 weights in 8 bits); alpha is ignored. The
+ * colours themselves are looked at by the detector with asj_detect_options.colours (which asj_match_images() sets now and then,
+ * look_at_colours), by a match with a geometry (match.h) and by features. */
 enum {
     ASJ_FORMAT_GRAY8 = 1,
     ASJ_FORMAT_GRAY16 = 2,

@@ -77,7 +77,8 @@ ASJ_API asj_status asj_image_file_read(const char *path, uint64_t max_pixels, as
 /* Frees it and sets the pointer to NULL. NULL and a pointer to NULL are fine. Any thread. */
 ASJ_API void asj_image_file_free(asj_image_file **file);
 
-/* Writes a view as PNG, 8 or 16 bits as it is. The file appears whole or not at all.
+/* Writes a view as PNG, 8 or 16 bits as it is, but without alpha and without `white`, which PNG has no place for: set it again in
+ * what is read back. The file appears whole or not at all.
  * ASJ_ERROR_ARGUMENT, ASJ_ERROR_IMAGE (floats, bad view), ASJ_ERROR_FILE, ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_png_write(const char *path, const asj_image *image, char *message, size_t message_size);
 
@@ -195,8 +196,8 @@ typedef struct asj_match_report {
  *                empty), and its ends are a and b; the other columns are those of the match that it comes from.
  * ASJ_FILE_JSON  schema "asj-matches-1": everything, with options, version, back end and times. A ratio without a second best
  *                is null.
- * ASJ_ERROR_ARGUMENT  a NULL pointer, another file format, or a result that no reader would take: NaN or infinity, an
- *                     L-junction that is not there
+ * ASJ_ERROR_ARGUMENT  a NULL pointer, another file format, `lines` that are none of these, with lines a `minimum_end` that is
+ *                     none, or a result that no reader would take: NaN or infinity, an L-junction that is not there
  * ASJ_ERROR_OPTION    a reserved field of the report that is not zero
  * ASJ_ERROR_FILE      cannot create, disk full, cannot rename
  * ASJ_ERROR_MEMORY */

@@ -75,12 +75,14 @@ typedef struct asj_l_junction {
 } asj_l_junction;
 
 /* A straight edge of the picture between two junctions: a branch of each, which point at each other. Every branch is part of one
- * edge at most, and no other junction that has branches along the line in both directions lies between. */
+ * edge at most, and no other junction that has branches along the line in both directions lies between. Neither branch need end at
+ * the other junction: it may stop short of it or go on, as its own `length` and `end` say, and an ASJ_BRANCH_END_JUNCTION may be
+ * another junction than the edge's. */
 typedef struct asj_edge {
     uint32_t junction_a, junction_b; /* indices of the junctions, a < b */
     uint16_t branch_a, branch_b;     /* indices of their branches */
     float log10_nfa;                 /* log10 of the expected number of strips as good as the part between in an image of noise */
-    uint32_t reserved[2];            /* zero */
+    uint32_t reserved[2];            /* zero; not looked at in edges that are given */
 } asj_edge;
 
 #ifdef __cplusplus

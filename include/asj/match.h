@@ -83,9 +83,9 @@ typedef struct asj_match_options {
     int32_t upsampled_shortlist; /* .. and then this stands for shortlist; 0 = shortlist does. 0 .. 32; 2; paper 0 */
     int32_t upsampled_max_junctions; /* junctions of an upsampled image that take part, the most meaningful ones; 0 = all, which
                                   * takes a minute where two megapixels are full of texture. 0 .. 1000000; 16000 */
-    int32_t look_at_colours;     /* 1 = automatically: where a geometry is asked and none is accepted, 8-bit colour images are
-                                  * looked at once more, with asj_detect_options.colours: unrelated ones in twice the time. 1;
-                                  * paper 0 */
+    int32_t look_at_colours;     /* 1 = automatically: where a geometry is asked and none is accepted, or none that is sure
+                                  * (log10 NFA -35), or a motion without its pose, 8-bit colour images are looked at once more,
+                                  * with asj_detect_options.colours: unrelated ones in twice the time. 1; paper 0 */
     int32_t reserved_switch;     /* zero */
     double reserved[16];         /* zero */
     /* two-view geometry; not among the options with a key. model: none, the default, and then the rest of it does not matter. Sizes
@@ -149,8 +149,8 @@ typedef struct asj_match_result {
     uint64_t candidates;               /* pairs among which the matches were chosen: aligned or compared by the pair's own map,
                                         * those that other matches or a geometry proposed too */
     asj_geometry geometry;             /* status not asked where options->geometry.model is none */
-    uint64_t origin;                   /* the library's, which tells its own results by it; 0 in a result that the caller puts
-                                        * together or copies */
+    uint64_t origin;                   /* the library's, which tells its own results by it; set it to 0 in a result that you put
+                                        * together or copy */
     const asj_junction_match *rejected;/* matches that there would be without the geometry, or by that of one look, and that it
                                         * contradicts; with two at odds (ASJ_GEOMETRY_AMBIGUOUS) what either contradicts; smallest
                                         * distance first */
@@ -244,9 +244,10 @@ typedef struct asj_stretch {
  *                  - with more than 2 megapixels both, and the same detect_options, also halved until one of them has no more
  *                    (0.5, 0.5; 0.25, 0.25; ...), and upsampled from there: where it is more matches, with a geometry asked of one
  *                    that is accepted, that is the answer (photographs with soft pixels have several times the matches);
- *                  - where a geometry is asked, none is accepted, and no rivals are told, also with the detector's colours, if
- *                    both images have some (options->look_at_colours): where that is accepted it is the answer; of a motion that
- *                    stays open where that allows it, or where it has much more evidence;
+ *                  - where a geometry is asked, none is accepted that is sure and tells a motion, and no rival is sure, also with
+ *                    the detector's colours, if both images have some (options->look_at_colours): where that is accepted, and the
+ *                    images' best was chance, or has much less evidence, it is the answer, of a motion that stays open also where
+ *                    that allows it, and of rivals where it is one of them;
  *                  - where there are fewer than 16 matches then, with a geometry asked 16 that one holds together and 32 where it
  *                    tells no pose, also stretched by 1, 3 and by 3, 1, those halved as above, unless rivals or a motion that stays
  *                    open (ASJ_GEOMETRY_AMBIGUOUS, _DEGENERATE) are the answer. What comes of that counts from 16 matches on, and

@@ -21,7 +21,7 @@ extern "C" {
 
 /* What a function reports. 0 is success, everything else is negative, leaves nothing half done and leaks nothing:
  * a pointer to a result that would have been made is NULL, an earlier result that was to be used again (asj_detect_into()) is
- * empty, other outputs are as they were. */
+ * empty, other outputs are as they were (but for asj_local_field()). */
 typedef int32_t asj_status;
 enum {
     ASJ_OK = 0,

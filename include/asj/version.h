@@ -18,8 +18,10 @@ extern "C" {
  * stays (from 1 on; before it MINOR): new fields take the place of what is called `reserved`, and zero there means what the
  * library did before, or the struct's _init() function fills in the default. So what a caller does not know he leaves at zero or as
  * _init() left it. asj_image, asj_junction, asj_branch and the others without `reserved` do not grow. Structs that the library
- * makes (results, rows of option tables) are read through its pointers, never copied by their size, and may also grow at the
- * end. */
+ * makes and that are only reached through its pointers (rows of option tables, lists of devices and of segments) may also grow at
+ * the end, and are never copied by their size. What is an element of an array, a part of another struct, filled in by the library
+ * where the caller has it (asj_geometry, asj_vanishing_points, asj_features_info), or may be put together by the caller
+ * (asj_detection, asj_match_result) keeps its size as well. */
 
 /* Version of the library that runs, as (major << 16) | (minor << 8) | patch. Compare it with ASJ_VERSION at start-up.
  * Thread safety: any thread, any time. */

@@ -40,7 +40,9 @@ int asj_memory_allocator(const asj_context_options *options, asj_allocator *allo
     *allocator = (asj_allocator){allocate_default, release_default, NULL};
     if (options && (options->allocator.allocate || options->allocator.release))
         *allocator = options->allocator;
-    return allocator->allocate && allocator->release;
+    /* asj_context_options_init() leaves the defaults there, and who replaces one of them has given one of his own. */
+    return allocator->allocate && allocator->release &&
+           (allocator->allocate == allocate_default) == (allocator->release == release_default);
 }
 
 /* What the sanitizer is told about blocks that are kept: nobody may touch them. */

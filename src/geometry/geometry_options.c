@@ -71,6 +71,21 @@ static int directions_are_sound(const double d[9])
     return most == 0 || wrong < 1e-3;
 }
 
+static asj_status check_number(asj_context *context, const char *name, double value, double least, double most)
+{
+    if (within(value, least, most))
+        return ASJ_OK;
+    return asj_fail(context, ASJ_ERROR_OPTION, "%s of the geometry is %.9g, not %g .. %g", name, value, least, most);
+}
+
+static asj_status check_deviations(asj_context *context, const asj_geometry_options *o)
+{
+    asj_status status = check_number(context, "location_sd", o->location_sd, 0.1, 10);
+    if (status == ASJ_OK)
+        status = check_number(context, "angle_sd", o->angle_sd, 1, 45);
+    return status == ASJ_OK ? check_number(context, "scale_sd", o->scale_sd, 0.02, 1) : status;
+}
+
 asj_status asj_geometry_request_check(asj_context *context, const asj_geometry_options *o)
 {
     for (int32_t v = 0; v < 2; v++) {
@@ -79,7 +94,7 @@ asj_status asj_geometry_request_check(asj_context *context, const asj_geometry_o
             return asj_fail(context, ASJ_ERROR_OPTION, "camera %d cannot be: fx %g, fy %g, cx %g, cy %g", (int)v + 1, c->fx, c->fy,
                             c->cx, c->cy);
         if (!within(o->aspects[v], 0.01, 100))
-            return asj_fail(context, ASJ_ERROR_OPTION, "pixels of image %d cannot be: aspect %g", (int)v + 1, o->aspects[v]);
+            return asj_fail(context, ASJ_ERROR_OPTION, "pixels of image %d cannot be: aspect %.9g", (int)v + 1, o->aspects[v]);
         if (!directions_are_sound(o->directions[v]))
             return asj_fail(context, ASJ_ERROR_OPTION, "the directions of image %d are not three at right angles", (int)v + 1);
     }
@@ -90,7 +105,7 @@ asj_status asj_geometry_request_check(asj_context *context, const asj_geometry_o
     if (o->find_focal && (asj_camera_is_known(&o->cameras[0]) || asj_camera_is_known(&o->cameras[1])))
         return asj_fail(context, ASJ_ERROR_OPTION, "find_focal: the focal length of a camera is given");
     if (!within(o->focal_sd, 0, 0.25))
-        return asj_fail(context, ASJ_ERROR_OPTION, "focal_sd is %g, not 0 .. 0.25", o->focal_sd);
+        return asj_fail(context, ASJ_ERROR_OPTION, "focal_sd is %.9g, not 0 .. 0.25", o->focal_sd);
     if (o->find_focal && o->focal_sd > 0)
         return asj_fail(context, ASJ_ERROR_OPTION, "focal_sd is of focal lengths that are given: find_focal has none");
     if (!asj_is_zero(o->reserved, sizeof o->reserved) || o->reserved_integer)
@@ -99,10 +114,10 @@ asj_status asj_geometry_request_check(asj_context *context, const asj_geometry_o
         return asj_fail(context, ASJ_ERROR_OPTION, "find_focal: only model auto and essential have a focal length");
     if (o->model == ASJ_GEOMETRY_ESSENTIAL && !o->find_focal && !asj_cameras_are_known(o))
         return asj_fail(context, ASJ_ERROR_OPTION, "an essential matrix needs both cameras");
-    if (o->samples < 1 || o->samples > 100000 || !within(o->epsilon, 1e-12, 1) || !within(o->location_sd, 0.1, 10) ||
-        !within(o->angle_sd, 1, 45) || !within(o->scale_sd, 0.02, 1))
-        return asj_fail(context, ASJ_ERROR_OPTION, "samples, epsilon or a standard deviation of the geometry is out of range");
-    return ASJ_OK;
+    if (o->samples < 1 || o->samples > 100000)
+        return asj_fail(context, ASJ_ERROR_OPTION, "samples of the geometry is %d, not 1 .. 100000", (int)o->samples);
+    const asj_status status = check_number(context, "epsilon", o->epsilon, 1e-12, 1);
+    return status == ASJ_OK ? check_deviations(context, o) : status;
 }
 
 asj_status asj_geometry_options_check(asj_context *context, const asj_geometry_options *options)

@@ -18,14 +18,24 @@
 #define DIGIT 11 /* bits */
 #define MOST_OF_PLACE 0.9  /* nothing is sure before geometry */
 
-static int32_t usable(const asj_geometry_candidate *c)
+static asj_status check_candidate(asj_context *context, const asj_geometry_candidate *c, size_t k)
 {
-    const double numbers[9] = {c->x1, c->y1, c->x2, c->y2, c->affine[0], c->affine[1], c->affine[2], c->affine[3], c->probability};
+    const double location[4] = {c->x1, c->y1, c->x2, c->y2};
     const double det = c->affine[0] * c->affine[3] - c->affine[1] * c->affine[2];
-    for (int32_t k = 0; k < 9; k++)
-        if (!(fabs(numbers[k]) <= FARTHEST))
-            return 0;
-    return det > 1e-6 && c->probability >= 0 && c->probability <= 1;
+    for (int32_t i = 0; i < 4; i++) {
+        if (!(fabs(location[i]) <= FARTHEST))
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "candidate %zu lies at %g, %g and %g, %g, farther than %g px", k, c->x1,
+                            c->y1, c->x2, c->y2, FARTHEST);
+        if (!(fabs(c->affine[i]) <= FARTHEST))
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "the map of candidate %zu has %g", k, c->affine[i]);
+    }
+    if (!(det > 1e-6))
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "the map of candidate %zu mirrors or flattens: its determinant is %g", k, det);
+    if (!(c->probability >= 0 && c->probability <= 1))
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "candidate %zu has the probability %g", k, c->probability);
+    if (c->place1 >= MOST_COUNT || c->place2 >= MOST_COUNT)
+        return asj_fail(context, ASJ_ERROR_LIMIT, "candidate %zu has a place beyond %d", k, MOST_COUNT);
+    return ASJ_OK;
 }
 
 static int likelier(const void *left, const void *right)
@@ -129,14 +139,10 @@ static asj_status check_candidates(asj_context *context, const asj_geometry_cand
 {
     if (count > MOST_COUNT)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%zu candidates are more than %d", count, MOST_COUNT);
-    for (size_t k = 0; k < count; k++) {
-        const asj_geometry_candidate *c = &candidates[k];
-        if (!usable(c))
-            return asj_fail(context, ASJ_ERROR_ARGUMENT, "candidate %zu has numbers that cannot be", k);
-        if (c->place1 >= MOST_COUNT || c->place2 >= MOST_COUNT)
-            return asj_fail(context, ASJ_ERROR_LIMIT, "candidate %zu has a place beyond %d", k, MOST_COUNT);
-    }
-    return ASJ_OK;
+    asj_status status = ASJ_OK;
+    for (size_t k = 0; k < count && status == ASJ_OK; k++)
+        status = check_candidate(context, &candidates[k], k);
+    return status;
 }
 
 /* A probability that ASJ_MOST_PAIRS candidates have or exceed, and hardly any more: so few need be sorted. Bits of positive numbers

@@ -116,6 +116,8 @@ asj_status asj_matches_write(const char *path, int32_t file_format, const asj_ma
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "%d is no file format for matches", (int)file_format);
     if (report->lines < ASJ_LINES_NONE || report->lines > ASJ_LINES_JOINED)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "lines %d: there is no such", (int)report->lines);
+    if (report->lines && (report->minimum_end < ASJ_END_CUT || report->minimum_end > ASJ_END_CORNER))
+        return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "minimum_end %d: there is no such", (int)report->minimum_end);
     status = asj_message_reserved(&message, report->reserved);
     if (status == ASJ_OK)
         status = check_report(report, file_format, &message);

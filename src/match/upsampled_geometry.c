@@ -153,10 +153,15 @@ static int32_t surpasses(const asj_geometry *upsampled, const asj_geometry *own)
     return upsampled->log10_nfa < fmin(SURELY, SURPASSES * own->log10_nfa);
 }
 
+static int32_t tells_motion(const asj_geometry *g)
+{
+    return g->has_pose || g->only_turns;
+}
+
 /* What is up in image 1 is down in image 2. */
 static int32_t is_upside_down(const asj_geometry *g)
 {
-    return (g->has_pose || g->only_turns) && g->rotation[4] < 0;
+    return tells_motion(g) && g->rotation[4] < 0;
 }
 
 /* Have the images a rival that is no chance by itself? */
@@ -226,17 +231,39 @@ asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsa
     const int32_t alike = (a->has_pose && b->has_pose) || (a->only_turns && b->only_turns);
     if (a->status == ASJ_GEOMETRY_ACCEPTED)
         return accepted && alike ? compare(a, b) :
-               accepted && !a->has_pose && !a->only_turns ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
+               accepted && !tells_motion(a) ? ASJ_LOOKS_BY_UPSAMPLED : ASJ_LOOKS_BY_IMAGES;
     if (repeats(a) && !(accepted && b->log10_nfa < OUTNUMBERS * a->log10_nfa))
         return ASJ_LOOKS_LOST;
     return asj_looks_may_settle(own) ? look_beyond(own, b) : ASJ_LOOKS_BY_UPSAMPLED;
 }
 
+/* A geometry that needs no other. Without cameras, and where the model is a plane, there is no motion to ask for. */
+static int32_t is_enough(const asj_geometry *g)
+{
+    return g->status == ASJ_GEOMETRY_ACCEPTED &&
+           (tells_motion(g) ? g->log10_nfa < SURELY : g->model != ASJ_GEOMETRY_ESSENTIAL);
+}
+
+int32_t asj_looks_may_close(const asj_match_result *own)
+{
+    const asj_geometry *g = &own->geometry;
+    if (g->status == ASJ_GEOMETRY_AMBIGUOUS)
+        return asj_looks_may_settle(own) && !repeats(g);
+    return g->status != ASJ_GEOMETRY_NOT_ASKED && !is_enough(g);
+}
+
 int32_t asj_looks_close(const asj_match_result *own, const asj_match_result *other)
 {
     const asj_geometry *a = &own->geometry, *b = &other->geometry;
-    return b->status == ASJ_GEOMETRY_ACCEPTED && b->has_pose && !is_upside_down(b) && !a->only_turns &&
-           (!contradicts(a, b) || surpasses(b, a));
+    if (!asj_looks_may_close(own) || b->status != ASJ_GEOMETRY_ACCEPTED)
+        return 0;
+    if (a->status == ASJ_GEOMETRY_CHANCE)
+        return 1;
+    if (!b->has_pose || is_upside_down(b) || a->only_turns)
+        return 0;
+    if (a->status == ASJ_GEOMETRY_AMBIGUOUS)
+        return settles(b, a);
+    return surpasses(b, a) || (!tells_motion(a) && !contradicts(a, b));
 }
 
 /* --- a geometry of one result, and matches of the other ----------------------------------------------------------------------- */

@@ -22,8 +22,13 @@ typedef enum asj_looks {
 
 asj_looks asj_looks_of(const asj_match_result *own, const asj_match_result *upsampled);
 
-/* Of images that leave their motion open: is what another look accepts the answer? It is when they allow that motion, or when it
- * has so much more evidence that it does not matter which one they had in front. */
+/* Is there something that a look of another kind may answer: no geometry, a motion that stays open or is not sure, or rivals none
+ * of which is sure? */
+int32_t asj_looks_may_close(const asj_match_result *own);
+
+/* .. and is what such a look accepts the answer? Where the images' best is chance it is. Otherwise it is when it has so much more
+ * evidence that it does not matter which one they had in front; of rivals also when it is one of them, and of a motion that stays
+ * open when they allow it. */
 int32_t asj_looks_close(const asj_match_result *own, const asj_match_result *other);
 
 /* Do the images leave a motion open that the upsampled ones may settle, even if the images have no match? */

@@ -490,6 +490,13 @@ static void wrong_arguments_are_refused(void **state)
         expect_refusal(in_folder("never"), ASJ_FILE_CSV, ASJ_ERROR_ARGUMENT, "there is no such");
         report.lines = asked;
     }
+    report.lines = ASJ_LINES_BRANCHES;
+    for (int32_t end = -1; end < 9; end += 5) {
+        report.minimum_end = end;
+        expect_refusal(in_folder("never"), ASJ_FILE_CSV, ASJ_ERROR_ARGUMENT, "minimum_end");
+    }
+    report.lines = ASJ_LINES_NONE;
+    report.minimum_end = 0;
     report.reserved[1] = 1;
     expect_refusal(in_folder("never"), ASJ_FILE_CSV, ASJ_ERROR_OPTION, "reserved");
     report.reserved[1] = 0;

@@ -80,6 +80,13 @@ static void test_refused(void **state)
     options = with(&counter);
     options.allocator.allocate = NULL;
     assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_ARGUMENT);
+    asj_context_options_init(&options); /* the other one is the default, which knows nothing of this one's memory */
+    options.allocator.allocate = unit_allocate;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_ARGUMENT);
+    asj_context_options_init(&options);
+    options.allocator.release = unit_release;
+    assert_int_equal(asj_context_create(&options, &context), ASJ_ERROR_ARGUMENT);
+    assert_null(context);
     static const int32_t backends[] = {-1, 3, INT32_MAX}, threads[] = {-1, 257, INT32_MIN, INT32_MAX};
     static const int32_t forms[] = {-1, ASJ_SIMD_COUNT, INT32_MAX}, levels[] = {-1, 77, INT32_MIN};
     for (size_t i = 0; i < UNIT_COUNT(backends); i++) {

@@ -431,6 +431,14 @@ static void threads_and_order_change_nothing(void **state)
     free(s);
 }
 
+/* Refused, with a message that says which number is wrong. */
+static void expect_message(asj_context *context, const scene *s, const asj_geometry_options *o, const char *part)
+{
+    asj_geometry g;
+    assert_true(asj_geometry_estimate(context, s->candidates, 5, o, NULL, &g) < 0);
+    assert_non_null(strstr(asj_context_message(context), part));
+}
+
 static void bad_input_is_refused(void **state)
 {
     (void)state;
@@ -468,7 +476,10 @@ static void bad_input_is_refused(void **state)
     assert_int_equal(asj_geometry_estimate(context, s->candidates, s->count, &o, NULL, &g), ASJ_ERROR_OPTION);
     o = options_for(ASJ_GEOMETRY_AUTO, 1);
     o.epsilon = NAN;
-    assert_int_equal(asj_geometry_estimate(context, s->candidates, s->count, &o, NULL, &g), ASJ_ERROR_OPTION);
+    expect_message(context, s, &o, "epsilon of the geometry is nan, not 1e-12 .. 1");
+    o = options_for(ASJ_GEOMETRY_AUTO, 1);
+    o.scale_sd = 1.0001;
+    expect_message(context, s, &o, "scale_sd of the geometry is 1.0001, not 0.02 .. 1");
     o = options_for(ASJ_GEOMETRY_AUTO, 1);
     assert_int_equal(asj_geometry_estimate(context, NULL, 3, &o, NULL, &g), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_geometry_estimate(context, s->candidates, 3, &o, NULL, NULL), ASJ_ERROR_ARGUMENT);
@@ -481,10 +492,10 @@ static void bad_input_is_refused(void **state)
     s->candidates[2].x2 = 5;
     s->candidates[2].affine[0] = -s->candidates[2].affine[0]; /* mirrors */
     s->candidates[2].affine[1] = -s->candidates[2].affine[1];
-    assert_int_equal(asj_geometry_estimate(context, s->candidates, 5, &o, NULL, &g), ASJ_ERROR_ARGUMENT);
+    expect_message(context, s, &o, "the map of candidate 2 mirrors");
     make(s, SOLID, 10, 41);
     s->candidates[4].probability = 1.5;
-    assert_int_equal(asj_geometry_estimate(context, s->candidates, 5, &o, NULL, &g), ASJ_ERROR_ARGUMENT);
+    expect_message(context, s, &o, "candidate 4 has the probability 1.5");
     s->candidates[4].probability = 0.5;
     for (int32_t side = 0; side < 2; side++) {
         s->candidates[4].place1 = side ? 4 : UINT32_MAX;

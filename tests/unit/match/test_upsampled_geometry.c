@@ -638,6 +638,43 @@ static void an_open_motion_is_found(void **state)
     }
 }
 
+/* What a look of another kind, with colours, may answer: the status of the images, whether they have a pose, a rival, and what that
+ * look's motion is off them. */
+static void another_look_answers_what_is_open(void **state)
+{
+    static const struct {
+        int32_t status, has_pose;
+        double rival_log10_nfa, degrees, rival_degrees, log10_nfa; /* the last: of the other look, where the images have -30 */
+        int32_t may, closes;
+    } cases[] = {{ASJ_GEOMETRY_CHANCE, 0, 0, 30, 30, -10, 1, 1},       {ASJ_GEOMETRY_ACCEPTED, 1, 0, 1, 30, -37, 1, 0},
+                 {ASJ_GEOMETRY_ACCEPTED, 1, 0, 30, 30, -38, 1, 1},
+                 {ASJ_GEOMETRY_ACCEPTED, 0, 0, 1, 30, -10, 1, 1},      {ASJ_GEOMETRY_ACCEPTED, 0, 0, 30, 30, -10, 1, 0},
+                 {ASJ_GEOMETRY_ACCEPTED, 0, 0, 30, 30, -50, 1, 1},     {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 1, 30, -10, 1, 1},
+                 {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 30, 1, -10, 1, 1},   {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 30, 30, -30, 1, 0},
+                 {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 30, 30, -50, 1, 1},  {ASJ_GEOMETRY_AMBIGUOUS, 0, -101, 1, 30, -300, 0, 0},
+                 {ASJ_GEOMETRY_NOT_ASKED, 0, 0, 1, 1, -50, 0, 0}};
+    asj_context *context = ((unit_fixture *)*state)->context;
+    for (size_t k = 0; k < UNIT_COUNT(cases); k++) {
+        asj_match_result *own = match(context, 0, 1), *coloured = match(context, 1, 1);
+        set_rival(own, &coloured->geometry, cases[k].rival_degrees);
+        change_pose(own, cases[k].degrees, 1);
+        own->geometry.status = cases[k].status;
+        own->geometry.has_pose = cases[k].has_pose;
+        own->geometry.has_rival = cases[k].rival_log10_nfa < 0;
+        own->geometry.rival_log10_nfa = cases[k].rival_log10_nfa;
+        own->geometry.log10_nfa = -30;
+        coloured->geometry.log10_nfa = cases[k].log10_nfa;
+        assert_int_equal(asj_looks_may_close(own), cases[k].may);
+        assert_int_equal(asj_looks_close(own, coloured), cases[k].closes);
+        own->geometry.log10_nfa = -36; /* a pose that is sure */
+        assert_true(!cases[k].has_pose || !asj_looks_may_close(own));
+        coloured->geometry.status = ASJ_GEOMETRY_AMBIGUOUS;
+        assert_int_equal(asj_looks_close(own, coloured), 0);
+        asj_match_result_free(&own);
+        asj_match_result_free(&coloured);
+    }
+}
+
 /* Frames match themselves upside down in either look: both telling one such motion settles nothing, an upright one is found. */
 static void what_turns_over_settles_nothing(void **state)
 {
@@ -750,7 +787,8 @@ int main(void)
         cmocka_unit_test(poses_that_agree_are_one),
         cmocka_unit_test(rivals_are_confirmed),
         cmocka_unit_test(without_matches_a_motion_is_settled),
-        cmocka_unit_test(an_open_motion_is_found), cmocka_unit_test(what_turns_over_settles_nothing),
+        cmocka_unit_test(an_open_motion_is_found), cmocka_unit_test(another_look_answers_what_is_open),
+        cmocka_unit_test(what_turns_over_settles_nothing),
         cmocka_unit_test(what_repeats_is_not_settled),
         cmocka_unit_test(a_plane_decides_no_motion),
         cmocka_unit_test(chance_stays_chance),

@@ -241,7 +241,7 @@ def match_images(
                at 2, in three to eight times the time; what is seen at a glancing angle, like things on a table, matches at (1, 3).
                "auto": as they are; from `upsample_from` matches on (8; fewer where a geometry is left open; 0 = never) also upsampled,
                which :attr:`Matches.upsampled` tells; images of more than 2 megapixels also halved, and upsampled from there; where no
-               geometry is found also with colours (`look_at_colours`), which :attr:`Matches.coloured` tells; and where nothing comes
+               sure geometry is found also with colours (`look_at_colours`), which :attr:`Matches.coloured` tells; and where nothing comes
                of it at (1, 3) and (3, 1), then also upsampled; :attr:`Matches.stretch` tells which it was
     preset     "default", or "paper": the published method, detector and matcher; "auto" is as they are then
     options    those of the matcher; the others as for :func:`asj.match`
