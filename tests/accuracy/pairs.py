@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""Which matches of pairs of photographs are right: pairs.py ASJ_CLI PAIRS [--cameras] [-- OPTIONS OF MATCH]
+"""Which matches of pairs of photographs are right: pairs.py ASJ_CLI PAIRS [--cameras [--crops]] [-- OPTIONS OF MATCH]
 
 PAIRS: folders in the format of tests/experiments/README.md, whose lab/score.py says what is right. For each pair: key points,
 junctions (key points both of whose branches point the same way), line segments (the two branches of each match; with --lines among
@@ -8,8 +8,9 @@ the options its lines), right of all. Below them the sums, and the mean of the p
 
 --cameras, with --geometry among the options: only pairs whose truth.json has F, K1, K2 and pose, with their cameras; also the error
 of the pose (the larger one of rotation and direction of translation, degrees; 180 where there is none), the area under recall over
-error, and how many matches are within 10 px of both epipolar lines. Exit code 1 when there is no such pair, or match fails. Needs
-numpy.
+error, and how many matches are within 10 px of both epipolar lines. --crops: each pair six times,
+without the first 0 to 5 columns and rows: how much is luck of the pixels. Exit code 1 when there is no such pair, or match fails.
+Needs numpy, and OpenCV with --crops.
 """
 
 import argparse
@@ -29,6 +30,7 @@ from pose_judge import area, camera_options, count_right, errors  # noqa: E402
 LOOSE = 10.0  # px: poses of video frames are known to a few degrees
 NO_POSE = 180.0
 FAR_OUT = 10.0  # degrees
+CROPS = ((0, 0), (1, 0), (0, 1), (1, 1), (2, 3), (4, 5))  # columns and rows
 MEASURES = ("key points", "junctions", "segments")
 
 
@@ -52,6 +54,28 @@ def judge(pair, found, lines):
     else:
         out["segments"] = np.concatenate([judge_of.segments(*branch) for branch in branches])
     return {name: verdict[~np.isnan(verdict.astype(float))].astype(bool) for name, verdict in out.items()}
+
+
+def crop(folder, columns_rows, place):
+    """The pairs with cameras without their first columns and rows, in the folder `place`"""
+    import cv2
+
+    x, y = columns_rows
+    moved = np.array([[1, 0, x], [0, 1, y], [0, 0, 1]])
+    for pair in pairs.read_folder(folder):
+        truth = json.loads((folder / pair.name / "truth.json").read_text())
+        if not has_cameras(pair, truth):
+            continue
+        (place / pair.name).mkdir()
+        for side, path in (("1", pair.image1), ("2", pair.image2)):
+            cv2.imwrite(str(place / pair.name / f"{side}.png"), cv2.imread(str(path), cv2.IMREAD_UNCHANGED)[y:, x:])
+            truth["K" + side] = (np.linalg.inv(moved) @ np.reshape(truth["K" + side], (3, 3))).tolist()
+        truth["F"] = (moved.T @ np.reshape(truth["F"], (3, 3)) @ moved).tolist()
+        (place / pair.name / "truth.json").write_text(json.dumps(truth))
+
+
+def has_cameras(pair, truth):
+    return pair.kind == pairs.FUNDAMENTAL and all(truth.get(key) for key in ("K1", "K2", "pose"))
 
 
 def match(cli, pair, options):
@@ -86,20 +110,11 @@ def print_sums(table):
                   f"average {100 * np.mean(some):.1f} % of {len(some)} pairs")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("cli")
-    parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--cameras", action="store_true")
-    words = sys.argv[1:]
-    cut = words.index("--") if "--" in words else len(words)
-    given, options = parser.parse_args(words[:cut]), words[cut + 1 :]
+def judge_all(given, options, folder):
     table, poses = [], []
-    if not given.folder.is_dir():
-        parser.error(f"{given.folder} is no folder")
-    for pair in pairs.read_folder(given.folder):
-        truth = json.loads((given.folder / pair.name / "truth.json").read_text())
-        if given.cameras and not (pair.kind == pairs.FUNDAMENTAL and all(truth.get(key) for key in ("K1", "K2", "pose"))):
+    for pair in pairs.read_folder(folder):
+        truth = json.loads((folder / pair.name / "truth.json").read_text())
+        if given.cameras and not has_cameras(pair, truth):
             continue
         found = match(given.cli, pair, [*options, *(camera_options(truth) if given.cameras else [])])
         table.append(judge(pair, found, "--lines" in options))
@@ -109,6 +124,30 @@ def main():
             poses.append((pose_error(found, truth), loose, len(found["matches"])))
             told.append(f"pose {poses[-1][0]:.1f}")
         print(f"{pair.name}: {', '.join(told)}", flush=True)
+    return table, poses
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("cli")
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--cameras", action="store_true")
+    parser.add_argument("--crops", action="store_true")
+    words = sys.argv[1:]
+    cut = words.index("--") if "--" in words else len(words)
+    given, options = parser.parse_args(words[:cut]), words[cut + 1 :]
+    if not given.folder.is_dir():
+        parser.error(f"{given.folder} is no folder")
+    if given.crops and not given.cameras:
+        parser.error("--crops is for --cameras")
+    table, poses = judge_all(given, options, given.folder)
+    for which in CROPS[1:] if given.crops else ():
+        with tempfile.TemporaryDirectory() as place:
+            crop(given.folder, which, pathlib.Path(place))
+            print("without", *which, "columns and rows:")
+            more = judge_all(given, options, pathlib.Path(place))
+        table += more[0]
+        poses += more[1]
     if not table:
         sys.exit(f"{given.folder} has no such pairs")
     print_sums(table)

@@ -160,6 +160,7 @@ for ends in both inner cut; do
 done
 part lines-joined "$python" "$here/pairs.py" "$cli" "$photographs" -- --lines --join-lines
 part frames "$python" "$here/pairs.py" "$cli" "$photographs" --cameras -- --geometry auto
+part frames-cropped "$python" "$here/pairs.py" "$cli" "$photographs" --cameras --crops -- --geometry auto
 part frames-as-they-are "$python" "$here/pairs.py" "$cli" "$photographs" --cameras -- --geometry auto --upsample-from 0
 part unrelated "$python" "$here/unrelated.py" "$cli" "$photographs" --every 3
 part unrelated-matches "$python" "$here/unrelated.py" "$cli" "$photographs" --every 3 --whole -- --geometry none
