@@ -60,7 +60,8 @@ static const asj_option_info rows[] = {
     RADII(ISOTROPIC, ADVANCED, isotropic_radii, 3, 30, RADII_DEFAULT, RADII_PAPER, RADII_DEFAULT,
           "radii at which isotropic junctions are tested"),
     NUMBER(ISOTROPIC, COMMON, epsilon, "NFA", 1e-30, 1e6, 1, 1, 1e4,
-           "false alarms allowed in an image of noise, for junctions and for branches"),
+           "false alarms allowed in an image of noise, for junctions and for branches (at half the image and less two weak "
+           "branches are judged together)"),
     INTEGER(ISOTROPIC, ADVANCED, isotropic_persistence, "", 1, 8, 1, 3, 1,
             "radii in a row at which a junction must be meaningful"),
     SWITCH(ISOTROPIC, ADVANCED, disjoint_sectors, 0, 1, 0, "the branches of an isotropic junction do not share pixels"),

@@ -34,11 +34,12 @@ class Geometry:
     model: str
     #: (3, 3) homography from image 1 to image 2, or fundamental matrix F with x2' F x1 = 0; pixels, norm 1
     matrix: NDArray[np.float64]
-    #: (3, 3) and (3,) with x2 ~ R x1 + t in camera coordinates, |t| = 1; None where they are not determined
+    #: (3, 3) and (3,) with x2 ~ R x1 + t in camera coordinates, |t| = 1; None where they are not known to 10 degrees
     rotation: NDArray[np.float64] | None
     translation: NDArray[np.float64] | None
     #: (6, 6) of w (rad), the true rotation being exp([w]x) times this one, and of the translation; from what the candidates allow,
-    #: before the pose was finished from where the matches lie, so that errors are smaller as a rule. None as above
+    #: before the pose was finished from where the matches lie: errors are smaller as a rule, but with real lenses, which bend lines by
+    #: half a pixel, up to twice as large where there are many matches. None as above
     covariance: NDArray[np.float64] | None
     #: (3, 3) rotation of a camera that, as far as matches tell, only turns, and (3, 3) the covariance of w. None: it moves, or nobody knows
     turn: NDArray[np.float64] | None
