@@ -87,6 +87,18 @@ END
     [ -z "$(find "$work/user/build" -name '*.so*')" ] || { echo 'static: true has built a shared library'; exit 1; }
 }
 
+# without_meson: the commands of src/README.md, not optimized.
+without_meson() {
+    mkdir "$work/hand"
+    cp -R "$root/src" "$root/include" "$work/hand"
+    awk '/^## Without Meson/ { here = 1 } /^```$/ { on = 0 } on; here && /^```sh$/ { on = 1 }' "$root/src/README.md" |
+        sed 's/-O2/-O0/' > "$work/hand/build.sh"
+    { (cd "$work/hand" && sh -eu build.sh) &&
+        ${CC:-cc} -std=c99 -I "$root/include" "$work/core.c" "$work/hand/libasj.a" -o "$work/hand/core" -lm; } \
+        > "$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
+    [ "$("$work/hand/core")" = "$version" ] || { echo 'a program with what was compiled by hand fails'; exit 1; }
+}
+
 version=$(sh "$root/scripts/version.sh")
 cat > "$work/core.c" << 'END'
 #include <asj/asj.h>
@@ -157,4 +169,5 @@ moved
 use_from static
 fully_static
 subproject
+without_meson
 (cd "$work/shared" && find . -type f -o -type l | sort)
