@@ -215,7 +215,7 @@ static asj_status have_colours(const search *s, int32_t *both)
 
 static int32_t may_look_at_colours(const search *s)
 {
-    return s->options->look_at_colours && !s->detect_options->colours && asks_geometry(s) && asj_looks_may_close(s->best);
+    return s->options->look_at_colours && !s->detect_options->colours && asj_looks_may_close(s->best);
 }
 
 static asj_status look_with_colours(search *s, double from, double part)

@@ -53,9 +53,9 @@ enum {
 /* "gradient", "candidates", ...; "unknown" outside the range. A static string. */
 ASJ_API const char *asj_stage_name(int32_t stage);
 
-/* Memory. Both functions or neither: asj_context_options_init() leaves
- * the C library's here, so replace both. `allocate` returns at least `size` bytes aligned for any C type, or NULL; `release`
- * takes what `allocate` gave (never NULL). They are called from the thread that calls the library only. */
+/* Memory. Both functions or neither: asj_context_options_init() leaves the C library's here, so replace both. `allocate` returns at
+ * least `size` bytes aligned for any C type, or NULL; `release` takes what `allocate` gave (never NULL). They are called from the
+ * thread that calls the library only. */
 typedef struct asj_allocator {
     void *(*allocate)(void *user, size_t size);
     void (*release)(void *user, void *memory);

@@ -42,7 +42,7 @@ typedef struct asj_detection {
  * follows 15 rays a branch in place of two: chessboards of 2000 x 1500 pixels take 6 times as long with it as with preset default,
  * of 4000 x 3000 9 times. How often the caller is asked whether to go on: asj_progress_callback (context.h).
  * Memory: about 7 bytes per pixel of the image, whatever the first octave, but 28 with first_octave -1; 2 more with half_octaves,
- * 13 more with seeds from line segments (preset `paper`); 2 or 3 more with colours; plus 2.6 MB and 1.1 to 1.5 MB a thread,
+ * 13 more with seeds from line segments (preset `paper`), hardly more with colours; plus 2.6 MB and 1.1 to 1.5 MB a thread,
  * and for each junction 6 kB in photographs, up to 25 kB where branches are hundreds of pixels long: a photograph enlarged to 12
  * megapixels, with 32 000 junctions of preset match, took 285 MB.
  *

@@ -36,10 +36,10 @@
  *   - The images' is accepted, and the upsampled ones have rivals: the images' is the answer (34 pairs, all within 3.4 degrees).
  *
  * A third witness are the images' colours (asj_looks_close()), where there is no motion yet, or none that is SURELY one, and no
- * rival that is ASJ_SURE_RIVAL. What they accept is the answer where the images' best is chance; where it has SURPASSES times the
- * log evidence and SURELY (rooms 1000 to 1711: of 53 accepted with a log10 NFA above -30 13, all of which are right then, and one
- * was out by 90 degrees before); and where it is one of the images' rivals, or a motion that the images allow. Nothing that is
- * upside down. */
+ * rival that is ASJ_SURE_RIVAL. What they accept is the answer where the images have chance or too little; where it has
+ * SURPASSES times the log evidence and SURELY (rooms 1000 to 1711: of 53 accepted with a log10 NFA above -30 13, all of which
+ * are right then, and one was out by 90 degrees before); and where it is one of the images' rivals, or a motion that the images
+ * allow. Nothing that is upside down. */
 #include "upsampled_geometry.h"
 #include "core/angle.h"
 #include "geometry/ambiguity.h"
@@ -263,7 +263,7 @@ int32_t asj_looks_close(const asj_match_result *own, const asj_match_result *oth
     const asj_geometry *a = &own->geometry, *b = &other->geometry;
     if (!asj_looks_may_close(own) || b->status != ASJ_GEOMETRY_ACCEPTED)
         return 0;
-    if (a->status == ASJ_GEOMETRY_CHANCE)
+    if (a->status == ASJ_GEOMETRY_CHANCE || a->status == ASJ_GEOMETRY_TOO_FEW)
         return 1;
     if (!b->has_pose || is_upside_down(b) || a->only_turns)
         return 0;

@@ -8,9 +8,9 @@ the options its lines), right of all. Below them the sums, and the mean of the p
 
 --cameras, with --geometry among the options: only pairs whose truth.json has F, K1, K2 and pose, with their cameras; also the error
 of the pose (the larger one of rotation and direction of translation, degrees; 180 where there is none), the area under recall over
-error, and how many matches are within 10 px of both epipolar lines. --crops: each pair six times,
-without the first 0 to 5 columns and rows: how much is luck of the pixels. Exit code 1 when there is no such pair, or match fails.
-Needs numpy, and OpenCV with --crops.
+error, and how many matches are within 10 px of both epipolar lines. --crops: each pair six times, as it is and without its first
+columns and rows, up to five: how much is luck of the pixels. Exit code 1 when there is no such pair, or match fails. Needs numpy,
+and OpenCV with --crops.
 """
 
 import argparse
@@ -30,7 +30,7 @@ from pose_judge import area, camera_options, count_right, errors  # noqa: E402
 LOOSE = 10.0  # px: poses of video frames are known to a few degrees
 NO_POSE = 180.0
 FAR_OUT = 10.0  # degrees
-CROPS = ((0, 0), (1, 0), (0, 1), (1, 1), (2, 3), (4, 5))  # columns and rows
+CROPS = ((1, 0), (0, 1), (1, 1), (2, 3), (4, 5))  # columns and rows
 MEASURES = ("key points", "junctions", "segments")
 
 
@@ -141,7 +141,7 @@ def main():
     if given.crops and not given.cameras:
         parser.error("--crops is for --cameras")
     table, poses = judge_all(given, options, given.folder)
-    for which in CROPS[1:] if given.crops else ():
+    for which in CROPS if given.crops else ():
         with tempfile.TemporaryDirectory() as place:
             crop(given.folder, which, pathlib.Path(place))
             print("without", *which, "columns and rows:")

@@ -647,7 +647,7 @@ static void another_look_answers_what_is_open(void **state)
         double rival_log10_nfa, degrees, rival_degrees, log10_nfa; /* the last: of the other look, where the images have -30 */
         int32_t may, closes;
     } cases[] = {{ASJ_GEOMETRY_CHANCE, 0, 0, 30, 30, -10, 1, 1},       {ASJ_GEOMETRY_ACCEPTED, 1, 0, 1, 30, -37, 1, 0},
-                 {ASJ_GEOMETRY_ACCEPTED, 1, 0, 30, 30, -38, 1, 1},
+                 {ASJ_GEOMETRY_ACCEPTED, 1, 0, 30, 30, -38, 1, 1},     {ASJ_GEOMETRY_TOO_FEW, 0, 0, 30, 30, -10, 1, 1},
                  {ASJ_GEOMETRY_ACCEPTED, 0, 0, 1, 30, -10, 1, 1},      {ASJ_GEOMETRY_ACCEPTED, 0, 0, 30, 30, -10, 1, 0},
                  {ASJ_GEOMETRY_ACCEPTED, 0, 0, 30, 30, -50, 1, 1},     {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 1, 30, -10, 1, 1},
                  {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 30, 1, -10, 1, 1},   {ASJ_GEOMETRY_AMBIGUOUS, 0, -20, 30, 30, -30, 1, 0},
@@ -664,6 +664,7 @@ static void another_look_answers_what_is_open(void **state)
         own->geometry.rival_log10_nfa = cases[k].rival_log10_nfa;
         own->geometry.log10_nfa = -30;
         coloured->geometry.log10_nfa = cases[k].log10_nfa;
+        coloured->geometry.has_pose = own->geometry.status != ASJ_GEOMETRY_CHANCE && own->geometry.status != ASJ_GEOMETRY_TOO_FEW;
         assert_int_equal(asj_looks_may_close(own), cases[k].may);
         assert_int_equal(asj_looks_close(own, coloured), cases[k].closes);
         own->geometry.log10_nfa = -36; /* a pose that is sure */
