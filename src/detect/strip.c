@@ -87,8 +87,7 @@ void asj_strip_sums_of(const asj_frame *frame, const asj_strip_walk *walk, asj_s
                              list.pixels, list.near_pixels};
 }
 
-asj_strip_sums asj_strip_add_up(const asj_context *context, const asj_frame *frame, const asj_strip_line *line, double half_width,
-                                double near)
+asj_strip_walk asj_strip_walk_along(const asj_frame *frame, const asj_strip_line *line, double half_width, double near)
 {
     const double x = line->x, y = line->y;
     asj_strip_walk walk = {x, y, cos(line->angle), sin(line->angle), line->length, half_width, near, 0, 0, 0, 0, 0};
@@ -99,6 +98,13 @@ asj_strip_sums asj_strip_add_up(const asj_context *context, const asj_frame *fra
     walk.spread = walk.half_width / fabs(step) + 1e-6;
     walk.first = (int32_t)fmax(floor(fmin(start, end) - walk.half_width), 0);
     walk.last = (int32_t)fmin(ceil(fmax(start, end) + walk.half_width), size - 1);
+    return walk;
+}
+
+asj_strip_sums asj_strip_add_up(const asj_context *context, const asj_frame *frame, const asj_strip_line *line, double half_width,
+                                double near)
+{
+    const asj_strip_walk walk = asj_strip_walk_along(frame, line, half_width, near);
     asj_strip_sums sums;
     context->ops->strip->sums(frame, &walk, &sums);
     sums.gamma /= ASJ_GRADIENT_ONE;

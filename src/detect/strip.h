@@ -56,6 +56,8 @@ typedef struct asj_strip_walk {
     int32_t first, last;     /* steps along */
 } asj_strip_walk;
 
+asj_strip_walk asj_strip_walk_along(const asj_frame *frame, const asj_strip_line *line, double half_width, double near);
+
 /* The sums of any strip, however long; gamma in standard units. `near` px: see asj_strip_walk. */
 asj_strip_sums asj_strip_add_up(const asj_context *context, const asj_frame *frame, const asj_strip_line *line, double half_width,
                                 double near);

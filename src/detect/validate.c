@@ -6,6 +6,7 @@
 #include "validate.h"
 #include "blurred_corner.h"
 #include "core/angle.h"
+#include "curvature.h"
 #include "locate.h"
 #include "strip.h"
 #include "tilt.h"
@@ -270,7 +271,8 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
     }
     if (hypothesis->branch_count < count)
         meet_again(context, frame, options, hypothesis);
-    if (is_unsure(frame, options, hypothesis))
+    if (is_unsure(frame, options, hypothesis) ||
+        (options->strip_test && asj_is_arc(frame, hypothesis, options->minimum_opening * ASJ_DEGREE)))
         hypothesis->branch_count = 0;
     const asj_hypothesis unsorted = *hypothesis;
     hypothesis->branch_count = 0;

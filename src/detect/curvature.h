@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Step 5: arcs that look like corners. */
+#ifndef ASJ_SRC_CURVATURE_H
+#define ASJ_SRC_CURVATURE_H
+
+#include "core/image.h"
+#include "hypothesis.h"
+
+/* Whether every two branches that open by at least `least` radians lie on an arc. */
+int asj_is_arc(const asj_frame *frame, const asj_hypothesis *hypothesis, double least);
+
+#endif
