@@ -3,8 +3,8 @@
  *
  * On the rim of a disc, a plate, a wheel, a lamp, two tangents are straight enough for the few px that short branches have, and
  * they meet at an angle: in each octave discs of 8 to 12 of its px have up to eleven such junctions. But along a corner's branches
- * the edge keeps its direction, and along an arc's it turns all the way. Of a branch with t px along it and n across (line_fit.c) an
- * edge of curvature k that leaves the direction a of the branch by alpha at t = 0 has gradients with
+ * the edge keeps its direction, and along an arc's it turns all the way. With t px along a branch and n across (line_fit.c), an
+ * edge of curvature k, 1/px, that leaves the direction of the branch by alpha at t = 0 has gradients with
  *
  *     g_u / g_n = -tan(alpha + k t)  ~  -(alpha + k t),
  *
@@ -17,11 +17,11 @@
  * is the share of the turn that is made evenly: 1.0 to 1.6 on rims of discs, 0 +- 0.05 at corners of straight edges. A junction of
  * which each two branches that open have an arc's share is none; a T whose stem meets an arc is one.
  *
- * Discs of 100 grey levels in noise of 2, 3 to 50 px large, edges of .7 px, 36 of each of thirteen sizes: 2186 junctions without this, 15 with
- * it (tests/unit/detect/test_curvature.c has some of both kinds). Of 10464 junctions of 91 photographs, most of things that people
- * make, it takes 2.2 %, most of them from leaves. The standard deviation is twice what corners have: noise is less alike along an
- * edge than from pixel to pixel, since g_u is a difference along it. Not where strips do not judge (preset match): what is found on
- * an arc in both images matches. */
+ * Discs of 100 grey levels in noise of 2, 3 to 50 px large, edges of .7 px, 36 of each of thirteen sizes: 2186 junctions without
+ * this, 15 with it (test_curvature.c has some). Of 10464 junctions of 91 photographs, most of things that people make, it takes
+ * 2.2 %, most of them from leaves. The standard deviation is about twice what corners have: g_u is a difference along the edge, so
+ * that its noise is less alike there than from pixel to pixel. Not where strips do not judge (preset match): what is found on an
+ * arc in both images matches. */
 #include "curvature.h"
 #include "blurred_corner.h"
 #include "core/angle.h"
@@ -125,8 +125,8 @@ static int on_arc(const bend *a, const bend *b, double turn)
     return all >= EVEN && all - SURELY * sd >= HALF && fmin(shares[0], shares[1]) >= EVEN_EACH;
 }
 
-/* Between what blur makes round at both ends nothing of a short side is straight. (Corners of 25 grey levels blurred by 5 px: recall
- * .80 otherwise, .87 as it is.) */
+/* Between what blur makes round at both ends nothing of a short side is straight. (Corners of 25 grey levels blurred by 5 px:
+ * recall .80 otherwise, .87 as it is.) */
 static int is_short_and_soft(const asj_hypothesis *hypothesis)
 {
     double shortest = HUGE_VAL, softest = 0;

@@ -61,7 +61,8 @@ static void test_polygons(void **state)
     static const struct {
         int sides;
         double radius, blur;
-    } kinds[] = {{3, 10, 0.7}, {4, 10, 0.7}, {5, 14, 0.7}, {6, 16, 0.7}, {8, 21, 0.7}, {4, 20, 2}, {6, 28, 2}, {8, 36, 2}, {4, 40, 4}};
+    } kinds[] = {{3, 10, 0.7}, {4, 10, 0.7}, {5, 14, 0.7}, {6, 16, 0.7}, {8, 21, 0.7},
+                 {4, 20, 2}, {6, 28, 2}, {8, 36, 2}, {4, 40, 4}};
     for (size_t n = 0; n < UNIT_COUNT(kinds); n++)
         unit_near("corners", kinds[n].sides, kinds[n].radius, count_on(*state, kinds[n].radius, kinds[n].sides, kinds[n].blur),
                   ROWS * ROWS * kinds[n].sides, 0);
