@@ -181,12 +181,14 @@ static void print_summary(const run *r)
              file && arguments->plot ? ", " : "", arguments->plot ? arguments->plot : "");
 }
 
-/* The caller has not asked for it. */
-static void print_stretch(const run *r)
+/* What the caller has not asked for. */
+static void print_looks(const run *r)
 {
     const double *by = r->result->stretch;
     if (r->arguments->look && r->arguments->stretch.x == 0 && (by[0] > 1 || by[1] > 1))
         cli_note("looked at stretched by %g,%g: as they are the images have too little in common", by[0], by[1]);
+    if (r->result->coloured)
+        cli_note("colours looked at, too: grey levels tell too little");
 }
 
 /* Of matches, where none is accepted. What the images and the upsampled ones tell at odds has rejected some (asj/match.h). */
@@ -320,7 +322,7 @@ static int run_all(run *r)
     cli_progress_clear(&r->session.progress);
     if (result == CLI_SUCCESS && !r->arguments->common.quiet) {
         print_summary(r);
-        print_stretch(r);
+        print_looks(r);
         print_geometry(r);
         if (r->result->match_count >= FEW || print_dark(r) == 0)
             print_hint(r);

@@ -106,6 +106,29 @@ void write_flat_views(const char *first, const char *second, int rows)
     write_view(second, wall, &(view){1 / VIEW_SCALE, -VIEW_X / VIEW_SCALE, -VIEW_Y / VIEW_SCALE, rows});
 }
 
+/* Red and green change against each other, so that 0.299 R + 0.587 G + 0.114 B stays what it is. */
+static void write_coloured_view(const char *path, const view *v)
+{
+    char *ppm = malloc(64 + (size_t)3 * SCENE_WIDTH * SCENE_HEIGHT);
+    assert_non_null(ppm);
+    size_t size = (size_t)snprintf(ppm, 64, "P6 %d %d 255\n", SCENE_WIDTH, SCENE_HEIGHT);
+    for (int y = 0; y < SCENE_HEIGHT; y++)
+        for (int x = 0; x < SCENE_WIDTH; x++) {
+            const double red = 100 * (wall(v->scale * x + v->left, v->scale * y + v->top) - 0.5);
+            ppm[size++] = (char)(unsigned char)(128 + red + 0.5);
+            ppm[size++] = (char)(unsigned char)(128 - red * (0.299 / 0.587) + 0.5);
+            ppm[size++] = (char)(unsigned char)128;
+        }
+    write_bytes(path, ppm, size);
+    free(ppm);
+}
+
+void write_coloured_views(const char *first, const char *second)
+{
+    write_coloured_view(first, &(view){1, 0, 0, 1});
+    write_coloured_view(second, &(view){1 / VIEW_SCALE, -VIEW_X / VIEW_SCALE, -VIEW_Y / VIEW_SCALE, 1});
+}
+
 void write_scene(const char *path)
 {
     write_light(path, rectangle);

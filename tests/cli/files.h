@@ -21,6 +21,8 @@ void write_views(const char *first, const char *second);
 int make_views(void **state); /* before a group of tests: first.png and second.png */
 void write_flat_views(const char *first, const char *second, int rows); /* so many rows are one, as of a wall seen from below */
 
+void write_coloured_views(const char *first, const char *second); /* PPM, in colours of one luma */
+
 /* The scene in 16-bit samples of which this is white. */
 void write_deep_scene(const char *path, int white);
 

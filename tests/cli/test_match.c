@@ -334,6 +334,29 @@ static void a_glancing_view_is_stretched_by_itself(void **state)
     free(as_it_is);
 }
 
+/* Colours of one luma are seen where a geometry is asked and the luma has none; the program says so. */
+static void colours_are_looked_at_by_themselves(void **state)
+{
+    (void)state;
+    write_coloured_views("c1.ppm", "c2.ppm");
+    for (int k = 0; k < 2; k++) {
+        const outcome *result = run_cli("match", "-o", "c.csv", "--geometry", "auto", "--look-at-colours", k ? "no" : "yes", "c1.ppm",
+                                        "c2.ppm", NULL);
+        expect_code(result, 0);
+        read_csv("c.csv", &found);
+        if (k == 0) {
+            expect_in(result, result->err, "colours looked at, too");
+            expect_in(result, result->err, "geometry: homography");
+            assert_true(found.count >= 10);
+            for (size_t n = 0; n < found.count; n++)
+                assert_true(is_true(found.rows[n]));
+        } else {
+            assert_null(strstr(result->err, "colours looked at"));
+            assert_true(found.count == 0);
+        }
+    }
+}
+
 /* Where they have matches enough, whole images are looked at upsampled too: more matches, of the same places within what soft and
  * coarse edges are known to (3 px here), told in JSON. With --upsample-from it is left, or is not reached. */
 static void whole_images_are_upsampled_by_themselves(void **state)
@@ -705,6 +728,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_surest_junctions_give_a_warning),
         cmocka_unit_test(stretched_images_match_in_their_own_pixels),
         cmocka_unit_test(a_glancing_view_is_stretched_by_itself),
+        cmocka_unit_test(colours_are_looked_at_by_themselves),
         cmocka_unit_test(whole_images_are_upsampled_by_themselves),
         cmocka_unit_test(a_stretch_goes_with_images_alone),
         cmocka_unit_test(features_take_the_place_of_images),
