@@ -340,8 +340,8 @@ static void colours_are_looked_at_by_themselves(void **state)
     (void)state;
     write_coloured_views("c1.ppm", "c2.ppm");
     for (int k = 0; k < 2; k++) {
-        const outcome *result = run_cli("match", "-o", "c.csv", "--geometry", "auto", "--look-at-colours", k ? "no" : "yes", "c1.ppm",
-                                        "c2.ppm", NULL);
+        const outcome *result =
+            run_cli("match", "-o", "c.csv", "--geometry", "auto", "--look-at-colours", k ? "no" : "yes", "c1.ppm", "c2.ppm", NULL);
         expect_code(result, 0);
         read_csv("c.csv", &found);
         if (k == 0) {
