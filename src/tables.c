@@ -18,6 +18,7 @@ static void fill_reference(asj_tables *t)
     t->scan = asj_scan_reference;
     t->strip = asj_strip_reference;
     t->wedge = asj_wedge_reference;
+    t->edge = asj_edge_reference;
     t->patch = asj_patch_reference;
     t->describe = asj_describe_reference;
     t->bound = asj_bound_reference;
@@ -26,8 +27,8 @@ static void fill_reference(asj_tables *t)
     t->gate = asj_gate_reference;
     t->ops = (asj_ops){
         .image = &t->image, .pyramid = &t->pyramid, .gradient = &t->gradient, .field = &t->field, .isotropic = &t->isotropic,
-        .line = &t->line, .arc = &t->arc, .scan = &t->scan, .strip = &t->strip, .wedge = &t->wedge, .patch = &t->patch,
-        .describe = &t->describe, .bound = &t->bound, .rank = &t->rank, .disc = &t->disc, .gate = &t->gate};
+        .line = &t->line, .arc = &t->arc, .scan = &t->scan, .strip = &t->strip, .wedge = &t->wedge, .edge = &t->edge,
+        .patch = &t->patch, .describe = &t->describe, .bound = &t->bound, .rank = &t->rank, .disc = &t->disc, .gate = &t->gate};
 }
 
 int asj_tables_has(int32_t simd)

@@ -11,6 +11,7 @@
 #include "detect/ray_walk.h"
 #include "detect/scan.h"
 #include "detect/blurred_wedge.h"
+#include "detect/edge_rows.h"
 #include "detect/strip.h"
 #include "match/disc.h"
 #include "match/describe.h"
@@ -30,6 +31,7 @@ typedef struct asj_tables {
     asj_scan_ops scan;
     asj_strip_ops strip;
     asj_wedge_ops wedge;
+    asj_edge_ops edge;
     asj_patch_ops patch;
     asj_describe_ops describe;
     asj_bound_ops bound;

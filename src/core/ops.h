@@ -18,6 +18,7 @@ typedef struct asj_ops {
     struct asj_scan_ops *scan;           /* detect/scan.h */
     struct asj_strip_ops *strip;         /* detect/strip.h */
     struct asj_wedge_ops *wedge;         /* detect/blurred_wedge.h */
+    struct asj_edge_ops *edge;           /* detect/edge_rows.h */
     struct asj_patch_ops *patch;         /* match/patch.h */
     struct asj_describe_ops *describe;   /* match/describe.h */
     struct asj_bound_ops *bound;         /* match/product_bound.h */

@@ -33,7 +33,8 @@ static int32_t level_at(const asj_frame *frame, int64_t x, int64_t y)
     return ((256 - wy) * (above >> 1) + wy * (below >> 1)) >> 7;
 }
 
-int asj_edge_row(const asj_edge_line *line, int32_t t, int32_t levels[ASJ_EDGE_SAMPLES])
+/* One row; 0 outside the image. */
+static int read_row(const asj_edge_line *line, int32_t t, int32_t levels[ASJ_EDGE_SAMPLES])
 {
     const asj_frame *frame = line->frame;
     const double x = line->x + t * line->ux, y = line->y + t * line->uy, first = line->offset - ASJ_EDGE_HALF;
@@ -43,12 +44,35 @@ int asj_edge_row(const asj_edge_line *line, int32_t t, int32_t levels[ASJ_EDGE_S
     /* whole numbers from a corner that lies before all samples: none is negative, and none rounded up */
     int64_t at_x = (int64_t)(65536 * (x - first * line->uy + ASJ_GRAY_BORDER)) - ((int64_t)ASJ_GRAY_BORDER << 16);
     int64_t at_y = (int64_t)(65536 * (y + first * line->ux + ASJ_GRAY_BORDER)) - ((int64_t)ASJ_GRAY_BORDER << 16);
-    int32_t sum = 0;
     for (int32_t i = 0; i < ASJ_EDGE_SAMPLES; i++, at_x += step_x, at_y += step_y)
-        sum += levels[i] = level_at(frame, at_x, at_y);
-    for (int32_t i = 0; i < ASJ_EDGE_SAMPLES; i++)
-        levels[i] = ASJ_EDGE_SAMPLES * levels[i] - sum;
+        levels[i] = level_at(frame, at_x, at_y);
     return 1;
+}
+
+int32_t asj_edge_rows(const asj_edge_line *line, int32_t first, int32_t step, int32_t count, int32_t *levels, ptrdiff_t room)
+{
+    for (int32_t k = 0; k < count; k++) {
+        int32_t row[ASJ_EDGE_SAMPLES], sum = 0;
+        if (!read_row(line, first + k * step, row))
+            return k;
+        for (int32_t i = 0; i < ASJ_EDGE_SAMPLES; i++)
+            sum += row[i];
+        for (int32_t i = 0; i < ASJ_EDGE_SAMPLES; i++)
+            levels[i * room + k] = ASJ_EDGE_SAMPLES * row[i] - sum;
+    }
+    return count;
+}
+
+const asj_edge_ops asj_edge_reference = {.rows = asj_edge_rows};
+
+void asj_edge_parts(const int32_t *levels, ptrdiff_t room, int32_t count, const double section[ASJ_EDGE_SAMPLES], double *parts)
+{
+    for (int32_t k = 0; k < count; k++) {
+        double sum = 0;
+        for (int32_t i = 0; i < ASJ_EDGE_SAMPLES; i++)
+            sum += levels[i * room + k] * section[i];
+        parts[k] = sum;
+    }
 }
 
 double asj_edge_product(const double *a, const double *b)

@@ -19,24 +19,29 @@ typedef struct asj_edge_line {
 
 asj_edge_line asj_edge_line_of(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch);
 
-/* The row t px from the junction: the grey levels at s = -ASJ_EDGE_HALF .. ASJ_EDGE_HALF less their mean, in 1/ASJ_EDGE_LEVEL. 0
- * outside the image, whose border is repeated around it as far as samples reach. */
-int asj_edge_row(const asj_edge_line *line, int32_t t, int32_t levels[ASJ_EDGE_SAMPLES]);
+/* Rows that vector forms read at once: levels have room for so many behind the last one that is asked for. */
+#define ASJ_EDGE_BATCH 8
+
+/* The rows t = first, first + step, .. px from the junction, `count` of them at most: the grey levels at s = -ASJ_EDGE_HALF ..
+ * ASJ_EDGE_HALF less their mean, in 1/ASJ_EDGE_LEVEL; sample i of row k goes to levels[i * room + k]. Returns how many there are
+ * before the first outside the image, whose border is repeated around it as far as samples reach. */
+int32_t asj_edge_rows(const asj_edge_line *line, int32_t first, int32_t step, int32_t count, int32_t *levels, ptrdiff_t room);
 
 /* Of two cross-sections. */
 double asj_edge_product(const double *a, const double *b);
 
-/* How much of a row lies along a cross-section, in 1/ASJ_EDGE_LEVEL. */
-static inline double asj_edge_part(const int32_t levels[ASJ_EDGE_SAMPLES], const double section[ASJ_EDGE_SAMPLES])
-{
-    double sum = 0;
-    for (int32_t i = 0; i < ASJ_EDGE_SAMPLES; i++)
-        sum += levels[i] * section[i];
-    return sum;
-}
+/* How much of each of `count` rows lies along a cross-section, in 1/ASJ_EDGE_LEVEL. */
+void asj_edge_parts(const int32_t *levels, ptrdiff_t room, int32_t count, const double section[ASJ_EDGE_SAMPLES], double *parts);
 
 /* The cross-section of an edge, of norm one, from `count` means of rows along it, in 1/ASJ_GRAY_ONE grey levels; 0 when there
  * is none. */
 int asj_edge_section(const double *means, int32_t count, double section[ASJ_EDGE_SAMPLES]);
+
+/* Operations (core/ops.h). */
+typedef struct asj_edge_ops {
+    /* asj_edge_rows() */
+    int32_t (*rows)(const asj_edge_line *line, int32_t first, int32_t step, int32_t count, int32_t *levels, ptrdiff_t room);
+} asj_edge_ops;
+extern const asj_edge_ops asj_edge_reference;
 
 #endif

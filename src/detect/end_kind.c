@@ -117,11 +117,12 @@ static double variance_of(const asj_end_profile *profile)
     return FADE_SD * FADE_SD + walk * walk;
 }
 
-void asj_ends_by_contrast(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
+void asj_ends_by_contrast(const asj_edge_ops *ops, const asj_frame *frame, const asj_detect_options *options,
+                          asj_hypothesis *hypothesis)
 {
     for (int32_t i = 0; i < hypothesis->branch_count && options->end_contrast > 0; i++) {
         asj_hypothesis_branch *branch = &hypothesis->branches[i];
-        const asj_end_profile profile = asj_end_profile_of(frame, hypothesis, branch, options->end_contrast, 1);
+        const asj_end_profile profile = asj_end_profile_of(ops, frame, hypothesis, branch, options->end_contrast, 1);
         branch->end_variance = END_SD * END_SD;
         if (profile.end <= 0)
             continue;
@@ -130,7 +131,8 @@ void asj_ends_by_contrast(const asj_frame *frame, const asj_detect_options *opti
     }
 }
 
-void asj_ends_of_short(const asj_frame *frame, const asj_detect_options *options, asj_hypothesis *hypothesis)
+void asj_ends_of_short(const asj_edge_ops *ops, const asj_frame *frame, const asj_detect_options *options,
+                       asj_hypothesis *hypothesis)
 {
     const double shortest = options->field_radius + 1;
     for (int32_t i = 0; i < hypothesis->branch_count && options->end_contrast > 0; i++) {
@@ -138,28 +140,30 @@ void asj_ends_of_short(const asj_frame *frame, const asj_detect_options *options
         if (branch.length >= shortest)
             continue;
         branch.length = shortest;
-        const asj_end_profile profile = asj_end_profile_of(frame, hypothesis, &branch, options->end_contrast, 0);
+        const asj_end_profile profile = asj_end_profile_of(ops, frame, hypothesis, &branch, options->end_contrast, 0);
         hypothesis->branches[i].length = fmax(hypothesis->branches[i].length, profile.end);
     }
 }
 
 /* Of ends that are the scan's: where an edge fades, its contrast tells how sure the end is. */
-static double scan_variance(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+static double scan_variance(const asj_edge_ops *ops, const asj_frame *frame, const asj_hypothesis *hypothesis,
+                            const asj_hypothesis_branch *branch)
 {
     if (branch->end != ASJ_BRANCH_END_FADED && branch->end != ASJ_BRANCH_END_BORDER)
         return END_SD * END_SD;
-    const asj_end_profile profile = asj_end_profile_of(frame, hypothesis, branch, SHARE, 0);
+    const asj_end_profile profile = asj_end_profile_of(ops, frame, hypothesis, branch, SHARE, 0);
     const double off = profile.end - branch->length;
     return profile.end > 0 ? variance_of(&profile) + off * off : END_SD * END_SD;
 }
 
-void asj_end_kinds(const asj_frame *frame, const asj_end_rays *rays, const asj_detect_options *options, asj_hypothesis *hypothesis)
+void asj_end_kinds(const asj_edge_ops *ops, const asj_frame *frame, const asj_end_rays *rays, const asj_detect_options *options,
+                   asj_hypothesis *hypothesis)
 {
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         if (hypothesis->branches[i].end != ASJ_BRANCH_END_JUNCTION) {
             asj_hypothesis_branch *branch = &hypothesis->branches[i];
             branch->end = kind_of(frame, rays, hypothesis, branch);
             if (options->end_contrast <= 0)
-                branch->end_variance = scan_variance(frame, hypothesis, branch);
+                branch->end_variance = scan_variance(ops, frame, hypothesis, branch);
         }
 }

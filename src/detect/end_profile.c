@@ -27,7 +27,6 @@
  * without it .854. (Without step 3 a limit of 4 grey levels in place of the share would do the same, but 2 in 100 junctions of the
  * photographs would not repeat any more; step 3 costs none.) */
 #include "end_profile.h"
-#include "edge_rows.h"
 #include "core/sort.h"
 
 #include <math.h>
@@ -53,33 +52,37 @@
 
 #define ROWS (BLOCKS * BLOCK + BEYOND + SMOOTH) /* across the branch, that are held at once */
 #define MORE 8                                  /* that are read ahead beyond them */
+#define ROOM (ROWS + ASJ_EDGE_BATCH)
 
 /* A branch, and what its edge looks like. */
 typedef struct profile {
+    const asj_edge_ops *ops;
     asj_edge_line line;
     double section[SAMPLES];
     double nothing;               /* contrast that may be noise */
     int32_t count;                /* blocks */
     double blocks[BLOCKS][SAMPLES];
     int32_t from, held, ends;     /* rows t = from .. from + held - 1 have been read; `ends`: the next one is outside */
-    int32_t levels[ROWS][SAMPLES]; /* across the branch */
+    int32_t levels[SAMPLES][ROOM]; /* across the branch: of row `from` + k at [..][k] */
     double parts[ROWS];           /* of them along the section, once it is known */
 } profile;
 
 /* Rows up to t = `last`, as far as there is room for them and the image goes. */
 static void read_rows(profile *p, int32_t last)
 {
-    while (p->held < ROWS && p->from + p->held <= last && !p->ends) {
-        p->ends = !asj_edge_row(&p->line, p->from + p->held, p->levels[p->held]);
-        p->held += !p->ends;
-    }
+    const int32_t wanted = last - p->from < ROWS ? last - p->from + 1 : ROWS;
+    if (p->held >= wanted || p->ends)
+        return;
+    p->held += p->ops->rows(&p->line, p->from + p->held, 1, wanted - p->held, p->levels[0] + p->held, ROOM);
+    p->ends = p->held < wanted;
 }
 
 /* Their parts along the section, from number `first` on. */
 static void project(profile *p, int32_t first)
 {
+    asj_edge_parts(p->levels[0] + first, ROOM, p->held - first, p->section, p->parts + first);
     for (int32_t k = first; k < p->held; k++)
-        p->parts[k] = asj_edge_part(p->levels[k], p->section) / ASJ_EDGE_LEVEL;
+        p->parts[k] /= ASJ_EDGE_LEVEL;
 }
 
 /* Makes rows around t be held, if there are such. */
@@ -106,12 +109,12 @@ static void find_blocks(profile *p, int32_t length)
     const int32_t wanted = length > FIRST + 1 ? length - FIRST : 1, size = wanted < BLOCK ? wanted : BLOCK;
     p->count = 0;
     for (int32_t end = size; end <= wanted && end <= p->held && p->count < BLOCKS; end += size) {
-        int32_t sums[SAMPLES] = {0};
-        for (int32_t k = end - size; k < end; k++)
-            for (int32_t i = 0; i < SAMPLES; i++)
-                sums[i] += p->levels[k][i];
-        for (int32_t i = 0; i < SAMPLES; i++)
-            p->blocks[p->count][i] = sums[i] / (ASJ_EDGE_LEVEL * size);
+        for (int32_t i = 0; i < SAMPLES; i++) {
+            int32_t sum = 0;
+            for (int32_t k = end - size; k < end; k++)
+                sum += p->levels[i][k];
+            p->blocks[p->count][i] = sum / (ASJ_EDGE_LEVEL * size);
+        }
         p->count++;
     }
 }
@@ -233,9 +236,10 @@ static int32_t end_of_steady(profile *p, int32_t end, int32_t length, double *ow
 }
 
 /* Reads the part that says what the edge looks like; 0 when it has no contrast. */
-static int start(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch, int32_t length,
-                 profile *p)
+static int start(const asj_edge_ops *ops, const asj_frame *frame, const asj_hypothesis *hypothesis,
+                 const asj_hypothesis_branch *branch, int32_t length, profile *p)
 {
+    p->ops = ops;
     p->line = asj_edge_line_of(frame, hypothesis, branch);
     p->from = FIRST;
     p->held = p->ends = 0;
@@ -247,13 +251,13 @@ static int start(const asj_frame *frame, const asj_hypothesis *hypothesis, const
     return 1;
 }
 
-asj_end_profile asj_end_profile_of(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch,
-                                   double share, int steady)
+asj_end_profile asj_end_profile_of(const asj_edge_ops *ops, const asj_frame *frame, const asj_hypothesis *hypothesis,
+                                   const asj_hypothesis_branch *branch, double share, int steady)
 {
     asj_end_profile result = {0, 0, 0};
     const int32_t length = (int32_t)lrint(branch->length);
     profile p;
-    if (!start(frame, hypothesis, branch, length, &p))
+    if (!start(ops, frame, hypothesis, branch, length, &p))
         return result;
     double own = own_contrast(&p);
     if (!(own > 0)) /* flat but for a block or two: no contrast to take a share of */

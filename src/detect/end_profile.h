@@ -3,7 +3,7 @@
 #ifndef ASJ_SRC_END_PROFILE_H
 #define ASJ_SRC_END_PROFILE_H
 
-#include "core/image.h"
+#include "edge_rows.h"
 #include "hypothesis.h"
 
 typedef struct asj_end_profile {
@@ -13,7 +13,7 @@ typedef struct asj_end_profile {
 } asj_end_profile;
 
 /* `share` of the branch's own contrast, 0 .. 1. `steady`: an edge with less than that goes on where it is as strong all along. */
-asj_end_profile asj_end_profile_of(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch,
-                                   double share, int steady);
+asj_end_profile asj_end_profile_of(const asj_edge_ops *ops, const asj_frame *frame, const asj_hypothesis *hypothesis,
+                                   const asj_hypothesis_branch *branch, double share, int steady);
 
 #endif

@@ -23,7 +23,7 @@ static void measure_some(const void *data, const asj_part *part)
     const asj_detection_run *run = j->run;
     for (int64_t i = part->first; i < part->end && !asj_watch_stops(j->watch, part); i++) {
         asj_edge_evidence_measure(run->context, run->frame, run->options, &run->hypotheses[i], run->evidence);
-        asj_end_kinds(run->frame, j->rays, run->options, &run->hypotheses[i]);
+        asj_end_kinds(run->context->ops->edge, run->frame, j->rays, run->options, &run->hypotheses[i]);
     }
 }
 
@@ -87,7 +87,7 @@ static asj_status look_for_junctions(asj_detection_run *run, int32_t width, int3
 
 static void end_by_contrast(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
-    asj_ends_by_contrast(run->frame, run->options, hypothesis);
+    asj_ends_by_contrast(run->context->ops->edge, run->frame, run->options, hypothesis);
     asj_validate_lengths(run->frame, run->options, hypothesis);
 }
 

@@ -40,7 +40,7 @@ void asj_step_fit_lines(const asj_detection_run *run, asj_hypothesis *hypothesis
     int slips = 0;
     fit_lines(run, hypothesis);
     for (int32_t i = 0; i < hypothesis->branch_count && run->options->max_tilt > 0; i++) {
-        const double length = asj_slip_length(run->frame, hypothesis, &hypothesis->branches[i]);
+        const double length = asj_slip_length(run->context->ops->edge, run->frame, hypothesis, &hypothesis->branches[i]);
         slips |= length < shortened.branches[i].length;
         shortened.branches[i].length = length;
     }
@@ -54,7 +54,7 @@ static void refine(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
     asj_step_fit_lines(run, hypothesis);
     if (asj_blurred_corner_is_sure(hypothesis))
-        asj_ends_of_short(run->frame, run->options, hypothesis);
+        asj_ends_of_short(run->context->ops->edge, run->frame, run->options, hypothesis);
     asj_validate(run->context, run->frame, run->options, hypothesis);
 }
 

@@ -28,7 +28,6 @@
  * 131 are left: the others were drawn across conductors. Rendered rooms have next to none that slips. Not in presets that take weak
  * corners: sixteen pairs of photographs have 4666 of 4751 right matches with it for 4688 of 4784. */
 #include "slip.h"
-#include "edge_rows.h"
 
 #include <math.h>
 
@@ -46,7 +45,7 @@
 
 typedef struct rows {
     int32_t count;
-    int32_t levels[ROWS][SAMPLES];
+    int32_t levels[SAMPLES][ROWS + ASJ_EDGE_BATCH]; /* of row k at [..][k] */
 } rows;
 
 /* z, times a positive number that is the same along the branch. */
@@ -54,11 +53,10 @@ typedef struct phase {
     double real, imaginary;
 } phase;
 
-static void read_rows(const asj_edge_line *line, double length, rows *r)
+static void read_rows(const asj_edge_ops *ops, const asj_edge_line *line, double length, rows *r)
 {
-    r->count = 0;
-    for (int32_t t = ASJ_EDGE_FIRST; t <= length && r->count < ROWS && asj_edge_row(line, t, r->levels[r->count]); t += STEP)
-        r->count++;
+    const int32_t there = ((int32_t)length - ASJ_EDGE_FIRST) / STEP + 1;
+    r->count = ops->rows(line, ASJ_EDGE_FIRST, STEP, there < ROWS ? there : ROWS, r->levels[0], ROWS + ASJ_EDGE_BATCH);
 }
 
 /* m and d; 0 when there are none. */
@@ -67,9 +65,9 @@ static int find_directions(const rows *r, double m[SAMPLES], double d[SAMPLES])
     double means[BLOCKS * SAMPLES] = {0}, sum = 0;
     int32_t count = 0;
     for (; count < BLOCKS && (count + 1) * BLOCK <= r->count; count++)
-        for (int32_t k = count * BLOCK; k < (count + 1) * BLOCK; k++)
-            for (int32_t i = 0; i < SAMPLES; i++)
-                means[count * SAMPLES + i] += r->levels[k][i] / (ASJ_EDGE_LEVEL * BLOCK);
+        for (int32_t i = 0; i < SAMPLES; i++)
+            for (int32_t k = count * BLOCK; k < (count + 1) * BLOCK; k++)
+                means[count * SAMPLES + i] += r->levels[i][k] / (ASJ_EDGE_LEVEL * BLOCK);
     if (!asj_edge_section(means, count, m))
         return 0;
     for (int32_t i = 0; i < SAMPLES; i++) {
@@ -87,22 +85,18 @@ static int find_directions(const rows *r, double m[SAMPLES], double d[SAMPLES])
     return norm > LEAST_NORM;
 }
 
-static phase phase_at(const rows *r, int32_t first, const double m[SAMPLES], const double d[SAMPLES])
-{
-    phase z = {0, 0};
-    for (int32_t k = first; k < first + SMOOTH; k++) {
-        z.real += asj_edge_part(r->levels[k], m);
-        z.imaginary += asj_edge_part(r->levels[k], d);
-    }
-    return z;
-}
-
 /* z along the branch; returns the mean of |z|^2. */
 static double find_phases(const rows *r, const double m[SAMPLES], const double d[SAMPLES], phase z[ROWS], int32_t count)
 {
-    double sum = 0;
+    double real[ROWS], imaginary[ROWS], sum = 0;
+    asj_edge_parts(r->levels[0], ROWS + ASJ_EDGE_BATCH, r->count, m, real);
+    asj_edge_parts(r->levels[0], ROWS + ASJ_EDGE_BATCH, r->count, d, imaginary);
     for (int32_t k = 0; k < count; k++) {
-        z[k] = phase_at(r, k, m, d);
+        z[k] = (phase){0, 0};
+        for (int32_t i = k; i < k + SMOOTH; i++) {
+            z[k].real += real[i];
+            z[k].imaginary += imaginary[i];
+        }
         sum += z[k].real * z[k].real + z[k].imaginary * z[k].imaginary;
     }
     return sum / count;
@@ -117,13 +111,16 @@ static double step_of(const phase *from, const phase *to, double mean)
     return along > 0 && fabs(across) <= FASTEST * sizes ? across / fmax(sizes, mean) : 0;
 }
 
-double asj_slip_length(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+double asj_slip_length(const asj_edge_ops *ops, const asj_frame *frame, const asj_hypothesis *hypothesis,
+                       const asj_hypothesis_branch *branch)
 {
     const asj_edge_line line = asj_edge_line_of(frame, hypothesis, branch);
     double m[SAMPLES], d[SAMPLES], turned[ROWS] = {0};
     phase z[ROWS];
     rows r;
-    read_rows(&line, branch->length, &r);
+    if (!(branch->length >= ASJ_EDGE_FIRST + (LEAST_ROWS - 1) * STEP))
+        return branch->length;
+    read_rows(ops, &line, branch->length, &r);
     const int32_t count = r.count - SMOOTH + 1;
     if (r.count < LEAST_ROWS || !find_directions(&r, m, d))
         return branch->length;

@@ -3,11 +3,12 @@
 #ifndef ASJ_SRC_SLIP_H
 #define ASJ_SRC_SLIP_H
 
-#include "core/image.h"
+#include "edge_rows.h"
 #include "hypothesis.h"
 
 /* px from the junction to where the branch, along its line, still follows the edge that it begins with; its length when it does so
  * all the way. */
-double asj_slip_length(const asj_frame *frame, const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch);
+double asj_slip_length(const asj_edge_ops *ops, const asj_frame *frame, const asj_hypothesis *hypothesis,
+                       const asj_hypothesis_branch *branch);
 
 #endif

@@ -247,6 +247,11 @@ static double choose_line(const subject *s, synth_random *random, double *x, dou
     return 6.2831853 * synth_random_unit(random);
 }
 
+enum {
+    EDGE_ROOM = 96 + ASJ_EDGE_BATCH, /* rows */
+    EDGE_REACH = ASJ_GRAY_BORDER - 2 /* px that samples are from the middle of their row at most */
+};
+
 static size_t line_sums_size(const subject *s)
 {
     (void)s;
@@ -322,6 +327,29 @@ static asj_status run_strip(asj_context *context, const subject *s, uint16_t *sc
     return ASJ_OK;
 }
 
+static size_t edge_rows_size(const subject *s)
+{
+    (void)s;
+    return sizeof(int32_t) + ASJ_EDGE_SAMPLES * EDGE_ROOM * sizeof(int32_t);
+}
+
+/* In any direction, in and around the image: how many there are, and their levels. What a form leaves behind them means nothing. */
+static asj_status run_edge_rows(asj_context *context, const subject *s, uint16_t *scratch, void *output)
+{
+    synth_random random = s->random;
+    double x, y, length;
+    const double angle = choose_line(s, &random, &x, &y, &length);
+    const int32_t step = 1 + (int32_t)(3 * synth_random_unit(&random)), count = (int32_t)length;
+    const double offset = synth_random_between(&random, ASJ_EDGE_HALF - EDGE_REACH, EDGE_REACH - ASJ_EDGE_HALF);
+    const asj_edge_line line = {s->picture, x, y, cos(angle), sin(angle), offset};
+    int32_t *rows = output, *levels = rows + 1;
+    (void)scratch;
+    *rows = context->ops->edge->rows(&line, 0, step, count, levels, EDGE_ROOM);
+    for (int32_t i = 0; i < ASJ_EDGE_SAMPLES; i++)
+        memset(levels + i * EDGE_ROOM + *rows, 0, (size_t)(EDGE_ROOM - *rows) * sizeof *levels);
+    return ASJ_OK;
+}
+
 static double one_line(const subject *s)
 {
     return s->frame.width;
@@ -336,6 +364,7 @@ const operation operations[] = {
     {"line profile", 0, line_profile_size, one_run, NULL, run_line_profile},
     {"strip", 0, strip_size, one_run, NULL, run_strip},
     {"wedge", 0, wedge_size, one_run, NULL, run_wedge},
+    {"edge rows", 0, edge_rows_size, one_run, NULL, run_edge_rows},
     {"blur row", 0, blur_size, one_line, NULL, run_blur},
     {"pyramid samples", 0, samples_size, one_run, NULL, run_samples},
     {"discs", 0, discs_size, one_run, NULL, run_discs},

@@ -6,6 +6,7 @@
 #include "arcs.h"
 #include "colour.h"
 #include "discs.h"
+#include "edges.h"
 #include "lines.h"
 #include "patches.h"
 #include "strips.h"
@@ -23,6 +24,7 @@ void asj_fill_avx2(const asj_ops *ops)
     ops->arc->sum = sum_arc_avx2;
     ops->strip->sums = strip_sums_avx2;
     ops->wedge->add_up = wedge_add_up;
+    ops->edge->rows = edge_rows_avx2;
     ops->patch->levels = patch_levels_avx2;
     ops->patch->normalise = patch_normalise_avx2;
     ops->disc->compare = disc_compare_avx2;

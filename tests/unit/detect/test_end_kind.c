@@ -24,7 +24,7 @@ static int32_t kind_at_middle(const unit_fixture *f, synth_scene *scene, double 
     h.y = SIZE / 2.0 + (off - 70) * sin(angle);
     unit_frame_of(f->context, scene, 0.8, 2, &f->options, &frame);
     asj_end_rays_make(&rays);
-    asj_end_kinds(&frame, &rays, &options, &h);
+    asj_end_kinds(&asj_edge_reference, &frame, &rays, &options, &h);
     asj_frame_free(&f->context->memory, &frame);
     assert_true(h.branches[0].length == 70 && h.branches[0].end_variance > 0);
     return h.branches[0].end;
@@ -94,14 +94,14 @@ static void test_border(void **state)
     asj_end_rays_make(&rays);
     asj_detect_options options = f->options;
     options.end_contrast = 0;
-    asj_ends_by_contrast(&frame, &options, &h);
+    asj_ends_by_contrast(&asj_edge_reference, &frame, &options, &h);
     assert_true(h.branches[0].length == 96 && h.branches[1].length == 90);
-    asj_end_kinds(&frame, &rays, &options, &h);
+    asj_end_kinds(&asj_edge_reference, &frame, &rays, &options, &h);
     assert_int_equal(h.branches[0].end, ASJ_BRANCH_END_BORDER);
     assert_int_equal(h.branches[1].end, ASJ_BRANCH_END_FADED);
     for (options.end_contrast = 0.1; options.end_contrast < 0.8; options.end_contrast += 0.2) { /* by contrast both reach it */
-        asj_ends_by_contrast(&frame, &options, &h);
-        asj_end_kinds(&frame, &rays, &options, &h);
+        asj_ends_by_contrast(&asj_edge_reference, &frame, &options, &h);
+        asj_end_kinds(&asj_edge_reference, &frame, &rays, &options, &h);
         for (int b = 0; b < 2; b++) {
             assert_int_equal(h.branches[b].end, ASJ_BRANCH_END_BORDER);
             unit_near("border", b, 0, h.branches[b].length, 99, 1);
@@ -111,9 +111,9 @@ static void test_border(void **state)
     }
     h.branches[0].end = ASJ_BRANCH_END_JUNCTION; /* is left alone */
     h.branches[0].end_variance = 7;
-    asj_end_kinds(&frame, &rays, &options, &h);
+    asj_end_kinds(&asj_edge_reference, &frame, &rays, &options, &h);
     options.end_contrast = 0;
-    asj_end_kinds(&frame, &rays, &options, &h);
+    asj_end_kinds(&asj_edge_reference, &frame, &rays, &options, &h);
     assert_true(h.branches[0].end == ASJ_BRANCH_END_JUNCTION && h.branches[0].end_variance == 7);
     asj_frame_free(&f->context->memory, &frame);
 }
@@ -143,7 +143,7 @@ static double end_of(const unit_fixture *f, double first, double then, double pa
     if (part > 0)
         synth_add_rectangle(&scene, (synth_point){100, 90}, part, 80, 0, 100 + then);
     unit_frame_of(f->context, &scene, 0.8, 1, &f->options, &frame);
-    const double end = asj_end_profile_of(&frame, &h, &h.branches[0], share, steady).end;
+    const double end = asj_end_profile_of(&asj_edge_reference, &frame, &h, &h.branches[0], share, steady).end;
     asj_frame_free(&f->context->memory, &frame);
     return end;
 }
@@ -181,7 +181,7 @@ static double end_of_first_panel(const unit_fixture *f, double gap, double secon
     synth_add_rectangle(&scene, (synth_point){20, 90}, 60, 80, 0, 160);
     synth_add_rectangle(&scene, (synth_point){80 + gap, 90}, second, 80, 0, 160);
     unit_frame_of(f->context, &scene, 0.8, 1, &f->options, &frame);
-    const double end = asj_end_profile_of(&frame, &h, &h.branches[0], 0.15, 1).end;
+    const double end = asj_end_profile_of(&asj_edge_reference, &frame, &h, &h.branches[0], 0.15, 1).end;
     asj_frame_free(&f->context->memory, &frame);
     return end;
 }
@@ -209,7 +209,7 @@ static void test_turned_round(void **state)
     synth_scene_add(&scene, ramp, 4, (synth_paint){140, -0.5, 0, 80, 90}, 1);
     synth_add_rectangle(&scene, (synth_point){200, 90}, 30, 90, 0, 80);
     unit_frame_of(f->context, &scene, 0.8, 1, &f->options, &frame);
-    unit_near("end", 0, 0, asj_end_profile_of(&frame, &h, &h.branches[0], 0.15, 0).end, 210, 2);
+    unit_near("end", 0, 0, asj_end_profile_of(&asj_edge_reference, &frame, &h, &h.branches[0], 0.15, 0).end, 210, 2);
     asj_frame_free(&f->context->memory, &frame);
 }
 
@@ -286,7 +286,7 @@ static void test_profile(void **state)
     add_fading(&scene, 60, 60, 80);
     unit_frame_of(f->context, &scene, 0.8, 1, &f->options, &frame);
     for (double share = 0.25; share < 0.8; share += 0.25) {
-        const asj_end_profile p = asj_end_profile_of(&frame, &h, &h.branches[0], share, 0);
+        const asj_end_profile p = asj_end_profile_of(&asj_edge_reference, &frame, &h, &h.branches[0], share, 0);
         unit_near("share", share, 0, p.end, 60 + 80 * (1 - share), 3);
         const double left = share + 11 / 80.0; /* the contrast at the end: the upper quartile of that of the last 14 px */
         unit_near("fading", share, 0, p.fading, 80 * (fmax(0.75 * left, share) - 0.25 * left), 5);
@@ -294,9 +294,9 @@ static void test_profile(void **state)
     asj_frame_free(&f->context->memory, &frame);
     synth_scene_init(&scene, SIZE, SIZE, 100);
     unit_frame_of(f->context, &scene, 0, 0, &f->options, &frame);
-    assert_true(asj_end_profile_of(&frame, &h, &h.branches[0], 0.5, 0).end == 0);
+    assert_true(asj_end_profile_of(&asj_edge_reference, &frame, &h, &h.branches[0], 0.5, 0).end == 0);
     h.x = -5; /* outside */
-    assert_true(asj_end_profile_of(&frame, &h, &h.branches[0], 0.5, 0).end == 0);
+    assert_true(asj_end_profile_of(&asj_edge_reference, &frame, &h, &h.branches[0], 0.5, 0).end == 0);
     asj_frame_free(&f->context->memory, &frame);
 }
 

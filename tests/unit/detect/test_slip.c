@@ -55,7 +55,7 @@ static double length_along(const unit_fixture *f, double degrees, double length)
     hypothesis.branch_count = 1;
     hypothesis.branches[0].angle = degrees < 0 ? 2 * UNIT_PI + degrees * DEGREE : degrees * DEGREE;
     hypothesis.branches[0].length = length;
-    return asj_slip_length(&f->frame, &hypothesis, &hypothesis.branches[0]);
+    return asj_slip_length(&asj_edge_reference, &f->frame, &hypothesis, &hypothesis.branches[0]);
 }
 
 /* A slat's edge is left where the line is a few px off it, less than half of the way to the next. Along it, and of less than a
