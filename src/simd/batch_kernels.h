@@ -80,22 +80,27 @@ static void batch_gammas(const asj_sector_runs *runs, const asj_frame *frame, co
 static void batch_strengths(const asj_sectors *s, const asj_sector_plan *plan, const int16_t *place, int32_t suppress,
                             const uint16_t *gamma, uint16_t *slots, int16_t *z)
 {
+    /* what is stored might be part of the plan, for all that compilers know: its pointers are read once */
+    const int16_t *const boundary = plan->boundary, *const extra = plan->extra, *const low = plan->low, *const high = plan->high;
+    const uint16_t *const mean = s->mean, *const scale = s->scale;
+    const int32_t plain_count = plan->plain_count, extra_count = plan->slot_count - plain_count, count = s->count;
     vec total = v_zero();
     uint16_t *slot = slots;
-    for (int32_t j = 0, i = 0; j < plan->plain_count; j++, slot += V_LANES) {
+    for (int32_t j = 0, i = 0; j < plain_count; j++, slot += V_LANES) {
         vec sum = v_zero();
-        for (const int32_t end = plan->boundary[j]; i < end; i++)
-            sum = v_add(sum, v_load(gamma + place[i] * V_LANES));
+        for (const int32_t end = boundary[j]; i < end; i++)
+            sum = v_add(sum, v_load(gamma + (ptrdiff_t)place[i] * V_LANES));
         total = v_add(total, sum);
         v_store(slot, total);
     }
-    for (int32_t e = 0; e < plan->slot_count - plan->plain_count; e++, slot += V_LANES)
-        v_store(slot, v_add(total, v_load(slots + plan->extra[e] * V_LANES)));
-    for (int32_t k = 0; k < s->count; k++) {
-        const vec low = v_load(slots + plan->low[k] * V_LANES), high = v_load(slots + plan->high[k] * V_LANES);
-        v_store(z + (k + suppress) * V_LANES, v_strength(v_sub(high, low), s->mean[k], s->scale[k]));
+    for (int32_t e = 0; e < extra_count; e++, slot += V_LANES)
+        v_store(slot, v_add(total, v_load(slots + (ptrdiff_t)extra[e] * V_LANES)));
+    int16_t *to = z + suppress * V_LANES;
+    for (int32_t k = 0; k < count; k++, to += V_LANES) {
+        const vec sum = v_sub(v_load(slots + (ptrdiff_t)high[k] * V_LANES), v_load(slots + (ptrdiff_t)low[k] * V_LANES));
+        v_store(to, v_strength(sum, mean[k], scale[k]));
     }
-    repeat_ends(z, s->count, suppress, V_LANES);
+    repeat_ends(z, count, suppress, V_LANES);
 }
 
 /* Peaks of each pixel, largest value first; of equals the one put in first. Of as many sectors in a row as peaks suppress, and one

@@ -143,13 +143,15 @@ static void fill_strengths(const tile *t, vec above[GROUP])
 {
     const asj_sectors *s = &t->field->sectors;
     const asj_sector_plan *plan = &t->field->plan;
+    const int16_t *const first = plan->low, *const last = plan->high; /* once: see batch_strengths() */
+    const uint16_t *const slots = t->slots;
+    const int32_t count = s->count, *limits = t->field->limits[0];
     int16_t *z = t->z + t->field->suppress * GROUP_PIXELS;
     vec any[GROUP];
     for (int v = 0; v < GROUP; v++)
         any[v] = v_zero();
-    for (int32_t k = 0; k < s->count; k++, z += GROUP_PIXELS) {
-        const uint16_t *low = t->slots + plan->low[k] * GROUP_PIXELS, *high = t->slots + plan->high[k] * GROUP_PIXELS;
-        const int32_t *limits = t->field->limits[k];
+    for (int32_t k = 0; k < count; k++, z += GROUP_PIXELS, limits += 4) {
+        const uint16_t *low = slots + (ptrdiff_t)first[k] * GROUP_PIXELS, *high = slots + (ptrdiff_t)last[k] * GROUP_PIXELS;
         const vec mean = v_set1_32(limits[0]), scale = v_set1_32(limits[1]), least = v_set1_32(limits[3]);
         for (int v = 0; v < GROUP; v++) {
             const vec sum = v_sub(v_load(high + v * V_LANES), v_load(low + v * V_LANES));
