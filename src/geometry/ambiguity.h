@@ -5,9 +5,9 @@
 
 #include "estimation.h"
 
-/* log10 NFA of a rival that makes any geometry ambiguous: chance does not bring so much, but what repeats does. (Facades of equal
- * windows that are accepted shifted by a window, with up to 2.2 times the log evidence of a rival that has -190 to -350; of 1083
- * pairs of rooms none is accepted beside one of -66 or less.) */
+/* log10 NFA of a rival that makes a geometry ambiguous that has up to two and a half times as much: chance does not bring so much,
+ * but what repeats does. (Facades of equal windows that are accepted shifted by a window, with up to 2.2 times the log evidence of
+ * a rival that has -190 to -350; of 1083 pairs of rooms none is accepted beside one of -66 or less.) */
 #define ASJ_SURE_RIVAL (-100)
 
 /* Takes the evidence from geometries that colours and pictures contradict in favour of others: what is best then is the answer.

@@ -100,25 +100,29 @@ static void test_partner_within_eight_pixels_is_no_other_one(void **state)
     }
 }
 
-/* Far below the best one, a rival still counts that is no chance by itself. */
-static void test_sure_rival_makes_anything_ambiguous(void **state)
+/* Below what is nearly as much a rival still counts that is no chance by itself, if it has two fifths of the best one's. */
+static void test_sure_rival_makes_ambiguous(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
-    asj_geometry_options options;
-    asj_estimation *e = prepare(context, TILE, &options);
-    int32_t doubt = 0;
-    double before = 0;
-    e->finalists[0].evidence = 4000;
-    assert_int_equal(asj_strongest_rival(e, 0, &doubt), 1);
-    for (double evidence = 50; evidence < 1500; evidence += 10) {
-        e->finalists[1].evidence = evidence;
-        const double nfa = asj_estimation_log10_nfa(e, &e->finalists[1]);
-        assert_int_equal(asj_is_ambiguous(e, 0, 1, doubt, PLACES), nfa <= ASJ_SURE_RIVAL);
-        assert_true(nfa > 0.5 * asj_estimation_log10_nfa(e, &e->finalists[0]) && nfa < before);
-        before = nfa;
+    static const double best[] = {450, 4000};
+    for (size_t k = 0; k < UNIT_COUNT(best); k++) {
+        asj_geometry_options options;
+        asj_estimation *e = prepare(context, TILE, &options);
+        int32_t doubt = 0;
+        double before = 0;
+        e->finalists[0].evidence = best[k];
+        assert_int_equal(asj_strongest_rival(e, 0, &doubt), 1);
+        const double of_best = asj_estimation_log10_nfa(e, &e->finalists[0]);
+        for (double evidence = 0.01 * best[k]; evidence < 0.58 * best[k]; evidence += 0.01 * best[k]) {
+            e->finalists[1].evidence = evidence;
+            const double nfa = asj_estimation_log10_nfa(e, &e->finalists[1]);
+            assert_int_equal(asj_is_ambiguous(e, 0, 1, doubt, PLACES), nfa <= ASJ_SURE_RIVAL && nfa <= 0.4 * of_best);
+            assert_true(nfa > 0.6 * of_best && nfa < before);
+            before = nfa;
+        }
+        assert_true(before < ASJ_SURE_RIVAL && before < 0.4 * of_best);
+        release(context, e);
     }
-    assert_true(before < ASJ_SURE_RIVAL);
-    release(context, e);
 }
 
 /* A wall of tiles whose grey levels differ by up to `contrast`, the second picture with another exposure. */
@@ -206,7 +210,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_partner_within_eight_pixels_is_no_other_one),
-        cmocka_unit_test(test_sure_rival_makes_anything_ambiguous),
+        cmocka_unit_test(test_sure_rival_makes_ambiguous),
         cmocka_unit_test(test_pictures_tell_tiles_from_others),
         cmocka_unit_test(test_pictures_of_like_tiles_say_nothing),
         cmocka_unit_test(test_wrong_one_in_front_is_struck_out),
