@@ -122,8 +122,8 @@ typedef struct asj_detect_options {
                                    * as strong all along; 0 = where the scan loses it, which depends on noise. 0 .. 0.9; 0.15;
                                    * paper 0; match 0 */
     int32_t strip_test;           /* 1 = a branch is reported only if the strip along it is meaningful at `epsilon`, in coarse
-                                   * octaves alone or together with another one; and stronger edges beside it are told from it when
-                                   * its line is fitted. 1; paper 0; match 0 */
+                                   * octaves alone or together with another one; stronger edges beside it are told from it when
+                                   * its line is fitted; and two tangents of an arc are no junction. 1; paper 0; match 0 */
     int32_t complete_junctions;   /* 1 = around every junction branches are looked for that its test has missed, mostly edges much
                                    * fainter than its others, up to max_branches; without independent_octaves sharp branches of
                                    * coarse octaves join, too, as soft ones and those with an NFA up to 1e-30 do in any case, beyond
