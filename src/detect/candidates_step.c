@@ -74,6 +74,11 @@ asj_status asj_step_candidates(asj_detection_run *run)
         run->candidates = asj_allocate(&context->memory, runs, sizeof *run->candidates);
     if (!run->candidates)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the candidates");
+    if (run->places) {
+        asj_sizes_mark_candidates(run);
+        run->candidate_count = asj_candidates_count(run->candidates, runs);
+        return ASJ_OK;
+    }
     asj_status status = run->options->seeds == ASJ_SEEDS_SEGMENTS
                             ? asj_seeds_mark(context, run->frame, run->options, run->candidates)
                             : find_in_field(run);

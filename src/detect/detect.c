@@ -74,16 +74,18 @@ static asj_status run_octave(asj_detection_run *run)
     return status == ASJ_OK ? run_steps(run, after, sizeof after / sizeof *after, 0, 1) : status;
 }
 
-/* From the finest to the coarsest; each takes as long as its share of all pixels. */
+/* From the finest to the coarsest; each takes as long as its share of all pixels. Copies of another size have the octaves of the
+ * image itself: what only one size can see has no second vote. */
 static asj_status run_octaves(asj_detection_run *run)
 {
-    const asj_octave_range range = asj_octaves_of(run->options, run->image->width, run->image->height);
-    const double pixels = range.pixels * run->planes.count;
+    const asj_image *image = run->size > 0 ? run->whole : run->image;
+    const asj_octave_range range = asj_octaves_of(run->options, image->width, image->height);
+    const double pixels = range.pixels * run->planes.count * asj_sizes_area(run);
     asj_status status = asj_step_load(run);
     while (run->octave < range.first && status == ASJ_OK)
         status = asj_step_halve(run);
     for (;;) {
-        run->done += run->plane > 0 || run->octave > range.first ? run->share : 0;
+        run->done += run->size > 0 || run->plane > 0 || run->octave > range.first ? run->share : 0;
         run->share = (double)run->frame->width * run->frame->height / pixels;
         status = status == ASJ_OK ? run_octave(run) : status;
         if (status != ASJ_OK || run->octave + 1 >= range.end)
@@ -106,6 +108,21 @@ static asj_status run_planes(asj_detection_run *run)
             status = asj_step_merge_planes(run);
     }
     run->plane = 0;
+    return status;
+}
+
+/* The image, and with three_sizes two copies of it. */
+static asj_status run_sizes(asj_detection_run *run)
+{
+    const int32_t sizes = asj_sizes_of(run);
+    asj_status status = run_planes(run);
+    while (run->size + 1 < sizes && status == ASJ_OK) {
+        status = asj_step_next_size(run);
+        if (status == ASJ_OK)
+            status = run_planes(run);
+    }
+    if (status == ASJ_OK && sizes > 1)
+        status = asj_step_merge_sizes(run);
     if (status == ASJ_OK)
         status = asj_step_list(run);
     if (status == ASJ_OK)
@@ -144,7 +161,7 @@ static asj_status detect(asj_context *context, const asj_image *image, const asj
     if (status == ASJ_OK)
         status = asj_region_check(context, image, region);
     if (status == ASJ_OK)
-        status = run_planes(&run);
+        status = run_sizes(&run);
     if (status == ASJ_OK)
         status = finish(&run, start, result);
     asj_detection_run_end(&run);

@@ -136,6 +136,7 @@ void asj_detection_run_end(asj_detection_run *run)
 {
     asj_memory *memory = &run->context->memory;
     asj_detection_run_clear(run);
+    asj_detection_run_clear_sizes(run);
     asj_release(memory, run->edges);
     asj_release(memory, run->evidence);
     asj_release(memory, run->candidates);
@@ -164,6 +165,18 @@ void asj_detection_run_clear(asj_detection_run *run)
     run->candidate_count = run->isotropic_count = run->hypothesis_count = run->settled = 0;
     run->choice = 0;
     run->guess_count = run->guess_capacity = run->hypothesis_capacity = 0;
+}
+
+void asj_detection_run_clear_sizes(asj_detection_run *run)
+{
+    asj_memory *memory = &run->context->memory;
+    for (int32_t i = 0; i < run->sizes.count; i++)
+        asj_release(memory, run->sizes.found[i].found);
+    asj_release(memory, run->stretched);
+    asj_release(memory, run->places);
+    run->sizes.count = 0;
+    run->stretched = NULL;
+    run->places = NULL;
 }
 
 asj_status asj_detection_run_known(const asj_detection_run *run, asj_octave_known *known)
@@ -210,7 +223,7 @@ asj_status asj_detection_run_each(asj_detection_run *run, int32_t stage, int32_t
 
 asj_status asj_detection_run_progress(const asj_detection_run *run, int32_t stage, double done)
 {
-    return asj_progress(run->context, stage, run->done + run->share * done);
+    return asj_progress(run->context, stage, fmin(run->done + run->share * done, 1));
 }
 
 void asj_detection_run_time(asj_detection_run *run, int32_t stage)
@@ -223,6 +236,8 @@ void asj_detection_run_time(asj_detection_run *run, int32_t stage)
 void asj_detection_run_dump_plane(const asj_detection_run *run, int32_t kind, const char *name, const void *data, double unit)
 {
     const asj_frame *frame = run->frame;
+    if (run->size > 0)
+        return;
     const asj_dump dump = {ASJ_STAGE_GRADIENT, kind, name, data, frame->width, frame->height, frame->stride, 0, unit};
     asj_dump_out(run->context, &dump);
 }
@@ -231,6 +246,8 @@ void asj_detection_run_dump_points(const asj_detection_run *run, int32_t stage, 
                                    const int32_t *points)
 {
     const asj_frame *frame = run->frame;
+    if (run->size > 0)
+        return;
     const asj_dump dump = {stage, ASJ_DUMP_POINTS, name, points, frame->width, frame->height, 0, count, 1};
     asj_dump_out(run->context, &dump);
 }

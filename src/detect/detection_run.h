@@ -5,6 +5,7 @@
 
 #include "edge_evidence.h"
 #include "guess.h"
+#include "sizes.h"
 #include "octaves.h"
 #include "scan.h"
 #include "scan_cache.h"
@@ -61,6 +62,14 @@ typedef struct asj_detection_run {
     asj_hypothesis *found;           /* of the planes that are done, likewise */
     size_t found_count, found_capacity;
     size_t candidate_total, isotropic_total; /* and how many of these they had */
+    int32_t size;                    /* with three_sizes: 0, 1, 2; */
+    asj_sizes sizes;                 /* what those before it have found, */
+    const asj_image *whole;          /* the caller's image and region while another size is looked at, .. */
+    const asj_region *whole_region;
+    asj_image other;                 /* .. `image` then, .. */
+    void *stretched;                 /* .. its pixels, */
+    double *places;                  /* and where it alone is looked at: x and y, px of `whole`; NULL = everywhere */
+    size_t place_count;
     asj_evidence *evidence;          /* of branches of all octaves, by asj_hypothesis_branch.evidence */
     size_t evidence_count, evidence_capacity;
     asj_edge *edges;                 /* between hypotheses */
@@ -99,6 +108,9 @@ int asj_detection_run_is_coarse(const asj_detection_run *run);
 
 /* Releases what steps 3 to 5 have found; the candidates' memory serves the next octave. */
 void asj_detection_run_clear(asj_detection_run *run);
+
+/* Releases what looks have put by. */
+void asj_detection_run_clear_sizes(asj_detection_run *run);
 
 /* Length of a list that is allocated for `count` elements: room for a few when there are hardly any, so that the next of a stream
  * of pictures needs no more. */

@@ -54,7 +54,7 @@ static void check_detect(int32_t preset, int fresh, int for_good, int dump, int3
     int reached = 1;
     long n = 1;
     asj_detect_options_preset(&detect_options, preset);
-    detect_options.half_octaves = detect_options.complete_junctions = detect_options.colours = more;
+    detect_options.half_octaves = detect_options.complete_junctions = detect_options.colours = detect_options.three_sizes = more;
     for (; reached && n < MOST; n++) {
         asj_detection *found = (asj_detection *)pixels;
         if (!context) {
