@@ -4,6 +4,7 @@
 #include "core/sort.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #define BAND 32.0  /* px; most squares that are asked for are smaller */
 #define MARGIN 1.0 /* px: more than rounding */
@@ -60,8 +61,8 @@ asj_place_walk asj_places_near(const asj_place *places, uint32_t count, float x,
 int asj_places_next(asj_place_walk *w, uint32_t *match)
 {
     while (w->band <= w->last_band) {
-        const asj_place *p = &w->places[w->next];
-        if (w->next < w->count && p->band == w->band && (double)p->x <= w->right) {
+        const asj_place *p = w->next < w->count ? &w->places[w->next] : NULL;
+        if (p && p->band == w->band && (double)p->x <= w->right) {
             *match = p->match;
             w->next++;
             return 1;

@@ -169,6 +169,10 @@ static void settings(run_state *state, int quick)
     state->setting = "colours=1";
     scenes(state, quick ? 1 : 3);
     asj_detect_options_init(&state->options);
+    state->options.three_sizes = 1;
+    state->setting = "three_sizes=1";
+    scenes(state, quick ? 1 : 3);
+    asj_detect_options_init(&state->options);
     state->setting = "default";
 }
 
