@@ -20,8 +20,8 @@
  * RATIO: half as far from one size to the next as half octaves are. Sizes that are nearer are more alike: with 1.09 the 26 have
  * 80.4 % at .8 for 82.6. With half octaves the smaller image has too few pixels for corners blurred by 8 px. NEAR: with 2 81.2 and
  * 80.4 % at .9 and .8. What two of three sizes have (tests/accuracy/README.md, zooms of .9 to .3, without and with it): 26
- * photographs 75.4 75.3 74.8 72.8 80.7 77.7 78.4 and 82.4 82.8 81.1 79.6 79.7 78.1 80.9, six 84.3 84.4 82.9 82.6 84.5 78.2 81.9 and
- * 85.8 87.1 86.4 84.9 82.4 77.8 75.6; corners of 5 grey levels in noise of 2 .817 and .907 found, precision .997 and .999; rooms
+ * photographs 75.4 75.3 74.7 72.7 80.8 77.5 78.4 and 82.9 83.3 81.4 80.0 79.6 78.0 80.6, six 84.3 84.4 82.9 82.6 84.5 78.2 81.9 and
+ * 86.1 87.1 86.9 85.1 82.8 77.7 76.5; corners of 5 grey levels in noise of 2 .817 and .907 found, precision .997 and .999; rooms
  * .952 and .954, .989 and .990. Copies are made in the image's own format, so that images of 8 and 16 bits differ a little. */
 #include "sizes.h"
 
@@ -30,6 +30,7 @@
 #define RATIO 1.189207115002721 /* 2^(1/4) */
 #define NEAR 3.0                /* px of the image */
 #define AGREEING 2              /* looks */
+#define APART 5.0               /* px of its octave to what a copy adds: as suppression leaves at radius 14 (suppress.c) */
 
 int32_t asj_size_px(int32_t px, int32_t size)
 {
@@ -120,7 +121,7 @@ size_t asj_sizes_agreed(const asj_sizes *sizes, int32_t width, int32_t height, i
     for (int32_t i = 0; i < sizes->count; i++) {
         for (size_t k = 0; k < sizes->found[i].count; k++) {
             const asj_hypothesis *hypothesis = &sizes->found[i].found[k];
-            const double reach = NEAR * fmax(asj_octave_scale(hypothesis->octave), 1);
+            const double reach = APART * fmax(asj_octave_scale(hypothesis->octave), 1);
             if (votes_for(sizes, i, hypothesis) < AGREEING || (i > 0 && is_near(&grid, to, hypothesis, reach)))
                 continue;
             to[count] = *hypothesis;

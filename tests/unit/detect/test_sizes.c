@@ -78,6 +78,22 @@ static void far_ones_do_not_agree(void **state)
     clear(&s);
 }
 
+/* What two copies have beside a place that stays is the same corner, up to 5 px from it. */
+static void copies_add_none_beside(void **state)
+{
+    static const double aside[] = {3.5, 4.75, 5.25};
+    (void)state;
+    for (size_t k = 0; k < UNIT_COUNT(aside); k++) {
+        const unsigned there[] = {1, 1, 1};
+        const double moved[] = {0, aside[k] - 2.5, aside[k]};
+        scene s;
+        make(&s, ASJ_SIZES, there, moved);
+        assert_int_equal(asj_sizes_agreed(&s.sizes, SIDE, SIDE, s.others, s.agreed), aside[k] < 5 ? 1 : 2);
+        unit_near("x", 0, 0, s.agreed[0].x, 40, 1e-9);
+        clear(&s);
+    }
+}
+
 /* What one of two sizes has is disputed. */
 static void disputed_places(void **state)
 {
@@ -181,6 +197,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_of_three_stay),
         cmocka_unit_test(far_ones_do_not_agree),
+        cmocka_unit_test(copies_add_none_beside),
         cmocka_unit_test(disputed_places),
         cmocka_unit_test(sizes_map),
         cmocka_unit_test_setup_teardown(corners, unit_set_up, unit_tear_down),
