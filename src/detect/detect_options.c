@@ -39,7 +39,7 @@ static const asj_option_info rows[] = {
            "the time; they match where a geometry is asked"),
     SWITCH(OCTAVES, ADVANCED, three_sizes, 0, 0, 0,
            "look at the image 0.84 and 1.19 times as large, too, and keep what two of the three have: junctions that stay when an "
-           "image changes a little, and more weak ones, in twice the time"),
+           "image changes a little, and more weak ones, in 2.4 to 3.2 times the time"),
 
     NUMBER(GRADIENT, COMMON, gradient_epsilon, "grey/px", 0.05, 16, 0.4, 0.05, 0.4,
            "gradient below which a surface counts as flat; raise it against compression noise"),
