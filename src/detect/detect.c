@@ -78,8 +78,7 @@ static asj_status run_octave(asj_detection_run *run)
  * image itself: what only one size can see has no second vote. */
 static asj_status run_octaves(asj_detection_run *run)
 {
-    const asj_image *image = run->size > 0 ? run->whole : run->image;
-    const asj_octave_range range = asj_octaves_of(run->options, image->width, image->height);
+    const asj_octave_range range = asj_octaves_of(run->options, run->whole->width, run->whole->height);
     const double pixels = range.pixels * run->planes.count * asj_sizes_area(run);
     asj_status status = asj_step_load(run);
     while (run->octave < range.first && status == ASJ_OK)
@@ -157,7 +156,7 @@ static asj_status detect(asj_context *context, const asj_image *image, const asj
     asj_detection_run run;
     asj_status status = asj_detection_run_begin(&run, context, image, options, result);
     run.clock = start;
-    run.region = region;
+    run.region = run.whole_region = region;
     if (status == ASJ_OK)
         status = asj_region_check(context, image, region);
     if (status == ASJ_OK)

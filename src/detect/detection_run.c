@@ -113,7 +113,7 @@ asj_status asj_detection_run_begin(asj_detection_run *run, asj_context *context,
     run->clock = asj_clock_ms();
     run->share = 1;
     run->context = context;
-    run->image = image;
+    run->image = run->whole = image;
     if (!image || !output)
         return asj_fail(context, ASJ_ERROR_ARGUMENT, "%s is NULL", image ? "the place for the result" : "the image");
     if (!options)

@@ -5,10 +5,10 @@
 
 #include "edge_evidence.h"
 #include "guess.h"
-#include "sizes.h"
 #include "octaves.h"
 #include "scan.h"
 #include "scan_cache.h"
+#include "sizes.h"
 #include "core/image.h"
 
 /* What a context keeps from image to image. The tables hold for a set of options; only their numbers of tests depend on the size
@@ -64,9 +64,9 @@ typedef struct asj_detection_run {
     size_t candidate_total, isotropic_total; /* and how many of these they had */
     int32_t size;                    /* with three_sizes: 0, 1, 2; */
     asj_sizes sizes;                 /* what those before it have found, */
-    const asj_image *whole;          /* the caller's image and region while another size is looked at, .. */
+    const asj_image *whole;          /* the caller's image and region; while another size is looked at .. */
     const asj_region *whole_region;
-    asj_image other;                 /* .. `image` then, .. */
+    asj_image other;                 /* .. this is `image`, .. */
     void *stretched;                 /* .. its pixels, */
     double *places;                  /* and where it alone is looked at: x and y, px of `whole`; NULL = everywhere */
     size_t place_count;

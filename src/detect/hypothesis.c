@@ -49,6 +49,22 @@ double asj_angle_wrap(double angle)
     return (float)angle < 6.2831853f ? angle : 0; /* results are floats: what rounds to 2 pi is 0, in every order of angles */
 }
 
+void asj_hypothesis_scale(asj_hypothesis *hypothesis, double x_scale, double y_scale, double scale)
+{
+    hypothesis->x = (hypothesis->x + 0.5) * x_scale - 0.5;
+    hypothesis->y = (hypothesis->y + 0.5) * y_scale - 0.5;
+    hypothesis->radius *= scale;
+    hypothesis->location_variance *= scale * scale;
+    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
+        asj_hypothesis_branch *branch = &hypothesis->branches[i];
+        branch->length *= scale;
+        branch->offset *= scale;
+        branch->offset_variance *= scale * scale;
+        branch->end_variance *= scale * scale;
+        branch->apart *= scale;
+    }
+}
+
 void asj_hypothesis_select(asj_hypothesis *hypothesis, const int *keep)
 {
     int32_t kept = 0;

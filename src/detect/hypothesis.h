@@ -89,6 +89,10 @@ double asj_angle_distance(double a, double b);
 /* An angle brought into [0, 2 pi). */
 double asj_angle_wrap(double angle);
 
+/* Places and lengths in other pixels, whose centres are at whole numbers too: x and y that many times as far, lengths `scale`
+ * times as long. Not what is in pixels of an octave. */
+void asj_hypothesis_scale(asj_hypothesis *hypothesis, double x_scale, double y_scale, double scale);
+
 /* Removes branches whose flag is 0, keeping the order. */
 void asj_hypothesis_select(asj_hypothesis *hypothesis, const int *keep);
 

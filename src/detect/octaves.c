@@ -73,20 +73,10 @@ asj_octave_range asj_octaves_of(const asj_detect_options *options, int32_t width
 void asj_octaves_map(asj_hypothesis *hypothesis, double octave)
 {
     const double scale = asj_octave_scale(octave);
+    asj_hypothesis_scale(hypothesis, scale, scale, scale);
     hypothesis->octave = octave;
-    hypothesis->x = (hypothesis->x + 0.5) * scale - 0.5;
-    hypothesis->y = (hypothesis->y + 0.5) * scale - 0.5;
-    hypothesis->radius *= scale;
-    hypothesis->location_variance *= scale * scale;
-    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
-        asj_hypothesis_branch *branch = &hypothesis->branches[i];
-        branch->octave = octave;
-        branch->length *= scale;
-        branch->offset *= scale;
-        branch->offset_variance *= scale * scale;
-        branch->end_variance *= scale * scale;
-        branch->apart *= scale;
-    }
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        hypothesis->branches[i].octave = octave;
 }
 
 int32_t asj_octaves_sharing(const asj_detect_options *options, int32_t width, int32_t height)

@@ -40,19 +40,9 @@ int32_t asj_size_px(int32_t px, int32_t size)
 void asj_size_map(asj_hypothesis *hypothesis, double x_scale, double y_scale)
 {
     const double scale = sqrt(x_scale * y_scale);
-    hypothesis->x = (hypothesis->x + 0.5) * x_scale - 0.5;
-    hypothesis->y = (hypothesis->y + 0.5) * y_scale - 0.5;
-    hypothesis->radius *= scale;
-    hypothesis->location_variance *= scale * scale;
-    for (int32_t i = 0; i < hypothesis->branch_count; i++) {
-        asj_hypothesis_branch *branch = &hypothesis->branches[i];
-        branch->length *= scale;
-        branch->offset *= scale;
-        branch->offset_variance *= scale * scale;
-        branch->end_variance *= scale * scale;
-        branch->apart *= scale;
-        branch->width *= scale;
-    }
+    asj_hypothesis_scale(hypothesis, x_scale, y_scale, scale);
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        hypothesis->branches[i].width *= scale; /* px of the copy's octave, which has the same number */
 }
 
 size_t asj_sizes_total(const asj_sizes *sizes)

@@ -15,7 +15,7 @@
 
 int32_t asj_sizes_of(const asj_detection_run *run)
 {
-    const asj_image *image = run->size > 0 ? run->whole : run->image;
+    const asj_image *image = run->whole;
     const double fine = run->options->first_octave < 0 ? 2 : 1;
     const double width = fine * asj_size_px(image->width, 2), height = fine * asj_size_px(image->height, 2);
     const int fits = width <= ASJ_MAX_SIDE && height <= ASJ_MAX_SIDE && width * height <= ASJ_MAX_PIXELS;
@@ -92,10 +92,6 @@ static asj_status stretch(asj_detection_run *run)
 
 asj_status asj_step_next_size(asj_detection_run *run)
 {
-    if (run->size == 0) {
-        run->whole = run->image;
-        run->whole_region = run->region;
-    }
     put_by(run);
     run->size++;
     asj_status status = run->size + 1 == ASJ_SIZES ? find_disputed(run) : ASJ_OK;
