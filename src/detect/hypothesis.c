@@ -49,6 +49,12 @@ double asj_angle_wrap(double angle)
     return (float)angle < 6.2831853f ? angle : 0; /* results are floats: what rounds to 2 pi is 0, in every order of angles */
 }
 
+int asj_hypothesis_is_inside(const asj_hypothesis *hypothesis, int32_t width, int32_t height)
+{
+    return hypothesis->x >= -ASJ_MAX_OUTSIDE && hypothesis->x <= width - 1 + ASJ_MAX_OUTSIDE &&
+           hypothesis->y >= -ASJ_MAX_OUTSIDE && hypothesis->y <= height - 1 + ASJ_MAX_OUTSIDE;
+}
+
 void asj_hypothesis_scale(asj_hypothesis *hypothesis, double x_scale, double y_scale, double scale)
 {
     hypothesis->x = (hypothesis->x + 0.5) * x_scale - 0.5;

@@ -93,6 +93,9 @@ double asj_angle_wrap(double angle);
  * times as long. Not what is in pixels of an octave. */
 void asj_hypothesis_scale(asj_hypothesis *hypothesis, double x_scale, double y_scale, double scale);
 
+/* Whether it lies in an image of that size, or no farther outside than what meets beyond the border may (ASJ_MAX_OUTSIDE). */
+int asj_hypothesis_is_inside(const asj_hypothesis *hypothesis, int32_t width, int32_t height);
+
 /* Removes branches whose flag is 0, keeping the order. */
 void asj_hypothesis_select(asj_hypothesis *hypothesis, const int *keep);
 

@@ -9,12 +9,6 @@
 
 #define LEAST_CONFIRMED (4 * ASJ_LEAST_JUNCTIONS) /* for a thread */
 
-static int is_inside(const asj_detection_run *run, const asj_hypothesis *hypothesis)
-{
-    return hypothesis->x >= -ASJ_MAX_OUTSIDE && hypothesis->x <= run->image->width - 1 + ASJ_MAX_OUTSIDE &&
-           hypothesis->y >= -ASJ_MAX_OUTSIDE && hypothesis->y <= run->image->height - 1 + ASJ_MAX_OUTSIDE;
-}
-
 static void confirm(const asj_detection_run *run, asj_hypothesis *hypothesis)
 {
     asj_octave_confirm(run->frame, run->options->minimum_opening, hypothesis);
@@ -25,6 +19,7 @@ static void confirm(const asj_detection_run *run, asj_hypothesis *hypothesis)
 static asj_status collect(asj_detection_run *run)
 {
     const size_t total = run->all_count + run->hypothesis_count;
+    const int32_t width = run->image->width, height = run->image->height;
     void *list = run->all;
     asj_status status = ASJ_OK;
     if (run->octave == 0 && run->one_list)
@@ -39,7 +34,7 @@ static asj_status collect(asj_detection_run *run)
     for (size_t i = 0; i < run->hypothesis_count; i++) {
         run->all[run->all_count] = run->hypotheses[i];
         asj_octaves_map(&run->all[run->all_count], run->octave);
-        run->all_count += (size_t)is_inside(run, &run->all[run->all_count]);
+        run->all_count += (size_t)asj_hypothesis_is_inside(&run->all[run->all_count], width, height);
     }
     run->candidate_total += run->candidate_count;
     run->isotropic_total += run->isotropic_count;

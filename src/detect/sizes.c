@@ -37,12 +37,24 @@ int32_t asj_size_px(int32_t px, int32_t size)
     return size == 0 ? px : (int32_t)lrint(size == 1 ? px / RATIO : px * RATIO);
 }
 
-void asj_size_map(asj_hypothesis *hypothesis, double x_scale, double y_scale)
+static void map(asj_hypothesis *hypothesis, double x_scale, double y_scale)
 {
     const double scale = sqrt(x_scale * y_scale);
     asj_hypothesis_scale(hypothesis, x_scale, y_scale, scale);
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         hypothesis->branches[i].width *= scale; /* px of the copy's octave, which has the same number */
+}
+
+/* Of a smaller copy what lies as far outside as it may is too far outside of the image. */
+void asj_size_map(asj_size_found *list, int32_t width, int32_t height, int32_t to_width, int32_t to_height)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < list->count; i++) {
+        list->found[kept] = list->found[i];
+        map(&list->found[kept], (double)to_width / width, (double)to_height / height);
+        kept += (size_t)asj_hypothesis_is_inside(&list->found[kept], to_width, to_height);
+    }
+    list->count = kept;
 }
 
 size_t asj_sizes_total(const asj_sizes *sizes)

@@ -16,8 +16,8 @@ typedef struct asj_size_found {
 /* px of a side that has so many in the image, at size 0, 1, 2: as it is, smaller, larger. */
 int32_t asj_size_px(int32_t px, int32_t size);
 
-/* From pixels of a size to those of the image: x and y that many times as large. */
-void asj_size_map(asj_hypothesis *hypothesis, double x_scale, double y_scale);
+/* From pixels of a copy of width x height to those of an image of to_width x to_height, without what lies too far outside there. */
+void asj_size_map(asj_size_found *list, int32_t width, int32_t height, int32_t to_width, int32_t to_height);
 
 typedef struct asj_sizes {
     asj_size_found found[ASJ_SIZES];

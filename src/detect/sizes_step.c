@@ -38,9 +38,7 @@ static void put_by(asj_detection_run *run)
     run->found_count = run->found_capacity = 0;
     if (run->size == 0)
         return;
-    const double x = (double)run->whole->width / run->image->width, y = (double)run->whole->height / run->image->height;
-    for (size_t i = 0; i < list->count; i++)
-        asj_size_map(&list->found[i], x, y);
+    asj_size_map(list, run->image->width, run->image->height, run->whole->width, run->whole->height);
     asj_release(&run->context->memory, run->stretched);
     asj_release(&run->context->memory, run->places);
     run->stretched = NULL;

@@ -117,11 +117,28 @@ static void sizes_map(void **state)
     assert_int_equal(asj_size_px(640, 1), 538);
     assert_int_equal(asj_size_px(640, 2), 761);
     asj_hypothesis h = {.x = -0.5, .y = 9.5, .branch_count = 1, .branches = {{.length = 10, .offset = -1}}};
-    asj_size_map(&h, 2, 2);
+    asj_size_found list = {&h, 1};
+    asj_size_map(&list, 50, 50, 100, 100);
+    assert_int_equal(list.count, 1);
     unit_near("x", 0, 0, h.x, -0.5, 1e-12);
     unit_near("y", 0, 0, h.y, 19.5, 1e-12);
     unit_near("length", 0, 0, h.branches[0].length, 20, 1e-12);
     unit_near("offset", 0, 0, h.branches[0].offset, -2, 1e-12);
+}
+
+/* What lies farther outside of the image than junctions may goes, from each border. */
+static void too_far_outside(void **state)
+{
+    static const double near = ASJ_MAX_OUTSIDE / 2.0, far = ASJ_MAX_OUTSIDE / 2.0 + 0.5;
+    (void)state;
+    for (int32_t i = 0; i < 8; i++) {
+        const double beyond = i & 1 ? far : near, at = i & 2 ? 49 + beyond : -beyond;
+        asj_hypothesis h[] = {{.x = i & 4 ? at : 7, .y = i & 4 ? 7 : at}, {.x = 20, .y = 20}};
+        asj_size_found list = {h, 2};
+        asj_size_map(&list, 50, 50, 100, 100);
+        assert_int_equal(list.count, i & 1 ? 1 : 2);
+        unit_near("what stays", i, 0, h[list.count - 1].x, 40.5, 1e-12);
+    }
 }
 
 static uint8_t *parallelogram(double gray, double noise, uint64_t seed)
@@ -200,6 +217,7 @@ int main(void)
         cmocka_unit_test(copies_add_none_beside),
         cmocka_unit_test(disputed_places),
         cmocka_unit_test(sizes_map),
+        cmocka_unit_test(too_far_outside),
         cmocka_unit_test_setup_teardown(corners, unit_set_up, unit_tear_down),
         cmocka_unit_test_setup_teardown(anywhere, unit_set_up, unit_tear_down),
     };
