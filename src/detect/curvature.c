@@ -140,6 +140,7 @@ static int is_short_and_soft(const asj_hypothesis *hypothesis)
 int asj_is_arc(const asj_frame *frame, const asj_hypothesis *hypothesis, double least)
 {
     bend bends[ASJ_MAX_BRANCHES];
+    int seen = 0; /* a pair on an arc */
     if (is_short_and_soft(hypothesis))
         return 0;
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
@@ -147,8 +148,11 @@ int asj_is_arc(const asj_frame *frame, const asj_hypothesis *hypothesis, double 
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         for (int32_t j = i + 1; j < hypothesis->branch_count; j++) {
             const double turn = signed_turn(&hypothesis->branches[i], &hypothesis->branches[j]);
-            if (fabs(turn) >= least && fabs(turn) <= ASJ_PI - least && !on_arc(&bends[i], &bends[j], turn))
+            if (fabs(turn) < least || fabs(turn) > ASJ_PI - least)
+                continue;
+            if (!on_arc(&bends[i], &bends[j], turn))
                 return 0;
+            seen = 1;
         }
-    return hypothesis->branch_count > 1;
+    return seen;
 }

@@ -6,7 +6,8 @@
 #include "core/image.h"
 #include "hypothesis.h"
 
-/* Whether every two branches that open by at least `least` radians lie on an arc; 0 where a side is too short and soft to tell. */
+/* Whether some branches open by at least `least` radians, and every two that do lie on an arc; 0 where a side is too short and soft
+ * to tell. */
 int asj_is_arc(const asj_frame *frame, const asj_hypothesis *hypothesis, double least);
 
 #endif

@@ -246,6 +246,7 @@ static void meet_again(const asj_context *context, const asj_frame *frame, const
     worse |= has_moved_far(options, hypothesis);
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         worse |= fabs(hypothesis->branches[i].offset) > LARGEST_OFFSET;
+    worse |= !asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE);
     if (worse)
         *hypothesis = before;
 }

@@ -122,6 +122,22 @@ static void test_tangents(void **state)
     }
 }
 
+/* Where no two branches open nothing is seen of an arc: side by side, back to back, or where more is asked than they open. */
+static void test_no_opening(void **state)
+{
+    const unit_fixture *f = *state;
+    static const double halves[] = {0, 5, 12, 80, 88, 90};
+    for (size_t n = 0; n < UNIT_COUNT(halves); n++) {
+        asj_hypothesis h = junction_at(0.4, 24, halves[n] * DEGREE, 20);
+        h.branch_count = 2;
+        assert_false(asj_is_arc(&f->frame, &h, 25 * DEGREE));
+    }
+    asj_hypothesis h = junction_at(0.4, 24 / sin(65 * DEGREE), 65 * DEGREE, 20);
+    h.branch_count = 2;
+    assert_true(asj_is_arc(&f->frame, &h, 45 * DEGREE));
+    assert_false(asj_is_arc(&f->frame, &h, 55 * DEGREE));
+}
+
 /* Nor what is too short to tell, where there is no edge, or beyond the image. */
 static void test_nothing(void **state)
 {
@@ -151,7 +167,8 @@ static void test_corner(void **state)
 int main(void)
 {
     const struct CMUnitTest whole[] = {cmocka_unit_test(test_discs), cmocka_unit_test(test_polygons)};
-    const struct CMUnitTest disc[] = {cmocka_unit_test(test_tangents), cmocka_unit_test(test_nothing)};
+    const struct CMUnitTest disc[] = {cmocka_unit_test(test_tangents), cmocka_unit_test(test_no_opening),
+                                      cmocka_unit_test(test_nothing)};
     const struct CMUnitTest square[] = {cmocka_unit_test(test_corner)};
     return cmocka_run_group_tests(whole, unit_set_up, unit_tear_down) +
            cmocka_run_group_tests(disc, set_up_disc, unit_tear_down) +
