@@ -238,7 +238,7 @@ static int parse(const asj_option_info *row, const char *text, double *value)
     static const char *const switches[] = {"no", "yes", "off", "on", "false", "true", "0", "1", NULL};
     switch (row->type) {
     case ASJ_OPTION_NUMBER: return parse_number(text, value);
-    case ASJ_OPTION_INTEGER: return parse_number(text, value) && *value == floor(*value) && fabs(*value) < 2147483648.0;
+    case ASJ_OPTION_INTEGER: return parse_number(text, value) && *value == floor(*value);
     case ASJ_OPTION_RADII: return parse_radii(text, value);
     case ASJ_OPTION_CHOICE: return parse_word(row->choices, text, value);
     default:

@@ -275,6 +275,10 @@ static void test_refusals_say_what_is_taken(void **state)
 {
     static const char *const wanted[][3] = {{"a_number", "x", "a_number: 'x' is not a number"},
                                             {"an_integer", "1.5", "an_integer: '1.5' is not a whole number"},
+                                            {"an_integer", "99999999999",
+                                             "an_integer: 99999999999 is outside -2.14748365e+09 .. 2.14748365e+09"},
+                                            {"stepped", "99999999999", "stepped: 99999999999 is not one of 3, 5 .. 11"},
+                                            {"stepped", "-1e999", "stepped: -1e999 is not one of 3, 5 .. 11"},
                                             {"a_switch", "maybe", "a_switch: 'maybe' is not yes or no"},
                                             {"a_word", "four", "a_word: 'four' is none of one, two, three_four"},
                                             {"radii", "5-", "radii: '5-' is not a set of radii such as 5,7,10 or 3-12"}};
