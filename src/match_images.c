@@ -41,6 +41,7 @@
  * often. So a stretched look needs ENOUGH matches, and as many more than there are. */
 #include "look.h"
 #include "core/colour_plane.h"
+#include "core/number_text.h"
 #include "geometry/geometry_options.h"
 #include "match/final_pose.h"
 #include "match/upsampled.h"
@@ -328,8 +329,8 @@ static int32_t is_factor(double factor)
 static asj_status check(asj_context *context, const asj_stretch *stretch)
 {
     if (!is_automatic(stretch) && !(is_factor(stretch->x) && is_factor(stretch->y)))
-        return asj_fail(context, ASJ_ERROR_OPTION, "a stretch of %g, %g is outside %g .. %d", stretch->x, stretch->y,
-                        ASJ_MIN_STRETCH, ASJ_MAX_STRETCH);
+        return asj_fail(context, ASJ_ERROR_OPTION, "a stretch of %s, %s is outside %s .. %d", ASJ_TEXT(stretch->x),
+                        ASJ_TEXT(stretch->y), ASJ_TEXT(ASJ_MIN_STRETCH), ASJ_MAX_STRETCH);
     return ASJ_OK;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Views of every format, checked -> planes of grey levels. */
 #include "image.h"
+#include "number_text.h"
 #include "threads.h"
 #include "watch.h"
 #include "shared/pixels.h"
@@ -48,7 +49,7 @@ asj_status asj_image_check(asj_context *context, const asj_image *image)
         return asj_fail(context, ASJ_ERROR_IMAGE, "%d rows with a stride of %lld are more than memory", (int)image->height,
                         (long long)image->stride);
     if (!(image->white >= 0) || isinf(image->white))
-        return asj_fail(context, ASJ_ERROR_IMAGE, "white level %g is not a level", (double)image->white);
+        return asj_fail(context, ASJ_ERROR_IMAGE, "white level %s is not a level", ASJ_TEXT((double)image->white));
     return ASJ_OK;
 }
 

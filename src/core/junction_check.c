@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* What a junction may be: of callers, from files and into files alike. */
 #include "context.h"
+#include "number_text.h"
 
 #include <asj/junction.h>
 
@@ -28,10 +29,10 @@ static asj_status check_branch(const asj_branch *branch, int32_t b, const fault_
     if (branch->end < ASJ_BRANCH_END_UNKNOWN || branch->end > ASJ_BRANCH_END_BORDER)
         return fault(to, "a branch %d with an end of kind %d", (int)b, (int)branch->end);
     if (!(branch->length >= 0 && branch->length <= ASJ_MAX_BRANCH_LENGTH))
-        return fault(to, "a branch %d with a length of %g px, not 0 .. %d", (int)b, (double)branch->length,
+        return fault(to, "a branch %d with a length of %s px, not 0 .. %d", (int)b, ASJ_TEXT((double)branch->length),
                      (int)ASJ_MAX_BRANCH_LENGTH);
     if (!(fabsf(branch->angle) <= ASJ_MAX_BRANCH_ANGLE))
-        return fault(to, "a branch %d with an angle of %g", (int)b, (double)branch->angle);
+        return fault(to, "a branch %d with an angle of %s", (int)b, ASJ_TEXT((double)branch->angle));
     if (!isfinite(branch->strength) || !isfinite(branch->log10_nfa) || !isfinite(branch->angle_sd) || !isfinite(branch->width) ||
         !isfinite(branch->length_sd))
         return fault(to, "a branch %d with NaN or infinity", (int)b);
@@ -49,7 +50,7 @@ asj_status asj_junction_check(const asj_junction *junction, char *message, size_
     if (!isfinite(junction->x) || !isfinite(junction->y) || !isfinite(junction->log10_nfa) || !isfinite(junction->location_sd))
         return fault(&to, "NaN or infinity");
     if (!(junction->scale >= 0) || isinf(junction->scale))
-        return fault(&to, "a scale of %g px", (double)junction->scale);
+        return fault(&to, "a scale of %s px", ASJ_TEXT((double)junction->scale));
     if (junction->octave < ASJ_LEAST_OCTAVE || junction->octave > ASJ_LARGEST_OCTAVE)
         return fault(&to, "octave %d", (int)junction->octave);
     if (junction->branch_count < 0 || junction->branch_count > ASJ_MAX_BRANCHES)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Options as rows of a table: values of presets, ranges, numbers as text in any locale. */
 #include "option_table.h"
+#include "number_text.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -56,10 +57,11 @@ static int in_range(const asj_option_info *row, double value)
 static void say_range(const asj_option_info *row, const char *value, char *message, size_t message_size)
 {
     if (row->step > 1)
-        say(message, message_size, "%s: %s is not one of %.9g, %.9g .. %.9g", row->key, value, row->minimum,
-            row->minimum + row->step, row->maximum);
+        say(message, message_size, "%s: %s is not one of %s, %s .. %s", row->key, value, ASJ_TEXT_NINE(row->minimum),
+            ASJ_TEXT_NINE(row->minimum + row->step), ASJ_TEXT_NINE(row->maximum));
     else
-        say(message, message_size, "%s: %s is outside %.9g .. %.9g", row->key, value, row->minimum, row->maximum);
+        say(message, message_size, "%s: %s is outside %s .. %s", row->key, value, ASJ_TEXT_NINE(row->minimum),
+            ASJ_TEXT_NINE(row->maximum));
 }
 
 asj_status asj_option_table_preset(const asj_option_table *table, void *options, int32_t preset)
@@ -112,7 +114,7 @@ asj_status asj_option_table_check(const asj_option_table *table, const void *opt
             if (row->type == ASJ_OPTION_RADII)
                 print_radii(text, sizeof text, (uint32_t)value);
             else
-                snprintf(text, sizeof text, "%.9g", value);
+                asj_number_text(text, 9, value);
             say_range(row, text[0] ? text : "an empty set", message, message_size);
             return ASJ_ERROR_OPTION;
         }
@@ -138,16 +140,6 @@ static const asj_option_info *find(const asj_option_table *table, const char *ke
 
 /* Longest number that is read: more than any number needs, exact binary fractions included. */
 #define LONGEST_NUMBER 400
-
-/* What stands for the decimal point in the locale of the process, a few bytes. localeconv() would tell too, but is not thread
- * safe. */
-static void decimal_point(char point[16])
-{
-    snprintf(point, 16, "%.1f", 0.5);
-    size_t length = strlen(point);
-    memmove(point, point + 1, length - 2);
-    point[length - 2] = '\0';
-}
 
 static const char *skip_digits(const char *text, int *digits)
 {
@@ -185,11 +177,11 @@ static int is_number(const char *text, const char **point)
 /* A decimal number that is the whole of `text`, independent of the locale, to the nearest double; 0 when it is not one. */
 static int parse_number(const char *text, double *value)
 {
-    char copy[LONGEST_NUMBER + 17], point[16];
+    char copy[LONGEST_NUMBER + 1 + ASJ_DECIMAL_POINT], point[ASJ_DECIMAL_POINT];
     const char *at;
     if (strlen(text) > LONGEST_NUMBER || !is_number(text, &at))
         return 0;
-    decimal_point(point);
+    asj_decimal_point(point);
     if (at)
         snprintf(copy, sizeof copy, "%.*s%s%s", (int)(at - text), text, point, at + 1);
     *value = strtod(at ? copy : text, NULL);
@@ -300,17 +292,14 @@ asj_status asj_option_table_set(const asj_option_table *table, void *options, co
 /* Shortest form that reads back to the same double, with a point whatever the locale. */
 static int print_number(char *text, size_t size, double value)
 {
-    char buffer[64], point[16];
-    for (int precision = 6; precision <= 17; precision++) {
+    char buffer[ASJ_NUMBER_TEXT];
+    int precision;
+    for (precision = 6; precision < 17; precision++) {
         snprintf(buffer, sizeof buffer, "%.*g", precision, value);
         if (strtod(buffer, NULL) == value) /* both in the locale of the process */
             break;
     }
-    decimal_point(point);
-    const char *at = strstr(buffer, point);
-    if (!at)
-        return snprintf(text, size, "%s", buffer);
-    return snprintf(text, size, "%.*s.%s", (int)(at - buffer), buffer, at + strlen(point));
+    return snprintf(text, size, "%s", asj_number_text(buffer, precision, value));
 }
 
 asj_status asj_option_table_get(const asj_option_table *table, const void *options, const char *key,

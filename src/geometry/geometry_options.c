@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Options of the geometry, and the names of its models and answers. */
 #include "geometry_options.h"
+#include "core/number_text.h"
 #include "core/reserved.h"
 #include "small_matrix.h"
 
@@ -75,7 +76,8 @@ static asj_status check_number(asj_context *context, const char *name, double va
 {
     if (within(value, least, most))
         return ASJ_OK;
-    return asj_fail(context, ASJ_ERROR_OPTION, "%s of the geometry is %.9g, not %g .. %g", name, value, least, most);
+    return asj_fail(context, ASJ_ERROR_OPTION, "%s of the geometry is %s, not %s .. %s", name, ASJ_TEXT_NINE(value),
+                    ASJ_TEXT(least), ASJ_TEXT(most));
 }
 
 static asj_status check_deviations(asj_context *context, const asj_geometry_options *o)
@@ -91,10 +93,11 @@ asj_status asj_geometry_request_check(asj_context *context, const asj_geometry_o
     for (int32_t v = 0; v < 2; v++) {
         const asj_camera *c = &o->cameras[v];
         if (!asj_camera_can_be(c))
-            return asj_fail(context, ASJ_ERROR_OPTION, "camera %d cannot be: fx %g, fy %g, cx %g, cy %g", (int)v + 1, c->fx, c->fy,
-                            c->cx, c->cy);
+            return asj_fail(context, ASJ_ERROR_OPTION, "camera %d cannot be: fx %s, fy %s, cx %s, cy %s", (int)v + 1,
+                            ASJ_TEXT(c->fx), ASJ_TEXT(c->fy), ASJ_TEXT(c->cx), ASJ_TEXT(c->cy));
         if (!within(o->aspects[v], 0.01, 100))
-            return asj_fail(context, ASJ_ERROR_OPTION, "pixels of image %d cannot be: aspect %.9g", (int)v + 1, o->aspects[v]);
+            return asj_fail(context, ASJ_ERROR_OPTION, "pixels of image %d cannot be: aspect %s", (int)v + 1,
+                            ASJ_TEXT_NINE(o->aspects[v]));
         if (!directions_are_sound(o->directions[v]))
             return asj_fail(context, ASJ_ERROR_OPTION, "the directions of image %d are not three at right angles", (int)v + 1);
     }
@@ -105,7 +108,7 @@ asj_status asj_geometry_request_check(asj_context *context, const asj_geometry_o
     if (o->find_focal && (asj_camera_is_known(&o->cameras[0]) || asj_camera_is_known(&o->cameras[1])))
         return asj_fail(context, ASJ_ERROR_OPTION, "find_focal: the focal length of a camera is given");
     if (!within(o->focal_sd, 0, 0.25))
-        return asj_fail(context, ASJ_ERROR_OPTION, "focal_sd is %.9g, not 0 .. 0.25", o->focal_sd);
+        return asj_fail(context, ASJ_ERROR_OPTION, "focal_sd is %s, not 0 .. 0.25", ASJ_TEXT_NINE(o->focal_sd));
     if (o->find_focal && o->focal_sd > 0)
         return asj_fail(context, ASJ_ERROR_OPTION, "focal_sd is of focal lengths that are given: find_focal has none");
     if (!asj_is_zero(o->reserved, sizeof o->reserved) || o->reserved_integer)

@@ -3,6 +3,7 @@
  * (up to 30 000) give the same poses within what the seed changes. */
 #include "pairs.h"
 #include "core/angle.h"
+#include "core/number_text.h"
 #include "core/sort.h"
 #include "elementary.h"
 #include "geometry_options.h"
@@ -24,15 +25,16 @@ static asj_status check_candidate(asj_context *context, const asj_geometry_candi
     const double det = c->affine[0] * c->affine[3] - c->affine[1] * c->affine[2];
     for (int32_t i = 0; i < 4; i++) {
         if (!(fabs(location[i]) <= FARTHEST))
-            return asj_fail(context, ASJ_ERROR_ARGUMENT, "candidate %zu lies at %g, %g and %g, %g, farther than %g px", k, c->x1,
-                            c->y1, c->x2, c->y2, FARTHEST);
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "candidate %zu lies at %s, %s and %s, %s, farther than %s px", k,
+                            ASJ_TEXT(c->x1), ASJ_TEXT(c->y1), ASJ_TEXT(c->x2), ASJ_TEXT(c->y2), ASJ_TEXT(FARTHEST));
         if (!(fabs(c->affine[i]) <= FARTHEST))
-            return asj_fail(context, ASJ_ERROR_ARGUMENT, "the map of candidate %zu has %g", k, c->affine[i]);
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "the map of candidate %zu has %s", k, ASJ_TEXT(c->affine[i]));
     }
     if (!(det > 1e-6))
-        return asj_fail(context, ASJ_ERROR_ARGUMENT, "the map of candidate %zu mirrors or flattens: its determinant is %g", k, det);
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "the map of candidate %zu mirrors or flattens: its determinant is %s", k,
+                        ASJ_TEXT(det));
     if (!(c->probability >= 0 && c->probability <= 1))
-        return asj_fail(context, ASJ_ERROR_ARGUMENT, "candidate %zu has the probability %g", k, c->probability);
+        return asj_fail(context, ASJ_ERROR_ARGUMENT, "candidate %zu has the probability %s", k, ASJ_TEXT(c->probability));
     if (c->place1 >= MOST_COUNT || c->place2 >= MOST_COUNT)
         return asj_fail(context, ASJ_ERROR_LIMIT, "candidate %zu has a place beyond %d", k, MOST_COUNT);
     return ASJ_OK;

@@ -13,6 +13,7 @@
 #include "core/angle.h"
 #include "core/decade.h"
 #include "core/most_junctions.h"
+#include "core/number_text.h"
 #include "core/reserved.h"
 #include "core/sort.h"
 #include "small_matrix.h"
@@ -238,9 +239,10 @@ static asj_status check(asj_context *context, const asj_junction *junctions, siz
     if (o->width < 1 || o->height < 1)
         return asj_fail(context, ASJ_ERROR_OPTION, "the image has no size");
     if (!(o->epsilon >= 1e-12 && o->epsilon <= 1))
-        return asj_fail(context, ASJ_ERROR_OPTION, "epsilon %g is not 1e-12 .. 1", o->epsilon);
+        return asj_fail(context, ASJ_ERROR_OPTION, "epsilon %s is not 1e-12 .. 1", ASJ_TEXT(o->epsilon));
     if (!asj_camera_can_be(c))
-        return asj_fail(context, ASJ_ERROR_OPTION, "the camera cannot be: fx %g, fy %g, cx %g, cy %g", c->fx, c->fy, c->cx, c->cy);
+        return asj_fail(context, ASJ_ERROR_OPTION, "the camera cannot be: fx %s, fy %s, cx %s, cy %s", ASJ_TEXT(c->fx),
+                        ASJ_TEXT(c->fy), ASJ_TEXT(c->cx), ASJ_TEXT(c->cy));
     if (count > ASJ_MOST_JUNCTIONS)
         return asj_fail(context, ASJ_ERROR_LIMIT, "%zu junctions are too many", count);
     for (size_t k = 0; k < count; k++)

@@ -2,6 +2,7 @@
 /* Step 7, preparation: from junctions to L-junctions with locations and neighbours (locations.c), length hypotheses and frames
  * (frames.c). Guests (guests.c) are nobody's neighbours and lengthen no branch, so that others are as they are without them. */
 #include "l_junctions_create.h"
+#include "core/number_text.h"
 #include "frames.h"
 #include "locations.h"
 #include "t_junctions.h"
@@ -22,8 +23,8 @@ static asj_status check(asj_context *context, const asj_image_junctions *input)
             return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d has %s", n, which, fault);
         if (!(j->x >= -MOST_OUTSIDE && j->y >= -MOST_OUTSIDE && j->x <= (float)(input->width - 1) + MOST_OUTSIDE &&
               j->y <= (float)(input->height - 1) + MOST_OUTSIDE))
-            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d at (%g, %g) lies outside its %d x %d pixels",
-                            n, which, (double)j->x, (double)j->y, (int)input->width, (int)input->height);
+            return asj_fail(context, ASJ_ERROR_ARGUMENT, "junction %zu of image %d at (%s, %s) lies outside its %d x %d pixels",
+                            n, which, ASJ_TEXT((double)j->x), ASJ_TEXT((double)j->y), (int)input->width, (int)input->height);
     }
     return ASJ_OK;
 }

@@ -3,7 +3,10 @@
  * 77 when there is none. */
 #define _POSIX_C_SOURCE 200809L
 #include "core/option_table.h"
+#include "core/number_text.h"
 #include "unit_test.h"
+
+#include <asj/asj.h>
 
 #include <float.h>
 #include <locale.h>
@@ -432,6 +435,32 @@ static void test_check(void **state)
 
 /* ---- locale ---- */
 
+static void test_messages_have_a_point(void **state)
+{
+    set s = filled(0);
+    char message[256], text[ASJ_NUMBER_TEXT];
+    asj_junction junction;
+    asj_context *context = NULL;
+    asj_match_result *result = NULL;
+    const uint8_t pixel = 0;
+    const asj_image image = {.data = &pixel, .format = ASJ_FORMAT_GRAY8, .width = 1, .height = 1};
+    (void)state;
+    assert_string_equal(asj_number_text(text, 9, -1234.5625), "-1234.5625");
+    assert_string_equal(asj_number_text(text, 6, 1e30), "1e+30");
+    assert_string_equal(asj_number_text(text, 17, -1.5e-300), "-1.5000000000000001e-300");
+    s.number = 1.25e31;
+    assert_int_equal(asj_option_table_check(&table, &s, message, sizeof message), ASJ_ERROR_OPTION);
+    assert_string_equal(message, "a_number: 1.25e+31 is outside -1e+30 .. 1e+30");
+    memset(&junction, 0, sizeof junction);
+    junction.scale = -1.5f;
+    assert_int_equal(asj_junction_check(&junction, message, sizeof message), ASJ_ERROR_ARGUMENT);
+    assert_string_equal(message, "a scale of -1.5 px");
+    assert_int_equal(asj_context_create(NULL, &context), ASJ_OK);
+    assert_int_equal(asj_match_images(context, &image, &image, &(asj_stretch){9.5, 1}, NULL, NULL, &result), ASJ_ERROR_OPTION);
+    assert_string_equal(asj_context_message(context), "a stretch of 9.5, 1 is outside 0.5 .. 8");
+    asj_context_free(&context);
+}
+
 /* Sets a locale with a decimal comma; one is made in a folder of its own where none is installed but its sources are. */
 static int set_comma_locale(void)
 {
@@ -456,6 +485,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(test_radii),    cmocka_unit_test(test_refused), cmocka_unit_test(test_keys),
         cmocka_unit_test(test_refusals_say_what_is_taken), cmocka_unit_test(test_steps),
         cmocka_unit_test(test_former_keys), cmocka_unit_test(test_short_buffers), cmocka_unit_test(test_check),
+        cmocka_unit_test(test_messages_have_a_point),
     };
     if (argument_count > 1 && !strcmp(arguments[1], "comma") && !set_comma_locale()) {
         puts("SKIPPED: no locale with a decimal comma is installed, and localedef cannot make one");
