@@ -82,7 +82,7 @@ typedef struct asj_edge {
     uint32_t junction_a, junction_b; /* indices of the junctions, a < b */
     uint16_t branch_a, branch_b;     /* indices of their branches */
     float log10_nfa;                 /* log10 of the expected number of strips as good as the part between in an image of noise */
-    uint32_t reserved[2];            /* zero; not looked at in edges that are given */
+    uint32_t reserved[2];            /* zero, also in those given to asj_find_segments() */
 } asj_edge;
 
 #ifdef __cplusplus

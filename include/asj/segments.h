@@ -61,6 +61,7 @@ typedef struct asj_segment_list {
  * Thread safety: one call at a time per context.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that cannot be (asj_junction_check()); an edge of a branch that is not there
+ * ASJ_ERROR_OPTION     a reserved field of an edge that is not zero
  * ASJ_ERROR_LIMIT      more than 2^28 junctions or 2^32 - 2 edges
  * ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED */
 ASJ_API asj_status asj_find_segments(asj_context *context, const asj_junction *junctions, size_t count, const asj_edge *edges,

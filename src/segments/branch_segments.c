@@ -7,6 +7,7 @@
 #include "join_segments.h"
 #include "one_edge.h"
 #include "core/most_junctions.h"
+#include "core/reserved.h"
 
 #include <asj/segments.h>
 
@@ -74,6 +75,9 @@ static asj_status take_edges(work *w)
         const asj_edge *e = &w->edges[k];
         if (!has_branch(w, e->junction_a, e->branch_a) || !has_branch(w, e->junction_b, e->branch_b))
             return asj_fail(w->joining.context, ASJ_ERROR_ARGUMENT, "edge %zu is of a branch that is not there", k);
+        if (!asj_is_zero(e->reserved, sizeof e->reserved))
+            return asj_fail(w->joining.context, ASJ_ERROR_OPTION,
+                            "a reserved field of edge %zu is not zero: never cleared, or of a later version", k);
         const asj_junction *a = &w->joining.junctions[e->junction_a], *b = &w->joining.junctions[e->junction_b];
         uint32_t *of_a = &w->edge_of[asj_branch_number(e->junction_a, e->branch_a)];
         uint32_t *of_b = &w->edge_of[asj_branch_number(e->junction_b, e->branch_b)];

@@ -425,6 +425,12 @@ static void the_graph_says_which_are_one(void **state)
     const asj_edge none = {.junction_a = 0, .junction_b = 2};
     assert_int_equal(asj_find_segments(f->context, junctions, 2, &none, 1, &list), ASJ_ERROR_ARGUMENT);
     assert_int_equal(asj_find_segments(f->context, junctions, 2, NULL, 1, &list), ASJ_ERROR_ARGUMENT);
+    for (int k = 0; k < 2; k++) {
+        asj_edge later = edge;
+        later.reserved[k] = 1;
+        assert_int_equal(asj_find_segments(f->context, junctions, 2, &later, 1, &list), ASJ_ERROR_OPTION);
+        assert_non_null(strstr(asj_context_message(f->context), "edge 0"));
+    }
     assert_null(list);
 }
 
