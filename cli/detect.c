@@ -204,6 +204,8 @@ static int detect_file(run *r, const char *image, const cli_output *output)
     r->read_ms = cli_now_ms() - start;
     if (result != CLI_SUCCESS)
         return result;
+    if (r->arguments->options.colours && !r->arguments->common.quiet)
+        cli_warn_of_gray(&r->session, "detect", image, &file->image);
     result = check_camera(r, image, &file->image);
     if (result == CLI_SUCCESS)
         result = detect_part(r, image, output, &file->image);

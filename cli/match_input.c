@@ -99,6 +99,8 @@ int cli_match_input_read(cli_session *session, const cli_match_arguments *argume
     if (cli_read_image(session, &arguments->common, input->name, &input->image) != CLI_SUCCESS)
         return CLI_FAILED;
     input->pixels = input->image->image;
+    if (!path && arguments->detect_options.colours && !arguments->common.quiet)
+        cli_warn_of_gray(session, "match", input->name, &input->pixels);
     asj_status status = ASJ_OK;
     if (path && (status = asj_junctions_read(path, &input->file, message, sizeof message)) != ASJ_OK)
         return cli_session_fail(session, path, message, status);

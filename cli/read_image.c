@@ -87,6 +87,17 @@ int cli_read_image(cli_session *session, const cli_common *common, const char *p
     return CLI_SUCCESS;
 }
 
+void cli_warn_of_gray(cli_session *session, const char *command, const char *name, const asj_image *image)
+{
+    const int deep = image->data && (image->format == ASJ_FORMAT_GRAY16 || image->format == ASJ_FORMAT_GRAY_FLOAT);
+    if (!deep || session->warned_of_gray)
+        return;
+    cli_progress_clear(&session->progress);
+    cli_note("asj-cli %s: warning: %s: --colours looks at 8-bit colours; images of 16 bits and floats are read as grey levels",
+             command, name);
+    session->warned_of_gray = 1;
+}
+
 uint32_t cli_dark_level(const asj_image *image)
 {
     const uint32_t level = brightest(image);

@@ -549,6 +549,25 @@ static void white_can_be_told(void **state)
     expect_in(result, result->err, "--white: '0' is not a number in 1e-06 .. 1e+09");
 }
 
+/* Colours of 16 bits are read as grey levels: who asks for them is told, once. */
+static void deep_images_have_no_colours(void **state)
+{
+    static const char warning[] = "warning: deep.png: --colours looks at 8-bit colours";
+    (void)state;
+    write_deep_scene("deep.png", 65535);
+    write_deep_scene("full.png", 65535);
+    const outcome *result = run_cli("detect", "--colours", "yes", "-d", "deep", "scene.png", "deep.png", "full.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, warning);
+    assert_null(strstr(strstr(result->err, warning) + 1, "warning"));
+    assert_null(strstr(run_cli("detect", "--colours", "yes", "scene.png", NULL)->err, "warning"));
+    assert_null(strstr(run_cli("detect", "deep.png", NULL)->err, "warning"));
+    assert_null(strstr(run_cli("detect", "-q", "--colours", "yes", "deep.png", NULL)->err, "warning"));
+    result = run_cli("match", "--colours", "yes", "scene.png", "deep.png", NULL);
+    expect_code(result, 0);
+    expect_in(result, result->err, warning);
+}
+
 /* One image has its hint at once; many have one line for all of them, at the end. */
 static void many_images_have_one_line_of_hints(void **state)
 {
@@ -590,6 +609,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_preset_comes_first_wherever_it_stands),
         cmocka_unit_test(directions_are_written_on_request),
         cmocka_unit_test(white_can_be_told),
+        cmocka_unit_test(deep_images_have_no_colours),
         cmocka_unit_test(many_images_have_one_line_of_hints),
         cmocka_unit_test(a_camera_of_another_image_is_refused), cmocka_unit_test(lines_come_each_once),
         cmocka_unit_test(an_option_reaches_the_detector),
