@@ -252,6 +252,12 @@ static int without_focal(const asj_geometry_options *geometry)
            (geometry->model == ASJ_GEOMETRY_AUTO || geometry->model == ASJ_GEOMETRY_ESSENTIAL);
 }
 
+/* No match, and no two geometries at odds that have left them out. */
+static int has_no_answer(const asj_match_result *result)
+{
+    return result->match_count == 0 && !(result->geometry.status == ASJ_GEOMETRY_AMBIGUOUS && result->rejected_count > 0);
+}
+
 /* Images far darker than white, which explain that there is little or nothing. Returns how many. */
 static int print_dark(const run *r)
 {
@@ -265,12 +271,22 @@ static int print_dark(const run *r)
     return count;
 }
 
+/* Were colours there to be looked at, and were not? */
+static int has_colours_left(const run *r)
+{
+    const cli_match_arguments *arguments = r->arguments;
+    const int by_itself = arguments->look && arguments->stretch.x == 0 && arguments->options.look_at_colours &&
+                          r->result->geometry.status != ASJ_GEOMETRY_NOT_ASKED;
+    int has = !by_itself && !arguments->detect_options.colours;
+    for (int v = 0; v < 2; v++)
+        has = has && !arguments->junctions[v] && cli_has_colours(&r->inputs[v].pixels);
+    return has;
+}
+
 /* Why there are none, as far as it can be told, and what to try. */
 static void print_hint(const run *r)
 {
     const int32_t status = r->result->geometry.status;
-    if (r->result->match_count > 0 || (status == ASJ_GEOMETRY_AMBIGUOUS && r->result->rejected_count > 0))
-        return;
     const int bare = r->result->l_junction_count1 < FEW ? 0 : 1;
     const unsigned long corners = (unsigned long)(bare == 0 ? r->result->l_junction_count1 : r->result->l_junction_count2);
     if (corners == 0)
@@ -289,6 +305,9 @@ static void print_hint(const run *r)
     else if (status != ASJ_GEOMETRY_ACCEPTED)
         cli_note("hint: nothing in common stands out from chance (geometry: %s)%s", asj_geometry_status_name(status),
                  without_focal(&r->geometry) ? "; cameras or --focal estimate may help" : "");
+    if (has_colours_left(r))
+        cli_note("hint: where surfaces differ in their colours alone, try --colours yes%s",
+                 status == ASJ_GEOMETRY_NOT_ASKED ? " --geometry auto" : "");
 }
 
 static void print_times(const run *r, double write_ms)
@@ -324,7 +343,7 @@ static int run_all(run *r)
         print_summary(r);
         print_looks(r);
         print_geometry(r);
-        if (r->result->match_count >= FEW || print_dark(r) == 0)
+        if ((r->result->match_count >= FEW || print_dark(r) == 0) && has_no_answer(r->result))
             print_hint(r);
     }
     if (result == CLI_SUCCESS && r->arguments->common.time)

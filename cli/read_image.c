@@ -98,6 +98,25 @@ void cli_warn_of_gray(cli_session *session, const char *command, const char *nam
     session->warned_of_gray = 1;
 }
 
+static int is_coloured(const unsigned char *pixel, int32_t width)
+{
+    for (int32_t x = 0; x < width; x++, pixel += 3)
+        if (pixel[0] != pixel[1] || pixel[1] != pixel[2])
+            return 1;
+    return 0;
+}
+
+int cli_has_colours(const asj_image *image)
+{
+    if (!image->data || (image->format != ASJ_FORMAT_RGB8 && image->format != ASJ_FORMAT_BGR8))
+        return 0;
+    const ptrdiff_t stride = image->stride ? image->stride : (ptrdiff_t)3 * image->width;
+    for (int32_t y = 0; y < image->height; y++)
+        if (is_coloured((const unsigned char *)image->data + y * stride, image->width))
+            return 1;
+    return 0;
+}
+
 uint32_t cli_dark_level(const asj_image *image)
 {
     const uint32_t level = brightest(image);

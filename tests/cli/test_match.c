@@ -353,8 +353,33 @@ static void colours_are_looked_at_by_themselves(void **state)
         } else {
             assert_null(strstr(result->err, "colours looked at"));
             assert_true(found.count == 0);
+            expect_in(result, result->err, "try --colours yes\n");
         }
     }
+}
+
+/* Where nothing matches and both images have colours that nobody has looked at, they are a thing to try. */
+static void colours_are_hinted_at(void **state)
+{
+    static const struct {
+        const char *second, *option, *value, *hint;
+    } runs[] = {{"c2.ppm", "--geometry", "none", "alone, try --colours yes --geometry auto\n"},
+                {"c2.ppm", "--colours", "yes", NULL},
+                {"first.png", "--geometry", "none", NULL}};
+    (void)state;
+    write_coloured_views("c1.ppm", "c2.ppm");
+    for (size_t k = 0; k < sizeof runs / sizeof runs[0]; k++) {
+        const outcome *result = run_cli("match", "-o", "c.csv", runs[k].option, runs[k].value, "c1.ppm", runs[k].second, NULL);
+        expect_code(result, 0);
+        expect_in(result, result->err, ": 0 matches");
+        if (runs[k].hint)
+            expect_in(result, result->err, runs[k].hint);
+        else
+            assert_null(strstr(result->err, "try --colours"));
+    }
+    expect_code(run_cli("match", "-o", "c.csv", "--colours", "yes", "--geometry", "auto", "c1.ppm", "c2.ppm", NULL), 0);
+    read_csv("c.csv", &found);
+    assert_true(found.count >= 10);
 }
 
 /* Where they have matches enough, whole images are looked at upsampled too: more matches, of the same places within what soft and
@@ -729,6 +754,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(stretched_images_match_in_their_own_pixels),
         cmocka_unit_test(a_glancing_view_is_stretched_by_itself),
         cmocka_unit_test(colours_are_looked_at_by_themselves),
+        cmocka_unit_test(colours_are_hinted_at),
         cmocka_unit_test(whole_images_are_upsampled_by_themselves),
         cmocka_unit_test(a_stretch_goes_with_images_alone),
         cmocka_unit_test(features_take_the_place_of_images),
