@@ -256,12 +256,13 @@ static int detect_all(run *r, const cli_outputs *outputs)
         result = cli_json_lines_begin(&r->lines, &r->session, outputs->of_all);
     if (result == CLI_SUCCESS)
         result = detect_each(r, outputs, &skipped);
-    if (r->lines.output && cli_json_lines_end(&r->lines, &r->session, result <= CLI_FAILED) != CLI_SUCCESS)
+    const int ended = !r->lines.output || cli_json_lines_end(&r->lines, &r->session, result <= CLI_FAILED) == CLI_SUCCESS;
+    if (!ended)
         result = CLI_FAILED;
     cli_session_close(&r->session);
     const int whole = result != CLI_USAGE && !cli_interrupted() && !r->lines.broken && r->tally.done + r->tally.failed > 0;
     if (whole && r->tally.total > 1 && !arguments->common.quiet)
-        cli_tally_print(&r->tally, &arguments->options);
+        cli_tally_print(&r->tally, &arguments->options, ended ? outputs->of_all : NULL);
     if (skipped > 0 && !arguments->common.quiet)
         cli_note("%zu of %zu images had their results in %s already", skipped, arguments->images.count, arguments->out_dir);
     return result;

@@ -5,6 +5,7 @@
 #include "read_image.h"
 
 #include <stdio.h>
+#include <string.h>
 
 enum { SMALLEST = 16 /* px, of a side: below it there is no room for the branches of a junction */ };
 #define WEAKER "weaker corners are found with --epsilon 100 --candidate-strength 2"
@@ -31,8 +32,9 @@ void cli_tally_image(cli_tally *tally, const char *name, const asj_image *image,
         cli_note("%s: " WEAKER, name);
 }
 
-void cli_tally_print(const cli_tally *tally, const asj_detect_options *options)
+void cli_tally_print(const cli_tally *tally, const asj_detect_options *options, const char *file)
 {
+    const int named = file && strcmp(file, "-") != 0;
     char failed[48] = "", bare[160] = "", dark[96] = "";
     if (tally->failed > 0)
         snprintf(failed, sizeof failed, ", %zu failed", tally->failed);
@@ -41,5 +43,6 @@ void cli_tally_print(const cli_tally *tally, const asj_detect_options *options)
     if (tally->dark > 0)
         snprintf(dark, sizeof dark, ", %zu far darker than white (--white %lu?)", tally->dark,
                  (unsigned long)cli_likely_white(tally->dark_level));
-    cli_note("%zu image%s done%s%s%s", tally->done, tally->done == 1 ? "" : "s", failed, bare, dark);
+    cli_note("%zu image%s done%s%s%s%s%s", tally->done, tally->done == 1 ? "" : "s", failed, bare, dark, named ? " -> " : "",
+             named ? file : "");
 }

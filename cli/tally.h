@@ -18,7 +18,7 @@ typedef struct cli_tally {
 void cli_tally_image(cli_tally *tally, const char *name, const asj_image *image, const asj_detection *detection,
                      const asj_detect_options *options);
 
-/* After the last of several images: one line. */
-void cli_tally_print(const cli_tally *tally, const asj_detect_options *options);
+/* After the last of several images: one line, with the file that all results are in; NULL or "-": none has them all. */
+void cli_tally_print(const cli_tally *tally, const asj_detect_options *options, const char *file);
 
 #endif

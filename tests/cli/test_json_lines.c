@@ -95,7 +95,7 @@ static void three_images_of_which_one_fails(void **state)
     expect_code(result, 1);
     expect_empty(result, "standard output", result->out);
     expect_in(result, result->err, "asj-cli: text.png: not an image");
-    expect_in(result, result->err, "2 images done, 1 failed\n");
+    expect_in(result, result->err, "2 images done, 1 failed -> all.jsonl\n");
     char *text = text_of("all.jsonl");
     const char *at = text;
     expect_line(&at, "scene.png", NULL);
@@ -145,6 +145,7 @@ static void standard_output_and_lists(void **state)
     expect_code(result, 0);
     expect_in(result, result->out, "{\"schema\":\"asj-junctions-1\",");
     assert_ptr_equal(strchr(result->out, '\n'), result->out + result->out_size - 1);
+    expect_in(result, run_cli("detect", "-f", "jsonl", "scene.png", "crossing.png", NULL)->err, "\n2 images done\n");
 }
 
 /* A pipe that stands for an image: the program waits at it, having done the image before. Returns the end to write to. */
