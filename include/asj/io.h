@@ -222,9 +222,9 @@ typedef struct asj_junction_file {
  * ASJ_ERROR_ARGUMENT  path or file is NULL
  * ASJ_ERROR_FILE      missing, a directory, unreadable
  * ASJ_ERROR_FORMAT    empty, not such a file, wrong counts, a junction that cannot be (asj_junction_check(), its angles brought
- *                     into range before) or has fewer than two branches, text after the end; JSON: a location more than
- *                     ASJ_MAX_OUTSIDE px outside the image, edges of branches that are not there, stand in no order of angle or are
- *                     part of two edges
+ *                     into range before) or has fewer than two branches, text after the end; .asj: no newline at the end;
+ *                     JSON: a location more than ASJ_MAX_OUTSIDE px outside the image, edges of branches that are not there,
+ *                     stand in no order of angle or are part of two edges
  * ASJ_ERROR_LIMIT     more than 2^24 junctions, a file longer than 2^31 - 1 bytes
  * ASJ_ERROR_MEMORY */
 ASJ_API asj_status asj_junctions_read(const char *path, asj_junction_file **file, char *message, size_t message_size);

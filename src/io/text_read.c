@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
-/* .asj text: text_write.c describes it. One item a line, fields apart by blanks; empty lines are passed over. */
+/* .asj text: text_write.c describes it. One item a line, fields apart by blanks; empty lines are passed over. Every line has an
+ * end: of a file that is cut within its last number what is left may be another number. */
 #include "junction_formats.h"
 
 #include "number.h"
@@ -18,6 +19,7 @@ typedef struct text_reader {
     size_t line; /* of the fields below, from 1 */
     text_field fields[MAX_FIELDS];
     size_t field_count; /* MAX_FIELDS = that many or more */
+    int line_is_whole;  /* it has its end */
     const asj_message *message;
 } text_reader;
 
@@ -50,8 +52,10 @@ static int next_line(text_reader *reader)
         reader->next = line_end ? line_end + 1 : reader->end;
         reader->line++;
         split(reader, line, line_end ? line_end : reader->end);
-        if (reader->field_count)
+        if (reader->field_count) {
+            reader->line_is_whole = line_end != NULL;
             return 1;
+        }
     }
     return 0;
 }
@@ -159,5 +163,7 @@ asj_status asj_read_text(const asj_input *input, asj_junction_list *list, const 
         status = read_junction(&reader, list);
     if (status == ASJ_OK && next_line(&reader))
         status = asj_line_fail(message, reader.line, "text after the last of %lld junctions", count);
+    if (status == ASJ_OK && !reader.line_is_whole)
+        status = asj_line_fail(message, reader.line, "the file ends within its last line: it was cut, or lacks the newline there");
     return status;
 }
