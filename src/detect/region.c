@@ -190,10 +190,11 @@ asj_status asj_region_clear_candidates(asj_detection_run *run)
     return asj_watch_end(&watch);
 }
 
-/* The pixel that a location rounds to; the nearest one of the image where a junction lies beyond its border. */
+/* The pixel that a location rounds to, as the float that the caller sees; the nearest one of the image where a junction lies beyond
+ * its border. */
 static int32_t pixel_of(double location, int32_t size)
 {
-    const double rounded = floor(location + 0.5);
+    const double rounded = floor((double)(float)location + 0.5);
     return rounded < 0 ? 0 : rounded > size - 1 ? size - 1 : (int32_t)rounded;
 }
 

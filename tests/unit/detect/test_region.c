@@ -193,6 +193,21 @@ static void test_own_pixels(void **state)
     assert_true(count > 60);
 }
 
+/* A place less than half a float's last digit from the border between two pixels is where the caller reads it. */
+static void test_between_pixels(void **state)
+{
+    const fixture *f = *state;
+    const double edge = 52.5, below = edge - 1e-7;
+    const asj_region above = {.width = WIDTH, .height = 53}, beneath = {.y = 53, .width = WIDTH, .height = 9};
+    asj_hypothesis one;
+    memset(&one, 0, sizeof one);
+    one.x = 20;
+    one.y = below;
+    assert_true((float)below == (float)edge);
+    assert_int_equal(asj_region_keep(&f->image, &above, &one, 1), 0);
+    assert_int_equal(asj_region_keep(&f->image, &beneath, &one, 1), 1);
+}
+
 static void test_paper(void **state)
 {
     fixture *f = *state;
@@ -286,6 +301,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_extreme_masks, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_octaves, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_own_pixels, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_between_pixels, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_paper, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_stopped, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_refused, set_up, tear_down),
