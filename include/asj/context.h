@@ -74,7 +74,8 @@ typedef int32_t (*asj_progress_callback)(void *user, int32_t stage, double done)
 
 /* What a dump hands out: a plane of the pipeline, or a list of points. Valid during the call only. An image that is done once more
  * because the device failed (ASJ_BACKEND_AUTO) hands out everything once more. Each octave hands out everything in its own pixels,
- * the finest first; with colours the luma's first, then those of red against green and of blue against yellow. */
+ * the finest first; with colours the luma's first, then those of red against green and of blue against yellow; with three_sizes all
+ * of that of the image, then of its smaller and its larger copy. */
 enum {
     ASJ_DUMP_PLANE_U16 = 1, /* width x height uint16_t, row by row, `stride` elements apart */
     ASJ_DUMP_PLANE_I16 = 2, /* the same, int16_t */
