@@ -143,6 +143,15 @@ int asj_strip_passes(const asj_context *context, const asj_frame *frame, const a
     return log_nfa(frame, s.gamma, s.pixels) <= limit || log_nfa(frame, s.near_gamma, s.near_pixels) <= limit;
 }
 
+double asj_strip_near_strength(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                               const asj_strip_line *line)
+{
+    asj_strip_line start = *line;
+    start.length = fmin(line->length, NEAR);
+    const asj_strip_sums s = add_up(context, frame, options, &start, 0);
+    return asj_gamma_strength(s.gamma, s.pixels);
+}
+
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          const asj_strip_line *line)
 {

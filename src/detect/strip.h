@@ -38,6 +38,10 @@ double asj_strip_alike(double waver, double width, double explained);
 asj_strip asj_strip_test(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                          const asj_strip_line *line);
 
+/* near_strength of that strip, alone. */
+double asj_strip_near_strength(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                               const asj_strip_line *line);
+
 /* Whether the log_nfa of that strip, or of one only `shorter` px long, is at most `limit`. */
 int asj_strip_passes(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                      const asj_strip_line *line, double shorter, double limit);

@@ -23,6 +23,11 @@
 /* And its slack of angles, beside that of meaning (validate.h): degrees. */
 #define EARLY_OPENING 5.0
 
+/* asj_reject_oriented(): of 2987 hypotheses of six photographs whose branches were oriented 1938 failed in the end. This finds 590
+ * of them, and 3 of the others; with a slack of .25 sd 630 and 6. */
+#define ORIENTED_STRENGTH 0.5 /* sd of near_strength, .. */
+#define ORIENTED_MOVE 0.5     /* .. px of what a junction may move */
+
 #define LARGEST_OFFSET 2.0 /* px: a line that misses the junction by more belongs to something else */
 
 /* The same where the line has no say in where the junction is. So many directions are looked at for such branches, and so much lies
@@ -132,9 +137,14 @@ static int is_opened(const asj_hypothesis *hypothesis, const int *keep, double l
     return asj_hypothesis_has_opening(&rest, least);
 }
 
+static double early_opening(const asj_detect_options *options)
+{
+    return fmax(options->minimum_opening - EARLY_OPENING, 0) * ASJ_DEGREE;
+}
+
 static int has_opening(const asj_detect_options *options, const asj_hypothesis *hypothesis, const int *keep)
 {
-    return is_opened(hypothesis, keep, fmax(options->minimum_opening - EARLY_OPENING, 0) * ASJ_DEGREE);
+    return is_opened(hypothesis, keep, early_opening(options));
 }
 
 /* The hypothesis is rejected as soon as no two of the branches that may be left open. */
@@ -153,6 +163,34 @@ void asj_reject_early(const asj_context *context, const asj_frame *frame, const 
     }
     asj_hypothesis_select(hypothesis, keep);
     hypothesis->branch_count = opens ? hypothesis->branch_count : 0;
+}
+
+static int has_moved_far(const asj_detect_options *options, const asj_hypothesis *hypothesis, double slack)
+{
+    const double moved = hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0);
+    return moved > options->max_move + asj_locate_most_move(options, hypothesis) + slack;
+}
+
+/* Whether it seems to reach the junction. Ends of soft edges are uncertain. */
+static int may_reach(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                     const asj_hypothesis *hypothesis, const asj_hypothesis_branch *branch)
+{
+    const asj_strip_line line = {hypothesis->x, hypothesis->y, branch->angle, branch->length};
+    return branch->width > SOFT ||
+           asj_strip_near_strength(context, frame, options, &line) >= options->near_strength - ORIENTED_STRENGTH;
+}
+
+void asj_reject_oriented(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                         asj_hypothesis *hypothesis)
+{
+    int keep[ASJ_MAX_BRANCHES];
+    if (!options->strip_test || hypothesis->branch_count < 2) /* those of complete_step.c have one */
+        return;
+    for (int32_t i = 0; i < hypothesis->branch_count; i++)
+        keep[i] = may_reach(context, frame, options, hypothesis, &hypothesis->branches[i]);
+    asj_hypothesis_select(hypothesis, keep);
+    if (!asj_hypothesis_has_opening(hypothesis, early_opening(options)) || has_moved_far(options, hypothesis, ORIENTED_MOVE))
+        hypothesis->branch_count = 0;
 }
 
 /* px of the frame's octave for those of the image that minimum_length has. */
@@ -222,12 +260,6 @@ static int is_unsure(const asj_frame *frame, const asj_detect_options *options, 
     return options->strip_test && hypothesis->location_variance > most * most;
 }
 
-static int has_moved_far(const asj_detect_options *options, const asj_hypothesis *hypothesis)
-{
-    const double moved = hypot(hypothesis->x - hypothesis->x0, hypothesis->y - hypothesis->y0);
-    return moved > options->max_move + asj_locate_most_move(options, hypothesis);
-}
-
 /* Where the branches that are left meet: one that was none should not say where the junction is. Of soft ones the lines do not say
  * it. Not where the strip does not judge: what goes there are twins and frames. */
 static void meet_again(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
@@ -243,7 +275,7 @@ static void meet_again(const asj_context *context, const asj_frame *frame, const
         asj_blurred_corner(context, frame, hypothesis);
     else
         worse = !asj_locate_meet(frame, options, hypothesis);
-    worse |= has_moved_far(options, hypothesis);
+    worse |= has_moved_far(options, hypothesis, 0);
     for (int32_t i = 0; i < hypothesis->branch_count; i++)
         worse |= fabs(hypothesis->branches[i].offset) > LARGEST_OFFSET;
     worse |= !asj_hypothesis_has_opening(hypothesis, options->minimum_opening * ASJ_DEGREE);
@@ -257,7 +289,7 @@ void asj_validate(const asj_context *context, const asj_frame *frame, const asj_
 {
     int keep[ASJ_MAX_BRANCHES];
     const int32_t count = hypothesis->branch_count;
-    if (has_moved_far(options, hypothesis)) {
+    if (has_moved_far(options, hypothesis, 0)) {
         hypothesis->branch_count = 0;
         return;
     }

@@ -14,6 +14,11 @@
 void asj_reject_early(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
                       asj_hypothesis *hypothesis);
 
+/* The same once branches are oriented, before they are scanned again: those that begin px away from the junction, and junctions
+ * that have moved far. */
+void asj_reject_oriented(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
+                         asj_hypothesis *hypothesis);
+
 /* Drops branches that are too short, off the junction, not meaningful, or twins of a better one; branch_count becomes 0 when no two
  * branches open enough. Sorts the branches by angle. */
 void asj_validate(const asj_context *context, const asj_frame *frame, const asj_detect_options *options,
