@@ -106,11 +106,13 @@ typedef struct scan_ray {
     shared_int looked;     /* last step that is to be looked at by itself */
     shared_int forward, axial;
     shared_int forward_failures, ahead_passes, ahead_failures, axial_failures;
+    shared_int missed;     /* a stride of a rough scan has failed */
     shared_int passed;     /* how far there is an edge for sure, when the end of the band has come before that of the edge */
+    shared_int reserved;   /* whole 64 bits */
 } scan_ray;
 
 typedef struct scan_image {
-    shared_int width, height, blocks, half_width, tolerance, axial, bridge, threshold;
+    shared_int width, height, blocks, half_width, tolerance, axial, rough, bridge, threshold;
     shared_int ahead;        /* steps that a ray asks for, beside a quarter of its length */
     shared_int edge;         /* least sum of gamma of a row under which there is an edge, 2^-24 */
     shared_int stride, base; /* of the planes */

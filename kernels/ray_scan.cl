@@ -373,6 +373,12 @@ static int advance(const scan_image *image, const scan_angles *angles, scan_ray 
     if (stride > 1) {
         ray->looked = ray->radius + stride - 1;
         stride = sums.s1 >= image->threshold && (!image->axial || sums.s2 >= image->threshold) ? stride : 0;
+        if (stride == 0 && image->rough && ray->forward > 0) {
+            goes_on = !ray->missed;
+            ray->looked = ray->radius++;
+            ray->missed = 1;
+        } else
+            ray->missed = 0;
     }
     if (stride > 0)
         goes_on = step(image, ray, ray->radius + stride - 1, sums);

@@ -32,7 +32,7 @@ SAME(scan_units, SCAN_UNITS, sizeof((asj_scan *)0)->unit / sizeof((asj_scan *)0)
 SAME(scan_reopen, SCAN_REOPEN, ASJ_RAY_REOPEN);
 SAME(scan_stride, SCAN_STRIDE, ASJ_RAY_STRIDE);
 SAME(scan_plain, SCAN_PLAIN, ASJ_RAY_PLAIN);
-SAME(scan_ray_size, sizeof(scan_ray), 64);
+SAME(scan_ray_size, sizeof(scan_ray), 72);
 
 SAME(patch_levels, PATCH_LEVELS, ASJ_PYRAMID_LEVELS);
 SAME(patch_grid_bits, PATCH_GRID_BITS, ASJ_GRID_BITS);

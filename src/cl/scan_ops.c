@@ -359,8 +359,9 @@ static asj_status scan_band(asj_context *context, struct asj_cl_scan *state, con
     asj_status status = prepare(context, state, scan, frame, low, high);
     const scan_image image = {
         .width = frame->width, .height = frame->height, .blocks = frame->blocks, .half_width = scan->half_width,
-        .tolerance = scan->tolerance, .axial = scan->axial, .bridge = scan->axial ? scan->field->sectors.radius : -1,
-        .threshold = scan->threshold, .ahead = asj_cl_get_limits(context)->type == ASJ_DEVICE_CPU ? 4 : 32, .edge = ASJ_SCAN_EDGE,
+        .tolerance = scan->tolerance, .axial = scan->axial, .rough = scan->rough,
+        .bridge = scan->axial ? scan->field->sectors.radius : -1, .threshold = scan->threshold,
+        .ahead = asj_cl_get_limits(context)->type == ASJ_DEVICE_CPU ? 4 : 32, .edge = ASJ_SCAN_EDGE,
         .stride = (int32_t)frame->stride, .base = status == ASJ_OK ? context->cl->detect->first : 0, .low = low, .high = high};
     asj_watch_start(&watch, context, ASJ_STAGE_SCAN);
     while (status == ASJ_OK && counts[1] > 0) {

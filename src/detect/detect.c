@@ -33,10 +33,10 @@ static asj_status choose(asj_detection_run *run, double before, double share)
 {
     static const step steps[] = {
         {asj_step_locate, ASJ_STAGE_LOCATE, 0.2},
-        {asj_step_scan, ASJ_STAGE_SCAN, 0.6},     /* step 4 */
-        {asj_step_orient, ASJ_STAGE_REFINE, 0.7}, /* step 5 */
-        {asj_step_scan, ASJ_STAGE_SCAN, 0.85},    /* step 4 */
-        {asj_step_refine, ASJ_STAGE_REFINE, 1.0}, /* step 5 */
+        {asj_step_scan_roughly, ASJ_STAGE_SCAN, 0.6}, /* step 4 */
+        {asj_step_orient, ASJ_STAGE_REFINE, 0.7},     /* step 5 */
+        {asj_step_scan, ASJ_STAGE_SCAN, 0.85},        /* step 4 */
+        {asj_step_refine, ASJ_STAGE_REFINE, 1.0},     /* step 5 */
     };
     return run_steps(run, steps, sizeof steps / sizeof *steps, before, share);
 }

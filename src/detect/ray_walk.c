@@ -25,6 +25,9 @@
  *     that passes, four farther on. In the sample room and four photographs about one in a hundred of the steps that pass unseen
  *     would have failed, and one in five hundred together with the next, which alone would have ended the ray.
  *
+ * A scan may be rough, where the ray is followed again later: without axes, and it ends where two strides fail, at radii next to
+ * each other, as it does where two steps do.
+ *
  * Whole numbers throughout, so that every back end takes the same decisions: positions in 1/65536 px, unit vectors in 2^-30 for
  * positions and 2^-14 for angles, angles in 1/65536 of a turn. */
 #include "ray_walk.h"
@@ -206,15 +209,30 @@ static int step(const asj_scan *scan, const asj_arc_sums *sums, asj_ray_walk *wa
     return goes_on;
 }
 
+/* After a stride that fails: the steps before it, one by one; of a rough scan that is on its way, the next stride if it was the
+ * first to fail. */
+static int go_back(const asj_scan *scan, asj_ray_walk *walk)
+{
+    if (!scan->rough || walk->ray->forward == 0)
+        return 1;
+    if (walk->missed)
+        return 0;
+    walk->missed = 1;
+    walk->looked = walk->r++;
+    return 1;
+}
+
 int asj_ray_walk_take(const asj_scan *scan, const asj_arc_sums *sums, asj_ray_walk *walk)
 {
     int goes_on = 1;
     if (walk->strides) {
         walk->far = *sums;
-        if (!passes(scan, sums))
-            return 1; /* the steps before it, one by one */
-        walk->r = walk->looked;
-        goes_on = step(scan, sums, walk);
+        if (passes(scan, sums)) {
+            walk->missed = 0;
+            walk->r = walk->looked;
+            goes_on = step(scan, sums, walk);
+        } else
+            goes_on = go_back(scan, walk);
     } else {
         goes_on = step(scan, sums, walk);
         if (goes_on && walk->r == walk->looked)

@@ -43,6 +43,7 @@ typedef struct asj_ray_walk {
     asj_ray_direction way;
     int32_t r;       /* the step to take */
     int32_t looked;  /* the last step that is taken by itself, since a stride to it has failed */
+    int missed;      /* a stride of a rough scan has failed */
     int strides;     /* whether the arc asked for is some steps ahead */
     asj_arc_sums far; /* of the arc at `looked` */
     asj_ray_progress progress;

@@ -16,6 +16,7 @@ asj_status asj_step_isotropic(asj_detection_run *run);  /* step 3 (isotropic_ste
 asj_status asj_step_guess(asj_detection_run *run);      /* guess_step.c: isotropic junctions -> guesses */
 asj_status asj_step_locate(asj_detection_run *run);     /* locate_step.c: guesses -> hypotheses */
 asj_status asj_step_scan(asj_detection_run *run);       /* step 4 (scan_step.c): lengths where they are not known */
+asj_status asj_step_scan_roughly(asj_detection_run *run); /* the same, about, of what is scanned again */
 asj_status asj_step_orient(asj_detection_run *run);     /* step 5 (refine_step.c): orientations, to scan along again */
 asj_status asj_step_search(asj_detection_run *run);     /* the same as in the paper (search_step.c), with their lengths */
 asj_status asj_step_refine(asj_detection_run *run);     /* step 5 (refine_step.c): orientations, location, validation */

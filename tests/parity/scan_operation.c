@@ -42,6 +42,7 @@ asj_status run_rays(asj_context *context, const subject *s, uint16_t *scratch, v
     options.scan_tolerance = (int32_t)(s->seed / 3 % 3);
     options.scan_axial = s->seed % 5 > 0;
     asj_scan_prepare(&options, &s->field, &cache, &scan);
+    scan.rough = s->seed % 7 > 4;
     asj_scan_set_size(&options, s->frame.width, s->frame.height, &scan);
     if (s->seed % 4 > 0)
         scan.threshold = 1 + scan.threshold / (1 << s->seed % 4); /* longer ways in what is no picture */
