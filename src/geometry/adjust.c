@@ -13,6 +13,8 @@
 
 #define WIDE 3.0
 #define LIKE_ROUNDS 2
+#define HELD_LIKE_ROUNDS 8
+#define HELD_ROUNDS 4
 #define TAIL 6.0
 #define BEHIND 2.0
 #define LEAST 1e-3 /* probability below which a candidate is left out */
@@ -108,8 +110,20 @@ void asj_information(const asj_pairs *set, const asj_model *model, const double 
     memcpy(information, e.normal, (size_t)(model->parameters * model->parameters) * sizeof *information);
 }
 
+/* The rotation, whose parameters are the first three, stays. */
+static void hold_rotation(int32_t n, equations *e)
+{
+    for (int32_t p = 0; p < 3; p++) {
+        for (int32_t q = 0; q < n; q++)
+            e->normal[p * n + q] = e->normal[q * n + p] = p == q;
+        e->right[p] = 0;
+    }
+}
+
+enum { FREE, HELD };
+
 /* One step; 0 when the equations cannot be solved. */
-static int32_t step(const asj_pairs *set, asj_model *model, const double *probability, double loose)
+static int32_t step(const asj_pairs *set, asj_model *model, const double *probability, double loose, int32_t held)
 {
     equations e;
     const int32_t n = model->parameters;
@@ -118,6 +132,8 @@ static int32_t step(const asj_pairs *set, asj_model *model, const double *probab
     add_prior(set, model, &e);
     for (int32_t p = 0; p < n; p++)
         e.normal[p * (n + 1)] += DAMPING * e.normal[p * (n + 1)] + 1e-3;
+    if (held)
+        hold_rotation(n, &e);
     if (!asj_cholesky_solve(e.normal, n, e.right, NULL))
         return 0;
     double size = 0;
@@ -137,7 +153,7 @@ static int32_t step(const asj_pairs *set, asj_model *model, const double *probab
 
 int32_t asj_adjust_once(const asj_pairs *set, asj_model *model, const double *probability)
 {
-    return step(set, model, probability, 1);
+    return step(set, model, probability, 1, FREE);
 }
 
 double asj_choose_motion(const asj_pairs *set, const double *probability, asj_model *model)
@@ -177,7 +193,7 @@ void asj_adjust(const asj_pairs *set, asj_model *model, int32_t rounds, asj_adju
         asj_probabilities(set, &model->view, loose, &scratch->score, scratch->probability);
         if (round == 0 && model->kind == ASJ_GEOMETRY_ESSENTIAL && model->view.plane_count == 0)
             asj_choose_motion(set, scratch->probability, model);
-        if (!step(set, model, scratch->probability, loose))
+        if (!step(set, model, scratch->probability, loose, FREE))
             break;
     }
     model->score = asj_score(set, set->count, &model->view, 1, &scratch->score);
@@ -190,10 +206,24 @@ void asj_adjust_like(const asj_pairs *set, asj_model *model, const asj_model *li
         const int32_t settled = round >= LIKE_ROUNDS;
         if (settled)
             asj_probabilities(set, &model->view, 1, &scratch->score, scratch->probability);
-        if (!step(set, model, scratch->probability, settled ? 1 : WIDE))
+        if (!step(set, model, scratch->probability, settled ? 1 : WIDE, FREE))
             break;
     }
     model->score = asj_score(set, set->count, &model->view, 1, &scratch->score);
+}
+
+void asj_adjust_around_rotation(const asj_pairs *set, asj_model *model, const asj_model *like, asj_adjust_scratch *scratch)
+{
+    asj_probabilities(set, &like->view, 1, &scratch->score, scratch->probability);
+    for (int32_t round = 0; round < HELD_LIKE_ROUNDS; round++)
+        if (!step(set, model, scratch->probability, WIDE, HELD))
+            return;
+    for (int32_t round = 0; round < HELD_ROUNDS; round++) {
+        const double loose = WIDE + (1 - WIDE) * round / (HELD_ROUNDS - 1);
+        asj_probabilities(set, &model->view, loose, &scratch->score, scratch->probability);
+        if (!step(set, model, scratch->probability, loose, HELD))
+            return;
+    }
 }
 
 void asj_adjust_scratch_free(asj_memory *memory, asj_adjust_scratch *s)

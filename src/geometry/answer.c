@@ -37,7 +37,7 @@
 static double set_covariance(const asj_estimation *e, int32_t best, double covariance[36])
 {
     double five[25], frame[6][5] = {{0}}, axis[3], other[3];
-    const double sd = asj_motion_covariance(e->finalists, e->count, best, five);
+    const double sd = asj_motion_covariance(&e->set, e->finalists, e->count, best, five);
     asj_translation_axes(e->finalists[best].translation, axis, other);
     for (int32_t k = 0; k < 3; k++) {
         frame[k][k] = 1;

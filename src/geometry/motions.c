@@ -19,7 +19,6 @@
 #define MOST_STARTS (3 * ASJ_FINALISTS)
 #define FEW_ROUNDS 4
 #define ROUNDS 5
-#define LIKE_ROUNDS 4
 #define WITH_PLANES 4
 #define UNLIKELY 7.0 /* nats below the best one */
 
@@ -89,7 +88,7 @@ static asj_model snapped(const asj_pairs *set, const asj_model *model, int32_t k
     m.evidence = -HUGE_VAL;
     if (!asj_model_complete(&m))
         return m;
-    asj_adjust_like(set, &m, model, LIKE_ROUNDS, s);
+    asj_adjust_around_rotation(set, &m, model, s);
     asj_adjust(set, &m, ROUNDS, s);
     m.evidence = asj_log_evidence(set, &m, s);
     return m;

@@ -14,6 +14,6 @@ int32_t asj_is_within(const asj_model *settled, const asj_model *other);
 
 /* Covariance of the motion's five parameters: that of the best model, and what other ones of its kind are likely besides. Returns
  * the largest standard deviation of a combination of them, rad. */
-double asj_motion_covariance(const asj_model *models, int32_t count, int32_t best, double covariance[25]);
+double asj_motion_covariance(const asj_pairs *set, const asj_model *models, int32_t count, int32_t best, double covariance[25]);
 
 #endif

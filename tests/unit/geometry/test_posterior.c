@@ -296,8 +296,9 @@ static void a_motion_beside_its_peak_comes_back(void **state)
     }
 }
 
-/* Six matches tell the rotation badly, directions tell it well: 22 of 40 are within half a degree. Where TEMPER makes the
- * directions count as little as candidates they are 14, and 13 where likely rotations are not tried either. */
+/* Six matches tell the rotation badly, directions tell it well: 31 of 40 are within half a degree. Where a likely rotation that is
+ * tried does not stay while translation and planes follow it they are 22; where TEMPER makes the directions count as little as
+ * candidates, too, 14, and 13 where likely rotations are not tried either. */
 static void likely_rotations_count(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
@@ -308,13 +309,14 @@ static void likely_rotations_count(void **state)
         near += rotation_error(context, &s, seed) < 0.5;
     }
     printf("rotations within half a degree: %d of %d\n", (int)near, SCENES);
-    assert_true(near >= 18);
+    assert_true(near >= 27);
 }
 
 /* A second motion, as likely, that the parameters of the first do not reach: nothing is known then, whichever way it lies. */
 static void a_far_motion_leaves_all_open(void **state)
 {
     static const double apart[] = {0.8, -0.8}; /* rad */
+    static const asj_pairs nothing;
     (void)state;
     for (int32_t axis = 0; axis < 3; axis++)
         for (size_t n = 0; n < sizeof apart / sizeof apart[0]; n++) {
@@ -330,12 +332,83 @@ static void a_far_motion_leaves_all_open(void **state)
                 for (int32_t p = 0; p < MOTION; p++)
                     models[k].covariance[p * (MOTION + 1)] = 1e-6;
             }
-            const double largest = asj_motion_covariance(models, 2, 0, covariance);
+            const double largest = asj_motion_covariance(&nothing, models, 2, 0, covariance);
             assert_true(largest >= 0.8);
             for (int32_t i = 0; i < MOTION; i++)
                 for (int32_t k = 0; k < MOTION; k++)
                     unit_near("covariance", i, k, covariance[i * MOTION + k], i == k ? largest * largest : 0, 1e-9);
         }
+}
+
+/* The largest standard deviation that is told of a motion, rad, beside another one with 10 of 330 nats less, whose rotation is the
+ * scene's and `turn` rad away. */
+static double told_beside(const scene *s, const asj_pairs *set, double turn)
+{
+    asj_model models[2];
+    scene other = *s;
+    const double w[3] = {0, turn, 0};
+    double moved[9], covariance[25];
+    asj_rotation_of(w, moved);
+    asj_multiply3(moved, s->rotation, other.rotation);
+    set_model(&other, &models[0]);
+    set_model(s, &models[1]);
+    for (int32_t k = 0; k < 2; k++) {
+        models[k].settled = 1;
+        models[k].evidence = 330 - 10 * k;
+        for (int32_t p = 0; p < MOTION; p++)
+            models[k].covariance[p * (MOTION + 1)] = 1e-6;
+    }
+    return asj_motion_covariance(set, models, 2, 0, covariance);
+}
+
+/* Of two motions beside each other the directions of the room say as much as they know; of others they say nothing here. */
+static void directions_tell_of_motions_beside(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    static scene s;
+    asj_geometry_options options;
+    asj_geometry_hints hints = {.colours = NULL};
+    asj_pairs set;
+    make(&s, 1, 1, ALL, FEW_RIGHT);
+    set_options(&options);
+    assert_int_equal(asj_pairs_create(context, s.list, s.count, NULL, &options, &set), ASJ_OK);
+    unit_near("without directions", 0, 0, told_beside(&s, &set, 0.04), 1e-3, 1e-9);
+    asj_pairs_free(&context->memory, &set);
+    set_directions(&s, hints.directions);
+    assert_int_equal(asj_pairs_create(context, s.list, s.count, &hints, &options, &set), ASJ_OK);
+    const double beside = told_beside(&s, &set, 0.04);
+    assert_true(beside > 0.025 && beside < 0.041);
+    unit_near("far", 0, 0, told_beside(&s, &set, 0.2), 1e-3, 1e-9);
+    asj_pairs_free(&context->memory, &set);
+}
+
+/* A rotation that is given stays to the last digit, and the translation goes where the candidates have it then. */
+static void translation_follows_rotation(void **state)
+{
+    asj_context *context = ((unit_fixture *)*state)->context;
+    static const double beside[MOTION] = {0, 0, 0, 0.09, -0.06};
+    static scene s;
+    asj_geometry_options options;
+    asj_pairs set;
+    asj_model right, model;
+    set_options(&options);
+    make(&s, 1, 1, MANY, MANY);
+    assert_int_equal(asj_pairs_create(context, s.list, s.count, NULL, &options, &set), ASJ_OK);
+    asj_adjust_scratch *scratch = asj_adjust_scratches_create(&context->memory, &set, context->threads);
+    assert_non_null(scratch);
+    set_model(&s, &right);
+    assert_true(asj_model_move(&right, beside, &model));
+    const double before = asj_dot3(model.translation, right.translation);
+    asj_adjust_around_rotation(&set, &model, &right, scratch);
+    const double after = asj_dot3(model.translation, right.translation) / sqrt(asj_dot3(model.translation, model.translation));
+    for (int32_t k = 0; k < 9; k++)
+        unit_near("rotation", k, 0, model.rotation[k], right.rotation[k], 1e-12);
+    const double length = sqrt(asj_dot3(right.translation, right.translation));
+    printf("translation %.2f -> %.3f deg off\n", acos(fmin(1, before / length)) * 180 / UNIT_PI,
+           acos(fmin(1, after / length)) * 180 / UNIT_PI);
+    assert_true(after / length > cos(0.2 * UNIT_PI / 180));
+    asj_adjust_scratches_free(&context->memory, scratch, context->threads);
+    asj_pairs_free(&context->memory, &set);
 }
 
 int main(void)
@@ -344,6 +417,8 @@ int main(void)
                                        cmocka_unit_test(few_draws_of_near_cameras_spread_as_many_do),
                                        cmocka_unit_test(a_motion_beside_its_peak_comes_back),
                                        cmocka_unit_test(likely_rotations_count),
-                                       cmocka_unit_test(a_far_motion_leaves_all_open)};
+                                       cmocka_unit_test(a_far_motion_leaves_all_open),
+                                       cmocka_unit_test(directions_tell_of_motions_beside),
+                                       cmocka_unit_test(translation_follows_rotation)};
     return cmocka_run_group_tests(tests, unit_set_up, unit_tear_down);
 }
