@@ -221,6 +221,15 @@ asj_status asj_detection_run_each(asj_detection_run *run, int32_t stage, int32_t
     return asj_watch_end(&watch);
 }
 
+void asj_detection_run_drop_rejected(asj_detection_run *run)
+{
+    size_t kept = run->settled;
+    for (size_t i = kept; i < run->hypothesis_count; i++)
+        if (run->hypotheses[i].branch_count > 0)
+            run->hypotheses[kept++] = run->hypotheses[i];
+    run->hypothesis_count = kept;
+}
+
 asj_status asj_detection_run_progress(const asj_detection_run *run, int32_t stage, double done)
 {
     return asj_progress(run->context, stage, fmin(run->done + run->share * done, 1));

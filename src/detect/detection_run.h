@@ -123,6 +123,9 @@ typedef void (*asj_hypothesis_work)(const asj_detection_run *run, asj_hypothesis
  * them make a thread worth waking. */
 asj_status asj_detection_run_each(asj_detection_run *run, int32_t stage, int32_t least, asj_hypothesis_work work);
 
+/* Rejected hypotheses that are not settled go. */
+void asj_detection_run_drop_rejected(asj_detection_run *run);
+
 /* Reports that the stage is done up to here, as a part of the pass over one octave; ASJ_ERROR_CANCELLED when the caller wants to
  * stop. */
 asj_status asj_detection_run_progress(const asj_detection_run *run, int32_t stage, double done);

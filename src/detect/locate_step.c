@@ -184,15 +184,11 @@ static asj_status drop_known(asj_detection_run *run)
     asj_octave_known known;
     const asj_status status = asj_detection_run_known(run, &known);
     const int64_t count = (int64_t)(run->hypothesis_count - run->settled);
-    size_t kept = run->settled;
     if (status != ASJ_OK || !known.finer)
         return status;
     const known_job j = {run, &known};
     asj_parallel(run->context, asj_threads_for(run->context, count, ASJ_LEAST_JUNCTIONS), count, 0, reject_known, &j);
-    for (size_t i = kept; i < run->hypothesis_count; i++)
-        if (run->hypotheses[i].branch_count > 0)
-            run->hypotheses[kept++] = run->hypotheses[i];
-    run->hypothesis_count = kept;
+    asj_detection_run_drop_rejected(run);
     asj_release(&run->context->memory, known.grid.heads);
     return ASJ_OK;
 }

@@ -19,21 +19,12 @@ static void orient(const asj_detection_run *run, asj_hypothesis *hypothesis)
     asj_reject_oriented(run->context, run->frame, run->options, hypothesis);
 }
 
-static void drop_rejected(asj_detection_run *run)
-{
-    size_t kept = run->settled;
-    for (size_t i = kept; i < run->hypothesis_count; i++)
-        if (run->hypotheses[i].branch_count > 0)
-            run->hypotheses[kept++] = run->hypotheses[i];
-    run->hypothesis_count = kept;
-}
-
 asj_status asj_step_orient(asj_detection_run *run)
 {
     if (run->options->refinement == ASJ_REFINE_SEARCH)
         return asj_step_search(run);
     const asj_status status = asj_detection_run_each(run, ASJ_STAGE_REFINE, ASJ_LEAST_JUNCTIONS, orient);
-    drop_rejected(run);
+    asj_detection_run_drop_rejected(run);
     return status;
 }
 

@@ -40,7 +40,7 @@ int32_t asj_adjust_once(const asj_pairs *set, asj_model *model, const double *pr
 void asj_adjust_like(const asj_pairs *set, asj_model *model, const asj_model *like, int32_t rounds, asj_adjust_scratch *scratch);
 
 /* Translation and planes follow a rotation that is given, which stays: with the candidates that `like` explains, then with its own.
- * Four degrees from where the candidates want it that takes some rounds; free, the rotation goes back. */
+ * The model's score is not that of the result. */
 void asj_adjust_around_rotation(const asj_pairs *set, asj_model *model, const asj_model *like, asj_adjust_scratch *scratch);
 
 /* The normal matrix (information) of the model's parameters at the candidates' probabilities: parameters x parameters. */

@@ -80,7 +80,8 @@ static void add_planes_to_some(const void *data, const asj_part *part)
     }
 }
 
-/* The model with the k-th likely rotation in place of its own, and with the matches of its own; -HUGE_VAL: no such model. */
+/* The model with the k-th likely rotation in place of its own, and with the matches of its own; -HUGE_VAL: no such model.
+ * Translation and planes follow before the rotation is free: all at once they often do not come along. */
 static asj_model snapped(const asj_pairs *set, const asj_model *model, int32_t k, asj_adjust_scratch *s)
 {
     asj_model m = *model;
