@@ -21,7 +21,8 @@ extern "C" {
 /* The L-junctions of an image with their frames, neighbours, patches and colours, and the image's pyramid. Complete and never
  * changed once it is made; it needs neither the image nor the junctions nor the context that it was made from. Memory: 2.7 bytes
  * per pixel, and patch_size^2 x 2 bytes for each frame of an L-junction (1 to 9 each with the defaults). With junctions of
- * octave -1 all of this is there twice, once of the image upsampled by two: 15 bytes per pixel. */
+ * octave -1 all of this is there twice, once of the image upsampled by two: 15 bytes per pixel. 8-bit colour images take 0.75 bytes
+ * per pixel more. */
 typedef struct asj_features asj_features;
 
 /* Makes the features of an image: the part of asj_match() that concerns one image.
@@ -70,9 +71,9 @@ typedef struct asj_features_info {
 /* Any thread, any time. All zero for NULL features. */
 ASJ_API void asj_features_get_info(const asj_features *features, asj_features_info *info);
 
-/* Features as bytes, for files and other machines (asj-formats(5), .asjf): the same on every machine; 2 bytes per pixel and some
- * 100 for each junction. Any thread. Writes them when they fit into `capacity` bytes, and returns how many they are, so a first
- * call with capacity 0 tells the size; 0 for NULL features. */
+/* Features as bytes, for files and other machines (asj-formats(5), .asjf): the same on every machine; 2 bytes per pixel, 2.75 of
+ * an 8-bit colour image, and some 100 for each junction. Any thread. Writes them when they fit into `capacity` bytes, and returns
+ * how many they are, so a first call with capacity 0 tells the size; 0 for NULL features. */
 ASJ_API size_t asj_features_save(const asj_features *features, void *bytes, size_t capacity);
 
 /* Features from bytes. What is not among the bytes is computed once more, so that they equal those that were saved (where the C

@@ -169,8 +169,8 @@ typedef struct asj_match_result {
  * (geometry.h; src/match/two_view.c), by the matches and by candidates of the 4000 L-junctions of each image with the least log10
  * NFA. Where one is accepted, matches that contradict it go, and others that it makes likely come; where none is, the matches are
  * those that there are without (junctions of octave -1: see below). Junctions of other octaves than the finest are no candidates
- * (src/match/guests.c), but their matches go and come as others do. Where both images have colours, these count there, too: things
- * that repeat often differ in hue alone. Exposure and white balance may differ.
+ * (src/match/guests.c), but their matches go and come as others do. Where both images have colours, these count there, too, in what
+ * is a candidate and how likely it is: things that repeat often differ in hue alone. Exposure and white balance may differ.
  *
  * With junctions of octave -1 (asj_detect_options.first_octave) the images are matched without those first, and then with them as
  * if they were twice as large. The second result holds where it has more matches, three in ten of the first ones again and few
@@ -198,13 +198,13 @@ typedef struct asj_match_result {
  * those of a geometry: poses of both orders differ by about what they tell of their errors, and a pair at the limit of chance may
  * be accepted in one order alone. Of matches in upsampled images up to a tenth differ.) Memory:
  * 2.7 bytes per pixel of both images, up to 13 of one while it is prepared, the patches (patch_size^2 x 2 bytes for each frame),
- * short lists, up to 400 bytes for each candidate, and who supports whom, up to 540 MB where all agree with all that is near: two
- * images of 12 megapixels with 55 000 and 60 000 L-junctions and 1.6 million candidates took 1.0 GB. Time: all pairs of L-junctions
- * are looked at, so twice as many in either image take four times as long (2 000 junctions of five branches at one point, 20 000
- * L-junctions that all look alike: some ten seconds). With a geometry, four times as many candidates are aligned for it, and it
- * takes a share of its own: two frames of a video with 1150 L-junctions each and their focal length took 1.5 s in place of 0.2 s
- * (one thread of a two-core Xeon; 0.9 s with two). How often the caller is asked whether to go on:
- * asj_progress_callback. One call at a time for a context.
+ * with a geometry and colours 384 bytes more for each frame, short lists, up to 400 bytes for each candidate, and who supports
+ * whom, up to 540 MB where all agree with all that is near: two images of 12 megapixels with 55 000 and 60 000 L-junctions and 1.6
+ * million candidates took 1.0 GB. Time: all pairs of L-junctions are looked at, so twice as many in either image take four times as
+ * long (2 000 junctions of five branches at one point, 20 000 L-junctions that all look alike: some ten seconds). With a geometry,
+ * four times as many candidates are aligned for it, and it takes a share of its own: two frames of a video with 1150 L-junctions
+ * each and their focal length took 1.5 s in place of 0.2 s (one thread of a two-core Xeon; 0.9 s with two). How often the caller is
+ * asked whether to go on: asj_progress_callback. One call at a time for a context.
  *
  * ASJ_ERROR_ARGUMENT   a NULL pointer; a junction that cannot be (asj_junction_check()), or lies more than ASJ_MAX_OUTSIDE px
  *                      outside its image

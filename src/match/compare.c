@@ -4,6 +4,8 @@
  * Canonical patches: f and g are unit vectors, so |f - g|^2 = 2 - 2 <f, g>. Of an L-junction with several length hypotheses the
  * best pair of frames counts.
  *
+ * For a geometry the products of grey levels and of colours count half each, where there are colours (wide_shortlist.c).
+ *
  * Scores are whole numbers, so that any device ranks alike: <f, g> of unit vectors; 2 <f, g> - <f, f> - <g, g> of others, both in
  * units of 1/ASJ_UNIT_ONE^2; of the paper's patches minus the distance (patch_induced.c). */
 #include "compare.h"
@@ -27,6 +29,14 @@ static float squared_distance(const asj_match_options *options, int32_t score)
     return distance2 > 0 ? distance2 : 0;
 }
 
+/* The mean of the products of grey levels and of colours. */
+static int32_t with_colours(const asj_match_run *run, uint32_t f, uint32_t g, int32_t score)
+{
+    const int16_t *left = run->colour_patches[0] + (size_t)f * ASJ_COLOUR_PATCH_LENGTH;
+    const int16_t *right = run->colour_patches[1] + (size_t)g * ASJ_COLOUR_PATCH_LENGTH;
+    return (score + asj_patch_product(left, right, ASJ_COLOUR_PATCH_LENGTH)) / 2;
+}
+
 static asj_pair_score score_frames(const asj_match_run *run, uint32_t i, uint32_t j)
 {
     const int32_t length = asj_patch_length(run->options);
@@ -40,7 +50,9 @@ static asj_pair_score score_frames(const asj_match_run *run, uint32_t i, uint32_
         for (uint32_t g = first2[j]; g < first2[j + 1]; g++) {
             if (!features2->usable[g])
                 continue;
-            const int32_t score = score_patches(run->options, patch, features2->patches + (size_t)g * (size_t)length, length);
+            int32_t score = score_patches(run->options, patch, features2->patches + (size_t)g * (size_t)length, length);
+            if (run->colour_patches[0])
+                score = with_colours(run, f, g, score);
             if (score > best.score)
                 best = (asj_pair_score){score, f, g};
         }

@@ -5,6 +5,7 @@
 #define ASJ_SRC_MATCH_FEATURES_H
 
 #include "colour.h"
+#include "colour_patch.h"
 #include "core/pyramid.h"
 #include "l_junctions.h"
 
@@ -15,6 +16,7 @@ typedef struct asj_image_features {
                               * induced: for each L-junction */
     uint8_t *usable;         /* of each of them: its patch lies in the image */
     asj_colour *colours;     /* of each L-junction; NULL: the image has none, or nobody will ask */
+    asj_small_picture picture; /* what colour_patch.c samples; empty likewise */
     uint64_t device_copy;    /* names what the device of the context that described them keeps of them; 0 = nothing. It lasts for
                               * the call: features that are kept have none (kept_features.c), as they may be matched anywhere */
 } asj_image_features;

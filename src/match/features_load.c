@@ -14,7 +14,8 @@
 #include <string.h>
 
 #define MOST_TEXT 65536 /* bytes of options */
-#define LATEST_VERSION (ASJ_FEATURES_VERSION + ASJ_FEATURES_COLOURS + ASJ_FEATURES_UPSAMPLED + ASJ_FEATURES_UPSAMPLED_COLOURS)
+#define LATEST_VERSION                                                                                                       \
+    (ASJ_FEATURES_VERSION + ASJ_FEATURES_COLOURS + ASJ_FEATURES_UPSAMPLED + ASJ_FEATURES_UPSAMPLED_COLOURS + ASJ_FEATURES_PICTURE)
 
 /* Bytes that are read one after the other. */
 typedef struct reader {
@@ -23,7 +24,7 @@ typedef struct reader {
     size_t left;
     int32_t width, height;
     uint32_t text, count;
-    int32_t colours, has_upsampled, upsampled_colours;
+    int32_t colours, has_upsampled, upsampled_colours, picture;
 } reader;
 
 static asj_status damaged(const reader *r, const char *what)
@@ -49,6 +50,7 @@ static asj_status read_header(reader *r)
     r->colours = (parts & ASJ_FEATURES_COLOURS) != 0;
     r->has_upsampled = (parts & ASJ_FEATURES_UPSAMPLED) != 0;
     r->upsampled_colours = (parts & ASJ_FEATURES_UPSAMPLED_COLOURS) != 0;
+    r->picture = (parts & ASJ_FEATURES_PICTURE) != 0;
     if (asj_get_u64(start + 16) != size)
         return asj_fail(r->context, ASJ_ERROR_FORMAT, "the features are damaged: %zu bytes where there should be %llu", size,
                         (unsigned long long)asj_get_u64(start + 16));
@@ -160,7 +162,7 @@ static asj_status read_pixels(reader *r, size_t stride, uint16_t *plane)
 static asj_status check_pixels(const reader *r)
 {
     const size_t bytes = 2 * (size_t)r->width * (size_t)r->height;
-    return r->left < bytes || (!r->colours && !r->upsampled_colours && r->left > bytes)
+    return r->left < bytes || (!r->colours && !r->upsampled_colours && !r->picture && r->left > bytes)
                ? damaged(r, "the pixels are not all there, or there are more")
                : ASJ_OK;
 }
@@ -196,6 +198,19 @@ static asj_status read_colours(reader *r, int32_t last, asj_image_features *made
         }
     r->left -= bytes;
     return most > ASJ_GRAY_MAX ? damaged(r, "a colour is brighter than white") : ASJ_OK;
+}
+
+static asj_status read_picture(reader *r, asj_small_picture *picture)
+{
+    asj_status status = asj_small_picture_allocate(r->context, r->width, r->height, picture);
+    if (status != ASJ_OK)
+        return status;
+    const size_t bytes = asj_small_picture_bytes(picture);
+    if (r->left != bytes)
+        return damaged(r, "the image at half its size is not all there, or there is more");
+    if (bytes > 0)
+        memcpy(picture->level, r->next, bytes);
+    return ASJ_OK;
 }
 
 static asj_status make_plain(reader *r, const asj_match_options *options, const asj_junction *junctions, asj_image_features *made)
@@ -235,10 +250,10 @@ static asj_status make(reader *r, const asj_match_options *options, const asj_ju
     if (status == ASJ_ERROR_ARGUMENT)
         status = damaged(r, "a junction that cannot be");
     if (status == ASJ_OK && r->colours)
-        status = read_colours(r, !r->upsampled_colours, &made->own);
+        status = read_colours(r, !r->upsampled_colours && !r->picture, &made->own);
     if (status == ASJ_OK && r->upsampled_colours)
-        status = read_colours(r, 1, &made->upsampled);
-    return status;
+        status = read_colours(r, !r->picture, &made->upsampled);
+    return status == ASJ_OK && r->picture ? read_picture(r, &made->own.picture) : status;
 }
 
 static asj_status load(asj_context *context, const uint8_t *bytes, size_t size, asj_features **features)

@@ -78,6 +78,7 @@ static uint32_t version_of(const asj_features *features)
     uint32_t version = ASJ_FEATURES_VERSION;
     version += features->of_image.colours ? ASJ_FEATURES_COLOURS : 0;
     version += features->has_upsampled ? ASJ_FEATURES_UPSAMPLED : 0;
+    version += features->of_image.picture.level ? ASJ_FEATURES_PICTURE : 0;
     return version + (features->upsampled.colours ? ASJ_FEATURES_UPSAMPLED_COLOURS : 0);
 }
 
@@ -86,11 +87,13 @@ size_t asj_features_save(const asj_features *features, void *bytes, size_t capac
     if (!features)
         return 0;
     const asj_pyramid *pyramid = &features->of_image.pyramid;
+    const asj_small_picture *picture = &features->of_image.picture;
     const size_t text = put_options(&features->options, NULL), pixels = (size_t)pyramid->width[0] * (size_t)pyramid->height[0];
+    const size_t small = picture->level ? asj_small_picture_bytes(picture) : 0;
     size_t size = ASJ_FEATURES_HEADER + text + ASJ_FEATURES_JUNCTION_BYTES * (size_t)features->junction_count + 2 * pixels;
     for (uint32_t n = 0; n < features->junction_count; n++)
         size += ASJ_FEATURES_BRANCH_BYTES * (size_t)features->junctions[n].branch_count;
-    size += colour_bytes(&features->of_image) + colour_bytes(&features->upsampled);
+    size += colour_bytes(&features->of_image) + colour_bytes(&features->upsampled) + small;
     if (!bytes || capacity < size)
         return size;
     uint8_t *start = bytes, *to = start + ASJ_FEATURES_HEADER + text;
@@ -106,7 +109,9 @@ size_t asj_features_save(const asj_features *features, void *bytes, size_t capac
         to = put_junction(to, &features->junctions[n]);
     to = put_plane(to, features);
     to = put_colours(to, &features->of_image);
-    put_colours(to, &features->upsampled);
+    to = put_colours(to, &features->upsampled);
+    if (small > 0)
+        memcpy(to, picture->level, small);
     asj_put_u32(start + 12, asj_crc32(start + ASJ_FEATURES_CHECKED, size - ASJ_FEATURES_CHECKED));
     return size;
 }

@@ -44,11 +44,18 @@ asj_status asj_image_features_create(asj_context *context, const asj_match_optio
     return status;
 }
 
+asj_status asj_image_features_add_colours(asj_context *context, const asj_image *image, asj_image_features *features)
+{
+    const asj_status status = asj_colours_create(context, image, &features->l_junctions, &features->colours);
+    return status == ASJ_OK ? asj_small_picture_create(context, image, &features->picture) : status;
+}
+
 void asj_image_features_free(asj_memory *memory, asj_image_features *features)
 {
     asj_l_junctions_free(memory, &features->l_junctions);
     asj_pyramid_free(memory, &features->pyramid);
     asj_release_much(memory, features->colours);
+    asj_release_much(memory, features->picture.level);
     asj_release_much(memory, features->patches);
     asj_release_much(memory, features->usable);
     memset(features, 0, sizeof *features);

@@ -14,6 +14,8 @@ asj_status asj_image_features_create(asj_context *context, const asj_match_optio
                                      asj_image_features *features);
 /* The last part of it: the patches, when L-junctions and pyramid are there. */
 asj_status asj_image_features_describe(asj_context *context, const asj_match_options *options, asj_image_features *features);
+/* Colours too, which only a geometry asks for; nothing of a grey image. ASJ_ERROR_MEMORY, ASJ_ERROR_CANCELLED; the caller frees. */
+asj_status asj_image_features_add_colours(asj_context *context, const asj_image *image, asj_image_features *features);
 void asj_image_features_free(asj_memory *memory, asj_image_features *features);
 
 #endif

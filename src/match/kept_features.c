@@ -55,6 +55,8 @@ static size_t list_of_image(const asj_image_features *f, size_t offset, const as
     PIECE(usable, patches);
     if (f->colours)
         PIECE(colours, l->count);
+    if (f->picture.level)
+        PIECE(picture.level, asj_small_picture_bytes(&f->picture));
     for (int32_t level = 0; level < pyramid->levels; level++)
         list[n++] = (piece){offset + offsetof(asj_image_features, pyramid.plane) + (size_t)level * sizeof(uint16_t *),
                             ((size_t)pyramid->width[level] + 1) * ((size_t)pyramid->height[level] + 1) * sizeof(uint16_t)};
@@ -145,6 +147,7 @@ asj_image_features asj_features_view(const asj_context *context, const asj_featu
 {
     asj_image_features view = upsampled && features->has_upsampled ? features->upsampled : features->of_image;
     view.pyramid.ops = context->ops;
+    view.picture = features->of_image.picture;
     return view;
 }
 
@@ -176,7 +179,10 @@ static asj_status make(asj_context *context, const asj_image *image, const asj_j
                        const asj_match_options *options, asj_image_features *made)
 {
     const asj_status status = asj_image_features_create(context, options, image, junctions, count, 1, upsampled, made);
-    return status == ASJ_OK ? asj_colours_create(context, image, &made->l_junctions, &made->colours) : status;
+    if (status != ASJ_OK)
+        return status;
+    return upsampled ? asj_colours_create(context, image, &made->l_junctions, &made->colours) /* one picture for both */
+                     : asj_image_features_add_colours(context, image, made);
 }
 
 static asj_status create(asj_context *context, const asj_image *image, const asj_junction *junctions, size_t count,

@@ -4,7 +4,8 @@
  * Of each image (image_features.c):
  *   l_junctions_create.c   junctions -> ordered L-junctions      (locations.c, frames.c, t_junctions.c)
  *   describe.c       patches in those frames                     (patch.c, sift.c; paper: patch_induced.c)
- *   colour.c         colours around them                         for the geometry only
+ *   colour.c         colours around them                         for the geometry only, as is
+ *   colour_patch.c   the image at half its size                  patches of whose colours the pair's geometry makes
  *
  * Of the pair, the list below:
  *   expected.c       of upsampled images: where their own matches put the partners
@@ -282,7 +283,7 @@ static asj_status make_features(asj_context *context, const asj_match_options *o
     asj_status status = asj_image_features_create(context, options, s->image, s->junctions, s->count, n + 1, has_upsampled,
                                                   features);
     if (status == ASJ_OK && options->geometry.model != ASJ_GEOMETRY_NONE)
-        status = asj_colours_create(context, s->image, &features->l_junctions, &features->colours);
+        status = asj_image_features_add_colours(context, s->image, features);
     return status;
 }
 

@@ -19,9 +19,9 @@
 #include "pair_list.h"
 #include "prior.h"
 #include "room_directions.h"
-#include "shortlist.h"
 #include "support.h"
 #include "verdict.h"
+#include "wide_shortlist.h"
 
 #include <math.h>
 
@@ -57,7 +57,7 @@ static asj_status add_matches(const asj_match_run *run, asj_wide_run *w)
 
 static asj_status wide_candidates(const asj_match_run *run, asj_wide_run *w)
 {
-    asj_status status = asj_shortlist(&w->run);
+    asj_status status = asj_wide_shortlist(&w->run);
     if (status == ASJ_OK)
         status = add_matches(run, w);
     if (status == ASJ_OK && w->options.align_iterations > 0)
@@ -164,6 +164,7 @@ asj_status asj_apply_geometry(asj_match_run *run)
     if (status == ASJ_OK && run->geometry.status == ASJ_GEOMETRY_ACCEPTED)
         status = asj_apply_verdict(run, &w);
     asj_release_much(memory, w.run.candidates.list);
+    asj_wide_shortlist_free(&w.run);
     asj_support_free(memory, &w.run.support);
     asj_release(memory, w.given);
     asj_release(memory, w.probability);

@@ -30,15 +30,14 @@
 #include "geometry/posterior.h"
 #include "geometry/small_matrix.h"
 #include "match/align.h"
-#include "match/colour.h"
 #include "match/consensus.h"
 #include "match/geometry_candidate.h"
 #include "match/image_features.h"
 #include "match/match_options.h"
 #include "match/prior.h"
 #include "match/room_directions.h"
-#include "match/shortlist.h"
 #include "match/support.h"
+#include "match/wide_shortlist.h"
 #include "wide_pair.h"
 
 #include <asj/asj.h>
@@ -103,7 +102,7 @@ static asj_status make_side(const settings *set, const synth_wide_pair *pair, in
         status = asj_image_features_create(set->context, &s->options, &s->images[v], s->found[v]->junctions,
                                            s->found[v]->junction_count, v + 1, 0, &s->features[v]);
     if (status == ASJ_OK)
-        status = asj_colours_create(set->context, &s->images[v], &s->features[v].l_junctions, &s->features[v].colours);
+        status = asj_image_features_add_colours(set->context, &s->images[v], &s->features[v]);
     return status;
 }
 
@@ -122,7 +121,7 @@ static void cluster(const asj_l_junctions *in, uint32_t *place)
 
 static asj_status make_candidates(stage *s)
 {
-    asj_status status = asj_shortlist(&s->run);
+    asj_status status = asj_wide_shortlist(&s->run);
     if (status == ASJ_OK)
         status = asj_align_candidates(&s->run, &s->run.candidates);
     if (status == ASJ_OK)
@@ -332,6 +331,7 @@ static asj_status one_pair(const settings *set, const synth_wide_pair *pair)
         status = tell(set, pair, &s, &n);
     }
     asj_release(&set->context->memory, s.run.candidates.list);
+    asj_wide_shortlist_free(&s.run);
     asj_support_free(&set->context->memory, &s.run.support);
     free(s.given);
     free(s.probability);

@@ -5,15 +5,14 @@
 
 #include "geometry/estimate.h"
 #include "match/align.h"
-#include "match/colour.h"
 #include "match/consensus.h"
 #include "match/geometry_candidate.h"
 #include "match/image_features.h"
 #include "match/match_options.h"
 #include "match/prior.h"
 #include "match/room_directions.h"
-#include "match/shortlist.h"
 #include "match/support.h"
+#include "match/wide_shortlist.h"
 #include "measure.h"
 #include "views.h"
 #include "wide_pair.h"
@@ -66,6 +65,7 @@ typedef struct steps {
 static void free_steps(asj_memory *memory, steps *s)
 {
     asj_release(memory, s->run.candidates.list);
+    asj_wide_shortlist_free(&s->run);
     asj_support_free(memory, &s->run.support);
     asj_release(memory, s->given);
     asj_release(memory, s->probability);
@@ -74,7 +74,7 @@ static void free_steps(asj_memory *memory, steps *s)
 
 static asj_status make_candidates(steps *s)
 {
-    asj_status status = asj_shortlist(&s->run);
+    asj_status status = asj_wide_shortlist(&s->run);
     if (status == ASJ_OK)
         status = asj_align_candidates(&s->run, &s->run.candidates);
     if (status == ASJ_OK)
@@ -168,7 +168,7 @@ static int make_side(asj_context *context, const settings *set, const synth_wide
     asj_status status = asj_image_features_create(context, &in->options, &image, side->list, side->count, v + 1, 0,
                                                   &in->features[v]);
     if (status == ASJ_OK)
-        status = asj_colours_create(context, &image, &in->features[v].l_junctions, &in->features[v].colours);
+        status = asj_image_features_add_colours(context, &image, &in->features[v]);
     return status == ASJ_OK ? 0 : fail(asj_context_message(context));
 }
 

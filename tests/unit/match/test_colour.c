@@ -383,6 +383,21 @@ static void refuse(asj_context *context, uint8_t *bytes, size_t size, const char
     assert_non_null(strstr(asj_context_message(context), word));
 }
 
+/* What former libraries wrote: colours, and no image at half its size. */
+static void bytes_of_version_2(asj_context *context, uint8_t *bytes, size_t size)
+{
+    asj_features *features;
+    size_t again;
+    asj_put_u64(bytes + 16, size);
+    asj_put_u32(bytes + 12, asj_crc32(bytes + 16, size - 16));
+    assert_int_equal(asj_features_load(context, bytes, size, &features), ASJ_OK);
+    uint8_t *same = bytes_of(features, &again);
+    assert_int_equal(again, size);
+    assert_memory_equal(same, bytes, size);
+    asj_features_free(&features);
+    free(same);
+}
+
 static void colours_are_kept(void **state)
 {
     asj_context *context = ((unit_fixture *)*state)->context;
@@ -394,17 +409,23 @@ static void colours_are_kept(void **state)
         size_t size, size2;
         asj_features *f = features_of(context, tiled.pixels[v], ASJ_FORMAT_RGB8, v, tiled.found[v]->junction_count);
         uint8_t *bytes = bytes_of(f, &size);
-        assert_int_equal(asj_get_u32(bytes + 8), 2);
+        assert_int_equal(asj_get_u32(bytes + 8), 10); /* colours, and the image at half its size */
+        const size_t small = (size_t)3 * (SYNTH_WIDE_WIDTH / 2) * (SYNTH_WIDE_HEIGHT / 2);
         assert_int_equal(asj_features_load(context, bytes, size, &loaded[v]), ASJ_OK);
         uint8_t *again = bytes_of(loaded[v], &size2);
         assert_int_equal(size, size2);
         assert_memory_equal(bytes, again, size);
-        refuse(context, again, size - 36, "colours"); /* one less */
-        asj_put_u16(again + size - 2, 255 * 128 + 1);
+        refuse(context, again, size - 1, "half");
+        refuse(context, again, size - small - 36, "colours"); /* one less */
+        asj_put_u16(again + size - small - 2, 255 * 128 + 1);
         refuse(context, again, size, "colour");
         memcpy(again, bytes, size);
+        asj_put_u32(again + 8, 2);
+        refuse(context, again, size, "colours"); /* version 2 ends with them */
         asj_put_u32(again + 8, 1);
         refuse(context, again, size, "pixels"); /* version 1 has none */
+        asj_put_u32(again + 8, 2);
+        bytes_of_version_2(context, again, size - small);
         asj_features_free(&f);
         free(bytes);
         free(again);

@@ -397,7 +397,7 @@ static void colours_and_octaves_come_back(void **state)
     assert_int_equal(asj_features_create(context, &image, found->junctions, found->junction_count, NULL, &made), ASJ_OK);
     size_t size, size2;
     uint8_t *bytes = bytes_of(made, &size);
-    assert_int_equal(asj_get_u32(bytes + 8), 8);
+    assert_int_equal(asj_get_u32(bytes + 8), 16);
     assert_int_equal(asj_features_load(context, bytes, size, &read), ASJ_OK);
     uint8_t *second = bytes_of(read, &size2);
     assert_int_equal(size, size2);
@@ -438,8 +438,10 @@ static void hostile_bytes(void **state)
     uint8_t *bytes = bytes_of(features, &size);
     asj_put_u32(bytes + 8, 5); /* colours of a finer octave, and no finer octave */
     refuse(context, bytes, size, ASJ_ERROR_FORMAT, "upsampled image");
-    asj_put_u32(bytes + 8, 9);
-    refuse(context, bytes, size, ASJ_ERROR_UNSUPPORTED, "version 9");
+    asj_put_u32(bytes + 8, 17);
+    refuse(context, bytes, size, ASJ_ERROR_UNSUPPORTED, "version 17");
+    asj_put_u32(bytes + 8, 11); /* octave -1, and an image at half its size that is not there */
+    refuse(context, bytes, size, ASJ_ERROR_FORMAT, "half its size");
     asj_put_u32(bytes + 8, 4);
     refuse(context, bytes, size, ASJ_ERROR_FORMAT, "colours are not all there");
     asj_put_u32(bytes + 8, 3);

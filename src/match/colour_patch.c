@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: BSD-2-Clause */
+/* Patches of an image's colours, for the geometry (two_view.c).
+ *
+ * Red, green and blue of a frame's neighbourhood (patch.c), ASJ_COLOUR_PATCH_SIDE samples along a side, each normalised by itself:
+ * then neither exposure nor white balance counts, which differ from photograph to photograph as a factor and an offset of each
+ * channel. Two frames are as alike as the mean of the three channels' correlations says. Where nothing has a colour that is the
+ * correlation of grey levels; doors, tiles and spines of books that grey levels take for each other it tells apart.
+ *
+ * From the image at half its size: colours are seldom finer than that (JPEG and video keep them so), and a byte for each of them is
+ * all that features need to keep. Whole numbers: the same on every machine. */
+#include "colour_patch.h"
+#include "core/colour_plane.h"
+#include "core/pyramid.h"
+#include "core/watch.h"
+#include "patch.h"
+
+#include <string.h>
+
+#define SIDE ASJ_COLOUR_PATCH_SIDE
+#define THIRD_BITS 14
+#define ROOT_OF_THIRD 9459 /* sqrt(1/3) in 2^-THIRD_BITS */
+
+/* --- the image at half its size ---------------------------------------------------------------------------------------------- */
+
+size_t asj_small_picture_bytes(const asj_small_picture *picture)
+{
+    return 3 * (size_t)picture->width * (size_t)picture->height;
+}
+
+asj_status asj_small_picture_allocate(asj_context *context, int32_t width, int32_t height, asj_small_picture *picture)
+{
+    *picture = (asj_small_picture){NULL, width / 2, height / 2};
+    if (asj_small_picture_bytes(picture) == 0)
+        return ASJ_OK;
+    picture->level = asj_allocate(&context->memory, asj_small_picture_bytes(picture), sizeof *picture->level);
+    return picture->level ? ASJ_OK : asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the colours of an image");
+}
+
+typedef struct halve_job {
+    const asj_channels *channels;
+    const asj_small_picture *picture;
+    asj_watch *watch;
+} halve_job;
+
+static void halve_row(const asj_channels *c, const asj_small_picture *p, int32_t y)
+{
+    const int32_t at[3] = {c->red, 1, 2 - c->red};
+    for (int32_t channel = 0; channel < 3; channel++) {
+        const uint8_t *upper = c->first + 2 * y * c->stride + at[channel], *lower = upper + c->stride;
+        uint8_t *to = p->level + ((size_t)channel * (size_t)p->height + (size_t)y) * (size_t)p->width;
+        for (int32_t x = 0; x < p->width; x++, upper += 2 * c->step, lower += 2 * c->step)
+            to[x] = (uint8_t)((upper[0] + upper[c->step] + lower[0] + lower[c->step] + 2) / 4);
+    }
+}
+
+static void halve_rows(const void *data, const asj_part *part)
+{
+    const halve_job *j = data;
+    for (int64_t y = part->first; y < part->end && !asj_watch_stops(j->watch, part); y++)
+        halve_row(j->channels, j->picture, (int32_t)y);
+}
+
+asj_status asj_small_picture_create(asj_context *context, const asj_image *image, asj_small_picture *picture)
+{
+    asj_channels channels;
+    asj_watch watch;
+    int32_t has_colours;
+    memset(picture, 0, sizeof *picture);
+    asj_status status = asj_image_has_colours(context, image, &has_colours);
+    if (status != ASJ_OK || !has_colours || !asj_channels_of(image, &channels))
+        return status;
+    status = asj_small_picture_allocate(context, image->width, image->height, picture);
+    if (status != ASJ_OK || !picture->level)
+        return status;
+    asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
+    const halve_job j = {&channels, picture, &watch};
+    asj_parallel(context, asj_threads_for(context, picture->height, 64), picture->height, 0, halve_rows, &j);
+    return asj_watch_end(&watch);
+}
+
+/* --- patches ------------------------------------------------------------------------------------------------------------------ */
+
+typedef struct sample_job {
+    const asj_pyramid *pyramid; /* of one channel */
+    const asj_match_options *options;
+    const asj_affine_frame *frames;
+    double scale;
+    int16_t *first; /* of that channel, of the first frame */
+    asj_watch *watch;
+} sample_job;
+
+static void sample_some(const void *data, const asj_part *part)
+{
+    const sample_job *j = data;
+    const double start = j->options->window_start, end = j->options->window_end, by = 1 / j->scale;
+    for (int64_t f = part->first; f < part->end && !asj_watch_stops(j->watch, part); f++) {
+        const asj_affine_frame *in = &j->frames[f];
+        const asj_affine_frame frame = {(in->x + 0.5) * by - 0.5, (in->y + 0.5) * by - 0.5, in->ax * by, in->ay * by,
+                                        in->bx * by, in->by * by};
+        uint16_t levels[SIDE * SIDE];
+        int16_t *unit = j->first + f * ASJ_COLOUR_PATCH_LENGTH;
+        asj_patch_sample(j->pyramid, &frame, SIDE, start, end, levels);
+        j->pyramid->ops->patch->normalise(levels, SIDE, unit);
+        for (int32_t k = 0; k < SIDE * SIDE; k++)
+            unit[k] = (int16_t)((unit[k] * ROOT_OF_THIRD + (1 << (THIRD_BITS - 1))) >> THIRD_BITS);
+    }
+}
+
+static void fill_base(const asj_small_picture *picture, int32_t channel, asj_pyramid *pyramid)
+{
+    const size_t width = (size_t)picture->width, height = (size_t)picture->height;
+    const uint8_t *from = picture->level + (size_t)channel * width * height;
+    for (size_t y = 0; y < height; y++)
+        for (size_t x = 0; x < width; x++)
+            pyramid->plane[0][y * (width + 1) + x] = (uint16_t)(from[y * width + x] * ASJ_GRAY_ONE);
+}
+
+asj_status asj_colour_patches_create(asj_context *context, const asj_match_options *options, const asj_small_picture *picture,
+                                     double scale, const asj_affine_frame *frames, uint32_t count, int16_t **patches)
+{
+    asj_pyramid pyramid;
+    asj_status status = asj_pyramid_allocate(context, picture->width, picture->height, &pyramid);
+    *patches = asj_allocate(&context->memory, count, ASJ_COLOUR_PATCH_LENGTH * sizeof **patches);
+    if (status == ASJ_OK && !*patches)
+        status = asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the colours of %lu patches", (unsigned long)count);
+    for (int32_t channel = 0; channel < 3 && status == ASJ_OK; channel++) {
+        asj_watch watch;
+        fill_base(picture, channel, &pyramid);
+        asj_pyramid_complete(context, &pyramid);
+        asj_watch_start(&watch, context, ASJ_STAGE_PATCHES);
+        const sample_job j = {&pyramid, options, frames, scale, *patches + channel * SIDE * SIDE, &watch};
+        asj_parallel(context, context->threads, count, 0, sample_some, &j);
+        status = asj_watch_end(&watch);
+    }
+    asj_pyramid_free(&context->memory, &pyramid);
+    if (status != ASJ_OK) {
+        asj_release_much(&context->memory, *patches);
+        *patches = NULL;
+    }
+    return status;
+}
