@@ -215,7 +215,8 @@ typedef struct asj_junction_file {
     int32_t reserved[2];
 } asj_junction_file;
 
-/* Reads .asj text, as this library or the paper's authors' program writes it, or this library's JSON; the content decides which.
+/* Reads .asj text, as this library or the paper's authors' program writes it, or this library's JSON; the content decides which. A
+ * byte order mark of UTF-8 before it is passed over.
  * Angles are brought into [0, 2 pi) and branches into order of angle. What .asj does not say (log10 NFA of a branch, uncertainties)
  * is 0. Repeated junctions stay as they are. On success the caller owns *file until asj_junction_file_free().
  * On failure the message names file, line and cause.

@@ -302,6 +302,10 @@ static asj_status read_object(json_reader *reader)
     asj_status status = expect(reader, '{');
     int more = 1;
 
+    if (status == ASJ_OK && skip_space(reader) == '}') {
+        status = expect(reader, '}');
+        more = 0;
+    }
     while (status == ASJ_OK && more) {
         json_t *key = NULL;
         status = read_value(reader, &key);

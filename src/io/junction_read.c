@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 /* Junction files: reads the bytes, chooses the reader by content. */
+#include "image_probe.h"
 #include "junction_formats.h"
 
 #include <stdlib.h>
@@ -15,12 +16,41 @@ static int looks_like_json(const asj_input *input)
     size_t i = 0;
     while (i < input->size && strchr(" \t\r\n", input->bytes[i] ? input->bytes[i] : 'x'))
         i++;
-    return i < input->size && input->bytes[i] == '{';
+    return i < input->size && (input->bytes[i] == '{' || input->bytes[i] == '[');
 }
 
-static const char *is_no_text(const asj_input *head)
+static int begins_with(const asj_input *input, const char *text)
 {
-    return memchr(head->bytes, 0, head->size) ? "not text: it has a byte of value 0" : NULL;
+    const size_t size = strlen(text);
+    return input->size >= size && !memcmp(input->bytes, text, size);
+}
+
+/* What lies at hand in place of a junction file is named, since a line of it means nothing to who has taken the wrong one. */
+static const char *is_no_junctions(const asj_input *head)
+{
+    if (asj_input_is_features(head))
+        return "features of an image, not its junctions";
+    if (asj_probe_kind(head) != ASJ_KIND_UNKNOWN)
+        return "an image, not its junctions";
+    if (begins_with(head, "\xff\xfe") || begins_with(head, "\xfe\xff"))
+        return "text as UTF-16, which the > of PowerShell writes, not as UTF-8";
+    if (memchr(head->bytes, 0, head->size))
+        return "not text: it has a byte of value 0";
+    if (begins_with(head, "junction,x,y,") || begins_with(head, "x1,y1,x2,y2,"))
+        return "CSV, which is not read back: .asj and JSON are";
+    return NULL;
+}
+
+/* Without the byte order mark that editors on Windows put before UTF-8. */
+static asj_input without_mark(const asj_input *input)
+{
+    static const char mark[] = "\xef\xbb\xbf";
+    asj_input rest = *input;
+    if (begins_with(input, mark)) {
+        rest.bytes += sizeof mark - 1;
+        rest.size -= sizeof mark - 1;
+    }
+    return rest;
 }
 
 static void publish(owned_junctions *owned)
@@ -39,21 +69,22 @@ asj_status asj_junctions_read(const char *path, asj_junction_file **file, char *
     asj_message message = asj_message_start(text, text_size, path);
     owned_junctions *owned;
     asj_junction_file *result;
-    asj_input input;
+    asj_input input, text_input;
     asj_status status;
 
     if (file)
         *file = NULL;
     if (!path || !file)
         return asj_message_fail(&message, ASJ_ERROR_ARGUMENT, "no path or no place for the junctions");
-    status = asj_input_read(&input, is_no_text, &message);
+    status = asj_input_read(&input, is_no_junctions, &message);
     if (status != ASJ_OK)
         return status;
+    text_input = without_mark(&input);
     owned = calloc(1, sizeof *owned);
     if (!owned)
         status = asj_message_fail(&message, ASJ_ERROR_MEMORY, "out of memory");
     else
-        status = (looks_like_json(&input) ? asj_read_json : asj_read_text)(&input, &owned->list, &message);
+        status = (looks_like_json(&text_input) ? asj_read_json : asj_read_text)(&text_input, &owned->list, &message);
     free(input.bytes);
     if (!owned)
         return status;

@@ -556,6 +556,23 @@ static void a_line_reads_as_a_file(void **state)
     asj_junction_file_free(&file);
 }
 
+/* Editors on Windows put a byte order mark before the text. */
+static void a_byte_order_mark_is_passed_over(void **state)
+{
+    static const char text[] = "\xef\xbb\xbf" "1\n1 2\n2 7 5 -3.5\n0.5 1 10\n2.5 1 20\n";
+    static const char json[] = "\xef\xbb\xbf {\"schema\":\"asj-junctions-1\",\"junctions\":[{\"x\":1,\"y\":2,\"branches\":["
+                               "{\"angle\":0.5,\"length\":10},{\"angle\":2.5,\"length\":20}]}]}";
+    const char *const files[] = {write_bytes("mark.asj", text, sizeof text - 1), write_bytes("mark.json", json, sizeof json - 1)};
+    size_t i;
+    (void)state;
+    for (i = 0; i < 2; i++) {
+        asj_junction_file *file = read_back(files[i]);
+        assert_int_equal(file->junction_count, 1);
+        assert_float_equal(file->junctions[0].branches[1].length, 20, 0);
+        asj_junction_file_free(&file);
+    }
+}
+
 static void expect_refused_line(asj_output *output, asj_status status, const char *cause)
 {
     assert_int_equal(asj_junctions_write_line(output, &report, message, sizeof message), status);
@@ -691,6 +708,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test_setup(unsound_detections_are_not_written, fresh),
     cmocka_unit_test_setup(lines_have_what_files_have, fresh),
     cmocka_unit_test_setup(a_line_reads_as_a_file, fresh),
+    cmocka_unit_test_setup(a_byte_order_mark_is_passed_over, fresh),
     cmocka_unit_test_setup(unsound_lines_are_not_written, fresh),
     cmocka_unit_test_setup(lines_arrive_at_once, fresh),
     cmocka_unit_test_setup(the_authors_files_are_read, fresh),
