@@ -283,17 +283,29 @@ static int has_colours_left(const run *r)
     return has;
 }
 
+/* Hints at an image, or what stands for it, with few corners. */
+static void print_bare(const run *r, int v, unsigned long corners)
+{
+    const cli_match_arguments *arguments = r->arguments;
+    const cli_region *region = &arguments->regions[v];
+    const char *where = region->mask ? ", where its mask is not 0," : region->width > 0 ? ", in its region," : "";
+    if (arguments->junctions[v])
+        cli_note("hint: %s has %lu corner%s", arguments->junctions[v], corners, corners == 1 ? "" : "s");
+    else if (corners == 0)
+        cli_note("hint: %s%s has no corner that is surer than chance", r->inputs[v].name, where);
+    else
+        cli_note("hint: %s%s has %lu corner%s only: 'asj-cli detect --for matching --plot' shows them", r->inputs[v].name, where,
+                 corners, corners == 1 ? "" : "s");
+}
+
 /* Why there are none, as far as it can be told, and what to try. */
 static void print_hint(const run *r)
 {
     const int32_t status = r->result->geometry.status;
     const int bare = r->result->l_junction_count1 < FEW ? 0 : 1;
     const unsigned long corners = (unsigned long)(bare == 0 ? r->result->l_junction_count1 : r->result->l_junction_count2);
-    if (corners == 0)
-        cli_note("hint: %s has no corner that is surer than chance", r->inputs[bare].name);
-    else if (corners < FEW)
-        cli_note("hint: %s has %lu corner%s only: 'asj-cli detect --for matching --plot' shows them", r->inputs[bare].name, corners,
-                 corners == 1 ? "" : "s");
+    if (corners < FEW)
+        print_bare(r, bare, corners);
     else if (status == ASJ_GEOMETRY_NOT_ASKED)
         cli_note("hint: matches need corners that both show, from not too different sides; for views far apart try "
                  "%s--geometry auto, with --camera1 and --camera2 or --focal where they are known",

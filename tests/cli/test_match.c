@@ -125,6 +125,11 @@ static void no_match_is_a_result(void **state)
     assert_string_equal(result->out, MATCH_HEADER);
     expect_in(result, result->err, "first.png, flat.png: 0 matches");
     expect_in(result, result->err, "hint: flat.png has no corner that is surer than chance");
+    result = run_cli("match", "--region2", "0,0,2,2", "first.png", "second.png", NULL);
+    expect_in(result, result->err, "hint: second.png, in its region, has no corner that is surer than chance");
+    write_bytes("none.asj", "0\n", 2);
+    result = run_cli("match", "--junctions1", "none.asj", "first.png", "second.png", NULL);
+    expect_in(result, result->err, "hint: none.asj has 0 corners");
     result = run_cli("match", "--minimum-support", "60", "first.png", "second.png", NULL);
     expect_code(result, 0);
     expect_in(result, result->err, "0 matches");
