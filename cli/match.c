@@ -11,11 +11,12 @@
 #include "read_image.h"
 #include "timing.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { FEW = 8, STEPS = 3 /* on the progress line: two detections and the matching */ };
+enum { FEW = 8, LARGER = 4, STEPS = 3 /* on the progress line: two detections and the matching */ };
 
 typedef struct run {
     const cli_match_arguments *arguments;
@@ -298,14 +299,36 @@ static void print_bare(const run *r, int v, unsigned long corners)
                  corners, corners == 1 ? "" : "s");
 }
 
+/* Which image has sides LARGER times those of the other or more, and the octave in which it is less than twice as large; -1: none,
+ * or it is looked at smaller already. Of the neighbours that support a match nearly all are then details that the other image is
+ * too small to show, and none is found though both show the same. */
+static int find_larger(const run *r, double *times, int *octave)
+{
+    const asj_image *one = &r->inputs[0].pixels, *other = &r->inputs[1].pixels;
+    if (!one->data || !other->data || r->arguments->junctions[0] || r->arguments->junctions[1] ||
+        r->arguments->detect_options.first_octave > 0)
+        return -1;
+    const double ratio = sqrt((double)one->width * one->height / ((double)other->width * other->height));
+    *times = ratio > 1 ? ratio : 1 / ratio;
+    *octave = (int)log2(*times);
+    return *times < LARGER ? -1 : ratio > 1 ? 0 : 1;
+}
+
 /* Why there are none, as far as it can be told, and what to try. */
 static void print_hint(const run *r)
 {
     const int32_t status = r->result->geometry.status;
     const int bare = r->result->l_junction_count1 < FEW ? 0 : 1;
     const unsigned long corners = (unsigned long)(bare == 0 ? r->result->l_junction_count1 : r->result->l_junction_count2);
+    double times;
+    int octave;
+    const int larger = find_larger(r, &times, &octave);
     if (corners < FEW)
         print_bare(r, bare, corners);
+    else if (larger >= 0)
+        cli_note("hint: %s is %.1f times as large as %s: match it by its coarse octaves, x.asjf in its place after "
+                 "'asj-cli detect --first-octave %d -o x.asjf'",
+                 r->inputs[larger].name, times, r->inputs[1 - larger].name, octave);
     else if (status == ASJ_GEOMETRY_NOT_ASKED)
         cli_note("hint: matches need corners that both show, from not too different sides; for views far apart try "
                  "%s--geometry auto, with --camera1 and --camera2 or --focal where they are known",

@@ -130,6 +130,11 @@ static void no_match_is_a_result(void **state)
     write_bytes("none.asj", "0\n", 2);
     result = run_cli("match", "--junctions1", "none.asj", "first.png", "second.png", NULL);
     expect_in(result, result->err, "hint: none.asj has 0 corners");
+    write_noise("small.png", 160, 120);
+    write_noise("large.png", 650, 480);
+    result = run_cli("match", "large.png", "small.png", NULL);
+    expect_in(result, result->err, "hint: large.png is 4.0 times as large as small.png");
+    expect_in(result, result->err, "after 'asj-cli detect --first-octave 2 -o x.asjf'");
     result = run_cli("match", "--minimum-support", "60", "first.png", "second.png", NULL);
     expect_code(result, 0);
     expect_in(result, result->err, "0 matches");
