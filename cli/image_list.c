@@ -72,6 +72,13 @@ static size_t cut(char *text, size_t size)
     return ends;
 }
 
+/* Where the first name begins: behind the byte order mark that editors on Windows put before text. */
+static size_t find_first(const char *text, size_t size)
+{
+    static const char mark[] = "\xef\xbb\xbf";
+    return size >= sizeof mark - 1 && memcmp(text, mark, sizeof mark - 1) == 0 ? sizeof mark - 1 : 0;
+}
+
 int cli_image_list_make(char **given, size_t given_count, const char *file, cli_image_list *list)
 {
     size_t size = 0, most = given_count + 1;
@@ -87,7 +94,7 @@ int cli_image_list_make(char **given, size_t given_count, const char *file, cli_
         return out_of_memory();
     for (; list->count < given_count; list->count++)
         list->names[list->count] = given[list->count];
-    for (size_t i = 0; i < size; i += strlen(list->text + i) + 1)
+    for (size_t i = find_first(list->text, size); i < size; i += strlen(list->text + i) + 1)
         if (list->text[i] != '\0')
             list->names[list->count++] = list->text + i;
     return CLI_SUCCESS;

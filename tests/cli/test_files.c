@@ -212,6 +212,9 @@ static void more_images_from_a_file(void **state)
     write_bytes("list.hash", "# first.png\n", 12);
     expect_code(run_cli("detect", "-q", "-d", "hash", "--files-from", "list.hash", NULL), 0);
     assert_true(exists("hash/# first.asj"));
+    write_bytes("list.mark", "\xef\xbb\xbf" "first.png\r\n", 14);
+    expect_code(run_cli("detect", "-q", "-d", "mark", "--files-from", "list.mark", NULL), 0);
+    assert_true(exists("mark/first.asj"));
     /* what is there is left alone, and said */
     unlink("listed/first.asj");
     write_bytes("listed/scene.asj", "mine", 4);
