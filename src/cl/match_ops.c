@@ -212,6 +212,22 @@ asj_status asj_cl_describe_frames(asj_context *context, const asj_match_options 
 
 /* ---- partners ---- */
 
+/* The patches of all frames, those that follow each other at once. */
+static asj_status send_patches(asj_context *context, device_features *to, const asj_image_features *features, int32_t length)
+{
+    const uint32_t count = features->l_junctions.frame_count;
+    const size_t bytes = (size_t)length * sizeof(int16_t);
+    asj_status status = asj_cl_reserve(context, &to->patches, count * bytes);
+    for (uint32_t first = 0, end; first < count && status == ASJ_OK; first = end) {
+        const uint32_t start = asj_patch_number(features, first);
+        for (end = first + 1; end < count && asj_patch_number(features, end) == start + (end - first); end++)
+            ;
+        status = asj_cl_write(context, &to->patches, first * bytes, features->patches + start * (size_t)length,
+                              (end - first) * bytes);
+    }
+    return status;
+}
+
 /* The device's copy of an image's features; those that were described elsewhere are brought there. `other` stays. */
 static asj_status find_features(asj_context *context, struct asj_cl_match *match, const asj_match_options *options,
                                 const asj_image_features *features, const device_features *other, device_features **found)
@@ -221,12 +237,9 @@ static asj_status find_features(asj_context *context, struct asj_cl_match *match
             *found = &match->images[v];
             return ASJ_OK;
         }
-    const size_t bytes = (size_t)features->l_junctions.frame_count * (size_t)asj_patch_length(options) * sizeof(int16_t);
     device_features *to = other ? &match->images[other == &match->images[0]] : free_features(match);
     to->number = 0;
-    asj_status status = asj_cl_reserve(context, &to->patches, bytes);
-    if (status == ASJ_OK)
-        status = asj_cl_write(context, &to->patches, 0, features->patches, bytes);
+    const asj_status status = send_patches(context, to, features, asj_patch_length(options));
     *found = to;
     return status == ASJ_OK ? send_frames(context, to, features) : status;
 }

@@ -46,11 +46,11 @@ static asj_pair_score score_frames(const asj_match_run *run, uint32_t i, uint32_
     for (uint32_t f = first1[i]; f < first1[i + 1]; f++) {
         if (!features1->usable[f])
             continue;
-        const int16_t *patch = features1->patches + (size_t)f * (size_t)length;
+        const int16_t *patch = asj_patch_at(features1, f, length);
         for (uint32_t g = first2[j]; g < first2[j + 1]; g++) {
             if (!features2->usable[g])
                 continue;
-            int32_t score = score_patches(run->options, patch, features2->patches + (size_t)g * (size_t)length, length);
+            int32_t score = score_patches(run->options, patch, asj_patch_at(features2, g, length), length);
             if (run->colour_patches[0])
                 score = with_colours(run, f, g, score);
             if (score > best.score)

@@ -71,7 +71,7 @@ static void fill_some(const void *data, const asj_part *part)
     const job *j = data;
     for (int64_t f = part->first; f < part->end; f++) {
         int16_t *vector = j->all + f * ASJ_BOUND_LENGTH;
-        fill_vector(j->ops, j->features->patches + (size_t)f * (size_t)j->length, j->rows, j->length, vector);
+        fill_vector(j->ops, asj_patch_at(j->features, (uint32_t)f, j->length), j->rows, j->length, vector);
         vector[ASJ_BOUND_LENGTH - 1] = j->slack;
     }
 }
@@ -127,7 +127,7 @@ asj_status asj_bound_right(asj_context *context, const asj_match_options *option
 }
 
 int32_t asj_bound_above(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first, int32_t end,
-                         int32_t *which)
+                        const uint32_t *among, int32_t *which)
 {
     int32_t count = 0;
     for (int32_t start = first - first % ASJ_BOUND_LANES; start < end; start += ASJ_BOUND_LANES) {
@@ -138,7 +138,8 @@ int32_t asj_bound_above(const int16_t *left, const int16_t *right, const int32_t
                 bound[n] += left[k] * r[2 * n] + left[k + 1] * r[2 * n + 1];
         for (int32_t n = 0; n < ASJ_BOUND_LANES; n++) {
             const int32_t g = start + n;
-            if (bound[n] > (least[g] < most ? least[g] : most) && g >= first && g < end)
+            if (bound[n] > (least[g] < most ? least[g] : most) && g >= first && g < end &&
+                (!among || asj_bound_is_among(among, first, g)))
                 which[count++] = g;
         }
     }

@@ -20,15 +20,28 @@ int32_t asj_bound_blocks(uint32_t frames);
 #define ASJ_BOUND_LEAST (-0x40000000)
 
 /* Those of `right` from first to end - 1 whose patch's product with that of `left` may be above the smaller of most and of its
- * number in `least`: writes which, in order, and returns how many. `least` has a number for each vector of whole blocks. */
+ * number in `least`: writes which, in order, and returns how many. `least` has a number for each vector of whole blocks. `among`:
+ * only those that asj_bound_add() has put there, with the same first one; a number for each block, from that of first on. NULL =
+ * all. */
 int32_t asj_bound_above(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first, int32_t end,
-                        int32_t *which);
+                        const uint32_t *among, int32_t *which);
+
+/* Two bits for each vector of a block, of which the lower one counts. */
+static inline void asj_bound_add(uint32_t *among, int32_t first, int32_t which)
+{
+    among[which / ASJ_BOUND_LANES - first / ASJ_BOUND_LANES] |= (uint32_t)1 << which % ASJ_BOUND_LANES * 2;
+}
+
+static inline int asj_bound_is_among(const uint32_t *among, int32_t first, int32_t which)
+{
+    return among[which / ASJ_BOUND_LANES - first / ASJ_BOUND_LANES] >> which % ASJ_BOUND_LANES * 2 & 1;
+}
 
 /* Operations (core/ops.h). */
 typedef struct asj_bound_ops {
     /* asj_bound_above() */
     int32_t (*above)(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first, int32_t end,
-                     int32_t *which);
+                     const uint32_t *among, int32_t *which);
 } asj_bound_ops;
 extern const asj_bound_ops asj_bound_reference;
 

@@ -9,16 +9,19 @@
  * Where it is known about where partners lie (expected.c) pairs that lie elsewhere are not compared, and tiles that hold no other
  * pairs of a block are not looked at: so L-junctions had better come in an order in which neighbours are near. */
 #include "describe.h"
-#include "expected.h"
+#include "expected_columns.h"
 #include "induced_score.h"
 #include "product_bound.h"
 #include "shortlist.h"
 #include "core/threads.h"
 
+#include <string.h>
+
 #define FIRST_ROWS 8
 #define MOST_ROWS 64
 #define FIRST_FRAMES 16 /* the frames of one L-junction at least */
 #define MOST_FRAMES 256
+#define MOST_BLOCKS (MOST_FRAMES / ASJ_BOUND_LANES + 1) /* of bound vectors that a tile lies in */
 #define LEAST_OFFERS 16384 /* for a thread */
 
 /* All that the two passes over a block share. */
@@ -35,6 +38,8 @@ typedef struct table {
     asj_induced_squares squares; /* the paper's patches */
     struct tile *tiles;          /* of the L-junctions of image 2 */
     uint32_t tile_count;
+    uint8_t *met;                /* MOST_ROWS for each tile: whether that row has been compared with one of it */
+    asj_expected_columns columns_expected; /* of image 2, where it is known where partners lie */
 } table;
 
 /* L-junctions first .. end - 1 of image 2. */
@@ -69,15 +74,19 @@ static int32_t products_do(const asj_match_options *options)
 
 /* --- unit vectors: the pair of frames with the largest product is the best -------------------------------------------------- */
 
-/* Which frames first .. end - 1 of image 2 to compare with frame f of image 1, whose L-junction's list has the threshold `most`. */
-static int32_t find_frames(const table *t, uint32_t f, uint32_t first, uint32_t end, int32_t most, int32_t *frames)
+/* Which frames first .. end - 1 of image 2, and of these those `among` which asj_bound_above() is told to look, to compare with
+ * frame f of image 1, whose L-junction's list has the threshold `most`. */
+static int32_t find_frames(const table *t, uint32_t f, uint32_t first, uint32_t end, const uint32_t *among, int32_t most,
+                           int32_t *frames)
 {
+    int32_t count = 0;
     if (t->left)
         return t->ops->bound->above(t->left + (size_t)f * ASJ_BOUND_LENGTH, t->right, t->least, most, (int32_t)first, (int32_t)end,
-                                    frames);
+                                    among, frames);
     for (uint32_t g = first; g < end; g++)
-        frames[g - first] = (int32_t)g;
-    return (int32_t)(end - first);
+        if (!among || asj_bound_is_among(among, (int32_t)first, (int32_t)g))
+            frames[count++] = (int32_t)g;
+    return count;
 }
 
 /* May L-junctions i of image 1 and j of image 2 be partners? */
@@ -86,52 +95,70 @@ static int is_expected(const table *t, uint32_t i, uint32_t j)
     return !t->run->expected || asj_may_be_partners(t->run->expected, i, j);
 }
 
-/* Leaves in the list the frames of L-junctions that may be partners of i; returns how many. */
-static int32_t keep_expected(const table *t, uint32_t i, int32_t *frames, int32_t count)
+/* The frames of L-junctions of a tile that may be partners of i. Returns whether there are any. */
+static int find_expected(const table *t, uint32_t i, const tile *columns, uint32_t among[MOST_BLOCKS])
 {
-    int32_t kept = 0;
-    for (int32_t k = 0; k < count; k++)
-        if (is_expected(t, i, t->owner[frames[k]]))
-            frames[kept++] = frames[k];
-    return kept;
+    const uint32_t *first_frame = t->image2->l_junctions.first_frame, start = first_frame[columns->first];
+    int any = 0;
+    if (!asj_boxes_meet(&t->run->expected->boxes[0][i], &columns->box))
+        return 0;
+    memset(among, 0, MOST_BLOCKS * sizeof *among);
+    for (uint32_t j = columns->first; j < columns->end; j += ASJ_EXPECTED_AT_ONCE) {
+        const uint32_t rest = columns->end - j, some = rest < ASJ_EXPECTED_AT_ONCE ? rest : ASJ_EXPECTED_AT_ONCE;
+        uint64_t bits = asj_expected_among(&t->columns_expected, t->run->expected, i, j, some);
+        for (uint32_t k = j; bits; k++, bits >>= 1)
+            for (uint32_t g = first_frame[k]; bits & 1 && g < first_frame[k + 1]; g++, any = 1)
+                asj_bound_add(among, (int32_t)start, (int32_t)g);
+    }
+    return any;
 }
 
-/* A tile of image 2 against L-junction i. */
-static void multiply_tile(const table *t, uint32_t i, const tile *columns, int32_t *scores)
+/* Products of frame f of image 1 and some of image 2. */
+static void multiply(const table *t, uint32_t f, const int32_t *frames, int32_t count, int32_t *products)
+{
+    int32_t patches[MOST_FRAMES];
+    for (int32_t k = 0; k < count; k++)
+        patches[k] = (int32_t)asj_patch_number(t->image2, (uint32_t)frames[k]);
+    t->ops->patch->products(asj_patch_at(t->image1, f, t->length), t->image2->patches, t->length, patches, count, products);
+}
+
+/* A tile of image 2 against L-junction i. Returns whether any two were compared: else there are no scores. */
+static uint8_t multiply_tile(const table *t, uint32_t i, const tile *columns, int32_t *scores)
 {
     const asj_l_junctions *c1 = &t->image1->l_junctions, *c2 = &t->image2->l_junctions;
     const uint32_t first = columns->first, end = columns->end, start = c2->first_frame[first], stop = c2->first_frame[end];
     asj_partner *list = t->rows + (size_t)i * (size_t)t->limit;
-    int32_t frames[MOST_FRAMES], products[MOST_FRAMES];
+    int32_t frames[MOST_FRAMES], products[MOST_FRAMES], compared = 0;
+    uint32_t expected[MOST_BLOCKS];
+    if (t->run->expected && !find_expected(t, i, columns, expected))
+        return 0;
     for (uint32_t j = first; j < end; j++)
         scores[j] = ASJ_NO_PARTNER;
-    if (t->run->expected && !asj_boxes_meet(&t->run->expected->boxes[0][i], &columns->box))
-        return;
     for (uint32_t f = c1->first_frame[i]; f < c1->first_frame[i + 1]; f++) {
         if (!t->image1->usable[f])
             continue;
-        int32_t count = find_frames(t, f, start, stop, threshold(list, t->limit), frames);
-        if (t->run->expected)
-            count = keep_expected(t, i, frames, count);
-        t->ops->patch->products(t->image1->patches + (size_t)f * (size_t)t->length, t->image2->patches, t->length, frames, count,
-                               products);
+        const int32_t count = find_frames(t, f, start, stop, t->run->expected ? expected : NULL, threshold(list, t->limit), frames);
+        multiply(t, f, frames, count, products);
         for (int32_t k = 0; k < count; k++) {
             int32_t *best = &scores[t->owner[frames[k]]];
             if (products[k] > *best && t->image2->usable[frames[k]])
                 *best = products[k];
         }
+        compared += count;
     }
-    for (uint32_t j = first; j < end; j++)
+    for (uint32_t j = first; j < end && compared; j++)
         offer(list, t->limit, scores[j], j);
+    return compared > 0;
 }
 
-/* Rows first_row .. end_row - 1, a tile of all of them before the next: its bounds and patches stay in the cache. `scores`: of the
- * first row. */
-static void multiply_rows(const table *t, uint32_t first_row, uint32_t end_row, int32_t *scores)
+/* Of a block of rows that begins with first_row those from `from` to end - 1, a tile of all of them before the next: its bounds and
+ * patches stay in the cache. */
+static void multiply_rows(const table *t, uint32_t first_row, uint32_t from, uint32_t end)
 {
     for (uint32_t n = 0; n < t->tile_count; n++)
-        for (uint32_t i = first_row; i < end_row && t->tiles[n].asked; i++)
-            multiply_tile(t, i, &t->tiles[n], scores + (size_t)(i - first_row) * t->image2->l_junctions.count);
+        for (uint32_t r = from; r < end && t->tiles[n].asked; r++)
+            t->met[(size_t)n * MOST_ROWS + r] = multiply_tile(t, first_row + r, &t->tiles[n],
+                                                              t->scores + (size_t)r * t->image2->l_junctions.count);
 }
 
 /* Around L-junctions first .. end - 1 of image 2. */
@@ -220,13 +247,13 @@ static void score_row(const table *t, uint32_t i, int32_t *scores)
 
 /* --- blocks of rows --------------------------------------------------------------------------------------------------------- */
 
-/* Rows first .. end - 1 offer themselves to column j. */
-static void offer_rows(const table *t, int64_t first, int64_t end, uint32_t j)
+/* Rows of the block that begins with `first` offer themselves to column j. */
+static void offer_rows(const table *t, int64_t first, const uint8_t *rows, uint32_t count, uint32_t j)
 {
     const asj_l_junctions *c2 = &t->image2->l_junctions;
     asj_partner *list = t->columns + (size_t)j * (size_t)t->limit;
-    for (int64_t i = first; i < end; i++)
-        offer(list, t->limit, t->scores[(size_t)(i - first) * c2->count + j], (uint32_t)i);
+    for (uint32_t n = 0; n < count; n++)
+        offer(list, t->limit, t->scores[(size_t)rows[n] * c2->count + j], (uint32_t)(first + rows[n]));
     for (uint32_t g = c2->first_frame[j]; g < c2->first_frame[j + 1]; g++)
         t->least[g] = threshold(list, t->limit);
 }
@@ -242,12 +269,23 @@ static void score_rows(const void *data, const asj_part *part)
     const job *j = data;
     const int64_t count2 = j->t->image2->l_junctions.count;
     if (products_do(j->t->run->options)) {
-        multiply_rows(j->t, (uint32_t)(j->first + part->first), (uint32_t)(j->first + part->end),
-                      j->t->scores + part->first * count2);
+        multiply_rows(j->t, (uint32_t)j->first, (uint32_t)part->first, (uint32_t)part->end);
         return;
     }
     for (int64_t i = part->first; i < part->end; i++)
         score_row(j->t, (uint32_t)(j->first + i), j->t->scores + i * count2);
+}
+
+/* Which rows of the block tile n has scores of. Returns how many. */
+static uint32_t find_met(const job *j, int64_t n, uint8_t rows[MOST_ROWS])
+{
+    const uint8_t *met = j->t->met + n * MOST_ROWS;
+    const int products = products_do(j->t->run->options);
+    uint32_t count = 0;
+    for (int64_t r = 0; r < j->end - j->first; r++)
+        if (!products || met[r])
+            rows[count++] = (uint8_t)r;
+    return count;
 }
 
 static void offer_some(const void *data, const asj_part *part)
@@ -255,8 +293,10 @@ static void offer_some(const void *data, const asj_part *part)
     const job *j = data;
     for (int64_t n = part->first; n < part->end; n++) {
         const tile *columns = &j->t->tiles[n];
-        for (uint32_t column = columns->first; column < columns->end && columns->asked; column++)
-            offer_rows(j->t, j->first, j->end, column);
+        uint8_t rows[MOST_ROWS];
+        const uint32_t count = columns->asked ? find_met(j, n, rows) : 0;
+        for (uint32_t column = columns->first; column < columns->end && count > 0; column++)
+            offer_rows(j->t, j->first, rows, count, column);
     }
 }
 
@@ -291,10 +331,18 @@ static asj_status prepare(table *t)
     t->tiles = asj_allocate(memory, c2->count, sizeof *t->tiles);
     if (!t->scores || !t->least || !t->owner || !t->tiles)
         return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the distances of %u L-junctions", (unsigned)c2->count);
+    if (t->run->expected) {
+        const asj_status known = asj_expected_columns_create(context, t->run->expected, c2->count, &t->columns_expected);
+        if (known != ASJ_OK)
+            return known;
+    }
     const asj_status squares = asj_induced_squares_create(t->run, &t->squares);
     if (squares != ASJ_OK)
         return squares;
     t->tile_count = find_tiles(t);
+    t->met = asj_allocate(memory, t->tile_count, MOST_ROWS * sizeof *t->met);
+    if (!t->met)
+        return asj_fail(context, ASJ_ERROR_MEMORY, "no memory for the distances of %u L-junctions", (unsigned)c2->count);
     for (uint32_t g = 0; g < c2->frame_count; g++)
         t->least[g] = ASJ_BOUND_LEAST;
     for (uint32_t j = 0; j < c2->count; j++)
@@ -318,6 +366,8 @@ asj_status asj_rank_partners(const asj_match_run *run, asj_partner *rows, asj_pa
     asj_release_much(memory, t.least);
     asj_release_much(memory, t.owner);
     asj_release_much(memory, t.tiles);
+    asj_release(memory, t.met);
+    asj_expected_columns_free(memory, &t.columns_expected);
     asj_release_much(memory, t.left);
     asj_release_much(memory, t.right);
     asj_induced_squares_free(memory, &t.squares);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-2-Clause */
 #include "subset.h"
-#include "describe.h"
 #include "core/nth_smallest.h"
 #include "core/watch.h"
 
@@ -39,7 +38,7 @@ static asj_status find_log10_nfa(asj_context *context, const asj_l_junctions *l,
     return ASJ_OK;
 }
 
-static asj_status fill(asj_context *context, const asj_image_features *all, const choice *c, size_t length, asj_subset *s)
+static asj_status fill(asj_context *context, const asj_image_features *all, const choice *c, asj_subset *s)
 {
     const asj_l_junctions *l = &all->l_junctions;
     uint32_t count = 0;
@@ -50,8 +49,8 @@ static asj_status fill(asj_context *context, const asj_image_features *all, cons
         s->first_frame[i] = count;
         memcpy(s->frames + count, l->frames + f, some * sizeof *s->frames);
         memcpy(s->usable + count, all->usable + f, some);
-        memcpy(s->patches + (size_t)count * length, all->patches + (size_t)f * length, some * length * sizeof *s->patches);
-        count += some;
+        for (uint32_t n = 0; n < some; n++)
+            s->patch_of[count++] = asj_patch_number(all, f + n);
     }
     s->first_frame[l->count] = count;
     return asj_watch_end(&watch);
@@ -62,7 +61,6 @@ asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t fir
     asj_memory *memory = &run->context->memory;
     const asj_image_features *all = run->image[side];
     const asj_l_junctions *l = &all->l_junctions;
-    const size_t length = (size_t)asj_patch_length(run->options);
     choice c = {first_only, 0};
     size_t count = 0;
     const asj_status status = find_log10_nfa(run->context, l, most, &c.log10_nfa);
@@ -72,14 +70,14 @@ asj_status asj_subset_create(const asj_match_run *run, int32_t side, int32_t fir
         count += frames_of(l, i, &c);
     s->frames = asj_allocate(memory, count, sizeof *s->frames);
     s->first_frame = asj_allocate(memory, (size_t)l->count + 1, sizeof *s->first_frame);
-    s->patches = asj_allocate(memory, count, length * sizeof *s->patches);
+    s->patch_of = asj_allocate(memory, count, sizeof *s->patch_of);
     s->usable = asj_allocate(memory, count, sizeof *s->usable);
-    if (!s->frames || !s->first_frame || !s->patches || !s->usable)
+    if (!s->frames || !s->first_frame || !s->patch_of || !s->usable)
         return asj_fail(run->context, ASJ_ERROR_MEMORY, "no memory for a part of %u L-junctions", (unsigned)l->count);
-    const asj_status filled = fill(run->context, all, &c, length, s);
+    const asj_status filled = fill(run->context, all, &c, s);
     s->features = *all;
     s->features.device_copy = 0;
-    s->features.patches = s->patches;
+    s->features.patch_of = s->patch_of;
     s->features.usable = s->usable;
     s->features.l_junctions.frames = s->frames;
     s->features.l_junctions.first_frame = s->first_frame;
@@ -91,6 +89,6 @@ void asj_subset_free(asj_memory *memory, asj_subset *s)
 {
     asj_release_much(memory, s->frames);
     asj_release_much(memory, s->first_frame);
-    asj_release_much(memory, s->patches);
+    asj_release_much(memory, s->patch_of);
     asj_release_much(memory, s->usable);
 }

@@ -10,7 +10,7 @@ typedef struct asj_subset {
     asj_image_features features;
     asj_affine_frame *frames;
     uint32_t *first_frame;
-    int16_t *patches;
+    uint32_t *patch_of;
     uint8_t *usable;
 } asj_subset;
 

@@ -31,14 +31,16 @@ static inline uint32_t bound_block(const int16_t *left, const int16_t *right, co
 }
 
 static int32_t bound_above(const int16_t *left, const int16_t *right, const int32_t *least, int32_t most, int32_t first,
-                           int32_t end, int32_t *which)
+                           int32_t end, const uint32_t *among, int32_t *which)
 {
     const vec limit = v_set1_32(most);
     int32_t count = 0;
-    for (int32_t start = first - first % ASJ_BOUND_LANES; start < end; start += ASJ_BOUND_LANES) {
-        uint32_t bits = bound_block(left, right + (ptrdiff_t)start * ASJ_BOUND_LENGTH, least + start, limit);
+    for (int32_t start = first - first % ASJ_BOUND_LANES, b = 0; start < end; start += ASJ_BOUND_LANES, b++) {
+        uint32_t bits = among ? among[b] : 0xffffffff;
         bits &= start < first ? 0xffffffff << 2 * (first - start) : 0xffffffff;
         bits &= end - start < ASJ_BOUND_LANES ? ((uint32_t)1 << 2 * (end - start)) - 1 : 0xffffffff;
+        if (bits)
+            bits &= bound_block(left, right + (ptrdiff_t)start * ASJ_BOUND_LENGTH, least + start, limit);
         for (; bits; bits &= bits - 1)
             which[count++] = start + __builtin_ctz(bits) / 2;
     }

@@ -148,7 +148,7 @@ size_t bounds_size(const subject *s)
     return (CANDIDATES + 1) * sizeof(int32_t);
 }
 
-/* Bound vectors as large as they get, ranges that start and end anywhere, thresholds of all kinds. */
+/* Bound vectors as large as they get, ranges that start and end anywhere, some or all of them, thresholds of all kinds. */
 asj_status run_bounds(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
     enum { ROOM = (CANDIDATES + ASJ_BOUND_LANES) / ASJ_BOUND_LANES * ASJ_BOUND_LANES };
@@ -166,8 +166,12 @@ asj_status run_bounds(asj_context *context, const subject *s, uint16_t *scratch,
     for (int32_t g = 0; g < ROOM; g++)
         least[g] = g % 7 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : ASJ_BOUND_LEAST;
     const int32_t most = s->seed % 3 ? (int32_t)synth_random_between(&random, -1e8, 1e8) : -ASJ_BOUND_LEAST;
+    uint32_t among[ROOM / ASJ_BOUND_LANES] = {0};
+    for (int32_t g = first; g < end; g++)
+        if (synth_random_bits(&random) % 4 < s->seed % 4)
+            asj_bound_add(among, first, g);
     memset(output, 0, bounds_size(s));
-    which[CANDIDATES] = context->ops->bound->above(left, right, least, most, first, end, which);
+    which[CANDIDATES] = context->ops->bound->above(left, right, least, most, first, end, s->seed % 5 ? among : NULL, which);
     return ASJ_OK;
 }
 

@@ -85,7 +85,7 @@ static void bounds_are_never_too_low(void **state)
                 least[g] = g < count ? asj_patch_product(mine, p[1].units + g * (size_t)length, length) + more : 0;
             }
             const int16_t *one = left + f * ASJ_BOUND_LENGTH;
-            const int32_t found = context->ops->bound->above(one, right, least, -ASJ_BOUND_LEAST, 0, (int32_t)count, which);
+            const int32_t found = context->ops->bound->above(one, right, least, -ASJ_BOUND_LEAST, 0, (int32_t)count, NULL, which);
             for (int32_t k = 0, g = 0; g < (int32_t)count; g++) {
                 const int32_t is = k < found && which[k] == g;
                 assert_true(is || g % 2);
