@@ -90,7 +90,7 @@ size_t discs_size(const subject *s)
     return DISCS * sizeof(asj_disc_sums);
 }
 
-/* Discs of all radii under maps of all kinds, across the border and far outside. */
+/* Discs of all radii under maps of all kinds, across the border, far outside, and small ones, many of them inside. */
 asj_status run_discs(asj_context *context, const subject *s, uint16_t *scratch, void *output)
 {
     asj_pyramid pyramid = {0};
@@ -108,7 +108,7 @@ asj_status run_discs(asj_context *context, const subject *s, uint16_t *scratch, 
         asj_disc_map map = {n % pyramid.levels, (float)synth_random_between(&random, -beyond, width + beyond),
                             (float)synth_random_between(&random, -beyond, height + beyond), {0, 0, 0, 0}};
         for (int32_t k = 0; k < 4; k++)
-            map.linear[k] = (float)synth_random_between(&random, -2, 2);
+            map.linear[k] = (float)(synth_random_between(&random, -2, 2) * (n % 3 ? 1 : 0.1));
         context->ops->disc->compare(&disc, &t, &pyramid, &map, (asj_disc_sums *)output + n);
     }
     asj_pyramid_free(&context->memory, &pyramid);

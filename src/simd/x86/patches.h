@@ -72,16 +72,25 @@ static inline sampler_avx2 sampler_of(const asj_pyramid *pyramid, int32_t level)
                           _mm256_set1_ps((float)(pyramid->width[0] - 1)), _mm256_set1_ps((float)(pyramid->height[0] - 1))};
 }
 
-/* Eight levels, and a bit for each position inside the image. */
-static inline __m256i sample_positions(const sampler_avx2 *s, __m256 x, __m256 y, unsigned *inside)
+/* Where eight positions lie in their level, in whole 1/256 px, and a bit for each that is inside the image. */
+static inline unsigned positions_of(const sampler_avx2 *s, __m256 x, __m256 y, __m256i *ix, __m256i *iy)
 {
     const __m256 zero = _mm256_setzero_ps();
     const __m256 in_x = _mm256_and_ps(_mm256_cmp_ps(x, zero, _CMP_GE_OQ), _mm256_cmp_ps(x, s->last_x, _CMP_LE_OQ));
     const __m256 in_y = _mm256_and_ps(_mm256_cmp_ps(y, zero, _CMP_GE_OQ), _mm256_cmp_ps(y, s->last_y, _CMP_LE_OQ));
     const __m256 fx = _mm256_max_ps(_mm256_add_ps(_mm256_mul_ps(x, s->scale), s->shift), zero);
     const __m256 fy = _mm256_max_ps(_mm256_add_ps(_mm256_mul_ps(y, s->scale), s->shift), zero);
-    *inside = (unsigned)_mm256_movemask_ps(_mm256_and_ps(in_x, in_y));
-    return bilinear(&s->plane, _mm256_cvttps_epi32(_mm256_min_ps(fx, s->right)), _mm256_cvttps_epi32(_mm256_min_ps(fy, s->bottom)));
+    *ix = _mm256_cvttps_epi32(_mm256_min_ps(fx, s->right));
+    *iy = _mm256_cvttps_epi32(_mm256_min_ps(fy, s->bottom));
+    return (unsigned)_mm256_movemask_ps(_mm256_and_ps(in_x, in_y));
+}
+
+/* Eight levels, and a bit for each position inside the image. */
+static inline __m256i sample_positions(const sampler_avx2 *s, __m256 x, __m256 y, unsigned *inside)
+{
+    __m256i ix, iy;
+    *inside = positions_of(s, x, y, &ix, &iy);
+    return bilinear(&s->plane, ix, iy);
 }
 
 static int32_t pyramid_sample_avx2(const asj_pyramid *pyramid, int32_t level, const float *x, const float *y, int32_t count,
